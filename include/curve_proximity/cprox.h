@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The whole C API of curve_proximity: how close a continuous motion comes to what is around it, with a certificate.
+ *
+ *  SI units, radians, right-handed frames. Planar problems live at z = 0. The library keeps no global state, prints
+ *  nothing and never exits; what it allocates belongs to the handle it returns.
+ */
+#ifndef CURVE_PROXIMITY_CPROX_H
+#define CURVE_PROXIMITY_CPROX_H
+
+#include <curve_proximity/cprox/base.h>
+#include <curve_proximity/cprox/body.h>
+#include <curve_proximity/cprox/curve.h>
+#include <curve_proximity/cprox/query.h>
+
+#endif

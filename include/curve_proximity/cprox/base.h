@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Status codes, vectors, poses and the workspace: what every other header stands on. */
+#ifndef CURVE_PROXIMITY_CPROX_BASE_H
+#define CURVE_PROXIMITY_CPROX_BASE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define CPROX_API
+#else
+#define CPROX_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Every status: code, value, short name, sentence. Zero and above: an answer that is true. Below: none, and nothing
+ * was changed. */
+#define CPROX_STATUS_LIST(X)                                                                      \
+  X(CPROX_OK, 0, "ok", "answered to the accuracy asked")                                          \
+  X(CPROX_BUDGET, 1, "budget", "out of nodes; the interval is true but wider")                    \
+  X(CPROX_PRECISION, 2, "precision", "double arithmetic allows no narrower interval")             \
+  X(CPROX_STOPPED, 3, "stopped", "the caller's stop function asked for it; the interval is true") \
+  X(CPROX_OVERLAP, 4, "overlap", "they overlap; how deep was not measured, lower bounds it")      \
+  X(CPROX_INVALID, -1, "invalid", "an argument is unusable; see the reason")                      \
+  X(CPROX_MEMORY, -2, "memory", "an allocation failed")
+
+typedef enum cprox_status {
+#define CPROX_STATUS_ENUM(code, value, name, sentence) code = value,
+  CPROX_STATUS_LIST(CPROX_STATUS_ENUM)
+#undef CPROX_STATUS_ENUM
+} cprox_status;
+
+/** The short name of a status ("ok", "budget", …); "unknown" for a value that is none. Never NULL. */
+CPROX_API const char *cprox_status_name(cprox_status status);
+
+/** The sentence that belongs to a status. Never NULL. */
+CPROX_API const char *cprox_status_text(cprox_status status);
+
+/** A point or a direction, in metres where it is a point. */
+typedef struct cprox_vec3 {
+  double x, y, z;
+} cprox_vec3;
+
+/** A rotation as a quaternion. Any finite norm but 0 stands for the rotation of its direction: the rotation is
+ *  R = 1 + (2/q·q)(w[v] + [v]²), v = (x, y, z), so it need not be normalised. */
+typedef struct cprox_quat {
+  double w, x, y, z;
+} cprox_quat;
+
+/** Where a body's own frame stands in the world: p_world = R(orientation) p_body + position. */
+typedef struct cprox_pose {
+  cprox_vec3 position;    /**< [m] */
+  cprox_quat orientation; /**< not (0, 0, 0, 0) */
+} cprox_pose;
+
+/** The pose that changes nothing. */
+CPROX_API cprox_pose cprox_pose_identity(void);
+
+/** All memory that queries need, and the reason of the last failure.
+ *
+ *  It grows to what the largest query so far has needed; from then on no query allocates. One workspace a thread: a
+ *  workspace may be used by different threads, but never by two at once. */
+typedef struct cprox_workspace cprox_workspace;
+
+/** A new, empty workspace, or NULL where memory is out. Owned by the caller: cprox_workspace_free(). */
+CPROX_API cprox_workspace *cprox_workspace_create(void);
+
+/** Frees a workspace; NULL is allowed. */
+CPROX_API void cprox_workspace_free(cprox_workspace *workspace);
+
+/** One line, for a person, that says why the last call with this workspace did not end with CPROX_OK
+ *  ("knot 7 is 0.3, below knot 6 at 0.5"). "" where it did. Valid until the next call with this workspace. */
+CPROX_API const char *cprox_workspace_reason(const cprox_workspace *workspace);
+
+/** The bytes a workspace holds now. */
+CPROX_API size_t cprox_workspace_bytes(const cprox_workspace *workspace);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Bodies: compact sets (and halfspaces) in their own frame; immutable once made, shared by any number of threads.
+ *
+ *  Bodies are closed sets: touching counts as collision. Constructors copy what they are given and check it once; they
+ *  return CPROX_INVALID with a sentence in the workspace (which may be NULL: then without the sentence), or
+ *  CPROX_MEMORY, and leave *body untouched on failure. The handle is the caller's: cprox_body_free(). */
+#ifndef CURVE_PROXIMITY_CPROX_BODY_H
+#define CURVE_PROXIMITY_CPROX_BODY_H
+
+#include <stdbool.h>
+
+#include <curve_proximity/cprox/base.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct cprox_body cprox_body;
+
+typedef enum cprox_body_kind {
+  CPROX_POINT,
+  CPROX_SPHERE,
+  CPROX_BOX,
+  CPROX_CAPSULE,
+  CPROX_CYLINDER,
+  CPROX_CONE,
+  CPROX_ELLIPSOID,
+  CPROX_HALFSPACE,
+  CPROX_POLYTOPE,
+  CPROX_POLYGON,
+  CPROX_COMPOUND,
+  CPROX_SUPPORT
+} cprox_body_kind;
+
+/** One point [m], finite. */
+CPROX_API cprox_status cprox_body_create_point(cprox_vec3 point, cprox_workspace *workspace, cprox_body **body);
+
+/** A ball about the origin. radius > 0 [m]. */
+CPROX_API cprox_status cprox_body_create_sphere(double radius, cprox_workspace *workspace, cprox_body **body);
+
+/** A box about the origin, axes along x, y, z. size: full edge lengths, each > 0 [m]. */
+CPROX_API cprox_status cprox_body_create_box(cprox_vec3 size, cprox_workspace *workspace, cprox_body **body);
+
+/** All points within radius of the segment from (0, 0, -height/2) to (0, 0, height/2). height, radius > 0 [m];
+ *  height is that between the centres of the hemispheres. */
+CPROX_API cprox_status cprox_body_create_capsule(double height, double radius, cprox_workspace *workspace,
+                                                 cprox_body **body);
+
+/** A solid cylinder about the z axis, |z| <= height/2. height, radius > 0 [m]. */
+CPROX_API cprox_status cprox_body_create_cylinder(double height, double radius, cprox_workspace *workspace,
+                                                  cprox_body **body);
+
+/** A solid cone about the z axis: apex at (0, 0, height/2), base disc of the radius at z = -height/2.
+ *  height, radius > 0 [m]. */
+CPROX_API cprox_status cprox_body_create_cone(double height, double radius, cprox_workspace *workspace,
+                                              cprox_body **body);
+
+/** The ellipsoid sum (x_i/semi_axis_i)² <= 1; each semi-axis > 0 [m], the largest at most 1e6 times the least. */
+CPROX_API cprox_status cprox_body_create_ellipsoid(cprox_vec3 semi_axes, cprox_workspace *workspace, cprox_body **body);
+
+/** The halfspace normal·x + offset <= 0; normal not 0, of any length. */
+CPROX_API cprox_status cprox_body_create_halfspace(cprox_vec3 normal, double offset, cprox_workspace *workspace,
+                                                   cprox_body **body);
+
+/** The convex hull of n vertices in any order and of any dimension [m]: one point, collinear and coplanar vertices are
+ * a point, a segment, a flat polygon. n >= 1, finite. Vertices that are not extreme are allowed and cost time. */
+CPROX_API cprox_status cprox_body_create_polytope(const cprox_vec3 *vertices, size_t n, cprox_workspace *workspace,
+                                                  cprox_body **body);
+
+/** A planar convex polygon in the plane z = 0: vertices [m] in counter-clockwise or clockwise order, n >= 3, every turn
+ * to the same side (collinear neighbours allowed), area > 0. Its nearest point has a closed form. Against a curve that
+ * itself lies in the plane, the inside of the polygon counts as inside: planar problems get planar answers. */
+CPROX_API cprox_status cprox_body_create_polygon(const double (*vertices)[2], size_t n, cprox_workspace *workspace,
+                                                 cprox_body **body);
+
+/** The union of convex bodies, each at a pose in the frame of the union. n >= 1. The parts are kept by reference and
+ * must outlive the compound; a part may not be a compound itself. */
+CPROX_API cprox_status cprox_body_create_compound(const cprox_body *const *parts, const cprox_pose *poses, size_t n,
+                                                  cprox_workspace *workspace, cprox_body **body);
+
+/** The callback of a convex shape of one's own, with the signature of libccd's ccd_support_fn on doubles: writes to
+ *  point[3] a point of the shape that is farthest along direction[3] (which is not 0 and need not be a unit vector). */
+typedef void (*cprox_support_fn)(const void *shape, const double direction[3], double point[3]);
+
+/** A convex shape given by its support callback, enlarged by a margin.
+ *
+ *  shape        handed to the callback, kept by reference: must outlive the body.
+ *  centre       a point of the shape [m]; radius: every point of the shape is within it of the centre [m], > 0.
+ *  slack        how far the callback's answers may be from the shape and from its maximum [m], >= 0: it widens every
+ * interval. margin       [m] >= 0, a ball added to the shape.
+ *
+ *  A callback that answers with NaN or outside the ball is caught by the query: CPROX_INVALID. One that is not the
+ * support function of a convex shape is not caught: then the intervals mean nothing. Thread safety: as the callback's.
+ */
+CPROX_API cprox_status cprox_body_create_support(cprox_support_fn support, const void *shape, cprox_vec3 centre,
+                                                 double radius, double slack, double margin, cprox_workspace *workspace,
+                                                 cprox_body **body);
+
+/** Frees a body; NULL is allowed. No query and no compound may be using it. */
+CPROX_API void cprox_body_free(cprox_body *body);
+
+/** The kind a body was created as. */
+CPROX_API cprox_body_kind cprox_body_get_kind(const cprox_body *body);
+
+/** The name of a kind ("sphere", "polytope", …). Never NULL. */
+CPROX_API const char *cprox_body_kind_name(cprox_body_kind kind);
+
+/** A ball that contains the body, rounding included: centre in the body's frame [m], radius [m]. A halfspace has none:
+ *  radius = infinity. */
+CPROX_API void cprox_body_bounding_sphere(const cprox_body *body, cprox_vec3 *centre, double *radius);
+
+/** The support function h(d) = max over the body of d·x, for any finite d that is not 0 (infinity for most directions
+ * of a halfspace), and a point of the body that attains it, NULL if not needed. */
+CPROX_API double cprox_body_support(const cprox_body *body, cprox_vec3 direction, cprox_vec3 *point);
+
+/** The nearest point of the body to a point of its frame, and the distance to it: negative inside (minus the distance
+ * to the surface) for the kinds that can tell, else 0. nearest NULL if not needed. Accuracy: 64 2^-53 (|point| + size);
+ * a plain evaluation: certified answers come from the queries. */
+CPROX_API double cprox_body_nearest(const cprox_body *body, cprox_vec3 point, cprox_vec3 *nearest);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

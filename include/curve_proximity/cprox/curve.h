@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Parametric curves: psi(t) for t in [t0, t1], compiled once into Bézier pieces, then immutable.
+ *
+ *  A curve may be shared by any number of threads. Constructors copy what they are given and check it once; they return
+ *  CPROX_INVALID with a sentence in the workspace (which may be NULL: then without the sentence), or CPROX_MEMORY, and
+ *  leave *curve untouched on failure. */
+#ifndef CURVE_PROXIMITY_CPROX_CURVE_H
+#define CURVE_PROXIMITY_CPROX_CURVE_H
+
+#include <curve_proximity/cprox/base.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The highest degree of a curve. */
+#define CPROX_MAX_DEGREE 60
+
+typedef struct cprox_curve cprox_curve;
+
+/** A Bézier curve on [t0, t1]: psi(t) = sum_i B_i^n(s) points[i], s = (t - t0)/(t1 - t0), n = n_points - 1.
+ *
+ *  points     [m] n_points of them, 2 … CPROX_MAX_DEGREE + 1, finite; they may coincide (a curve that stands still).
+ *  t0 < t1    finite.
+ *  curve      receives the handle, owned by the caller: cprox_curve_free().
+ */
+CPROX_API cprox_status cprox_curve_create_bezier(const cprox_vec3 *points, size_t n_points, double t0, double t1,
+                                                 cprox_workspace *workspace, cprox_curve **curve);
+
+/** A B-spline curve, restricted to [t0, t1].
+ *
+ *  points     [m] n_points > degree of them, finite.
+ *  degree     1 … CPROX_MAX_DEGREE.
+ *  knots      n_points + degree + 1 of them, finite and non-decreasing. Any multiplicity: at an inner knot of
+ * multiplicity degree + 1 the curve may jump, and both one-sided limits belong to it. t0 < t1    inside [knots[degree],
+ * knots[n_points]], the interval on which the spline is defined.
+ *
+ *  The pieces are the spline's polynomial spans, by blossoming; the rounding of that conversion is bounded and belongs
+ * to every interval answered with this curve. Cost: O(spans degree³) once. Source: L. Ramshaw, "Blossoms are polar
+ * forms", 1989; doc/rounding.md.
+ */
+CPROX_API cprox_status cprox_curve_create_bspline(const cprox_vec3 *points, size_t n_points, size_t degree,
+                                                  const double *knots, size_t n_knots, double t0, double t1,
+                                                  cprox_workspace *workspace, cprox_curve **curve);
+
+/** Frees a curve; NULL is allowed. No query may be using it. */
+CPROX_API void cprox_curve_free(cprox_curve *curve);
+
+/** The ends of the parameter range. */
+CPROX_API void cprox_curve_domain(const cprox_curve *curve, double *t0, double *t1);
+
+/** The degree of the curve's polynomial pieces. */
+CPROX_API size_t cprox_curve_degree(const cprox_curve *curve);
+
+/** The number of polynomial pieces. */
+CPROX_API size_t cprox_curve_pieces(const cprox_curve *curve);
+
+/** psi(t), and its first and second derivative by t, each NULL if not needed.
+ *
+ *  t          inside [t0, t1], else CPROX_INVALID. At a joint of two pieces the right one answers (the left one at t1).
+ *  Accuracy:  the point is within (6 degree + 20) 2^-53 max|control point| of the exact one; a plain evaluation for
+ * drawing and sampling: certified answers come from the queries.
+ */
+CPROX_API cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, cprox_workspace *workspace,
+                                            cprox_vec3 *point, cprox_vec3 *derivative, cprox_vec3 *second_derivative);
+
+/** The Bézier control points of the curve restricted to [a, b], which must lie within one polynomial piece.
+ *
+ *  points     receives cprox_curve_degree() + 1 control points [m].
+ *  CPROX_INVALID if a >= b, if [a, b] leaves the domain, or if a joint lies strictly inside it.
+ */
+CPROX_API cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, double b,
+                                                  cprox_workspace *workspace, cprox_vec3 *points);
+
+/** An axis-aligned box that contains the curve, rounding included. */
+CPROX_API void cprox_curve_bounds(const cprox_curve *curve, cprox_vec3 *lowest, cprox_vec3 *highest);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

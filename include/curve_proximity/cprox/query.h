@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The verbs: distance, tolerance, collision of what moves against what stands; static pairs.
+ *
+ *  Every answer is an interval [lower, upper] that contains the true value, rounding included, or a verdict that
+ * follows from one. Any number of threads may ask at once, each with its own workspace. */
+#ifndef CURVE_PROXIMITY_CPROX_QUERY_H
+#define CURVE_PROXIMITY_CPROX_QUERY_H
+
+#include <stdbool.h>
+
+#include <curve_proximity/cprox/base.h>
+#include <curve_proximity/cprox/body.h>
+#include <curve_proximity/cprox/curve.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A body somewhere: a value. The body is kept by reference. */
+typedef struct cprox_target {
+  const cprox_body *body;
+  cprox_pose pose;
+  double padding; /**< [m] >= 0: the set of all points within this of the body */
+} cprox_target;
+
+CPROX_API cprox_target cprox_at(const cprox_body *body, cprox_pose pose);
+CPROX_API cprox_target cprox_padded(cprox_target target, double padding);
+
+/** What moves: a value. The curve is kept by reference. */
+typedef struct cprox_mover {
+  const cprox_curve *curve;
+  double radius; /**< [m] >= 0: a ball that rides the curve, 0 for a point */
+} cprox_mover;
+
+CPROX_API cprox_mover cprox_point_along(const cprox_curve *curve);
+CPROX_API cprox_mover cprox_tube_along(const cprox_curve *curve, double radius);
+
+typedef enum cprox_verdict { CPROX_NO = 0, CPROX_YES = 1, CPROX_UNDECIDED = 2 } cprox_verdict;
+
+/** "no", "yes", "undecided". */
+CPROX_API const char *cprox_verdict_name(cprox_verdict verdict);
+
+/** How a query is to be answered. Start from cprox_options_default(). */
+typedef struct cprox_options {
+  double epsilon;          /**< [m] width of the interval asked for, >= 0; 0 asks for the narrowest one that double
+                                arithmetic allows, and the status says precision. Default 1e-6 */
+  double relative_epsilon; /**< the interval may also be this fraction of upper wide; >= 0, default 0 */
+  uint32_t max_nodes;      /**< budget of parameter intervals examined, for each target; >= 1, default 20000 */
+  double cutoff; /**< [m] distance only: targets farther than this need no answer but "farther": the search ends with
+                      lower > cutoff. Default infinity */
+  bool (*stop)(void *user); /**< polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
+  void *stop_user;          /**< handed to stop */
+} cprox_options;
+
+CPROX_API cprox_options cprox_options_default(void);
+
+/** The coarsest model of a target that decided the answer. */
+typedef enum cprox_rung {
+  CPROX_RUNG_NONE = 0,
+  CPROX_RUNG_SPHERE = 1,
+  CPROX_RUNG_HULL = 2,
+  CPROX_RUNG_MESH = 3
+} cprox_rung;
+
+/** "none", "sphere", "hull", "mesh". Convex bodies are their own hull. */
+CPROX_API const char *cprox_rung_name(cprox_rung rung);
+
+typedef struct cprox_result {
+  cprox_status status;   /**< the same that the call returned */
+  cprox_verdict verdict; /**< tolerance: yes = farther than delta everywhere; collision: yes = they touch or overlap;
+                              undecided counts as unsafe. distance: undecided, always */
+  double lower, upper;   /**< [m] certified: lower <= true value <= upper */
+  double t;              /**< where on the curve upper was attained */
+  cprox_vec3 on_mover, on_target; /**< [m] world frame, the two points that attain upper (surfaces, radius and padding
+                                       included); equal where they overlap */
+  cprox_vec3 normal;              /**< unit, world frame, from target to mover; (0,0,0) where there is none */
+  int32_t target_index;           /**< which target; -1 for none */
+  int32_t target_part;            /**< which part of a compound; 0 otherwise */
+  cprox_rung rung;
+  uint32_t nodes, probes; /**< what it cost: intervals examined, nearest-point queries */
+} cprox_result;
+
+/** Distance between what moves and what stands, over the mover's whole parameter range.
+ *
+ *  result->lower <= min over t of dist(mover(t), target) <= result->upper, in metres; 0 where they touch or overlap.
+ *  Rounding is inside the interval.
+ *
+ *  Returns CPROX_OK        upper - lower <= max(epsilon, relative_epsilon * upper), or lower > cutoff
+ *          CPROX_BUDGET    max_nodes were not enough: the interval is true, only wider
+ *          CPROX_PRECISION epsilon is below what double arithmetic can promise at this scale: likewise
+ *          CPROX_STOPPED   options->stop said so: likewise
+ *          CPROX_INVALID   an argument is unusable; cprox_workspace_reason() says which and why; *result is untouched
+ *          CPROX_MEMORY    likewise
+ *
+ *  options NULL: the default. Cost: a few nearest-point queries and control-point sweeps; no allocation once the
+ *  workspace has grown.
+ *  Source: Lakshmanan et al. 2019, Algorithm 1, with the bound of doc/curve-bound.md.
+ */
+CPROX_API cprox_status cprox_distance(cprox_mover mover, cprox_target target, const cprox_options *options,
+                                      cprox_workspace *workspace, cprox_result *result);
+
+/** Is the mover farther than delta from the target everywhere? delta >= 0 [m]. verdict yes: lower > delta. no: upper <=
+ * delta. undecided: the distance is within epsilon of delta (or the budget was too small). The interval is true, but
+ * only as narrow as the verdict needed. Returns as cprox_distance(). Source: Lakshmanan et al. 2019, Algorithm 3. */
+CPROX_API cprox_status cprox_tolerance(cprox_mover mover, cprox_target target, double delta,
+                                       const cprox_options *options, cprox_workspace *workspace, cprox_result *result);
+
+/** Do mover and target touch or overlap anywhere? verdict yes: a common point is proven. no: lower > 0. undecided:
+ * closer than epsilon, neither proven. Returns as cprox_distance(). Source: Lakshmanan et al. 2019, Algorithm 4. */
+CPROX_API cprox_status cprox_collision(cprox_mover mover, cprox_target target, const cprox_options *options,
+                                       cprox_workspace *workspace, cprox_result *result);
+
+/** The same against many targets: *nearest is the answer against their union.
+ *
+ *  targets   n of them; n = 0: CPROX_OK, lower = upper = infinity, target_index -1.
+ *  each      NULL if not needed; else n results, one a target, each to the accuracy asked. A target that is unusable
+ * does not spoil the others: its own status is CPROX_INVALID, and so is the call's, with its number in the reason.
+ *            Without `each` targets are searched nearest first and left as soon as they cannot be the nearest.
+ */
+CPROX_API cprox_status cprox_distance_all(cprox_mover mover, const cprox_target *targets, size_t n,
+                                          const cprox_options *options, cprox_workspace *workspace,
+                                          cprox_result *nearest, cprox_result *each);
+CPROX_API cprox_status cprox_tolerance_all(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
+                                           const cprox_options *options, cprox_workspace *workspace,
+                                           cprox_result *nearest, cprox_result *each);
+CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_target *targets, size_t n,
+                                           const cprox_options *options, cprox_workspace *workspace,
+                                           cprox_result *nearest, cprox_result *each);
+
+/** Signed distance of two standing bodies.
+ *
+ *  Apart: lower <= distance <= upper, both witness points, the normal from b to a. Overlapping or touching:
+ *  lower <= minus the penetration depth, upper = 0, CPROX_OVERLAP.
+ *  on_mover is the point on a, on_target that on b; nodes counts iterations, probes support evaluations.
+ *  CPROX_INVALID for two halfspaces (they have no distance) and for arguments that are unusable.
+ *  Cost: a few support evaluations; no allocation.
+ *  Source: doc/convex-pairs.md.
+ */
+CPROX_API cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *options,
+                                  cprox_workspace *workspace, cprox_result *result);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

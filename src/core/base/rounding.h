@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The constants of the rounding analysis in doc/rounding.md; every slack in the core is one of these times a size. */
+#ifndef CPROX_BASE_ROUNDING_H
+#define CPROX_BASE_ROUNDING_H
+
+/* Unit roundoff of double, round to nearest: u = 2^-53. */
+#define ROUND_U 1.1102230246251565e-16
+
+/* Covers the second-order terms of every first-order bound written here, and the rounding of the slack itself. */
+#define ROUND_UP 1.000000001
+
+/* |R(q) - computed R(q)| and the product with a vector: per unit of |v| (doc/rounding.md, T3). */
+#define ROUND_ROTATION 26.0
+
+/* A computed support value of a convex core in its own frame, for a direction of norm 1: per unit of its scale. */
+#define ROUND_SUPPORT 8.0
+
+#endif

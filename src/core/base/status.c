@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "curve_proximity/cprox/base.h"
+
+const char *cprox_status_name(cprox_status status) {
+  switch (status) {
+#define NAME(code, value, name, sentence) \
+  case code: return name;
+    CPROX_STATUS_LIST(NAME)
+#undef NAME
+  }
+  return "unknown";
+}
+
+const char *cprox_status_text(cprox_status status) {
+  switch (status) {
+#define TEXT(code, value, name, sentence) \
+  case code: return sentence;
+    CPROX_STATUS_LIST(TEXT)
+#undef TEXT
+  }
+  return "unknown status";
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/workspace.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+struct cprox_workspace {
+  void *memory[WORKSPACE_BUFFERS];
+  size_t bytes[WORKSPACE_BUFFERS];
+  char reason[256];
+};
+
+cprox_workspace *cprox_workspace_create(void) {
+  return calloc(1, sizeof(cprox_workspace));
+}
+
+void cprox_workspace_free(cprox_workspace *workspace) {
+  if (!workspace) return;
+  for (int i = 0; i < WORKSPACE_BUFFERS; i++) free(workspace->memory[i]);
+  free(workspace);
+}
+
+const char *cprox_workspace_reason(const cprox_workspace *workspace) {
+  return workspace ? workspace->reason : "";
+}
+
+size_t cprox_workspace_bytes(const cprox_workspace *workspace) {
+  size_t total = sizeof *workspace;
+  for (int i = 0; i < WORKSPACE_BUFFERS; i++) total += workspace->bytes[i];
+  return total;
+}
+
+void *workspace_reserve(cprox_workspace *workspace, workspace_buffer buffer, size_t bytes) {
+  if (bytes <= workspace->bytes[buffer]) return workspace->memory[buffer];
+  size_t grown = workspace->bytes[buffer] + workspace->bytes[buffer] / 2;
+  if (grown < bytes) grown = bytes;
+  void *memory = realloc(workspace->memory[buffer], grown);
+  if (!memory) return NULL;
+  workspace->memory[buffer] = memory;
+  workspace->bytes[buffer] = grown;
+  return memory;
+}
+
+cprox_status workspace_fail(cprox_workspace *workspace, cprox_status status, const char *format, ...) {
+  if (!workspace) return status;
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(workspace->reason, sizeof workspace->reason, format, arguments);
+  va_end(arguments);
+  return status;
+}
+
+void workspace_clear(cprox_workspace *workspace) {
+  if (workspace) workspace->reason[0] = '\0';
+}

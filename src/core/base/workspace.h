@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The workspace: growing buffers that keep their memory from query to query, and the reason of the last failure. */
+#ifndef CPROX_BASE_WORKSPACE_H
+#define CPROX_BASE_WORKSPACE_H
+
+#include "curve_proximity/cprox/base.h"
+
+/* Each user of memory has a buffer of its own. */
+typedef enum workspace_buffer {
+  WORKSPACE_NODES,
+  WORKSPACE_POINTS,
+  WORKSPACE_FREE_SLOTS,
+  WORKSPACE_ORDER,
+  WORKSPACE_SCRATCH,
+  WORKSPACE_BUFFERS
+} workspace_buffer;
+
+/* The buffer, grown to at least `bytes` (by half as much again each time); what it held stays. NULL where memory is
+ * out. */
+void *workspace_reserve(cprox_workspace *workspace, workspace_buffer buffer, size_t bytes);
+
+/* Sets the reason, printf-like, and returns the status; a workspace of NULL is allowed. */
+cprox_status workspace_fail(cprox_workspace *workspace, cprox_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Forgets the reason of the last failure. */
+void workspace_clear(cprox_workspace *workspace);
+
+#endif

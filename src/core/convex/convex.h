@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Convex shapes in their own frame, one file a kind: a core (what the support function describes) and a margin (a ball
+ * added to it). A sphere is a point with a margin, a capsule a segment with a margin, an ellipsoid a core with the
+ * largest ball that can be split off; the rest have margin 0. */
+#ifndef CPROX_CONVEX_CONVEX_H
+#define CPROX_CONVEX_CONVEX_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/vec.h"
+#include "curve_proximity/cprox/body.h"
+
+typedef struct convex convex;
+
+/* Where a search for a nearest or extreme point may start: vertices of the last answer. Zero-initialised: from scratch.
+ * A bad hint costs time, never truth. */
+typedef struct convex_hint {
+  int32_t n;
+  int32_t vertex[4];
+} convex_hint;
+
+/* The answer of a nearest-point query for a point y: the surface point, and how the distance behaves near y.
+ *
+ * Where `flat` is set, near y  distance = |w| - offset, w = the part of (y - origin) orthogonal to the `tangents`
+ * vectors e[]: a vertex has none, an edge one, a face two; a sphere's origin is its centre, a cylinder's side has its
+ * axis as tangent. Where it is not, `hessian` is the second derivative of the distance at y (xx, xy, xz, yy, yz, zz).
+ */
+typedef struct convex_near {
+  double distance; /* to the shape, margin included; negative inside where the kind can tell, else 0. NaN: the callback
+                      of a support body misbehaved */
+  vec3 point;      /* the nearest point of the shape, margin included */
+  vec3 normal;     /* unit, the direction in which the distance grows; (0,0,0) where there is none */
+  bool flat;
+  int tangents;
+  vec3 e[2];
+  vec3 origin;
+  double offset;
+  double hessian[6];
+} convex_near;
+
+/* A ball about `centre`, or a cylinder of infinite length about the line through `centre` along the unit `axis`, that
+ * contains the whole shape, margin included, rounding included. */
+typedef struct convex_cover {
+  vec3 centre;
+  vec3 axis;
+  bool cylinder;
+  double radius;
+} convex_cover;
+
+/* What a kind can do. Queries get shapes that their constructor has checked. */
+typedef struct convex_ops {
+  cprox_body_kind kind;
+
+  /* |computed - true distance| <= near_rounding * u * (|y| + scale) + slack: the constant of the kind */
+  double near_rounding;
+
+  void (*nearest)(const convex *shape, vec3 y, convex_hint *hint, convex_near *near);
+
+  /* h(d) = max over the core of d·x, for d of any length but 0, and the maximiser (at may be NULL).
+   * Within ROUND_SUPPORT * u * |d| * scale of the truth (plus |d| slack), never below a point of the core. */
+  double (*support)(const convex *shape, vec3 d, convex_hint *hint, vec3 *at);
+
+  /* The derivative of the maximiser by d, at unit d with maximiser x of the core (xx, xy, xz, yy, yz, zz); NULL for
+   * polyhedra. */
+  void (*curvature)(const convex *shape, vec3 d, vec3 x, double hessian[6]);
+
+  /* A tight cover that touches the shape at near->point; false where there is none (a face, a flat side). NULL: never.
+   */
+  bool (*cover)(const convex *shape, const convex_near *near, convex_cover *cover);
+} convex_ops;
+
+struct convex {
+  const convex_ops *ops;
+  double size[3]; /* what the kind needs: half extents, radius and half height, semi-axes, … */
+  double margin;
+  double scale; /* bound on |x| over the core, about the origin of this frame; a halfspace's distance from it */
+  double slack; /* support callbacks: how far their answers may be off; else 0 */
+  /* polytopes and polygons: vertices about the origin, one array a coordinate, padded to a multiple of 8 with the last
+   * one */
+  int32_t n, padded;
+  double *x, *y, *z;
+  /* support callbacks */
+  cprox_support_fn callback;
+  const void *user;
+  vec3 user_centre;
+};
+
+extern const convex_ops convex_point, convex_sphere, convex_box, convex_capsule, convex_cylinder, convex_cone,
+    convex_ellipsoid, convex_halfspace, convex_polytope, convex_polygon, convex_support_callback;
+
+/* Signed distance inside the plane z = 0 of a polygon to a point of that plane: negative inside. Same accuracy as
+ * nearest. */
+void convex_polygon_nearest_in_plane(const convex *shape, vec3 y, convex_near *near);
+
+#endif

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What every basis compiles to: Bézier pieces of one degree, and a binary tree of chord capsules above them. */
+#ifndef CPROX_CURVE_CURVE_H
+#define CPROX_CURVE_CURVE_H
+
+#include <stdint.h>
+
+#include "base/vec.h"
+#include "curve_proximity/cprox/curve.h"
+
+/* All points within `radius` of the segment between the ends of pieces [first, last): contains their control points,
+ * rounding included. */
+typedef struct curve_capsule {
+  vec3 a, b;
+  double radius;
+} curve_capsule;
+
+struct cprox_curve {
+  size_t degree;
+  size_t n_pieces;
+  double *breaks; /* n_pieces + 1 parameters, ascending; piece i covers [breaks[i], breaks[i+1]] */
+  vec3 *points;   /* n_pieces * (degree + 1) control points */
+  double *error;  /* a piece's: each exact point of the curve is within this of the computed piece's (rounding of the
+                     conversion; for compiled bases their remainder) */
+  /* Heap order: node 1 is the root, node k has children 2k and 2k+1; the n_leaves leaves (a power of two >= n_pieces)
+   * stand at n_leaves + i for piece i; a node without pieces has radius < 0. capsule[0] is unused. */
+  curve_capsule *capsules;
+  size_t n_leaves;
+  double *binomial; /* C(degree - 2, k) for evaluation by the last three de Casteljau points; degree - 1 of them, NULL
+                       below 2 */
+};
+
+static inline const vec3 *curve_piece(const cprox_curve *c, size_t i) {
+  return c->points + i * (c->degree + 1);
+}
+
+/* A curve with room for the pieces; breaks, points and error are the caller's to fill, then curve_finish(). NULL where
+ * memory is out (cprox_curve_free() frees). */
+cprox_curve *curve_allocate(size_t degree, size_t n_pieces);
+
+/* Builds the capsules and tables over pieces that are filled in. */
+void curve_finish(cprox_curve *c);
+
+/* Value and derivatives (by the local parameter s of [0,1]) of one Bézier piece of degree >= 1, SoA or not is the
+ * caller's: x, y, z with the given stride. Any output may be NULL. The value is within (3 n + 8) u max|P| of the exact
+ * one. */
+void curve_bezier_evaluate(const double *x, const double *y, const double *z, size_t stride, size_t degree,
+                           const double *binomial, double s, vec3 *value, vec3 *first, vec3 *second);
+
+#endif
