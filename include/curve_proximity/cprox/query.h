@@ -46,8 +46,6 @@ typedef struct cprox_options {
                                 arithmetic allows, and the status says precision. Default 1e-6 */
   double relative_epsilon; /**< the interval may also be this fraction of upper wide; >= 0, default 0 */
   uint32_t max_nodes;      /**< budget of parameter intervals examined, for each target; >= 1, default 20000 */
-  double cutoff; /**< [m] distance only: targets farther than this need no answer but "farther": the search ends with
-                      lower > cutoff. Default infinity */
   bool (*stop)(void *user); /**< polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
   void *stop_user;          /**< handed to stop */
 } cprox_options;
@@ -85,7 +83,7 @@ typedef struct cprox_result {
  *  result->lower <= min over t of dist(mover(t), target) <= result->upper, in metres; 0 where they touch or overlap.
  *  Rounding is inside the interval.
  *
- *  Returns CPROX_OK        upper - lower <= max(epsilon, relative_epsilon * upper), or lower > cutoff
+ *  Returns CPROX_OK        upper - lower <= max(epsilon, relative_epsilon * upper)
  *          CPROX_BUDGET    max_nodes were not enough: the interval is true, only wider
  *          CPROX_PRECISION epsilon is below what double arithmetic can promise at this scale: likewise
  *          CPROX_STOPPED   options->stop said so: likewise
@@ -99,22 +97,27 @@ typedef struct cprox_result {
 CPROX_API cprox_status cprox_distance(cprox_mover mover, cprox_target target, const cprox_options *options,
                                       cprox_workspace *workspace, cprox_result *result);
 
-/** Is the mover farther than delta from the target everywhere? delta >= 0 [m]. verdict yes: lower > delta. no: upper <=
- * delta. undecided: the distance is within epsilon of delta (or the budget was too small). The interval is true, but
- * only as narrow as the verdict needed. Returns as cprox_distance(). Source: Lakshmanan et al. 2019, Algorithm 3. */
+/** Is the mover farther than delta from the target everywhere? delta >= 0 [m].
+ *
+ *  verdict yes: lower > delta. no: upper <= delta. undecided: the distance is within epsilon of delta, or the budget was
+ *  too small. The interval is true, but only as narrow as the verdict needed. Returns as cprox_distance().
+ *  Source: Lakshmanan et al. 2019, Algorithm 3. */
 CPROX_API cprox_status cprox_tolerance(cprox_mover mover, cprox_target target, double delta,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result);
 
-/** Do mover and target touch or overlap anywhere? verdict yes: a common point is proven. no: lower > 0. undecided:
- * closer than epsilon, neither proven. Returns as cprox_distance(). Source: Lakshmanan et al. 2019, Algorithm 4. */
+/** Do mover and target touch or overlap anywhere?
+ *
+ *  verdict yes: a common point is proven. no: lower > 0. undecided: closer than epsilon, neither proven.
+ *  Returns as cprox_distance().
+ *  Source: Lakshmanan et al. 2019, Algorithm 4. */
 CPROX_API cprox_status cprox_collision(cprox_mover mover, cprox_target target, const cprox_options *options,
                                        cprox_workspace *workspace, cprox_result *result);
 
 /** The same against many targets: *nearest is the answer against their union.
  *
  *  targets   n of them; n = 0: CPROX_OK, lower = upper = infinity, target_index -1.
- *  each      NULL if not needed; else n results, one a target, each to the accuracy asked. A target that is unusable
- * does not spoil the others: its own status is CPROX_INVALID, and so is the call's, with its number in the reason.
+ *  each      NULL if not needed; else n results, one a target, each to the accuracy asked.
+ *            A target that is unusable makes the call CPROX_INVALID; its number stands in the reason.
  *            Without `each` targets are searched nearest first and left as soon as they cannot be the nearest.
  */
 CPROX_API cprox_status cprox_distance_all(cprox_mover mover, const cprox_target *targets, size_t n,

@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "curve_proximity/cprox/query.h"
+
+cprox_mover cprox_point_along(const cprox_curve *curve) {
+  return (cprox_mover){.curve = curve, .radius = 0.0};
+}
+
+cprox_mover cprox_tube_along(const cprox_curve *curve, double radius) {
+  return (cprox_mover){.curve = curve, .radius = radius};
+}

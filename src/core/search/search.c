@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "search/search.h"
+
+#include <math.h>
+
+#include "base/workspace.h"
+
+enum { STOP_POLL_INTERVAL = 16 };
+
+/* Open nodes: a binary heap on `lower` (best first) or a stack (depth first), in the workspace. */
+typedef struct frontier {
+  cprox_workspace *workspace;
+  search_node *nodes;
+  size_t count;
+  bool heap;
+} frontier;
+
+static bool frontier_push(frontier *f, const search_node *node) {
+  f->nodes = workspace_reserve(f->workspace, WORKSPACE_NODES, (f->count + 1) * sizeof *f->nodes);
+  if (!f->nodes) return false;
+  size_t i = f->count++;
+  while (f->heap && i > 0) {
+    const size_t parent = (i - 1) / 2;
+    if (f->nodes[parent].lower <= node->lower) break;
+    f->nodes[i] = f->nodes[parent];
+    i = parent;
+  }
+  f->nodes[i] = *node;
+  return true;
+}
+
+static search_node frontier_pop(frontier *f) {
+  const search_node top = f->heap ? f->nodes[0] : f->nodes[f->count - 1];
+  f->count--;
+  if (!f->heap || f->count == 0) return top;
+  const search_node moved = f->nodes[f->count];
+  size_t i = 0;
+  for (size_t child = 1; child < f->count; child = 2 * i + 1) {
+    if (child + 1 < f->count && f->nodes[child + 1].lower < f->nodes[child].lower) child++;
+    if (f->nodes[child].lower >= moved.lower) break;
+    f->nodes[i] = f->nodes[child];
+    i = child;
+  }
+  f->nodes[i] = moved;
+  return top;
+}
+
+double search_width(const search_goal *goal, double upper) {
+  return fmax(goal->epsilon, goal->relative_epsilon * upper);
+}
+
+static double known_upper(const search_goal *goal, const search_best *best) {
+  return fmin(best->upper, goal->ceiling);
+}
+
+/* The lower bound from which on a node needs no more work. */
+static double settling_bound(const search_goal *goal, const search_best *best) {
+  if (goal->limit >= 0.0) return goal->limit;
+  const double upper = known_upper(goal, best);
+  return upper - search_width(goal, upper);
+}
+
+static bool is_settled(const search_goal *goal, const search_best *best, const search_node *node) {
+  const double bound = settling_bound(goal, best);
+  return goal->limit >= 0.0 ? node->lower > bound : node->lower >= bound;
+}
+
+/* Neither above the limit nor able to say more: closer to the best point than epsilon (verdicts) or than rounding. */
+static bool is_stuck(const search_goal *goal, const search_best *best, const search_node *node) {
+  const double gap = known_upper(goal, best) - node->lower;
+  const double floor = 2.0 * (node->slack + best->slack);
+  return gap <= floor || (goal->limit >= 0.0 && gap <= goal->epsilon);
+}
+
+/* The best point alone ends the search: it violates the limit, or it is as close to 0 as was asked. */
+static bool is_answered(const search_goal *goal, const search_best *best) {
+  return goal->limit >= 0.0 ? best->upper <= goal->limit : best->upper <= search_width(goal, best->upper);
+}
+
+typedef enum node_fate { NODE_OPEN, NODE_SETTLED, NODE_STUCK } node_fate;
+
+static node_fate fate_of(const search_goal *goal, const search_best *best, const search_node *node) {
+  if (is_settled(goal, best, node)) return NODE_SETTLED;
+  return is_stuck(goal, best, node) ? NODE_STUCK : NODE_OPEN;
+}
+
+/* One node: re-bound, probe, re-bound, split. Sets *fate to why it left the search, or NODE_OPEN if its children entered it. */
+static cprox_status work_on(const search_goal *goal, const search_oracle *oracle, search_node *node, frontier *open,
+                            search_outcome *outcome, node_fate *fate) {
+  outcome->nodes++;
+
+  /* measure, unless the best point lies inside */
+  const cprox_status probed = oracle->probe(oracle->self, node, &outcome->best);
+  if (probed < 0) return probed;
+  *fate = fate_of(goal, &outcome->best, node);
+  if (*fate != NODE_OPEN || is_answered(goal, &outcome->best)) return CPROX_OK;
+
+  /* cut at the best point where it lies inside, else in the middle */
+  search_node child[2];
+  const int children = oracle->split(oracle->self, node, child);
+  if (children < 0) return (cprox_status)children;
+  if (children == 0) {
+    *fate = NODE_STUCK;
+    return CPROX_OK;
+  }
+
+  /* the more promising child is looked at first */
+  const int later = child[0].lower > child[1].lower ? 0 : 1;
+  if (!frontier_push(open, &child[later]) || !frontier_push(open, &child[1 - later])) return CPROX_MEMORY;
+  return CPROX_OK;
+}
+
+cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root, cprox_workspace *workspace,
+                        search_outcome *outcome) {
+  frontier open = {.workspace = workspace, .heap = goal->order == SEARCH_BEST_FIRST};
+  cprox_status status = CPROX_OK;
+  double left = INFINITY; /* least lower bound of the nodes that left the search */
+  *outcome = (search_outcome){.lower = INFINITY, .best = {.upper = INFINITY, .slack = 0.0}};
+  if (!frontier_push(&open, &root)) return CPROX_MEMORY;
+
+  while (open.count > 0) {
+    search_node node = frontier_pop(&open);
+
+    /* what is known already may settle it, or make another node the more promising one */
+    if (fate_of(goal, &outcome->best, &node) == NODE_OPEN) {
+      const double bound = oracle->filter(oracle->self, &node, settling_bound(goal, &outcome->best));
+      if (bound > node.lower) node.lower = bound;
+    }
+    node_fate fate = fate_of(goal, &outcome->best, &node);
+    if (fate == NODE_OPEN && open.heap && open.count > 0 && node.lower > open.nodes[0].lower) {
+      if (!frontier_push(&open, &node)) return CPROX_MEMORY;
+      continue;
+    }
+
+    if (fate == NODE_OPEN) {
+      const bool poll = goal->stop && outcome->nodes % STOP_POLL_INTERVAL == 0;
+      if (poll && goal->stop(goal->stop_user)) {
+        status = CPROX_STOPPED;
+      } else if (outcome->nodes >= goal->max_nodes) {
+        status = CPROX_BUDGET;
+      } else {
+        const cprox_status worked = work_on(goal, oracle, &node, &open, outcome, &fate);
+        if (worked < 0) return worked;
+        if (fate == NODE_OPEN && !is_answered(goal, &outcome->best)) continue;
+      }
+    }
+
+    /* the node leaves */
+    left = fmin(left, node.lower);
+    outcome->undecided |= fate == NODE_STUCK && goal->limit >= 0.0;
+    oracle->release(oracle->self, &node);
+    if (status != CPROX_OK || is_answered(goal, &outcome->best)) break;
+    if (fate == NODE_SETTLED && open.heap) break; /* all others lie higher */
+  }
+
+  /* what is still open counts too */
+  for (size_t i = 0; i < open.count; i++) left = fmin(left, open.nodes[i].lower);
+  outcome->lower = left;
+  if (status == CPROX_OK && goal->limit < 0.0) {
+    const double upper = known_upper(goal, &outcome->best);
+    if (fmax(left, 0.0) < upper - search_width(goal, upper)) status = CPROX_PRECISION;
+  }
+  return status;
+}

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The one branch-and-bound engine. It knows intervals and bounds; what they are bounds of is its oracle's affair.
+ *
+ * Every interval that leaves the search leaves its lower bound in a running minimum, so that the interval returned is true
+ * whenever the search ends: converged, decided, out of budget or stopped. */
+#ifndef CPROX_SEARCH_SEARCH_H
+#define CPROX_SEARCH_SEARCH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "curve_proximity/cprox/query.h"
+
+/* A piece of the parameter range. `lower` and `slack` are the engine's and the oracle's, the rest the oracle's alone. */
+typedef struct search_node {
+  double lower;  /* the distance over the node is at least this, rounding included */
+  double slack;  /* how much of that was given away to rounding: no bound on this node gets nearer than this */
+  double a, b;   /* sub-interval of its part, in [0, 1] */
+  double error;  /* of the node's stored points */
+  uint32_t part; /* which part of the mover */
+  int32_t slot;  /* where its points are stored, -1 for nowhere */
+  uint32_t seen, seen_ball; /* the incumbents that its bound knows already */
+} search_node;
+
+/* The best point found so far. */
+typedef struct search_best {
+  double upper; /* the distance is at most this, rounding included */
+  double slack; /* how much of it is rounding */
+} search_best;
+
+typedef struct search_oracle {
+  void *self;
+
+  /* A lower bound over the node from normals already known; never computes a new distance. `goal` is what would settle it. */
+  double (*filter)(void *self, search_node *node, double goal);
+
+  /* Measures the distance somewhere in the node, unless the best point lies inside already; improves *best and node->lower.
+   * CPROX_OK, or a negative status. */
+  cprox_status (*probe)(void *self, search_node *node, search_best *best);
+
+  /* Cuts a node in two that inherit its bound; the node's storage passes on to them. 2, or 0 where the interval is as short as
+   * double allows (then the node is still the caller's to release), or a negative status. */
+  int (*split)(void *self, search_node *node, search_node child[2]);
+
+  /* Gives back a node's storage. */
+  void (*release)(void *self, const search_node *node);
+} search_oracle;
+
+typedef enum search_order { SEARCH_BEST_FIRST, SEARCH_DEPTH_FIRST } search_order;
+
+/* When a node needs no more work. A distance search works on nodes that could hold less than the best point by more than the
+ * width; a verdict search (limit >= 0) on nodes that could come as close as the limit. */
+typedef struct search_goal {
+  search_order order;
+  double limit;    /* verdicts: delta; distance: -1 */
+  double ceiling;  /* distance: an upper bound known from elsewhere, or infinity */
+  double epsilon, relative_epsilon;
+  uint32_t max_nodes;
+  bool (*stop)(void *user);
+  void *stop_user;
+} search_goal;
+
+typedef struct search_outcome {
+  double lower;
+  search_best best;
+  bool undecided; /* verdicts: some node came within epsilon of the limit and stayed there */
+  uint32_t nodes;
+} search_outcome;
+
+/* The width that the goal allows at this upper bound. */
+double search_width(const search_goal *goal, double upper);
+
+/* Searches from the root on; *outcome is always filled, and true, when the status is not negative. */
+cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root, cprox_workspace *workspace,
+                        search_outcome *outcome);
+
+#endif
