@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What `catkin_make install` or `cmake --install` lays down.
+include(CMakePackageConfigHelpers)
+
+if(CPROX_ROS)
+  set(CPROX_LIB_DIR ${CATKIN_PACKAGE_LIB_DESTINATION})
+else()
+  include(GNUInstallDirs)
+  set(CPROX_LIB_DIR ${CMAKE_INSTALL_LIBDIR})
+endif()
+
+# The core: library, C headers, a CMake package and a pkg-config file, both relocatable.
+set_target_properties(cprox PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+install(TARGETS cprox EXPORT cproxTargets LIBRARY DESTINATION ${CPROX_LIB_DIR} ARCHIVE DESTINATION ${CPROX_LIB_DIR}
+        RUNTIME DESTINATION bin)
+install(EXPORT cproxTargets NAMESPACE cprox:: DESTINATION ${CPROX_LIB_DIR}/cmake/cprox)
+configure_file(cmake/cproxConfig.cmake.in ${PROJECT_BINARY_DIR}/cproxConfig.cmake COPYONLY)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/cproxConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/cproxConfig.cmake ${PROJECT_BINARY_DIR}/cproxConfigVersion.cmake
+        DESTINATION ${CPROX_LIB_DIR}/cmake/cprox)
+file(RELATIVE_PATH CPROX_PC_PREFIX /${CPROX_LIB_DIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" CPROX_PC_PREFIX "${CPROX_PC_PREFIX}")
+configure_file(cmake/cprox.pc.in ${PROJECT_BINARY_DIR}/cprox.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/cprox.pc DESTINATION ${CPROX_LIB_DIR}/pkgconfig)
+
+install(DIRECTORY include/curve_proximity/ DESTINATION include/curve_proximity FILES_MATCHING PATTERN "*.h")
+
+# The ROS side.
+if(CPROX_ROS)
+  install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION}
+          FILES_MATCHING PATTERN "*.hpp")
+  foreach(library curve_proximity_scene curve_proximity_ros)
+    if(TARGET ${library})
+      install(TARGETS ${library} LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+              ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
+    endif()
+  endforeach()
+  if(TARGET curve_proximity_node)
+    install(TARGETS curve_proximity_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+  endif()
+  # The command line belongs on the PATH of whoever sources the space.
+  if(TARGET cprox_cli)
+    set_target_properties(cprox_cli PROPERTIES
+      RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_BIN_DESTINATION})
+    install(TARGETS cprox_cli RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
+  endif()
+  foreach(folder launch config rviz)
+    if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})
+      install(DIRECTORY ${folder} DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+    endif()
+  endforeach()
+  if(EXISTS ${PROJECT_SOURCE_DIR}/nodelet_plugins.xml)
+    install(FILES nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+  endif()
+  # The demo's robot and scenes, so that demo.launch works from the install space too.
+  install(DIRECTORY test/data/robots test/data/scenes DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/test/data)
+endif()
