@@ -41,6 +41,21 @@ cprox_curve *curve_allocate(size_t degree, size_t n_pieces);
 /* Builds the capsules and tables over pieces that are filled in. */
 void curve_finish(cprox_curve *c);
 
+/* Checks that every constructor shares: CPROX_OK, or CPROX_INVALID with the sentence set. The points: at least 2, finite,
+ * small enough that their squares do not overflow. The range: finite, t0 < t1. */
+cprox_status curve_check_points(const vec3 *points, size_t n, cprox_workspace *workspace);
+cprox_status curve_check_range(double t0, double t1, cprox_workspace *workspace);
+
+/* The largest magnitude of a coordinate, a knot or a parameter. */
+#define CURVE_LARGEST 1e150
+
+/* Lengths below this may lose their squares to underflow; it is added where a length must not come out too small. */
+#define CURVE_LEAST 1e-150
+
+/* The Bézier points b_j = f(lo^(p-j), hi^j) of the polynomial whose blossom f has the p + 1 de Boor points d over the 2p
+ * knots u, for u[p-1] <= lo < hi <= u[p]. Convex combinations only: each b_j is within 5 p u max|d| of the exact one. */
+void curve_blossom(const vec3 *d, const double *u, size_t p, double lo, double hi, vec3 *b);
+
 /* Value and derivatives (by the local parameter s of [0,1]) of one Bézier piece of degree >= 1, SoA or not is the
  * caller's: x, y, z with the given stride. Any output may be NULL. The value is within (3 n + 8) u max|P| of the exact
  * one. */

@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "curve/curve.h"
+
+#include <stdlib.h>
+
+#include "base/rounding.h"
+#include "base/workspace.h"
+
+cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
+  cprox_curve *c = calloc(1, sizeof *c);
+  if (!c) return NULL;
+  c->degree = degree;
+  c->n_pieces = n_pieces;
+  c->n_leaves = 1;
+  while (c->n_leaves < n_pieces) c->n_leaves *= 2;
+  c->breaks = calloc(n_pieces + 1, sizeof *c->breaks);
+  c->points = calloc(n_pieces * (degree + 1), sizeof *c->points);
+  c->error = calloc(n_pieces, sizeof *c->error);
+  c->capsules = calloc(2 * c->n_leaves, sizeof *c->capsules);
+  if (degree >= 2) c->binomial = calloc(degree - 1, sizeof *c->binomial);
+  if (!c->breaks || !c->points || !c->error || !c->capsules || (degree >= 2 && !c->binomial)) {
+    cprox_curve_free(c);
+    return NULL;
+  }
+  return c;
+}
+
+void cprox_curve_free(cprox_curve *curve) {
+  if (!curve) return;
+  free(curve->breaks);
+  free(curve->points);
+  free(curve->error);
+  free(curve->capsules);
+  free(curve->binomial);
+  free(curve);
+}
+
+/* ---- checks ---- */
+
+cprox_status curve_check_points(const vec3 *points, size_t n, cprox_workspace *workspace) {
+  if (!points) return workspace_fail(workspace, CPROX_INVALID, "the control points are NULL");
+  if (n < 2) return workspace_fail(workspace, CPROX_INVALID, "a curve needs at least 2 control points, got %zu", n);
+  for (size_t i = 0; i < n; i++) {
+    const vec3 p = points[i];
+    if (!vec_finite(p))
+      return workspace_fail(workspace, CPROX_INVALID, "control point %zu is (%g, %g, %g), not finite", i, p.x, p.y,
+                            p.z);
+    if (fabs(p.x) > CURVE_LARGEST || fabs(p.y) > CURVE_LARGEST || fabs(p.z) > CURVE_LARGEST)
+      return workspace_fail(workspace, CPROX_INVALID, "control point %zu is (%g, %g, %g), beyond %g m", i, p.x, p.y,
+                            p.z, CURVE_LARGEST);
+  }
+  return CPROX_OK;
+}
+
+cprox_status curve_check_range(double t0, double t1, cprox_workspace *workspace) {
+  if (!(fabs(t0) <= CURVE_LARGEST && fabs(t1) <= CURVE_LARGEST))
+    return workspace_fail(workspace, CPROX_INVALID, "the parameter range [%g, %g] is not finite or beyond %g", t0, t1,
+                          CURVE_LARGEST);
+  if (!(t0 < t1)) return workspace_fail(workspace, CPROX_INVALID, "t0 = %.17g is not below t1 = %.17g", t0, t1);
+  return CPROX_OK;
+}
+
+/* ---- chord capsules ---- */
+
+/* At least the distance from p to the segment from a to b. For any s in [0,1] the vector v = (p - a) - s (b - a) is no
+ * shorter than it; the computed v is off by at most u(2|p-a| + 3|b-a|), its computed length by a relative 3u. Only
+ * differences enter, so that a common offset costs nothing. */
+static double distance_bound(vec3 p, vec3 a, vec3 b) {
+  const vec3 w = vec_sub(p, a), d = vec_sub(b, a);
+  const double along = vec_dot(w, d), length2 = vec_norm2(d);
+  const double s = along <= 0.0 ? 0.0 : along >= length2 ? 1.0 : along / length2;
+  const double distance = vec_norm(vec_axpy(w, -s, d));
+  return ROUND_UP * (distance + 8.0 * ROUND_U * (vec_norm(w) + sqrt(length2))) + CURVE_LEAST;
+}
+
+/* Around one piece: its hull is that of its control points, and the exact curve is within the piece's error of it. */
+static curve_capsule piece_capsule(const cprox_curve *c, size_t i) {
+  const vec3 *p = curve_piece(c, i);
+  curve_capsule capsule = {.a = p[0], .b = p[c->degree], .radius = 0.0};
+  for (size_t k = 1; k < c->degree; k++) {
+    const double distance = distance_bound(p[k], capsule.a, capsule.b);
+    if (distance > capsule.radius) capsule.radius = distance;
+  }
+  capsule.radius = ROUND_UP * (capsule.radius + c->error[i]);
+  return capsule;
+}
+
+/* Around two capsules: the distance to a segment is convex, so along a child's segment it is largest at an end. */
+static curve_capsule join_capsules(const curve_capsule *left, const curve_capsule *right) {
+  if (right->radius < 0.0) return *left;
+  curve_capsule capsule = {.a = left->a, .b = right->b, .radius = 0.0};
+  const double left_radius = left->radius + distance_bound(left->b, capsule.a, capsule.b);
+  const double right_radius = right->radius + distance_bound(right->a, capsule.a, capsule.b);
+  capsule.radius = ROUND_UP * (left_radius > right_radius ? left_radius : right_radius);
+  return capsule;
+}
+
+void curve_finish(cprox_curve *c) {
+  /* C(m, k) by Pascal's rule: exact up to m = 56, one rounding a number beyond */
+  for (size_t row = 0; row + 2 <= c->degree; row++) {
+    c->binomial[row] = 1.0;
+    for (size_t k = row; k-- > 1;) c->binomial[k] += c->binomial[k - 1];
+  }
+
+  for (size_t i = 0; i < c->n_leaves; i++) {
+    curve_capsule *leaf = &c->capsules[c->n_leaves + i];
+    if (i < c->n_pieces)
+      *leaf = piece_capsule(c, i);
+    else
+      leaf->radius = -1.0;
+  }
+  for (size_t k = c->n_leaves; k-- > 1;) c->capsules[k] = join_capsules(&c->capsules[2 * k], &c->capsules[2 * k + 1]);
+}
+
+/* ---- arithmetic ---- */
+
+/* The weights of x between u[i] and u[j], each with three roundings: 1 - s would lose its accuracy near s = 1. */
+typedef struct weights {
+  double of_left, of_right;
+} weights;
+
+static weights weights_between(double left, double x, double right) {
+  const double length = right - left;
+  return (weights){(right - x) / length, (x - left) / length};
+}
+
+static vec3 combine(weights w, vec3 a, vec3 b) {
+  return vec(w.of_left * a.x + w.of_right * b.x, w.of_left * a.y + w.of_right * b.y,
+             w.of_left * a.z + w.of_right * b.z);
+}
+
+/* After l of the p arguments are given, point i depends on the knots u[i+l] … u[i+p-1]; giving the next argument x
+ * combines the points i and i+1 of level l-1 with the weights of x between u[i+l-1] and u[i+p].
+ *
+ * Error: a weight has 3 roundings (difference, difference, quotient), product and sum one each: 5 a level, and the
+ * combinations are convex, so after p levels |error| <= ((1+u)^(5p) - 1) max|d|, in every direction at once. */
+void curve_blossom(const vec3 *d, const double *u, size_t p, double lo, double hi, vec3 *b) {
+  vec3 row[CPROX_MAX_DEGREE + 1], high[CPROX_MAX_DEGREE + 1];
+  weights towards_hi[CPROX_MAX_DEGREE * (CPROX_MAX_DEGREE + 1) / 2];
+
+  /* the weights of hi, level by level */
+  size_t n = 0;
+  for (size_t l = 1; l <= p; l++)
+    for (size_t i = 0; i + l <= p; i++) towards_hi[n++] = weights_between(u[i + l - 1], hi, u[i + p]);
+
+  for (size_t i = 0; i <= p; i++) row[i] = d[i];
+  const weights *first = towards_hi;
+  for (size_t given = 0;; given++) {
+    /* b_(p - given): lo has been given `given` times, the other arguments are hi */
+    for (size_t i = 0; i + given <= p; i++) high[i] = row[i];
+    const weights *w = first;
+    for (size_t l = given + 1; l <= p; l++)
+      for (size_t i = 0; i + l <= p; i++) high[i] = combine(*w++, high[i], high[i + 1]);
+    b[p - given] = high[0];
+    if (given == p) return;
+
+    /* give lo once more */
+    const size_t l = given + 1;
+    for (size_t i = 0; i + l <= p; i++)
+      row[i] = combine(weights_between(u[i + l - 1], lo, u[i + p]), row[i], row[i + 1]);
+    first += p - given;
+  }
+}
+
+/* With m = n - 2, the last three de Casteljau points are Q_j = sum_k B_k^m(s) P_(k+j), j = 0, 1, 2, and
+ *   value = (1-s)² Q_0 + 2 s(1-s) Q_1 + s² Q_2,   first = n ((1-s)(Q_1 - Q_0) + s (Q_2 - Q_1)),
+ *   second = n(n-1)((Q_2 - Q_1) - (Q_1 - Q_0)).
+ *
+ * Error: r = 1 - s has one rounding, so r^(m-k) has 2(m-k) - 1, s^k has k - 1, the binomial two (from degree 59 on),
+ * their two products two: a weight has at most 2m + 2. A term of Q_j has one more for its product and at most m for its
+ * sums: 3m + 3 = 3n - 3. The last step adds 3 for r², 1 for the product and 2 for the sums: 3n + 3 <= 3n + 8. All
+ * weights are positive and sum to 1, so this times u max|P| bounds the error in every direction at once. Powers that
+ * underflow are off by less than 2^-1074, times a binomial below 2^55: far below u;
+ * products that underflow (|P| below 1e-290) add up to 200 times 2^-1074.
+ * At s = 0 and s = 1 one weight is 1 and the others are 0: the ends are exact. */
+void curve_bezier_evaluate(const double *x, const double *y, const double *z, size_t stride, size_t degree,
+                           const double *binomial, double s, vec3 *value, vec3 *first, vec3 *second) {
+  const double r = 1.0 - s;
+  if (degree < 2) {
+    const vec3 a = vec(x[0], y[0], z[0]), b = vec(x[stride], y[stride], z[stride]);
+    if (value) *value = vec_lerp(a, b, s);
+    if (first) *first = vec_sub(b, a);
+    if (second) *second = vec(0, 0, 0);
+    return;
+  }
+
+  /* Bernstein weights of degree m: binomials times rising powers of s times rising powers of r */
+  double weight[CPROX_MAX_DEGREE];
+  const size_t m = degree - 2;
+  double power = 1.0;
+  for (size_t k = 0; k <= m; k++) {
+    weight[k] = binomial[k] * power;
+    power *= s;
+  }
+  power = 1.0;
+  for (size_t k = m + 1; k-- > 0;) {
+    weight[k] *= power;
+    power *= r;
+  }
+
+  /* the last three de Casteljau points */
+  vec3 q0 = vec(0, 0, 0), q1 = vec(0, 0, 0), q2 = vec(0, 0, 0);
+  for (size_t k = 0; k <= m; k++) {
+    const size_t i0 = k * stride, i1 = i0 + stride, i2 = i1 + stride;
+    q0 = vec_axpy(q0, weight[k], vec(x[i0], y[i0], z[i0]));
+    q1 = vec_axpy(q1, weight[k], vec(x[i1], y[i1], z[i1]));
+    q2 = vec_axpy(q2, weight[k], vec(x[i2], y[i2], z[i2]));
+  }
+
+  const vec3 d0 = vec_sub(q1, q0), d1 = vec_sub(q2, q1);
+  const double n = (double)degree;
+  if (value) *value = vec_axpy(vec_axpy(vec_scale(r * r, q0), 2.0 * s * r, q1), s * s, q2);
+  if (first) *first = vec_scale(n, vec_lerp(d0, d1, s));
+  if (second) *second = vec_scale(n * (n - 1.0), vec_sub(d1, d0));
+}
+
+/* ---- what users ask a curve ---- */
+
+void cprox_curve_domain(const cprox_curve *curve, double *t0, double *t1) {
+  *t0 = curve->breaks[0];
+  *t1 = curve->breaks[curve->n_pieces];
+}
+
+size_t cprox_curve_degree(const cprox_curve *curve) {
+  return curve->degree;
+}
+
+size_t cprox_curve_pieces(const cprox_curve *curve) {
+  return curve->n_pieces;
+}
+
+/* The last piece that begins at or before t, for t inside the domain; at t1 the last one. */
+static size_t piece_at(const cprox_curve *c, double t) {
+  size_t first = 0, end = c->n_pieces;
+  while (end - first > 1) {
+    const size_t middle = first + (end - first) / 2;
+    if (c->breaks[middle] <= t)
+      first = middle;
+    else
+      end = middle;
+  }
+  return first;
+}
+
+/* Counted from the nearer end s is within 2u of the exact one, within 1.5u below 1/2; times |dpsi/ds| <= 2n max|P| that
+ * adds 4n (3n) u max|P| to the error of the evaluation, 2n + 4 (3n + 2), the difference 1 - s being exact from 1/2 on. */
+static double local_parameter(double left, double t, double right) {
+  const weights w = weights_between(left, t, right);
+  return w.of_right <= w.of_left ? w.of_right : 1.0 - w.of_left;
+}
+
+static vec3 divide(vec3 a, double length) {
+  return vec(a.x / length, a.y / length, a.z / length);
+}
+
+cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, cprox_workspace *workspace, cprox_vec3 *point,
+                                  cprox_vec3 *derivative, cprox_vec3 *second_derivative) {
+  workspace_clear(workspace);
+  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the curve is NULL");
+  const double t0 = curve->breaks[0], t1 = curve->breaks[curve->n_pieces];
+  if (!(t0 <= t && t <= t1))
+    return workspace_fail(workspace, CPROX_INVALID, "t = %.17g is outside the curve's range [%.17g, %.17g]", t, t0, t1);
+
+  const size_t i = piece_at(curve, t);
+  const double left = curve->breaks[i], right = curve->breaks[i + 1], length = right - left;
+  const double s = local_parameter(left, t, right);
+  const vec3 *p = curve_piece(curve, i);
+  curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, curve->degree, curve->binomial, s, point, derivative,
+                        second_derivative);
+
+  /* from ds to dt */
+  if (derivative) *derivative = divide(*derivative, length);
+  if (second_derivative) *second_derivative = divide(divide(*second_derivative, length), length);
+  return CPROX_OK;
+}
+
+cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, double b, cprox_workspace *workspace,
+                                        cprox_vec3 *points) {
+  workspace_clear(workspace);
+  if (!curve || !points)
+    return workspace_fail(workspace, CPROX_INVALID, "the %s is NULL", curve ? "array for the points" : "curve");
+  const double t0 = curve->breaks[0], t1 = curve->breaks[curve->n_pieces];
+  if (!(a < b)) return workspace_fail(workspace, CPROX_INVALID, "a = %.17g is not below b = %.17g", a, b);
+  if (!(t0 <= a && b <= t1))
+    return workspace_fail(workspace, CPROX_INVALID, "[%.17g, %.17g] leaves the curve's range [%.17g, %.17g]", a, b, t0,
+                          t1);
+  const size_t i = piece_at(curve, a), degree = curve->degree;
+  const double left = curve->breaks[i], right = curve->breaks[i + 1];
+  if (b > right)
+    return workspace_fail(workspace, CPROX_INVALID, "two pieces join at %.17g, inside [%.17g, %.17g]", right, a, b);
+
+  /* a Bézier piece is a spline whose knots all stand at its ends */
+  double knots[2 * CPROX_MAX_DEGREE];
+  for (size_t k = 0; k < degree; k++) {
+    knots[k] = left;
+    knots[degree + k] = right;
+  }
+  curve_blossom(curve_piece(curve, i), knots, degree, a, b, points);
+  return CPROX_OK;
+}
+
+void cprox_curve_bounds(const cprox_curve *curve, cprox_vec3 *lowest, cprox_vec3 *highest) {
+  *lowest = vec(INFINITY, INFINITY, INFINITY);
+  *highest = vec(-INFINITY, -INFINITY, -INFINITY);
+  for (size_t i = 0; i < curve->n_pieces; i++) {
+    const vec3 *p = curve_piece(curve, i);
+    /* where the piece is exact so is its box; else an error that is a little larger hides the rounding of the sums */
+    const double error = curve->error[i];
+    for (size_t k = 0; k <= curve->degree; k++) {
+      const vec3 low = error > 0.0 ? vec(nextafter(p[k].x - error, -INFINITY), nextafter(p[k].y - error, -INFINITY),
+                                         nextafter(p[k].z - error, -INFINITY))
+                                   : p[k];
+      const vec3 high = error > 0.0 ? vec(nextafter(p[k].x + error, INFINITY), nextafter(p[k].y + error, INFINITY),
+                                          nextafter(p[k].z + error, INFINITY))
+                                    : p[k];
+      *lowest = vec(fmin(lowest->x, low.x), fmin(lowest->y, low.y), fmin(lowest->z, low.z));
+      *highest = vec(fmax(highest->x, high.x), fmax(highest->y, high.y), fmax(highest->z, high.z));
+    }
+  }
+}
