@@ -1,0 +1,274 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The C library in C++: handles that free themselves, failures as exceptions, Eigen types in and out.
+ *
+ *  Header-only over libcprox: no ROS, no other library of this package. Metres and radians throughout. Bodies and curves
+ *  are immutable and may be shared by any number of threads; a Workspace belongs to one thread at a time. */
+#ifndef CURVE_PROXIMITY_CORE_HPP
+#define CURVE_PROXIMITY_CORE_HPP
+
+#include <array>
+#include <Eigen/Geometry>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <curve_proximity/cprox.h>
+
+namespace curve_proximity {
+
+/** A body in its own frame; freed with its last owner. Never null where a maker below returned it. */
+using BodyPtr = std::shared_ptr<const cprox_body>;
+
+/** A compiled curve; freed with its last owner. */
+using CurvePtr = std::shared_ptr<const cprox_curve>;
+
+/** A call that could not be answered; what() is one line for a person: what is wrong, and where. */
+class Error : public std::runtime_error {
+ public:
+  explicit Error(const std::string &reason, cprox_status status = CPROX_INVALID)
+      : std::runtime_error(reason), status_(status) {}
+
+  /** CPROX_INVALID or CPROX_MEMORY. */
+  cprox_status status() const {
+    return status_;
+  }
+
+ private:
+  cprox_status status_;
+};
+
+/** All memory that queries need. One a thread; movable, not copyable. Throws Error where memory is out. */
+class Workspace {
+ public:
+  Workspace() : handle_(cprox_workspace_create()) {
+    if (!handle_) throw Error(cprox_status_text(CPROX_MEMORY), CPROX_MEMORY);
+  }
+
+  /** The C handle, owned by this object. */
+  cprox_workspace *get() const {
+    return handle_.get();
+  }
+
+  /** Why the last call did not end with CPROX_OK; "" where it did. */
+  std::string reason() const {
+    return cprox_workspace_reason(handle_.get());
+  }
+
+ private:
+  struct Free {
+    void operator()(cprox_workspace *handle) const {
+      cprox_workspace_free(handle);
+    }
+  };
+  std::unique_ptr<cprox_workspace, Free> handle_;
+};
+
+/** Throws an Error with the workspace's reason if the status says that there is no answer; returns it otherwise. */
+inline cprox_status require(cprox_status status, const Workspace &workspace) {
+  if (status >= 0) return status;
+  const std::string reason = workspace.reason();
+  throw Error(reason.empty() ? cprox_status_text(status) : reason, status);
+}
+
+/* ---- Eigen and C ------------------------------------------------------------------------------------------------ */
+
+inline cprox_vec3 toVec3(const Eigen::Vector3d &v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+inline Eigen::Vector3d toEigen(const cprox_vec3 &v) {
+  return {v.x, v.y, v.z};
+}
+
+/** The pose of a rigid transform. A rotation part that is exactly the identity gives exactly the identity quaternion;
+ *  any other is rounded to within 16 2^-53 of a turn. The linear part must be a rotation. */
+inline cprox_pose toPose(const Eigen::Isometry3d &transform) {
+  const Eigen::Quaterniond q(transform.linear());
+  return {toVec3(transform.translation()), {q.w(), q.x(), q.y(), q.z()}};
+}
+
+/** The transform of a pose; the quaternion need not be normalised. Throws Error for one of norm 0 or not finite. */
+inline Eigen::Isometry3d toIsometry(const cprox_pose &pose) {
+  const cprox_quat &o = pose.orientation;
+  Eigen::Quaterniond q(o.w, o.x, o.y, o.z);
+  const double largest = q.coeffs().cwiseAbs().maxCoeff();
+  if (!q.coeffs().allFinite()) throw Error("the quaternion is not finite");
+  if (!(largest > 0.0)) throw Error("the quaternion's norm is 0");
+  q.coeffs() /= largest; // so that neither tiny nor huge ones leave the range of double
+  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
+  transform.linear() = q.normalized().toRotationMatrix();
+  transform.translation() = toEigen(pose.position);
+  return transform;
+}
+
+/** The columns of a matrix as the C library takes them. */
+inline std::vector<cprox_vec3> toVec3s(const Eigen::Matrix3Xd &points) {
+  std::vector<cprox_vec3> out(static_cast<std::size_t>(points.cols()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) out[static_cast<std::size_t>(i)] = toVec3(points.col(i));
+  return out;
+}
+
+/* ---- makers: each as the function of cprox/body.h or cprox/curve.h of that name, throwing Error ------------------ */
+
+namespace detail {
+
+/** Runs a C constructor of a body and takes the handle over. `keep` lives as long as the body. */
+template <typename Create, typename Keep = std::nullptr_t>
+BodyPtr makeBody(Create create, Keep keep = nullptr) {
+  Workspace workspace;
+  cprox_body *body = nullptr;
+  require(create(workspace.get(), &body), workspace);
+  return BodyPtr(body, [keep](const cprox_body *b) {
+    (void)keep;
+    cprox_body_free(const_cast<cprox_body *>(b));
+  });
+}
+
+template <typename Create>
+CurvePtr makeCurve(Create create) {
+  Workspace workspace;
+  cprox_curve *curve = nullptr;
+  require(create(workspace.get(), &curve), workspace);
+  return CurvePtr(curve, [](const cprox_curve *c) { cprox_curve_free(const_cast<cprox_curve *>(c)); });
+}
+
+} // namespace detail
+
+inline BodyPtr makePoint(const Eigen::Vector3d &point) {
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_point(toVec3(point), w, b); });
+}
+
+inline BodyPtr makeSphere(double radius) {
+  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_sphere(radius, w, b); });
+}
+
+/** size: full edge lengths. */
+inline BodyPtr makeBox(const Eigen::Vector3d &size) {
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_box(toVec3(size), w, b); });
+}
+
+/** height: between the centres of the hemispheres. */
+inline BodyPtr makeCapsule(double height, double radius) {
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_capsule(height, radius, w, b); });
+}
+
+inline BodyPtr makeCylinder(double height, double radius) {
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_cylinder(height, radius, w, b); });
+}
+
+/** Apex at +z, about mid-height. */
+inline BodyPtr makeCone(double height, double radius) {
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_cone(height, radius, w, b); });
+}
+
+inline BodyPtr makeEllipsoid(const Eigen::Vector3d &semi_axes) {
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_ellipsoid(toVec3(semi_axes), w, b); });
+}
+
+/** normal·x + offset <= 0. */
+inline BodyPtr makeHalfspace(const Eigen::Vector3d &normal, double offset) {
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_halfspace(toVec3(normal), offset, w, b); });
+}
+
+/** The convex hull of the columns, in any order and of any dimension. */
+inline BodyPtr makePolytope(const Eigen::Matrix3Xd &vertices) {
+  const std::vector<cprox_vec3> points = toVec3s(vertices);
+  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+    return cprox_body_create_polytope(points.data(), points.size(), w, b);
+  });
+}
+
+/** A planar convex polygon at z = 0; a column a vertex, in order. */
+inline BodyPtr makePolygon(const Eigen::Matrix2Xd &vertices) {
+  std::vector<std::array<double, 2>> points(static_cast<std::size_t>(vertices.cols()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    points[i] = {vertices(0, column), vertices(1, column)};
+  }
+  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+    return cprox_body_create_polygon(reinterpret_cast<const double(*)[2]>(points.data()), points.size(), w, b);
+  });
+}
+
+/** The union of convex bodies, each at its pose; it keeps its parts alive. As many poses as parts. */
+inline BodyPtr makeCompound(const std::vector<BodyPtr> &parts, const std::vector<Eigen::Isometry3d> &poses) {
+  if (parts.size() != poses.size()) throw Error("a compound needs as many poses as parts");
+  std::vector<const cprox_body *> handles;
+  std::vector<cprox_pose> placed;
+  for (const BodyPtr &part : parts) handles.push_back(part.get());
+  for (const Eigen::Isometry3d &pose : poses) placed.push_back(toPose(pose));
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) {
+        return cprox_body_create_compound(handles.data(), placed.data(), handles.size(), w, b);
+      },
+      parts);
+}
+
+/** A Bézier curve on [t0, t1]; a column a control point. */
+inline CurvePtr makeBezier(const Eigen::Matrix3Xd &points, double t0 = 0.0, double t1 = 1.0) {
+  const std::vector<cprox_vec3> p = toVec3s(points);
+  return detail::makeCurve(
+      [&](cprox_workspace *w, cprox_curve **c) { return cprox_curve_create_bezier(p.data(), p.size(), t0, t1, w, c); });
+}
+
+/** A B-spline curve on [t0, t1]; a column a control point, points.cols() + degree + 1 knots. */
+inline CurvePtr makeBspline(const Eigen::Matrix3Xd &points, std::size_t degree, const std::vector<double> &knots,
+                            double t0, double t1) {
+  const std::vector<cprox_vec3> p = toVec3s(points);
+  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
+    return cprox_curve_create_bspline(p.data(), p.size(), degree, knots.data(), knots.size(), t0, t1, w, c);
+  });
+}
+
+/* ---- the verbs: as in cprox/query.h, throwing Error where there is no answer ------------------------------------- */
+
+/** A body somewhere: kept by reference, so the BodyPtr must outlive the target. padding >= 0 [m]. */
+inline cprox_target at(const BodyPtr &body, const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity(),
+                       double padding = 0.0) {
+  return cprox_padded(cprox_at(body.get(), toPose(pose)), padding);
+}
+
+/** A ball of the radius (0: a point) along the curve, which must outlive the mover. */
+inline cprox_mover along(const CurvePtr &curve, double radius = 0.0) {
+  return cprox_tube_along(curve.get(), radius);
+}
+
+inline cprox_result distance(const cprox_mover &mover, const cprox_target &target, const cprox_options &options,
+                             Workspace &workspace) {
+  cprox_result result{};
+  require(cprox_distance(mover, target, &options, workspace.get(), &result), workspace);
+  return result;
+}
+
+inline cprox_result tolerance(const cprox_mover &mover, const cprox_target &target, double delta,
+                              const cprox_options &options, Workspace &workspace) {
+  cprox_result result{};
+  require(cprox_tolerance(mover, target, delta, &options, workspace.get(), &result), workspace);
+  return result;
+}
+
+inline cprox_result collision(const cprox_mover &mover, const cprox_target &target, const cprox_options &options,
+                              Workspace &workspace) {
+  cprox_result result{};
+  require(cprox_collision(mover, target, &options, workspace.get(), &result), workspace);
+  return result;
+}
+
+inline cprox_result pair(const cprox_target &a, const cprox_target &b, const cprox_options &options,
+                         Workspace &workspace) {
+  cprox_result result{};
+  require(cprox_pair(a, b, &options, workspace.get(), &result), workspace);
+  return result;
+}
+
+} // namespace curve_proximity
+#endif

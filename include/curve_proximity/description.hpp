@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Plain data: how messages, YAML files and URDF describe shapes, objects and curves to this package. Nothing here is
+ *  checked; what makes bodies and curves of it checks once and says what is wrong. Metres, radians, right-handed. */
+#ifndef CURVE_PROXIMITY_DESCRIPTION_HPP
+#define CURVE_PROXIMITY_DESCRIPTION_HPP
+
+#include <cstddef>
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace curve_proximity {
+
+/** A column a triangle: three indices of vertices, from 0. */
+using Triangles = Eigen::Matrix<int, 3, Eigen::Dynamic>;
+
+/** What a shape is, and what its dimensions mean:
+ *    POINT      none; `vertices` with one column, or none (the origin of `pose`)
+ *    SPHERE     [radius]
+ *    BOX        [x, y, z] full edge lengths
+ *    CAPSULE    [height, radius] along z about mid-height; height between the centres of the hemispheres
+ *    CYLINDER   [height, radius] along z about mid-height
+ *    CONE       [height, radius] along z about mid-height, apex at +z
+ *    ELLIPSOID  [x, y, z] semi-axes
+ *    HALFSPACE  [a, b, c, d]: ax + by + cz + d <= 0
+ *    POLYTOPE   none; the convex hull of `vertices`, solid, of any dimension
+ *    MESH       none, or a scale [x, y, z]; `vertices` and `triangles`, or `resource`; answered by its convex hull */
+enum class ShapeType { POINT, SPHERE, BOX, CAPSULE, CYLINDER, CONE, ELLIPSOID, HALFSPACE, POLYTOPE, MESH };
+
+/** "point", "sphere", …, "mesh". */
+const char *shapeTypeName(ShapeType type);
+
+/** The type of that name (lower case, as above); nothing for any other word. */
+std::optional<ShapeType> shapeTypeFromName(const std::string &name);
+
+struct ShapeDescription {
+  ShapeType type = ShapeType::BOX;
+  std::vector<double> dimensions; /**< [m], see ShapeType */
+  Eigen::Matrix3Xd vertices;      /**< [m] in the shape's frame */
+  Triangles triangles;            /**< of a MESH given by its vertices */
+  std::string resource;           /**< URI or path of a MESH file; then vertices and triangles are empty */
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the object's frame */
+};
+
+struct ObjectDescription {
+  std::string id;
+  std::string frame; /**< in which `pose` is given; whoever calls Scene::apply has brought `pose` to the fixed frame */
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< of the object; the shapes' poses are relative to it */
+  std::vector<ShapeDescription> shapes;
+  double padding = 0.0; /**< [m] >= 0: all points within this of the shapes belong to the object */
+};
+
+struct CurveDescription {
+  std::string id;
+  std::string basis = "bezier"; /**< "bezier" or "bspline" */
+  std::size_t degree = 0;       /**< of a bspline; of a bezier 0 or the number of points less one */
+  double t0 = 0.0, t1 = 1.0;    /**< the parameter range, t0 < t1 */
+  double radius = 0.0;          /**< [m] >= 0: of the ball that rides the curve */
+  Eigen::Matrix3Xd points;      /**< [m] in the fixed frame, a column a control point */
+  std::vector<double> knots;    /**< of a bspline: points.cols() + degree + 1, non-decreasing */
+};
+
+} // namespace curve_proximity
+#endif

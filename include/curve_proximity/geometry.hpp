@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** From descriptions to what queries take: bodies, and mesh files. */
+#ifndef CURVE_PROXIMITY_GEOMETRY_HPP
+#define CURVE_PROXIMITY_GEOMETRY_HPP
+
+#include <functional>
+#include <string>
+
+#include <curve_proximity/core.hpp>
+#include <curve_proximity/description.hpp>
+
+namespace curve_proximity {
+
+/** Where mesh files are looked for. */
+struct ResourceOptions {
+  /** The folder to which paths without a scheme are relative; empty: only absolute paths are accepted. */
+  std::string base_dir;
+
+  /** The folder of a ROS package, "" if there is none of that name (ros::package::getPath has this shape). Empty: then
+   *  package:// is an error. Called from the thread that makes the body. */
+  std::function<std::string(const std::string &package)> find_package;
+};
+
+/** The file that a mesh URI means: package://NAME/path, file:///path, an absolute path, or a path relative to base_dir.
+ *  Throws Error, naming the URI, for http and other schemes, an unknown package, and a file that is not there, is no
+ *  regular file or is empty. */
+std::string resolveResource(const std::string &uri, const ResourceOptions &options);
+
+/** A body made of a description. */
+struct Geometry {
+  BodyPtr body;
+  bool by_hull = false; /**< the shape is a mesh, and the body its convex hull: answers are bounds for the mesh, from
+                             the safe side for clearance */
+};
+
+/** Checks the description once and makes its body, in the shape's own frame (shape.pose is left to the caller).
+ *
+ *  Throws Error: dimensions that are too few or too many, not finite or not positive ("cylinder needs 2 dimensions
+ *  [height, radius], got 1"); vertices that are missing or not finite; a mesh without triangles or with an index out of
+ *  range, a scale that is 0 or not finite; a resource that cannot be read (see resolveResource), has no triangle or a
+ *  vertex that is not finite. Flat meshes and polytopes of any dimension are accepted.
+ *  Thread safety: any number of threads. */
+Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options = {});
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Curves against a snapshot of the scene: the code beneath both the node and the command line. */
+#ifndef CURVE_PROXIMITY_QUERY_HPP
+#define CURVE_PROXIMITY_QUERY_HPP
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/core.hpp>
+#include <curve_proximity/description.hpp>
+#include <curve_proximity/robot.hpp>
+#include <curve_proximity/scene.hpp>
+
+namespace curve_proximity {
+
+enum class Verb { DISTANCE, TOLERANCE, COLLISION };
+
+struct Question {
+  Verb verb = Verb::DISTANCE;
+  double delta = 0.0;                              /**< [m] >= 0: of TOLERANCE */
+  cprox_options options = cprox_options_default(); /**< epsilon, budget, stop function */
+  bool per_object = false; /**< one answer for each object and each link (for its nearest shape), else one in all */
+
+  /** By whom the curve is measured: everything where both lists are empty, else those that are named. A name that is
+   *  not in the snapshot (or a link without geometry or without a pose) is an error that names it. */
+  std::vector<std::string> objects, links;
+};
+
+/** One answer: a row of the results. */
+struct Answer {
+  std::string id;             /**< the curve's */
+  std::string kind = "curve"; /**< what was asked about */
+
+  /** As the core gives it; target_index is the number of the shape in object b (or of the collision element in link b),
+   *  -1 for none. lower and upper hold for the whole set that was asked about. Nothing to measure: status CPROX_OK,
+   *  lower = upper = infinity. Not answered: status < 0, and the rest means nothing. */
+  cprox_result result{};
+
+  std::string a;           /**< what moved: the curve's id */
+  std::string b;           /**< the nearest object or link; empty where there is none */
+  bool b_is_link = false;  /**< b names a link of the robot */
+  bool by_hull = false;    /**< the nearest shape is a mesh, answered by its convex hull (result.rung says hull) */
+  double microseconds = 0; /**< steady clock, around the search of this curve (per object: of this object) */
+  std::string status;      /**< cprox_status_name(result.status) */
+  std::string message;     /**< for a person: why there is no answer, or what is special about it; often empty */
+};
+
+/** A curve made ready for any number of queries, by any number of threads. */
+struct CompiledCurve {
+  std::string id;
+  CurvePtr curve;
+  double radius = 0.0; /**< [m] */
+
+  /** Boxes that together contain the curve (the radius left out), rounding included. */
+  std::vector<Eigen::AlignedBox3d> boxes;
+};
+
+/** Checks and compiles a curve. Throws Error: a basis that is not available, points that are too few or not finite,
+ *  a degree that does not fit, knots that descend or are too few, t0 >= t1, a radius that is negative or not finite. */
+CompiledCurve compile(const CurveDescription &curve);
+
+/** The objects and links that a question is about, resolved once for all its curves. Immutable; shared by any number of
+ *  threads. */
+class Targets {
+ public:
+  /** snapshot  is kept.
+   *  links     where the robot's links are; links without a pose are left out, unless the question names them. Empty:
+   *            the robot is left out.
+   *  Throws Error for names that the question should not have, and for poses that are not finite. */
+  Targets(SnapshotPtr snapshot, const LinkPoses &links, const Question &question);
+  ~Targets();
+  Targets(Targets &&) noexcept;
+  Targets &operator=(Targets &&) noexcept;
+
+  struct Data;
+  const Data &data() const {
+    return *data_;
+  }
+
+ private:
+  std::unique_ptr<const Data> data_;
+};
+
+/** Answers a question for one curve: one answer, or with per_object one for each object and link in the order of their
+ *  names (objects first; none at all: one answer with b empty).
+ *
+ *  Never throws for what the core finds wrong (an epsilon that is NaN, a budget of 0, a delta below 0): such answers
+ *  have result.status < 0, status and message say why. Any number of threads, each with its own workspace. */
+std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Question &question,
+                        Workspace &workspace);
+
+/** The same in one step; what compile() and Targets find wrong becomes the one answer, "invalid" with the reason. */
+std::vector<Answer> ask(const SnapshotPtr &snapshot, const LinkPoses &links, const CurveDescription &curve,
+                        const Question &question, Workspace &workspace);
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The world that queries are asked about: a scene that changes, and immutable snapshots of it.
+ *
+ *  A query works on a Snapshot, so that queries and changes never wait for each other. Everything stands in one fixed
+ *  frame; callers bring poses to it before they call. */
+#ifndef CURVE_PROXIMITY_SCENE_HPP
+#define CURVE_PROXIMITY_SCENE_HPP
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <curve_proximity/description.hpp>
+#include <curve_proximity/geometry.hpp>
+#include <curve_proximity/robot.hpp>
+
+namespace curve_proximity {
+
+class Broadphase;
+
+/** One change of one object. */
+struct Operation {
+  /** ADD     a new object, or in the place of the one with that id.
+   *  APPEND  further shapes for an object (relative to the object's pose; operation.object.pose must be that pose or the
+   *          identity); without such an object the same as ADD.
+   *  MOVE    a new pose for an object; shapes given with it are an error.
+   *  REMOVE  away with an object; with an empty id, with all.
+   *  The object's padding is set by ADD; by APPEND and MOVE only where it is not 0. */
+  enum class Kind { ADD, APPEND, MOVE, REMOVE };
+  Kind kind = Kind::ADD;
+  ObjectDescription object; /**< MOVE and REMOVE use its id (and pose) only */
+};
+
+/** Whether two of objects and links may touch; b empty: the default of a towards everything. */
+struct AllowedPair {
+  std::string a, b;
+  bool allowed = true;
+};
+
+/** A change of the scene. What is left empty stays as it was. */
+struct SceneChange {
+  bool clear = false;                         /**< first away with all objects, allowed pairs and link paddings */
+  std::vector<Operation> operations;          /**< applied in order */
+  std::map<std::string, double> link_padding; /**< [m] >= 0, by link */
+  std::optional<double> default_link_padding; /**< [m] >= 0, of the links not named */
+  std::vector<AllowedPair> allowed;           /**< each replaces the entry of the same two names, in either order */
+};
+
+/** One shape of an object, placed. */
+struct ObjectShape {
+  Geometry geometry;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the object's frame */
+};
+
+/** An object as the scene holds it. */
+struct SceneObject {
+  ObjectDescription description;   /**< as given, pose and padding brought up to date */
+  std::vector<ObjectShape> shapes; /**< as many as description.shapes */
+};
+
+/** The scene at one moment: immutable, read by any number of threads. */
+class Snapshot {
+ public:
+  ~Snapshot();
+
+  /** Counts the changes of its scene, from 0. */
+  std::uint64_t version() const {
+    return version_;
+  }
+
+  /** By id. */
+  const std::map<std::string, std::shared_ptr<const SceneObject>> &objects() const {
+    return objects_;
+  }
+
+  /** Null where the scene has no robot. */
+  const std::shared_ptr<const Robot> &robot() const {
+    return robot_;
+  }
+
+  /** [m] The padding of a link: its own, else the default. */
+  double linkPadding(const std::string &link) const;
+  const std::map<std::string, double> &linkPaddings() const {
+    return link_padding_;
+  }
+  double defaultLinkPadding() const {
+    return default_link_padding_;
+  }
+
+  /** Sorted by name; a <= b, or b empty. */
+  const std::vector<AllowedPair> &allowed() const {
+    return allowed_;
+  }
+
+  /** The tree over the objects' shapes (a part of the library, not of its interface). */
+  const Broadphase &broadphase() const {
+    return *broadphase_;
+  }
+
+ private:
+  friend class Scene;
+  Snapshot();
+  Snapshot(const Snapshot &other);
+
+  std::uint64_t version_ = 0;
+  std::map<std::string, std::shared_ptr<const SceneObject>> objects_;
+  std::shared_ptr<const Robot> robot_;
+  std::map<std::string, double> link_padding_;
+  double default_link_padding_ = 0.0;
+  std::vector<AllowedPair> allowed_;
+  std::unique_ptr<const Broadphase> broadphase_;
+};
+
+using SnapshotPtr = std::shared_ptr<const Snapshot>;
+
+/** Thread safety: any number of threads; changes wait for each other, snapshot() never waits for a change in the making.
+ */
+class Scene {
+ public:
+  /** robot may be null. resources: where the objects' mesh files are looked for. */
+  explicit Scene(std::shared_ptr<const Robot> robot = nullptr, ResourceOptions resources = {});
+
+  /** The scene as it is now. */
+  SnapshotPtr snapshot() const;
+
+  /** Applies a change; what can be applied becomes visible at once, as one new snapshot.
+   *
+   *  All or nothing for each operation, and for the link paddings and allowed pairs each: what is faulty leaves the
+   *  scene as it was and is told in a sentence that names it ("object 'box1': cylinder needs 2 dimensions
+   *  [height, radius], got 1"). Returns these sentences in the order of the change; none: all was applied. An unknown id
+   *  on MOVE or REMOVE, an object without an id, poses and paddings that are not finite, a padding < 0 and an unknown
+   *  link are faults.
+   *  Cost: microseconds an object that stays, more for those that are made; bodies that stay are shared. */
+  std::vector<std::string> apply(const SceneChange &change);
+
+ private:
+  const ResourceOptions resources_;
+  std::mutex changing_;        /* held while a change is in the making */
+  mutable std::mutex current_; /* held for a moment, to read or set the pointer */
+  SnapshotPtr snapshot_;
+};
+
+} // namespace curve_proximity
+#endif
