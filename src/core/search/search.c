@@ -110,8 +110,8 @@ static cprox_status work_on(const search_goal *goal, const search_oracle *oracle
   return CPROX_OK;
 }
 
-cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root, cprox_workspace *workspace,
-                        search_outcome *outcome) {
+cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root,
+                        cprox_workspace *workspace, search_outcome *outcome) {
   frontier open = {.workspace = workspace, .heap = goal->order == SEARCH_BEST_FIRST};
   cprox_status status = CPROX_OK;
   double left = INFINITY; /* least lower bound of the nodes that left the search */
@@ -147,7 +147,6 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
 
     /* the node leaves */
     left = fmin(left, node.lower);
-    outcome->undecided |= fate == NODE_STUCK && goal->limit >= 0.0;
     oracle->release(oracle->self, &node);
     if (status != CPROX_OK || is_answered(goal, &outcome->best)) break;
     if (fate == NODE_SETTLED && open.heap) break; /* all others lie higher */

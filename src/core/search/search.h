@@ -52,8 +52,8 @@ typedef enum search_order { SEARCH_BEST_FIRST, SEARCH_DEPTH_FIRST } search_order
  * width; a verdict search (limit >= 0) on nodes that could come as close as the limit. */
 typedef struct search_goal {
   search_order order;
-  double limit;    /* verdicts: delta; distance: -1 */
-  double ceiling;  /* distance: an upper bound known from elsewhere, or infinity */
+  double limit;   /* verdicts: delta; distance: -1 */
+  double ceiling; /* distance: an upper bound known from elsewhere, or infinity */
   double epsilon, relative_epsilon;
   uint32_t max_nodes;
   bool (*stop)(void *user);
@@ -63,7 +63,6 @@ typedef struct search_goal {
 typedef struct search_outcome {
   double lower;
   search_best best;
-  bool undecided; /* verdicts: some node came within epsilon of the limit and stayed there */
   uint32_t nodes;
 } search_outcome;
 
@@ -71,7 +70,7 @@ typedef struct search_outcome {
 double search_width(const search_goal *goal, double upper);
 
 /* Searches from the root on; *outcome is always filled, and true, when the status is not negative. */
-cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root, cprox_workspace *workspace,
-                        search_outcome *outcome);
+cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root,
+                        cprox_workspace *workspace, search_outcome *outcome);
 
 #endif

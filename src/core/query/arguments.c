@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "query/arguments.h"
+
+#include <math.h>
+
+#include "base/frame.h"
+#include "base/workspace.h"
+
+cprox_target cprox_at(const cprox_body *body, cprox_pose pose) {
+  return (cprox_target){.body = body, .pose = pose, .padding = 0.0};
+}
+
+cprox_target cprox_padded(cprox_target target, double padding) {
+  target.padding = padding;
+  return target;
+}
+
+cprox_options cprox_options_default(void) {
+  return (cprox_options){.epsilon = 1e-6, .relative_epsilon = 0.0, .max_nodes = 20000, .stop = NULL, .stop_user = NULL};
+}
+
+const char *cprox_verdict_name(cprox_verdict verdict) {
+  switch (verdict) {
+    case CPROX_NO: return "no";
+    case CPROX_YES: return "yes";
+    case CPROX_UNDECIDED: return "undecided";
+  }
+  return "unknown";
+}
+
+const char *cprox_rung_name(cprox_rung rung) {
+  switch (rung) {
+    case CPROX_RUNG_NONE: return "none";
+    case CPROX_RUNG_SPHERE: return "sphere";
+    case CPROX_RUNG_HULL: return "hull";
+    case CPROX_RUNG_MESH: return "mesh";
+  }
+  return "unknown";
+}
+
+cprox_status arguments_check_options(const cprox_options *options, cprox_workspace *workspace) {
+  if (!(options->epsilon >= 0.0))
+    return workspace_fail(workspace, CPROX_INVALID, "epsilon is %g, must be 0 or more", options->epsilon);
+  if (!(options->relative_epsilon >= 0.0))
+    return workspace_fail(workspace, CPROX_INVALID, "relative_epsilon is %g, must be 0 or more",
+                          options->relative_epsilon);
+  if (options->max_nodes == 0)
+    return workspace_fail(workspace, CPROX_INVALID, "max_nodes is 0: a query needs a budget of at least 1 node");
+  return CPROX_OK;
+}
+
+cprox_status arguments_check_delta(double delta, cprox_workspace *workspace) {
+  if (delta >= 0.0 && isfinite(delta)) return CPROX_OK;
+  return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be finite and 0 or more", delta);
+}
+
+cprox_status arguments_check_target(const cprox_target *target, size_t index, cprox_workspace *workspace) {
+  if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "target %zu has no body", index);
+  const char *fault = frame_pose_fault(&target->pose);
+  if (fault) return workspace_fail(workspace, CPROX_INVALID, "target %zu: %s", index, fault);
+  if (target->padding >= 0.0 && isfinite(target->padding)) return CPROX_OK;
+  return workspace_fail(workspace, CPROX_INVALID, "target %zu: padding is %g, must be finite and 0 or more", index,
+                        target->padding);
+}
+
+cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target *targets, size_t n,
+                                   const cprox_options *options, cprox_workspace *workspace) {
+  if (!workspace) return CPROX_INVALID;
+  if (!mover->curve) return workspace_fail(workspace, CPROX_INVALID, "the mover has no curve");
+  if (!(mover->radius >= 0.0 && isfinite(mover->radius)))
+    return workspace_fail(workspace, CPROX_INVALID, "radius is %g, must be finite and 0 or more", mover->radius);
+  if (n > 0 && !targets) return workspace_fail(workspace, CPROX_INVALID, "targets is NULL, but %zu are announced", n);
+  if (n > INT32_MAX) return workspace_fail(workspace, CPROX_INVALID, "%zu targets are more than 2147483647", n);
+  const cprox_status checked = arguments_check_options(options, workspace);
+  if (checked != CPROX_OK) return checked;
+  for (size_t i = 0; i < n; i++) {
+    const cprox_status target = arguments_check_target(&targets[i], i, workspace);
+    if (target != CPROX_OK) return target;
+  }
+  return CPROX_OK;
+}

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Newton's method on the distance along one piece, with the nearest feature of the body held fixed between measurements. */
+#ifndef CPROX_QUERY_POLISH_H
+#define CPROX_QUERY_POLISH_H
+
+#include "query/curve_convex.h"
+
+/* Improves o->best, which must lie on the loaded root piece `points`, in steps of at most `step` of the piece's parameter.
+ * It only ever replaces the best point by a measured better one: where Newton fails, nothing is lost. */
+cprox_status polish(curve_convex *o, const double *points, double step);
+
+#endif
