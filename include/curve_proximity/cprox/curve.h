@@ -58,8 +58,8 @@ CPROX_API size_t cprox_curve_pieces(const cprox_curve *curve);
 /** psi(t), and its first and second derivative by t, each NULL if not needed.
  *
  *  t          inside [t0, t1], else CPROX_INVALID. At a joint of two pieces the right one answers (the left one at t1).
- *  Accuracy:  the point is within (6 degree + 20) 2^-53 max|control point| of the exact one; a plain evaluation for
- * drawing and sampling: certified answers come from the queries.
+ *  Accuracy:  the point is within (6 degree + 20) 2^-53 max|control point| of the exact one, on a B-spline within
+ *             (12 degree + 20): a plain evaluation for drawing and sampling. Certified answers come from the queries.
  */
 CPROX_API cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, cprox_workspace *workspace,
                                             cprox_vec3 *point, cprox_vec3 *derivative, cprox_vec3 *second_derivative);
