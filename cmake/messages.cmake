@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The messages and services of the package, in msg/ and srv/.
 set(CURVE_PROXIMITY_MESSAGES
   AllowedPair.msg
@@ -14,3 +15,7 @@ set(CURVE_PROXIMITY_SERVICES
   GetScene.srv
   Tolerance.srv
 )
+
+add_message_files(DIRECTORY msg FILES ${CURVE_PROXIMITY_MESSAGES})
+add_service_files(DIRECTORY srv FILES ${CURVE_PROXIMITY_SERVICES})
+generate_messages(DEPENDENCIES geometry_msgs sensor_msgs shape_msgs std_msgs)
