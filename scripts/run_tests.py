@@ -1,0 +1,288 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the test groups, counts every case of every runner, and prints a table whose last line is the sum.
+
+Called by scripts/test, which has set up and built. A runner that ends without a result counts as one failed case, and so
+does a case that was skipped: a missing thing is a failure.
+"""
+import argparse
+import glob
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ElementTree
+
+REPO = os.environ.get('REPO', os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+WORKSPACE = os.environ.get('WORKSPACE', '')
+LOGS = os.environ.get('LOGS', '')
+RUNNER_LIMIT = 600  # seconds for one runner; a test that hangs is a failed one
+
+
+class Count:
+    """Passed and failed cases, and the names of those that failed."""
+
+    def __init__(self, passed=0, failed=0, failures=()):
+        self.passed, self.failed, self.failures = passed, failed, list(failures)
+
+    def __add__(self, other):
+        return Count(self.passed + other.passed, self.failed + other.failed, self.failures + other.failures)
+
+
+# ---------------------------------------------------------------------------------------------- what the runners print
+def count_cmocka(output, code, name):
+    """Counts the cases of one cmocka program from its lines; what was announced and did not end well has failed."""
+    announced = sum(int(n) for n in re.findall(r'^\[=+\] (?:[^:\n]+: )?Running (\d+) test', output, re.M))
+    passed = len(re.findall(r'^\[ +OK \]', output, re.M))
+    failures = [f'{name}: {case}' for case in re.findall(r'^\[ +(?:FAILED|SKIPPED) +\] (?:[^:\n]+: )?([A-Za-z_]\w*)$', output, re.M)]
+    failed = announced - passed
+    if announced == 0 or (code != 0 and failed == 0):
+        failed, failures = failed + 1, failures + [f'{name}: exit code {code}']
+    return Count(passed, failed, dict.fromkeys(failures))
+
+
+def count_lines(output, code, name):
+    """Counts from the last `N passed, N failed` that a script printed."""
+    lines = re.findall(r'^(\d+) passed, (\d+) failed$', output, re.M)
+    if not lines:
+        return Count(0, 1, [f'{name}: no result (exit code {code})'])
+    passed, failed = (int(n) for n in lines[-1])
+    failures = [f'{name}: {line}' for line in re.findall(r'^(?:FAILED|not ok)[: ]+(.*)$', output, re.M)]
+    if (code != 0) and failed == 0:
+        return Count(passed, 1, failures + [f'{name}: exit code {code}'])
+    return Count(passed, failed, failures or ([name] if failed else []))
+
+
+def count_junit(path, code, name):
+    """Counts from a JUnit file (gtest, rostest)."""
+    try:
+        cases = list(ElementTree.parse(path).getroot().iter('testcase'))
+    except (OSError, ElementTree.ParseError):
+        cases = []
+    count = Count()
+    for case in cases:
+        bad = any(case.find(tag) is not None for tag in ('failure', 'error', 'skipped')) or case.get('status') == 'notrun'
+        title = f"{name}: {case.get('classname')}.{case.get('name')}"
+        count += Count(0, 1, [title]) if bad else Count(1)
+    if not cases or (code != 0 and count.failed == 0):
+        count += Count(0, 1, [f'{name}: no result (exit code {code})'])
+    return count
+
+
+# ------------------------------------------------------------------------------------------------------ running things
+def execute(command, log, cwd=REPO, env=None, limit=RUNNER_LIMIT):
+    """Runs a command into a log. Returns what it printed and its exit code (124 when it ran out of time)."""
+    with open(log, 'w', errors='replace') as out:
+        process = subprocess.Popen(command, cwd=cwd, env=dict(os.environ, **(env or {})), stdin=subprocess.DEVNULL,
+                                   stdout=out, stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            code = process.wait(limit)
+        except subprocess.TimeoutExpired:
+            code = 124
+        finally:
+            end_group(process)
+    with open(log, errors='replace') as printed:
+        return printed.read(), code
+
+
+def end_group(process):
+    """Ends whatever a runner left running in its own session."""
+    for signal in (15, 9):
+        try:
+            os.killpg(process.pid, signal)
+        except ProcessLookupError:
+            return
+        time.sleep(0.2)
+        process.poll()
+
+
+def log_path(name):
+    return os.path.join(LOGS, re.sub(r'[^A-Za-z0-9_.-]', '_', name) + '.log')
+
+
+def show_failure(log, lines=40):
+    """Prints the end of a log, so that a CI that keeps no files still tells what went wrong."""
+    with open(log, errors='replace') as text:
+        tail = text.read().splitlines()[-lines:]
+    print(f'---- the end of {log}')
+    print('\n'.join(tail), flush=True)
+
+
+def run_one(command, name, counter, **how):
+    """Runs one runner and counts it with counter(output, code, name)."""
+    log = log_path(name)
+    output, code = execute(command, log, **how)
+    count = counter(output, code, name)
+    if count.failed:
+        show_failure(log)
+    return count
+
+
+def count_exit(_, code, name):
+    """A tool that says yes or no: one case."""
+    return Count(1) if code == 0 else Count(0, 1, [name])
+
+
+def ctest_entries(build, folder=''):
+    """The tests that CMake knows in a build folder: name, command, working directory and the room that defined it."""
+    listed = subprocess.run(['ctest', '--show-only=json-v1'], cwd=build, stdout=subprocess.PIPE, check=True)
+    document = json.loads(listed.stdout)
+    graph = document['backtraceGraph']
+    entries = []
+    for test in document['tests']:
+        files, node = [], test.get('backtrace')
+        while node is not None:
+            files.append(graph['files'][graph['nodes'][node]['file']])
+            node = graph['nodes'][node].get('parent')
+        properties = {p['name']: p['value'] for p in test.get('properties', [])}
+        if any(f'/test/{folder}' in os.path.realpath(os.path.join(build, f)) for f in files):
+            entries.append((test['name'], test.get('command'), properties.get('WORKING_DIRECTORY', build)))
+    return entries
+
+
+# ---------------------------------------------------------------------------------------------------------- the groups
+def sources(*folders):
+    """The C and C++ files of the checkout."""
+    return sorted(path for folder in folders for pattern in ('*.c', '*.h', '*.cpp', '*.hpp')
+                  for path in glob.glob(os.path.join(REPO, folder, '**', pattern), recursive=True))
+
+
+def layering():
+    return run_one([os.path.join(REPO, 'test/layering/run')], 'layering', count_lines)
+
+
+def headers():
+    return run_one([os.path.join(REPO, 'test/headers/run')], 'headers', count_lines)
+
+
+def lint():
+    return run_one(['catkin_lint', '--config', os.path.join(REPO, '.catkin_lint'), '--strict', '-W2', REPO], 'catkin_lint', count_exit)
+
+
+def formatting():
+    files = sources('include', 'src', 'test', 'bench', 'examples')
+    return run_one(['clang-format', '--dry-run', '-Werror', *files], 'clang-format', count_exit)
+
+
+def build_core(flavour, *options):
+    """Configures and builds the core alone, as one who has no ROS does. Returns its folder, or None."""
+    build = os.path.join(WORKSPACE, 'core', flavour)
+    steps = (['cmake', '-S', REPO, '-B', build, '-DCPROX_ROS=OFF', '-DCPROX_TESTS=ON', '-DCPROX_WERROR=ON',
+              '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON', *options],
+             ['cmake', '--build', build, '--', '-j2'])
+    for number, step in enumerate(steps):
+        log = log_path(f'core-{flavour}-build-{number}')
+        if execute(step, log, limit=1800)[1] != 0:
+            show_failure(log)
+            return None
+    return build
+
+
+def core_tests(flavour, *options, env=None, only=''):
+    build = build_core(flavour, *options)
+    if build is None:
+        return Count(0, 1, [f'core-{flavour}: the build failed'])
+    count = Count()
+    for name, command, folder in ctest_entries(build):
+        if re.search(only, name):
+            title = f'{name} ({flavour})'
+            how = count_cmocka if command else (lambda output, code, title: Count(0, 1, [f'{title}: not built']))
+            count += run_one(command or ['false'], title, how, cwd=folder, env=env)
+    return count if count.passed + count.failed else Count(0, 1, [f'core-{flavour}: no test matches'])
+
+
+def core():
+    return core_tests('release')
+
+
+def sanitized():
+    return core_tests('sanitized', '-DCPROX_SANITIZE=address,undefined', '-DCMAKE_BUILD_TYPE=RelWithDebInfo',
+                      env={'ASAN_OPTIONS': 'detect_leaks=1:abort_on_error=0', 'UBSAN_OPTIONS': 'print_stacktrace=1'})
+
+
+def threads():
+    return core_tests('threads', '-DCPROX_SANITIZE=thread', '-DCMAKE_BUILD_TYPE=RelWithDebInfo', only='thread')
+
+
+def tidy():
+    build = build_core('release')
+    if build is None:
+        return Count(0, 1, ['clang-tidy: the core does not build'])
+    files = [path for path in sources('src/core') if path.endswith('.c')]
+    return run_one(['xargs', '-a', write_list(files), '-P2', '-n4', 'clang-tidy', '--quiet', '-p', build], 'clang-tidy', count_exit)
+
+
+def write_list(files):
+    path = os.path.join(LOGS, 'files.txt')
+    with open(path, 'w') as out:
+        out.write('\n'.join(files) + '\n')
+    return path
+
+
+def room(name):
+    """The gtests and rostests that test/NAME/CMakeLists.txt declares, run as catkin runs them."""
+    count = Count()
+    for title, command, folder in ctest_entries(os.path.join(WORKSPACE, 'build'), f'{name}/CMakeLists.txt'):
+        results = [word for word in command if word.endswith('.xml')]
+        for stale in results[:1]:
+            if os.path.exists(stale):
+                os.remove(stale)
+        counter = (lambda _, code, title: count_junit(results[0], code, title)) if results else count_lines
+        count += run_one(command, re.sub('^_ctest_curve_proximity_', '', title), counter, cwd=folder)
+    return count if count.passed + count.failed else Count(0, 1, [f'test/{name}: no test was found'])
+
+
+def install():
+    return run_one([os.path.join(REPO, 'test/install/run')], 'install', count_lines, limit=1800)
+
+
+def demo():
+    return run_one([os.path.join(REPO, 'test/install/demo')], 'demo', count_lines)
+
+
+GROUPS = {
+    'layering': layering, 'headers': headers, 'lint': lint, 'format': formatting,
+    'core': core, 'tidy': tidy, 'sanitizers': sanitized, 'threads': threads,
+    'scene': lambda: room('scene'), 'cli': lambda: room('cli'), 'ros': lambda: room('ros'),
+    'install': install, 'demo': demo,
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(prog='scripts/test')
+    parser.add_argument('groups', nargs='*', help='only these groups')
+    parser.add_argument('--list', action='store_true', help='name the groups')
+    arguments = parser.parse_args()
+    if arguments.list:
+        print('\n'.join(GROUPS))
+        return 0
+    unknown = [name for name in arguments.groups if name not in GROUPS]
+    if unknown:
+        parser.error(f"no group {', '.join(unknown)}: there are {', '.join(GROUPS)}")
+
+    # Run, a line a group.
+    os.makedirs(LOGS, exist_ok=True)
+    total = Count()
+    print(f"{'group':<12}{'passed':>8}{'failed':>8}{'seconds':>9}", flush=True)
+    for name in arguments.groups or GROUPS:
+        begin = time.monotonic()
+        try:
+            count = GROUPS[name]()
+        except (OSError, subprocess.SubprocessError, KeyError, ValueError) as error:
+            count = Count(0, 1, [f'{name}: {error}'])
+        print(f'{name:<12}{count.passed:>8}{count.failed:>8}{time.monotonic() - begin:>9.0f}', flush=True)
+        total += count
+
+    # Say what failed, then the sum.
+    for failure in total.failures:
+        print(f'FAILED {failure}')
+    print(f'logs: {LOGS}')
+    print(f'{total.passed} passed, {total.failed} failed')
+    return 1 if total.failed or not total.passed else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
