@@ -22,8 +22,8 @@ struct Question {
   cprox_options options = cprox_options_default(); /**< epsilon, budget, stop function */
   bool per_object = false; /**< one answer for each object and each link (for its nearest shape), else one in all */
 
-  /** By whom the curve is measured: everything where both lists are empty, else those that are named. A name that is
-   *  not in the snapshot (or a link without geometry or without a pose) is an error that names it. */
+  /** What the curve is measured against: everything where both lists are empty, else only what they name (objects alone:
+   *  no links). A name that is not in the snapshot, and a link without geometry, is an error that names it. */
   std::vector<std::string> objects, links;
 };
 
@@ -33,8 +33,10 @@ struct Answer {
   std::string kind = "curve"; /**< what was asked about */
 
   /** As the core gives it; target_index is the number of the shape in object b (or of the collision element in link b),
-   *  -1 for none. lower and upper hold for the whole set that was asked about. Nothing to measure: status CPROX_OK,
-   *  lower = upper = infinity. Not answered: status < 0, and the rest means nothing. */
+   *  -1 for none. lower and upper hold for the whole set that was asked about, the rounding of poses and hulls
+   *  included (where the bodies as placed touch or overlap, upper is 0). Nothing to measure: status CPROX_OK,
+   *  lower = upper = infinity; for TOLERANCE verdict yes, for COLLISION no. Not answered: status < 0, and the rest means
+   *  nothing. */
   cprox_result result{};
 
   std::string a;           /**< what moved: the curve's id */
@@ -65,9 +67,11 @@ CompiledCurve compile(const CurveDescription &curve);
 class Targets {
  public:
   /** snapshot  is kept.
-   *  links     where the robot's links are; links without a pose are left out, unless the question names them. Empty:
-   *            the robot is left out.
-   *  Throws Error for names that the question should not have, and for poses that are not finite. */
+   *  links     where the robot's links are in the fixed frame, as given (their own rounding is the caller's). Empty:
+   *            the robot is left out. Else every link that has geometry and is asked about needs a pose: a link that is
+   *            missing must never read as free.
+   *  Throws Error: names that the question should not have, a link without a pose, poses for what is no link of the
+   *  robot, poses that are not finite. */
   Targets(SnapshotPtr snapshot, const LinkPoses &links, const Question &question);
   ~Targets();
   Targets(Targets &&) noexcept;

@@ -21,7 +21,7 @@
 
 namespace curve_proximity {
 
-class Broadphase;
+class World;
 
 /** One change of one object. */
 struct Operation {
@@ -51,10 +51,19 @@ struct SceneChange {
   std::vector<AllowedPair> allowed;           /**< each replaces the entry of the same two names, in either order */
 };
 
-/** One shape of an object, placed. */
+/** A body where it stands in the fixed frame. */
+struct PlacedShape {
+  cprox_target target{};   /**< padding included; the body is owned by whoever owns this */
+  Eigen::AlignedBox3d box; /**< [m] contains the padded body, rounding included; infinite for a halfspace */
+  double rounding = 0.0;   /**< [m] how far the rounding of poses and of mesh hulls can have moved a point of it */
+  double turning = 0.0;    /**< of a halfspace: the same for each metre that a point is away from target.pose */
+  bool by_hull = false;    /**< stands for a mesh, as its convex hull */
+};
+
+/** One shape of an object. */
 struct ObjectShape {
   Geometry geometry;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the object's frame */
+  PlacedShape placed;
 };
 
 /** An object as the scene holds it. */
@@ -97,9 +106,9 @@ class Snapshot {
     return allowed_;
   }
 
-  /** The tree over the objects' shapes (a part of the library, not of its interface). */
-  const Broadphase &broadphase() const {
-    return *broadphase_;
+  /** The objects' shapes with the tree over them (a part of the library, not of its interface). */
+  const World &world() const {
+    return *world_;
   }
 
  private:
@@ -113,7 +122,7 @@ class Snapshot {
   std::map<std::string, double> link_padding_;
   double default_link_padding_ = 0.0;
   std::vector<AllowedPair> allowed_;
-  std::unique_ptr<const Broadphase> broadphase_;
+  std::unique_ptr<const World> world_;
 };
 
 using SnapshotPtr = std::shared_ptr<const Snapshot>;
