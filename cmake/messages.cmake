@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The messages and services of the package, in msg/ and srv/.
 set(CURVE_PROXIMITY_MESSAGES
-  AllowedPair.msg
+  AllowedContact.msg
   Body.msg
   CollisionObject.msg
   Curve.msg
