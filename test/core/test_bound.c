@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The bound itself: whatever intervals the oracle makes, and whatever normals it uses, no bound lies above the distance of any
+ * point in its interval, and the best upper bound is never below the distance at its own point. The distances are those of the
+ * long double references, which know nothing of the search. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "curve/curve.h"
+#include "query/curve_convex.h"
+#include "support/random.h"
+#include "support/reference.h"
+
+enum { MAX_DEGREE = 20, MAX_OPEN = 24, STEPS = 24, INTERVALS = 120000 };
+
+typedef enum shape_kind {
+  SHAPE_POINT,
+  SHAPE_SPHERE,
+  SHAPE_BOX,
+  SHAPE_CAPSULE,
+  SHAPE_POLYGON,
+  SHAPE_HULL,
+  SHAPES
+} shape_kind;
+
+/* One random problem: a curve, a posed body, an offset. Sizes of the order `scale`, everything `away` from the origin. */
+typedef struct problem {
+  size_t degree;
+  vec3 points[MAX_DEGREE + 1];
+  shape_kind kind;
+  vec3 size;
+  vec3 vertex[6];
+  cprox_pose pose;
+  double offset;
+  cprox_curve *curve;
+  cprox_body *body;
+} problem;
+
+static problem problem_random(rng *r, cprox_workspace *ws) {
+  problem p = {0};
+  const double scale = rng_log_uniform(r, 1e-6, 1e6);
+  const vec3 away = rng_in_cube(r, rng_index(r, 2) ? 0.0 : scale * rng_log_uniform(r, 1.0, 1e6));
+  p.degree = 1 + rng_index(r, rng_index(r, 4) ? 6 : MAX_DEGREE);
+  for (size_t i = 0; i <= p.degree; i++) p.points[i] = vec_add(away, rng_in_cube(r, 2.0 * scale));
+  if (rng_index(r, 8) == 0) p.points[p.degree] = p.points[0];
+  p.pose = rng_pose(r, scale);
+  p.pose.position = vec_add(p.pose.position, away);
+  if (rng_index(r, 4) == 0) p.pose.orientation = (cprox_quat){1, 0, 0, 0};
+  p.offset = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0.0, 0.1 * scale);
+  p.size = vec(rng_log_uniform(r, 1e-3, 1.0) * scale, rng_log_uniform(r, 1e-3, 1.0) * scale,
+               rng_uniform(r, 0.1, 1.0) * scale);
+  p.kind = (shape_kind)rng_index(r, SHAPES);
+
+  cprox_status status = CPROX_OK;
+  switch (p.kind) {
+    case SHAPE_POINT: status = cprox_body_create_point(vec(0, 0, 0), ws, &p.body); break;
+    case SHAPE_SPHERE: status = cprox_body_create_sphere(p.size.x, ws, &p.body); break;
+    case SHAPE_BOX: status = cprox_body_create_box(vec_scale(2.0, p.size), ws, &p.body); break;
+    case SHAPE_CAPSULE: status = cprox_body_create_capsule(2.0 * p.size.z, p.size.x, ws, &p.body); break;
+    case SHAPE_POLYGON: {
+      double flat[6][2];
+      for (int i = 0; i < 6; i++) {
+        const double angle = 2.0 * 3.14159265358979 * (i + rng_uniform(r, 0.0, 0.8)) / 6.0;
+        p.vertex[i] = vec(flat[i][0] = p.size.x * cos(angle), flat[i][1] = p.size.y * sin(angle), 0.0);
+      }
+      status = cprox_body_create_polygon((const double(*)[2])flat, 6, ws, &p.body);
+      break;
+    }
+    default:
+      for (int i = 0; i < 6; i++) p.vertex[i] = rng_in_cube(r, p.size.z);
+      status = cprox_body_create_polytope(p.vertex, 6, ws, &p.body);
+  }
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  status = cprox_curve_create_bezier(p.points, p.degree + 1, 0.0, 1.0, ws, &p.curve);
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  return p;
+}
+
+static void problem_free(problem *p) {
+  cprox_body_free(p->body);
+  cprox_curve_free(p->curve);
+}
+
+/* The distance at the curve's parameter s, less the offset; 0 inside the body, so at least -offset. */
+static long double true_distance(const problem *p, double s) {
+  const vec3l y = ref_to_local(&p->pose, ref_bezier(p->points, p->degree, s, 0));
+  long double d = 0;
+  switch (p->kind) {
+    case SHAPE_POINT:
+    case SHAPE_SPHERE: d = ref_norm(y) - (p->kind == SHAPE_POINT ? 0.0L : (long double)p->size.x); break;
+    case SHAPE_BOX: d = ref_point_box(y, p->size); break;
+    case SHAPE_CAPSULE:
+      d = ref_point_segment(y, (vec3l){0, 0, -p->size.z}, (vec3l){0, 0, p->size.z}) - (long double)p->size.x;
+      break;
+    case SHAPE_POLYGON: d = ref_point_polygon(y, p->vertex, 6); break;
+    default: d = ref_point_hull(y, p->vertex, 6);
+  }
+  return (d > 0 ? d : 0) - (long double)p->offset;
+}
+
+/* Two points well inside the interval: its ends are labels in double, the pieces themselves are cut exactly. */
+static size_t check_node(const problem *p, rng *r, const search_node *node, const curve_convex *o) {
+  if (node->b - node->a < 1e-9) return 0;
+  for (int k = 0; k < 2; k++) {
+    const double s = node->a + rng_uniform(r, 1e-3, 1.0 - 1e-3) * (node->b - node->a);
+    const long double d = true_distance(p, s);
+    if ((long double)node->lower > d && (long double)node->lower > -(long double)p->offset)
+      fail_msg("kind %d degree %zu: bound %.17g above the distance %.17Lg at s = %.17g of [%g, %g]", p->kind, p->degree,
+               node->lower, d, s, node->a, node->b);
+  }
+  const long double best = true_distance(p, o->best.s);
+  if (o->incumbent > 0 && (long double)o->best_bound.upper < best && best > -(long double)p->offset)
+    fail_msg("kind %d degree %zu: upper bound %.17g below the distance %.17Lg at s = %.17g", p->kind, p->degree,
+             o->best_bound.upper, best, o->best.s);
+  return 1;
+}
+
+/* Filters, probes and splits nodes in random order, and checks every node after every step. */
+static size_t attack(const problem *p, rng *r, cprox_workspace *ws) {
+  curve_convex o;
+  assert_true(
+      curve_convex_begin(&o, p->curve, &p->body->shape, frame_create(&p->pose, p->body->centre), p->offset, ws));
+  o.good_enough = rng_index(r, 2) ? -INFINITY : INFINITY;
+  const search_oracle oracle = curve_convex_oracle(&o);
+  search_node open[MAX_OPEN + 1];
+  search_best best = {.upper = INFINITY};
+  size_t n = 1, checked = 0;
+  open[0] = curve_convex_root(&o);
+  for (int step = 0; step < STEPS && n > 0 && n < MAX_OPEN; step++) {
+    const size_t i = rng_index(r, n);
+    search_node *node = &open[i];
+    oracle.filter(oracle.self, node, INFINITY);
+    checked += check_node(p, r, node, &o);
+    assert_int_equal(oracle.probe(oracle.self, node, &best), CPROX_OK);
+    oracle.filter(oracle.self, node, INFINITY);
+    checked += check_node(p, r, node, &o);
+    search_node child[2];
+    if (oracle.split(oracle.self, node, child) != 2) break;
+    open[i] = child[0];
+    open[n++] = child[1];
+    for (int k = 0; k < 2; k++) checked += check_node(p, r, &child[k], &o);
+  }
+  return checked;
+}
+
+/* Seed 1, 120,000 intervals, each at two random points. Tolerance 0: the slack is in the bound. */
+static void no_bound_lies_above_the_distance_and_no_best_point_below_it(void **state) {
+  (void)state;
+  rng r = rng_seed(1);
+  cprox_workspace *ws = cprox_workspace_create();
+  for (size_t checked = 0; checked < test_cases(INTERVALS);) {
+    problem p = problem_random(&r, ws);
+    checked += attack(&p, &r, ws);
+    problem_free(&p);
+  }
+  cprox_workspace_free(ws);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(no_bound_lies_above_the_distance_and_no_best_point_below_it)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

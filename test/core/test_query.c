@@ -1,0 +1,548 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The verbs as a caller meets them: intervals, verdicts, budgets, many targets, unusable arguments, memory, cost. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/vec.h"
+#include "curve_proximity/cprox.h"
+#include "support/counting.h"
+#include "support/random.h"
+
+static cprox_workspace *ws;
+
+static int setup(void **state) {
+  (void)state;
+  ws = cprox_workspace_create();
+  return ws ? 0 : 1;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  cprox_workspace_free(ws);
+  return 0;
+}
+
+/* ---- builders ---------------------------------------------------------------------------------------------------------- */
+
+static cprox_curve *bezier(const vec3 *points, size_t n) {
+  cprox_curve *curve = NULL;
+  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_reason(ws));
+  return curve;
+}
+
+static cprox_curve *segment(vec3 a, vec3 b) {
+  return bezier((vec3[]){a, b}, 2);
+}
+
+static cprox_body *usable(cprox_status status, cprox_body *body) {
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  return body;
+}
+
+static cprox_body *box(double x, double y, double z) {
+  cprox_body *body = NULL;
+  const cprox_status status = cprox_body_create_box(vec(x, y, z), ws, &body);
+  return usable(status, body);
+}
+
+static cprox_body *sphere(double radius) {
+  cprox_body *body = NULL;
+  const cprox_status status = cprox_body_create_sphere(radius, ws, &body);
+  return usable(status, body);
+}
+
+static cprox_target at(const cprox_body *body, double x, double y, double z) {
+  return cprox_at(body, (cprox_pose){.position = {x, y, z}, .orientation = {1, 0, 0, 0}});
+}
+
+static cprox_options accurate(double epsilon) {
+  cprox_options options = cprox_options_default();
+  options.epsilon = epsilon;
+  return options;
+}
+
+static void assert_contains(const cprox_result *r, double truth, double doubt) {
+  if (r->lower > truth + doubt || r->upper < truth - doubt || !(r->lower <= r->upper))
+    fail_msg("[%.17g, %.17g] does not contain %.17g", r->lower, r->upper, truth);
+}
+
+/* ---- one curve, one body ----------------------------------------------------------------------------------------------- */
+
+static void a_segment_past_a_box_has_the_distance_of_its_nearest_end(void **state) {
+  (void)state;
+  cprox_curve *curve = segment(vec(2, -1, 0), vec(2, 1, 0));
+  cprox_body *body = box(1, 1, 1);
+  const cprox_options options = accurate(1e-9);
+  cprox_result r;
+  assert_int_equal(
+      cprox_distance(cprox_tube_along(curve, 0.25), cprox_padded(at(body, 0, 0, 0), 0.125), &options, ws, &r),
+      CPROX_OK);
+  assert_contains(&r, 1.5 - 0.25 - 0.125, 0.0);
+  assert_true(r.upper - r.lower <= 1e-9);
+  assert_float_equal(r.on_target.x, 0.625, 1e-12);
+  assert_float_equal(r.on_mover.x, 1.75, 1e-12);
+  assert_float_equal(r.normal.x, 1.0, 1e-12);
+  assert_string_equal(cprox_workspace_reason(ws), "");
+  cprox_body_free(body);
+  cprox_curve_free(curve);
+}
+
+static void a_turned_and_moved_body_is_measured_where_it_stands(void **state) {
+  (void)state;
+  cprox_curve *curve = segment(vec(10, 20, 33), vec(10, 20, 35));
+  cprox_body *body = box(2, 4, 6);
+  /* a quarter turn about x, by a quaternion of norm 3 */
+  const cprox_pose pose = {.position = {10, 20, 30},
+                           .orientation = {3 * 0.7071067811865476, 3 * 0.7071067811865476, 0, 0}};
+  const cprox_options options = accurate(1e-9);
+  cprox_result r;
+  assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_at(body, pose), &options, ws, &r), CPROX_OK);
+  assert_contains(&r, 1.0, 1e-14);
+  assert_float_equal(r.t, 0.0, 1e-12);
+  cprox_body_free(body);
+  cprox_curve_free(curve);
+}
+
+static void a_curve_through_a_body_is_at_distance_0_and_collides(void **state) {
+  (void)state;
+  const vec3 points[] = {{-2, 0.1, 0}, {0, 0.3, 0.1}, {0, -0.3, 0}, {2, 0.5, 0}};
+  cprox_curve *curve = bezier(points, 4);
+  cprox_body *bodies[4] = {box(1, 1, 1), sphere(0.5), NULL, NULL};
+  usable(cprox_body_create_cylinder(1.0, 0.5, ws, &bodies[2]), NULL);
+  usable(cprox_body_create_polytope((vec3[]){{-1, -1, -1}, {1, -1, -1}, {0, 1, -1}, {0, 0, 1}}, 4, ws, &bodies[3]),
+         NULL);
+  for (int i = 0; i < 4; i++) {
+    cprox_result r;
+    assert_int_equal(cprox_distance(cprox_point_along(curve), at(bodies[i], 0, 0, 0), NULL, ws, &r), CPROX_OK);
+    assert_contains(&r, 0.0, 0.0);
+    assert_int_equal(cprox_collision(cprox_point_along(curve), at(bodies[i], 0, 0, 0), NULL, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, CPROX_YES);
+    assert_true(vec_equal(r.on_mover, r.on_target));
+    assert_int_equal(cprox_tolerance(cprox_point_along(curve), at(bodies[i], 0, 0, 0), 0.0, NULL, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, CPROX_NO);
+    cprox_body_free(bodies[i]);
+  }
+  cprox_curve_free(curve);
+}
+
+static void a_planar_curve_through_a_polygon_collides(void **state) {
+  (void)state;
+  cprox_curve *curve = segment(vec(-3, 0.2, 0), vec(3, 0.1, 0));
+  cprox_body *polygon = NULL;
+  const double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  usable(cprox_body_create_polygon(square, 4, ws, &polygon), NULL);
+  cprox_result r;
+  assert_int_equal(cprox_collision(cprox_point_along(curve), at(polygon, 0.5, 0, 0), NULL, ws, &r), CPROX_OK);
+  assert_int_equal(r.verdict, CPROX_YES);
+  assert_int_equal(cprox_collision(cprox_point_along(curve), at(polygon, 0, 0, 1e-3), NULL, ws, &r), CPROX_OK);
+  assert_int_equal(r.verdict, CPROX_NO);
+  assert_int_equal(cprox_distance(cprox_point_along(curve), at(polygon, 0, 0, 1e-3), NULL, ws, &r), CPROX_OK);
+  assert_contains(&r, 1e-3, 1e-18);
+  cprox_body_free(polygon);
+  cprox_curve_free(curve);
+}
+
+static void touching_is_never_called_free(void **state) {
+  (void)state;
+  /* a parabola that touches the box's face, a tube that rests on it, an end point on its corner */
+  const vec3 parabola[] = {{-1, 1.5, 0}, {0, -0.5, 0}, {1, 1.5, 0}};
+  cprox_curve *curves[] = {bezier(parabola, 3), segment(vec(-2, 0.75, 0), vec(2, 0.75, 0)),
+                           segment(vec(0.5, 0.5, 0.5), vec(2, 2, 2))};
+  const double radii[] = {0.0, 0.25, 0.0};
+  cprox_body *body = box(1, 1, 1);
+  for (int i = 0; i < 3; i++) {
+    const cprox_mover mover = cprox_tube_along(curves[i], radii[i]);
+    cprox_result r;
+    assert_true(cprox_collision(mover, at(body, 0, 0, 0), NULL, ws, &r) >= 0);
+    assert_int_not_equal(r.verdict, CPROX_NO);
+    assert_contains(&r, 0.0, 0.0);
+    assert_true(cprox_tolerance(mover, at(body, 0, 0, 0), 0.0, NULL, ws, &r) >= 0);
+    assert_int_not_equal(r.verdict, CPROX_YES);
+    cprox_curve_free(curves[i]);
+  }
+  cprox_body_free(body);
+}
+
+static void a_curve_that_stands_still_is_answered_as_a_point(void **state) {
+  (void)state;
+  const vec3 points[] = {{3, 0, 0}, {3, 0, 0}, {3, 0, 0}, {3, 0, 0}};
+  cprox_curve *curve = bezier(points, 4);
+  cprox_body *body = sphere(1.0);
+  const cprox_options options = accurate(1e-12);
+  cprox_result r;
+  assert_int_equal(cprox_distance(cprox_point_along(curve), at(body, 0, 0, 0), &options, ws, &r), CPROX_OK);
+  assert_contains(&r, 2.0, 0.0);
+  cprox_body_free(body);
+  cprox_curve_free(curve);
+}
+
+static void a_long_spline_is_searched_by_its_tree(void **state) {
+  (void)state;
+  /* a helix of 100,000 control points round the z axis, radius 2; a ball on the axis */
+  enum { N = 100000 };
+  vec3 *points = malloc(N * sizeof *points);
+  double *knots = malloc((N + 4) * sizeof *knots);
+  for (int i = 0; i < N; i++) {
+    const double a = 1e-2 * i;
+    points[i] = vec(2.0 * cos(a), (2.0 + 0.5 * cos(1e-4 * i)) * sin(a), 1e-3 * i);
+  }
+  for (int i = 0; i < N + 4; i++) knots[i] = i;
+  cprox_curve *curve = NULL;
+  if (cprox_curve_create_bspline(points, N, 3, knots, N + 4, knots[3], knots[N], ws, &curve) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_reason(ws));
+  cprox_body *body = box(0.02, 0.02, 0.02);
+  const cprox_options options = accurate(1e-6);
+  cprox_result r;
+  assert_int_equal(cprox_distance(cprox_point_along(curve), at(body, 2.5, 0.1, 31.4), &options, ws, &r), CPROX_OK);
+
+  /* no sampled point is nearer, and one is as near */
+  double least = INFINITY;
+  for (int i = 0; i <= 2 * N; i++) {
+    vec3 p;
+    const double t = knots[3] + (knots[N] - knots[3]) * i / (2.0 * N);
+    assert_int_equal(cprox_curve_evaluate(curve, t, ws, &p, NULL, NULL), CPROX_OK);
+    least = fmin(least, cprox_body_nearest(body, vec_sub(p, vec(2.5, 0.1, 31.4)), NULL));
+  }
+  assert_true(r.lower <= least);
+  assert_true(r.upper <= least + 1e-6);
+  assert_true(r.nodes < 400); /* of 99,997 pieces */
+  cprox_body_free(body);
+  cprox_curve_free(curve);
+  free(points);
+  free(knots);
+}
+
+/* ---- accuracy, budget, stop -------------------------------------------------------------------------------------------- */
+
+static void epsilon_of_any_size_ends_with_a_true_interval(void **state) {
+  (void)state;
+  const vec3 points[] = {{-2, 1, 0.3}, {-1, 3, 0.1}, {1, -1, 0}, {2, 2, 0.7}};
+  cprox_curve *curve = bezier(points, 4);
+  cprox_body *body = box(1, 1, 1);
+  const cprox_options fine = accurate(1e-13);
+  cprox_result reference;
+  assert_true(cprox_distance(cprox_point_along(curve), at(body, 0, -0.5, 0), &fine, ws, &reference) >= 0);
+  const double epsilons[] = {0.0, 1e-300, 1e-16, 1e-6, 1e3, INFINITY};
+  for (size_t i = 0; i < sizeof epsilons / sizeof *epsilons; i++) {
+    const cprox_options options = accurate(epsilons[i]);
+    cprox_result r;
+    const cprox_status status = cprox_distance(cprox_point_along(curve), at(body, 0, -0.5, 0), &options, ws, &r);
+    assert_int_equal(status, epsilons[i] < 1e-15 ? CPROX_PRECISION : CPROX_OK);
+    assert_true(r.lower <= reference.upper && reference.lower <= r.upper);
+    if (epsilons[i] < 1e-6) assert_true(r.upper - r.lower < 1e-13);
+    if (status == CPROX_PRECISION) assert_non_null(strstr(cprox_workspace_reason(ws), "epsilon"));
+  }
+  cprox_body_free(body);
+  cprox_curve_free(curve);
+}
+
+static void a_spent_budget_leaves_a_true_interval(void **state) {
+  (void)state;
+  /* the ball's centre is the centre of a circular arc, nearly: a continuum of near-minimisers */
+  const double k = 0.5522847498;
+  const vec3 points[] = {{1, 0, 0}, {1, k, 0}, {k, 1, 0}, {0, 1, 0}};
+  cprox_curve *curve = bezier(points, 4);
+  cprox_body *body = box(1e-3, 1e-3, 1e-3);
+  cprox_options options = accurate(1e-15);
+  double width = INFINITY;
+  for (uint32_t budget = 1; budget <= 256; budget *= 4) {
+    options.max_nodes = budget;
+    cprox_result r;
+    const cprox_status status = cprox_distance(cprox_point_along(curve), at(body, 0, 0, 0), &options, ws, &r);
+    assert_true(status == CPROX_BUDGET || status == CPROX_PRECISION);
+    assert_true(r.nodes <= budget);
+    assert_true(r.lower <= 0.99951 && r.upper >= 0.9988);
+    assert_true(r.upper - r.lower <= width);
+    width = r.upper - r.lower;
+  }
+  assert_true(width < 1e-3);
+  cprox_body_free(body);
+  cprox_curve_free(curve);
+}
+
+static bool stop_after(void *user) {
+  return --*(int *)user < 0;
+}
+
+static void a_stop_function_ends_the_search_with_a_true_interval(void **state) {
+  (void)state;
+  const double k = 0.5522847498;
+  const vec3 points[] = {{1, 0, 0}, {1, k, 0}, {k, 1, 0}, {0, 1, 0}};
+  cprox_curve *curve = bezier(points, 4);
+  cprox_body *body = box(1e-3, 1e-3, 1e-3);
+  cprox_options options = accurate(0.0);
+  int polls = 1;
+  options.stop = stop_after, options.stop_user = &polls;
+  cprox_result r;
+  assert_int_equal(cprox_distance(cprox_point_along(curve), at(body, 0, 0, 0), &options, ws, &r), CPROX_STOPPED);
+  assert_true(r.lower <= 0.99951 && r.upper >= 0.9988 && r.nodes < 100);
+  polls = 0;
+  assert_int_equal(cprox_distance(cprox_point_along(curve), at(body, 0, 0, 0), &options, ws, &r), CPROX_STOPPED);
+  assert_true(r.lower <= 0.9988 && r.upper == INFINITY && r.target_index == -1);
+  cprox_body_free(body);
+  cprox_curve_free(curve);
+}
+
+/* ---- many targets ------------------------------------------------------------------------------------------------------ */
+
+/* Seed 5, 300 scenes of 30 targets, among them padded ones and compounds: the union's answer is the least of the answers one by
+ * one, and verdicts agree with it. */
+static void many_targets_are_answered_like_the_nearest_of_them(void **state) {
+  (void)state;
+  rng r = rng_seed(5);
+  enum { N = 30 };
+  cprox_body *ball = sphere(0.05), *brick = box(0.1, 0.2, 0.3), *pair = NULL;
+  const cprox_body *parts[] = {ball, brick};
+  const cprox_pose poses[] = {{.position = {0.2, 0, 0}, .orientation = {1, 0, 0, 0}},
+                              {.position = {-0.2, 0, 0}, .orientation = {1, 1, 0, 0}}};
+  usable(cprox_body_create_compound(parts, poses, 2, ws, &pair), NULL);
+  const cprox_body *kinds[] = {ball, brick, pair};
+  const cprox_options options = accurate(1e-9);
+  for (size_t scene = 0; scene < test_cases(300); scene++) {
+    cprox_target targets[N];
+    for (int i = 0; i < N; i++) {
+      targets[i] = cprox_padded(cprox_at(kinds[rng_index(&r, 3)], rng_pose(&r, 2.0)), rng_index(&r, 2) ? 0.0 : 0.02);
+    }
+    vec3 points[6];
+    for (int i = 0; i < 6; i++) points[i] = rng_in_cube(&r, 2.0);
+    cprox_curve *curve = bezier(points, 6);
+    const cprox_mover mover = cprox_tube_along(curve, 0.01);
+
+    cprox_result each[N], nearest, all;
+    assert_int_equal(cprox_distance_all(mover, targets, N, &options, ws, &nearest, NULL), CPROX_OK);
+    assert_int_equal(cprox_distance_all(mover, targets, N, &options, ws, &all, each), CPROX_OK);
+    double least = INFINITY;
+    for (int i = 0; i < N; i++) {
+      cprox_result one;
+      assert_int_equal(cprox_distance(mover, targets[i], &options, ws, &one), CPROX_OK);
+      assert_true(one.lower == each[i].lower && one.upper == each[i].upper && each[i].target_index == i);
+      least = fmin(least, one.upper);
+    }
+    assert_true(all.upper == least);
+    assert_true(nearest.lower <= all.upper && all.lower <= nearest.upper && nearest.upper - nearest.lower <= 1e-9);
+    assert_true(each[nearest.target_index].lower <= nearest.upper);
+
+    cprox_result verdict;
+    assert_int_equal(cprox_collision_all(mover, targets, N, &options, ws, &verdict, NULL), CPROX_OK);
+    assert_int_equal(verdict.verdict, least > 0.0 ? CPROX_NO : CPROX_YES);
+    if (least > 1e-6) {
+      assert_int_equal(cprox_tolerance_all(mover, targets, N, 0.999 * least, &options, ws, &verdict, NULL), CPROX_OK);
+      assert_int_equal(verdict.verdict, CPROX_YES);
+      assert_int_equal(cprox_tolerance_all(mover, targets, N, 1.001 * least, &options, ws, &verdict, NULL), CPROX_OK);
+      assert_int_equal(verdict.verdict, CPROX_NO);
+    }
+    cprox_curve_free(curve);
+  }
+  cprox_body_free(pair);
+  cprox_body_free(ball);
+  cprox_body_free(brick);
+}
+
+static void nothing_to_measure_is_infinitely_far(void **state) {
+  (void)state;
+  cprox_curve *curve = segment(vec(0, 0, 0), vec(1, 0, 0));
+  cprox_result r;
+  assert_int_equal(cprox_distance_all(cprox_point_along(curve), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
+  assert_true(r.lower == INFINITY && r.upper == INFINITY && r.target_index == -1);
+  assert_int_equal(cprox_tolerance_all(cprox_point_along(curve), NULL, 0, 1.0, NULL, ws, &r, NULL), CPROX_OK);
+  assert_int_equal(r.verdict, CPROX_YES);
+  assert_int_equal(cprox_collision_all(cprox_point_along(curve), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
+  assert_int_equal(r.verdict, CPROX_NO);
+  cprox_curve_free(curve);
+}
+
+/* ---- unusable arguments ------------------------------------------------------------------------------------------------ */
+
+static void expect_refusal(cprox_status status, const char *word, const cprox_result *r) {
+  assert_int_equal(status, CPROX_INVALID);
+  if (!strstr(cprox_workspace_reason(ws), word)) fail_msg("'%s' does not say '%s'", cprox_workspace_reason(ws), word);
+  assert_true(r->lower == -7.0); /* untouched */
+}
+
+static void unusable_arguments_are_refused_by_name(void **state) {
+  (void)state;
+  cprox_curve *curve = segment(vec(0, 0, 0), vec(1, 0, 0));
+  cprox_body *body = sphere(1.0);
+  const cprox_mover mover = cprox_point_along(curve);
+  const cprox_target target = at(body, 5, 0, 0);
+  cprox_result r = {.lower = -7.0};
+  cprox_options o = accurate(-1e-9);
+  expect_refusal(cprox_distance(mover, target, &o, ws, &r), "epsilon", &r);
+  o = accurate(NAN);
+  expect_refusal(cprox_collision(mover, target, &o, ws, &r), "epsilon", &r);
+  o = accurate(1e-6), o.relative_epsilon = NAN;
+  expect_refusal(cprox_distance(mover, target, &o, ws, &r), "relative_epsilon", &r);
+  o = accurate(1e-6), o.max_nodes = 0;
+  expect_refusal(cprox_distance(mover, target, &o, ws, &r), "max_nodes", &r);
+  expect_refusal(cprox_tolerance(mover, target, -0.1, NULL, ws, &r), "delta", &r);
+  expect_refusal(cprox_tolerance(mover, target, NAN, NULL, ws, &r), "delta", &r);
+  expect_refusal(cprox_distance(cprox_tube_along(curve, -1.0), target, NULL, ws, &r), "radius", &r);
+  expect_refusal(cprox_distance(cprox_tube_along(curve, INFINITY), target, NULL, ws, &r), "radius", &r);
+  expect_refusal(cprox_distance(cprox_point_along(NULL), target, NULL, ws, &r), "curve", &r);
+  expect_refusal(cprox_distance(mover, cprox_at(NULL, target.pose), NULL, ws, &r), "body", &r);
+  expect_refusal(cprox_distance(mover, cprox_padded(target, -1.0), NULL, ws, &r), "padding", &r);
+  cprox_target bad = target;
+  bad.pose.orientation = (cprox_quat){0, 0, 0, 0};
+  expect_refusal(cprox_distance(mover, bad, NULL, ws, &r), "norm is 0", &r);
+  bad = target, bad.pose.position.y = NAN;
+  expect_refusal(cprox_distance_all(mover, (cprox_target[]){target, bad}, 2, NULL, ws, &r, NULL), "target 1", &r);
+  cprox_body_free(body);
+  cprox_curve_free(curve);
+}
+
+static void stray_support(const void *shape, const double direction[3], double p[3]) {
+  (void)direction;
+  const double *answer = shape;
+  p[0] = p[1] = p[2] = *answer;
+}
+
+static void a_support_callback_that_leaves_its_body_is_refused(void **state) {
+  (void)state;
+  cprox_curve *curve = segment(vec(5, 0, 0), vec(6, 0, 0));
+  const double answers[] = {NAN, 100.0};
+  for (int i = 0; i < 2; i++) {
+    cprox_body *body = NULL;
+    usable(cprox_body_create_support(stray_support, &answers[i], vec(0, 0, 0), 1.0, 0.0, 0.0, ws, &body), NULL);
+    cprox_result r = {.lower = -7.0};
+    expect_refusal(cprox_distance(cprox_point_along(curve), at(body, 0, 0, 0), NULL, ws, &r), "callback", &r);
+    cprox_body_free(body);
+  }
+  cprox_curve_free(curve);
+}
+
+/* ---- memory and cost --------------------------------------------------------------------------------------------------- */
+
+static void a_second_query_of_a_size_allocates_nothing(void **state) {
+  (void)state;
+  rng r = rng_seed(9);
+  vec3 points[16], cloud[64];
+  for (int i = 0; i < 16; i++) points[i] = rng_in_cube(&r, 1.0);
+  for (int i = 0; i < 64; i++) cloud[i] = vec_scale(0.3, rng_unit(&r));
+  cprox_curve *curve = bezier(points, 16);
+  cprox_body *body = NULL;
+  usable(cprox_body_create_polytope(cloud, 64, ws, &body), NULL);
+  cprox_target targets[30];
+  for (int i = 0; i < 30; i++) targets[i] = cprox_at(body, rng_pose(&r, 2.0));
+  size_t before = 0;
+  for (int round = 0; round < 3; round++) {
+    if (round == 1) before = allocations_made();
+    cprox_result one;
+    const cprox_options options = accurate(1e-12);
+    assert_true(cprox_distance_all(cprox_point_along(curve), targets, 30, &options, ws, &one, NULL) >= 0);
+    assert_true(cprox_tolerance_all(cprox_point_along(curve), targets, 30, 0.1, &options, ws, &one, NULL) >= 0);
+    assert_true(cprox_collision_all(cprox_point_along(curve), targets, 30, &options, ws, &one, NULL) >= 0);
+  }
+  assert_int_equal(allocations_made(), before);
+  cprox_body_free(body);
+  cprox_curve_free(curve);
+}
+
+static void a_failed_allocation_is_a_status_and_the_next_query_answers(void **state) {
+  (void)state;
+  cprox_curve *curve = segment(vec(2, -1, 0), vec(2, 1, 0));
+  cprox_body *body = box(1, 1, 1);
+  for (size_t successes = 0; successes < 4; successes++) {
+    cprox_workspace *fresh = cprox_workspace_create();
+    cprox_result r = {.lower = -7.0};
+    allocations_fail_after(successes);
+    const cprox_status status = cprox_distance(cprox_point_along(curve), at(body, 0, 0, 0), NULL, fresh, &r);
+    allocations_allow();
+    if (status != CPROX_OK) {
+      assert_int_equal(status, CPROX_MEMORY);
+      assert_true(r.lower == -7.0);
+      assert_string_not_equal(cprox_workspace_reason(fresh), "");
+    }
+    assert_int_equal(cprox_distance(cprox_point_along(curve), at(body, 0, 0, 0), NULL, fresh, &r), CPROX_OK);
+    assert_contains(&r, 1.5, 0.0);
+    cprox_workspace_free(fresh);
+  }
+  cprox_body_free(body);
+  cprox_curve_free(curve);
+}
+
+static int by_count(const void *a, const void *b) {
+  return *(const uint32_t *)a < *(const uint32_t *)b ? -1 : *(const uint32_t *)a > *(const uint32_t *)b;
+}
+
+/* Seed 11, 400 problems a group, curves in the unit cube, epsilon 1e-10. */
+static void medians_stay_within_6_nodes_and_10_probes(void **state) {
+  (void)state;
+  enum { PROBLEMS = 400 };
+  rng r = rng_seed(11);
+  const size_t orders[] = {5, 10, 15};
+  for (int kind = 0; kind < 3; kind++) {
+    for (int k = 0; k < 3; k++) {
+      uint32_t nodes[PROBLEMS], probes[PROBLEMS];
+      for (int i = 0; i < PROBLEMS; i++) {
+        vec3 points[16], cloud[64];
+        for (size_t j = 0; j <= orders[k]; j++) {
+          points[j] = rng_in_cube(&r, 1.0);
+          if (kind == 1) points[j].z = 0.0;
+        }
+        cprox_body *body = NULL;
+        if (kind == 0) {
+          body = box(rng_uniform(&r, 0.1, 0.5), rng_uniform(&r, 0.1, 0.5), rng_uniform(&r, 0.1, 0.5));
+        } else if (kind == 1) {
+          double polygon[20][2];
+          for (int j = 0; j < 20; j++) {
+            const double a = 6.283185307179586 * (j + rng_uniform(&r, 0.0, 0.7)) / 20.0;
+            polygon[j][0] = 0.25 * cos(a), polygon[j][1] = 0.15 * sin(a);
+          }
+          usable(cprox_body_create_polygon((const double(*)[2])polygon, 20, ws, &body), NULL);
+        } else {
+          for (int j = 0; j < 64; j++) cloud[j] = vec_scale(0.25, rng_unit(&r));
+          usable(cprox_body_create_polytope(cloud, 64, ws, &body), NULL);
+        }
+        cprox_pose pose = rng_pose(&r, 1.0);
+        if (kind == 1) pose.position.z = 0.0, pose.orientation.x = pose.orientation.y = 0.0;
+        cprox_curve *curve = bezier(points, orders[k] + 1);
+        const cprox_options options = accurate(1e-10);
+        cprox_result result;
+        assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_at(body, pose), &options, ws, &result),
+                         CPROX_OK);
+        nodes[i] = result.nodes, probes[i] = result.probes;
+        cprox_curve_free(curve);
+        cprox_body_free(body);
+      }
+      qsort(nodes, PROBLEMS, sizeof *nodes, by_count);
+      qsort(probes, PROBLEMS, sizeof *probes, by_count);
+      print_message("%s, order %zu: median %u nodes, %u probes; 95 %%: %u, %u; most: %u, %u\n",
+                    kind == 0   ? "box"
+                    : kind == 1 ? "20-gon"
+                                : "64-vertex polytope",
+                    orders[k], nodes[PROBLEMS / 2], probes[PROBLEMS / 2], nodes[PROBLEMS * 19 / 20],
+                    probes[PROBLEMS * 19 / 20], nodes[PROBLEMS - 1], probes[PROBLEMS - 1]);
+      assert_true(nodes[PROBLEMS / 2] <= 6 && probes[PROBLEMS / 2] <= 10);
+    }
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_segment_past_a_box_has_the_distance_of_its_nearest_end),
+      cmocka_unit_test(a_turned_and_moved_body_is_measured_where_it_stands),
+      cmocka_unit_test(a_curve_through_a_body_is_at_distance_0_and_collides),
+      cmocka_unit_test(a_planar_curve_through_a_polygon_collides),
+      cmocka_unit_test(touching_is_never_called_free),
+      cmocka_unit_test(a_curve_that_stands_still_is_answered_as_a_point),
+      cmocka_unit_test(a_long_spline_is_searched_by_its_tree),
+      cmocka_unit_test(epsilon_of_any_size_ends_with_a_true_interval),
+      cmocka_unit_test(a_spent_budget_leaves_a_true_interval),
+      cmocka_unit_test(a_stop_function_ends_the_search_with_a_true_interval),
+      cmocka_unit_test(many_targets_are_answered_like_the_nearest_of_them),
+      cmocka_unit_test(nothing_to_measure_is_infinitely_far),
+      cmocka_unit_test(unusable_arguments_are_refused_by_name),
+      cmocka_unit_test(a_support_callback_that_leaves_its_body_is_refused),
+      cmocka_unit_test(a_second_query_of_a_size_allocates_nothing),
+      cmocka_unit_test(a_failed_allocation_is_a_status_and_the_next_query_answers),
+      cmocka_unit_test(medians_stay_within_6_nodes_and_10_probes),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
