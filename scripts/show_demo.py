@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The demo proper, in the environment of the built workspace: see scripts/demo."""
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import numpy as np
+import yaml
+
+import draw_scene
+
+REPO = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+LOGS = os.environ['LOGS']
+NODE = '/curve_proximity'
+ROBOT = os.path.join(REPO, 'test/data/robots/panda/panda.urdf')
+SCENE = os.path.join(REPO, 'test/data/scenes/mbm/bookshelf_tall_panda/scene0001.yaml')
+
+# A ball of 2 cm radius, say the tip of a tool, along a cubic B-spline: into the middle shelf, round Can7, out past Can9.
+RADIUS, DEGREE, TOLERANCE, PIECES = 0.02, 3, 0.010, 72
+CONTROL = [[-0.375, 0.344, 0.62], [-0.286, 0.412, 0.56], [0.02, 0.631, 0.47], [0.195, 0.901, 0.43], [0.375, 1.147, 0.42],
+           [0.671, 0.967, 0.43], [0.61, 0.656, 0.45], [0.398, 0.448, 0.45], [0.208, 0.284, 0.36], [-0.038, 0.236, 0.3]]
+KNOTS = [0.0] * DEGREE + list(np.linspace(0.0, 1.0, len(CONTROL) - DEGREE + 1)) + [1.0] * DEGREE
+
+# The arm waiting in front of the shelf, and reaching into it (start and goal of the scene's planning problem).
+JOINTS = [f'panda_joint{i}' for i in range(1, 8)]
+WAITING = [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]
+REACHING = [-2.7783, -0.7590, -2.4919, -2.1355, 2.8973, 2.0248, 0.4576]
+
+
+class Failure(Exception):
+    """Something that a person must read, in one sentence."""
+
+
+# ------------------------------------------------------------------------------------------------- starting, stopping
+class Programs:
+    """What the demo started, each in a session of its own; all of it is ended, whatever happens."""
+
+    def __init__(self):
+        self.running = []
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        for sign, patience in ((signal.SIGINT, 8), (signal.SIGTERM, 3), (signal.SIGKILL, 3)):
+            for process in reversed(self.running):
+                self.end(process, sign, patience)
+
+    @staticmethod
+    def end(process, sign, patience):
+        try:
+            os.killpg(process.pid, sign)
+            process.wait(patience)
+        except (ProcessLookupError, subprocess.TimeoutExpired):
+            pass
+
+    def start(self, name, *command):
+        log = os.path.join(LOGS, f'demo-{name}.log')
+        with open(log, 'w') as out:
+            self.running.append(subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT,
+                                                 start_new_session=True))
+        return self.running[-1], log
+
+
+def wait_for(question, process, log, seconds):
+    """Waits until question() is true; a program that has ended or says nothing for too long is a failure."""
+    deadline = time.monotonic() + seconds
+    while not question():
+        if process.poll() is not None or time.monotonic() > deadline:
+            with open(log, errors='replace') as text:
+                tail = ''.join(text.readlines()[-15:])
+            raise Failure(f'{tail}\n{os.path.basename(log)[5:-4]} did not start; the end of {log} is above')
+        time.sleep(0.1)
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(('127.0.0.1', 0))
+        return probe.getsockname()[1]
+
+
+# -------------------------------------------------------------------------------------------------------------- asking
+def run(*command, seconds=60):
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=seconds,
+                          universal_newlines=True)
+    if done.returncode != 0:
+        raise Failure(f"{' '.join(command[:3])}: {(done.stderr or done.stdout).strip()}")
+    return done.stdout
+
+
+def serving():
+    listed = subprocess.run(['rosservice', 'list', NODE], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True)
+    return f'{NODE}/distance' in listed.stdout
+
+
+def ask(verb, **request):
+    """Calls a service of the node with rosservice, and returns its results."""
+    answer = yaml.safe_load(run('rosservice', 'call', f'{NODE}/{verb}', yaml.safe_dump(request, default_flow_style=True, width=1e9)))
+    if not answer['success']:
+        raise Failure(f"{verb}: {answer['message']}")
+    return answer['results']
+
+
+def tool_path(t0=0.0, t1=1.0):
+    points = [dict(zip('xyz', point)) for point in CONTROL]
+    return {'id': 'tool', 'basis': 'bspline', 'degree': DEGREE, 'radius': RADIUS, 't0': float(t0), 't1': float(t1),
+            'points': points, 'knots': [float(k) for k in KNOTS]}
+
+
+def posture(positions):
+    return {'name': JOINTS, 'position': positions}
+
+
+def point(message):
+    return [float(message[axis]) for axis in 'xyz']
+
+
+def at(message):
+    return '({:.3f}, {:.3f}, {:.3f}) m'.format(*point(message))
+
+
+# ------------------------------------------------------------------------------------------------------------ the demo
+def ask_and_tell():
+    """The three questions, in words. Returns the nearest pair."""
+    waiting, reaching = posture(WAITING), posture(REACHING)
+
+    print('\n1. How close does the tool come to anything?   rosservice call ~distance')
+    near, = ask('distance', curves=[tool_path()], joint_state=waiting, epsilon=1e-6)
+    lower, upper = float(near['lower']), float(near['upper'])
+    print(f"   Between {1e3 * lower:.4f} and {1e3 * upper:.4f} mm: to {near['b']}, at t = {float(near['t']):.4f} of the path.\n"
+          f"   The tool's surface is then at {at(near['point_a'])}, the surface of {near['b']} at {at(near['point_b'])}.\n"
+          f"   Certified after {near['nodes']} intervals in {float(near['microseconds']):.0f} microseconds; nothing was sampled.")
+
+    print(f'\n2. Does it stay more than {1e3 * TOLERANCE:.0f} mm clear of everything?   rosservice call ~tolerance')
+    clear, = ask('tolerance', curves=[tool_path()], joint_state=waiting, delta=TOLERANCE)
+    print('   ' + {'yes': 'Yes, everywhere along the path', 'no': f"No: {clear['b']} is closer at t = {float(clear['t']):.4f}"}
+          .get(clear['verdict'], 'Undecided, which counts as no') + f", after {clear['nodes']} intervals.")
+
+    print('\n3. And while the arm reaches into the shelf: does the tool hit it?   rosservice call ~collision')
+    hit, = ask('collision', curves=[tool_path()], joint_state=reaching)
+    print('   ' + {'yes': f"Yes: it hits {hit['b']} at t = {float(hit['t']):.4f}, near {at(hit['point_a'])}.",
+                   'no': 'No: the whole path is free.'}.get(hit['verdict'], 'Undecided, which counts as a hit.'))
+    return near
+
+
+def picture(out, near):
+    """Draws the scene; the tool is coloured piece by piece, each piece asked for as a curve of its own."""
+    ends = np.linspace(0.0, 1.0, PIECES + 1)
+    pieces = ask('distance', curves=[tool_path(a, b) for a, b in zip(ends, ends[1:])], joint_state=posture(WAITING), epsilon=1e-4)
+    draw_scene.draw(
+        out, SCENE, ROBOT, dict(zip(JOINTS, WAITING)), draw_scene.bspline_points(CONTROL, DEGREE, KNOTS, ends), RADIUS,
+        [float(piece['lower']) for piece in pieces],
+        {'a': point(near['point_a']), 'b': point(near['point_b']), 'name': near['b'], 't': float(near['t']),
+         'distance': float(near['lower'])},
+        f'A tool of {100 * RADIUS:.0f} cm radius on its way\nthrough a shelf, past a Panda')
+
+
+def main(out):
+    os.environ['ROS_MASTER_URI'] = f'http://localhost:{free_port()}'
+    with Programs() as programs:
+        print('starting roscore and the node, with a Panda in front of a bookshelf of nine cans')
+        core, log = programs.start('roscore', 'roscore', '-p', os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1])
+        wait_for(lambda: subprocess.call(['rosparam', 'get', '/run_id'], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) == 0,
+                 core, log, 30)
+        launch, log = programs.start('node', 'roslaunch', '--wait', 'curve_proximity', 'demo.launch', 'rviz:=false')
+        wait_for(serving, launch, log, 60)
+        run('cprox', 'send', SCENE, '--node', NODE)
+        near = ask_and_tell()
+        picture(out, near)
+    print(f'\nthe picture: {out}')
+    return 0
+
+
+if __name__ == '__main__':
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    try:
+        sys.exit(main(sys.argv[1]))
+    except Failure as failure:
+        print(failure, file=sys.stderr)
+        sys.exit(1)
+    except KeyboardInterrupt:
+        sys.exit(130)
