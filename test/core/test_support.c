@@ -2,6 +2,7 @@
 /* The helpers themselves: a reference that is wrong would make every test that leans on it worthless. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 

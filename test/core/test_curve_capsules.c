@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The tree of chord capsules: every capsule contains the part of the curve that it stands for. The points come from the
+ * spline's own definition in long double, not from the pieces. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "curve/curve.h"
+#include "support/curves.h"
+#include "support/reference.h"
+
+/* The pieces [first, end) below a node of the heap. */
+static void pieces_below(const cprox_curve *c, size_t node, size_t *first, size_t *end) {
+  size_t low = node, high = node + 1;
+  while (low < c->n_leaves) low *= 2, high *= 2;
+  *first = low - c->n_leaves;
+  *end = high - c->n_leaves < c->n_pieces ? high - c->n_leaves : c->n_pieces;
+}
+
+static bool contains(const curve_capsule *capsule, vec3l p, long double slack) {
+  return ref_point_segment(p, ref_vec(capsule->a), ref_vec(capsule->b)) <= (long double)capsule->radius + slack;
+}
+
+/* Holds the capsules of every level above a piece against its control points and its error, which is all that can be
+ * asked of them, and against the points of the exact curve where there is a spline. */
+static void check_tree(const cprox_curve *c, const test_spline *s) {
+  const size_t n = c->degree;
+  for (size_t node = 1; node < 2 * c->n_leaves; node++) {
+    size_t first, end;
+    pieces_below(c, node, &first, &end);
+    const curve_capsule *capsule = &c->capsules[node];
+    if (first >= end) {
+      assert_true(capsule->radius < 0.0);
+      continue;
+    }
+    assert_true(capsule->radius >= 0.0);
+    assert_true(vec_equal(capsule->a, curve_piece(c, first)[0]));
+    assert_true(vec_equal(capsule->b, curve_piece(c, end - 1)[n]));
+    for (size_t i = first; i < end; i++) {
+      for (size_t k = 0; k <= n; k++)
+        assert_true(contains(capsule, ref_vec(curve_piece(c, i)[k]), -(long double)c->error[i]));
+      if (!s) continue;
+      size_t r = s->degree;
+      while (!(s->knots[r] <= c->breaks[i] && c->breaks[i + 1] <= s->knots[r + 1])) r++;
+      const long double slack = 8.0L * (long double)n * 0x1p-64L * ref_largest(s->points + (r - n), n + 1);
+      for (int k = 0; k <= 4; k++) {
+        const double t = fmin(c->breaks[i] + 0.25 * k * (c->breaks[i + 1] - c->breaks[i]), c->breaks[i + 1]);
+        assert_true(contains(capsule, ref_bspline(s->points, n, s->knots, r, t, 0), slack));
+      }
+    }
+  }
+}
+
+/* seed 301, 4000 splines of up to 13 spans, each point against all levels above it: more than 1e5 checks */
+static void every_capsule_contains_its_part_of_the_curve(void **state) {
+  (void)state;
+  rng r = rng_seed(301);
+  for (size_t i = test_cases(4000); i-- > 0;) {
+    const test_spline s = random_spline(&r, 1 + rng_index(&r, rng_index(&r, 8) ? 8 : 60));
+    cprox_curve *c = NULL;
+    assert_int_equal(
+        cprox_curve_create_bspline(s.points, s.n_points, s.degree, s.knots, s.n_knots, s.t0, s.t1, NULL, &c), CPROX_OK);
+    check_tree(c, &s);
+
+    /* the box of the whole curve likewise; t1 belongs to the span before it */
+    vec3 low, high;
+    cprox_curve_bounds(c, &low, &high);
+    for (size_t k = 0; k <= 20; k++) {
+      const double t = fmin(s.t0 + (double)k / 20.0 * (s.t1 - s.t0), s.t1);
+      size_t span = s.degree;
+      while (s.knots[span + 1] < s.t1 && s.knots[span + 1] <= t) span++;
+      const vec3l p = ref_bspline(s.points, s.degree, s.knots, span, t, 0);
+      const long double slack = 8.0L * (long double)s.degree * 0x1p-64L * ref_largest(s.points, s.n_points);
+      assert_true(low.x - slack <= p.x && low.y - slack <= p.y && low.z - slack <= p.z);
+      assert_true(high.x + slack >= p.x && high.y + slack >= p.y && high.z + slack >= p.z);
+    }
+    cprox_curve_free(c);
+  }
+}
+
+/* seed 302: ends that coincide or nearly do; the chord says nothing, the radius must say it all */
+static void closed_curves_are_contained(void **state) {
+  (void)state;
+  rng r = rng_seed(302);
+  for (size_t i = test_cases(4000); i-- > 0;) {
+    const size_t degree = 2 + rng_index(&r, 10);
+    vec3 p[61];
+    random_points(&r, degree + 1, p);
+    p[degree] = p[0];
+    if (rng_index(&r, 2)) p[degree].x = nextafter(p[0].x, INFINITY);
+    if (rng_index(&r, 4) == 0) p[degree].y += rng_log_uniform(&r, 1e-300, 1e-10);
+    cprox_curve *c = NULL;
+    assert_int_equal(cprox_curve_create_bezier(p, degree + 1, 0.0, 1.0, NULL, &c), CPROX_OK);
+    check_tree(c, NULL);
+    cprox_curve_free(c);
+  }
+}
+
+/* Curves that stand still, run to and fro on a line, or have sizes at the ends of the range. */
+static void degenerate_curves_are_contained(void **state) {
+  (void)state;
+  for (int exponent = -1020; exponent <= 495; exponent++) {
+    const double size = ldexp(1.0, exponent);
+    const vec3 curves[4][4] = {{{size, 0, 0}, {size, 0, 0}, {size, 0, 0}, {size, 0, 0}},
+                               {{0, 0, 0}, {3 * size, 0, 0}, {-2 * size, 0, 0}, {size, 0, 0}},
+                               {{0, 0, 0}, {0, size, 0}, {0, 0, size}, {0, 0, 0}},
+                               {{-size, size, 0}, {1, 1, 1}, {0, 0, size}, {size, size, size}}};
+    for (size_t k = 0; k < 4; k++) {
+      cprox_curve *c = NULL;
+      assert_int_equal(cprox_curve_create_bezier(curves[k], 4, 0.0, 1.0, NULL, &c), CPROX_OK);
+      check_tree(c, NULL);
+      assert_true(isfinite(c->capsules[1].radius));
+      cprox_curve_free(c);
+    }
+  }
+}
+
+/* A capsule that is far too wide would be as true and useless. A straight spline's radius is rounding alone; for a
+ * half circle of 64 pieces the root is at most twice its height over the chord. */
+static void capsules_are_no_wider_than_they_need_be(void **state) {
+  (void)state;
+  vec3 straight[67], arc[67];
+  double knots[71];
+  for (size_t i = 0; i < 67; i++) {
+    const double angle = 3.141592653589793 * ((double)i - 1.0) / 64.0;
+    straight[i] = vec(1e6 + (double)i, 2e6 + 2.0 * (double)i, 0.0);
+    arc[i] = vec(cos(angle), sin(angle), 0.0);
+  }
+  for (size_t i = 0; i < 71; i++) knots[i] = (double)i;
+  cprox_curve *c = NULL;
+  assert_int_equal(cprox_curve_create_bspline(straight, 67, 3, knots, 71, 3.0, 67.0, NULL, &c), CPROX_OK);
+  assert_true(c->capsules[1].radius < 2e-8); /* six levels of 2^-53 · 2e6, and 1e-9 of the leaf's */
+  cprox_curve_free(c);
+  assert_int_equal(cprox_curve_create_bspline(arc, 67, 3, knots, 71, 3.0, 67.0, NULL, &c), CPROX_OK);
+  assert_true(c->capsules[1].radius >= 0.99 && c->capsules[1].radius < 2.0);
+  assert_true(c->capsules[64].radius < 1e-3);
+  cprox_curve_free(c);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_capsule_contains_its_part_of_the_curve),
+      cmocka_unit_test(closed_curves_are_contained),
+      cmocka_unit_test(degenerate_curves_are_contained),
+      cmocka_unit_test(capsules_are_no_wider_than_they_need_be),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What is wrong is refused in one sentence that says what and where, *curve stays as it was, and nothing leaks. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "curve/curve.h"
+#include "support/counting.h"
+
+static cprox_workspace *workspace;
+
+/* A good spline of degree 2, to be spoilt. */
+typedef struct good_spline {
+  vec3 points[5];
+  double knots[8];
+} good_spline;
+
+static const good_spline good = {.points = {{0, 0, 0}, {1, 0, 0}, {2, 1, 0}, {3, 0, 1}, {4, 0, 0}},
+                                 .knots = {0, 0, 0, 0.4, 0.5, 1, 1, 1}};
+
+static void refused(cprox_status status, const cprox_curve *curve, const char *reason) {
+  assert_int_equal(status, CPROX_INVALID);
+  assert_ptr_equal(curve, workspace); /* the mark that was there before */
+  assert_string_equal(cprox_workspace_reason(workspace), reason);
+}
+
+static void bezier_refused(const vec3 *points, size_t n, double t0, double t1, const char *reason) {
+  cprox_curve *curve = (cprox_curve *)workspace;
+  const size_t live = allocations_live();
+  refused(cprox_curve_create_bezier(points, n, t0, t1, workspace, &curve), curve, reason);
+  assert_int_equal(cprox_curve_create_bezier(points, n, t0, t1, NULL, &curve), CPROX_INVALID);
+  assert_int_equal(allocations_live(), live);
+}
+
+static void bspline_refused(const good_spline *s, size_t n, size_t degree, size_t n_knots, double t0, double t1,
+                            const char *reason) {
+  cprox_curve *curve = (cprox_curve *)workspace;
+  const size_t live = allocations_live();
+  refused(cprox_curve_create_bspline(s->points, n, degree, s->knots, n_knots, t0, t1, workspace, &curve), curve,
+          reason);
+  assert_int_equal(cprox_curve_create_bspline(s->points, n, degree, s->knots, n_knots, t0, t1, NULL, &curve),
+                   CPROX_INVALID);
+  assert_int_equal(allocations_live(), live);
+}
+
+static void bad_control_points_are_refused(void **state) {
+  (void)state;
+  vec3 many[62] = {{0, 0, 0}};
+  bezier_refused(NULL, 3, 0, 1, "the control points are NULL");
+  bezier_refused(many, 0, 0, 1, "a curve needs at least 2 control points, got 0");
+  bezier_refused(many, 1, 0, 1, "a curve needs at least 2 control points, got 1");
+  bezier_refused(many, 62, 0, 1, "a Bézier curve has at most 61 control points (degree 60), got 62");
+  const double spoilt[3] = {NAN, INFINITY, -INFINITY};
+  const char *const text[3] = {"nan", "inf", "-inf"};
+  for (size_t k = 0; k < 3; k++) {
+    char reason[100];
+    vec3 points[4] = {{0, 0, 0}, {1, 2, 3}, {1, 2, 3}, {0, 0, 0}};
+    good_spline s = good;
+    points[2].y = s.points[3].y = spoilt[k];
+    snprintf(reason, sizeof reason, "control point 2 is (1, %s, 3), not finite", text[k]);
+    bezier_refused(points, 4, 0, 1, reason);
+    snprintf(reason, sizeof reason, "control point 3 is (3, %s, 1), not finite", text[k]);
+    bspline_refused(&s, 5, 2, 8, 0, 1, reason);
+  }
+  many[1].z = -2e150;
+  bezier_refused(many, 3, 0, 1, "control point 1 is (0, 0, -2e+150), beyond 1e+150 m");
+}
+
+static void bad_ranges_are_refused(void **state) {
+  (void)state;
+  const vec3 points[2] = {{0, 0, 0}, {1, 1, 1}};
+  bezier_refused(points, 2, 1, 1, "t0 = 1 is not below t1 = 1");
+  bezier_refused(points, 2, 2, 1, "t0 = 2 is not below t1 = 1");
+  bezier_refused(points, 2, NAN, 1, "the parameter range [nan, 1] is not finite or beyond 1e+150");
+  bezier_refused(points, 2, 0, INFINITY, "the parameter range [0, inf] is not finite or beyond 1e+150");
+  bezier_refused(points, 2, -1e151, 0, "the parameter range [-1e+151, 0] is not finite or beyond 1e+150");
+  bspline_refused(&good, 5, 2, 8, 0.5, 0.5, "t0 = 0.5 is not below t1 = 0.5");
+  bspline_refused(&good, 5, 2, 8, -0.1, 0.5, "[t0, t1] = [-0.1, 0.5] leaves the spline's domain [0, 1]");
+  bspline_refused(&good, 5, 2, 8, 0.5, 1.5, "[t0, t1] = [0.5, 1.5] leaves the spline's domain [0, 1]");
+}
+
+static void bad_degrees_and_knots_are_refused(void **state) {
+  (void)state;
+  bspline_refused(&good, 5, 0, 6, 0, 1, "the degree is 0; a curve needs at least 1");
+  bspline_refused(&good, 5, 61, 67, 0, 1, "the degree is 61, above 60");
+  bspline_refused(&good, 2, 2, 5, 0, 1, "a B-spline of degree 2 needs at least 3 control points, got 2");
+  bspline_refused(&good, 5, 2, 7, 0, 1, "5 control points of degree 2 need 8 knots, got 7");
+  bspline_refused(&good, 5, 2, 9, 0, 1, "5 control points of degree 2 need 8 knots, got 9");
+  good_spline s = good;
+  s.knots[4] = 0.3;
+  bspline_refused(&s, 5, 2, 8, 0, 1, "knot 4 is 0.3, below knot 3 at 0.4");
+  s.knots[4] = NAN;
+  bspline_refused(&s, 5, 2, 8, 0, 1, "knot 4 is nan, not finite or beyond 1e+150");
+  s.knots[4] = INFINITY;
+  bspline_refused(&s, 5, 2, 8, 0, 1, "knot 4 is inf, not finite or beyond 1e+150");
+  for (size_t i = 0; i < 8; i++) s.knots[i] = 0.5;
+  bspline_refused(&s, 5, 2, 8, 0, 1, "the spline's domain is empty: knots 2 to 5 are all 0.5");
+  cprox_curve *curve = (cprox_curve *)workspace;
+  refused(cprox_curve_create_bspline(good.points, 5, 2, NULL, 8, 0, 1, workspace, &curve), curve, "the knots are NULL");
+}
+
+static void a_missing_result_pointer_is_refused(void **state) {
+  (void)state;
+  assert_int_equal(cprox_curve_create_bezier(good.points, 5, 0, 1, workspace, NULL), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(workspace), "the pointer for the new curve is NULL");
+  assert_int_equal(cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, NULL), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(workspace), "the pointer for the new curve is NULL");
+}
+
+static void questions_outside_the_range_are_refused(void **state) {
+  (void)state;
+  cprox_curve *curve = NULL;
+  assert_int_equal(cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, &curve), CPROX_OK);
+  assert_string_equal(cprox_workspace_reason(workspace), "");
+  vec3 p = {7, 7, 7}, part[3] = {{7, 7, 7}};
+  const double outside[4] = {-1e-9, 1.5, NAN, INFINITY};
+  for (size_t k = 0; k < 4; k++)
+    assert_int_equal(cprox_curve_evaluate(curve, outside[k], workspace, &p, &p, &p), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(workspace), "t = inf is outside the curve's range [0, 1]");
+  assert_int_equal(cprox_curve_evaluate(NULL, 0.0, workspace, &p, NULL, NULL), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(workspace), "the curve is NULL");
+
+  assert_int_equal(cprox_curve_control_points(curve, 0.2, 0.2, workspace, part), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(workspace),
+                      "a = 0.20000000000000001 is not below b = 0.20000000000000001");
+  assert_int_equal(cprox_curve_control_points(curve, 0.0, NAN, workspace, part), CPROX_INVALID);
+  assert_int_equal(cprox_curve_control_points(curve, -1.0, 0.1, workspace, part), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(workspace), "[-1, 0.10000000000000001] leaves the curve's range [0, 1]");
+  assert_int_equal(cprox_curve_control_points(curve, 0.25, 0.75, workspace, part), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(workspace), "two pieces join at 0.40000000000000002, inside [0.25, 0.75]");
+  assert_int_equal(cprox_curve_control_points(curve, 0.0, 0.1, workspace, NULL), CPROX_INVALID);
+  assert_int_equal(cprox_curve_control_points(NULL, 0.0, 0.1, workspace, part), CPROX_INVALID);
+
+  /* nothing was written, and the next good question is answered */
+  assert_true(p.x == 7.0 && part[0].x == 7.0);
+  assert_int_equal(cprox_curve_control_points(curve, 0.4, 0.5, workspace, part), CPROX_OK);
+  assert_int_equal(cprox_curve_evaluate(curve, 1.0, workspace, &p, NULL, NULL), CPROX_OK);
+  assert_string_equal(cprox_workspace_reason(workspace), "");
+  cprox_curve_free(curve);
+}
+
+/* Each allocation of a constructor fails in turn. */
+static void memory_that_is_out_leaks_nothing(void **state) {
+  (void)state;
+  cprox_curve_free(NULL);
+  for (int kind = 0; kind < 3; kind++) {
+    const size_t live = allocations_live();
+    cprox_status status = CPROX_MEMORY;
+    size_t successes = 0;
+    for (; status != CPROX_OK; successes++) {
+      cprox_curve *curve = (cprox_curve *)workspace;
+      allocations_fail_after(successes);
+      status = kind == 0   ? cprox_curve_create_bezier(good.points, 2, 0, 1, workspace, &curve)
+               : kind == 1 ? cprox_curve_create_bezier(good.points, 5, 0, 1, workspace, &curve)
+                           : cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, &curve);
+      allocations_allow();
+      if (status == CPROX_OK) {
+        cprox_curve_free(curve);
+        continue;
+      }
+      assert_int_equal(status, CPROX_MEMORY);
+      assert_ptr_equal(curve, workspace);
+      assert_int_equal(strncmp(cprox_workspace_reason(workspace), "no memory for a curve", 21), 0);
+      assert_int_equal(allocations_live(), live);
+    }
+    assert_true(successes >= 6); /* it did fail, once for each allocation */
+    assert_int_equal(allocations_live(), live);
+  }
+}
+
+static int set_up(void **state) {
+  (void)state;
+  workspace = cprox_workspace_create();
+  return workspace ? 0 : -1;
+}
+
+static int tear_down(void **state) {
+  (void)state;
+  cprox_workspace_free(workspace);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bad_control_points_are_refused),          cmocka_unit_test(bad_ranges_are_refused),
+      cmocka_unit_test(bad_degrees_and_knots_are_refused),       cmocka_unit_test(a_missing_result_pointer_is_refused),
+      cmocka_unit_test(questions_outside_the_range_are_refused), cmocka_unit_test(memory_that_is_out_leaks_nothing),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
