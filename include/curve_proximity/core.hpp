@@ -19,10 +19,10 @@
 namespace curve_proximity {
 
 /** A body in its own frame; freed with its last owner. Never null where a maker below returned it. */
-using BodyPtr = std::shared_ptr<const cprox_body>;
+using BodyHandle = std::shared_ptr<const cprox_body>;
 
 /** A compiled curve; freed with its last owner. */
-using CurvePtr = std::shared_ptr<const cprox_curve>;
+using CurveHandle = std::shared_ptr<const cprox_curve>;
 
 /** A call that could not be answered; what() is one line for a person: what is wrong, and where. */
 class Error : public std::runtime_error {
@@ -116,71 +116,71 @@ namespace detail {
 
 /** Runs a C constructor of a body and takes the handle over. `keep` lives as long as the body. */
 template <typename Create, typename Keep = std::nullptr_t>
-BodyPtr makeBody(Create create, Keep keep = nullptr) {
+BodyHandle makeBody(Create create, Keep keep = nullptr) {
   Workspace workspace;
   cprox_body *body = nullptr;
   require(create(workspace.get(), &body), workspace);
-  return BodyPtr(body, [keep](const cprox_body *b) {
+  return BodyHandle(body, [keep](const cprox_body *b) {
     (void)keep;
     cprox_body_free(const_cast<cprox_body *>(b));
   });
 }
 
 template <typename Create>
-CurvePtr makeCurve(Create create) {
+CurveHandle makeCurve(Create create) {
   Workspace workspace;
   cprox_curve *curve = nullptr;
   require(create(workspace.get(), &curve), workspace);
-  return CurvePtr(curve, [](const cprox_curve *c) { cprox_curve_free(const_cast<cprox_curve *>(c)); });
+  return CurveHandle(curve, [](const cprox_curve *c) { cprox_curve_free(const_cast<cprox_curve *>(c)); });
 }
 
 } // namespace detail
 
-inline BodyPtr makePoint(const Eigen::Vector3d &point) {
+inline BodyHandle makePoint(const Eigen::Vector3d &point) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_point(toVec3(point), w, b); });
 }
 
-inline BodyPtr makeSphere(double radius) {
+inline BodyHandle makeSphere(double radius) {
   return detail::makeBody([&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_sphere(radius, w, b); });
 }
 
 /** size: full edge lengths. */
-inline BodyPtr makeBox(const Eigen::Vector3d &size) {
+inline BodyHandle makeBox(const Eigen::Vector3d &size) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_box(toVec3(size), w, b); });
 }
 
 /** height: between the centres of the hemispheres. */
-inline BodyPtr makeCapsule(double height, double radius) {
+inline BodyHandle makeCapsule(double height, double radius) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_capsule(height, radius, w, b); });
 }
 
-inline BodyPtr makeCylinder(double height, double radius) {
+inline BodyHandle makeCylinder(double height, double radius) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_cylinder(height, radius, w, b); });
 }
 
 /** Apex at +z, about mid-height. */
-inline BodyPtr makeCone(double height, double radius) {
+inline BodyHandle makeCone(double height, double radius) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_cone(height, radius, w, b); });
 }
 
-inline BodyPtr makeEllipsoid(const Eigen::Vector3d &semi_axes) {
+inline BodyHandle makeEllipsoid(const Eigen::Vector3d &semi_axes) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_ellipsoid(toVec3(semi_axes), w, b); });
 }
 
 /** normal·x + offset <= 0. */
-inline BodyPtr makeHalfspace(const Eigen::Vector3d &normal, double offset) {
+inline BodyHandle makeHalfspace(const Eigen::Vector3d &normal, double offset) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_halfspace(toVec3(normal), offset, w, b); });
 }
 
 /** The convex hull of the columns, in any order and of any dimension. */
-inline BodyPtr makePolytope(const Eigen::Matrix3Xd &vertices) {
+inline BodyHandle makePolytope(const Eigen::Matrix3Xd &vertices) {
   const std::vector<cprox_vec3> points = toVec3s(vertices);
   return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
     return cprox_body_create_polytope(points.data(), points.size(), w, b);
@@ -188,7 +188,7 @@ inline BodyPtr makePolytope(const Eigen::Matrix3Xd &vertices) {
 }
 
 /** A planar convex polygon at z = 0; a column a vertex, in order. */
-inline BodyPtr makePolygon(const Eigen::Matrix2Xd &vertices) {
+inline BodyHandle makePolygon(const Eigen::Matrix2Xd &vertices) {
   std::vector<std::array<double, 2>> points(static_cast<std::size_t>(vertices.cols()));
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
@@ -200,11 +200,11 @@ inline BodyPtr makePolygon(const Eigen::Matrix2Xd &vertices) {
 }
 
 /** The union of convex bodies, each at its pose; it keeps its parts alive. As many poses as parts. */
-inline BodyPtr makeCompound(const std::vector<BodyPtr> &parts, const std::vector<Eigen::Isometry3d> &poses) {
+inline BodyHandle makeCompound(const std::vector<BodyHandle> &parts, const std::vector<Eigen::Isometry3d> &poses) {
   if (parts.size() != poses.size()) throw Error("a compound needs as many poses as parts");
   std::vector<const cprox_body *> handles;
   std::vector<cprox_pose> placed;
-  for (const BodyPtr &part : parts) handles.push_back(part.get());
+  for (const BodyHandle &part : parts) handles.push_back(part.get());
   for (const Eigen::Isometry3d &pose : poses) placed.push_back(toPose(pose));
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) {
@@ -214,14 +214,14 @@ inline BodyPtr makeCompound(const std::vector<BodyPtr> &parts, const std::vector
 }
 
 /** A Bézier curve on [t0, t1]; a column a control point. */
-inline CurvePtr makeBezier(const Eigen::Matrix3Xd &points, double t0 = 0.0, double t1 = 1.0) {
+inline CurveHandle makeBezier(const Eigen::Matrix3Xd &points, double t0 = 0.0, double t1 = 1.0) {
   const std::vector<cprox_vec3> p = toVec3s(points);
   return detail::makeCurve(
       [&](cprox_workspace *w, cprox_curve **c) { return cprox_curve_create_bezier(p.data(), p.size(), t0, t1, w, c); });
 }
 
 /** A B-spline curve on [t0, t1]; a column a control point, points.cols() + degree + 1 knots. */
-inline CurvePtr makeBspline(const Eigen::Matrix3Xd &points, std::size_t degree, const std::vector<double> &knots,
+inline CurveHandle makeBspline(const Eigen::Matrix3Xd &points, std::size_t degree, const std::vector<double> &knots,
                             double t0, double t1) {
   const std::vector<cprox_vec3> p = toVec3s(points);
   return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
@@ -231,14 +231,14 @@ inline CurvePtr makeBspline(const Eigen::Matrix3Xd &points, std::size_t degree, 
 
 /* ---- the verbs: as in cprox/query.h, throwing Error where there is no answer ------------------------------------- */
 
-/** A body somewhere: kept by reference, so the BodyPtr must outlive the target. padding >= 0 [m]. */
-inline cprox_target at(const BodyPtr &body, const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity(),
+/** A body somewhere: kept by reference, so the BodyHandle must outlive the target. padding >= 0 [m]. */
+inline cprox_target at(const BodyHandle &body, const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity(),
                        double padding = 0.0) {
   return cprox_padded(cprox_at(body.get(), toPose(pose)), padding);
 }
 
 /** A ball of the radius (0: a point) along the curve, which must outlive the mover. */
-inline cprox_mover along(const CurvePtr &curve, double radius = 0.0) {
+inline cprox_mover along(const CurveHandle &curve, double radius = 0.0) {
   return cprox_tube_along(curve.get(), radius);
 }
 

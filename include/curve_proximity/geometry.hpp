@@ -28,7 +28,7 @@ std::string resolveResource(const std::string &uri, const ResourceOptions &optio
 
 /** A body made of a description. */
 struct Geometry {
-  BodyPtr body;
+  BodyHandle body;
   double excess = 0.0;  /**< [m] of a mesh: no point of it is farther than this from the body (vertices that the hull
                              computation dropped; at the scale of rounding) */
   bool by_hull = false; /**< the shape is a mesh, and the body its convex hull: answers are bounds for the mesh, from

@@ -51,7 +51,7 @@ struct Answer {
 /** A curve made ready for any number of queries, by any number of threads. */
 struct CompiledCurve {
   std::string id;
-  CurvePtr curve;
+  CurveHandle curve;
   double radius = 0.0; /**< [m] */
 
   /** Boxes that together contain the curve (the radius left out), rounding included. */
