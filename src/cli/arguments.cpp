@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "arguments.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <thread>
+
+#include "failure.h"
+#include "numbers.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+constexpr const char *kDefaultNode = "/curve_proximity";
+constexpr std::size_t kMostThreads = 256;
+
+/* For which actions an option is meant, and whether a value follows it. */
+struct Option {
+  bool has_value;
+  std::vector<Action> actions;
+};
+
+const std::map<std::string, Option> &options() {
+  static const std::map<std::string, Option> table = {
+      {"--curves", {true, {Action::CURVES}}},
+      {"--scene", {true, {Action::CURVES}}},
+      {"--robot", {true, {Action::CURVES}}},
+      {"--srdf", {true, {Action::CURVES}}},
+      {"--state", {true, {Action::CURVES}}},
+      {"--in", {true, {Action::PAIRS}}},
+      {"--node", {true, {Action::SEND}}},
+      {"--epsilon", {true, {Action::CURVES, Action::PAIRS}}},
+      {"--delta", {true, {Action::CURVES, Action::PAIRS}}},
+      {"--max-nodes", {true, {Action::CURVES, Action::PAIRS}}},
+      {"--threads", {true, {Action::CURVES, Action::PAIRS}}},
+      {"--per-object", {false, {Action::CURVES, Action::PAIRS}}},
+      {"--max-rung", {true, {Action::CURVES, Action::PAIRS}}},
+      {"--skipped", {false, {Action::CURVES, Action::PAIRS}}},
+      {"--out", {true, {Action::CURVES, Action::PAIRS}}},
+  };
+  return table;
+}
+
+/* Words of the manual that this version cannot act upon. */
+const std::vector<std::string> kNotAvailable = {"--against", "--trajectory",  "--self",
+                                                "--signed",  "--certificate", "--provider"};
+
+struct VerbName {
+  const char *word;
+  Action action;
+  Verb verb;
+};
+const VerbName kVerbs[] = {
+    {"distance", Action::CURVES, Verb::DISTANCE},   {"tolerance", Action::CURVES, Verb::TOLERANCE},
+    {"collision", Action::CURVES, Verb::COLLISION}, {"pairs", Action::PAIRS, Verb::DISTANCE},
+    {"send", Action::SEND, Verb::DISTANCE},
+};
+
+[[noreturn]] void notAvailable(const std::string &word) {
+  throw BadUsage(word + " is not available in this version");
+}
+
+const VerbName &findVerb(const std::string &word) {
+  for (const VerbName &verb : kVerbs) {
+    if (word == verb.word) return verb;
+  }
+  if (word == "constraints" || word == "check") notAvailable("'" + word + "'");
+  throw BadUsage("'" + word + "' is no verb; the verbs are distance, tolerance, collision, pairs, send (see --help)");
+}
+
+/* The words behind the verb: options with their values, and what is no option. */
+struct Words {
+  std::map<std::string, std::string> given;
+  std::vector<std::string> plain;
+
+  std::string text(const std::string &name) const {
+    const auto it = given.find(name);
+    return it == given.end() ? "" : it->second;
+  }
+  bool has(const std::string &name) const {
+    return given.count(name) > 0;
+  }
+};
+
+/* Takes one option off the words at `i`, with its value: "--name value" or "--name=value". */
+void takeOption(const std::vector<std::string> &words, std::size_t &i, const std::string &verb, Action action,
+                Words &out) {
+  const std::size_t equals = words[i].find('=');
+  const std::string name = words[i].substr(0, equals);
+
+  /* is it an option of this verb? */
+  if (std::find(kNotAvailable.begin(), kNotAvailable.end(), name) != kNotAvailable.end()) notAvailable(name);
+  const auto known = options().find(name);
+  if (known == options().end()) throw BadUsage("unknown option " + name + " (see --help)");
+  const std::vector<Action> &actions = known->second.actions;
+  if (std::find(actions.begin(), actions.end(), action) == actions.end()) {
+    throw BadUsage("'" + verb + "' takes no " + name);
+  }
+
+  /* its value */
+  std::string value;
+  if (known->second.has_value) {
+    if (equals != std::string::npos) {
+      value = words[i].substr(equals + 1);
+    } else if (i + 1 < words.size() && words[i + 1].rfind("--", 0) != 0) {
+      value = words[++i];
+    }
+    if (value.empty()) throw BadUsage(name + " needs a value");
+  } else if (equals != std::string::npos) {
+    throw BadUsage(name + " takes no value");
+  }
+
+  if (!out.given.emplace(name, value).second) throw BadUsage(name + " is given twice");
+}
+
+Words splitWords(const std::vector<std::string> &words, const VerbName &verb) {
+  Words out;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i].size() > 1 && words[i][0] == '-') {
+      takeOption(words, i, verb.word, verb.action, out);
+    } else {
+      out.plain.push_back(words[i]);
+    }
+  }
+  return out;
+}
+
+double readNumber(const Words &words, const std::string &name, double least, bool least_allowed,
+                  const std::string &range) {
+  const std::string text = words.text(name);
+  const std::optional<double> value = parseFinite(text);
+  if (!value || *value < least || (*value == least && !least_allowed)) {
+    throw BadUsage(name + " is '" + text + "'; it must be a finite number " + range);
+  }
+  return *value;
+}
+
+std::uint64_t readCount(const Words &words, const std::string &name, std::uint64_t most) {
+  const std::string text = words.text(name);
+  const std::optional<std::uint64_t> value = parseCount(text);
+  if (!value || *value < 1 || *value > most) {
+    throw BadUsage(name + " is '" + text + "'; it must be an integer from 1 to " + std::to_string(most));
+  }
+  return *value;
+}
+
+void readQuestion(const Words &words, const VerbName &verb, Question &question) {
+  question.verb = verb.verb;
+  question.per_object = words.has("--per-object");
+
+  /* accuracy and budget */
+  if (words.has("--epsilon")) {
+    question.options.epsilon = readNumber(words, "--epsilon", 0.0, false, "above 0 (metres)");
+  }
+  if (words.has("--max-nodes")) {
+    const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+    question.options.max_nodes = static_cast<std::uint32_t>(readCount(words, "--max-nodes", most));
+  }
+
+  /* the limit of `tolerance` has no default: a clearance that nobody asked for means nothing */
+  if (words.has("--delta")) question.delta = readNumber(words, "--delta", 0.0, true, "of at least 0 (metres)");
+  if (verb.action == Action::CURVES && verb.verb == Verb::TOLERANCE && !words.has("--delta")) {
+    throw BadUsage("'tolerance' needs --delta D, the clearance that is asked for, in metres");
+  }
+
+  /* meshes are answered by their convex hull, everything else is its own hull: the other rungs are not there */
+  const std::string rung = words.text("--max-rung");
+  if (rung == "sphere" || rung == "mesh") notAvailable("--max-rung " + rung);
+  if (words.has("--max-rung") && rung != "hull") {
+    throw BadUsage("--max-rung is '" + rung + "'; it must be hull");
+  }
+}
+
+/* The files that a verb cannot do without, and words that it does not understand. */
+void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
+  const auto required = [&](const std::string &name, const std::string &what) {
+    if (!words.has(name)) throw BadUsage("'" + std::string(verb.word) + "' needs " + name + " " + what);
+    return words.text(name);
+  };
+  std::vector<std::string> plain = words.plain;
+
+  switch (verb.action) {
+    case Action::CURVES:
+      out.curves = required("--curves", "CURVES.csv");
+      if (!words.has("--scene") && !words.has("--robot")) required("--scene", "SCENE.yaml");
+      out.scene = words.text("--scene");
+      out.robot = words.text("--robot");
+      out.srdf = words.text("--srdf");
+      out.state = words.text("--state");
+      if (out.robot.empty() && !out.state.empty()) throw BadUsage("--state needs --robot URDF");
+      if (out.robot.empty() && !out.srdf.empty()) throw BadUsage("--srdf needs --robot URDF");
+      break;
+    case Action::PAIRS: out.pairs = required("--in", "PAIRS.yaml"); break;
+    case Action::SEND:
+      if (plain.empty()) throw BadUsage("'send' needs a file: cprox send SCENE.yaml");
+      out.scene = plain.front();
+      out.node = words.has("--node") ? words.text("--node") : kDefaultNode;
+      plain.erase(plain.begin());
+      break;
+    default: break;
+  }
+  if (!plain.empty()) throw BadUsage("'" + plain.front() + "' is not understood (see --help)");
+}
+
+} // namespace
+
+Arguments parseArguments(const std::vector<std::string> &words) {
+  Arguments out;
+  if (words.empty()) throw BadUsage("no verb; the verbs are distance, tolerance, collision, pairs, send (see --help)");
+
+  /* help and version win over everything else on the line */
+  const auto said = [&](const char *word) { return std::find(words.begin(), words.end(), word) != words.end(); };
+  if (said("--help") || said("-h") || words.front() == "help") return out;
+  if (said("--version")) {
+    out.action = Action::VERSION;
+    return out;
+  }
+
+  const VerbName &verb = findVerb(words.front());
+  const Words split = splitWords(words, verb);
+  out.action = verb.action;
+  readQuestion(split, verb, out.question);
+  readFiles(split, verb, out);
+
+  out.out = split.text("--out");
+  out.skipped = split.has("--skipped");
+  out.threads = std::max(1u, std::thread::hardware_concurrency());
+  if (split.has("--threads")) out.threads = static_cast<std::size_t>(readCount(split, "--threads", kMostThreads));
+  return out;
+}
+
+std::string helpText() {
+  return R"(cprox: how close a continuous motion comes to the things around it, as intervals that contain the true value
+
+cprox distance  --curves CURVES.csv --scene SCENE.yaml [--robot URDF [--srdf SRDF] [--state "joint: value, ..."]]
+cprox tolerance --delta D  (as above)   yes: farther than D everywhere
+cprox collision            (as above)   yes: they touch or overlap somewhere
+cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodies
+cprox send      SCENE.yaml [--node NAME] hands a scene file to a running node
+
+  --curves FILE     one curve a row: id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knots]; basis bezier or bspline;
+                    lines that begin with # are skipped
+  --scene FILE      moveit_msgs/PlanningScene as YAML; may be left out where there is a robot
+  --robot FILE      a URDF: its links are objects, too; meshes count as their convex hulls
+  --srdf FILE       names the frame in which the robot stands (its virtual joint's parent_frame)
+  --state TEXT      joint values in radians or metres; others as in the scene's robot_state, else 0
+  --in FILE         a list of {id, a: BODY, b: BODY}
+  --epsilon E       width of the intervals asked for, metres, above 0 (default 1e-06)
+  --delta D         the clearance asked of 'tolerance', metres
+  --max-nodes N     budget of parameter intervals for each target (default 20000)
+  --threads N       how many rows are worked on at once (default: the machine's cores); the answers do not depend on it
+  --per-object      a row for each curve and object or link, not one for the nearest
+  --max-rung hull   the finest model of a mesh to be used: its convex hull, the only one in this version
+  --skipped         tell on standard error what takes no part, and why
+  --out FILE        the results, instead of standard output
+  --node NAME       the node that 'send' talks to (default )" +
+         std::string(kDefaultNode) + R"()
+  --help, --version
+
+Results, a CSV row each: id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,probes,microseconds,
+t_b,rung. Metres and radians. A row that fails is told on standard error and has the status 'invalid'.
+Ends with 0: every row is answered; 1: some are not; 2: the command line or an input file cannot be used.
+)";
+}
+
+} // namespace curve_proximity::cli

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What was typed, checked: no file has been opened yet. */
+#ifndef CURVE_PROXIMITY_CLI_ARGUMENTS_H
+#define CURVE_PROXIMITY_CLI_ARGUMENTS_H
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/query.hpp>
+
+namespace curve_proximity::cli {
+
+enum class Action { HELP, VERSION, CURVES, PAIRS, SEND };
+
+struct Arguments {
+  Action action = Action::HELP;
+  Question question; /**< CURVES and PAIRS: the verb, and how it is to be answered */
+
+  std::string curves, scene; /**< files; scene: of CURVES and SEND */
+  std::string robot, srdf;   /**< files of the robot; empty: none */
+  std::string state;         /**< "joint: value, …" */
+  std::string pairs;         /**< file of PAIRS */
+  std::string node;          /**< SEND: the node's name */
+  std::string out;           /**< file of the results; empty: standard output */
+  std::size_t threads = 1;
+  bool skipped = false; /**< tell on standard error what takes no part, and why */
+};
+
+/** Reads the words after the program's name. Throws BadUsage with one line for words, options and values that are not
+ *  known, are missing, are given twice or cannot be meant. */
+Arguments parseArguments(const std::vector<std::string> &words);
+
+/** What --help prints. */
+std::string helpText();
+
+} // namespace curve_proximity::cli
+#endif

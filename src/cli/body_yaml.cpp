@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "body_yaml.h"
+
+#include <limits>
+
+#include "failure.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+/* A triangle as shape_msgs/MeshTriangle prints it, or as a list. */
+Eigen::Vector3i readTriangle(const YamlValue &value) {
+  const std::vector<YamlValue> corners = (value.isMap() ? value.at("vertex_indices") : value).items();
+  if (corners.size() != 3) value.fail("a triangle has three vertex indices");
+  Eigen::Vector3i out;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t index = corners[static_cast<std::size_t>(k)].count();
+    if (index > static_cast<std::size_t>(std::numeric_limits<int>::max())) value.fail("the index is too large");
+    out[k] = static_cast<int>(index);
+  }
+  return out;
+}
+
+} // namespace
+
+Eigen::Matrix3Xd readVertices(const YamlValue &value) {
+  const std::vector<YamlValue> items = value.itemsOf("vertices");
+  Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(items.size()));
+  for (std::size_t i = 0; i < items.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = items[i].vector();
+  return out;
+}
+
+void readMesh(const YamlValue &value, ShapeDescription &shape, Warnings &warnings) {
+  shape.type = ShapeType::MESH;
+
+  /* a file's name alone, or a map */
+  if (value.isScalar()) {
+    shape.resource = value.text();
+    return;
+  }
+  value.warnOfOthers({"type", "vertices", "triangles", "resource", "dimensions", "scale", "pose"}, warnings);
+  if (const auto resource = value.find("resource")) shape.resource = resource->text();
+  for (const char *key : {"dimensions", "scale"}) {
+    if (const auto scale = value.find(key)) shape.dimensions = scale->numbers();
+  }
+
+  shape.vertices = readVertices(value);
+  const std::vector<YamlValue> triangles = value.itemsOf("triangles");
+  shape.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    shape.triangles.col(static_cast<Eigen::Index>(i)) = readTriangle(triangles[i]);
+  }
+  if (!shape.resource.empty() && shape.vertices.cols() > 0) value.fail("has both a resource and vertices");
+  if (shape.resource.empty() && shape.vertices.cols() == 0) value.fail("has neither a resource nor vertices");
+}
+
+ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
+  ShapeDescription shape;
+
+  /* the type */
+  const YamlValue type = value.at("type");
+  const std::string name = type.text();
+  if (name == "superquadric" || name == "implicit") type.fail("type '" + name + "' is not available in this version");
+  const std::optional<ShapeType> known = shapeTypeFromName(name);
+  if (!known) {
+    type.fail("type '" + name + "' is unknown; it must be point, sphere, box, capsule, cylinder, cone, ellipsoid, " +
+              "halfspace, polytope or mesh");
+  }
+  shape.type = *known;
+
+  /* a mesh under its own key, or beside the type */
+  if (shape.type == ShapeType::MESH) {
+    const std::optional<YamlValue> mesh = value.find("mesh");
+    if (mesh) value.warnOfOthers({"type", "mesh", "pose"}, warnings);
+    readMesh(mesh ? *mesh : value, shape, warnings);
+    return shape;
+  }
+
+  /* numbers, or points */
+  value.warnOfOthers({"type", "dimensions", "vertices", "pose"}, warnings);
+  if (const auto dimensions = value.find("dimensions")) shape.dimensions = dimensions->numbers();
+  shape.vertices = readVertices(value);
+  const bool by_vertices = shape.type == ShapeType::POLYTOPE || shape.type == ShapeType::POINT;
+  if (!by_vertices && shape.vertices.cols() > 0) value.fail("a " + name + " has dimensions, not vertices");
+  return shape;
+}
+
+} // namespace curve_proximity::cli

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "console.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace curve_proximity::cli {
+
+Console::Console() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
+
+Console::~Console() {
+  wipe();
+}
+
+void Console::wipe() {
+  if (shows_progress_) std::fputs("\r\033[K", stderr);
+  shows_progress_ = false;
+}
+
+void Console::say(const std::string &line) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  wipe();
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+void Console::warn(const Warnings &warnings) {
+  for (const std::string &sentence : warnings.sentences()) say("warning: " + sentence);
+}
+
+void Console::progress(const std::string &line) {
+  if (!is_terminal_) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  wipe();
+  std::fputs(line.c_str(), stderr);
+  std::fflush(stderr);
+  shows_progress_ = true;
+}
+
+} // namespace curve_proximity::cli

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "csv.h"
+#include "failure.h"
+#include "finish.h"
+#include "results.h"
+#include "run.h"
+#include "verbs.h"
+#include "world.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+/* The row of a curve that could not be asked about, and the sentence that says why. */
+Outcome failedCurve(const std::string &id, const std::string &place, const std::string &why, cprox_status status) {
+  ResultRow row;
+  row.id = row.a = id;
+  row.kind = "curve";
+  row.result.status = status;
+  Outcome out;
+  out.text = resultsLine(row);
+  out.complaints.push_back(place + ": " + why);
+  return out;
+}
+
+ResultRow toRow(const Answer &answer, Verb verb) {
+  ResultRow row;
+  row.id = answer.id;
+  row.kind = answer.kind;
+  row.result = answer.result;
+  row.a = answer.a;
+  row.b = answer.b;
+  row.microseconds = answer.microseconds;
+  row.has_verdict = verb != Verb::DISTANCE;
+  row.has_t = row.has_points = !answer.b.empty();
+  return row;
+}
+
+/* All rows of one curve. */
+Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &targets, const Question &question,
+                    Workspace &workspace) {
+  const std::string id = rowId(csv.text);
+  const std::string place =
+      file + ": row " + std::to_string(csv.number) + " (line " + std::to_string(csv.line) + ", id '" + id + "')";
+  try {
+    const CompiledCurve curve = compile(parseCurve(csv.text));
+    Outcome out;
+    for (const Answer &answer : ask(targets, curve, question, workspace)) {
+      const cprox_status status = answer.result.status;
+      out.stopped = out.stopped || status == CPROX_STOPPED;
+      out.text += resultsLine(toRow(answer, question.verb));
+      if (status < 0) {
+        const std::string against = answer.b.empty() ? "" : ": against '" + answer.b + "'";
+        out.complaints.push_back(place + against + ": " + answer.message);
+      }
+    }
+    return out;
+  } catch (const Error &e) {
+    return failedCurve(id, place, e.what(), e.status());
+  } catch (const std::bad_alloc &) {
+    return failedCurve(id, place, cprox_status_text(CPROX_MEMORY), CPROX_MEMORY);
+  } catch (const std::exception &e) {
+    return failedCurve(id, place, e.what(), CPROX_INVALID);
+  }
+}
+
+} // namespace
+
+int answerCurves(const Arguments &arguments, Console &console) {
+  /* what curves are measured against */
+  Warnings warnings;
+  const World world = readWorld(arguments, warnings);
+  Question question = arguments.question;
+  question.options.stop = interrupted;
+  const Targets targets(world.snapshot, world.links, question);
+
+  CsvFile file(arguments.curves);
+  ResultsFile results(arguments.out, {arguments.curves, arguments.scene, arguments.robot, arguments.srdf});
+  console.warn(warnings);
+  if (arguments.skipped) tellSkipped(world.skipped, console);
+
+  /* row by row */
+  catchInterrupts();
+  results.write(resultsHeader());
+  Rows rows;
+  rows.next = [&]() -> std::optional<Task> {
+    std::optional<CsvRow> row = file.next();
+    if (!row) return std::nullopt;
+    return [&, csv = *std::move(row)](Workspace &workspace) {
+      return answerCurve(csv, arguments.curves, targets, question, workspace);
+    };
+  };
+  rows.write = [&](const std::string &text) { results.write(text); };
+  rows.portion = [&] { return file.portion(); };
+  return finish(runRows(arguments.threads, rows, console), console);
+}
+
+} // namespace curve_proximity::cli

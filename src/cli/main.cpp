@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* cprox: the command line. No exception leaves main(): each becomes one line on standard error. */
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "arguments.h"
+#include "console.h"
+#include "failure.h"
+#include "verbs.h"
+
+namespace {
+
+using namespace curve_proximity::cli;
+
+int run(const std::vector<std::string> &words, Console &console) {
+  const Arguments arguments = parseArguments(words);
+  switch (arguments.action) {
+    case Action::HELP: std::fputs(helpText().c_str(), stdout); return kAllAnswered;
+    case Action::VERSION: std::puts("cprox " CPROX_VERSION); return kAllAnswered;
+    case Action::CURVES: return answerCurves(arguments, console);
+    case Action::PAIRS: return answerPairs(arguments, console);
+    case Action::SEND: return sendScene(arguments, console);
+  }
+  return kBadUsage;
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+  Console console;
+  try {
+    return run(std::vector<std::string>(argv + 1, argv + argc), console);
+  } catch (const BadUsage &e) {
+    console.say(std::string("cprox: ") + e.what());
+    return kBadUsage;
+  } catch (const std::bad_alloc &) {
+    console.say("cprox: out of memory");
+  } catch (const std::exception &e) {
+    console.say(std::string("cprox: ") + e.what());
+  } catch (...) {
+    console.say("cprox: an error without a name");
+  }
+  return kSomeRowsFailed;
+}

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "results.h"
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "csv.h"
+#include "failure.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+/* A number and the comma before it. */
+void append(std::string &line, double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, ",%.17g", value);
+  line += text;
+}
+
+void append(std::string &line, const cprox_vec3 &v) {
+  for (const double coordinate : {v.x, v.y, v.z}) append(line, coordinate);
+}
+
+/* The fields from `lower` to `b_z`. */
+void appendGeometry(std::string &line, const ResultRow &row) {
+  const cprox_result &result = row.result;
+  append(line, result.lower);
+  append(line, result.upper);
+  if (row.has_t) {
+    append(line, result.t);
+  } else {
+    line += ',';
+  }
+  if (row.has_points) {
+    append(line, result.on_mover);
+    append(line, result.on_target);
+  } else {
+    line += ",,,,,,";
+  }
+}
+
+} // namespace
+
+std::string resultsHeader() {
+  return "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,probes,microseconds,t_b,rung\n";
+}
+
+std::string resultsLine(const ResultRow &row) {
+  const cprox_result &result = row.result;
+  const bool answered = result.status >= 0;
+  std::string line = quotedField(row.id) + ',' + row.kind + ',' + cprox_status_name(result.status) + ',';
+  if (answered && row.has_verdict) line += cprox_verdict_name(result.verdict);
+
+  if (answered) {
+    appendGeometry(line, row);
+  } else {
+    line += ",,,,,,,,,";
+  }
+  line += ',' + quotedField(row.a) + ',' + quotedField(row.b);
+
+  /* what it cost; t_b is the parameter of a second curve, and there is none */
+  if (answered) {
+    char time[40];
+    std::snprintf(time, sizeof time, "%.1f", row.microseconds);
+    line += ',' + std::to_string(result.nodes) + ',' + std::to_string(result.probes) + ',' + time + ",,";
+    line += cprox_rung_name(result.rung);
+  } else {
+    line += ",,,,,";
+  }
+  return line + '\n';
+}
+
+ResultsFile::ResultsFile(const std::string &path, const std::vector<std::string> &inputs)
+    : path_(path.empty() ? "standard output" : path), file_(path.empty() ? stdout : nullptr) {
+  if (file_) return;
+
+  /* opening empties the file: not one that is yet to be read */
+  for (const std::string &input : inputs) {
+    std::error_code error;
+    if (std::filesystem::equivalent(path, input, error)) throw BadUsage("--out " + path + ": is an input of this run");
+  }
+  errno = 0;
+  file_ = std::fopen(path.c_str(), "wb");
+  if (!file_) throw BadUsage("--out " + path + ": cannot be written: " + std::strerror(errno));
+}
+
+ResultsFile::~ResultsFile() {
+  if (file_ != stdout) std::fclose(file_);
+}
+
+void ResultsFile::write(const std::string &text) {
+  errno = 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), file_) == text.size() && std::fflush(file_) == 0;
+  if (!written) throw std::runtime_error(path_ + ": writing failed: " + std::strerror(errno));
+}
+
+} // namespace curve_proximity::cli

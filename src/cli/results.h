@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The results as CSV: one shape of row for all verbs. */
+#ifndef CURVE_PROXIMITY_CLI_RESULTS_H
+#define CURVE_PROXIMITY_CLI_RESULTS_H
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/query.hpp>
+
+namespace curve_proximity::cli {
+
+/** One row. Where result.status is negative there is no answer, and its numbers stay empty. */
+struct ResultRow {
+  std::string id, kind;
+  cprox_result result{};
+  std::string a, b;
+  double microseconds = 0.0;
+  bool has_verdict = false; /**< tolerance and collision */
+  bool has_t = false;       /**< the witness has a parameter: there is a curve, and something to measure against */
+  bool has_points = false;  /**< there is something to measure against */
+};
+
+/** The first line, with its newline. */
+std::string resultsHeader();
+
+/** The line of a row, with its newline. Numbers have 17 significant digits. */
+std::string resultsLine(const ResultRow &row);
+
+/** Where results go: standard output, or a file that is written anew. */
+class ResultsFile {
+ public:
+  /** path empty: standard output. Throws BadUsage where the file cannot be written, or is one of the inputs. */
+  ResultsFile(const std::string &path, const std::vector<std::string> &inputs);
+  ~ResultsFile();
+  ResultsFile(const ResultsFile &) = delete;
+  ResultsFile &operator=(const ResultsFile &) = delete;
+
+  /** Hands the text on to the system at once, so that a run that is killed keeps it. Throws std::runtime_error where
+   *  that fails (the disk is full). */
+  void write(const std::string &text);
+
+ private:
+  std::string path_;
+  std::FILE *file_;
+};
+
+} // namespace curve_proximity::cli
+#endif

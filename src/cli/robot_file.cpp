@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "robot_file.h"
+
+#include <tinyxml2.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "failure.h"
+#include "packages.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+std::string readText(const std::string &path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw BadUsage(path + ": is a folder, not a file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw BadUsage(path + ": cannot be read");
+  return std::string((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+}
+
+} // namespace
+
+std::string folderOf(const std::string &path) {
+  std::error_code error;
+  return std::filesystem::absolute(path, error).parent_path().string();
+}
+
+std::shared_ptr<const Robot> readRobot(const std::string &path) {
+  RobotOptions options;
+  options.resources.base_dir = folderOf(path);
+  options.resources.find_package = packageFinder(options.resources.base_dir);
+  try {
+    return Robot::fromUrdf(readText(path), options);
+  } catch (const Error &e) {
+    throw BadUsage(path + ": " + e.what());
+  }
+}
+
+std::string readParentFrame(const std::string &path) {
+  const std::string text = readText(path);
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    throw BadUsage(path + ": no XML: line " + std::to_string(document.ErrorLineNum()));
+  }
+  const tinyxml2::XMLElement *robot = document.FirstChildElement("robot");
+  if (!robot) throw BadUsage(path + ": no SRDF: it has no <robot>");
+  const tinyxml2::XMLElement *joint = robot->FirstChildElement("virtual_joint");
+  const char *frame = joint ? joint->Attribute("parent_frame") : nullptr;
+  return frame ? frame : "";
+}
+
+JointPositions readState(const std::string &text, const Robot &robot) {
+  JointPositions out;
+  try {
+    const YAML::Node map = YAML::Load("{" + text + "}");
+    for (const auto &entry : map) {
+      const std::string joint = YamlValue(entry.first, "--state").text();
+      if (!robot.hasJoint(joint)) throw BadUsage("--state: '" + joint + "' is no joint of the robot");
+      const double value = YamlValue(entry.second, "--state: " + joint).number();
+      if (!out.emplace(joint, value).second) throw BadUsage("--state: '" + joint + "' is given twice");
+    }
+  } catch (const YAML::Exception &) {
+    throw BadUsage("--state is '" + text + "'; it must be \"joint: value, joint: value, …\"");
+  } catch (const BadInput &e) {
+    throw BadUsage(e.what());
+  }
+  return out;
+}
+
+} // namespace curve_proximity::cli

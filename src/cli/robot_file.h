@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The robot of --robot, --srdf and --state. */
+#ifndef CURVE_PROXIMITY_CLI_ROBOT_FILE_H
+#define CURVE_PROXIMITY_CLI_ROBOT_FILE_H
+
+#include <memory>
+#include <string>
+
+#include <curve_proximity/robot.hpp>
+
+#include "yaml_value.h"
+
+namespace curve_proximity::cli {
+
+/** Reads a URDF; mesh files without a scheme are relative to its folder. Throws BadUsage with the file's name. */
+std::shared_ptr<const Robot> readRobot(const std::string &path);
+
+/** The frame in which an SRDF says that the robot stands: parent_frame of the first virtual joint, "" without one.
+ *  Throws BadUsage with the file's name where it cannot be read or is no SRDF. */
+std::string readParentFrame(const std::string &path);
+
+/** "joint: value, …" of --state. Throws BadUsage: no such text, a value that is not a finite number, a joint that the
+ *  robot does not have. */
+JointPositions readState(const std::string &text, const Robot &robot);
+
+/** The folder that a file lies in. */
+std::string folderOf(const std::string &path);
+
+} // namespace curve_proximity::cli
+#endif

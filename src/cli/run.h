@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Many rows by several threads, written in the order in which they came. */
+#ifndef CURVE_PROXIMITY_CLI_RUN_H
+#define CURVE_PROXIMITY_CLI_RUN_H
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/core.hpp>
+
+#include "console.h"
+
+namespace curve_proximity::cli {
+
+/** What became of one row of the input. */
+struct Outcome {
+  std::string text;                    /**< the lines of the results */
+  std::vector<std::string> complaints; /**< for standard error: why there is no answer */
+  bool stopped = false;                /**< it was interrupted: it is not to be written */
+};
+
+/** Answers one row; called by one of the threads, each with its own workspace. Must not throw. */
+using Task = std::function<Outcome(Workspace &)>;
+
+/** Where the rows come from and where they go. The functions are called by one thread at a time. */
+struct Rows {
+  std::function<std::optional<Task>()> next;      /**< nothing at the end */
+  std::function<void(const std::string &)> write; /**< lines of the results */
+  std::function<std::optional<double>()> portion; /**< of the input that has been read, 0 to 1, if it is known */
+};
+
+struct Tally {
+  std::size_t rows = 0, failed = 0; /**< rows of the input */
+  bool interrupted = false;
+};
+
+/** From now on SIGINT and SIGTERM end a run in good order; a second one ends the program at once. */
+void catchInterrupts();
+
+/** Has there been one? To be polled by queries (cprox_options.stop). */
+bool interrupted(void *);
+
+/** Answers all rows with `threads` threads. Each row's lines are handed to `write` as soon as all rows before it are
+ *  written, so that what stands in the output is always a beginning of the whole. Exceptions of `next` and `write` end
+ *  the run and are thrown on. */
+Tally runRows(std::size_t threads, const Rows &rows, Console &console);
+
+} // namespace curve_proximity::cli
+#endif

@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "scene_yaml.h"
+
+#include <array>
+
+#include "body_yaml.h"
+#include "failure.h"
+#include "numbers.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+/* ---- words or numbers, as the constants of moveit_msgs and shape_msgs count them */
+
+/* The place of the value among the names: by name, or by its number counted from `first`. */
+template <std::size_t N>
+std::size_t choose(const YamlValue &value, const std::array<const char *, N> &names, std::size_t first,
+                   const std::string &what) {
+  std::string text = value.text(), list;
+  for (char &c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::optional<std::uint64_t> number = parseCount(text);
+  for (std::size_t i = 0; i < N; ++i) {
+    if (text == names[i] || (number && *number == first + i)) return i;
+    list += (i ? ", " : "") + std::string(names[i]) + " (" + std::to_string(first + i) + ")";
+  }
+  value.fail(what + " '" + value.text() + "' is none of " + list);
+}
+
+/* ---- one collision object */
+
+/* The poses that belong to n shapes; none at all means that each stands at the object's pose. */
+std::vector<Eigen::Isometry3d> readPoses(const YamlValue &object, const char *key, std::size_t n, const char *shapes,
+                                         Warnings &warnings) {
+  const std::vector<YamlValue> poses = object.itemsOf(key);
+  if (!poses.empty() && poses.size() != n) {
+    object.fail("has " + std::to_string(n) + " " + shapes + " and " + std::to_string(poses.size()) + " " + key);
+  }
+  std::vector<Eigen::Isometry3d> out(n, Eigen::Isometry3d::Identity());
+  for (std::size_t i = 0; i < poses.size(); ++i) out[i] = toIsometry(poses[i].pose(warnings));
+  return out;
+}
+
+ShapeDescription readPrimitive(const YamlValue &value, Warnings &warnings) {
+  static const std::array<const char *, 4> kNames = {"box", "sphere", "cylinder", "cone"};
+  static const std::array<ShapeType, 4> kTypes = {ShapeType::BOX, ShapeType::SPHERE, ShapeType::CYLINDER,
+                                                  ShapeType::CONE};
+  value.warnOfOthers({"type", "dimensions"}, warnings);
+  ShapeDescription shape;
+  shape.type = kTypes[choose(value.at("type"), kNames, 1, "the primitive")];
+  shape.dimensions = value.at("dimensions").numbers();
+  return shape;
+}
+
+ShapeDescription readPlane(const YamlValue &value, Warnings &warnings) {
+  value.warnOfOthers({"coef"}, warnings);
+  ShapeDescription shape;
+  shape.type = ShapeType::HALFSPACE;
+  shape.dimensions = value.at("coef").numbers();
+  return shape;
+}
+
+ShapeDescription readMeshEntry(const YamlValue &value, Warnings &warnings) {
+  ShapeDescription shape;
+  readMesh(value, shape, warnings);
+  return shape;
+}
+
+/* A BODY; a pose of its own comes after that of body_poses. */
+ShapeDescription readBodyEntry(const YamlValue &value, Warnings &warnings) {
+  ShapeDescription shape = readBody(value, warnings);
+  if (const auto pose = value.find("pose")) shape.pose = toIsometry(pose->pose(warnings));
+  return shape;
+}
+
+/* One of the four lists of shapes, each with its list of poses. */
+void readShapes(const YamlValue &value, const char *key, const char *poses_key,
+                ShapeDescription (*read)(const YamlValue &, Warnings &), ObjectDescription &object,
+                Warnings &warnings) {
+  const std::vector<YamlValue> shapes = value.itemsOf(key);
+  const std::vector<Eigen::Isometry3d> poses = readPoses(value, poses_key, shapes.size(), key, warnings);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    ShapeDescription shape = read(shapes[i], warnings);
+    shape.pose = poses[i] * shape.pose;
+    object.shapes.push_back(std::move(shape));
+  }
+}
+
+std::string readFrame(const YamlValue &value, Warnings &warnings) {
+  const std::optional<YamlValue> header = value.find("header");
+  if (!header) return "";
+  header->warnOfOthers({"seq", "stamp", "frame_id"}, warnings);
+  const std::optional<YamlValue> frame = header->find("frame_id");
+  return frame ? frame->text() : "";
+}
+
+Operation readObject(const YamlValue &plain, Warnings &warnings) {
+  Operation out;
+  ObjectDescription &object = out.object;
+  if (const auto id = plain.find("id")) object.id = id->text();
+  const YamlValue value = object.id.empty() ? plain : plain.named(object.id);
+  value.warnOfOthers(
+      {"header", "pose", "id", "type", "primitives", "primitive_poses", "meshes", "mesh_poses", "planes", "plane_poses",
+       "bodies", "body_poses", "padding", "subframe_names", "subframe_poses", "operation"},
+      warnings);
+
+  /* what is to be done with it; a file is a scene, so ADD is what is meant where nothing is said */
+  static const std::array<const char *, 4> kOperations = {"add", "remove", "append", "move"};
+  static const std::array<Operation::Kind, 4> kKinds = {Operation::Kind::ADD, Operation::Kind::REMOVE,
+                                                        Operation::Kind::APPEND, Operation::Kind::MOVE};
+  if (const auto operation = value.find("operation")) {
+    out.kind = kKinds[choose(*operation, kOperations, 0, "the operation")];
+  }
+  if (object.id.empty() && out.kind != Operation::Kind::REMOVE) value.fail("the object has no id");
+
+  /* where it stands */
+  object.frame = readFrame(value, warnings);
+  if (const auto pose = value.find("pose")) object.pose = toIsometry(pose->pose(warnings));
+  if (const auto padding = value.find("padding")) object.padding = padding->number();
+
+  /* what it consists of */
+  readShapes(value, "primitives", "primitive_poses", readPrimitive, object, warnings);
+  readShapes(value, "meshes", "mesh_poses", readMeshEntry, object, warnings);
+  readShapes(value, "planes", "plane_poses", readPlane, object, warnings);
+  readShapes(value, "bodies", "body_poses", readBodyEntry, object, warnings);
+  const bool shapes_expected = out.kind == Operation::Kind::ADD || out.kind == Operation::Kind::APPEND;
+  if (shapes_expected && object.shapes.empty()) {
+    value.fail("the object has no shape: neither primitives, meshes, planes nor bodies");
+  }
+  return out;
+}
+
+/* ---- the other parts of the file */
+
+void readWorld(const YamlValue &world, SceneFile &out, Warnings &warnings) {
+  world.warnOfOthers({"collision_objects", "octomap"}, warnings);
+  for (const YamlValue &object : world.itemsOf("collision_objects")) {
+    out.operations.push_back(readObject(object, warnings));
+  }
+
+  /* an octomap that holds something: a part of the world that the answers do not speak of */
+  const std::optional<YamlValue> stamped = world.find("octomap");
+  const std::optional<YamlValue> map = stamped && stamped->isMap() ? stamped->find("octomap") : std::nullopt;
+  const std::optional<YamlValue> data = map && map->isMap() ? map->find("data") : std::nullopt;
+  if (data && (data->isSequence() ? !data->items().empty() : !data->text().empty())) {
+    const std::string sentence = "world.octomap: octomaps are not available in this version; it takes no part";
+    warnings.add(sentence);
+    out.skipped.push_back(sentence);
+  }
+}
+
+void readTransforms(const YamlValue &root, SceneFile &out, Warnings &warnings) {
+  for (const YamlValue &value : root.itemsOf("fixed_frame_transforms")) {
+    value.warnOfOthers({"header", "child_frame_id", "transform"}, warnings);
+    FrameTransform transform;
+    transform.parent = readFrame(value, warnings);
+    transform.child = value.at("child_frame_id").text();
+    transform.pose = toIsometry(value.at("transform").pose(warnings, "translation", "rotation"));
+    out.transforms.push_back(std::move(transform));
+  }
+}
+
+void readRobotState(const YamlValue &root, SceneFile &out, Warnings &warnings) {
+  const std::optional<YamlValue> state = root.find("robot_state");
+  if (!state) return;
+  state->warnOfOthers({"joint_state", "multi_dof_joint_state", "attached_collision_objects", "is_diff"}, warnings);
+
+  /* joints by name */
+  if (const auto joints = state->find("joint_state")) {
+    joints->warnOfOthers({"header", "name", "position", "velocity", "effort"}, warnings);
+    const std::vector<YamlValue> names = joints->itemsOf("name"), positions = joints->itemsOf("position");
+    if (names.size() != positions.size()) {
+      joints->fail("has " + std::to_string(names.size()) + " names and " + std::to_string(positions.size()) +
+                   " positions");
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) out.joints[names[i].text()] = positions[i].number();
+  }
+
+  /* the base stands at the identity: a file that says otherwise is told so */
+  if (const auto joints = state->find("multi_dof_joint_state")) {
+    for (const YamlValue &value : joints->itemsOf("transforms")) {
+      const Eigen::Isometry3d pose = toIsometry(value.pose(warnings, "translation", "rotation"));
+      if (!pose.isApprox(Eigen::Isometry3d::Identity())) {
+        warnings.add(value.where() + " is ignored: the robot's base stands at the origin of the fixed frame");
+      }
+    }
+  }
+
+  for (const YamlValue &value : state->itemsOf("attached_collision_objects")) {
+    value.warnOfOthers({"link_name", "object", "touch_links", "detach_posture", "weight"}, warnings);
+    const Operation operation = readObject(value.at("object"), warnings);
+    if (operation.kind != Operation::Kind::ADD) value.fail("an attached object's operation must be add (0)");
+    out.attached.push_back({value.at("link_name").text(), operation.object});
+  }
+}
+
+void readLinkPadding(const YamlValue &root, SceneFile &out, Warnings &warnings) {
+  for (const YamlValue &value : root.itemsOf("link_padding")) {
+    value.warnOfOthers({"link_name", "padding"}, warnings);
+    const YamlValue padding = value.at("padding");
+    if (padding.number() < 0.0) padding.fail("a padding below 0 is not available");
+    out.link_padding[value.at("link_name").text()] = padding.number();
+  }
+  for (const YamlValue &value : root.itemsOf("link_scale")) {
+    if (value.at("scale").number() != 1.0) warnings.add("link_scale is ignored: links keep their size");
+  }
+}
+
+/* A row of the matrix, as AllowedCollisionEntry prints it, or as a list. */
+std::vector<YamlValue> readMatrixRow(const YamlValue &row) {
+  return row.isMap() ? row.itemsOf("enabled") : row.items();
+}
+
+void readAllowed(const YamlValue &root, SceneFile &out, Warnings &warnings) {
+  const std::optional<YamlValue> matrix = root.find("allowed_collision_matrix");
+  if (!matrix) return;
+  matrix->warnOfOthers({"entry_names", "entry_values", "default_entry_names", "default_entry_values"}, warnings);
+
+  /* the matrix is symmetric: its upper half says all */
+  const std::vector<YamlValue> names = matrix->itemsOf("entry_names"), rows = matrix->itemsOf("entry_values");
+  if (names.size() != rows.size()) {
+    matrix->fail("has " + std::to_string(names.size()) + " entry_names and " + std::to_string(rows.size()) +
+                 " entry_values");
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::vector<YamlValue> row = readMatrixRow(rows[i]);
+    if (row.size() != names.size()) rows[i].fail("must have an entry for each of the entry_names");
+    for (std::size_t j = i + 1; j < row.size(); ++j) {
+      if (row[j].truth()) out.allowed.push_back({names[i].text(), names[j].text(), true});
+    }
+  }
+
+  const std::vector<YamlValue> defaults = matrix->itemsOf("default_entry_names");
+  const std::vector<YamlValue> values = matrix->itemsOf("default_entry_values");
+  if (defaults.size() != values.size()) matrix->fail("has default_entry_names and _values of different number");
+  for (std::size_t i = 0; i < defaults.size(); ++i) {
+    out.allowed.push_back({defaults[i].text(), "", values[i].truth()});
+  }
+}
+
+} // namespace
+
+SceneFile readScene(const std::string &path, Warnings &warnings) {
+  const YamlValue root = loadYaml(path);
+  SceneFile out;
+  try {
+    /* known keys that Cartesian curves have no use for are ignored without a word */
+    root.warnOfOthers({"name", "robot_model_name", "robot_state", "fixed_frame_transforms", "allowed_collision_matrix",
+                       "link_padding", "link_scale", "object_colors", "world", "is_diff", "virtual_joint",
+                       "fixed_joints", "robot", "scene"},
+                      warnings);
+    if (const auto world = root.find("world")) readWorld(*world, out, warnings);
+    readTransforms(root, out, warnings);
+    readRobotState(root, out, warnings);
+    readLinkPadding(root, out, warnings);
+    readAllowed(root, out, warnings);
+  } catch (const BadInput &e) {
+    throw BadUsage(path + ": " + e.what());
+  } catch (const Error &e) {
+    throw BadUsage(path + ": " + e.what());
+  } catch (const YAML::Exception &e) {
+    throw BadUsage(path + ": " + e.what());
+  }
+  return out;
+}
+
+} // namespace curve_proximity::cli

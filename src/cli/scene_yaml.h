@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** SCENE.yaml: the shape of moveit_msgs/PlanningScene. */
+#ifndef CURVE_PROXIMITY_CLI_SCENE_YAML_H
+#define CURVE_PROXIMITY_CLI_SCENE_YAML_H
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/robot.hpp>
+#include <curve_proximity/scene.hpp>
+
+#include "yaml_value.h"
+
+namespace curve_proximity::cli {
+
+/** An entry of fixed_frame_transforms: where the frame `child` stands in `parent`. */
+struct FrameTransform {
+  std::string parent, child;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+};
+
+/** An object that the robot carries. */
+struct AttachedObject {
+  std::string link;
+  ObjectDescription object;
+};
+
+/** The file as it stands: poses are still in the frames that the objects name. */
+struct SceneFile {
+  std::vector<Operation> operations; /**< the collision objects, in order */
+  std::vector<AttachedObject> attached;
+  std::vector<FrameTransform> transforms;
+  JointPositions joints; /**< robot_state */
+  std::map<std::string, double> link_padding;
+  std::vector<AllowedPair> allowed;
+  std::vector<std::string> skipped; /**< what of the file takes no part, a sentence each */
+};
+
+/** Reads a scene. Throws BadUsage naming the file, the place and the line: anything that would leave an object out or
+ *  put it elsewhere. What can be ignored is ignored with a warning. */
+SceneFile readScene(const std::string &path, Warnings &warnings);
+
+} // namespace curve_proximity::cli
+#endif

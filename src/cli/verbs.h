@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What the program does, a function a verb. Each returns the program's exit code and throws BadUsage with one line. */
+#ifndef CURVE_PROXIMITY_CLI_VERBS_H
+#define CURVE_PROXIMITY_CLI_VERBS_H
+
+#include "arguments.h"
+#include "console.h"
+
+namespace curve_proximity::cli {
+
+/** distance, tolerance, collision: curves against objects and robot links. */
+int answerCurves(const Arguments &arguments, Console &console);
+
+/** pairs: signed distances of standing bodies. */
+int answerPairs(const Arguments &arguments, Console &console);
+
+/** send: a scene file to a running node. */
+int sendScene(const Arguments &arguments, Console &console);
+
+} // namespace curve_proximity::cli
+#endif

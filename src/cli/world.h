@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** From files to what curves are measured against. */
+#ifndef CURVE_PROXIMITY_CLI_WORLD_H
+#define CURVE_PROXIMITY_CLI_WORLD_H
+
+#include <string>
+#include <vector>
+
+#include <curve_proximity/scene.hpp>
+
+#include "arguments.h"
+#include "yaml_value.h"
+
+namespace curve_proximity::cli {
+
+/** The scene, and where the robot's links are. */
+struct World {
+  SnapshotPtr snapshot;
+  LinkPoses links;                  /**< empty without a robot */
+  std::vector<std::string> skipped; /**< what takes no part, a sentence each */
+};
+
+/** Reads --scene, --robot, --srdf and --state. Throws BadUsage with one line. */
+World readWorld(const Arguments &arguments, Warnings &warnings);
+
+} // namespace curve_proximity::cli
+#endif
