@@ -52,7 +52,8 @@ typedef struct convex_cover {
 typedef struct convex_ops {
   cprox_body_kind kind;
 
-  /* |computed - true distance| <= near_rounding * u * (|y| + scale) + slack: the constant of the kind */
+  /* |computed - true distance| <= near_rounding * u * (|y| + scale) + slack: the constant of the kind. Inside a polytope
+   * or a support body the distance is minus a proven depth, which may be less than the true one. */
   double near_rounding;
 
   void (*nearest)(const convex *shape, vec3 y, convex_hint *hint, convex_near *near);
@@ -65,6 +66,10 @@ typedef struct convex_ops {
    * polyhedra. */
   void (*curvature)(const convex *shape, vec3 d, vec3 x, double hessian[6]);
 
+  /* The extreme point in direction d of the smooth piece of the core that x lies on (a rim, the whole ellipsoid), whether
+   * or not another piece reaches farther: always a point of the core. NULL for polyhedra: x itself. */
+  vec3 (*follow)(const convex *shape, vec3 d, vec3 x);
+
   /* A tight cover that touches the shape at near->point; false where there is none (a face, a flat side). NULL: never.
    */
   bool (*cover)(const convex *shape, const convex_near *near, convex_cover *cover);
@@ -72,9 +77,9 @@ typedef struct convex_ops {
 
 struct convex {
   const convex_ops *ops;
-  double size[3]; /* what the kind needs: half extents, radius and half height, semi-axes, … */
+  double size[4]; /* what the kind needs: half extents; radius and half height; semi-axes; unit normal and offset */
   double margin;
-  double scale; /* bound on |x| over the core, about the origin of this frame; a halfspace's distance from it */
+  double scale; /* bound on |x| over the shape, about the origin of this frame; a halfspace's distance from it */
   double slack; /* support callbacks: how far their answers may be off; else 0 */
   /* polytopes and polygons: vertices about the origin, one array a coordinate, padded to a multiple of 8 with the last
    * one */

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The hull of vertices, any number of them in any dimension. */
+#include "convex/feature.h"
+#include "convex/gjk.h"
+#include "convex/vertices.h"
+
+static void polytope_nearest(const convex *shape, vec3 y, convex_hint *hint, convex_near *near) {
+  gjk_answer answer;
+  gjk_nearest(shape, y, hint, &answer);
+  *near = (convex_near){.distance = answer.distance, .point = answer.point, .normal = answer.normal};
+  if (!(answer.distance > 0.0)) return;
+
+  /* the feature is what the nearest point needs: one vertex, an edge, a face */
+  const simplex *s = &answer.feature;
+  if (s->n == 1) feature_vertex(near, s->vertex[0].a, 0.0);
+  if (s->n == 2) {
+    vec3 e;
+    feature_unit(vec_sub(s->vertex[1].a, s->vertex[0].a), &e);
+    feature_edge(near, s->vertex[0].a, e, 0.0);
+  }
+  if (s->n == 3) {
+    vec3 e, f;
+    feature_tangents(near->normal, &e, &f);
+    feature_face(near, e, f);
+  }
+}
+
+/* near_rounding: vertices about the centre (u), differences with y (u), their weighted sum (8u), its norm (3u), and what the
+ * search left between its bounds (8u, and 4u of the lower one's own rounding). */
+const convex_ops convex_polytope = {.kind = CPROX_POLYTOPE,
+                                    .near_rounding = 32.0,
+                                    .nearest = polytope_nearest,
+                                    .support = vertices_support,
+                                    .cover = vertices_cover};

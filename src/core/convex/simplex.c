@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Signed areas and volumes about the foot of the perpendicular; a region is only left out when its sign says so beyond
+ * doubt, and of the candidates that remain the nearest wins: so the answer is always a point of the simplex. */
+#include "convex/simplex.h"
+
+#include "base/rounding.h"
+#include "convex/feature.h"
+
+/* The nearest point found so far, on a vertex, edge or triangle of the simplex. */
+typedef struct candidate {
+  int n;
+  int index[3];
+  double weight[3];
+  vec3 v;
+  double square;
+} candidate;
+
+static void candidate_offer(candidate *best, const simplex *s, int n, const int index[3], const double weight[3]) {
+  vec3 v = vec(0, 0, 0);
+  for (int i = 0; i < n; i++) v = vec_axpy(v, weight[i], s->vertex[index[i]].w);
+  const double square = vec_norm2(v);
+  if (best->n > 0 && square >= best->square) return;
+  *best = (candidate){.n = n, .v = v, .square = square};
+  for (int i = 0; i < n; i++) {
+    best->index[i] = index[i];
+    best->weight[i] = weight[i];
+  }
+}
+
+static void try_vertex(candidate *best, const simplex *s, int i) {
+  candidate_offer(best, s, 1, (int[3]){i}, (double[3]){1.0});
+}
+
+static void try_segment(candidate *best, const simplex *s, int i, int j) {
+  const vec3 wi = s->vertex[i].w, wj = s->vertex[j].w, e = vec_sub(wj, wi);
+  const double from_i = -vec_dot(wi, e), from_j = vec_dot(wj, e);
+  if (!(from_i > 0.0)) {
+    try_vertex(best, s, i);
+  } else if (!(from_j > 0.0)) {
+    try_vertex(best, s, j);
+  } else {
+    const double t = from_i / (from_i + from_j);
+    candidate_offer(best, s, 2, (int[3]){i, j}, (double[3]){1.0 - t, t});
+  }
+}
+
+/* The normal of a triangle from its two shorter edges; `corner` is where they meet, `size` the product of their lengths. */
+typedef struct face {
+  vec3 normal; /* not a unit vector: twice the area long */
+  int corner;
+  double size;
+} face;
+
+static face face_of(const simplex *s, const int index[3]) {
+  vec3 edge[3]; /* edge[m] is opposite index[m] */
+  double square[3];
+  int longest = 0;
+  for (int m = 0; m < 3; m++) {
+    edge[m] = vec_sub(s->vertex[index[(m + 2) % 3]].w, s->vertex[index[(m + 1) % 3]].w);
+    square[m] = vec_norm2(edge[m]);
+    if (square[m] > square[longest]) longest = m;
+  }
+  const int p = (longest + 1) % 3, q = (longest + 2) % 3;
+  return (face){.normal = vec_cross(edge[p], edge[q]), .corner = index[longest], .size = sqrt(square[p] * square[q])};
+}
+
+/* A triangle whose area is all rounding has no inside. */
+static bool face_is_degenerate(const face *f, double area2) {
+  return !(area2 > 64.0 * ROUND_U * ROUND_U * f->size * f->size);
+}
+
+static void try_triangle(candidate *best, const simplex *s, int i, int j, int k) {
+  const int index[3] = {i, j, k};
+  const face f = face_of(s, index);
+  const double area2 = vec_norm2(f.normal);
+  if (face_is_degenerate(&f, area2)) {
+    for (int m = 0; m < 3; m++) try_segment(best, s, index[(m + 1) % 3], index[(m + 2) % 3]);
+    return;
+  }
+
+  /* areas of the triangles that the foot of 0 makes with the edges, each opposite a vertex */
+  const vec3 foot = vec_scale(vec_dot(f.normal, s->vertex[f.corner].w) / area2, f.normal);
+  vec3 to[3];
+  for (int m = 0; m < 3; m++) to[m] = vec_sub(s->vertex[index[m]].w, foot);
+  double area[3];
+  bool outside = false;
+  for (int m = 0; m < 3; m++) {
+    area[m] = vec_dot(f.normal, vec_cross(to[(m + 1) % 3], to[(m + 2) % 3])) / area2;
+    if (area[m] > 0.0) continue;
+    outside = true;
+    try_segment(best, s, index[(m + 1) % 3], index[(m + 2) % 3]);
+  }
+  if (outside) return;
+
+  /* inside: the weight of the corner first, then the place along the longest edge, opposite, measured so that it takes up
+   * the first one's rounding: in a needle the areas alone would put the point far along it */
+  const int a = f.corner == i ? 0 : f.corner == j ? 1 : 2, b = (a + 1) % 3, c = (a + 2) % 3;
+  const vec3 base = vec_sub(to[c], to[b]);
+  double weight[3];
+  weight[a] = fmin(area[a], 1.0);
+  const vec3 rest = vec_axpy(vec_neg(to[b]), -weight[a], vec_sub(to[a], to[b]));
+  weight[c] = fmin(fmax(vec_dot(rest, base) / vec_norm2(base), 0.0), 1.0 - weight[a]);
+  weight[b] = fmax(1.0 - weight[a] - weight[c], 0.0);
+  candidate_offer(best, s, 3, index, weight);
+}
+
+/* On which side of the face opposite vertex i does 0 lie, and how far? */
+typedef enum face_side { FACE_INNER, FACE_OUTER, FACE_UNCLEAR } face_side;
+
+static face_side tetrahedron_side(const simplex *s, int i, double *depth) {
+  const int index[3] = {(i + 1) % 4, (i + 2) % 4, (i + 3) % 4};
+  const face f = face_of(s, index);
+  const vec3 corner = s->vertex[f.corner].w, apex = vec_sub(s->vertex[i].w, corner);
+  const double side = vec_dot(f.normal, apex), origin = -vec_dot(f.normal, corner);
+
+  /* the rounding of the normal is some u of the product of its edges, whatever its length */
+  if (!(fabs(side) > 16.0 * ROUND_U * f.size * vec_norm(apex))) return FACE_UNCLEAR;
+  const double inner = side > 0.0 ? origin : -origin, noise = 16.0 * ROUND_U * f.size * vec_norm(corner);
+  *depth = (inner - noise) / vec_norm(f.normal);
+  return *depth > 0.0 ? FACE_INNER : FACE_OUTER;
+}
+
+/* True where 0 is proven inside; else the faces that it may be beyond are tried. */
+static bool try_tetrahedron(candidate *best, const simplex *s, double *depth) {
+  face_side side[4];
+  bool unclear = false, inside = true;
+  *depth = INFINITY;
+  for (int i = 0; i < 4; i++) {
+    double d = 0.0;
+    side[i] = tetrahedron_side(s, i, &d);
+    unclear |= side[i] == FACE_UNCLEAR;
+    inside &= side[i] == FACE_INNER;
+    *depth = fmin(*depth, d);
+  }
+
+  /* each w is within u|w| of the exact difference: moving all vertices by so much shrinks the ball by no more */
+  double reach = 0.0;
+  for (int i = 0; i < 4; i++) reach = fmax(reach, vec_norm(s->vertex[i].w));
+  *depth = *depth * (1.0 - 8.0 * ROUND_U) - 4.0 * ROUND_U * reach;
+  if (inside && *depth > 0.0) return true;
+
+  /* a flat tetrahedron says nothing: all of its faces are tried */
+  const bool all = unclear || inside;
+  for (int i = 0; i < 4; i++)
+    if (all || side[i] == FACE_OUTER) try_triangle(best, s, (i + 1) % 4, (i + 2) % 4, (i + 3) % 4);
+  return false;
+}
+
+/* The direction of the feature's distance from 0. */
+static vec3 feature_normal(const simplex *s, vec3 v) {
+  vec3 unit;
+  if (s->n == 2) {
+    const vec3 a = s->vertex[0].w, b = s->vertex[1].w, e = vec_sub(b, a);
+    const vec3 nearer = vec_norm2(a) < vec_norm2(b) ? a : b;
+    v = vec_axpy(nearer, -(vec_dot(nearer, e) / vec_norm2(e)), e);
+  } else if (s->n == 3) {
+    const face f = face_of(s, (int[3]){0, 1, 2});
+    const double along = vec_dot(f.normal, s->vertex[f.corner].w);
+    v = along > 0.0 ? f.normal : along < 0.0 ? vec_neg(f.normal) : vec(0, 0, 0);
+  }
+  feature_unit(v, &unit);
+  return unit;
+}
+
+void simplex_reduce(simplex *s, simplex_nearest *nearest) {
+  candidate best = {0};
+  *nearest = (simplex_nearest){0};
+  if (s->n == 1) try_vertex(&best, s, 0);
+  if (s->n == 2) try_segment(&best, s, 0, 1);
+  if (s->n == 3) try_triangle(&best, s, 0, 1, 2);
+  if (s->n == 4 && try_tetrahedron(&best, s, &nearest->depth)) {
+    nearest->inside = true;
+    return;
+  }
+
+  simplex kept = {0};
+  for (int i = 0; i < best.n; i++) {
+    if (best.weight[i] == 0.0) continue;
+    kept.vertex[kept.n] = s->vertex[best.index[i]];
+    kept.weight[kept.n++] = best.weight[i];
+  }
+  *s = kept;
+  nearest->v = best.v;
+  nearest->distance = vec_norm(best.v);
+  nearest->normal = feature_normal(s, best.v);
+}
