@@ -44,8 +44,8 @@ inline void ccdSupport(const void *shape, const double direction[3], double poin
  *  margin   [m] >= 0, a ball added to the shape.
  *
  *  Throws Error as cprox_body_create_support() refuses. Thread safety: as the callback's. */
-inline BodyPtr makeSupport(ccd_support_fn support, const void *object, const Eigen::Vector3d &centre, double radius,
-                           double slack = 0.0, double margin = 0.0) {
+inline BodyHandle makeSupport(ccd_support_fn support, const void *object, const Eigen::Vector3d &centre, double radius,
+                              double slack = 0.0, double margin = 0.0) {
   if (!support) throw Error("the support callback is null");
 
   // A direction rounded to float is off by 2^-24 a component, an answer by 2^-24 of its size; eight times covers both.

@@ -81,13 +81,13 @@ inline Eigen::Vector3d fromFcl(const fcl_types::Vector &v) {
 }
 
 /** The hull of a range of FCL's vectors. */
-inline BodyPtr hullFromFcl(const fcl_types::Vector *vertices, std::size_t n) {
+inline BodyHandle hullFromFcl(const fcl_types::Vector *vertices, std::size_t n) {
   Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(n));
   for (std::size_t i = 0; i < n; ++i) points.col(static_cast<Eigen::Index>(i)) = fromFcl(vertices[i]);
   return makePolytope(points);
 }
 
-inline BodyPtr hullFromFcl(const fcl_types::Convex &convex) {
+inline BodyHandle hullFromFcl(const fcl_types::Convex &convex) {
 #if FCL_MAJOR_VERSION == 0 && FCL_MINOR_VERSION < 6
   return hullFromFcl(convex.points, static_cast<std::size_t>(convex.num_points));
 #else
@@ -96,7 +96,7 @@ inline BodyPtr hullFromFcl(const fcl_types::Convex &convex) {
 }
 
 template <typename BV>
-BodyPtr hullFromFclBvh(const fcl_types::Geometry &geometry) {
+BodyHandle hullFromFclBvh(const fcl_types::Geometry &geometry) {
   const auto &model = static_cast<const ::fcl::BVHModel<BV> &>(geometry);
   return hullFromFcl(model.vertices, static_cast<std::size_t>(model.num_vertices));
 }
@@ -107,7 +107,7 @@ BodyPtr hullFromFclBvh(const fcl_types::Geometry &geometry) {
  *
  *  Throws Error for what is no compact convex set or halfspace (planes, octrees, geometries of one's own) and for sizes
  *  that a maker of core.hpp refuses. */
-inline BodyPtr bodyFromFcl(const detail::fcl_types::Geometry &geometry) {
+inline BodyHandle bodyFromFcl(const detail::fcl_types::Geometry &geometry) {
   namespace types = detail::fcl_types;
   switch (geometry.getNodeType()) {
     case ::fcl::GEOM_SPHERE: return makeSphere(static_cast<const types::Sphere &>(geometry).radius);
@@ -152,7 +152,7 @@ inline BodyPtr bodyFromFcl(const detail::fcl_types::Geometry &geometry) {
 
 /** A body and where it stands. */
 struct PosedBody {
-  BodyPtr body;
+  BodyHandle body;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the world */
 };
 

@@ -105,6 +105,7 @@ class Robot {
   friend class RobotReader;
 
   Robot() = default;
+  void checkPositions(const JointPositions &positions) const;
   double value(const Joint &joint, const JointPositions &positions) const;
   Eigen::Isometry3d motion(const Joint &joint, const JointPositions &positions) const;
 
