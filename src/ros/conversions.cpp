@@ -1,0 +1,432 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "conversions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace curve_proximity {
+namespace {
+
+geometry_msgs::Point toPointMessage(const Eigen::Vector3d &point) {
+  geometry_msgs::Point message;
+  message.x = point.x();
+  message.y = point.y();
+  message.z = point.z();
+  return message;
+}
+
+Eigen::Matrix3Xd toPoints(const std::vector<geometry_msgs::Point> &points) {
+  Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    out.col(static_cast<Eigen::Index>(i)) << points[i].x, points[i].y, points[i].z;
+  return out;
+}
+
+std::vector<geometry_msgs::Point> toPointMessages(const Eigen::Matrix3Xd &points) {
+  std::vector<geometry_msgs::Point> out;
+  out.reserve(static_cast<std::size_t>(points.cols()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) out.push_back(toPointMessage(Eigen::Vector3d(points.col(i))));
+  return out;
+}
+
+/** A message that nobody filled in has zeros everywhere. */
+bool isUnset(const geometry_msgs::Pose &pose) {
+  const geometry_msgs::Point &p = pose.position;
+  const geometry_msgs::Quaternion &q = pose.orientation;
+  return p.x == 0 && p.y == 0 && p.z == 0 && q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0;
+}
+
+/* ---- shapes, from messages ---------------------------------------------------------------------------------------- */
+
+ShapeDescription toShape(const shape_msgs::SolidPrimitive &primitive) {
+  ShapeDescription shape;
+  switch (primitive.type) {
+    case shape_msgs::SolidPrimitive::BOX: shape.type = ShapeType::BOX; break;
+    case shape_msgs::SolidPrimitive::SPHERE: shape.type = ShapeType::SPHERE; break;
+    case shape_msgs::SolidPrimitive::CYLINDER: shape.type = ShapeType::CYLINDER; break;
+    case shape_msgs::SolidPrimitive::CONE: shape.type = ShapeType::CONE; break;
+    default: throw Error("unknown type " + std::to_string(primitive.type));
+  }
+  shape.dimensions.assign(primitive.dimensions.begin(), primitive.dimensions.end());
+  return shape;
+}
+
+ShapeDescription toShape(const shape_msgs::Mesh &mesh) {
+  ShapeDescription shape;
+  shape.type = ShapeType::MESH;
+  shape.vertices = toPoints(mesh.vertices);
+  shape.triangles.resize(3, static_cast<Eigen::Index>(mesh.triangles.size()));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t index = mesh.triangles[i].vertex_indices[k];
+      if (index >= mesh.vertices.size())
+        throw Error("triangle " + std::to_string(i) + " names vertex " + std::to_string(index) + ", there are " +
+                    std::to_string(mesh.vertices.size()));
+      shape.triangles(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = static_cast<int>(index);
+    }
+  }
+  return shape;
+}
+
+ShapeDescription toShape(const shape_msgs::Plane &plane) {
+  ShapeDescription shape;
+  shape.type = ShapeType::HALFSPACE;
+  shape.dimensions.assign(plane.coef.begin(), plane.coef.end());
+  return shape;
+}
+
+ShapeDescription toShape(const Body &body) {
+  const std::optional<ShapeType> type = shapeTypeFromName(body.type);
+  if (!type) throw Error("unknown type '" + body.type + "'");
+  ShapeDescription shape;
+  shape.type = *type;
+  shape.dimensions = body.dimensions;
+  shape.vertices = toPoints(body.vertices);
+  shape.resource = body.resource;
+  return shape;
+}
+
+/** Appends one list of shapes with their poses; `what` names the list's elements in a sentence. */
+template <class Shape>
+void append(const std::vector<Shape> &shapes, const std::vector<geometry_msgs::Pose> &poses, const char *what,
+            std::vector<ShapeDescription> &out) {
+  if (!poses.empty() && poses.size() != shapes.size())
+    throw Error(std::to_string(shapes.size()) + " " + what + " shapes have " + std::to_string(poses.size()) + " poses");
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    try {
+      out.push_back(toShape(shapes[i]));
+      if (!poses.empty()) out.back().pose = toIsometry(poses[i]);
+    } catch (const Error &error) {
+      throw Error(std::string(what) + " " + std::to_string(i) + ": " + error.what());
+    }
+  }
+}
+
+Operation::Kind toKind(int operation) {
+  switch (operation) {
+    case CollisionObject::ADD: return Operation::Kind::ADD;
+    case CollisionObject::REMOVE: return Operation::Kind::REMOVE;
+    case CollisionObject::APPEND: return Operation::Kind::APPEND;
+    case CollisionObject::MOVE: return Operation::Kind::MOVE;
+    default: throw Error("unknown operation " + std::to_string(operation));
+  }
+}
+
+CollisionObject::_operation_type toOperationByte(Operation::Kind kind) {
+  switch (kind) {
+    case Operation::Kind::REMOVE: return CollisionObject::REMOVE;
+    case Operation::Kind::APPEND: return CollisionObject::APPEND;
+    case Operation::Kind::MOVE: return CollisionObject::MOVE;
+    case Operation::Kind::ADD: break;
+  }
+  return CollisionObject::ADD;
+}
+
+/** An object that stands in `frame_in_fixed` gets its pose in the fixed frame. APPEND may leave the pose out: then the
+ *  shapes are relative to the object that is there, and nothing is to be brought anywhere. */
+void bringToFixed(Operation &operation, const Eigen::Isometry3d &frame_in_fixed) {
+  const bool relative = operation.kind == Operation::Kind::APPEND && operation.object.pose.matrix().isIdentity(0.0);
+  if (!relative) operation.object.pose = frame_in_fixed * operation.object.pose;
+}
+
+/** A missing transform is told with the object's name. */
+Eigen::Isometry3d frameOf(const CollisionObject &object, const ToFixed &to_fixed) {
+  try {
+    return to_fixed(object.header);
+  } catch (const std::exception &error) {
+    throw Error("object '" + object.id + "': " + error.what());
+  }
+}
+
+/* ---- shapes, to messages ------------------------------------------------------------------------------------------ */
+
+void addPrimitive(CollisionObject &message, std::uint8_t type, const ShapeDescription &shape) {
+  shape_msgs::SolidPrimitive primitive;
+  primitive.type = type;
+  primitive.dimensions.assign(shape.dimensions.begin(), shape.dimensions.end());
+  message.primitives.push_back(primitive);
+  message.primitive_poses.push_back(toMessage(shape.pose));
+}
+
+/** shape_msgs knows neither a scale nor a file. */
+bool isPlainMesh(const ShapeDescription &shape) {
+  return shape.resource.empty() && shape.dimensions.empty();
+}
+
+void addMesh(CollisionObject &message, const ShapeDescription &shape) {
+  shape_msgs::Mesh mesh;
+  mesh.vertices = toPointMessages(shape.vertices);
+  for (Eigen::Index i = 0; i < shape.triangles.cols(); ++i) {
+    shape_msgs::MeshTriangle triangle;
+    for (Eigen::Index k = 0; k < 3; ++k)
+      triangle.vertex_indices[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(shape.triangles(k, i));
+    mesh.triangles.push_back(triangle);
+  }
+  message.meshes.push_back(mesh);
+  message.mesh_poses.push_back(toMessage(shape.pose));
+}
+
+/** The vertices of a scaled mesh, so that shape_msgs can carry it. */
+ShapeDescription withoutScale(ShapeDescription shape) {
+  if (shape.dimensions.size() == 3)
+    shape.vertices = Eigen::Vector3d(shape.dimensions.data()).asDiagonal() * shape.vertices;
+  shape.dimensions.clear();
+  return shape;
+}
+
+void addBody(CollisionObject &message, const ShapeDescription &shape) {
+  Body body;
+  body.type = shapeTypeName(shape.type);
+  body.dimensions = shape.dimensions;
+  body.vertices = toPointMessages(shape.vertices);
+  body.resource = shape.resource;
+  message.bodies.push_back(body);
+  message.body_poses.push_back(toMessage(shape.pose));
+}
+
+void addPlane(CollisionObject &message, const ShapeDescription &shape) {
+  shape_msgs::Plane plane;
+  std::copy(shape.dimensions.begin(), shape.dimensions.end(), plane.coef.begin());
+  message.planes.push_back(plane);
+  message.plane_poses.push_back(toMessage(shape.pose));
+}
+
+void addShape(CollisionObject &message, const ShapeDescription &shape) {
+  switch (shape.type) {
+    case ShapeType::BOX: addPrimitive(message, shape_msgs::SolidPrimitive::BOX, shape); return;
+    case ShapeType::SPHERE: addPrimitive(message, shape_msgs::SolidPrimitive::SPHERE, shape); return;
+    case ShapeType::CYLINDER: addPrimitive(message, shape_msgs::SolidPrimitive::CYLINDER, shape); return;
+    case ShapeType::CONE: addPrimitive(message, shape_msgs::SolidPrimitive::CONE, shape); return;
+    case ShapeType::HALFSPACE:
+      if (shape.dimensions.size() == shape_msgs::Plane().coef.size()) return addPlane(message, shape);
+      return addBody(message, shape); // wrong as it is, so that the node can say so
+    case ShapeType::MESH:
+      if (!shape.resource.empty()) return addBody(message, shape);
+      return addMesh(message, isPlainMesh(shape) ? shape : withoutScale(shape));
+    default: addBody(message, shape);
+  }
+}
+
+AllowedContact toMessage(const AllowedPair &pair) {
+  AllowedContact message;
+  message.first = pair.a;
+  message.second = pair.b;
+  message.allowed = pair.allowed;
+  return message;
+}
+
+LinkPadding toPaddingMessage(const std::string &link, double padding) {
+  LinkPadding message;
+  message.link_name = link;
+  message.padding = padding;
+  return message;
+}
+
+} // namespace
+
+/* ---- poses -------------------------------------------------------------------------------------------------------- */
+
+Eigen::Isometry3d toIsometry(const geometry_msgs::Pose &pose) {
+  const geometry_msgs::Point &p = pose.position;
+  const geometry_msgs::Quaternion &q = pose.orientation;
+  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) throw Error("the position is not finite");
+  return toIsometry(cprox_pose{{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}});
+}
+
+geometry_msgs::Pose toMessage(const Eigen::Isometry3d &pose) {
+  const cprox_pose p = toPose(pose);
+  geometry_msgs::Pose message;
+  message.position = toPointMessage(p.position);
+  message.orientation.w = p.orientation.w;
+  message.orientation.x = p.orientation.x;
+  message.orientation.y = p.orientation.y;
+  message.orientation.z = p.orientation.z;
+  return message;
+}
+
+geometry_msgs::Point toPointMessage(const cprox_vec3 &point) {
+  return toPointMessage(toEigen(point));
+}
+
+/* ---- curves ------------------------------------------------------------------------------------------------------- */
+
+CurveDescription toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed) {
+  CurveDescription out;
+  out.id = curve.id;
+  out.basis = curve.basis;
+  out.degree = curve.degree;
+  out.t0 = curve.t0;
+  out.t1 = curve.t1;
+  out.radius = curve.radius;
+  out.points = toPoints(curve.points);
+  out.knots = curve.knots;
+
+  // The identity leaves the points to the last bit as they are.
+  if (!frame_in_fixed.matrix().isIdentity(0.0))
+    out.points = (frame_in_fixed.linear() * out.points).colwise() + frame_in_fixed.translation();
+
+  // The whole of the curve; where its knots are too few for that compile() says so.
+  if (out.t0 == 0.0 && out.t1 == 0.0) {
+    out.t1 = 1.0;
+    const std::size_t n = curve.points.size();
+    if (out.basis == "bspline" && curve.degree < n && n < curve.knots.size()) {
+      out.t0 = curve.knots[curve.degree];
+      out.t1 = curve.knots[n];
+    }
+  }
+  return out;
+}
+
+/* ---- the scene ---------------------------------------------------------------------------------------------------- */
+
+Operation toOperation(const CollisionObject &message) {
+  Operation out;
+  out.object.id = message.id;
+  out.object.frame = message.header.frame_id;
+  out.object.padding = message.padding;
+  try {
+    out.kind = toKind(message.operation);
+    if (out.kind == Operation::Kind::REMOVE) return out;
+    const bool optional = out.kind != Operation::Kind::MOVE;
+    if (!optional || !isUnset(message.pose)) out.object.pose = toIsometry(message.pose);
+    append(message.primitives, message.primitive_poses, "primitive", out.object.shapes);
+    append(message.meshes, message.mesh_poses, "mesh", out.object.shapes);
+    append(message.planes, message.plane_poses, "plane", out.object.shapes);
+    append(message.bodies, message.body_poses, "body", out.object.shapes);
+  } catch (const Error &error) {
+    throw Error("object '" + message.id + "': " + error.what());
+  }
+  return out;
+}
+
+SceneChange toSceneChange(const ApplySceneRequest &request, const ToFixed &to_fixed, std::vector<std::string> &faults) {
+  SceneChange change;
+  change.clear = request.clear;
+  for (const CollisionObject &object : request.objects) {
+    try {
+      Operation operation = toOperation(object);
+      if (operation.kind != Operation::Kind::REMOVE) bringToFixed(operation, frameOf(object, to_fixed));
+      change.operations.push_back(std::move(operation));
+    } catch (const std::exception &error) {
+      faults.push_back(error.what());
+    }
+  }
+  for (const LinkPadding &padding : request.link_padding) {
+    if (padding.link_name.empty()) {
+      change.default_link_padding = padding.padding;
+    } else {
+      change.link_padding[padding.link_name] = padding.padding;
+    }
+  }
+  for (const AllowedContact &contact : request.allowed_contacts)
+    change.allowed.push_back({contact.first, contact.second, contact.allowed != 0});
+  return change;
+}
+
+CollisionObject toMessage(const ObjectDescription &object) {
+  CollisionObject message;
+  message.header.frame_id = object.frame;
+  message.id = object.id;
+  message.pose = toMessage(object.pose);
+  message.padding = object.padding;
+  message.operation = CollisionObject::ADD;
+  for (const ShapeDescription &shape : object.shapes) addShape(message, shape);
+  return message;
+}
+
+void toMessage(const Snapshot &snapshot, const std::vector<std::string> &ids, GetSceneResponse &response) {
+  if (ids.empty()) {
+    for (const auto &object : snapshot.objects()) response.objects.push_back(toMessage(object.second->description));
+  }
+  for (const std::string &id : ids) {
+    const auto object = snapshot.objects().find(id);
+    if (object == snapshot.objects().end()) throw Error("there is no object '" + id + "'");
+    response.objects.push_back(toMessage(object->second->description));
+  }
+  if (snapshot.defaultLinkPadding() != 0.0)
+    response.link_padding.push_back(toPaddingMessage("", snapshot.defaultLinkPadding()));
+  for (const auto &padding : snapshot.linkPaddings())
+    response.link_padding.push_back(toPaddingMessage(padding.first, padding.second));
+  for (const AllowedPair &pair : snapshot.allowed()) response.allowed_contacts.push_back(toMessage(pair));
+}
+
+ApplySceneRequest toMessage(const SceneChange &change) {
+  ApplySceneRequest request;
+  request.clear = change.clear;
+  for (const Operation &operation : change.operations) {
+    request.objects.push_back(toMessage(operation.object));
+    request.objects.back().operation = toOperationByte(operation.kind);
+  }
+  if (change.default_link_padding) request.link_padding.push_back(toPaddingMessage("", *change.default_link_padding));
+  for (const auto &padding : change.link_padding)
+    request.link_padding.push_back(toPaddingMessage(padding.first, padding.second));
+  for (const AllowedPair &pair : change.allowed) request.allowed_contacts.push_back(toMessage(pair));
+  return request;
+}
+
+/* ---- answers ------------------------------------------------------------------------------------------------------ */
+
+Proximity toMessage(const Answer &answer, Verb verb) {
+  if (answer.result.status < 0) {
+    Proximity failed = toFailedRow(answer.id, answer.message);
+    failed.kind = answer.kind;
+    failed.status = answer.status;
+    return failed;
+  }
+  const cprox_result &result = answer.result;
+  Proximity message;
+  message.id = answer.id;
+  message.kind = answer.kind;
+  message.status = answer.status;
+  if (verb != Verb::DISTANCE) message.verdict = cprox_verdict_name(result.verdict);
+  message.lower = result.lower;
+  message.upper = result.upper;
+  message.t = result.t;
+  message.point_a = toPointMessage(result.on_mover);
+  message.point_b = toPointMessage(result.on_target);
+  message.normal.x = result.normal.x;
+  message.normal.y = result.normal.y;
+  message.normal.z = result.normal.z;
+  message.a = answer.a;
+  message.b = answer.b;
+  message.nodes = result.nodes;
+  message.probes = result.probes;
+  message.microseconds = answer.microseconds;
+  message.rung = cprox_rung_name(result.rung);
+  message.message = answer.message;
+  return message;
+}
+
+Proximity toFailedRow(const std::string &id, const std::string &why) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  Proximity message;
+  message.id = id;
+  message.kind = "curve";
+  message.status = cprox_status_name(CPROX_INVALID);
+  message.lower = message.upper = message.t = none;
+  message.point_a.x = message.point_a.y = message.point_a.z = none;
+  message.point_b = message.point_a;
+  message.normal.x = message.normal.y = message.normal.z = none;
+  message.microseconds = none;
+  message.a = id;
+  message.rung = cprox_rung_name(CPROX_RUNG_NONE);
+  message.message = why;
+  return message;
+}
+
+/* ---- joints ------------------------------------------------------------------------------------------------------- */
+
+JointPositions toJointPositions(const sensor_msgs::JointState &state) {
+  if (state.name.size() != state.position.size())
+    throw Error("joint_state has " + std::to_string(state.name.size()) + " names and " +
+                std::to_string(state.position.size()) + " positions");
+  JointPositions positions;
+  for (std::size_t i = 0; i < state.name.size(); ++i) {
+    if (!positions.emplace(state.name[i], state.position[i]).second)
+      throw Error("joint_state names '" + state.name[i] + "' twice");
+  }
+  return positions;
+}
+
+} // namespace curve_proximity

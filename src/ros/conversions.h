@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Between ROS messages and the plain descriptions of the scene, both ways. Needs no node and no master. */
+#ifndef CURVE_PROXIMITY_ROS_CONVERSIONS_H
+#define CURVE_PROXIMITY_ROS_CONVERSIONS_H
+
+#include <curve_proximity/AllowedContact.h>
+#include <curve_proximity/ApplyScene.h>
+#include <curve_proximity/CollisionObject.h>
+#include <curve_proximity/Curve.h>
+#include <curve_proximity/GetScene.h>
+#include <curve_proximity/LinkPadding.h>
+#include <curve_proximity/Proximity.h>
+#include <geometry_msgs/Pose.h>
+#include <sensor_msgs/JointState.h>
+
+#include <curve_proximity/query.hpp>
+#include <curve_proximity/scene.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace curve_proximity {
+
+/** Throws Error for a quaternion of norm 0 or a number that is not finite. */
+Eigen::Isometry3d toIsometry(const geometry_msgs::Pose &pose);
+geometry_msgs::Pose toMessage(const Eigen::Isometry3d &pose);
+
+geometry_msgs::Point toPointMessage(const cprox_vec3 &point);
+
+/** A curve with its points brought to the fixed frame. An empty parameter range becomes the whole of the curve.
+ *  What is wrong with the curve itself is left to compile(). */
+CurveDescription toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed);
+
+/** One operation on the scene; its object's pose is still the message's, in header.frame_id.
+ *  Throws Error, which names the object and the shape: an unknown type or operation, poses that do not match the shapes,
+ *  triangles with an index that is none. Dimensions are left to the scene. */
+Operation toOperation(const CollisionObject &object);
+
+/** The whole request of ~apply_scene. The poses of objects are brought to the fixed frame by `to_fixed(header)`, which may
+ *  throw. An object that cannot be converted becomes a sentence in `faults`, and the others stay. */
+using ToFixed = std::function<Eigen::Isometry3d(const std_msgs::Header &header)>;
+SceneChange toSceneChange(const ApplySceneRequest &request, const ToFixed &to_fixed, std::vector<std::string> &faults);
+
+/** An object as ~apply_scene would take it with operation ADD. Mesh files stay names of files. */
+CollisionObject toMessage(const ObjectDescription &object);
+
+/** The scene as ~get_scene gives it, in full or the named objects. Throws Error for a name that is not there. */
+void toMessage(const Snapshot &snapshot, const std::vector<std::string> &ids, GetSceneResponse &response);
+
+/** A change as ~apply_scene takes it: the way of a scene file to the node. The poses are in object.frame. */
+ApplySceneRequest toMessage(const SceneChange &change);
+
+/** One row of the results. What has no answer has NaN for numbers. */
+Proximity toMessage(const Answer &answer, Verb verb);
+
+/** The row of a curve that could not be asked about. */
+Proximity toFailedRow(const std::string &id, const std::string &why);
+
+/** Throws Error where names and positions are not as many, or a joint is named twice. */
+JointPositions toJointPositions(const sensor_msgs::JointState &state);
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The server as a process: memory limit, signals, and a watch on the master; all else is ProximityServer. */
+#include <ros/console.h>
+#include <ros/init.h>
+#include <ros/master.h>
+#include <ros/this_node.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <thread>
+
+#include "parameters.h"
+#include "server.h"
+
+namespace {
+
+constexpr int EXIT_WRONG = 1;        /* parameters or robot are unusable */
+constexpr int EXIT_UNREGISTERED = 3; /* the master has forgotten this node; roslaunch's respawn brings it back */
+
+volatile sig_atomic_t interrupted = 0;
+
+void onSignal(int) {
+  interrupted = 1;
+}
+
+/** roscpp would cut connections off on SIGINT before running queries have ended. */
+void catchSignals() {
+  struct sigaction action = {};
+  action.sa_handler = onSignal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+/** roscpp resizes vectors to whatever count a request claims; under a limit that fails one call instead of taking the
+ *  machine's memory. */
+void limitMemory(int megabytes) {
+  if (megabytes == 0) return;
+  rlimit limit = {};
+  if (getrlimit(RLIMIT_AS, &limit) != 0) return;
+  limit.rlim_cur = static_cast<rlim_t>(megabytes) << 20;
+  if (setrlimit(RLIMIT_AS, &limit) != 0)
+    throw curve_proximity::ParameterError("parameter ~memory_limit_mb: the system refuses this limit");
+}
+
+/** Asks the master now and then whether it still knows this node. */
+class MasterWatch {
+ public:
+  /** A restarted master knows nobody; one that does not answer at all may come back and know us. */
+  bool hasForgottenUs() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return false;
+    next_ = now + std::chrono::seconds(2);
+    if (!ros::master::check()) return false;
+    XmlRpc::XmlRpcValue request, response, payload;
+    request[0] = request[1] = ros::this_node::getName();
+    const bool known = ros::master::execute("lookupNode", request, response, payload, false);
+    times_ = known || !ros::master::check() ? 0 : times_ + 1;
+    return times_ >= 2;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point next_;
+  int times_ = 0;
+};
+
+/** Until a signal, a shutdown by the graph, or the end of our registration. */
+int serve() {
+  MasterWatch master;
+  while (ros::ok() && !interrupted) {
+    if (master.hasForgottenUs()) {
+      ROS_FATAL("the master does not know this node any more (was it restarted?): ending, so that a respawn registers");
+      return EXIT_UNREGISTERED;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+  ros::init(argc, argv, "curve_proximity", ros::init_options::NoSigintHandler);
+  catchSignals();
+  int code = EXIT_WRONG;
+  try {
+    ros::NodeHandle handle("~");
+    const curve_proximity::Parameters parameters = curve_proximity::readParameters(handle);
+    limitMemory(parameters.memory_limit_mb);
+    const curve_proximity::ProximityServer server(handle, parameters);
+    code = serve();
+  } catch (const std::exception &error) {
+    ROS_FATAL("%s", error.what());
+  }
+  ros::shutdown();
+  return code;
+}

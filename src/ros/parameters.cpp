@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "parameters.h"
+
+#include <ros/console.h>
+
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <vector>
+
+namespace curve_proximity {
+namespace {
+
+/** Fills one parameter after the other from the parameter server. */
+class Reader {
+ public:
+  explicit Reader(const ros::NodeHandle &handle) : handle_(handle) {}
+
+  void operator()(const char *name, std::string &value) {
+    XmlRpc::XmlRpcValue given;
+    if (!get(name, given)) return;
+    if (given.getType() != XmlRpc::XmlRpcValue::TypeString) wrong(name, "a string is expected");
+    value = static_cast<std::string>(given);
+  }
+
+  void operator()(const char *name, bool &value) {
+    XmlRpc::XmlRpcValue given;
+    if (!get(name, given)) return;
+    if (given.getType() != XmlRpc::XmlRpcValue::TypeBoolean) wrong(name, "true or false is expected");
+    value = static_cast<bool>(given);
+  }
+
+  void operator()(const char *name, int &value, const Range &range) {
+    XmlRpc::XmlRpcValue given;
+    if (!get(name, given)) return;
+    if (given.getType() != XmlRpc::XmlRpcValue::TypeInt) wrong(name, "a whole number is expected");
+    value = static_cast<int>(given);
+    check(name, value, range);
+  }
+
+  void operator()(const char *name, double &value, const Range &range) {
+    XmlRpc::XmlRpcValue given;
+    if (!get(name, given)) return;
+    if (given.getType() == XmlRpc::XmlRpcValue::TypeInt) {
+      value = static_cast<int>(given);
+    } else if (given.getType() == XmlRpc::XmlRpcValue::TypeDouble) {
+      value = static_cast<double>(given);
+    } else {
+      wrong(name, "a number is expected");
+    }
+    check(name, value, range);
+  }
+
+  /** A misspelt name would otherwise leave a default in force that nobody asked for. */
+  void warnOfOthers() const {
+    std::vector<std::string> all;
+    if (!handle_.getParamNames(all)) return;
+    const std::string prefix = handle_.getNamespace() + "/";
+    for (const std::string &name : all) {
+      if (name.compare(0, prefix.size(), prefix) != 0) continue;
+      const std::string own = name.substr(prefix.size());
+      if (!known_.count(own)) ROS_WARN("parameter ~%s is none of this server's: it is not read", own.c_str());
+    }
+  }
+
+ private:
+  bool get(const char *name, XmlRpc::XmlRpcValue &given) {
+    known_.insert(name);
+    return handle_.getParam(name, given);
+  }
+
+  [[noreturn]] void wrong(const char *name, const std::string &what) const {
+    throw ParameterError("parameter ~" + std::string(name) + ": " + what);
+  }
+
+  void check(const char *name, double value, const Range &range) const {
+    const bool enough = range.open ? value > range.least : value >= range.least;
+    if (enough && value <= range.most && std::isfinite(value)) return;
+    std::ostringstream what;
+    what << value << " is not " << (range.open ? "above " : "at least ") << range.least;
+    if (std::isfinite(range.most)) what << " and at most " << range.most;
+    if (!std::isfinite(value)) what << " and finite";
+    wrong(name, what.str());
+  }
+
+  const ros::NodeHandle &handle_;
+  std::set<std::string> known_;
+};
+
+} // namespace
+
+Parameters readParameters(const ros::NodeHandle &handle) {
+  Parameters parameters;
+  Reader reader(handle);
+  visitParameters(parameters, reader);
+  reader.warnOfOthers();
+
+  // What a type and a range cannot say.
+  if (parameters.fixed_frame.empty()) throw ParameterError("parameter ~fixed_frame: the name of a frame is expected");
+  if (parameters.robot_description.find('<') != std::string::npos)
+    throw ParameterError(
+        "parameter ~robot_description: the name of the parameter that holds the URDF is expected, not the URDF itself");
+  return parameters;
+}
+
+} // namespace curve_proximity

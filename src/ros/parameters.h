@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The server's parameters: one table of name, default and range, from which they are read and checked. */
+#ifndef CURVE_PROXIMITY_ROS_PARAMETERS_H
+#define CURVE_PROXIMITY_ROS_PARAMETERS_H
+
+#include <ros/node_handle.h>
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace curve_proximity {
+
+/** A parameter that is wrong; what() names it and says what is expected. */
+class ParameterError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/** Units, meanings and defaults as config/defaults.yaml documents them; a test compares the two. */
+struct Parameters {
+  std::string robot_description = "robot_description";
+  std::string urdf_dir;
+  bool allow_missing_geometry = false;
+  std::string fixed_frame = "world";
+  double tf_timeout = 0.5;
+  double epsilon = 1e-6;
+  int max_nodes = 20000;
+  double budget_ms = 5000.0;
+  int threads = 4;
+  int memory_limit_mb = 4096;
+  int max_curves = 20000;
+  int max_control_points = 2000000;
+  int max_results = 200000;
+};
+
+/** The values a number may take: least < value or least <= value, value <= most. */
+struct Range {
+  double least = 0.0;
+  bool open = false; /**< least itself is not allowed */
+  double most = std::numeric_limits<double>::infinity();
+};
+
+/** Shows every parameter to a visitor: visit(name, value, range) for numbers, visit(name, value) for the others. */
+template <class Fields, class Visitor>
+void visitParameters(Fields &parameters, Visitor &&visit) {
+  constexpr double count = std::numeric_limits<int>::max();
+  visit("robot_description", parameters.robot_description);
+  visit("urdf_dir", parameters.urdf_dir);
+  visit("allow_missing_geometry", parameters.allow_missing_geometry);
+  visit("fixed_frame", parameters.fixed_frame);
+  visit("tf_timeout", parameters.tf_timeout, Range{0.0, false, 3600.0});
+  visit("epsilon", parameters.epsilon, Range{0.0, true});
+  visit("max_nodes", parameters.max_nodes, Range{1.0, false, count});
+  visit("budget_ms", parameters.budget_ms, Range{0.0, true, 1e9});
+  visit("threads", parameters.threads, Range{1.0, false, 256.0});
+  visit("memory_limit_mb", parameters.memory_limit_mb, Range{0.0, false, count});
+  visit("max_curves", parameters.max_curves, Range{1.0, false, count});
+  visit("max_control_points", parameters.max_control_points, Range{1.0, false, count});
+  visit("max_results", parameters.max_results, Range{1.0, false, count});
+}
+
+/** Reads the parameters of a private handle; those that are not set keep their defaults.
+ *  Throws ParameterError for a wrong type or value. Names that are none of ours are warned of. */
+Parameters readParameters(const ros::NodeHandle &handle);
+
+} // namespace curve_proximity
+#endif

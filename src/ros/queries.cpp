@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "queries.h"
+
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "conversions.h"
+
+namespace curve_proximity {
+namespace {
+
+/** Markers show no more curves than a person can tell apart. */
+constexpr std::size_t MAX_DRAWN_CURVES = 100;
+
+/** Ends a query when its time is over or the server goes. */
+class TimeBudget {
+ public:
+  TimeBudget(double milliseconds, const std::atomic<bool> &stop)
+      : milliseconds_(milliseconds),
+        deadline_(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                                         std::chrono::duration<double, std::milli>(milliseconds))),
+        stop_(stop) {}
+
+  /** In the shape of cprox_options.stop. */
+  static bool isOver(void *user) {
+    const TimeBudget &budget = *static_cast<const TimeBudget *>(user);
+    return budget.stop_ || std::chrono::steady_clock::now() >= budget.deadline_;
+  }
+
+  std::string reason() const {
+    if (stop_) return "the server is shutting down";
+    std::ostringstream text;
+    text << "~budget_ms = " << milliseconds_ << " are over";
+    return text.str();
+  }
+
+ private:
+  const double milliseconds_;
+  const std::chrono::steady_clock::time_point deadline_;
+  const std::atomic<bool> &stop_;
+};
+
+void limit(const char *parameter, std::size_t most, std::size_t count, const char *what) {
+  if (count <= most) return;
+  throw Error(std::to_string(count) + " " + what + " are more than ~" + parameter + " = " + std::to_string(most));
+}
+
+/** Everything that a question is measured against, for one stamp after the other. For one thread. */
+class StampedTargets {
+ public:
+  StampedTargets(SnapshotPtr snapshot, const Question &question, const sensor_msgs::JointState &joint_state,
+                 FrameLookup &lookup)
+      : snapshot_(std::move(snapshot)), question_(question), lookup_(lookup) {
+    const bool everything = question.objects.empty() && question.links.empty();
+    if (!question.links.empty() && !snapshot_->robot())
+      throw Error("link '" + question.links.front() + "': this server has no robot, only objects");
+    with_robot_ = snapshot_->robot() && (everything || !question.links.empty());
+    from_joints_ = with_robot_ && !joint_state.name.empty();
+    if (from_joints_) positions_ = toJointPositions(joint_state);
+  }
+
+  struct Stamped {
+    LinkPoses links;
+    Targets targets;
+  };
+
+  const Stamped &at(const ros::Time &stamp) {
+    // Without a robot nothing depends on the stamp.
+    const ros::Time key = with_robot_ ? stamp : ros::Time();
+    auto found = stamped_.find(key);
+    if (found == stamped_.end()) {
+      LinkPoses links = with_robot_ ? linkPoses(stamp) : LinkPoses();
+      Targets targets(snapshot_, links, question_);
+      found = stamped_.emplace(key, Stamped{std::move(links), std::move(targets)}).first;
+    }
+    return found->second;
+  }
+
+ private:
+  /** From the request's joints, the root link brought to the fixed frame by tf2; else every link by tf2. */
+  LinkPoses linkPoses(const ros::Time &stamp) {
+    const Robot &robot = *snapshot_->robot();
+    if (from_joints_) return robot.linkPoses(positions_, lookup_.toFixed(robot.rootLink(), stamp));
+    LinkPoses poses;
+    if (question_.links.empty()) {
+      for (const auto &link : robot.links()) {
+        if (!link.second.empty()) poses[link.first] = lookup_.toFixed(link.first, stamp);
+      }
+    }
+    for (const std::string &link : question_.links) {
+      if (robot.links().count(link)) poses[link] = lookup_.toFixed(link, stamp);
+    }
+    return poses;
+  }
+
+  const SnapshotPtr snapshot_;
+  const Question &question_;
+  FrameLookup &lookup_;
+  bool with_robot_ = false, from_joints_ = false;
+  JointPositions positions_;
+  std::map<ros::Time, Stamped> stamped_;
+};
+
+/** Counts the rows that have no answer and keeps the first one's reason. */
+class Failures {
+ public:
+  void count(const Proximity &row, std::size_t curve) {
+    if (failed_++ == 0) first_ = "curve " + std::to_string(curve) + " ('" + row.id + "'): " + row.message;
+  }
+
+  void tell(QueryResponse &response) const {
+    if (failed_ == 0) return;
+    response.success = false;
+    response.message =
+        std::to_string(failed_) + " of " + std::to_string(response.results.size()) + " rows failed; " + first_;
+  }
+
+ private:
+  std::size_t failed_ = 0;
+  std::string first_;
+};
+
+} // namespace
+
+Question Queries::toQuestion(const QueryRequest &request) const {
+  // Here NaN and negative numbers are told once, not once a row; 0 means the server's own.
+  if (request.epsilon != 0.0 && !(request.epsilon > 0.0 && std::isfinite(request.epsilon)))
+    throw Error("epsilon is " + std::to_string(request.epsilon) + ": it must be above 0 and finite, or 0 for ~epsilon");
+  if (!(request.delta >= 0.0 && std::isfinite(request.delta)))
+    throw Error("delta is " + std::to_string(request.delta) + ": it must be at least 0 and finite");
+  Question question;
+  question.verb = request.verb;
+  question.delta = request.delta;
+  question.options.epsilon = request.epsilon != 0.0 ? request.epsilon : parameters_.epsilon;
+  question.options.max_nodes =
+      request.max_nodes != 0 ? request.max_nodes : static_cast<std::uint32_t>(parameters_.max_nodes);
+  question.per_object = request.per_object;
+  question.objects = request.objects;
+  question.links = request.links;
+  return question;
+}
+
+void Queries::checkLimits(const QueryRequest &request, const Snapshot &snapshot) const {
+  limit("max_curves", static_cast<std::size_t>(parameters_.max_curves), request.curves.size(), "curves");
+  std::size_t points = 0;
+  for (const Curve &curve : request.curves) points += curve.points.size();
+  limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), points, "control points");
+
+  // With per_object the answer may be far larger than the question.
+  std::size_t targets = 1;
+  if (request.per_object) {
+    const bool everything = request.objects.empty() && request.links.empty();
+    targets = request.objects.size() + request.links.size();
+    if (everything) targets = snapshot.objects().size() + (snapshot.robot() ? snapshot.robot()->links().size() : 0);
+  }
+  limit("max_results", static_cast<std::size_t>(parameters_.max_results), request.curves.size() * targets, "results");
+}
+
+void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing) {
+  // One snapshot for all curves: what changes meanwhile does not change this answer.
+  TimeBudget budget(parameters_.budget_ms, stop_);
+  Question question = toQuestion(request);
+  question.options.stop = TimeBudget::isOver;
+  question.options.stop_user = &budget;
+  const SnapshotPtr snapshot = scene_.snapshot();
+  checkLimits(request, *snapshot);
+
+  // Each curve is answered on its own: what is wrong with it fails its row only.
+  FrameLookup lookup(frames_);
+  StampedTargets targets(snapshot, question, request.joint_state, lookup);
+  const WorkspacePool::Lease workspace(workspaces_);
+  response.results.reserve(request.curves.size());
+  Failures failures;
+  for (std::size_t i = 0; i < request.curves.size(); ++i) {
+    const Curve &message = request.curves[i];
+    try {
+      // The curve's frame, the robot and the curve itself: each may be what is wrong with this row.
+      const CurveDescription description =
+          toDescription(message, lookup.toFixed(message.header.frame_id, message.header.stamp));
+      CompiledCurve curve = compile(description);
+      const StampedTargets::Stamped &stamped = targets.at(message.header.stamp);
+      std::vector<Answer> answers = ask(stamped.targets, curve, question, *workspace);
+      for (Answer &answer : answers) {
+        if (answer.result.status == CPROX_STOPPED) answer.message = budget.reason();
+        response.results.push_back(toMessage(answer, request.verb));
+        if (answer.result.status < 0) failures.count(response.results.back(), i);
+      }
+      if (drawing.lines.size() < MAX_DRAWN_CURVES) {
+        drawing.links = stamped.links;
+        drawing.lines.push_back({std::move(curve), std::move(answers)});
+      }
+    } catch (const Error &error) {
+      response.results.push_back(toFailedRow(message.id, error.what()));
+      failures.count(response.results.back(), i);
+    }
+  }
+  failures.tell(response);
+  drawing.snapshot = snapshot;
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The robot that the server's parameters name. */
+#ifndef CURVE_PROXIMITY_ROS_ROBOT_DESCRIPTION_H
+#define CURVE_PROXIMITY_ROS_ROBOT_DESCRIPTION_H
+
+#include <ros/node_handle.h>
+
+#include <curve_proximity/robot.hpp>
+#include <memory>
+
+#include "parameters.h"
+
+namespace curve_proximity {
+
+/** Finds mesh files of packages by rospack. */
+ResourceOptions resourceOptions(const std::string &base_dir);
+
+/** The robot whose URDF stands in the parameter that ~robot_description names, searched upwards from the handle's
+ *  namespace; null, with a line in the log, where nobody has set one.
+ *  Throws ParameterError where a name was given but no URDF stands there, Error where the URDF is unusable. */
+std::shared_ptr<const Robot> loadRobot(const ros::NodeHandle &handle, const Parameters &parameters);
+
+} // namespace curve_proximity
+#endif
