@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Curves from their descriptions, and the boxes that the broadphase asks about. */
+#include <algorithm>
+#include <cmath>
+
+#include <curve_proximity/query.hpp>
+
+namespace curve_proximity {
+namespace {
+
+/* Boxes a curve is cut into: few enough to be cheap to ask about, enough to follow a bend. */
+constexpr std::size_t BOXES = 8;
+constexpr std::size_t MOST_BOXES = 32;
+
+/* Control points of a part of a curve are within (12 degree + 20) 2^-53 of the largest coordinate: below 1e-13. */
+constexpr double BOX_MARGIN = 1e-12;
+
+Eigen::AlignedBox3d bounds(const cprox_curve *curve) {
+  cprox_vec3 lowest, highest;
+  cprox_curve_bounds(curve, &lowest, &highest);
+  return {toEigen(lowest), toEigen(highest)};
+}
+
+/* Cuts each of the intervals between the breaks into `parts`; empty where the intervals are too short to cut. */
+std::vector<Eigen::AlignedBox3d> cutBoxes(const cprox_curve *curve, const std::vector<double> &breaks,
+                                          std::size_t parts) {
+  const Eigen::AlignedBox3d whole = bounds(curve);
+  const double size = whole.min().cwiseAbs().cwiseMax(whole.max().cwiseAbs()).maxCoeff();
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(BOX_MARGIN * size);
+
+  std::vector<cprox_vec3> points(cprox_curve_degree(curve) + 1);
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+    double from = breaks[i];
+    for (std::size_t k = 1; k <= parts; ++k) {
+      const double s = static_cast<double>(k) / static_cast<double>(parts);
+      const double to = k == parts ? breaks[i + 1] : (1.0 - s) * breaks[i] + s * breaks[i + 1];
+      if (!(from < to) || cprox_curve_control_points(curve, from, to, nullptr, points.data()) != CPROX_OK) return {};
+      Eigen::AlignedBox3d box;
+      for (const cprox_vec3 &p : points) box.extend(toEigen(p));
+      boxes.emplace_back(box.min() - margin, box.max() + margin);
+      from = to;
+    }
+  }
+  return boxes;
+}
+
+/* The spans of a B-spline that meet [t0, t1]: knots[j] < knots[j+1]. */
+std::vector<std::size_t> spansOf(const CurveDescription &curve) {
+  std::vector<std::size_t> spans;
+  for (std::size_t j = curve.degree; j < static_cast<std::size_t>(curve.points.cols()); ++j) {
+    const double from = curve.knots[j], to = curve.knots[j + 1];
+    if (from < to && from <= curve.t1 && to >= curve.t0) spans.push_back(j);
+  }
+  return spans;
+}
+
+/* Span j lies in the hull of points j-degree … j, exactly: a box for every group of spans. */
+std::vector<Eigen::AlignedBox3d> spanBoxes(const CurveDescription &curve, const std::vector<std::size_t> &spans) {
+  std::vector<Eigen::AlignedBox3d> boxes;
+  const std::size_t a_box = (spans.size() + MOST_BOXES - 1) / MOST_BOXES;
+  for (std::size_t first = 0; first < spans.size(); first += a_box) {
+    const std::size_t last = std::min(first + a_box, spans.size()) - 1;
+    const auto from = static_cast<Eigen::Index>(spans[first] - curve.degree);
+    const auto n = static_cast<Eigen::Index>(spans[last]) - from + 1;
+    const auto points = curve.points.middleCols(from, n);
+    boxes.emplace_back(points.rowwise().minCoeff(), points.rowwise().maxCoeff());
+  }
+  return boxes;
+}
+
+std::vector<Eigen::AlignedBox3d> splineBoxes(const CurveDescription &description, const cprox_curve *curve) {
+  const std::vector<std::size_t> spans = spansOf(description);
+  if (spans.size() > BOXES) return spanBoxes(description, spans);
+  std::vector<double> breaks = {description.t0};
+  for (const std::size_t j : spans) {
+    const double knot = description.knots[j];
+    if (knot > breaks.back() && knot < description.t1) breaks.push_back(knot);
+  }
+  breaks.push_back(description.t1);
+  return cutBoxes(curve, breaks, (BOXES + breaks.size() - 2) / (breaks.size() - 1));
+}
+
+} // namespace
+
+CompiledCurve compile(const CurveDescription &curve) {
+  if (!std::isfinite(curve.radius) || curve.radius < 0.0) throw Error("the radius must be finite and not below 0");
+  CompiledCurve out;
+  out.id = curve.id;
+  out.radius = curve.radius;
+
+  if (curve.basis == "bezier") {
+    const auto n = static_cast<std::size_t>(curve.points.cols());
+    if (curve.degree != 0 && curve.degree + 1 != n) {
+      throw Error("a bezier curve of degree " + std::to_string(curve.degree) + " has " +
+                  std::to_string(curve.degree + 1) + " points, got " + std::to_string(n));
+    }
+    if (!curve.knots.empty()) throw Error("a bezier curve takes no knots, got " + std::to_string(curve.knots.size()));
+    out.curve = makeBezier(curve.points, curve.t0, curve.t1);
+    out.boxes = cutBoxes(out.curve.get(), {curve.t0, curve.t1}, BOXES);
+  } else if (curve.basis == "bspline") {
+    out.curve = makeBspline(curve.points, curve.degree, curve.knots, curve.t0, curve.t1);
+    out.boxes = splineBoxes(curve, out.curve.get());
+  } else {
+    throw Error("basis '" + curve.basis + "' is not available");
+  }
+  if (out.boxes.empty()) out.boxes.push_back(bounds(out.curve.get()));
+  return out;
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include <array>
+#include <utility>
+
+#include <curve_proximity/description.hpp>
+
+namespace curve_proximity {
+namespace {
+
+constexpr std::array<std::pair<ShapeType, const char *>, 10> SHAPE_TYPES = {{{ShapeType::POINT, "point"},
+                                                                             {ShapeType::SPHERE, "sphere"},
+                                                                             {ShapeType::BOX, "box"},
+                                                                             {ShapeType::CAPSULE, "capsule"},
+                                                                             {ShapeType::CYLINDER, "cylinder"},
+                                                                             {ShapeType::CONE, "cone"},
+                                                                             {ShapeType::ELLIPSOID, "ellipsoid"},
+                                                                             {ShapeType::HALFSPACE, "halfspace"},
+                                                                             {ShapeType::POLYTOPE, "polytope"},
+                                                                             {ShapeType::MESH, "mesh"}}};
+
+} // namespace
+
+const char *shapeTypeName(ShapeType type) {
+  for (const auto &entry : SHAPE_TYPES) {
+    if (entry.first == type) return entry.second;
+  }
+  return "unknown";
+}
+
+std::optional<ShapeType> shapeTypeFromName(const std::string &name) {
+  for (const auto &entry : SHAPE_TYPES) {
+    if (entry.second == name) return entry.first;
+  }
+  return std::nullopt;
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include <curve_proximity/geometry.hpp>
+
+#include "mesh.h"
+
+namespace curve_proximity {
+namespace {
+
+/* What a type expects in `dimensions`: how many, and what they are called. */
+struct Expected {
+  std::size_t n;
+  const char *names;
+};
+
+Expected expectedDimensions(ShapeType type) {
+  switch (type) {
+    case ShapeType::SPHERE: return {1, "[radius]"};
+    case ShapeType::BOX: return {3, "[x, y, z]"};
+    case ShapeType::CAPSULE:
+    case ShapeType::CYLINDER:
+    case ShapeType::CONE: return {2, "[height, radius]"};
+    case ShapeType::ELLIPSOID: return {3, "[x, y, z] (semi-axes)"};
+    case ShapeType::HALFSPACE: return {4, "[a, b, c, d]"};
+    case ShapeType::POINT:
+    case ShapeType::POLYTOPE:
+    case ShapeType::MESH: break;
+  }
+  return {0, ""};
+}
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", x);
+  return text;
+}
+
+void checkDimensions(const ShapeDescription &shape) {
+  const std::string name = shapeTypeName(shape.type);
+  const Expected expected = expectedDimensions(shape.type);
+  const std::size_t n = shape.dimensions.size();
+
+  const bool scaled_mesh = shape.type == ShapeType::MESH && n == 3;
+  if (n != expected.n && !scaled_mesh) {
+    const std::string wanted = expected.n == 0   ? "no dimensions"
+                               : expected.n == 1 ? "1 dimension "
+                                                 : std::to_string(expected.n) + " dimensions ";
+    throw Error(name + " needs " + wanted + expected.names + ", got " + std::to_string(n));
+  }
+
+  const bool positive = shape.type != ShapeType::HALFSPACE && shape.type != ShapeType::MESH;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = shape.dimensions[i];
+    if (std::isfinite(x) && (x > 0.0 || !positive)) continue;
+    throw Error(name + " dimension " + std::to_string(i) + " of " + (expected.n ? expected.names : "the scale") +
+                " is " + number(x) + ": it must be finite" + (positive ? " and above 0" : ""));
+  }
+}
+
+void checkVertices(const ShapeDescription &shape) {
+  const std::string name = shapeTypeName(shape.type);
+  const Eigen::Index n = shape.vertices.cols();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!shape.vertices.col(i).allFinite()) throw Error(name + " vertex " + std::to_string(i) + " is not finite");
+  }
+
+  // Which types have vertices, and what else belongs to a mesh alone.
+  const bool mesh = shape.type == ShapeType::MESH;
+  if (shape.type == ShapeType::POINT && n > 1) throw Error("point needs at most 1 vertex, got " + std::to_string(n));
+  if (shape.type == ShapeType::POLYTOPE && n == 0) throw Error("polytope has no vertices");
+  if (shape.type != ShapeType::POINT && shape.type != ShapeType::POLYTOPE && !mesh && n > 0) {
+    throw Error(name + " takes no vertices, got " + std::to_string(n));
+  }
+  if (!mesh && shape.triangles.cols() > 0) throw Error(name + " takes no triangles");
+  if (!mesh && !shape.resource.empty()) throw Error(name + " takes no mesh file, got '" + shape.resource + "'");
+  if (mesh && !shape.resource.empty() && (n > 0 || shape.triangles.cols() > 0)) {
+    throw Error("mesh '" + shape.resource + "' has vertices or triangles beside the file: give one of the two");
+  }
+}
+
+Geometry makeMesh(const ShapeDescription &shape, const ResourceOptions &options) {
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+  if (!shape.dimensions.empty()) scale = Eigen::Map<const Eigen::Vector3d>(shape.dimensions.data());
+  if (shape.resource.empty()) return hullOfMesh({shape.vertices, shape.triangles}, scale);
+
+  const MeshData data = readMesh(resolveResource(shape.resource, options));
+  try {
+    return hullOfMesh(data, scale);
+  } catch (const Error &error) {
+    throw Error("mesh '" + shape.resource + "': " + error.what(), error.status());
+  }
+}
+
+BodyHandle makePrimitive(const ShapeDescription &shape) {
+  const std::vector<double> &d = shape.dimensions;
+  switch (shape.type) {
+    case ShapeType::POINT:
+      return makePoint(shape.vertices.cols() ? Eigen::Vector3d(shape.vertices.col(0)) : Eigen::Vector3d::Zero());
+    case ShapeType::SPHERE: return makeSphere(d[0]);
+    case ShapeType::BOX: return makeBox({d[0], d[1], d[2]});
+    case ShapeType::CAPSULE: return makeCapsule(d[0], d[1]);
+    case ShapeType::CYLINDER: return makeCylinder(d[0], d[1]);
+    case ShapeType::CONE: return makeCone(d[0], d[1]);
+    case ShapeType::ELLIPSOID: return makeEllipsoid({d[0], d[1], d[2]});
+    case ShapeType::HALFSPACE: return makeHalfspace({d[0], d[1], d[2]}, d[3]);
+    case ShapeType::POLYTOPE: return makePolytope(shape.vertices);
+    case ShapeType::MESH: break;
+  }
+  throw Error("a shape's type is not known");
+}
+
+bool startsWith(const std::string &text, const std::string &start) {
+  return text.compare(0, start.size(), start) == 0;
+}
+
+/* %41 is A, as URIs have it. */
+std::string decodePercent(const std::string &text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool code = text[i] == '%' && i + 2 < text.size() && std::isxdigit(static_cast<unsigned char>(text[i + 1])) &&
+                      std::isxdigit(static_cast<unsigned char>(text[i + 2]));
+    out += code ? static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16)) : text[i];
+    if (code) i += 2;
+  }
+  return out;
+}
+
+/* The path that a URI means, whether it is there or not. */
+std::string pathOf(const std::string &uri, const ResourceOptions &options) {
+  const std::string who = "mesh '" + uri + "': ";
+  if (startsWith(uri, "package://")) {
+    const std::string rest = uri.substr(10);
+    const std::size_t slash = rest.find('/');
+    const std::string package = rest.substr(0, slash);
+    if (package.empty() || slash == std::string::npos) throw Error(who + "package://NAME/path is wanted");
+    if (!options.find_package) throw Error(who + "there is nowhere to look for package '" + package + "'");
+    const std::string folder = options.find_package(package);
+    if (folder.empty()) throw Error(who + "package '" + package + "' was not found");
+    return folder + rest.substr(slash);
+  }
+  if (startsWith(uri, "file://")) {
+    const std::string rest = decodePercent(uri.substr(startsWith(uri, "file://localhost/") ? 16 : 7));
+    if (!startsWith(rest, "/")) throw Error(who + "file:// needs an absolute path (three slashes)");
+    return rest;
+  }
+  const std::size_t scheme = uri.find("://");
+  if (scheme != std::string::npos) {
+    throw Error(who + uri.substr(0, scheme) + ":// is not fetched: give package://, file:// or a path");
+  }
+  if (startsWith(uri, "/")) return uri;
+  if (options.base_dir.empty()) throw Error(who + "the path is relative, and there is no folder it is relative to");
+  return options.base_dir + "/" + uri;
+}
+
+} // namespace
+
+std::string resolveResource(const std::string &uri, const ResourceOptions &options) {
+  if (uri.empty()) throw Error("mesh without a file name");
+  const std::string path = pathOf(uri, options);
+
+  // There, a file, and not empty.
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw Error("mesh '" + uri + "': there is no file '" + path + "'");
+  if (!std::filesystem::is_regular_file(status)) throw Error("mesh '" + uri + "': '" + path + "' is no regular file");
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error || size == 0) throw Error("mesh '" + uri + "': '" + path + "' is empty");
+  return path;
+}
+
+Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options) {
+  checkDimensions(shape);
+  checkVertices(shape);
+  if (shape.type == ShapeType::MESH) return makeMesh(shape, options);
+  Geometry out;
+  out.body = makePrimitive(shape);
+  return out;
+}
+
+} // namespace curve_proximity

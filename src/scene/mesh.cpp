@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+#include <geometric_shapes/bodies.h>
+#include <geometric_shapes/mesh_operations.h>
+
+namespace curve_proximity {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+/* Below so many vertices a hull computation costs more than it saves. */
+constexpr std::size_t FEW_VERTICES = 16;
+
+/* Vertices that the hull computation dropped may stand out of the hull by this fraction of the mesh's size: then they
+ * are covered by Geometry::excess. Farther ones are taken back. */
+constexpr double DROPPED_TOLERANCE = 1e-12;
+
+/* A mesh whose thickness is below this fraction of its size has no hull that qhull could compute. */
+constexpr double FLATNESS = 1e-9;
+
+/* Accuracy of cprox_body_nearest(), per unit of |point| + size (cprox/body.h). */
+constexpr double NEAREST_ROUNDING = 64.0 * std::numeric_limits<double>::epsilon() / 2.0;
+
+void checkTriangles(const MeshData &mesh) {
+  const Eigen::Index n = mesh.vertices.cols();
+  if (mesh.triangles.cols() == 0) throw Error("mesh has no triangle");
+  for (Eigen::Index k = 0; k < mesh.triangles.size(); ++k) {
+    const int index = mesh.triangles.data()[k];
+    if (index >= 0 && index < n) continue;
+    throw Error("mesh triangle " + std::to_string(k / 3) + " uses vertex " + std::to_string(index) +
+                ", but there are " + std::to_string(n) + " vertices");
+  }
+}
+
+/* The scaled vertices that triangles use, each once, in lexical order. */
+Points usedVertices(const MeshData &mesh, const Eigen::Vector3d &scale) {
+  std::vector<bool> used(static_cast<std::size_t>(mesh.vertices.cols()), false);
+  for (Eigen::Index k = 0; k < mesh.triangles.size(); ++k) {
+    used[static_cast<std::size_t>(mesh.triangles.data()[k])] = true;
+  }
+
+  Points points;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const Eigen::Vector3d vertex = mesh.vertices.col(static_cast<Eigen::Index>(i));
+    const Eigen::Vector3d scaled = vertex.cwiseProduct(scale);
+    if (!scaled.allFinite()) throw Error("mesh vertex " + std::to_string(i) + " is not finite");
+    if (used[i]) points.push_back(scaled);
+  }
+
+  const auto key = [](const Eigen::Vector3d &p) { return std::make_tuple(p.x(), p.y(), p.z()); };
+  std::sort(points.begin(), points.end(),
+            [&](const Eigen::Vector3d &a, const Eigen::Vector3d &b) { return key(a) < key(b); });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+/* The farthest point by a measure, and how far. */
+template <typename Measure>
+std::pair<Eigen::Vector3d, double> farthest(const Points &points, Measure measure) {
+  std::pair<Eigen::Vector3d, double> best(points.front(), -1.0);
+  for (const Eigen::Vector3d &p : points) {
+    const double d = measure(p);
+    if (d > best.second) best = {p, d};
+  }
+  return best;
+}
+
+/* Is there no thickness to speak of? By the simplex of points that are each farthest from those before. */
+bool isFlat(const Points &points) {
+  const Eigen::Vector3d a = points.front();
+  const auto [b, length] = farthest(points, [&](const Eigen::Vector3d &p) { return (p - a).norm(); });
+  if (!(length > 0.0)) return true;
+  const Eigen::Vector3d along = (b - a) / length;
+  const auto [c, width] = farthest(points, [&](const Eigen::Vector3d &p) { return along.cross(p - a).norm(); });
+  if (!(width > FLATNESS * length)) return true;
+  const Eigen::Vector3d normal = along.cross(c - a) / width;
+  const auto [d, thickness] = farthest(points, [&](const Eigen::Vector3d &p) { return std::abs(normal.dot(p - a)); });
+  (void)d;
+  return !(thickness > FLATNESS * length);
+}
+
+/* The extreme points as qhull finds them; empty where it gives up. */
+Points extremePoints(const Points &points) {
+  shapes::Mesh mesh(static_cast<unsigned>(points.size()), 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Eigen::Map<Eigen::Vector3d>(mesh.vertices + 3 * i) = points[i];
+  }
+  const bodies::ConvexMesh hull(&mesh);
+  return Points(hull.getVertices().begin(), hull.getVertices().end());
+}
+
+BodyHandle polytopeOf(const Points &points) {
+  return makePolytope(
+      Eigen::Map<const Eigen::Matrix3Xd>(points.front().data(), 3, static_cast<Eigen::Index>(points.size())));
+}
+
+double largestCoordinate(const Points &points) {
+  double largest = 0.0;
+  for (const Eigen::Vector3d &p : points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  return largest;
+}
+
+} // namespace
+
+MeshData readMesh(const std::string &file) {
+  // The bytes are read here, not by a URI library: file names may hold any character.
+  std::ifstream stream(file, std::ios::binary);
+  const std::vector<char> bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!stream && bytes.empty()) throw Error("mesh '" + file + "' cannot be read");
+  if (bytes.empty()) throw Error("mesh '" + file + "' is empty");
+
+  const std::unique_ptr<const shapes::Mesh> mesh(shapes::createMeshFromBinary(bytes.data(), bytes.size(), file));
+  if (!mesh || mesh->triangle_count == 0) throw Error("mesh '" + file + "' holds no triangle that can be read");
+
+  MeshData data;
+  data.vertices = Eigen::Map<const Eigen::Matrix3Xd>(mesh->vertices, 3, mesh->vertex_count);
+  data.triangles =
+      Eigen::Map<const Eigen::Matrix<unsigned, 3, Eigen::Dynamic>>(mesh->triangles, 3, mesh->triangle_count)
+          .cast<int>();
+  return data;
+}
+
+Geometry hullOfMesh(const MeshData &mesh, const Eigen::Vector3d &scale) {
+  if (!scale.allFinite() || (scale.array() == 0.0).any()) throw Error("mesh scale must be finite and not 0");
+  checkTriangles(mesh);
+  const Points all = usedVertices(mesh, scale);
+
+  Geometry out;
+  out.by_hull = true;
+
+  // Extreme points only, where that pays and can be had.
+  Points kept;
+  if (all.size() > FEW_VERTICES && !isFlat(all)) kept = extremePoints(all);
+  if (kept.size() < 4) {
+    out.body = polytopeOf(all);
+    return out;
+  }
+  out.body = polytopeOf(kept);
+
+  // Qhull merges facets, so that points that it drops may stand out a little. What is dropped must be covered: by the
+  // body, by the excess, or by taking the point back.
+  const double size = largestCoordinate(all);
+  const double rounding = NEAREST_ROUNDING * 6.0 * size;
+  double excess = 0.0;
+  Points back;
+  for (const Eigen::Vector3d &p : all) {
+    const double out_by = cprox_body_nearest(out.body.get(), toVec3(p), nullptr);
+    if (out_by <= DROPPED_TOLERANCE * size) {
+      excess = std::max(excess, out_by);
+    } else {
+      back.push_back(p);
+    }
+  }
+  if (!back.empty()) {
+    kept.insert(kept.end(), back.begin(), back.end());
+    out.body = polytopeOf(kept);
+  }
+  out.excess = excess + rounding;
+  return out;
+}
+
+} // namespace curve_proximity

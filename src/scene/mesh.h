@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Meshes: from a file to vertices and triangles, and from those to the convex hull that answers for them. */
+#ifndef CURVE_PROXIMITY_SCENE_MESH_H
+#define CURVE_PROXIMITY_SCENE_MESH_H
+
+#include <string>
+
+#include <curve_proximity/geometry.hpp>
+
+namespace curve_proximity {
+
+struct MeshData {
+  Eigen::Matrix3Xd vertices; /* [m] */
+  Triangles triangles;
+};
+
+/* Reads any format that assimp knows. Throws Error, naming the file, where there is no triangle in it. */
+MeshData readMesh(const std::string &file);
+
+/* The convex hull of the vertices that triangles use, scaled along the axes.
+ * Throws Error: no triangle, an index out of range, vertices or scale not finite, a scale of 0. */
+Geometry hullOfMesh(const MeshData &mesh, const Eigen::Vector3d &scale);
+
+} // namespace curve_proximity
+#endif

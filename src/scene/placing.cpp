@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "placing.h"
+
+#include <cmath>
+#include <limits>
+
+namespace curve_proximity {
+namespace {
+
+/* What composing two poses and passing from a rotation matrix to a quaternion can do, per unit of length: a product of
+ * two 3×3 matrices and a sum (5 roundings an entry, rows of norm 1: 9 in all), the quaternion of a matrix (16, see
+ * core.hpp) whose own departure from a rotation is of the same size, and second order. */
+constexpr double COMPOSING = 64.0 * std::numeric_limits<double>::epsilon() / 2.0;
+
+/* The box's own margin, per unit of length: support values, the rotation of their directions, sums. */
+constexpr double BOXING = 1e-13;
+
+bool isRotated(const Eigen::Isometry3d &pose) {
+  return !(pose.linear() == Eigen::Matrix3d::Identity());
+}
+
+/* spread: what belongs to the body beyond its support values, padding and rounding of poses. */
+Eigen::AlignedBox3d boxOf(const cprox_body *body, const Eigen::Isometry3d &pose, double spread, double reach) {
+  // The body's extent along each axis of the fixed frame, by its support function.
+  const double margin = spread + BOXING * (reach + spread + pose.translation().norm());
+  Eigen::AlignedBox3d box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d along = pose.linear().row(axis).transpose();
+    const double position = pose.translation()[axis];
+    box.max()[axis] = position + cprox_body_support(body, toVec3(along), nullptr) + margin;
+    box.min()[axis] = position - cprox_body_support(body, toVec3(-along), nullptr) - margin;
+  }
+  return box;
+}
+
+} // namespace
+
+PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, const Eigen::Isometry3d &inner,
+                  double padding) {
+  const Eigen::Isometry3d pose = outer * inner;
+  if (!pose.matrix().allFinite()) throw Error("a shape's pose is not finite");
+
+  PlacedShape out;
+  const BodyHandle &body = geometry.body;
+  out.target = at(body, pose, padding);
+  out.by_hull = geometry.by_hull;
+
+  // How far the body extends from its position.
+  cprox_vec3 centre;
+  double radius;
+  cprox_body_bounding_sphere(body.get(), &centre, &radius);
+  const double reach = toEigen(centre).norm() + radius;
+
+  // Rounding: sums of two translations, and the turn of what is rotated.
+  const double a = outer.translation().norm(), b = inner.translation().norm();
+  const bool rotated = isRotated(outer) || isRotated(inner);
+  out.rounding = geometry.excess;
+  if (rotated || (a > 0.0 && b > 0.0)) out.rounding += COMPOSING * (a + b);
+  if (rotated && std::isfinite(reach)) out.rounding += COMPOSING * reach;
+  if (rotated && !std::isfinite(reach)) out.turning = COMPOSING;
+
+  const Eigen::Vector3d everywhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  out.box = std::isfinite(reach) ? boxOf(body.get(), pose, padding + out.rounding, reach)
+                                 : Eigen::AlignedBox3d(-everywhere, everywhere);
+  return out;
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A body brought into the fixed frame, with all that rounding can do on the way. */
+#ifndef CURVE_PROXIMITY_SCENE_PLACING_H
+#define CURVE_PROXIMITY_SCENE_PLACING_H
+
+#include <curve_proximity/scene.hpp>
+
+namespace curve_proximity {
+
+/* The geometry at outer * inner, padded. Both poses finite, padding >= 0. Throws Error where the composed pose is not
+ * finite. */
+PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, const Eigen::Isometry3d &inner,
+                  double padding);
+
+/* Is it a halfspace: without a finite box? */
+inline bool unbounded(const PlacedShape &shape) {
+  return !shape.box.sizes().allFinite();
+}
+
+} // namespace curve_proximity
+#endif

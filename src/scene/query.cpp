@@ -1,0 +1,300 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <curve_proximity/query.hpp>
+
+#include "placing.h"
+#include "targets.h"
+
+namespace curve_proximity {
+namespace {
+
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
+
+/* Up to so many shapes the core alone is faster than asking the tree first. */
+constexpr std::size_t FEW_SHAPES = 8;
+
+/* Room for the rounding of a sum of a few lengths. */
+constexpr double SUMS = 1e-14;
+
+using Clock = std::chrono::steady_clock;
+
+/* One search: a curve against some of the items. */
+struct Search {
+  const CompiledCurve &curve;
+  const Question &question;
+  const std::vector<Item> &items;
+  Workspace &workspace;
+
+  std::vector<std::uint32_t> chosen; /* indices of items that the core is to look at */
+  double left_out = INFINITE;        /* [m] what was not chosen is farther than this */
+
+  const PlacedShape &shape(std::uint32_t index) const {
+    return *items[index].shape;
+  }
+};
+
+/* ---- rounding ------------------------------------------------------------------------------------------------------ */
+
+/* How far the curve's points can be from a position. */
+double farthest(const CompiledCurve &curve, const cprox_vec3 &from) {
+  double far = 0.0;
+  for (const Eigen::AlignedBox3d &box : curve.boxes) {
+    const Eigen::Vector3d p = toEigen(from);
+    far = std::max(far, (box.min() - p).cwiseAbs().cwiseMax((box.max() - p).cwiseAbs()).norm());
+  }
+  return far + curve.radius;
+}
+
+/* The most that rounding can have moved any of the chosen shapes. */
+double roundingOf(const Search &search) {
+  double most = 0.0;
+  for (const std::uint32_t index : search.chosen) {
+    const PlacedShape &shape = search.shape(index);
+    double moved = shape.rounding;
+    if (shape.turning > 0.0) moved += shape.turning * farthest(search.curve, shape.target.pose.position);
+    most = std::max(most, moved);
+  }
+  return most;
+}
+
+/* ---- the choice of what can matter --------------------------------------------------------------------------------- */
+
+double gapTo(const CompiledCurve &curve, const PlacedShape &shape) {
+  double gap = INFINITE;
+  for (const Eigen::AlignedBox3d &box : curve.boxes) gap = std::min(gap, boxGap(box, shape.box));
+  return gap;
+}
+
+/* The bounded item whose box is nearest, and its box's distance. */
+struct Seed {
+  std::uint32_t index = 0;
+  double gap = INFINITE;
+};
+
+Seed nearestBoxOf(const Search &search, const Targets::Data &data) {
+  Seed seed;
+  const World &world = data.snapshot->world();
+  const NearestBox nearest = world.tree().nearest(search.curve.boxes);
+  if (nearest.gap < INFINITE) seed = {world.bounded()[nearest.id], nearest.gap};
+  for (std::size_t i = data.in_tree; i < search.items.size(); ++i) {
+    const auto index = static_cast<std::uint32_t>(i);
+    const double gap = unbounded(search.shape(index)) ? INFINITE : gapTo(search.curve, search.shape(index));
+    if (gap < seed.gap) seed = {index, gap};
+  }
+  return seed;
+}
+
+/* Chooses the items whose boxes are within reach of the curve's, the halfspaces and the seed. */
+void chooseWithin(double reach, const Seed &seed, const Targets::Data &data, Search &search) {
+  const World &world = data.snapshot->world();
+  std::vector<std::uint32_t> &chosen = search.chosen;
+  world.tree().within(search.curve.boxes, reach, chosen);
+  for (std::uint32_t &id : chosen) id = world.bounded()[id];
+  chosen.insert(chosen.end(), world.unbounded().begin(), world.unbounded().end());
+  for (std::size_t i = data.in_tree; i < search.items.size(); ++i) {
+    const auto index = static_cast<std::uint32_t>(i);
+    if (!(gapTo(search.curve, search.shape(index)) > reach)) chosen.push_back(index);
+  }
+  chosen.push_back(seed.index);
+
+  std::sort(chosen.begin(), chosen.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+}
+
+void chooseAll(Search &search, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) search.chosen.push_back(static_cast<std::uint32_t>(i));
+}
+
+/* Distance: nothing whose box is farther than some point of the curve is from the seed can be the nearest. */
+void chooseForDistance(const Seed &seed, const Targets::Data &data, Search &search) {
+  cprox_options rough = search.question.options;
+  rough.relative_epsilon = std::max(rough.relative_epsilon, 0.1);
+  cprox_result result{};
+  const cprox_status status = cprox_distance(along(search.curve.curve, search.curve.radius),
+                                             search.shape(seed.index).target, &rough, search.workspace.get(), &result);
+  if (status < 0) { // the core will refuse again, and say why
+    search.chosen.push_back(seed.index);
+    return;
+  }
+  const double upper = result.upper + search.shape(seed.index).rounding;
+  chooseWithin((upper + search.curve.radius) * (1.0 + SUMS), seed, data, search);
+  search.left_out = upper;
+}
+
+/* Verdicts: nothing whose box is farther than the limit, and a little more, can touch them. */
+void chooseForVerdict(double limit, const Seed &seed, const Targets::Data &data, Search &search) {
+  const double wide = limit + search.curve.radius;
+  const double more = std::max({search.question.options.epsilon, 1e-3 * wide, 1e-6});
+  if (!std::isfinite(wide + more) || wide < 0.0) { // the core will refuse, and say why
+    search.chosen.push_back(seed.index);
+    return;
+  }
+  chooseWithin(wide + more, seed, data, search);
+  const double boxes_apart = seed.gap * (1.0 - 1e-12) - search.curve.radius * (1.0 + SUMS);
+  search.left_out = std::max(limit + 0.5 * more, boxes_apart);
+}
+
+void choose(const Targets::Data &data, Search &search) {
+  const bool with_tree = data.in_tree > 0 && search.items.size() > FEW_SHAPES;
+  const Seed seed = with_tree ? nearestBoxOf(search, data) : Seed();
+  if (seed.gap == INFINITE) {
+    chooseAll(search, 0, search.items.size());
+    return;
+  }
+  switch (search.question.verb) {
+    case Verb::DISTANCE: chooseForDistance(seed, data, search); break;
+    case Verb::TOLERANCE: chooseForVerdict(search.question.delta, seed, data, search); break;
+    case Verb::COLLISION: chooseForVerdict(0.0, seed, data, search); break;
+  }
+  if (search.chosen.size() == search.items.size()) search.left_out = INFINITE;
+}
+
+/* ---- the search ---------------------------------------------------------------------------------------------------- */
+
+cprox_status runCore(const Search &search, const cprox_options &options, cprox_result &result) {
+  std::vector<cprox_target> targets;
+  targets.reserve(search.chosen.size());
+  for (const std::uint32_t index : search.chosen) targets.push_back(search.shape(index).target);
+
+  const cprox_mover mover = along(search.curve.curve, search.curve.radius);
+  cprox_workspace *workspace = search.workspace.get();
+  switch (search.question.verb) {
+    case Verb::DISTANCE:
+      return cprox_distance_all(mover, targets.data(), targets.size(), &options, workspace, &result, nullptr);
+    case Verb::TOLERANCE:
+      return cprox_tolerance_all(mover, targets.data(), targets.size(), search.question.delta, &options, workspace,
+                                 &result, nullptr);
+    case Verb::COLLISION: break;
+  }
+  return cprox_collision_all(mover, targets.data(), targets.size(), &options, workspace, &result, nullptr);
+}
+
+/* The verdict once more, by the interval as it is now: it may only have become less certain. */
+void reviewVerdict(const Question &question, cprox_result &result) {
+  const bool tolerance = question.verb == Verb::TOLERANCE;
+  const cprox_verdict apart = tolerance ? CPROX_YES : CPROX_NO;
+  const double limit = tolerance ? question.delta : 0.0;
+  if (result.verdict == apart && !(result.lower > limit)) result.verdict = CPROX_UNDECIDED;
+  if (tolerance && result.verdict == CPROX_NO && !(result.upper <= limit)) result.verdict = CPROX_UNDECIDED;
+}
+
+/* Widens the core's interval by what it does not know: rounding before it, shapes that it was not shown. */
+void widen(const Search &search, double rounding, cprox_result &result) {
+  const cprox_options &options = search.question.options;
+  result.lower = std::max(0.0, std::min(result.lower - rounding, search.left_out));
+  if (result.upper > 0.0) result.upper += rounding;
+
+  if (search.question.verb != Verb::DISTANCE) {
+    reviewVerdict(search.question, result);
+    return;
+  }
+  const double asked = std::max(options.epsilon, options.relative_epsilon * result.upper);
+  const bool narrow = result.upper - result.lower <= asked;
+  if (result.status == CPROX_OK && !narrow) result.status = CPROX_PRECISION;
+}
+
+void nameTarget(const Search &search, Answer &answer) {
+  const std::int32_t found = answer.result.target_index;
+  if (found < 0) return;
+  const Item &item = search.items[search.chosen[static_cast<std::size_t>(found)]];
+  answer.result.target_index = item.part;
+  answer.b = *item.owner;
+  answer.b_is_link = item.is_link;
+  answer.by_hull = item.shape->by_hull;
+  if (answer.by_hull) answer.message = "the nearest shape is a mesh: its convex hull answers for it";
+}
+
+/* Nothing to measure. */
+void answerNothing(const Question &question, cprox_result &result) {
+  result.lower = result.upper = INFINITE;
+  result.target_index = -1;
+  result.verdict = question.verb == Verb::DISTANCE    ? CPROX_UNDECIDED
+                   : question.verb == Verb::TOLERANCE ? CPROX_YES
+                                                      : CPROX_NO;
+}
+
+Answer answerOf(const Search &search) {
+  Answer answer;
+  answer.id = answer.a = search.curve.id;
+
+  // The part of epsilon that rounding takes is not the core's to use.
+  const double rounding = roundingOf(search);
+  cprox_options options = search.question.options;
+  if (options.epsilon > 4.0 * rounding) options.epsilon -= 2.0 * rounding;
+
+  cprox_result &result = answer.result;
+  result.target_index = -1;
+  result.status = runCore(search, options, result);
+  if (result.status < 0) {
+    answer.message = search.workspace.reason();
+  } else if (search.chosen.empty()) {
+    answerNothing(search.question, result);
+  } else {
+    widen(search, rounding, result);
+    nameTarget(search, answer);
+  }
+  if (result.status != CPROX_OK && answer.message.empty()) answer.message = cprox_status_text(result.status);
+  answer.status = cprox_status_name(result.status);
+  return answer;
+}
+
+double microsecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+} // namespace
+
+std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Question &question,
+                        Workspace &workspace) {
+  const Targets::Data &data = targets.data();
+  const std::vector<Item> &items = data.items;
+  std::vector<Answer> answers;
+
+  // One in all.
+  if (!question.per_object || items.empty()) {
+    const Clock::time_point start = Clock::now();
+    Search search{curve, question, items, workspace, {}, INFINITE};
+    choose(data, search);
+    answers.push_back(answerOf(search));
+    answers.back().microseconds = microsecondsSince(start);
+    return answers;
+  }
+
+  // One for each run of items of the same owner.
+  for (std::size_t first = 0; first < items.size();) {
+    const Clock::time_point start = Clock::now();
+    std::size_t last = first + 1;
+    while (last < items.size() && items[last].owner == items[first].owner) ++last;
+    Search search{curve, question, items, workspace, {}, INFINITE};
+    chooseAll(search, first, last);
+    answers.push_back(answerOf(search));
+    if (answers.back().b.empty()) { // refused: say of which
+      answers.back().b = *items[first].owner;
+      answers.back().b_is_link = items[first].is_link;
+    }
+    answers.back().microseconds = microsecondsSince(start);
+    first = last;
+  }
+  return answers;
+}
+
+std::vector<Answer> ask(const SnapshotPtr &snapshot, const LinkPoses &links, const CurveDescription &curve,
+                        const Question &question, Workspace &workspace) {
+  try {
+    return ask(Targets(snapshot, links, question), compile(curve), question, workspace);
+  } catch (const Error &error) {
+    Answer answer;
+    answer.id = answer.a = curve.id;
+    answer.result.status = error.status();
+    answer.result.target_index = -1;
+    answer.status = cprox_status_name(error.status());
+    answer.message = error.what();
+    return {answer};
+  }
+}
+
+} // namespace curve_proximity

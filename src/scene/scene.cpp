@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include <curve_proximity/scene.hpp>
+
+#include "placing.h"
+#include "world.h"
+
+namespace curve_proximity {
+namespace {
+
+using Objects = std::map<std::string, std::shared_ptr<const SceneObject>>;
+
+/* APPEND's pose must be the object's own, within what a conversion of frames costs. */
+constexpr double SAME_POSE = 1e-9;
+
+void checkPose(const Eigen::Isometry3d &pose) {
+  if (!pose.matrix().allFinite()) throw Error("its pose is not finite");
+}
+
+void checkPadding(double padding) {
+  if (!std::isfinite(padding) || padding < 0.0) throw Error("its padding must be finite and not below 0");
+}
+
+std::string shapeName(std::size_t number, std::size_t of) {
+  return of > 1 ? "shape " + std::to_string(number + 1) + ": " : "";
+}
+
+/* Bodies for the shapes from number `first` on; those before are there. */
+void makeBodies(SceneObject &object, std::size_t first, const ResourceOptions &resources) {
+  const std::vector<ShapeDescription> &shapes = object.description.shapes;
+  for (std::size_t i = first; i < shapes.size(); ++i) {
+    try {
+      checkPose(shapes[i].pose);
+      ObjectShape shape;
+      shape.geometry = makeGeometry(shapes[i], resources);
+      object.shapes.push_back(std::move(shape));
+    } catch (const Error &error) {
+      throw Error(shapeName(i, shapes.size()) + error.what(), error.status());
+    }
+  }
+}
+
+/* All shapes to where the object's pose and padding put them. */
+void placeShapes(SceneObject &object) {
+  const ObjectDescription &description = object.description;
+  for (std::size_t i = 0; i < object.shapes.size(); ++i) {
+    ObjectShape &shape = object.shapes[i];
+    shape.placed = place(shape.geometry, description.pose, description.shapes[i].pose, description.padding);
+  }
+}
+
+std::shared_ptr<const SceneObject> added(const ObjectDescription &given, const ResourceOptions &resources) {
+  if (given.shapes.empty()) throw Error("it has no shapes");
+  const auto object = std::make_shared<SceneObject>();
+  object->description = given;
+  makeBodies(*object, 0, resources);
+  placeShapes(*object);
+  return object;
+}
+
+std::shared_ptr<const SceneObject> appended(const SceneObject &before, const ObjectDescription &given,
+                                            const ResourceOptions &resources) {
+  if (given.shapes.empty()) throw Error("APPEND brings no shapes");
+  const Eigen::Matrix4d pose = given.pose.matrix();
+  const bool own = (pose - before.description.pose.matrix()).cwiseAbs().maxCoeff() <= SAME_POSE;
+  if (!own && pose != Eigen::Matrix4d::Identity()) {
+    throw Error("APPEND places shapes relative to the object's pose: give that pose or none (MOVE changes it)");
+  }
+
+  const auto object = std::make_shared<SceneObject>(before);
+  std::vector<ShapeDescription> &shapes = object->description.shapes;
+  shapes.insert(shapes.end(), given.shapes.begin(), given.shapes.end());
+  if (given.padding > 0.0) object->description.padding = given.padding;
+  makeBodies(*object, before.shapes.size(), resources);
+  placeShapes(*object);
+  return object;
+}
+
+std::shared_ptr<const SceneObject> moved(const SceneObject &before, const ObjectDescription &given) {
+  if (!given.shapes.empty()) throw Error("MOVE takes no shapes (ADD replaces an object)");
+  const auto object = std::make_shared<SceneObject>(before);
+  object->description.pose = given.pose;
+  object->description.frame = given.frame;
+  if (given.padding > 0.0) object->description.padding = given.padding;
+  placeShapes(*object);
+  return object;
+}
+
+/* One operation; throws Error and leaves the objects as they were where it cannot be done. */
+void applyOperation(const Operation &operation, const ResourceOptions &resources, Objects &objects) {
+  const ObjectDescription &given = operation.object;
+  if (operation.kind == Operation::Kind::REMOVE && given.id.empty()) {
+    objects.clear();
+    return;
+  }
+  if (given.id.empty()) throw Error("it has no id");
+  const auto it = objects.find(given.id);
+  const bool known = it != objects.end();
+  if (operation.kind == Operation::Kind::REMOVE) {
+    if (!known) throw Error("there is no object of that id to remove");
+    objects.erase(it);
+    return;
+  }
+
+  checkPose(given.pose);
+  checkPadding(given.padding);
+  switch (operation.kind) {
+    case Operation::Kind::MOVE:
+      if (!known) throw Error("there is no object of that id to move");
+      it->second = moved(*it->second, given);
+      break;
+    case Operation::Kind::APPEND:
+      if (known) {
+        it->second = appended(*it->second, given, resources);
+        break;
+      }
+      [[fallthrough]];
+    default: objects[given.id] = added(given, resources); break;
+  }
+}
+
+void checkLinkPaddings(const std::map<std::string, double> &paddings, const Robot *robot) {
+  for (const auto &[link, padding] : paddings) {
+    try {
+      checkPadding(padding);
+    } catch (const Error &error) {
+      throw Error("link '" + link + "': " + error.what());
+    }
+    if (!robot || robot->links().count(link) == 0) {
+      throw Error("link padding: " + (robot ? "robot '" + robot->name() + "' has no link '" + link + "'"
+                                            : "link '" + link + "' is unknown: the scene has no robot"));
+    }
+  }
+}
+
+/* An entry for each pair of names, in a fixed order. */
+void mergeAllowed(const std::vector<AllowedPair> &from, std::vector<AllowedPair> &into) {
+  const auto before = [](const AllowedPair &x, const AllowedPair &y) {
+    return std::tie(x.a, x.b) < std::tie(y.a, y.b);
+  };
+  for (AllowedPair pair : from) {
+    if (!pair.b.empty() && pair.b < pair.a) std::swap(pair.a, pair.b);
+    const auto it = std::lower_bound(into.begin(), into.end(), pair, before);
+    if (it != into.end() && !before(pair, *it)) {
+      *it = pair;
+    } else {
+      into.insert(it, pair);
+    }
+  }
+}
+
+} // namespace
+
+/* ---- World -------------------------------------------------------------------------------------------------------- */
+
+World::World(const Objects &objects) {
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const auto &[id, object] : objects) {
+    for (std::size_t i = 0; i < object->shapes.size(); ++i) {
+      const PlacedShape &shape = object->shapes[i].placed;
+      const auto index = static_cast<std::uint32_t>(items_.size());
+      items_.push_back({&shape, &id, false, static_cast<int>(i)});
+      if (curve_proximity::unbounded(shape)) {
+        unbounded_.push_back(index);
+      } else {
+        bounded_.push_back(index);
+        boxes.push_back(shape.box);
+      }
+    }
+  }
+  tree_ = std::make_unique<const Broadphase>(boxes);
+}
+
+/* ---- Snapshot ------------------------------------------------------------------------------------------------------ */
+
+Snapshot::Snapshot() = default;
+Snapshot::~Snapshot() = default;
+
+Snapshot::Snapshot(const Snapshot &other)
+    : version_(other.version_),
+      objects_(other.objects_),
+      robot_(other.robot_),
+      link_padding_(other.link_padding_),
+      default_link_padding_(other.default_link_padding_),
+      allowed_(other.allowed_) {}
+
+double Snapshot::linkPadding(const std::string &link) const {
+  const auto it = link_padding_.find(link);
+  return it == link_padding_.end() ? default_link_padding_ : it->second;
+}
+
+/* ---- Scene --------------------------------------------------------------------------------------------------------- */
+
+Scene::Scene(std::shared_ptr<const Robot> robot, ResourceOptions resources) : resources_(std::move(resources)) {
+  const std::shared_ptr<Snapshot> first(new Snapshot);
+  first->robot_ = std::move(robot);
+  first->world_ = std::make_unique<const World>(first->objects_);
+  snapshot_ = first;
+}
+
+SnapshotPtr Scene::snapshot() const {
+  const std::lock_guard<std::mutex> lock(current_);
+  return snapshot_;
+}
+
+std::vector<std::string> Scene::apply(const SceneChange &change) {
+  const std::lock_guard<std::mutex> one_at_a_time(changing_);
+  std::vector<std::string> faults;
+  const std::shared_ptr<Snapshot> next(new Snapshot(*snapshot()));
+  ++next->version_;
+  if (change.clear) {
+    next->objects_.clear();
+    next->allowed_.clear();
+    next->link_padding_.clear();
+    next->default_link_padding_ = 0.0;
+  }
+
+  for (const Operation &operation : change.operations) {
+    try {
+      applyOperation(operation, resources_, next->objects_);
+    } catch (const std::exception &error) {
+      faults.push_back("object '" + operation.object.id + "': " + error.what());
+    }
+  }
+  try {
+    checkLinkPaddings(change.link_padding, next->robot_.get());
+    if (change.default_link_padding) checkPadding(*change.default_link_padding);
+    for (const auto &[link, padding] : change.link_padding) next->link_padding_[link] = padding;
+    if (change.default_link_padding) next->default_link_padding_ = *change.default_link_padding;
+  } catch (const Error &error) {
+    faults.push_back(error.what());
+  }
+  mergeAllowed(change.allowed, next->allowed_);
+
+  // Made in full before it becomes visible.
+  next->world_ = std::make_unique<const World>(next->objects_);
+  const std::lock_guard<std::mutex> lock(current_);
+  snapshot_ = next;
+  return faults;
+}
+
+} // namespace curve_proximity

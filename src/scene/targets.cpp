@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "targets.h"
+
+#include <set>
+#include <utility>
+
+#include "placing.h"
+
+namespace curve_proximity {
+namespace {
+
+using Names = std::set<std::string>;
+
+void checkObjects(const Names &names, const Snapshot &snapshot) {
+  for (const std::string &name : names) {
+    if (snapshot.objects().count(name) == 0) throw Error("there is no object '" + name + "' in the scene");
+  }
+}
+
+void checkLinks(const Names &names, const LinkPoses &poses, const Robot *robot) {
+  if (!robot && !names.empty()) throw Error("link '" + *names.begin() + "' is unknown: the scene has no robot");
+  if (!robot && !poses.empty()) throw Error("poses of links were given, but the scene has no robot");
+  for (const std::string &name : names) {
+    const auto it = robot->links().find(name);
+    if (it == robot->links().end()) throw Error("robot '" + robot->name() + "' has no link '" + name + "'");
+    if (it->second.empty()) throw Error("link '" + name + "' has no collision geometry");
+  }
+  for (const auto &[name, pose] : poses) {
+    if (robot->links().count(name) == 0) throw Error("robot '" + robot->name() + "' has no link '" + name + "'");
+    if (!pose.matrix().allFinite()) throw Error("the pose of link '" + name + "' is not finite");
+  }
+}
+
+/* All of the world, or the objects that are named. */
+void addObjects(bool everything, const Names &names, Targets::Data &data) {
+  const std::vector<Item> &all = data.snapshot->world().items();
+  if (everything) {
+    data.items = all;
+    data.in_tree = all.size();
+    return;
+  }
+  for (const Item &item : all) {
+    if (names.count(*item.owner) > 0) data.items.push_back(item);
+  }
+}
+
+/* The links with geometry, each where its pose says. */
+void addLinks(bool everything, const Names &names, const LinkPoses &poses, Targets::Data &data) {
+  for (const auto &[name, geometries] : data.snapshot->robot()->links()) {
+    if (geometries.empty() || (!everything && names.count(name) == 0)) continue;
+    const auto pose = poses.find(name);
+    if (pose == poses.end()) throw Error("link '" + name + "' has collision geometry, but its pose is not known");
+    const double padding = data.snapshot->linkPadding(name);
+    for (std::size_t i = 0; i < geometries.size(); ++i) {
+      data.links.push_back(place(geometries[i].geometry, pose->second, geometries[i].pose, padding));
+      data.items.push_back({&data.links.back(), &name, true, static_cast<int>(i)});
+    }
+  }
+}
+
+} // namespace
+
+Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Question &question) {
+  const Names objects(question.objects.begin(), question.objects.end());
+  const Names named_links(question.links.begin(), question.links.end());
+  checkObjects(objects, *snapshot);
+  checkLinks(named_links, links, snapshot->robot().get());
+
+  auto data = std::make_unique<Data>();
+  data->snapshot = std::move(snapshot);
+  const bool everything = objects.empty() && named_links.empty();
+  addObjects(everything, objects, *data);
+  if (!links.empty() || !named_links.empty()) addLinks(everything, named_links, links, *data);
+  data_ = std::move(data);
+}
+
+Targets::~Targets() = default;
+Targets::Targets(Targets &&) noexcept = default;
+Targets &Targets::operator=(Targets &&) noexcept = default;
+
+} // namespace curve_proximity

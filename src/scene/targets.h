@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The shapes that a question is about. */
+#ifndef CURVE_PROXIMITY_SCENE_TARGETS_H
+#define CURVE_PROXIMITY_SCENE_TARGETS_H
+
+#include <deque>
+#include <vector>
+
+#include <curve_proximity/query.hpp>
+
+#include "world.h"
+
+namespace curve_proximity {
+
+struct Targets::Data {
+  SnapshotPtr snapshot;
+
+  /* Objects' shapes first, then the links': each owner's stand together. */
+  std::vector<Item> items;
+
+  /* The first items[] are the snapshot's world, all of it, in its order: its tree may be asked. Else 0. */
+  std::size_t in_tree = 0;
+
+  std::deque<PlacedShape> links; /* where the items of links point to */
+};
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* From URDF text to a Robot. urdfdom parses; what it drops without a word is found by counting, and refused. */
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <tinyxml2.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <curve_proximity/robot.hpp>
+
+#include "joint_parts.h"
+
+namespace curve_proximity {
+namespace {
+
+using tinyxml2::XMLElement;
+
+std::string attribute(const XMLElement &element, const char *name) {
+  const char *text = element.Attribute(name);
+  return text ? text : "";
+}
+
+/* ---- the document, before urdfdom sees it ---------------------------------------------------------------------- */
+
+/* Elements that say nothing about where collision geometry is. urdfdom gives up on a whole link where it dislikes one of
+ * them, so they are taken out. */
+void stripTo(XMLElement &parent, const std::set<std::string> &wanted) {
+  for (XMLElement *child = parent.FirstChildElement(); child;) {
+    XMLElement *next = child->NextSiblingElement();
+    if (!wanted.count(child->Name())) parent.DeleteChild(child);
+    child = next;
+  }
+}
+
+void checkJointElement(const XMLElement &joint) {
+  const std::string name = attribute(joint, "name");
+  if (name.empty()) throw Error("a joint has no name");
+  const std::string who = "joint '" + name + "': ";
+
+  static const std::set<std::string> types = {"revolute", "continuous", "prismatic", "fixed", "planar", "floating"};
+  const std::string type = attribute(joint, "type");
+  if (!types.count(type)) throw Error(who + "its type '" + type + "' is not known to URDF");
+  for (const char *end : {"parent", "child"}) {
+    const XMLElement *element = joint.FirstChildElement(end);
+    if (!element || attribute(*element, "link").empty()) throw Error(who + "it has no " + end + " link");
+  }
+  if ((type == "revolute" || type == "prismatic") && !joint.FirstChildElement("limit")) {
+    throw Error(who + "a " + type + " joint needs limits");
+  }
+}
+
+/* What stands in the document: the number of collision elements by link, and what kind each is. */
+struct Inventory {
+  std::map<std::string, std::vector<std::string>> collisions; /* geometry's element name, "" without one */
+};
+
+Inventory takeInventory(XMLElement &robot) {
+  Inventory inventory;
+  std::set<std::string> joints, children;
+  for (XMLElement *link = robot.FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
+    const std::string name = attribute(*link, "name");
+    if (name.empty()) throw Error("a link has no name");
+    if (inventory.collisions.count(name)) throw Error("link '" + name + "' occurs twice");
+    stripTo(*link, {"collision"});
+
+    std::vector<std::string> &kinds = inventory.collisions[name];
+    for (XMLElement *c = link->FirstChildElement("collision"); c; c = c->NextSiblingElement("collision")) {
+      const XMLElement *geometry = c->FirstChildElement("geometry");
+      const XMLElement *shape = geometry ? geometry->FirstChildElement() : nullptr;
+      kinds.emplace_back(shape ? shape->Name() : "");
+    }
+  }
+  for (XMLElement *joint = robot.FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint")) {
+    checkJointElement(*joint);
+    const std::string name = attribute(*joint, "name");
+    if (!joints.insert(name).second) throw Error("joint '" + name + "' occurs twice");
+    stripTo(*joint, {"parent", "child", "origin", "axis", "limit", "mimic"});
+    for (const char *end : {"parent", "child"}) {
+      const std::string link = attribute(*joint->FirstChildElement(end), "link");
+      if (!inventory.collisions.count(link)) {
+        throw Error("joint '" + name + "': its " + end + " link '" + link + "' does not exist");
+      }
+    }
+    const std::string child = attribute(*joint->FirstChildElement("child"), "link");
+    if (!children.insert(child).second) throw Error("link '" + child + "' is the child of two joints");
+  }
+  if (inventory.collisions.empty()) throw Error("the robot has no links");
+  return inventory;
+}
+
+/* ---- urdfdom's types in Eigen's ---------------------------------------------------------------------------------- */
+
+Eigen::Vector3d toEigen(const urdf::Vector3 &v) {
+  return {v.x, v.y, v.z};
+}
+
+Eigen::Isometry3d toPose(const urdf::Pose &pose, const std::string &who) {
+  const urdf::Rotation &r = pose.rotation;
+  const Eigen::Vector3d position = toEigen(pose.position);
+  if (!position.allFinite()) throw Error(who + "its origin is not finite");
+  try {
+    return toIsometry({toVec3(position), {r.w, r.x, r.y, r.z}});
+  } catch (const Error &error) {
+    throw Error(who + "its origin: " + error.what());
+  }
+}
+
+ShapeDescription describe(const urdf::Collision &collision, const std::string &who) {
+  ShapeDescription shape;
+  shape.pose = toPose(collision.origin, who);
+  const urdf::Geometry &geometry = *collision.geometry;
+  switch (geometry.type) {
+    case urdf::Geometry::SPHERE:
+      shape.type = ShapeType::SPHERE;
+      shape.dimensions = {static_cast<const urdf::Sphere &>(geometry).radius};
+      break;
+    case urdf::Geometry::BOX: {
+      const urdf::Vector3 &size = static_cast<const urdf::Box &>(geometry).dim;
+      shape.type = ShapeType::BOX;
+      shape.dimensions = {size.x, size.y, size.z};
+      break;
+    }
+    case urdf::Geometry::CYLINDER: {
+      const auto &cylinder = static_cast<const urdf::Cylinder &>(geometry);
+      shape.type = ShapeType::CYLINDER;
+      shape.dimensions = {cylinder.length, cylinder.radius};
+      break;
+    }
+    case urdf::Geometry::MESH: {
+      const auto &mesh = static_cast<const urdf::Mesh &>(geometry);
+      shape.type = ShapeType::MESH;
+      shape.resource = mesh.filename;
+      shape.dimensions = {mesh.scale.x, mesh.scale.y, mesh.scale.z};
+      if (shape.resource.empty()) throw Error(who + "its mesh has no file name");
+      break;
+    }
+  }
+  return shape;
+}
+
+std::string elementName(const std::string &link, std::size_t number, std::size_t of) {
+  const std::string which = of > 1 ? ", collision element " + std::to_string(number + 1) : "";
+  return "link '" + link + "'" + which + ": ";
+}
+
+} // namespace
+
+/* ---- the reader -------------------------------------------------------------------------------------------------- */
+
+/* Builds one Robot; has access to its members. */
+class RobotReader {
+ public:
+  explicit RobotReader(const RobotOptions &options) : options_(options), robot_(new Robot) {}
+
+  std::shared_ptr<const Robot> read(const std::string &xml) {
+    // Well-formed, and structured as a URDF.
+    tinyxml2::XMLDocument document;
+    if (document.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) {
+      throw Error("the URDF is no XML: " + std::string(document.ErrorStr()));
+    }
+    XMLElement *root = document.FirstChildElement("robot");
+    if (!root) throw Error("the URDF has no <robot> element");
+    if (attribute(*root, "name").empty()) throw Error("the robot has no name");
+    stripTo(*root, {"link", "joint"});
+    const Inventory inventory = takeInventory(*root);
+
+    // Parsed by urdfdom.
+    tinyxml2::XMLPrinter printer;
+    document.Print(&printer);
+    const urdf::ModelInterfaceSharedPtr model = parse(printer.CStr());
+    robot_->name_ = model->getName();
+    robot_->root_link_ = model->getRoot()->name;
+
+    readJoints(*model);
+    readLinks(*model, inventory);
+    return robot_;
+  }
+
+ private:
+  static urdf::ModelInterfaceSharedPtr parse(const char *xml) {
+    urdf::ModelInterfaceSharedPtr model;
+    try {
+      model = urdf::parseURDF(xml);
+    } catch (const std::exception &error) {
+      throw Error(std::string("the URDF cannot be read: ") + error.what());
+    }
+    if (!model || !model->getRoot()) {
+      throw Error("the URDF cannot be read: its links are no tree with one root, or a number is none");
+    }
+    return model;
+  }
+
+  /* The joints from the root outwards; every link must be met. */
+  void readJoints(const urdf::ModelInterface &model) {
+    std::vector<std::string> reached = {robot_->root_link_};
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+      for (const urdf::JointSharedPtr &joint : model.getLink(reached[i])->child_joints) {
+        addJoint(*joint);
+        reached.push_back(joint->child_link_name);
+      }
+    }
+    for (const auto &[name, link] : model.links_) {
+      if (name != robot_->root_link_ && (!link->parent_joint || !robot_->hasJoint(link->parent_joint->name))) {
+        throw Error("link '" + name + "' is not connected to the root link '" + robot_->root_link_ + "'");
+      }
+    }
+    for (Robot::Joint &joint : robot_->joints_) resolveMimic(joint, model);
+  }
+
+  void addJoint(const urdf::Joint &from) {
+    const std::string who = "joint '" + from.name + "': ";
+    Robot::Joint joint;
+    joint.name = from.name;
+    joint.parent = from.parent_link_name;
+    joint.child = from.child_link_name;
+    joint.origin = toPose(from.parent_to_joint_origin_transform, who);
+    switch (from.type) {
+      case urdf::Joint::REVOLUTE:
+      case urdf::Joint::CONTINUOUS: joint.type = Robot::JointType::REVOLUTE; break;
+      case urdf::Joint::PRISMATIC: joint.type = Robot::JointType::PRISMATIC; break;
+      case urdf::Joint::PLANAR: joint.type = Robot::JointType::PLANAR; break;
+      case urdf::Joint::FLOATING: joint.type = Robot::JointType::FLOATING; break;
+      default: joint.type = Robot::JointType::FIXED; break;
+    }
+
+    // An axis is a direction.
+    if (joint.type != Robot::JointType::FIXED && joint.type != Robot::JointType::FLOATING) {
+      const Eigen::Vector3d axis = toEigen(from.axis);
+      if (!axis.allFinite() || !(axis.norm() > 0.0)) throw Error(who + "its axis is not finite or has length 0");
+      joint.axis = axis.stableNormalized();
+    }
+
+    // At rest at 0, or mid-range where 0 is outside the limits.
+    const bool limited = from.type == urdf::Joint::REVOLUTE || from.type == urdf::Joint::PRISMATIC;
+    if (limited && from.limits) {
+      const double lower = from.limits->lower, upper = from.limits->upper;
+      if (!(lower <= upper)) throw Error(who + "its lower limit is above its upper limit, or none is a number");
+      if (lower > 0.0 || upper < 0.0) joint.rest = 0.5 * lower + 0.5 * upper;
+      if (!std::isfinite(joint.rest)) throw Error(who + "its limits are not finite");
+    }
+    addVariables(joint);
+    robot_->joints_.push_back(std::move(joint));
+  }
+
+  void addVariables(const Robot::Joint &joint) {
+    std::vector<std::string> names;
+    switch (joint.type) {
+      case Robot::JointType::FIXED: break;
+      case Robot::JointType::REVOLUTE:
+      case Robot::JointType::PRISMATIC: names = {joint.name}; break;
+      case Robot::JointType::PLANAR:
+        for (const char *part : PLANAR_PARTS) names.push_back(joint.name + part);
+        break;
+      case Robot::JointType::FLOATING:
+        for (const char *part : FLOATING_PARTS) names.push_back(joint.name + part);
+        break;
+    }
+    const std::size_t index = robot_->joints_.size();
+    robot_->joint_by_name_.emplace(joint.name, index);
+    for (const std::string &name : names) robot_->joint_by_name_.emplace(name, index);
+    robot_->variables_.insert(robot_->variables_.end(), names.begin(), names.end());
+  }
+
+  /* Follows mimic tags to a joint that mimics nothing. */
+  void resolveMimic(Robot::Joint &joint, const urdf::ModelInterface &model) const {
+    const std::string who = "joint '" + joint.name + "': ";
+    const auto scalar = [](const Robot::Joint &j) {
+      return j.type != Robot::JointType::PLANAR && j.type != Robot::JointType::FLOATING;
+    };
+    urdf::JointConstSharedPtr at = model.getJoint(joint.name);
+    if (!at->mimic || joint.type == Robot::JointType::FIXED) return;
+    if (!scalar(joint)) throw Error(who + "a planar or floating joint cannot mimic another");
+
+    for (std::set<std::string> seen = {joint.name}; at->mimic && at->type != urdf::Joint::FIXED;) {
+      const urdf::JointMimic &mimic = *at->mimic;
+      if (!std::isfinite(mimic.multiplier) || !std::isfinite(mimic.offset)) {
+        throw Error(who + "its mimic multiplier or offset is not finite");
+      }
+      joint.offset += joint.multiplier * mimic.offset;
+      joint.multiplier *= mimic.multiplier;
+      at = model.getJoint(mimic.joint_name);
+      if (!at || !robot_->hasJoint(at->name)) {
+        throw Error(who + "it mimics joint '" + mimic.joint_name + "', which does not exist");
+      }
+      if (!seen.insert(at->name).second) throw Error(who + "its mimic tags run in a ring");
+    }
+    if (!scalar(robot_->joints_[robot_->joint_by_name_.at(at->name)])) {
+      throw Error(who + "it mimics joint '" + at->name + "', which is planar or floating");
+    }
+    joint.leader = at->name;
+  }
+
+  void readLinks(const urdf::ModelInterface &model, const Inventory &inventory) {
+    for (const auto &[name, kinds] : inventory.collisions) {
+      const urdf::LinkConstSharedPtr link = model.getLink(name);
+      if (!link) throw Error("link '" + name + "' was not understood");
+      std::vector<LinkGeometry> &geometry = robot_->links_[name];
+      for (std::size_t i = 0; i < link->collision_array.size(); ++i) {
+        const std::string who = elementName(name, i, kinds.size());
+        addGeometry(*link->collision_array[i], who, geometry);
+      }
+      reportDropped(name, kinds, link->collision_array.size());
+    }
+  }
+
+  void addGeometry(const urdf::Collision &collision, const std::string &who, std::vector<LinkGeometry> &to) {
+    try {
+      LinkGeometry out;
+      out.description = describe(collision, "");
+      out.pose = out.description.pose;
+      out.geometry = makeGeometry(out.description, options_.resources);
+      to.push_back(std::move(out));
+    } catch (const Error &error) {
+      fault(who + error.what());
+    }
+  }
+
+  /* urdfdom stops at the first collision element of a link that it cannot read. */
+  void reportDropped(const std::string &name, const std::vector<std::string> &kinds, std::size_t parsed) {
+    static const std::set<std::string> known = {"box", "cylinder", "sphere", "mesh"};
+    for (std::size_t i = parsed; i < kinds.size(); ++i) {
+      const std::string who = elementName(name, i, kinds.size());
+      if (kinds[i].empty()) {
+        fault(who + "it has no geometry");
+      } else if (!known.count(kinds[i])) {
+        fault(who + "geometry '" + kinds[i] + "' is not known to URDF");
+      } else {
+        fault(who + "its " + kinds[i] + " cannot be read, or one before it");
+      }
+    }
+  }
+
+  void fault(const std::string &sentence) {
+    if (!options_.allow_missing_geometry) throw Error(sentence);
+    robot_->warnings_.push_back(sentence + "; left out");
+  }
+
+  const RobotOptions &options_;
+  std::shared_ptr<Robot> robot_;
+};
+
+std::shared_ptr<const Robot> Robot::fromUrdf(const std::string &xml, const RobotOptions &options) {
+  return RobotReader(options).read(xml);
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* All shapes of a snapshot's objects in one row, with the tree over those that have a finite box. */
+#ifndef CURVE_PROXIMITY_SCENE_WORLD_H
+#define CURVE_PROXIMITY_SCENE_WORLD_H
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/scene.hpp>
+
+#include "broadphase.h"
+
+namespace curve_proximity {
+
+/* One shape, and whose it is; names and shapes are owned by the snapshot's objects or the robot. */
+struct Item {
+  const PlacedShape *shape = nullptr;
+  const std::string *owner = nullptr;
+  bool is_link = false;
+  int part = 0; /* number of the shape in its owner */
+};
+
+class World {
+ public:
+  explicit World(const std::map<std::string, std::shared_ptr<const SceneObject>> &objects);
+
+  /* By object, in the order of their ids; the shapes of one object stand together. */
+  const std::vector<Item> &items() const {
+    return items_;
+  }
+
+  /* Over the items with a finite box: bounded()[id of the tree] is the item's index. */
+  const Broadphase &tree() const {
+    return *tree_;
+  }
+  const std::vector<std::uint32_t> &bounded() const {
+    return bounded_;
+  }
+
+  /* The items without one. */
+  const std::vector<std::uint32_t> &unbounded() const {
+    return unbounded_;
+  }
+
+ private:
+  std::vector<Item> items_;
+  std::vector<std::uint32_t> bounded_, unbounded_;
+  std::unique_ptr<const Broadphase> tree_;
+};
+
+} // namespace curve_proximity
+#endif
