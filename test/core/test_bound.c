@@ -26,10 +26,11 @@ typedef enum shape_kind {
   SHAPES
 } shape_kind;
 
-/* One random problem: a curve, a posed body, an offset. Sizes of the order `scale`, everything `away` from the origin. */
+/* One random problem: a curve, a posed body, an offset. Sizes of the order `scale`, everything `away` from the origin, on a grid
+ * on which points - position is exact: so the reference starts from `nearby`, where long double has digits to spare. */
 typedef struct problem {
   size_t degree;
-  vec3 points[MAX_DEGREE + 1];
+  vec3 points[MAX_DEGREE + 1], nearby[MAX_DEGREE + 1];
   shape_kind kind;
   vec3 size;
   vec3 vertex[6];
@@ -38,6 +39,10 @@ typedef struct problem {
   cprox_curve *curve;
   cprox_body *body;
 } problem;
+
+static vec3 on_grid(vec3 p, double step) {
+  return vec(step * nearbyint(p.x / step), step * nearbyint(p.y / step), step * nearbyint(p.z / step));
+}
 
 static problem problem_random(rng *r, cprox_workspace *ws) {
   problem p = {0};
@@ -48,6 +53,12 @@ static problem problem_random(rng *r, cprox_workspace *ws) {
   if (rng_index(r, 8) == 0) p.points[p.degree] = p.points[0];
   p.pose = rng_pose(r, scale);
   p.pose.position = vec_add(p.pose.position, away);
+  const double step = ldexp(1.0, ilogb(fmax(scale, vec_norm(away))) - 50);
+  p.pose.position = on_grid(p.pose.position, step);
+  for (size_t i = 0; i <= p.degree; i++) {
+    p.points[i] = on_grid(p.points[i], step);
+    p.nearby[i] = vec_sub(p.points[i], p.pose.position);
+  }
   if (rng_index(r, 4) == 0) p.pose.orientation = (cprox_quat){1, 0, 0, 0};
   p.offset = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0.0, 0.1 * scale);
   p.size = vec(rng_log_uniform(r, 1e-3, 1.0) * scale, rng_log_uniform(r, 1e-3, 1.0) * scale,
@@ -86,7 +97,8 @@ static void problem_free(problem *p) {
 
 /* The distance at the curve's parameter s, less the offset; 0 inside the body, so at least -offset. */
 static long double true_distance(const problem *p, double s) {
-  const vec3l y = ref_to_local(&p->pose, ref_bezier(p->points, p->degree, s, 0));
+  const cprox_pose turn = {.orientation = p->pose.orientation};
+  const vec3l y = ref_to_local(&turn, ref_bezier(p->nearby, p->degree, s, 0));
   long double d = 0;
   switch (p->kind) {
     case SHAPE_POINT:

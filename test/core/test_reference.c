@@ -51,8 +51,9 @@ static void check_distance(const csv_curve_case *c, const cprox_curve *curve, co
   if (status != CPROX_OK && status != CPROX_PRECISION)
     fail_msg("%s: %s (%s), [%.17g, %.17g] after %u nodes", c->id, cprox_status_name(status), cprox_workspace_reason(ws),
              r.lower, r.upper, r.nodes);
-  /* the reference is a long double rounded to 17 digits, and its search stops within 1e-16 of a contact */
-  const double doubt = 4.0 * ROUND_U * fabs(reference) + (reference < 1e-15 ? 1e-16 : 0.0);
+  /* the reference is rounded to 17 digits, its coordinates carried 64 bits, and its search stops within 1e-16 of a contact */
+  const double doubt =
+      4.0 * ROUND_U * fabs(reference) + ldexp(4.0 * largest_coordinate(c), -64) + (reference < 1e-15 ? 1e-16 : 0.0);
   if (r.lower > reference + doubt || r.upper < reference - doubt)
     fail_msg("%s: [%.17g, %.17g] does not contain %.17g", c->id, r.lower, r.upper, reference);
   if (status == CPROX_OK && r.upper - r.lower > epsilon)

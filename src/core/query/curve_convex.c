@@ -93,14 +93,23 @@ static void bound_by_normal(const curve_convex *o, search_node *node, const curv
   node->slack = slack;
 }
 
-/* The tangent ball (or cylinder) of the best sight: where the curve bends round a vertex or an edge, a plane is too weak. */
-static void bound_by_cover(curve_convex *o, search_node *node) {
+/* The ball or cylinder that touches the body at the best sight; found when it is first wanted. */
+static bool know_cover(curve_convex *o) {
   if (!o->cover_known) {
     const convex_ops *ops = o->shape->ops;
     o->cover_usable = ops->cover && ops->cover(o->shape, &o->best.near, &o->cover);
     o->cover_known = true;
   }
-  if (!o->cover_usable) return;
+  return o->cover_usable;
+}
+
+/* A point or a ball is its own cover, from wherever it is seen. */
+static bool cover_is_the_body(const curve_convex *o) {
+  return !o->cover.cylinder && o->cover.radius == o->shape->margin;
+}
+
+/* Where the curve bends round a vertex or an edge, a plane is too weak; the distance from the cover's centre is not. */
+static void bound_by_cover(curve_convex *o, search_node *node) {
   const double *points = slot_points(o, (size_t)node->slot);
   const double from_centre =
       control_distance_from(points, o->curve->degree, o->cover.centre, o->cover.cylinder ? &o->cover.axis : NULL,
@@ -130,8 +139,8 @@ static double filter(void *self, search_node *node, double goal) {
     bound_by_normal(o, node, &o->best);
     node->seen = o->incumbent;
   }
-  const bool try_cover = node->slot >= 0 && node->seen_ball != o->incumbent && holds_best(o, node);
-  if (try_cover && node->lower < goal) {
+  if (node->slot >= 0 && node->lower < goal && node->seen_ball != o->incumbent && know_cover(o) &&
+      (cover_is_the_body(o) || holds_best(o, node))) {
     bound_by_cover(o, node);
     node->seen_ball = o->incumbent;
   }
@@ -288,6 +297,7 @@ static int split_piece(curve_convex *o, search_node *node, search_node child[2])
   child[0].slot = left, child[0].b = child[1].a = cut;
   for (int k = 0; k < 2; k++) {
     child[k].error += added;
+    child[k].seen_ball = 0;
     bound_child(o, &child[k]);
   }
   return 2;

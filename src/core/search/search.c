@@ -122,6 +122,7 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
     search_node node = frontier_pop(&open);
 
     /* what is known already may settle it, or make another node the more promising one */
+    const bool settled_all = open.heap && is_settled(goal, &outcome->best, &node); /* the others lie higher still */
     if (fate_of(goal, &outcome->best, &node) == NODE_OPEN) {
       const double bound = oracle->filter(oracle->self, &node, settling_bound(goal, &outcome->best));
       if (bound > node.lower) node.lower = bound;
@@ -148,8 +149,7 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
     /* the node leaves */
     left = fmin(left, node.lower);
     oracle->release(oracle->self, &node);
-    if (status != CPROX_OK || is_answered(goal, &outcome->best)) break;
-    if (fate == NODE_SETTLED && open.heap) break; /* all others lie higher */
+    if (status != CPROX_OK || settled_all || is_answered(goal, &outcome->best)) break;
   }
 
   /* what is still open counts too */
