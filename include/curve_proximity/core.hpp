@@ -222,7 +222,7 @@ inline CurveHandle makeBezier(const Eigen::Matrix3Xd &points, double t0 = 0.0, d
 
 /** A B-spline curve on [t0, t1]; a column a control point, points.cols() + degree + 1 knots. */
 inline CurveHandle makeBspline(const Eigen::Matrix3Xd &points, std::size_t degree, const std::vector<double> &knots,
-                            double t0, double t1) {
+                               double t0, double t1) {
   const std::vector<cprox_vec3> p = toVec3s(points);
   return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
     return cprox_curve_create_bspline(p.data(), p.size(), degree, knots.data(), knots.size(), t0, t1, w, c);
