@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cprox_cmocka: the test library of the core, from whatever the distribution offers; cprox_ccd beside it, as a second
-# opinion in tests.
-find_package(PkgConfig REQUIRED)
-pkg_check_modules(CMOCKA REQUIRED cmocka)
-add_library(cprox_cmocka INTERFACE)
-target_include_directories(cprox_cmocka SYSTEM INTERFACE ${CMOCKA_INCLUDE_DIRS})
-target_link_libraries(cprox_cmocka INTERFACE ${CMOCKA_LINK_LIBRARIES})
-
-if(NOT TARGET cprox_ccd)
-  pkg_check_modules(CPROX_CCD REQUIRED ccd)
+# What the core's own tests stand on: cprox_cmocka, and cprox_ccd as a second opinion beside our pair solver.
+if(NOT CPROX_ROS)
+  find_package(PkgConfig REQUIRED)
+  pkg_check_modules(PC_CCD REQUIRED ccd)
   add_library(cprox_ccd INTERFACE)
-  target_include_directories(cprox_ccd SYSTEM INTERFACE ${CPROX_CCD_INCLUDE_DIRS})
-  target_link_libraries(cprox_ccd INTERFACE ${CPROX_CCD_LINK_LIBRARIES})
+  target_include_directories(cprox_ccd SYSTEM INTERFACE ${PC_CCD_INCLUDEDIR} ${PC_CCD_INCLUDE_DIRS})
+  target_link_libraries(cprox_ccd INTERFACE ${PC_CCD_LINK_LIBRARIES})
 endif()
+pkg_check_modules(PC_CMOCKA REQUIRED cmocka)
+add_library(cprox_cmocka INTERFACE)
+target_include_directories(cprox_cmocka SYSTEM INTERFACE ${PC_CMOCKA_INCLUDEDIR} ${PC_CMOCKA_INCLUDE_DIRS})
+target_link_libraries(cprox_cmocka INTERFACE ${PC_CMOCKA_LINK_LIBRARIES})

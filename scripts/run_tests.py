@@ -10,7 +10,6 @@ import glob
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 import time
@@ -159,7 +158,8 @@ def headers():
 
 
 def lint():
-    return run_one(['catkin_lint', '--config', os.path.join(REPO, '.catkin_lint'), '--strict', '-W2', REPO], 'catkin_lint', count_exit)
+    package = os.path.join(WORKSPACE, 'src/curve_proximity')  # a folder of the package's name, whatever the clone's is
+    return run_one(['catkin_lint', '--strict', '-W2', '--offline', package], 'catkin_lint', count_exit)
 
 
 def formatting():
@@ -243,6 +243,13 @@ def demo():
     return run_one([os.path.join(REPO, 'test/install/demo')], 'demo', count_lines)
 
 
+def on_debian_12():
+    """The formatter's and the linter's verdict changes with their version: Debian 12's (14) is the one that holds."""
+    with open('/etc/os-release') as text:
+        release = text.read()
+    return 'ID=debian' in release and 'VERSION_ID="12"' in release
+
+
 GROUPS = {
     'layering': layering, 'headers': headers, 'lint': lint, 'format': formatting,
     'core': core, 'tidy': tidy, 'sanitizers': sanitized, 'threads': threads,
@@ -264,10 +271,14 @@ def main():
         parser.error(f"no group {', '.join(unknown)}: there are {', '.join(GROUPS)}")
 
     # Run, a line a group.
+    groups = arguments.groups or list(GROUPS)
+    if not arguments.groups and not on_debian_12():
+        groups = [name for name in groups if name not in ('format', 'tidy')]
+        print('format, tidy: left to Debian 12, whose clang 14 they are written for')
     os.makedirs(LOGS, exist_ok=True)
     total = Count()
     print(f"{'group':<12}{'passed':>8}{'failed':>8}{'seconds':>9}", flush=True)
-    for name in arguments.groups or GROUPS:
+    for name in groups:
         begin = time.monotonic()
         try:
             count = GROUPS[name]()
