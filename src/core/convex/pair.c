@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Two bounds that meet (doc/convex-pairs.md). Above: the distance from 0 of a simplex in the Minkowski difference
+ * M = A - B, which shrinks as in Gilbert, Johnson and Keerthi's search. Below: phi(u) = min of u·m over M, for directions u
+ * that the simplex suggests, or, where the shapes are curved, Newton's method on phi. */
+#include "convex/pair.h"
+
+#include "base/rounding.h"
+#include "convex/feature.h"
+#include "convex/simplex.h"
+
+enum {
+  PAIR_MAX_STEPS = 256,
+  PAIR_NEWTON_FROM = 2,      /* plain steps first: far away the curvature is not that of the answer */
+  PAIR_PATIENCE_CURVED = 24, /* steps without a gain */
+  PAIR_PATIENCE_FLAT = 6
+};
+
+/* Rounding of the bounds for shapes of size S, in units of u S: a crude sum of the steps gives 24. */
+static const double PAIR_ROUNDING = 32.0;
+
+typedef struct pair {
+  const convex *a, *b;
+  const double *r;
+  vec3 t;
+  bool curved, fault;
+  uint32_t supports;
+
+  /* the primal side: the simplex and its nearest point to 0 */
+  simplex s;
+  simplex_nearest nearest;
+  /* the dual side: the best direction and its phi */
+  vec3 u;
+  double lower;
+} pair;
+
+static vec3 turn(const double *r, vec3 v) {
+  return vec(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
+             r[6] * v.x + r[7] * v.y + r[8] * v.z);
+}
+
+static vec3 turn_back(const double *r, vec3 v) {
+  return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
+             r[2] * v.x + r[5] * v.y + r[8] * v.z);
+}
+
+/* b is kept in its own frame. */
+static vec3 pair_difference(const pair *p, vec3 a, vec3 b) {
+  return vec_sub(a, vec_add(turn(p->r, b), p->t));
+}
+
+/* The point of M that is least along u. */
+static simplex_vertex pair_extreme(pair *p, vec3 u) {
+  simplex_vertex x = {.id = -1};
+  const double ha = p->a->ops->support(p->a, vec_neg(u), NULL, &x.a);
+  const double hb = p->b->ops->support(p->b, turn_back(p->r, u), NULL, &x.b);
+  if (isnan(ha) || isnan(hb)) p->fault = true;
+  x.w = pair_difference(p, x.a, x.b);
+  p->supports++;
+  return x;
+}
+
+static void pair_raise_lower(pair *p, vec3 u, double phi) {
+  if (!(phi > p->lower)) return;
+  p->lower = phi;
+  p->u = u;
+}
+
+static bool simplex_has(const simplex *s, vec3 w) {
+  for (int i = 0; i < s->n; i++)
+    if (vec_equal(s->vertex[i].w, w)) return true;
+  return false;
+}
+
+/* Takes a grown simplex over if it is nearer than the one at hand. */
+static bool pair_accept(pair *p, simplex *grown) {
+  simplex_nearest found;
+  simplex_reduce(grown, &found);
+  if (!found.inside && !(found.distance < p->nearest.distance)) return false;
+  p->s = *grown;
+  p->nearest = found;
+  return true;
+}
+
+/* ---- the second-order step of the dual ---- */
+
+/* The smooth pieces of M's boundary on which the simplex's vertices lie, seen along one direction. */
+typedef struct pair_pieces {
+  int n;
+  simplex_vertex y[4];
+  double weight[4];
+  double kee, kef, kff; /* weighted curvature in the tangent basis */
+} pair_pieces;
+
+/* The extreme point of the piece that x lies on, or x itself where that would carry it far round a rim: seen along its axis
+ * a disc's rim is extreme everywhere, and its points must not run together. */
+static bool piece_follow(const convex *shape, vec3 d, vec3 *x) {
+  if (!shape->ops->follow) return false;
+  const vec3 moved = shape->ops->follow(shape, d, *x), step = vec_sub(moved, *x);
+  const double far = 0.3 * shape->scale;
+  if (vec_norm2(step) > far * far) return false;
+  *x = moved;
+  return true;
+}
+
+static double quadratic(const double h[6], vec3 x, vec3 y) {
+  return x.x * (h[0] * y.x + h[1] * y.y + h[2] * y.z) + x.y * (h[1] * y.x + h[3] * y.y + h[4] * y.z) +
+         x.z * (h[2] * y.x + h[4] * y.y + h[5] * y.z);
+}
+
+static void pieces_add_curvature(pair_pieces *pieces, double weight, const double h[6], vec3 e, vec3 f) {
+  pieces->kee += weight * quadratic(h, e, e);
+  pieces->kef += weight * quadratic(h, e, f);
+  pieces->kff += weight * quadratic(h, f, f);
+}
+
+/* The simplex's vertices moved to where u finds them on their pieces; those that fall together are one. e and f NULL: their
+ * curvature is not asked for. */
+static pair_pieces pair_follow(const pair *p, vec3 u, const vec3 *e, const vec3 *f) {
+  const vec3 da = vec_neg(u), db = turn_back(p->r, u);
+  const double same = 1e-12 * (p->a->scale + p->b->scale);
+  pair_pieces pieces = {0};
+  for (int i = 0; i < p->s.n; i++) {
+    simplex_vertex y = p->s.vertex[i];
+    const double weight = p->s.weight[i];
+    double h[6];
+    if (piece_follow(p->a, da, &y.a) && e) {
+      p->a->ops->curvature(p->a, da, y.a, h);
+      pieces_add_curvature(&pieces, weight, h, *e, *f);
+    }
+    if (piece_follow(p->b, db, &y.b) && e) {
+      p->b->ops->curvature(p->b, db, y.b, h);
+      pieces_add_curvature(&pieces, weight, h, turn_back(p->r, *e), turn_back(p->r, *f));
+    }
+    y.w = pair_difference(p, y.a, y.b);
+    int twin = 0;
+    while (twin < pieces.n && vec_norm2(vec_sub(pieces.y[twin].w, y.w)) > same * same) twin++;
+    if (twin == pieces.n) {
+      pieces.y[pieces.n] = y;
+      pieces.weight[pieces.n++] = 0.0;
+    }
+    pieces.weight[twin] += weight;
+  }
+  return pieces;
+}
+
+/* One piece: grad phi = y, and its second derivative is -(K + d), d the distance. */
+static bool newton_one(const pair_pieces *k, double d, vec3 e, vec3 f, double delta[2]) {
+  const double a = k->kee + d, b = k->kef, c = k->kff + d, det = a * c - b * b;
+  if (!(det > 0.0)) return false;
+  const double ge = vec_dot(k->y[0].w, e), gf = vec_dot(k->y[0].w, f);
+  delta[0] = (c * ge - b * gf) / det;
+  delta[1] = (a * gf - b * ge) / det;
+  return true;
+}
+
+/* Two pieces: along the ridge where they are equal, Newton on their weighted mean. */
+static bool newton_two(const pair_pieces *k, double d, vec3 u, vec3 e, vec3 f, double delta[2]) {
+  const vec3 apart = vec_sub(k->y[1].w, k->y[0].w);
+  const vec3 mean = vec_axpy(vec_scale(k->weight[0], k->y[0].w), k->weight[1], k->y[1].w);
+  const double pe = vec_dot(apart, e), pf = vec_dot(apart, f), square = pe * pe + pf * pf;
+  if (!(square > 0.0)) return false;
+  const double across = -vec_dot(u, apart) / square, norm = sqrt(square);
+  const double de = across * pe, df = across * pf, ne = -pf / norm, nf = pe / norm;
+  const double curvature = ne * ne * k->kee + 2.0 * ne * nf * k->kef + nf * nf * k->kff + d;
+  if (!(curvature > 0.0)) return false;
+  const double coupled = ne * (k->kee * de + k->kef * df) + nf * (k->kef * de + k->kff * df);
+  const double along = (ne * vec_dot(mean, e) + nf * vec_dot(mean, f) - coupled) / curvature;
+  delta[0] = de + along * ne;
+  delta[1] = df + along * nf;
+  return true;
+}
+
+/* Where Newton's method sends the best direction; false where it has no say. */
+static bool pair_newton(const pair *p, vec3 *next) {
+  vec3 e, f;
+  feature_tangents(p->u, &e, &f);
+  const pair_pieces pieces = pair_follow(p, p->u, &e, &f);
+  /* a negative phi would make a valley of a peak */
+  const double d = 0.5 * (fmax(p->lower, 0.0) + p->nearest.distance);
+  double delta[2];
+  if (pieces.n == 1) {
+    if (!newton_one(&pieces, d, e, f, delta)) return false;
+  } else if (pieces.n == 2) {
+    if (!newton_two(&pieces, d, p->u, e, f, delta)) return false;
+  } else {
+    const vec3 y0 = pieces.y[0].w;
+    vec3 normal;
+    feature_unit(vec_cross(vec_sub(pieces.y[1].w, y0), vec_sub(pieces.y[2].w, y0)), &normal);
+    *next = vec_dot(normal, p->u) < 0.0 ? vec_neg(normal) : normal;
+    return vec_norm2(normal) > 0.0;
+  }
+  const double length = feature_hypot(delta[0], delta[1]), limit = 0.5;
+  if (!isfinite(length)) return false;
+  const double scale = length > limit ? limit / length : 1.0;
+  feature_unit(vec_axpy(vec_axpy(p->u, scale * delta[0], e), scale * delta[1], f), next);
+  return true;
+}
+
+/* ---- the search ---- */
+
+/* Looks along u: a lower bound, and a vertex that may bring the simplex nearer; on curved shapes its other vertices are moved
+ * along their pieces as well, since the old ones would hold it back. True where one of the bounds got better. */
+static bool pair_look(pair *p, vec3 u) {
+  const simplex_vertex x = pair_extreme(p, u);
+  const double lower = p->lower;
+  pair_raise_lower(p, u, vec_dot(u, x.w));
+  bool nearer = false;
+  if (p->curved) {
+    const pair_pieces pieces = pair_follow(p, u, NULL, NULL);
+    simplex moved = {0};
+    for (int i = 0; i < pieces.n && i < 3; i++) moved.vertex[moved.n++] = pieces.y[i];
+    if (!simplex_has(&moved, x.w)) moved.vertex[moved.n++] = x;
+    nearer = pair_accept(p, &moved);
+  }
+  if (!nearer && !simplex_has(&p->s, x.w) && p->s.n < 4) {
+    simplex grown = p->s;
+    grown.vertex[grown.n++] = x;
+    nearer = pair_accept(p, &grown);
+  }
+  return nearer || p->lower > lower;
+}
+
+/* One step: Newton's direction if there is one, else the simplex's own normal, else that of its nearest point. Two plain
+ * directions, since the normal is exact where v is all rounding, and v where the simplex is a sliver. */
+static bool pair_step(pair *p, bool newton) {
+  vec3 u;
+  if (newton && pair_newton(p, &u)) return pair_look(p, u);
+  const vec3 normal = p->nearest.normal;
+  if (vec_norm2(normal) > 0.0 && pair_look(p, normal)) return true;
+  if (p->nearest.inside || p->fault) return true;
+  feature_unit(p->nearest.v, &u);
+  return vec_norm2(u) > 0.0 && !vec_equal(u, normal) && pair_look(p, u);
+}
+
+static void pair_search(pair *p, double margins, const pair_goal *goal, double rounding, pair_answer *answer) {
+  const uint32_t most = goal->max_steps < PAIR_MAX_STEPS ? goal->max_steps : PAIR_MAX_STEPS;
+  const int patience = p->curved ? PAIR_PATIENCE_CURVED : PAIR_PATIENCE_FLAT;
+  int stalled = 0;
+  bool newton = p->curved;
+  for (answer->steps = 1; answer->steps < most && !p->fault && !p->nearest.inside; answer->steps++) {
+    const double gap = p->nearest.distance - p->lower, upper = p->nearest.distance - margins;
+    const double asked = fmax(goal->epsilon, goal->relative_epsilon * fmax(upper, 0.0));
+    if (gap <= fmax(asked - 2.0 * rounding, 0.25 * rounding) || p->nearest.distance == 0.0) return;
+
+    /* a Newton step that gained nothing is followed by a plain one; a plain one that gained nothing, where Newton would not
+     * have gained either, is the end */
+    const bool by_newton = newton && answer->steps > PAIR_NEWTON_FROM;
+    const bool gained = pair_step(p, by_newton);
+    if (!gained && !by_newton && (!p->curved || stalled > 2)) return;
+    newton = p->curved && (gained || !by_newton);
+    stalled = p->nearest.distance - p->lower < 0.98 * gap ? 0 : stalled + 1;
+    if (stalled > patience) return;
+  }
+}
+
+/* The points of the cores that make up the nearest point of the simplex, and the margins beyond them. */
+static void pair_witness(const pair *p, double margin_a, double margin_b, pair_answer *answer) {
+  vec3 a = vec(0, 0, 0), b = vec(0, 0, 0);
+  const bool inside = p->nearest.inside;
+  for (int i = 0; i < p->s.n; i++) {
+    const double weight = inside ? 1.0 / p->s.n : p->s.weight[i];
+    a = vec_axpy(a, weight, p->s.vertex[i].a);
+    b = vec_axpy(b, weight, p->s.vertex[i].b);
+  }
+  b = vec_add(turn(p->r, b), p->t);
+  if (inside) { /* one point for both: where they overlap */
+    a = b = vec_axpy(vec_scale(0.5, a), 0.5, b);
+  } else {
+    a = vec_axpy(a, -margin_a, p->u);
+    b = vec_axpy(b, margin_b, p->u);
+  }
+  answer->on_a = a;
+  answer->on_b = b;
+  answer->normal = inside ? vec(0, 0, 0) : p->u;
+}
+
+void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *placement,
+                   const pair_goal *goal, pair_answer *answer) {
+  *answer = (pair_answer){0};
+  pair p = {.a = a, .b = b, .r = placement->r, .t = placement->t, .lower = -INFINITY};
+  p.curved = a->ops->curvature || b->ops->curvature;
+  const double margins = margin_a + margin_b, distance = vec_norm(p.t);
+  const double size = a->scale + b->scale + distance + margins;
+  const double rounding = ROUND_UP * (PAIR_ROUNDING * ROUND_U * size + placement->error + 2.0 * (a->slack + b->slack));
+
+  /* from the line of the centres on */
+  vec3 u;
+  feature_unit(vec_neg(p.t), &u);
+  if (vec_norm2(u) == 0.0) u = vec(1, 0, 0);
+  p.s.n = 1;
+  p.s.vertex[0] = pair_extreme(&p, u);
+  pair_raise_lower(&p, u, vec_dot(u, p.s.vertex[0].w));
+  simplex_reduce(&p.s, &p.nearest);
+  pair_search(&p, margins, goal, rounding, answer);
+
+  answer->fault = p.fault;
+  answer->supports = p.supports;
+  answer->rounding = rounding;
+  answer->exhausted = answer->steps >= goal->max_steps || answer->steps >= PAIR_MAX_STEPS;
+  answer->overlap = p.nearest.inside && p.nearest.depth + margins > rounding;
+  answer->upper = answer->overlap ? 0.0 : p.nearest.distance - margins + rounding;
+  answer->lower = fmin(p.lower - margins - rounding, answer->upper);
+  pair_witness(&p, margin_a, margin_b, answer);
+}

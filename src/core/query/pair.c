@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Static pairs: every pair of convex parts by the cheapest way that knows it exactly, the nearest wins. */
+#include "convex/pair.h"
+
+#include "base/rounding.h"
+#include "base/workspace.h"
+#include "body/body.h"
+#include "convex/feature.h"
+#include "curve_proximity/cprox/query.h"
+#include "query/arguments.h"
+
+/* A convex shape somewhere in the world. */
+typedef struct pair_side {
+  const convex *shape;
+  frame f;
+  double margin; /* the shape's own and the padding */
+  double error;  /* of the pose, where it had to be composed */
+} pair_side;
+
+/* What a pair of convex shapes answers, in the world. */
+typedef struct pair_reply {
+  pair_answer answer; /* points and normal in the world */
+  int32_t part;       /* of b */
+} pair_reply;
+
+/* ---- arguments ---- */
+
+static cprox_status pair_check_target(const char *name, const cprox_target *target, cprox_workspace *workspace) {
+  if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "%s: the body is NULL", name);
+  const char *fault = frame_pose_fault(&target->pose);
+  if (fault) return workspace_fail(workspace, CPROX_INVALID, "%s: %s", name, fault);
+  if (!(target->padding >= 0.0) || !isfinite(target->padding))
+    return workspace_fail(workspace, CPROX_INVALID, "%s: padding is %g, must be >= 0 and finite", name,
+                          target->padding);
+  return CPROX_OK;
+}
+
+/* ---- placing ---- */
+
+static size_t pair_count_parts(const cprox_body *body) {
+  return body->kind == CPROX_COMPOUND ? body->n_parts : 1;
+}
+
+static pair_side pair_place_side(const cprox_target *target, size_t part) {
+  const cprox_body *body = target->body;
+  pair_side side = {.margin = target->padding};
+  cprox_pose pose = target->pose;
+  if (body->kind == CPROX_COMPOUND) {
+    const body_part *p = &body->parts[part];
+    pose = frame_compose(&target->pose, &p->pose);
+    body = p->body;
+    side.error = ROUND_U * (ROUND_ROTATION * (vec_norm(p->pose.position) + vec_norm(body->centre) + body->shape.scale) +
+                            3.0 * vec_norm(pose.position));
+  }
+  side.shape = &body->shape;
+  side.f = frame_create(&pose, body->centre);
+  side.margin += body->shape.margin;
+  return side;
+}
+
+/* b in a's frame. Positions are subtracted first: what they share does not enter the rounding. */
+static pair_placement pair_place(const pair_side *a, const pair_side *b) {
+  pair_placement place = {.error = a->error + b->error};
+  for (int i = 0; i < 3; i++) {
+    const vec3 column = frame_turn_to_local(&a->f, vec(b->f.r[i], b->f.r[3 + i], b->f.r[6 + i]));
+    place.r[i] = column.x;
+    place.r[3 + i] = column.y;
+    place.r[6 + i] = column.z;
+  }
+  const vec3 apart = vec_sub(b->f.position, a->f.position), centre = frame_turn_to_world(&b->f, b->f.centre);
+  const vec3 world = vec_add(apart, centre), local = frame_turn_to_local(&a->f, world);
+  place.t = vec_sub(local, a->f.centre);
+
+  const bool turned = a->f.rotated || b->f.rotated;
+  place.error += ROUND_UP * ROUND_U *
+                 (vec_norm(apart) + vec_norm(world) + vec_norm(place.t) +
+                  (turned ? ROUND_ROTATION * (vec_norm(centre) + vec_norm(local) + 2.0 * b->shape->scale) : 0.0));
+  return place;
+}
+
+static vec3 pair_to_world(const pair_side *a, vec3 p) {
+  return frame_to_world(&a->f, p);
+}
+
+/* ---- ways to know ---- */
+
+/* A halfspace (a) knows the exact signed distance of everything by one support value. */
+static void pair_halfspace(const pair_side *a, const pair_side *b, const pair_placement *place, pair_answer *answer) {
+  const convex *h = a->shape;
+  const vec3 n = vec(h->size[0], h->size[1], h->size[2]);
+  const vec3 down = vec(-(place->r[0] * n.x + place->r[3] * n.y + place->r[6] * n.z),
+                        -(place->r[1] * n.x + place->r[4] * n.y + place->r[7] * n.z),
+                        -(place->r[2] * n.x + place->r[5] * n.y + place->r[8] * n.z));
+  vec3 at;
+  *answer = (pair_answer){.steps = 1, .supports = 1};
+  const double lowest = -b->shape->ops->support(b->shape, down, NULL, &at);
+  answer->fault = isnan(lowest);
+
+  const double height = vec_dot(n, place->t) + h->size[3];
+  const double distance = height + lowest - a->margin - b->margin;
+  answer->rounding =
+      ROUND_UP * (32.0 * ROUND_U * (vec_norm(place->t) + fabs(h->size[3]) + b->shape->scale + a->margin + b->margin) +
+                  place->error + 2.0 * b->shape->slack);
+  answer->lower = distance - answer->rounding;
+  answer->upper = distance + answer->rounding;
+
+  const double *r = place->r;
+  const vec3 turned = vec(r[0] * at.x + r[1] * at.y + r[2] * at.z, r[3] * at.x + r[4] * at.y + r[5] * at.z,
+                          r[6] * at.x + r[7] * at.y + r[8] * at.z);
+  answer->on_b = vec_axpy(vec_add(turned, place->t), -b->margin, n);
+  answer->on_a = vec_axpy(answer->on_b, -distance, n);
+  answer->normal = vec_neg(n);
+}
+
+static bool has_closed_form(const convex *shape) {
+  switch (shape->ops->kind) {
+    case CPROX_POLYTOPE:
+    case CPROX_SUPPORT:
+    case CPROX_COMPOUND: return false;
+    default: return true;
+  }
+}
+
+static bool is_ball(const convex *shape) {
+  return shape->ops->kind == CPROX_POINT || shape->ops->kind == CPROX_SPHERE;
+}
+
+/* A ball (b) against a shape with a closed form: exact on both sides of the surface. */
+static void pair_ball(const pair_side *a, const pair_side *b, const pair_placement *place, pair_answer *answer) {
+  convex_near near;
+  a->shape->ops->nearest(a->shape, place->t, NULL, &near);
+  *answer = (pair_answer){.steps = 1, .supports = 1};
+  const double padding = a->margin - a->shape->margin; /* near has the shape's own in it */
+  const double distance = near.distance - padding - b->margin;
+  answer->rounding = ROUND_UP * (ROUND_U * (a->shape->ops->near_rounding * (vec_norm(place->t) + a->shape->scale) +
+                                            4.0 * (a->margin + b->margin)) +
+                                 place->error);
+  answer->lower = distance - answer->rounding;
+  answer->upper = distance + answer->rounding;
+  answer->on_a = vec_axpy(near.point, padding, near.normal);
+  answer->on_b = vec_axpy(place->t, -b->margin, near.normal);
+  answer->normal = vec_neg(near.normal);
+}
+
+static void pair_swap(pair_answer *answer) {
+  const vec3 on_a = answer->on_a;
+  answer->on_a = answer->on_b;
+  answer->on_b = on_a;
+  answer->normal = vec_neg(answer->normal);
+}
+
+/* One pair of convex shapes. The special ways want their shape first: the frame of the answer is the first one's. */
+static void pair_solve(const pair_side *a, const pair_side *b, const pair_goal *goal, pair_answer *answer) {
+  const bool halfspace = b->shape->ops->kind == CPROX_HALFSPACE;
+  const bool ball = is_ball(a->shape) && has_closed_form(b->shape) && !is_ball(b->shape);
+  const bool swapped = halfspace || (ball && a->shape->ops->kind != CPROX_HALFSPACE);
+  const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
+  const pair_placement place = pair_place(first, second);
+
+  if (first->shape->ops->kind == CPROX_HALFSPACE)
+    pair_halfspace(first, second, &place, answer);
+  else if (is_ball(second->shape) && has_closed_form(first->shape))
+    pair_ball(first, second, &place, answer);
+  else
+    pair_separate(first->shape, first->margin, second->shape, second->margin, &place, goal, answer);
+
+  /* pair_separate's normal is from b to a, the special ways' as well */
+  if (swapped) pair_swap(answer);
+  answer->on_a = pair_to_world(first, answer->on_a);
+  answer->on_b = pair_to_world(first, answer->on_b);
+  answer->normal = frame_turn_to_world(&first->f, answer->normal);
+}
+
+/* ---- the verb ---- */
+
+/* The nearest of all pairs of parts; *lower is the least of all their lower bounds. */
+static cprox_status pair_over_parts(const cprox_target *a, const cprox_target *b, const pair_goal *goal,
+                                    cprox_workspace *workspace, pair_reply *best) {
+  double lower = INFINITY;
+  uint32_t steps = 0, supports = 0;
+  *best = (pair_reply){.answer = {.upper = INFINITY}};
+  for (size_t i = 0; i < pair_count_parts(a->body); i++) {
+    const pair_side side_a = pair_place_side(a, i);
+    for (size_t j = 0; j < pair_count_parts(b->body); j++) {
+      const pair_side side_b = pair_place_side(b, j);
+      if (side_a.shape->ops->kind == CPROX_HALFSPACE && side_b.shape->ops->kind == CPROX_HALFSPACE)
+        return workspace_fail(workspace, CPROX_INVALID, "two halfspaces have no distance");
+      pair_answer answer;
+      pair_solve(&side_a, &side_b, goal, &answer);
+      if (answer.fault)
+        return workspace_fail(workspace, CPROX_INVALID,
+                              "a support callback answered with a point that is not finite or outside its radius");
+      steps += answer.steps;
+      supports += answer.supports;
+      lower = fmin(lower, answer.lower);
+      /* an overlap that is proven outweighs a touch */
+      if (best->answer.overlap || (answer.upper >= best->answer.upper && !answer.overlap)) continue;
+      best->answer = answer;
+      best->part = (int32_t)j;
+    }
+  }
+  best->answer.lower = lower;
+  best->answer.steps = steps;
+  best->answer.supports = supports;
+  return CPROX_OK;
+}
+
+static cprox_status pair_status(const pair_answer *answer, const cprox_options *options) {
+  const double width = answer->upper - answer->lower;
+  if (answer->overlap) return CPROX_OVERLAP;
+  if (width <= fmax(options->epsilon, options->relative_epsilon * answer->upper)) return CPROX_OK;
+  return answer->exhausted ? CPROX_BUDGET : CPROX_PRECISION;
+}
+
+cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *options, cprox_workspace *workspace,
+                        cprox_result *result) {
+  workspace_clear(workspace);
+  const cprox_options asked = options ? *options : cprox_options_default();
+  cprox_status status;
+  if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
+  if ((status = arguments_check_options(&asked, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
+      (status = pair_check_target("b", &b, workspace)))
+    return status;
+
+  const pair_goal goal = {
+      .epsilon = asked.epsilon, .relative_epsilon = asked.relative_epsilon, .max_steps = asked.max_nodes};
+  pair_reply best;
+  if ((status = pair_over_parts(&a, &b, &goal, workspace, &best))) return status;
+
+  const pair_answer *answer = &best.answer;
+  status = pair_status(answer, &asked);
+  *result = (cprox_result){.status = status,
+                           .verdict = CPROX_UNDECIDED,
+                           .lower = answer->lower,
+                           .upper = answer->upper,
+                           .on_mover = answer->on_a,
+                           .on_target = answer->on_b,
+                           .normal = answer->normal,
+                           .target_part = best.part,
+                           .rung = CPROX_RUNG_HULL,
+                           .nodes = answer->steps,
+                           .probes = answer->supports};
+  if (status != CPROX_OK) workspace_fail(workspace, status, "%s", cprox_status_text(status));
+  return status;
+}
