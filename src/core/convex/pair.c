@@ -18,6 +18,9 @@ enum {
 /* Rounding of the bounds for shapes of size S, in units of u S: a crude sum of the steps gives 24. */
 static const double PAIR_ROUNDING = 32.0;
 
+/* A Newton step has failed if more than this is left of the gap. */
+static const double PAIR_NEWTON_GAIN = 0.7;
+
 typedef struct pair {
   const convex *a, *b;
   const double *r;
@@ -200,12 +203,12 @@ static bool pair_newton(const pair *p, vec3 *next) {
 
 /* Looks along u: a lower bound, and a vertex that may bring the simplex nearer; on curved shapes its other vertices are moved
  * along their pieces as well, since the old ones would hold it back. True where one of the bounds got better. */
-static bool pair_look(pair *p, vec3 u) {
+static bool pair_look(pair *p, vec3 u, bool follow) {
   const simplex_vertex x = pair_extreme(p, u);
   const double lower = p->lower;
   pair_raise_lower(p, u, vec_dot(u, x.w));
   bool nearer = false;
-  if (p->curved) {
+  if (follow) {
     const pair_pieces pieces = pair_follow(p, u, NULL, NULL);
     simplex moved = {0};
     for (int i = 0; i < pieces.n && i < 3; i++) moved.vertex[moved.n++] = pieces.y[i];
@@ -224,32 +227,37 @@ static bool pair_look(pair *p, vec3 u) {
  * directions, since the normal is exact where v is all rounding, and v where the simplex is a sliver. */
 static bool pair_step(pair *p, bool newton) {
   vec3 u;
-  if (newton && pair_newton(p, &u)) return pair_look(p, u);
+  if (newton && pair_newton(p, &u)) return pair_look(p, u, true);
   const vec3 normal = p->nearest.normal;
-  if (vec_norm2(normal) > 0.0 && pair_look(p, normal)) return true;
+  if (vec_norm2(normal) > 0.0 && pair_look(p, normal, false)) return true;
   if (p->nearest.inside || p->fault) return true;
   feature_unit(p->nearest.v, &u);
-  return vec_norm2(u) > 0.0 && !vec_equal(u, normal) && pair_look(p, u);
+  return vec_norm2(u) > 0.0 && !vec_equal(u, normal) && pair_look(p, u, false);
 }
 
 static void pair_search(pair *p, double margins, const pair_goal *goal, double rounding, pair_answer *answer) {
   const uint32_t most = goal->max_steps < PAIR_MAX_STEPS ? goal->max_steps : PAIR_MAX_STEPS;
   const int patience = p->curved ? PAIR_PATIENCE_CURVED : PAIR_PATIENCE_FLAT;
-  int stalled = 0;
-  bool newton = p->curved;
+  int stalled = 0, failures = 0, plain = PAIR_NEWTON_FROM;
   for (answer->steps = 1; answer->steps < most && !p->fault && !p->nearest.inside; answer->steps++) {
     const double gap = p->nearest.distance - p->lower, upper = p->nearest.distance - margins;
     const double asked = fmax(goal->epsilon, goal->relative_epsilon * fmax(upper, 0.0));
     if (gap <= fmax(asked - 2.0 * rounding, 0.25 * rounding) || p->nearest.distance == 0.0) return;
 
-    /* a Newton step that gained nothing is followed by a plain one; a plain one that gained nothing, where Newton would not
-     * have gained either, is the end */
-    const bool by_newton = newton && answer->steps > PAIR_NEWTON_FROM;
-    const bool gained = pair_step(p, by_newton);
-    if (!gained && !by_newton && (!p->curved || stalled > 2)) return;
-    newton = p->curved && (gained || !by_newton);
-    stalled = p->nearest.distance - p->lower < 0.98 * gap ? 0 : stalled + 1;
-    if (stalled > patience) return;
+    /* a Newton step that gains little is followed by plain ones, by one more after each further failure */
+    const bool newton = p->curved && plain == 0;
+    const bool gained = pair_step(p, newton);
+    const double left = (p->nearest.distance - p->lower) / gap;
+    if (!newton) {
+      if (!gained && stalled > PAIR_PATIENCE_FLAT) return;
+      plain = plain > 0 ? plain - 1 : 0;
+    } else if (left > PAIR_NEWTON_GAIN) {
+      plain = ++failures;
+    } else {
+      failures = 0;
+    }
+    stalled = left < 0.98 ? 0 : stalled + 1;
+    if (stalled > patience || (!gained && !p->curved)) return;
   }
 }
 

@@ -146,13 +146,20 @@ static bool try_tetrahedron(candidate *best, const simplex *s, double *depth) {
   return false;
 }
 
+/* v without its part along e, twice: where v is short the first pass leaves rounding along e that its unit would magnify. */
+static vec3 across_edge(vec3 v, vec3 e) {
+  const double square = vec_norm2(e);
+  vec3 unit;
+  feature_unit(vec_axpy(v, -(vec_dot(v, e) / square), e), &unit);
+  return vec_axpy(unit, -(vec_dot(unit, e) / square), e);
+}
+
 /* The direction of the feature's distance from 0. */
 static vec3 feature_normal(const simplex *s, vec3 v) {
   vec3 unit;
   if (s->n == 2) {
-    const vec3 a = s->vertex[0].w, b = s->vertex[1].w, e = vec_sub(b, a);
-    const vec3 nearer = vec_norm2(a) < vec_norm2(b) ? a : b;
-    v = vec_axpy(nearer, -(vec_dot(nearer, e) / vec_norm2(e)), e);
+    const vec3 a = s->vertex[0].w, b = s->vertex[1].w;
+    v = across_edge(vec_norm2(a) < vec_norm2(b) ? a : b, vec_sub(b, a));
   } else if (s->n == 3) {
     const face f = face_of(s, (int[3]){0, 1, 2});
     const double along = vec_dot(f.normal, s->vertex[f.corner].w);
