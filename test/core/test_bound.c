@@ -14,7 +14,7 @@
 #include "support/random.h"
 #include "support/reference.h"
 
-enum { MAX_DEGREE = 20, MAX_OPEN = 24, STEPS = 24, INTERVALS = 120000 };
+enum { MAX_DEGREE = 20, MAX_OPEN = 32, STEPS = 30, INTERVALS = 120000 };
 
 typedef enum shape_kind {
   SHAPE_POINT,
@@ -130,19 +130,23 @@ static size_t check_node(const problem *p, rng *r, const search_node *node, cons
   return 1;
 }
 
-/* Filters, probes and splits nodes in random order, and checks every node after every step. */
+/* Filters, probes and splits nodes, and checks every node after every step: nodes in random order, or always one that touches the best
+ * point, whose bound comes closest to the truth. */
 static size_t attack(const problem *p, rng *r, cprox_workspace *ws) {
   curve_convex o;
   assert_true(
       curve_convex_begin(&o, p->curve, &p->body->shape, frame_create(&p->pose, p->body->centre), p->offset, ws));
   o.good_enough = rng_index(r, 2) ? -INFINITY : INFINITY;
   const search_oracle oracle = curve_convex_oracle(&o);
+  const bool chase = rng_index(r, 2);
   search_node open[MAX_OPEN + 1];
   search_best best = {.upper = INFINITY};
   size_t n = 1, checked = 0;
   open[0] = curve_convex_root(&o);
   for (int step = 0; step < STEPS && n > 0 && n < MAX_OPEN; step++) {
-    const size_t i = rng_index(r, n);
+    size_t i = rng_index(r, n);
+    for (size_t k = 0; chase && o.incumbent > 0 && k < n; k++)
+      if (open[k].a <= o.best.s && o.best.s <= open[k].b) i = k;
     search_node *node = &open[i];
     oracle.filter(oracle.self, node, INFINITY);
     checked += check_node(p, r, node, &o);
