@@ -1,0 +1,315 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each service against distances computed by hand; what is wrong is told by name, and the next call is answered."""
+import math
+import unittest
+
+from curve_proximity.msg import AllowedContact, Body, CollisionObject, LinkPadding
+from geometry_msgs.msg import Pose
+from helpers import (BOX, CONE, CYLINDER, SPHERE, Server, bezier, body, box, bspline, mesh, plane, point, pose, run,
+                     solid, sphere, thing)
+
+EPSILON = 1e-9  # [m] asked for in each query that is compared
+ABOVE = bezier((0, 0, 1), (2, 0, 1), id='above')  # a straight line one metre up, middle over (1, 0, 0)
+
+
+class TestCase(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+
+    def row(self, response):
+        """The one result of a call that succeeded."""
+        self.assertTrue(response.success, response.message)
+        self.assertEqual(len(response.results), 1)
+        return response.results[0]
+
+    def assertContains(self, row, true_distance):
+        """The interval contains the true value (to the rounding of the value written here) and is narrow."""
+        self.assertLessEqual(row.lower, true_distance + 1e-15)
+        self.assertGreaterEqual(row.upper, true_distance - 1e-15)
+        self.assertLessEqual(row.upper - row.lower, EPSILON)
+
+    def distance(self, curve=ABOVE, **fields):
+        return self.row(self.server.distance(curve, epsilon=EPSILON, **fields))
+
+    def assertRefused(self, response, *words):
+        self.assertFalse(response.success)
+        for word in words:
+            self.assertIn(word, response.message)
+
+
+class Answers(TestCase):
+    def test_distance_gives_interval_points_parameter_normal_and_the_nearest_object(self):
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0)), box('far', (1, 1, 1), (0, 9, 0)))
+        response = self.server.distance(ABOVE, epsilon=EPSILON)
+        row = self.row(response)
+        self.assertContains(row, 0.75)
+        self.assertEqual((row.id, row.kind, row.a, row.b, row.status, row.verdict, row.message),
+                         ('above', 'curve', 'above', 'ball', 'ok', '', ''))
+        self.assertEqual(response.frame_id, 'world')
+        self.assertAlmostEqual(row.t, 0.5, delta=1e-4)
+        for value, expected in ((row.point_a, (1, 0, 1)), (row.point_b, (1, 0, 0.25)), (row.normal, (0, 0, 1))):
+            for got, want in zip((value.x, value.y, value.z), expected):
+                self.assertAlmostEqual(got, want, delta=2e-4)
+        self.assertGreater(row.probes, 0)
+        self.assertGreater(row.microseconds, 0)
+
+    def test_tolerance_is_granted_below_the_distance_and_denied_above(self):
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
+        self.assertEqual(self.row(self.server.tolerance(ABOVE, 0.7499)).verdict, 'yes')
+        self.assertEqual(self.row(self.server.tolerance(ABOVE, 0.7501)).verdict, 'no')
+        self.assertIn(self.row(self.server.tolerance(ABOVE, 0.75)).verdict, ('no', 'undecided'))
+
+    def test_collision_tells_a_hit_from_a_miss(self):
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
+        self.assertEqual(self.row(self.server.collision(ABOVE)).verdict, 'no')
+        through = bezier((0, 0, 0.1), (2, 0, 0.1))
+        hit = self.row(self.server.collision(through))
+        self.assertEqual((hit.verdict, hit.lower, hit.b), ('yes', 0.0, 'ball'))
+        self.assertEqual(self.row(self.server.distance(through)).upper, 0.0)
+
+    def test_every_kind_of_shape_is_measured(self):
+        # each stands about the origin; the true distance is that of the line above at height 2
+        line = bezier((-1, 0, 2), (1, 0, 2))
+        corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+        cases = [
+            (solid('s', BOX, [1, 2, 3]), 0.5), (solid('s', SPHERE, [0.5]), 1.5),
+            (solid('s', CYLINDER, [3, 0.4]), 0.5), (solid('s', CONE, [3, 0.4]), 0.5),
+            (plane('s', [0, 0, 2, -1]), 1.5), (mesh('s', corners, [(0, 1, 3), (4, 5, 7)]), 1.0),
+            (body('s', 'point', vertices=[(0, 0, 0.5)]), 1.5), (body('s', 'sphere', [0.5]), 1.5),
+            (body('s', 'box', [1, 2, 3]), 0.5), (body('s', 'capsule', [1, 0.5]), 1.0),
+            (body('s', 'cylinder', [3, 0.4]), 0.5), (body('s', 'cone', [3, 0.4]), 0.5),
+            (body('s', 'ellipsoid', [1, 1, 0.5]), 1.5), (body('s', 'halfspace', [0, 0, 2, -1]), 1.5),
+            (body('s', 'polytope', vertices=corners), 1.0)]
+        for thing_, true_distance in cases:
+            with self.subTest(thing_.bodies or thing_.primitives or thing_.planes or 'mesh'):
+                self.server.replace(thing_)
+                self.assertContains(self.distance(line), true_distance)
+
+    def test_poses_of_object_and_shape_are_chained(self):
+        # the object is turned by 90 degrees about z, so its shape at (1, 0, 0) stands at (3, 1, 0)
+        s = math.sqrt(0.5)
+        turned = sphere('ball', 0.5, (3, 0, 0), primitive_poses=[pose((1, 0, 0))])
+        turned.pose.orientation.z = turned.pose.orientation.w = 2 * s  # not normalised
+        self.server.replace(turned)
+        self.assertContains(self.distance(bezier((3, 1, -2), (3, 1, -1))), 0.5)
+
+    def test_padding_radius_and_curve_range_count(self):
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0), padding=0.1))
+        self.assertContains(self.distance(), 0.65)
+        self.assertContains(self.distance(bezier((0, 0, 1), (2, 0, 1), radius=0.2)), 0.45)
+        # half of a spline along x is as far from the ball as its end at (1, 0, 1) says
+        self.server.replace(sphere('ball', 0.25, (2, 0, 1)))
+        spline = bspline([(i / 4.0, 0, 1) for i in range(9)], 1, t0=0.0, t1=0.5)
+        self.assertContains(self.distance(spline), 0.75)
+
+    def test_per_object_gives_a_row_for_each_pair_and_names_it(self):
+        self.server.replace(sphere('a', 0.25, (1, 0, 0)), sphere('b', 0.5, (1, 0, 0)), sphere('c', 0.125, (1, 0, 0)))
+        response = self.server.distance([ABOVE, bezier((0, 0, 2), (2, 0, 2), id='top')], per_object=True,
+                                        epsilon=EPSILON)
+        self.assertTrue(response.success, response.message)
+        rows = {(r.a, r.b): r for r in response.results}
+        self.assertEqual(len(response.results), 6)
+        for name, radius in (('a', 0.25), ('b', 0.5), ('c', 0.125)):
+            self.assertContains(rows['above', name], 1 - radius)
+            self.assertContains(rows['top', name], 2 - radius)
+
+    def test_named_objects_alone_are_measured(self):
+        self.server.replace(sphere('near', 0.25, (1, 0, 0)), sphere('far', 0.25, (1, 0, -1)))
+        self.assertEqual(self.distance(objects=['far']).b, 'far')
+        self.assertContains(self.distance(objects=['far']), 1.75)
+
+    def test_nothing_to_measure_is_infinitely_far(self):
+        self.server.replace()
+        row = self.distance()
+        self.assertEqual((row.lower, row.upper, row.b, row.status), (math.inf, math.inf, '', 'ok'))
+
+    def test_no_curves_get_no_results(self):
+        response = self.server.distance([])
+        self.assertTrue(response.success)
+        self.assertEqual(response.results, [])
+
+
+class Scene(TestCase):
+    def test_objects_are_added_moved_appended_and_removed(self):
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
+        move = thing('ball', (1, 0, -1), operation=CollisionObject.MOVE)
+        self.assertTrue(self.server.apply(move).success)
+        self.assertContains(self.distance(), 1.75)
+
+        more = sphere('ball', 0.5, operation=CollisionObject.APPEND)
+        self.assertTrue(self.server.apply(more).success)
+        self.assertContains(self.distance(), 1.5)
+        self.assertEqual(len(self.server.scene('ball').objects[0].primitives), 2)
+
+        again = sphere('ball', 0.125, (1, 0, 0))
+        self.assertTrue(self.server.apply(again).success)
+        self.assertContains(self.distance(), 0.875)
+
+        self.assertTrue(self.server.apply(thing('ball', operation=CollisionObject.REMOVE)).success)
+        self.assertEqual(self.server.scene().objects, [])
+
+        self.server.replace(sphere('a', 1), sphere('b', 1))
+        self.assertTrue(self.server.apply(thing('', operation=CollisionObject.REMOVE)).success)
+        self.assertEqual(self.server.scene().objects, [])
+
+    def test_what_get_scene_returns_builds_the_same_scene_again(self):
+        corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+        self.server.replace(
+            solid('box', BOX, [1, 2, 3], (5, 0, 0), padding=0.05), solid('cone', CONE, [1, 0.5], (0, 5, 0)),
+            mesh('mesh', corners, [(0, 1, 3), (4, 5, 7)], (0, 0, 8)), plane('floor', [0, 0, 1, 4]),
+            body('capsule', 'capsule', [1, 0.2], position=(3, 3, 3)),
+            body('hull', 'polytope', vertices=corners, position=(-4, 0, 0)),
+            allowed_contacts=[AllowedContact('cone', 'box', True)])
+        first = self.server.scene()
+        self.assertEqual(first.frame_id, 'world')
+        self.assertEqual([(c.first, c.second, c.allowed) for c in first.allowed_contacts], [('box', 'cone', True)])
+        rows = self.server.distance(ABOVE, per_object=True, epsilon=EPSILON).results
+
+        self.server.replace(*first.objects, allowed_contacts=first.allowed_contacts)
+        self.assertEqual(self.server.scene(), first)
+        for before, after in zip(rows, self.server.distance(ABOVE, per_object=True, epsilon=EPSILON).results):
+            self.assertEqual((before.b, before.lower, before.upper), (after.b, after.lower, after.upper))
+        self.assertEqual([o.id for o in self.server.scene('cone', 'box').objects], ['cone', 'box'])
+
+    def test_a_faulty_object_does_not_spoil_the_others(self):
+        self.server.replace()
+        response = self.server.apply(sphere('good', 0.25, (1, 0, 0)), sphere('bad', -1), sphere('also', 0.1, (9, 9, 9)))
+        self.assertRefused(response, "'bad'")
+        self.assertEqual([o.id for o in self.server.scene().objects], ['also', 'good'])
+
+
+class BadInput(TestCase):
+    """Whatever is refused here, the node answers the next call."""
+
+    def setUp(self):
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
+
+    def tearDown(self):
+        self.assertContains(self.distance(objects=['ball']), 0.75)
+
+    def test_curves_are_refused_with_a_reason(self):
+        nan, inf = math.nan, math.inf
+        straight = [(0, 0, 1), (1, 0, 1), (2, 0, 1)]
+        cases = [
+            (bezier((0, 0, nan), (1, 0, 1)), 'point'), (bezier((0, 0, inf), (1, 0, 1)), 'point'),
+            (bezier(), 'point'), (bezier((0, 0, 1)), 'point'),
+            (bezier((0, 0, 1), (1, 0, 1), degree=5), 'degree'),
+            (bezier((0, 0, 1), (1, 0, 1), radius=-0.1), 'radius'),
+            (bezier((0, 0, 1), (1, 0, 1), radius=nan), 'radius'),
+            (bezier((0, 0, 1), (1, 0, 1), t0=1.0, t1=0.5), 't0'),
+            (bezier((0, 0, 1), (1, 0, 1), t0=nan, t1=1.0), 't0'),
+            (bezier((0, 0, 1), (1, 0, 1), basis='fourier'), "'fourier'"),
+            (bspline(straight, 1, knots=[0, 0, 0.7, 0.5, 1]), 'knot'), (bspline(straight, 1, knots=[0, 0, 1]), 'knot'),
+            (bspline(straight, 0), 'degree'), (bspline(straight, 2, knots=[0, 0, 0, nan, 1, 1]), 'knot'),
+            (bspline(straight, 3, knots=[0] * 7), 'point'),
+            (bezier(*[(i, 0, 1) for i in range(100)]), 'point')]
+        for curve, word in cases:
+            with self.subTest(word, curve=str(curve)[-200:]):
+                response = self.server.distance(curve)
+                self.assertRefused(response, word, '1 of 1')
+                row, = response.results
+                self.assertEqual(row.status, 'invalid')
+                self.assertIn(word, row.message)
+                self.assertTrue(math.isnan(row.lower) and math.isnan(row.upper))
+
+    def test_one_bad_curve_does_not_spoil_the_others(self):
+        response = self.server.distance([ABOVE, bezier((0, 0, 1), id='short'), ABOVE], epsilon=EPSILON)
+        self.assertRefused(response, '1 of 3', 'curve 1', "'short'")
+        self.assertEqual([r.status for r in response.results], ['ok', 'invalid', 'ok'])
+        self.assertContains(response.results[2], 0.75)
+
+    def test_objects_are_refused_by_name(self):
+        nan = math.nan
+        upright = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+        cases = [
+            (solid('odd', BOX, [0, 1, 1]), ''), (solid('odd', BOX, [1, 1]), 'dimension'),
+            (solid('odd', SPHERE, [-1]), ''), (solid('odd', SPHERE, [nan]), ''), (solid('odd', SPHERE, []), 'dimension'),
+            (solid('odd', 17, [1, 1, 1]), '17'), (solid('odd', CYLINDER, [0, 1]), ''),
+            (body('odd', 'teapot', [1]), "'teapot'"), (body('odd', 'capsule', [1, 0]), ''),
+            (body('odd', 'polytope'), 'vert'), (body('odd', 'polytope', vertices=[(0, 0, nan)]), ''),
+            (body('odd', 'halfspace', [0, 0, 0, 1]), ''), (body('odd', 'mesh'), ''),
+            (mesh('odd', upright, [(0, 1, 7)]), 'vertex 7'), (mesh('odd', upright, [(0, 1, 2**32 - 1)]), 'vertex'),
+            (mesh('odd', upright, []), 'triangle'), (mesh('odd', upright[:2] + [(0, nan, 0)], [(0, 1, 2)]), ''),
+            (mesh('odd', [], []), ''), (plane('odd', [0, 0, 0, 1]), ''),
+            (sphere('odd', 1, primitive_poses=[pose(orientation=(0, 0, 0, 0))]), 'norm is 0'),
+            (sphere('odd', 1, primitive_poses=[pose(), pose()]), 'poses'),
+            (sphere('odd', 1, (nan, 0, 0)), 'finite'), (sphere('odd', 1, padding=-0.1), 'padding'),
+            (sphere('odd', 1, padding=nan), 'padding'), (sphere('odd', 1, operation=9), 'operation 9'),
+            (thing('odd', operation=CollisionObject.MOVE), 'odd'),
+            (thing('odd', operation=CollisionObject.REMOVE), 'odd')]
+        zero = sphere('odd', 1, (1, 2, 3))
+        zero.pose.orientation.w = 0
+        cases.append((zero, 'norm is 0'))
+        for object_, word in cases:
+            with self.subTest(word, object=str(object_)[:400]):
+                self.assertRefused(self.server.apply(object_), "'odd'", word)
+        self.assertFalse(self.server.apply(sphere('', 1)).success)
+        self.assertEqual([o.id for o in self.server.scene().objects], ['ball'])
+
+    def test_an_unset_pose_is_the_identity(self):
+        ball = sphere('other', 0.5)
+        ball.pose = Pose()
+        self.assertTrue(self.server.apply(ball).success)
+        self.assertContains(self.distance(bezier((0, 0, 1), (0, 1, 1)), objects=['other']), 0.5)
+
+    def test_missing_mesh_files_are_refused(self):
+        for resource in ('file:///nowhere/none.stl', 'package://no_such_package/a.stl', 'http://localhost/a.stl', ''):
+            with self.subTest(resource):
+                odd = thing('odd', bodies=[Body(type='mesh', resource=resource)])
+                self.assertRefused(self.server.apply(odd), "'odd'", resource)
+
+    def test_questions_are_refused_with_a_reason(self):
+        for epsilon in (-1e-6, math.nan, math.inf):
+            self.assertRefused(self.server.distance(ABOVE, epsilon=epsilon), 'epsilon')
+        for delta in (-0.1, math.nan, math.inf):
+            self.assertRefused(self.server.tolerance(ABOVE, delta), 'delta')
+        self.assertRefused(self.server.distance(ABOVE, objects=['ghost']), "'ghost'")
+        self.assertRefused(self.server.distance(ABOVE, links=['arm']), "'arm'", 'no robot')
+        self.assertRefused(self.server.scene('ghost'), "'ghost'")
+        self.assertRefused(self.server.apply(link_padding=[LinkPadding('arm', 0.1)]), "'arm'")
+
+    def test_an_unknown_frame_is_told_with_both_frames(self):
+        self.assertRefused(self.server.distance(bezier((0, 0, 1), (1, 0, 1), frame='nowhere')), "'nowhere'", "'world'")
+        self.assertRefused(self.server.apply(sphere('odd', 1, frame='nowhere')), "'odd'", "'nowhere'", "'world'")
+
+    def test_too_much_is_refused_with_limit_and_count(self):
+        self.assertRefused(self.server.distance([ABOVE] * 10001), 'max_curves', '10000', '10001')
+        point_ = point((0, 0, 1))
+        long = bspline([(0, 0, 1)] * 3, 2)
+        long.points = [point_] * 100001
+        self.assertRefused(self.server.distance(long), 'max_control_points', '100000', '100001')
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0)), sphere('b', 1, (9, 9, 9)), sphere('c', 1, (9, 9, 9)))
+        self.assertRefused(self.server.distance([ABOVE] * 7000, per_object=True), 'max_results', '20000', '21000')
+
+
+class Large(TestCase):
+    def setUp(self):
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
+
+    def test_a_spline_of_100000_control_points_is_answered(self):
+        # a straight line in many pieces
+        n = 100000
+        row = self.distance(bspline([(2.0 * i / (n - 1), 0, 1) for i in range(n)], 3))
+        self.assertContains(row, 0.75)
+
+    def test_10000_curves_in_one_request_are_answered(self):
+        curves = [bezier((0, 0, 1 + i * 1e-3), (2, 0, 1 + i * 1e-3)) for i in range(10000)]
+        response = self.server.distance(curves, epsilon=EPSILON)
+        self.assertTrue(response.success, response.message)
+        self.assertEqual(len(response.results), 10000)
+        for i in (0, 17, 9999):
+            self.assertContains(response.results[i], 1 + i * 1e-3 - 0.25)
+
+    def test_a_budget_of_one_node_leaves_a_true_interval(self):
+        wave = bezier((0, 0, 1), (0.5, 2, 0.4), (1, -3, 1.5), (1.5, 2, 0.4), (2, 0, 1))
+        exact = self.distance(wave)
+        rough = self.row(self.server.distance(wave, max_nodes=1, epsilon=EPSILON))
+        self.assertIn(rough.status, ('ok', 'budget'))
+        self.assertLessEqual(rough.lower, exact.upper)
+        self.assertGreaterEqual(rough.upper, exact.lower)
+
+
+if __name__ == '__main__':
+    run('answers')

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of the node share: messages by one call each, and the services of the node under test."""
+import os
+import subprocess
+import time
+
+import rospy
+import rostest
+from curve_proximity.msg import Body, CollisionObject, Curve
+from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, CollisionRequest, Distance,
+                                 DistanceRequest, GetScene, Tolerance, ToleranceRequest)
+from geometry_msgs.msg import Point, Pose, Quaternion
+from sensor_msgs.msg import JointState
+from shape_msgs.msg import Mesh, MeshTriangle, Plane, SolidPrimitive
+
+BOX, SPHERE, CYLINDER, CONE = 1, 2, 3, 4
+
+
+def run(name):
+    """Runs all test cases of the script that calls this, as the rostest of that name."""
+    rospy.init_node(name)
+    rostest.rosrun('curve_proximity', name, '__main__')
+
+
+def point(p):
+    return Point(*[float(c) for c in p])
+
+
+def pose(position=(0, 0, 0), orientation=(0, 0, 0, 1)):
+    return Pose(point(position), Quaternion(*[float(c) for c in orientation]))
+
+
+def bezier(*points, **fields):
+    """A Bezier curve; further fields of the message by name, frame and stamp among them."""
+    curve = Curve(basis='bezier', points=[point(p) for p in points])
+    curve.header.frame_id = fields.pop('frame', '')
+    curve.header.stamp = fields.pop('stamp', rospy.Time())
+    for name, value in fields.items():
+        setattr(curve, name, value)
+    return curve
+
+
+def bspline(points, degree, knots=None, **fields):
+    """A B-spline; clamped uniform knots where none are given."""
+    n = len(points)
+    inner = n - degree - 1
+    if knots is None:
+        knots = [0.0] * (degree + 1) + [(i + 1.0) / (inner + 1) for i in range(inner)] + [1.0] * (degree + 1)
+    return bezier(*points, basis='bspline', degree=degree, knots=knots, **fields)
+
+
+def thing(name, position=(0, 0, 0), frame='', **fields):
+    """An object without shapes."""
+    result = CollisionObject(id=name, pose=pose(position), operation=CollisionObject.ADD)
+    result.header.frame_id = frame
+    for field, value in fields.items():
+        setattr(result, field, value)
+    return result
+
+
+def solid(name, kind, dimensions, position=(0, 0, 0), **fields):
+    return thing(name, position, primitives=[SolidPrimitive(type=kind, dimensions=[float(d) for d in dimensions])],
+                 **fields)
+
+
+def sphere(name, radius, position=(0, 0, 0), **fields):
+    return solid(name, SPHERE, [radius], position, **fields)
+
+
+def box(name, size, position=(0, 0, 0), **fields):
+    return solid(name, BOX, size, position, **fields)
+
+
+def body(name, kind, dimensions=(), vertices=(), position=(0, 0, 0), **fields):
+    return thing(name, position, bodies=[Body(type=kind, dimensions=[float(d) for d in dimensions],
+                                              vertices=[point(v) for v in vertices])], **fields)
+
+
+def mesh(name, vertices, triangles, position=(0, 0, 0), **fields):
+    return thing(name, position, meshes=[Mesh(triangles=[MeshTriangle(vertex_indices=t) for t in triangles],
+                                              vertices=[point(v) for v in vertices])], **fields)
+
+
+def plane(name, coefficients, **fields):
+    return thing(name, planes=[Plane(coef=[float(c) for c in coefficients])], **fields)
+
+
+def joints(**positions):
+    return JointState(name=list(positions), position=list(positions.values()))
+
+
+class Server:
+    """The services of one node, by persistent connections unless told otherwise."""
+
+    def __init__(self, name='/curve_proximity', persistent=True, timeout=20.0):
+        def connect(service, kind):
+            rospy.wait_for_service(name + '/' + service, timeout)
+            return rospy.ServiceProxy(name + '/' + service, kind, persistent=persistent)
+
+        self._distance = connect('distance', Distance)
+        self._tolerance = connect('tolerance', Tolerance)
+        self._collision = connect('collision', Collision)
+        self._apply = connect('apply_scene', ApplyScene)
+        self._get = connect('get_scene', GetScene)
+
+    @staticmethod
+    def _request(kind, curves, fields):
+        return kind(curves=list(curves) if isinstance(curves, (list, tuple)) else [curves], **fields)
+
+    def distance(self, curves, **fields):
+        return self._distance(self._request(DistanceRequest, curves, fields))
+
+    def tolerance(self, curves, delta, **fields):
+        return self._tolerance(self._request(ToleranceRequest, curves, dict(fields, delta=delta)))
+
+    def collision(self, curves, **fields):
+        return self._collision(self._request(CollisionRequest, curves, fields))
+
+    def apply(self, *objects, **fields):
+        return self._apply(ApplySceneRequest(objects=list(objects), **fields))
+
+    def replace(self, *objects, **fields):
+        """The scene holds these objects and nothing else."""
+        response = self.apply(*objects, clear=True, **fields)
+        assert response.success, response.message
+        return response
+
+    def scene(self, *ids):
+        return self._get(list(ids))
+
+
+def executable(package, name):
+    """The path of a node's program."""
+    import roslib.packages
+    found = roslib.packages.find_node(package, name)
+    assert found, 'there is no %s in %s' % (name, package)
+    return found[0]
+
+
+class Node:
+    """The node as a process of its own, under a name of its own, its output kept."""
+
+    def __init__(self, name, environment=None, **parameters):
+        self.name = name
+        self.forget()
+        arguments = [executable('curve_proximity', 'curve_proximity_node'), '__name:=' + name]
+        for parameter, value in parameters.items():
+            if environment is None:
+                rospy.set_param('/%s/%s' % (name, parameter), value)
+        self._log = open(os.path.join('/tmp', 'curve_proximity_%s_%d.log' % (name, os.getpid())), 'w+')
+        self.process = subprocess.Popen(arguments, stdout=self._log, stderr=subprocess.STDOUT, env=environment)
+
+    def forget(self):
+        """Private parameters stay on the master between runs."""
+        try:
+            rospy.delete_param('/' + self.name)
+        except (KeyError, rospy.ROSException):
+            pass
+
+    def alive(self):
+        return self.process.poll() is None
+
+    def output(self):
+        self._log.flush()
+        with open(self._log.name) as log:
+            return log.read()
+
+    def wait(self, seconds):
+        """The exit code, or None where it still runs then."""
+        try:
+            return self.process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return None
+
+    def resident_mb(self):
+        with open('/proc/%d/status' % self.process.pid) as status:
+            for line in status:
+                if line.startswith('VmRSS:'):
+                    return int(line.split()[1]) / 1024.0
+        return 0.0
+
+    def end(self):
+        if self.alive():
+            self.process.terminate()
+            if self.wait(10) is None:
+                self.process.kill()
+                self.process.wait()
+        self._log.close()
+        os.unlink(self._log.name)
+        self.forget()
+
+
+def until(condition, seconds, step=0.02):
+    """Waits for a condition on the wall clock; its last value."""
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        value = condition()
+        if value:
+            return value
+        time.sleep(step)
+    return condition()
