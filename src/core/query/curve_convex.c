@@ -195,7 +195,7 @@ static cprox_status probe_range(curve_convex *o, search_node *node) {
   const vec3 *points = curve_piece(o->curve, piece);
   double turned = 0.0;
   const vec3 y = frame_to_local(&o->frame, points[s == 0.0 ? 0 : o->curve->degree], &turned);
-  search_best bound;
+  search_best bound = {.upper = INFINITY};
   load_root(o, piece);
   const cprox_status status = curve_convex_measure(o, piece, s, y, o->curve->error[piece] + turned, &o->last, &bound);
   if (status < 0) return status;
@@ -209,7 +209,7 @@ static cprox_status probe_piece(curve_convex *o, search_node *node) {
   const double *x = slot_points(o, SLOT_ROOT), *y = x + degree + 1, *z = y + degree + 1;
   vec3 point;
   curve_bezier_evaluate(x, y, z, 1, degree, o->curve->binomial, s, &point, NULL, NULL);
-  search_best bound;
+  search_best bound = {.upper = INFINITY};
   const cprox_status status = curve_convex_measure(o, piece, s, point, curve_convex_point_error(o), &o->last, &bound);
   if (status < 0) return status;
   if (bound.upper < o->best_bound.upper) {

@@ -101,7 +101,7 @@ cprox_status polish(curve_convex *o, const double *points, double step) {
 
     /* only a measured distance counts */
     curve_sight sight;
-    search_best bound;
+    search_best bound = {.upper = INFINITY};
     const cprox_status status = curve_convex_measure(o, from.piece, s, j.x, error, &sight, &bound);
     if (status < 0) return status;
     const bool better = bound.upper < o->best_bound.upper;
