@@ -29,29 +29,15 @@ install(DIRECTORY include/curve_proximity/ DESTINATION include/curve_proximity F
 if(CPROX_ROS)
   install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION}
           FILES_MATCHING PATTERN "*.hpp")
-  foreach(library curve_proximity_scene curve_proximity_ros)
-    if(TARGET ${library})
-      install(TARGETS ${library} LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
-              ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
-    endif()
-  endforeach()
-  if(TARGET curve_proximity_node)
-    install(TARGETS curve_proximity_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-  endif()
+  install(TARGETS ${PROJECT_NAME}_scene ${PROJECT_NAME}_ros
+          LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION} ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
+  install(TARGETS ${PROJECT_NAME}_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   # The command line belongs on the PATH of whoever sources the space.
-  if(TARGET cprox_cli)
-    set_target_properties(cprox_cli PROPERTIES
-      RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_BIN_DESTINATION})
-    install(TARGETS cprox_cli RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-  endif()
-  foreach(folder launch config rviz)
-    if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})
-      install(DIRECTORY ${folder} DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
-    endif()
-  endforeach()
-  if(EXISTS ${PROJECT_SOURCE_DIR}/nodelet_plugins.xml)
-    install(FILES nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
-  endif()
+  set_target_properties(cprox_cli PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_BIN_DESTINATION})
+  install(TARGETS cprox_cli RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
+  install(DIRECTORY launch config rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+  install(FILES nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
   # The demo's robot and scenes, so that demo.launch works from the install space too.
   install(DIRECTORY test/data/robots test/data/scenes DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/test/data)
 endif()
