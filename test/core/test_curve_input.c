@@ -82,6 +82,11 @@ static void bad_ranges_are_refused(void **state) {
   bspline_refused(&good, 5, 2, 8, 0.5, 0.5, "t0 = 0.5 is not below t1 = 0.5");
   bspline_refused(&good, 5, 2, 8, -0.1, 0.5, "[t0, t1] = [-0.1, 0.5] leaves the spline's domain [0, 1]");
   bspline_refused(&good, 5, 2, 8, 0.5, 1.5, "[t0, t1] = [0.5, 1.5] leaves the spline's domain [0, 1]");
+
+  /* knots before the domain are no part of it */
+  const good_spline open = {.points = {{0, 0, 0}}, .knots = {0, 1, 2, 3, 4, 5, 6, 7}};
+  bspline_refused(&open, 5, 2, 8, 1, 5, "[t0, t1] = [1, 5] leaves the spline's domain [2, 5]");
+  bspline_refused(&open, 5, 2, 8, 2, 6, "[t0, t1] = [2, 6] leaves the spline's domain [2, 5]");
 }
 
 static void bad_degrees_and_knots_are_refused(void **state) {
@@ -131,6 +136,8 @@ static void questions_outside_the_range_are_refused(void **state) {
   assert_int_equal(cprox_curve_control_points(curve, 0.0, NAN, workspace, part), CPROX_INVALID);
   assert_int_equal(cprox_curve_control_points(curve, -1.0, 0.1, workspace, part), CPROX_INVALID);
   assert_string_equal(cprox_workspace_reason(workspace), "[-1, 0.10000000000000001] leaves the curve's range [0, 1]");
+  assert_int_equal(cprox_curve_control_points(curve, 0.75, 1.5, workspace, part), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(workspace), "[0.75, 1.5] leaves the curve's range [0, 1]");
   assert_int_equal(cprox_curve_control_points(curve, 0.25, 0.75, workspace, part), CPROX_INVALID);
   assert_string_equal(cprox_workspace_reason(workspace), "two pieces join at 0.40000000000000002, inside [0.25, 0.75]");
   assert_int_equal(cprox_curve_control_points(curve, 0.0, 0.1, workspace, NULL), CPROX_INVALID);
