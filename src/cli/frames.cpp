@@ -18,9 +18,13 @@ Frames::Frames(std::set<std::string> fixed, const std::vector<FrameTransform> &t
   fixed_.insert({"", "world"});
   for (const FrameTransform &transform : transforms) {
     const std::string child = bare(transform.child);
+
+    /* a frame that stands in itself, unmoved, is how MoveIt writes down the fixed frame of the file */
+    const bool is_identity = transform.pose.isApprox(Eigen::Isometry3d::Identity());
+    if (is_identity && bare(transform.parent) == child) fixed_.insert(child);
     if (fixed_.count(child) == 0) {
       transforms_[child] = transform;
-    } else if (!transform.pose.isApprox(Eigen::Isometry3d::Identity())) {
+    } else if (!is_identity) {
       warnings.add("fixed_frame_transforms: '" + child + "' is the fixed frame; its transform is ignored");
     }
   }

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* cprox: the command line. No exception leaves main(): each becomes one line on standard error. */
+#include <console_bridge/console.h>
+
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -30,6 +32,9 @@ int run(const std::vector<std::string> &words, Console &console) {
 } // namespace
 
 int main(int argc, char **argv) {
+  /* urdfdom and the readers of meshes speak to standard error behind our back: what they find is told in one line */
+  console_bridge::noOutputHandler();
+
   Console console;
   try {
     return run(std::vector<std::string>(argv + 1, argv + argc), console);

@@ -66,15 +66,21 @@ class Run {
 
   /* The next row and its number; nothing at the end, or when the run is over for another reason. */
   std::optional<Task> take(std::size_t &number) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    room_.wait(lock, [this] { return taken_ < written_ + kMostAhead || over(); });
-    if (over()) return std::nullopt;
-    std::optional<Task> task = rows_.next();
-    if (!task) {
-      exhausted_ = true;
-      return std::nullopt;
+    /* not too far ahead of what is written */
+    const std::lock_guard<std::mutex> source(source_);
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      room_.wait(lock, [this] { return taken_ < written_ + kMostAhead || over(); });
+      if (over()) return std::nullopt;
     }
-    number = taken_++;
+
+    /* the input may have to be waited for: others deliver meanwhile */
+    std::optional<Task> task = rows_.next();
+
+    const std::lock_guard<std::mutex> lock(mutex_);
+    exhausted_ = !task;
+    if (task) number = taken_++;
+    if (rows_.portion) portion_ = rows_.portion();
     return task;
   }
 
@@ -105,20 +111,21 @@ class Run {
   void tellProgress() {
     std::string line = std::to_string(tally_.rows) + " rows";
     if (tally_.failed) line += ", " + std::to_string(tally_.failed) + " failed";
-    const std::optional<double> portion = rows_.portion ? rows_.portion() : std::nullopt;
-    if (portion) line += ", " + std::to_string(static_cast<int>(100.0 * *portion)) + " %";
+    if (portion_) line += ", " + std::to_string(static_cast<int>(100.0 * *portion_)) + " %";
     console_.progress(line);
   }
 
   const Rows &rows_;
   Console &console_;
 
-  std::mutex mutex_; /* of everything below, and of the functions of rows_ */
+  std::mutex source_; /* of rows_.next and rows_.portion; taken before mutex_ */
+  std::mutex mutex_;  /* of rows_.write and of everything below */
   std::condition_variable room_, finished_;
   std::map<std::size_t, Outcome> waiting_;
   std::size_t taken_ = 0, written_ = 0, working_ = 0;
   bool exhausted_ = false, stopped_ = false;
   std::exception_ptr failure_;
+  std::optional<double> portion_;
   Tally tally_;
 };
 

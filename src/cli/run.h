@@ -25,7 +25,8 @@ struct Outcome {
 /** Answers one row; called by one of the threads, each with its own workspace. Must not throw. */
 using Task = std::function<Outcome(Workspace &)>;
 
-/** Where the rows come from and where they go. The functions are called by one thread at a time. */
+/** Where the rows come from and where they go. Each function is called by one thread at a time; `next` may wait for its
+ *  input while the others go on. */
 struct Rows {
   std::function<std::optional<Task>()> next;      /**< nothing at the end */
   std::function<void(const std::string &)> write; /**< lines of the results */

@@ -243,6 +243,8 @@ SceneFile readScene(const std::string &path, Warnings &warnings) {
   const YamlValue root = loadYaml(path);
   SceneFile out;
   try {
+    if (root.isEmpty()) root.fail("is empty: that is no scene");
+
     /* known keys that Cartesian curves have no use for are ignored without a word */
     root.warnOfOthers({"name", "robot_model_name", "robot_state", "fixed_frame_transforms", "allowed_collision_matrix",
                        "link_padding", "link_scale", "object_colors", "world", "is_diff", "virtual_joint",

@@ -43,6 +43,9 @@ class YamlValue {
   /** A BadInput: the place, and what is wrong there. */
   [[noreturn]] void fail(const std::string &what) const;
 
+  bool isEmpty() const {
+    return node_.IsNull();
+  }
   bool isMap() const {
     return node_.IsMap();
   }

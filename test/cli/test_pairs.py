@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Signed distances of pairs whose values are known by hand."""
+import math
+
+from support import HEADER, Case
+
+HALF = math.sqrt(0.5)
+
+
+def pair(identifier, a, b):
+    return f'- {{id: {identifier}, a: {a}, b: {b}}}\n'
+
+
+def at(x, y=0, z=0, orientation=''):
+    return f'pose: {{position: [{x}, {y}, {z}]{orientation and ", orientation: " + str(orientation)}}}'
+
+
+UNIT_BALL = '{type: sphere, dimensions: [1]}'
+
+
+class Pairs(Case):
+    def distances_are_those_by_hand(self):
+        cases = {
+            'point_point': ('{type: point}', f'{{type: point, {at(3, 4)}}}', 5),
+            'point_vertex': ('{type: point, vertices: [[0, 0, 1]]}', f'{{type: point, {at(0, 0, 3)}}}', 2),
+            'sphere_sphere': (UNIT_BALL, f'{{type: sphere, dimensions: [0.5], {at(3)}}}', 1.5),
+            'box_sphere': ('{type: box, dimensions: [2, 4, 6]}', f'{{type: sphere, dimensions: [0.5], {at(3, 4, 5)}}}', math.sqrt(12) - 0.5),
+            'box_box': ('{type: box, dimensions: [2, 2, 2]}',
+                        f'{{type: box, dimensions: [2, 2, 2], {at(4, 0, 0, [0, 0, math.sin(math.pi / 8), math.cos(math.pi / 8)])}}}', 3 - math.sqrt(2)),
+            'capsule_point': ('{type: capsule, dimensions: [4, 1]}', f'{{type: point, {at(0, 0, 5)}}}', 2),
+            'cylinder_point': ('{type: cylinder, dimensions: [4, 1]}', f'{{type: point, {at(4, 0, 6)}}}', 5),
+            'cone_tip': ('{type: cone, dimensions: [2, 1]}', f'{{type: point, {at(0, 0, 3)}}}', 2),
+            'cone_base': ('{type: cone, dimensions: [2, 1]}', f'{{type: point, {at(0, 0, -3)}}}', 2),
+            'ellipsoid_point': ('{type: ellipsoid, dimensions: [1, 2, 3]}', f'{{type: point, {at(0, 0, 5)}}}', 2),
+            'halfspace_ball': ('{type: halfspace, dimensions: [0, 0, 2, 4]}', UNIT_BALL, 1),
+            'polytope_ball': ('{type: polytope, vertices: [[2, -1, -1], [2, 1, -1], [2, 0, 2], [3, 0, 0]]}', UNIT_BALL, 1),
+            'segment_segment': ('{type: polytope, vertices: [[-1, 0, 0], [1, 0, 0]]}', '{type: polytope, vertices: [[0, -1, 2], [0, 0, 2], [0, 1, 2]]}', 2),
+            'polygon_point': ('{type: polytope, vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]}', f'{{type: point, {at(0.3, 0.4, -1.5)}}}', 1.5),
+            'mesh_ball': ('{type: mesh, mesh: {vertices: [[2, -1, -1], [2, 1, -1], [2, 0, 2], [3, 0, 0]], '
+                          'triangles: [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]}}', UNIT_BALL, 1),
+        }
+        answer = self.pairs(''.join(pair(name, a, b) for name, (a, b, _) in cases.items()), '--epsilon', '1e-9')
+        self.assertEqual((answer.code, answer.err, answer.header), (0, '', HEADER))
+        self.assertEqual([row['id'] for row in answer.rows], list(cases))
+        for name, (_, _, distance) in cases.items():
+            with self.subTest(name=name):
+                row = answer.row(name)
+                self.assertAnswer(row, distance, epsilon=1e-9)
+                self.assertEqual((row['kind'], row['verdict'], row['t'], row['t_b'], row['a'], row['b']), ('pair', '', '', '', name, name))
+
+                # the witnesses are as far apart as the upper bound says
+                points = [[float(row[f'{letter}_{axis}']) for axis in 'xyz'] for letter in 'ab']
+                self.assertAlmostEqual(math.dist(*points), float(row['upper']), delta=1e-9)
+
+    def a_mesh_counts_as_its_hull_and_says_so(self):
+        mesh = '{type: mesh, mesh: {vertices: [[2, 0, 0], [3, 1, 0], [3, 0, 1]], triangles: [[0, 1, 2]]}}'
+        self.assertEqual(self.pairs(pair('m', mesh, UNIT_BALL)).row('m')['rung'], 'hull')
+
+    def witness_a_lies_on_a_and_b_on_b(self):
+        row = self.pairs(pair('p', f'{{type: sphere, dimensions: [1], {at(-2)}}}', f'{{type: sphere, dimensions: [0.5], {at(3)}}}')).row('p')
+        self.assertPoint(row, 'a', (-1, 0, 0))
+        self.assertPoint(row, 'b', (2.5, 0, 0))
+
+    def overlap_has_a_lower_bound_that_is_not_above_the_depth(self):
+        row = self.pairs(pair('p', UNIT_BALL, f'{{type: sphere, dimensions: [1], {at(0.5)}}}')).row('p')
+        self.assertIn(row['status'], ('overlap', 'ok'))
+        self.assertLessEqual(float(row['lower']), -1.5 + 1e-9)
+        self.assertLessEqual(float(row['upper']), 0.0)
+
+    def a_list_of_yaml_blocks_is_a_list_too(self):
+        text = ('- id: p\n  a:\n    type: box\n    dimensions: [2, 2, 2]\n  b:\n    type: sphere\n    dimensions: [1]\n'
+                '    pose:\n      position: {x: 5, y: 0, z: 0}\n      orientation: {x: 0, y: 0, z: 0, w: 1}\n')
+        self.assertAnswer(self.pairs(text).row('p'), 3)
+
+    def an_empty_list_has_a_header_as_its_answer(self):
+        answer = self.pairs('[]')
+        self.assertEqual((answer.code, answer.out), (0, HEADER + '\n'))
+
+    def quaternions_are_checked(self):
+        answer = self.pairs(pair('zero', UNIT_BALL, f'{{type: point, {at(3, 0, 0, [0, 0, 0, 0])}}}')
+                            + pair('long', UNIT_BALL, f'{{type: point, vertices: [[3, 0, 0]], {at(0, 0, 0, [0, 0, 3, 3])}}}'))
+        self.assertFailedRow(answer, 'zero', 'norm is 0')
+        self.assertAnswer(answer.row('long'), 2)
+        self.assertPoint(answer.row('long'), 'b', (0, 3, 0))
+        self.assertRegex(answer.err, 'warning: .*norm')
+
+    def a_bad_pair_fails_alone(self):
+        good = f'{{type: point, {at(3)}}}'
+        bad = {
+            '{type: superquadric, dimensions: [1, 1, 1, 4, 4, 4]}': ["'superquadric' is not available"],
+            '{type: implicit, planes: [[1, 0, 0, -1]]}': ["'implicit' is not available"],
+            '{type: ball, dimensions: [1]}': ["'ball' is unknown"],
+            '{dimensions: [1]}': ["'type'"],
+            '{type: sphere}': ['sphere'],
+            '{type: sphere, dimensions: [1, 2]}': ['sphere'],
+            '{type: sphere, dimensions: [-1]}': ['sphere'],
+            '{type: sphere, dimensions: [.nan]}': ['.nan'],
+            '{type: box, dimensions: [1, 0, 1]}': ['box'],
+            '{type: halfspace, dimensions: [0, 0, 0, 1]}': ['normal'],
+            '{type: polytope, vertices: []}': ['vert'],
+            '{type: polytope, vertices: [[1, 2]]}': ['[x, y, z]'],
+            '{type: polytope, vertices: [[1, 2, .inf]]}': ['.inf'],
+            '{type: point, vertices: [[1, 2, 3], [4, 5, 6]]}': ['point'],
+            '{type: mesh, mesh: none.stl}': ['none.stl'],
+            '{type: sphere, dimensions: [1], pose: {position: [1, 2, x]}}': ["'x'"],
+            'sphere': ['map'],
+            '[]': ['map'],
+        }
+        text = ''.join(pair(f'bad{i}', body, good) + pair(f'good{i}', UNIT_BALL, good) for i, body in enumerate(bad))
+        answer = self.pairs(text)
+        for i, (body, words) in enumerate(bad.items()):
+            with self.subTest(body=body):
+                self.assertFailedRow(answer, f'bad{i}', f'row {2 * i + 1} ', *words)
+                self.assertAnswer(answer.row(f'good{i}'), 2)
+        self.assertIn(f'{len(bad)} of {2 * len(bad)} rows failed', answer.err)
+
+    def two_halfspaces_have_no_distance(self):
+        self.assertFailedRow(self.pairs(pair('h', '{type: halfspace, dimensions: [0, 0, 1, 0]}', '{type: halfspace, dimensions: [0, 0, -1, 1]}')), 'h', 'halfspace')
+
+    def entries_that_are_no_pairs_fail_alone(self):
+        answer = self.pairs('- 5\n- {id: half, a: ' + UNIT_BALL + '}\n- {a: ' + UNIT_BALL + ', b: ' + UNIT_BALL + '}\n' + pair('p', UNIT_BALL, f'{{type: point, {at(3)}}}'))
+        self.assertEqual([row['status'] for row in answer.rows], ['invalid', 'invalid', 'invalid', 'ok'])
+        self.assertFailedRow(answer, 'half', "'b'")
+        self.assertIn("'id'", answer.err)
+
+    def a_file_that_is_no_list_is_refused(self):
+        for text in ('a: 1', '5', '[1', ''):
+            answer = self.pairs(text)
+            self.assertRefused(answer, 'pairs.yaml')
+
+    def unknown_keys_are_told_once_each(self):
+        answer = self.pairs(pair('p', '{type: sphere, dimensions: [1], colour: red}', f'{{type: point, colour: red, {at(3)}}}') * 3)
+        self.assertEqual(answer.code, 0)
+        self.assertLessEqual(answer.err.count('colour'), 2, answer.err)
