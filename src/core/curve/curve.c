@@ -184,27 +184,28 @@ void curve_bezier_evaluate(const double *x, const double *y, const double *z, si
     return;
   }
 
-  /* Bernstein weights of degree m: binomials times rising powers of s times rising powers of r */
-  double weight[CPROX_MAX_DEGREE];
+  /* the falling factors of the weights, C(m, k) r^(m-k) */
+  double falling[CPROX_MAX_DEGREE];
   const size_t m = degree - 2;
   double power = 1.0;
-  for (size_t k = 0; k <= m; k++) {
-    weight[k] = binomial[k] * power;
-    power *= s;
-  }
-  power = 1.0;
   for (size_t k = m + 1; k-- > 0;) {
-    weight[k] *= power;
+    falling[k] = binomial[k] * power;
     power *= r;
   }
 
-  /* the last three de Casteljau points */
+  /* the last three de Casteljau points; three control points stand in registers and move on by one */
   vec3 q0 = vec(0, 0, 0), q1 = vec(0, 0, 0), q2 = vec(0, 0, 0);
-  for (size_t k = 0; k <= m; k++) {
-    const size_t i0 = k * stride, i1 = i0 + stride, i2 = i1 + stride;
-    q0 = vec_axpy(q0, weight[k], vec(x[i0], y[i0], z[i0]));
-    q1 = vec_axpy(q1, weight[k], vec(x[i1], y[i1], z[i1]));
-    q2 = vec_axpy(q2, weight[k], vec(x[i2], y[i2], z[i2]));
+  vec3 p0 = vec(x[0], y[0], z[0]), p1 = vec(x[stride], y[stride], z[stride]);
+  power = 1.0;
+  for (size_t k = 0, i = 2 * stride; k <= m; k++, i += stride) {
+    const vec3 p2 = vec(x[i], y[i], z[i]);
+    const double weight = falling[k] * power;
+    power *= s;
+    q0 = vec_axpy(q0, weight, p0);
+    q1 = vec_axpy(q1, weight, p1);
+    q2 = vec_axpy(q2, weight, p2);
+    p0 = p1;
+    p1 = p2;
   }
 
   const vec3 d0 = vec_sub(q1, q0), d1 = vec_sub(q2, q1);
