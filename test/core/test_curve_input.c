@@ -52,7 +52,7 @@ static void bad_control_points_are_refused(void **state) {
   (void)state;
   vec3 many[62] = {{0, 0, 0}};
   bezier_refused(NULL, 3, 0, 1, "the control points are NULL");
-  bezier_refused(many, 0, 0, 1, "a curve needs at least 2 control points, got 0");
+  bezier_refused(NULL, 0, 0, 1, "a curve needs at least 2 control points, got 0");
   bezier_refused(many, 1, 0, 1, "a curve needs at least 2 control points, got 1");
   bezier_refused(many, 62, 0, 1, "a Bézier curve has at most 61 control points (degree 60), got 62");
   const double spoilt[3] = {NAN, INFINITY, -INFINITY};
@@ -107,6 +107,8 @@ static void bad_degrees_and_knots_are_refused(void **state) {
   bspline_refused(&s, 5, 2, 8, 0, 1, "the spline's domain is empty: knots 2 to 5 are all 0.5");
   cprox_curve *curve = (cprox_curve *)workspace;
   refused(cprox_curve_create_bspline(good.points, 5, 2, NULL, 8, 0, 1, workspace, &curve), curve, "the knots are NULL");
+  refused(cprox_curve_create_bspline(good.points, 5, 2, NULL, 0, 0, 1, workspace, &curve), curve,
+          "5 control points of degree 2 need 8 knots, got 0");
 }
 
 static void a_missing_result_pointer_is_refused(void **state) {

@@ -19,10 +19,10 @@ static cprox_status check_knots(const double *knots, size_t n_points, size_t deg
     return workspace_fail(workspace, CPROX_INVALID,
                           "a B-spline of degree %zu needs at least %zu control points, got %zu", degree, degree + 1,
                           n_points);
-  if (!knots) return workspace_fail(workspace, CPROX_INVALID, "the knots are NULL");
   if (n_knots != n_points + degree + 1)
     return workspace_fail(workspace, CPROX_INVALID, "%zu control points of degree %zu need %zu knots, got %zu",
                           n_points, degree, n_points + degree + 1, n_knots);
+  if (!knots) return workspace_fail(workspace, CPROX_INVALID, "the knots are NULL");
   for (size_t i = 0; i < n_knots; i++) {
     if (!(fabs(knots[i]) <= CURVE_LARGEST))
       return workspace_fail(workspace, CPROX_INVALID, "knot %zu is %g, not finite or beyond %g", i, knots[i],

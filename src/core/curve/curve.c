@@ -38,8 +38,8 @@ void cprox_curve_free(cprox_curve *curve) {
 /* ---- checks ---- */
 
 cprox_status curve_check_points(const vec3 *points, size_t n, cprox_workspace *workspace) {
-  if (!points) return workspace_fail(workspace, CPROX_INVALID, "the control points are NULL");
   if (n < 2) return workspace_fail(workspace, CPROX_INVALID, "a curve needs at least 2 control points, got %zu", n);
+  if (!points) return workspace_fail(workspace, CPROX_INVALID, "the control points are NULL");
   for (size_t i = 0; i < n; i++) {
     const vec3 p = points[i];
     if (!vec_finite(p))
