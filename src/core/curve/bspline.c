@@ -28,11 +28,11 @@ static cprox_status check_knots(const double *knots, size_t n_points, size_t deg
       return workspace_fail(workspace, CPROX_INVALID, "knot %zu is %g, not finite or beyond %g", i, knots[i],
                             CURVE_LARGEST);
     if (i > 0 && knots[i] < knots[i - 1])
-      return workspace_fail(workspace, CPROX_INVALID, "knot %zu is %.10g, below knot %zu at %.10g", i, knots[i], i - 1,
+      return workspace_fail(workspace, CPROX_INVALID, "knot %zu is %.15g, below knot %zu at %.15g", i, knots[i], i - 1,
                             knots[i - 1]);
   }
   if (!(knots[degree] < knots[n_points]))
-    return workspace_fail(workspace, CPROX_INVALID, "the spline's domain is empty: knots %zu to %zu are all %.10g",
+    return workspace_fail(workspace, CPROX_INVALID, "the spline's domain is empty: knots %zu to %zu are all %.15g",
                           degree, n_points, knots[degree]);
   return CPROX_OK;
 }
@@ -82,7 +82,7 @@ cprox_status cprox_curve_create_bspline(const cprox_vec3 *points, size_t n_point
   if (status != CPROX_OK) return status;
   if (t0 < knots[degree] || t1 > knots[n_points])
     return workspace_fail(workspace, CPROX_INVALID,
-                          "[t0, t1] = [%.10g, %.10g] leaves the spline's domain [%.10g, %.10g]", t0, t1, knots[degree],
+                          "[t0, t1] = [%.15g, %.15g] leaves the spline's domain [%.15g, %.15g]", t0, t1, knots[degree],
                           knots[n_points]);
 
   /* spans that have a length */
