@@ -115,13 +115,13 @@ static long double true_distance(const problem *p, double s) {
 
 /* Two points well inside the interval: its ends are labels in double, the pieces themselves are cut exactly. */
 static size_t check_node(const problem *p, rng *r, const search_node *node, const curve_convex *o) {
-  if (node->b - node->a < 1e-9) return 0;
+  if (node->side[0].b - node->side[0].a < 1e-9) return 0;
   for (int k = 0; k < 2; k++) {
-    const double s = node->a + rng_uniform(r, 1e-3, 1.0 - 1e-3) * (node->b - node->a);
+    const double s = node->side[0].a + rng_uniform(r, 1e-3, 1.0 - 1e-3) * (node->side[0].b - node->side[0].a);
     const long double d = true_distance(p, s);
     if ((long double)node->lower > d && (long double)node->lower > -(long double)p->offset)
       fail_msg("kind %d degree %zu: bound %.17g above the distance %.17Lg at s = %.17g of [%g, %g]", p->kind, p->degree,
-               node->lower, d, s, node->a, node->b);
+               node->lower, d, s, node->side[0].a, node->side[0].b);
   }
   const long double best = true_distance(p, o->best.s);
   if (o->incumbent > 0 && (long double)o->best_bound.upper < best && best > -(long double)p->offset)
@@ -142,18 +142,18 @@ static size_t attack(const problem *p, rng *r, cprox_workspace *ws) {
   search_node open[MAX_OPEN + 1];
   search_best best = {.upper = INFINITY};
   size_t n = 1, checked = 0;
-  open[0] = curve_convex_root(&o);
+  open[0] = curve_convex_root();
   for (int step = 0; step < STEPS && n > 0 && n < MAX_OPEN; step++) {
     size_t i = rng_index(r, n);
     for (size_t k = 0; chase && o.incumbent > 0 && k < n; k++)
-      if (open[k].a <= o.best.s && o.best.s <= open[k].b) i = k;
+      if (open[k].side[0].a <= o.best.s && o.best.s <= open[k].side[0].b) i = k;
     search_node *node = &open[i];
     oracle.filter(oracle.self, node, INFINITY);
     checked += check_node(p, r, node, &o);
     assert_int_equal(oracle.probe(oracle.self, node, &best), CPROX_OK);
     oracle.filter(oracle.self, node, INFINITY);
     checked += check_node(p, r, node, &o);
-    search_node child[2];
+    search_node child[SEARCH_MAX_CHILDREN];
     if (oracle.split(oracle.self, node, child) != 2) break;
     open[i] = child[0];
     open[n++] = child[1];

@@ -1,67 +1,27 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "query/curve_convex.h"
 
-#include <string.h>
-
 #include "base/rounding.h"
 #include "curve/control.h"
 #include "query/polish.h"
 
-/* ---- memory ----------------------------------------------------------------------------------------------------------- */
+/* Slots of the pool that nodes never get. */
+enum { SLOT_ROOT, SLOT_SCRATCH, SLOTS_RESERVED };
 
-/* Slot 0 is the root of the piece last asked for, slot 1 scratch; nodes get the others. */
-enum { SLOT_ROOT, SLOT_SCRATCH, SLOT_NODES };
-
-static double *slot_points(const curve_convex *o, size_t slot) {
-  double *points = workspace_reserve(o->workspace, WORKSPACE_POINTS, 0);
-  return points + slot * control_size(o->curve->degree);
-}
-
-static int32_t slot_take(curve_convex *o) {
-  if (o->free_slots > 0) {
-    const int32_t *free_slots = workspace_reserve(o->workspace, WORKSPACE_FREE_SLOTS, 0);
-    return free_slots[--o->free_slots];
+/* The loaded piece lies in the plane z = 0 of a polygon's frame, exactly: then so does the true curve. */
+static bool piece_is_planar(curve_convex *o) {
+  if (o->planar_piece != o->side.root_piece) {
+    const size_t degree = o->side.curve->degree;
+    const double *z = points_pool_at(&o->pool, SLOT_ROOT) + 2 * (degree + 1);
+    o->planar_piece = o->side.root_piece;
+    o->planar = o->shape->ops->kind == CPROX_POLYGON && o->side.frame.about_z;
+    for (size_t i = 0; i <= degree && o->planar; i++) o->planar = z[i] == 0.0;
   }
-  const size_t bytes = (o->slots + 1) * control_size(o->curve->degree) * sizeof(double);
-  if (o->slots >= INT32_MAX || !workspace_reserve(o->workspace, WORKSPACE_POINTS, bytes)) return -1;
-  /* room for every slot in the free list, so that giving one back cannot fail */
-  if (!workspace_reserve(o->workspace, WORKSPACE_FREE_SLOTS, (o->slots + 1) * sizeof(int32_t))) return -1;
-  return (int32_t)o->slots++;
+  return o->planar;
 }
-
-static void slot_give(curve_convex *o, int32_t slot) {
-  if (slot < SLOT_NODES) return;
-  int32_t *free_slots = workspace_reserve(o->workspace, WORKSPACE_FREE_SLOTS, 0);
-  free_slots[o->free_slots++] = slot;
-}
-
-/* ---- pieces ----------------------------------------------------------------------------------------------------------- */
 
 static bool is_piece(const curve_convex *o, const search_node *node) {
-  return node->part >= o->curve->n_leaves;
-}
-
-static size_t piece_of(const curve_convex *o, const search_node *node) {
-  return node->part - o->curve->n_leaves;
-}
-
-/* Brings the control points of a piece into the body's frame, in slot 0. */
-static void load_root(curve_convex *o, size_t piece) {
-  if (o->root_piece == piece) return;
-  const size_t degree = o->curve->degree;
-  const vec3 *world = curve_piece(o->curve, piece);
-  double *x = slot_points(o, SLOT_ROOT), *y = x + degree + 1, *z = y + degree + 1;
-  double turned = 0.0;
-  bool planar = o->frame.about_z;
-  for (size_t i = 0; i <= degree; i++) {
-    const vec3 p = frame_to_local(&o->frame, world[i], &turned);
-    x[i] = p.x, y[i] = p.y, z[i] = p.z;
-    planar = planar && p.z == 0.0;
-  }
-  o->root_piece = piece;
-  o->root_planar = planar && o->shape->ops->kind == CPROX_POLYGON;
-  o->root_error = o->curve->error[piece] + turned;
-  o->root_magnitude = control_magnitude(x, degree);
+  return curve_side_is_piece(&o->side, &node->side[0]);
 }
 
 /* ---- bounds ----------------------------------------------------------------------------------------------------------- */
@@ -76,20 +36,10 @@ static double bound_slack(const curve_convex *o, double error, double magnitude,
 /* Weak duality: along any unit n the body reaches no farther than h(n), so min n·P - h(n) is a lower bound. */
 static void bound_by_normal(const curve_convex *o, search_node *node, const curve_sight *sight) {
   if (!isfinite(sight->support)) return;
-  double least, slack;
-  if (node->slot >= 0) {
-    least = control_least(slot_points(o, (size_t)node->slot), o->curve->degree, sight->normal) - sight->support;
-    slack = bound_slack(o, node->error, o->root_magnitude, least);
-  } else {
-    /* pieces first … last lie in a capsule round the chord from the first to the last point */
-    const curve_capsule *capsule = &o->curve->capsules[node->part];
-    double turned = 0.0;
-    const vec3 a = frame_to_local(&o->frame, capsule->a, &turned), b = frame_to_local(&o->frame, capsule->b, &turned);
-    const double magnitude = fmax(vec_norm(a), vec_norm(b)) + capsule->radius;
-    least = fmin(vec_dot(sight->normal, a), vec_dot(sight->normal, b)) - capsule->radius - sight->support;
-    slack = bound_slack(o, turned, magnitude, least);
-  }
-  node->lower = fmax(node->lower, least - slack);
+  const curve_reach reach = curve_side_reach(&o->side, &node->side[0], sight->normal);
+  const double bound = reach.least - sight->support;
+  const double slack = bound_slack(o, reach.error, reach.magnitude, bound);
+  node->lower = fmax(node->lower, bound - slack);
   node->slack = slack;
 }
 
@@ -110,36 +60,37 @@ static bool cover_is_the_body(const curve_convex *o) {
 
 /* Where the curve bends round a vertex or an edge, a plane is too weak; the distance from the cover's centre is not. */
 static void bound_by_cover(curve_convex *o, search_node *node) {
-  const double *points = slot_points(o, (size_t)node->slot);
+  const double *points = points_pool_at(&o->pool, (size_t)node->side[0].slot);
   const double from_centre =
-      control_distance_from(points, o->curve->degree, o->cover.centre, o->cover.cylinder ? &o->cover.axis : NULL,
-                            slot_points(o, SLOT_SCRATCH));
+      control_distance_from(points, o->side.curve->degree, o->cover.centre, o->cover.cylinder ? &o->cover.axis : NULL,
+                            points_pool_at(&o->pool, SLOT_SCRATCH));
   const double bound = from_centre - o->cover.radius - o->offset;
-  const double slack = ROUND_UP * (node->error + 4.0 * ROUND_U * (from_centre + o->cover.radius + o->offset));
+  const double slack = ROUND_UP * (node->side[0].error + 4.0 * ROUND_U * (from_centre + o->cover.radius + o->offset));
   node->lower = fmax(node->lower, bound - slack);
 }
 
 /* Nodes touch at their ends, so the best point may belong to two of them. */
 static bool holds_best(const curve_convex *o, const search_node *node) {
-  return piece_of(o, node) == o->best.piece && node->a <= o->best.s && o->best.s <= node->b;
+  return curve_side_piece(&o->side, &node->side[0]) == o->best.piece && node->side[0].a <= o->best.s &&
+         o->best.s <= node->side[0].b;
 }
 
 /* Where the best point cuts the node's own parameter, or -1 where it does not lie well inside. */
 static double best_inside(const curve_convex *o, const search_node *node) {
   if (o->incumbent == 0 || !holds_best(o, node)) return -1.0;
-  const double s = (o->best.s - node->a) / (node->b - node->a);
+  const double s = (o->best.s - node->side[0].a) / (node->side[0].b - node->side[0].a);
   return s > 1e-12 && s < 1.0 - 1e-12 ? s : -1.0;
 }
 
 static double filter(void *self, search_node *node, double goal) {
   curve_convex *o = self;
   if (o->incumbent == 0) return node->lower;
-  if (node->slot >= 0) load_root(o, piece_of(o, node));
+  if (node->side[0].slot >= 0) curve_side_load(&o->side, curve_side_piece(&o->side, &node->side[0]));
   if (node->seen != o->incumbent) {
     bound_by_normal(o, node, &o->best);
     node->seen = o->incumbent;
   }
-  if (node->slot >= 0 && node->lower < goal && node->seen_ball != o->incumbent && know_cover(o) &&
+  if (node->side[0].slot >= 0 && node->lower < goal && node->seen_ball != o->incumbent && know_cover(o) &&
       (cover_is_the_body(o) || holds_best(o, node))) {
     bound_by_cover(o, node);
     node->seen_ball = o->incumbent;
@@ -153,7 +104,7 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
                                   search_best *bound) {
   o->probes++;
   sight->piece = piece, sight->s = s, sight->y = y;
-  if (o->root_planar)
+  if (piece_is_planar(o))
     convex_polygon_nearest_in_plane(o->shape, y, &sight->near);
   else
     o->shape->ops->nearest(o->shape, y, &o->hint, &sight->near);
@@ -186,55 +137,26 @@ void curve_convex_adopt(curve_convex *o, const curve_sight *sight, search_best b
 }
 
 /* Measures at the point where two ranges of pieces meet, which is a control point. */
-static cprox_status probe_range(curve_convex *o, search_node *node) {
-  size_t left = 2 * (size_t)node->part + 1; /* the right child's leftmost leaf */
-  while (left < o->curve->n_leaves) left *= 2;
-  size_t piece = left - o->curve->n_leaves;
-  double s = 0.0;
-  if (piece >= o->curve->n_pieces) piece = o->curve->n_pieces - 1, s = 1.0;
-  const vec3 *points = curve_piece(o->curve, piece);
-  double turned = 0.0;
-  const vec3 y = frame_to_local(&o->frame, points[s == 0.0 ? 0 : o->curve->degree], &turned);
+static cprox_status probe_range(curve_convex *o, const search_node *node) {
+  size_t piece;
+  double s, error;
+  const vec3 y = curve_side_junction(&o->side, &node->side[0], &piece, &s, &error);
   search_best bound = {.upper = INFINITY};
-  load_root(o, piece);
-  const cprox_status status = curve_convex_measure(o, piece, s, y, o->curve->error[piece] + turned, &o->last, &bound);
-  if (status < 0) return status;
-  if (bound.upper < o->best_bound.upper) curve_convex_adopt(o, &o->last, bound);
-  return CPROX_OK;
+  const cprox_status status = curve_convex_measure(o, piece, s, y, error, &o->last, &bound);
+  if (status == CPROX_OK && bound.upper < o->best_bound.upper) curve_convex_adopt(o, &o->last, bound);
+  return status;
 }
 
-static cprox_status probe_piece(curve_convex *o, search_node *node) {
-  const size_t degree = o->curve->degree, piece = piece_of(o, node);
-  const double s = 0.5 * (node->a + node->b);
-  const double *x = slot_points(o, SLOT_ROOT), *y = x + degree + 1, *z = y + degree + 1;
-  vec3 point;
-  curve_bezier_evaluate(x, y, z, 1, degree, o->curve->binomial, s, &point, NULL, NULL);
+static cprox_status probe_piece(curve_convex *o, const search_node *node) {
+  const search_interval *at = &node->side[0];
+  const double s = 0.5 * (at->a + at->b);
   search_best bound = {.upper = INFINITY};
-  const cprox_status status = curve_convex_measure(o, piece, s, point, curve_convex_point_error(o), &o->last, &bound);
-  if (status < 0) return status;
-  if (bound.upper < o->best_bound.upper) {
-    curve_convex_adopt(o, &o->last, bound);
-    const bool worthwhile = bound.upper > o->good_enough && o->nodes > o->polish_after;
-    if (worthwhile) return polish(o, slot_points(o, SLOT_ROOT), 0.25 * (node->b - node->a));
-  }
-  return CPROX_OK;
-}
-
-double curve_convex_point_error(const curve_convex *o) {
-  const double n = (double)o->curve->degree;
-  return ROUND_UP * (o->root_error + (3.0 * n + 8.0) * ROUND_U * 1.7320508075688774 * o->root_magnitude);
-}
-
-/* A piece whose control points are not at hand yet gets them. */
-static bool materialise(curve_convex *o, search_node *node) {
-  load_root(o, piece_of(o, node));
-  if (node->slot >= 0) return true;
-  const int32_t slot = slot_take(o);
-  if (slot < 0) return false;
-  memcpy(slot_points(o, (size_t)slot), slot_points(o, SLOT_ROOT), control_size(o->curve->degree) * sizeof(double));
-  node->slot = slot;
-  node->error = o->root_error;
-  return true;
+  const cprox_status status = curve_convex_measure(o, curve_side_piece(&o->side, at), s, curve_side_point(&o->side, s),
+                                                   curve_side_point_error(&o->side), &o->last, &bound);
+  if (status < 0 || bound.upper >= o->best_bound.upper) return status;
+  curve_convex_adopt(o, &o->last, bound);
+  const bool worthwhile = bound.upper > o->good_enough && o->nodes > o->polish_after;
+  return worthwhile ? polish(o, points_pool_at(&o->pool, SLOT_ROOT), 0.25 * (at->b - at->a)) : CPROX_OK;
 }
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {
@@ -242,7 +164,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   o->nodes++;
   const bool piece = is_piece(o, node);
   if (piece) {
-    if (!materialise(o, node))
+    if (!curve_side_materialise(&o->side, &node->side[0]))
       return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
     if (best_inside(o, node) >= 0.0) {
       if (node->seen != o->incumbent) bound_by_normal(o, node, &o->best);
@@ -271,62 +193,48 @@ static void bound_child(curve_convex *o, search_node *child) {
   child->seen = o->incumbent;
 }
 
-static int split_range(curve_convex *o, const search_node *node, search_node child[2]) {
-  for (uint32_t k = 0; k < 2; k++) {
-    child[k] = *node;
-    child[k].part = 2 * node->part + k;
-    if (o->curve->capsules[child[k].part].radius < 0.0)
-      child[k].lower = INFINITY; /* no pieces there */
-    else
-      bound_child(o, &child[k]);
-  }
-  return 2;
-}
-
-static int split_piece(curve_convex *o, search_node *node, search_node child[2]) {
-  /* the witness point, or the middle */
-  const double inside = best_inside(o, node);
-  const double cut = inside < 0.0 ? 0.5 * (node->a + node->b) : o->best.s;
-  if (!(node->a < cut && cut < node->b)) return 0;
-  const int32_t left = slot_take(o);
-  if (left < 0) return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
-
-  const double added = control_split(slot_points(o, (size_t)left), slot_points(o, (size_t)node->slot), o->curve->degree,
-                                     inside < 0.0 ? 0.5 : inside, o->root_magnitude);
-  child[0] = child[1] = *node;
-  child[0].slot = left, child[0].b = child[1].a = cut;
-  for (int k = 0; k < 2; k++) {
-    child[k].error += added;
-    child[k].seen_ball = 0;
-    bound_child(o, &child[k]);
-  }
-  return 2;
-}
-
-static int split(void *self, search_node *node, search_node child[2]) {
+static int split(void *self, search_node *node, search_node *child) {
   curve_convex *o = self;
-  return is_piece(o, node) ? split_piece(o, node, child) : split_range(o, node, child);
+  search_interval *at = &node->side[0], half[2];
+  if (!is_piece(o, node)) {
+    curve_side_cut_range(at, half);
+  } else {
+    /* at the witness point, or in the middle */
+    const double inside = best_inside(o, node);
+    const double cut = inside < 0.0 ? 0.5 * (at->a + at->b) : o->best.s;
+    if (!(at->a < cut && cut < at->b)) return 0;
+    if (!curve_side_cut_piece(&o->side, at, cut, inside < 0.0 ? 0.5 : inside, half))
+      return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
+  }
+  int children = 0;
+  for (int k = 0; k < 2; k++) {
+    if (curve_side_is_empty(&o->side, &half[k])) continue;
+    child[children] = *node;
+    child[children].side[0] = half[k];
+    child[children].seen_ball = 0;
+    bound_child(o, &child[children++]);
+  }
+  return children;
 }
 
 static void release(void *self, const search_node *node) {
-  slot_give(self, node->slot);
+  curve_convex *o = self;
+  points_pool_give(&o->pool, node->side[0].slot);
 }
 
 /* ---- the oracle ------------------------------------------------------------------------------------------------------- */
 
 bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex *shape, frame placed, double offset,
                         cprox_workspace *workspace) {
-  *o = (curve_convex){.curve = curve, .shape = shape, .frame = placed, .offset = offset, .workspace = workspace};
+  *o = (curve_convex){.shape = shape, .offset = offset, .workspace = workspace, .planar_piece = SIZE_MAX};
   o->best_bound.upper = INFINITY;
   o->good_enough = -INFINITY;
-  o->slots = SLOT_NODES;
-  o->root_piece = SIZE_MAX;
-  return workspace_reserve(workspace, WORKSPACE_POINTS, SLOT_NODES * control_size(curve->degree) * sizeof(double));
+  o->side = curve_side_create(curve, placed, &o->pool, SLOT_ROOT);
+  return points_pool_begin(&o->pool, curve->degree, SLOTS_RESERVED, workspace);
 }
 
-search_node curve_convex_root(const curve_convex *o) {
-  (void)o;
-  return (search_node){.lower = -INFINITY, .a = 0.0, .b = 1.0, .part = 1, .slot = -1};
+search_node curve_convex_root(void) {
+  return (search_node){.lower = -INFINITY, .side[0] = curve_side_whole()};
 }
 
 search_oracle curve_convex_oracle(curve_convex *o) {

@@ -3,11 +3,8 @@
 #ifndef CPROX_QUERY_CURVE_CONVEX_H
 #define CPROX_QUERY_CURVE_CONVEX_H
 
-#include "base/frame.h"
-#include "base/workspace.h"
 #include "body/body.h"
-#include "curve/curve.h"
-#include "search/search.h"
+#include "query/curve_side.h"
 
 /* A surface point of the body, the direction away from it, and where on the curve it was seen. */
 typedef struct curve_sight {
@@ -21,30 +18,27 @@ typedef struct curve_sight {
 
 typedef struct curve_convex {
   /* the problem */
-  const cprox_curve *curve;
+  curve_side side; /* seen from the body's frame */
   const convex *shape;
-  frame frame;
-  double offset;          /* padding of the body + radius of the ball */
-  uint32_t polish_after;  /* nodes before Newton is allowed to look for better points */
-  double good_enough;     /* an upper bound at or below this needs no polish */
+  double offset;         /* padding of the body + radius of the ball */
+  uint32_t polish_after; /* nodes before Newton is allowed to look for better points */
+  double good_enough;    /* an upper bound at or below this needs no polish */
   double epsilon;
 
   /* what is known */
   curve_sight best, last; /* of the least upper bound; of the last probe */
   search_best best_bound;
-  uint32_t incumbent;     /* counts the best sights; 0: none */
+  uint32_t incumbent; /* counts the best sights; 0: none */
   bool cover_known, cover_usable;
   convex_cover cover;
   convex_hint hint, support_hint;
   uint32_t probes, nodes;
 
-  /* memory: control points of nodes by slot, and the root of the piece last asked for */
+  /* memory */
   cprox_workspace *workspace;
-  size_t slots;
-  size_t free_slots;
-  size_t root_piece;
-  bool root_planar;       /* the whole piece lies in the plane z = 0 of the body's frame, exactly */
-  double root_error, root_magnitude;
+  points_pool pool;
+  size_t planar_piece; /* the piece that `planar` speaks of */
+  bool planar;
 } curve_convex;
 
 /* Makes the oracle ready; false where memory is out. The shape stands in the frame; offset >= 0. */
@@ -52,7 +46,7 @@ bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex 
                         cprox_workspace *workspace);
 
 /* The node that is the whole curve. */
-search_node curve_convex_root(const curve_convex *o);
+search_node curve_convex_root(void);
 
 /* The functions of the contract in search/search.h, self being the curve_convex. */
 search_oracle curve_convex_oracle(curve_convex *o);
@@ -61,10 +55,7 @@ search_oracle curve_convex_oracle(curve_convex *o);
 cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sight *sight,
                                   search_best *bound);
 
-/* makes a sight the best one; */
+/* makes a sight the best one. */
 void curve_convex_adopt(curve_convex *o, const curve_sight *sight, search_best bound);
-
-/* how far a point evaluated from the loaded root piece may be from the exact curve. */
-double curve_convex_point_error(const curve_convex *o);
 
 #endif

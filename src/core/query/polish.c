@@ -9,10 +9,10 @@ typedef struct jet {
 } jet;
 
 static jet jet_at(const curve_convex *o, const double *points, double s) {
-  const size_t degree = o->curve->degree;
+  const size_t degree = o->side.curve->degree;
   jet j;
-  curve_bezier_evaluate(points, points + degree + 1, points + 2 * (degree + 1), 1, degree, o->curve->binomial, s, &j.x,
-                        &j.d1, &j.d2);
+  curve_bezier_evaluate(points, points + degree + 1, points + 2 * (degree + 1), 1, degree, o->side.curve->binomial, s,
+                        &j.x, &j.d1, &j.d2);
   return j;
 }
 
@@ -90,7 +90,7 @@ static double descend(const curve_convex *o, const double *points, const curve_s
 }
 
 cprox_status polish(curve_convex *o, const double *points, double step) {
-  const double error = curve_convex_point_error(o);
+  const double error = curve_side_point_error(&o->side);
   curve_sight from = o->best;
   for (int round = 0; round < MAX_ROUNDS; round++) {
     jet j;

@@ -122,14 +122,11 @@ static search_goal goal_of(const question *q, double ceiling) {
 /* Writes the best sight as a result in the world frame: surface points of the padded body and of the ball. */
 static void report_witness(const question *q, const candidate *c, const curve_convex *o, cprox_result *r) {
   const curve_sight *best = &o->best;
-  const cprox_curve *curve = q->mover.curve;
   const double padding = q->targets[c->target].padding;
-
-  const double t0 = curve->breaks[best->piece], t1 = curve->breaks[best->piece + 1];
-  r->t = best->s == 1.0 ? t1 : t0 + best->s * (t1 - t0);
-
-  const vec3 centre = frame_to_world(&o->frame, best->y), surface = frame_to_world(&o->frame, best->near.point);
-  const vec3 normal = frame_turn_to_world(&o->frame, best->normal);
+  const frame *f = &o->side.frame;
+  const vec3 centre = frame_to_world(f, best->y), surface = frame_to_world(f, best->near.point);
+  const vec3 normal = frame_turn_to_world(f, best->normal);
+  r->t = curve_side_parameter(&o->side, best->piece, best->s);
   const double d = best->near.distance;
   r->normal = normal;
   r->target_index = c->target, r->target_part = c->part;
@@ -157,7 +154,7 @@ static cprox_status search_candidate(const question *q, const candidate *c, doub
   const search_goal goal = goal_of(q, ceiling);
   const search_oracle oracle = curve_convex_oracle(&o);
   search_outcome found;
-  const cprox_status status = search_run(&goal, &oracle, curve_convex_root(&o), q->workspace, &found);
+  const cprox_status status = search_run(&goal, &oracle, curve_convex_root(), q->workspace, &found);
   if (status < 0) {
     if (status == CPROX_MEMORY) workspace_fail(q->workspace, status, "no memory for the open intervals");
     return status;

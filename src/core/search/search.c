@@ -96,7 +96,7 @@ static cprox_status work_on(const search_goal *goal, const search_oracle *oracle
   if (*fate != NODE_OPEN || is_answered(goal, &outcome->best)) return CPROX_OK;
 
   /* cut at the best point where it lies inside, else in the middle */
-  search_node child[2];
+  search_node child[SEARCH_MAX_CHILDREN];
   const int children = oracle->split(oracle->self, node, child);
   if (children < 0) return (cprox_status)children;
   if (children == 0) {
@@ -104,10 +104,13 @@ static cprox_status work_on(const search_goal *goal, const search_oracle *oracle
     return CPROX_OK;
   }
 
-  /* the more promising child is looked at first */
-  const int later = child[0].lower > child[1].lower ? 0 : 1;
-  if (!frontier_push(open, &child[later]) || !frontier_push(open, &child[1 - later])) return CPROX_MEMORY;
-  return CPROX_OK;
+  /* the most promising child is looked at first */
+  int first = 0;
+  for (int k = 1; k < children; k++)
+    if (child[k].lower <= child[first].lower) first = k;
+  for (int k = 0; k < children; k++)
+    if (k != first && !frontier_push(open, &child[k])) return CPROX_MEMORY;
+  return frontier_push(open, &child[first]) ? CPROX_OK : CPROX_MEMORY;
 }
 
 cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root,

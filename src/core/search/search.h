@@ -11,16 +11,24 @@
 
 #include "curve_proximity/cprox/query.h"
 
-/* A piece of the parameter range. `lower` and `slack` are the engine's and the oracle's, the rest the oracle's alone. */
-typedef struct search_node {
-  double lower;  /* the distance over the node is at least this, rounding included */
-  double slack;  /* how much of that was given away to rounding: no bound on this node gets nearer than this */
-  double a, b;   /* sub-interval of its part, in [0, 1] */
-  double error;  /* of the node's stored points */
-  uint32_t part; /* which part of the mover */
+/* Where a node is on one moving side: a sub-interval of one of its parts. */
+typedef struct search_interval {
+  double a, b;   /* in [0, 1] */
+  double error;  /* of the stored points */
+  uint32_t part; /* which part of the side */
   int32_t slot;  /* where its points are stored, -1 for nowhere */
+} search_interval;
+
+/* A piece of the parameter range, or of two ranges at once. `lower` and `slack` are the engine's and the oracle's, the rest the
+ * oracle's alone. */
+typedef struct search_node {
+  double lower; /* the distance over the node is at least this, rounding included */
+  double slack; /* how much of that was given away to rounding: no bound on this node gets nearer than this */
+  search_interval side[2];
   uint32_t seen, seen_ball; /* the incumbents that its bound knows already */
 } search_node;
+
+enum { SEARCH_MAX_CHILDREN = 4 };
 
 /* The best point found so far. */
 typedef struct search_best {
@@ -38,9 +46,9 @@ typedef struct search_oracle {
    * CPROX_OK, or a negative status. */
   cprox_status (*probe)(void *self, search_node *node, search_best *best);
 
-  /* Cuts a node in two that inherit its bound; the node's storage passes on to them. 2, or 0 where the interval is as short as
-   * double allows (then the node is still the caller's to release), or a negative status. */
-  int (*split)(void *self, search_node *node, search_node child[2]);
+  /* Cuts a node into 2 to SEARCH_MAX_CHILDREN that inherit its bound; the node's storage passes on to them. Their number, or 0
+   * where the interval is as short as double allows (then the node is still the caller's to release), or a negative status. */
+  int (*split)(void *self, search_node *node, search_node *child);
 
   /* Gives back a node's storage. */
   void (*release)(void *self, const search_node *node);

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "query/curve_side.h"
+
+#include <string.h>
+
+#include "base/rounding.h"
+#include "curve/control.h"
+
+/* ---- memory ----------------------------------------------------------------------------------------------------------- */
+
+bool points_pool_begin(points_pool *pool, size_t degree, size_t reserved, cprox_workspace *workspace) {
+  *pool = (points_pool){.workspace = workspace, .stride = control_size(degree), .slots = reserved};
+  return workspace_reserve(workspace, WORKSPACE_POINTS, reserved * pool->stride * sizeof(double));
+}
+
+double *points_pool_at(const points_pool *pool, size_t slot) {
+  double *points = workspace_reserve(pool->workspace, WORKSPACE_POINTS, 0);
+  return points + slot * pool->stride;
+}
+
+static int32_t points_pool_take(points_pool *pool) {
+  if (pool->free_slots > 0) {
+    const int32_t *free_slots = workspace_reserve(pool->workspace, WORKSPACE_FREE_SLOTS, 0);
+    return free_slots[--pool->free_slots];
+  }
+  const size_t bytes = (pool->slots + 1) * pool->stride * sizeof(double);
+  if (pool->slots >= INT32_MAX || !workspace_reserve(pool->workspace, WORKSPACE_POINTS, bytes)) return -1;
+  /* room for every slot in the free list, so that giving one back cannot fail */
+  if (!workspace_reserve(pool->workspace, WORKSPACE_FREE_SLOTS, (pool->slots + 1) * sizeof(int32_t))) return -1;
+  return (int32_t)pool->slots++;
+}
+
+void points_pool_give(points_pool *pool, int32_t slot) {
+  if (slot < 0) return;
+  int32_t *free_slots = workspace_reserve(pool->workspace, WORKSPACE_FREE_SLOTS, 0);
+  free_slots[pool->free_slots++] = slot;
+}
+
+/* ---- pieces ----------------------------------------------------------------------------------------------------------- */
+
+curve_side curve_side_create(const cprox_curve *curve, frame placed, points_pool *pool, size_t root_slot) {
+  return (curve_side){.curve = curve, .frame = placed, .pool = pool, .root_slot = root_slot, .root_piece = SIZE_MAX};
+}
+
+search_interval curve_side_whole(void) {
+  return (search_interval){.a = 0.0, .b = 1.0, .part = 1, .slot = -1};
+}
+
+bool curve_side_is_piece(const curve_side *side, const search_interval *at) {
+  return at->part >= side->curve->n_leaves;
+}
+
+size_t curve_side_piece(const curve_side *side, const search_interval *at) {
+  return at->part - side->curve->n_leaves;
+}
+
+bool curve_side_is_empty(const curve_side *side, const search_interval *at) {
+  return side->curve->capsules[at->part].radius < 0.0;
+}
+
+double curve_side_parameter(const curve_side *side, size_t piece, double s) {
+  const double t0 = side->curve->breaks[piece], t1 = side->curve->breaks[piece + 1];
+  return s == 1.0 ? t1 : t0 + s * (t1 - t0);
+}
+
+void curve_side_load(curve_side *side, size_t piece) {
+  if (side->root_piece == piece) return;
+  const size_t degree = side->curve->degree;
+  const vec3 *world = curve_piece(side->curve, piece);
+  double *x = points_pool_at(side->pool, side->root_slot), *y = x + degree + 1, *z = y + degree + 1;
+  double turned = 0.0;
+  for (size_t i = 0; i <= degree; i++) {
+    const vec3 p = frame_to_local(&side->frame, world[i], &turned);
+    x[i] = p.x, y[i] = p.y, z[i] = p.z;
+  }
+  side->root_piece = piece;
+  side->root_error = side->curve->error[piece] + turned;
+  side->root_magnitude = control_magnitude(x, degree);
+}
+
+bool curve_side_materialise(curve_side *side, search_interval *at) {
+  curve_side_load(side, curve_side_piece(side, at));
+  if (at->slot >= 0) return true;
+  at->slot = points_pool_take(side->pool);
+  if (at->slot < 0) return false;
+  const size_t bytes = control_size(side->curve->degree) * sizeof(double);
+  memcpy(points_pool_at(side->pool, (size_t)at->slot), points_pool_at(side->pool, side->root_slot), bytes);
+  at->error = side->root_error;
+  return true;
+}
+
+/* ---- bounds ----------------------------------------------------------------------------------------------------------- */
+
+curve_reach curve_side_reach(const curve_side *side, const search_interval *at, vec3 n) {
+  if (at->slot >= 0)
+    return (curve_reach){.least = control_least(points_pool_at(side->pool, (size_t)at->slot), side->curve->degree, n),
+                         .error = at->error,
+                         .magnitude = side->root_magnitude};
+  /* the pieces lie in a capsule round the chord from the first to the last point */
+  const curve_capsule *capsule = &side->curve->capsules[at->part];
+  double turned = 0.0;
+  const vec3 a = frame_to_local(&side->frame, capsule->a, &turned),
+             b = frame_to_local(&side->frame, capsule->b, &turned);
+  return (curve_reach){.least = fmin(vec_dot(n, a), vec_dot(n, b)) - capsule->radius,
+                       .error = turned,
+                       .magnitude = fmax(vec_norm(a), vec_norm(b)) + capsule->radius};
+}
+
+/* ---- points ----------------------------------------------------------------------------------------------------------- */
+
+vec3 curve_side_point(const curve_side *side, double s) {
+  const size_t degree = side->curve->degree;
+  const double *x = points_pool_at(side->pool, side->root_slot), *y = x + degree + 1, *z = y + degree + 1;
+  vec3 point;
+  curve_bezier_evaluate(x, y, z, 1, degree, side->curve->binomial, s, &point, NULL, NULL);
+  return point;
+}
+
+double curve_side_point_error(const curve_side *side) {
+  const double n = (double)side->curve->degree;
+  return ROUND_UP * (side->root_error + (3.0 * n + 8.0) * ROUND_U * 1.7320508075688774 * side->root_magnitude);
+}
+
+vec3 curve_side_junction(curve_side *side, const search_interval *range, size_t *piece, double *s, double *error) {
+  /* the right child's leftmost leaf; past the last piece, the end of the curve */
+  size_t leaf = 2 * (size_t)range->part + 1;
+  while (leaf < side->curve->n_leaves) leaf *= 2;
+  *piece = leaf - side->curve->n_leaves;
+  *s = 0.0;
+  if (*piece >= side->curve->n_pieces) {
+    *piece = side->curve->n_pieces - 1;
+    *s = 1.0;
+  }
+  double turned = 0.0;
+  const vec3 world = curve_piece(side->curve, *piece)[*s == 0.0 ? 0 : side->curve->degree];
+  const vec3 local = frame_to_local(&side->frame, world, &turned);
+  *error = side->curve->error[*piece] + turned;
+  curve_side_load(side, *piece);
+  return local;
+}
+
+/* ---- cuts ------------------------------------------------------------------------------------------------------------- */
+
+void curve_side_cut_range(const search_interval *range, search_interval half[2]) {
+  for (uint32_t k = 0; k < 2; k++) {
+    half[k] = *range;
+    half[k].part = 2 * range->part + k;
+  }
+}
+
+bool curve_side_cut_piece(curve_side *side, search_interval *piece, double cut, double s, search_interval half[2]) {
+  const int32_t left = points_pool_take(side->pool);
+  if (left < 0) return false;
+  const double added =
+      control_split(points_pool_at(side->pool, (size_t)left), points_pool_at(side->pool, (size_t)piece->slot),
+                    side->curve->degree, s, side->root_magnitude);
+  half[0] = half[1] = *piece;
+  half[0].slot = left;
+  half[0].b = half[1].a = cut;
+  half[0].error = half[1].error = piece->error + added;
+  return true;
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One curve as a search sees it: its control points brought into a frame, a piece or a range of pieces at a time, and what they
+ * say of an interval. Oracles have one side or two. */
+#ifndef CPROX_QUERY_CURVE_SIDE_H
+#define CPROX_QUERY_CURVE_SIDE_H
+
+#include "base/frame.h"
+#include "base/workspace.h"
+#include "curve/curve.h"
+#include "search/search.h"
+
+/* Sets of control points by slot, in the workspace; slots given back are used again. */
+typedef struct points_pool {
+  cprox_workspace *workspace;
+  size_t stride; /* numbers a slot */
+  size_t slots, free_slots;
+} points_pool;
+
+/* A pool whose first `reserved` slots are never given out: each side's root, scratch. False where memory is out. */
+bool points_pool_begin(points_pool *pool, size_t degree, size_t reserved, cprox_workspace *workspace);
+double *points_pool_at(const points_pool *pool, size_t slot);
+void points_pool_give(points_pool *pool, int32_t slot);
+
+typedef struct curve_side {
+  const cprox_curve *curve;
+  frame frame;
+  points_pool *pool;
+  size_t root_slot;  /* reserved: the whole piece that was asked for last */
+  size_t root_piece; /* SIZE_MAX: none yet */
+  double root_error, root_magnitude;
+} curve_side;
+
+curve_side curve_side_create(const cprox_curve *curve, frame placed, points_pool *pool, size_t root_slot);
+
+/* The interval that is the whole curve. */
+search_interval curve_side_whole(void);
+
+/* Intervals are single pieces or their parts, or ranges of pieces: nodes of the curve's tree. */
+bool curve_side_is_piece(const curve_side *side, const search_interval *at);
+size_t curve_side_piece(const curve_side *side, const search_interval *at);
+
+/* Brings a piece's control points into the frame, in the root slot. */
+void curve_side_load(curve_side *side, size_t piece);
+
+/* Gives a piece's interval control points of its own. False where memory is out. */
+bool curve_side_materialise(curve_side *side, search_interval *at);
+
+/* What an interval reaches along a direction. */
+typedef struct curve_reach {
+  double least;     /* min n·x over the interval's hull */
+  double error;     /* how far the exact curve can be from the computed hull */
+  double magnitude; /* of the points that entered, for the rounding of the products */
+} curve_reach;
+
+/* n: unit within 4 u. A piece with points of its own must be the loaded one. */
+curve_reach curve_side_reach(const curve_side *side, const search_interval *at, vec3 n);
+
+/* A point of the loaded piece, and how far a point computed so may be from the exact curve. */
+vec3 curve_side_point(const curve_side *side, double s);
+double curve_side_point_error(const curve_side *side);
+
+/* The control point at which a range falls in two: its piece, parameter and error. Loads that piece. */
+vec3 curve_side_junction(curve_side *side, const search_interval *range, size_t *piece, double *s, double *error);
+
+/* Cuts a range at its junction, or a piece at `cut` of its parameter range (s of the interval itself). False where memory is
+ * out. A half without pieces has curve_side_is_empty(). */
+void curve_side_cut_range(const search_interval *range, search_interval half[2]);
+bool curve_side_cut_piece(curve_side *side, search_interval *piece, double cut, double s, search_interval half[2]);
+bool curve_side_is_empty(const curve_side *side, const search_interval *at);
+
+/* The curve's parameter at s of a piece. */
+double curve_side_parameter(const curve_side *side, size_t piece, double s);
+
+#endif
