@@ -236,11 +236,14 @@ inline cprox_target at(const BodyHandle &body, const Eigen::Isometry3d &pose = E
                        double padding = 0.0) {
   return cprox_padded(cprox_at(body.get(), toPose(pose)), padding);
 }
+cprox_target at(BodyHandle &&body, const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity(),
+                double padding = 0.0) = delete; // the target would dangle
 
 /** A ball of the radius (0: a point) along the curve, which must outlive the mover. */
 inline cprox_mover along(const CurveHandle &curve, double radius = 0.0) {
   return cprox_tube_along(curve.get(), radius);
 }
+cprox_mover along(CurveHandle &&curve, double radius = 0.0) = delete;
 
 inline cprox_result distance(const cprox_mover &mover, const cprox_target &target, const cprox_options &options,
                              Workspace &workspace) {

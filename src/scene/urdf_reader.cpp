@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* From URDF text to a Robot. urdfdom parses; what it drops without a word is found by counting, and refused. */
 #include <cmath>
+#include <locale>
 #include <map>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include <tinyxml2.h>
@@ -34,11 +36,51 @@ void stripTo(XMLElement &parent, const std::set<std::string> &wanted) {
   }
 }
 
+/* Why an attribute is not n finite numbers; "" where it is, or is not there. */
+std::string numbersFault(const XMLElement *element, const char *name, int n) {
+  const char *text = element ? element->Attribute(name) : nullptr;
+  if (!text) return "";
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  int found = 0;
+  for (double x; stream >> x;) found += std::isfinite(x) ? 1 : 0;
+  if (stream.eof() && found == n) return "";
+  const std::string wanted = n == 1 ? " is not one finite number" : " is not " + std::to_string(n) + " finite numbers";
+  return std::string(element->Name()) + " " + name + "='" + text + "'" + wanted;
+}
+
+std::string originFault(const XMLElement &parent) {
+  const XMLElement *origin = parent.FirstChildElement("origin");
+  const std::string fault = numbersFault(origin, "xyz", 3);
+  return fault.empty() ? numbersFault(origin, "rpy", 3) : fault;
+}
+
+/* What is wrong with a collision element that urdfdom will not tell; "" where nothing is seen. */
+std::string collisionFault(const XMLElement &collision) {
+  const XMLElement *geometry = collision.FirstChildElement("geometry");
+  const XMLElement *shape = geometry ? geometry->FirstChildElement() : nullptr;
+  if (!shape) return "it has no geometry";
+  static const std::map<std::string, std::vector<std::pair<const char *, int>>> known = {
+      {"box", {{"size", 3}}},
+      {"sphere", {{"radius", 1}}},
+      {"cylinder", {{"length", 1}, {"radius", 1}}},
+      {"mesh", {{"scale", 3}}}};
+  const auto kind = known.find(shape->Name());
+  if (kind == known.end()) return std::string("geometry '") + shape->Name() + "' is not known to URDF";
+  for (const auto &[name, n] : kind->second) {
+    if (!shape->Attribute(name) && kind->first != "mesh") return kind->first + " has no " + name;
+    const std::string fault = numbersFault(shape, name, n);
+    if (!fault.empty()) return fault;
+  }
+  return originFault(collision);
+}
+
 void checkJointElement(const XMLElement &joint) {
   const std::string name = attribute(joint, "name");
   if (name.empty()) throw Error("a joint has no name");
   const std::string who = "joint '" + name + "': ";
 
+  // A type that there is, two ends, limits where they are needed.
   static const std::set<std::string> types = {"revolute", "continuous", "prismatic", "fixed", "planar", "floating"};
   const std::string type = attribute(joint, "type");
   if (!types.count(type)) throw Error(who + "its type '" + type + "' is not known to URDF");
@@ -46,32 +88,37 @@ void checkJointElement(const XMLElement &joint) {
     const XMLElement *element = joint.FirstChildElement(end);
     if (!element || attribute(*element, "link").empty()) throw Error(who + "it has no " + end + " link");
   }
-  if ((type == "revolute" || type == "prismatic") && !joint.FirstChildElement("limit")) {
-    throw Error(who + "a " + type + " joint needs limits");
+  const XMLElement *limit = joint.FirstChildElement("limit");
+  if ((type == "revolute" || type == "prismatic") && !limit) throw Error(who + "a " + type + " joint needs limits");
+
+  // Numbers that are numbers.
+  const XMLElement *mimic = joint.FirstChildElement("mimic");
+  for (const std::string &fault :
+       {originFault(joint), numbersFault(joint.FirstChildElement("axis"), "xyz", 3), numbersFault(limit, "lower", 1),
+        numbersFault(limit, "upper", 1), numbersFault(mimic, "multiplier", 1), numbersFault(mimic, "offset", 1)}) {
+    if (!fault.empty()) throw Error(who + fault);
   }
 }
 
-/* What stands in the document: the number of collision elements by link, and what kind each is. */
-struct Inventory {
-  std::map<std::string, std::vector<std::string>> collisions; /* geometry's element name, "" without one */
-};
+/* What stands in the document: for each link its collision elements, as the faults that are seen in them. */
+using Inventory = std::map<std::string, std::vector<std::string>>;
 
-Inventory takeInventory(XMLElement &robot) {
-  Inventory inventory;
-  std::set<std::string> joints, children;
+void readLinkElements(XMLElement &robot, Inventory &inventory) {
   for (XMLElement *link = robot.FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
     const std::string name = attribute(*link, "name");
     if (name.empty()) throw Error("a link has no name");
-    if (inventory.collisions.count(name)) throw Error("link '" + name + "' occurs twice");
+    if (inventory.count(name)) throw Error("link '" + name + "' occurs twice");
     stripTo(*link, {"collision"});
-
-    std::vector<std::string> &kinds = inventory.collisions[name];
+    std::vector<std::string> &faults = inventory[name];
     for (XMLElement *c = link->FirstChildElement("collision"); c; c = c->NextSiblingElement("collision")) {
-      const XMLElement *geometry = c->FirstChildElement("geometry");
-      const XMLElement *shape = geometry ? geometry->FirstChildElement() : nullptr;
-      kinds.emplace_back(shape ? shape->Name() : "");
+      faults.push_back(collisionFault(*c));
     }
   }
+  if (inventory.empty()) throw Error("the robot has no links");
+}
+
+void readJointElements(XMLElement &robot, const Inventory &inventory) {
+  std::set<std::string> joints, children;
   for (XMLElement *joint = robot.FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint")) {
     checkJointElement(*joint);
     const std::string name = attribute(*joint, "name");
@@ -79,15 +126,13 @@ Inventory takeInventory(XMLElement &robot) {
     stripTo(*joint, {"parent", "child", "origin", "axis", "limit", "mimic"});
     for (const char *end : {"parent", "child"}) {
       const std::string link = attribute(*joint->FirstChildElement(end), "link");
-      if (!inventory.collisions.count(link)) {
+      if (!inventory.count(link)) {
         throw Error("joint '" + name + "': its " + end + " link '" + link + "' does not exist");
       }
     }
     const std::string child = attribute(*joint->FirstChildElement("child"), "link");
     if (!children.insert(child).second) throw Error("link '" + child + "' is the child of two joints");
   }
-  if (inventory.collisions.empty()) throw Error("the robot has no links");
-  return inventory;
 }
 
 /* ---- urdfdom's types in Eigen's ---------------------------------------------------------------------------------- */
@@ -164,7 +209,9 @@ class RobotReader {
     if (!root) throw Error("the URDF has no <robot> element");
     if (attribute(*root, "name").empty()) throw Error("the robot has no name");
     stripTo(*root, {"link", "joint"});
-    const Inventory inventory = takeInventory(*root);
+    Inventory inventory;
+    readLinkElements(*root, inventory);
+    readJointElements(*root, inventory);
 
     // Parsed by urdfdom.
     tinyxml2::XMLPrinter printer;
@@ -293,15 +340,14 @@ class RobotReader {
   }
 
   void readLinks(const urdf::ModelInterface &model, const Inventory &inventory) {
-    for (const auto &[name, kinds] : inventory.collisions) {
+    for (const auto &[name, faults] : inventory) {
       const urdf::LinkConstSharedPtr link = model.getLink(name);
       if (!link) throw Error("link '" + name + "' was not understood");
       std::vector<LinkGeometry> &geometry = robot_->links_[name];
       for (std::size_t i = 0; i < link->collision_array.size(); ++i) {
-        const std::string who = elementName(name, i, kinds.size());
-        addGeometry(*link->collision_array[i], who, geometry);
+        addGeometry(*link->collision_array[i], elementName(name, i, faults.size()), geometry);
       }
-      reportDropped(name, kinds, link->collision_array.size());
+      reportDropped(name, faults, link->collision_array.size());
     }
   }
 
@@ -318,17 +364,10 @@ class RobotReader {
   }
 
   /* urdfdom stops at the first collision element of a link that it cannot read. */
-  void reportDropped(const std::string &name, const std::vector<std::string> &kinds, std::size_t parsed) {
-    static const std::set<std::string> known = {"box", "cylinder", "sphere", "mesh"};
-    for (std::size_t i = parsed; i < kinds.size(); ++i) {
-      const std::string who = elementName(name, i, kinds.size());
-      if (kinds[i].empty()) {
-        fault(who + "it has no geometry");
-      } else if (!known.count(kinds[i])) {
-        fault(who + "geometry '" + kinds[i] + "' is not known to URDF");
-      } else {
-        fault(who + "its " + kinds[i] + " cannot be read, or one before it");
-      }
+  void reportDropped(const std::string &name, const std::vector<std::string> &faults, std::size_t parsed) {
+    for (std::size_t i = parsed; i < faults.size(); ++i) {
+      const char *otherwise = i == parsed ? "it cannot be read" : "it comes after one that cannot be read";
+      fault(elementName(name, i, faults.size()) + (faults[i].empty() ? otherwise : faults[i]));
     }
   }
 

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The C++ face of the core: handles, conversions, failures as exceptions. */
+#include "support.h"
+
+using namespace curve_proximity;
+using namespace curve_proximity::test;
+
+TEST(CoreHpp, a_failure_is_an_error_with_the_cores_sentence) {
+  const std::string reason = reasonOf([] { makeSphere(-1.0); });
+  EXPECT_FALSE(reason.empty());
+  expectContains(reason, "radius");
+}
+
+TEST(CoreHpp, identity_rotations_stay_exact) {
+  const cprox_pose pose = toPose(translation(1.0, -2.0, 0.1));
+  EXPECT_EQ(pose.orientation.w, 1.0);
+  EXPECT_EQ(pose.orientation.x, 0.0);
+  EXPECT_EQ(pose.orientation.y, 0.0);
+  EXPECT_EQ(pose.orientation.z, 0.0);
+  EXPECT_EQ(pose.position.z, 0.1);
+}
+
+/* Tolerance: 16 roundings each way (core.hpp), 2^-53 each. */
+TEST(CoreHpp, poses_survive_the_way_to_quaternions_and_back) {
+  Random random(1);
+  for (int i = 0; i < 10000; ++i) {
+    const Eigen::Isometry3d pose = random.pose(2.0);
+    EXPECT_LE((toIsometry(toPose(pose)).matrix() - pose.matrix()).cwiseAbs().maxCoeff(), 32 * 0x1p-53);
+  }
+}
+
+TEST(CoreHpp, quaternions_need_no_norm_but_not_0) {
+  const Eigen::Isometry3d tiny = toIsometry({{0, 0, 0}, {1e-200, 0, 0, 1e-200}});
+  EXPECT_NEAR(tiny.linear()(1, 0), 1.0, 1e-15); // a quarter turn about z
+  const Eigen::Isometry3d huge = toIsometry({{0, 0, 0}, {1e300, 0, 0, 1e300}});
+  EXPECT_NEAR(huge.linear()(1, 0), 1.0, 1e-15);
+  expectContains(reasonOf([] { toIsometry({{0, 0, 0}, {0, 0, 0, 0}}); }), "norm is 0");
+  expectContains(reasonOf([] { toIsometry({{0, 0, 0}, {0, NAN, 0, 1}}); }), "not finite");
+}
+
+TEST(CoreHpp, a_compound_keeps_its_parts_alive) {
+  BodyHandle compound;
+  {
+    const BodyHandle ball = makeSphere(0.5);
+    compound = makeCompound({ball, ball}, {translation(-2, 0, 0), translation(2, 0, 0)});
+  }
+  EXPECT_NEAR(cprox_body_nearest(compound.get(), {2.0, 0.0, 1.5}, nullptr), 1.0, 1e-14);
+  expectContains(reasonOf([] { makeCompound({makeSphere(1.0)}, {}); }), "as many poses");
+}
+
+TEST(CoreHpp, the_verbs_answer_with_eigen_in_and_out) {
+  Workspace workspace;
+  const cprox_options options = cprox_options_default();
+  Eigen::Matrix3Xd points(3, 3);
+  points << -1, 0, 1, /**/ 2, 1, 2, /**/ 0, 0, 0;
+  const CurveHandle curve = makeBezier(points);
+  const BodyHandle box = makeBox({1.0, 1.0, 1.0});
+
+  // The curve's lowest point is (0, 1.5, 0): 1 above the box's top at 0.5.
+  const cprox_result r = distance(along(curve), at(box), options, workspace);
+  EXPECT_EQ(r.status, CPROX_OK);
+  EXPECT_LE(r.lower, 1.0);
+  EXPECT_GE(r.upper, 1.0);
+  EXPECT_NEAR((toEigen(r.on_mover) - Eigen::Vector3d(0, 1.5, 0)).norm(), 0.0, 1e-2);
+  EXPECT_EQ(tolerance(along(curve), at(box), 0.99, options, workspace).verdict, CPROX_YES);
+  EXPECT_EQ(tolerance(along(curve, 0.1), at(box), 0.99, options, workspace).verdict, CPROX_NO);
+  EXPECT_EQ(collision(along(curve), at(box, translation(0, 1.25, 0)), options, workspace).verdict, CPROX_YES);
+  EXPECT_EQ(collision(along(curve), at(box, Eigen::Isometry3d::Identity(), 1.1), options, workspace).verdict,
+            CPROX_YES);
+
+  // Planar polygons and standing pairs.
+  Eigen::Matrix2Xd triangle(2, 3);
+  triangle << 0, 1, 0, /**/ 0, 0, 1;
+  const BodyHandle polygon = makePolygon(triangle);
+  const cprox_result p = pair(at(polygon), at(box, translation(-1.5, 0, 0)), options, workspace);
+  EXPECT_LE(p.lower, 1.0);
+  EXPECT_GE(p.upper, 1.0);
+}
+
+TEST(CoreHpp, a_spline_is_the_same_as_its_only_span) {
+  Random random(2);
+  const CurveDescription d = randomBezier(random, 3, 1.0);
+  const CurveHandle bezier = makeBezier(d.points, 2.0, 5.0);
+  const CurveHandle spline = makeBspline(d.points, 3, {2, 2, 2, 2, 5, 5, 5, 5}, 2.0, 5.0);
+  for (const double t : {2.0, 2.7, 4.1, 5.0}) {
+    cprox_vec3 a, b;
+    ASSERT_EQ(cprox_curve_evaluate(bezier.get(), t, nullptr, &a, nullptr, nullptr), CPROX_OK);
+    ASSERT_EQ(cprox_curve_evaluate(spline.get(), t, nullptr, &b, nullptr, nullptr), CPROX_OK);
+    EXPECT_NEAR((toEigen(a) - toEigen(b)).norm(), 0.0, 1e-14);
+  }
+}
+
+TEST(CoreHpp, a_refused_question_throws_and_the_next_is_answered) {
+  Workspace workspace;
+  const BodyHandle box = makeBox({1.0, 1.0, 1.0});
+  const CurveHandle curve = makeBezier(Eigen::Matrix3Xd::Random(3, 4) + Eigen::Matrix3Xd::Constant(3, 4, 5.0));
+  cprox_options options = cprox_options_default();
+  options.epsilon = NAN;
+  expectContains(reasonOf([&] { distance(along(curve), at(box), options, workspace); }), "epsilon");
+  EXPECT_GT(distance(along(curve), at(box), cprox_options_default(), workspace).lower, 0.0);
+}

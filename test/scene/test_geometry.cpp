@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Shapes from descriptions, meshes and their files. */
+#include <unistd.h>
+#include <cmath>
+#include <filesystem>
+
+#include "support.h"
+
+using namespace curve_proximity;
+using namespace curve_proximity::test;
+
+namespace {
+
+const std::string PANDA = TEST_DATA_DIR "/robots/panda";
+
+std::string refusal(const ShapeDescription &shape, const ResourceOptions &options = {}) {
+  return reasonOf([&] { makeGeometry(shape, options); });
+}
+
+ShapeDescription meshFile(const std::string &resource) {
+  ShapeDescription out = shape(ShapeType::MESH, {});
+  out.resource = resource;
+  return out;
+}
+
+ShapeDescription mesh(const Eigen::Matrix3Xd &vertices, const Triangles &triangles) {
+  ShapeDescription out = shape(ShapeType::MESH, {});
+  out.vertices = vertices;
+  out.triangles = triangles;
+  return out;
+}
+
+/* Triangles over the vertices in their order, each vertex in one at least. */
+Triangles anyTriangles(Eigen::Index n) {
+  Triangles out(3, n - 2);
+  for (Eigen::Index k = 0; k + 2 < n; ++k)
+    out.col(k) << static_cast<int>(k), static_cast<int>(k + 1), static_cast<int>(k + 2);
+  return out;
+}
+
+/* A folder of the test's own, gone with it. */
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::temp_directory_path() / ("curve_proximity_" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  std::string write(const std::string &name, const std::string &content) const {
+    const std::string file = (path_ / name).string();
+    std::ofstream(file, std::ios::binary) << content;
+    return file;
+  }
+  std::string path() const {
+    return path_.string();
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+const char *const TRIANGLE_STL =
+    "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid "
+    "t\n";
+
+} // namespace
+
+TEST(Shapes, names_and_types_are_one_to_one) {
+  for (int i = 0; i <= static_cast<int>(ShapeType::MESH); ++i) {
+    const auto type = static_cast<ShapeType>(i);
+    EXPECT_EQ(shapeTypeFromName(shapeTypeName(type)), type);
+  }
+  EXPECT_FALSE(shapeTypeFromName("Box").has_value());
+  EXPECT_FALSE(shapeTypeFromName("").has_value());
+}
+
+/* The nearest point of each to a point outside, by hand. */
+TEST(Shapes, dimensions_mean_what_the_header_says) {
+  const auto distanceTo = [](const ShapeDescription &s, const Eigen::Vector3d &p) {
+    return cprox_body_nearest(makeGeometry(s).body.get(), toVec3(p), nullptr);
+  };
+  EXPECT_NEAR(distanceTo(shape(ShapeType::POINT, {}), {0, 3, 4}), 5.0, 1e-14);
+  EXPECT_NEAR(distanceTo(shape(ShapeType::SPHERE, {0.5}), {0, 3, 4}), 4.5, 1e-14);
+  EXPECT_NEAR(distanceTo(shape(ShapeType::BOX, {1, 2, 3}), {1.5, 0, 0}), 1.0, 1e-14);
+  EXPECT_NEAR(distanceTo(shape(ShapeType::CAPSULE, {2, 0.5}), {0, 0, 2.5}), 1.0, 1e-14);
+  EXPECT_NEAR(distanceTo(shape(ShapeType::CYLINDER, {2, 0.5}), {0, 0, 2.5}), 1.5, 1e-14);
+  EXPECT_NEAR(distanceTo(shape(ShapeType::CYLINDER, {2, 0.5}), {1.5, 0, 0}), 1.0, 1e-14);
+  EXPECT_NEAR(distanceTo(shape(ShapeType::CONE, {2, 0.5}), {0, 0, 2.0}), 1.0, 1e-14);
+  EXPECT_NEAR(distanceTo(shape(ShapeType::CONE, {2, 0.5}), {0, 0, -2.0}), 1.0, 1e-14);
+  EXPECT_NEAR(distanceTo(shape(ShapeType::ELLIPSOID, {1, 2, 3}), {0, 0, 4.0}), 1.0, 1e-13);
+  EXPECT_NEAR(distanceTo(shape(ShapeType::HALFSPACE, {0, 0, 2, -2}), {7, 7, 3.0}), 2.0, 1e-14);
+}
+
+TEST(Shapes, wrong_dimensions_are_told_in_a_sentence) {
+  EXPECT_EQ(refusal(shape(ShapeType::CYLINDER, {1.0})), "cylinder needs 2 dimensions [height, radius], got 1");
+  EXPECT_EQ(refusal(shape(ShapeType::SPHERE, {})), "sphere needs 1 dimension [radius], got 0");
+  expectContains(refusal(shape(ShapeType::BOX, {1, 1})), "box needs 3 dimensions");
+  expectContains(refusal(shape(ShapeType::POINT, {1})), "point needs no dimensions");
+  expectContains(refusal(shape(ShapeType::POLYTOPE, {1})), "polytope needs no dimensions");
+  expectContains(refusal(shape(ShapeType::HALFSPACE, {0, 0, 1})), "halfspace needs 4 dimensions");
+  expectContains(refusal(shape(ShapeType::BOX, {1, 0, 1})), "box dimension 1");
+  expectContains(refusal(shape(ShapeType::BOX, {1, 1, NAN})), "box dimension 2");
+  expectContains(refusal(shape(ShapeType::CONE, {-1, 1})), "cone dimension 0");
+  expectContains(refusal(shape(ShapeType::ELLIPSOID, {1, INFINITY, 1})), "ellipsoid dimension 1");
+  EXPECT_FALSE(refusal(shape(ShapeType::HALFSPACE, {0, 0, 0, 1})).empty());
+}
+
+TEST(Shapes, vertices_belong_to_points_polytopes_and_meshes) {
+  ShapeDescription s = shape(ShapeType::BOX, {1, 1, 1});
+  s.vertices = Eigen::Matrix3Xd::Zero(3, 2);
+  expectContains(refusal(s), "box takes no vertices");
+  s = shape(ShapeType::POINT, {});
+  s.vertices = Eigen::Matrix3Xd::Zero(3, 2);
+  expectContains(refusal(s), "at most 1 vertex");
+  expectContains(refusal(shape(ShapeType::POLYTOPE, {})), "no vertices");
+  s = shape(ShapeType::POLYTOPE, {});
+  s.vertices = Eigen::Matrix3Xd::Zero(3, 4);
+  s.vertices(1, 2) = NAN;
+  expectContains(refusal(s), "vertex 2 is not finite");
+  s = shape(ShapeType::SPHERE, {1});
+  s.resource = "x.stl";
+  expectContains(refusal(s), "takes no mesh file");
+}
+
+TEST(Meshes, bad_meshes_are_told_in_a_sentence) {
+  Eigen::Matrix3Xd vertices = Eigen::Matrix3Xd::Random(3, 5);
+  expectContains(refusal(mesh(vertices, Triangles(3, 0))), "no triangle");
+  Triangles triangles = anyTriangles(5);
+  triangles(1, 2) = 5;
+  expectContains(refusal(mesh(vertices, triangles)), "triangle 2 uses vertex 5");
+  triangles(1, 2) = -1;
+  expectContains(refusal(mesh(vertices, triangles)), "triangle 2 uses vertex -1");
+  vertices(0, 3) = INFINITY;
+  expectContains(refusal(mesh(vertices, anyTriangles(5))), "vertex 3 is not finite");
+  ShapeDescription s = mesh(Eigen::Matrix3Xd::Random(3, 5), anyTriangles(5));
+  s.dimensions = {1, 0, 1};
+  expectContains(refusal(s), "scale");
+  s.dimensions = {1, NAN, 1};
+  expectContains(refusal(s), "finite");
+  s.dimensions = {1, 1};
+  expectContains(refusal(s), "mesh needs");
+}
+
+TEST(Meshes, flat_thin_and_single_triangles_are_bodies) {
+  Eigen::Matrix3Xd vertices(3, 40);
+  Random random(31);
+  for (int i = 0; i < 40; ++i) vertices.col(i) << random.uniform(-1, 1), random.uniform(-1, 1), 0.0;
+  vertices.col(0) << 0, 0, 0;
+  for (const double thickness : {0.0, 1e-13, 1e-10}) {
+    vertices(2, 7) = thickness;
+    const Geometry flat = makeGeometry(mesh(vertices, anyTriangles(40)));
+    EXPECT_NEAR(cprox_body_nearest(flat.body.get(), {0, 0, 1}, nullptr), 1.0, 2e-10);
+    EXPECT_TRUE(flat.by_hull);
+  }
+  // Collinear, and all in one place.
+  for (int i = 0; i < 40; ++i) vertices.col(i) << i, 0, 0;
+  EXPECT_NEAR(cprox_body_nearest(makeGeometry(mesh(vertices, anyTriangles(40))).body.get(), {5.5, 1, 0}, nullptr), 1.0,
+              1e-12);
+  vertices.setConstant(2.0);
+  EXPECT_NEAR(cprox_body_nearest(makeGeometry(mesh(vertices, anyTriangles(40))).body.get(), {2, 2, 3}, nullptr), 1.0,
+              1e-12);
+}
+
+/* 200 meshes, of up to 400 vertices, from near-flat to cubical and of all sizes: some with many coplanar vertices.
+ * Tolerance: the accuracy of cprox_body_nearest, 64 2^-53 (|point| + size), and the geometry's own excess. */
+TEST(Meshes, the_hull_contains_every_vertex) {
+  Random random(32);
+  for (int i = 0; i < 200; ++i) {
+    const auto n = static_cast<Eigen::Index>(4 + random.below(397));
+    const double size = std::pow(10.0, random.uniform(-6, 6));
+    const Eigen::Vector3d half(size, size * std::pow(10.0, random.uniform(-8, 0)), size);
+    Eigen::Matrix3Xd vertices(3, n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      vertices.col(k) = random.vector(1.0).cwiseProduct(half);
+      if (random.below(3) == 0) vertices(static_cast<Eigen::Index>(random.below(3)), k) = 0.5 * size; // onto a plane
+    }
+    const Geometry hull = makeGeometry(mesh(vertices, anyTriangles(n)));
+    EXPECT_LE(hull.excess, 1e-11 * size);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double out_by = cprox_body_nearest(hull.body.get(), toVec3(vertices.col(k)), nullptr);
+      EXPECT_LE(out_by, hull.excess + 64 * 0x1p-53 * 6.0 * size);
+    }
+  }
+}
+
+TEST(Meshes, only_vertices_of_triangles_count) {
+  Eigen::Matrix3Xd vertices(3, 4);
+  vertices << 0, 1, 0, 100, /**/ 0, 0, 1, 100, /**/ 0, 0, 0, 100;
+  Triangles one(3, 1);
+  one << 0, 1, 2;
+  EXPECT_NEAR(cprox_body_nearest(makeGeometry(mesh(vertices, one)).body.get(), {0, 0, 2}, nullptr), 2.0, 1e-14);
+}
+
+TEST(Meshes, scale_stretches_and_mirrors) {
+  ShapeDescription s = meshFile(PANDA + "/meshes/finger.stl");
+  const BodyHandle plain = makeGeometry(s).body;
+  s.dimensions = {2, -3, 0.5};
+  const BodyHandle scaled = makeGeometry(s).body;
+  const Eigen::Vector3d d(0.3, -0.7, 0.4); // the support function of the image is that of the transposed direction
+  EXPECT_NEAR(cprox_body_support(scaled.get(), toVec3(d), nullptr),
+              cprox_body_support(plain.get(), {2 * d.x(), -3 * d.y(), 0.5 * d.z()}, nullptr), 1e-12);
+}
+
+TEST(Resources, files_are_found_by_every_kind_of_uri) {
+  ResourceOptions options;
+  options.base_dir = PANDA;
+  options.find_package = [](const std::string &name) { return name == "panda_description" ? PANDA : std::string(); };
+  for (const std::string uri : {"meshes/finger.stl", "package://panda_description/meshes/finger.stl"}) {
+    EXPECT_TRUE(std::filesystem::equivalent(resolveResource(uri, options), PANDA + "/meshes/finger.stl")) << uri;
+    EXPECT_TRUE(makeGeometry(meshFile(uri), options).by_hull);
+  }
+  for (const std::string start : {"", "file://", "file://localhost"}) {
+    EXPECT_EQ(resolveResource(start + PANDA + "/meshes/finger.stl", {}), PANDA + "/meshes/finger.stl");
+  }
+  const Folder folder;
+  folder.write("a b%.stl", TRIANGLE_STL);
+  EXPECT_TRUE(makeGeometry(meshFile("file://" + folder.path() + "/a%20b%25.stl")).by_hull);
+  EXPECT_TRUE(makeGeometry(meshFile(folder.path() + "/a b%.stl")).by_hull);
+}
+
+TEST(Resources, what_cannot_be_read_is_told_by_name) {
+  ResourceOptions options;
+  options.base_dir = PANDA;
+  options.find_package = [](const std::string &) { return std::string(); };
+  const auto why = [&](const std::string &uri) { return refusal(meshFile(uri), options); };
+  expectContains(why("meshes/none.stl"), "meshes/none.stl");
+  expectContains(why("meshes/none.stl"), "there is no file");
+  expectContains(why("meshes"), "no regular file");
+  expectContains(why("http://example.org/a.stl"), "http:// is not fetched");
+  expectContains(why("https://example.org/a.stl"), "https:// is not fetched");
+  expectContains(why("package://nobody/a.stl"), "package 'nobody' was not found");
+  expectContains(why("package://nobody"), "package://NAME/path");
+  expectContains(why("file://meshes/finger.stl"), "absolute");
+  expectContains(refusal(meshFile("package://p/a.stl")), "nowhere to look for package 'p'");
+  expectContains(refusal(meshFile("meshes/finger.stl")), "relative");
+  EXPECT_FALSE(refusal(shape(ShapeType::MESH, {})).empty());
+}
+
+TEST(Resources, broken_files_are_told_by_name) {
+  const Folder folder;
+  const auto why = [&](const std::string &name, const std::string &content) {
+    return refusal(meshFile(folder.write(name, content)));
+  };
+  expectContains(why("empty.stl", ""), "empty.stl' is empty");
+  expectContains(why("noise.stl", "this is no mesh"), "noise.stl");
+  expectContains(why("noise.dae", "<COLLADA"), "noise.dae");
+  expectContains(why("hollow.stl", "solid t\nendsolid t\n"), "hollow.stl");
+
+  // A binary STL: a header of 80 bytes, the number of triangles, 50 bytes each.
+  const float nan = NAN;
+  std::string binary(80, ' ');
+  binary += std::string("\1\0\0\0", 4) + std::string(50, '\0');
+  binary.replace(84 + 12, 4, reinterpret_cast<const char *>(&nan), 4);
+  expectContains(why("nan.stl", binary), "nan.stl");
+  expectContains(why("nan2.stl", binary), "not finite");
+  binary.replace(80, 4, "\xff\xff\xff\x7f");
+  expectContains(why("short.stl", binary), "short.stl");
+}
+
+TEST(Resources, a_mesh_has_a_file_or_vertices_not_both) {
+  ShapeDescription s = meshFile(PANDA + "/meshes/finger.stl");
+  s.vertices = Eigen::Matrix3Xd::Zero(3, 3);
+  expectContains(refusal(s), "give one of the two");
+}

@@ -1,0 +1,332 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Questions and answers: what is asked about, what comes back, what is refused. */
+#include <cmath>
+
+#include "support.h"
+
+using namespace curve_proximity;
+using namespace curve_proximity::test;
+
+namespace {
+
+Question questionOf(Verb verb, double delta = 0.0) {
+  Question question;
+  question.verb = verb;
+  question.delta = delta;
+  return question;
+}
+
+/* A ball of 0.5 at x = 3, a box of 1 at x = -4, both at y = z = 0. */
+void fill(Scene &scene) {
+  ASSERT_TRUE(scene
+                  .apply(change({add("ball", {shape(ShapeType::SPHERE, {0.5})}, translation(3, 0, 0)),
+                                 add("crate", {shape(ShapeType::BOX, {1, 1, 1})}, translation(-4, 0, 0))}))
+                  .empty());
+}
+
+const CurveDescription UPRIGHT = line({0, 0, -1}, {0, 0, 1});
+
+std::string refusal(const CurveDescription &curve) {
+  return reasonOf([&] { compile(curve); });
+}
+
+} // namespace
+
+TEST(Ask, the_nearest_object_is_named_with_both_points_and_the_parameter) {
+  Scene scene;
+  fill(scene);
+  const Answer answer = askOne(scene, {}, UPRIGHT, Question());
+  EXPECT_EQ(answer.status, "ok");
+  EXPECT_EQ(answer.id, "line");
+  EXPECT_EQ(answer.a, "line");
+  EXPECT_EQ(answer.kind, "curve");
+  EXPECT_EQ(answer.b, "ball");
+  EXPECT_FALSE(answer.b_is_link);
+  EXPECT_FALSE(answer.by_hull);
+  EXPECT_LE(answer.result.lower, 2.5);
+  EXPECT_GE(answer.result.upper, 2.5);
+  EXPECT_LE(answer.result.upper - answer.result.lower, 1e-6);
+  EXPECT_EQ(answer.result.target_index, 0);
+  EXPECT_NEAR(answer.result.on_target.x, 2.5, 1e-5);
+  EXPECT_NEAR(answer.result.on_mover.x, 0.0, 1e-12);
+  EXPECT_NEAR(answer.result.t, 0.5, 1e-2);
+  EXPECT_NEAR(answer.result.normal.x, -1.0, 1e-5);
+  EXPECT_GT(answer.microseconds, 0.0);
+}
+
+TEST(Ask, per_object_answers_for_each_by_its_nearest_shape) {
+  Scene scene;
+  fill(scene);
+  scene.apply(
+      change({operation(Operation::Kind::APPEND, "crate", {shape(ShapeType::SPHERE, {0.25}, translation(2, 0, 0))})}));
+  Question question;
+  question.per_object = true;
+  Workspace workspace;
+  const std::vector<Answer> answers = ask(scene.snapshot(), {}, UPRIGHT, question, workspace);
+  ASSERT_EQ(answers.size(), 2u);
+  EXPECT_EQ(answers[0].b, "ball");
+  EXPECT_NEAR(answers[0].result.upper, 2.5, 1e-6);
+  EXPECT_EQ(answers[1].b, "crate");
+  EXPECT_EQ(answers[1].result.target_index, 1); // the ball at x = -2
+  EXPECT_NEAR(answers[1].result.upper, 1.75, 1e-6);
+}
+
+TEST(Ask, named_objects_alone_are_asked_about) {
+  Scene scene(dataRobot("husky"));
+  fill(scene);
+  const LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
+  Question question;
+  EXPECT_EQ(askOne(scene, poses, UPRIGHT, question).b, "base_link");
+  question.objects = {"crate"};
+  EXPECT_EQ(askOne(scene, poses, UPRIGHT, question).b, "crate");
+  question.links = {"front_left_wheel_link"};
+  const Answer wheel = askOne(scene, poses, UPRIGHT, question);
+  EXPECT_EQ(wheel.b, "front_left_wheel_link");
+  EXPECT_TRUE(wheel.b_is_link);
+  question.objects = {"crate", "table"};
+  const Answer refused = askOne(scene, poses, UPRIGHT, question);
+  EXPECT_EQ(refused.status, "invalid");
+  expectContains(refused.message, "'table'");
+  question.objects = {};
+  question.links = {"tail"};
+  expectContains(askOne(scene, poses, UPRIGHT, question).message, "no link 'tail'");
+  question.links = {"base_footprint"};
+  expectContains(askOne(scene, poses, UPRIGHT, question).message, "no collision geometry");
+}
+
+TEST(Ask, a_link_whose_pose_is_unknown_never_reads_as_free) {
+  Scene scene(dataRobot("husky"));
+  LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
+  poses.erase("front_left_wheel_link");
+  const Answer missing = askOne(scene, poses, UPRIGHT, Question());
+  EXPECT_EQ(missing.status, "invalid");
+  expectContains(missing.message, "front_left_wheel_link");
+  Question question;
+  question.links = {"base_link"};
+  EXPECT_EQ(askOne(scene, poses, UPRIGHT, question).status, "ok");
+  poses["base_link"].translation().x() = NAN;
+  expectContains(askOne(scene, poses, UPRIGHT, question).message, "base_link");
+  poses = {{"tail", Eigen::Isometry3d::Identity()}};
+  expectContains(askOne(scene, poses, UPRIGHT, Question()).message, "no link 'tail'");
+  expectContains(askOne(Scene(), poses, UPRIGHT, Question()).message, "no robot");
+}
+
+TEST(Ask, meshes_say_that_their_hull_answered) {
+  Scene scene(dataRobot("panda"));
+  const LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
+  const Answer answer = askOne(scene, poses, line({1, 0, 0}, {1, 0, 1}), Question());
+  EXPECT_EQ(answer.status, "ok");
+  EXPECT_TRUE(answer.by_hull);
+  EXPECT_TRUE(answer.b_is_link);
+  EXPECT_EQ(answer.result.rung, CPROX_RUNG_HULL);
+  expectContains(answer.message, "hull");
+}
+
+TEST(Ask, with_nothing_to_measure_everything_is_far) {
+  const Scene scene;
+  for (const bool per_object : {false, true}) {
+    for (const Verb verb : {Verb::DISTANCE, Verb::TOLERANCE, Verb::COLLISION}) {
+      Question question = questionOf(verb, 1.0);
+      question.per_object = per_object;
+      const Answer answer = askOne(scene, {}, UPRIGHT, question);
+      EXPECT_EQ(answer.status, "ok");
+      EXPECT_EQ(answer.b, "");
+      EXPECT_EQ(answer.result.lower, INFINITY);
+      EXPECT_EQ(answer.result.upper, INFINITY);
+      EXPECT_EQ(answer.result.target_index, -1);
+      if (verb == Verb::TOLERANCE) {
+        EXPECT_EQ(answer.result.verdict, CPROX_YES);
+      }
+      if (verb == Verb::COLLISION) {
+        EXPECT_EQ(answer.result.verdict, CPROX_NO);
+      }
+    }
+  }
+}
+
+TEST(Ask, verdicts_follow_from_the_distance) {
+  Scene scene;
+  fill(scene);
+  EXPECT_EQ(askOne(scene, {}, UPRIGHT, questionOf(Verb::TOLERANCE, 2.49)).result.verdict, CPROX_YES);
+  EXPECT_EQ(askOne(scene, {}, UPRIGHT, questionOf(Verb::TOLERANCE, 2.51)).result.verdict, CPROX_NO);
+  EXPECT_EQ(askOne(scene, {}, UPRIGHT, questionOf(Verb::COLLISION)).result.verdict, CPROX_NO);
+  const Answer hit = askOne(scene, {}, line({0, 0, 0}, {9, 0, 0}), questionOf(Verb::COLLISION));
+  EXPECT_EQ(hit.result.verdict, CPROX_YES);
+  EXPECT_EQ(hit.b, "ball");
+  EXPECT_EQ(hit.result.upper, 0.0);
+  CurveDescription tube = UPRIGHT;
+  tube.radius = 2.6;
+  EXPECT_EQ(askOne(scene, {}, tube, questionOf(Verb::COLLISION)).result.verdict, CPROX_YES);
+}
+
+TEST(Ask, a_halfspace_is_seen_from_everywhere) {
+  Scene scene;
+  fill(scene);
+  scene.apply(change({add("floor", {shape(ShapeType::HALFSPACE, {0, 0, 1, 2})})}));
+  const Answer answer = askOne(scene, {}, UPRIGHT, Question());
+  EXPECT_EQ(answer.b, "floor"); // z <= -2, 1 below the curve's end
+  EXPECT_LE(answer.result.lower, 1.0);
+  EXPECT_GE(answer.result.upper, 1.0);
+}
+
+TEST(Ask, bad_options_are_answers_and_the_next_question_is_answered) {
+  Scene scene;
+  fill(scene);
+  std::vector<Operation> many;
+  for (int i = 0; i < 30; ++i)
+    many.push_back(add("o" + std::to_string(i), {shape(ShapeType::SPHERE, {0.1})}, translation(i, 5, 0)));
+  Workspace workspace;
+  for (const bool crowded : {false, true}) {
+    if (crowded) scene.apply(change(many));
+    for (const Verb verb : {Verb::DISTANCE, Verb::TOLERANCE, Verb::COLLISION}) {
+      const auto expectRefused = [&](const Question &question, const std::string &word) {
+        const std::vector<Answer> answers = ask(scene.snapshot(), {}, UPRIGHT, question, workspace);
+        ASSERT_EQ(answers.size(), 1u);
+        EXPECT_EQ(answers[0].status, "invalid");
+        EXPECT_LT(answers[0].result.status, 0);
+        expectContains(answers[0].message, word);
+      };
+      Question question = questionOf(verb);
+      question.options.epsilon = NAN;
+      expectRefused(question, "epsilon");
+      question.options.epsilon = -1e-3;
+      expectRefused(question, "epsilon");
+      question = questionOf(verb);
+      question.options.max_nodes = 0;
+      expectRefused(question, "nodes");
+      if (verb == Verb::TOLERANCE) {
+        for (const double delta : {-0.1, static_cast<double>(NAN)}) expectRefused(questionOf(verb, delta), "delta");
+      }
+      EXPECT_EQ(ask(scene.snapshot(), {}, UPRIGHT, questionOf(verb), workspace).at(0).status, "ok");
+    }
+  }
+}
+
+TEST(Ask, a_small_budget_still_gives_a_true_interval) {
+  Scene scene;
+  fill(scene);
+  Random random(61);
+  for (int i = 0; i < 200; ++i) {
+    const CurveDescription curve = randomBezier(random, 12, 6.0);
+    Question question;
+    const Answer full = askOne(scene, {}, curve, question);
+    question.options.max_nodes = 1;
+    const Answer poor = askOne(scene, {}, curve, question);
+    EXPECT_LE(poor.result.lower, full.result.upper);
+    EXPECT_GE(poor.result.upper, full.result.lower);
+    if (poor.status != "ok") {
+      EXPECT_FALSE(poor.message.empty());
+    }
+  }
+}
+
+TEST(Ask, the_stop_function_ends_a_query) {
+  Scene scene;
+  fill(scene);
+  Question question;
+  question.options.epsilon = 0.0;
+  question.options.stop = [](void *) { return true; };
+  Random random(62);
+  const Answer answer = askOne(scene, {}, randomBezier(random, 20, 6.0), question);
+  EXPECT_GE(answer.result.status, 0);
+  EXPECT_LE(answer.result.lower, answer.result.upper);
+}
+
+TEST(Compile, curves_that_are_none_are_told_in_a_sentence) {
+  CurveDescription curve = UPRIGHT;
+  curve.basis = "legendre";
+  EXPECT_EQ(refusal(curve), "basis 'legendre' is not available");
+  curve = UPRIGHT;
+  curve.degree = 3;
+  expectContains(refusal(curve), "degree 3");
+  curve = UPRIGHT;
+  curve.knots = {0, 1};
+  expectContains(refusal(curve), "no knots");
+  for (const double radius : {-1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+    curve = UPRIGHT;
+    curve.radius = radius;
+    expectContains(refusal(curve), "radius");
+  }
+  curve = UPRIGHT;
+  curve.points.resize(3, 1);
+  curve.points.setZero();
+  EXPECT_FALSE(refusal(curve).empty());
+  curve.points.resize(3, 0);
+  EXPECT_FALSE(refusal(curve).empty());
+  curve = UPRIGHT;
+  curve.points(1, 1) = NAN;
+  EXPECT_FALSE(refusal(curve).empty());
+  curve = UPRIGHT;
+  curve.t1 = curve.t0;
+  EXPECT_FALSE(refusal(curve).empty());
+  curve = UPRIGHT;
+  curve.basis = "bspline";
+  curve.degree = 1;
+  EXPECT_FALSE(refusal(curve).empty()); // no knots
+  curve.knots = {0, 1, 0.5, 1};
+  expectContains(refusal(curve), "knot");
+}
+
+TEST(Compile, a_bad_curve_is_an_answer) {
+  Scene scene;
+  CurveDescription curve = UPRIGHT;
+  curve.basis = "legendre";
+  const Answer answer = askOne(scene, {}, curve, Question());
+  EXPECT_EQ(answer.status, "invalid");
+  EXPECT_EQ(answer.id, "line");
+  EXPECT_EQ(answer.message, "basis 'legendre' is not available");
+}
+
+/* Seed 63, 400 curves: 50 points of each lie in the boxes, and the boxes' union in the curve's own bounds but for their
+ * margin. */
+TEST(Compile, the_boxes_contain_the_curve) {
+  Random random(63);
+  for (int i = 0; i < 400; ++i) {
+    CurveDescription d = randomBezier(random, 1 + random.below(20), 3.0);
+    if (i % 2) {
+      d.basis = "bspline";
+      d.degree = 1 + random.below(5);
+      const std::size_t n = d.degree + 1 + random.below(80);
+      d.points.resize(3, static_cast<Eigen::Index>(n));
+      for (Eigen::Index k = 0; k < d.points.cols(); ++k) d.points.col(k) = random.vector(3.0);
+      double knot = 0.0;
+      for (std::size_t k = 0; k < n + d.degree + 1; ++k) {
+        if (random.below(3)) knot += random.uniform(0.0, 1.0);
+        d.knots.push_back(knot);
+      }
+      const double from = d.knots[d.degree], to = d.knots[n];
+      if (!(from < to)) continue;
+      d.t0 = from + (to - from) * random.uniform(0.0, 0.4);
+      d.t1 = to - (to - from) * random.uniform(0.0, 0.4);
+    }
+    const CompiledCurve curve = compile(d);
+    ASSERT_FALSE(curve.boxes.empty());
+    EXPECT_LE(curve.boxes.size(), 32u);
+    for (int k = 0; k <= 50; ++k) {
+      const double t = std::min(d.t1, d.t0 + (d.t1 - d.t0) * k / 50.0);
+      cprox_vec3 p;
+      ASSERT_EQ(cprox_curve_evaluate(curve.curve.get(), t, nullptr, &p, nullptr, nullptr), CPROX_OK);
+      double least = INFINITY;
+      for (const Eigen::AlignedBox3d &box : curve.boxes) least = std::min(least, box.exteriorDistance(toEigen(p)));
+      EXPECT_LE(least, 1e-12) << i << " at " << t;
+    }
+  }
+}
+
+TEST(Compile, a_spline_of_100000_points_is_compiled_and_answered) {
+  CurveDescription d;
+  d.id = "long";
+  d.basis = "bspline";
+  d.degree = 3;
+  const int n = 100000;
+  d.points.resize(3, n);
+  for (int i = 0; i < n; ++i) d.points.col(i) << 1e-4 * i, std::sin(1e-3 * i), 1.0;
+  for (int i = 0; i < n + 4; ++i) d.knots.push_back(std::min(std::max(i - 3, 0), n - 3));
+  d.t0 = 0.0;
+  d.t1 = n - 3;
+  Scene scene;
+  fill(scene);
+  const Answer answer = askOne(scene, {}, d, Question());
+  EXPECT_EQ(answer.status, "ok");
+  EXPECT_EQ(answer.b, "ball");
+}
