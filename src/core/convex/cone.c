@@ -29,6 +29,7 @@ static void cone_nearest(const convex *shape, vec3 y, convex_hint *hint, convex_
   } else if (c * height >= rho * radius) { /* the apex */
     const vec3 apex = vec(0, 0, half);
     near->distance = feature_unit(vec_sub(y, apex), &near->normal);
+    if (near->distance == 0.0) near->normal = vec(0, 0, 1);
     near->point = apex;
     feature_vertex(near, apex, 0.0);
   } else { /* the side, from outside or from inside */

@@ -5,7 +5,7 @@
 #include "convex/feature.h"
 #include "convex/vertices.h"
 
-enum { GJK_MAX_STEPS = 200 };
+enum { GJK_MAX_STEPS = 200, GJK_MAX_IDLE = 8 };
 
 /* The point of the core that is extreme along d, as a vertex of the core seen from y. */
 static simplex_vertex gjk_extreme(const convex *shape, vec3 y, vec3 d) {
@@ -19,12 +19,6 @@ static simplex_vertex gjk_extreme(const convex *shape, vec3 y, vec3 d) {
   }
   vertex.w = vec_sub(vertex.a, y);
   return vertex;
-}
-
-static bool simplex_has(const simplex *s, vec3 w) {
-  for (int i = 0; i < s->n; i++)
-    if (vec_equal(s->vertex[i].w, w)) return true;
-  return false;
 }
 
 /* The vertices of the last answer, or the one that is extreme towards y. */
@@ -54,62 +48,105 @@ static vec3 gjk_point(const simplex *s) {
   return p;
 }
 
-/* One step along the direction u (from y to the core): the lower bound it gives, and whether the vertex it finds brings the
- * simplex nearer. */
-typedef struct gjk_step {
-  double lower;
-  bool nearer;
-} gjk_step;
+/* What the search knows. */
+typedef struct gjk {
+  const convex *shape;
+  vec3 y;
+  double hair; /* distances closer than this are the same */
+  simplex s;
+  simplex_nearest nearest;
+  double least; /* the shortest distance so far */
+  int idle;     /* steps since that got shorter by more than a hair */
+  double lower; /* the best lower bound, and the direction that gave it */
+  vec3 normal;
+} gjk;
 
-static gjk_step gjk_advance(const convex *shape, vec3 y, vec3 u, simplex *s, simplex_nearest *nearest) {
-  const simplex_vertex vertex = gjk_extreme(shape, y, vec_neg(u));
-  gjk_step step = {.lower = vec_dot(u, vertex.w)};
-  if (isnan(step.lower) || simplex_has(s, vertex.w)) return step;
-  simplex grown = *s;
-  grown.vertex[grown.n++] = vertex;
+/* Takes a grown simplex over. One that is nearer by less than a hair may still face a better way: some of those are let
+ * pass, since at a flat corner every step is that short. */
+static bool gjk_accept(gjk *g, simplex *grown) {
   simplex_nearest found;
-  simplex_reduce(&grown, &found);
-  if (!found.inside && !(found.distance < nearest->distance)) return step;
-  step.nearer = true;
-  *s = grown;
-  *nearest = found;
-  return step;
+  simplex_reduce(grown, &found);
+  if (!found.inside && !(found.distance < g->least + g->hair)) return false;
+  g->idle = found.inside || found.distance < g->least - g->hair ? 0 : g->idle + 1;
+  if (g->idle > GJK_MAX_IDLE) return false;
+  g->least = fmin(g->least, found.distance);
+  g->s = *grown;
+  g->nearest = found;
+  return true;
+}
+
+/* Looks along u, from y to the core, for a lower bound and a vertex that makes the simplex nearer. */
+static bool gjk_look(gjk *g, vec3 u) {
+  const simplex_vertex vertex = gjk_extreme(g->shape, g->y, vec_neg(u));
+  const double lower = vec_dot(u, vertex.w);
+  if (isnan(lower)) {
+    g->nearest.distance = NAN;
+    return false;
+  }
+  if (lower > g->lower) {
+    g->lower = lower;
+    g->normal = vec_neg(u);
+  }
+  if (simplex_has(&g->s, vertex.w) || g->s.n == 4) return false;
+  simplex grown = g->s;
+  grown.vertex[grown.n++] = vertex;
+  return gjk_accept(g, &grown);
+}
+
+/* Two directions are tried at each place: the feature's own, which is exact where v is all rounding, and v's, which is exact
+ * where the feature is a sliver. */
+static bool gjk_step(gjk *g) {
+  const vec3 normal = g->nearest.normal;
+  vec3 along;
+  feature_unit(g->nearest.v, &along);
+  if (vec_norm2(normal) > 0.0 && gjk_look(g, normal)) return true;
+  if (!(g->nearest.distance - g->lower > 2.0 * g->hair)) return false; /* the bounds have met, or the callback failed */
+  return vec_norm2(along) > 0.0 && !vec_equal(along, normal) && gjk_look(g, along);
+}
+
+/* Starts again from all round. */
+static void gjk_restart(gjk *g) {
+  simplex s = {0};
+  for (int i = 0; i < 4; i++) {
+    const simplex_vertex vertex = gjk_extreme(g->shape, g->y, simplex_spread[i]);
+    if (!simplex_has(&s, vertex.w)) s.vertex[s.n++] = vertex;
+  }
+  g->least = INFINITY;
+  g->idle = 0;
+  gjk_accept(g, &s);
+}
+
+static void gjk_search(gjk *g) {
+  bool restarted = false;
+  gjk before;
+  for (int i = 0; i < GJK_MAX_STEPS && !g->nearest.inside; i++) {
+    /* y on a feature of the simplex: on the surface, or deep inside by chance */
+    if (g->nearest.distance <= g->hair) {
+      if (restarted) break;
+      restarted = true;
+      before = *g;
+      gjk_restart(g);
+    } else if (!(g->nearest.distance - g->lower > 2.0 * g->hair) || !gjk_step(g)) {
+      break;
+    }
+  }
+  if (restarted && !g->nearest.inside && g->nearest.distance > before.nearest.distance) *g = before;
 }
 
 void gjk_nearest(const convex *shape, vec3 y, convex_hint *hint, gjk_answer *answer) {
-  simplex s;
-  simplex_nearest nearest;
-  gjk_start(shape, y, hint, &s);
-  simplex_reduce(&s, &nearest);
+  gjk g = {.shape = shape, .y = y, .least = INFINITY, .lower = -INFINITY};
+  g.hair = 4.0 * ROUND_U * (vec_norm(y) + shape->scale);
+  simplex start;
+  gjk_start(shape, y, hint, &start);
+  simplex_reduce(&start, &g.nearest);
+  g.s = start;
+  g.least = g.nearest.distance;
+  gjk_search(&g);
 
-  /* until the bounds meet; two directions are tried at each place: the feature's own, which is exact where v is all
-   * rounding, and v's, which is exact where the feature is a sliver */
-  const double enough = 8.0 * ROUND_U * (vec_norm(y) + shape->scale);
-  double best = -INFINITY;
-  vec3 best_normal = vec(0, 0, 0);
-  for (int i = 0; i < GJK_MAX_STEPS && !nearest.inside && nearest.distance > 0.0; i++) {
-    vec3 along;
-    feature_unit(nearest.v, &along);
-    bool nearer = false;
-    for (int k = 0; k < 2 && !nearer; k++) {
-      const vec3 u = k == 0 ? nearest.normal : along;
-      if (vec_norm2(u) == 0.0 || (k == 1 && vec_equal(u, nearest.normal))) continue;
-      const double distance = nearest.distance;
-      const gjk_step step = gjk_advance(shape, y, u, &s, &nearest);
-      nearer = step.nearer;
-      if (step.lower > best) {
-        best = step.lower;
-        best_normal = vec_neg(u);
-      }
-      if (isnan(step.lower)) nearest.distance = NAN;
-      if (distance - best <= enough) break;
-    }
-    if (!nearer || nearest.distance - best <= enough) break;
-  }
-
-  answer->feature = s;
-  gjk_keep_hint(&s, hint);
-  answer->distance = nearest.inside ? -nearest.depth : nearest.distance;
-  answer->point = nearest.inside ? y : gjk_point(&s);
-  answer->normal = nearest.inside || nearest.distance == 0.0 ? vec(0, 0, 0) : best_normal;
+  const bool inside = g.nearest.inside;
+  answer->feature = g.s;
+  gjk_keep_hint(&g.s, hint);
+  answer->distance = inside ? -g.nearest.depth : g.nearest.distance;
+  answer->point = inside ? y : gjk_point(&g.s);
+  answer->normal = inside || g.nearest.distance == 0.0 ? vec(0, 0, 0) : g.normal;
 }

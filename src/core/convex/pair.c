@@ -12,7 +12,8 @@ enum {
   PAIR_MAX_STEPS = 256,
   PAIR_NEWTON_FROM = 2,      /* plain steps first: far away the curvature is not that of the answer */
   PAIR_PATIENCE_CURVED = 24, /* steps without a gain */
-  PAIR_PATIENCE_FLAT = 6
+  PAIR_PATIENCE_FLAT = 6,
+  PAIR_MAX_IDLE = 8
 };
 
 /* Rounding of the bounds for shapes of size S, in units of u S: a crude sum of the steps gives 24. */
@@ -31,6 +32,9 @@ typedef struct pair {
   /* the primal side: the simplex and its nearest point to 0 */
   simplex s;
   simplex_nearest nearest;
+  double hair;  /* distances closer than this are the same */
+  double least; /* the shortest distance so far */
+  int idle;     /* simplices since that got shorter by more than a hair */
   /* the dual side: the best direction and its phi */
   vec3 u;
   double lower;
@@ -68,17 +72,15 @@ static void pair_raise_lower(pair *p, vec3 u, double phi) {
   p->u = u;
 }
 
-static bool simplex_has(const simplex *s, vec3 w) {
-  for (int i = 0; i < s->n; i++)
-    if (vec_equal(s->vertex[i].w, w)) return true;
-  return false;
-}
-
-/* Takes a grown simplex over if it is nearer than the one at hand. */
+/* Takes a grown simplex over if it is nearer than the one at hand; as far away within a hair will do for a while, since at a
+ * flat corner no step is longer. */
 static bool pair_accept(pair *p, simplex *grown) {
   simplex_nearest found;
   simplex_reduce(grown, &found);
-  if (!found.inside && !(found.distance < p->nearest.distance)) return false;
+  if (!found.inside && !(found.distance < p->least + p->hair)) return false;
+  p->idle = found.inside || found.distance < p->least - p->hair ? 0 : p->idle + 1;
+  if (p->idle > PAIR_MAX_IDLE) return false;
+  p->least = fmin(p->least, found.distance);
   p->s = *grown;
   p->nearest = found;
   return true;
@@ -235,14 +237,38 @@ static bool pair_step(pair *p, bool newton) {
   return vec_norm2(u) > 0.0 && !vec_equal(u, normal) && pair_look(p, u, false);
 }
 
+/* Starts again from all round. */
+static void pair_restart(pair *p) {
+  simplex s = {0};
+  for (int i = 0; i < 4; i++) {
+    vec3 u;
+    feature_unit(simplex_spread[i], &u);
+    const simplex_vertex x = pair_extreme(p, u);
+    pair_raise_lower(p, u, vec_dot(u, x.w));
+    if (!simplex_has(&s, x.w)) s.vertex[s.n++] = x;
+  }
+  p->least = INFINITY;
+  p->idle = 0;
+  pair_accept(p, &s);
+}
+
 static void pair_search(pair *p, double margins, const pair_goal *goal, double rounding, pair_answer *answer) {
   const uint32_t most = goal->max_steps < PAIR_MAX_STEPS ? goal->max_steps : PAIR_MAX_STEPS;
   const int patience = p->curved ? PAIR_PATIENCE_CURVED : PAIR_PATIENCE_FLAT;
   int stalled = 0, failures = 0, plain = PAIR_NEWTON_FROM;
+  bool restarted = false;
   for (answer->steps = 1; answer->steps < most && !p->fault && !p->nearest.inside; answer->steps++) {
     const double gap = p->nearest.distance - p->lower, upper = p->nearest.distance - margins;
     const double asked = fmax(goal->epsilon, goal->relative_epsilon * fmax(upper, 0.0));
-    if (gap <= fmax(asked - 2.0 * rounding, 0.25 * rounding) || p->nearest.distance == 0.0) return;
+    if (gap <= fmax(asked - 2.0 * rounding, 0.25 * rounding)) return;
+
+    /* 0 on a feature of the simplex: they touch, or overlap with 0 there by chance */
+    if (p->nearest.distance <= p->hair) {
+      if (restarted) return;
+      restarted = true;
+      pair_restart(p);
+      continue;
+    }
 
     /* a Newton step that gains little is followed by plain ones, by one more after each further failure */
     const bool newton = p->curved && plain == 0;
@@ -299,6 +325,8 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   p.s.vertex[0] = pair_extreme(&p, u);
   pair_raise_lower(&p, u, vec_dot(u, p.s.vertex[0].w));
   simplex_reduce(&p.s, &p.nearest);
+  p.hair = 4.0 * ROUND_U * size;
+  p.least = p.nearest.distance;
   pair_search(&p, margins, goal, rounding, answer);
 
   answer->fault = p.fault;

@@ -5,6 +5,15 @@
 
 #include "base/rounding.h"
 #include "convex/feature.h"
+#include "convex/twofold.h"
+
+const vec3 simplex_spread[4] = {{0.46, 0.71, 0.53}, {0.62, -0.49, -0.61}, {-0.73, 0.41, -0.55}, {-0.35, -0.63, 0.69}};
+
+bool simplex_has(const simplex *s, vec3 w) {
+  for (int i = 0; i < s->n; i++)
+    if (vec_equal(s->vertex[i].w, w)) return true;
+  return false;
+}
 
 /* The nearest point found so far, on a vertex, edge or triangle of the simplex. */
 typedef struct candidate {
@@ -44,12 +53,17 @@ static void try_segment(candidate *best, const simplex *s, int i, int j) {
   }
 }
 
-/* The normal of a triangle from its two shorter edges; `corner` is where they meet, `size` the product of their lengths. */
+/* The normal of a triangle from its two shorter edges, which meet at `corner`. */
 typedef struct face {
   vec3 normal; /* not a unit vector: twice the area long */
   int corner;
-  double size;
+  double length; /* of the normal */
+  double noise;  /* the normal's rounding error */
+  bool sliver;
 } face;
+
+/* In a sliver the edges are all but parallel, and the rounding of their product outweighs it. */
+static const double FACE_SLIVER = 0.1;
 
 static face face_of(const simplex *s, const int index[3]) {
   vec3 edge[3]; /* edge[m] is opposite index[m] */
@@ -61,19 +75,27 @@ static face face_of(const simplex *s, const int index[3]) {
     if (square[m] > square[longest]) longest = m;
   }
   const int p = (longest + 1) % 3, q = (longest + 2) % 3;
-  return (face){.normal = vec_cross(edge[p], edge[q]), .corner = index[longest], .size = sqrt(square[p] * square[q])};
+  const double size = sqrt(square[p] * square[q]);
+  face f = {.normal = vec_cross(edge[p], edge[q]), .corner = index[longest], .noise = 4.0 * ROUND_U * size};
+  f.length = vec_norm(f.normal);
+  if (f.length >= FACE_SLIVER * size) return f;
+  f.normal = twofold_cross(s->vertex[index[longest]].w, s->vertex[index[p]].w, s->vertex[index[q]].w);
+  f.length = vec_norm(f.normal);
+  f.sliver = true;
+  f.noise = 4.0 * ROUND_U * f.length + 64.0 * ROUND_U * ROUND_U * size;
+  return f;
 }
 
 /* A triangle whose area is all rounding has no inside. */
-static bool face_is_degenerate(const face *f, double area2) {
-  return !(area2 > 64.0 * ROUND_U * ROUND_U * f->size * f->size);
+static bool face_is_degenerate(const face *f) {
+  return !(f->length > f->noise);
 }
 
 static void try_triangle(candidate *best, const simplex *s, int i, int j, int k) {
   const int index[3] = {i, j, k};
   const face f = face_of(s, index);
   const double area2 = vec_norm2(f.normal);
-  if (face_is_degenerate(&f, area2)) {
+  if (face_is_degenerate(&f)) {
     for (int m = 0; m < 3; m++) try_segment(best, s, index[(m + 1) % 3], index[(m + 2) % 3]);
     return;
   }
@@ -86,8 +108,8 @@ static void try_triangle(candidate *best, const simplex *s, int i, int j, int k)
   bool outside = false;
   for (int m = 0; m < 3; m++) {
     area[m] = vec_dot(f.normal, vec_cross(to[(m + 1) % 3], to[(m + 2) % 3])) / area2;
-    if (area[m] > 0.0) continue;
-    outside = true;
+    if (area[m] <= 0.0) outside = true;
+    if (area[m] > 0.0 && !f.sliver) continue; /* a sliver's areas are not to be trusted alone */
     try_segment(best, s, index[(m + 1) % 3], index[(m + 2) % 3]);
   }
   if (outside) return;
@@ -113,10 +135,10 @@ static face_side tetrahedron_side(const simplex *s, int i, double *depth) {
   const vec3 corner = s->vertex[f.corner].w, apex = vec_sub(s->vertex[i].w, corner);
   const double side = vec_dot(f.normal, apex), origin = -vec_dot(f.normal, corner);
 
-  /* the rounding of the normal is some u of the product of its edges, whatever its length */
-  if (!(fabs(side) > 16.0 * ROUND_U * f.size * vec_norm(apex))) return FACE_UNCLEAR;
-  const double inner = side > 0.0 ? origin : -origin, noise = 16.0 * ROUND_U * f.size * vec_norm(corner);
-  *depth = (inner - noise) / vec_norm(f.normal);
+  const double doubt =
+      2.0 * f.noise + 4.0 * ROUND_U * f.length; /* of a product with the normal, per unit of the vector */
+  if (face_is_degenerate(&f) || !(fabs(side) > doubt * vec_norm(apex))) return FACE_UNCLEAR;
+  *depth = ((side > 0.0 ? origin : -origin) - doubt * vec_norm(corner)) / f.length;
   return *depth > 0.0 ? FACE_INNER : FACE_OUTER;
 }
 

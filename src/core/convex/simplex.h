@@ -3,6 +3,7 @@
 #ifndef CPROX_CONVEX_SIMPLEX_H
 #define CPROX_CONVEX_SIMPLEX_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/vec.h"
@@ -27,6 +28,12 @@ typedef struct simplex_nearest {
   vec3 normal;     /* unit, along v, but from the feature that v lies on: exact where v itself is all rounding; (0,0,0)
                       where 0 lies on the feature */
 } simplex_nearest;
+
+/* Four directions all round, along no axis of symmetry: extreme points that enclose what lies well inside. */
+extern const vec3 simplex_spread[4];
+
+/* Whether w is one of the vertices already. */
+bool simplex_has(const simplex *s, vec3 w);
 
 /* Drops the vertices that the nearest point does not need (unless 0 is inside) and says where it is. */
 void simplex_reduce(simplex *s, simplex_nearest *nearest);
