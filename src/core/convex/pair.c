@@ -292,16 +292,17 @@ static void pair_witness(const pair *p, double margin_a, double margin_b, pair_a
   vec3 a = vec(0, 0, 0), b = vec(0, 0, 0);
   const bool inside = p->nearest.inside;
   for (int i = 0; i < p->s.n; i++) {
-    const double weight = inside ? 1.0 / p->s.n : p->s.weight[i];
-    a = vec_axpy(a, weight, p->s.vertex[i].a);
-    b = vec_axpy(b, weight, p->s.vertex[i].b);
+    a = vec_axpy(a, p->s.weight[i], p->s.vertex[i].a);
+    b = vec_axpy(b, p->s.weight[i], p->s.vertex[i].b);
   }
   b = vec_add(turn(p->r, b), p->t);
-  if (inside) { /* one point for both: where they overlap */
+  if (inside) { /* 0 = sum of weight (a - b): the same point but for rounding, of both */
     a = b = vec_axpy(vec_scale(0.5, a), 0.5, b);
-  } else {
-    a = vec_axpy(a, -margin_a, p->u);
-    b = vec_axpy(b, margin_b, p->u);
+  } else { /* out of the cores along the line between the two, so that what is left of it is upper */
+    vec3 along;
+    if (feature_unit(p->nearest.v, &along) == 0.0) along = p->u;
+    a = vec_axpy(a, -margin_a, along);
+    b = vec_axpy(b, margin_b, along);
   }
   answer->on_a = a;
   answer->on_b = b;

@@ -126,10 +126,10 @@ static void try_triangle(candidate *best, const simplex *s, int i, int j, int k)
   candidate_offer(best, s, 3, index, weight);
 }
 
-/* On which side of the face opposite vertex i does 0 lie, and how far? */
+/* On which side of the face opposite vertex i does 0 lie, how far, and how far compared with the vertex? */
 typedef enum face_side { FACE_INNER, FACE_OUTER, FACE_UNCLEAR } face_side;
 
-static face_side tetrahedron_side(const simplex *s, int i, double *depth) {
+static face_side tetrahedron_side(const simplex *s, int i, double *depth, double *weight) {
   const int index[3] = {(i + 1) % 4, (i + 2) % 4, (i + 3) % 4};
   const face f = face_of(s, index);
   const vec3 corner = s->vertex[f.corner].w, apex = vec_sub(s->vertex[i].w, corner);
@@ -138,18 +138,19 @@ static face_side tetrahedron_side(const simplex *s, int i, double *depth) {
   const double doubt =
       2.0 * f.noise + 4.0 * ROUND_U * f.length; /* of a product with the normal, per unit of the vector */
   if (face_is_degenerate(&f) || !(fabs(side) > doubt * vec_norm(apex))) return FACE_UNCLEAR;
+  *weight = origin / side;
   *depth = ((side > 0.0 ? origin : -origin) - doubt * vec_norm(corner)) / f.length;
   return *depth > 0.0 ? FACE_INNER : FACE_OUTER;
 }
 
 /* True where 0 is proven inside; else the faces that it may be beyond are tried. */
-static bool try_tetrahedron(candidate *best, const simplex *s, double *depth) {
+static bool try_tetrahedron(candidate *best, simplex *s, double *depth) {
   face_side side[4];
   bool unclear = false, inside = true;
   *depth = INFINITY;
   for (int i = 0; i < 4; i++) {
     double d = 0.0;
-    side[i] = tetrahedron_side(s, i, &d);
+    side[i] = tetrahedron_side(s, i, &d, &s->weight[i]);
     unclear |= side[i] == FACE_UNCLEAR;
     inside &= side[i] == FACE_INNER;
     *depth = fmin(*depth, d);
@@ -159,7 +160,11 @@ static bool try_tetrahedron(candidate *best, const simplex *s, double *depth) {
   double reach = 0.0;
   for (int i = 0; i < 4; i++) reach = fmax(reach, vec_norm(s->vertex[i].w));
   *depth = *depth * (1.0 - 8.0 * ROUND_U) - 4.0 * ROUND_U * reach;
-  if (inside && *depth > 0.0) return true;
+  if (inside && *depth > 0.0) {
+    const double sum = s->weight[0] + s->weight[1] + s->weight[2] + s->weight[3];
+    for (int i = 0; i < 4; i++) s->weight[i] /= sum;
+    return true;
+  }
 
   /* a flat tetrahedron says nothing: all of its faces are tried */
   const bool all = unclear || inside;

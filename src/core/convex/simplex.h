@@ -17,7 +17,7 @@ typedef struct simplex_vertex {
 typedef struct simplex {
   int n;
   simplex_vertex vertex[4];
-  double weight[4]; /* >= 0, sum 1: of the nearest point, after simplex_reduce() */
+  double weight[4]; /* >= 0, sum 1: of the nearest point, or of 0 itself inside, after simplex_reduce() */
 } simplex;
 
 typedef struct simplex_nearest {
