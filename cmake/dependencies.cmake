@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Everything the ROS side stands on, found once. Rooms link the interface targets at the end; foreign headers are SYSTEM
-# there, for their warnings are not ours.
+# Everything the ROS side stands on, found once; dependency_targets.cmake makes targets of it.
 
 find_package(catkin REQUIRED COMPONENTS
   geometric_shapes geometry_msgs message_generation nodelet pluginlib roscpp roslib sensor_msgs shape_msgs std_msgs tf2
   tf2_eigen tf2_ros urdf visualization_msgs)
 find_package(Eigen3 REQUIRED)
-find_package(PkgConfig REQUIRED)
 
 # FCL: 0.6 and 0.7 bring a CMake package with a target; 0.5 is asked for by pkg-config.
 find_package(fcl QUIET CONFIG)
@@ -39,22 +37,3 @@ set(CPROX_YAML_LIBRARIES ${PC_YAML_LINK_LIBRARIES})
 set(CPROX_YAML_INCLUDE_DIRS ${PC_YAML_INCLUDEDIR} ${PC_YAML_INCLUDE_DIRS})
 pkg_check_modules(PC_URDFDOM REQUIRED urdfdom)
 pkg_check_modules(PC_TINYXML2 REQUIRED tinyxml2)
-
-add_library(cprox_catkin INTERFACE)
-target_include_directories(cprox_catkin SYSTEM INTERFACE ${catkin_INCLUDE_DIRS})
-target_link_libraries(cprox_catkin INTERFACE ${catkin_LIBRARIES})
-add_library(cprox_fcl INTERFACE)
-target_include_directories(cprox_fcl SYSTEM INTERFACE ${CPROX_FCL_INCLUDE_DIRS} ${EIGEN3_INCLUDE_DIRS})
-target_link_libraries(cprox_fcl INTERFACE ${CPROX_FCL_LIBRARIES})
-add_library(cprox_ccd INTERFACE)
-target_include_directories(cprox_ccd SYSTEM INTERFACE ${CPROX_CCD_INCLUDE_DIRS})
-target_link_libraries(cprox_ccd INTERFACE ${CPROX_CCD_LIBRARIES})
-add_library(cprox_yaml INTERFACE)
-target_include_directories(cprox_yaml SYSTEM INTERFACE ${CPROX_YAML_INCLUDE_DIRS})
-target_link_libraries(cprox_yaml INTERFACE ${CPROX_YAML_LIBRARIES})
-add_library(cprox_urdfdom INTERFACE)
-target_include_directories(cprox_urdfdom SYSTEM INTERFACE ${PC_URDFDOM_INCLUDEDIR} ${PC_URDFDOM_INCLUDE_DIRS})
-target_link_libraries(cprox_urdfdom INTERFACE ${PC_URDFDOM_LINK_LIBRARIES})
-add_library(cprox_tinyxml2 INTERFACE)
-target_include_directories(cprox_tinyxml2 SYSTEM INTERFACE ${PC_TINYXML2_INCLUDEDIR} ${PC_TINYXML2_INCLUDE_DIRS})
-target_link_libraries(cprox_tinyxml2 INTERFACE ${PC_TINYXML2_LINK_LIBRARIES})

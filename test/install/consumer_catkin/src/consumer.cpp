@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A scene of one box, asked without a node; then the services' types. Prints the distance. */
-#include <cstdio>
 #include <curve_proximity/Distance.h>
+#include <cstdio>
 #include <curve_proximity/query.hpp>
 #include <curve_proximity/scene.hpp>
 
