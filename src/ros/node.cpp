@@ -84,9 +84,9 @@ int serve() {
 int main(int argc, char **argv) {
   ros::init(argc, argv, "curve_proximity", ros::init_options::NoSigintHandler);
   catchSignals();
+  const ros::NodeHandle handle("~"); // outlives the messages below: without any handle roscpp logs no more
   int code = EXIT_WRONG;
   try {
-    ros::NodeHandle handle("~");
     const curve_proximity::Parameters parameters = curve_proximity::readParameters(handle);
     limitMemory(parameters.memory_limit_mb);
     const curve_proximity::ProximityServer server(handle, parameters);
