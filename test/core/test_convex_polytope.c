@@ -116,7 +116,7 @@ static bool q_inside(vec3q p, vec3q a, vec3q b, vec3q c, vec3q d) {
 /* The hull is the union of its vertices' tetrahedra, its surface lies in the union of their triangles. */
 static long double hull_distance(vec3 point, const vec3 *vertex, size_t n) {
   const vec3q p = q_from(point);
-  vec3q v[9];
+  vec3q v[7];
   for (size_t i = 0; i < n; i++) v[i] = q_from(vertex[i]);
   quad least = q_segment(p, v[0], v[0]);
   for (size_t i = 0; i < n; i++)
@@ -144,7 +144,7 @@ static double check_certificate(const convex *shape, vec3 y, const convex_near *
   return near->distance - (vec_dot(near->normal, y) - h);
 }
 
-/* Seed 201, 1e5 points against hulls of 1 to 9 vertices in 0 to 3 dimensions, aspects up to 1e6, repeated and collinear vertices
+/* Seed 201, 1e5 points against hulls of 1 to 7 vertices in 0 to 3 dimensions, aspects up to 1e6, repeated and collinear vertices
  * among them. near_rounding u (|y| + scale) as convex.h states it; the hull by all segments, triangles and tetrahedra in quadruple precision. */
 static void the_distance_of_a_small_polytope_is_that_of_its_nearest_face(void **state) {
   (void)state;
@@ -152,8 +152,8 @@ static void the_distance_of_a_small_polytope_is_that_of_its_nearest_face(void **
   long double worst = 0;
   size_t inside = 0;
   for (size_t i = 0; i < test_cases(25000); i++) {
-    vec3 v[9], local[9];
-    const size_t n = 1 + rng_index(&r, 9);
+    vec3 v[7], local[7];
+    const size_t n = 1 + rng_index(&r, 7);
     random_vertices(&r, n, (int)rng_index(&r, 4), rng_index(&r, 2) ? 1e6 : 10.0, v);
     cprox_body *body = make(v, n);
     const convex *shape = &body->shape;
