@@ -16,15 +16,21 @@
 extern "C" {
 #endif
 
-/** A body somewhere: a value. The body is kept by reference. */
+/** A body or a curve somewhere: a value. What it names is kept by reference. */
 typedef struct cprox_target {
-  const cprox_body *body;
+  const cprox_body *body; /**< or NULL, for a curve */
   cprox_pose pose;
-  double padding; /**< [m] >= 0: the set of all points within this of the body */
+  double padding;           /**< [m] >= 0: the set of all points within this of the body or curve */
+  const cprox_curve *curve; /**< or NULL, for a body */
 } cprox_target;
 
 CPROX_API cprox_target cprox_at(const cprox_body *body, cprox_pose pose);
 CPROX_API cprox_target cprox_padded(cprox_target target, double padding);
+
+/** A curve that stands where it was made, as thick as a ball of the radius that rides it: [m] >= 0, 0 for a line. The mover and
+ *  the target are each at any parameter of their own. Its pose may be changed like that of a body. Curves have no inside, so
+ *  that two without radius that cross or touch are answered [0, upper] and undecided. */
+CPROX_API cprox_target cprox_curve_target(const cprox_curve *curve, double radius);
 
 /** What moves: a value. The curve is kept by reference. */
 typedef struct cprox_mover {
@@ -68,7 +74,8 @@ typedef struct cprox_result {
   cprox_verdict verdict; /**< tolerance: yes = farther than delta everywhere; collision: yes = they touch or overlap;
                               undecided counts as unsafe. distance: undecided, always */
   double lower, upper;   /**< [m] certified: lower <= true value <= upper */
-  double t;              /**< where on the curve upper was attained */
+  double t;              /**< where on the mover's curve upper was attained */
+  double t_target;       /**< where on a target that is a curve; NaN for bodies */
   cprox_vec3 on_mover, on_target; /**< [m] world frame, the two points that attain upper (surfaces, radius and padding
                                        included); equal where they overlap */
   cprox_vec3 normal;              /**< unit, world frame, from target to mover; (0,0,0) where there is none */
@@ -92,7 +99,7 @@ typedef struct cprox_result {
  *
  *  options NULL: the default. Cost: a few nearest-point queries and control-point sweeps; no allocation once the
  *  workspace has grown.
- *  Source: Lakshmanan et al. 2019, Algorithm 1, with the bound of doc/curve-bound.md.
+ *  Source: Lakshmanan et al. 2019, Algorithms 1 and 2, with the bounds of doc/curve-bound.md.
  */
 CPROX_API cprox_status cprox_distance(cprox_mover mover, cprox_target target, const cprox_options *options,
                                       cprox_workspace *workspace, cprox_result *result);

@@ -15,6 +15,10 @@ cprox_target cprox_padded(cprox_target target, double padding) {
   return target;
 }
 
+cprox_target cprox_curve_target(const cprox_curve *curve, double radius) {
+  return (cprox_target){.curve = curve, .pose = cprox_pose_identity(), .padding = radius};
+}
+
 cprox_options cprox_options_default(void) {
   return (cprox_options){.epsilon = 1e-6, .relative_epsilon = 0.0, .max_nodes = 20000, .stop = NULL, .stop_user = NULL};
 }
@@ -55,7 +59,10 @@ cprox_status arguments_check_delta(double delta, cprox_workspace *workspace) {
 }
 
 cprox_status arguments_check_target(const cprox_target *target, size_t index, cprox_workspace *workspace) {
-  if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "target %zu has no body", index);
+  if (!target->body && !target->curve)
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu has neither a body nor a curve", index);
+  if (target->body && target->curve)
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu has both a body and a curve", index);
   const char *fault = frame_pose_fault(&target->pose);
   if (fault) return workspace_fail(workspace, CPROX_INVALID, "target %zu: %s", index, fault);
   if (target->padding >= 0.0 && isfinite(target->padding)) return CPROX_OK;

@@ -89,6 +89,16 @@ bool curve_side_materialise(curve_side *side, search_interval *at) {
   return true;
 }
 
+bool curve_side_copy(const curve_side *side, search_interval *at) {
+  if (at->slot < 0) return true;
+  const int32_t slot = points_pool_take(side->pool);
+  if (slot < 0) return false;
+  const size_t bytes = control_size(side->curve->degree) * sizeof(double);
+  memcpy(points_pool_at(side->pool, (size_t)slot), points_pool_at(side->pool, (size_t)at->slot), bytes);
+  at->slot = slot;
+  return true;
+}
+
 /* ---- bounds ----------------------------------------------------------------------------------------------------------- */
 
 curve_reach curve_side_reach(const curve_side *side, const search_interval *at, vec3 n) {

@@ -45,6 +45,9 @@ void curve_side_load(curve_side *side, size_t piece);
 /* Gives a piece's interval control points of its own. False where memory is out. */
 bool curve_side_materialise(curve_side *side, search_interval *at);
 
+/* Gives an interval that shares its control points with another a copy of its own. False where memory is out. */
+bool curve_side_copy(const curve_side *side, search_interval *at);
+
 /* What an interval reaches along a direction. */
 typedef struct curve_reach {
   double least;     /* min n·x over the interval's hull */

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One search: the engine with the oracle that the candidate asks for, and what it found in the terms of the caller. */
+#include "body/body.h"
+#include "query/candidates.h"
+#include "query/curve_convex.h"
+#include "query/curve_curve.h"
+
+enum { VERDICT_NODES_BEFORE_NEWTON = 4 };
+
+/* Easy verdicts are answered before Newton has paid for itself. */
+static uint32_t nodes_before_newton(const question *q) {
+  return question_wants_verdict(q) ? VERDICT_NODES_BEFORE_NEWTON : 0;
+}
+
+/* An upper bound that needs no improvement. */
+static double good_enough(const question *q) {
+  return question_wants_verdict(q) ? q->limit : q->options.epsilon;
+}
+
+static search_goal goal_of(const question *q, double ceiling) {
+  return (search_goal){.order = question_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST,
+                       .limit = q->limit,
+                       .ceiling = ceiling,
+                       .epsilon = q->options.epsilon,
+                       .relative_epsilon = q->options.relative_epsilon,
+                       .max_nodes = q->options.max_nodes,
+                       .stop = q->options.stop,
+                       .stop_user = q->options.stop_user};
+}
+
+/* The two surface points and their normal: where the ball of the mover and the padded target come closest, or one point of both
+ * where they overlap. */
+static void report_points(const question *q, const candidate *c, vec3 centre, vec3 surface, vec3 normal, double apart,
+                          cprox_result *r) {
+  const double padding = q->targets[c->target].padding;
+  r->normal = normal;
+  r->target_index = c->target, r->target_part = c->part;
+  if (apart > padding + q->mover.radius) {
+    r->on_target = vec_axpy(surface, padding, normal);
+    r->on_mover = vec_axpy(centre, -q->mover.radius, normal);
+  } else {
+    /* the padded target's nearest point to the ball's centre */
+    r->on_mover = r->on_target = apart > padding ? vec_axpy(surface, padding, normal) : centre;
+  }
+}
+
+static cprox_status search_body(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                                cprox_result *r) {
+  const cprox_body *body = candidate_body(q, c);
+  const cprox_pose pose = candidate_pose(q, c);
+  curve_convex o;
+  if (!curve_convex_begin(&o, q->mover.curve, &body->shape, frame_create(&pose, body->centre), candidate_offset(q, c),
+                          q->workspace))
+    return CPROX_MEMORY;
+  o.polish_after = nodes_before_newton(q);
+  o.good_enough = good_enough(q);
+  o.epsilon = q->options.epsilon;
+  const search_oracle oracle = curve_convex_oracle(&o);
+  const cprox_status status = search_run(goal, &oracle, curve_convex_root(), q->workspace, found);
+  r->probes = o.probes;
+  if (status < 0 || o.incumbent == 0) return status;
+
+  const frame *f = &o.side.frame;
+  const curve_sight *best = &o.best;
+  r->t = curve_side_parameter(&o.side, best->piece, best->s);
+  report_points(q, c, frame_to_world(f, best->y), frame_to_world(f, best->near.point),
+                frame_turn_to_world(f, best->normal), best->near.distance, r);
+  return status;
+}
+
+static cprox_status search_curve(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                                 cprox_result *r) {
+  const cprox_target *target = &q->targets[c->target];
+  curve_curve o;
+  if (!curve_curve_begin(&o, q->mover.curve, target->curve, &target->pose, candidate_offset(q, c), q->workspace))
+    return CPROX_MEMORY;
+  o.polish_after = nodes_before_newton(q);
+  o.good_enough = good_enough(q);
+  const search_oracle oracle = curve_curve_oracle(&o);
+  const cprox_status status = search_run(goal, &oracle, curve_curve_root(&o), q->workspace, found);
+  r->probes = o.probes;
+  if (status < 0 || o.incumbent == 0) return status;
+
+  const frame *f = &o.side[0].frame;
+  const curve_meeting *best = &o.best;
+  r->t = curve_side_parameter(&o.side[0], best->piece[0], best->s[0]);
+  r->t_target = curve_side_parameter(&o.side[1], best->piece[1], best->s[1]);
+  report_points(q, c, frame_to_world(f, best->point[0]), frame_to_world(f, best->point[1]),
+                frame_turn_to_world(f, best->normal), best->distance, r);
+  return status;
+}
+
+cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result) {
+  cprox_result r = {.target_index = -1, .t_target = NAN, .rung = CPROX_RUNG_HULL};
+  const search_goal goal = goal_of(q, ceiling);
+  search_outcome found = {0};
+  r.status = candidate_body(q, c) ? search_body(q, c, &goal, &found, &r) : search_curve(q, c, &goal, &found, &r);
+  if (r.status == CPROX_MEMORY) return workspace_fail(q->workspace, r.status, "no memory for the open intervals");
+  if (r.status < 0) return r.status;
+
+  /* distances are not negative; the ball knew a lower bound too */
+  r.nodes = found.nodes;
+  r.upper = fmax(found.best.upper, 0.0);
+  r.lower = fmin(fmax(fmax(found.lower, c->lower), 0.0), r.upper);
+  *result = r;
+  return r.status;
+}

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "query/candidates.h"
+
+#include "base/frame.h"
+#include "base/rounding.h"
+#include "body/body.h"
+#include "curve/curve.h"
+
+const cprox_body *candidate_body(const question *q, const candidate *c) {
+  const cprox_body *body = q->targets[c->target].body;
+  return body && body->kind == CPROX_COMPOUND ? body->parts[c->part].body : body;
+}
+
+cprox_pose candidate_pose(const question *q, const candidate *c) {
+  const cprox_target *target = &q->targets[c->target];
+  if (!target->body || target->body->kind != CPROX_COMPOUND) return target->pose;
+  return frame_compose(&target->pose, &target->body->parts[c->part].pose);
+}
+
+double candidate_offset(const question *q, const candidate *c) {
+  return q->mover.radius + q->targets[c->target].padding;
+}
+
+static double distance_to_segment(vec3 p, vec3 a, vec3 b) {
+  const vec3 ab = vec_sub(b, a), ap = vec_sub(p, a);
+  const double length2 = vec_norm2(ab), along = vec_dot(ap, ab);
+  const double s = length2 > 0.0 ? fmin(fmax(along / length2, 0.0), 1.0) : 0.0;
+  return vec_norm(vec_sub(p, vec_lerp(a, b, s)));
+}
+
+/* A ball round a candidate, in its own frame. */
+typedef struct ball {
+  vec3 centre;
+  double radius;
+} ball;
+
+static ball ball_of(const question *q, const candidate *c) {
+  const cprox_body *body = candidate_body(q, c);
+  if (body) return (ball){.centre = body->ball_centre, .radius = body->ball_radius};
+  const curve_capsule *capsule = &q->targets[c->target].curve->capsules[1];
+  const double length = vec_norm(vec_sub(capsule->b, capsule->a));
+  return (ball){.centre = vec_lerp(capsule->a, capsule->b, 0.5), .radius = 0.5 * length + capsule->radius};
+}
+
+/* The mover's capsule against the candidate's ball: never above the true distance. */
+static double ball_bound(const question *q, const candidate *c) {
+  const ball round = ball_of(q, c);
+  if (!isfinite(round.radius)) return -INFINITY;
+  const cprox_pose pose = candidate_pose(q, c);
+  const frame f = frame_create(&pose, vec(0, 0, 0));
+  const vec3 centre = frame_to_world(&f, round.centre);
+  const curve_capsule *capsule = &q->mover.curve->capsules[1];
+  const double reach = capsule->radius + round.radius + candidate_offset(q, c);
+  /* rounding: the pose of the centre, the projection on the chord, the sums; doc/rounding.md */
+  const double sizes = vec_norm(capsule->a) + vec_norm(capsule->b) + vec_norm(centre) + vec_norm(f.position) +
+                       vec_norm(round.centre) + reach;
+  return distance_to_segment(centre, capsule->a, capsule->b) - reach - 64.0 * ROUND_U * sizes;
+}
+
+/* Shell's sort by lower: qsort may allocate. */
+static void sort_candidates(candidate *list, size_t n) {
+  for (size_t gap = n / 2; gap > 0; gap /= 2) {
+    for (size_t i = gap; i < n; i++) {
+      const candidate moved = list[i];
+      size_t k = i;
+      for (; k >= gap && list[k - gap].lower > moved.lower; k -= gap) list[k] = list[k - gap];
+      list[k] = moved;
+    }
+  }
+}
+
+static size_t parts_of(const cprox_target *target) {
+  return target->body && target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
+}
+
+candidate *candidates_list(const question *q, size_t first, size_t last, size_t *count) {
+  size_t n = 0;
+  for (size_t i = first; i < last; i++) n += parts_of(&q->targets[i]);
+  candidate *list = workspace_reserve(q->workspace, WORKSPACE_ORDER, n * sizeof *list);
+  if (!list) return NULL;
+  size_t k = 0;
+  for (size_t i = first; i < last; i++) {
+    for (size_t part = 0; part < parts_of(&q->targets[i]); part++) {
+      list[k] = (candidate){.target = (int32_t)i, .part = (int32_t)part};
+      list[k].lower = ball_bound(q, &list[k]);
+      k++;
+    }
+  }
+  sort_candidates(list, n);
+  *count = n;
+  return list;
+}

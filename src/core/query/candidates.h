@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a mover is asked about, taken apart into the sets that one search each can deal with. */
+#ifndef CPROX_QUERY_CANDIDATES_H
+#define CPROX_QUERY_CANDIDATES_H
+
+#include "base/workspace.h"
+#include "curve_proximity/cprox/query.h"
+
+/* All six verbs are this. */
+typedef struct question {
+  cprox_mover mover;
+  const cprox_target *targets;
+  size_t n;
+  double limit;        /* verdicts: delta, 0 for collision; distance: -1 */
+  bool farther_is_yes; /* tolerance's yes is collision's no */
+  cprox_options options;
+  cprox_workspace *workspace;
+} question;
+
+static inline bool question_wants_verdict(const question *q) {
+  return q->limit >= 0.0;
+}
+
+/* One convex part of one target, or a curve, with what its bounding ball says. */
+typedef struct candidate {
+  double lower;
+  int32_t target, part;
+} candidate;
+
+/* The candidates of targets first … last - 1, nearest ball first, in the workspace. NULL where memory is out. */
+candidate *candidates_list(const question *q, size_t first, size_t last, size_t *count);
+
+/* Searches one candidate; *result holds its own interval and the witness. `ceiling`: an upper bound known from others. */
+cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result);
+
+/* A candidate's convex body (NULL for a curve), its pose in the world, and the sum of padding and radius. */
+const cprox_body *candidate_body(const question *q, const candidate *c);
+cprox_pose candidate_pose(const question *q, const candidate *c);
+double candidate_offset(const question *q, const candidate *c);
+
+#endif

@@ -1,0 +1,256 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "query/curve_curve.h"
+
+#include "base/rounding.h"
+#include "query/meeting.h"
+
+/* Slots of the pool that nodes never get: each side's loaded piece. */
+enum { SLOT_FIRST, SLOT_SECOND, SLOTS_RESERVED };
+
+/* ---- bounds ----------------------------------------------------------------------------------------------------------- */
+
+/* Along any unit n: the first curve's least n·P less the second's greatest n·Q is a lower bound. */
+static void bound_by_normal(const curve_curve *o, search_node *node, vec3 n) {
+  if (vec_norm2(n) == 0.0) return;
+  const curve_reach first = curve_side_reach(&o->side[0], &node->side[0], n);
+  const curve_reach second = curve_side_reach(&o->side[1], &node->side[1], vec_neg(n));
+  const double bound = first.least + second.least - o->offset;
+  const double sizes = first.magnitude + second.magnitude + o->offset + fabs(bound);
+  const double slack = ROUND_UP * (first.error + second.error + ROUND_SUPPORT * ROUND_U * sizes);
+  node->lower = fmax(node->lower, bound - slack);
+  node->slack = slack;
+}
+
+/* Pieces with points of their own are bounded with their whole piece loaded. */
+static void load_pieces(curve_curve *o, const search_node *node) {
+  for (int k = 0; k < 2; k++)
+    if (node->side[k].slot >= 0) curve_side_load(&o->side[k], curve_side_piece(&o->side[k], &node->side[k]));
+}
+
+static double filter(void *self, search_node *node, double goal) {
+  (void)goal;
+  curve_curve *o = self;
+  if (o->incumbent == 0 || node->seen == o->incumbent) return node->lower;
+  load_pieces(o, node);
+  bound_by_normal(o, node, o->best.normal);
+  node->seen = o->incumbent;
+  return node->lower;
+}
+
+/* ---- where the best meeting is ------------------------------------------------------------------------------------------- */
+
+/* Where the best meeting cuts one side of a node, as a fraction of it: in [0, 1] if it lies there at all, else -1. */
+static double best_within(const curve_curve *o, const search_node *node, int k) {
+  const search_interval *at = &node->side[k];
+  if (o->incumbent == 0 || !curve_side_is_piece(&o->side[k], at)) return -1.0;
+  if (curve_side_piece(&o->side[k], at) != o->best.piece[k]) return -1.0;
+  const double s = (o->best.s[k] - at->a) / (at->b - at->a);
+  return s >= 0.0 && s <= 1.0 ? s : -1.0;
+}
+
+static bool is_inner(double s) {
+  return s > 1e-12 && s < 1.0 - 1e-12;
+}
+
+/* Both points lie in the node, and at least one of them inside: the node is to be cut there. */
+static bool holds_best(const curve_curve *o, const search_node *node) {
+  const double s = best_within(o, node, 0), t = best_within(o, node, 1);
+  return s >= 0.0 && t >= 0.0 && (is_inner(s) || is_inner(t));
+}
+
+/* ---- probes ----------------------------------------------------------------------------------------------------------- */
+
+/* The distance between two points of the curves, each within its error of the exact one, is an upper bound. */
+static void measure(curve_curve *o, curve_meeting *m, double error, search_best *bound) {
+  o->probes++;
+  const vec3 apart = vec_sub(m->point[0], m->point[1]);
+  m->distance = vec_norm(apart);
+  m->normal = m->distance > 0.0 ? vec_scale(1.0 / m->distance, apart) : vec(0, 0, 0);
+  bound->slack = ROUND_UP * (error + ROUND_U * (8.0 * m->distance + 2.0 * o->offset));
+  bound->upper = m->distance - o->offset + bound->slack;
+}
+
+static void consider(curve_curve *o, curve_meeting *m, double error) {
+  search_best bound = {.upper = INFINITY};
+  measure(o, m, error, &bound);
+  if (bound.upper >= o->best_bound.upper) return;
+  o->best = *m;
+  o->best_bound = bound;
+  o->incumbent++;
+}
+
+/* The ends of an interval's chord. */
+static void chord_of(const curve_side *side, const search_interval *at, vec3 ends[2]) {
+  if (at->slot < 0) {
+    double turned = 0.0;
+    ends[0] = frame_to_local(&side->frame, side->curve->capsules[at->part].a, &turned);
+    ends[1] = frame_to_local(&side->frame, side->curve->capsules[at->part].b, &turned);
+    return;
+  }
+  const size_t degree = side->curve->degree;
+  const double *x = points_pool_at(side->pool, (size_t)at->slot), *y = x + degree + 1, *z = y + degree + 1;
+  ends[0] = vec(x[0], y[0], z[0]);
+  ends[1] = vec(x[degree], y[degree], z[degree]);
+}
+
+/* A point of the interval near the fraction f of its chord; ranges have one at their junction. */
+static double point_near(curve_side *side, const search_interval *at, double f, vec3 *point, size_t *piece, double *s) {
+  double error;
+  if (!curve_side_is_piece(side, at)) {
+    *point = curve_side_junction(side, at, piece, s, &error);
+    return error;
+  }
+  *piece = curve_side_piece(side, at);
+  *s = at->a + f * (at->b - at->a);
+  *point = curve_side_point(side, *s);
+  return curve_side_point_error(side);
+}
+
+/* The better of the best meeting and the one that Newton finds from it. */
+static void polish(curve_curve *o, double step) {
+  curve_meeting m = o->best;
+  if (!meeting_descend(o->side, &m, step)) return;
+  consider(o, &m, curve_side_point_error(&o->side[0]) + curve_side_point_error(&o->side[1]));
+}
+
+static cprox_status probe(void *self, search_node *node, search_best *best) {
+  curve_curve *o = self;
+  o->nodes++;
+  bool pieces = true;
+  for (int k = 0; k < 2; k++) {
+    if (!curve_side_is_piece(&o->side[k], &node->side[k])) {
+      pieces = false;
+    } else if (!curve_side_materialise(&o->side[k], &node->side[k])) {
+      return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
+    }
+  }
+
+  /* the chords suggest a normal, and where to measure */
+  vec3 first[2], second[2];
+  chord_of(&o->side[0], &node->side[0], first);
+  chord_of(&o->side[1], &node->side[1], second);
+  double fraction[2];
+  o->last_normal = meeting_of_chords(first, second, fraction);
+  bound_by_normal(o, node, o->last_normal);
+
+  if (!holds_best(o, node)) {
+    curve_meeting m;
+    double error = 0.0;
+    for (int k = 0; k < 2; k++)
+      error += point_near(&o->side[k], &node->side[k], fraction[k], &m.point[k], &m.piece[k], &m.s[k]);
+    const uint32_t before = o->incumbent;
+    consider(o, &m, error);
+    const bool worthwhile = o->best_bound.upper > o->good_enough && o->nodes > o->polish_after;
+    const double step = 0.25 * fmax(node->side[0].b - node->side[0].a, node->side[1].b - node->side[1].a);
+    if (pieces && o->incumbent != before && worthwhile) polish(o, step);
+    *best = o->best_bound;
+  }
+
+  /* measuring may have loaded other pieces */
+  load_pieces(o, node);
+  if (node->seen != o->incumbent) bound_by_normal(o, node, o->best.normal);
+  node->seen = o->incumbent;
+  return CPROX_OK;
+}
+
+/* ---- splits ----------------------------------------------------------------------------------------------------------- */
+
+/* How long an interval is, roughly: which side to cut. */
+static double length_of(const curve_side *side, const search_interval *at) {
+  vec3 ends[2];
+  chord_of(side, at, ends);
+  const curve_capsule *capsule = &side->curve->capsules[at->part];
+  return vec_norm(vec_sub(ends[1], ends[0])) + 2.0 * capsule->radius * (at->b - at->a);
+}
+
+/* Cuts side k of the node in two, or leaves it whole; the number of parts, 0 where it is too short, -1 without memory. */
+static int cut_side(curve_curve *o, search_node *node, int k, bool wanted, double s, search_interval part[2]) {
+  search_interval *at = &node->side[k];
+  curve_side *side = &o->side[k];
+  part[0] = *at;
+  if (!wanted) return 1;
+  if (!curve_side_is_piece(side, at)) {
+    curve_side_cut_range(at, part);
+    return curve_side_is_empty(side, &part[1]) ? 1 : 2;
+  }
+  const double cut = s == 0.5 ? 0.5 * (at->a + at->b) : o->best.s[k];
+  if (!(at->a < cut && cut < at->b)) return 0;
+  return curve_side_cut_piece(side, at, cut, s, part) ? 2 : -1;
+}
+
+/* Which sides are to be cut, and where. */
+static void choose_cuts(const curve_curve *o, const search_node *node, bool wanted[2], double s[2]) {
+  s[0] = s[1] = 0.5;
+  if (holds_best(o, node)) {
+    for (int k = 0; k < 2; k++) {
+      s[k] = best_within(o, node, k);
+      wanted[k] = is_inner(s[k]);
+    }
+    return;
+  }
+  wanted[0] = length_of(&o->side[0], &node->side[0]) >= length_of(&o->side[1], &node->side[1]);
+  wanted[1] = !wanted[0];
+}
+
+static int split(void *self, search_node *node, search_node *child) {
+  curve_curve *o = self;
+  const cprox_status no_memory = CPROX_MEMORY;
+  bool wanted[2];
+  double s[2];
+  choose_cuts(o, node, wanted, s);
+  search_interval part[2][2];
+  int n[2];
+  for (int k = 0; k < 2; k++) {
+    n[k] = cut_side(o, node, k, wanted[k], s[k], part[k]);
+    if (n[k] == 0) return 0;
+    if (n[k] < 0) return workspace_fail(o->workspace, no_memory, "no memory for another parameter interval");
+  }
+
+  /* every pair of parts is a child; a part that serves a second child gets points of its own */
+  int children = 0;
+  for (int i = 0; i < n[0]; i++) {
+    for (int j = 0; j < n[1]; j++) {
+      search_node *made = &child[children++];
+      *made = *node;
+      made->side[0] = part[0][i];
+      made->side[1] = part[1][j];
+      if ((j > 0 && !curve_side_copy(&o->side[0], &made->side[0])) ||
+          (i > 0 && !curve_side_copy(&o->side[1], &made->side[1])))
+        return workspace_fail(o->workspace, no_memory, "no memory for another parameter interval");
+      bound_by_normal(o, made, o->best.normal);
+      bound_by_normal(o, made, o->last_normal);
+      made->seen = o->incumbent;
+    }
+  }
+  return children;
+}
+
+static void release(void *self, const search_node *node) {
+  curve_curve *o = self;
+  for (int k = 0; k < 2; k++) points_pool_give(&o->pool, node->side[k].slot);
+}
+
+/* ---- the oracle ------------------------------------------------------------------------------------------------------- */
+
+bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_curve *second, const cprox_pose *placed,
+                       double offset, cprox_workspace *workspace) {
+  *o = (curve_curve){.offset = offset, .workspace = workspace, .good_enough = -INFINITY};
+  o->best_bound.upper = INFINITY;
+
+  /* about the second curve's first point, sizes and not positions enter the rounding */
+  const vec3 centre = second->points[0];
+  const cprox_pose unmoved = cprox_pose_identity();
+  o->side[0] = curve_side_create(first, frame_create(placed, centre), &o->pool, SLOT_FIRST);
+  o->side[1] = curve_side_create(second, frame_create(&unmoved, centre), &o->pool, SLOT_SECOND);
+  const size_t degree = first->degree > second->degree ? first->degree : second->degree;
+  return points_pool_begin(&o->pool, degree, SLOTS_RESERVED, workspace);
+}
+
+search_node curve_curve_root(const curve_curve *o) {
+  /* two balls on curves are never nearer than minus the sum of their radii: curves have no inside */
+  return (search_node){.lower = -o->offset, .side = {curve_side_whole(), curve_side_whole()}};
+}
+
+search_oracle curve_curve_oracle(curve_curve *o) {
+  return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
+}
