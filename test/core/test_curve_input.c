@@ -111,9 +111,37 @@ static void bad_degrees_and_knots_are_refused(void **state) {
           "5 control points of degree 2 need 8 knots, got 0");
 }
 
+static void polynomial_refused(const vec3 *c, size_t n, double t0, double t1, const char *reason) {
+  cprox_curve *curve = (cprox_curve *)workspace;
+  const size_t live = allocations_live();
+  refused(cprox_curve_create_polynomial(c, n, t0, t1, workspace, &curve), curve, reason);
+  assert_int_equal(cprox_curve_create_polynomial(c, n, t0, t1, NULL, &curve), CPROX_INVALID);
+  assert_int_equal(allocations_live(), live);
+}
+
+static void bad_polynomials_are_refused(void **state) {
+  (void)state;
+  vec3 c[62] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  polynomial_refused(c, 0, 0, 1, "there is no coefficient; a curve needs at least 1");
+  polynomial_refused(c, 62, 0, 1, "there are 62 coefficients, above 61");
+  polynomial_refused(NULL, 3, 0, 1, "the coefficients are NULL");
+  polynomial_refused(c, 3, 1, 1, "t0 = 1 is not below t1 = 1");
+  polynomial_refused(c, 3, NAN, 1, "the parameter range [nan, 1] is not finite or beyond 1e+150");
+  polynomial_refused(c, 3, -1e100, 0, "coefficient 2 is too large for |t| up to 1e+100: its term may exceed 1e+150 m");
+  c[0].x = c[1].x = 9e149;
+  polynomial_refused(c, 3, 0, 0.75, "on [0, 0.75] the curve goes beyond 1e+150 m");
+  c[1].x = 4;
+  c[1].y = NAN;
+  polynomial_refused(c, 3, 0, 1, "coefficient 1 is (4, nan, 6), not finite");
+  c[1].y = -2e150;
+  polynomial_refused(c, 3, 0, 1, "coefficient 1 is (4, -2e+150, 6), beyond 1e+150 m");
+}
+
 static void a_missing_result_pointer_is_refused(void **state) {
   (void)state;
   assert_int_equal(cprox_curve_create_bezier(good.points, 5, 0, 1, workspace, NULL), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(workspace), "the pointer for the new curve is NULL");
+  assert_int_equal(cprox_curve_create_polynomial(good.points, 5, 0, 1, workspace, NULL), CPROX_INVALID);
   assert_string_equal(cprox_workspace_reason(workspace), "the pointer for the new curve is NULL");
   assert_int_equal(cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, NULL), CPROX_INVALID);
   assert_string_equal(cprox_workspace_reason(workspace), "the pointer for the new curve is NULL");
@@ -157,7 +185,7 @@ static void questions_outside_the_range_are_refused(void **state) {
 static void memory_that_is_out_leaks_nothing(void **state) {
   (void)state;
   cprox_curve_free(NULL);
-  for (int kind = 0; kind < 3; kind++) {
+  for (int kind = 0; kind < 4; kind++) {
     const size_t live = allocations_live();
     cprox_status status = CPROX_MEMORY;
     size_t successes = 0;
@@ -166,6 +194,7 @@ static void memory_that_is_out_leaks_nothing(void **state) {
       allocations_fail_after(successes);
       status = kind == 0   ? cprox_curve_create_bezier(good.points, 2, 0, 1, workspace, &curve)
                : kind == 1 ? cprox_curve_create_bezier(good.points, 5, 0, 1, workspace, &curve)
+               : kind == 2 ? cprox_curve_create_polynomial(good.points, 5, 0, 1, workspace, &curve)
                            : cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, &curve);
       allocations_allow();
       if (status == CPROX_OK) {
@@ -196,9 +225,10 @@ static int tear_down(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bad_control_points_are_refused),          cmocka_unit_test(bad_ranges_are_refused),
-      cmocka_unit_test(bad_degrees_and_knots_are_refused),       cmocka_unit_test(a_missing_result_pointer_is_refused),
-      cmocka_unit_test(questions_outside_the_range_are_refused), cmocka_unit_test(memory_that_is_out_leaks_nothing),
+      cmocka_unit_test(bad_control_points_are_refused),      cmocka_unit_test(bad_ranges_are_refused),
+      cmocka_unit_test(bad_degrees_and_knots_are_refused),   cmocka_unit_test(bad_polynomials_are_refused),
+      cmocka_unit_test(a_missing_result_pointer_is_refused), cmocka_unit_test(questions_outside_the_range_are_refused),
+      cmocka_unit_test(memory_that_is_out_leaks_nothing),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

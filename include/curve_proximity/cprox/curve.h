@@ -43,6 +43,19 @@ CPROX_API cprox_status cprox_curve_create_bspline(const cprox_vec3 *points, size
                                                   const double *knots, size_t n_knots, double t0, double t1,
                                                   cprox_workspace *workspace, cprox_curve **curve);
 
+/** A polynomial curve by its powers: psi(t) = sum_k coefficients[k] t^k, t in [t0, t1].
+ *
+ *  coefficients  [m] of t^k, ascending; n_coefficients of them, 1 … CPROX_MAX_DEGREE + 1, finite. One alone is a curve
+ *                that stands still.
+ *  t0 < t1       finite. Terms |coefficients[k]| max(|t0|, |t1|)^k far beyond 1e130 m are refused.
+ *
+ *  Converted once to Bézier pieces in double-double arithmetic: cprox_curve_error() is about 1e-16 of the curve's size,
+ *  and more only where the terms are more than 1e13 times as large as the curve. Every interval answered carries it.
+ *  Cost: O(degree³) once. Source: doc/rounding.md, "Other bases".
+ */
+CPROX_API cprox_status cprox_curve_create_polynomial(const cprox_vec3 *coefficients, size_t n_coefficients, double t0,
+                                                     double t1, cprox_workspace *workspace, cprox_curve **curve);
+
 /** Frees a curve; NULL is allowed. No query may be using it. */
 CPROX_API void cprox_curve_free(cprox_curve *curve);
 
@@ -55,11 +68,15 @@ CPROX_API size_t cprox_curve_degree(const cprox_curve *curve);
 /** The number of polynomial pieces. */
 CPROX_API size_t cprox_curve_pieces(const cprox_curve *curve);
 
+/** [m] How far the curve as it was given may be from its computed pieces, at most: the rounding of their conversion; of a
+ *  compiled curve the remainder too. 0 for a Bézier curve. Every interval answered accounts for it. */
+CPROX_API double cprox_curve_error(const cprox_curve *curve);
+
 /** psi(t), and its first and second derivative by t, each NULL if not needed.
  *
  *  t          inside [t0, t1], else CPROX_INVALID. At a joint of two pieces the right one answers (the left one at t1).
  *  Accuracy:  the point is within (6 degree + 20) 2^-53 max|control point| of the exact one, on a B-spline within
- *             (12 degree + 20): a plain evaluation for drawing and sampling. Certified answers come from the queries.
+ *             (12 degree + 20), on the other bases within cprox_curve_error() more: a plain evaluation for drawing and sampling. Certified answers come from the queries.
  */
 CPROX_API cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, cprox_workspace *workspace,
                                             cprox_vec3 *point, cprox_vec3 *derivative, cprox_vec3 *second_derivative);

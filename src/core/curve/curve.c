@@ -37,19 +37,31 @@ void cprox_curve_free(cprox_curve *curve) {
 
 /* ---- checks ---- */
 
+/* Finite, and small enough that squares do not overflow. */
+static cprox_status check_finite(const char *name, const vec3 *values, size_t n, cprox_workspace *workspace) {
+  for (size_t i = 0; i < n; i++) {
+    const vec3 p = values[i];
+    if (!vec_finite(p))
+      return workspace_fail(workspace, CPROX_INVALID, "%s %zu is (%g, %g, %g), not finite", name, i, p.x, p.y, p.z);
+    if (fabs(p.x) > CURVE_LARGEST || fabs(p.y) > CURVE_LARGEST || fabs(p.z) > CURVE_LARGEST)
+      return workspace_fail(workspace, CPROX_INVALID, "%s %zu is (%g, %g, %g), beyond %g m", name, i, p.x, p.y, p.z,
+                            CURVE_LARGEST);
+  }
+  return CPROX_OK;
+}
+
 cprox_status curve_check_points(const vec3 *points, size_t n, cprox_workspace *workspace) {
   if (n < 2) return workspace_fail(workspace, CPROX_INVALID, "a curve needs at least 2 control points, got %zu", n);
   if (!points) return workspace_fail(workspace, CPROX_INVALID, "the control points are NULL");
-  for (size_t i = 0; i < n; i++) {
-    const vec3 p = points[i];
-    if (!vec_finite(p))
-      return workspace_fail(workspace, CPROX_INVALID, "control point %zu is (%g, %g, %g), not finite", i, p.x, p.y,
-                            p.z);
-    if (fabs(p.x) > CURVE_LARGEST || fabs(p.y) > CURVE_LARGEST || fabs(p.z) > CURVE_LARGEST)
-      return workspace_fail(workspace, CPROX_INVALID, "control point %zu is (%g, %g, %g), beyond %g m", i, p.x, p.y,
-                            p.z, CURVE_LARGEST);
-  }
-  return CPROX_OK;
+  return check_finite("control point", points, n, workspace);
+}
+
+cprox_status curve_check_values(const char *name, const vec3 *values, size_t n, size_t most,
+                                cprox_workspace *workspace) {
+  if (n < 1) return workspace_fail(workspace, CPROX_INVALID, "there is no %s; a curve needs at least 1", name);
+  if (n > most) return workspace_fail(workspace, CPROX_INVALID, "there are %zu %ss, above %zu", n, name, most);
+  if (!values) return workspace_fail(workspace, CPROX_INVALID, "the %ss are NULL", name);
+  return check_finite(name, values, n, workspace);
 }
 
 cprox_status curve_check_range(double t0, double t1, cprox_workspace *workspace) {
@@ -298,6 +310,12 @@ cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, doub
   }
   curve_blossom(curve_piece(curve, i), knots, degree, a, b, points);
   return CPROX_OK;
+}
+
+double cprox_curve_error(const cprox_curve *curve) {
+  double largest = 0.0;
+  for (size_t i = 0; i < curve->n_pieces; i++) largest = fmax(largest, curve->error[i]);
+  return largest;
 }
 
 void cprox_curve_bounds(const cprox_curve *curve, cprox_vec3 *lowest, cprox_vec3 *highest) {

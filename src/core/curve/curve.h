@@ -44,6 +44,9 @@ void curve_finish(cprox_curve *c);
 /* Checks that every constructor shares: CPROX_OK, or CPROX_INVALID with the sentence set. The points: at least 2, finite,
  * small enough that their squares do not overflow. The range: finite, t0 < t1. */
 cprox_status curve_check_points(const vec3 *points, size_t n, cprox_workspace *workspace);
+/* 1 … most vectors that are no points of the curve, under a name of their own ("coefficient"). */
+cprox_status curve_check_values(const char *name, const vec3 *values, size_t n, size_t most,
+                                cprox_workspace *workspace);
 cprox_status curve_check_range(double t0, double t1, cprox_workspace *workspace);
 
 /* The largest magnitude of a coordinate, a knot or a parameter. */
