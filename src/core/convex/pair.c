@@ -13,7 +13,8 @@ enum {
   PAIR_NEWTON_FROM = 2,      /* plain steps first: far away the curvature is not that of the answer */
   PAIR_PATIENCE_CURVED = 24, /* steps without a gain */
   PAIR_PATIENCE_FLAT = 6,
-  PAIR_MAX_IDLE = 8
+  PAIR_MAX_IDLE = 8,
+  PAIR_ROUNDS = 6 /* of drawing overlapping shapes apart */
 };
 
 /* Rounding of the bounds for shapes of size S, in units of u S: a crude sum of the steps gives 24. */
@@ -27,12 +28,13 @@ typedef struct pair {
   const double *r;
   vec3 t;
   bool curved, fault;
-  uint32_t supports;
+  double rounding; /* of either bound */
+  double hair;     /* distances closer than this are the same */
+  uint32_t steps, supports;
 
   /* the primal side: the simplex and its nearest point to 0 */
   simplex s;
   simplex_nearest nearest;
-  double hair;  /* distances closer than this are the same */
   double least; /* the shortest distance so far */
   int idle;     /* simplices since that got shorter by more than a hair */
   /* the dual side: the best direction and its phi */
@@ -252,15 +254,25 @@ static void pair_restart(pair *p) {
   pair_accept(p, &s);
 }
 
-static void pair_search(pair *p, double margins, const pair_goal *goal, double rounding, pair_answer *answer) {
+/* From the extreme point along u until the bounds are within what is asked for, or stop moving. */
+static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) {
   const uint32_t most = goal->max_steps < PAIR_MAX_STEPS ? goal->max_steps : PAIR_MAX_STEPS;
   const int patience = p->curved ? PAIR_PATIENCE_CURVED : PAIR_PATIENCE_FLAT;
   int stalled = 0, failures = 0, plain = PAIR_NEWTON_FROM;
   bool restarted = false;
-  for (answer->steps = 1; answer->steps < most && !p->fault && !p->nearest.inside; answer->steps++) {
+
+  p->s.n = 1;
+  p->s.vertex[0] = pair_extreme(p, u);
+  p->u = u;
+  p->lower = vec_dot(u, p->s.vertex[0].w);
+  p->idle = 0;
+  simplex_reduce(&p->s, &p->nearest);
+  p->least = p->nearest.distance;
+
+  for (p->steps++; p->steps < most && !p->fault && !p->nearest.inside; p->steps++) {
     const double gap = p->nearest.distance - p->lower, upper = p->nearest.distance - margins;
     const double asked = fmax(goal->epsilon, goal->relative_epsilon * fmax(upper, 0.0));
-    if (gap <= fmax(asked - 2.0 * rounding, 0.25 * rounding)) return;
+    if (gap <= fmax(asked - 2.0 * p->rounding, 0.25 * p->rounding)) return;
 
     /* 0 on a feature of the simplex: they touch, or overlap with 0 there by chance */
     if (p->nearest.distance <= p->hair) {
@@ -284,6 +296,26 @@ static void pair_search(pair *p, double margins, const pair_goal *goal, double r
     }
     stalled = left < 0.98 ? 0 : stalled + 1;
     if (stalled > patience || (!gained && !p->curved)) return;
+  }
+}
+
+/* Where the shapes touch or overlap the simplex has no direction to offer. So b is drawn back along the best direction until
+ * it is free, and the direction of the distance there is tried here; closer and closer, since where they are curved the
+ * direction found is only as good as the distance was short. */
+static void pair_draw_apart(pair *p, double size, const pair_goal *goal) {
+  double clear = 1e-3 * size;
+  for (int round = 0; round < PAIR_ROUNDS && p->lower < -p->rounding && !p->fault; round++, clear *= 1e-2) {
+    pair q = *p;
+    q.t = vec_axpy(p->t, p->lower - clear, p->u);
+    const pair_goal enough = {.relative_epsilon = 1e-6, .max_steps = goal->max_steps};
+    pair_search(&q, p->u, 0.0, &enough);
+    p->supports = q.supports;
+    p->steps = q.steps;
+    p->fault = q.fault;
+
+    const double before = p->lower;
+    pair_raise_lower(p, q.u, vec_dot(q.u, pair_extreme(p, q.u).w));
+    if (!(p->lower > 0.99 * before)) return;
   }
 }
 
@@ -316,26 +348,22 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   p.curved = a->ops->curvature || b->ops->curvature;
   const double margins = margin_a + margin_b, distance = vec_norm(p.t);
   const double size = a->scale + b->scale + distance + margins;
-  const double rounding = ROUND_UP * (PAIR_ROUNDING * ROUND_U * size + placement->error + 2.0 * (a->slack + b->slack));
+  p.rounding = ROUND_UP * (PAIR_ROUNDING * ROUND_U * size + placement->error + 2.0 * (a->slack + b->slack));
+  p.hair = 4.0 * ROUND_U * size;
 
   /* from the line of the centres on */
   vec3 u;
   feature_unit(vec_neg(p.t), &u);
-  if (vec_norm2(u) == 0.0) u = vec(1, 0, 0);
-  p.s.n = 1;
-  p.s.vertex[0] = pair_extreme(&p, u);
-  pair_raise_lower(&p, u, vec_dot(u, p.s.vertex[0].w));
-  simplex_reduce(&p.s, &p.nearest);
-  p.hair = 4.0 * ROUND_U * size;
-  p.least = p.nearest.distance;
-  pair_search(&p, margins, goal, rounding, answer);
+  pair_search(&p, vec_norm2(u) > 0.0 ? u : vec(1, 0, 0), margins, goal);
+  if (p.nearest.inside || p.nearest.distance <= p.hair) pair_draw_apart(&p, size, goal);
 
   answer->fault = p.fault;
+  answer->steps = p.steps;
   answer->supports = p.supports;
-  answer->rounding = rounding;
-  answer->exhausted = answer->steps >= goal->max_steps || answer->steps >= PAIR_MAX_STEPS;
-  answer->overlap = p.nearest.inside && p.nearest.depth + margins > rounding;
-  answer->upper = answer->overlap ? 0.0 : p.nearest.distance - margins + rounding;
-  answer->lower = fmin(p.lower - margins - rounding, answer->upper);
+  answer->rounding = p.rounding;
+  answer->exhausted = p.steps >= goal->max_steps || p.steps >= PAIR_MAX_STEPS;
+  answer->overlap = p.nearest.inside && p.nearest.depth + margins > p.rounding;
+  answer->upper = answer->overlap ? 0.0 : p.nearest.distance - margins + p.rounding;
+  answer->lower = fmin(p.lower - margins - p.rounding, answer->upper);
   pair_witness(&p, margin_a, margin_b, answer);
 }

@@ -26,6 +26,7 @@ typedef struct pair_reply {
 /* ---- arguments ---- */
 
 static cprox_status pair_check_target(const char *name, const cprox_target *target, cprox_workspace *workspace) {
+  if (target->curve) return workspace_fail(workspace, CPROX_INVALID, "%s is a curve: a pair is of two bodies", name);
   if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "%s: the body is NULL", name);
   const char *fault = frame_pose_fault(&target->pose);
   if (fault) return workspace_fail(workspace, CPROX_INVALID, "%s: %s", name, fault);
@@ -233,6 +234,7 @@ cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *opt
                            .verdict = CPROX_UNDECIDED,
                            .lower = answer->lower,
                            .upper = answer->upper,
+                           .t_target = NAN,
                            .on_mover = answer->on_a,
                            .on_target = answer->on_b,
                            .normal = answer->normal,
