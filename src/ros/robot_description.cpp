@@ -4,6 +4,7 @@
 #include <ros/console.h>
 #include <ros/names.h>
 #include <ros/package.h>
+#include <ros/param.h>
 
 namespace curve_proximity {
 
@@ -17,10 +18,10 @@ ResourceOptions resourceOptions(const std::string &base_dir) {
 std::shared_ptr<const Robot> loadRobot(const ros::NodeHandle &handle, const Parameters &parameters) {
   // Where the URDF is; the default name may be missing, one that was given may not.
   // The search begins above the server's own namespace, where ~robot_description is that name and no URDF.
-  const ros::NodeHandle above(ros::names::parentNamespace(handle.getNamespace()));
+  const std::string above = ros::names::parentNamespace(handle.getNamespace());
   std::string name, xml;
-  const bool found = !parameters.robot_description.empty() && above.searchParam(parameters.robot_description, name) &&
-                     above.getParam(name, xml);
+  const bool found = !parameters.robot_description.empty() &&
+                     ros::param::search(above, parameters.robot_description, name) && handle.getParam(name, xml);
   if (!found) {
     const bool by_default =
         parameters.robot_description.empty() || parameters.robot_description == Parameters().robot_description;

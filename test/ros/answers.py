@@ -199,7 +199,7 @@ class BadInput(TestCase):
             (bezier((0, 0, 1), (1, 0, 1), radius=-0.1), 'radius'),
             (bezier((0, 0, 1), (1, 0, 1), radius=nan), 'radius'),
             (bezier((0, 0, 1), (1, 0, 1), t0=1.0, t1=0.5), 't0'),
-            (bezier((0, 0, 1), (1, 0, 1), t0=nan, t1=1.0), 't0'),
+            (bezier((0, 0, 1), (1, 0, 1), t0=nan, t1=1.0), 'range'),
             (bezier((0, 0, 1), (1, 0, 1), basis='fourier'), "'fourier'"),
             (bspline(straight, 1, knots=[0, 0, 0.7, 0.5, 1]), 'knot'), (bspline(straight, 1, knots=[0, 0, 1]), 'knot'),
             (bspline(straight, 0), 'degree'), (bspline(straight, 2, knots=[0, 0, 0, nan, 1, 1]), 'knot'),
