@@ -11,6 +11,9 @@
 namespace curve_proximity {
 namespace {
 
+/** Below this a process with a few threads does not even start. */
+constexpr int LEAST_MEMORY_MB = 256;
+
 /** Fills one parameter after the other from the parameter server. */
 class Reader {
  public:
@@ -96,6 +99,9 @@ Parameters readParameters(const ros::NodeHandle &handle) {
   reader.warnOfOthers();
 
   // What a type and a range cannot say.
+  if (parameters.memory_limit_mb > 0 && parameters.memory_limit_mb < LEAST_MEMORY_MB)
+    throw ParameterError("parameter ~memory_limit_mb: 0 or at least " + std::to_string(LEAST_MEMORY_MB) +
+                         " is expected");
   if (parameters.fixed_frame.empty()) throw ParameterError("parameter ~fixed_frame: the name of a frame is expected");
   if (parameters.robot_description.find('<') != std::string::npos)
     throw ParameterError(

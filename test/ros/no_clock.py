@@ -1,0 +1,30 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Without a clock ROS time stands still; nothing may wait on it."""
+import time
+import unittest
+
+from helpers import Server, bezier, run, sphere
+
+
+class NoClock(unittest.TestCase):
+    def test_a_missing_transform_is_told_within_the_timeout_on_the_wall_clock(self):
+        server = Server()
+        server.replace(sphere('ball', 0.25))
+        begin = time.monotonic()
+        response = server.distance(bezier((0, 0, 1), (1, 0, 1), frame='nowhere'))
+        waited = time.monotonic() - begin
+        self.assertFalse(response.success)
+        self.assertIn("'nowhere'", response.message)
+        self.assertIn("'world'", response.message)
+        self.assertGreater(waited, 0.4)
+        self.assertLess(waited, 1.5)  # tf_timeout is 0.5 s; the rest is for a busy machine
+
+    def test_queries_in_the_fixed_frame_are_answered(self):
+        server = Server()
+        server.replace(sphere('ball', 0.25))
+        self.assertTrue(server.distance(bezier((0, 0, 1), (1, 0, 1))).success)
+
+
+if __name__ == '__main__':
+    run('no_clock')

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What needs no master: the documented parameters are the ones that are read, and nothing escapes a guarded callback. */
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <fstream>
+#include <new>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "guard.h"
+#include "parameters.h"
+
+namespace curve_proximity {
+namespace {
+
+/** Compares each of the code's defaults with the file's value. */
+class Comparer {
+ public:
+  explicit Comparer(const YAML::Node &file) : file_(file) {}
+
+  template <class Value>
+  void operator()(const char *name, const Value &value) {
+    names.insert(name);
+    ASSERT_TRUE(file_[name]) << name << " is not documented";
+    EXPECT_EQ(file_[name].as<Value>(), value) << name;
+  }
+
+  template <class Value>
+  void operator()(const char *name, const Value &value, const Range &range) {
+    (*this)(name, value);
+    EXPECT_TRUE(range.open ? value > range.least : value >= range.least) << name;
+    EXPECT_LE(value, range.most) << name;
+  }
+
+  std::set<std::string> names;
+
+ private:
+  const YAML::Node &file_;
+};
+
+TEST(Parameters, the_documented_defaults_are_the_codes_and_none_is_missing) {
+  const YAML::Node file = YAML::LoadFile(CURVE_PROXIMITY_DEFAULTS);
+  Comparer comparer(file);
+  const Parameters defaults;
+  visitParameters(defaults, comparer);
+  for (const auto &entry : file) EXPECT_TRUE(comparer.names.count(entry.first.as<std::string>())) << entry.first;
+  EXPECT_EQ(file.size(), comparer.names.size());
+}
+
+TEST(Parameters, each_is_documented_with_its_unit_and_meaning) {
+  std::ifstream file(CURVE_PROXIMITY_DEFAULTS);
+  std::string line, comment;
+  std::size_t parameters = 0;
+  while (std::getline(file, line)) {
+    if (!line.empty() && line[0] == '#') {
+      comment += line + "\n";
+    } else {
+      if (line.find(':') != std::string::npos) {
+        ++parameters;
+        EXPECT_GT(comment.size(), 30u) << line;
+        EXPECT_TRUE(comment.find('[') != std::string::npos || comment.find("The name") != std::string::npos) << line;
+      }
+      comment.clear();
+    }
+  }
+  EXPECT_EQ(parameters, YAML::LoadFile(CURVE_PROXIMITY_DEFAULTS).size());
+}
+
+struct Response {
+  bool success = true;
+  std::string message, data;
+};
+
+TEST(Guard, whatever_a_handler_throws_becomes_a_message_and_true) {
+  Response response;
+  response.data = "half an answer";
+  EXPECT_TRUE(answered(response, [] { throw std::runtime_error("no box"); }));
+  EXPECT_FALSE(response.success);
+  EXPECT_EQ(response.message, "no box");
+  EXPECT_EQ(response.data, "");
+  EXPECT_TRUE(answered(response, [] { throw 7; }));
+  EXPECT_EQ(response.message, "an unknown failure");
+  EXPECT_TRUE(answered(response, [] { throw std::bad_alloc(); }));
+  EXPECT_EQ(response.message, "out of memory");
+  EXPECT_FALSE(response.success);
+}
+
+TEST(Guard, a_handler_that_throws_nothing_is_left_alone) {
+  Response response;
+  EXPECT_TRUE(answered(response, [&] { response.data = "answer"; }));
+  EXPECT_TRUE(response.success);
+  EXPECT_EQ(response.data, "answer");
+}
+
+} // namespace
+} // namespace curve_proximity
+
+int main(int argc, char **argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

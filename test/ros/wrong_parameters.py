@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Parameters that are wrong stop the node at start, by name."""
+import os
+import unittest
+
+import rospy
+from helpers import Node, Server, run
+
+ARM = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'data', 'arm.urdf')
+
+
+class WrongParameters(unittest.TestCase):
+    def setUp(self):
+        if rospy.has_param('/robot_description'):
+            rospy.delete_param('/robot_description')
+
+    def stopped(self, **parameters):
+        """What the node said before it ended with a failure."""
+        node = Node('wrong', **parameters)
+        try:
+            code = node.wait(15)
+            output = node.output()
+        finally:
+            node.end()
+        self.assertNotIn(code, (None, 0), output)
+        self.assertGreater(code, 0, 'the node died of a signal: ' + output)
+        return output
+
+    def test_each_wrong_type_and_value_is_told_by_name(self):
+        cases = [('epsilon', 'small'), ('epsilon', 0.0), ('epsilon', -1e-6), ('epsilon', float('nan')), ('tf_timeout', -1.0),
+                 ('max_nodes', 0), ('max_nodes', 2.5), ('budget_ms', 0), ('threads', 0), ('threads', 1000),
+                 ('memory_limit_mb', -1), ('memory_limit_mb', 5), ('max_curves', 0), ('max_control_points', 'many'),
+                 ('max_results', 0), ('fixed_frame', ''), ('fixed_frame', 3), ('urdf_dir', 1),
+                 ('allow_missing_geometry', 'yes'), ('robot_description', '<robot/>'),
+                 ('robot_description', 'no_such_parameter')]
+        for name, value in cases:
+            with self.subTest(parameter=name, value=value):
+                self.assertIn('~' + name, self.stopped(**{name: value}))
+
+    def test_a_robot_with_unusable_geometry_is_refused_by_link_name(self):
+        good = open(ARM).read()
+        cases = [good.replace('<sphere radius="0.1"/>', '<sphere radius="nan"/>'),
+                 good.replace('<sphere radius="0.1"/>', '<sphere radius="-1"/>'),
+                 good.replace('<sphere radius="0.1"/>', '<capsule radius="0.1" length="1"/>'),
+                 good.replace('<sphere radius="0.1"/>', '<mesh filename="package://curve_proximity/none.stl"/>')]
+        for urdf in cases:
+            rospy.set_param('/robot_description', urdf)
+            self.assertIn("arm", self.stopped())
+        rospy.set_param('/robot_description', 'no robot')
+        self.assertIn('robot_description', self.stopped())
+
+    def test_allow_missing_geometry_insists(self):
+        urdf = open(ARM).read().replace('<sphere radius="0.1"/>', '<sphere radius="-1"/>')
+        rospy.set_param('/robot_description', urdf)
+        node = Node('insisting', allow_missing_geometry=True)
+        try:
+            self.assertTrue(Server('/insisting').scene().success)
+            self.assertIn('arm', node.output())
+        finally:
+            node.end()
+
+    def test_a_misspelt_name_is_warned_of(self):
+        node = Node('misspelt', epsilom=1e-3)
+        try:
+            self.assertTrue(Server('/misspelt').scene().success)
+            self.assertIn('~epsilom', node.output())
+        finally:
+            node.end()
+
+
+if __name__ == '__main__':
+    run('wrong_parameters')
