@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of the node share: messages by one call each, and the services of the node under test."""
+import math
 import os
 import subprocess
+import threading
 import time
 
 import rospy
@@ -199,3 +201,27 @@ def until(condition, seconds, step=0.02):
             return value
         time.sleep(step)
     return condition()
+
+
+def ring_and_shells(shells=200, n=20000):
+    """A question that keeps a processor busy for seconds: a spline all but at the same distance from concentric balls,
+    each asked for alone. Returns the curve, the balls, and the fields of the request."""
+    ring = bspline([(math.cos(2 * math.pi * i / n), math.sin(2 * math.pi * i / n), 0) for i in range(n)], 3, id='ring')
+    balls = [sphere('ball%03d' % i, 0.1 + 0.001 * i) for i in range(shells)]
+    return ring, balls, dict(per_object=True, epsilon=1e-13, max_nodes=2**32 - 1)
+
+
+class Call(threading.Thread):
+    """One call in the background: its response or failure, and when it ended."""
+
+    def __init__(self, work):
+        super().__init__(daemon=True)
+        self.work, self.response, self.failure, self.ended = work, None, None, None
+        self.start()
+
+    def run(self):
+        try:
+            self.response = self.work()
+        except Exception as failure:
+            self.failure = failure
+        self.ended = time.monotonic()

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The server as a nodelet: it answers, and its manager outlives whatever becomes of it."""
+import time
+import unittest
+
+import rospy
+from helpers import Call, Server, bezier, ring_and_shells, run, sphere
+from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
+
+LINE = bezier((-1, 0, 1), (1, 0, 1))
+
+
+class Nodelet(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.wait_for_service('/manager/load_nodelet', 20)
+        cls.load_nodelet = rospy.ServiceProxy('/manager/load_nodelet', NodeletLoad)
+        cls.unload_nodelet = rospy.ServiceProxy('/manager/unload_nodelet', NodeletUnload)
+        cls.list_nodelets = rospy.ServiceProxy('/manager/list', NodeletList)
+
+    def load(self, name):
+        response = self.load_nodelet(name, 'curve_proximity/ProximityServer', [], [], [], '')
+        self.assertTrue(response.success)
+        return Server(name)
+
+    def test_it_answers_in_a_manager(self):
+        server = self.load('/answering')
+        server.replace(sphere('ball', 0.25))
+        response = server.distance(LINE)
+        self.assertTrue(response.success, response.message)
+        self.assertAlmostEqual(response.results[0].upper, 0.75, delta=2e-6)
+        self.assertTrue(self.unload_nodelet('/answering').success)
+        self.assertEqual(self.list_nodelets().nodelets, [])
+
+    def test_unloading_during_a_call_leaves_the_manager_alive(self):
+        ring, balls, fields = ring_and_shells()
+        for i in range(6):
+            name = '/unloaded%d' % i
+            server = self.load(name)
+            server.replace(*balls)
+            calls = [Call(lambda: Server(name).distance(ring, **fields)) for _ in range(2)]
+            time.sleep(0.3 + 0.1 * i)
+            self.assertTrue(all(call.is_alive() for call in calls), 'the call ended before the unload')
+            begin = time.monotonic()
+            self.assertTrue(self.unload_nodelet(name).success)
+            for call in calls:
+                call.join(10)
+                self.assertFalse(call.is_alive(), 'the client is still waiting')
+                self.assertLess(call.ended - begin, 5.0)
+                if call.response is not None and call.response.success:
+                    self.assertIn('stopped', {row.status for row in call.response.results})
+            self.assertEqual(self.list_nodelets().nodelets, [])
+        server = self.load('/afterwards')
+        server.replace(sphere('ball', 0.25))
+        self.assertTrue(server.distance(LINE).success)
+        self.assertTrue(self.unload_nodelet('/afterwards').success)
+
+    def test_a_wrong_parameter_fails_the_load_and_nothing_else(self):
+        rospy.set_param('/wrong/epsilon', 'small')
+        try:
+            with self.assertRaises(rospy.ServiceException):
+                response = self.load_nodelet('/wrong', 'curve_proximity/ProximityServer', [], [], [], '')
+                if not response.success:
+                    raise rospy.ServiceException('refused')
+        finally:
+            rospy.delete_param('/wrong')
+        self.assertEqual(self.list_nodelets().nodelets, [])
+
+
+if __name__ == '__main__':
+    run('nodelet')

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""How the node ends, what it holds while it lives, and that it notices a master that has forgotten it."""
+import os
+import signal
+import socket
+import subprocess
+import time
+import unittest
+
+import rosgraph
+from helpers import Call, Node, Server, bezier, ring_and_shells, run, sphere, until
+
+LINE = bezier((-1, 0, 1), (1, 0, 1))
+CALLS = int(os.environ.get('CURVE_PROXIMITY_CALLS', 20000))  # of the memory test
+
+
+class Lifetime(unittest.TestCase):
+    def begin(self, **parameters):
+        node = Node('curve_proximity', **parameters)
+        self.addCleanup(node.end)
+        return node, Server()
+
+    def test_a_query_beyond_its_time_budget_is_stopped_with_true_intervals(self):
+        _, server = self.begin(budget_ms=300)
+        ring, balls, fields = ring_and_shells()
+        server.replace(*balls)
+        begin = time.monotonic()
+        response = server.distance(ring, **fields)
+        self.assertLess(time.monotonic() - begin, 3.0)
+        self.assertTrue(response.success, response.message)
+        stopped = [row for row in response.results if row.status == 'stopped']
+        self.assertTrue(stopped)
+        for row in stopped:
+            self.assertIn('budget_ms', row.message)
+            self.assertLessEqual(row.lower, 1 - 0.1)
+            self.assertGreaterEqual(row.upper, 1 - 0.1 - 0.001 * 200 - 1e-6)
+
+    def test_sigint_during_a_long_query_is_answered_or_fails_promptly(self):
+        node, server = self.begin(budget_ms=60000)
+        ring, balls, fields = ring_and_shells()
+        server.replace(*balls)
+        call = Call(lambda: server.distance(ring, **fields))
+        time.sleep(0.5)
+        self.assertTrue(call.is_alive(), 'the query was not long')
+        begin = time.monotonic()
+        node.process.send_signal(signal.SIGINT)
+        call.join(10)
+        self.assertIsNotNone(call.ended, 'the client is still waiting')
+        self.assertLess(call.ended - begin, 2.0)
+        if call.response is not None:
+            self.assertIn('stopped', {row.status for row in call.response.results})
+        self.assertEqual(node.wait(5), 0, node.output())
+
+    def test_memory_is_flat_over_many_calls(self):
+        node, server = self.begin()
+        server.replace(*[sphere('ball%d' % i, 0.1, (i, 0, 0)) for i in range(30)])
+
+        def call(times):
+            for i in range(times):
+                self.assertTrue(server.distance(LINE).success)
+                if i % 100 == 0:
+                    self.assertTrue(server.apply(sphere('moving', 0.1, (0, i, 0))).success)
+                    server.distance(bezier((0, 0, 1)))
+        call(2000)
+        before = node.resident_mb()
+        call(CALLS)
+        # one leaked response of 200 bytes a call would be 4 MB
+        self.assertLess(node.resident_mb() - before, 3.0)
+
+    def test_a_node_that_its_master_has_forgotten_ends_for_a_respawn(self):
+        with socket.socket() as free:
+            free.bind(('', 0))
+            port = free.getsockname()[1]
+        environment = dict(os.environ, ROS_MASTER_URI='http://localhost:%d' % port)
+
+        def master():
+            process = subprocess.Popen(['rosmaster', '--core', '-p', str(port)], env=environment,
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            self.addCleanup(lambda: (process.kill(), process.wait()))
+            self.assertTrue(until(rosgraph.Master('/test', environment['ROS_MASTER_URI']).is_online, 20))
+            return process
+        first = master()
+        node = Node('forgotten', environment)
+        self.addCleanup(node.end)
+        graph = rosgraph.Master('/test', environment['ROS_MASTER_URI'])
+        known = until(lambda: any(s[0] == '/forgotten/distance' for s in graph.getSystemState()[2]), 20)
+        self.assertTrue(known)
+
+        # while the master is away the node waits for it
+        first.terminate()
+        first.wait()
+        self.assertIsNone(node.wait(3), node.output())
+        master()
+        self.assertEqual(node.wait(20), 3, node.output())
+        self.assertIn('master', node.output())
+
+
+if __name__ == '__main__':
+    run('lifetime')
