@@ -227,6 +227,9 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   out.out = split.text("--out");
   out.skipped = split.has("--skipped");
   out.threads = std::max(1u, std::thread::hardware_concurrency());
+  if (split.has("--delta") && out.question.verb != Verb::TOLERANCE) {
+    out.warnings.push_back("--delta changes nothing: it is the clearance that 'tolerance' asks about");
+  }
   if (split.has("--threads")) out.threads = static_cast<std::size_t>(readCount(split, "--threads", kMostThreads));
   return out;
 }

@@ -24,6 +24,7 @@ struct Arguments {
   std::string node;          /**< SEND: the node's name */
   std::string out;           /**< file of the results; empty: standard output */
   std::size_t threads = 1;
+  std::vector<std::string> warnings; /**< options that are understood and change nothing here, a sentence each */
   bool skipped = false; /**< tell on standard error what takes no part, and why */
 };
 

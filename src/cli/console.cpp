@@ -18,7 +18,14 @@ void Console::wipe() {
   shows_progress_ = false;
 }
 
-void Console::say(const std::string &line) {
+void Console::say(const std::string &sentence) {
+  /* names out of files may hold anything: it stays one line, and nothing that a terminal would obey */
+  std::string line = sentence;
+  for (char &c : line) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f) c = ' ';
+  }
+
   const std::lock_guard<std::mutex> lock(mutex_);
   wipe();
   std::fprintf(stderr, "%s\n", line.c_str());

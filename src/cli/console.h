@@ -19,7 +19,7 @@ class Console {
   Console &operator=(const Console &) = delete;
 
   /** A line that stays. */
-  void say(const std::string &line);
+  void say(const std::string &sentence);
 
   /** "warning: …", a line each. */
   void warn(const Warnings &warnings);

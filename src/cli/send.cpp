@@ -3,7 +3,9 @@
 #include <curve_proximity/ApplyScene.h>
 #include <ros/ros.h>
 
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "../ros/conversions.h"
 #include "failure.h"
@@ -15,7 +17,8 @@
 namespace curve_proximity::cli {
 namespace {
 
-constexpr double kWaitSeconds = 5.0;
+/* How long a node that is just starting is waited for. */
+constexpr std::chrono::seconds kPatience(5);
 
 /* Frames that only the node's tf2 knows stay as they are; those that the file itself explains are resolved. */
 void resolveFrame(ObjectDescription &object, const Frames &frames) {
@@ -55,6 +58,16 @@ SceneChange toChange(const SceneFile &file, const std::string &path, Warnings &w
   return change;
 }
 
+/* As ros::service::waitForService(), which would tell standard output that it waits. */
+bool waitForService(const std::string &service) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (ros::ok() && !ros::service::exists(service, false)) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return ros::ok();
+}
+
 } // namespace
 
 int sendScene(const Arguments &arguments, Console &console) {
@@ -67,7 +80,7 @@ int sendScene(const Arguments &arguments, Console &console) {
   if (!ros::master::check()) throw BadUsage("send: no ROS master at " + ros::master::getURI());
   ros::NodeHandle handle;
   const std::string service = arguments.node + "/apply_scene";
-  if (!ros::service::waitForService(service, ros::Duration(kWaitSeconds))) {
+  if (!waitForService(service)) {
     throw BadUsage("send: there is no service " + service + " (is the node called otherwise? --node NAME)");
   }
 

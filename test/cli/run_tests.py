@@ -43,7 +43,7 @@ def main():
 
     # one line a failure, then the sum
     bad = [case for case, _ in result.failures + result.errors + result.skipped] + result.unexpectedSuccesses
-    failed = len({str(case) for case in bad})
+    failed = len({str(getattr(case, 'test_case', case)) for case in bad})  # the parts of one case are one case
     for case in bad:
         print(f'FAILED: {case}')
     print(f'{result.testsRun - failed} passed, {failed} failed')

@@ -60,6 +60,17 @@ class Usage(Case):
                 self.assertRefused(cprox(*words), 'is not available in this version')
         self.assertRefused(cprox('distance', '--curves', 'c', '--scene', 's', '--max-rung', 'finest'), '--max-rung', 'hull')
 
+    def an_option_that_changes_nothing_is_told(self):
+        answer = self.ask('distance', [PASSING], BOX_SCENE, '--delta', '1')
+        self.assertEqual(answer.code, 0)
+        self.assertRegex(answer.err, '^warning: --delta')
+
+    def complaints_stay_one_line_whatever_a_name_holds(self):
+        scene = 'world: {collision_objects: [{id: "a\\nb\\e[2J", primitives: [{type: 9, dimensions: [1]}]}]}'
+        answer = self.ask('distance', [PASSING], scene)
+        self.assertRefused(answer, 'a b')
+        self.assertNotIn('\x1b', answer.err)
+
     def files_that_cannot_be_read_are_named(self):
         scene, curves = self.file('scene.yaml', BOX_SCENE), self.file('curves.csv', PASSING)
         self.assertRefused(cprox('distance', '--curves', '/none.csv', '--scene', scene), '/none.csv')
