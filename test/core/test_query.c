@@ -351,6 +351,10 @@ static void many_targets_are_answered_like_the_nearest_of_them(void **state) {
       assert_int_equal(verdict.verdict, CPROX_YES);
       assert_int_equal(cprox_tolerance_all(mover, targets, N, 1.001 * least, &options, ws, &verdict, NULL), CPROX_OK);
       assert_int_equal(verdict.verdict, CPROX_NO);
+      /* a verdict that ends the search early still bounds the targets it did not look at */
+      assert_int_equal(cprox_tolerance_all(mover, targets, N, 4.0 * least + 1.0, &options, ws, &verdict, NULL),
+                       CPROX_OK);
+      assert_true(verdict.verdict == CPROX_NO && verdict.lower <= least);
     }
     cprox_curve_free(curve);
   }

@@ -42,14 +42,12 @@ static cprox_status answer(const question *q, size_t first, size_t last, cprox_r
 
   cprox_result all = {.lower = INFINITY, .upper = INFINITY, .t_target = NAN, .target_index = -1};
   cprox_status trouble = CPROX_OK;
-  for (size_t i = 0; i < n; i++) {
+  size_t i = 0;
+  for (; i < n; i++) {
     /* sorted: when one ball is too far to matter, so are the rest */
     const bool too_far = question_wants_verdict(q) ? list[i].lower > q->limit : list[i].lower > all.upper;
-    if (too_far || trouble == CPROX_STOPPED) {
-      all.lower = fmin(all.lower, fmax(list[i].lower, 0.0));
-      if (all.rung == CPROX_RUNG_NONE) all.rung = CPROX_RUNG_SPHERE;
-      break;
-    }
+    const bool answered = all.upper <= fmax(q->limit, 0.0);
+    if (too_far || answered || trouble == CPROX_STOPPED) break;
 
     cprox_result one = {0};
     const cprox_status status = candidate_search(q, &list[i], all.upper, &one);
@@ -62,9 +60,11 @@ static cprox_status answer(const question *q, size_t first, size_t last, cprox_r
     if (one.upper < all.upper || all.target_index < 0) all = one;
     all.lower = lower, all.nodes = nodes, all.probes = probes;
     all.rung = CPROX_RUNG_HULL;
-    if (question_wants_verdict(q) ? all.upper <= q->limit : all.upper <= 0.0) break;
   }
 
+  /* the rest is at least as far as the first ball of it */
+  if (i < n) all.lower = fmin(all.lower, fmax(list[i].lower, 0.0));
+  if (i == 0 && n > 0) all.rung = CPROX_RUNG_SPHERE;
   all.lower = fmin(all.lower, all.upper);
   all.status = is_satisfied(q, &all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
   all.verdict = verdict_of(q, &all);
