@@ -137,6 +137,58 @@ static void bad_polynomials_are_refused(void **state) {
   polynomial_refused(c, 3, 0, 1, "coefficient 1 is (4, -2e+150, 6), beyond 1e+150 m");
 }
 
+static void bad_legendre_series_are_refused(void **state) {
+  (void)state;
+  cprox_curve *curve = (cprox_curve *)workspace;
+  const size_t live = allocations_live();
+  vec3 c[62] = {{1, 2, 3}, {4, 5, 6}, {9e149, 0, 0}, {9e149, 0, 0}};
+  refused(cprox_curve_create_legendre(c, 0, 0, 1, workspace, &curve), curve,
+          "there is no coefficient; a curve needs at least 1");
+  refused(cprox_curve_create_legendre(c, 62, 0, 1, workspace, &curve), curve, "there are 62 coefficients, above 61");
+  refused(cprox_curve_create_legendre(NULL, 2, 0, 1, workspace, &curve), curve, "the coefficients are NULL");
+  refused(cprox_curve_create_legendre(c, 2, 2, 1, workspace, &curve), curve, "t0 = 2 is not below t1 = 1");
+  refused(cprox_curve_create_legendre(c, 4, 0, 1, workspace, &curve), curve,
+          "on [0, 1] the curve goes beyond 1e+150 m");
+  c[1].z = INFINITY;
+  refused(cprox_curve_create_legendre(c, 2, 0, 1, workspace, &curve), curve,
+          "coefficient 1 is (4, 5, inf), not finite");
+  refused(cprox_curve_create_legendre(c, 2, 0, 1, workspace, NULL), curve, "the pointer for the new curve is NULL");
+  assert_int_equal(allocations_live(), live);
+}
+
+static void lagrange_refused(const vec3 *y, const double *x, size_t n, const char *reason) {
+  cprox_curve *curve = (cprox_curve *)workspace;
+  const size_t live = allocations_live();
+  refused(cprox_curve_create_lagrange(y, x, n, 0, 1, workspace, &curve), curve, reason);
+  assert_int_equal(cprox_curve_create_lagrange(y, x, n, 0, 1, NULL, &curve), CPROX_INVALID);
+  assert_int_equal(allocations_live(), live);
+}
+
+static void bad_nodes_and_values_are_refused(void **state) {
+  (void)state;
+  vec3 y[62] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  double x[62] = {0, 0.5, 1};
+  lagrange_refused(y, x, 0, "there is no point; a curve needs at least 1");
+  lagrange_refused(y, x, 62, "there are 62 points, above 61");
+  lagrange_refused(NULL, x, 3, "the points are NULL");
+  lagrange_refused(y, NULL, 3, "the nodes are NULL");
+  x[2] = 0.0;
+  lagrange_refused(y, x, 3, "nodes 0 and 2 are both 0; nodes must differ");
+  x[2] = 1e-120;
+  lagrange_refused(y, x, 3, "nodes 0 and 2, 0 and 1e-120, are too close together");
+  x[2] = 1e-90;
+  x[3] = 2e-90;
+  lagrange_refused(y, x, 4, "between its nodes the curve may go beyond 1e+150 m: they are too unevenly placed");
+  x[2] = NAN;
+  lagrange_refused(y, x, 3, "node 2 is nan, not finite or beyond 1e+150");
+  x[2] = 1;
+  y[2].x = NAN;
+  lagrange_refused(y, x, 3, "point 2 is (nan, 8, 9), not finite");
+  cprox_curve *curve = (cprox_curve *)workspace;
+  refused(cprox_curve_create_lagrange(y, x, 2, 1, 1, workspace, &curve), curve, "t0 = 1 is not below t1 = 1");
+  refused(cprox_curve_create_lagrange(y, x, 2, 0, 1, workspace, NULL), curve, "the pointer for the new curve is NULL");
+}
+
 static void a_missing_result_pointer_is_refused(void **state) {
   (void)state;
   assert_int_equal(cprox_curve_create_bezier(good.points, 5, 0, 1, workspace, NULL), CPROX_INVALID);
@@ -185,7 +237,7 @@ static void questions_outside_the_range_are_refused(void **state) {
 static void memory_that_is_out_leaks_nothing(void **state) {
   (void)state;
   cprox_curve_free(NULL);
-  for (int kind = 0; kind < 4; kind++) {
+  for (int kind = 0; kind < 6; kind++) {
     const size_t live = allocations_live();
     cprox_status status = CPROX_MEMORY;
     size_t successes = 0;
@@ -195,6 +247,8 @@ static void memory_that_is_out_leaks_nothing(void **state) {
       status = kind == 0   ? cprox_curve_create_bezier(good.points, 2, 0, 1, workspace, &curve)
                : kind == 1 ? cprox_curve_create_bezier(good.points, 5, 0, 1, workspace, &curve)
                : kind == 2 ? cprox_curve_create_polynomial(good.points, 5, 0, 1, workspace, &curve)
+               : kind == 3 ? cprox_curve_create_legendre(good.points, 5, 0, 1, workspace, &curve)
+               : kind == 4 ? cprox_curve_create_lagrange(good.points, good.knots + 2, 4, 0, 1, workspace, &curve)
                            : cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, &curve);
       allocations_allow();
       if (status == CPROX_OK) {
@@ -227,6 +281,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bad_control_points_are_refused),      cmocka_unit_test(bad_ranges_are_refused),
       cmocka_unit_test(bad_degrees_and_knots_are_refused),   cmocka_unit_test(bad_polynomials_are_refused),
+      cmocka_unit_test(bad_legendre_series_are_refused),     cmocka_unit_test(bad_nodes_and_values_are_refused),
       cmocka_unit_test(a_missing_result_pointer_is_refused), cmocka_unit_test(questions_outside_the_range_are_refused),
       cmocka_unit_test(memory_that_is_out_leaks_nothing),
   };

@@ -116,6 +116,149 @@ static void polynomials_are_within_their_error(void **state) {
   assert_true(all.largest > 0.3);
 }
 
+/* ---- Legendre ---- */
+
+/* By the three-term recurrence, whose rounding errors |P_k| <= 1 keeps small. */
+static quad3 by_legendre(const definition *d, double t, double *terms) {
+  const quad x = (2 * (quad)t - (quad)d->t0 - (quad)d->t1) / ((quad)d->t1 - (quad)d->t0);
+  quad previous = 1, p = x;
+  quad3 sum = quad_axpy((quad3){{0, 0, 0}}, 1, d->coefficient[0]);
+  *terms = vec_norm(d->coefficient[0]);
+  for (size_t k = 1; k < d->n; k++) {
+    sum = quad_axpy(sum, p, d->coefficient[k]);
+    *terms += vec_norm(d->coefficient[k]);
+    const quad next = ((quad)(2 * k + 1) * x * p - (quad)k * previous) / (quad)(k + 1);
+    previous = p;
+    p = next;
+  }
+  *terms *= (double)(1 + d->n);
+  return sum;
+}
+
+/* seed 502, 100,000 curves, three parameters each; coefficients that fall off, or not at all. The error allowed up to
+ * degree 40 is 5 u of the coefficients' sum, which |psi| does not exceed. */
+static void legendre_series_are_within_their_error(void **state) {
+  (void)state;
+  rng r = rng_seed(502);
+  tally all = {0};
+  for (size_t i = test_cases(100000); i-- > 0;) {
+    vec3 c[61];
+    definition d = {.coefficient = c, .n = 1 + (rng_index(&r, 8) ? rng_index(&r, 13) : rng_index(&r, 61))};
+    random_range(&r, &d.t0, &d.t1);
+    random_points(&r, d.n, c);
+    const double fall = rng_index(&r, 2) ? 1.0 : rng_uniform(&r, 0.3, 1.0);
+    double sum = 0.0;
+    for (size_t k = 0; k < d.n; k++) {
+      c[k] = vec_scale(pow(fall, (double)k), c[k]);
+      if (rng_index(&r, 16) == 0) c[k] = vec(0, 0, 0);
+      sum += vec_norm(c[k]);
+    }
+    cprox_curve *curve = NULL;
+    assert_int_equal(cprox_curve_create_legendre(c, d.n, d.t0, d.t1, NULL, &curve), CPROX_OK);
+    stays_within_its_error(curve, &d, by_legendre, &r, &all);
+    assert_true(cprox_curve_error(curve) <= (d.n <= 41 ? 5.0 * U : 2e-12) * sum + 1e-149);
+    cprox_curve_free(curve);
+  }
+  print_message("Legendre: largest error %.2f of its bound; %zu pieces, %zu at most\n", all.largest, all.pieces,
+                all.most);
+  assert_true(all.largest > 0.3);
+}
+
+/* ---- Lagrange ---- */
+
+static quad3 by_values(const definition *d, double t, double *terms) {
+  quad3 sum = {{0, 0, 0}};
+  *terms = 0.0;
+  for (size_t i = 0; i < d->n; i++) {
+    quad l = 1;
+    for (size_t m = 0; m < d->n; m++)
+      if (m != i) l *= ((quad)t - (quad)d->node[m]) / ((quad)d->node[i] - (quad)d->node[m]);
+    sum = quad_axpy(sum, l, d->coefficient[i]);
+    *terms += fabs((double)l) * vec_norm(d->coefficient[i]);
+  }
+  return sum;
+}
+
+/* The largest sum of |y_i l_i| at 4n places of the range. */
+static double largest_sum(const definition *d) {
+  double largest = 0.0;
+  for (size_t k = 0; k <= 4 * d->n; k++) {
+    const double t = d->t0 + (d->t1 - d->t0) * (double)k / (4.0 * (double)d->n);
+    double sum = 0.0;
+    for (size_t i = 0; i < d->n; i++) {
+      double l = vec_norm(d->coefficient[i]);
+      for (size_t m = 0; m < d->n; m++)
+        if (m != i) l *= fabs((t - d->node[m]) / (d->node[i] - d->node[m]));
+      sum += l;
+    }
+    largest = fmax(largest, sum);
+  }
+  return largest;
+}
+
+/* Even, Chebyshev's, scattered or clustered, in any order. */
+static void random_nodes(rng *r, const definition *d, size_t kind, double *x) {
+  const double length = d->t1 - d->t0, n = (double)d->n;
+  for (size_t i = 0; i < d->n; i++) {
+    const double s = kind == 0   ? ((double)i + 0.5) / n
+                     : kind == 1 ? 0.5 - 0.5 * cos(3.141592653589793 * ((double)i + 0.5) / n)
+                     : kind == 2 ? ((double)i + rng_uniform(r, 0.1, 0.9)) / n
+                                 : ((double)i + rng_uniform(r, 0.1, 0.9)) / n * rng_uniform(r, 0.9, 1.0);
+    x[i] = d->t0 + s * length;
+  }
+  for (size_t i = d->n; i-- > 1;) {
+    const size_t other = rng_index(r, i + 1);
+    const double kept = x[i];
+    x[i] = x[other];
+    x[other] = kept;
+  }
+}
+
+static bool all_differ(const double *x, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    for (size_t m = 0; m < i; m++)
+      if (x[i] == x[m]) return false;
+  return true;
+}
+
+/* seed 503, 100,000 curves, three parameters each. Even nodes up to degree 20 and Chebyshev's up to 60 lose no more than
+ * 5 u times the sum of |y_i l_i| where it is largest. */
+static void lagrange_curves_are_within_their_error(void **state) {
+  (void)state;
+  rng r = rng_seed(503);
+  tally all = {0};
+  double worst_even = 0.0, worst_chebyshev = 0.0;
+  for (size_t i = test_cases(100000); i-- > 0;) {
+    vec3 y[61];
+    double x[61];
+    definition d = {.coefficient = y, .node = x, .n = 1 + (rng_index(&r, 32) ? rng_index(&r, 11) : rng_index(&r, 61))};
+    random_range(&r, &d.t0, &d.t1);
+    random_points(&r, d.n, y);
+    const size_t kind = rng_index(&r, 4);
+    random_nodes(&r, &d, kind, x);
+    if (!all_differ(x, d.n)) continue;
+    if (rng_index(&r, 4) == 0) {
+      /* a part of the range, or some beyond it */
+      const double length = d.t1 - d.t0, low = d.t0 + rng_uniform(&r, -0.05, 0.5) * length,
+                   high = d.t1 - rng_uniform(&r, -0.05, 0.5) * length;
+      if (low < high) d.t0 = low, d.t1 = high;
+    }
+    cprox_curve *curve = NULL;
+    assert_int_equal(cprox_curve_create_lagrange(y, x, d.n, d.t0, d.t1, NULL, &curve), CPROX_OK);
+    stays_within_its_error(curve, &d, by_values, &r, &all);
+    const double ratio = cprox_curve_error(curve) / (U * largest_sum(&d) + 1e-149);
+    if (kind == 0 && d.n <= 21) worst_even = fmax(worst_even, ratio);
+    if (kind == 1) worst_chebyshev = fmax(worst_chebyshev, ratio);
+    cprox_curve_free(curve);
+  }
+  print_message(
+      "Lagrange: largest error %.2f of its bound; %zu pieces, %zu at most; bound/(u sum|y l|) %.2f evenly to "
+      "degree 20, %.2f Chebyshev to degree 60\n",
+      all.largest, all.pieces, all.most, worst_even, worst_chebyshev);
+  assert_true(all.largest > 0.3);
+  assert_true(worst_even < 5.0 && worst_chebyshev < 5.0);
+}
+
 /* One coefficient is a curve that stands still, exactly. */
 static void a_constant_stands_still(void **state) {
   (void)state;
@@ -125,11 +268,22 @@ static void a_constant_stands_still(void **state) {
   assert_int_equal(cprox_curve_degree(curve), 1);
   for (size_t j = 0; j < 2; j++) assert_memory_equal(&curve_piece(curve, 0)[j], &p, sizeof p);
   cprox_curve_free(curve);
+
+  assert_int_equal(cprox_curve_create_legendre(&p, 1, -3.0, 5.0, NULL, &curve), CPROX_OK);
+  for (size_t j = 0; j < 2; j++) assert_memory_equal(&curve_piece(curve, 0)[j], &p, sizeof p);
+  cprox_curve_free(curve);
+
+  const double node = 7.0;
+  assert_int_equal(cprox_curve_create_lagrange(&p, &node, 1, -3.0, 5.0, NULL, &curve), CPROX_OK);
+  for (size_t j = 0; j < 2; j++) assert_memory_equal(&curve_piece(curve, 0)[j], &p, sizeof p);
+  cprox_curve_free(curve);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(polynomials_are_within_their_error),
+      cmocka_unit_test(legendre_series_are_within_their_error),
+      cmocka_unit_test(lagrange_curves_are_within_their_error),
       cmocka_unit_test(a_constant_stands_still),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

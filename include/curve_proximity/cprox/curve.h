@@ -56,6 +56,33 @@ CPROX_API cprox_status cprox_curve_create_bspline(const cprox_vec3 *points, size
 CPROX_API cprox_status cprox_curve_create_polynomial(const cprox_vec3 *coefficients, size_t n_coefficients, double t0,
                                                      double t1, cprox_workspace *workspace, cprox_curve **curve);
 
+/** A series of Legendre polynomials: psi(t) = sum_k coefficients[k] P_k(x), x = (2t - t0 - t1)/(t1 - t0) in [-1, 1].
+ *
+ *  coefficients  [m] of P_k, ascending; n_coefficients of them, 1 … CPROX_MAX_DEGREE + 1, finite. One alone is a curve
+ *                that stands still.
+ *  t0 < t1       finite.
+ *
+ *  Converted as a polynomial is: cprox_curve_error() is about 1e-16 of the curve's size up to degree 40, and less than
+ *  2e-12 times the sum of |coefficients| at degree 60. High degrees become several pieces. Source: R. T. Farouki,
+ *  "Legendre-Bernstein basis transformations", 2000; doc/rounding.md.
+ */
+CPROX_API cprox_status cprox_curve_create_legendre(const cprox_vec3 *coefficients, size_t n_coefficients, double t0,
+                                                   double t1, cprox_workspace *workspace, cprox_curve **curve);
+
+/** The polynomial of least degree through points, psi(nodes[i]) = points[i], restricted to [t0, t1].
+ *
+ *  points, nodes  [m] n_points of both, 1 … CPROX_MAX_DEGREE + 1, finite; the nodes in any order, no two alike. One point
+ *                 alone is a curve that stands still.
+ *  t0 < t1        finite; beyond the outermost nodes the polynomial goes on.
+ *
+ *  Converted as a polynomial is, from the Lagrange form: cprox_curve_error() is about 1e-16 of the curve's size for nodes
+ *  that suit their number (evenly spaced up to degree 20, Chebyshev's beyond); for others it grows as the curve does
+ *  between its nodes. High degrees become several pieces. Cost: O(degree⁴) at most, once. Source: doc/rounding.md.
+ */
+CPROX_API cprox_status cprox_curve_create_lagrange(const cprox_vec3 *points, const double *nodes, size_t n_points,
+                                                   double t0, double t1, cprox_workspace *workspace,
+                                                   cprox_curve **curve);
+
 /** Frees a curve; NULL is allowed. No query may be using it. */
 CPROX_API void cprox_curve_free(cprox_curve *curve);
 
