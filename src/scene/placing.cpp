@@ -15,6 +15,9 @@ constexpr double COMPOSING = 64.0 * std::numeric_limits<double>::epsilon() / 2.0
 /* The box's own margin, per unit of length: support values, the rotation of their directions, sums. */
 constexpr double BOXING = 1e-13;
 
+/* How far the columns of a rotation may be from unit length and right angles. */
+constexpr double RIGID = 1e-9;
+
 bool isRotated(const Eigen::Isometry3d &pose) {
   return !(pose.linear() == Eigen::Matrix3d::Identity());
 }
@@ -34,6 +37,13 @@ Eigen::AlignedBox3d boxOf(const cprox_body *body, const Eigen::Isometry3d &pose,
 }
 
 } // namespace
+
+void checkPose(const Eigen::Isometry3d &pose, const std::string &who) {
+  const Eigen::Matrix3d r = pose.linear();
+  if (!pose.matrix().allFinite()) throw Error(who + " is not finite");
+  const double skew = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(skew <= RIGID) || !(r.determinant() > 0.0)) throw Error(who + " is no rotation and translation");
+}
 
 PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, const Eigen::Isometry3d &inner,
                   double padding) {

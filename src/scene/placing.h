@@ -7,6 +7,9 @@
 
 namespace curve_proximity {
 
+/* Throws Error, with `who` before the reason, for a transform that is not finite or does not keep lengths. */
+void checkPose(const Eigen::Isometry3d &pose, const std::string &who);
+
 /* The geometry at outer * inner, padded. Both poses finite, padding >= 0. Throws Error where the composed pose is not
  * finite. */
 PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, const Eigen::Isometry3d &inner,

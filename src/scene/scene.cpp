@@ -17,10 +17,6 @@ using Objects = std::map<std::string, std::shared_ptr<const SceneObject>>;
 /* APPEND's pose must be the object's own, within what a conversion of frames costs. */
 constexpr double SAME_POSE = 1e-9;
 
-void checkPose(const Eigen::Isometry3d &pose) {
-  if (!pose.matrix().allFinite()) throw Error("its pose is not finite");
-}
-
 void checkPadding(double padding) {
   if (!std::isfinite(padding) || padding < 0.0) throw Error("its padding must be finite and not below 0");
 }
@@ -34,7 +30,7 @@ void makeBodies(SceneObject &object, std::size_t first, const ResourceOptions &r
   const std::vector<ShapeDescription> &shapes = object.description.shapes;
   for (std::size_t i = first; i < shapes.size(); ++i) {
     try {
-      checkPose(shapes[i].pose);
+      checkPose(shapes[i].pose, "its pose");
       ObjectShape shape;
       shape.geometry = makeGeometry(shapes[i], resources);
       object.shapes.push_back(std::move(shape));
@@ -106,7 +102,7 @@ void applyOperation(const Operation &operation, const ResourceOptions &resources
     return;
   }
 
-  checkPose(given.pose);
+  checkPose(given.pose, "its pose");
   checkPadding(given.padding);
   switch (operation.kind) {
     case Operation::Kind::MOVE:

@@ -27,7 +27,7 @@ void checkLinks(const Names &names, const LinkPoses &poses, const Robot *robot) 
   }
   for (const auto &[name, pose] : poses) {
     if (robot->links().count(name) == 0) throw Error("robot '" + robot->name() + "' has no link '" + name + "'");
-    if (!pose.matrix().allFinite()) throw Error("the pose of link '" + name + "' is not finite");
+    checkPose(pose, "the pose of link '" + name + "'");
   }
 }
 

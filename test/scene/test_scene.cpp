@@ -135,6 +135,12 @@ TEST(Scene, bad_objects_are_refused_whole_and_by_name) {
   expectContains(refused(scene, add("x", {BOX}, translation(NAN, 0, 0))), "pose is not finite");
   expectContains(refused(scene, add("x", {shape(ShapeType::BOX, {1, 1, 1}, translation(0, INFINITY, 0))})),
                  "pose is not finite");
+  Eigen::Isometry3d mirror = Eigen::Isometry3d::Identity(), stretch = mirror;
+  mirror.linear()(0, 0) = -1.0;
+  stretch.linear() *= 1.001;
+  for (const Eigen::Isometry3d &pose : {mirror, stretch}) {
+    expectContains(refused(scene, add("x", {BOX}, pose)), "no rotation");
+  }
   for (const double padding : {-0.1, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
     expectContains(refused(scene, add("x", {BOX}, Eigen::Isometry3d::Identity(), padding)), "padding");
   }
