@@ -5,13 +5,12 @@
 #include <ros/master.h>
 #include <ros/this_node.h>
 #include <signal.h>
-#include <sys/resource.h>
 
 #include <chrono>
-#include <cstdio>
 #include <exception>
 #include <thread>
 
+#include "memory_limit.h"
 #include "parameters.h"
 #include "server.h"
 
@@ -32,17 +31,6 @@ void catchSignals() {
   action.sa_handler = onSignal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-}
-
-/** roscpp resizes vectors to whatever count a request claims; under a limit that fails one call instead of taking the
- *  machine's memory. */
-void limitMemory(int megabytes) {
-  if (megabytes == 0) return;
-  rlimit limit = {};
-  if (getrlimit(RLIMIT_AS, &limit) != 0) return;
-  limit.rlim_cur = static_cast<rlim_t>(megabytes) << 20;
-  if (setrlimit(RLIMIT_AS, &limit) != 0)
-    throw curve_proximity::ParameterError("parameter ~memory_limit_mb: the system refuses this limit");
 }
 
 /** Asks the master now and then whether it still knows this node. */
@@ -88,7 +76,7 @@ int main(int argc, char **argv) {
   int code = EXIT_WRONG;
   try {
     const curve_proximity::Parameters parameters = curve_proximity::readParameters(handle);
-    limitMemory(parameters.memory_limit_mb);
+    curve_proximity::limitMemory(parameters.memory_limit_mb);
     const curve_proximity::ProximityServer server(handle, parameters);
     code = serve();
   } catch (const std::exception &error) {
