@@ -16,11 +16,13 @@ install(TARGETS cprox EXPORT cproxTargets LIBRARY DESTINATION ${CPROX_LIB_DIR} A
 install(EXPORT cproxTargets NAMESPACE cprox:: DESTINATION ${CPROX_LIB_DIR}/cmake/cprox)
 configure_file(cmake/cproxConfig.cmake.in ${PROJECT_BINARY_DIR}/cproxConfig.cmake COPYONLY)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cproxConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+#catkin_lint: ignore_once missing_file wrong_install_destination
 install(FILES ${PROJECT_BINARY_DIR}/cproxConfig.cmake ${PROJECT_BINARY_DIR}/cproxConfigVersion.cmake
         DESTINATION ${CPROX_LIB_DIR}/cmake/cprox)
 file(RELATIVE_PATH CPROX_PC_PREFIX /${CPROX_LIB_DIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" CPROX_PC_PREFIX "${CPROX_PC_PREFIX}")
 configure_file(cmake/cprox.pc.in ${PROJECT_BINARY_DIR}/cprox.pc @ONLY)
+#catkin_lint: ignore_once wrong_install_destination
 install(FILES ${PROJECT_BINARY_DIR}/cprox.pc DESTINATION ${CPROX_LIB_DIR}/pkgconfig)
 
 install(DIRECTORY include/curve_proximity/ DESTINATION include/curve_proximity FILES_MATCHING PATTERN "*.h")

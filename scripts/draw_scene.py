@@ -127,13 +127,16 @@ def link_poses(urdf_root, positions):
                 waiting.append(joint)
                 continue
             origin = joint.find('origin')
-            read = (lambda key: [float(x) for x in origin.get(key, '0 0 0').split()]) if origin is not None else (lambda _: [0.0] * 3)
-            step = transform(rotation_from_rpy(read('rpy')), read('xyz'))
+            written = {} if origin is None else origin.attrib
+            rpy, xyz = ([float(x) for x in written.get(key, '0 0 0').split()] for key in ('rpy', 'xyz'))
+            step = transform(rotation_from_rpy(rpy), xyz)
             value = positions.get(joint.get('name'), 0.0)
             if joint.get('type') in ('revolute', 'continuous', 'prismatic'):
                 axis = np.array([float(x) for x in joint.find('axis').get('xyz').split()])
-                slides = joint.get('type') == 'prismatic'
-                step = step @ (transform(np.eye(3), value * axis) if slides else transform(rotation_about(axis, value), np.zeros(3)))
+                if joint.get('type') == 'prismatic':
+                    step = step @ transform(np.eye(3), value * axis)
+                else:
+                    step = step @ transform(rotation_about(axis, value), np.zeros(3))
             poses[joint.find('child').get('link')] = poses[parent] @ step
         joints = waiting
     return poses
@@ -144,7 +147,8 @@ def robot_faces(urdf_path, positions):
     poses = link_poses(root, positions)
     for link in root.findall('link'):
         for mesh in link.iterfind('collision/geometry/mesh'):
-            yield moved(mesh_faces(os.path.join(os.path.dirname(urdf_path), mesh.get('filename'))), poses[link.get('name')])
+            path = os.path.join(os.path.dirname(urdf_path), mesh.get('filename'))
+            yield moved(mesh_faces(path), poses[link.get('name')])
 
 
 def bspline_points(control, degree, knots, parameters):
@@ -187,7 +191,8 @@ def frame(axes, low, high, zoom):
 
 
 def draw(out, scene_path, urdf_path, positions, centre_line, radius, clearance, closest, title):
-    """centre_line: n+1 samples; clearance: n values [m], one for each gap between them; closest: {a, b, name, distance}."""
+    """centre_line: n+1 samples; clearance: n values [m], one for each gap between them; closest: the pair as a dictionary
+    of points a and b, name, t, distance."""
     colour_of = Normalize(0.0, 1e3 * max(clearance))
     boards, solids = [], []
     for name, kind, faces in scene_faces(scene_path):
@@ -210,7 +215,7 @@ def draw(out, scene_path, urdf_path, positions, centre_line, radius, clearance, 
 
     # The closest pair, enlarged, along the direction in which the gap is seen at its full width.
     middle, gap = (np.add(closest['a'], closest['b'])) / 2, np.subtract(closest['a'], closest['b'])
-    reach = 0.085
+    reach = 0.1
     near = [(face, colour) for face, colour in solids if np.linalg.norm(face.mean(axis=0) - middle) < reach]
     lens = figure.add_axes([0.70, 0.29, 0.31, 0.46], projection='3d', computed_zorder=False)
     paint(lens, [], near, closest)
@@ -218,9 +223,9 @@ def draw(out, scene_path, urdf_path, positions, centre_line, radius, clearance, 
     lens.view_init(elev=18, azim=math.degrees(math.atan2(gap[1], gap[0])) - 90)
 
     # Words, and what the colours mean.
-    figure.text(0.715, 0.90, title, fontsize=15, color=INK, weight='bold', va='top', linespacing=1.3)
-    figure.text(0.715, 0.255, f"closest to {closest['name']}:\n{1e3 * closest['distance']:.3f} mm at t = {closest['t']:.4f}",
-                fontsize=13, color=CLOSEST, weight='bold', va='top', linespacing=1.4)
+    figure.text(0.715, 0.90, title, fontsize=14, color=INK, weight='bold', va='top', linespacing=1.3)
+    words = f"closest to {closest['name']}:\n{1e3 * closest['distance']:.3f} mm at t = {closest['t']:.4f}"
+    figure.text(0.715, 0.255, words, fontsize=13, color=CLOSEST, weight='bold', va='top', linespacing=1.4)
     bar_axes = figure.add_axes([0.715, 0.11, 0.25, 0.022])
     bar = figure.colorbar(matplotlib.cm.ScalarMappable(colour_of, CLEARANCE), cax=bar_axes, orientation='horizontal')
     bar.outline.set_visible(False)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the test groups, counts every case of every runner, and prints a table whose last line is the sum.
 
-Called by scripts/test, which has set up and built. A runner that ends without a result counts as one failed case, and so
-does a case that was skipped: a missing thing is a failure.
+Called by scripts/test, which has set up and built. A runner that ends without a result counts as one failed case, and
+so does a case that was skipped: a missing thing is a failure.
 """
 import argparse
 import glob
@@ -36,7 +36,8 @@ def count_cmocka(output, code, name):
     """Counts the cases of one cmocka program from its lines; what was announced and did not end well has failed."""
     announced = sum(int(n) for n in re.findall(r'^\[=+\] (?:[^:\n]+: )?Running (\d+) test', output, re.M))
     passed = len(re.findall(r'^\[ +OK \]', output, re.M))
-    failures = [f'{name}: {case}' for case in re.findall(r'^\[ +(?:FAILED|SKIPPED) +\] (?:[^:\n]+: )?([A-Za-z_]\w*)$', output, re.M)]
+    bad = re.findall(r'^\[ +(?:FAILED|SKIPPED) +\] (?:[^:\n]+: )?([A-Za-z_]\w*)$', output, re.M)
+    failures = [f'{name}: {case}' for case in bad]
     failed = announced - passed
     if announced == 0 or (code != 0 and failed == 0):
         failed, failures = failed + 1, failures + [f'{name}: exit code {code}']
@@ -63,7 +64,7 @@ def count_junit(path, code, name):
         cases = []
     count = Count()
     for case in cases:
-        bad = any(case.find(tag) is not None for tag in ('failure', 'error', 'skipped')) or case.get('status') == 'notrun'
+        bad = case.get('status') == 'notrun' or any(case.find(tag) is not None for tag in ('failure', 'error', 'skipped'))
         title = f"{name}: {case.get('classname')}.{case.get('name')}"
         count += Count(0, 1, [title]) if bad else Count(1)
     if not cases or (code != 0 and count.failed == 0):
@@ -212,7 +213,8 @@ def tidy():
     if build is None:
         return Count(0, 1, ['clang-tidy: the core does not build'])
     files = [path for path in sources('src/core') if path.endswith('.c')]
-    return run_one(['xargs', '-a', write_list(files), '-P2', '-n4', 'clang-tidy', '--quiet', '-p', build], 'clang-tidy', count_exit)
+    command = ['xargs', '-a', write_list(files), '-P2', '-n4', 'clang-tidy', '--quiet', '-p', build]
+    return run_one(command, 'clang-tidy', count_exit)
 
 
 def write_list(files):

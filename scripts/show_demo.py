@@ -18,10 +18,12 @@ NODE = '/curve_proximity'
 ROBOT = os.path.join(REPO, 'test/data/robots/panda/panda.urdf')
 SCENE = os.path.join(REPO, 'test/data/scenes/mbm/bookshelf_tall_panda/scene0001.yaml')
 
-# A ball of 2 cm radius, say the tip of a tool, along a cubic B-spline: into the middle shelf, round Can7, out past Can9.
+# A ball of 2 cm radius, say the tip of a tool, along a cubic B-spline: into the shelf, round Can7, out past Can9. The
+# same as examples/tool.csv.
 RADIUS, DEGREE, TOLERANCE, PIECES = 0.02, 3, 0.010, 72
-CONTROL = [[-0.375, 0.344, 0.62], [-0.286, 0.412, 0.56], [0.02, 0.631, 0.47], [0.195, 0.901, 0.43], [0.375, 1.147, 0.42],
-           [0.671, 0.967, 0.43], [0.61, 0.656, 0.45], [0.398, 0.448, 0.45], [0.208, 0.284, 0.36], [-0.038, 0.236, 0.3]]
+CONTROL = [[-0.375, 0.344, 0.62], [-0.286, 0.412, 0.56], [0.02, 0.631, 0.47], [0.195, 0.901, 0.43],
+           [0.375, 1.147, 0.42], [0.671, 0.967, 0.43], [0.61, 0.656, 0.45], [0.398, 0.448, 0.45], [0.208, 0.284, 0.36],
+           [-0.038, 0.236, 0.3]]
 KNOTS = [0.0] * DEGREE + list(np.linspace(0.0, 1.0, len(CONTROL) - DEGREE + 1)) + [1.0] * DEGREE
 
 # The arm waiting in front of the shelf, and reaching into it (start and goal of the scene's planning problem).
@@ -60,9 +62,10 @@ class Programs:
     def start(self, name, *command):
         log = os.path.join(LOGS, f'demo-{name}.log')
         with open(log, 'w') as out:
-            self.running.append(subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT,
-                                                 start_new_session=True))
-        return self.running[-1], log
+            process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT,
+                                       start_new_session=True)
+        self.running.append(process)
+        return process, log
 
 
 def wait_for(question, process, log, seconds):
@@ -84,21 +87,27 @@ def free_port():
 
 # -------------------------------------------------------------------------------------------------------------- asking
 def run(*command, seconds=60):
-    done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=seconds,
-                          universal_newlines=True)
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          timeout=seconds, universal_newlines=True)
     if done.returncode != 0:
         raise Failure(f"{' '.join(command[:3])}: {(done.stderr or done.stdout).strip()}")
     return done.stdout
 
 
 def serving():
-    listed = subprocess.run(['rosservice', 'list', NODE], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True)
-    return f'{NODE}/distance' in listed.stdout
+    listed = subprocess.run(['rosservice', 'list', NODE], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    return f'{NODE}/distance'.encode() in listed.stdout
+
+
+def master_answers():
+    quiet = {'stdout': subprocess.DEVNULL, 'stderr': subprocess.DEVNULL}
+    return subprocess.call(['rosparam', 'get', '/run_id'], **quiet) == 0
 
 
 def ask(verb, **request):
     """Calls a service of the node with rosservice, and returns its results."""
-    answer = yaml.safe_load(run('rosservice', 'call', f'{NODE}/{verb}', yaml.safe_dump(request, default_flow_style=True, width=1e9)))
+    text = yaml.safe_dump(request, default_flow_style=True, width=1e9)
+    answer = yaml.safe_load(run('rosservice', 'call', f'{NODE}/{verb}', text))
     if not answer['success']:
         raise Failure(f"{verb}: {answer['message']}")
     return answer['results']
@@ -129,15 +138,16 @@ def ask_and_tell():
 
     print('\n1. How close does the tool come to anything?   rosservice call ~distance')
     near, = ask('distance', curves=[tool_path()], joint_state=waiting, epsilon=1e-6)
-    lower, upper = float(near['lower']), float(near['upper'])
-    print(f"   Between {1e3 * lower:.4f} and {1e3 * upper:.4f} mm: to {near['b']}, at t = {float(near['t']):.4f} of the path.\n"
-          f"   The tool's surface is then at {at(near['point_a'])}, the surface of {near['b']} at {at(near['point_b'])}.\n"
-          f"   Certified after {near['nodes']} intervals in {float(near['microseconds']):.0f} microseconds; nothing was sampled.")
+    lower, upper, microseconds = (float(near[key]) for key in ('lower', 'upper', 'microseconds'))
+    print(f"   {1e3 * upper:.6f} mm, to {near['b']}, at t = {float(near['t']):.4f} of the path.\n"
+          f"   The tool's surface is then at {at(near['point_a'])}, that of {near['b']} at {at(near['point_b'])}.\n"
+          f"   Certified: the true distance is at most {1e3 * (upper - lower):.1g} mm less, and no more. "
+          f"It took {near['nodes']} intervals, {microseconds:.0f} microseconds.")
 
     print(f'\n2. Does it stay more than {1e3 * TOLERANCE:.0f} mm clear of everything?   rosservice call ~tolerance')
     clear, = ask('tolerance', curves=[tool_path()], joint_state=waiting, delta=TOLERANCE)
     print('   ' + {'yes': 'Yes, everywhere along the path', 'no': f"No: {clear['b']} is closer at t = {float(clear['t']):.4f}"}
-          .get(clear['verdict'], 'Undecided, which counts as no') + f", after {clear['nodes']} intervals.")
+          .get(clear['verdict'], 'Undecided, which counts as no') + f": {clear['nodes']} intervals settle it.")
 
     print('\n3. And while the arm reaches into the shelf: does the tool hit it?   rosservice call ~collision')
     hit, = ask('collision', curves=[tool_path()], joint_state=reaching)
@@ -149,13 +159,14 @@ def ask_and_tell():
 def picture(out, near):
     """Draws the scene; the tool is coloured piece by piece, each piece asked for as a curve of its own."""
     ends = np.linspace(0.0, 1.0, PIECES + 1)
-    pieces = ask('distance', curves=[tool_path(a, b) for a, b in zip(ends, ends[1:])], joint_state=posture(WAITING), epsilon=1e-4)
+    curves = [tool_path(a, b) for a, b in zip(ends, ends[1:])]
+    pieces = ask('distance', curves=curves, joint_state=posture(WAITING), epsilon=1e-4)
     draw_scene.draw(
         out, SCENE, ROBOT, dict(zip(JOINTS, WAITING)), draw_scene.bspline_points(CONTROL, DEGREE, KNOTS, ends), RADIUS,
         [float(piece['lower']) for piece in pieces],
         {'a': point(near['point_a']), 'b': point(near['point_b']), 'name': near['b'], 't': float(near['t']),
          'distance': float(near['lower'])},
-        f'A tool of {100 * RADIUS:.0f} cm radius on its way\nthrough a shelf, past a Panda')
+        f'A tool of {100 * RADIUS:.0f} cm radius\nthrough a shelf, past a Panda')
 
 
 def main(out):
@@ -163,8 +174,7 @@ def main(out):
     with Programs() as programs:
         print('starting roscore and the node, with a Panda in front of a bookshelf of nine cans')
         core, log = programs.start('roscore', 'roscore', '-p', os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1])
-        wait_for(lambda: subprocess.call(['rosparam', 'get', '/run_id'], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) == 0,
-                 core, log, 30)
+        wait_for(master_answers, core, log, 30)
         launch, log = programs.start('node', 'roslaunch', '--wait', 'curve_proximity', 'demo.launch', 'rviz:=false')
         wait_for(serving, launch, log, 60)
         run('cprox', 'send', SCENE, '--node', NODE)
