@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""demo.launch as it is: the Panda by robot_state_publisher, parameters from config/defaults.yaml, markers."""
+import unittest
+
+import rospy
+from helpers import Server, bezier, box, joints, run, until
+from visualization_msgs.msg import Marker, MarkerArray
+
+READY = dict(panda_joint1=0.0, panda_joint2=-0.785, panda_joint3=0.0, panda_joint4=-2.356, panda_joint5=0.0,
+             panda_joint6=1.571, panda_joint7=0.785, panda_finger_joint1=0.035)  # what demo.launch publishes
+LINE = bezier((0.9, -0.5, 0.3), (0.9, 0.0, 0.8), (0.9, 0.5, 0.3), id='pass')
+
+
+class Demo(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+        cls.server.replace(box('table', (1, 2, 0.1), (0.9, 0, -0.05)))
+        # robot_state_publisher needs a moment
+        until(lambda: cls.server.distance(LINE).success, 20)
+
+    def test_the_pandas_links_are_measured_by_tf2_and_by_joints_alike(self):
+        by_tf2 = self.server.distance(LINE, per_object=True)
+        by_joints = self.server.distance(LINE, per_object=True, joint_state=joints(**READY))
+        self.assertTrue(by_tf2.success and by_joints.success, by_tf2.message + by_joints.message)
+        self.assertEqual([r.b for r in by_tf2.results], [r.b for r in by_joints.results])
+        self.assertEqual(len(by_tf2.results), 12)  # the table and eleven links with geometry
+        for a, b in zip(by_tf2.results, by_joints.results):
+            self.assertAlmostEqual(a.upper, b.upper, delta=1e-5)
+            if a.b.startswith('panda_'):
+                self.assertEqual(a.rung, 'hull')
+        nearest = min(by_tf2.results, key=lambda r: r.upper)
+        one = self.server.distance(LINE).results[0]
+        self.assertEqual(one.b, nearest.b)
+        self.assertAlmostEqual(one.upper, nearest.upper, delta=3e-6)
+
+    def test_markers_show_curve_closest_pair_scene_and_robot(self):
+        self.assertTrue(self.server.distance(LINE).success)
+        received = []
+        subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, received.append)
+        # latched: the last query is shown to whoever comes later
+        kinds = until(lambda: received and {m.ns for m in received[-1].markers if m.action == Marker.ADD}, 10)
+        subscriber.unregister()
+        self.assertEqual(kinds, {'scene', 'robot', 'curves', 'pairs', 'labels'})
+        curve, = [m for m in received[-1].markers if m.ns == 'curves']
+        self.assertEqual(len(curve.points), len(curve.colors))
+        self.assertGreater(len(curve.points), 10)
+        self.assertEqual({m.header.frame_id for m in received[-1].markers}, {'world'})
+
+
+if __name__ == '__main__':
+    run('demo')
