@@ -196,7 +196,8 @@ static void the_normal_proves_the_distance_of_a_large_polytope(void **state) {
       convex_near near;
       shape->ops->nearest(shape, y, &hint, &near);
       const double reach = vec_norm(y) + shape->scale, gap = check_certificate(shape, y, &near);
-      if (near.distance <= 32.0 * ROUND_U * reach) continue; /* inside, or not to be told from it */
+      if (near.distance <= shape->ops->near_rounding * ROUND_U * reach)
+        continue; /* inside, or not to be told from it */
       if (!(gap <= 64.0 * ROUND_U * reach && gap >= -64.0 * ROUND_U * reach))
         fail_at("gap", shape, y, gap, 0, 64.0 * ROUND_U * reach);
       worst = fmax(worst, gap / (ROUND_U * reach));

@@ -91,6 +91,14 @@ static bool face_is_degenerate(const face *f) {
   return !(f->length > f->noise);
 }
 
+/* Of three vertices the one nearest to 0. */
+static vec3 nearest_of(const simplex *s, const int index[3]) {
+  vec3 nearest = s->vertex[index[0]].w;
+  for (int m = 1; m < 3; m++)
+    if (vec_norm2(s->vertex[index[m]].w) < vec_norm2(nearest)) nearest = s->vertex[index[m]].w;
+  return nearest;
+}
+
 static void try_triangle(candidate *best, const simplex *s, int i, int j, int k) {
   const int index[3] = {i, j, k};
   const face f = face_of(s, index);
@@ -100,8 +108,9 @@ static void try_triangle(candidate *best, const simplex *s, int i, int j, int k)
     return;
   }
 
-  /* areas of the triangles that the foot of 0 makes with the edges, each opposite a vertex */
-  const vec3 foot = vec_scale(vec_dot(f.normal, s->vertex[f.corner].w) / area2, f.normal);
+  /* areas of the triangles that the foot of 0 makes with the edges, each opposite a vertex; the foot is measured from the
+   * nearest vertex, so that beside a vertex it is exact to what it is away from it */
+  const vec3 foot = vec_scale(vec_dot(f.normal, nearest_of(s, index)) / area2, f.normal);
   vec3 to[3];
   for (int m = 0; m < 3; m++) to[m] = vec_sub(s->vertex[index[m]].w, foot);
   double area[3];
@@ -135,12 +144,13 @@ static face_side tetrahedron_side(const simplex *s, int i, double *depth, double
   const vec3 corner = s->vertex[f.corner].w, apex = vec_sub(s->vertex[i].w, corner);
   const double side = vec_dot(f.normal, apex), origin = -vec_dot(f.normal, corner);
 
-  const double doubt =
-      2.0 * f.noise + 4.0 * ROUND_U * f.length; /* of a product with the normal, per unit of the vector */
+  /* of a product with the normal, per unit of the vector */
+  const double doubt = 2.0 * f.noise + 4.0 * ROUND_U * f.length;
   if (face_is_degenerate(&f) || !(fabs(side) > doubt * vec_norm(apex))) return FACE_UNCLEAR;
   *weight = origin / side;
-  *depth = ((side > 0.0 ? origin : -origin) - doubt * vec_norm(corner)) / f.length;
-  return *depth > 0.0 ? FACE_INNER : FACE_OUTER;
+  const double inner = side > 0.0 ? origin : -origin, noise = doubt * vec_norm(corner);
+  *depth = (inner - noise) / f.length;
+  return inner > noise ? FACE_INNER : inner < -noise ? FACE_OUTER : FACE_UNCLEAR;
 }
 
 /* True where 0 is proven inside; else the faces that it may be beyond are tried. */
@@ -188,8 +198,9 @@ static vec3 feature_normal(const simplex *s, vec3 v) {
     const vec3 a = s->vertex[0].w, b = s->vertex[1].w;
     v = across_edge(vec_norm2(a) < vec_norm2(b) ? a : b, vec_sub(b, a));
   } else if (s->n == 3) {
-    const face f = face_of(s, (int[3]){0, 1, 2});
-    const double along = vec_dot(f.normal, s->vertex[f.corner].w);
+    const int index[3] = {0, 1, 2};
+    const face f = face_of(s, index);
+    const double along = vec_dot(f.normal, nearest_of(s, index));
     v = along > 0.0 ? f.normal : along < 0.0 ? vec_neg(f.normal) : vec(0, 0, 0);
   }
   feature_unit(v, &unit);
