@@ -237,7 +237,7 @@ static void questions_outside_the_range_are_refused(void **state) {
 static void memory_that_is_out_leaks_nothing(void **state) {
   (void)state;
   cprox_curve_free(NULL);
-  for (int kind = 0; kind < 6; kind++) {
+  for (int kind = 0; kind < 7; kind++) {
     const size_t live = allocations_live();
     cprox_status status = CPROX_MEMORY;
     size_t successes = 0;
@@ -249,6 +249,7 @@ static void memory_that_is_out_leaks_nothing(void **state) {
                : kind == 2 ? cprox_curve_create_polynomial(good.points, 5, 0, 1, workspace, &curve)
                : kind == 3 ? cprox_curve_create_legendre(good.points, 5, 0, 1, workspace, &curve)
                : kind == 4 ? cprox_curve_create_lagrange(good.points, good.knots + 2, 4, 0, 1, workspace, &curve)
+               : kind == 5 ? cprox_curve_create_trigonometric(good.points, 5, 0, 1, workspace, &curve)
                            : cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, &curve);
       allocations_allow();
       if (status == CPROX_OK) {

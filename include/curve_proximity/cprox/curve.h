@@ -83,6 +83,21 @@ CPROX_API cprox_status cprox_curve_create_lagrange(const cprox_vec3 *points, con
                                                    double t0, double t1, cprox_workspace *workspace,
                                                    cprox_curve **curve);
 
+/** A trigonometric series: psi(t) = c[0] + sum over k of c[2k-1] cos(kt) + c[2k] sin(kt), t in [t0, t1], radians.
+ *
+ *  coefficients  [m] constant, cos t, sin t, cos 2t, sin 2t, …; n_coefficients = 2 degree + 1 of them, degree
+ *                1 … CPROX_MAX_DEGREE, finite; those of cos and sin no longer than 1e75 m.
+ *  t0 < t1       finite; any number of turns. Ranges that would need more than 65536 pieces are refused.
+ *
+ *  Compiled once to quintic pieces whose remainder, K6 h⁶/46080, is about 1e-13 of the size of the terms (the rounding of
+ *  the constant, where that is larger). It is part of cprox_curve_error(), and every interval answered carries it: ε
+ *  below it ends with CPROX_PRECISION. A circle takes 155 pieces. The accuracy rests on cos() and sin() that are within
+ *  2^-52. Cost: O(pieces degree) once. Source: doc/rounding.md, "Other bases".
+ */
+CPROX_API cprox_status cprox_curve_create_trigonometric(const cprox_vec3 *coefficients, size_t n_coefficients,
+                                                        double t0, double t1, cprox_workspace *workspace,
+                                                        cprox_curve **curve);
+
 /** Frees a curve; NULL is allowed. No query may be using it. */
 CPROX_API void cprox_curve_free(cprox_curve *curve);
 
