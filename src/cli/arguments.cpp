@@ -243,12 +243,14 @@ cprox collision            (as above)   yes: they touch or overlap somewhere
 cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodies
 cprox send      SCENE.yaml [--node NAME] hands a scene file to a running node
 
-  --curves FILE     one curve a row: id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knots]; basis bezier or bspline;
-                    lines that begin with # are skipped
+  --curves FILE     one curve a row: id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knots]; basis bezier, bspline,
+                    polynomial, legendre, lagrange (nodes for knots) or trigonometric; lines that begin with # are
+                    skipped
   --scene FILE      moveit_msgs/PlanningScene as YAML; may be left out where there is a robot
   --robot FILE      a URDF: its links are objects, too; meshes count as their convex hulls
   --srdf FILE       names the frame in which the robot stands (its virtual joint's parent_frame)
   --state TEXT      joint values in radians or metres; others as in the scene's robot_state, else 0
+                    (mid-range where 0 is beyond the limits)
   --in FILE         a list of {id, a: BODY, b: BODY}
   --epsilon E       width of the intervals asked for, metres, above 0 (default 1e-06)
   --delta D         the clearance asked of 'tolerance', metres

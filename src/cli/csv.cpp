@@ -66,10 +66,17 @@ std::size_t knotsNeeded(const CurveDescription &curve, std::size_t n) {
     }
     return n + curve.degree + 1;
   }
-  for (const char *later : {"polynomial", "legendre", "lagrange", "trigonometric"}) {
-    if (curve.basis == later) throw BadInput("basis '" + curve.basis + "' is not available in this version");
+  const bool trigonometric = curve.basis == "trigonometric", lagrange = curve.basis == "lagrange";
+  if (!trigonometric && !lagrange && curve.basis != "polynomial" && curve.basis != "legendre") {
+    throw BadInput("column 2 (basis) is " + shown(curve.basis) +
+                   "; it must be bezier, bspline, polynomial, legendre, lagrange or trigonometric");
   }
-  throw BadInput("column 2 (basis) is " + shown(curve.basis) + "; it must be bezier or bspline");
+  const std::size_t needed = trigonometric ? 2 * curve.degree + 1 : curve.degree + 1;
+  if (n != needed) {
+    throw BadInput("a " + curve.basis + " curve of degree " + std::to_string(curve.degree) + " has " +
+                   std::to_string(needed) + " points; n is " + std::to_string(n));
+  }
+  return lagrange ? n : 0;
 }
 
 } // namespace

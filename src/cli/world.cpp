@@ -12,15 +12,43 @@
 namespace curve_proximity::cli {
 namespace {
 
+/* The robot, and where its links are at the scene's robot_state (which frames speak of) and at the state asked for. */
+struct PlacedRobot {
+  std::shared_ptr<const Robot> robot; /* null: there is none */
+  std::set<std::string> fixed;        /* names that the fixed frame has because of it */
+  LinkPoses links_of_scene, links_now;
+};
+
 /* The scene's robot_state, without the joints that this robot does not have. */
 JointPositions stateOfScene(const SceneFile &file, const Robot &robot, Warnings &warnings) {
   JointPositions out;
+  std::string others;
   for (const auto &[joint, value] : file.joints) {
     if (robot.hasJoint(joint)) {
       out.emplace(joint, value);
     } else {
-      warnings.add("robot_state: '" + joint + "' is no joint of the robot; it is ignored");
+      others += (others.empty() ? "'" : ", '") + joint + "'";
     }
+  }
+  if (!others.empty()) warnings.add("robot_state: the robot has no joint " + others + "; ignored");
+  return out;
+}
+
+PlacedRobot placeRobot(const Arguments &arguments, const SceneFile &file, Warnings &warnings) {
+  PlacedRobot out;
+  if (arguments.robot.empty()) return out;
+  out.robot = readRobot(arguments.robot);
+  out.fixed.insert(out.robot->rootLink());
+  if (!arguments.srdf.empty()) out.fixed.insert(readParentFrame(arguments.srdf));
+
+  JointPositions joints = stateOfScene(file, *out.robot, warnings);
+  const JointPositions asked = readState(arguments.state, *out.robot);
+  try {
+    out.links_of_scene = out.robot->linkPoses(joints);
+    for (const auto &[joint, value] : asked) joints[joint] = value;
+    out.links_now = out.robot->linkPoses(joints);
+  } catch (const Error &e) {
+    throw BadUsage(arguments.robot + ": " + e.what());
   }
   return out;
 }
@@ -42,12 +70,11 @@ Operation toFixed(Operation operation, const Frames &frames) {
 
 /* An object that the robot carries moves with its link, from where the scene's robot_state has the link to where it is
  * now. */
-Operation toFixed(const AttachedObject &attached, const Frames &frames, const LinkPoses &links_of_scene,
-                  const LinkPoses &links_now) {
+Operation toFixed(const AttachedObject &attached, const Frames &frames, const PlacedRobot &robot) {
   Operation operation = toFixed(Operation{Operation::Kind::ADD, attached.object}, frames);
-  if (links_now.empty()) return operation;
-  const auto before = links_of_scene.find(attached.link), now = links_now.find(attached.link);
-  if (before == links_of_scene.end() || now == links_now.end()) {
+  if (!robot.robot) return operation;
+  const auto before = robot.links_of_scene.find(attached.link), now = robot.links_now.find(attached.link);
+  if (before == robot.links_of_scene.end() || now == robot.links_now.end()) {
     throw BadUsage("object '" + attached.object.id + "' is attached to '" + attached.link +
                    "', which is no link of the robot");
   }
@@ -60,7 +87,9 @@ void warnOfReplaced(const std::vector<Operation> &operations, Warnings &warnings
   std::set<std::string> there;
   for (const Operation &operation : operations) {
     const std::string &id = operation.object.id;
-    if (operation.kind == Operation::Kind::REMOVE) {
+    if (operation.kind == Operation::Kind::REMOVE && id.empty()) {
+      there.clear();
+    } else if (operation.kind == Operation::Kind::REMOVE) {
       there.erase(id);
     } else if (operation.kind == Operation::Kind::ADD && !there.insert(id).second) {
       warnings.add("object '" + id + "' comes twice; the later one replaces the earlier");
@@ -68,36 +97,33 @@ void warnOfReplaced(const std::vector<Operation> &operations, Warnings &warnings
   }
 }
 
-SceneFile readSceneOf(const Arguments &arguments, Warnings &warnings) {
-  return arguments.scene.empty() ? SceneFile() : readScene(arguments.scene, warnings);
-}
-
 /* All that the file says, in the fixed frame. */
-SceneChange changeOf(const SceneFile &file, const Frames &frames, const LinkPoses &links_of_scene,
-                     const LinkPoses &links_now, Warnings &warnings) {
+SceneChange changeOf(const SceneFile &file, const Frames &frames, const PlacedRobot &robot, Warnings &warnings) {
   SceneChange change;
   for (const Operation &operation : file.operations) change.operations.push_back(toFixed(operation, frames));
   for (const AttachedObject &attached : file.attached) {
-    change.operations.push_back(toFixed(attached, frames, links_of_scene, links_now));
+    change.operations.push_back(toFixed(attached, frames, robot));
   }
   warnOfReplaced(change.operations, warnings);
 
   /* without a robot there are no links to be padded */
-  if (!links_now.empty()) change.link_padding = file.link_padding;
+  if (robot.robot) change.link_padding = file.link_padding;
   change.allowed = file.allowed;
   return change;
 }
 
-void apply(Scene &scene, const SceneChange &change, const std::string &path) {
+void apply(Scene &scene, const SceneChange &change) {
   const std::vector<std::string> faults = scene.apply(change);
   if (faults.empty()) return;
   const std::string more = faults.size() > 1 ? " (and " + std::to_string(faults.size() - 1) + " more)" : "";
-  throw BadUsage(path + ": " + faults.front() + more);
+  throw BadUsage(faults.front() + more);
 }
 
-std::vector<std::string> linksWithoutGeometry(const Robot &robot) {
-  std::vector<std::string> out;
-  for (const auto &[link, geometry] : robot.links()) {
+/* What takes no part: what the file holds in vain, and links that nothing can come close to. */
+std::vector<std::string> skippedOf(const SceneFile &file, const PlacedRobot &robot) {
+  std::vector<std::string> out = file.skipped;
+  if (!robot.robot) return out;
+  for (const auto &[link, geometry] : robot.robot->links()) {
     if (geometry.empty()) out.push_back("link '" + link + "': it has no collision geometry");
   }
   return out;
@@ -106,44 +132,21 @@ std::vector<std::string> linksWithoutGeometry(const Robot &robot) {
 } // namespace
 
 World readWorld(const Arguments &arguments, Warnings &warnings) {
-  World world;
-  const SceneFile file = readSceneOf(arguments, warnings);
-  world.skipped = file.skipped;
+  const SceneFile file = arguments.scene.empty() ? SceneFile() : readScene(arguments.scene, warnings);
+  const PlacedRobot robot = placeRobot(arguments, file, warnings);
+  const Frames frames(robot.fixed, file.transforms, robot.links_of_scene, warnings);
 
-  /* the robot, at the scene's state (which frames speak of) and at the state asked for */
-  std::shared_ptr<const Robot> robot;
-  std::set<std::string> fixed;
-  LinkPoses links_of_scene;
-  if (!arguments.robot.empty()) {
-    robot = readRobot(arguments.robot);
-    fixed.insert(robot->rootLink());
-    if (!arguments.srdf.empty()) fixed.insert(readParentFrame(arguments.srdf));
-    JointPositions joints = stateOfScene(file, *robot, warnings);
-    const JointPositions asked = readState(arguments.state, *robot);
-    try {
-      links_of_scene = robot->linkPoses(joints);
-      for (const auto &[joint, value] : asked) joints[joint] = value;
-      world.links = robot->linkPoses(joints);
-    } catch (const Error &e) {
-      throw BadUsage(arguments.robot + ": " + e.what());
-    }
-    const std::vector<std::string> bare = linksWithoutGeometry(*robot);
-    world.skipped.insert(world.skipped.end(), bare.begin(), bare.end());
-  }
-
-  const Frames frames(fixed, file.transforms, links_of_scene, warnings);
+  /* mesh files of the scene are relative to its folder */
   ResourceOptions resources;
   resources.base_dir = folderOf(arguments.scene);
   resources.find_package = packageFinder(resources.base_dir);
-  Scene scene(robot, resources);
+  Scene scene(robot.robot, resources);
   try {
-    apply(scene, changeOf(file, frames, links_of_scene, world.links, warnings), arguments.scene);
+    apply(scene, changeOf(file, frames, robot, warnings));
   } catch (const BadUsage &e) {
-    const std::string what = e.what();
-    throw BadUsage(what.rfind(arguments.scene, 0) == 0 ? what : arguments.scene + ": " + what);
+    throw BadUsage(arguments.scene + ": " + e.what());
   }
-  world.snapshot = scene.snapshot();
-  return world;
+  return {scene.snapshot(), robot.links_now, skippedOf(file, robot)};
 }
 
 } // namespace curve_proximity::cli
