@@ -134,6 +134,10 @@ CPROX_API cprox_status cprox_curve_control_points(const cprox_curve *curve, doub
 /** An axis-aligned box that contains the curve, rounding included. */
 CPROX_API void cprox_curve_bounds(const cprox_curve *curve, cprox_vec3 *lowest, cprox_vec3 *highest);
 
+/** The same of one polynomial piece, 0 <= piece < cprox_curve_pieces(); pieces are in the order of the parameter. */
+CPROX_API void cprox_curve_piece_bounds(const cprox_curve *curve, size_t piece, cprox_vec3 *lowest,
+                                        cprox_vec3 *highest);
+
 #ifdef __cplusplus
 }
 #endif

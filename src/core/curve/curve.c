@@ -318,22 +318,30 @@ double cprox_curve_error(const cprox_curve *curve) {
   return largest;
 }
 
-void cprox_curve_bounds(const cprox_curve *curve, cprox_vec3 *lowest, cprox_vec3 *highest) {
+void cprox_curve_piece_bounds(const cprox_curve *curve, size_t piece, cprox_vec3 *lowest, cprox_vec3 *highest) {
   *lowest = vec(INFINITY, INFINITY, INFINITY);
   *highest = vec(-INFINITY, -INFINITY, -INFINITY);
-  for (size_t i = 0; i < curve->n_pieces; i++) {
-    const vec3 *p = curve_piece(curve, i);
-    /* where the piece is exact so is its box; else an error that is a little larger hides the rounding of the sums */
-    const double error = curve->error[i];
-    for (size_t k = 0; k <= curve->degree; k++) {
-      const vec3 low = error > 0.0 ? vec(nextafter(p[k].x - error, -INFINITY), nextafter(p[k].y - error, -INFINITY),
-                                         nextafter(p[k].z - error, -INFINITY))
-                                   : p[k];
-      const vec3 high = error > 0.0 ? vec(nextafter(p[k].x + error, INFINITY), nextafter(p[k].y + error, INFINITY),
-                                          nextafter(p[k].z + error, INFINITY))
-                                    : p[k];
-      *lowest = vec(fmin(lowest->x, low.x), fmin(lowest->y, low.y), fmin(lowest->z, low.z));
-      *highest = vec(fmax(highest->x, high.x), fmax(highest->y, high.y), fmax(highest->z, high.z));
-    }
+  const vec3 *p = curve_piece(curve, piece);
+  /* where the piece is exact so is its box; else an error that is a little larger hides the rounding of the sums */
+  const double error = curve->error[piece];
+  for (size_t k = 0; k <= curve->degree; k++) {
+    const vec3 low = error > 0.0 ? vec(nextafter(p[k].x - error, -INFINITY), nextafter(p[k].y - error, -INFINITY),
+                                       nextafter(p[k].z - error, -INFINITY))
+                                 : p[k];
+    const vec3 high = error > 0.0 ? vec(nextafter(p[k].x + error, INFINITY), nextafter(p[k].y + error, INFINITY),
+                                        nextafter(p[k].z + error, INFINITY))
+                                  : p[k];
+    *lowest = vec(fmin(lowest->x, low.x), fmin(lowest->y, low.y), fmin(lowest->z, low.z));
+    *highest = vec(fmax(highest->x, high.x), fmax(highest->y, high.y), fmax(highest->z, high.z));
+  }
+}
+
+void cprox_curve_bounds(const cprox_curve *curve, cprox_vec3 *lowest, cprox_vec3 *highest) {
+  cprox_curve_piece_bounds(curve, 0, lowest, highest);
+  for (size_t i = 1; i < curve->n_pieces; i++) {
+    vec3 low, high;
+    cprox_curve_piece_bounds(curve, i, &low, &high);
+    *lowest = vec(fmin(lowest->x, low.x), fmin(lowest->y, low.y), fmin(lowest->z, low.z));
+    *highest = vec(fmax(highest->x, high.x), fmax(highest->y, high.y), fmax(highest->z, high.z));
   }
 }

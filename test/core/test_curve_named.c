@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Curves with names (heart, ranunculoid, fish, Lissajous) as trigonometric series: the intervals contain the reference
+ * answers of test/data/reference/named_ref.csv. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "curve_proximity/cprox.h"
+#include "support/csv.h"
+
+#define MOST_DEGREE 6
+
+/* Its coefficients in the order of the series; what is not set is 0. */
+typedef struct series {
+  vec3 c[2 * MOST_DEGREE + 1];
+} series;
+
+static vec3 *of_cos(series *s, size_t k) {
+  return &s->c[2 * k - 1];
+}
+
+static vec3 *of_sin(series *s, size_t k) {
+  return &s->c[2 * k];
+}
+
+static series heart(void) {
+  series s = {0};
+  of_sin(&s, 1)->x = 0.24, of_sin(&s, 3)->x = -0.08;
+  of_cos(&s, 1)->y = 0.26, of_cos(&s, 2)->y = -0.1, of_cos(&s, 3)->y = -0.04, of_cos(&s, 4)->y = -0.02;
+  return s;
+}
+
+static series ranunculoid(void) {
+  series s = {0};
+  *of_cos(&s, 1) = vec(0.3, 0, 0), *of_sin(&s, 1) = vec(0, 0.3, 0);
+  *of_cos(&s, 6) = vec(-0.05, 0, 0), *of_sin(&s, 6) = vec(0, -0.05, 0);
+  return s;
+}
+
+/* .3 (cos t - sin² t/sqrt(2), sin t cos t), with sin² t = (1 - cos 2t)/2 */
+static series fish(void) {
+  series s = {0};
+  s.c[0].x = -0.15 / sqrt(2.0), of_cos(&s, 1)->x = 0.3, of_cos(&s, 2)->x = 0.15 / sqrt(2.0);
+  of_sin(&s, 2)->y = 0.15;
+  return s;
+}
+
+static series lissajous(size_t p, size_t q) {
+  series s = {0};
+  of_sin(&s, p)->x = 0.3, of_sin(&s, q)->y = 0.3;
+  return s;
+}
+
+/* Turned by -angle about the origin, then moved. */
+static series placed(series s, double angle, double x, double y) {
+  const double c = cos(angle), d = sin(angle);
+  for (size_t i = 0; i <= 2 * MOST_DEGREE; i++)
+    s.c[i] = vec(c * s.c[i].x + d * s.c[i].y, c * s.c[i].y - d * s.c[i].x, 0);
+  s.c[0] = vec_add(s.c[0], vec(x, y, 0));
+  return s;
+}
+
+static cprox_curve *compile(series s) {
+  cprox_curve *curve = NULL;
+  assert_int_equal(cprox_curve_create_trigonometric(s.c, 2 * MOST_DEGREE + 1, 0.0, 6.283185307179586, NULL, &curve),
+                   CPROX_OK);
+  return curve;
+}
+
+/* The reference is rounded to 17 digits and coefficients to double: 1e-15. 2π as a double leaves out less than that. */
+static void check(const char *id, const cprox_curve *curve, cprox_target target) {
+  csv_table ref = csv_read("reference/named_ref.csv");
+  const double reference = csv_number(&ref, csv_find(&ref, id), 1);
+  cprox_workspace *ws = cprox_workspace_create();
+  for (int k = 0; k < 3; k++) {
+    const double epsilon[3] = {1e-6, 1e-9, 1e-12};
+    cprox_options options = cprox_options_default();
+    options.epsilon = epsilon[k];
+    cprox_result r;
+    const cprox_status status = cprox_distance(cprox_point_along(curve), target, &options, ws, &r);
+    if (status != CPROX_OK)
+      fail_msg("%s: %s (%s), [%.17g, %.17g]", id, cprox_status_name(status), cprox_workspace_reason(ws), r.lower,
+               r.upper);
+    if (!(r.lower <= reference + 1e-15 && reference - 1e-15 <= r.upper && r.upper - r.lower <= epsilon[k]))
+      fail_msg("%s: [%.17g, %.17g], the reference is %.17g", id, r.lower, r.upper, reference);
+  }
+  cprox_workspace_free(ws);
+  csv_free(&ref);
+}
+
+static void check_polygon(const char *id, series s) {
+  /* the third field: x;y;x;y... */
+  csv_table in = csv_read("reference/named_inputs.csv");
+  double xy[64][2];
+  size_t n = 0;
+  for (char *at = csv_find(&in, id)->field[2]; *at; n++) {
+    assert_true(n < 128);
+    xy[n / 2][n % 2] = strtod(at, &at);
+    if (*at == ';') at++;
+  }
+  assert_true(n >= 6 && n % 2 == 0);
+  cprox_body *body = NULL;
+  assert_int_equal(cprox_body_create_polygon((const double(*)[2])xy, n / 2, NULL, &body), CPROX_OK);
+  cprox_curve *curve = compile(s);
+  check(id, curve, cprox_at(body, cprox_pose_identity()));
+  cprox_curve_free(curve);
+  cprox_body_free(body);
+  csv_free(&in);
+}
+
+static void check_curves(const char *id, series a, series b) {
+  cprox_curve *first = compile(a), *second = compile(b);
+  check(id, first, cprox_curve_target(second, 0.0));
+  cprox_curve_free(second);
+  cprox_curve_free(first);
+}
+
+static void hearts_and_ranunculoids_against_polygons(void **state) {
+  (void)state;
+  check_polygon("a_heart_poly", heart());
+  check_polygon("b_ranunculoid_poly", ranunculoid());
+  check_polygon("heart_in_collision_poly", heart());
+}
+
+static void a_fish_against_lissajous_curves(void **state) {
+  (void)state;
+  check_curves("f_fish_lissajous32", fish(), placed(lissajous(3, 2), 0.0, 0.75, 0.2));
+  check_curves("f2_fish_lissajous54", placed(fish(), 0.3, 0.0, 0.0), placed(lissajous(5, 4), 0.5, 0.8, 0.1));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(hearts_and_ranunculoids_against_polygons),
+      cmocka_unit_test(a_fish_against_lissajous_curves),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
