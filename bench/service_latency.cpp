@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <curve_proximity/client.hpp>
 #include <string>
 #include <vector>
 
@@ -81,12 +82,12 @@ int main(int argc, char **argv) {
     return 1;
   }
 
-  ros::ServiceClient client = handle.serviceClient<Distance>(name + "/distance", true);
+  PersistentClient<Distance> client(handle, name + "/distance");
   Distance call = question();
   std::vector<double> whole, core, added;
   for (int i = 0; i < calls; ++i) {
     const auto begin = std::chrono::steady_clock::now();
-    if (!client.call(call) || !call.response.success) {
+    if (!client.call(call, 1.0) || !call.response.success) {
       std::fprintf(stderr, "call %d failed: %s\n", i, call.response.message.c_str());
       return 1;
     }

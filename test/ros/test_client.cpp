@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The client helper against a server that goes and comes back. */
+#include <curve_proximity/GetScene.h>
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+
+#include <chrono>
+#include <curve_proximity/client.hpp>
+#include <thread>
+
+namespace curve_proximity {
+namespace {
+
+bool answer(GetScene::Request &, GetScene::Response &response) {
+  response.success = true;
+  return true;
+}
+
+ros::ServiceServer serve() {
+  return ros::NodeHandle().advertiseService("restarting/get_scene", answer);
+}
+
+double secondsSince(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+TEST(PersistentClient, one_lookup_serves_many_calls) {
+  ros::ServiceServer server = serve();
+  PersistentClient<GetScene> client(ros::NodeHandle(), "restarting/get_scene");
+  GetScene call;
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(client.call(call, 5.0));
+  EXPECT_TRUE(call.response.success);
+  EXPECT_EQ(client.lookups(), 1u);
+}
+
+TEST(PersistentClient, a_restarted_server_is_found_again_after_few_lookups) {
+  ros::ServiceServer server = serve();
+  PersistentClient<GetScene> client(ros::NodeHandle(), "restarting/get_scene");
+  GetScene call;
+  ASSERT_TRUE(client.call(call, 5.0));
+  server.shutdown();
+  std::thread restart([&server] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    server = serve();
+  });
+  EXPECT_TRUE(client.call(call, 10.0));
+  restart.join();
+  // pauses of 10, 20, 40, 80, 160, 320, 500, 500 … ms
+  EXPECT_LE(client.lookups(), 15u);
+}
+
+TEST(PersistentClient, a_server_that_stays_away_is_given_up_in_time) {
+  PersistentClient<GetScene> client(ros::NodeHandle(), "restarting/nobody");
+  GetScene call;
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_FALSE(client.call(call, 1.0));
+  EXPECT_LT(secondsSince(begin), 3.0);
+  EXPECT_LE(client.lookups(), 10u);
+}
+
+} // namespace
+} // namespace curve_proximity
+
+int main(int argc, char **argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "client");
+  const ros::NodeHandle handle;
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  return RUN_ALL_TESTS();
+}
