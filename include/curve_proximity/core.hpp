@@ -229,6 +229,40 @@ inline CurveHandle makeBspline(const Eigen::Matrix3Xd &points, std::size_t degre
   });
 }
 
+/** sum of coefficients.col(k) t^k on [t0, t1]. */
+inline CurveHandle makePolynomial(const Eigen::Matrix3Xd &coefficients, double t0, double t1) {
+  const std::vector<cprox_vec3> c = toVec3s(coefficients);
+  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **curve) {
+    return cprox_curve_create_polynomial(c.data(), c.size(), t0, t1, w, curve);
+  });
+}
+
+/** sum of coefficients.col(k) P_k((2t - t0 - t1)/(t1 - t0)). */
+inline CurveHandle makeLegendre(const Eigen::Matrix3Xd &coefficients, double t0, double t1) {
+  const std::vector<cprox_vec3> c = toVec3s(coefficients);
+  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **curve) {
+    return cprox_curve_create_legendre(c.data(), c.size(), t0, t1, w, curve);
+  });
+}
+
+/** The polynomial through points.col(i) at nodes[i], restricted to [t0, t1]. */
+inline CurveHandle makeLagrange(const Eigen::Matrix3Xd &points, const std::vector<double> &nodes, double t0,
+                                double t1) {
+  const std::vector<cprox_vec3> p = toVec3s(points);
+  if (p.size() != nodes.size()) throw Error("a lagrange curve needs as many nodes as points");
+  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **curve) {
+    return cprox_curve_create_lagrange(p.data(), nodes.data(), p.size(), t0, t1, w, curve);
+  });
+}
+
+/** A trigonometric series; the columns belong to 1, cos t, sin t, cos 2t, sin 2t, … */
+inline CurveHandle makeTrigonometric(const Eigen::Matrix3Xd &coefficients, double t0, double t1) {
+  const std::vector<cprox_vec3> c = toVec3s(coefficients);
+  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **curve) {
+    return cprox_curve_create_trigonometric(c.data(), c.size(), t0, t1, w, curve);
+  });
+}
+
 /* ---- the verbs: as in cprox/query.h, throwing Error where there is no answer ------------------------------------- */
 
 /** A body somewhere: kept by reference, so the BodyHandle must outlive the target. padding >= 0 [m]. */

@@ -53,12 +53,14 @@ struct ObjectDescription {
 
 struct CurveDescription {
   std::string id;
-  std::string basis = "bezier"; /**< "bezier" or "bspline" */
-  std::size_t degree = 0;       /**< of a bspline; of a bezier 0 or the number of points less one */
+  std::string basis = "bezier"; /**< "bezier", "bspline", "polynomial", "legendre", "lagrange" or "trigonometric" */
+  std::size_t degree = 0;       /**< of a bezier 0 or the number of points less one */
   double t0 = 0.0, t1 = 1.0;    /**< the parameter range, t0 < t1 */
   double radius = 0.0;          /**< [m] >= 0: of the ball that rides the curve */
-  Eigen::Matrix3Xd points;      /**< [m] in the fixed frame, a column a control point */
-  std::vector<double> knots;    /**< of a bspline: points.cols() + degree + 1, non-decreasing */
+  Eigen::Matrix3Xd points;      /**< [m] in the fixed frame, a column a control point, coefficient or value: degree + 1
+                                     of them, of a bspline more, of a trigonometric series 2 degree + 1 */
+  std::vector<double> knots;    /**< of a bspline: points.cols() + degree + 1, non-decreasing; of a lagrange curve its
+                                     nodes; else none */
 };
 
 } // namespace curve_proximity

@@ -26,7 +26,7 @@ std::vector<Eigen::AlignedBox3d> cutBoxes(const cprox_curve *curve, const std::v
                                           std::size_t parts) {
   const Eigen::AlignedBox3d whole = bounds(curve);
   const double size = whole.min().cwiseAbs().cwiseMax(whole.max().cwiseAbs()).maxCoeff();
-  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(BOX_MARGIN * size);
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(BOX_MARGIN * size + cprox_curve_error(curve));
 
   std::vector<cprox_vec3> points(cprox_curve_degree(curve) + 1);
   std::vector<Eigen::AlignedBox3d> boxes;
@@ -41,6 +41,19 @@ std::vector<Eigen::AlignedBox3d> cutBoxes(const cprox_curve *curve, const std::v
       boxes.emplace_back(box.min() - margin, box.max() + margin);
       from = to;
     }
+  }
+  return boxes;
+}
+
+/* Boxes of a curve whose pieces are not the description's: each a few pieces, a single piece cut. */
+std::vector<Eigen::AlignedBox3d> pieceBoxes(const CurveDescription &description, const cprox_curve *curve) {
+  const std::size_t n = cprox_curve_pieces(curve);
+  if (n == 1) return cutBoxes(curve, {description.t0, description.t1}, BOXES);
+  std::vector<Eigen::AlignedBox3d> boxes(std::min(n, MOST_BOXES));
+  for (std::size_t i = 0; i < n; ++i) {
+    cprox_vec3 lowest, highest;
+    cprox_curve_piece_bounds(curve, i, &lowest, &highest);
+    boxes[i * boxes.size() / n].extend(Eigen::AlignedBox3d(toEigen(lowest), toEigen(highest)));
   }
   return boxes;
 }
@@ -81,6 +94,38 @@ std::vector<Eigen::AlignedBox3d> splineBoxes(const CurveDescription &description
   return cutBoxes(curve, breaks, (BOXES + breaks.size() - 2) / (breaks.size() - 1));
 }
 
+/* As many points, and nodes in the knots' place, as basis and degree ask for. */
+void checkCounts(const CurveDescription &curve, std::size_t points, std::size_t knots) {
+  if (curve.degree > CPROX_MAX_DEGREE) {
+    throw Error("the degree is " + std::to_string(curve.degree) + ", above " + std::to_string(CPROX_MAX_DEGREE));
+  }
+  if (static_cast<std::size_t>(curve.points.cols()) != points) {
+    throw Error("a " + curve.basis + " curve of degree " + std::to_string(curve.degree) + " has " +
+                std::to_string(points) + " points, got " + std::to_string(curve.points.cols()));
+  }
+  if (curve.knots.size() != knots) {
+    throw Error("a " + curve.basis + " curve " +
+                (knots ? "of degree " + std::to_string(curve.degree) + " takes " + std::to_string(knots) + " nodes"
+                       : std::string("takes no knots")) +
+                ", got " + std::to_string(curve.knots.size()));
+  }
+}
+
+/* A curve of one of the bases that take coefficients or values. */
+CurveHandle makeSeries(const CurveDescription &curve) {
+  if (curve.basis == "trigonometric") {
+    checkCounts(curve, 2 * curve.degree + 1, 0);
+    return makeTrigonometric(curve.points, curve.t0, curve.t1);
+  }
+  const bool lagrange = curve.basis == "lagrange", legendre = curve.basis == "legendre";
+  if (!lagrange && !legendre && curve.basis != "polynomial") {
+    throw Error("basis '" + curve.basis + "' is not available");
+  }
+  checkCounts(curve, curve.degree + 1, lagrange ? curve.degree + 1 : 0);
+  if (lagrange) return makeLagrange(curve.points, curve.knots, curve.t0, curve.t1);
+  return legendre ? makeLegendre(curve.points, curve.t0, curve.t1) : makePolynomial(curve.points, curve.t0, curve.t1);
+}
+
 } // namespace
 
 CompiledCurve compile(const CurveDescription &curve) {
@@ -102,7 +147,8 @@ CompiledCurve compile(const CurveDescription &curve) {
     out.curve = makeBspline(curve.points, curve.degree, curve.knots, curve.t0, curve.t1);
     out.boxes = splineBoxes(curve, out.curve.get());
   } else {
-    throw Error("basis '" + curve.basis + "' is not available");
+    out.curve = makeSeries(curve);
+    out.boxes = pieceBoxes(curve, out.curve.get());
   }
   if (out.boxes.empty()) out.boxes.push_back(bounds(out.curve.get()));
   return out;

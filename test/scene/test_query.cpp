@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Questions and answers: what is asked about, what comes back, what is refused. */
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "support.h"
 
@@ -234,8 +236,8 @@ TEST(Ask, the_stop_function_ends_a_query) {
 
 TEST(Compile, curves_that_are_none_are_told_in_a_sentence) {
   CurveDescription curve = UPRIGHT;
-  curve.basis = "legendre";
-  EXPECT_EQ(refusal(curve), "basis 'legendre' is not available");
+  curve.basis = "fourier";
+  EXPECT_EQ(refusal(curve), "basis 'fourier' is not available");
   curve = UPRIGHT;
   curve.degree = 3;
   expectContains(refusal(curve), "degree 3");
@@ -270,11 +272,89 @@ TEST(Compile, curves_that_are_none_are_told_in_a_sentence) {
 TEST(Compile, a_bad_curve_is_an_answer) {
   Scene scene;
   CurveDescription curve = UPRIGHT;
-  curve.basis = "legendre";
+  curve.basis = "fourier";
   const Answer answer = askOne(scene, {}, curve, Question());
   EXPECT_EQ(answer.status, "invalid");
   EXPECT_EQ(answer.id, "line");
-  EXPECT_EQ(answer.message, "basis 'legendre' is not available");
+  EXPECT_EQ(answer.message, "basis 'fourier' is not available");
+}
+
+/* One parabola, (t, t², 0) on [-1, 2], as every basis says it, and a circle: the nearest point to (0, -1, 0) is known. */
+TEST(Compile, every_basis_describes_the_same_curve) {
+  Scene scene;
+  ASSERT_TRUE(scene.apply(change({add("point", {shape(ShapeType::POINT, {})}, translation(0, -1, 0))})).empty());
+  CurveDescription d;
+  d.degree = 2;
+  d.t0 = -1.0;
+  d.t1 = 2.0;
+  const auto expectDistance = [&](const std::string &basis, std::initializer_list<double> points,
+                                  const std::vector<double> &knots, double distance) {
+    d.basis = basis;
+    d.knots = knots;
+    d.points = Eigen::Map<const Eigen::Matrix3Xd>(points.begin(), 3, static_cast<Eigen::Index>(points.size() / 3));
+    const Answer answer = askOne(scene, {}, d, Question());
+    EXPECT_EQ(answer.status, "ok") << basis << ": " << answer.message;
+    EXPECT_LE(answer.result.lower, distance + 1e-13) << basis;
+    EXPECT_GE(answer.result.upper, distance - 1e-13) << basis;
+  };
+  expectDistance("bezier", {-1, 1, 0, 0.5, -2, 0, 2, 4, 0}, {}, 1.0);
+  expectDistance("bspline", {-1, 1, 0, 0.5, -2, 0, 2, 4, 0}, {-1, -1, -1, 2, 2, 2}, 1.0);
+  expectDistance("polynomial", {0, 0, 0, 1, 0, 0, 0, 1, 0}, {}, 1.0);
+  expectDistance("legendre", {0.5, 1, 0, 1.5, 1.5, 0, 0, 1.5, 0}, {}, 1.0);
+  expectDistance("lagrange", {2, 4, 0, 0, 0, 0, -1, 1, 0}, {2, 0, -1}, 1.0);
+  d.degree = 1;
+  expectDistance("trigonometric", {0, 0, 0, 3, 0, 0, 0, 3, 0}, {},
+                 std::hypot(3.0 * std::cos(-1.0), 1.0 + 3.0 * std::sin(-1.0)));
+}
+
+TEST(Compile, coefficients_that_do_not_fit_the_basis_are_told_in_a_sentence) {
+  CurveDescription curve = UPRIGHT;
+  curve.degree = 2;
+  for (const char *basis : {"polynomial", "legendre", "lagrange"}) {
+    curve.basis = basis;
+    expectContains(refusal(curve), "of degree 2 has 3 points, got 2");
+  }
+  curve.basis = "trigonometric";
+  expectContains(refusal(curve), "of degree 2 has 5 points, got 2");
+  curve.degree = 1;
+  curve.basis = "lagrange";
+  expectContains(refusal(curve), "takes 2 nodes, got 0");
+  curve.basis = "legendre";
+  curve.knots = {0, 1};
+  expectContains(refusal(curve), "takes no knots, got 2");
+  curve.degree = std::numeric_limits<std::size_t>::max();
+  expectContains(refusal(curve), "above 60");
+}
+
+/* Seed 65, 100 curves of each basis: 50 points of each lie in the boxes, up to the rounding of those points. */
+TEST(Compile, the_boxes_contain_curves_of_every_basis) {
+  Random random(65);
+  for (int i = 0; i < 400; ++i) {
+    CurveDescription d = randomBezier(random, 1 + random.below(30), 1.0);
+    d.basis = std::array<const char *, 4>{"polynomial", "legendre", "lagrange", "trigonometric"}[i % 4];
+    d.degree = static_cast<std::size_t>(d.points.cols()) - 1;
+    if (d.basis == "lagrange") {
+      for (std::size_t k = 0; k <= d.degree; ++k) {
+        d.knots.push_back(0.5 - 0.5 * std::cos(3.14159 * static_cast<double>(k) / static_cast<double>(d.degree)));
+      }
+    }
+    if (d.basis == "trigonometric") {
+      d.degree = 1 + random.below(8);
+      d.t1 = random.uniform(1e-3, 7.0);
+      d.points.resize(3, static_cast<Eigen::Index>(2 * d.degree + 1));
+      for (Eigen::Index k = 0; k < d.points.cols(); ++k) d.points.col(k) = random.vector(1.0);
+    }
+    const CompiledCurve curve = compile(d);
+    EXPECT_LE(curve.boxes.size(), 32u);
+    for (int k = 0; k <= 50; ++k) {
+      cprox_vec3 p;
+      const double t = std::min(d.t1, d.t0 + (d.t1 - d.t0) * k / 50.0);
+      ASSERT_EQ(cprox_curve_evaluate(curve.curve.get(), t, nullptr, &p, nullptr, nullptr), CPROX_OK);
+      double least = INFINITY;
+      for (const Eigen::AlignedBox3d &box : curve.boxes) least = std::min(least, box.exteriorDistance(toEigen(p)));
+      EXPECT_LE(least, 1e-10) << d.basis << " " << i << " at " << t;
+    }
+  }
 }
 
 /* Seed 63, 400 curves: 50 points of each lie in the boxes, and the boxes' union in the curve's own bounds but for their
