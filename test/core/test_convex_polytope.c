@@ -236,6 +236,17 @@ static void a_depth_that_is_claimed_inside_is_there(void **state) {
   assert_true(claimed > 1000);
 }
 
+/* 0 on an edge or diagonal of the first simplex by chance: the search starts again from all round. */
+static void the_middle_of_a_box_is_inside_it(void **state) {
+  (void)state;
+  vec3 v[8];
+  for (int i = 0; i < 8; i++) v[i] = vec(i & 1 ? 1 : -1, i & 2 ? 2 : -2, i & 4 ? 3 : -3);
+  cprox_body *body = make(v, 8);
+  const vec3 spots[] = {{0, 0, 0}, {0.5, 1, 1.5}, {0.5, 1, -1.5}, {0, 0, 1.5}};
+  for (int i = 0; i < 4; i++) assert_true(cprox_body_nearest(body, spots[i], NULL) < 0.0);
+  cprox_body_free(body);
+}
+
 static void a_bad_hint_costs_time_but_not_truth(void **state) {
   (void)state;
   rng r = rng_seed(204);
@@ -324,6 +335,7 @@ int main(void) {
       cmocka_unit_test(the_distance_of_a_small_polytope_is_that_of_its_nearest_face),
       cmocka_unit_test(the_normal_proves_the_distance_of_a_large_polytope),
       cmocka_unit_test(a_depth_that_is_claimed_inside_is_there),
+      cmocka_unit_test(the_middle_of_a_box_is_inside_it),
       cmocka_unit_test(a_bad_hint_costs_time_but_not_truth),
       cmocka_unit_test(repeated_vertices_do_not_end_the_search_early),
       cmocka_unit_test(the_normal_is_the_faces_own_a_hair_above_it),

@@ -64,7 +64,7 @@ static void check_apart(const sweep *w) {
     check_bracket(&a, &b, gap, tolerance, &result);
     undecided += status != CPROX_OK;
     if (status == CPROX_OK) assert_true(result.upper - result.lower <= fmax(floor, 1e-9 * result.upper));
-    if (gap > 2.0 * floor && status == CPROX_OVERLAP)
+    if (gap > 1.01 * tolerance && status == CPROX_OVERLAP)
       fail_msg("%s and %s overlap at gap %g", shape_name(&a), shape_name(&b), gap);
 
     /* the points attain upper, one on each body, and the normal points from b to a */
@@ -155,6 +155,43 @@ static void overlaps_are_never_called_apart(void **state) {
   print_message("proven to overlap: %zu\n", proven);
   assert_true(proven > 1000 || test_cases(100) < 100);
   assert_true(deep > 1000 || test_cases(100) < 100);
+}
+
+/* Seed 311, 1e5 pairs of boxes, as boxes and as polytopes, aligned with the axes: the gaps are differences of the doubles given,
+ * long double is exact to 2^-64, and there is no tolerance: the reference lies in the interval itself. */
+static void aligned_boxes_need_no_tolerance(void **state) {
+  (void)state;
+  rng r = rng_seed(311);
+  for (size_t i = 0; i < test_cases(100000); i++) {
+    cprox_body *body[2] = {NULL, NULL};
+    vec3 size[2], corner[8];
+    const bool polytopes = i % 2;
+    for (int k = 0; k < 2; k++) {
+      size[k] = vec(2 * rng_uniform(&r, 0.1, 1.0), 2 * rng_uniform(&r, 0.1, 1.0), 2 * rng_uniform(&r, 0.1, 1.0));
+      const vec3 h = vec_scale(0.5, size[k]);
+      for (int c = 0; c < 8; c++) corner[c] = vec(c & 1 ? h.x : -h.x, c & 2 ? h.y : -h.y, c & 4 ? h.z : -h.z);
+      assert_int_equal(polytopes ? cprox_body_create_polytope(corner, 8, NULL, &body[k])
+                                 : cprox_body_create_box(size[k], NULL, &body[k]),
+                       CPROX_OK);
+    }
+    const vec3 d = vec_scale(rng_log_uniform(&r, 1e-3, 1.0), rng_unit(&r));
+    cprox_pose pose = cprox_pose_identity();
+    pose.position = vec(d.x + 0.5 * (size[0].x + size[1].x), d.y + 0.5 * (size[0].y + size[1].y),
+                        rng_index(&r, 2) ? d.z : d.z + 0.5 * (size[0].z + size[1].z));
+    const vec3 p = pose.position;
+    const vec3l gap = {fmaxl(0, fabsl(p.x) - (0.5L * size[0].x + 0.5L * size[1].x)),
+                       fmaxl(0, fabsl(p.y) - (0.5L * size[0].y + 0.5L * size[1].y)),
+                       fmaxl(0, fabsl(p.z) - (0.5L * size[0].z + 0.5L * size[1].z))};
+    const long double exact = ref_norm(gap);
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-13;
+    cprox_result result;
+    cprox_pair(cprox_at(body[0], cprox_pose_identity()), cprox_at(body[1], pose), &options, NULL, &result);
+    if (exact > 0 && !(result.lower <= exact && exact <= result.upper && result.status == CPROX_OK))
+      fail_msg("[%.17g, %.17g], exact %.20Lg", result.lower, result.upper, exact);
+    cprox_body_free(body[0]);
+    cprox_body_free(body[1]);
+  }
 }
 
 /* Seed 306, 2e4 pairs far from the origin of the world: what positions share does not enter the interval's width. */
@@ -315,6 +352,7 @@ int main(void) {
       cmocka_unit_test(needles_and_wafers_lie_in_the_interval),
       cmocka_unit_test(sizes_a_million_million_apart_lie_in_the_interval),
       cmocka_unit_test(overlaps_are_never_called_apart),
+      cmocka_unit_test(aligned_boxes_need_no_tolerance),
       cmocka_unit_test(a_common_offset_of_a_million_metres_costs_nothing),
       cmocka_unit_test(balls_have_their_exact_signed_distance),
       cmocka_unit_test(a_halfspace_knows_the_signed_distance_of_everything),

@@ -98,6 +98,36 @@ static void a_hair_over_a_face_the_bounds_still_meet(void **state) {
   cprox_body_free(b);
 }
 
+/* The same where an edge is nearest: v is short, and what rounding left of it along the edge is magnified in v/|v|. Seed 608, 2e4
+ * pairs of polyhedra brought to 1e-6 of each other along the line between their nearest points. */
+static void a_hair_beside_an_edge_the_bounds_still_meet(void **state) {
+  (void)state;
+  rng r = rng_seed(608);
+  static test_shape a, b;
+  const cprox_body_kind flat[] = {CPROX_BOX, CPROX_POLYTOPE};
+  size_t asked = 0;
+  for (size_t i = 0; i < test_cases(20000); i++) {
+    shape_make(&r, flat[rng_index(&r, 2)], 1.0, 4.0, &a);
+    shape_make(&r, flat[rng_index(&r, 2)], 1.0, 4.0, &b);
+    const cprox_pose pa = rng_pose(&r, 0.0);
+    cprox_pose pb = rng_pose(&r, 3.0);
+    for (int k = 0; k < 4; k++) {
+      const cprox_result near = ask(a.body, pa, b.body, pb, 1e-12);
+      if (near.upper <= 0.0 || near.status != CPROX_OK) break;
+      pb.position = vec_axpy(pb.position, near.upper - 1e-6, near.normal);
+    }
+    const cprox_result result = ask(a.body, pa, b.body, pb, 1e-12);
+    if (result.status != CPROX_OVERLAP) {
+      asked++;
+      if (result.status != CPROX_OK)
+        fail_msg("%s and %s: [%.17g, %.17g]", shape_name(&a), shape_name(&b), result.lower, result.upper);
+    }
+    cprox_body_free(a.body);
+    cprox_body_free(b.body);
+  }
+  assert_true(asked > 1000 || test_cases(100) < 100);
+}
+
 /* "0 just outside the polytope at touch": face on face, edge on edge, corner on corner, aligned and turned. */
 static void bodies_that_touch_are_neither_apart_nor_deep(void **state) {
   (void)state;
@@ -331,6 +361,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_disc_that_faces_a_disc_does_not_collapse),
       cmocka_unit_test(a_hair_over_a_face_the_bounds_still_meet),
+      cmocka_unit_test(a_hair_beside_an_edge_the_bounds_still_meet),
       cmocka_unit_test(bodies_that_touch_are_neither_apart_nor_deep),
       cmocka_unit_test(concentric_bodies_overlap),
       cmocka_unit_test(newton_that_does_not_help_gives_way),

@@ -23,12 +23,12 @@ int32_t vertices_extreme(const convex *shape, vec3 d, double *most) {
       where[l] = more ? base : where[l];
     }
   }
+  /* the first of the best: the padding repeats the last vertex in later lanes and never comes before it */
   int lane = 0;
   for (int l = 1; l < LANES; l++)
     if (best[l] > best[lane]) lane = l;
   if (most) *most = best[lane];
-  const int32_t i = (int32_t)where[lane] + lane;
-  return i < shape->n ? i : shape->n - 1;
+  return (int32_t)where[lane] + lane;
 }
 
 double vertices_support(const convex *shape, vec3 d, convex_hint *hint, vec3 *at) {
