@@ -251,6 +251,11 @@ geometry_msgs::Point toPointMessage(const cprox_vec3 &point) {
 
 /* ---- curves ------------------------------------------------------------------------------------------------------- */
 
+/* A coefficient that is not a point of the curve turns, and does not move: all but the first of a series. */
+static bool isSeries(const std::string &basis) {
+  return basis == "polynomial" || basis == "legendre" || basis == "trigonometric";
+}
+
 CurveDescription toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed) {
   CurveDescription out;
   out.id = curve.id;
@@ -263,8 +268,11 @@ CurveDescription toDescription(const Curve &curve, const Eigen::Isometry3d &fram
   out.knots = curve.knots;
 
   // The identity leaves the points to the last bit as they are.
-  if (!frame_in_fixed.matrix().isIdentity(0.0))
-    out.points = (frame_in_fixed.linear() * out.points).colwise() + frame_in_fixed.translation();
+  if (!frame_in_fixed.matrix().isIdentity(0.0)) {
+    out.points = frame_in_fixed.linear() * out.points;
+    const Eigen::Index moved = isSeries(out.basis) ? std::min<Eigen::Index>(1, out.points.cols()) : out.points.cols();
+    out.points.leftCols(moved).colwise() += frame_in_fixed.translation();
+  }
 
   // The whole of the curve; where its knots are too few for that compile() says so.
   if (out.t0 == 0.0 && out.t1 == 0.0) {
