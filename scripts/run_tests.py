@@ -168,18 +168,22 @@ def formatting():
     return run_one(['clang-format', '--dry-run', '-Werror', *files], 'clang-format', count_exit)
 
 
-def build_core(flavour, *options):
-    """Configures and builds the core alone, as one who has no ROS does. Returns its folder, or None."""
+def build_apart(flavour, options, target='all'):
+    """Configures and builds in a folder of its own beside the workspace's build. Returns that folder, or None."""
     build = os.path.join(WORKSPACE, 'core', flavour)
-    steps = (['cmake', '-S', REPO, '-B', build, '-DCPROX_ROS=OFF', '-DCPROX_TESTS=ON', '-DCPROX_WERROR=ON',
-              '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON', *options],
-             ['cmake', '--build', build, '--', '-j2'])
-    for number, step in enumerate(steps):
-        log = log_path(f'core-{flavour}-build-{number}')
+    steps = (['cmake', '-S', REPO, '-B', build, '-DCPROX_WERROR=ON', *options],
+             ['cmake', '--build', build, '--target', target, '--', '-j2'])
+    for step, word in zip(steps, ('configure', 'build')):
+        log = log_path(f'{flavour}-{word}')
         if execute(step, log, limit=1800)[1] != 0:
             show_failure(log)
             return None
     return build
+
+
+def build_core(flavour, *options):
+    """The core alone, as one who has no ROS builds it, with its tests."""
+    return build_apart(flavour, ['-DCPROX_ROS=OFF', '-DCPROX_TESTS=ON', '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON', *options])
 
 
 def core_tests(flavour, *options, env=None, only=''):
@@ -205,7 +209,19 @@ def sanitized():
 
 
 def threads():
-    return core_tests('threads', '-DCPROX_SANITIZE=thread', '-DCMAKE_BUILD_TYPE=RelWithDebInfo', only='thread')
+    """The tests with threads, of the core and of the scene, under ThreadSanitizer."""
+    sanitizer = ['-DCPROX_SANITIZE=thread', '-DCMAKE_BUILD_TYPE=RelWithDebInfo']
+    count = core_tests('threads', *sanitizer, only='thread')
+    flavour = 'threads-scene'
+    devel = os.path.join(WORKSPACE, 'core', flavour, 'devel')
+    options = [*sanitizer, '-DPYTHON_EXECUTABLE=/usr/bin/python3', f'-DCATKIN_DEVEL_PREFIX={devel}']
+    if build_apart(flavour, options, 'scene_test_threads') is None:
+        return count + Count(0, 1, [f'{flavour}: the build failed'])
+    results = log_path(flavour) + '.xml'
+    if os.path.exists(results):
+        os.remove(results)
+    command = [os.path.join(devel, 'lib/curve_proximity/scene_test_threads'), f'--gtest_output=xml:{results}']
+    return count + run_one(command, flavour, lambda _, code, name: count_junit(results, code, name))
 
 
 def tidy():
