@@ -51,6 +51,16 @@ class Answers(Case):
         row = 'b,bspline,1,0,2,0,3,3,-4,0,3,0,0,5,0,0,0,0,1,2,2'
         self.assertAnswer(self.ask('distance', [row], BOX_SCENE).row('b'), 2.0)
 
+    def every_basis_is_answered(self):
+        # (3, y, 0) with y from -4 to 4, written in each basis: 2 m from the face x = 1
+        curves = ['p,polynomial,1,0,2,0,2,3,-4,0,0,4,0', 'l,legendre,1,0,2,0,2,3,0,0,0,4,0',
+                  'g,lagrange,2,0,2,0,3,3,-4,0,3,0,0,3,4,0,0,1,2',
+                  'c,trigonometric,1,0,3.141592653589793,0,3,3,0,0,0,4,0,0,0,0']
+        answer = self.ask('distance', curves, BOX_SCENE)
+        self.assertEqual(answer.err, '')
+        for name in 'plgc':
+            self.assertAnswer(answer.row(name), 2.0)
+
     def tolerance_yes_means_clear(self):
         for delta, verdict in (('1.9', 'yes'), ('2.1', 'no'), ('0', 'yes')):
             row = self.ask('tolerance', [PASSING], BOX_SCENE, '--delta', delta).row('passing')
