@@ -194,6 +194,40 @@ static void aligned_boxes_need_no_tolerance(void **state) {
   }
 }
 
+/* Seed 312, needles of length 100 side by side, not turned and less than 5 apart: the rounding that sizes bring, K u S, has to
+ * be in the interval by itself, since positions are short. Tolerance: the rounding of b's position, 5 u. */
+static void the_rounding_of_large_bodies_close_together_is_in_the_interval(void **state) {
+  (void)state;
+  rng r = rng_seed(312);
+  static test_shape s[2];
+  size_t asked = 0;
+  for (size_t i = 0; i < test_cases(100000); i++) {
+    const vec3 along = rng_unit(&r);
+    for (int k = 0; k < 2; k++) {
+      s[k] = (test_shape){.kind = CPROX_POLYTOPE, .n = 20};
+      for (size_t j = 0; j < s[k].n; j++) s[k].v[j] = vec_axpy(rng_unit(&r), rng_uniform(&r, -50.0, 50.0), along);
+      assert_int_equal(cprox_body_create_polytope(s[k].v, s[k].n, NULL, &s[k].body), CPROX_OK);
+    }
+    const cprox_pose pa = cprox_pose_identity();
+    cprox_pose pb = cprox_pose_identity();
+    vec3 n = vec_cross(along, rng_unit(&r));
+    n = vec_scale(1.0 / vec_norm(n), n);
+    const double gap = rng_log_uniform(&r, 1e-3, 1.0), tolerance = shape_place(&s[0], &pa, &s[1], &pb, n, gap);
+    if (vec_norm(pb.position) < 5.0) {
+      cprox_options options = cprox_options_default();
+      options.epsilon = 0.0;
+      cprox_result result;
+      cprox_pair(cprox_at(s[0].body, pa), cprox_at(s[1].body, pb), &options, NULL, &result);
+      check_bracket(&s[0], &s[1], gap, tolerance, &result);
+      asked++;
+    }
+    cprox_body_free(s[0].body);
+    cprox_body_free(s[1].body);
+  }
+  print_message("asked %zu\n", asked);
+  assert_true(asked > 1000 || test_cases(100) < 100);
+}
+
 /* Seed 306, 2e4 pairs far from the origin of the world: what positions share does not enter the interval's width. */
 static void a_common_offset_of_a_million_metres_costs_nothing(void **state) {
   (void)state;
@@ -353,6 +387,7 @@ int main(void) {
       cmocka_unit_test(sizes_a_million_million_apart_lie_in_the_interval),
       cmocka_unit_test(overlaps_are_never_called_apart),
       cmocka_unit_test(aligned_boxes_need_no_tolerance),
+      cmocka_unit_test(the_rounding_of_large_bodies_close_together_is_in_the_interval),
       cmocka_unit_test(a_common_offset_of_a_million_metres_costs_nothing),
       cmocka_unit_test(balls_have_their_exact_signed_distance),
       cmocka_unit_test(a_halfspace_knows_the_signed_distance_of_everything),
