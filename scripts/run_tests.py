@@ -288,6 +288,10 @@ def main():
     if unknown:
         parser.error(f"no group {', '.join(unknown)}: there are {', '.join(GROUPS)}")
 
+    # Nodes under test find each other whatever this machine's name is.
+    os.environ['ROS_HOSTNAME'] = 'localhost'
+    os.environ.pop('ROS_IP', None)
+
     # Run, a line a group.
     groups = arguments.groups or list(GROUPS)
     if not arguments.groups and not on_debian_12():

@@ -170,7 +170,10 @@ def picture(out, near):
 
 
 def main(out):
+    # A master of our own, on a machine whose name need not be known to any name server.
     os.environ['ROS_MASTER_URI'] = f'http://localhost:{free_port()}'
+    os.environ['ROS_HOSTNAME'] = 'localhost'
+    os.environ.pop('ROS_IP', None)
     with Programs() as programs:
         print('starting roscore and the node, with a Panda in front of a bookshelf of nine cans')
         core, log = programs.start('roscore', 'roscore', '-p', os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1])
