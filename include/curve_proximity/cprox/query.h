@@ -48,10 +48,10 @@ CPROX_API const char *cprox_verdict_name(cprox_verdict verdict);
 
 /** How a query is to be answered. Start from cprox_options_default(). */
 typedef struct cprox_options {
-  double epsilon;          /**< [m] width of the interval asked for, >= 0; 0 asks for the narrowest one that double
+  double epsilon;           /**< [m] width of the interval asked for, >= 0; 0 asks for the narrowest one that double
                                 arithmetic allows, and the status says precision. Default 1e-6 */
-  double relative_epsilon; /**< the interval may also be this fraction of upper wide; >= 0, default 0 */
-  uint32_t max_nodes;      /**< budget of parameter intervals examined, for each target; >= 1, default 20000 */
+  double relative_epsilon;  /**< the interval may also be this fraction of upper wide; >= 0, default 0 */
+  uint32_t max_nodes;       /**< budget of parameter intervals examined, for each target; >= 1, default 20000 */
   bool (*stop)(void *user); /**< polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
   void *stop_user;          /**< handed to stop */
 } cprox_options;
