@@ -73,7 +73,8 @@ typedef struct cprox_result {
   cprox_status status;   /**< the same that the call returned */
   cprox_verdict verdict; /**< tolerance: yes = farther than delta everywhere; collision: yes = they touch or overlap;
                               undecided counts as unsafe. distance: undecided, always */
-  double lower, upper;   /**< [m] certified: lower <= true value <= upper */
+  double lower, upper;   /**< [m] certified: lower <= true value <= upper. upper = infinity where bounding balls alone
+                              decided a verdict: then there is no witness, and target_index is -1 */
   double t;              /**< where on the mover's curve upper was attained */
   double t_target;       /**< where on a target that is a curve; NaN for bodies */
   cprox_vec3 on_mover, on_target; /**< [m] world frame, the two points that attain upper (surfaces, radius and padding
@@ -139,10 +140,13 @@ CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_target
 
 /** Signed distance of two standing bodies.
  *
- *  Apart: lower <= distance <= upper, both witness points, the normal from b to a. Overlapping or touching:
- *  lower <= minus the penetration depth, upper = 0, CPROX_OVERLAP.
- *  on_mover is the point on a, on_target that on b; nodes counts iterations, probes support evaluations.
- *  CPROX_INVALID for two halfspaces (they have no distance) and for arguments that are unusable.
+ *  Apart: lower <= distance <= upper, both witness points, the normal from b to a, CPROX_OK.
+ *  Overlapping by no more than their margins (spheres, capsules, ellipsoids, padding), with a halfspace, or a ball with a
+ *  shape of closed form: the same, both bounds negative, minus the penetration depth.
+ *  Overlapping otherwise: lower <= minus the penetration depth, upper = 0, CPROX_OVERLAP.
+ *  A compound answers with the least over its parts. on_mover is the point on a, on_target that on b; nodes counts
+ *  iterations, probes support evaluations.
+ *  CPROX_INVALID for two halfspaces (they have no distance), for a curve, and for arguments that are unusable.
  *  Cost: a few support evaluations; no allocation.
  *  Source: doc/convex-pairs.md.
  */
