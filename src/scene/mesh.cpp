@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <geometric_shapes/bodies.h>
@@ -129,33 +130,18 @@ MeshData readMesh(const std::string &file) {
   return data;
 }
 
-Geometry hullOfMesh(const MeshData &mesh, const Eigen::Vector3d &scale) {
-  if (!scale.allFinite() || (scale.array() == 0.0).any()) throw Error("mesh scale must be finite and not 0");
-  checkTriangles(mesh);
-  const Points all = usedVertices(mesh, scale);
-
+Geometry hullCovering(const Points &all, Points kept) {
   Geometry out;
   out.by_hull = true;
-
-  // Extreme points only, where that pays and can be had.
-  Points kept;
-  if (all.size() > FEW_VERTICES && !isFlat(all)) kept = extremePoints(all);
-  if (kept.size() < 4) {
-    out.body = polytopeOf(all);
-    return out;
-  }
   out.body = polytopeOf(kept);
 
-  // Qhull merges facets, so that points that it drops may stand out a little. What is dropped must be covered: by the
-  // body, by the excess, or by taking the point back.
+  // What stands out a little is told, what stands out farther is taken back.
   const double size = largestCoordinate(all);
-  const double rounding = NEAREST_ROUNDING * 6.0 * size;
-  double excess = 0.0;
   Points back;
   for (const Eigen::Vector3d &p : all) {
     const double out_by = cprox_body_nearest(out.body.get(), toVec3(p), nullptr);
     if (out_by <= DROPPED_TOLERANCE * size) {
-      excess = std::max(excess, out_by);
+      out.excess = std::max(out.excess, out_by);
     } else {
       back.push_back(p);
     }
@@ -164,7 +150,23 @@ Geometry hullOfMesh(const MeshData &mesh, const Eigen::Vector3d &scale) {
     kept.insert(kept.end(), back.begin(), back.end());
     out.body = polytopeOf(kept);
   }
-  out.excess = excess + rounding;
+  out.excess += NEAREST_ROUNDING * 6.0 * size;
+  return out;
+}
+
+Geometry hullOfMesh(const MeshData &mesh, const Eigen::Vector3d &scale) {
+  if (!scale.allFinite() || (scale.array() == 0.0).any()) throw Error("mesh scale must be finite and not 0");
+  checkTriangles(mesh);
+  const Points all = usedVertices(mesh, scale);
+
+  // Extreme points only, where that pays and can be had. Qhull merges facets: what it drops must be covered all the same.
+  Points kept;
+  if (all.size() > FEW_VERTICES && !isFlat(all)) kept = extremePoints(all);
+  if (kept.size() >= 4) return hullCovering(all, std::move(kept));
+
+  Geometry out;
+  out.by_hull = true;
+  out.body = polytopeOf(all);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_SCENE_MESH_H
 
 #include <string>
+#include <vector>
 
 #include <curve_proximity/geometry.hpp>
 
@@ -20,6 +21,10 @@ MeshData readMesh(const std::string &file);
 /* The convex hull of the vertices that triangles use, scaled along the axes.
  * Throws Error: no triangle, an index out of range, vertices or scale not finite, a scale of 0. */
 Geometry hullOfMesh(const MeshData &mesh, const Eigen::Vector3d &scale);
+
+/* The hull of `kept`, some of the points of `all`, so that all of them are covered: by the body, by the excess where they
+ * stand out by no more than rounding, or by taking them back. */
+Geometry hullCovering(const std::vector<Eigen::Vector3d> &all, std::vector<Eigen::Vector3d> kept);
 
 } // namespace curve_proximity
 #endif
