@@ -121,6 +121,16 @@ def run_one(command, name, counter, **how):
     return count
 
 
+def count_rostest(path, code, name):
+    """A rostest's own file has one case for each test node; what that node tested stands in rosunit-*.xml beside it."""
+    whole, parts = count_junit(path, code, name), Count()
+    for part in glob.glob(os.path.join(os.path.dirname(path), 'rosunit-*.xml')):
+        parts += count_junit(part, 0, name)
+    if not parts.passed + parts.failed:
+        return Count(0, 1, [f'{name}: no result (exit code {code})'])
+    return parts if parts.failed or not whole.failed else parts + Count(0, 1, whole.failures)
+
+
 def count_exit(_, code, name):
     """A tool that says yes or no: one case."""
     return Count(1) if code == 0 else Count(0, 1, [name])
@@ -244,11 +254,12 @@ def room(name):
     """The gtests and rostests that test/NAME/CMakeLists.txt declares, run as catkin runs them."""
     count = Count()
     for title, command, folder in ctest_entries(os.path.join(WORKSPACE, 'build'), f'{name}/CMakeLists.txt'):
-        results = [word for word in command if word.endswith('.xml')]
-        for stale in results[:1]:
+        results = next((word for word in command if word.endswith('.xml')), None)
+        for stale in glob.glob(os.path.join(os.path.dirname(results), 'rosunit-*.xml')) + [results] if results else ():
             if os.path.exists(stale):
                 os.remove(stale)
-        counter = (lambda _, code, title: count_junit(results[0], code, title)) if results else count_lines
+        read = count_rostest if '_rostest_' in title else count_junit
+        counter = (lambda _, code, title: read(results, code, title)) if results else count_lines
         count += run_one(command, re.sub('^_ctest_curve_proximity_', '', title), counter, cwd=folder)
     return count if count.passed + count.failed else Count(0, 1, [f'test/{name}: no test was found'])
 
