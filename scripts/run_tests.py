@@ -148,8 +148,13 @@ def ctest_entries(build, folder=''):
             files.append(graph['files'][graph['nodes'][node]['file']])
             node = graph['nodes'][node].get('parent')
         properties = {p['name']: p['value'] for p in test.get('properties', [])}
+        # catkin wraps its tests in the environment of the first configuration, when the devel space had no Python modules
+        # yet; here they run in that of the finished workspace, which scripts/test has sourced
+        command = test.get('command')
+        if command and os.path.basename(command[0]) == 'env_cached.sh':
+            command = command[1:]
         if any(f'/test/{folder}' in os.path.realpath(os.path.join(build, f)) for f in files):
-            entries.append((test['name'], test.get('command'), properties.get('WORKING_DIRECTORY', build)))
+            entries.append((test['name'], command, properties.get('WORKING_DIRECTORY', build)))
     return entries
 
 
