@@ -31,7 +31,7 @@ ResultRow toRow(const Answer &answer, Verb verb) {
   row.b = answer.b;
   row.microseconds = answer.microseconds;
   row.has_verdict = verb != Verb::DISTANCE;
-  row.has_t = row.has_points = !answer.b.empty();
+  row.has_t = row.has_points = answer.result.target_index >= 0;
   return row;
 }
 
