@@ -11,7 +11,6 @@ typedef enum workspace_buffer {
   WORKSPACE_POINTS,
   WORKSPACE_FREE_SLOTS,
   WORKSPACE_ORDER,
-  WORKSPACE_SCRATCH,
   WORKSPACE_BUFFERS
 } workspace_buffer;
 

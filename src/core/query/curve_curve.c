@@ -194,7 +194,6 @@ static void choose_cuts(const curve_curve *o, const search_node *node, bool want
 
 static int split(void *self, search_node *node, search_node *child) {
   curve_curve *o = self;
-  const cprox_status no_memory = CPROX_MEMORY;
   bool wanted[2];
   double s[2];
   choose_cuts(o, node, wanted, s);
@@ -203,7 +202,7 @@ static int split(void *self, search_node *node, search_node *child) {
   for (int k = 0; k < 2; k++) {
     n[k] = cut_side(o, node, k, wanted[k], s[k], part[k]);
     if (n[k] == 0) return 0;
-    if (n[k] < 0) return workspace_fail(o->workspace, no_memory, "no memory for another parameter interval");
+    if (n[k] < 0) return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
   }
 
   /* every pair of parts is a child; a part that serves a second child gets points of its own */
@@ -216,7 +215,7 @@ static int split(void *self, search_node *node, search_node *child) {
       made->side[1] = part[1][j];
       if ((j > 0 && !curve_side_copy(&o->side[0], &made->side[0])) ||
           (i > 0 && !curve_side_copy(&o->side[1], &made->side[1])))
-        return workspace_fail(o->workspace, no_memory, "no memory for another parameter interval");
+        return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
       bound_by_normal(o, made, o->best.normal);
       bound_by_normal(o, made, o->last_normal);
       made->seen = o->incumbent;
