@@ -21,6 +21,7 @@ static search_goal goal_of(const question *q, double ceiling) {
   return (search_goal){.order = question_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST,
                        .limit = q->limit,
                        .ceiling = ceiling,
+                       .horizon = INFINITY,
                        .epsilon = q->options.epsilon,
                        .relative_epsilon = q->options.relative_epsilon,
                        .max_nodes = q->options.max_nodes,
@@ -56,7 +57,7 @@ static cprox_status search_body(const question *q, const candidate *c, const sea
   o.good_enough = good_enough(q);
   o.epsilon = q->options.epsilon;
   const search_oracle oracle = curve_convex_oracle(&o);
-  const cprox_status status = search_run(goal, &oracle, curve_convex_root(), q->workspace, found);
+  const cprox_status status = search_run(goal, &oracle, curve_convex_root(q->part), q->workspace, found);
   r->probes = o.probes;
   if (status < 0 || o.incumbent == 0) return status;
 
@@ -77,7 +78,7 @@ static cprox_status search_curve(const question *q, const candidate *c, const se
   o.polish_after = nodes_before_newton(q);
   o.good_enough = good_enough(q);
   const search_oracle oracle = curve_curve_oracle(&o);
-  const cprox_status status = search_run(goal, &oracle, curve_curve_root(&o), q->workspace, found);
+  const cprox_status status = search_run(goal, &oracle, curve_curve_root(&o, q->part), q->workspace, found);
   r->probes = o.probes;
   if (status < 0 || o.incumbent == 0) return status;
 

@@ -4,7 +4,12 @@
 #include "base/frame.h"
 #include "base/rounding.h"
 #include "body/body.h"
-#include "curve/curve.h"
+#include "query/curve_side.h"
+
+void question_ask_whole(question *q) {
+  q->part = curve_side_whole();
+  q->reach = q->mover.curve->capsules[1];
+}
 
 const cprox_body *candidate_body(const question *q, const candidate *c) {
   const cprox_body *body = q->targets[c->target].body;
@@ -49,7 +54,7 @@ static double ball_bound(const question *q, const candidate *c) {
   const cprox_pose pose = candidate_pose(q, c);
   const frame f = frame_create(&pose, vec(0, 0, 0));
   const vec3 centre = frame_to_world(&f, round.centre);
-  const curve_capsule *capsule = &q->mover.curve->capsules[1];
+  const curve_capsule *capsule = &q->reach;
   const double reach = capsule->radius + round.radius + candidate_offset(q, c);
   /* rounding: the pose of the centre, the projection on the chord, the sums; doc/rounding.md */
   const double sizes = vec_norm(capsule->a) + vec_norm(capsule->b) + vec_norm(centre) + vec_norm(f.position) +

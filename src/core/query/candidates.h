@@ -4,9 +4,11 @@
 #define CPROX_QUERY_CANDIDATES_H
 
 #include "base/workspace.h"
+#include "curve/curve.h"
 #include "curve_proximity/cprox/query.h"
+#include "search/search.h"
 
-/* All six verbs are this. */
+/* What every verb asks. */
 typedef struct question {
   cprox_mover mover;
   const cprox_target *targets;
@@ -15,7 +17,12 @@ typedef struct question {
   bool farther_is_yes; /* tolerance's yes is collision's no */
   cprox_options options;
   cprox_workspace *workspace;
+  search_interval part; /* of the mover's curve: the whole of it, or some of one piece */
+  curve_capsule reach;  /* contains that part */
 } question;
+
+/* Asks about the whole curve; the arguments must have been checked. */
+void question_ask_whole(question *q);
 
 static inline bool question_wants_verdict(const question *q) {
   return q->limit >= 0.0;

@@ -46,6 +46,10 @@ search_interval curve_side_whole(void) {
   return (search_interval){.a = 0.0, .b = 1.0, .part = 1, .slot = -1};
 }
 
+search_interval curve_side_section(const cprox_curve *curve, size_t piece, double a, double b) {
+  return (search_interval){.a = a, .b = b, .part = (uint32_t)(curve->n_leaves + piece), .slot = -1};
+}
+
 bool curve_side_is_piece(const curve_side *side, const search_interval *at) {
   return at->part >= side->curve->n_leaves;
 }
@@ -78,6 +82,25 @@ void curve_side_load(curve_side *side, size_t piece) {
   side->root_magnitude = control_magnitude(x, degree);
 }
 
+/* Cuts the points of a whole piece down to those of [a, b]. False where memory is out. */
+static bool cut_to_section(curve_side *side, search_interval *at) {
+  const int32_t rest = points_pool_take(side->pool);
+  if (rest < 0) return false;
+  const size_t degree = side->curve->degree;
+  double *points = points_pool_at(side->pool, (size_t)at->slot), *other = points_pool_at(side->pool, (size_t)rest);
+  if (at->b < 1.0) {
+    at->error += control_split(other, points, degree, at->b, side->root_magnitude);
+    memcpy(points, other, control_size(degree) * sizeof(double));
+  }
+  if (at->a > 0.0) {
+    /* a/b is rounded: its neighbour begins at most u b beside it, where the curve is that far along |psi'| <= 2 degree max|P| */
+    at->error += control_split(other, points, degree, at->a / at->b, side->root_magnitude);
+    at->error += ROUND_UP * 2.0 * (double)degree * ROUND_U * side->root_magnitude;
+  }
+  points_pool_give(side->pool, rest);
+  return true;
+}
+
 bool curve_side_materialise(curve_side *side, search_interval *at) {
   curve_side_load(side, curve_side_piece(side, at));
   if (at->slot >= 0) return true;
@@ -86,7 +109,7 @@ bool curve_side_materialise(curve_side *side, search_interval *at) {
   const size_t bytes = control_size(side->curve->degree) * sizeof(double);
   memcpy(points_pool_at(side->pool, (size_t)at->slot), points_pool_at(side->pool, side->root_slot), bytes);
   at->error = side->root_error;
-  return true;
+  return (at->a == 0.0 && at->b == 1.0) || cut_to_section(side, at);
 }
 
 bool curve_side_copy(const curve_side *side, search_interval *at) {

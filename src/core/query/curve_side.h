@@ -42,6 +42,9 @@ size_t curve_side_piece(const curve_side *side, const search_interval *at);
 /* Brings a piece's control points into the frame, in the root slot. */
 void curve_side_load(curve_side *side, size_t piece);
 
+/* The interval that is [a, b] of a piece, 0 <= a < b <= 1. */
+search_interval curve_side_section(const cprox_curve *curve, size_t piece, double a, double b);
+
 /* Gives a piece's interval control points of its own. False where memory is out. */
 bool curve_side_materialise(curve_side *side, search_interval *at);
 

@@ -7,21 +7,25 @@
 
 enum { STOP_POLL_INTERVAL = 16 };
 
-/* Open nodes: a binary heap on `lower` (best first) or a stack (depth first), in the workspace. */
+/* Open nodes: a binary heap on `lower` (best first) or `start` (left to right), or a stack (depth first), in the workspace. */
 typedef struct frontier {
   cprox_workspace *workspace;
   search_node *nodes;
   size_t count;
-  bool heap;
+  search_order order;
 } frontier;
+
+static double key_of(const frontier *f, const search_node *node) {
+  return f->order == SEARCH_BEST_FIRST ? node->lower : node->start;
+}
 
 static bool frontier_push(frontier *f, const search_node *node) {
   f->nodes = workspace_reserve(f->workspace, WORKSPACE_NODES, (f->count + 1) * sizeof *f->nodes);
   if (!f->nodes) return false;
   size_t i = f->count++;
-  while (f->heap && i > 0) {
+  while (f->order != SEARCH_DEPTH_FIRST && i > 0) {
     const size_t parent = (i - 1) / 2;
-    if (f->nodes[parent].lower <= node->lower) break;
+    if (key_of(f, &f->nodes[parent]) <= key_of(f, node)) break;
     f->nodes[i] = f->nodes[parent];
     i = parent;
   }
@@ -30,14 +34,15 @@ static bool frontier_push(frontier *f, const search_node *node) {
 }
 
 static search_node frontier_pop(frontier *f) {
-  const search_node top = f->heap ? f->nodes[0] : f->nodes[f->count - 1];
+  const bool stack = f->order == SEARCH_DEPTH_FIRST;
+  const search_node top = stack ? f->nodes[f->count - 1] : f->nodes[0];
   f->count--;
-  if (!f->heap || f->count == 0) return top;
+  if (stack || f->count == 0) return top;
   const search_node moved = f->nodes[f->count];
   size_t i = 0;
   for (size_t child = 1; child < f->count; child = 2 * i + 1) {
-    if (child + 1 < f->count && f->nodes[child + 1].lower < f->nodes[child].lower) child++;
-    if (f->nodes[child].lower >= moved.lower) break;
+    if (child + 1 < f->count && key_of(f, &f->nodes[child + 1]) < key_of(f, &f->nodes[child])) child++;
+    if (key_of(f, &f->nodes[child]) >= key_of(f, &moved)) break;
     f->nodes[i] = f->nodes[child];
     i = child;
   }
@@ -74,13 +79,20 @@ static bool is_stuck(const search_goal *goal, const search_best *best, const sea
 
 /* The best point alone ends the search: it violates the limit, or it is as close to 0 as was asked. */
 static bool is_answered(const search_goal *goal, const search_best *best) {
+  if (goal->order == SEARCH_LEFT_TO_RIGHT) return false;
   return goal->limit >= 0.0 ? best->upper <= goal->limit : best->upper <= search_width(goal, best->upper);
 }
 
-typedef enum node_fate { NODE_OPEN, NODE_SETTLED, NODE_STUCK } node_fate;
+/* Left to right: from here on nothing is asked any more, since contact came before. */
+static double horizon(const search_goal *goal, const search_best *best) {
+  return best->upper <= goal->limit + goal->epsilon ? fmin(best->at, goal->horizon) : goal->horizon;
+}
+
+typedef enum node_fate { NODE_OPEN, NODE_SETTLED, NODE_STUCK, NODE_BEYOND } node_fate;
 
 static node_fate fate_of(const search_goal *goal, const search_best *best, const search_node *node) {
   if (is_settled(goal, best, node)) return NODE_SETTLED;
+  if (goal->order == SEARCH_LEFT_TO_RIGHT) return node->start >= horizon(goal, best) ? NODE_BEYOND : NODE_OPEN;
   return is_stuck(goal, best, node) ? NODE_STUCK : NODE_OPEN;
 }
 
@@ -115,23 +127,24 @@ static cprox_status work_on(const search_goal *goal, const search_oracle *oracle
 
 cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root,
                         cprox_workspace *workspace, search_outcome *outcome) {
-  frontier open = {.workspace = workspace, .heap = goal->order == SEARCH_BEST_FIRST};
+  frontier open = {.workspace = workspace, .order = goal->order};
+  const bool best_first = goal->order == SEARCH_BEST_FIRST;
   cprox_status status = CPROX_OK;
   double left = INFINITY; /* least lower bound of the nodes that left the search */
-  *outcome = (search_outcome){.lower = INFINITY, .best = {.upper = INFINITY, .slack = 0.0}};
+  *outcome = (search_outcome){.lower = INFINITY, .free_until = INFINITY, .best = {.upper = INFINITY, .at = INFINITY}};
   if (!frontier_push(&open, &root)) return CPROX_MEMORY;
 
   while (open.count > 0) {
     search_node node = frontier_pop(&open);
 
     /* what is known already may settle it, or make another node the more promising one */
-    const bool settled_all = open.heap && is_settled(goal, &outcome->best, &node); /* the others lie higher still */
+    const bool settled_all = best_first && is_settled(goal, &outcome->best, &node); /* the others lie higher still */
     if (fate_of(goal, &outcome->best, &node) == NODE_OPEN) {
       const double bound = oracle->filter(oracle->self, &node, settling_bound(goal, &outcome->best));
       if (bound > node.lower) node.lower = bound;
     }
     node_fate fate = fate_of(goal, &outcome->best, &node);
-    if (fate == NODE_OPEN && open.heap && open.count > 0 && node.lower > open.nodes[0].lower) {
+    if (fate == NODE_OPEN && best_first && open.count > 0 && node.lower > open.nodes[0].lower) {
       if (!frontier_push(&open, &node)) return CPROX_MEMORY;
       continue;
     }
@@ -151,13 +164,19 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
 
     /* the node leaves */
     left = fmin(left, node.lower);
+    if (fate != NODE_SETTLED) outcome->free_until = fmin(outcome->free_until, node.start);
     oracle->release(oracle->self, &node);
     if (status != CPROX_OK || settled_all || is_answered(goal, &outcome->best)) break;
   }
 
   /* what is still open counts too */
-  for (size_t i = 0; i < open.count; i++) left = fmin(left, open.nodes[i].lower);
+  for (size_t i = 0; i < open.count; i++) {
+    left = fmin(left, open.nodes[i].lower);
+    outcome->free_until = fmin(outcome->free_until, open.nodes[i].start);
+  }
   outcome->lower = left;
+  if (goal->order == SEARCH_LEFT_TO_RIGHT)
+    outcome->free_until = fmin(outcome->free_until, horizon(goal, &outcome->best));
   if (status == CPROX_OK && goal->limit < 0.0) {
     const double upper = known_upper(goal, &outcome->best);
     if (fmax(left, 0.0) < upper - search_width(goal, upper)) status = CPROX_PRECISION;

@@ -24,6 +24,7 @@ typedef struct search_interval {
 typedef struct search_node {
   double lower; /* the distance over the node is at least this, rounding included */
   double slack; /* how much of that was given away to rounding: no bound on this node gets nearer than this */
+  double start; /* left to right: the parameter at which the node begins */
   search_interval side[2];
   uint32_t seen, seen_ball; /* the incumbents that its bound knows already */
 } search_node;
@@ -34,6 +35,7 @@ enum { SEARCH_MAX_CHILDREN = 4 };
 typedef struct search_best {
   double upper; /* the distance is at most this, rounding included */
   double slack; /* how much of it is rounding */
+  double at;    /* left to right: the parameter where it was measured */
 } search_best;
 
 typedef struct search_oracle {
@@ -54,7 +56,9 @@ typedef struct search_oracle {
   void (*release)(void *self, const search_node *node);
 } search_oracle;
 
-typedef enum search_order { SEARCH_BEST_FIRST, SEARCH_DEPTH_FIRST } search_order;
+/* Left to right finds the first parameter at which the distance comes within epsilon of the limit. Its oracle keeps node->start,
+ * and its best point is the leftmost one within epsilon of the limit; while there is none, any. */
+typedef enum search_order { SEARCH_BEST_FIRST, SEARCH_DEPTH_FIRST, SEARCH_LEFT_TO_RIGHT } search_order;
 
 /* When a node needs no more work. A distance search works on nodes that could hold less than the best point by more than the
  * width; a verdict search (limit >= 0) on nodes that could come as close as the limit. */
@@ -62,6 +66,7 @@ typedef struct search_goal {
   search_order order;
   double limit;   /* verdicts: delta; distance: -1 */
   double ceiling; /* distance: an upper bound known from elsewhere, or infinity */
+  double horizon; /* left to right: parameters from here on are of no interest; infinity: all are */
   double epsilon, relative_epsilon;
   uint32_t max_nodes;
   bool (*stop)(void *user);
@@ -70,6 +75,7 @@ typedef struct search_goal {
 
 typedef struct search_outcome {
   double lower;
+  double free_until; /* left to right: the distance is above the limit at every smaller parameter; infinity: at all */
   search_best best;
   uint32_t nodes;
 } search_outcome;

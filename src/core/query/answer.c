@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "query/answer.h"
+
+#include <math.h>
+
+cprox_verdict question_verdict(const question *q, const cprox_result *r) {
+  if (!question_wants_verdict(q)) return CPROX_UNDECIDED;
+  if (r->upper <= q->limit) return q->farther_is_yes ? CPROX_NO : CPROX_YES;
+  if (r->lower > q->limit) return q->farther_is_yes ? CPROX_YES : CPROX_NO;
+  return CPROX_UNDECIDED;
+}
+
+/* Whether the interval is what was asked for, whatever happened on the way. */
+static bool is_satisfied(const question *q, double ceiling, const cprox_result *r) {
+  if (question_wants_verdict(q) && question_verdict(q, r) != CPROX_UNDECIDED) return true;
+  const double upper = fmin(r->upper, ceiling);
+  return !(upper - r->lower > fmax(q->options.epsilon, q->options.relative_epsilon * upper));
+}
+
+static const char *shortfall(cprox_status status) {
+  switch (status) {
+    case CPROX_BUDGET: return "the budget of nodes ended the search: raise max_nodes or epsilon";
+    case CPROX_PRECISION: return "epsilon is below what double arithmetic allows at this scale";
+    case CPROX_STOPPED: return "the stop function ended the search";
+    default: return "";
+  }
+}
+
+cprox_status question_answer(const question *q, size_t first, size_t last, double ceiling, cprox_result *result) {
+  size_t n = 0;
+  const candidate *list = NULL;
+  if (last > first) {
+    list = candidates_list(q, first, last, &n);
+    if (!list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
+  }
+
+  cprox_result all = {.lower = INFINITY, .upper = INFINITY, .t_target = NAN, .target_index = -1};
+  cprox_status trouble = CPROX_OK;
+  size_t i = 0;
+  for (; i < n; i++) {
+    /* sorted: when one ball is too far to matter, so are the rest */
+    const bool too_far =
+        question_wants_verdict(q) ? list[i].lower > q->limit : list[i].lower > fmin(all.upper, ceiling);
+    const bool answered = all.upper <= fmax(q->limit, 0.0);
+    if (too_far || answered || trouble == CPROX_STOPPED) break;
+
+    cprox_result one = {0};
+    const cprox_status status = candidate_search(q, &list[i], fmin(all.upper, ceiling), &one);
+    if (status < 0) return status;
+    if (status != CPROX_OK) trouble = status;
+
+    /* the union's interval: the least of both ends, with the witness of the upper one */
+    const double lower = fmin(all.lower, one.lower);
+    const uint32_t nodes = all.nodes + one.nodes, probes = all.probes + one.probes;
+    if (one.upper < all.upper || all.target_index < 0) all = one;
+    all.lower = lower, all.nodes = nodes, all.probes = probes;
+    all.rung = CPROX_RUNG_HULL;
+  }
+
+  /* the rest is at least as far as the first ball of it */
+  if (i < n) all.lower = fmin(all.lower, fmax(list[i].lower, 0.0));
+  if (i == 0 && n > 0) all.rung = CPROX_RUNG_SPHERE;
+  all.lower = fmin(all.lower, all.upper);
+  all.status = is_satisfied(q, ceiling, &all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
+  all.verdict = question_verdict(q, &all);
+  if (all.status != CPROX_OK) workspace_fail(q->workspace, all.status, "%s", shortfall(all.status));
+  *result = all;
+  return all.status;
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One question, one answer: the union of some of its targets, searched nearest ball first. */
+#ifndef CPROX_QUERY_ANSWER_H
+#define CPROX_QUERY_ANSWER_H
+
+#include "query/candidates.h"
+
+/* The verdict that the result's interval gives; undecided for distances. */
+cprox_verdict question_verdict(const question *q, const cprox_result *r);
+
+/* The answer against the union of targets first … last - 1. Distances beyond `ceiling` are of no interest: the search ends when
+ * lower has come that far, and upper is then infinity or any distance measured on the way. */
+cprox_status question_answer(const question *q, size_t first, size_t last, double ceiling, cprox_result *result);
+
+#endif
