@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "query/candidate_search.h"
+
 cprox_verdict question_verdict(const question *q, const cprox_result *r) {
   if (!question_wants_verdict(q)) return CPROX_UNDECIDED;
   if (r->upper <= q->limit) return q->farther_is_yes ? CPROX_NO : CPROX_YES;

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* One search: the engine with the oracle that the candidate asks for, and what it found in the terms of the caller. */
+#include "query/candidate_search.h"
 #include "body/body.h"
-#include "query/candidates.h"
-#include "query/curve_convex.h"
-#include "query/curve_curve.h"
 
 enum { VERDICT_NODES_BEFORE_NEWTON = 4 };
 
@@ -45,49 +43,61 @@ static void report_points(const question *q, const candidate *c, vec3 centre, ve
   }
 }
 
-static cprox_status search_body(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
-                                cprox_result *r) {
+bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o) {
   const cprox_body *body = candidate_body(q, c);
   const cprox_pose pose = candidate_pose(q, c);
+  return curve_convex_begin(o, q->mover.curve, &body->shape, frame_create(&pose, body->centre), candidate_offset(q, c),
+                            q->workspace);
+}
+
+void candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r) {
+  if (o->incumbent == 0) return;
+  const frame *f = &o->side.frame;
+  const curve_sight *best = &o->best;
+  r->t = curve_side_parameter(&o->side, best->piece, best->s);
+  report_points(q, c, frame_to_world(f, best->y), frame_to_world(f, best->near.point),
+                frame_turn_to_world(f, best->normal), best->near.distance, r);
+}
+
+bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o) {
+  const cprox_target *target = &q->targets[c->target];
+  return curve_curve_begin(o, q->mover.curve, target->curve, &target->pose, candidate_offset(q, c), q->workspace);
+}
+
+void candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r) {
+  if (o->incumbent == 0) return;
+  const frame *f = &o->side[0].frame;
+  const curve_meeting *best = &o->best;
+  r->t = curve_side_parameter(&o->side[0], best->piece[0], best->s[0]);
+  r->t_target = curve_side_parameter(&o->side[1], best->piece[1], best->s[1]);
+  report_points(q, c, frame_to_world(f, best->point[0]), frame_to_world(f, best->point[1]),
+                frame_turn_to_world(f, best->normal), best->distance, r);
+}
+
+static cprox_status search_convex(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                                  cprox_result *r) {
   curve_convex o;
-  if (!curve_convex_begin(&o, q->mover.curve, &body->shape, frame_create(&pose, body->centre), candidate_offset(q, c),
-                          q->workspace))
-    return CPROX_MEMORY;
+  if (!candidate_begin_convex(q, c, &o)) return CPROX_MEMORY;
   o.polish_after = nodes_before_newton(q);
   o.good_enough = good_enough(q);
   o.epsilon = q->options.epsilon;
   const search_oracle oracle = curve_convex_oracle(&o);
   const cprox_status status = search_run(goal, &oracle, curve_convex_root(q->part), q->workspace, found);
   r->probes = o.probes;
-  if (status < 0 || o.incumbent == 0) return status;
-
-  const frame *f = &o.side.frame;
-  const curve_sight *best = &o.best;
-  r->t = curve_side_parameter(&o.side, best->piece, best->s);
-  report_points(q, c, frame_to_world(f, best->y), frame_to_world(f, best->near.point),
-                frame_turn_to_world(f, best->normal), best->near.distance, r);
+  if (status >= 0) candidate_report_convex(q, c, &o, r);
   return status;
 }
 
 static cprox_status search_curve(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
                                  cprox_result *r) {
-  const cprox_target *target = &q->targets[c->target];
   curve_curve o;
-  if (!curve_curve_begin(&o, q->mover.curve, target->curve, &target->pose, candidate_offset(q, c), q->workspace))
-    return CPROX_MEMORY;
+  if (!candidate_begin_curve(q, c, &o)) return CPROX_MEMORY;
   o.polish_after = nodes_before_newton(q);
   o.good_enough = good_enough(q);
   const search_oracle oracle = curve_curve_oracle(&o);
   const cprox_status status = search_run(goal, &oracle, curve_curve_root(&o, q->part), q->workspace, found);
   r->probes = o.probes;
-  if (status < 0 || o.incumbent == 0) return status;
-
-  const frame *f = &o.side[0].frame;
-  const curve_meeting *best = &o.best;
-  r->t = curve_side_parameter(&o.side[0], best->piece[0], best->s[0]);
-  r->t_target = curve_side_parameter(&o.side[1], best->piece[1], best->s[1]);
-  report_points(q, c, frame_to_world(f, best->point[0]), frame_to_world(f, best->point[1]),
-                frame_turn_to_world(f, best->normal), best->distance, r);
+  if (status >= 0) candidate_report_curve(q, c, &o, r);
   return status;
 }
 
@@ -95,7 +105,7 @@ cprox_status candidate_search(const question *q, const candidate *c, double ceil
   cprox_result r = {.target_index = -1, .t_target = NAN, .rung = CPROX_RUNG_HULL};
   const search_goal goal = goal_of(q, ceiling);
   search_outcome found = {0};
-  r.status = candidate_body(q, c) ? search_body(q, c, &goal, &found, &r) : search_curve(q, c, &goal, &found, &r);
+  r.status = candidate_body(q, c) ? search_convex(q, c, &goal, &found, &r) : search_curve(q, c, &goal, &found, &r);
   if (r.status == CPROX_MEMORY) return workspace_fail(q->workspace, r.status, "no memory for the open intervals");
   if (r.status < 0) return r.status;
 

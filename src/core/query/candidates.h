@@ -37,9 +37,6 @@ typedef struct candidate {
 /* The candidates of targets first … last - 1, nearest ball first, in the workspace. NULL where memory is out. */
 candidate *candidates_list(const question *q, size_t first, size_t last, size_t *count);
 
-/* Searches one candidate; *result holds its own interval and the witness. `ceiling`: an upper bound known from others. */
-cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result);
-
 /* A candidate's convex body (NULL for a curve), its pose in the world, and the sum of padding and radius. */
 const cprox_body *candidate_body(const question *q, const candidate *c);
 cprox_pose candidate_pose(const question *q, const candidate *c);

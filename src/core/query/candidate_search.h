@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One search against one candidate: the oracle that it asks for, and what that found in the terms of the caller. */
+#ifndef CPROX_QUERY_CANDIDATE_SEARCH_H
+#define CPROX_QUERY_CANDIDATE_SEARCH_H
+
+#include "query/candidates.h"
+#include "query/curve_convex.h"
+#include "query/curve_curve.h"
+
+/* Searches one candidate; *result holds its own interval and the witness. `ceiling`: an upper bound known from others. */
+cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result);
+
+/* The oracle of a candidate with a convex body, ready to search; false where memory is out. */
+bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o);
+
+/* Parameter, points and normal of its best sight, if it has one. */
+void candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r);
+
+/* The same of a candidate that is a curve. */
+bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o);
+void candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r);
+
+#endif
