@@ -84,6 +84,7 @@ typedef struct cprox_result {
   int32_t target_part;            /**< which part of a compound; 0 otherwise */
   cprox_rung rung;
   uint32_t nodes, probes; /**< what it cost: intervals examined, nearest-point queries */
+  double t_free;          /**< first contact: no contact at any smaller parameter; other verbs: 0 */
 } cprox_result;
 
 /** Distance between what moves and what stands, over the mover's whole parameter range.
@@ -137,6 +138,25 @@ CPROX_API cprox_status cprox_tolerance_all(cprox_mover mover, const cprox_target
 CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_target *targets, size_t n,
                                            const cprox_options *options, cprox_workspace *workspace,
                                            cprox_result *nearest, cprox_result *each);
+
+/** Where, along its parameter, does the mover first touch the target? Never late.
+ *
+ *  t_free      no contact at any t < t_free, certified. The distance at t_free is at most epsilon, or t_free is the end of
+ *              the range.
+ *  verdict     yes: they touch or overlap at t, proven: the first contact lies in [t_free, t]. no: they do not touch at all;
+ *              lower > 0. undecided: closer than epsilon at t_free = t, contact not proven anywhere.
+ *  lower, upper  of the distance over the whole range, as in cprox_collision().
+ *
+ *  A ball round the target that is not to be entered is its padding. Returns as cprox_distance(); after CPROX_BUDGET,
+ *  CPROX_STOPPED and CPROX_PRECISION t_free is true, but may lie before the place where the distance is epsilon.
+ *  relative_epsilon is not used. Source: doc/first-contact.md. */
+CPROX_API cprox_status cprox_first_contact(cprox_mover mover, cprox_target target, const cprox_options *options,
+                                           cprox_workspace *workspace, cprox_result *result);
+
+/** The same with many targets: the first contact with any of them. n = 0: no contact. */
+CPROX_API cprox_status cprox_first_contact_all(cprox_mover mover, const cprox_target *targets, size_t n,
+                                               const cprox_options *options, cprox_workspace *workspace,
+                                               cprox_result *result);
 
 /** Signed distance of two standing bodies.
  *

@@ -5,6 +5,17 @@
 
 #include "query/candidate_search.h"
 
+question question_create(cprox_mover mover, const cprox_target *targets, size_t n, double limit, bool farther_is_yes,
+                         const cprox_options *options, cprox_workspace *workspace) {
+  return (question){.mover = mover,
+                    .targets = targets,
+                    .n = n,
+                    .limit = limit,
+                    .farther_is_yes = farther_is_yes,
+                    .options = options ? *options : cprox_options_default(),
+                    .workspace = workspace};
+}
+
 cprox_verdict question_verdict(const question *q, const cprox_result *r) {
   if (!question_wants_verdict(q)) return CPROX_UNDECIDED;
   if (r->upper <= q->limit) return q->farther_is_yes ? CPROX_NO : CPROX_YES;
@@ -19,7 +30,7 @@ static bool is_satisfied(const question *q, double ceiling, const cprox_result *
   return !(upper - r->lower > fmax(q->options.epsilon, q->options.relative_epsilon * upper));
 }
 
-static const char *shortfall(cprox_status status) {
+const char *question_shortfall(cprox_status status) {
   switch (status) {
     case CPROX_BUDGET: return "the budget of nodes ended the search: raise max_nodes or epsilon";
     case CPROX_PRECISION: return "epsilon is below what double arithmetic allows at this scale";
@@ -65,7 +76,7 @@ cprox_status question_answer(const question *q, size_t first, size_t last, doubl
   all.lower = fmin(all.lower, all.upper);
   all.status = is_satisfied(q, ceiling, &all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
   all.verdict = question_verdict(q, &all);
-  if (all.status != CPROX_OK) workspace_fail(q->workspace, all.status, "%s", shortfall(all.status));
+  if (all.status != CPROX_OK) workspace_fail(q->workspace, all.status, "%s", question_shortfall(all.status));
   *result = all;
   return all.status;
 }

@@ -5,6 +5,13 @@
 
 #include "query/candidates.h"
 
+/* options NULL: the default. Nothing is checked. */
+question question_create(cprox_mover mover, const cprox_target *targets, size_t n, double limit, bool farther_is_yes,
+                         const cprox_options *options, cprox_workspace *workspace);
+
+/* What a status above CPROX_OK means to the caller. */
+const char *question_shortfall(cprox_status status);
+
 /* The verdict that the result's interval gives; undecided for distances. */
 cprox_verdict question_verdict(const question *q, const cprox_result *r);
 

@@ -34,7 +34,7 @@ static double bound_slack(const curve_convex *o, double error, double magnitude,
 }
 
 /* Weak duality: along any unit n the body reaches no farther than h(n), so min n·P - h(n) is a lower bound. */
-static void bound_by_normal(const curve_convex *o, search_node *node, const curve_sight *sight) {
+void curve_convex_bound(const curve_convex *o, search_node *node, const curve_sight *sight) {
   if (!isfinite(sight->support)) return;
   const curve_reach reach = curve_side_reach(&o->side, &node->side[0], sight->normal);
   const double bound = reach.least - sight->support;
@@ -87,7 +87,7 @@ static double filter(void *self, search_node *node, double goal) {
   if (o->incumbent == 0) return node->lower;
   if (node->side[0].slot >= 0) curve_side_load(&o->side, curve_side_piece(&o->side, &node->side[0]));
   if (node->seen != o->incumbent) {
-    bound_by_normal(o, node, &o->best);
+    curve_convex_bound(o, node, &o->best);
     node->seen = o->incumbent;
   }
   if (node->side[0].slot >= 0 && node->lower < goal && node->seen_ball != o->incumbent && know_cover(o) &&
@@ -167,7 +167,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     if (!curve_side_materialise(&o->side, &node->side[0]))
       return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
     if (best_inside(o, node) >= 0.0) {
-      if (node->seen != o->incumbent) bound_by_normal(o, node, &o->best);
+      if (node->seen != o->incumbent) curve_convex_bound(o, node, &o->best);
       node->seen = o->incumbent;
       o->last = o->best;
       return CPROX_OK;
@@ -178,8 +178,8 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   *best = o->best_bound;
 
   /* the probe's own normal, and the best one if it is another */
-  bound_by_normal(o, node, &o->last);
-  if (node->seen != o->incumbent) bound_by_normal(o, node, &o->best);
+  curve_convex_bound(o, node, &o->last);
+  if (node->seen != o->incumbent) curve_convex_bound(o, node, &o->best);
   node->seen = o->incumbent;
   return CPROX_OK;
 }
@@ -188,8 +188,8 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
 /* Children know both normals from birth. */
 static void bound_child(curve_convex *o, search_node *child) {
-  bound_by_normal(o, child, &o->best);
-  if (!vec_equal(o->last.normal, o->best.normal)) bound_by_normal(o, child, &o->last);
+  curve_convex_bound(o, child, &o->best);
+  if (!vec_equal(o->last.normal, o->best.normal)) curve_convex_bound(o, child, &o->last);
   child->seen = o->incumbent;
 }
 

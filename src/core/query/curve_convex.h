@@ -51,6 +51,9 @@ search_node curve_convex_root(search_interval part);
 /* The functions of the contract in search/search.h, self being the curve_convex. */
 search_oracle curve_convex_oracle(curve_convex *o);
 
+/* Raises node->lower by the normal of a sight. */
+void curve_convex_bound(const curve_convex *o, search_node *node, const curve_sight *sight);
+
 /* For query/polish.c: measures at a curve point y = psi(s) of the piece, which is within `error` of the exact one; */
 cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sight *sight,
                                   search_best *bound);

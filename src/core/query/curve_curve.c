@@ -10,7 +10,7 @@ enum { SLOT_FIRST, SLOT_SECOND, SLOTS_RESERVED };
 /* ---- bounds ----------------------------------------------------------------------------------------------------------- */
 
 /* Along any unit n: the first curve's least n·P less the second's greatest n·Q is a lower bound. */
-static void bound_by_normal(const curve_curve *o, search_node *node, vec3 n) {
+void curve_curve_bound(const curve_curve *o, search_node *node, vec3 n) {
   if (vec_norm2(n) == 0.0) return;
   const curve_reach first = curve_side_reach(&o->side[0], &node->side[0], n);
   const curve_reach second = curve_side_reach(&o->side[1], &node->side[1], vec_neg(n));
@@ -32,7 +32,7 @@ static double filter(void *self, search_node *node, double goal) {
   curve_curve *o = self;
   if (o->incumbent == 0 || node->seen == o->incumbent) return node->lower;
   load_pieces(o, node);
-  bound_by_normal(o, node, o->best.normal);
+  curve_curve_bound(o, node, o->best.normal);
   node->seen = o->incumbent;
   return node->lower;
 }
@@ -61,7 +61,7 @@ static bool holds_best(const curve_curve *o, const search_node *node) {
 /* ---- probes ----------------------------------------------------------------------------------------------------------- */
 
 /* The distance between two points of the curves, each within its error of the exact one, is an upper bound. */
-static void measure(curve_curve *o, curve_meeting *m, double error, search_best *bound) {
+void curve_curve_measure(curve_curve *o, curve_meeting *m, double error, search_best *bound) {
   o->probes++;
   const vec3 apart = vec_sub(m->point[0], m->point[1]);
   m->distance = vec_norm(apart);
@@ -70,13 +70,16 @@ static void measure(curve_curve *o, curve_meeting *m, double error, search_best 
   bound->upper = m->distance - o->offset + bound->slack;
 }
 
-static void consider(curve_curve *o, curve_meeting *m, double error) {
-  search_best bound = {.upper = INFINITY};
-  measure(o, m, error, &bound);
-  if (bound.upper >= o->best_bound.upper) return;
+void curve_curve_adopt(curve_curve *o, const curve_meeting *m, search_best bound) {
   o->best = *m;
   o->best_bound = bound;
   o->incumbent++;
+}
+
+static void consider(curve_curve *o, curve_meeting *m, double error) {
+  search_best bound = {.upper = INFINITY};
+  curve_curve_measure(o, m, error, &bound);
+  if (bound.upper < o->best_bound.upper) curve_curve_adopt(o, m, bound);
 }
 
 /* The ends of an interval's chord. */
@@ -113,31 +116,49 @@ static void polish(curve_curve *o, double step) {
   consider(o, &m, curve_side_point_error(&o->side[0]) + curve_side_point_error(&o->side[1]));
 }
 
-static cprox_status probe(void *self, search_node *node, search_best *best) {
-  curve_curve *o = self;
-  o->nodes++;
-  bool pieces = true;
+cprox_status curve_curve_materialise(curve_curve *o, search_node *node, bool *pieces) {
+  *pieces = true;
   for (int k = 0; k < 2; k++) {
     if (!curve_side_is_piece(&o->side[k], &node->side[k])) {
-      pieces = false;
+      *pieces = false;
     } else if (!curve_side_materialise(&o->side[k], &node->side[k])) {
       return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
     }
   }
+  return CPROX_OK;
+}
 
-  /* the chords suggest a normal, and where to measure */
+vec3 curve_curve_suggest(curve_curve *o, const search_node *node, double fraction[2]) {
   vec3 first[2], second[2];
   chord_of(&o->side[0], &node->side[0], first);
   chord_of(&o->side[1], &node->side[1], second);
+  return meeting_of_chords(first, second, fraction);
+}
+
+curve_meeting curve_curve_meeting_near(curve_curve *o, const search_node *node, const double fraction[2],
+                                       double *error) {
+  curve_meeting m = {.distance = INFINITY};
+  *error = 0.0;
+  for (int k = 0; k < 2; k++)
+    *error += point_near(&o->side[k], &node->side[k], fraction[k], &m.point[k], &m.piece[k], &m.s[k]);
+  return m;
+}
+
+static cprox_status probe(void *self, search_node *node, search_best *best) {
+  curve_curve *o = self;
+  o->nodes++;
+  bool pieces;
+  const cprox_status ready = curve_curve_materialise(o, node, &pieces);
+  if (ready < 0) return ready;
+
+  /* the chords suggest a normal, and where to measure */
   double fraction[2];
-  o->last_normal = meeting_of_chords(first, second, fraction);
-  bound_by_normal(o, node, o->last_normal);
+  o->last_normal = curve_curve_suggest(o, node, fraction);
+  curve_curve_bound(o, node, o->last_normal);
 
   if (!holds_best(o, node)) {
-    curve_meeting m;
-    double error = 0.0;
-    for (int k = 0; k < 2; k++)
-      error += point_near(&o->side[k], &node->side[k], fraction[k], &m.point[k], &m.piece[k], &m.s[k]);
+    double error;
+    curve_meeting m = curve_curve_meeting_near(o, node, fraction, &error);
     const uint32_t before = o->incumbent;
     consider(o, &m, error);
     const bool worthwhile = o->best_bound.upper > o->good_enough && o->nodes > o->polish_after;
@@ -148,7 +169,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
   /* measuring may have loaded other pieces */
   load_pieces(o, node);
-  if (node->seen != o->incumbent) bound_by_normal(o, node, o->best.normal);
+  if (node->seen != o->incumbent) curve_curve_bound(o, node, o->best.normal);
   node->seen = o->incumbent;
   return CPROX_OK;
 }
@@ -163,44 +184,50 @@ static double length_of(const curve_side *side, const search_interval *at) {
   return vec_norm(vec_sub(ends[1], ends[0])) + 2.0 * capsule->radius * (at->b - at->a);
 }
 
+int curve_curve_longer_side(const curve_curve *o, const search_node *node) {
+  return length_of(&o->side[0], &node->side[0]) >= length_of(&o->side[1], &node->side[1]) ? 0 : 1;
+}
+
+void curve_curve_cut_middle(curve_curve_cuts *cuts, const search_node *node, int k) {
+  cuts->wanted[k] = true;
+  cuts->s[k] = 0.5;
+  cuts->at[k] = 0.5 * (node->side[k].a + node->side[k].b);
+}
+
+static curve_curve_cuts choose_cuts(const curve_curve *o, const search_node *node) {
+  curve_curve_cuts cuts = {.wanted = {false, false}};
+  if (!holds_best(o, node)) {
+    curve_curve_cut_middle(&cuts, node, curve_curve_longer_side(o, node));
+    return cuts;
+  }
+  for (int k = 0; k < 2; k++) {
+    cuts.s[k] = best_within(o, node, k);
+    cuts.wanted[k] = is_inner(cuts.s[k]);
+    cuts.at[k] = o->best.s[k];
+  }
+  return cuts;
+}
+
 /* Cuts side k of the node in two, or leaves it whole; the number of parts, 0 where it is too short, -1 without memory. */
-static int cut_side(curve_curve *o, search_node *node, int k, bool wanted, double s, search_interval part[2]) {
+static int cut_side(curve_curve *o, search_node *node, int k, const curve_curve_cuts *cuts, search_interval part[2]) {
   search_interval *at = &node->side[k];
   curve_side *side = &o->side[k];
   part[0] = *at;
-  if (!wanted) return 1;
+  if (!cuts->wanted[k]) return 1;
   if (!curve_side_is_piece(side, at)) {
     curve_side_cut_range(at, part);
     return curve_side_is_empty(side, &part[1]) ? 1 : 2;
   }
-  const double cut = s == 0.5 ? 0.5 * (at->a + at->b) : o->best.s[k];
+  const double cut = cuts->at[k];
   if (!(at->a < cut && cut < at->b)) return 0;
-  return curve_side_cut_piece(side, at, cut, s, part) ? 2 : -1;
+  return curve_side_cut_piece(side, at, cut, cuts->s[k], part) ? 2 : -1;
 }
 
-/* Which sides are to be cut, and where. */
-static void choose_cuts(const curve_curve *o, const search_node *node, bool wanted[2], double s[2]) {
-  s[0] = s[1] = 0.5;
-  if (holds_best(o, node)) {
-    for (int k = 0; k < 2; k++) {
-      s[k] = best_within(o, node, k);
-      wanted[k] = is_inner(s[k]);
-    }
-    return;
-  }
-  wanted[0] = length_of(&o->side[0], &node->side[0]) >= length_of(&o->side[1], &node->side[1]);
-  wanted[1] = !wanted[0];
-}
-
-static int split(void *self, search_node *node, search_node *child) {
-  curve_curve *o = self;
-  bool wanted[2];
-  double s[2];
-  choose_cuts(o, node, wanted, s);
+int curve_curve_cut(curve_curve *o, search_node *node, const curve_curve_cuts *cuts, search_node *child) {
   search_interval part[2][2];
   int n[2];
   for (int k = 0; k < 2; k++) {
-    n[k] = cut_side(o, node, k, wanted[k], s[k], part[k]);
+    n[k] = cut_side(o, node, k, cuts, part[k]);
     if (n[k] == 0) return 0;
     if (n[k] < 0) return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
   }
@@ -216,12 +243,18 @@ static int split(void *self, search_node *node, search_node *child) {
       if ((j > 0 && !curve_side_copy(&o->side[0], &made->side[0])) ||
           (i > 0 && !curve_side_copy(&o->side[1], &made->side[1])))
         return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
-      bound_by_normal(o, made, o->best.normal);
-      bound_by_normal(o, made, o->last_normal);
+      curve_curve_bound(o, made, o->best.normal);
+      curve_curve_bound(o, made, o->last_normal);
       made->seen = o->incumbent;
     }
   }
   return children;
+}
+
+static int split(void *self, search_node *node, search_node *child) {
+  curve_curve *o = self;
+  const curve_curve_cuts cuts = choose_cuts(o, node);
+  return curve_curve_cut(o, node, &cuts, child);
 }
 
 static void release(void *self, const search_node *node) {

@@ -45,4 +45,36 @@ search_node curve_curve_root(const curve_curve *o, search_interval part);
 /* The functions of the contract in search/search.h, self being the curve_curve. */
 search_oracle curve_curve_oracle(curve_curve *o);
 
+/* ---- what an oracle with another place to measure and to cut is made of: query/contact_curve.c ------------------------------ */
+
+/* Raises node->lower along n, unit or (0,0,0). The node's pieces must be the loaded ones. */
+void curve_curve_bound(const curve_curve *o, search_node *node, vec3 n);
+
+/* Gives single pieces points of their own, and loads them; *pieces: both sides are single pieces. */
+cprox_status curve_curve_materialise(curve_curve *o, search_node *node, bool *pieces);
+
+/* What the chords of the node suggest: a normal, and where on both they are nearest. */
+vec3 curve_curve_suggest(curve_curve *o, const search_node *node, double fraction[2]);
+
+/* Points of both curves near those fractions of the chords; their errors add up to *error. */
+curve_meeting curve_curve_meeting_near(curve_curve *o, const search_node *node, const double fraction[2],
+                                       double *error);
+
+/* Fills in distance and normal of a meeting whose points are within `error` of the exact ones in all. */
+void curve_curve_measure(curve_curve *o, curve_meeting *m, double error, search_best *bound);
+void curve_curve_adopt(curve_curve *o, const curve_meeting *m, search_best bound);
+
+/* Which sides of a node to cut, at which fraction s of the interval, and at which parameter of the piece. Ranges of pieces fall
+ * in two halves wherever that is. */
+typedef struct curve_curve_cuts {
+  bool wanted[2];
+  double s[2], at[2];
+} curve_curve_cuts;
+
+void curve_curve_cut_middle(curve_curve_cuts *cuts, const search_node *node, int k);
+int curve_curve_longer_side(const curve_curve *o, const search_node *node);
+
+/* The children, all bounded by the last and the best normal; as search_oracle.split. */
+int curve_curve_cut(curve_curve *o, search_node *node, const curve_curve_cuts *cuts, search_node *child);
+
 #endif

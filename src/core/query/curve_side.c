@@ -67,6 +67,13 @@ double curve_side_parameter(const curve_side *side, size_t piece, double s) {
   return s == 1.0 ? t1 : t0 + s * (t1 - t0);
 }
 
+double curve_side_start(const curve_side *side, const search_interval *at) {
+  if (curve_side_is_piece(side, at)) return curve_side_parameter(side, curve_side_piece(side, at), at->a);
+  size_t leaf = at->part;
+  while (leaf < side->curve->n_leaves) leaf *= 2;
+  return side->curve->breaks[leaf - side->curve->n_leaves];
+}
+
 void curve_side_load(curve_side *side, size_t piece) {
   if (side->root_piece == piece) return;
   const size_t degree = side->curve->degree;

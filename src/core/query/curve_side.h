@@ -74,6 +74,9 @@ void curve_side_cut_range(const search_interval *range, search_interval half[2])
 bool curve_side_cut_piece(curve_side *side, search_interval *piece, double cut, double s, search_interval half[2]);
 bool curve_side_is_empty(const curve_side *side, const search_interval *at);
 
+/* The curve's parameter where an interval begins. */
+double curve_side_start(const curve_side *side, const search_interval *at);
+
 /* The curve's parameter at s of a piece. */
 double curve_side_parameter(const curve_side *side, size_t piece, double s);
 

@@ -33,17 +33,6 @@ static cprox_status ask(question *q, cprox_result *nearest, cprox_result *each) 
   return all.status;
 }
 
-static question question_create(cprox_mover mover, const cprox_target *targets, size_t n, double limit,
-                                bool farther_is_yes, const cprox_options *options, cprox_workspace *workspace) {
-  return (question){.mover = mover,
-                    .targets = targets,
-                    .n = n,
-                    .limit = limit,
-                    .farther_is_yes = farther_is_yes,
-                    .options = options ? *options : cprox_options_default(),
-                    .workspace = workspace};
-}
-
 /* ---- the verbs ---------------------------------------------------------------------------------------------------------- */
 
 cprox_status cprox_distance_all(cprox_mover mover, const cprox_target *targets, size_t n, const cprox_options *options,

@@ -1,0 +1,356 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* First contact along the parameter: never late, as close as asked, proven where it is said to be. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/frame.h"
+#include "curve_proximity/cprox.h"
+#include "support/random.h"
+#include "support/reference.h"
+
+static cprox_workspace *ws;
+
+static int setup(void **state) {
+  (void)state;
+  ws = cprox_workspace_create();
+  return ws ? 0 : 1;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  cprox_workspace_free(ws);
+  return 0;
+}
+
+/* ---- builders ---------------------------------------------------------------------------------------------------------- */
+
+static cprox_curve *bezier(const vec3 *points, size_t n) {
+  cprox_curve *curve = NULL;
+  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_reason(ws));
+  return curve;
+}
+
+static cprox_options accurate(double epsilon) {
+  cprox_options options = cprox_options_default();
+  options.epsilon = epsilon;
+  return options;
+}
+
+static void ask(cprox_mover mover, cprox_target target, double epsilon, cprox_result *r) {
+  const cprox_options options = accurate(epsilon);
+  const cprox_status status = cprox_first_contact(mover, target, &options, ws, r);
+  if (status != CPROX_OK) fail_msg("%s: %s", cprox_status_name(status), cprox_workspace_reason(ws));
+  assert_int_equal(r->status, status);
+}
+
+/* A body of a random kind, its distance from a point in long double, and where it stands. */
+typedef struct obstacle {
+  int kind; /* sphere, box, polytope */
+  double radius;
+  vec3 half, vertex[8];
+  cprox_pose pose;
+  cprox_body *body;
+} obstacle;
+
+static void obstacle_make(rng *r, double thinness, obstacle *o) {
+  o->kind = (int)rng_index(r, 3);
+  o->pose = rng_pose(r, 0.5);
+  o->body = NULL;
+  o->radius = rng_uniform(r, 0.05, 0.6);
+  o->half = vec(rng_uniform(r, 0.1, 0.7), rng_uniform(r, 0.1, 0.7), thinness * rng_uniform(r, 0.1, 0.7));
+  for (int i = 0; i < 8; i++) {
+    o->vertex[i] = rng_in_cube(r, 0.7);
+    o->vertex[i].z *= thinness;
+  }
+  cprox_status status = CPROX_INVALID;
+  if (o->kind == 0) status = cprox_body_create_sphere(o->radius, ws, &o->body);
+  if (o->kind == 1) status = cprox_body_create_box(vec_scale(2.0, o->half), ws, &o->body);
+  if (o->kind == 2) status = cprox_body_create_polytope(o->vertex, 8, ws, &o->body);
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+}
+
+static long double obstacle_distance(const obstacle *o, vec3l world) {
+  const vec3l p = ref_to_local(&o->pose, world);
+  if (o->kind == 0) return fmaxl(ref_norm(p) - (long double)o->radius, 0.0L);
+  if (o->kind == 1) return ref_point_box(p, o->half);
+  return ref_point_hull(p, o->vertex, 8);
+}
+
+/* ---- random curves and bodies -------------------------------------------------------------------------------------------- */
+
+/* 3000 random pairs, seed 1, degrees 1 to 9, points and tubes. Distances by long double at 60 parameters before t_free and at
+ * t_free and t themselves; both sides of a comparison are within 1e-14 at this scale. */
+static void nothing_touches_before_t_free_and_t_free_is_within_epsilon_of_contact(void **state) {
+  (void)state;
+  const double doubt = 1e-14;
+  const size_t cases = test_cases(3000);
+  rng r = rng_seed(1);
+  size_t hits = 0, free_ones = 0, undecided = 0;
+  double nodes = 0.0, probes = 0.0;
+  for (size_t i = 0; i < cases; i++) {
+    obstacle o;
+    obstacle_make(&r, rng_index(&r, 3) == 0 ? 1e-3 : 1.0, &o);
+    const size_t degree = 1 + rng_index(&r, 9);
+    vec3 p[10];
+    for (size_t k = 0; k <= degree; k++) p[k] = rng_in_cube(&r, 2.0);
+    cprox_curve *curve = bezier(p, degree + 1);
+    const double radius = rng_index(&r, 2) ? rng_uniform(&r, 0.0, 0.2) : 0.0;
+    const double epsilon = rng_log_uniform(&r, 1e-12, 1e-3);
+    cprox_result c;
+    ask(cprox_tube_along(curve, radius), cprox_at(o.body, o.pose), epsilon, &c);
+
+    for (int k = 0; k < 60 && c.t_free > 0.0; k++) {
+      const long double t = (long double)c.t_free * k / 60.0L;
+      const long double d = obstacle_distance(&o, ref_bezier(p, degree, t, 0)) - (long double)radius;
+      if (d < -(long double)doubt) fail_msg("case %zu: contact at %.17Lg, t_free %.17g", i, t, c.t_free);
+    }
+    const long double at_free =
+        obstacle_distance(&o, ref_bezier(p, degree, (long double)c.t_free, 0)) - (long double)radius;
+    if (c.verdict == CPROX_NO) {
+      assert_true(c.t_free == 1.0 && c.lower > 0.0);
+      assert_true(at_free > -(long double)doubt);
+      free_ones++;
+    } else {
+      if (at_free > (long double)(epsilon + doubt)) fail_msg("case %zu: at t_free the distance is %.3Lg", i, at_free);
+      assert_true(c.t_free <= c.t);
+      const long double at_hit =
+          obstacle_distance(&o, ref_bezier(p, degree, (long double)c.t, 0)) - (long double)radius;
+      if (c.verdict == CPROX_YES && at_hit > (long double)doubt)
+        fail_msg("case %zu: no contact at t: %.3Lg", i, at_hit);
+      hits += c.verdict == CPROX_YES, undecided += c.verdict == CPROX_UNDECIDED;
+    }
+    nodes += c.nodes, probes += c.probes;
+    cprox_curve_free(curve);
+    cprox_body_free(o.body);
+  }
+  printf("%zu hits, %zu free, %zu undecided; nodes and probes a query: %.1f, %.1f\n", hits, free_ones, undecided,
+         nodes / (double)cases, probes / (double)cases);
+  assert_true(hits * 5 > cases && free_ones * 10 > cases && undecided * 50 < cases);
+}
+
+/* ---- thin plates and grazes: contact known in closed form ---------------------------------------------------------------- */
+
+/* The first s at which the descending ordinate of the curve is at most `height`, by bisection in long double. */
+static long double descends_to(const vec3 *p, size_t degree, long double height) {
+  long double low = 0.0L, high = 1.0L;
+  for (int k = 0; k < 200; k++) {
+    const long double middle = 0.5L * (low + high);
+    *(ref_bezier(p, degree, middle, 0).z > height ? &low : &high) = middle;
+  }
+  return high;
+}
+
+/* 1200 curves that go down through a plate of 1e-9 to 1e-3, seed 2, the plate turned anyhow. Where the curve meets the upper
+ * side is found by bisection: t_free is no later, and no earlier than where the curve is still epsilon above. */
+static void a_plate_is_neither_missed_nor_met_late(void **state) {
+  (void)state;
+  const size_t cases = test_cases(1200);
+  rng r = rng_seed(2);
+  for (size_t i = 0; i < cases; i++) {
+    const double half = rng_log_uniform(&r, 5e-10, 5e-4), radius = rng_index(&r, 2) ? rng_uniform(&r, 0.0, 0.1) : 0.0;
+    const double epsilon = rng_log_uniform(&r, 1e-11, 1e-4);
+    const size_t degree = 1 + rng_index(&r, 7);
+    vec3 p[8];
+    for (size_t k = 0; k <= degree; k++) {
+      const double height = degree == 1 ? 1.0 - 2.0 * (double)k : 1.0 - 2.0 * (double)k / (double)degree;
+      p[k] = vec(rng_uniform(&r, -1, 1), rng_uniform(&r, -1, 1),
+                 height + (k > 0 && k < degree ? rng_uniform(&r, -0.1, 0.1) : 0.0));
+    }
+    cprox_curve *curve = bezier(p, degree + 1);
+    cprox_body *plate = NULL;
+    assert_int_equal(cprox_body_create_box(vec(6, 6, 2 * half), ws, &plate), CPROX_OK);
+    const double turn = rng_uniform(&r, -3, 3);
+    const cprox_pose pose = {.orientation = {cos(turn), 0, 0, sin(turn)}};
+    cprox_result c;
+    ask(cprox_tube_along(curve, radius), cprox_at(plate, pose), epsilon, &c);
+    assert_int_equal(c.verdict, CPROX_YES);
+    const long double top = (long double)half + (long double)radius;
+    const long double contact = descends_to(p, degree, top), early = descends_to(p, degree, top + (long double)epsilon);
+    if ((long double)c.t_free > contact + 1e-14L)
+      fail_msg("case %zu: late by %.3Lg", i, (long double)c.t_free - contact);
+    if ((long double)c.t_free < early - 1e-14L) fail_msg("case %zu: early by %.3Lg", i, early - (long double)c.t_free);
+    assert_true((long double)c.t >= contact - 1e-14L);
+    cprox_curve_free(curve);
+    cprox_body_free(plate);
+  }
+}
+
+/* 1200 parabolas over a ball whose top they pass at a height of -1e-3 … 1e-3, seed 3. The least height decides, except within
+ * epsilon and rounding of 0. */
+static void grazes_are_told_from_misses(void **state) {
+  (void)state;
+  const size_t cases = test_cases(1200);
+  rng r = rng_seed(3);
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.5, ws, &ball), CPROX_OK);
+  for (size_t i = 0; i < cases; i++) {
+    const double height = (rng_index(&r, 2) ? 1.0 : -1.0) * rng_log_uniform(&r, 1e-9, 1e-3), epsilon = 1e-10;
+    const double drift = rng_uniform(&r, -0.2, 0.2);
+    /* z = 0.5 + height + u², u = 2s - 1, y = drift u² keeps the top of the ball nearest */
+    const double top = 0.5 + height;
+    const vec3 p[3] = {{-1, drift, top + 1}, {0, -drift, top - 1}, {1, drift, top + 1}};
+    cprox_curve *curve = bezier(p, 3);
+    cprox_result c;
+    ask(cprox_point_along(curve), cprox_at(ball, cprox_pose_identity()), epsilon, &c);
+    if (c.verdict != (height > 0 ? CPROX_NO : CPROX_YES))
+      fail_msg("case %zu: height %.3g answered %s", i, height, cprox_verdict_name(c.verdict));
+    if (height < 0) assert_true(c.t_free <= c.t && c.t_free < 0.5 && c.t <= 0.5 + 1e-9);
+    cprox_curve_free(curve);
+  }
+  cprox_body_free(ball);
+}
+
+/* ---- splines, several targets, curves as targets ---------------------------------------------------------------------------- */
+
+static void the_earliest_of_many_targets_is_met(void **state) {
+  (void)state;
+  const vec3 p[2] = {{0, 0, 0}, {10, 0, 0}};
+  cprox_curve *curve = bezier(p, 2);
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.5, ws, &ball), CPROX_OK);
+  cprox_target targets[4];
+  const double x[4] = {8, 4, 6, 20};
+  for (int i = 0; i < 4; i++)
+    targets[i] = cprox_at(ball, (cprox_pose){.position = {x[i], 0.1, 0}, .orientation = {1, 0, 0, 0}});
+  const cprox_options options = accurate(1e-10);
+  cprox_result c;
+  assert_int_equal(cprox_first_contact_all(cprox_point_along(curve), targets, 4, &options, ws, &c), CPROX_OK);
+  assert_int_equal(c.verdict, CPROX_YES);
+  assert_int_equal(c.target_index, 1);
+  const double contact = (4.0 - sqrt(0.25 - 0.01)) / 10.0;
+  assert_true(c.t_free <= contact && contact <= c.t && c.t - c.t_free < 1e-9);
+  assert_int_equal(cprox_first_contact_all(cprox_point_along(curve), NULL, 0, &options, ws, &c), CPROX_OK);
+  assert_int_equal(c.verdict, CPROX_NO);
+  assert_float_equal(c.t_free, 1.0, 0.0);
+  cprox_body_free(ball);
+  cprox_curve_free(curve);
+}
+
+static void contact_on_a_late_piece_of_a_long_spline_is_found_there(void **state) {
+  (void)state;
+  enum { N = 400 };
+  static vec3 p[N];
+  static double knots[N + 4];
+  for (int i = 0; i < N; i++) p[i] = vec(0.1 * i, 0.05 * sin(0.3 * i), 0.0);
+  for (int i = 0; i < N + 4; i++) knots[i] = i;
+  cprox_curve *curve = NULL;
+  assert_int_equal(cprox_curve_create_bspline(p, N, 3, knots, N + 4, 3, N, ws, &curve), CPROX_OK);
+  cprox_body *wall = NULL;
+  assert_int_equal(cprox_body_create_box(vec(0.02, 4, 4), ws, &wall), CPROX_OK);
+  cprox_result c;
+  ask(cprox_point_along(curve), cprox_at(wall, (cprox_pose){.position = {30.01, 0, 0}, .orientation = {1, 0, 0, 0}}),
+      1e-10, &c);
+  assert_int_equal(c.verdict, CPROX_YES);
+  /* x(t) = 0.1 (t - 2) on a uniform cubic spline whose x are equally spaced */
+  assert_true(c.t_free <= 302.0 + 1e-11 && c.t_free > 302.0 - 1e-8 && c.t >= 302.0 - 1e-11 && c.t < 302.0 + 1e-7);
+  assert_true(c.nodes < 100);
+  cprox_body_free(wall);
+  cprox_curve_free(curve);
+}
+
+/* Two tubes, 300 pairs of cubics, seed 4, against the brute minimum over 400 parameters of the other curve. */
+static void tubes_meet_no_later_than_they_touch(void **state) {
+  (void)state;
+  const size_t cases = test_cases(300);
+  rng r = rng_seed(4);
+  size_t hits = 0;
+  for (size_t i = 0; i < cases; i++) {
+    vec3 p[4], q[4];
+    for (int k = 0; k < 4; k++) p[k] = rng_in_cube(&r, 1.0), q[k] = rng_in_cube(&r, 1.0);
+    cprox_curve *first = bezier(p, 4), *second = bezier(q, 4);
+    const double epsilon = 1e-8;
+    cprox_result c;
+    ask(cprox_tube_along(first, 0.1), cprox_curve_target(second, 0.15), epsilon, &c);
+    const double last = c.verdict == CPROX_NO ? 1.0 : c.t_free;
+    for (int k = 0; k <= 50 && last > 0.0; k++) {
+      const vec3l x = ref_bezier(p, 3, (long double)last * k / 51.0L, 0);
+      for (int m = 0; m <= 400; m++) {
+        const long double d = ref_norm(ref_sub(x, ref_bezier(q, 3, m / 400.0L, 0)));
+        if (d < 0.25L - 1e-13L) fail_msg("case %zu: touches before t_free %.17g", i, c.t_free);
+      }
+    }
+    if (c.verdict == CPROX_YES) {
+      const long double d = ref_norm(ref_sub(ref_bezier(p, 3, c.t, 0), ref_bezier(q, 3, c.t_target, 0)));
+      assert_true(d <= 0.25L + 1e-13L);
+      if (c.t - c.t_free > 1e-5) fail_msg("case %zu: contact only at %.17g, free until %.17g", i, c.t, c.t_free);
+      hits++;
+    }
+    cprox_curve_free(first);
+    cprox_curve_free(second);
+  }
+  assert_true(hits * 4 > cases);
+}
+
+static void a_start_inside_is_contact_at_the_start(void **state) {
+  (void)state;
+  const vec3 p[3] = {{0.1, 0, 0}, {1, 1, 0}, {2, 0, 0}};
+  cprox_curve *curve = bezier(p, 3);
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.5, ws, &ball), CPROX_OK);
+  cprox_result c;
+  ask(cprox_point_along(curve), cprox_at(ball, cprox_pose_identity()), 1e-9, &c);
+  assert_int_equal(c.verdict, CPROX_YES);
+  assert_true(c.t_free == 0.0 && c.t == 0.0 && c.lower == 0.0 && c.upper == 0.0);
+  cprox_body_free(ball);
+  cprox_curve_free(curve);
+}
+
+/* A line that slides along a face at distance 0 from its start on, and one that ends on the face. */
+static void resting_contact_ends_within_the_budget(void **state) {
+  (void)state;
+  cprox_body *box = NULL;
+  assert_int_equal(cprox_body_create_box(vec(2, 2, 2), ws, &box), CPROX_OK);
+  const vec3 slide[3] = {{-3, 0, 1}, {0, 0.5, 1}, {3, 0, 1}}, land[3] = {{0, 0, 2}, {0.5, 0, 2}, {0, 0.5, 1}};
+  for (int k = 0; k < 2; k++) {
+    cprox_curve *curve = bezier(k == 0 ? slide : land, 3);
+    cprox_result c;
+    ask(cprox_point_along(curve), cprox_at(box, cprox_pose_identity()), 1e-9, &c);
+    assert_true(c.verdict != CPROX_NO);
+    const double contact = k == 0 ? 1.0 / 3.0 : 1.0;
+    assert_true(c.t_free <= contact && c.t_free > contact - 1e-4 && c.nodes < 300);
+    cprox_curve_free(curve);
+  }
+  cprox_body_free(box);
+}
+
+static void out_of_budget_t_free_is_still_true(void **state) {
+  (void)state;
+  const vec3 p[4] = {{-2, 0.1, 0}, {3, 2, 0}, {-3, -2, 0.5}, {2, 0.5, 0}};
+  cprox_curve *curve = bezier(p, 4);
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.2, ws, &ball), CPROX_OK);
+  const cprox_target target = cprox_at(ball, (cprox_pose){.position = {0.1, 0, 0.2}, .orientation = {1, 0, 0, 0}});
+  cprox_options options = accurate(1e-12);
+  cprox_result whole, c;
+  assert_int_equal(cprox_first_contact(cprox_point_along(curve), target, &options, ws, &whole), CPROX_OK);
+  for (uint32_t n = 1; n < whole.nodes; n++) {
+    options.max_nodes = n;
+    assert_int_equal(cprox_first_contact(cprox_point_along(curve), target, &options, ws, &c), CPROX_BUDGET);
+    assert_true(c.t_free <= whole.t);
+    assert_true(cprox_workspace_reason(ws)[0] != '\0');
+  }
+  cprox_body_free(ball);
+  cprox_curve_free(curve);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(nothing_touches_before_t_free_and_t_free_is_within_epsilon_of_contact),
+      cmocka_unit_test(a_plate_is_neither_missed_nor_met_late),
+      cmocka_unit_test(grazes_are_told_from_misses),
+      cmocka_unit_test(the_earliest_of_many_targets_is_met),
+      cmocka_unit_test(contact_on_a_late_piece_of_a_long_spline_is_found_there),
+      cmocka_unit_test(tubes_meet_no_later_than_they_touch),
+      cmocka_unit_test(a_start_inside_is_contact_at_the_start),
+      cmocka_unit_test(resting_contact_ends_within_the_budget),
+      cmocka_unit_test(out_of_budget_t_free_is_still_true),
+  };
+  return cmocka_run_group_tests_name("first contact", tests, setup, teardown);
+}
