@@ -142,7 +142,7 @@ static size_t attack(const problem *p, rng *r, cprox_workspace *ws) {
   search_node open[MAX_OPEN + 1];
   search_best best = {.upper = INFINITY};
   size_t n = 1, checked = 0;
-  open[0] = curve_convex_root(curve_side_whole());
+  open[0] = curve_convex_root(&o);
   for (int step = 0; step < STEPS && n > 0 && n < MAX_OPEN; step++) {
     size_t i = rng_index(r, n);
     for (size_t k = 0; chase && o.incumbent > 0 && k < n; k++)

@@ -160,7 +160,7 @@ static size_t attack(const problem *p, rng *r) {
   search_node open[MAX_OPEN + SEARCH_MAX_CHILDREN];
   search_best best = {.upper = INFINITY};
   size_t n = 1, checked = 0;
-  open[0] = curve_curve_root(&o, curve_side_whole());
+  open[0] = curve_curve_root(&o);
   for (int step = 0; step < STEPS && n < MAX_OPEN; step++) {
     size_t i = rng_index(r, n);
     for (size_t k = 0; chase && o.incumbent > 0 && k < n; k++) {

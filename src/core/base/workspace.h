@@ -11,6 +11,7 @@ typedef enum workspace_buffer {
   WORKSPACE_POINTS,
   WORKSPACE_FREE_SLOTS,
   WORKSPACE_ORDER,
+  WORKSPACE_RANKING,
   WORKSPACE_BUFFERS
 } workspace_buffer;
 

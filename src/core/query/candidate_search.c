@@ -46,8 +46,10 @@ static void report_points(const question *q, const candidate *c, vec3 centre, ve
 bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o) {
   const cprox_body *body = candidate_body(q, c);
   const cprox_pose pose = candidate_pose(q, c);
-  return curve_convex_begin(o, q->mover.curve, &body->shape, frame_create(&pose, body->centre), candidate_offset(q, c),
-                            q->workspace);
+  const frame placed = frame_create(&pose, body->centre);
+  if (!curve_convex_begin(o, q->mover.curve, &body->shape, placed, candidate_offset(q, c), q->workspace)) return false;
+  o->side.part = q->part;
+  return true;
 }
 
 void candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r) {
@@ -61,7 +63,10 @@ void candidate_report_convex(const question *q, const candidate *c, const curve_
 
 bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o) {
   const cprox_target *target = &q->targets[c->target];
-  return curve_curve_begin(o, q->mover.curve, target->curve, &target->pose, candidate_offset(q, c), q->workspace);
+  if (!curve_curve_begin(o, q->mover.curve, target->curve, &target->pose, candidate_offset(q, c), q->workspace))
+    return false;
+  o->side[0].part = q->part;
+  return true;
 }
 
 void candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r) {
@@ -82,7 +87,7 @@ static cprox_status search_convex(const question *q, const candidate *c, const s
   o.good_enough = good_enough(q);
   o.epsilon = q->options.epsilon;
   const search_oracle oracle = curve_convex_oracle(&o);
-  const cprox_status status = search_run(goal, &oracle, curve_convex_root(q->part), q->workspace, found);
+  const cprox_status status = search_run(goal, &oracle, curve_convex_root(&o), q->workspace, found);
   r->probes = o.probes;
   if (status >= 0) candidate_report_convex(q, c, &o, r);
   return status;
@@ -95,7 +100,7 @@ static cprox_status search_curve(const question *q, const candidate *c, const se
   o.polish_after = nodes_before_newton(q);
   o.good_enough = good_enough(q);
   const search_oracle oracle = curve_curve_oracle(&o);
-  const cprox_status status = search_run(goal, &oracle, curve_curve_root(&o, q->part), q->workspace, found);
+  const cprox_status status = search_run(goal, &oracle, curve_curve_root(&o), q->workspace, found);
   r->probes = o.probes;
   if (status >= 0) candidate_report_curve(q, c, &o, r);
   return status;

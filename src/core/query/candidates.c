@@ -9,6 +9,7 @@
 void question_ask_whole(question *q) {
   q->part = curve_side_whole();
   q->reach = q->mover.curve->capsules[1];
+  cprox_curve_domain(q->mover.curve, &q->t0, &q->t1);
 }
 
 const cprox_body *candidate_body(const question *q, const candidate *c) {
@@ -63,7 +64,7 @@ static double ball_bound(const question *q, const candidate *c) {
 }
 
 /* Shell's sort by lower: qsort may allocate. */
-static void sort_candidates(candidate *list, size_t n) {
+void candidates_sort(candidate *list, size_t n) {
   for (size_t gap = n / 2; gap > 0; gap /= 2) {
     for (size_t i = gap; i < n; i++) {
       const candidate moved = list[i];
@@ -91,7 +92,7 @@ candidate *candidates_list(const question *q, size_t first, size_t last, size_t 
       k++;
     }
   }
-  sort_candidates(list, n);
+  candidates_sort(list, n);
   *count = n;
   return list;
 }

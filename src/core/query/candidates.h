@@ -19,6 +19,7 @@ typedef struct question {
   cprox_workspace *workspace;
   search_interval part; /* of the mover's curve: the whole of it, or some of one piece */
   curve_capsule reach;  /* contains that part */
+  double t0, t1;        /* that part by the curve's parameter */
 } question;
 
 /* Asks about the whole curve; the arguments must have been checked. */
@@ -36,6 +37,9 @@ typedef struct candidate {
 
 /* The candidates of targets first … last - 1, nearest ball first, in the workspace. NULL where memory is out. */
 candidate *candidates_list(const question *q, size_t first, size_t last, size_t *count);
+
+/* Ascending by lower. */
+void candidates_sort(candidate *list, size_t n);
 
 /* A candidate's convex body (NULL for a curve), its pose in the world, and the sum of padding and radius. */
 const cprox_body *candidate_body(const question *q, const candidate *c);

@@ -112,9 +112,9 @@ void contact_convex_begin(contact_convex *c, double epsilon) {
   c->proven_bound = (search_best){.upper = INFINITY, .at = INFINITY};
 }
 
-search_node contact_convex_root(const contact_convex *c, search_interval part) {
-  search_node root = curve_convex_root(part);
-  root.start = curve_side_start(&c->base.side, &part);
+search_node contact_convex_root(const contact_convex *c) {
+  search_node root = curve_convex_root(&c->base);
+  root.start = curve_side_start(&c->base.side, &root.side[0]);
   return root;
 }
 

@@ -17,7 +17,7 @@ typedef struct contact_convex {
 /* Makes an oracle out of one that has begun. */
 void contact_convex_begin(contact_convex *c, double epsilon);
 
-search_node contact_convex_root(const contact_convex *c, search_interval part);
+search_node contact_convex_root(const contact_convex *c);
 search_oracle contact_convex_oracle(contact_convex *c);
 
 /* After the search: a contact that is nearer than epsilon but not proven becomes proven a little farther along, if a few

@@ -137,9 +137,9 @@ void contact_curve_begin(contact_curve *c, double epsilon) {
   c->nearest = -1.0;
 }
 
-search_node contact_curve_root(const contact_curve *c, search_interval part) {
-  search_node root = curve_curve_root(&c->base, part);
-  root.start = curve_side_start(&c->base.side[0], &part);
+search_node contact_curve_root(const contact_curve *c) {
+  search_node root = curve_curve_root(&c->base);
+  root.start = curve_side_start(&c->base.side[0], &root.side[0]);
   return root;
 }
 

@@ -19,7 +19,7 @@ typedef struct contact_curve {
 /* Makes an oracle out of one that has begun. */
 void contact_curve_begin(contact_curve *c, double epsilon);
 
-search_node contact_curve_root(const contact_curve *c, search_interval part);
+search_node contact_curve_root(const contact_curve *c);
 search_oracle contact_curve_oracle(contact_curve *c);
 
 /* After the search: a contact that is nearer than epsilon but not proven becomes proven a little farther along, if a few

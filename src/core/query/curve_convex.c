@@ -233,8 +233,8 @@ bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex 
   return points_pool_begin(&o->pool, curve->degree, SLOTS_RESERVED, workspace);
 }
 
-search_node curve_convex_root(search_interval part) {
-  return (search_node){.lower = -INFINITY, .side[0] = part};
+search_node curve_convex_root(const curve_convex *o) {
+  return (search_node){.lower = -INFINITY, .side[0] = o->side.part};
 }
 
 search_oracle curve_convex_oracle(curve_convex *o) {

@@ -45,8 +45,8 @@ typedef struct curve_convex {
 bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex *shape, frame placed, double offset,
                         cprox_workspace *workspace);
 
-/* The node that is this part of the curve. */
-search_node curve_convex_root(search_interval part);
+/* The node that is all that is asked about: side.part. */
+search_node curve_convex_root(const curve_convex *o);
 
 /* The functions of the contract in search/search.h, self being the curve_convex. */
 search_oracle curve_convex_oracle(curve_convex *o);

@@ -278,9 +278,9 @@ bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_cur
   return points_pool_begin(&o->pool, degree, SLOTS_RESERVED, workspace);
 }
 
-search_node curve_curve_root(const curve_curve *o, search_interval part) {
+search_node curve_curve_root(const curve_curve *o) {
   /* two balls on curves are never nearer than minus the sum of their radii: curves have no inside */
-  return (search_node){.lower = -o->offset, .side = {part, curve_side_whole()}};
+  return (search_node){.lower = -o->offset, .side = {o->side[0].part, o->side[1].part}};
 }
 
 search_oracle curve_curve_oracle(curve_curve *o) {

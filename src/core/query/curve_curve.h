@@ -39,8 +39,8 @@ typedef struct curve_curve {
 bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_curve *second, const cprox_pose *placed,
                        double offset, cprox_workspace *workspace);
 
-/* The node that is this part of the first curve and the whole second one. */
-search_node curve_curve_root(const curve_curve *o, search_interval part);
+/* The node that is all that is asked about: side[0].part and side[1].part. */
+search_node curve_curve_root(const curve_curve *o);
 
 /* The functions of the contract in search/search.h, self being the curve_curve. */
 search_oracle curve_curve_oracle(curve_curve *o);

@@ -39,7 +39,12 @@ void points_pool_give(points_pool *pool, int32_t slot) {
 /* ---- pieces ----------------------------------------------------------------------------------------------------------- */
 
 curve_side curve_side_create(const cprox_curve *curve, frame placed, points_pool *pool, size_t root_slot) {
-  return (curve_side){.curve = curve, .frame = placed, .pool = pool, .root_slot = root_slot, .root_piece = SIZE_MAX};
+  return (curve_side){.curve = curve,
+                      .frame = placed,
+                      .part = curve_side_whole(),
+                      .pool = pool,
+                      .root_slot = root_slot,
+                      .root_piece = SIZE_MAX};
 }
 
 search_interval curve_side_whole(void) {
@@ -100,10 +105,10 @@ static bool cut_to_section(curve_side *side, search_interval *at) {
     memcpy(points, other, control_size(degree) * sizeof(double));
   }
   if (at->a > 0.0) {
-    /* a/b is rounded: its neighbour begins at most u b beside it, where the curve is that far along |psi'| <= 2 degree max|P| */
     at->error += control_split(other, points, degree, at->a / at->b, side->root_magnitude);
-    at->error += ROUND_UP * 2.0 * (double)degree * ROUND_U * side->root_magnitude;
   }
+  /* a, b and a/b are rounded, by 4 u in all: along a curve with |psi'| <= 2 degree max|P| */
+  at->error += ROUND_UP * 8.0 * (double)degree * ROUND_U * side->root_magnitude;
   points_pool_give(side->pool, rest);
   return true;
 }

@@ -24,6 +24,7 @@ void points_pool_give(points_pool *pool, int32_t slot);
 typedef struct curve_side {
   const cprox_curve *curve;
   frame frame;
+  search_interval part; /* what of the curve is asked about: all of it, or some of one piece */
   points_pool *pool;
   size_t root_slot;  /* reserved: the whole piece that was asked for last */
   size_t root_piece; /* SIZE_MAX: none yet */

@@ -44,7 +44,7 @@ static cprox_status meet_convex(const question *q, const candidate *c, const sea
   if (!candidate_begin_convex(q, c, o)) return CPROX_MEMORY;
   contact_convex_begin(&state, q->options.epsilon);
   const search_oracle oracle = contact_convex_oracle(&state);
-  cprox_status status = search_run(goal, &oracle, contact_convex_root(&state, q->part), q->workspace, found);
+  cprox_status status = search_run(goal, &oracle, contact_convex_root(&state), q->workspace, found);
   if (status < 0) return status;
   candidate_report_convex(q, c, o, &met->near);
   met->near.upper = o->best_bound.upper;
@@ -66,7 +66,7 @@ static cprox_status meet_curve(const question *q, const candidate *c, const sear
   if (!candidate_begin_curve(q, c, o)) return CPROX_MEMORY;
   contact_curve_begin(&state, q->options.epsilon);
   const search_oracle oracle = contact_curve_oracle(&state);
-  const cprox_status status = search_run(goal, &oracle, contact_curve_root(&state, q->part), q->workspace, found);
+  const cprox_status status = search_run(goal, &oracle, contact_curve_root(&state), q->workspace, found);
   if (status < 0) return status;
   candidate_report_curve(q, c, o, &met->near);
   met->near.upper = o->best_bound.upper;

@@ -81,7 +81,7 @@ bool meeting_descend(const curve_side side[2], curve_meeting *meeting, double st
     double wanted[2], moved = 0.0;
     newton_step(&x, &y, s, wanted);
     for (int k = 0; k < 2; k++) {
-      const double next = clamp(s[k] + clamp(wanted[k], -step, step), 0.0, 1.0);
+      const double next = clamp(s[k] + clamp(wanted[k], -step, step), side[k].part.a, side[k].part.b);
       moved = fmax(moved, fabs(next - s[k]));
       s[k] = next;
     }

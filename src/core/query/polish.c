@@ -78,7 +78,7 @@ static double descend(const curve_convex *o, const double *points, const curve_s
     model m;
     if (!model_at(sight, j, &m)) break;
     const double wanted = m.f2 > 0.0 ? -m.f1 / m.f2 : (m.f1 > 0.0 ? -step : step);
-    const double next = clamp(clamp(s + wanted, s - step, s + step), 0.0, 1.0);
+    const double next = clamp(clamp(s + wanted, s - step, s + step), o->side.part.a, o->side.part.b);
     const double moved = fabs(next - s);
     if (moved < 1e-15) break;
     s = next;

@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Which targets are close, and how close each stretch of a curve is: against one query a target, and against sampling. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "curve_proximity/cprox.h"
+#include "support/counting.h"
+#include "support/random.h"
+#include "support/reference.h"
+
+enum { MOST_TARGETS = 24 };
+
+typedef struct world {
+  cprox_curve *curve;
+  vec3 points[8];
+  size_t degree, n;
+  double half[MOST_TARGETS];
+  cprox_body *body[MOST_TARGETS];
+  cprox_target target[MOST_TARGETS];
+  cprox_mover mover;
+} world;
+
+static cprox_workspace *ws;
+
+static int setup(void **state) {
+  (void)state;
+  ws = cprox_workspace_create();
+  return ws ? 0 : 1;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  cprox_workspace_free(ws);
+  return 0;
+}
+
+/* Cubes anywhere about a random curve of degree 1 to 7. */
+static world world_make(rng *r) {
+  world w = {.degree = 1 + rng_index(r, 7), .n = 1 + rng_index(r, MOST_TARGETS)};
+  for (size_t i = 0; i <= w.degree; i++) w.points[i] = rng_in_cube(r, 2.0);
+  assert_int_equal(cprox_curve_create_bezier(w.points, w.degree + 1, 0.0, 1.0, ws, &w.curve), CPROX_OK);
+  for (size_t i = 0; i < w.n; i++) {
+    w.half[i] = rng_uniform(r, 0.02, 0.4);
+    const double edge = 2.0 * w.half[i];
+    assert_int_equal(cprox_body_create_box(vec(edge, edge, edge), ws, &w.body[i]), CPROX_OK);
+    w.target[i] = cprox_at(w.body[i], rng_pose(r, 3.0));
+  }
+  w.mover = cprox_tube_along(w.curve, rng_index(r, 2) ? rng_uniform(r, 0.0, 0.2) : 0.0);
+  return w;
+}
+
+static void world_free(world *w) {
+  for (size_t i = 0; i < w->n; i++) cprox_body_free(w->body[i]);
+  cprox_curve_free(w->curve);
+}
+
+static long double clearance_at(const world *w, long double t) {
+  long double least = INFINITY;
+  for (size_t i = 0; i < w->n; i++) {
+    const vec3 half = vec(w->half[i], w->half[i], w->half[i]);
+    const vec3l p = ref_to_local(&w->target[i].pose, ref_bezier(w->points, w->degree, t, 0));
+    least = fminl(least, ref_point_box(p, half) - (long double)w->mover.radius);
+  }
+  return fmaxl(least, 0.0L);
+}
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* 600 worlds, seed 1: the i-th result is within epsilon of the i-th least of the distances asked one by one. */
+static void the_k_nearest_are_the_least_of_all_distances(void **state) {
+  (void)state;
+  rng r = rng_seed(1);
+  for (size_t i = 0, cases = test_cases(600); i < cases; i++) {
+    world w = world_make(&r);
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-9;
+    double all[MOST_TARGETS];
+    for (size_t j = 0; j < w.n; j++) {
+      cprox_result one;
+      assert_int_equal(cprox_distance(w.mover, w.target[j], &options, ws, &one), CPROX_OK);
+      all[j] = one.upper;
+    }
+    qsort(all, w.n, sizeof *all, ascending);
+    const size_t k = 1 + rng_index(&r, 6);
+    cprox_result nearest[6];
+    size_t count = 99;
+    assert_int_equal(cprox_nearest(w.mover, w.target, w.n, k, &options, ws, nearest, &count), CPROX_OK);
+    assert_int_equal(count, k < w.n ? k : w.n);
+    for (size_t j = 0; j < count; j++) {
+      assert_true(fabs(nearest[j].upper - all[j]) <= 1e-9);
+      assert_true(j == 0 || nearest[j - 1].upper <= nearest[j].upper);
+      for (size_t m = 0; m < j; m++) assert_true(nearest[m].target_index != nearest[j].target_index);
+    }
+    world_free(&w);
+  }
+}
+
+/* 600 worlds, seed 2: who is listed and who is not, against the distances asked one by one. */
+static void within_lists_exactly_those_within(void **state) {
+  (void)state;
+  rng r = rng_seed(2);
+  size_t listed = 0, left_out = 0;
+  for (size_t i = 0, cases = test_cases(600); i < cases; i++) {
+    world w = world_make(&r);
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-7;
+    const double delta = rng_index(&r, 4) ? rng_uniform(&r, 0.0, 2.0) : 0.0;
+    cprox_result near[MOST_TARGETS];
+    size_t count = 99, next = 0;
+    assert_int_equal(cprox_within(w.mover, w.target, w.n, delta, &options, ws, near, &count), CPROX_OK);
+    for (size_t j = 0; j < w.n; j++) {
+      cprox_result one;
+      assert_int_equal(cprox_distance(w.mover, w.target[j], &options, ws, &one), CPROX_OK);
+      if (next < count && near[next].target_index == (int32_t)j) {
+        assert_true(one.lower <= delta + 1e-7);
+        assert_true(near[next].verdict == CPROX_UNDECIDED ||
+                    (one.lower <= delta && near[next].upper - near[next].lower <= 1e-7));
+        next++, listed++;
+      } else {
+        assert_true(one.upper > delta);
+        left_out++;
+      }
+    }
+    assert_int_equal(next, count);
+    world_free(&w);
+  }
+  assert_true(listed > 500 && left_out > 500);
+}
+
+/* 200 worlds, seed 3, up to 12 stretches each, some as short as 1e-9: the least clearance sampled in long double at 40 parameters of
+ * a stretch is never below its lower bound, and the whole is the least of the parts. */
+static void a_profile_holds_on_every_stretch_and_adds_up_to_the_whole(void **state) {
+  (void)state;
+  rng r = rng_seed(3);
+  for (size_t i = 0, cases = test_cases(200); i < cases; i++) {
+    world w = world_make(&r);
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-8;
+    const size_t n = 1 + rng_index(&r, 12);
+    double breaks[13] = {0};
+    for (size_t k = 1; k < n; k++)
+      breaks[k] = rng_index(&r, 8) ? rng_uniform(&r, 0.001, 0.999) : fmin(breaks[k - 1] + 1e-9, 0.99);
+    breaks[n] = 1.0;
+    qsort(breaks, n + 1, sizeof *breaks, ascending);
+    cprox_stretch stretch[12];
+    const cprox_status status = cprox_profile(w.mover, w.target, w.n, breaks, n, &options, ws, stretch);
+    if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+    double least = INFINITY;
+    for (size_t k = 0; k < n; k++) {
+      assert_true(stretch[k].upper - stretch[k].lower <= 1e-8);
+      assert_true(stretch[k].t >= breaks[k] && stretch[k].t <= breaks[k + 1]);
+      assert_true(fabs((double)clearance_at(&w, stretch[k].t) - stretch[k].upper) <= 1e-13);
+      for (int m = 0; m <= 40; m++) {
+        const long double t =
+            (long double)breaks[k] + ((long double)breaks[k + 1] - (long double)breaks[k]) * m / 40.0L;
+        const long double d = clearance_at(&w, t);
+        if (d < (long double)stretch[k].lower - 1e-14L)
+          fail_msg("case %zu, stretch %zu: %.17Lg < %.17g", i, k, d, stretch[k].lower);
+      }
+      least = fmin(least, stretch[k].upper);
+    }
+    cprox_result whole;
+    assert_int_equal(cprox_distance_all(w.mover, w.target, w.n, &options, ws, &whole, NULL), CPROX_OK);
+    assert_true(least >= whole.lower && least <= whole.upper + 1e-8);
+    world_free(&w);
+  }
+}
+
+/* A spline of 60 pieces whose clearance over a floor is known, in stretches that cut pieces anywhere. */
+static void stretches_may_begin_and_end_inside_pieces(void **state) {
+  (void)state;
+  enum { N = 63, STRETCHES = 17 };
+  vec3 p[N];
+  double knots[N + 4], breaks[STRETCHES + 1];
+  for (int i = 0; i < N; i++) p[i] = vec(i, 0, 1.0 + 0.1 * i);
+  for (int i = 0; i < N + 4; i++) knots[i] = i;
+  for (int i = 0; i <= STRETCHES; i++) breaks[i] = 3.0 + 60.0 * i / STRETCHES;
+  cprox_curve *curve = NULL;
+  assert_int_equal(cprox_curve_create_bspline(p, N, 3, knots, N + 4, 3, N, ws, &curve), CPROX_OK);
+  cprox_body *floor = NULL;
+  assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 0, ws, &floor), CPROX_OK);
+  const cprox_target target = cprox_at(floor, cprox_pose_identity());
+  cprox_stretch stretch[STRETCHES];
+  const cprox_options options = cprox_options_default();
+  assert_int_equal(cprox_profile(cprox_point_along(curve), &target, 1, breaks, STRETCHES, &options, ws, stretch),
+                   CPROX_OK);
+  for (int i = 0; i < STRETCHES; i++) {
+    /* z(t) = 1 + 0.1 (t - 2) */
+    const double least = 1.0 + 0.1 * (breaks[i] - 2.0);
+    assert_true(stretch[i].lower <= least + 1e-12 && stretch[i].upper >= least - 1e-12 &&
+                stretch[i].upper <= least + 1e-6);
+  }
+  cprox_body_free(floor);
+  cprox_curve_free(curve);
+}
+
+static void unusable_arguments_are_named(void **state) {
+  (void)state;
+  rng r = rng_seed(5);
+  world w = world_make(&r);
+  cprox_result result[MOST_TARGETS];
+  cprox_stretch stretch[2];
+  size_t count = 7;
+  assert_int_equal(cprox_nearest(w.mover, w.target, w.n, 0, NULL, ws, result, &count), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "k is 0: ask for at least one target");
+  assert_int_equal(cprox_within(w.mover, w.target, w.n, -1.0, NULL, ws, result, &count), CPROX_INVALID);
+  assert_int_equal(count, 7);
+  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 0.5, 0.5}, 2, NULL, ws, stretch), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "break 2 is 0.5, not above break 1 at 0.5");
+  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 1.5}, 1, NULL, ws, stretch), CPROX_INVALID);
+  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, NAN}, 1, NULL, ws, stretch), CPROX_INVALID);
+  world_free(&w);
+}
+
+static void with_no_targets_everything_is_infinitely_far(void **state) {
+  (void)state;
+  rng r = rng_seed(6);
+  world w = world_make(&r);
+  cprox_result result[1];
+  cprox_stretch stretch[1];
+  size_t count = 7;
+  assert_int_equal(cprox_nearest(w.mover, NULL, 0, 3, NULL, ws, result, &count), CPROX_OK);
+  assert_int_equal(count, 0);
+  assert_int_equal(cprox_profile(w.mover, NULL, 0, (double[]){0, 1}, 1, NULL, ws, stretch), CPROX_OK);
+  assert_true(isinf(stretch[0].lower) && isinf(stretch[0].upper) && stretch[0].target_index == -1);
+  world_free(&w);
+}
+
+static void nothing_is_allocated_once_the_workspace_has_grown(void **state) {
+  (void)state;
+  rng r = rng_seed(7);
+  world w = world_make(&r);
+  cprox_result result[MOST_TARGETS], first;
+  cprox_stretch stretch[4];
+  size_t count, before = 0;
+  for (int round = 0; round < 3; round++) {
+    assert_int_equal(cprox_nearest(w.mover, w.target, w.n, 3, NULL, ws, result, &count), CPROX_OK);
+    assert_int_equal(cprox_within(w.mover, w.target, w.n, 1.0, NULL, ws, result, &count), CPROX_OK);
+    assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 0.2, 0.7, 1}, 3, NULL, ws, stretch), CPROX_OK);
+    assert_int_equal(cprox_first_contact_all(w.mover, w.target, w.n, NULL, ws, &first), CPROX_OK);
+    if (round == 1) before = allocations_made();
+  }
+  assert_int_equal(allocations_made(), before);
+  world_free(&w);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_k_nearest_are_the_least_of_all_distances),
+      cmocka_unit_test(within_lists_exactly_those_within),
+      cmocka_unit_test(a_profile_holds_on_every_stretch_and_adds_up_to_the_whole),
+      cmocka_unit_test(stretches_may_begin_and_end_inside_pieces),
+      cmocka_unit_test(unusable_arguments_are_named),
+      cmocka_unit_test(with_no_targets_everything_is_infinitely_far),
+      cmocka_unit_test(nothing_is_allocated_once_the_workspace_has_grown),
+  };
+  return cmocka_run_group_tests_name("clearance", tests, setup, teardown);
+}
