@@ -35,11 +35,18 @@ CPROX_API cprox_target cprox_curve_target(const cprox_curve *curve, double radiu
 /** What moves: a value. The curve is kept by reference. */
 typedef struct cprox_mover {
   const cprox_curve *curve;
-  double radius; /**< [m] >= 0: a ball that rides the curve, 0 for a point */
+  double radius; /**< [m] >= 0: a ball that rides the curve, 0 for a point; with a body, its padding */
+  const cprox_body
+      *body; /**< what is carried along the curve without turning, its frame's origin on the curve and its axes those
+                               of the world; NULL: a point. Convex or a compound, no halfspace. Kept by reference. */
 } cprox_mover;
 
 CPROX_API cprox_mover cprox_point_along(const cprox_curve *curve);
 CPROX_API cprox_mover cprox_tube_along(const cprox_curve *curve, double radius);
+
+/** A body that is carried along the curve without turning. Every verb answers for it: the curve of its origin is held against the
+ *  Minkowski difference of the target and the body, doc/curve-bound.md. */
+CPROX_API cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve);
 
 typedef enum cprox_verdict { CPROX_NO = 0, CPROX_YES = 1, CPROX_UNDECIDED = 2 } cprox_verdict;
 
@@ -82,6 +89,7 @@ typedef struct cprox_result {
   cprox_vec3 normal;              /**< unit, world frame, from target to mover; (0,0,0) where there is none */
   int32_t target_index;           /**< which target; -1 for none */
   int32_t target_part;            /**< which part of a compound; 0 otherwise */
+  int32_t mover_part;             /**< which part of a carried compound; 0 otherwise */
   cprox_rung rung;
   uint32_t nodes, probes; /**< what it cost: intervals examined, nearest-point queries */
   double t_free;          /**< first contact: no contact at any smaller parameter; other verbs: 0 */

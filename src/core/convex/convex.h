@@ -89,10 +89,13 @@ struct convex {
   cprox_support_fn callback;
   const void *user;
   vec3 user_centre;
+  /* Minkowski differences: all b - r k, b of `standing`, k of `carried` */
+  const convex *standing, *carried;
+  double r[9]; /* row-major */
 };
 
 extern const convex_ops convex_point, convex_sphere, convex_box, convex_capsule, convex_cylinder, convex_cone,
-    convex_ellipsoid, convex_halfspace, convex_polytope, convex_polygon, convex_support_callback;
+    convex_ellipsoid, convex_halfspace, convex_polytope, convex_polygon, convex_support_callback, convex_difference;
 
 /* Signed distance inside the plane z = 0 of a polygon to a point of that plane: negative inside. Same accuracy as
  * nearest. */

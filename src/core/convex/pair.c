@@ -320,7 +320,7 @@ static void pair_draw_apart(pair *p, double size, const pair_goal *goal) {
 }
 
 /* The points of the cores that make up the nearest point of the simplex, and the margins beyond them. */
-static void pair_witness(const pair *p, double margin_a, double margin_b, pair_answer *answer) {
+static void pair_points(const pair *p, double margin_a, double margin_b, pair_answer *answer) {
   vec3 a = vec(0, 0, 0), b = vec(0, 0, 0);
   const bool inside = p->nearest.inside;
   for (int i = 0; i < p->s.n; i++) {
@@ -328,6 +328,7 @@ static void pair_witness(const pair *p, double margin_a, double margin_b, pair_a
     b = vec_axpy(b, p->s.weight[i], p->s.vertex[i].b);
   }
   b = vec_add(turn(p->r, b), p->t);
+  const vec3 core = a;
   if (inside) { /* 0 = sum of weight (a - b): the same point but for rounding, of both */
     a = b = vec_axpy(vec_scale(0.5, a), 0.5, b);
   } else { /* out of the cores along the line between the two, so that what is left of it is upper */
@@ -338,7 +339,37 @@ static void pair_witness(const pair *p, double margin_a, double margin_b, pair_a
   }
   answer->on_a = a;
   answer->on_b = b;
+  /* the ball round b reaches a, or the two balls reach each other */
+  answer->common = inside || p->nearest.distance > margin_b ? b : core;
   answer->normal = inside ? vec(0, 0, 0) : p->u;
+}
+
+/* The distance d has the second derivative (K + d)^-1 in the tangent plane, and none along a ridge or a face. */
+static void pair_describe(const pair *p, pair_feature *feature) {
+  *feature = (pair_feature){.flat = !p->curved, .n = p->s.n};
+  if (feature->flat) {
+    for (int i = 0; i < p->s.n && i < 3; i++) feature->w[i] = p->s.vertex[i].w;
+    return;
+  }
+  vec3 e, f;
+  feature_tangents(p->u, &e, &f);
+  const pair_pieces pieces = pair_follow(p, p->u, &e, &f);
+  const double a = pieces.kee + p->nearest.distance, b = pieces.kef, c = pieces.kff + p->nearest.distance;
+  double ee = 0.0, ef = 0.0, ff = 0.0;
+  if (pieces.n == 1) {
+    const double det = a * c - b * b;
+    if (det > 0.0) ee = c / det, ef = -b / det, ff = a / det;
+  } else if (pieces.n == 2) { /* across the ridge only */
+    const vec3 apart = vec_sub(pieces.y[1].w, pieces.y[0].w);
+    const double pe = vec_dot(apart, e), pf = vec_dot(apart, f), square = pe * pe + pf * pf;
+    const double across = pf * pf * a - 2.0 * pe * pf * b + pe * pe * c;
+    if (across > 0.0) ee = pf * pf / across, ef = -pe * pf / across, ff = pe * pe / across;
+    if (!(square > 0.0)) ee = ef = ff = 0.0;
+  }
+  const double x[3] = {e.x, e.y, e.z}, y[3] = {f.x, f.y, f.z};
+  for (int i = 0, k = 0; i < 3; i++)
+    for (int j = i; j < 3; j++)
+      feature->hessian[k++] = ee * x[i] * x[j] + ef * (x[i] * y[j] + y[i] * x[j]) + ff * y[i] * y[j];
 }
 
 void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *placement,
@@ -365,5 +396,7 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   answer->overlap = p.nearest.inside && p.nearest.depth + margins > p.rounding;
   answer->upper = answer->overlap ? 0.0 : p.nearest.distance - margins + p.rounding;
   answer->lower = fmin(p.lower - margins - p.rounding, answer->upper);
-  pair_witness(&p, margin_a, margin_b, answer);
+  answer->depth = p.nearest.inside ? p.nearest.depth : 0.0;
+  if (goal->wants_feature && !p.nearest.inside && !p.fault) pair_describe(&p, &answer->feature);
+  pair_points(&p, margin_a, margin_b, answer);
 }

@@ -16,16 +16,28 @@ typedef struct pair_placement {
 typedef struct pair_goal {
   double epsilon, relative_epsilon;
   uint32_t max_steps;
+  bool wants_feature;
 } pair_goal;
 
+/* What the point of M = A - B that is nearest to 0 lies on: how the distance changes when 0 moves. */
+typedef struct pair_feature {
+  bool flat;         /* polyhedra: a vertex, an edge or a face of M */
+  int n;             /* then: its vertices */
+  vec3 w[3];         /* a - b */
+  double hessian[6]; /* else: the second derivative of the distance (xx, xy, xz, yy, yz, zz), as well as it is known */
+} pair_feature;
+
 typedef struct pair_answer {
-  bool fault;          /* a support callback misbehaved: nothing else is set */
-  bool exhausted;      /* max_steps were not enough */
-  bool overlap;        /* the cores overlap, proven: upper is 0, lower a bound on minus the depth */
-  double lower, upper; /* of the signed distance, margins and rounding included */
-  double rounding;     /* how much of each end is rounding */
-  vec3 on_a, on_b;     /* a's frame, margins included: the points that attain upper */
-  vec3 normal;         /* a's frame, unit, from b to a; (0,0,0) where there is none */
+  bool fault;           /* a support callback misbehaved: nothing else is set */
+  bool exhausted;       /* max_steps were not enough */
+  bool overlap;         /* the cores overlap, proven: upper is 0, lower a bound on minus the depth */
+  double lower, upper;  /* of the signed distance, margins and rounding included */
+  double rounding;      /* how much of each end is rounding */
+  vec3 on_a, on_b;      /* a's frame, margins included: the points that attain upper */
+  vec3 common;          /* a's frame: where they overlap or touch, a point of both but for rounding */
+  vec3 normal;          /* a's frame, unit, from b to a; (0,0,0) where there is none */
+  double depth;         /* overlap: the cores' own depth is proven to be at least this */
+  pair_feature feature; /* only where the goal asks for it, and the cores are apart */
   uint32_t steps, supports;
 } pair_answer;
 

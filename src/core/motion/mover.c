@@ -8,3 +8,7 @@ cprox_mover cprox_point_along(const cprox_curve *curve) {
 cprox_mover cprox_tube_along(const cprox_curve *curve, double radius) {
   return (cprox_mover){.curve = curve, .radius = radius};
 }
+
+cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve) {
+  return (cprox_mover){.curve = curve, .body = body};
+}

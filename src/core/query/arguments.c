@@ -5,6 +5,7 @@
 
 #include "base/frame.h"
 #include "base/workspace.h"
+#include "body/body.h"
 
 cprox_target cprox_at(const cprox_body *body, cprox_pose pose) {
   return (cprox_target){.body = body, .pose = pose, .padding = 0.0};
@@ -70,12 +71,22 @@ cprox_status arguments_check_target(const cprox_target *target, size_t index, cp
                         target->padding);
 }
 
+/* Convex parts without end have no Minkowski difference that a search could use. */
+static cprox_status check_carried(const cprox_body *body, cprox_workspace *workspace) {
+  if (!body) return CPROX_OK;
+  if (!isfinite(body->ball_radius))
+    return workspace_fail(workspace, CPROX_INVALID, "the mover's body is a halfspace or has one: it must be bounded");
+  return CPROX_OK;
+}
+
 cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target *targets, size_t n,
                                    const cprox_options *options, cprox_workspace *workspace) {
   if (!workspace) return CPROX_INVALID;
   if (!mover->curve) return workspace_fail(workspace, CPROX_INVALID, "the mover has no curve");
   if (!(mover->radius >= 0.0 && isfinite(mover->radius)))
     return workspace_fail(workspace, CPROX_INVALID, "radius is %g, must be finite and 0 or more", mover->radius);
+  const cprox_status carried = check_carried(mover->body, workspace);
+  if (carried != CPROX_OK) return carried;
   if (n > 0 && !targets) return workspace_fail(workspace, CPROX_INVALID, "targets is NULL, but %zu are announced", n);
   if (n > INT32_MAX) return workspace_fail(workspace, CPROX_INVALID, "%zu targets are more than 2147483647", n);
   const cprox_status checked = arguments_check_options(options, workspace);

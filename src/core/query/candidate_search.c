@@ -2,6 +2,8 @@
 /* One search: the engine with the oracle that the candidate asks for, and what it found in the terms of the caller. */
 #include "query/candidate_search.h"
 #include "body/body.h"
+#include "query/carried.h"
+#include "query/pair_witness.h"
 
 enum { VERDICT_NODES_BEFORE_NEWTON = 4 };
 
@@ -43,9 +45,37 @@ static void report_points(const question *q, const candidate *c, vec3 centre, ve
   }
 }
 
+/* The same where a body is carried, its curve at `centre`: asked of the pair that it makes there with what stands. */
+static void report_carried(const question *q, const candidate *c, vec3 centre, const cprox_target *standing,
+                           int32_t part, vec3 normal, cprox_result *r) {
+  const cprox_target moved = {
+      .body = q->mover.body, .pose = {.position = centre, .orientation = {1, 0, 0, 0}}, .padding = q->mover.radius};
+  const pair_witness witness = pair_witness_of(&moved, (size_t)c->mover_part, standing, (size_t)part);
+  const bool normal_known = vec_norm2(normal) > 0.0;
+  r->normal = normal_known ? normal : witness.normal;
+  r->target_index = c->target, r->target_part = c->part, r->mover_part = c->mover_part;
+  r->on_mover = witness.on_a, r->on_target = witness.on_b;
+}
+
+/* The mover carries a body: the curve alone is held against the difference of the two. */
+static bool begin_carried(const question *q, const candidate *c, const cprox_body *body, const cprox_pose *pose,
+                          const cprox_body *carried, const cprox_pose *carried_pose, curve_convex *o) {
+  carried_shape joined;
+  if (!carried_join(body, pose, carried, carried_pose, &joined)) return false;
+  const double offset = candidate_offset(q, c) + joined.offset;
+  if (!curve_convex_begin(o, q->mover.curve, NULL, joined.placed, offset, q->workspace)) return false;
+  o->joined = joined.shape;
+  o->shape = &o->joined;
+  o->side.part = q->part;
+  return true;
+}
+
 bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o) {
   const cprox_body *body = candidate_body(q, c);
   const cprox_pose pose = candidate_pose(q, c);
+  cprox_pose carried_pose;
+  const cprox_body *carried = candidate_carried(q, c, &carried_pose);
+  if (carried) return begin_carried(q, c, body, &pose, carried, &carried_pose, o);
   const frame placed = frame_create(&pose, body->centre);
   if (!curve_convex_begin(o, q->mover.curve, &body->shape, placed, candidate_offset(q, c), q->workspace)) return false;
   o->side.part = q->part;
@@ -57,16 +87,23 @@ void candidate_report_convex(const question *q, const candidate *c, const curve_
   const frame *f = &o->side.frame;
   const curve_sight *best = &o->best;
   r->t = curve_side_parameter(&o->side, best->piece, best->s);
+  if (q->mover.body) {
+    const cprox_target standing = q->targets[c->target];
+    report_carried(q, c, frame_to_world(f, best->y), &standing, c->part, frame_turn_to_world(f, best->normal), r);
+    return;
+  }
   report_points(q, c, frame_to_world(f, best->y), frame_to_world(f, best->near.point),
                 frame_turn_to_world(f, best->normal), best->near.distance, r);
 }
 
 bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o) {
   const cprox_target *target = &q->targets[c->target];
-  if (!curve_curve_begin(o, q->mover.curve, target->curve, &target->pose, candidate_offset(q, c), q->workspace))
-    return false;
+  const double offset = candidate_offset(q, c);
+  if (!curve_curve_begin(o, q->mover.curve, target->curve, &target->pose, offset, q->workspace)) return false;
   o->side[0].part = q->part;
-  return true;
+  cprox_pose carried_pose;
+  const cprox_body *carried = candidate_carried(q, c, &carried_pose);
+  return !carried || curve_curve_carry(o, &target->pose, carried, &carried_pose);
 }
 
 void candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r) {
@@ -75,6 +112,14 @@ void candidate_report_curve(const question *q, const candidate *c, const curve_c
   const curve_meeting *best = &o->best;
   r->t = curve_side_parameter(&o->side[0], best->piece[0], best->s[0]);
   r->t_target = curve_side_parameter(&o->side[1], best->piece[1], best->s[1]);
+  if (q->mover.body) {
+    const vec3 at = frame_to_world(f, best->point[1]);
+    const cprox_target standing = {.body = &carried_point,
+                                   .pose = {.position = at, .orientation = {1, 0, 0, 0}},
+                                   .padding = q->targets[c->target].padding};
+    report_carried(q, c, frame_to_world(f, best->point[0]), &standing, 0, frame_turn_to_world(f, best->normal), r);
+    return;
+  }
   report_points(q, c, frame_to_world(f, best->point[0]), frame_to_world(f, best->point[1]),
                 frame_turn_to_world(f, best->normal), best->distance, r);
 }

@@ -27,6 +27,13 @@ double candidate_offset(const question *q, const candidate *c) {
   return q->mover.radius + q->targets[c->target].padding;
 }
 
+const cprox_body *candidate_carried(const question *q, const candidate *c, cprox_pose *pose) {
+  const cprox_body *body = q->mover.body;
+  const bool compound = body && body->kind == CPROX_COMPOUND;
+  *pose = compound ? body->parts[c->mover_part].pose : cprox_pose_identity();
+  return compound ? body->parts[c->mover_part].body : body;
+}
+
 static double distance_to_segment(vec3 p, vec3 a, vec3 b) {
   const vec3 ab = vec_sub(b, a), ap = vec_sub(p, a);
   const double length2 = vec_norm2(ab), along = vec_dot(ap, ab);
@@ -48,18 +55,28 @@ static ball ball_of(const question *q, const candidate *c) {
   return (ball){.centre = vec_lerp(capsule->a, capsule->b, 0.5), .radius = 0.5 * length + capsule->radius};
 }
 
+/* The ball round what is carried, about the curve's point. */
+static ball carried_ball(const question *q, const candidate *c) {
+  cprox_pose pose;
+  const cprox_body *body = candidate_carried(q, c, &pose);
+  if (!body) return (ball){0};
+  const frame f = frame_create(&pose, vec(0, 0, 0));
+  return (ball){.centre = frame_to_world(&f, body->ball_centre), .radius = body->ball_radius};
+}
+
 /* The mover's capsule against the candidate's ball: never above the true distance. */
 static double ball_bound(const question *q, const candidate *c) {
   const ball round = ball_of(q, c);
   if (!isfinite(round.radius)) return -INFINITY;
   const cprox_pose pose = candidate_pose(q, c);
   const frame f = frame_create(&pose, vec(0, 0, 0));
-  const vec3 centre = frame_to_world(&f, round.centre);
+  const ball own = carried_ball(q, c);
+  const vec3 centre = vec_sub(frame_to_world(&f, round.centre), own.centre);
   const curve_capsule *capsule = &q->reach;
-  const double reach = capsule->radius + round.radius + candidate_offset(q, c);
+  const double reach = capsule->radius + round.radius + own.radius + candidate_offset(q, c);
   /* rounding: the pose of the centre, the projection on the chord, the sums; doc/rounding.md */
   const double sizes = vec_norm(capsule->a) + vec_norm(capsule->b) + vec_norm(centre) + vec_norm(f.position) +
-                       vec_norm(round.centre) + reach;
+                       vec_norm(round.centre) + 2.0 * vec_norm(own.centre) + reach;
   return distance_to_segment(centre, capsule->a, capsule->b) - reach - 64.0 * ROUND_U * sizes;
 }
 
@@ -75,19 +92,21 @@ void candidates_sort(candidate *list, size_t n) {
   }
 }
 
-static size_t parts_of(const cprox_target *target) {
-  return target->body && target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
+static size_t parts_of(const cprox_body *body) {
+  return body && body->kind == CPROX_COMPOUND ? body->n_parts : 1;
 }
 
 candidate *candidates_list(const question *q, size_t first, size_t last, size_t *count) {
+  const size_t carried = parts_of(q->mover.body);
   size_t n = 0;
-  for (size_t i = first; i < last; i++) n += parts_of(&q->targets[i]);
+  for (size_t i = first; i < last; i++) n += parts_of(q->targets[i].body) * carried;
   candidate *list = workspace_reserve(q->workspace, WORKSPACE_ORDER, n * sizeof *list);
   if (!list) return NULL;
   size_t k = 0;
   for (size_t i = first; i < last; i++) {
-    for (size_t part = 0; part < parts_of(&q->targets[i]); part++) {
-      list[k] = (candidate){.target = (int32_t)i, .part = (int32_t)part};
+    for (size_t pair = 0; pair < parts_of(q->targets[i].body) * carried; pair++) {
+      list[k] =
+          (candidate){.target = (int32_t)i, .part = (int32_t)(pair / carried), .mover_part = (int32_t)(pair % carried)};
       list[k].lower = ball_bound(q, &list[k]);
       k++;
     }

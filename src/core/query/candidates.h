@@ -29,10 +29,10 @@ static inline bool question_wants_verdict(const question *q) {
   return q->limit >= 0.0;
 }
 
-/* One convex part of one target, or a curve, with what its bounding ball says. */
+/* One convex part of one target, or a curve, against one convex part of what is carried, with what their bounding balls say. */
 typedef struct candidate {
   double lower;
-  int32_t target, part;
+  int32_t target, part, mover_part;
 } candidate;
 
 /* The candidates of targets first … last - 1, nearest ball first, in the workspace. NULL where memory is out. */
@@ -45,5 +45,8 @@ void candidates_sort(candidate *list, size_t n);
 const cprox_body *candidate_body(const question *q, const candidate *c);
 cprox_pose candidate_pose(const question *q, const candidate *c);
 double candidate_offset(const question *q, const candidate *c);
+
+/* The convex part that the mover carries (NULL for none), and its pose while the curve is at the origin. */
+const cprox_body *candidate_carried(const question *q, const candidate *c, cprox_pose *pose);
 
 #endif

@@ -2,6 +2,7 @@
 #include "query/curve_curve.h"
 
 #include "base/rounding.h"
+#include "query/carried.h"
 #include "query/meeting.h"
 
 /* Slots of the pool that nodes never get: each side's loaded piece. */
@@ -9,14 +10,21 @@ enum { SLOT_FIRST, SLOT_SECOND, SLOTS_RESERVED };
 
 /* ---- bounds ----------------------------------------------------------------------------------------------------------- */
 
-/* Along any unit n: the first curve's least n·P less the second's greatest n·Q is a lower bound. */
+/* Along any unit n: the first curve's least n·P less the second's greatest n·Q is a lower bound. A carried body takes off what it
+ * reaches. */
 void curve_curve_bound(const curve_curve *o, search_node *node, vec3 n) {
   if (vec_norm2(n) == 0.0) return;
   const curve_reach first = curve_side_reach(&o->side[0], &node->side[0], n);
   const curve_reach second = curve_side_reach(&o->side[1], &node->side[1], vec_neg(n));
-  const double bound = first.least + second.least - o->offset;
-  const double sizes = first.magnitude + second.magnitude + o->offset + fabs(bound);
-  const double slack = ROUND_UP * (first.error + second.error + ROUND_SUPPORT * ROUND_U * sizes);
+  double bound = first.least + second.least - o->offset;
+  double sizes = first.magnitude + second.magnitude + o->offset, error = first.error + second.error;
+  if (o->carries) {
+    const convex *shape = &o->joined;
+    bound += vec_dot(n, o->shift) - (shape->ops->support(shape, n, NULL, NULL) + shape->margin);
+    sizes += 2.0 * (shape->scale + shape->margin + vec_norm(o->shift));
+    error += shape->slack;
+  }
+  const double slack = ROUND_UP * (error + ROUND_SUPPORT * ROUND_U * (sizes + fabs(bound)));
   node->lower = fmax(node->lower, bound - slack);
   node->slack = slack;
 }
@@ -60,9 +68,29 @@ static bool holds_best(const curve_curve *o, const search_node *node) {
 
 /* ---- probes ----------------------------------------------------------------------------------------------------------- */
 
+/* The same of a carried body at the first point. */
+static void measure_carried(curve_curve *o, curve_meeting *m, double error, search_best *bound) {
+  const convex *shape = &o->joined;
+  const vec3 apart = vec_add(vec_sub(m->point[0], m->point[1]), o->shift);
+  shape->ops->nearest(shape, apart, NULL, &m->near);
+  o->fault |= isnan(m->near.distance);
+  m->distance = m->near.distance;
+  m->normal = m->near.normal;
+  const double length2 = vec_norm2(m->normal);
+  if (fabs(length2 - 1.0) > 4.0 * ROUND_U && length2 > 0.0) m->normal = vec_scale(1.0 / sqrt(length2), m->normal);
+  const double sizes = vec_norm(apart) + 2.0 * vec_norm(o->shift) + shape->scale + shape->margin;
+  bound->slack = ROUND_UP * (error + shape->ops->near_rounding * ROUND_U * sizes + shape->slack +
+                             ROUND_U * (8.0 * fabs(m->distance) + 2.0 * o->offset));
+  bound->upper = m->distance - o->offset + bound->slack;
+}
+
 /* The distance between two points of the curves, each within its error of the exact one, is an upper bound. */
 void curve_curve_measure(curve_curve *o, curve_meeting *m, double error, search_best *bound) {
   o->probes++;
+  if (o->carries) {
+    measure_carried(o, m, error, bound);
+    return;
+  }
   const vec3 apart = vec_sub(m->point[0], m->point[1]);
   m->distance = vec_norm(apart);
   m->normal = m->distance > 0.0 ? vec_scale(1.0 / m->distance, apart) : vec(0, 0, 0);
@@ -112,7 +140,7 @@ static double point_near(curve_side *side, const search_interval *at, double f, 
 /* The better of the best meeting and the one that Newton finds from it. */
 static void polish(curve_curve *o, double step) {
   curve_meeting m = o->best;
-  if (!meeting_descend(o->side, &m, step)) return;
+  if (!meeting_descend(o->side, o->carries ? &o->shift : NULL, &m, step)) return;
   consider(o, &m, curve_side_point_error(&o->side[0]) + curve_side_point_error(&o->side[1]));
 }
 
@@ -161,6 +189,13 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     curve_meeting m = curve_curve_meeting_near(o, node, fraction, &error);
     const uint32_t before = o->incumbent;
     consider(o, &m, error);
+    if (o->fault)
+      return workspace_fail(o->workspace, CPROX_INVALID, "the support callback did not return a point of its body");
+    if (o->carries) { /* its own normal is worth more than that of the chords */
+      load_pieces(o, node);
+      o->last_normal = m.normal;
+      curve_curve_bound(o, node, m.normal);
+    }
     const bool worthwhile = o->best_bound.upper > o->good_enough && o->nodes > o->polish_after;
     const double step = 0.25 * fmax(node->side[0].b - node->side[0].a, node->side[1].b - node->side[1].a);
     if (pieces && o->incumbent != before && worthwhile) polish(o, step);
@@ -278,9 +313,20 @@ bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_cur
   return points_pool_begin(&o->pool, degree, SLOTS_RESERVED, workspace);
 }
 
+bool curve_curve_carry(curve_curve *o, const cprox_pose *placed, const cprox_body *carried, const cprox_pose *pose) {
+  carried_shape joined;
+  const cprox_pose turn = {.orientation = placed->orientation};
+  if (!carried_join(&carried_point, &turn, carried, pose, &joined)) return false;
+  o->carries = true;
+  o->joined = joined.shape;
+  o->shift = vec_neg(joined.placed.centre);
+  o->offset += joined.offset;
+  return true;
+}
+
 search_node curve_curve_root(const curve_curve *o) {
   /* two balls on curves are never nearer than minus the sum of their radii: curves have no inside */
-  return (search_node){.lower = -o->offset, .side = {o->side[0].part, o->side[1].part}};
+  return (search_node){.lower = o->carries ? -INFINITY : -o->offset, .side = {o->side[0].part, o->side[1].part}};
 }
 
 search_oracle curve_curve_oracle(curve_curve *o) {

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The oracle of a ball that rides one curve against a ball that rides another, each at its own parameter. A node is a pair of
- * intervals. doc/curve-bound.md derives it. */
+/* The oracle of a ball or a convex body that rides one curve against a ball that rides another, each at its own parameter. A
+ * node is a pair of intervals. doc/curve-bound.md derives it. */
 #ifndef CPROX_QUERY_CURVE_CURVE_H
 #define CPROX_QUERY_CURVE_CURVE_H
 
+#include "body/body.h"
 #include "query/curve_side.h"
 
 /* A point of either curve, how far apart they are, and the direction from the second to the first. */
@@ -11,14 +12,18 @@ typedef struct curve_meeting {
   vec3 point[2];
   size_t piece[2];
   double s[2];
-  double distance; /* between the points */
-  vec3 normal;     /* unit within 4 u; (0,0,0) where there is none */
+  double distance;  /* between the points, or of the carried body and the second point */
+  vec3 normal;      /* unit within 4 u; (0,0,0) where there is none */
+  convex_near near; /* where a body is carried */
 } curve_meeting;
 
 typedef struct curve_curve {
   /* the problem */
   curve_side side[2];
-  double offset;         /* the sum of the two radii */
+  double offset; /* the sum of the two radii */
+  bool carries;  /* a body rides the first curve: the points' difference, moved by `shift`, against `joined` */
+  convex joined;
+  vec3 shift;
   uint32_t polish_after; /* nodes before Newton is allowed to look for better points */
   double good_enough;    /* an upper bound at or below this needs no polish */
 
@@ -26,7 +31,8 @@ typedef struct curve_curve {
   curve_meeting best;
   search_best best_bound;
   uint32_t incumbent; /* counts the best meetings; 0: none */
-  vec3 last_normal;   /* of the last pair of chords */
+  vec3 last_normal;   /* of the last pair of chords, or of the last probe of a carried body */
+  bool fault;         /* a support callback misbehaved */
   uint32_t probes, nodes;
 
   /* memory */
@@ -38,6 +44,9 @@ typedef struct curve_curve {
  * the world of the first, about the second's first control point. */
 bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_curve *second, const cprox_pose *placed,
                        double offset, cprox_workspace *workspace);
+
+/* Lets the first curve carry a body, its pose that at the curve's origin; false where its support callback misbehaved. */
+bool curve_curve_carry(curve_curve *o, const cprox_pose *placed, const cprox_body *carried, const cprox_pose *pose);
 
 /* The node that is all that is asked about: side[0].part and side[1].part. */
 search_node curve_curve_root(const curve_curve *o);

@@ -48,38 +48,96 @@ static bool is_held(double s, double slope) {
   return (s <= 0.0 && slope > 0.0) || (s >= 1.0 && slope < 0.0);
 }
 
-/* One Newton step of F(s,t) = |x(s) - y(t)|²/2, or of its Gauss–Newton model where F is not convex. */
-static void newton_step(const jet *x, const jet *y, const double s[2], double step[2]) {
+/* First and second derivatives of what is to be least, by s and t; a Gauss–Newton model for where it is not convex. */
+typedef struct slopes {
+  double gs, gt, hss, htt, cross, ss, tt;
+} slopes;
+
+/* Of F(s,t) = |x(s) - y(t)|²/2. */
+static slopes slopes_of_points(const jet *x, const jet *y) {
   const vec3 w = vec_sub(x->x, y->x);
-  const double gs = vec_dot(w, x->d1), gt = -vec_dot(w, y->d1);
-  const double ss = vec_norm2(x->d1), tt = vec_norm2(y->d1), cross = -vec_dot(x->d1, y->d1);
-  double hss = ss + vec_dot(w, x->d2), htt = tt - vec_dot(w, y->d2);
-  const bool hold_s = is_held(s[0], gs), hold_t = is_held(s[1], gt);
+  slopes k = {.gs = vec_dot(w, x->d1),
+              .gt = -vec_dot(w, y->d1),
+              .ss = vec_norm2(x->d1),
+              .tt = vec_norm2(y->d1),
+              .cross = -vec_dot(x->d1, y->d1)};
+  k.hss = k.ss + vec_dot(w, x->d2);
+  k.htt = k.tt - vec_dot(w, y->d2);
+  return k;
+}
+
+static vec3 hessian_times(const double h[6], vec3 v) {
+  return vec(h[0] * v.x + h[1] * v.y + h[2] * v.z, h[1] * v.x + h[3] * v.y + h[4] * v.z,
+             h[2] * v.x + h[4] * v.y + h[5] * v.z);
+}
+
+/* Of the distance of w = x(s) - y(t) + shift from the feature seen at `seen`. */
+static slopes slopes_of_body(const convex_near *near, vec3 seen, vec3 w, const jet *x, const jet *y) {
+  vec3 n = near->normal, hx, hy;
+  if (near->flat && near->tangents < 2) { /* |part of w - origin across the tangents| */
+    vec3 across = vec_sub(w, near->origin);
+    for (int i = 0; i < near->tangents; i++) across = vec_axpy(across, -vec_dot(near->e[i], across), near->e[i]);
+    const double r = vec_norm(across);
+    if (r > 0.0) n = vec_scale(1.0 / r, across);
+    hx = vec_axpy(x->d1, -vec_dot(n, x->d1), n), hy = vec_axpy(y->d1, -vec_dot(n, y->d1), n);
+    for (int i = 0; i < near->tangents; i++) {
+      hx = vec_axpy(hx, -vec_dot(near->e[i], hx), near->e[i]);
+      hy = vec_axpy(hy, -vec_dot(near->e[i], hy), near->e[i]);
+    }
+    const double curved = r > 0.0 ? 1.0 / r : 0.0;
+    hx = vec_scale(curved, hx), hy = vec_scale(curved, hy);
+  } else if (near->flat) {
+    hx = hy = vec(0, 0, 0);
+  } else {
+    n = vec_add(n, hessian_times(near->hessian, vec_sub(w, seen)));
+    hx = hessian_times(near->hessian, x->d1), hy = hessian_times(near->hessian, y->d1);
+  }
+  slopes k = {.gs = vec_dot(n, x->d1),
+              .gt = -vec_dot(n, y->d1),
+              .ss = vec_dot(x->d1, hx),
+              .tt = vec_dot(y->d1, hy),
+              .cross = -vec_dot(x->d1, hy)};
+  k.hss = k.ss + vec_dot(n, x->d2);
+  k.htt = k.tt - vec_dot(n, y->d2);
+  return k;
+}
+
+/* One Newton step, or one of the Gauss–Newton model where that is not convex. */
+static void newton_step(const slopes *k, const double s[2], double step[2]) {
+  const bool hold_s = is_held(s[0], k->gs), hold_t = is_held(s[1], k->gt);
   step[0] = step[1] = 0.0;
   if (hold_s && hold_t) return;
   if (hold_s || hold_t) {
-    const int k = hold_s ? 1 : 0;
-    const double g = hold_s ? gt : gs, h = hold_s ? htt : hss, flat = hold_s ? tt : ss;
+    const int i = hold_s ? 1 : 0;
+    const double g = hold_s ? k->gt : k->gs, h = hold_s ? k->htt : k->hss, flat = hold_s ? k->tt : k->ss;
     const double curvature = h > 0.0 ? h : flat;
-    if (curvature > 0.0) step[k] = -g / curvature;
+    if (curvature > 0.0) step[i] = -g / curvature;
     return;
   }
-  double determinant = hss * htt - cross * cross;
+  double hss = k->hss, htt = k->htt, determinant = hss * htt - k->cross * k->cross;
   if (!(hss > 0.0 && determinant > 0.0)) {
-    hss = ss * (1.0 + 1e-9), htt = tt * (1.0 + 1e-9); /* parallel tangents: kept regular */
-    determinant = hss * htt - cross * cross;
+    hss = k->ss * (1.0 + 1e-9), htt = k->tt * (1.0 + 1e-9); /* parallel tangents: kept regular */
+    determinant = hss * htt - k->cross * k->cross;
   }
   if (!(determinant > 0.0)) return;
-  step[0] = (cross * gt - htt * gs) / determinant;
-  step[1] = (cross * gs - hss * gt) / determinant;
+  step[0] = (k->cross * k->gt - htt * k->gs) / determinant;
+  step[1] = (k->cross * k->gs - hss * k->gt) / determinant;
 }
 
-bool meeting_descend(const curve_side side[2], curve_meeting *meeting, double step) {
+static vec3 gap_of(const jet *x, const jet *y, const vec3 *shift) {
+  const vec3 w = vec_sub(x->x, y->x);
+  return shift ? vec_add(w, *shift) : w;
+}
+
+bool meeting_descend(const curve_side side[2], const vec3 *shift, curve_meeting *meeting, double step) {
   double s[2] = {meeting->s[0], meeting->s[1]};
   jet x = jet_at(&side[0], s[0]), y = jet_at(&side[1], s[1]);
+  const vec3 seen = gap_of(&x, &y, shift);
   for (int i = 0; i < MAX_STEPS; i++) {
     double wanted[2], moved = 0.0;
-    newton_step(&x, &y, s, wanted);
+    const slopes at =
+        shift ? slopes_of_body(&meeting->near, seen, gap_of(&x, &y, shift), &x, &y) : slopes_of_points(&x, &y);
+    newton_step(&at, s, wanted);
     for (int k = 0; k < 2; k++) {
       const double next = clamp(s[k] + clamp(wanted[k], -step, step), side[k].part.a, side[k].part.b);
       moved = fmax(moved, fabs(next - s[k]));

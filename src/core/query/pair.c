@@ -8,6 +8,7 @@
 #include "convex/feature.h"
 #include "curve_proximity/cprox/query.h"
 #include "query/arguments.h"
+#include "query/pair_witness.h"
 
 /* A convex shape somewhere in the world. */
 typedef struct pair_side {
@@ -108,7 +109,7 @@ static void pair_halfspace(const pair_side *a, const pair_side *b, const pair_pl
   const double *r = place->r;
   const vec3 turned = vec(r[0] * at.x + r[1] * at.y + r[2] * at.z, r[3] * at.x + r[4] * at.y + r[5] * at.z,
                           r[6] * at.x + r[7] * at.y + r[8] * at.z);
-  answer->on_b = vec_axpy(vec_add(turned, place->t), -b->margin, n);
+  answer->on_b = answer->common = vec_axpy(vec_add(turned, place->t), -b->margin, n);
   answer->on_a = vec_axpy(answer->on_b, -distance, n);
   answer->normal = vec_neg(n);
 }
@@ -140,6 +141,7 @@ static void pair_ball(const pair_side *a, const pair_side *b, const pair_placeme
   answer->upper = distance + answer->rounding;
   answer->on_a = vec_axpy(near.point, padding, near.normal);
   answer->on_b = vec_axpy(place->t, -b->margin, near.normal);
+  answer->common = near.distance > padding ? answer->on_a : place->t;
   answer->normal = vec_neg(near.normal);
 }
 
@@ -169,7 +171,18 @@ static void pair_solve(const pair_side *a, const pair_side *b, const pair_goal *
   if (swapped) pair_swap(answer);
   answer->on_a = pair_to_world(first, answer->on_a);
   answer->on_b = pair_to_world(first, answer->on_b);
+  answer->common = pair_to_world(first, answer->common);
   answer->normal = frame_turn_to_world(&first->f, answer->normal);
+}
+
+pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b) {
+  const pair_side side_a = pair_place_side(a, part_a), side_b = pair_place_side(b, part_b);
+  const pair_goal goal = {.relative_epsilon = 1e-13, .max_steps = 256};
+  pair_answer answer;
+  pair_solve(&side_a, &side_b, &goal, &answer);
+  pair_witness witness = {.on_a = answer.on_a, .on_b = answer.on_b, .normal = answer.normal};
+  if (answer.upper <= answer.rounding) witness.on_a = witness.on_b = answer.common;
+  return witness;
 }
 
 /* ---- the verb ---- */
