@@ -25,6 +25,7 @@ struct Option {
 const std::map<std::string, Option> &options() {
   static const std::map<std::string, Option> table = {
       {"--curves", {true, {Action::CURVES}}},
+      {"--against", {true, {Action::CURVES}}},
       {"--scene", {true, {Action::CURVES}}},
       {"--robot", {true, {Action::CURVES}}},
       {"--srdf", {true, {Action::CURVES}}},
@@ -44,8 +45,7 @@ const std::map<std::string, Option> &options() {
 }
 
 /* Words of the manual that this version cannot act upon. */
-const std::vector<std::string> kNotAvailable = {"--against", "--trajectory",  "--self",
-                                                "--signed",  "--certificate", "--provider"};
+const std::vector<std::string> kNotAvailable = {"--trajectory", "--self", "--signed", "--certificate", "--provider"};
 
 struct VerbName {
   const char *word;
@@ -173,6 +173,16 @@ void readQuestion(const Words &words, const VerbName &verb, Question &question) 
   }
 }
 
+/* Curves against curves: there is no scene, and a row has one answer. */
+void readAgainst(const Words &words, Arguments &out) {
+  for (const char *name : {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--max-rung"}) {
+    if (words.has(name))
+      throw BadUsage("--against takes no " + std::string(name) + ": curves are measured against curves");
+  }
+  out.action = Action::AGAINST;
+  out.against = words.text("--against");
+}
+
 /* The files that a verb cannot do without, and words that it does not understand. */
 void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
   const auto required = [&](const std::string &name, const std::string &what) {
@@ -184,6 +194,10 @@ void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
   switch (verb.action) {
     case Action::CURVES:
       out.curves = required("--curves", "CURVES.csv");
+      if (words.has("--against")) {
+        readAgainst(words, out);
+        break;
+      }
       if (!words.has("--scene") && !words.has("--robot")) required("--scene", "SCENE.yaml");
       out.scene = words.text("--scene");
       out.robot = words.text("--robot");
@@ -238,6 +252,7 @@ std::string helpText() {
   return R"(cprox: how close a continuous motion comes to the things around it, as intervals that contain the true value
 
 cprox distance  --curves CURVES.csv --scene SCENE.yaml [--robot URDF [--srdf SRDF] [--state "joint: value, ..."]]
+cprox distance  --curves A.csv --against B.csv    row i of A against row i of B, each anywhere on its curve
 cprox tolerance --delta D  (as above)   yes: farther than D everywhere
 cprox collision            (as above)   yes: they touch or overlap somewhere
 cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodies
@@ -246,6 +261,7 @@ cprox send      SCENE.yaml [--node NAME] hands a scene file to a running node
   --curves FILE     one curve a row: id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knots]; basis bezier, bspline,
                     polynomial, legendre, lagrange (nodes for knots) or trigonometric; lines that begin with # are
                     skipped
+  --against FILE    curves, too: instead of a scene
   --scene FILE      moveit_msgs/PlanningScene as YAML; may be left out where there is a robot
   --robot FILE      a URDF: its links are objects, too; meshes count as their convex hulls
   --srdf FILE       names the frame in which the robot stands (its virtual joint's parent_frame)

@@ -11,13 +11,14 @@
 
 namespace curve_proximity::cli {
 
-enum class Action { HELP, VERSION, CURVES, PAIRS, SEND };
+enum class Action { HELP, VERSION, CURVES, AGAINST, PAIRS, SEND };
 
 struct Arguments {
   Action action = Action::HELP;
-  Question question; /**< CURVES and PAIRS: the verb, and how it is to be answered */
+  Question question; /**< CURVES, AGAINST and PAIRS: the verb, and how it is to be answered */
 
-  std::string curves, scene; /**< files; scene: of CURVES and SEND */
+  std::string curves, scene; /**< files; curves: of CURVES and AGAINST, scene: of CURVES and SEND */
+  std::string against;       /**< file of AGAINST */
   std::string robot, srdf;   /**< files of the robot; empty: none */
   std::string state;         /**< "joint: value, …" */
   std::string pairs;         /**< file of PAIRS */

@@ -149,6 +149,11 @@ std::string quotedField(const std::string &text) {
   return out + '"';
 }
 
+std::string placeOf(const CsvRow &row, const std::string &file) {
+  return file + ": row " + std::to_string(row.number) + " (line " + std::to_string(row.line) + ", id '" +
+         rowId(row.text) + "')";
+}
+
 std::string rowId(const std::string &text) {
   if (text.empty() || text.front() != '"') return std::string(trimmed(text.substr(0, text.find(','))));
   try {

@@ -48,6 +48,9 @@ std::vector<std::string> splitFields(std::string_view line);
 /** The text as one field: quoted if it needs to be. */
 std::string quotedField(const std::string &text);
 
+/** Where a row stands, for a sentence: "curves.csv: row 3 (line 5, id 'a')". */
+std::string placeOf(const CsvRow &row, const std::string &file);
+
 /** The id of a row, as far as it can be read: also of rows that are no curve. */
 std::string rowId(const std::string &text);
 

@@ -39,8 +39,7 @@ ResultRow toRow(const Answer &answer, Verb verb) {
 Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &targets, const Question &question,
                     Workspace &workspace) {
   const std::string id = rowId(csv.text);
-  const std::string place =
-      file + ": row " + std::to_string(csv.number) + " (line " + std::to_string(csv.line) + ", id '" + id + "')";
+  const std::string place = placeOf(csv, file);
   try {
     const CompiledCurve curve = compile(parseCurve(csv.text));
     Outcome out;

@@ -23,6 +23,7 @@ int run(const std::vector<std::string> &words, Console &console) {
     case Action::HELP: std::fputs(helpText().c_str(), stdout); return kAllAnswered;
     case Action::VERSION: std::puts("cprox " CPROX_VERSION); return kAllAnswered;
     case Action::CURVES: return answerCurves(arguments, console);
+    case Action::AGAINST: return answerAgainst(arguments, console);
     case Action::PAIRS: return answerPairs(arguments, console);
     case Action::SEND: return sendScene(arguments, console);
   }

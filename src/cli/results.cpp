@@ -60,12 +60,17 @@ std::string resultsLine(const ResultRow &row) {
   }
   line += ',' + quotedField(row.a) + ',' + quotedField(row.b);
 
-  /* what it cost; t_b is the parameter of a second curve, and there is none */
+  /* what it cost, and the parameter of a second curve */
   if (answered) {
     char time[40];
     std::snprintf(time, sizeof time, "%.1f", row.microseconds);
-    line += ',' + std::to_string(result.nodes) + ',' + std::to_string(result.probes) + ',' + time + ",,";
-    line += cprox_rung_name(result.rung);
+    line += ',' + std::to_string(result.nodes) + ',' + std::to_string(result.probes) + ',' + time;
+    if (row.has_t_b) {
+      append(line, result.t_target);
+    } else {
+      line += ',';
+    }
+    line += std::string(",") + cprox_rung_name(result.rung);
   } else {
     line += ",,,,,";
   }

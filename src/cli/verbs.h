@@ -11,6 +11,9 @@ namespace curve_proximity::cli {
 /** distance, tolerance, collision: curves against objects and robot links. */
 int answerCurves(const Arguments &arguments, Console &console);
 
+/** distance, tolerance, collision: curves against curves, row by row. */
+int answerAgainst(const Arguments &arguments, Console &console);
+
 /** pairs: signed distances of standing bodies. */
 int answerPairs(const Arguments &arguments, Console &console);
 

@@ -8,10 +8,10 @@ class Usage(Case):
         answer = cprox('--help')
         self.assertEqual((answer.code, answer.err), (0, ''))
         for word in ('distance', 'tolerance', 'collision', 'pairs', 'send', '--curves', '--scene', '--robot', '--srdf', '--state',
-                     '--in', '--epsilon', '--delta', '--max-nodes', '--threads', '--per-object', '--max-rung', '--skipped',
+                     '--in', '--against', '--epsilon', '--delta', '--max-nodes', '--threads', '--per-object', '--max-rung', '--skipped',
                      '--out', '--node', '--version'):
             self.assertIn(word, answer.out)
-        for word in ('--against', '--trajectory', '--self', '--signed', '--certificate', 'constraints', 'check'):
+        for word in ('--trajectory', '--self', '--signed', '--certificate', 'constraints', 'check'):
             self.assertNotIn(word, answer.out)
 
     def help_wins_over_everything_else(self):
@@ -53,7 +53,7 @@ class Usage(Case):
                                        if name != '--delta' else cprox('tolerance', *files, name, value), name, value)
 
     def what_belongs_to_later_versions_is_refused_in_one_sentence(self):
-        for words in (['distance', '--against', 'b.csv'], ['distance', '--trajectory', 't.yaml'], ['distance', '--self'],
+        for words in (['distance', '--trajectory', 't.yaml'], ['distance', '--self'],
                       ['pairs', '--signed'], ['distance', '--certificate', 'f'], ['distance', '--curves', 'c', '--scene', 's', '--max-rung', 'mesh'],
                       ['constraints', '--provider', 'x', '--in', 'y'], ['check', 'file']):
             with self.subTest(words=words):

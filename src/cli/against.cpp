@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Curves against curves: row i of one file against row i of the other. */
+#include <chrono>
+
+#include "csv.h"
+#include "failure.h"
+#include "finish.h"
+#include "results.h"
+#include "run.h"
+#include "verbs.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+/* What a row of one file and the row of the other need to be answered. */
+struct RowPair {
+  std::optional<CsvRow> first, second;
+};
+
+cprox_status search(const CompiledCurve &a, const CompiledCurve &b, const Question &question, Workspace &workspace,
+                    cprox_result &result) {
+  const cprox_mover mover = along(a.curve, a.radius);
+  const cprox_target target = cprox_curve_target(b.curve.get(), b.radius);
+  switch (question.verb) {
+    case Verb::DISTANCE: return cprox_distance(mover, target, &question.options, workspace.get(), &result);
+    case Verb::TOLERANCE:
+      return cprox_tolerance(mover, target, question.delta, &question.options, workspace.get(), &result);
+    case Verb::COLLISION: return cprox_collision(mover, target, &question.options, workspace.get(), &result);
+  }
+  return CPROX_INVALID;
+}
+
+/* Reads and compiles one side; what is wrong with it is thrown with its place. */
+CompiledCurve curveOf(const std::optional<CsvRow> &row, const std::string &file) {
+  if (!row) throw BadInput(file + ": has no row for it");
+  try {
+    return compile(parseCurve(row->text));
+  } catch (const std::bad_alloc &) {
+    throw;
+  } catch (const std::exception &e) {
+    throw BadInput(placeOf(*row, file) + ": " + e.what());
+  }
+}
+
+Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Question &question, Workspace &workspace) {
+  using Clock = std::chrono::steady_clock;
+  ResultRow row;
+  row.kind = "curve_curve";
+  row.id = row.a = rows.first ? rowId(rows.first->text) : "";
+  row.b = rows.second ? rowId(rows.second->text) : "";
+  row.has_verdict = question.verb != Verb::DISTANCE;
+  Outcome out;
+  try {
+    const CompiledCurve a = curveOf(rows.first, arguments.curves), b = curveOf(rows.second, arguments.against);
+    const Clock::time_point start = Clock::now();
+    row.result.status = search(a, b, question, workspace, row.result);
+    row.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+    row.has_t = row.has_t_b = row.has_points = row.result.target_index >= 0;
+    out.stopped = row.result.status == CPROX_STOPPED;
+    if (row.result.status < 0)
+      out.complaints.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_reason(workspace.get()));
+  } catch (const std::bad_alloc &) {
+    row.result.status = CPROX_MEMORY;
+    out.complaints.push_back(arguments.curves + ": id '" + row.id + "': " + cprox_status_text(CPROX_MEMORY));
+  } catch (const std::exception &e) {
+    row.result.status = CPROX_INVALID;
+    const bool own = !rows.second && rows.first;
+    out.complaints.push_back(own ? placeOf(*rows.first, arguments.curves) + ": " + e.what() : e.what());
+  }
+  out.text = resultsLine(row);
+  return out;
+}
+
+} // namespace
+
+int answerAgainst(const Arguments &arguments, Console &console) {
+  Question question = arguments.question;
+  question.options.stop = interrupted;
+  CsvFile first(arguments.curves), second(arguments.against);
+  ResultsFile results(arguments.out, {arguments.curves, arguments.against});
+  Warnings warnings;
+  for (const std::string &sentence : arguments.warnings) warnings.add(sentence);
+  console.warn(warnings);
+
+  catchInterrupts();
+  results.write(resultsHeader());
+  Rows rows;
+  rows.next = [&]() -> std::optional<Task> {
+    RowPair pair{first.next(), second.next()};
+    if (!pair.first && !pair.second) return std::nullopt;
+    return
+        [&, pair = std::move(pair)](Workspace &workspace) { return answerPair(pair, arguments, question, workspace); };
+  };
+  rows.write = [&](const std::string &text) { results.write(text); };
+  rows.portion = [&] { return first.portion(); };
+  return finish(runRows(arguments.threads, rows, console), console);
+}
+
+} // namespace curve_proximity::cli
