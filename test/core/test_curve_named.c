@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Curves with names (heart, ranunculoid, fish, Lissajous) as trigonometric series: the intervals contain the reference
- * answers of test/data/reference/named_ref.csv. */
+/* Curves with names (heart, ranunculoid, fish and Lissajous as trigonometric series, Euler spiral, involutes): the intervals
+ * contain the reference answers of test/data/reference/named_ref.csv. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -93,7 +93,7 @@ static void check(const char *id, const cprox_curve *curve, cprox_target target)
   csv_free(&ref);
 }
 
-static void check_polygon(const char *id, series s) {
+static void check_polygon(const char *id, cprox_curve *curve) {
   /* the third field: x;y;x;y... */
   csv_table in = csv_read("reference/named_inputs.csv");
   double xy[64][2];
@@ -106,15 +106,13 @@ static void check_polygon(const char *id, series s) {
   assert_true(n >= 6 && n % 2 == 0);
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_polygon((const double(*)[2])xy, n / 2, NULL, &body), CPROX_OK);
-  cprox_curve *curve = compile(s);
   check(id, curve, cprox_at(body, cprox_pose_identity()));
   cprox_curve_free(curve);
   cprox_body_free(body);
   csv_free(&in);
 }
 
-static void check_curves(const char *id, series a, series b) {
-  cprox_curve *first = compile(a), *second = compile(b);
+static void check_curves(const char *id, cprox_curve *first, cprox_curve *second) {
   check(id, first, cprox_curve_target(second, 0.0));
   cprox_curve_free(second);
   cprox_curve_free(first);
@@ -122,21 +120,46 @@ static void check_curves(const char *id, series a, series b) {
 
 static void hearts_and_ranunculoids_against_polygons(void **state) {
   (void)state;
-  check_polygon("a_heart_poly", heart());
-  check_polygon("b_ranunculoid_poly", ranunculoid());
-  check_polygon("heart_in_collision_poly", heart());
+  check_polygon("a_heart_poly", compile(heart()));
+  check_polygon("b_ranunculoid_poly", compile(ranunculoid()));
+  check_polygon("heart_in_collision_poly", compile(heart()));
 }
 
 static void a_fish_against_lissajous_curves(void **state) {
   (void)state;
-  check_curves("f_fish_lissajous32", fish(), placed(lissajous(3, 2), 0.0, 0.75, 0.2));
-  check_curves("f2_fish_lissajous54", placed(fish(), 0.3, 0.0, 0.0), placed(lissajous(5, 4), 0.5, 0.8, 0.1));
+  check_curves("f_fish_lissajous32", compile(fish()), compile(placed(lissajous(3, 2), 0.0, 0.75, 0.2)));
+  check_curves("f2_fish_lissajous54", compile(placed(fish(), 0.3, 0.0, 0.0)),
+               compile(placed(lissajous(5, 4), 0.5, 0.8, 0.1)));
+}
+
+/* a (∫ cos s², ∫ sin s²) for t in [-2π, 2π]: of curvature 2t/a, at arc length a t. a = 1/2 costs no rounding. */
+static void an_euler_spiral_against_a_polygon(void **state) {
+  (void)state;
+  cprox_curve *curve = NULL;
+  assert_int_equal(
+      cprox_curve_create_clothoid(vec(0, 0, 0), 0.0, 0.0, 8.0, -3.141592653589793, 3.141592653589793, NULL, &curve),
+      CPROX_OK);
+  check_polygon("c_euler_poly_table", curve);
+}
+
+static cprox_curve *involute(double turned, double x, double y) {
+  cprox_curve *curve = NULL;
+  assert_int_equal(cprox_curve_create_involute(vec(x, y, 0), 0.035, turned, 0.0, 10.0, NULL, &curve), CPROX_OK);
+  return curve;
+}
+
+static void involutes_against_curves(void **state) {
+  (void)state;
+  check_curves("e_involute_involute", involute(0.0, 0.0, 0.0), involute(3.141592653589793, 0.8, 0.15));
+  check_curves("fig1b_heart_involute", compile(heart()), involute(3.141592653589793, -1.0, 0.0));
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(hearts_and_ranunculoids_against_polygons),
       cmocka_unit_test(a_fish_against_lissajous_curves),
+      cmocka_unit_test(an_euler_spiral_against_a_polygon),
+      cmocka_unit_test(involutes_against_curves),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -98,6 +98,102 @@ CPROX_API cprox_status cprox_curve_create_trigonometric(const cprox_vec3 *coeffi
                                                         double t0, double t1, cprox_workspace *workspace,
                                                         cprox_curve **curve);
 
+/** A clothoid (Euler spiral): a planar curve whose curvature is linear in arc length.
+ *
+ *  psi'(t) = (cos, sin, 0) of heading + curvature t + curvature_rate t²/2, psi(0) = start; t is arc length [m].
+ *
+ *  start            [m] where the curve is at t = 0, which need not lie in its range; z stays as it is.
+ *  heading          [rad] about z, from x, at t = 0.
+ *  curvature, curvature_rate  [1/m], [1/m²], finite, any sign: 0 and 0 are a line, 0 alone for the rate an arc.
+ *  t0 < t1          finite. Turning by more than 1e12 rad between 0 and an end of the range is refused, and so are ranges that
+ *                   would need more than 65536 pieces.
+ *
+ *  Compiled once to quintic pieces, as a trigonometric series is; the remainder aimed at is 2e-14 of the length t1 - t0 (the
+ *  rounding of the start, where that is larger). The point, a Fresnel integral, is summed by Gauss' rule with a bounded
+ *  remainder. Source: doc/rounding.md, "Compiled curves".
+ */
+CPROX_API cprox_status cprox_curve_create_clothoid(cprox_vec3 start, double heading, double curvature,
+                                                   double curvature_rate, double t0, double t1,
+                                                   cprox_workspace *workspace, cprox_curve **curve);
+
+/** The words of Dubins paths: left and right turns and straight lines. */
+typedef enum cprox_dubins_word {
+  CPROX_DUBINS_SHORTEST, /**< the shortest of all */
+  CPROX_DUBINS_LSL,
+  CPROX_DUBINS_LSR,
+  CPROX_DUBINS_RSL,
+  CPROX_DUBINS_RSR,
+  CPROX_DUBINS_RLR,
+  CPROX_DUBINS_LRL
+} cprox_dubins_word;
+
+/** What a Dubins path consists of. */
+typedef struct cprox_dubins_path {
+  cprox_dubins_word word; /**< never CPROX_DUBINS_SHORTEST */
+  double ends[3];         /**< [m] the arc length at which each of its three parts ends; ends[2] is the path's length */
+} cprox_dubins_path;
+
+/** A Dubins path: the shortest planar curve between two poses that never turns more sharply than a radius allows.
+ *
+ *  start, end     [m] points with the same z.
+ *  start_heading, end_heading  [rad] about z, from x, at most 1e6 in size.
+ *  radius         [m] > 0, of all turns; the poses are at most 1e12 radii apart.
+ *  word           CPROX_DUBINS_SHORTEST, or the one that is wanted: CPROX_INVALID where it cannot join the poses.
+ *  path           receives what the path consists of, NULL if not needed.
+ *
+ *  The curve runs over [0, length], t is arc length [m]. It is the path that begins at the start pose and turns as *path says, and
+ *  cprox_curve_error() speaks of that one; it reaches the end pose to about 1e-14 of its length, turns below 1e-15 (8 + |headings|) rad
+ *  being left out.
+ *  Poses that are the same have no path: CPROX_INVALID. Compiled as a clothoid is. Source: L. E. Dubins 1957; A. M. Shkel,
+ *  V. Lumelsky, "Classification of the Dubins set", 2001.
+ */
+CPROX_API cprox_status cprox_curve_create_dubins(cprox_vec3 start, double start_heading, cprox_vec3 end,
+                                                 double end_heading, double radius, cprox_dubins_word word,
+                                                 cprox_workspace *workspace, cprox_dubins_path *path,
+                                                 cprox_curve **curve);
+
+/** The involute of a circle: psi(t) = centre + radius R (cos t + t sin t, sin t - t cos t, 0), R the turn by `angle` about z.
+ *
+ *  radius         [m] > 0, of the circle; at most 1e75.
+ *  angle          [rad] finite; the curve leaves the circle at t = 0 in that direction.
+ *  t0 < t1        [rad] finite; at t < 0 it is the mirror image, wound clockwise.
+ *
+ *  Compiled as a trigonometric series is, with a remainder of about 1e-13 radius (1 + max|t|).
+ */
+CPROX_API cprox_status cprox_curve_create_involute(cprox_vec3 centre, double radius, double angle, double t0, double t1,
+                                                   cprox_workspace *workspace, cprox_curve **curve);
+
+/** A Pythagorean-hodograph curve by its preimage: a polynomial of quaternions, A(s) = sum_i B_i^m(s) preimage[i], s = (t - t0)/(t1 - t0).
+ *
+ *  dpsi/ds = A i A* = (w² + x² - y² - z², 2(wz + xy), 2(xz - wy)), so that |dpsi/ds| = |A|². A planar curve with the complex
+ *  preimage a + ib, dpsi/ds = (a + ib)², has the quaternions (a, 0, 0, b).
+ *
+ *  start          [m] psi(t0), finite.
+ *  preimage       [m^1/2] n_preimage = m + 1 coefficients, 1 … 30 of them, at most 1e75 long; 3 make the usual quintics.
+ *  t0 < t1        finite.
+ *
+ *  The curve is a polynomial of degree 2m + 1, converted as a polynomial is: cprox_curve_error() is about 1e-16 of its size.
+ *  Source: R. T. Farouki, "Pythagorean-Hodograph Curves", 2008.
+ */
+CPROX_API cprox_status cprox_curve_create_pythagorean_hodograph(cprox_vec3 start, const cprox_quat *preimage,
+                                                                size_t n_preimage, double t0, double t1,
+                                                                cprox_workspace *workspace, cprox_curve **curve);
+
+/** Curves of any kinds end to end, as one.
+ *
+ *  curves         n_curves >= 1 of them, in order; their pieces are copied.
+ *  ends           NULL: every curve keeps its own range, which must begin where the one before ends. Else n_curves + 1 ascending
+ *                 parameters: curve i runs over [ends[i], ends[i+1]], at a speed that is scaled to fit.
+ *  gap            [m] >= 0: how far apart the end of a curve and the beginning of the next may be. INFINITY: it may jump, and
+ *                 both one-sided limits belong to it; 0: it must join as exactly as the curves' errors can tell.
+ *
+ *  All pieces get the highest degree among them, which costs a rounding of their points. CPROX_INVALID names the joint that is at
+ *  fault.
+ */
+CPROX_API cprox_status cprox_curve_create_piecewise(const cprox_curve *const *curves, size_t n_curves,
+                                                    const double *ends, double gap, cprox_workspace *workspace,
+                                                    cprox_curve **curve);
+
 /** Frees a curve; NULL is allowed. No query may be using it. */
 CPROX_API void cprox_curve_free(cprox_curve *curve);
 
