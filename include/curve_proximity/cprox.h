@@ -9,6 +9,7 @@
 
 #include <curve_proximity/cprox/base.h>
 #include <curve_proximity/cprox/body.h>
+#include <curve_proximity/cprox/certificate.h>
 #include <curve_proximity/cprox/clearance.h>
 #include <curve_proximity/cprox/curve.h>
 #include <curve_proximity/cprox/query.h>

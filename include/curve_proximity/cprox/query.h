@@ -48,6 +48,9 @@ CPROX_API cprox_mover cprox_tube_along(const cprox_curve *curve, double radius);
  *  Minkowski difference of the target and the body, doc/curve-bound.md. */
 CPROX_API cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve);
 
+/** What a query can leave behind as proof: see certificate.h. */
+typedef struct cprox_certificate cprox_certificate;
+
 typedef enum cprox_verdict { CPROX_NO = 0, CPROX_YES = 1, CPROX_UNDECIDED = 2 } cprox_verdict;
 
 /** "no", "yes", "undecided". */
@@ -61,6 +64,8 @@ typedef struct cprox_options {
   uint32_t max_nodes;       /**< budget of parameter intervals examined, for each target; >= 1, default 20000 */
   bool (*stop)(void *user); /**< polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
   void *stop_user;          /**< handed to stop */
+  cprox_certificate *certificate; /**< receives the proof of the answer, against all targets at once; NULL: none. For a
+                                distance the claim is that of lower, or where lower is 0 that of upper */
 } cprox_options;
 
 CPROX_API cprox_options cprox_options_default(void);

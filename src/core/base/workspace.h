@@ -12,6 +12,7 @@ typedef enum workspace_buffer {
   WORKSPACE_FREE_SLOTS,
   WORKSPACE_ORDER,
   WORKSPACE_RANKING,
+  WORKSPACE_COVER,
   WORKSPACE_BUFFERS
 } workspace_buffer;
 

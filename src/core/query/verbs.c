@@ -5,8 +5,16 @@
 #include "base/workspace.h"
 #include "query/answer.h"
 #include "query/arguments.h"
+#include "query/certify.h"
 
-static cprox_status ask(question *q, cprox_result *nearest, cprox_result *each) {
+/* The proof that was asked for. That there is none changes nothing in the answer. */
+static void leave_certificate(const question *q, const cprox_result *answer) {
+  if (!q->options.certificate) return;
+  const double delta = question_wants_verdict(q) ? q->limit : answer->lower > 0.0 ? answer->lower : answer->upper;
+  certify(&q->mover, q->targets, q->n, delta, answer, q->options.max_nodes, q->workspace, q->options.certificate);
+}
+
+static cprox_status ask_all(question *q, cprox_result *nearest, cprox_result *each) {
   workspace_clear(q->workspace);
   const cprox_status checked = arguments_check_query(&q->mover, q->targets, q->n, &q->options, q->workspace);
   if (checked != CPROX_OK) return checked;
@@ -31,6 +39,12 @@ static cprox_status ask(question *q, cprox_result *nearest, cprox_result *each) 
   all.verdict = question_verdict(q, &all);
   *nearest = all;
   return all.status;
+}
+
+static cprox_status ask(question *q, cprox_result *nearest, cprox_result *each) {
+  const cprox_status status = ask_all(q, nearest, each);
+  if (status >= 0) leave_certificate(q, nearest);
+  return status;
 }
 
 /* ---- the verbs ---------------------------------------------------------------------------------------------------------- */

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Does a certificate prove what it claims about a question? */
+#ifndef CHECK_CHECK_H
+#define CHECK_CHECK_H
+
+#include "problem.h"
+
+typedef enum claim { CLAIM_NONE, CLAIM_APART, CLAIM_NEAR } claim;
+
+typedef struct finding {
+  claim claim;       /* what is proven; CLAIM_NONE: nothing */
+  double delta;      /* [m] of the claim */
+  size_t leaves;     /* separating directions that were tried */
+  const char *fault; /* why nothing is proven, or NULL */
+} finding;
+
+/* Of the problem's present mover. bits: of the arithmetic; too few refuse, they never accept. */
+finding check_certificate(const problem *p, const unsigned char *bytes, size_t size, int bits);
+
+/* The same with 640 bits, and where those refuse with 4096. */
+finding check(const problem *p, const unsigned char *bytes, size_t size);
+
+#endif

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* cprox_check PROBLEM CERTIFICATES: says of each certificate what it proves, or why it does not.
+ *
+ * PROBLEM is the question as text ("-": standard input), CERTIFICATES a row of certificates, each behind its length (u32, little
+ * endian), one a mover of the problem. doc/certificates.md has both formats. Exit: 0 all proven, 1 some not, 2 bad usage. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bytes.h"
+#include "check.h"
+
+enum { EXIT_PROVEN = 0, EXIT_NOT_PROVEN = 1, EXIT_USAGE = 2 };
+
+/* The whole file, or NULL. */
+static unsigned char *read_all(const char *path, size_t *size) {
+  FILE *in = fopen(path, "rb");
+  if (!in) return NULL;
+  unsigned char *bytes = NULL;
+  size_t room = 0, got = 1;
+  for (*size = 0; got > 0; *size += got) {
+    if (*size + 65536 > room) {
+      room = 2 * room + 65536;
+      unsigned char *more = realloc(bytes, room);
+      if (!more) {
+        free(bytes);
+        fclose(in);
+        return NULL;
+      }
+      bytes = more;
+    }
+    got = fread(bytes + *size, 1, 65536, in);
+  }
+  fclose(in);
+  return bytes;
+}
+
+/* One certificate and its line of the report; whether it proves anything. */
+static bool report(const problem *p, reader *file) {
+  const uint32_t size = reader_count(file);
+  if (file->bad || size > reader_left(file)) {
+    printf("%s: refused: the file of certificates ends early\n", p->mover.id);
+    file->bad = true;
+    return false;
+  }
+  const unsigned char *bytes = file->at;
+  file->at += size;
+  if (size == 0) {
+    printf("%s: nothing is claimed\n", p->mover.id);
+    return false;
+  }
+  const finding found = check(p, bytes, size);
+  if (found.claim == CLAIM_APART)
+    printf("%s: proven: farther than %.17g m everywhere (%u bytes, %zu directions)\n", p->mover.id, found.delta,
+           (unsigned)size, found.leaves);
+  else if (found.claim == CLAIM_NEAR)
+    printf("%s: proven: not farther than %.17g m (%u bytes)\n", p->mover.id, found.delta, (unsigned)size);
+  else
+    printf("%s: refused: %s\n", p->mover.id, found.fault);
+  return found.claim != CLAIM_NONE;
+}
+
+int main(int argc, char **argv) {
+  if (argc != 3) {
+    fputs("usage: cprox_check PROBLEM CERTIFICATES (doc/certificates.md); PROBLEM may be - for standard input\n",
+          stderr);
+    return EXIT_USAGE;
+  }
+  FILE *in = strcmp(argv[1], "-") == 0 ? stdin : fopen(argv[1], "r");
+  size_t size = 0;
+  unsigned char *bytes = read_all(argv[2], &size);
+  if (!in || !bytes) {
+    fprintf(stderr, "cprox_check: %s cannot be read\n", in ? argv[2] : argv[1]);
+    free(bytes);
+    if (in && in != stdin) fclose(in);
+    return EXIT_USAGE;
+  }
+
+  problem p;
+  reader file = {.at = bytes, .end = bytes + size};
+  bool all = problem_open(&p, in);
+  while (all || !p.fault[0]) {
+    if (!problem_next(&p)) break;
+    if (!report(&p, &file)) all = false;
+  }
+  int code = all ? EXIT_PROVEN : EXIT_NOT_PROVEN;
+  if (p.fault[0]) {
+    fprintf(stderr, "cprox_check: %s\n", p.fault);
+    code = EXIT_USAGE;
+  } else if (!file.bad && reader_left(&file) > 0) {
+    puts("refused: there are more certificates than movers");
+    code = EXIT_NOT_PROVEN;
+  }
+  problem_close(&p);
+  free(bytes);
+  if (in != stdin) fclose(in);
+  return code;
+}

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* At the parameter t the point y of the mover, less a vector v of at most delta + radius + padding, lies in the set: then the
+ * distance is at most delta. Everything is seen from the set's own frame. */
+#include "near.h"
+
+#include "check.h"
+#include "pieces.h"
+#include "support.h"
+
+/* out = the point of the curve at t, within the remainder */
+static const char *point_at(iv out[3], iv *remainder, const curve *c, double t) {
+  if (!(t >= c->t0 && t <= c->t1)) return "its parameter lies outside the curve";
+  return pieces_point(out, remainder, c, t);
+}
+
+/* a <= b, whatever the numbers are */
+static bool at_most(const iv *a, const iv *b) {
+  return mpfr_number_p(a->hi) && mpfr_number_p(b->lo) && mpfr_lessequal_p(a->hi, b->lo);
+}
+
+static bool at_most_d(const iv *a, double b) {
+  return mpfr_number_p(a->hi) && mpfr_cmp_d(a->hi, b) <= 0;
+}
+
+/* The determinant of b - a, c - a, d - a. */
+static void volume(iv *out, iv *const corner[4]) {
+  iv *e = iv_new(9), *w = iv_new(3);
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) iv_sub(&e[3 * i + k], &corner[i + 1][k], &corner[0][k]);
+  iv_set_d(&w[2], 0.0);
+  for (int k = 0; k < 3; k++) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    iv_mul(&w[0], &e[3 + i], &e[6 + j]);
+    iv_mul(&w[1], &e[3 + j], &e[6 + i]);
+    iv_sub(&w[0], &w[0], &w[1]);
+    iv_mul(&w[0], &w[0], &e[k]);
+    iv_add(&w[2], &w[2], &w[0]);
+  }
+  iv_set(out, &w[2]);
+  iv_free(e, 9);
+  iv_free(w, 3);
+}
+
+/* y lies in the tetrahedron of four vertices: the five volumes have one sign. */
+static bool in_tetrahedron(const set *s, const uint32_t vertex[4], iv *y) {
+  iv *v = iv_new(12), *w = iv_new(1);
+  iv *corner[4];
+  for (int i = 0; i < 4; i++) {
+    corner[i] = v + 3 * i;
+    for (int k = 0; k < 3; k++) {
+      iv_set_d(&corner[i][k], s->vertices[vertex[i]][k]);
+      iv_set_d(w, s->centre[k]);
+      iv_add(&corner[i][k], &corner[i][k], w);
+    }
+  }
+  int positive = 0, negative = 0;
+  for (int i = -1; i < 4; i++) {
+    iv *replaced[4] = {corner[0], corner[1], corner[2], corner[3]};
+    if (i >= 0) replaced[i] = y;
+    volume(w, replaced);
+    positive += iv_is_positive(w);
+    iv_neg(w, w);
+    negative += iv_is_positive(w);
+  }
+  iv_free(v, 12);
+  iv_free(w, 1);
+  return positive == 5 || negative == 5;
+}
+
+/* The point y of the set's own frame lies in the body: strictly for polytopes, and a point has none. */
+static bool contains(const set *s, iv *y, reader *in) {
+  if (s->kind == POINT) return false;
+  if (s->kind == POLYTOPE) {
+    uint32_t vertex[4];
+    for (int i = 0; i < 4; i++) {
+      vertex[i] = reader_count(in);
+      if (in->bad || vertex[i] >= s->n) return false;
+    }
+    return in_tetrahedron(s, vertex, y);
+  }
+  const double *size = s->size;
+  iv *w = iv_new(4);
+  bool inside = false;
+  for (int k = 0; k < 3; k++) iv_abs(&w[k], &y[k]);
+  switch (s->kind) {
+    case SPHERE:
+      iv_norm(&w[3], w);
+      inside = at_most_d(&w[3], size[0]);
+      break;
+    case BOX: inside = at_most_d(&w[0], size[0]) && at_most_d(&w[1], size[1]) && at_most_d(&w[2], size[2]); break;
+    case ELLIPSOID:
+      for (int k = 0; k < 3; k++) {
+        iv_set_d(&w[3], size[k]);
+        iv_div(&w[k], &w[k], &w[3]);
+      }
+      iv_norm(&w[3], w);
+      inside = at_most_d(&w[3], 1.0);
+      break;
+    case CAPSULE: /* beyond the segment along z, or beside it */
+      iv_set_d(&w[3], size[0]);
+      iv_sub(&w[2], &w[2], &w[3]);
+      iv_set_d(&w[3], 0.0);
+      iv_max(&w[2], &w[2], &w[3]);
+      iv_norm(&w[3], w);
+      inside = at_most_d(&w[3], size[1]);
+      break;
+    case CYLINDER:
+      inside = at_most_d(&w[2], size[0]);
+      iv_set_d(&w[2], 0.0);
+      iv_norm(&w[3], w);
+      inside = inside && at_most_d(&w[3], size[1]);
+      break;
+    case CONE: /* rho 2h <= r (h - z) */
+      inside = at_most_d(&w[2], size[0]);
+      iv_set_d(&w[2], 0.0);
+      iv_norm(&w[3], w);
+      iv_mul_d(&w[3], &w[3], 2.0 * size[0]);
+      iv_set_d(&w[2], size[0]);
+      iv_sub(&w[2], &w[2], &y[2]);
+      iv_mul_d(&w[2], &w[2], size[1]);
+      inside = inside && at_most(&w[3], &w[2]);
+      break;
+    case HALFSPACE:
+      for (int k = 0; k < 3; k++) iv_set_d(&w[k], size[k]);
+      iv_dot(&w[3], w, y);
+      inside = at_most_d(&w[3], -size[3]);
+      break;
+    default: break;
+  }
+  iv_free(w, 4);
+  return inside;
+}
+
+/* With y = the mover's point in the frame of the set, and `apart` the balls: what the certificate says of it. */
+static const char *check_point(const set *s, iv *y, iv *apart, reader *in) {
+  iv *v = iv_new(3), *w = iv_new(2);
+  const char *fault = NULL;
+  if (s->kind == CURVE) { /* the point of the other curve */
+    fault = point_at(v, &w[0], &s->curve, reader_number(in));
+    iv_sub(apart, apart, &w[0]);
+    for (int k = 0; k < 3; k++) iv_sub(&v[k], &y[k], &v[k]);
+  } else if (s->kind == POINT) {
+    for (int k = 0; k < 3; k++) {
+      iv_set_d(&v[k], s->centre[k]);
+      iv_sub(&v[k], &y[k], &v[k]);
+    }
+  } else {
+    for (int k = 0; k < 3; k++) {
+      iv_set_d(&v[k], reader_number(in));
+      iv_sub(&y[k], &y[k], &v[k]);
+    }
+    if (!contains(s, y, in)) fault = "the point it names is not in the target";
+  }
+  iv_norm(&w[1], v);
+  if (!fault && in->bad) fault = "it is cut off or not a number";
+  if (!fault && !at_most(&w[1], apart)) fault = "the two points it names are too far apart";
+  iv_free(v, 3);
+  iv_free(w, 2);
+  return fault;
+}
+
+const char *check_near(const problem *p, reader *in, double delta) {
+  const uint32_t index = reader_count(in);
+  const double t = reader_number(in);
+  if (in->bad || index >= p->n_sets) return "it is about no target of these";
+  const set *s = &p->sets[index];
+  iv *y = iv_new(3), *own = iv_new(3), *w = iv_new(2);
+  const char *fault = point_at(y, &w[0], &p->mover.curve, t);
+  if (!fault) {
+    support_point_to_frame(own, s, y);
+    const double balls[3] = {delta, p->mover.radius, s->padding};
+    iv_neg(&w[0], &w[0]); /* the mover's remainder takes from the balls */
+    for (int i = 0; i < 3; i++) {
+      iv_set_d(&w[1], balls[i]);
+      iv_add(&w[0], &w[0], &w[1]);
+    }
+    fault = check_point(s, own, &w[0], in);
+  }
+  iv_free(y, 3);
+  iv_free(own, 3);
+  iv_free(w, 2);
+  return fault;
+}

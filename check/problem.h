@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The question that certificates are about, read from text. All numbers are doubles and taken as exact. */
+#ifndef CHECK_PROBLEM_H
+#define CHECK_PROBLEM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+typedef enum basis { BEZIER, BSPLINE, POLYNOMIAL, LEGENDRE, LAGRANGE, TRIGONOMETRIC } basis;
+
+typedef struct curve {
+  basis basis;
+  size_t degree;
+  double t0, t1;
+  size_t n, n_knots;
+  double (*points)[3];
+  double *knots;
+} curve;
+
+typedef enum kind { POINT, SPHERE, BOX, CAPSULE, CYLINDER, CONE, ELLIPSOID, HALFSPACE, POLYTOPE, CURVE } kind;
+
+/* position x y z, quaternion w x y z of any norm */
+typedef struct pose {
+  double x[3], q[4];
+} pose;
+
+/* A convex body or a curve, inside its poses (the outermost first), and a ball added to it. */
+typedef struct set {
+  kind kind;
+  double padding;
+  size_t n_poses;
+  pose poses[2];
+  double size[4];   /* as the text has them */
+  double centre[3]; /* POINT, POLYTOPE */
+  size_t n;
+  double (*vertices)[3]; /* about the centre */
+  curve curve;
+} set;
+
+typedef struct mover {
+  char id[256];
+  double radius;
+  curve curve;
+} mover;
+
+typedef struct problem {
+  set *sets;
+  size_t n_sets;
+  mover mover; /* the one that was read last */
+  char fault[300];
+  char *line; /* the reader's */
+  size_t capacity, number;
+  FILE *in;
+} problem;
+
+/* Reads the head and the targets. False, with a sentence in fault. */
+bool problem_open(problem *p, FILE *in);
+
+/* Reads the next mover. False at the end, or with a sentence in fault. */
+bool problem_next(problem *p);
+
+void problem_close(problem *p);
+
+#endif

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Certificates: what a query leaves behind so that others can check its answer without trusting the search.
+ *
+ *  A certificate says one of two things about a mover and targets: "the distance is greater than delta everywhere", proven by
+ *  a cover of the parameter range with a separating direction for each part; or "at this parameter the distance is at most
+ *  delta", proven by a point of the target. The program cprox_check reads it together with the question and decides in
+ *  arithmetic that does not round, or rounds outwards; it shares no line with this library. doc/certificates.md has the format.
+ */
+#ifndef CURVE_PROXIMITY_CPROX_CERTIFICATE_H
+#define CURVE_PROXIMITY_CPROX_CERTIFICATE_H
+
+#include <curve_proximity/cprox/query.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum cprox_claim {
+  CPROX_CLAIM_NONE,  /**< nothing is proven: the certificate is empty */
+  CPROX_CLAIM_APART, /**< mover and targets are farther apart than delta everywhere */
+  CPROX_CLAIM_NEAR   /**< somewhere they are no farther apart than delta */
+} cprox_claim;
+
+/** A new, empty certificate, or NULL where memory is out. Owned by the caller: cprox_certificate_free(). It may be used
+ *  again and again; like a workspace by one thread at a time. */
+CPROX_API cprox_certificate *cprox_certificate_create(void);
+
+/** Frees a certificate; NULL is allowed. */
+CPROX_API void cprox_certificate_free(cprox_certificate *certificate);
+
+/** The bytes to be kept or sent, and their number; 0 where nothing is proven. Valid until the next query with it. */
+CPROX_API const void *cprox_certificate_bytes(const cprox_certificate *certificate);
+CPROX_API size_t cprox_certificate_size(const cprox_certificate *certificate);
+
+/** What it claims, and the delta [m] that the claim is about. */
+CPROX_API cprox_claim cprox_certificate_claim(const cprox_certificate *certificate);
+CPROX_API double cprox_certificate_delta(const cprox_certificate *certificate);
+
+/** Makes a certificate for an answer: what options->certificate does at the end of a query, for those who have the answer.
+ *
+ *  answer      of a query with these arguments; its witness is used, its bounds are not trusted. delta <= its upper bound.
+ *  delta       [m] >= 0. Claimed is `near` where answer->upper <= delta, else `apart`.
+ *  options     max_nodes bounds the parts of the cover that are tried, for each target; NULL: the default.
+ *  certificate receives the proof, or nothing (CPROX_CLAIM_NONE) where none was found.
+ *
+ *  An `apart` that is as tight as double arithmetic allows may be proven for a delta lower by a few roundings: see
+ *  cprox_certificate_delta().
+ *
+ *  Returns CPROX_OK        there is a proof
+ *          CPROX_BUDGET    max_nodes were not enough
+ *          CPROX_PRECISION the distance is too close to delta
+ *          CPROX_OVERLAP   a target, or what moves, is of a kind that has no certificates: support callbacks
+ *          CPROX_INVALID   an argument is unusable
+ *          CPROX_MEMORY    an allocation failed
+ *  with the reason in the workspace. Cost: a few times that of the query; memory is allocated for the certificate.
+ *  Source: doc/certificates.md.
+ */
+CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
+                                     const cprox_result *answer, const cprox_options *options,
+                                     cprox_workspace *workspace, cprox_certificate *certificate);
+
+/** The target as the checker reads it: lines of text, numbers in hexadecimal without rounding, bodies as the library holds them.
+ *
+ *  text   receives the lines, cut to size - 1 characters and ended by 0; NULL with size 0: only their length is asked.
+ *  Returns the length of the whole text without the 0; 0 for a kind that has no certificates, and for curves.
+ */
+CPROX_API size_t cprox_target_describe(const cprox_target *target, char *text, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The format of a certificate and its writer. What the numbers mean stands in doc/certificates.md. */
+#ifndef CPROX_CERTIFICATE_CERTIFICATE_H
+#define CPROX_CERTIFICATE_CERTIFICATE_H
+
+#include <stdbool.h>
+
+#include "base/vec.h"
+#include "curve_proximity/cprox/certificate.h"
+
+struct cprox_certificate {
+  unsigned char *bytes;
+  size_t size, capacity;
+  bool failed; /* memory was out */
+  uint32_t width;
+  cprox_claim claim;
+  double delta;
+};
+
+/* Kinds of sections. */
+enum { SECTION_CONVEX = 1, SECTION_CURVE = 2 };
+
+/* Tags of the nodes of a curve-curve tree. */
+enum { TREE_LEAF = 0, TREE_CUT_FIRST = 1, TREE_CUT_SECOND = 2 };
+
+/* Empties it and writes the head; width: bytes of a normal's number, 4 or 8. */
+void certificate_begin(cprox_certificate *c, uint32_t width, cprox_claim claim, double delta, uint32_t sections);
+
+/* Nothing is claimed. */
+void certificate_clear(cprox_certificate *c);
+
+void certificate_byte(cprox_certificate *c, unsigned char value);
+void certificate_count(cprox_certificate *c, uint32_t value);
+void certificate_number(cprox_certificate *c, double value);
+void certificate_normal(cprox_certificate *c, vec3 n);
+
+/* How a curve falls into pieces: their number, and the parameters at which they join. */
+void certificate_breaks(cprox_certificate *c, const double *breaks, size_t pieces);
+
+/* Lowers the claim. */
+void certificate_restate(cprox_certificate *c, double delta);
+
+/* The normal as it will be read: rounded to the width. */
+vec3 certificate_round(const cprox_certificate *c, vec3 n);
+
+#endif

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Targets as text, a line a convex part: what the checker takes as given. doc/certificates.md has the grammar. */
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "body/body.h"
+#include "certificate/reach.h"
+#include "curve_proximity/cprox/certificate.h"
+
+/* Text that grows beyond its room: then only its length is counted. */
+typedef struct text {
+  char *at;
+  size_t size, length;
+} text;
+
+static void say(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void say(text *t, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  const size_t left = t->length < t->size ? t->size - t->length : 0;
+  const int n = vsnprintf(left > 0 ? t->at + t->length : NULL, left, format, arguments);
+  va_end(arguments);
+  if (n > 0) t->length += (size_t)n;
+}
+
+static void say_vector(text *t, vec3 v) {
+  say(t, " %a %a %a", v.x, v.y, v.z);
+}
+
+static void say_pose(text *t, const cprox_pose *pose) {
+  const cprox_quat q = pose->orientation;
+  say_vector(t, pose->position);
+  say(t, " %a %a %a %a", q.w, q.x, q.y, q.z);
+}
+
+static void say_body(text *t, const cprox_body *body) {
+  const double *size = body->shape.size;
+  switch (body->kind) {
+    case CPROX_POINT:
+      say(t, " point");
+      say_vector(t, body->centre);
+      break;
+    case CPROX_SPHERE: say(t, " sphere %a", size[0]); break;
+    case CPROX_BOX: say(t, " box %a %a %a", size[0], size[1], size[2]); break;
+    case CPROX_CAPSULE: say(t, " capsule %a %a", size[1], size[0]); break;
+    case CPROX_CYLINDER: say(t, " cylinder %a %a", size[1], size[0]); break;
+    case CPROX_CONE: say(t, " cone %a %a", size[1], size[0]); break;
+    case CPROX_ELLIPSOID: say(t, " ellipsoid %a %a %a", size[0], size[1], size[2]); break;
+    case CPROX_HALFSPACE: say(t, " halfspace %a %a %a %a", size[0], size[1], size[2], size[3]); break;
+    default:
+      say(t, " polytope");
+      say_vector(t, body->centre);
+      say(t, " %d", (int)body->shape.n);
+      for (int32_t i = 0; i < body->shape.n; i++)
+        say_vector(t, vec(body->shape.x[i], body->shape.y[i], body->shape.z[i]));
+  }
+}
+
+static void say_part(text *t, const cprox_target *target, const cprox_body *body, const cprox_pose *inner) {
+  say(t, "target %a %d", target->padding, inner ? 2 : 1);
+  say_pose(t, &target->pose);
+  if (inner) say_pose(t, inner);
+  say_body(t, body);
+  say(t, "\n");
+}
+
+size_t cprox_target_describe(const cprox_target *target, char *out, size_t size) {
+  const cprox_body *body = target->body;
+  if (!body) return 0;
+  text t = {.at = out, .size = out ? size : 0};
+  if (body->kind != CPROX_COMPOUND) {
+    if (!reach_is_known(body)) return 0;
+    say_part(&t, target, body, NULL);
+    return t.length;
+  }
+  for (size_t i = 0; i < body->n_parts; i++) {
+    const body_part *part = &body->parts[i];
+    if (!reach_is_known(part->body)) return 0;
+    say_part(&t, target, part->body, &part->pose);
+  }
+  return t.length;
+}

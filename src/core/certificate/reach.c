@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "certificate/reach.h"
+
+/* The margin that is asked for, of the sizes that entered. */
+#define MARGIN 0x1p-90
+
+/* ---- arithmetic --------------------------------------------------------------------------------------------------------- */
+
+static dd negate(dd a) {
+  return (dd){-a.high, -a.low};
+}
+
+static dd subtract(dd a, dd b) {
+  return dd_add(a, negate(b));
+}
+
+static bool is_less(dd a, dd b) {
+  return a.high < b.high || (a.high == b.high && a.low < b.low);
+}
+
+static dd absolute(dd a) {
+  return a.high < 0.0 ? negate(a) : a;
+}
+
+/* One step of Newton's from the double root: within 8 u². */
+static dd root(dd a) {
+  if (!(a.high > 0.0)) return dd_from(0.0);
+  const double x = sqrt(a.high);
+  return dd_fast_sum(x, subtract(a, dd_product(x, x)).high / (2.0 * x));
+}
+
+static dd dot(const reach_direction *n, vec3 p) {
+  return dd_add(dd_add(dd_scale(n->k[0], p.x), dd_scale(n->k[1], p.y)), dd_scale(n->k[2], p.z));
+}
+
+static dd norm(dd x, dd y, dd z) {
+  return root(dd_add(dd_add(dd_multiply(x, x), dd_multiply(y, y)), dd_multiply(z, z)));
+}
+
+static dd length(const reach_direction *n) {
+  return norm(n->k[0], n->k[1], n->k[2]);
+}
+
+/* v × n for a double v. */
+static reach_direction cross(vec3 v, const reach_direction *n) {
+  return (reach_direction){{subtract(dd_scale(n->k[2], v.y), dd_scale(n->k[1], v.z)),
+                            subtract(dd_scale(n->k[0], v.z), dd_scale(n->k[2], v.x)),
+                            subtract(dd_scale(n->k[1], v.x), dd_scale(n->k[0], v.y))}};
+}
+
+/* R n = n + s(w v × n + v × (v × n)), s = 2/q·q; with -w for the inverse. */
+static reach_direction turn(cprox_quat q, double w, const reach_direction *n) {
+  const vec3 v = vec(q.x, q.y, q.z);
+  if (v.x == 0.0 && v.y == 0.0 && v.z == 0.0) return *n;
+  const dd square =
+      dd_add(dd_add(dd_product(q.w, q.w), dd_product(q.x, q.x)), dd_add(dd_product(q.y, q.y), dd_product(q.z, q.z)));
+  const dd s = dd_divide(dd_from(2.0), square);
+  const reach_direction first = cross(v, n), second = cross(v, &first);
+  reach_direction turned;
+  for (int i = 0; i < 3; i++)
+    turned.k[i] = dd_add(n->k[i], dd_multiply(s, dd_add(dd_scale(first.k[i], w), second.k[i])));
+  return turned;
+}
+
+/* ---- bodies --------------------------------------------------------------------------------------------------------------- */
+
+bool reach_is_known(const cprox_body *body) {
+  switch (body->kind) {
+    case CPROX_POINT:
+    case CPROX_SPHERE:
+    case CPROX_BOX:
+    case CPROX_CAPSULE:
+    case CPROX_CYLINDER:
+    case CPROX_CONE:
+    case CPROX_ELLIPSOID:
+    case CPROX_HALFSPACE:
+    case CPROX_POLYTOPE:
+    case CPROX_POLYGON: return true;
+    default: return false;
+  }
+}
+
+static dd farthest_vertex(const convex *shape, const reach_direction *n) {
+  dd most = dd_from(-INFINITY);
+  for (int32_t i = 0; i < shape->n; i++) {
+    const dd h = dot(n, vec(shape->x[i], shape->y[i], shape->z[i]));
+    if (is_less(most, h)) most = h;
+  }
+  return most;
+}
+
+/* The support function of the body about its centre, margins apart that are balls. A halfspace is only asked along its normal. */
+static dd support(const convex *shape, const reach_direction *n) {
+  const double *size = shape->size;
+  const dd x = n->k[0], y = n->k[1], z = n->k[2];
+  switch (shape->ops->kind) {
+    case CPROX_BOX:
+      return dd_add(dd_add(dd_scale(absolute(x), size[0]), dd_scale(absolute(y), size[1])),
+                    dd_scale(absolute(z), size[2]));
+    case CPROX_CAPSULE: return dd_scale(absolute(z), size[1]);
+    case CPROX_CYLINDER: return dd_add(dd_scale(norm(x, y, dd_from(0.0)), size[0]), dd_scale(absolute(z), size[1]));
+    case CPROX_CONE: {
+      const dd apex = dd_scale(z, size[1]);
+      const dd rim = subtract(dd_scale(norm(x, y, dd_from(0.0)), size[0]), apex);
+      return is_less(apex, rim) ? rim : apex;
+    }
+    case CPROX_ELLIPSOID: return norm(dd_scale(x, size[0]), dd_scale(y, size[1]), dd_scale(z, size[2]));
+    case CPROX_HALFSPACE: return dd_from(-size[3]);
+    case CPROX_POLYTOPE:
+    case CPROX_POLYGON: return farthest_vertex(shape, n);
+    default: return dd_from(0.0); /* a point, a sphere */
+  }
+}
+
+/* Brings a direction from the world into the set's own frame; *far becomes n·(where the frame's origin stands). */
+static reach_direction to_own_frame(const reach_set *set, const reach_direction *n, reach_value *far) {
+  reach_direction own = *n;
+  *far = (reach_value){.size = set->offset};
+  for (int i = 0; i < set->poses; i++) {
+    const cprox_pose *pose = set->pose[i];
+    far->value = dd_add(far->value, dot(&own, pose->position));
+    far->size += vec_norm(pose->position);
+    own = turn(pose->orientation, -pose->orientation.w, &own);
+  }
+  return own;
+}
+
+reach_direction reach_along(vec3 n) {
+  return (reach_direction){{dd_from(n.x), dd_from(n.y), dd_from(n.z)}};
+}
+
+reach_direction reach_of_halfspace(const reach_set *set) {
+  const double *size = set->body->shape.size;
+  reach_direction n = reach_along(vec(size[0], size[1], size[2]));
+  for (int i = set->poses - 1; i >= 0; i--) n = turn(set->pose[i]->orientation, set->pose[i]->orientation.w, &n);
+  return n;
+}
+
+reach_value reach_of_body(const reach_set *set, const reach_direction *n) {
+  const cprox_body *body = set->body;
+  reach_value far;
+  const reach_direction own = to_own_frame(set, n, &far);
+  const bool rounded = body->kind == CPROX_SPHERE || body->kind == CPROX_CAPSULE;
+  const double ball = set->offset, margin = rounded ? body->shape.margin : 0.0;
+  far.value = dd_add(far.value, dd_add(dot(&own, body->centre), support(&body->shape, &own)));
+  far.value = dd_add(far.value, dd_multiply(length(n), dd_sum(ball, margin)));
+  far.size += vec_norm(body->centre) + body->shape.scale;
+  return far;
+}
+
+/* ---- curves ----------------------------------------------------------------------------------------------------------------- */
+
+/* Row a becomes that of its part right of s (keep = false), or left of it. */
+static void cut(dd *a, size_t degree, dd s, bool left) {
+  const dd r = dd_add(dd_from(1.0), negate(s));
+  for (size_t level = 1; level <= degree; level++) {
+    if (left)
+      for (size_t i = degree; i >= level; i--) a[i] = dd_add(dd_multiply(r, a[i - 1]), dd_multiply(s, a[i]));
+    else
+      for (size_t i = 0; i + level <= degree; i++) a[i] = dd_add(dd_multiply(r, a[i]), dd_multiply(s, a[i + 1]));
+  }
+}
+
+/* The least ordinate n·P of a part of one piece, less what its conversion may have moved it. */
+static dd least_of_piece(const cprox_curve *curve, size_t piece, double s0, double s1, const reach_direction *n,
+                         double *size) {
+  dd a[CPROX_MAX_DEGREE + 1];
+  const vec3 *p = curve_piece(curve, piece);
+  for (size_t i = 0; i <= curve->degree; i++) {
+    a[i] = dot(n, p[i]);
+    *size = fmax(*size, vec_norm(p[i]));
+  }
+  if (s0 > 0.0) cut(a, curve->degree, dd_from(s0), false);
+  if (s1 < 1.0) cut(a, curve->degree, s0 > 0.0 ? dd_divide(dd_sum(s1, -s0), dd_sum(1.0, -s0)) : dd_from(s1), true);
+  dd least = a[0];
+  for (size_t i = 1; i <= curve->degree; i++)
+    if (is_less(a[i], least)) least = a[i];
+  const dd moved = dd_scale(length(n), curve->error[piece]);
+  return subtract(least, moved);
+}
+
+typedef struct piece_range {
+  size_t first, end;
+} piece_range;
+
+static piece_range pieces_of(reach_part part) {
+  return (piece_range){(size_t)floor(part.from), (size_t)ceil(part.to)};
+}
+
+static dd least_of(const cprox_curve *curve, reach_part part, size_t piece, const reach_direction *n, double *size) {
+  const double k = (double)piece;
+  return least_of_piece(curve, piece, fmax(part.from - k, 0.0), fmin(part.to - k, 1.0), n, size);
+}
+
+reach_value reach_of_curve(const reach_set *set, const reach_direction *n, reach_part part) {
+  reach_value far;
+  const reach_direction own = to_own_frame(set, n, &far);
+  const reach_direction back = {{negate(own.k[0]), negate(own.k[1]), negate(own.k[2])}};
+  dd most = dd_from(-INFINITY);
+  double size = 0.0;
+  const piece_range range = pieces_of(part);
+  for (size_t piece = range.first; piece < range.end; piece++) {
+    const dd h = negate(least_of(set->curve, part, piece, &back, &size));
+    if (is_less(most, h)) most = h;
+  }
+  far.value = dd_add(dd_add(far.value, most), dd_scale(length(n), set->offset));
+  far.size += size;
+  return far;
+}
+
+bool reach_separates(const cprox_curve *curve, reach_part part, const reach_direction *n, const reach_value *reach,
+                     double delta) {
+  const dd long_n = length(n), limit = dd_add(reach->value, dd_scale(long_n, delta));
+  if (!(long_n.high > 0.0) || !isfinite(limit.high)) return false;
+  const piece_range range = pieces_of(part);
+  for (size_t piece = range.first; piece < range.end; piece++) {
+    double size = 0.0;
+    const dd least = least_of(curve, part, piece, n, &size);
+    const double margin = MARGIN * long_n.high * (size + reach->size + delta);
+    if (!(subtract(least, limit).high > margin)) return false;
+  }
+  return true;
+}

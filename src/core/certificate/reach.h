@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Does a direction separate a part of a curve from a set by more than delta? Decided in double-double arithmetic, far more finely than
+ * the search's bounds, so that what holds here holds for the checker: the answer is yes only where the margin is 2^-90 of the sizes
+ * that entered, and the rounding of all that follows is below 2^-95 of them (doc/certificates.md). */
+#ifndef CPROX_CERTIFICATE_REACH_H
+#define CPROX_CERTIFICATE_REACH_H
+
+#include "base/double_double.h"
+#include "body/body.h"
+#include "curve/curve.h"
+
+/* A direction that turns without rounding to a double. */
+typedef struct reach_direction {
+  dd k[3];
+} reach_direction;
+
+/* A body or a curve where it stands: the poses from the outermost to the innermost, and the ball added to it. */
+typedef struct reach_set {
+  const cprox_body *body;   /* convex, or NULL */
+  const cprox_curve *curve; /* or NULL */
+  const cprox_pose *pose[2];
+  int poses;
+  double offset;
+} reach_set;
+
+/* How far something reaches along a direction, and the size of what entered. */
+typedef struct reach_value {
+  dd value;
+  double size;
+} reach_value;
+
+/* A part of a curve: from `from` to `to` in its counting parameter sigma, piece + s, 0 <= from < to <= number of pieces. */
+typedef struct reach_part {
+  double from, to;
+} reach_part;
+
+/* Whether the kind has a support function that a checker can evaluate. */
+bool reach_is_known(const cprox_body *body);
+
+/* The direction of a world vector. */
+reach_direction reach_along(vec3 n);
+
+/* The direction of the only normal that a halfspace has, in the world. */
+reach_direction reach_of_halfspace(const reach_set *set);
+
+/* max n·x over the body, its offset included. */
+reach_value reach_of_body(const reach_set *set, const reach_direction *n);
+
+/* max n·x over a part of the posed curve, its offset included. */
+reach_value reach_of_curve(const reach_set *set, const reach_direction *n, reach_part part);
+
+/* min n·psi over the part less `reach` is more than delta |n|. */
+bool reach_separates(const cprox_curve *curve, reach_part part, const reach_direction *n, const reach_value *reach,
+                     double delta);
+
+#endif

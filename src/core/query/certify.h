@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The end of a query that was asked for a certificate. */
+#ifndef CPROX_QUERY_CERTIFY_H
+#define CPROX_QUERY_CERTIFY_H
+
+#include "certificate/certificate.h"
+
+/* Proves an answer whose arguments were checked, as cprox_certify() does. */
+cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
+                     const cprox_result *answer, uint32_t max_nodes, cprox_workspace *workspace,
+                     cprox_certificate *certificate);
+
+#endif

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#define _POSIX_C_SOURCE 200809L
+#include "support/questions.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "body/body.h"
+
+/* ---- curves ------------------------------------------------------------------------------------------------------------- */
+
+static void points_random(given_curve *g, rng *r, size_t n, double scale, vec3 middle) {
+  const bool flat = rng_index(r, 3) == 0;
+  g->n = n;
+  for (size_t i = 0; i < n; i++) {
+    vec3 p = rng_in_cube(r, 2.0 * scale);
+    if (flat) p.z = 0.0;
+    g->points[i] = vec_add(middle, p);
+  }
+}
+
+static cprox_status make_bezier(given_curve *g, rng *r, double scale, vec3 middle, cprox_workspace *ws) {
+  g->basis = "bezier";
+  g->degree = 1 + rng_index(r, rng_index(r, 4) ? 6 : 12);
+  points_random(g, r, g->degree + 1, scale, middle);
+  return cprox_curve_create_bezier(g->points, g->n, g->t0, g->t1, ws, &g->curve);
+}
+
+static cprox_status make_bspline(given_curve *g, rng *r, double scale, vec3 middle, cprox_workspace *ws) {
+  g->basis = "bspline";
+  g->degree = 1 + rng_index(r, 5);
+  points_random(g, r, g->degree + 1 + rng_index(r, 12), scale, middle);
+  g->n_knots = g->n + g->degree + 1;
+  double knot = g->t0 - rng_uniform(r, 0.0, 1.0);
+  for (size_t i = 0; i < g->n_knots; i++) {
+    g->knots[i] = knot;
+    if (rng_index(r, 4) || i == g->degree) knot += rng_uniform(r, 0.1, 1.0);
+  }
+  g->t0 = g->knots[g->degree];
+  g->t1 = g->knots[g->n];
+  if (rng_index(r, 3) == 0) g->t1 = g->t0 + 0.7 * (g->t1 - g->t0);
+  return cprox_curve_create_bspline(g->points, g->n, g->degree, g->knots, g->n_knots, g->t0, g->t1, ws, &g->curve);
+}
+
+/* The higher terms are small, so that the curve is not. */
+static void terms_random(given_curve *g, rng *r, double scale, vec3 middle, double ratio) {
+  double size = scale;
+  for (size_t i = 0; i < g->n; i++) {
+    g->points[i] = rng_in_cube(r, size);
+    size *= ratio;
+  }
+  g->points[0] = vec_add(g->points[0], middle);
+}
+
+static cprox_status make_polynomial(given_curve *g, rng *r, double scale, vec3 middle, cprox_workspace *ws) {
+  g->basis = "polynomial";
+  g->degree = 1 + rng_index(r, 8);
+  g->n = g->degree + 1;
+  terms_random(g, r, scale, middle, 0.5);
+  return cprox_curve_create_polynomial(g->points, g->n, g->t0, g->t1, ws, &g->curve);
+}
+
+static cprox_status make_legendre(given_curve *g, rng *r, double scale, vec3 middle, cprox_workspace *ws) {
+  g->basis = "legendre";
+  g->degree = 1 + rng_index(r, 14);
+  g->n = g->degree + 1;
+  terms_random(g, r, scale, middle, 0.8);
+  return cprox_curve_create_legendre(g->points, g->n, g->t0, g->t1, ws, &g->curve);
+}
+
+static cprox_status make_lagrange(given_curve *g, rng *r, double scale, vec3 middle, cprox_workspace *ws) {
+  g->basis = "lagrange";
+  g->degree = 1 + rng_index(r, 7);
+  points_random(g, r, g->degree + 1, scale, middle);
+  g->n_knots = g->n;
+  for (size_t i = 0; i < g->n; i++)
+    g->knots[i] = g->t0 + (g->t1 - g->t0) * ((double)i + rng_uniform(r, -0.3, 0.3)) / (double)g->degree;
+  return cprox_curve_create_lagrange(g->points, g->knots, g->n, g->t0, g->t1, ws, &g->curve);
+}
+
+static cprox_status make_trigonometric(given_curve *g, rng *r, double scale, vec3 middle, cprox_workspace *ws) {
+  g->basis = "trigonometric";
+  g->degree = 1 + rng_index(r, 2);
+  g->n = 2 * g->degree + 1;
+  g->t1 = g->t0 + rng_uniform(r, 0.2, 1.5);
+  terms_random(g, r, scale, middle, 0.7);
+  return cprox_curve_create_trigonometric(g->points, g->n, g->t0, g->t1, ws, &g->curve);
+}
+
+static void curve_random(given_curve *g, rng *r, bool bezier_only, double scale, vec3 middle, cprox_workspace *ws) {
+  static cprox_status (*const make[])(given_curve *, rng *, double, vec3, cprox_workspace *) = {
+      make_bezier, make_bezier, make_bspline, make_polynomial, make_legendre, make_lagrange, make_trigonometric};
+  *g = (given_curve){0};
+  g->t0 = rng_index(r, 2) ? 0.0 : rng_uniform(r, -2.0, 2.0);
+  g->t1 = rng_index(r, 2) ? g->t0 + 1.0 : g->t0 + rng_uniform(r, 0.5, 3.0);
+  const size_t choice = bezier_only ? 0 : rng_index(r, 7);
+  if (make[choice](g, r, scale, middle, ws) != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+}
+
+static void curve_write(const given_curve *g, FILE *out) {
+  fprintf(out, " %s %zu %a %a %zu", g->basis, g->degree, g->t0, g->t1, g->n);
+  for (size_t i = 0; i < g->n; i++) fprintf(out, " %a %a %a", g->points[i].x, g->points[i].y, g->points[i].z);
+  fprintf(out, " %zu", g->n_knots);
+  for (size_t i = 0; i < g->n_knots; i++) fprintf(out, " %a", g->knots[i]);
+}
+
+/* ---- bodies ------------------------------------------------------------------------------------------------------------- */
+
+static cprox_body *body_random(asked *q, rng *r, bool polytope_only, cprox_workspace *ws) {
+  const double scale = q->scale;
+  const vec3 size = vec(rng_log_uniform(r, 0.05, 1.0) * scale, rng_log_uniform(r, 0.05, 1.0) * scale,
+                        rng_log_uniform(r, 0.05, 1.0) * scale);
+  vec3 vertex[12];
+  const size_t n = 4 + rng_index(r, 8);
+  for (size_t i = 0; i < 12; i++) vertex[i] = rng_in_cube(r, 0.5 * scale);
+  cprox_body *body = NULL;
+  cprox_status status = CPROX_OK;
+  switch (polytope_only ? 8 : rng_index(r, 10)) {
+    case 0: status = cprox_body_create_point(rng_in_cube(r, scale), ws, &body); break;
+    case 1: status = cprox_body_create_sphere(size.x, ws, &body); break;
+    case 2: status = cprox_body_create_box(size, ws, &body); break;
+    case 3: status = cprox_body_create_capsule(size.x, size.y, ws, &body); break;
+    case 4: status = cprox_body_create_cylinder(size.x, size.y, ws, &body); break;
+    case 5: status = cprox_body_create_cone(size.x, size.y, ws, &body); break;
+    case 6: status = cprox_body_create_ellipsoid(size, ws, &body); break;
+    case 7: status = cprox_body_create_halfspace(rng_unit(r), rng_uniform(r, 1.0, 4.0) * scale, ws, &body); break;
+    case 8: status = cprox_body_create_polytope(vertex, n, ws, &body); break;
+    default: {
+      const double square[4][2] = {{-size.x, -size.y}, {size.x, -size.y}, {size.x, size.y}, {-size.x, size.y}};
+      status = cprox_body_create_polygon(square, 4, ws, &body);
+    }
+  }
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  q->bodies[q->n_bodies++] = body;
+  return body;
+}
+
+static cprox_body *compound_random(asked *q, rng *r, cprox_workspace *ws) {
+  const cprox_body *parts[2] = {body_random(q, r, false, ws), body_random(q, r, false, ws)};
+  const cprox_pose poses[2] = {rng_pose(r, 0.3 * q->scale), rng_pose(r, 0.3 * q->scale)};
+  cprox_body *body = NULL;
+  if (cprox_body_create_compound(parts, poses, 2, ws, &body) != CPROX_OK) return q->bodies[0];
+  /* the union goes before its parts */
+  for (size_t i = q->n_bodies++; i > 0; i--) q->bodies[i] = q->bodies[i - 1];
+  q->bodies[0] = body;
+  return body;
+}
+
+void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away, cprox_workspace *ws) {
+  *q = (asked){.scale = scale};
+  const vec3 middle = rng_in_cube(r, away);
+  curve_random(&q->mover, r, kinds.bezier_only, scale, middle, ws);
+  q->radius = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0.0, 0.1 * scale);
+  q->n = kinds.polytope_only || kinds.curve_target ? 1 : 1 + rng_index(r, QUESTION_MAX_TARGETS);
+  for (size_t i = 0; i < q->n; i++) {
+    cprox_target *t = &q->targets[i];
+    const vec3 beside = vec_scale(rng_uniform(r, 1.0, 4.0) * scale, rng_unit(r));
+    if (kinds.curve_target) {
+      curve_random(&q->target_curve, r, kinds.bezier_only, scale, middle, ws);
+      *t = cprox_curve_target(q->target_curve.curve, 0.0);
+      if (rng_index(r, 2)) t->pose = (cprox_pose){beside, {1, 0, 0, 0}};
+      continue;
+    }
+    const bool compound = !kinds.polytope_only && q->n_bodies == 0 && rng_index(r, 5) == 0;
+    const cprox_body *body = compound ? compound_random(q, r, ws) : body_random(q, r, kinds.polytope_only, ws);
+    *t = cprox_at(body, (cprox_pose){vec_add(middle, beside), rng_quat(r)});
+    if (rng_index(r, 3) == 0) t->pose.orientation = (cprox_quat){1, 0, 0, 0};
+    if (rng_index(r, 3) == 0) *t = cprox_padded(*t, 0.05 * scale);
+  }
+}
+
+void asked_free(asked *q) {
+  for (size_t i = 0; i < q->n_bodies; i++) cprox_body_free(q->bodies[i]);
+  cprox_curve_free(q->mover.curve);
+  cprox_curve_free(q->target_curve.curve);
+}
+
+/* ---- text --------------------------------------------------------------------------------------------------------------- */
+
+static void write_target(const asked *q, const cprox_target *t, FILE *out) {
+  if (t->curve) {
+    const cprox_quat o = t->pose.orientation;
+    fprintf(out, "target %a 1 %a %a %a %a %a %a %a curve", t->padding, t->pose.position.x, t->pose.position.y,
+            t->pose.position.z, o.w, o.x, o.y, o.z);
+    curve_write(&q->target_curve, out);
+    fputs("\n", out);
+    return;
+  }
+  const size_t size = cprox_target_describe(t, NULL, 0) + 1;
+  char *text = malloc(size);
+  assert_non_null(text);
+  cprox_target_describe(t, text, size);
+  fputs(text, out);
+  free(text);
+}
+
+static size_t sections_of(const cprox_target *t) {
+  return t->body && t->body->kind == CPROX_COMPOUND ? t->body->n_parts : 1;
+}
+
+void asked_write_targets(const asked *q, FILE *out) {
+  size_t sections = 0;
+  for (size_t i = 0; i < q->n; i++) sections += sections_of(&q->targets[i]);
+  fprintf(out, "cprox-problem 1\ntargets %zu\n", sections);
+  for (size_t i = 0; i < q->n; i++) write_target(q, &q->targets[i], out);
+}
+
+void asked_write_mover(const asked *q, const char *id, FILE *out) {
+  fprintf(out, "mover %s %a", id, q->radius);
+  curve_write(&q->mover, out);
+  fputs("\n", out);
+}
+
+finding asked_check(const asked *q, const void *bytes, size_t size) {
+  char *text = NULL;
+  size_t length = 0;
+  FILE *out = open_memstream(&text, &length);
+  assert_non_null(out);
+  asked_write_targets(q, out);
+  asked_write_mover(q, "mover", out);
+  fclose(out);
+  FILE *in = fmemopen(text, length, "r");
+  assert_non_null(in);
+  problem p;
+  if (!problem_open(&p, in) || !problem_next(&p)) fail_msg("%s in\n%s", p.fault, text);
+  const finding found = check(&p, bytes, size);
+  problem_close(&p);
+  fclose(in);
+  free(text);
+  return found;
+}

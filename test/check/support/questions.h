@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Random questions of every kind that certificates can be made for, and their text for the checkers. */
+#ifndef CHECK_TEST_QUESTIONS_H
+#define CHECK_TEST_QUESTIONS_H
+
+#include <stdio.h>
+
+#include "check.h"
+#include "curve_proximity/cprox.h"
+#include "support/random.h"
+
+enum { QUESTION_MAX_POINTS = 40, QUESTION_MAX_TARGETS = 3, QUESTION_MAX_BODIES = 8 };
+
+/* A curve as it was given. */
+typedef struct given_curve {
+  const char *basis;
+  size_t degree, n, n_knots;
+  double t0, t1;
+  vec3 points[QUESTION_MAX_POINTS];
+  double knots[QUESTION_MAX_POINTS + 12];
+  cprox_curve *curve;
+} given_curve;
+
+typedef struct asked {
+  given_curve mover;
+  double radius;
+  size_t n;
+  cprox_target targets[QUESTION_MAX_TARGETS];
+  given_curve target_curve; /* of a target that is a curve, curve NULL: none */
+  cprox_body *bodies[QUESTION_MAX_BODIES];
+  size_t n_bodies;
+  double scale; /* of the sizes [m] */
+} asked;
+
+/* What may be asked. */
+typedef struct asked_kinds {
+  bool bezier_only; /* curves of the other bases, too */
+  bool polytope_only;
+  bool curve_target;
+} asked_kinds;
+
+/* Fills q, which must stay where it is. Sizes around `scale`, everything `away` from the origin. */
+void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away, cprox_workspace *ws);
+void asked_free(asked *q);
+
+/* The head and the targets, then the mover under a name. */
+void asked_write_targets(const asked *q, FILE *out);
+void asked_write_mover(const asked *q, const char *id, FILE *out);
+
+/* What the checker finds. */
+finding asked_check(const asked *q, const void *bytes, size_t size);
+
+#endif
