@@ -128,9 +128,10 @@ cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size
                   .workspace = workspace,
                   .certificate = certificate};
   certificate_clear(certificate);
+  if (mover->body) return workspace_fail(workspace, CPROX_INVALID, "carried bodies have no certificates");
   for (size_t i = 0; i < n; i++)
     if (!is_known(&targets[i]))
-      return workspace_fail(workspace, CPROX_OVERLAP, "target %zu is of a kind that has no certificates", i);
+      return workspace_fail(workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates", i);
   const cprox_status status = certify_apart(&t);
   if (status == CPROX_OK) return status;
   certificate_clear(certificate);
