@@ -29,7 +29,9 @@ typedef enum cprox_body_kind {
   CPROX_POLYTOPE,
   CPROX_POLYGON,
   CPROX_COMPOUND,
-  CPROX_SUPPORT
+  CPROX_SUPPORT,
+  CPROX_SUPERQUADRIC,
+  CPROX_IMPLICIT
 } cprox_body_kind;
 
 /** One point [m], finite. */

@@ -13,6 +13,7 @@ typedef enum workspace_buffer {
   WORKSPACE_ORDER,
   WORKSPACE_RANKING,
   WORKSPACE_COVER,
+  WORKSPACE_INTERIOR,
   WORKSPACE_BUFFERS
 } workspace_buffer;
 

@@ -327,6 +327,7 @@ void cprox_body_free(cprox_body *body) {
   if (!body) return;
   free(body->shape.x); /* y and z are in the same block */
   free(body->parts);
+  free(body->shape.implicit); /* one block */
   free(body);
 }
 
@@ -350,6 +351,8 @@ const char *cprox_body_kind_name(cprox_body_kind kind) {
     case CPROX_POLYGON: return "polygon";
     case CPROX_COMPOUND: return "compound";
     case CPROX_SUPPORT: return "support";
+    case CPROX_SUPERQUADRIC: return "superquadric";
+    case CPROX_IMPLICIT: return "implicit";
   }
   return "unknown";
 }

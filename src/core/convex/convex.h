@@ -12,6 +12,7 @@
 #include "curve_proximity/cprox/body.h"
 
 typedef struct convex convex;
+struct implicit;
 
 /* Where a search for a nearest or extreme point may start: vertices of the last answer. Zero-initialised: from scratch.
  * A bad hint costs time, never truth. */
@@ -37,6 +38,8 @@ typedef struct convex_near {
   vec3 origin;
   double offset;
   double hessian[6];
+  bool height_known; /* height is the core's support function at `normal`, from above: no need to ask again */
+  double height;
 } convex_near;
 
 /* A ball about `centre`, or a cylinder of infinite length about the line through `centre` along the unit `axis`, that
@@ -92,6 +95,7 @@ struct convex {
   /* Minkowski differences: all b - r k, b of `standing`, k of `carried` */
   const convex *standing, *carried;
   double r[9]; /* row-major */
+  struct implicit *implicit; /* superquadrics and implicit bodies: the constraints, about the shape's origin */
 };
 
 extern const convex_ops convex_point, convex_sphere, convex_box, convex_capsule, convex_cylinder, convex_cone,

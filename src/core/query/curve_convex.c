@@ -123,9 +123,13 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
   const double length2 = vec_norm2(sight->normal);
   if (fabs(length2 - 1.0) > 4.0 * ROUND_U && length2 > 0.0)
     sight->normal = vec_scale(1.0 / sqrt(length2), sight->normal);
-  sight->support = length2 > 0.0 ? o->shape->ops->support(o->shape, sight->normal, &o->support_hint, NULL) +
-                                       o->shape->margin + o->offset
-                                 : INFINITY;
+  sight->support = INFINITY;
+  if (length2 > 0.0) {
+    const double height = sight->near.height_known
+                              ? sight->near.height
+                              : o->shape->ops->support(o->shape, sight->normal, &o->support_hint, NULL);
+    sight->support = height + o->shape->margin + o->offset;
+  }
   return CPROX_OK;
 }
 

@@ -7,6 +7,7 @@
 #include "body/body.h"
 #include "convex/feature.h"
 #include "curve_proximity/cprox/query.h"
+#include "implicit/implicit.h"
 #include "query/arguments.h"
 #include "query/pair_witness.h"
 
@@ -118,6 +119,8 @@ static bool has_closed_form(const convex *shape) {
   switch (shape->ops->kind) {
     case CPROX_POLYTOPE:
     case CPROX_SUPPORT:
+    case CPROX_SUPERQUADRIC:
+    case CPROX_IMPLICIT:
     case CPROX_COMPOUND: return false;
     default: return true;
   }
@@ -152,8 +155,65 @@ static void pair_swap(pair_answer *answer) {
   answer->normal = vec_neg(answer->normal);
 }
 
+static bool is_implicit(const convex *shape) {
+  return shape->implicit != NULL;
+}
+
+static bool pair_is_narrow(const pair_answer *answer, const pair_goal *goal) {
+  return answer->upper - answer->lower <= fmax(goal->epsilon, goal->relative_epsilon * answer->upper);
+}
+
+/* Two implicit bodies by the interior point method: what it finds makes the answer narrower. False where memory is out. */
+static bool pair_interior(const pair_side *a, const pair_side *b, const pair_placement *place, const pair_goal *goal,
+                          cprox_workspace *workspace, pair_answer *answer) {
+  const implicit *x = a->shape->implicit, *y = b->shape->implicit;
+  void *memory = workspace_reserve(workspace, WORKSPACE_INTERIOR, implicit_memory(x, y));
+  if (!memory) return false;
+  implicit_question question = {.a = x, .b = y, .t = place->t};
+  for (int i = 0; i < 9; i++) question.m[i] = place->r[i];
+  const double rounding = ROUND_UP * place->error, margins = a->margin + b->margin;
+  const implicit_goal inner = {.epsilon = fmax(goal->epsilon - 2.0 * rounding, 0.0),
+                               .relative_epsilon = margins > 0.0 ? 0.0 : goal->relative_epsilon,
+                               .max_steps = goal->max_steps};
+  implicit_answer found;
+  implicit_solve(&question, &inner, NULL, memory, &found);
+
+  answer->steps += found.steps;
+  answer->exhausted = answer->exhausted && found.steps >= goal->max_steps;
+  answer->lower = fmax(answer->lower, found.overlap ? -INFINITY : found.lower - margins - rounding);
+  const double upper = found.upper - margins + rounding;
+  if (found.overlap) {
+    answer->overlap = true;
+    answer->upper = fmin(answer->upper, -margins);
+  } else if (upper < answer->upper) {
+    answer->upper = upper;
+  } else {
+    return true;
+  }
+  answer->normal = found.overlap ? vec(0, 0, 0) : found.normal;
+  answer->on_a = vec_axpy(found.x, -a->margin, answer->normal);
+  answer->on_b = vec_axpy(vec_sub(found.x, vec_scale(found.upper, answer->normal)), b->margin, answer->normal);
+  answer->rounding = fmax(answer->rounding, rounding);
+  return true;
+}
+
+/* Where both have support functions of closed form, those answer first: they are faster until they stall. */
+static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_placement *place, const pair_goal *goal,
+                          cprox_workspace *workspace, pair_answer *answer) {
+  const bool closed = a->shape->implicit->closed && b->shape->implicit->closed;
+  *answer = (pair_answer){.lower = -INFINITY, .upper = INFINITY, .exhausted = true};
+  if (closed || !workspace) {
+    pair_separate(a->shape, a->margin, b->shape, b->margin, place, goal, answer);
+    if (answer->overlap || pair_is_narrow(answer, goal) || !workspace) return true;
+  }
+  if (!pair_interior(a, b, place, goal, workspace, answer)) return false;
+  if (answer->overlap && !closed) pair_separate(a->shape, a->margin, b->shape, b->margin, place, goal, answer);
+  return true;
+}
+
 /* One pair of convex shapes. The special ways want their shape first: the frame of the answer is the first one's. */
-static void pair_solve(const pair_side *a, const pair_side *b, const pair_goal *goal, pair_answer *answer) {
+static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pair_goal *goal,
+                               cprox_workspace *workspace, pair_answer *answer) {
   const bool halfspace = b->shape->ops->kind == CPROX_HALFSPACE;
   const bool ball = is_ball(a->shape) && has_closed_form(b->shape) && !is_ball(b->shape);
   const bool swapped = halfspace || (ball && a->shape->ops->kind != CPROX_HALFSPACE);
@@ -164,8 +224,10 @@ static void pair_solve(const pair_side *a, const pair_side *b, const pair_goal *
     pair_halfspace(first, second, &place, answer);
   else if (is_ball(second->shape) && has_closed_form(first->shape))
     pair_ball(first, second, &place, answer);
-  else
+  else if (!is_implicit(first->shape) || !is_implicit(second->shape))
     pair_separate(first->shape, first->margin, second->shape, second->margin, &place, goal, answer);
+  else if (!pair_implicit(first, second, &place, goal, workspace, answer))
+    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of implicit bodies");
 
   /* pair_separate's normal is from b to a, the special ways' as well */
   if (swapped) pair_swap(answer);
@@ -173,6 +235,7 @@ static void pair_solve(const pair_side *a, const pair_side *b, const pair_goal *
   answer->on_b = pair_to_world(first, answer->on_b);
   answer->common = pair_to_world(first, answer->common);
   answer->normal = frame_turn_to_world(&first->f, answer->normal);
+  return CPROX_OK;
 }
 
 pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b) {
@@ -200,7 +263,8 @@ static cprox_status pair_over_parts(const cprox_target *a, const cprox_target *b
       if (side_a.shape->ops->kind == CPROX_HALFSPACE && side_b.shape->ops->kind == CPROX_HALFSPACE)
         return workspace_fail(workspace, CPROX_INVALID, "two halfspaces have no distance");
       pair_answer answer;
-      pair_solve(&side_a, &side_b, goal, &answer);
+      const cprox_status status = pair_solve(&side_a, &side_b, goal, workspace, &answer);
+      if (status) return status;
       if (answer.fault)
         return workspace_fail(workspace, CPROX_INVALID,
                               "a support callback answered with a point that is not finite or outside its radius");

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Implicit bodies: superquadrics, hyperquadrics, quadrics, planes and their intersections, under any invertible affine map.
+ *
+ *  They are bodies like any other (movers, targets, compounds, pairs).
+ *  Source: Chakraborty, Peng, Akella and Mitchell 2008, as doc/implicit.md carries it out. */
+#ifndef CURVE_PROXIMITY_CPROX_IMPLICIT_H
+#define CURVE_PROXIMITY_CPROX_IMPLICIT_H
+
+#include <curve_proximity/cprox/base.h>
+#include <curve_proximity/cprox/body.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The superquadric sum |x_i/semi_axis_i|^exponent_i <= 1 about the origin.
+ *
+ *  semi_axes  [m] between 1e-12 and 1e10, the largest at most 1e9 times the least
+ *  exponents  1 (a corner) … 2 (round) … 1000 (all but a box)
+ */
+CPROX_API cprox_status cprox_body_create_superquadric(cprox_vec3 semi_axes, cprox_vec3 exponents,
+                                                      cprox_workspace *workspace, cprox_body **body);
+
+/** The set sum over its terms of |a x + b y + c z + d|^exponent <= 1. */
+typedef struct cprox_hyperquadric {
+  const double (*terms)[5]; /**< each a, b, c [1/m], d, exponent (1 … 1000); a, b, c not all 0 */
+  size_t n_terms;           /**< 1 … 64 */
+} cprox_hyperquadric;
+
+/** The intersection of what is listed; each array NULL where its count is 0. At most 1024 constraints and terms in all. */
+typedef struct cprox_implicit_description {
+  const cprox_hyperquadric *hyperquadrics;
+  size_t n_hyperquadrics;
+  const double (*planes)[4]; /**< each b1, b2, b3, c: b·x + c <= 0 */
+  size_t n_planes;
+  const double (*quadrics)[10]; /**< each q11, q12, q13, q22, q23, q33, b1, b2, b3, c: x'Qx + b·x + c <= 0, Q symmetric
+                                     (x'Qx counts q12, q13, q23 twice) and positive semidefinite */
+  size_t n_quadrics;
+} cprox_implicit_description;
+
+/** The map x -> linear x + translation: rotation, scale, shear. */
+typedef struct cprox_affine {
+  double linear[9]; /**< row-major, determinant not 0 */
+  cprox_vec3 translation;
+} cprox_affine;
+
+/** The map that changes nothing. */
+CPROX_API cprox_affine cprox_affine_identity(void);
+
+/** The image of the described set under a map (NULL: the set itself).
+ *
+ *  The set must be bounded (within 1e10 m of the origin) and have an interior (a ball of 1e-9 of its size). The map is applied to
+ *  the coefficients in twice the precision of double; the body is that of the coefficients so rounded.
+ *  CPROX_INVALID names the plane, quadric or term that is at fault: not finite, an exponent below 1, not positive
+ *  semidefinite, out of range; an empty interior; an unbounded set and the axis along which it is; a singular map. */
+CPROX_API cprox_status cprox_body_create_implicit(const cprox_implicit_description *description,
+                                                  const cprox_affine *map, cprox_workspace *workspace,
+                                                  cprox_body **body);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
