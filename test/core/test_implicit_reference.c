@@ -20,8 +20,8 @@ static cprox_target read_side(const csv_table *table, const csv_row *row, size_t
   implicit_case_read(row->field[definition], &c);
   double p[7];
   for (size_t i = 0; i < 7; i++) p[i] = csv_number(table, row, pose + i);
-  return cprox_at(implicit_case_body(&c, NULL), (cprox_pose){.position = {p[4], p[5], p[6]},
-                                                             .orientation = {p[0], p[1], p[2], p[3]}});
+  return cprox_at(implicit_case_body(&c, NULL),
+                  (cprox_pose){.position = {p[4], p[5], p[6]}, .orientation = {p[0], p[1], p[2], p[3]}});
 }
 
 /* Every row of a file: the interval contains the reference, and is as narrow as asked, relative to distance and sizes. */

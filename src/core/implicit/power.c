@@ -41,9 +41,11 @@ double implicit_power_reach(const implicit_term *term, int32_t n, const double *
 
   double sum, slope, bound = reach_at(term, n, w, m, u, &sum, &slope);
   for (int i = 0; i < steps; i++) {
-    if (!(slope > 0.0) || !(sum > 0.0) || !isfinite(sum)) {
-      if (!(sum > 1.0)) break;
-      m *= 1e3; /* the sum has overflowed: mu was far too small */
+    if (!(slope > 0.0) || !(sum > 0.0) || !isfinite(sum) || !isfinite(slope)) {
+      /* all powers have underflowed, or one overflowed: not from there */
+      const double again = fmax(start, least);
+      if (m == again) break;
+      m = again;
     } else {
       const double miss = log(sum);
       if (fabs(miss) <= 8.0 * ROUND_U || (m == least && miss <= 0.0)) break;

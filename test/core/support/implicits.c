@@ -33,7 +33,7 @@ void implicit_case_read(const char *text, implicit_case *c) {
       const size_t k = d->n_hyperquadrics++;
       assert_true(k < 8 && n % 5 == 0);
       memcpy(c->terms[k], number, n * sizeof *number);
-      c->hyperquadrics[k] = (cprox_hyperquadric){.terms = (const double (*)[5])c->terms[k], .n_terms = n / 5};
+      c->hyperquadrics[k] = (cprox_hyperquadric){.terms = (const double(*)[5])c->terms[k], .n_terms = n / 5};
     } else if (kind == 'P') {
       assert_true(n == 4 && d->n_planes < 32);
       memcpy(c->planes[d->n_planes++], number, sizeof *c->planes);
@@ -46,8 +46,8 @@ void implicit_case_read(const char *text, implicit_case *c) {
   }
   assert_int_equal(*text, '\0');
   d->hyperquadrics = c->hyperquadrics;
-  d->planes = (const double (*)[4])c->planes;
-  d->quadrics = (const double (*)[10])c->quadrics;
+  d->planes = (const double(*)[4])c->planes;
+  d->quadrics = (const double(*)[10])c->quadrics;
 }
 
 void implicit_case_paper(int object, implicit_case *c) {
