@@ -184,6 +184,7 @@ static bool pair_interior(const pair_side *a, const pair_side *b, const pair_pla
   const double upper = found.upper - margins + rounding;
   if (found.overlap) {
     answer->overlap = true;
+    answer->common = found.x;
     answer->upper = fmin(answer->upper, -margins);
   } else if (upper < answer->upper) {
     answer->upper = upper;
@@ -197,7 +198,8 @@ static bool pair_interior(const pair_side *a, const pair_side *b, const pair_pla
   return true;
 }
 
-/* Where both have support functions of closed form, those answer first: they are faster until they stall. */
+/* Where both have support functions of closed form, those answer first: they are faster until they stall. Without a workspace
+ * they answer alone. */
 static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_placement *place, const pair_goal *goal,
                           cprox_workspace *workspace, pair_answer *answer) {
   const bool closed = a->shape->implicit->closed && b->shape->implicit->closed;
@@ -242,7 +244,7 @@ pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_t
   const pair_side side_a = pair_place_side(a, part_a), side_b = pair_place_side(b, part_b);
   const pair_goal goal = {.relative_epsilon = 1e-13, .max_steps = 256};
   pair_answer answer;
-  pair_solve(&side_a, &side_b, &goal, &answer);
+  pair_solve(&side_a, &side_b, &goal, NULL, &answer);
   pair_witness witness = {.on_a = answer.on_a, .on_b = answer.on_b, .normal = answer.normal};
   if (answer.upper <= answer.rounding) witness.on_a = witness.on_b = answer.common;
   return witness;
