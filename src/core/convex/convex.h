@@ -94,7 +94,7 @@ struct convex {
   vec3 user_centre;
   /* Minkowski differences: all b - r k, b of `standing`, k of `carried` */
   const convex *standing, *carried;
-  double r[9]; /* row-major */
+  double r[9];               /* row-major */
   struct implicit *implicit; /* superquadrics and implicit bodies: the constraints, about the shape's origin */
 };
 
