@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "robot_file.h"
 
-#include <tinyxml2.h>
-
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -39,17 +37,12 @@ std::shared_ptr<const Robot> readRobot(const std::string &path) {
   }
 }
 
-std::string readParentFrame(const std::string &path) {
-  const std::string text = readText(path);
-  tinyxml2::XMLDocument document;
-  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    throw BadUsage(path + ": no XML: line " + std::to_string(document.ErrorLineNum()));
+Srdf readSrdf(const std::string &path) {
+  try {
+    return parseSrdf(readText(path));
+  } catch (const Error &e) {
+    throw BadUsage(path + ": " + e.what());
   }
-  const tinyxml2::XMLElement *robot = document.FirstChildElement("robot");
-  if (!robot) throw BadUsage(path + ": no SRDF: it has no <robot>");
-  const tinyxml2::XMLElement *joint = robot->FirstChildElement("virtual_joint");
-  const char *frame = joint ? joint->Attribute("parent_frame") : nullptr;
-  return frame ? frame : "";
 }
 
 JointPositions readState(const std::string &text, const Robot &robot) {

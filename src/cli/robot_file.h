@@ -7,6 +7,7 @@
 #include <string>
 
 #include <curve_proximity/robot.hpp>
+#include <curve_proximity/srdf.hpp>
 
 #include "yaml_value.h"
 
@@ -15,9 +16,8 @@ namespace curve_proximity::cli {
 /** Reads a URDF; mesh files without a scheme are relative to its folder. Throws BadUsage with the file's name. */
 std::shared_ptr<const Robot> readRobot(const std::string &path);
 
-/** The frame in which an SRDF says that the robot stands: parent_frame of the first virtual joint, "" without one.
- *  Throws BadUsage with the file's name where it cannot be read or is no SRDF. */
-std::string readParentFrame(const std::string &path);
+/** Throws BadUsage with the file's name where it cannot be read or is no SRDF. */
+Srdf readSrdf(const std::string &path);
 
 /** "joint: value, …" of --state. Throws BadUsage: no such text, a value that is not a finite number, a joint that the
  *  robot does not have. */

@@ -39,7 +39,11 @@ PlacedRobot placeRobot(const Arguments &arguments, const SceneFile &file, Warnin
   if (arguments.robot.empty()) return out;
   out.robot = readRobot(arguments.robot);
   out.fixed.insert(out.robot->rootLink());
-  if (!arguments.srdf.empty()) out.fixed.insert(readParentFrame(arguments.srdf));
+  if (!arguments.srdf.empty()) {
+    /* the robot stands in the parent frame of its first virtual joint */
+    const Srdf srdf = readSrdf(arguments.srdf);
+    if (!srdf.virtual_joints.empty()) out.fixed.insert(srdf.virtual_joints.front().parent_frame);
+  }
 
   JointPositions joints = stateOfScene(file, *out.robot, warnings);
   const JointPositions asked = readState(arguments.state, *out.robot);

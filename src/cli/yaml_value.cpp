@@ -58,6 +58,17 @@ std::vector<YamlValue> YamlValue::items() const {
   return out;
 }
 
+std::vector<std::pair<std::string, YamlValue>> YamlValue::entries() const {
+  if (node_.IsNull()) return {};
+  if (!node_.IsMap()) fail("must be a map");
+  std::vector<std::pair<std::string, YamlValue>> out;
+  for (const auto &entry : node_) {
+    const std::string key = YamlValue(entry.first, where_).text();
+    out.emplace_back(key, YamlValue(entry.second, join(where_, key)));
+  }
+  return out;
+}
+
 std::vector<YamlValue> YamlValue::itemsOf(const char *key) const {
   const std::optional<YamlValue> value = find(key);
   return value ? value->items() : std::vector<YamlValue>{};

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <curve_proximity/core.hpp>
@@ -63,6 +64,8 @@ class YamlValue {
 
   /** The values of this list; none for an empty value. */
   std::vector<YamlValue> items() const;
+  /** The keys of this map with their values, in the order of the file. */
+  std::vector<std::pair<std::string, YamlValue>> entries() const;
   /** The list under a key; none where the key is not there. */
   std::vector<YamlValue> itemsOf(const char *key) const;
 

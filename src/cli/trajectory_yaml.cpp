@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "trajectory_yaml.h"
+
+#include <filesystem>
+
+#include "failure.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+Interpolation readInterpolation(const YamlValue &value) {
+  const std::string text = value.text();
+  if (text == "linear") return Interpolation::LINEAR;
+  if (text == "cubic") return Interpolation::CUBIC;
+  if (text == "quintic") return Interpolation::QUINTIC;
+  value.fail("the interpolation '" + text + "' is none of linear, cubic, quintic");
+}
+
+/* Seconds, or seconds and nanoseconds as ROS prints a duration. */
+double readTime(const YamlValue &value) {
+  if (!value.isMap()) return value.number();
+  const auto part = [&](const char *key) {
+    const std::optional<YamlValue> found = value.find(key);
+    return found ? found->number() : 0.0;
+  };
+  if (!value.find("secs") && !value.find("nsecs")) value.fail("needs secs or nsecs");
+  return part("secs") + 1e-9 * part("nsecs");
+}
+
+std::vector<double> readList(const YamlValue &point, const char *key) {
+  const std::optional<YamlValue> list = point.find(key);
+  return list ? list->numbers() : std::vector<double>();
+}
+
+TrajectoryPoint readPoint(const YamlValue &value, Warnings &warnings) {
+  value.warnOfOthers({"positions", "velocities", "accelerations", "effort", "time_from_start"}, warnings);
+  TrajectoryPoint out;
+  out.positions = readList(value, "positions");
+  out.velocities = readList(value, "velocities");
+  out.accelerations = readList(value, "accelerations");
+  out.time = readTime(value.at("time_from_start"));
+  return out;
+}
+
+void readFixed(const YamlValue &value, JointPositions &out) {
+  for (const auto &[joint, entry] : value.entries()) out[joint] = entry.number();
+}
+
+void readBase(const YamlValue &value, TrajectoryDescription &out, Warnings &warnings) {
+  value.warnOfOthers({"name", "type", "joints", "parent_frame", "child_link"}, warnings);
+  VirtualJoint joint;
+  if (const auto name = value.find("name")) joint.name = name->text();
+  joint.type = value.at("type").text();
+  if (joint.type != "planar" && joint.type != "floating") value.fail("the type must be planar or floating");
+  if (const auto frame = value.find("parent_frame")) joint.parent_frame = frame->text();
+  joint.child_link = value.at("child_link").text();
+  for (const YamlValue &part : value.itemsOf("joints")) out.base_joints.push_back(part.text());
+  const std::size_t parts = joint.type == "planar" ? 3 : 7;
+  if (!out.base_joints.empty() && out.base_joints.size() != parts) {
+    value.fail("joints must name the " + std::to_string(parts) + " parts of a " + joint.type + " joint");
+  }
+  if (out.base_joints.empty() && joint.name.empty()) value.fail("needs joints, or a name that their names begin with");
+  out.base.push_back(joint);
+}
+
+TrajectoryDescription readFile(const YamlValue &root, Warnings &warnings) {
+  if (!root.isMap()) root.fail("must be a map with joint_trajectory");
+  root.warnOfOthers({"joint_trajectory", "interpolation", "fixed_joints", "virtual_joint", "robot", "scene"}, warnings);
+  TrajectoryDescription out;
+  if (const auto interpolation = root.find("interpolation")) out.interpolation = readInterpolation(*interpolation);
+  if (const auto fixed = root.find("fixed_joints")) readFixed(*fixed, out.fixed_joints);
+  if (const auto base = root.find("virtual_joint")) readBase(*base, out, warnings);
+
+  const YamlValue trajectory = root.at("joint_trajectory");
+  trajectory.warnOfOthers({"header", "joint_names", "points"}, warnings);
+  for (const YamlValue &name : trajectory.at("joint_names").items()) out.joints.push_back(name.text());
+  for (const YamlValue &point : trajectory.at("points").items()) out.points.push_back(readPoint(point, warnings));
+  return out;
+}
+
+} // namespace
+
+TrajectoryDescription readTrajectory(const std::string &path, Warnings &warnings) {
+  try {
+    TrajectoryDescription out = readFile(loadYaml(path), warnings);
+    out.id = std::filesystem::path(path).stem().string();
+    checkTrajectory(out);
+    return out;
+  } catch (const BadInput &e) {
+    throw BadUsage(path + ": " + e.what());
+  } catch (const Error &e) {
+    throw BadUsage(path + ": " + e.what());
+  }
+}
+
+} // namespace curve_proximity::cli
