@@ -22,6 +22,7 @@ typedef struct cprox_target {
   cprox_pose pose;
   double padding;           /**< [m] >= 0: the set of all points within this of the body or curve */
   const cprox_curve *curve; /**< or NULL, for a body */
+  bool on_clock;            /**< the curve is at the mover's own parameter, and carries the body if there is one */
 } cprox_target;
 
 CPROX_API cprox_target cprox_at(const cprox_body *body, cprox_pose pose);
@@ -47,6 +48,11 @@ CPROX_API cprox_mover cprox_tube_along(const cprox_curve *curve, double radius);
 /** A body that is carried along the curve without turning. Every verb answers for it: the curve of its origin is held against the
  *  Minkowski difference of the target and the body, doc/curve-bound.md. */
 CPROX_API cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve);
+
+/** Another mover on the clock of the mover asked about: both are at the same parameter, so that they may cross each other's way at
+ *  different times. Both curves must have the same domain, else CPROX_INVALID. Either may carry a ball or a body. The pose that
+ *  the target is given, identity at first, moves the other's curve and turns its body with it. */
+CPROX_API cprox_target cprox_on_clock(cprox_mover other);
 
 /** What a query can leave behind as proof: see certificate.h. */
 typedef struct cprox_certificate cprox_certificate;

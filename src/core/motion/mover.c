@@ -9,6 +9,14 @@ cprox_mover cprox_tube_along(const cprox_curve *curve, double radius) {
   return (cprox_mover){.curve = curve, .radius = radius};
 }
 
+cprox_target cprox_on_clock(cprox_mover other) {
+  return (cprox_target){.body = other.body,
+                        .pose = cprox_pose_identity(),
+                        .padding = other.radius,
+                        .curve = other.curve,
+                        .on_clock = true};
+}
+
 cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve) {
   return (cprox_mover){.curve = curve, .body = body};
 }

@@ -62,13 +62,30 @@ cprox_status arguments_check_delta(double delta, cprox_workspace *workspace) {
 cprox_status arguments_check_target(const cprox_target *target, size_t index, cprox_workspace *workspace) {
   if (!target->body && !target->curve)
     return workspace_fail(workspace, CPROX_INVALID, "target %zu has neither a body nor a curve", index);
-  if (target->body && target->curve)
+  if (target->on_clock && !target->curve)
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu is on the mover's clock, but has no curve", index);
+  if (target->body && target->curve && !target->on_clock)
     return workspace_fail(workspace, CPROX_INVALID, "target %zu has both a body and a curve", index);
   const char *fault = frame_pose_fault(&target->pose);
   if (fault) return workspace_fail(workspace, CPROX_INVALID, "target %zu: %s", index, fault);
   if (target->padding >= 0.0 && isfinite(target->padding)) return CPROX_OK;
   return workspace_fail(workspace, CPROX_INVALID, "target %zu: padding is %g, must be finite and 0 or more", index,
                         target->padding);
+}
+
+/* What is on one clock must run over the same time. */
+static cprox_status check_clock(const cprox_curve *curve, const cprox_target *target, size_t index,
+                                cprox_workspace *workspace) {
+  if (!target->on_clock) return CPROX_OK;
+  double t0, t1, u0, u1;
+  cprox_curve_domain(curve, &t0, &t1);
+  cprox_curve_domain(target->curve, &u0, &u1);
+  if (t0 == u0 && t1 == u1) return CPROX_OK;
+  return workspace_fail(
+      workspace, CPROX_INVALID,
+      "target %zu is on the mover's clock, but its curve runs over [%.17g, %.17g] and the mover's over "
+      "[%.17g, %.17g]",
+      index, u0, u1, t0, t1);
 }
 
 /* Convex parts without end have no Minkowski difference that a search could use. */
@@ -94,6 +111,8 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target 
   for (size_t i = 0; i < n; i++) {
     const cprox_status target = arguments_check_target(&targets[i], i, workspace);
     if (target != CPROX_OK) return target;
+    const cprox_status clock = check_clock(mover->curve, &targets[i], i, workspace);
+    if (clock != CPROX_OK) return clock;
   }
   return CPROX_OK;
 }

@@ -4,6 +4,7 @@
 #include "body/body.h"
 #include "query/carried.h"
 #include "query/pair_witness.h"
+#include "query/relative.h"
 
 enum { VERDICT_NODES_BEFORE_NEWTON = 4 };
 
@@ -45,11 +46,12 @@ static void report_points(const question *q, const candidate *c, vec3 centre, ve
   }
 }
 
-/* The same where a body is carried, its curve at `centre`: asked of the pair that it makes there with what stands. */
-static void report_carried(const question *q, const candidate *c, vec3 centre, const cprox_target *standing,
-                           int32_t part, vec3 normal, cprox_result *r) {
-  const cprox_target moved = {
-      .body = q->mover.body, .pose = {.position = centre, .orientation = {1, 0, 0, 0}}, .padding = q->mover.radius};
+/* The same where a body is carried, its curve at `centre`, or what stands is on the clock: asked of the pair that both make there. */
+static void report_pair(const question *q, const candidate *c, vec3 centre, const cprox_target *standing, int32_t part,
+                        vec3 normal, cprox_result *r) {
+  const cprox_target moved = {.body = q->mover.body ? q->mover.body : &carried_point,
+                              .pose = {.position = centre, .orientation = {1, 0, 0, 0}},
+                              .padding = q->mover.radius};
   const pair_witness witness = pair_witness_of(&moved, (size_t)c->mover_part, standing, (size_t)part);
   const bool normal_known = vec_norm2(normal) > 0.0;
   r->normal = normal_known ? normal : witness.normal;
@@ -57,29 +59,50 @@ static void report_carried(const question *q, const candidate *c, vec3 centre, c
   r->on_mover = witness.on_a, r->on_target = witness.on_b;
 }
 
-/* The mover carries a body: the curve alone is held against the difference of the two. */
-static bool begin_carried(const question *q, const candidate *c, const cprox_body *body, const cprox_pose *pose,
-                          const cprox_body *carried, const cprox_pose *carried_pose, curve_convex *o) {
-  carried_shape joined;
-  if (!carried_join(body, pose, carried, carried_pose, &joined)) return false;
+bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o) {
+  const cprox_target *target = &q->targets[c->target];
+  const cprox_body *body = candidate_body(q, c);
+  const cprox_pose pose = candidate_pose(q, c);
+
+  /* on one clock the curve is where the mover is, seen from the other */
+  const cprox_curve *curve = q->mover.curve;
+  cprox_curve relative;
+  if (target->on_clock) {
+    if (!relative_create(curve, target->curve, &target->pose, q->t0, q->t1, q->workspace, &relative)) return false;
+    curve = &relative;
+  }
+
+  /* a carried body and what stands make one shape */
+  carried_shape joined = {.placed = frame_create(&pose, body->centre)};
+  cprox_pose carried_pose;
+  const cprox_body *carried = candidate_carried(q, c, &carried_pose);
+  if (carried && !carried_join(body, &pose, carried, &carried_pose, &joined)) return false;
+
   const double offset = candidate_offset(q, c) + joined.offset;
-  if (!curve_convex_begin(o, q->mover.curve, NULL, joined.placed, offset, q->workspace)) return false;
-  o->joined = joined.shape;
-  o->shape = &o->joined;
+  if (!curve_convex_begin(o, curve, &body->shape, joined.placed, offset, q->workspace)) return false;
   o->side.part = q->part;
+  if (target->on_clock) {
+    o->relative = relative;
+    o->side.curve = &o->relative;
+    o->side.part = curve_side_whole();
+  }
+  if (carried) {
+    o->joined = joined.shape;
+    o->shape = &o->joined;
+  }
   return true;
 }
 
-bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o) {
-  const cprox_body *body = candidate_body(q, c);
-  const cprox_pose pose = candidate_pose(q, c);
-  cprox_pose carried_pose;
-  const cprox_body *carried = candidate_carried(q, c, &carried_pose);
-  if (carried) return begin_carried(q, c, body, &pose, carried, &carried_pose, o);
-  const frame placed = frame_create(&pose, body->centre);
-  if (!curve_convex_begin(o, q->mover.curve, &body->shape, placed, candidate_offset(q, c), q->workspace)) return false;
-  o->side.part = q->part;
-  return true;
+/* Where the other mover is at the parameter of the best sight, and this one from there. */
+static void report_clock(const question *q, const candidate *c, const curve_convex *o, vec3 apart, cprox_result *r) {
+  cprox_target standing = q->targets[c->target];
+  const vec3 at = relative_point(standing.curve, r->t, o->best.s == 1.0, q->workspace);
+  const frame f = frame_create(&standing.pose, vec(0, 0, 0));
+  standing.pose.position = frame_to_world(&f, at);
+  if (!standing.body) standing.body = &carried_point;
+  r->t_target = r->t;
+  const vec3 centre = vec_add(standing.pose.position, apart);
+  report_pair(q, c, centre, &standing, c->part, frame_turn_to_world(&o->side.frame, o->best.normal), r);
 }
 
 void candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r) {
@@ -87,9 +110,13 @@ void candidate_report_convex(const question *q, const candidate *c, const curve_
   const frame *f = &o->side.frame;
   const curve_sight *best = &o->best;
   r->t = curve_side_parameter(&o->side, best->piece, best->s);
+  const cprox_target *target = &q->targets[c->target];
+  if (target->on_clock) {
+    report_clock(q, c, o, frame_to_world(f, best->y), r);
+    return;
+  }
   if (q->mover.body) {
-    const cprox_target standing = q->targets[c->target];
-    report_carried(q, c, frame_to_world(f, best->y), &standing, c->part, frame_turn_to_world(f, best->normal), r);
+    report_pair(q, c, frame_to_world(f, best->y), target, c->part, frame_turn_to_world(f, best->normal), r);
     return;
   }
   report_points(q, c, frame_to_world(f, best->y), frame_to_world(f, best->near.point),
@@ -117,7 +144,7 @@ void candidate_report_curve(const question *q, const candidate *c, const curve_c
     const cprox_target standing = {.body = &carried_point,
                                    .pose = {.position = at, .orientation = {1, 0, 0, 0}},
                                    .padding = q->targets[c->target].padding};
-    report_carried(q, c, frame_to_world(f, best->point[0]), &standing, 0, frame_turn_to_world(f, best->normal), r);
+    report_pair(q, c, frame_to_world(f, best->point[0]), &standing, 0, frame_turn_to_world(f, best->normal), r);
     return;
   }
   report_points(q, c, frame_to_world(f, best->point[0]), frame_to_world(f, best->point[1]),

@@ -4,6 +4,7 @@
 #include "base/frame.h"
 #include "base/rounding.h"
 #include "body/body.h"
+#include "query/carried.h"
 #include "query/curve_side.h"
 
 void question_ask_whole(question *q) {
@@ -13,14 +14,17 @@ void question_ask_whole(question *q) {
 }
 
 const cprox_body *candidate_body(const question *q, const candidate *c) {
-  const cprox_body *body = q->targets[c->target].body;
+  const cprox_target *target = &q->targets[c->target];
+  const cprox_body *body = target->on_clock && !target->body ? &carried_point : target->body;
   return body && body->kind == CPROX_COMPOUND ? body->parts[c->part].body : body;
 }
 
 cprox_pose candidate_pose(const question *q, const candidate *c) {
   const cprox_target *target = &q->targets[c->target];
-  if (!target->body || target->body->kind != CPROX_COMPOUND) return target->pose;
-  return frame_compose(&target->pose, &target->body->parts[c->part].pose);
+  cprox_pose pose = target->pose;
+  if (target->on_clock) pose.position = vec(0, 0, 0);
+  if (!target->body || target->body->kind != CPROX_COMPOUND) return pose;
+  return frame_compose(&pose, &target->body->parts[c->part].pose);
 }
 
 double candidate_offset(const question *q, const candidate *c) {
@@ -41,18 +45,39 @@ static double distance_to_segment(vec3 p, vec3 a, vec3 b) {
   return vec_norm(vec_sub(p, vec_lerp(a, b, s)));
 }
 
-/* A ball round a candidate, in its own frame. */
 typedef struct ball {
   vec3 centre;
   double radius;
 } ball;
 
-static ball ball_of(const question *q, const candidate *c) {
-  const cprox_body *body = candidate_body(q, c);
-  if (body) return (ball){.centre = body->ball_centre, .radius = body->ball_radius};
-  const curve_capsule *capsule = &q->targets[c->target].curve->capsules[1];
+/* Round a whole curve, in its frame. */
+static ball ball_of_curve(const cprox_curve *curve) {
+  const curve_capsule *capsule = &curve->capsules[1];
   const double length = vec_norm(vec_sub(capsule->b, capsule->a));
   return (ball){.centre = vec_lerp(capsule->a, capsule->b, 0.5), .radius = 0.5 * length + capsule->radius};
+}
+
+/* Round a candidate, in the world, but for rounding; `sizes` is the sum of the lengths that entered. */
+static ball ball_of(const question *q, const candidate *c, double *sizes) {
+  const cprox_target *target = &q->targets[c->target];
+  const cprox_body *body = candidate_body(q, c);
+  ball round = {0};
+  *sizes = 0.0;
+  if (body) {
+    const cprox_pose pose = candidate_pose(q, c);
+    const frame f = frame_create(&pose, vec(0, 0, 0));
+    round.centre = frame_to_world(&f, body->ball_centre);
+    round.radius = body->ball_radius;
+    *sizes += vec_norm(body->ball_centre) + vec_norm(pose.position);
+  }
+  if (target->curve) {
+    const ball run = ball_of_curve(target->curve);
+    const frame f = frame_create(&target->pose, vec(0, 0, 0));
+    round.centre = vec_add(round.centre, frame_to_world(&f, run.centre));
+    round.radius += run.radius;
+    *sizes += vec_norm(run.centre) + vec_norm(f.position) + round.radius;
+  }
+  return round;
 }
 
 /* The ball round what is carried, about the curve's point. */
@@ -66,17 +91,16 @@ static ball carried_ball(const question *q, const candidate *c) {
 
 /* The mover's capsule against the candidate's ball: never above the true distance. */
 static double ball_bound(const question *q, const candidate *c) {
-  const ball round = ball_of(q, c);
+  double placing;
+  const ball round = ball_of(q, c, &placing);
   if (!isfinite(round.radius)) return -INFINITY;
-  const cprox_pose pose = candidate_pose(q, c);
-  const frame f = frame_create(&pose, vec(0, 0, 0));
   const ball own = carried_ball(q, c);
-  const vec3 centre = vec_sub(frame_to_world(&f, round.centre), own.centre);
+  const vec3 centre = vec_sub(round.centre, own.centre);
   const curve_capsule *capsule = &q->reach;
   const double reach = capsule->radius + round.radius + own.radius + candidate_offset(q, c);
   /* rounding: the pose of the centre, the projection on the chord, the sums; doc/rounding.md */
-  const double sizes = vec_norm(capsule->a) + vec_norm(capsule->b) + vec_norm(centre) + vec_norm(f.position) +
-                       vec_norm(round.centre) + 2.0 * vec_norm(own.centre) + reach;
+  const double sizes =
+      vec_norm(capsule->a) + vec_norm(capsule->b) + vec_norm(centre) + placing + 2.0 * vec_norm(own.centre) + reach;
   return distance_to_segment(centre, capsule->a, capsule->b) - reach - 64.0 * ROUND_U * sizes;
 }
 

@@ -41,7 +41,8 @@ candidate *candidates_list(const question *q, size_t first, size_t last, size_t 
 /* Ascending by lower. */
 void candidates_sort(candidate *list, size_t n);
 
-/* A candidate's convex body (NULL for a curve), its pose in the world, and the sum of padding and radius. */
+/* A candidate's convex body (NULL for a curve at its own parameter), its pose in the world, and the sum of padding and radius. What
+ * is on the mover's clock has a body, if only a point, and stands where it would if its curve were at the origin. */
 const cprox_body *candidate_body(const question *q, const candidate *c);
 cprox_pose candidate_pose(const question *q, const candidate *c);
 double candidate_offset(const question *q, const candidate *c);

@@ -21,6 +21,7 @@ typedef struct curve_convex {
   curve_side side; /* seen from the body's frame */
   const convex *shape;
   convex joined;         /* where a body is carried: the shape that stands for both */
+  cprox_curve relative;  /* where the other is on the mover's clock: the mover's curve, seen from there */
   double offset;         /* padding of the body + radius of the ball */
   uint32_t polish_after; /* nodes before Newton is allowed to look for better points */
   double good_enough;    /* an upper bound at or below this needs no polish */

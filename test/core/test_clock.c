@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Two movers on one clock: their distance at the same parameter, whatever they carry. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <string.h>
+
+#include "base/rounding.h"
+#include "curve_proximity/cprox.h"
+#include "query/relative.h"
+#include "support/counting.h"
+#include "support/curves.h"
+#include "support/random.h"
+#include "support/reference.h"
+#include "support/shapes.h"
+
+static cprox_workspace *ws;
+
+static int setup(void **state) {
+  (void)state;
+  ws = cprox_workspace_create();
+  return ws ? 0 : 1;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  cprox_workspace_free(ws);
+  return 0;
+}
+
+static cprox_curve *bezier(const vec3 *points, size_t n, double t0, double t1) {
+  cprox_curve *curve = NULL;
+  if (cprox_curve_create_bezier(points, n, t0, t1, ws, &curve) != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  return curve;
+}
+
+/* Seed 41, 2000 cases, degrees 1 to 12, sizes 1e-3 to 1e3, up to 1e6 sizes from the origin: |psi(t) - phi(t)| in long double at 20
+ * parameters and at the reported one. The points stand on a grid on which differences are exact, so the room is long double's own. */
+static void points_on_one_clock_are_as_near_as_long_double_says(void **state) {
+  (void)state;
+  rng r = rng_seed(41);
+  const size_t cases = test_cases(2000);
+  for (size_t k = 0; k < cases; k++) {
+    const size_t m = 1 + rng_index(&r, 12), n = 1 + rng_index(&r, 12);
+    const double scale = rng_log_uniform(&r, 1e-3, 1e3),
+                 far = rng_index(&r, 2) ? 0.0 : scale * rng_log_uniform(&r, 1.0, 1e6);
+    const double step = ldexp(1.0, ilogb(2.0 * (scale + far)) - 50);
+    const vec3 away = rng_in_cube(&r, far);
+    vec3 p[13], q[13];
+    for (size_t i = 0; i <= 12; i++) {
+      vec3 *both[] = {&p[i], &q[i]};
+      for (int j = 0; j < 2; j++) {
+        const vec3 v = vec_add(away, rng_in_cube(&r, scale));
+        *both[j] = vec(step * nearbyint(v.x / step), step * nearbyint(v.y / step), step * nearbyint(v.z / step));
+      }
+    }
+    vec3 near_p[13], near_q[13];
+    for (size_t i = 0; i <= 12; i++) {
+      near_p[i] = vec_sub(p[i], p[0]);
+      near_q[i] = vec_sub(q[i], p[0]);
+    }
+    const double t0 = rng_index(&r, 2) ? 0.0 : 1e9, t1 = t0 + rng_uniform(&r, 0.5, 20.0);
+    cprox_curve *first = bezier(p, m + 1, t0, t1), *second = bezier(q, n + 1, t0, t1);
+    cprox_mover mover = cprox_point_along(first), other = cprox_point_along(second);
+    mover.radius = rng_index(&r, 2) ? 0.0 : 0.1 * scale;
+    other.radius = rng_index(&r, 2) ? 0.0 : 0.1 * scale;
+    cprox_options options = cprox_options_default();
+    options.epsilon = scale * rng_log_uniform(&r, 1e-13, 1e-3);
+    cprox_result result;
+    const cprox_status status = cprox_distance(mover, cprox_on_clock(other), &options, ws, &result);
+    assert_in_range(status, CPROX_OK, CPROX_PRECISION);
+    if (status == CPROX_OK) assert_true(result.upper - result.lower <= options.epsilon);
+    const long double radii = (long double)mover.radius + (long double)other.radius;
+    const long double hair = 1e-2L * ROUND_U * (long double)scale;
+    for (int i = 0; i < 21; i++) {
+      const double s = i < 20 ? rng_uniform(&r, 0.0, 1.0) : (result.t - t0) / (t1 - t0);
+      const long double d = ref_norm(ref_sub(ref_bezier(near_p, m, s, 0), ref_bezier(near_q, n, s, 0))) - radii;
+      assert_true((long double)result.lower <= fmaxl(d, 0.0L) + hair);
+      /* s from t near 1e9 s is off by 1e-7 s at most */
+      if (i == 20)
+        assert_true(fabsl((long double)result.upper - fmaxl(d, 0.0L)) <=
+                    (t0 > 0.0 ? 1e-4L : 1e-9L) * (long double)scale);
+    }
+    assert_true(result.t_target == result.t);
+    cprox_curve_free(first);
+    cprox_curve_free(second);
+  }
+}
+
+/* Seed 45, 3000 cases, 10 parameters each: the converted piece, evaluated in long double, is within its error of R psi - phi; and the
+ * error is no more than a hundred times what occurs. */
+static void the_relative_curve_is_within_its_error(void **state) {
+  (void)state;
+  rng r = rng_seed(45);
+  const size_t cases = test_cases(3000);
+  long double worst = 0.0L;
+  for (size_t k = 0; k < cases; k++) {
+    vec3 p[16], q[16];
+    const size_t m = 1 + rng_index(&r, 15), n = 1 + rng_index(&r, 15);
+    for (int i = 0; i < 16; i++) p[i] = rng_in_cube(&r, 1.0), q[i] = rng_in_cube(&r, 1.0);
+    cprox_curve *first = bezier(p, m + 1, 0.0, 1.0), *second = bezier(q, n + 1, 0.0, 1.0);
+    cprox_pose pose = rng_pose(&r, rng_index(&r, 2) ? 0.0 : 1.0);
+    if (rng_index(&r, 2)) pose.orientation = (cprox_quat){1, 0, 0, 0};
+    const double a = rng_index(&r, 2) ? 0.0 : rng_uniform(&r, 0.0, 0.9);
+    const double b = a == 0.0 ? 1.0 : a + rng_uniform(&r, 0.01, 0.1);
+    cprox_curve relative;
+    assert_true(relative_create(first, second, &pose, a, b, ws, &relative));
+    assert_int_equal(relative.n_pieces, 1);
+    for (int i = 0; i < 10; i++) {
+      const long double s = (long double)rng_uniform(&r, 0.0, 1.0);
+      const long double t = relative.breaks[0] + s * ((long double)relative.breaks[1] - relative.breaks[0]);
+      const vec3l exact = ref_sub(ref_bezier(p, m, t, 0), ref_to_world(&pose, ref_bezier(q, n, t, 0)));
+      const long double off = ref_norm(ref_sub(exact, ref_bezier(relative.points, relative.degree, s, 0)));
+      assert_true(off <= relative.error[0] + 1e-2L * ROUND_U);
+      worst = fmaxl(worst, off / relative.error[0]);
+    }
+    cprox_curve_free(first);
+    cprox_curve_free(second);
+  }
+  assert_true(worst > 0.01L);
+}
+
+static cprox_result pair_at(const cprox_mover *mover, const cprox_target *target, double t) {
+  cprox_body *point = NULL;
+  assert_int_equal(cprox_body_create_point(vec(0, 0, 0), ws, &point), CPROX_OK);
+  cprox_target a = {.body = mover->body ? mover->body : point, .padding = mover->radius};
+  cprox_target b = *target;
+  b.on_clock = false, b.curve = NULL;
+  if (!b.body) b.body = point;
+  a.pose = cprox_pose_identity();
+  vec3 at;
+  assert_int_equal(cprox_curve_evaluate(mover->curve, t, ws, &a.pose.position, NULL, NULL), CPROX_OK);
+  assert_int_equal(cprox_curve_evaluate(target->curve, t, ws, &at, NULL, NULL), CPROX_OK);
+  const vec3l world = ref_to_world(&target->pose, ref_vec(at));
+  b.pose.position = vec((double)world.x, (double)world.y, (double)world.z);
+  cprox_options options = cprox_options_default();
+  options.epsilon = 0.0;
+  cprox_result result;
+  assert_true(cprox_pair(a, b, &options, ws, &result) >= 0);
+  cprox_body_free(point);
+  return result;
+}
+
+static cprox_curve *spline(rng *r, size_t n, size_t degree, double t1) {
+  vec3 points[12];
+  double knots[20];
+  for (size_t i = 0; i < n; i++) points[i] = rng_in_cube(r, 1.0);
+  for (size_t i = 0; i <= n + degree; i++) {
+    const double inner = (double)(i - degree) / (double)(n - degree);
+    knots[i] = i <= degree ? 0.0 : i >= n ? t1 : t1 * inner;
+  }
+  if (rng_index(r, 2) && degree > 1 && n > degree + 2) knots[degree + 2] = knots[degree + 1]; /* a double knot */
+  cprox_curve *curve = NULL;
+  if (cprox_curve_create_bspline(points, n, degree, knots, n + degree + 1, 0.0, t1, ws, &curve) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_reason(ws));
+  return curve;
+}
+
+/* Seed 42, 400 cases: splines with joints of their own, turned targets, bodies of every kind or none on either side; static pairs at
+ * 40 parameters. 1e-12: thousands of u of a few metres. */
+static void splines_that_carry_bodies_agree_with_static_pairs(void **state) {
+  (void)state;
+  rng r = rng_seed(42);
+  const size_t cases = test_cases(400);
+  for (size_t k = 0; k < cases; k++) {
+    test_shape a, b;
+    shape_make(&r, TEST_BOUNDED[rng_index(&r, TEST_N_BOUNDED)], 0.3, 5.0, &a);
+    shape_make(&r, TEST_BOUNDED[rng_index(&r, TEST_N_BOUNDED)], 0.3, 5.0, &b);
+    const size_t d = 1 + rng_index(&r, 4), e = 1 + rng_index(&r, 4);
+    const double t1 = rng_uniform(&r, 0.5, 3.0);
+    cprox_curve *first = spline(&r, d + 1 + rng_index(&r, 6), d, t1),
+                *second = spline(&r, e + 1 + rng_index(&r, 6), e, t1);
+    cprox_mover mover = cprox_point_along(first), other = cprox_point_along(second);
+    if (rng_index(&r, 3)) mover.body = a.body;
+    if (rng_index(&r, 3)) other.body = b.body;
+    mover.radius = rng_index(&r, 2) ? 0.0 : 0.05;
+    cprox_target target = cprox_on_clock(other);
+    if (rng_index(&r, 2)) target.pose = rng_pose(&r, 1.0);
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-9;
+    cprox_result result;
+    const cprox_status status = cprox_distance(mover, target, &options, ws, &result);
+    assert_in_range(status, CPROX_OK, CPROX_PRECISION);
+    for (int i = 0; i < 40; i++)
+      assert_true(result.lower <= fmax(pair_at(&mover, &target, rng_uniform(&r, 0.0, t1)).upper, 0.0) + 1e-12);
+    const cprox_result here = pair_at(&mover, &target, result.t);
+    assert_true(result.upper >= here.lower - 1e-12);
+    assert_true(result.upper <= fmax(here.upper, 0.0) + 1e-8);
+    assert_true(fabs(vec_norm(vec_sub(result.on_mover, result.on_target)) - result.upper) <= 1e-7);
+    cprox_body_free(a.body);
+    cprox_body_free(b.body);
+    cprox_curve_free(first);
+    cprox_curve_free(second);
+  }
+}
+
+static void two_that_cross_at_different_times_do_not_meet(void **state) {
+  (void)state;
+  cprox_curve *first = bezier((vec3[]){{-1, 0, 0}, {1, 0, 0}}, 2, 0.0, 1.0);
+  cprox_curve *second = bezier((vec3[]){{0, -1, 0}, {0, 3, 0}}, 2, 0.0, 1.0);
+  cprox_result result;
+  assert_int_equal(cprox_distance(cprox_point_along(first), cprox_curve_target(second, 0.0), NULL, ws, &result),
+                   CPROX_OK);
+  assert_true(result.upper < 1e-6);
+  /* at t they are at (2t - 1, 0) and (0, 4t - 1): least at t = 0.3, where that is (-0.4, 0) and (0, 0.2) */
+  assert_int_equal(
+      cprox_distance(cprox_point_along(first), cprox_on_clock(cprox_point_along(second)), NULL, ws, &result), CPROX_OK);
+  assert_true(result.lower <= 0.44721359549995793 && 0.44721359549995793 <= result.upper);
+  assert_true(fabs(result.t - 0.3) < 1e-9 && result.t_target == result.t);
+  assert_true(fabs(result.on_mover.x + 0.4) < 1e-9 && fabs(result.on_target.y - 0.2) < 1e-9);
+  cprox_curve_free(first);
+  cprox_curve_free(second);
+}
+
+static void one_and_the_same_mover_is_at_distance_0(void **state) {
+  (void)state;
+  rng r = rng_seed(43);
+  cprox_curve *curve = spline(&r, 8, 3, 2.0);
+  cprox_result result;
+  assert_int_equal(
+      cprox_distance(cprox_point_along(curve), cprox_on_clock(cprox_point_along(curve)), NULL, ws, &result), CPROX_OK);
+  assert_true(result.lower == 0.0 && result.upper <= 1e-12);
+  cprox_curve_free(curve);
+}
+
+static void different_domains_are_refused(void **state) {
+  (void)state;
+  cprox_curve *first = bezier((vec3[]){{-1, 0, 0}, {1, 0, 0}}, 2, 0.0, 1.0);
+  cprox_curve *second = bezier((vec3[]){{0, -1, 0}, {0, 3, 0}}, 2, 0.0, 1.5);
+  cprox_result result = {.lower = -7.0};
+  assert_int_equal(
+      cprox_distance(cprox_point_along(first), cprox_on_clock(cprox_point_along(second)), NULL, ws, &result),
+      CPROX_INVALID);
+  assert_true(result.lower == -7.0);
+  assert_string_equal(cprox_workspace_reason(ws),
+                      "target 0 is on the mover's clock, but its curve runs over [0, 1.5] and the mover's over [0, 1]");
+  const cprox_target nothing = {.on_clock = true, .pose = cprox_pose_identity()};
+  assert_int_equal(cprox_distance(cprox_point_along(first), nothing, NULL, ws, &result), CPROX_INVALID);
+  cprox_curve_free(first);
+  cprox_curve_free(second);
+}
+
+/* Among many targets, and again: the second time nothing is allocated. */
+static void clocks_stand_among_other_targets_and_allocate_once(void **state) {
+  (void)state;
+  rng r = rng_seed(44);
+  cprox_curve *curve = spline(&r, 9, 3, 1.0), *other[8];
+  cprox_body *box = NULL;
+  assert_int_equal(cprox_body_create_box(vec(0.1, 0.2, 0.3), ws, &box), CPROX_OK);
+  cprox_target targets[9];
+  for (int i = 0; i < 8; i++) {
+    other[i] = spline(&r, 5 + rng_index(&r, 6), 1 + rng_index(&r, 4), 1.0);
+    targets[i] = cprox_on_clock(cprox_body_along(box, other[i]));
+  }
+  targets[8] = cprox_at(box, rng_pose(&r, 2.0));
+  cprox_result nearest, each[9];
+  size_t before = 0;
+  for (int round = 0; round < 2; round++) {
+    before = allocations_made();
+    assert_int_equal(cprox_distance_all(cprox_tube_along(curve, 0.01), targets, 9, NULL, ws, &nearest, each), CPROX_OK);
+  }
+  assert_int_equal(allocations_made(), before);
+  double least = 1e9;
+  for (int i = 0; i < 9; i++) least = fmin(least, each[i].upper);
+  assert_true(nearest.upper == least);
+  for (int i = 0; i < 8; i++) cprox_curve_free(other[i]);
+  cprox_curve_free(curve);
+  cprox_body_free(box);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(points_on_one_clock_are_as_near_as_long_double_says),
+      cmocka_unit_test(the_relative_curve_is_within_its_error),
+      cmocka_unit_test(splines_that_carry_bodies_agree_with_static_pairs),
+      cmocka_unit_test(two_that_cross_at_different_times_do_not_meet),
+      cmocka_unit_test(one_and_the_same_mover_is_at_distance_0),
+      cmocka_unit_test(different_domains_are_refused),
+      cmocka_unit_test(clocks_stand_among_other_targets_and_allocate_once),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
