@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* At the parameter t the point y of the mover, less a vector v of at most delta + radius + padding, lies in the set: then the
- * distance is at most delta. Everything is seen from the set's own frame. */
+/* At the parameter t the point y of the mover is within delta + radius + padding of a point of the set: then the distance is at most
+ * delta. Everything is seen from the set's own frame. What the point of the set is:
+ *   a curve's own at a parameter; a point itself; of four vertices of a polytope the mean by weights, or where all weights are 0
+ *   y itself, inside their tetrahedron; of the other bodies y - v, v being given. */
 #include "near.h"
 
 #include "check.h"
 #include "pieces.h"
 #include "support.h"
 
-/* out = the point of the curve at t, within the remainder */
-static const char *point_at(iv out[3], iv *remainder, const curve *c, double t) {
+/* out = the point of the curve at t, at a jump its limit from the left or from the right, within the remainder */
+static const char *point_at(iv out[3], iv *remainder, const curve *c, double t, bool left) {
   if (!(t >= c->t0 && t <= c->t1)) return "its parameter lies outside the curve";
-  return pieces_point(out, remainder, c, t);
+  return pieces_point(out, remainder, c, t, left);
 }
 
 /* a <= b, whatever the numbers are */
@@ -67,17 +69,41 @@ static bool in_tetrahedron(const set *s, const uint32_t vertex[4], iv *y) {
   return positive == 5 || negative == 5;
 }
 
-/* The point y of the set's own frame lies in the body: strictly for polytopes, and a point has none. */
-static bool contains(const set *s, iv *y, reader *in) {
-  if (s->kind == POINT) return false;
-  if (s->kind == POLYTOPE) {
-    uint32_t vertex[4];
-    for (int i = 0; i < 4; i++) {
-      vertex[i] = reader_count(in);
-      if (in->bad || vertex[i] >= s->n) return false;
-    }
-    return in_tetrahedron(s, vertex, y);
+/* v = y less the polytope's point that four vertices and their weights name. False where y ought to lie inside and does not. */
+static bool from_polytope(iv v[3], const set *s, iv *y, reader *in) {
+  uint32_t vertex[4];
+  double weight[4], largest = 0.0;
+  for (int i = 0; i < 4; i++) {
+    vertex[i] = reader_count(in);
+    weight[i] = reader_number(in);
+    if (in->bad || vertex[i] >= s->n || !(weight[i] >= 0.0)) return false;
+    largest = weight[i] > largest ? weight[i] : largest;
   }
+  for (int k = 0; k < 3; k++) iv_set_d(&v[k], 0.0);
+  if (largest == 0.0) return in_tetrahedron(s, vertex, y);
+
+  iv *w = iv_new(3); /* sum of weights, of weight * vertex */
+  for (int i = 0; i < 4; i++) {
+    iv_set_d(&w[1], weight[i]);
+    iv_add(&w[0], &w[0], &w[1]);
+  }
+  for (int k = 0; k < 3; k++) {
+    for (int i = 0; i < 4; i++) {
+      iv_set_d(&w[1], s->vertices[vertex[i]][k]);
+      iv_mul_d(&w[1], &w[1], weight[i]);
+      iv_add(&v[k], &v[k], &w[1]);
+    }
+    iv_div(&v[k], &v[k], &w[0]);
+    iv_set_d(&w[2], s->centre[k]);
+    iv_add(&v[k], &v[k], &w[2]);
+    iv_sub(&v[k], &y[k], &v[k]);
+  }
+  iv_free(w, 3);
+  return true;
+}
+
+/* The point y of the set's own frame lies in the body, which is none of the above. */
+static bool contains(const set *s, const iv *y) {
   const double *size = s->size;
   iv *w = iv_new(4);
   bool inside = false;
@@ -132,11 +158,11 @@ static bool contains(const set *s, iv *y, reader *in) {
 }
 
 /* With y = the mover's point in the frame of the set, and `apart` the balls: what the certificate says of it. */
-static const char *check_point(const set *s, iv *y, iv *apart, reader *in) {
+static const char *check_point(const set *s, iv *y, iv *apart, reader *in, bool left) {
   iv *v = iv_new(3), *w = iv_new(2);
   const char *fault = NULL;
   if (s->kind == CURVE) { /* the point of the other curve */
-    fault = point_at(v, &w[0], &s->curve, reader_number(in));
+    fault = point_at(v, &w[0], &s->curve, reader_number(in), left);
     iv_sub(apart, apart, &w[0]);
     for (int k = 0; k < 3; k++) iv_sub(&v[k], &y[k], &v[k]);
   } else if (s->kind == POINT) {
@@ -144,12 +170,14 @@ static const char *check_point(const set *s, iv *y, iv *apart, reader *in) {
       iv_set_d(&v[k], s->centre[k]);
       iv_sub(&v[k], &y[k], &v[k]);
     }
+  } else if (s->kind == POLYTOPE) {
+    if (!from_polytope(v, s, y, in)) fault = "the point it names is not in the target";
   } else {
     for (int k = 0; k < 3; k++) {
       iv_set_d(&v[k], reader_number(in));
       iv_sub(&y[k], &y[k], &v[k]);
     }
-    if (!contains(s, y, in)) fault = "the point it names is not in the target";
+    if (!contains(s, y)) fault = "the point it names is not in the target";
   }
   iv_norm(&w[1], v);
   if (!fault && in->bad) fault = "it is cut off or not a number";
@@ -159,13 +187,14 @@ static const char *check_point(const set *s, iv *y, iv *apart, reader *in) {
   return fault;
 }
 
-const char *check_near(const problem *p, reader *in, double delta) {
+/* With the limits from the left or from the right, of mover and target, where they jump. */
+static const char *check_limits(const problem *p, reader *in, double delta, int limits) {
   const uint32_t index = reader_count(in);
   const double t = reader_number(in);
   if (in->bad || index >= p->n_sets) return "it is about no target of these";
   const set *s = &p->sets[index];
   iv *y = iv_new(3), *own = iv_new(3), *w = iv_new(2);
-  const char *fault = point_at(y, &w[0], &p->mover.curve, t);
+  const char *fault = point_at(y, &w[0], &p->mover.curve, t, (limits & 1) != 0);
   if (!fault) {
     support_point_to_frame(own, s, y);
     const double balls[3] = {delta, p->mover.radius, s->padding};
@@ -174,10 +203,21 @@ const char *check_near(const problem *p, reader *in, double delta) {
       iv_set_d(&w[1], balls[i]);
       iv_add(&w[0], &w[0], &w[1]);
     }
-    fault = check_point(s, own, &w[0], in);
+    fault = check_point(s, own, &w[0], in, (limits & 2) != 0);
   }
   iv_free(y, 3);
   iv_free(own, 3);
   iv_free(w, 2);
+  return fault;
+}
+
+const char *check_near(const problem *p, reader *in, double delta) {
+  const char *fault = NULL;
+  const reader start = *in;
+  for (int limits = 0; limits < 4; limits++) {
+    *in = start;
+    fault = check_limits(p, in, delta, limits);
+    if (!fault) break;
+  }
   return fault;
 }

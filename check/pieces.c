@@ -144,15 +144,16 @@ static void power_of(iv *d, const curve *c, int k) {
   iv_free(w, 1);
 }
 
-/* The span of a spline that holds [lo, hi], or 0. */
-static size_t span_of(const curve *c, double lo, double hi) {
+/* The first or the last span of a spline that holds [lo, hi], or 0. */
+static size_t span_of(const curve *c, double lo, double hi, bool first) {
+  size_t found = 0;
   for (size_t r = c->degree; r < c->n; r++)
-    if (c->knots[r] <= lo && hi <= c->knots[r + 1] && c->knots[r] < c->knots[r + 1]) return r;
-  return 0;
+    if (c->knots[r] <= lo && hi <= c->knots[r + 1] && c->knots[r] < c->knots[r + 1] && !(first && found)) found = r;
+  return found;
 }
 
-static const char *polynomial_piece(const curve *c, double lo, double hi, iv *points) {
-  const size_t p = c->degree, span = c->basis == BSPLINE ? span_of(c, lo, hi) : p;
+static const char *polynomial_piece(const curve *c, double lo, double hi, bool left, iv *points) {
+  const size_t p = c->degree, span = c->basis == BSPLINE ? span_of(c, lo, hi, left) : p;
   if (span == 0 && p > 0) return "a knot of the spline lies inside a piece";
   double knots[120] = {0.0}; /* a Bézier curve is a span whose knots are 0 and 1 */
   for (size_t i = 0; i < p; i++) knots[p + i] = 1.0;
@@ -290,13 +291,13 @@ const char *pieces_make(pieces *p, const curve *c, const double *breaks, size_t 
       series_piece(c, breaks[i], breaks[i + 1], p->points + i * stride, &p->remainder[i]);
       continue;
     }
-    const char *fault = polynomial_piece(c, breaks[i], breaks[i + 1], p->points + i * stride);
+    const char *fault = polynomial_piece(c, breaks[i], breaks[i + 1], true, p->points + i * stride);
     if (fault) return fault;
   }
   return NULL;
 }
 
-const char *pieces_point(iv point[3], iv *remainder, const curve *c, double t) {
+const char *pieces_point(iv point[3], iv *remainder, const curve *c, double t, bool left) {
   iv *points = iv_new(3 * (c->degree > 5 ? c->degree + 1 : 6));
   const char *fault = NULL;
   iv_set_d(remainder, 0.0);
@@ -306,7 +307,7 @@ const char *pieces_point(iv point[3], iv *remainder, const curve *c, double t) {
     for (int k = 0; k < 3; k++) iv_set(&points[k], &jet[k]);
     iv_free(jet, 9);
   } else {
-    fault = polynomial_piece(c, t, t, points);
+    fault = polynomial_piece(c, t, t, left, points);
   }
   for (int k = 0; k < 3; k++) iv_set(&point[k], &points[k]);
   iv_free(points, 3 * (c->degree > 5 ? c->degree + 1 : 6));

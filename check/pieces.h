@@ -21,7 +21,8 @@ void pieces_free(pieces *p);
 /* min n·x over the part [from, to] of the pieces, counted from 0 to their number. */
 void pieces_least(iv *out, const pieces *p, const iv n[3], double from, double to);
 
-/* A point of the curve at the parameter t of [t0, t1]: pieces of no length. */
-const char *pieces_point(iv point[3], iv *remainder, const curve *c, double t);
+/* The point of the curve at the parameter t of [t0, t1]: a piece of no length. At a knot where a spline jumps, its limit from the left
+ * or from the right. */
+const char *pieces_point(iv point[3], iv *remainder, const curve *c, double t, bool left);
 
 #endif

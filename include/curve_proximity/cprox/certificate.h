@@ -43,8 +43,8 @@ CPROX_API double cprox_certificate_delta(const cprox_certificate *certificate);
  *  options     max_nodes bounds the parts of the cover that are tried, for each target; NULL: the default.
  *  certificate receives the proof, or nothing (CPROX_CLAIM_NONE) where none was found.
  *
- *  An `apart` that is as tight as double arithmetic allows may be proven for a delta lower by a few roundings: see
- *  cprox_certificate_delta().
+ *  A claim that is as tight as double arithmetic allows may be proven for a delta that is weaker by a few roundings: see
+ *  cprox_certificate_delta(). Touching a flat target without radius or padding cannot be proven.
  *
  *  Returns CPROX_OK        there is a proof
  *          CPROX_BUDGET    max_nodes were not enough

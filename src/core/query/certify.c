@@ -116,6 +116,18 @@ static cprox_status certify_apart(const task *t) {
   return status;
 }
 
+/* The witness of the answer, or none. */
+static cprox_status certify_near(const task *t) {
+  const cprox_result *r = t->answer;
+  if (r->target_index < 0 || (size_t)r->target_index >= t->n || !isfinite(r->t)) return CPROX_PRECISION;
+  size_t section = (size_t)r->target_part;
+  for (size_t i = 0; i < (size_t)r->target_index; i++) section += parts_of(&t->targets[i]);
+  cover c = cover_of(t, (size_t)r->target_index, (size_t)r->target_part, 8);
+  c.delta = t->delta;
+  certificate_begin(t->certificate, 8, CPROX_CLAIM_NEAR, t->delta, 1);
+  return cover_near(&c, (uint32_t)section, r);
+}
+
 cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
                      const cprox_result *answer, uint32_t max_nodes, cprox_workspace *workspace,
                      cprox_certificate *certificate) {
@@ -132,7 +144,7 @@ cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size
   for (size_t i = 0; i < n; i++)
     if (!is_known(&targets[i]))
       return workspace_fail(workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates", i);
-  const cprox_status status = certify_apart(&t);
+  const cprox_status status = answer && answer->upper <= delta ? certify_near(&t) : certify_apart(&t);
   if (status == CPROX_OK) return status;
   certificate_clear(certificate);
   if (status == CPROX_MEMORY) return workspace_fail(workspace, status, "no memory for a certificate");

@@ -34,4 +34,7 @@ double cover_cut(const cover *c, reach_part part, double witness);
 cprox_status cover_convex(cover *c);
 cprox_status cover_curves(cover *c);
 
+/* Writes that at the witness of the answer the distance is at most delta. */
+cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *answer);
+
 #endif
