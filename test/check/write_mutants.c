@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* write_mutants FOLDER QUESTIONS MUTANTS SEED: random questions with genuine certificates and tampered ones, for checkers to be tried
+ * on. Question i becomes i.problem, i.certificates and i.truth: a line a certificate, "genuine" or what was done to it, and the
+ * interval that the distance lies in. */
+#include <inttypes.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/questions.h"
+
+enum { MOST_BYTES = 65536, HEAD = 24 };
+
+typedef struct bytes {
+  size_t n;
+  unsigned char at[MOST_BYTES];
+} bytes;
+
+static void store_double(bytes *b, size_t place, double x) {
+  memcpy(b->at + place, &x, sizeof x);
+}
+
+static double load_double(const bytes *b, size_t place) {
+  double x;
+  memcpy(&x, b->at + place, sizeof x);
+  return x;
+}
+
+/* Tampers; returns what was done. The file's numbers are little endian, as this machine's are. */
+static const char *tamper(bytes *b, rng *r, const bytes *other) {
+  const size_t place = rng_index(r, b->n);
+  switch (rng_index(r, 9)) {
+    case 0: b->at[place] ^= (unsigned char)(1u << rng_index(r, 8)); return "bit";
+    case 1: b->at[place] = (unsigned char)rng_index(r, 256); return "byte";
+    case 2: b->n = place; return "cut";
+    case 3: b->n += 1 + rng_index(r, 8); return "longer";
+    case 4: store_double(b, 8, load_double(b, 8) * (1.0 + rng_log_uniform(r, 1e-15, 1.0))); return "delta";
+    case 5: store_double(b, 8, rng_log_uniform(r, 1e-6, 1e3)); return "any delta";
+    case 6: { /* eight bytes scaled as if they were a number */
+      if (b->n < HEAD + 8) return "nothing";
+      const size_t at = HEAD + rng_index(r, b->n - HEAD - 7);
+      store_double(b, at, load_double(b, at) * (1.0 + rng_log_uniform(r, 1e-15, 0.1)));
+      return "number";
+    }
+    case 7: { /* a stretch goes or comes twice */
+      if (b->n < HEAD + 2) return "nothing";
+      const size_t from = HEAD + rng_index(r, b->n - HEAD), length = rng_index(r, b->n - from) + 1;
+      memmove(b->at + from, b->at + from + length, b->n - from - length);
+      b->n -= length;
+      return "gap";
+    }
+    default: *b = *other; return "of another question";
+  }
+}
+
+static void write_record(FILE *out, const bytes *b) {
+  const uint32_t n = (uint32_t)b->n;
+  const unsigned char length[4] = {(unsigned char)(n & 255), (unsigned char)(n >> 8 & 255),
+                                   (unsigned char)(n >> 16 & 255), (unsigned char)(n >> 24)};
+  fwrite(length, 1, 4, out);
+  fwrite(b->at, 1, b->n, out);
+}
+
+static FILE *open_file(const char *folder, size_t i, const char *what) {
+  char path[512];
+  snprintf(path, sizeof path, "%s/%zu.%s", folder, i, what);
+  FILE *file = fopen(path, "wb");
+  if (!file) {
+    fprintf(stderr, "write_mutants: %s cannot be written\n", path);
+    exit(2);
+  }
+  return file;
+}
+
+/* A distance, or a tolerance below or above it; false where there is no certificate. */
+static bool ask(const asked *q, rng *r, cprox_workspace *ws, cprox_certificate *c, double interval[2], bytes *genuine) {
+  const cprox_mover along = cprox_tube_along(q->mover.curve, q->radius);
+  cprox_options options = cprox_options_default();
+  options.epsilon = 1e-12 * q->scale;
+  options.certificate = c;
+  cprox_result result;
+  if (cprox_distance_all(along, q->targets, q->n, &options, ws, &result, NULL) < 0) return false;
+  interval[0] = result.lower;
+  interval[1] = result.upper;
+  if (rng_index(r, 2)) {
+    const double delta = result.lower * rng_uniform(r, 0.3, 1.3);
+    if (cprox_tolerance_all(along, q->targets, q->n, delta, &options, ws, &result, NULL) < 0) return false;
+  }
+  genuine->n = cprox_certificate_size(c);
+  if (genuine->n == 0 || genuine->n + 16 > MOST_BYTES) return false;
+  memset(genuine->at, 0, sizeof genuine->at);
+  memcpy(genuine->at, cprox_certificate_bytes(c), genuine->n);
+  return true;
+}
+
+static void write_question(const asked *q, const char *folder, size_t i, size_t mutants, rng *r, const bytes *genuine,
+                           const bytes *other, const double interval[2]) {
+  static bytes mutant;
+  FILE *text = open_file(folder, i, "problem"), *file = open_file(folder, i, "certificates");
+  FILE *truth = open_file(folder, i, "truth");
+  asked_write_targets(q, text);
+  for (size_t k = 0; k <= mutants; k++) {
+    char id[32];
+    snprintf(id, sizeof id, "%zu", k);
+    asked_write_mover(q, id, text);
+    mutant = *genuine;
+    const char *done = k == 0 ? "genuine" : tamper(&mutant, r, other);
+    fprintf(truth, "%a %a %s\n", interval[0], interval[1], done);
+    write_record(file, &mutant);
+  }
+  fclose(text);
+  fclose(file);
+  fclose(truth);
+}
+
+int main(int argc, char **argv) {
+  if (argc != 5) {
+    fputs("usage: write_mutants FOLDER QUESTIONS MUTANTS SEED\n", stderr);
+    return 2;
+  }
+  const size_t questions = strtoul(argv[2], NULL, 10), mutants = strtoul(argv[3], NULL, 10);
+  rng r = rng_seed(strtoumax(argv[4], NULL, 10));
+  cprox_workspace *ws = cprox_workspace_create();
+  cprox_certificate *c = cprox_certificate_create();
+  static bytes genuine, other;
+  for (size_t i = 0; i < questions;) {
+    asked q;
+    const asked_kinds kinds = {.bezier_only = rng_index(&r, 2) == 0,
+                               .polytope_only = rng_index(&r, 3) == 0,
+                               .curve_target = rng_index(&r, 4) == 0};
+    asked_random(&q, &r, kinds, rng_log_uniform(&r, 1e-2, 1e2), rng_log_uniform(&r, 1e-2, 1e4), ws);
+    double interval[2];
+    if (ask(&q, &r, ws, c, interval, &genuine)) {
+      write_question(&q, argv[1], i++, mutants, &r, &genuine, other.n ? &other : &genuine, interval);
+      other = genuine;
+    }
+    asked_free(&q);
+  }
+  cprox_certificate_free(c);
+  cprox_workspace_free(ws);
+  return 0;
+}
