@@ -12,6 +12,7 @@
 #include <curve_proximity/cprox/certificate.h>
 #include <curve_proximity/cprox/clearance.h>
 #include <curve_proximity/cprox/curve.h>
+#include <curve_proximity/cprox/fourier.h>
 #include <curve_proximity/cprox/implicit.h>
 #include <curve_proximity/cprox/query.h>
 

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Fourier gap functions: a smooth measure of how much two solids overlap, with its SE(2) or SE(3) gradient.
+ *
+ *  Solids are given by the closed-form Fourier transforms of their (offset) indicators. A gap is made once for a pair of
+ *  solids and an accuracy; then each pose costs one short sum. The gap speaks of overlapping *interiors*: touching
+ *  surfaces do not count, unlike elsewhere in this library.
+ *
+ *  In the certified mode CPROX_GAP_CLEAR is a proof that the interiors do not overlap. CPROX_GAP_COLLIDE only says that
+ *  they may: solids farther apart than cprox_gap_info.over_reach are never called so.
+ *
+ *  Dimension 2: the plane z = 0; poses turn about z only and have position.z = 0.
+ *  Solids and gaps are immutable once made and shared by any number of threads, each with its own workspace.
+ *  Source: M. Lysenko, "Fourier Collision Detection", 2011, with the corrections of doc/fourier.md. */
+#ifndef CURVE_PROXIMITY_CPROX_FOURIER_H
+#define CURVE_PROXIMITY_CPROX_FOURIER_H
+
+#include <stdbool.h>
+
+#include <curve_proximity/cprox/base.h>
+#include <curve_proximity/cprox/curve.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Solids ---- */
+
+/** A solid in the plane or in space, as a nonnegative function that is at least 1 on it: the indicator, or the sum of
+ *  the indicators of its pieces.
+ *
+ *  Constructors copy what they are given and check it once; they return CPROX_INVALID with a sentence in the workspace
+ *  (which may be NULL: then without the sentence), or CPROX_MEMORY, and leave *solid untouched on failure. The handle
+ *  is the caller's: cprox_solid_free(). Every length in metres, finite, and between 1e-100 and 1e100. dimension: 2, 3. */
+typedef struct cprox_solid cprox_solid;
+
+/** A disc or ball about the origin, radius > 0. */
+CPROX_API cprox_status cprox_solid_create_ball(int dimension, double radius, cprox_workspace *workspace,
+                                               cprox_solid **solid);
+
+/** A rectangle or box about the origin. size: full edge lengths, each > 0; size.z is not read in the plane. */
+CPROX_API cprox_status cprox_solid_create_box(int dimension, cprox_vec3 size, cprox_workspace *workspace,
+                                              cprox_solid **solid);
+
+/** An ellipse or ellipsoid about the origin, each semi-axis > 0; semi_axes.z is not read in the plane. */
+CPROX_API cprox_status cprox_solid_create_ellipsoid(int dimension, cprox_vec3 semi_axes, cprox_workspace *workspace,
+                                                    cprox_solid **solid);
+
+/** A solid cylinder about the z axis, |z| <= height/2. */
+CPROX_API cprox_status cprox_solid_create_cylinder(double height, double radius, cprox_workspace *workspace,
+                                                   cprox_solid **solid);
+
+/** All points within radius of the segment of length height about the origin, along x in the plane, along z in space. */
+CPROX_API cprox_status cprox_solid_create_capsule(int dimension, double height, double radius,
+                                                  cprox_workspace *workspace, cprox_solid **solid);
+
+/** A simple polygon, convex or not: n >= 3 vertices, counter-clockwise, edges that do not meet but at their ends. */
+CPROX_API cprox_status cprox_solid_create_polygon(const double (*vertices)[2], size_t n, cprox_workspace *workspace,
+                                                  cprox_solid **solid);
+
+/** The inside of a closed triangle mesh, convex or not: n vertices, m triangles of indices below n, counter-clockwise
+ *  from outside; each edge belongs to two triangles, in opposite directions. That the surface does not pass through
+ *  itself is the caller's to see to: what is inside twice counts twice. */
+CPROX_API cprox_status cprox_solid_create_mesh(const cprox_vec3 *vertices, size_t n, const uint32_t (*triangles)[3],
+                                               size_t m, cprox_workspace *workspace, cprox_solid **solid);
+
+/** All points within radius of a polyline of n >= 2 points: a sum of capsules. */
+CPROX_API cprox_status cprox_solid_create_polyline(int dimension, const cprox_vec3 *points, size_t n, double radius,
+                                                   cprox_workspace *workspace, cprox_solid **solid);
+
+/** A sphere of the radius swept along a curve (whole range of t), as one spectrum.
+ *
+ *  tolerance  > 0 [m]: the curve becomes a polyline that is nowhere farther from it; the radius grows by as much, so
+ *             that the guarantee is that of the curve itself. At most 1e6 segments, else CPROX_INVALID.
+ *  The function is a line integral, not an indicator; a gap with such a solid has a threshold of its own, and at most
+ *  one of its two solids may be swept. radius >= 0. Planar: the curve must lie in z = 0. */
+CPROX_API cprox_status cprox_solid_create_sweep(int dimension, const cprox_curve *curve, double radius,
+                                                double tolerance, cprox_workspace *workspace, cprox_solid **solid);
+
+/** The union of the occupied cells of a grid, for what has no formula.
+ *
+ *  lowest     the corner of cell (0, 0, 0).   cell: its edge length, > 0.
+ *  counts     cells along x, y, z, each >= 1 and their product <= 2^30; counts[2] is 1 in the plane.
+ *  occupied   one byte a cell, x fastest; not 0: occupied. At least one is. The union is what is certified: occupy every
+ *             cell that the body meets. */
+CPROX_API cprox_status cprox_solid_create_grid(int dimension, cprox_vec3 lowest, double cell, const uint32_t counts[3],
+                                               const unsigned char *occupied, cprox_workspace *workspace,
+                                               cprox_solid **solid);
+
+/** The union of solids of one dimension, each at a pose: the sum of their functions (Prop. 2). n >= 1. Overlaps count
+ *  more than once: the guarantee stays, the over-reach grows. Parts are copied. */
+CPROX_API cprox_status cprox_solid_create_union(const cprox_solid *const *parts, const cprox_pose *poses, size_t n,
+                                                cprox_workspace *workspace, cprox_solid **solid);
+
+/** The part of a solid inside a convex region: the product of its function and the region's indicator (Prop. 2,
+ *  Theorem 2). In a gap it localises the test: overlap counts only inside the region.
+ *
+ *  region     n half-spaces a·x + b y + c z <= d as {a, b, c, d} in the solid's frame, (a, b, c) not 0 (c = 0 in the
+ *             plane). The product must not be empty.
+ *  Boxes, polygons, meshes and unions of them; others are refused: give them as a polygon or mesh that holds them. */
+CPROX_API cprox_status cprox_solid_create_clipped(const cprox_solid *solid, const double (*region)[4], size_t n,
+                                                  cprox_workspace *workspace, cprox_solid **clipped);
+
+/** Frees a solid; NULL is allowed. Gaps keep what they need of it. */
+CPROX_API void cprox_solid_free(cprox_solid *solid);
+
+/** The integral of the function [m²] or [m³]: the measure where pieces do not overlap. */
+CPROX_API double cprox_solid_measure(const cprox_solid *solid);
+
+/** A ball that contains the solid: centre in its frame, radius [m]. */
+CPROX_API void cprox_solid_bounding_sphere(const cprox_solid *solid, cprox_vec3 *centre, double *radius);
+
+/** The transform F(q) = integral of f(y) exp(-i q·y) dy at an angular frequency q [rad/m], q.z = 0 in the plane.
+ *
+ *  value      real and imaginary part; within 1e-13 of the function's integral where |q| times the solid's size is
+ *             below 1e3. gradient: dF/dq, real and imaginary part, NULL if not needed.
+ *  CPROX_INVALID if q is not finite. */
+CPROX_API cprox_status cprox_solid_spectrum(const cprox_solid *solid, cprox_vec3 q, cprox_workspace *workspace,
+                                            double value[2], cprox_vec3 gradient[2]);
+
+/* ---- Gaps ---- */
+
+/** What a gap is for. */
+typedef enum cprox_gap_mode {
+  CPROX_GAP_CERTIFIED = 0, /**< clear is a proof */
+  CPROX_GAP_TUNED = 1,     /**< two to three times as accurate, clear is not a proof: there are bodies that break it */
+  CPROX_GAP_SIGNAL = 2     /**< a smooth constraint for solvers, usable at every clearance, without a verdict */
+} cprox_gap_mode;
+
+/** Start from cprox_gap_options_default(). */
+typedef struct cprox_gap_options {
+  cprox_gap_mode mode;
+  double delta;        /**< [m] > 0: the largest clearance that may still be called a collision; chooses the samples.
+                            Default 0: samples must be given */
+  uint32_t samples;    /**< n, odd, 3 … 1025: samples an axis; 0: the fewest for delta. Default 0 */
+  double period;       /**< [m] L, or 0 for the least that keeps images apart (default); a smaller one is refused */
+  size_t memory_limit; /**< bytes a gap may hold; beyond it CPROX_INVALID and a sentence with n and the bytes it needs.
+                            Default 256 MiB */
+} cprox_gap_options;
+
+CPROX_API cprox_gap_options cprox_gap_options_default(void);
+
+/** What a gap is made of. */
+typedef struct cprox_gap_info {
+  cprox_gap_mode mode;
+  int dimension;
+  uint32_t samples;  /**< n: samples an axis */
+  double period;     /**< L [m] */
+  double offset;     /**< rho [m], by which both solids are enlarged; 0 in the signal mode */
+  double threshold;  /**< t, in units of the measure squared over L^d; V_ref in the signal mode */
+  double over_reach; /**< [m] solids farther apart than this are never called colliding. Certified: proven. Tuned:
+                           what was measured, times 1.25. Infinity in the signal mode, and where the gap is too coarse
+                           to say */
+  bool guaranteed;   /**< clear is a proof */
+  bool turned_first; /**< the first solid, the simpler one, is the one whose spectrum is turned */
+  size_t terms;      /**< of the sum */
+  size_t bytes;      /**< held by the gap */
+  double rounding;   /**< bound on the error of a value V/t (of V/V_ref in the signal mode) by rounding */
+} cprox_gap_info;
+
+typedef enum cprox_gap_verdict {
+  CPROX_GAP_CLEAR = 0,    /**< the interiors do not overlap */
+  CPROX_GAP_COLLIDE = 1,  /**< they may */
+  CPROX_GAP_FAR = 2,      /**< clear by the bounding spheres alone: value is minus their distance, see `clearance` */
+  CPROX_GAP_UNDECIDED = 3 /**< within rounding of the threshold, or the signal mode: counts as unsafe */
+} cprox_gap_verdict;
+
+/** "clear", "collide", "far", "undecided". */
+CPROX_API const char *cprox_gap_verdict_name(cprox_gap_verdict verdict);
+
+typedef struct cprox_gap_result {
+  cprox_gap_verdict verdict;
+  double value;     /**< certified, tuned: V/t, overlap is possible from 1 on. Signal: c = -log(V/V_ref), the larger the
+                         freer. FAR: 0 (signal: infinity) with gradients 0 */
+  double error;     /**< |exact - value| at most: the rounding, and what an early exit left out. Of V/V_ref in the
+                         signal mode */
+  double clearance; /**< [m] the distance of the bounding spheres, 0 where they overlap */
+  uint32_t terms;   /**< summed */
+  /** Gradients of value. Position: world frame [1/m]. Rotation: in the body's own frame, d/ds of the value for
+   *  R exp(s[w]) is rotation·w [1/rad]; only z in the plane. 0 from cprox_gap_test(). */
+  cprox_vec3 position_a, rotation_a, position_b, rotation_b;
+  /** The same of the relative pose (R, x): R = R_a^T R_b, x = R_a^T (x_b - x_a), x in the frame of a, the rotation in b's. */
+  cprox_vec3 position, rotation;
+} cprox_gap_result;
+
+/** A pair of solids made ready. */
+typedef struct cprox_gap cprox_gap;
+
+/** Makes a pair ready: chooses n, L, rho, the kernel and the threshold.
+ *
+ *  Certified: n is the least odd number whose proven over-reach is at most delta; kernel and offset are those that make
+ *  it least. Returns CPROX_INVALID where delta cannot be had below the memory limit, with the n and the bytes it would
+ *  need; where delta exceeds the size of the pair (nothing would be left to decide); for solids of different dimensions.
+ *  Cost: the spectrum of one solid at n^d/2 frequencies. */
+CPROX_API cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
+                                        cprox_workspace *workspace, cprox_gap **gap);
+
+CPROX_API void cprox_gap_free(cprox_gap *gap);
+
+CPROX_API cprox_gap_info cprox_gap_get_info(const cprox_gap *gap);
+
+/** The verdict alone, with early exit both ways. CPROX_INVALID for poses that are none. No allocation once the
+ *  workspace has grown. In the signal mode: the value without gradients, undecided. */
+CPROX_API cprox_status cprox_gap_test(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_pose *pose_b,
+                                      cprox_workspace *workspace, cprox_gap_result *result);
+
+/** Value, verdict and gradients: the whole sum. In the signal mode CPROX_PRECISION where V is not above its rounding:
+ *  then value and gradients are those of the least V that can be told from 0, and say little. */
+CPROX_API cprox_status cprox_gap_evaluate(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_pose *pose_b,
+                                          cprox_workspace *workspace, cprox_gap_result *result);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

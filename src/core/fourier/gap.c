@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Making a pair ready: coefficients on the half lattice, in blocks, the largest first. */
+#include "fourier/gap.h"
+
+#include <stdlib.h>
+
+#include "base/rounding.h"
+
+#define TAU 6.28318530717958647693
+
+double gap_bytes(int dimension, int N) {
+  const double rows = dimension == 2 ? N + 1.0 : (2.0 * N + 1.0) * (N + 1.0);
+  const double blocks = rows * ((2 * N + 1 + LANES - 1) / LANES);
+  return blocks * (double)(sizeof(block) + (2 * LANES + 1) * sizeof(double)) + (double)sizeof(cprox_gap);
+}
+
+double gap_cost_of_turning(const cprox_solid *s) {
+  if (s->n == 1 && s->pieces[0].kind == PIECE_ELLIPSOID) {
+    const double *a = s->pieces[0].size;
+    if (a[0] == a[1] && (s->dimension == 2 || a[1] == a[2])) return 0.0;
+  }
+  double cost = 0.0;
+  for (size_t i = 0; i < s->n; i++) {
+    const piece *p = &s->pieces[i];
+    switch (p->kind) {
+      case PIECE_ELLIPSOID: cost += s->dimension == 2 ? 20.0 : 3.0; break;
+      case PIECE_BOX: cost += 2.0; break;
+      case PIECE_POLYGON: cost += (double)p->n_corners; break;
+      case PIECE_CYLINDER: cost += 30.0; break;
+      case PIECE_CAPSULE: cost += 500.0; break;
+      case PIECE_SWEEP: cost += 1e3 + 5.0 * (double)p->n_corners; break;
+      case PIECE_SOUP: cost += 1e3 + 60.0 * (double)p->n_corners; break;
+      case PIECE_GRID: cost += 1e6 + 10.0 * (double)p->counts[0] * p->counts[1] * p->counts[2]; break;
+    }
+  }
+  return cost;
+}
+
+/* A block before sorting. */
+typedef struct draft {
+  block at;
+  double energy; /* sum of |C|² */
+  double c[2 * LANES];
+} draft;
+
+static int by_energy(const void *a, const void *b) {
+  const draft *p = a, *q = b;
+  if (p->energy != q->energy) return p->energy > q->energy ? -1 : 1;
+  for (int j = 2; j >= 0; j--)
+    if (p->at.k[j] != q->at.k[j]) return p->at.k[j] < q->at.k[j] ? -1 : 1;
+  return 0;
+}
+
+/* J: k_z > 0, or k_z = 0 and k_y > 0, or both 0 and k_x > 0. Rows of it, in blocks; returns how many, writes where out is given. */
+static size_t list_blocks(const kernel *w, int dimension, draft *out) {
+  const int N = w->n, top = dimension == 2 ? 0 : N;
+  size_t n = 0;
+  for (int z = 0; z <= top; z++)
+    for (int y = z == 0 ? 0 : -N; y <= N; y++) {
+      int end = N;
+      while (end >= 0 && kernel_weight(w, (const int[3]){end, y, z}) == 0.0) end--;
+      for (int x = z == 0 && y == 0 ? 1 : -end; x <= end; x += LANES, n++)
+        if (out) out[n] = (draft){.at = {{x, y, z}}};
+    }
+  return n;
+}
+
+static vec3 frequency(const cprox_gap *gap, const block *b, int lane) {
+  const double step = TAU / gap->info.period;
+  return vec(step * (b->k[0] + lane), step * b->k[1], step * b->k[2]);
+}
+
+/* Coefficients of a block: W S(q), times T(q) of a turned ball. */
+static void fill_block(const cprox_gap *gap, const kernel *w, const cprox_solid *fixed, const cprox_solid *ball,
+                       draft *d) {
+  const block *b = &d->at;
+  for (int lane = 0; lane < LANES; lane++) {
+    const double weight = kernel_weight(w, (const int[3]){b->k[0] + lane, b->k[1], b->k[2]});
+    wave_jet s = {0}, t;
+    if (weight != 0.0) {
+      const vec3 q = frequency(gap, b, lane);
+      solid_spectrum(fixed, q, false, &s);
+      if (ball) {
+        solid_spectrum(ball, q, false, &t);
+        s.value = wave_times(s.value, (wave){t.value.re, -t.value.im});
+      }
+    }
+    const double re = weight * s.value.re, im = weight * s.value.im;
+    d->c[lane] = re, d->c[LANES + lane] = im;
+    d->energy += re * re + im * im;
+  }
+}
+
+/* The bound on the rounding of a value: every term is a product of spectra and phases, each within a few (N + 10) u of its error
+ * scale, and sums run over blocks of a chunk and then over chunks (doc/fourier.md, "Rounding"). */
+static double rounding_bound(const cprox_gap *gap, const kernel *w, const cprox_solid *fixed, const cprox_solid *turned,
+                             double corners) {
+  const int N = gap->N;
+  const double step = TAU / gap->info.period;
+  double sum = gap->constant;
+  /* by shells of |k|_inf: scales fall with |q|, so that each shell is bounded at its least |q| */
+  for (int m = 1; m <= N; m++) {
+    const double count = gap->info.dimension == 2 ? 8.0 * m : 24.0 * m * m + 2.0;
+    const double weight = w->in_ball ? 1.0 : w->w[m];
+    sum += count * weight * solid_error_scale(fixed, step * m) * solid_error_scale(turned, step * m);
+  }
+  return ROUND_U * (16.0 * N + 200.0 + corners + (double)gap->n_blocks / 16.0) * sum * gap->inverse;
+}
+
+static size_t corners_of(const cprox_solid *s) {
+  size_t n = s->n;
+  for (size_t i = 0; i < s->n; i++) n += s->pieces[i].n_corners;
+  return n;
+}
+
+/* The largest blocks first, each followed by what all later ones can still add. */
+static void order(cprox_gap *gap, draft *drafts) {
+  qsort(drafts, gap->n_blocks, sizeof *drafts, by_energy);
+  double left = 0.0;
+  gap->tail[gap->n_blocks] = 0.0;
+  for (size_t i = gap->n_blocks; i > 0; i--) {
+    const draft *d = &drafts[i - 1];
+    gap->blocks[i - 1] = d->at;
+    for (int j = 0; j < 2 * LANES; j++) gap->c[2 * LANES * (i - 1) + (size_t)j] = d->c[j];
+    left += d->energy;
+    gap->tail[i - 1] = 2.0 * sqrt(left) * (1.0 + 1e-12);
+  }
+}
+
+static size_t count_terms(const cprox_gap *gap) {
+  size_t n = 0;
+  for (size_t i = 0; i < gap->n_blocks; i++)
+    for (int lane = 0; lane < LANES; lane++)
+      n += gap->c[2 * LANES * i + (size_t)lane] != 0.0 || gap->c[2 * LANES * i + (size_t)(LANES + lane)] != 0.0;
+  return n;
+}
+
+static bool is_centred_ball(const cprox_solid *s) {
+  return gap_cost_of_turning(s) == 0.0 && vec_norm(s->pieces[0].centre) == 0.0;
+}
+
+static bool allocate(cprox_gap *gap) {
+  gap->blocks = malloc(gap->n_blocks * sizeof *gap->blocks);
+  gap->c = malloc(gap->n_blocks * 2 * LANES * sizeof *gap->c);
+  gap->tail = malloc((gap->n_blocks + 1) * sizeof *gap->tail);
+  return gap->blocks && gap->c && gap->tail;
+}
+
+/* Everything that depends on the spectra. */
+static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cprox_solid *turned) {
+  const int dimension = gap->info.dimension;
+  gap->n_blocks = list_blocks(w, dimension, NULL);
+  draft *drafts = calloc(gap->n_blocks, sizeof *drafts);
+  bool failed = !drafts || !allocate(gap);
+  if (!failed) {
+    const bool folded = is_centred_ball(turned);
+    list_blocks(w, dimension, drafts);
+    for (size_t i = 0; i < gap->n_blocks; i++) fill_block(gap, w, fixed, folded ? turned : NULL, &drafts[i]);
+    order(gap, drafts);
+    const double measure = cprox_solid_measure(turned), L = gap->info.period;
+    gap->constant = cprox_solid_measure(fixed) * measure;
+    const double volume = dimension == 2 ? L * L : L * L * L;
+    /* folded: T is 1 at each term, so that what is left of its energy is the number of lattice points left: of no use */
+    gap->half_energy = folded ? INFINITY : 0.5 * fmax(0.0, volume * solid_energy(turned, &failed) - measure * measure);
+    gap->info.rounding = rounding_bound(gap, w, fixed, turned, (double)(corners_of(fixed) + corners_of(turned)));
+    gap->turned = folded ? NULL : turned;
+    if (folded) cprox_solid_free(turned);
+  } else {
+    cprox_solid_free(turned);
+  }
+  free(drafts);
+  return !failed;
+}
+
+cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, size_t memory_limit,
+                       cprox_workspace *workspace, cprox_gap **gap) {
+  const double bytes = gap_bytes(plan->dimension, plan->N), L = plan->period;
+  cprox_gap *made = bytes <= (double)memory_limit ? calloc(1, sizeof *made) : NULL;
+  if (!made) {
+    cprox_solid_free(a);
+    cprox_solid_free(b);
+    if (bytes <= (double)memory_limit) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a gap");
+    return workspace_fail(workspace, CPROX_INVALID, "n = %d samples need %.3g bytes, beyond the limit of %zu",
+                          2 * plan->N + 1, bytes, memory_limit);
+  }
+  kernel w;
+  if (plan->mode == CPROX_GAP_CERTIFIED)
+    kernel_certified(&w, plan->N, plan->beta);
+  else if (plan->mode == CPROX_GAP_TUNED)
+    kernel_tuned(&w, plan->N);
+  else
+    kernel_signal(&w, plan->N);
+
+  made->N = plan->N;
+  made->info = (cprox_gap_info){.mode = plan->mode,
+                                .dimension = plan->dimension,
+                                .samples = 2 * (uint32_t)plan->N + 1,
+                                .period = L,
+                                .offset = plan->offset,
+                                .over_reach = plan->mode == CPROX_GAP_SIGNAL ? INFINITY : plan->over_reach,
+                                .guaranteed = plan->mode == CPROX_GAP_CERTIFIED,
+                                .turned_first = plan->turned_first};
+  /* the signal's V_ref is its mean over all places */
+  const double volume = plan->dimension == 2 ? L * L : L * L * L;
+  made->info.threshold = plan->mode == CPROX_GAP_SIGNAL ? cprox_solid_measure(a) * cprox_solid_measure(b) / volume
+                                                        : gap_threshold(&w, plan, a, b);
+  made->inverse = 1.0 / (made->info.threshold * volume);
+  cprox_solid *turned = made->info.turned_first ? a : b, *fixed = made->info.turned_first ? b : a;
+  const bool ok = fill(made, &w, fixed, turned);
+  cprox_solid_free(fixed);
+  if (!ok) {
+    cprox_gap_free(made);
+    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a gap of n = %d", 2 * plan->N + 1);
+  }
+  made->lanes = gap_lanes_of_machine();
+  made->info.terms = count_terms(made);
+  made->info.bytes = sizeof *made + made->n_blocks * (sizeof *made->blocks + (2 * LANES + 1) * sizeof *made->c);
+  *gap = made;
+  return CPROX_OK;
+}
+
+cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
+                              cprox_workspace *workspace, cprox_gap **gap) {
+  workspace_clear(workspace);
+  if (!a || !b || !gap) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", !a ? "a" : !b ? "b" : "gap");
+  const cprox_gap_options used = options ? *options : cprox_gap_options_default();
+  gap_plan plan;
+  cprox_status status = gap_plan_choose(a, b, &used, workspace, &plan);
+  if (status != CPROX_OK) return status;
+
+  double reach;
+  cprox_solid *p = solid_offset(a, plan.offset, &reach), *q = solid_offset(b, plan.offset, &reach);
+  if (!p || !q) {
+    cprox_solid_free(p);
+    cprox_solid_free(q);
+    return solid_out_of_memory(workspace);
+  }
+  cprox_gap *made;
+  status = gap_build(&plan, p, q, used.memory_limit, workspace, &made);
+  if (status != CPROX_OK) return status;
+  made->centre_a = a->centre, made->centre_b = b->centre;
+  made->radius_a = a->radius, made->radius_b = b->radius;
+  *gap = made;
+  return CPROX_OK;
+}
+
+void cprox_gap_free(cprox_gap *gap) {
+  if (!gap) return;
+  cprox_solid_free(gap->turned);
+  free(gap->blocks);
+  free(gap->c);
+  free(gap->tail);
+  free(gap);
+}
+
+cprox_gap_info cprox_gap_get_info(const cprox_gap *gap) {
+  return gap->info;
+}

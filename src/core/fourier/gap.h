@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The inside of a gap: the fixed solid's spectrum times the kernel in blocks of lattice points, and the turned solid. */
+#ifndef CPROX_FOURIER_GAP_H
+#define CPROX_FOURIER_GAP_H
+
+#include "fourier/kernel.h"
+#include "fourier/solid.h"
+
+/* Lattice points with one k_y, k_z and LANES consecutive k_x are summed side by side. */
+enum { LANES = 8 };
+
+typedef struct block {
+  int32_t k[3]; /* of the first lane */
+} block;
+
+/* What a pair needs before its spectra are computed. */
+typedef struct gap_plan {
+  cprox_gap_mode mode;
+  int dimension, N;
+  double beta, period, offset;
+  double over_reach;
+  bool turned_first; /* whether the first solid is the one to turn; the lattice lies in the other's frame */
+} gap_plan;
+
+/* How wide the machine adds; results are the same bit for bit. */
+typedef enum gap_lanes { GAP_LANES_128, GAP_LANES_256, GAP_LANES_512 } gap_lanes;
+
+struct cprox_gap {
+  cprox_gap_info info;
+  double inverse;     /* of the threshold times L^d: the sum times this is the value */
+  double half_energy; /* (L^d integral of T² - T(0)²)/2, at least the sum over J of |T|² */
+  double constant;    /* C(0) T(0) */
+  vec3 centre_a, centre_b;
+  double radius_a, radius_b; /* of the bare solids about these */
+  cprox_solid *turned;       /* offset, about its centre; NULL: a ball, folded into the coefficients */
+  int N;
+  size_t n_blocks;
+  block *blocks; /* by descending energy of the coefficients */
+  double *c;     /* 2 LANES a block: real parts, imaginary parts */
+  double *tail;  /* n_blocks + 1: 2 sqrt(sum over the blocks from here on of |C|²) */
+  gap_lanes lanes;
+};
+
+/* One sum: what goes in, and what comes out. */
+typedef struct gap_job {
+  const cprox_gap *gap;
+  double turn[9]; /* turned to fixed frame */
+  vec3 x;         /* position of the turned solid in the fixed one's frame */
+  void *scratch;  /* gap_scratch_size() bytes */
+  bool gradient, early;
+  /* out, times 1/threshold */
+  double value, tail;
+  vec3 position, moment; /* gradient by x; by rotation, in the fixed frame */
+  size_t blocks;
+} gap_job;
+
+/* Bytes of scratch memory a sum needs. */
+size_t gap_scratch_size(const cprox_gap *gap);
+
+gap_lanes gap_lanes_of_machine(void);
+void gap_sum(gap_job *job);
+
+/* Makes a gap of solids that are offset and centred already (both are taken over, also on failure). radius and centre: those of
+ * the bare ones. */
+cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, size_t memory_limit,
+                       cprox_workspace *workspace, cprox_gap **gap);
+
+/* Chooses the plan for what the options ask. */
+cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
+                             cprox_workspace *workspace, gap_plan *plan);
+
+/* The threshold of a plan (period and offset set): t, or that of a sweep; in units of the measure squared over L^d. */
+double gap_threshold(const kernel *k, const gap_plan *plan, const cprox_solid *a, const cprox_solid *b);
+
+/* How much it costs to turn a solid; 0 for a ball. */
+double gap_cost_of_turning(const cprox_solid *s);
+
+/* Bytes that a gap of n samples will hold, at most. */
+double gap_bytes(int dimension, int N);
+
+#endif

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "fourier/kernel.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "fourier/piece.h"
+#include "fourier/profile.h"
+
+#define TAU 6.28318530717958647693
+
+void kernel_certified(kernel *k, int N, double beta) {
+  double window[KERNEL_MOST_N + 1];
+  for (int i = 0; i <= N; i++) {
+    const double x = N > 0 ? 2.0 * i / N - 1.0 : 0.0;
+    window[i] = profile_i0(beta * sqrt(fmax(0.0, 1.0 - x * x)));
+  }
+  *k = (kernel){.n = N};
+  for (int lag = 0; lag <= N; lag++)
+    for (int i = 0; i + lag <= N; i++) k->w[lag] += window[i] * window[i + lag];
+  for (int lag = N; lag >= 0; lag--) k->w[lag] /= k->w[0];
+}
+
+void kernel_tuned(kernel *k, int N) {
+  *k = (kernel){.n = N, .in_ball = true};
+  for (int i = 0; i <= N; i++) k->w[i] = 1.0;
+}
+
+/* exp(-sigma² |q|²/2), sigma = 2.2 L/n */
+void kernel_signal(kernel *k, int N) {
+  *k = (kernel){.n = N};
+  const double s = 2.2 * TAU / (2 * N + 1);
+  for (int i = 0; i <= N; i++) k->w[i] = exp(-0.5 * s * s * i * i);
+}
+
+/* Where each value of n begins (doc/fourier.md, "Kernels"). */
+typedef struct chosen {
+  int from;
+  double beta, certified, tuned;
+} chosen;
+
+static const chosen CHOSEN[] = {{0, 1.5, 0.5, 0.35},  {13, 2.5, 0.6, 0.5},  {25, 2.5, 0.75, 0.5},
+                                {49, 3.5, 0.75, 0.6}, {97, 3.5, 0.9, 0.75}, {161, 4.5, 0.6, 0.75}};
+
+static const chosen *chosen_for(int samples) {
+  const chosen *best = CHOSEN;
+  for (size_t i = 0; i < sizeof CHOSEN / sizeof *CHOSEN; i++)
+    if (samples >= CHOSEN[i].from) best = &CHOSEN[i];
+  return best;
+}
+
+double kernel_beta(int dimension, int samples) {
+  return dimension == 3 ? 3.0 : chosen_for(samples)->beta;
+}
+
+double kernel_offset(int dimension, int samples, cprox_gap_mode mode) {
+  if (mode == CPROX_GAP_SIGNAL) return 0.0;
+  if (mode == CPROX_GAP_TUNED) return dimension == 3 ? 0.75 : chosen_for(samples)->tuned;
+  return dimension == 3 ? 1.0 : chosen_for(samples)->certified;
+}
+
+/* The transform of the ball of radius rho at |q|. */
+static double ball_spectrum(int dimension, double rho, double q) {
+  return ball_measure(dimension, rho) * (dimension == 2 ? profile_disc(q * rho) : profile_ball(q * rho));
+}
+
+/* Over the octant k >= 0, each point as often as it has mirror images. The matrix sum of W b² q q^T is a multiple of 1, because W
+ * and b² are symmetric in the axes: its trace over d bounds the bend. */
+double kernel_threshold(const kernel *k, int dimension, double rho, double *bend) {
+  const int top = dimension == 2 ? 0 : k->n;
+  double sum = 0.0, second = 0.0;
+  for (int c = 0; c <= top; c++)
+    for (int b = 0; b <= k->n; b++)
+      for (int a = 0; a <= k->n; a++) {
+        const double weight = kernel_weight(k, (const int[3]){a, b, c});
+        if (weight == 0.0) continue;
+        const double q2 = TAU * TAU * (double)(a * a + b * b + c * c);
+        const double spectrum = ball_spectrum(dimension, rho, sqrt(q2));
+        const double term = (a ? 2.0 : 1.0) * (b ? 2.0 : 1.0) * (c ? 2.0 : 1.0) * weight * spectrum * spectrum;
+        sum += term;
+        second += term * q2 / dimension;
+      }
+  if (bend) *bend = second;
+  return sum;
+}
+
+/* The integral of the one-dimensional kernel over [-x, x] at x = i/(2 M), i = 0 … M, rounded down by 1e-14. */
+static void list_masses(const kernel *k, int M, double *mass) {
+  for (int i = 0; i <= M; i++) {
+    /* sum of w_j sin(j a)/(pi j), by Clenshaw */
+    const double a = TAU * i / (2.0 * M), twice = 2.0 * cos(a);
+    double b1 = 0.0, b2 = 0.0;
+    for (int j = k->n; j >= 1; j--) {
+      const double b = 2.0 * k->w[j] / (0.5 * TAU * j) + twice * b1 - b2;
+      b2 = b1, b1 = b;
+    }
+    mass[i] = fmax(0.0, (double)i / M + b1 * sin(a) - 1e-14);
+  }
+}
+
+/* A lower bound of the product kernel's integral over the disc of radius R/(2M): strips of the one axis, each over the chord at its
+ * outer end of the other, whose integral `inner` lists. Both are non-decreasing, since the kernel is nonnegative. */
+static double disc_mass(const double *mass, const double *inner, int R) {
+  double sum = 0.0;
+  for (int i = 0; i < R; i++) {
+    const double chord = sqrt((double)R * R - (double)(i + 1) * (i + 1));
+    sum += (mass[i + 1] - mass[i]) * inner[(int)chord];
+  }
+  return sum;
+}
+
+bool kernel_reach(const kernel *k, int dimension, const double *masses, size_t n, double *reach) {
+  const int M = dimension == 2 ? 256 * (k->n + 1) : 48 * (k->n + 1);
+  double *mass = malloc(2 * (size_t)(M + 1) * sizeof *mass);
+  if (!mass) return false;
+  double *disc = mass + M + 1;
+  list_masses(k, M, mass);
+  const double *inner = mass;
+  if (dimension == 3) {
+    for (int i = 0; i <= M; i++) disc[i] = disc_mass(mass, mass, i);
+    inner = disc;
+  }
+  for (size_t j = 0; j < n; j++) {
+    int low = 0, high = M; /* outside low: too much; outside high: assumed little enough */
+    while (high - low > 1) {
+      const int mid = (low + high) / 2;
+      if (1.0 - disc_mass(mass, inner, mid) > masses[j])
+        low = mid;
+      else
+        high = mid;
+    }
+    reach[j] = (double)high / (2.0 * M);
+  }
+  free(mass);
+  return true;
+}

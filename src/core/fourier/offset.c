@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Enlarged pieces: functions that are at least 1 within rho of the piece (doc/fourier.md, "Offsets"). */
+#include <string.h>
+
+#include "fourier/points.h"
+#include "fourier/solid.h"
+
+/* Arcs are cut into tangents at most this far apart, so that they reach at most 1/cos(pi/16) = 1.0196 rho. */
+#define ARC_STEP 0.39269908169872415481
+
+/* The raw offset of a corner between edges of outward normals m and n: around a convex corner tangents of its arc; a
+ * reflex one is visited itself, so that the two strips beside it count as what they are. */
+static void offset_corner(vec3 v, vec3 m, vec3 n, double rho, points *out) {
+  const double turn = m.x * n.y - m.y * n.x, straight = m.x * n.x + m.y * n.y;
+  if (turn < 0.0) {
+    points_add(out, vec_axpy(v, rho, m));
+    points_add(out, v);
+    points_add(out, vec_axpy(v, rho, n));
+    return;
+  }
+  const double angle = atan2(turn, straight);
+  const int steps = angle > 0.0 ? (int)ceil(angle / ARC_STEP - 1e-9) : 1;
+  const double half = 0.5 * angle / steps, radius = rho / cos(half);
+  for (int j = 0; j < steps; j++) {
+    const double c = cos((2 * j + 1) * half), s = sin((2 * j + 1) * half);
+    points_add(out, vec_axpy(v, radius, vec(c * m.x - s * m.y, s * m.x + c * m.y, 0.0)));
+  }
+}
+
+static void offset_loop(const vec3 *v, size_t n, double rho, points *out) {
+  for (size_t i = 0; i < n; i++) {
+    const vec3 d = vec_sub(v[i], v[(i + n - 1) % n]), e = vec_sub(v[(i + 1) % n], v[i]);
+    offset_corner(v[i], vec_scale(1.0 / vec_norm(d), vec(d.y, -d.x, 0.0)),
+                  vec_scale(1.0 / vec_norm(e), vec(e.y, -e.x, 0.0)), rho, out);
+  }
+}
+
+/* Corners of a polygon or a mesh: offset what was before clipping, then clip by the planes moved out by rho. */
+static bool offset_corners(const piece *p, double rho, piece *out, double *reach) {
+  points corners = {0};
+  if (rho == 0.0) {
+    for (size_t i = 0; i < p->n_corners; i++) points_add(&corners, p->corner[i]);
+  } else if (p->kind == PIECE_POLYGON) {
+    offset_loop(p->vertex, p->n_vertices, rho, &corners);
+    *reach = fmax(*reach, rho / cos(0.5 * ARC_STEP));
+  } else {
+    offset_mesh(p, rho, &corners, reach);
+  }
+  for (size_t i = 0; rho > 0.0 && i < p->n_planes; i++) {
+    const double plane[4] = {p->plane[i][0], p->plane[i][1], p->plane[i][2], p->plane[i][3] + rho};
+    (p->kind == PIECE_POLYGON ? clip_loop : clip_soup)(&corners, plane);
+  }
+  out->corner = corners.at, out->n_corners = corners.n;
+  return !corners.failed;
+}
+
+/* a'² = (1 + 1/p) a² + (1 + p) rho² for any p > 0: h + rho <= h' for every support value h (Cauchy-Schwarz). h' - h is convex in h,
+ * so that it is largest at an end. */
+static void offset_ellipsoid(const piece *p, int dimension, double rho, piece *out, double *reach) {
+  double mean = 0.0;
+  for (int i = 0; i < dimension; i++) mean += p->size[i] * p->size[i] / dimension;
+  const double weight = sqrt(mean) / rho;
+  for (int i = 0; i < dimension; i++) {
+    out->size[i] = sqrt((1.0 + 1.0 / weight) * p->size[i] * p->size[i] + (1.0 + weight) * rho * rho);
+    *reach = fmax(*reach, out->size[i] - p->size[i]);
+  }
+}
+
+/* Cells that come within rho of an occupied one. */
+static bool offset_grid(const piece *p, int dimension, double rho, piece *out, double *reach) {
+  const double cell = p->size[0];
+  const int64_t m = (int64_t)floor(rho / cell) + 1, mz = dimension == 2 ? 0 : m;
+  const int64_t nx = p->counts[0], ny = p->counts[1], nz = p->counts[2];
+  const int64_t wx = nx + 2 * m, wy = ny + 2 * m, wz = nz + 2 * mz;
+  if ((double)wx * (double)wy * (double)wz > 4e9) return false;
+  out->counts[0] = (uint32_t)wx, out->counts[1] = (uint32_t)wy, out->counts[2] = (uint32_t)wz;
+  out->centre = vec_sub(p->centre, turn_apply(p->turn, vec_scale(cell, vec((double)m, (double)m, (double)mz))));
+  out->cells = calloc((size_t)(wx * wy * wz), 1);
+  if (!out->cells) return false;
+  for (int64_t i = 0; i < nx * ny * nz; i++) {
+    if (!p->cells[i]) continue;
+    for (int64_t c = -mz; c <= mz; c++)
+      for (int64_t b = -m; b <= m; b++)
+        for (int64_t a = -m; a <= m; a++) {
+          const double x = fmax(fabs((double)a) - 1.0, 0.0), y = fmax(fabs((double)b) - 1.0, 0.0),
+                       z = fmax(fabs((double)c) - 1.0, 0.0);
+          if (cell * sqrt(x * x + y * y + z * z) > rho) continue;
+          out->cells[(i % nx + a + m) + wx * ((i / nx % ny + b + m) + wy * (i / (nx * ny) + c + mz))] = 1;
+        }
+  }
+  *reach = fmax(*reach, rho + cell * sqrt((double)dimension));
+  return true;
+}
+
+bool piece_offset(const piece *p, int dimension, double rho, piece *out, double *reach) {
+  *out = piece_create(p->kind);
+  memcpy(out->size, p->size, sizeof out->size);
+  memcpy(out->turn, p->turn, sizeof out->turn);
+  memcpy(out->counts, p->counts, sizeof out->counts);
+  out->centre = p->centre;
+
+  bool ok = true;
+  switch (p->kind) {
+    case PIECE_ELLIPSOID:
+      if (rho > 0.0) offset_ellipsoid(p, dimension, rho, out, reach);
+      break;
+    case PIECE_BOX:
+      for (int i = 0; i < dimension; i++) out->size[i] += rho;
+      *reach = fmax(*reach, rho * sqrt((double)dimension));
+      break;
+    case PIECE_CYLINDER:
+      out->size[0] += rho, out->size[1] += rho;
+      *reach = fmax(*reach, rho * sqrt(2.0));
+      break;
+    case PIECE_CAPSULE:
+      out->size[0] += rho;
+      *reach = fmax(*reach, rho);
+      break;
+    case PIECE_SWEEP: {
+      points corners = {0};
+      for (size_t i = 0; i < p->n_corners; i++) points_add(&corners, p->corner[i]);
+      out->corner = corners.at, out->n_corners = corners.n;
+      out->size[0] += rho;
+      *reach = fmax(*reach, rho);
+      ok = !corners.failed;
+      break;
+    }
+    case PIECE_POLYGON:
+    case PIECE_SOUP: ok = offset_corners(p, rho, out, reach); break;
+    case PIECE_GRID: ok = offset_grid(p, dimension, rho, out, reach); break;
+  }
+  if (!ok) piece_free(out);
+  return ok;
+}

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* How many samples, which period, offset and kernel: no more than the accuracy asked needs. */
+#include "fourier/gap.h"
+
+cprox_gap_options cprox_gap_options_default(void) {
+  return (cprox_gap_options){.mode = CPROX_GAP_CERTIFIED, .memory_limit = (size_t)256 << 20};
+}
+
+/* Measured over-reach of the tuned mode, in L/n, times 1.25. */
+static double tuned_reach(int dimension) {
+  return dimension == 2 ? 2.1 : 1.9;
+}
+
+/* Offsets and measures of both solids at rho: what over-reach depends on. */
+typedef struct enlarged {
+  double reach, least_measure;
+  bool ok;
+} enlarged;
+
+static enlarged enlarge(const cprox_solid *a, const cprox_solid *b, double rho) {
+  double reach_a, reach_b;
+  cprox_solid *p = solid_offset(a, rho, &reach_a), *q = solid_offset(b, rho, &reach_b);
+  enlarged e = {.ok = p && q};
+  if (e.ok) {
+    e.reach = reach_a + reach_b;
+    e.least_measure = fmin(cprox_solid_measure(p), cprox_solid_measure(q));
+  }
+  cprox_solid_free(p);
+  cprox_solid_free(q);
+  return e;
+}
+
+static double power(double x, int dimension) {
+  return dimension == 2 ? x * x : x * x * x;
+}
+
+/* The length of a sweep, or 0. */
+static double sweep_length(const cprox_solid *s) {
+  const piece *p = s->pieces;
+  return p->kind == PIECE_SWEEP ? piece_measure(p, s->dimension) / ball_measure(s->dimension, p->size[0]) : 0.0;
+}
+
+/* Of a sweep: the integral over its length of the parabola below G (doc/fourier.md, "Sweeps"). In units of L for lengths. */
+static double sweep_threshold(double t, double bend, double length) {
+  const double s = fmin(length, sqrt(2.0 * t / bend));
+  return t * s - bend * s * s * s / 6.0;
+}
+
+double gap_threshold(const kernel *k, const gap_plan *plan, const cprox_solid *a, const cprox_solid *b) {
+  double bend;
+  const double L = plan->period, t = kernel_threshold(k, plan->dimension, plan->offset / L, &bend);
+  const double length = fmax(sweep_length(a), sweep_length(b));
+  return length > 0.0 ? L * power(L, plan->dimension) * sweep_threshold(t, bend, length / L)
+                      : power(L, plan->dimension) * t;
+}
+
+/* The least period that keeps images apart for N, and the over-reach there: L >= 2 (r_a + r_b) + over-reach, where the over-reach
+ * itself depends on L. Each step enlarges L; over_reach is infinite where it does not settle: then clear is still a proof. */
+static cprox_status settle(const cprox_solid *a, const cprox_solid *b, cprox_workspace *workspace, gap_plan *plan) {
+  const double size = 2.0 * (a->radius + b->radius), asked = plan->period;
+  const double rho = kernel_offset(plan->dimension, 2 * plan->N + 1, plan->mode) / (2 * plan->N + 1);
+  kernel k;
+  kernel_certified(&k, plan->N, plan->beta);
+
+  plan->period = asked > 0.0 ? asked : 1.05 * size;
+  for (int step = 0; step < 40; step++) {
+    plan->offset = rho * plan->period;
+    const enlarged e = enlarge(a, b, plan->offset);
+    if (!e.ok) return workspace_fail(workspace, CPROX_MEMORY, "no memory for the offset solids");
+    double reach = INFINITY;
+    if (plan->mode == CPROX_GAP_CERTIFIED) {
+      const double mass = gap_threshold(&k, plan, a, b) / e.least_measure;
+      double x;
+      if (!kernel_reach(&k, plan->dimension, &mass, 1, &x))
+        return workspace_fail(workspace, CPROX_MEMORY, "no memory for a kernel");
+      if (x < 0.5) reach = e.reach + x * plan->period;
+    } else if (plan->mode == CPROX_GAP_TUNED) {
+      reach = tuned_reach(plan->dimension) * plan->period / (2 * plan->N + 1);
+    }
+    /* what images must stay apart for the guarantee alone, and for the over-reach */
+    const double needed = size + e.reach + (isinf(reach) ? 0.0 : fmax(0.0, reach - e.reach));
+    plan->over_reach = reach;
+    if (asked > 0.0 ? asked >= needed
+                    : plan->period >= needed && (step > 8 || reach < INFINITY || plan->mode == CPROX_GAP_SIGNAL))
+      return CPROX_OK;
+    if (asked > 0.0)
+      return workspace_fail(workspace, CPROX_INVALID, "period %g is too small: images of the solids need %g at n = %d",
+                            asked, needed, 2 * plan->N + 1);
+    plan->period = fmax(needed * 1.002, plan->period * (reach < INFINITY ? 1.0 : 1.15));
+  }
+  plan->over_reach = INFINITY;
+  return CPROX_OK;
+}
+
+static cprox_status plan_for(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options, int N,
+                             cprox_workspace *workspace, gap_plan *plan) {
+  *plan = (gap_plan){.mode = options->mode,
+                     .dimension = a->dimension,
+                     .N = N,
+                     .beta = kernel_beta(a->dimension, 2 * N + 1),
+                     .period = options->period,
+                     .turned_first = gap_cost_of_turning(a) < gap_cost_of_turning(b)};
+  return settle(a, b, workspace, plan);
+}
+
+static cprox_status check_options(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *o,
+                                  cprox_workspace *workspace) {
+  if (o->mode != CPROX_GAP_CERTIFIED && o->mode != CPROX_GAP_TUNED && o->mode != CPROX_GAP_SIGNAL)
+    return workspace_fail(workspace, CPROX_INVALID, "mode %d is none", (int)o->mode);
+  if (a->dimension != b->dimension)
+    return workspace_fail(workspace, CPROX_INVALID, "the solids have dimensions %d and %d", a->dimension, b->dimension);
+  if (sweep_length(a) > 0.0 && sweep_length(b) > 0.0)
+    return workspace_fail(workspace, CPROX_INVALID, "both solids are sweeps: at most one may be");
+  if (o->samples != 0 && (o->samples < 3 || o->samples > 2 * KERNEL_MOST_N + 1 || o->samples % 2 == 0))
+    return workspace_fail(workspace, CPROX_INVALID, "samples is %u, must be odd and within 3 … %d", o->samples,
+                          2 * KERNEL_MOST_N + 1);
+  if (!(o->period >= 0.0) || o->period > SOLID_LARGEST)
+    return workspace_fail(workspace, CPROX_INVALID, "period is %g, must be > 0, or 0 for the least", o->period);
+  if (o->samples != 0) return CPROX_OK;
+  if (!(o->delta > 0.0))
+    return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be > 0 (or give samples)", o->delta);
+  if (o->delta > a->radius + b->radius)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "delta %g is larger than the bodies (radii %g and %g): their bounding spheres say as much",
+                          o->delta, a->radius, b->radius);
+  return CPROX_OK;
+}
+
+/* The signal has no over-reach: its blur sigma = 2.2 L/n is what delta means. */
+static double accuracy(const gap_plan *plan) {
+  return plan->mode == CPROX_GAP_SIGNAL ? 2.2 * plan->period / (2 * plan->N + 1) : plan->over_reach;
+}
+
+cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
+                             cprox_workspace *workspace, gap_plan *plan) {
+  cprox_status status = check_options(a, b, options, workspace);
+  if (status != CPROX_OK) return status;
+  if (options->samples != 0) return plan_for(a, b, options, (int)options->samples / 2, workspace, plan);
+
+  /* gallop up to enough samples, then halve down to the least */
+  int low = 0, high = 1;
+  for (;;) {
+    status = plan_for(a, b, options, high, workspace, plan);
+    if (status != CPROX_OK) return status;
+    if (accuracy(plan) <= options->delta) break;
+    low = high;
+    if (high == KERNEL_MOST_N)
+      return workspace_fail(workspace, CPROX_INVALID,
+                            "delta %g needs more than n = %d samples, %.3g bytes; %g is had there", options->delta,
+                            2 * high + 1, gap_bytes(a->dimension, high), accuracy(plan));
+    if (gap_bytes(a->dimension, high) > (double)options->memory_limit)
+      return workspace_fail(
+          workspace, CPROX_INVALID,
+          "delta %g needs more than n = %d samples, %.3g bytes, beyond the limit of %zu; %g is had there",
+          options->delta, 2 * high + 1, gap_bytes(a->dimension, high), options->memory_limit, accuracy(plan));
+    high = high + high / 2 + 1 < KERNEL_MOST_N ? high + high / 2 + 1 : KERNEL_MOST_N;
+  }
+  while (high - low > 1) {
+    const int mid = (low + high) / 2;
+    status = plan_for(a, b, options, mid, workspace, plan);
+    if (status != CPROX_OK) return status;
+    if (accuracy(plan) <= options->delta)
+      high = mid;
+    else
+      low = mid;
+  }
+  return plan_for(a, b, options, high, workspace, plan);
+}

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Solids of one formula, unions, and what every solid can tell. */
+#include "fourier/solid.h"
+
+#include <stdlib.h>
+
+static const double NO_TURN[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+cprox_status solid_check_dimension(int dimension, const cprox_solid *const *solid, cprox_workspace *workspace) {
+  workspace_clear(workspace);
+  if (!solid) return workspace_fail(workspace, CPROX_INVALID, "solid is NULL: nowhere to put the handle");
+  if (dimension != 2 && dimension != 3)
+    return workspace_fail(workspace, CPROX_INVALID, "dimension is %d, must be 2 or 3", dimension);
+  return CPROX_OK;
+}
+
+cprox_status solid_check_length(const char *name, double value, cprox_workspace *workspace) {
+  if (!(value > 0.0)) return workspace_fail(workspace, CPROX_INVALID, "%s is %g, must be > 0", name, value);
+  if (!isfinite(value)) return workspace_fail(workspace, CPROX_INVALID, "%s is %g, must be finite", name, value);
+  if (value < SOLID_LEAST || value > SOLID_LARGEST)
+    return workspace_fail(workspace, CPROX_INVALID, "%s is %g, must be between %g and %g", name, value, SOLID_LEAST,
+                          SOLID_LARGEST);
+  return CPROX_OK;
+}
+
+cprox_status solid_check_points(const char *name, const vec3 *points, size_t n, int dimension,
+                                cprox_workspace *workspace) {
+  for (size_t i = 0; i < n; i++) {
+    const vec3 p = points[i];
+    if (!vec_finite(p) || fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))) > SOLID_LARGEST)
+      return workspace_fail(workspace, CPROX_INVALID, "%s %zu is (%g, %g, %g), must be finite and within %g", name, i,
+                            p.x, p.y, p.z, SOLID_LARGEST);
+    if (dimension == 2 && p.z != 0.0)
+      return workspace_fail(workspace, CPROX_INVALID, "%s %zu has z = %g, a planar solid lies in z = 0", name, i, p.z);
+  }
+  return CPROX_OK;
+}
+
+cprox_status solid_out_of_memory(cprox_workspace *workspace) {
+  return workspace_fail(workspace, CPROX_MEMORY, "no memory for a solid");
+}
+
+cprox_solid *solid_allocate(int dimension, size_t n) {
+  cprox_solid *solid = calloc(1, sizeof *solid);
+  if (!solid) return NULL;
+  solid->dimension = dimension;
+  solid->n = n;
+  solid->pieces = calloc(n, sizeof *solid->pieces);
+  if (!solid->pieces) {
+    free(solid);
+    return NULL;
+  }
+  return solid;
+}
+
+void cprox_solid_free(cprox_solid *solid) {
+  if (!solid) return;
+  for (size_t i = 0; i < solid->n; i++) piece_free(&solid->pieces[i]);
+  free(solid->pieces);
+  free(solid);
+}
+
+void solid_bound(cprox_solid *solid) {
+  vec3 low = vec(INFINITY, INFINITY, INFINITY), high = vec(-INFINITY, -INFINITY, -INFINITY);
+  for (size_t i = 0; i < solid->n; i++) {
+    vec3 l, h;
+    piece_box(&solid->pieces[i], solid->dimension, &l, &h);
+    low = vec(fmin(low.x, l.x), fmin(low.y, l.y), fmin(low.z, l.z));
+    high = vec(fmax(high.x, h.x), fmax(high.y, h.y), fmax(high.z, h.z));
+  }
+  solid->centre = vec_axpy(vec_scale(0.5, low), 0.5, high);
+  if (solid->dimension == 2) solid->centre.z = 0.0;
+  solid->radius = 0.0;
+  for (size_t i = 0; i < solid->n; i++)
+    solid->radius = fmax(solid->radius, piece_radius_about(&solid->pieces[i], solid->dimension, solid->centre));
+  solid->radius *= 1.0 + 1e-14; /* the rounding of centres, radii and poses */
+}
+
+cprox_status solid_of_piece(int dimension, piece *p, cprox_workspace *workspace, cprox_solid **solid) {
+  cprox_solid *made = solid_allocate(dimension, 1);
+  if (!made) {
+    piece_free(p);
+    return solid_out_of_memory(workspace);
+  }
+  made->pieces[0] = *p;
+  solid_bound(made);
+  *solid = made;
+  return CPROX_OK;
+}
+
+/* A piece of one to three lengths, each checked under its name. */
+static cprox_status create_simple(piece_kind kind, int dimension, const char *const names[3], const double given[3],
+                                  const double size[3], cprox_workspace *workspace, cprox_solid **solid) {
+  cprox_status status = solid_check_dimension(dimension, (const cprox_solid *const *)solid, workspace);
+  for (int i = 0; i < 3 && status == CPROX_OK; i++)
+    if (names[i]) status = solid_check_length(names[i], given[i], workspace);
+  if (status != CPROX_OK) return status;
+  piece p = piece_create(kind);
+  for (int i = 0; i < 3; i++) p.size[i] = size[i];
+  return solid_of_piece(dimension, &p, workspace, solid);
+}
+
+cprox_status cprox_solid_create_ball(int dimension, double radius, cprox_workspace *workspace, cprox_solid **solid) {
+  const double r[3] = {radius, radius, radius};
+  return create_simple(PIECE_ELLIPSOID, dimension, (const char *const[3]){"radius", NULL, NULL}, r, r, workspace,
+                       solid);
+}
+
+cprox_status cprox_solid_create_box(int dimension, cprox_vec3 size, cprox_workspace *workspace, cprox_solid **solid) {
+  const double full[3] = {size.x, size.y, size.z}, half[3] = {0.5 * size.x, 0.5 * size.y, 0.5 * size.z};
+  const char *const names[3] = {"size.x", "size.y", dimension == 2 ? NULL : "size.z"};
+  return create_simple(PIECE_BOX, dimension, names, full, half, workspace, solid);
+}
+
+cprox_status cprox_solid_create_ellipsoid(int dimension, cprox_vec3 semi_axes, cprox_workspace *workspace,
+                                          cprox_solid **solid) {
+  const double a[3] = {semi_axes.x, semi_axes.y, semi_axes.z};
+  const char *const names[3] = {"semi_axes.x", "semi_axes.y", dimension == 2 ? NULL : "semi_axes.z"};
+  return create_simple(PIECE_ELLIPSOID, dimension, names, a, a, workspace, solid);
+}
+
+cprox_status cprox_solid_create_cylinder(double height, double radius, cprox_workspace *workspace,
+                                         cprox_solid **solid) {
+  return create_simple(PIECE_CYLINDER, 3, (const char *const[3]){"height", "radius", NULL},
+                       (const double[3]){height, radius, 0}, (const double[3]){radius, 0.5 * height, 0}, workspace,
+                       solid);
+}
+
+cprox_status cprox_solid_create_capsule(int dimension, double height, double radius, cprox_workspace *workspace,
+                                        cprox_solid **solid) {
+  return create_simple(PIECE_CAPSULE, dimension, (const char *const[3]){"height", "radius", NULL},
+                       (const double[3]){height, radius, 0}, (const double[3]){radius, 0.5 * height, 0}, workspace,
+                       solid);
+}
+
+/* Whether a pose is one of the dimension: NULL, or the fault as part of a sentence. */
+static const char *pose_fault(const cprox_pose *pose, int dimension) {
+  const char *fault = frame_pose_fault(pose);
+  if (fault || dimension == 3) return fault;
+  if (pose->orientation.x != 0.0 || pose->orientation.y != 0.0) return "a planar pose turns about z only";
+  return pose->position.z != 0.0 ? "a planar pose has z = 0" : NULL;
+}
+
+cprox_status cprox_solid_create_union(const cprox_solid *const *parts, const cprox_pose *poses, size_t n,
+                                      cprox_workspace *workspace, cprox_solid **solid) {
+  workspace_clear(workspace);
+  if (!solid) return workspace_fail(workspace, CPROX_INVALID, "solid is NULL: nowhere to put the handle");
+  if (n == 0) return workspace_fail(workspace, CPROX_INVALID, "a union needs at least 1 part, got none");
+  if (!parts || !poses) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", parts ? "poses" : "parts");
+  size_t pieces = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (!parts[i]) return workspace_fail(workspace, CPROX_INVALID, "part %zu is NULL", i);
+    if (parts[i]->dimension != parts[0]->dimension)
+      return workspace_fail(workspace, CPROX_INVALID, "part %zu has dimension %d, part 0 has %d", i,
+                            parts[i]->dimension, parts[0]->dimension);
+    const char *fault = pose_fault(&poses[i], parts[0]->dimension);
+    if (fault) return workspace_fail(workspace, CPROX_INVALID, "the pose of part %zu: %s", i, fault);
+    if ((parts[i]->pieces[0].kind == PIECE_SWEEP) != (parts[0]->pieces[0].kind == PIECE_SWEEP))
+      return workspace_fail(workspace, CPROX_INVALID, "parts 0 and %zu: a sweep cannot be united with a solid", i);
+    pieces += parts[i]->n;
+  }
+  if (n > 1 && parts[0]->pieces[0].kind == PIECE_SWEEP)
+    return workspace_fail(workspace, CPROX_INVALID, "sweeps cannot be united: make one gap for each");
+
+  cprox_solid *made = solid_allocate(parts[0]->dimension, pieces);
+  if (!made) return solid_out_of_memory(workspace);
+  size_t at = 0;
+  for (size_t i = 0; i < n; i++) {
+    const frame f = frame_create(&poses[i], vec(0, 0, 0));
+    for (size_t j = 0; j < parts[i]->n; j++)
+      if (!piece_copy(&parts[i]->pieces[j], f.r, f.position, &made->pieces[at++])) {
+        cprox_solid_free(made);
+        return solid_out_of_memory(workspace);
+      }
+  }
+  solid_bound(made);
+  *solid = made;
+  return CPROX_OK;
+}
+
+cprox_solid *solid_offset(const cprox_solid *solid, double rho, double *reach) {
+  cprox_solid *made = solid_allocate(solid->dimension, solid->n);
+  if (!made) return NULL;
+  *reach = 0.0;
+  for (size_t i = 0; i < solid->n; i++) {
+    piece enlarged;
+    bool ok = piece_offset(&solid->pieces[i], solid->dimension, rho, &enlarged, reach);
+    if (ok) {
+      ok = piece_copy(&enlarged, NO_TURN, vec_neg(solid->centre), &made->pieces[i]);
+      piece_free(&enlarged);
+    }
+    if (!ok) {
+      cprox_solid_free(made);
+      return NULL;
+    }
+  }
+  solid_bound(made);
+  return made;
+}
+
+void solid_spectrum(const cprox_solid *solid, vec3 q, bool gradient, wave_jet *jet) {
+  *jet = (wave_jet){0};
+  for (size_t i = 0; i < solid->n; i++) {
+    wave_jet own;
+    piece_spectrum(&solid->pieces[i], solid->dimension, q, gradient, &own);
+    jet->value.re += own.value.re, jet->value.im += own.value.im;
+    jet->re = vec_add(jet->re, own.re), jet->im = vec_add(jet->im, own.im);
+  }
+}
+
+double solid_error_scale(const cprox_solid *solid, double q) {
+  double sum = 0.0;
+  for (size_t i = 0; i < solid->n; i++) sum += piece_error_scale(&solid->pieces[i], solid->dimension, q);
+  return sum;
+}
+
+double cprox_solid_measure(const cprox_solid *solid) {
+  double sum = 0.0;
+  for (size_t i = 0; i < solid->n; i++) sum += piece_measure(&solid->pieces[i], solid->dimension);
+  return sum;
+}
+
+void cprox_solid_bounding_sphere(const cprox_solid *solid, cprox_vec3 *centre, double *radius) {
+  *centre = solid->centre;
+  *radius = solid->radius;
+}
+
+cprox_status cprox_solid_spectrum(const cprox_solid *solid, cprox_vec3 q, cprox_workspace *workspace, double value[2],
+                                  cprox_vec3 gradient[2]) {
+  workspace_clear(workspace);
+  if (!solid || !value) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", solid ? "value" : "solid");
+  if (!vec_finite(q) || (solid->dimension == 2 && q.z != 0.0))
+    return workspace_fail(workspace, CPROX_INVALID, "q is (%g, %g, %g), must be finite%s", q.x, q.y, q.z,
+                          solid->dimension == 2 ? " and have z = 0 in the plane" : "");
+  wave_jet jet;
+  solid_spectrum(solid, q, gradient != NULL, &jet);
+  value[0] = jet.value.re, value[1] = jet.value.im;
+  if (gradient) gradient[0] = jet.re, gradient[1] = jet.im;
+  return CPROX_OK;
+}

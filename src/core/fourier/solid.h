@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A solid: pieces, and what its constructors share. */
+#ifndef CPROX_FOURIER_SOLID_H
+#define CPROX_FOURIER_SOLID_H
+
+#include "base/workspace.h"
+#include "curve_proximity/cprox/fourier.h"
+#include "fourier/piece.h"
+
+struct cprox_solid {
+  int dimension;
+  size_t n;
+  piece *pieces;
+  vec3 centre; /* of a ball that contains the solid */
+  double radius;
+};
+
+/* Lengths a solid may have. */
+#define SOLID_LEAST 1e-100
+#define SOLID_LARGEST 1e100
+
+/* The checks that constructors share; CPROX_OK or the failure with its sentence. */
+cprox_status solid_check_dimension(int dimension, const cprox_solid *const *solid, cprox_workspace *workspace);
+cprox_status solid_check_length(const char *name, double value, cprox_workspace *workspace);
+cprox_status solid_check_points(const char *name, const vec3 *points, size_t n, int dimension,
+                                cprox_workspace *workspace);
+cprox_status solid_out_of_memory(cprox_workspace *workspace);
+
+/* A solid with room for n empty pieces, or NULL. */
+cprox_solid *solid_allocate(int dimension, size_t n);
+
+/* Sets the bounding ball once the pieces are there. */
+void solid_bound(cprox_solid *solid);
+
+/* One piece as a solid: takes the piece over, also on failure (memory out). */
+cprox_status solid_of_piece(int dimension, piece *p, cprox_workspace *workspace, cprox_solid **solid);
+
+/* A copy whose function is at least 1 within rho of the solid, shifted by minus its centre; no clipping left. *reach: how far
+ * it goes beyond the solid at most. NULL where memory is out. */
+cprox_solid *solid_offset(const cprox_solid *solid, double rho, double *reach);
+
+/* Sum of the pieces' spectra. */
+void solid_spectrum(const cprox_solid *solid, vec3 q, bool gradient, wave_jet *jet);
+
+/* Sum of the pieces' error scales at |q|. */
+double solid_error_scale(const cprox_solid *solid, double q);
+
+/* At least the integral of the function's square. *failed turns true where memory is out. */
+double solid_energy(const cprox_solid *solid, bool *failed);
+
+#endif
