@@ -65,14 +65,21 @@ INLINE void phase_lanes(const phase *p, const block *b, bool plane, double c[LAN
 INLINE double lane_sinc(double y, double sine) {
   const double t = y * y, big = fabs(y) < 0.5 ? 1.0 : y;
   const double series =
-      1.0 - t * (1.0 / 6.0) * (1.0 - t * (1.0 / 20.0) * (1.0 - t * (1.0 / 42.0) * (1.0 - t * (1.0 / 72.0) * (1.0 - t * (1.0 / 110.0) * (1.0 - t * (1.0 / 156.0))))));
+      1.0 -
+      t * (1.0 / 6.0) *
+          (1.0 - t * (1.0 / 20.0) *
+                     (1.0 - t * (1.0 / 42.0) *
+                                (1.0 - t * (1.0 / 72.0) * (1.0 - t * (1.0 / 110.0) * (1.0 - t * (1.0 / 156.0))))));
   return fabs(y) < 0.5 ? series : sine / big;
 }
 
 INLINE double lane_sinc_slope(double y, double sinc, double cosine) {
   const double t = y * y, big = fabs(y) < 0.5 ? 1.0 : y;
   const double series =
-      -y * (1.0 / 3.0) * (1.0 - t * (1.0 / 10.0) * (1.0 - t * (1.0 / 28.0) * (1.0 - t * (1.0 / 54.0) * (1.0 - t * (1.0 / 88.0) * (1.0 - t * (1.0 / 130.0))))));
+      -y * (1.0 / 3.0) *
+      (1.0 -
+       t * (1.0 / 10.0) *
+           (1.0 - t * (1.0 / 28.0) * (1.0 - t * (1.0 / 54.0) * (1.0 - t * (1.0 / 88.0) * (1.0 - t * (1.0 / 130.0))))));
   return fabs(y) < 0.5 ? series : (cosine - sinc) / big;
 }
 
@@ -156,18 +163,22 @@ INLINE void lane_sincos(double y, double *sine, double *cosine) {
       ((y - n * 1.57079632673412561417e+00) - n * 6.07710050630396597660e-11) - n * 2.02226624879595063154e-21;
   const double t = r * r;
   const double s =
-      r -
-      r * t * (1.0 / 6.0) *
-          (1.0 -
-           t * (1.0 / 20.0) * (1.0 - t * (1.0 / 42.0) * (1.0 - t * (1.0 / 72.0) * (1.0 - t * (1.0 / 110.0) * (1.0 - t * (1.0 / 156.0) * (1.0 - t * (1.0 / 210.0)))))));
+      r - r * t * (1.0 / 6.0) *
+              (1.0 - t * (1.0 / 20.0) *
+                         (1.0 - t * (1.0 / 42.0) *
+                                    (1.0 - t * (1.0 / 72.0) *
+                                               (1.0 - t * (1.0 / 110.0) *
+                                                          (1.0 - t * (1.0 / 156.0) * (1.0 - t * (1.0 / 210.0)))))));
   const double c =
       1.0 -
       t * (1.0 / 2.0) *
           (1.0 -
            t * (1.0 / 12.0) *
-               (1.0 -
-                t * (1.0 / 30.0) *
-                    (1.0 - t * (1.0 / 56.0) * (1.0 - t * (1.0 / 90.0) * (1.0 - t * (1.0 / 132.0) * (1.0 - t * (1.0 / 182.0) * (1.0 - t * (1.0 / 240.0))))))));
+               (1.0 - t * (1.0 / 30.0) *
+                          (1.0 - t * (1.0 / 56.0) *
+                                     (1.0 - t * (1.0 / 90.0) *
+                                                (1.0 - t * (1.0 / 132.0) *
+                                                           (1.0 - t * (1.0 / 182.0) * (1.0 - t * (1.0 / 240.0))))))));
   const double half = 0.5 * n, quarter = 0.25 * n;
   const bool odd = half != floor(half);          /* sine and cosine change places */
   const double turn = floor(quarter) * -4.0 + n; /* n mod 4: 0, 1, 2, 3 */
@@ -192,17 +203,21 @@ INLINE void ellipsoid_lanes(const turned_piece *t, const block *b, bool gradient
     const double series =
         1.0 -
         t2 * (1.0 / 10.0) *
-            (1.0 -
-             t2 * (1.0 / 28.0) *
-                 (1.0 - t2 * (1.0 / 54.0) * (1.0 - t2 * (1.0 / 88.0) * (1.0 - t2 * (1.0 / 130.0) * (1.0 - t2 * (1.0 / 180.0) * (1.0 - t2 * (1.0 / 238.0)))))));
+            (1.0 - t2 * (1.0 / 28.0) *
+                       (1.0 - t2 * (1.0 / 54.0) *
+                                  (1.0 - t2 * (1.0 / 88.0) *
+                                             (1.0 - t2 * (1.0 / 130.0) *
+                                                        (1.0 - t2 * (1.0 / 180.0) * (1.0 - t2 * (1.0 / 238.0)))))));
     const double profile = t2 < 1.0 ? series : 3.0 * (sine - big * cosine) / (big * big2);
     f[l] = measure * profile;
     if (gradient) {
       const double rise =
           -0.2 *
-          (1.0 -
-           t2 * (1.0 / 14.0) *
-               (1.0 - t2 * (1.0 / 36.0) * (1.0 - t2 * (1.0 / 66.0) * (1.0 - t2 * (1.0 / 104.0) * (1.0 - t2 * (1.0 / 150.0) * (1.0 - t2 * (1.0 / 204.0)))))));
+          (1.0 - t2 * (1.0 / 14.0) *
+                     (1.0 - t2 * (1.0 / 36.0) *
+                                (1.0 - t2 * (1.0 / 66.0) *
+                                           (1.0 - t2 * (1.0 / 104.0) *
+                                                      (1.0 - t2 * (1.0 / 150.0) * (1.0 - t2 * (1.0 / 204.0)))))));
       const double slope = measure * (t2 < 1.0 ? rise : 3.0 * (sine / big - profile) / big2);
       const double g0 = slope * a[0] * y0, g1 = slope * a[1] * y1, g2 = slope * a[2] * y2;
       const double n0 = g1 * p2 - g2 * p1, n1 = g2 * p0 - g0 * p2, n2 = g0 * p1 - g1 * p0;
