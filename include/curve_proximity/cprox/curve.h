@@ -194,13 +194,72 @@ CPROX_API cprox_status cprox_curve_create_piecewise(const cprox_curve *const *cu
                                                     const double *ends, double gap, cprox_workspace *workspace,
                                                     cprox_curve **curve);
 
+/** A smooth curve by functions of the caller's. They are called while the curve is made and never again. */
+typedef struct cprox_smooth_curve {
+  /** Writes psi(t), psi'(t), psi''(t) to jet[0], jet[1], jet[2]. What is not finite is refused, and t named. */
+  void (*evaluate)(void *user, double t, cprox_vec3 jet[3]);
+  /** At least |psi^(6)| everywhere on [a, b], >= 0; it should be less on a part of it. INFINITY: ask about a part. */
+  double (*sixth)(void *user, double a, double b);
+  void *user;      /**< handed to both */
+  double error[3]; /**< >= 0: how far jet[k] may be from the exact derivative [m/(unit of t)^k] */
+  double accuracy; /**< [m] > 0: the remainder to aim at; the number of pieces grows with its power of -1/6 */
+} cprox_smooth_curve;
+
+/** A smooth curve, compiled once to quintic pieces within K6 h^6/46080 of it, K6 the bound of its sixth derivative.
+ *
+ *  functions      kept no longer than the call.
+ *  t0 < t1        finite. Ranges that would need more than 65536 pieces are refused.
+ *
+ *  cprox_curve_error() is the remainder, the errors stated and the rounding; every interval answered carries it. Intervals are
+ *  as true as the bounds are: a bound that is false is detected, and refused with the parameter, where the middle of a piece is
+ *  farther from its quintic than it allows (for a curve whose sixth derivative is about the same over a piece: always, unless
+ *  the errors stated hide it), and not where the derivative is larger than stated on a small part of a piece alone. Cost: two
+ *  evaluations and a few bounds a piece. Source: doc/rounding.md, "Compiled curves".
+ */
+CPROX_API cprox_status cprox_curve_create_smooth(const cprox_smooth_curve *functions, double t0, double t1,
+                                                 cprox_workspace *workspace, cprox_curve **curve);
+
+/** A curve of finite length by functions of the caller's: its points, and how long its parts are at most. Every query with the
+ *  curve calls them, from its own thread; they must give the same answer to the same question. */
+typedef struct cprox_rectifiable_curve {
+  /** Writes psi(t) [m]. */
+  void (*point)(void *user, double t, cprox_vec3 *point);
+  /** At least the arc length [m] over [a, b], its own rounding included: in closed form the u_psi of Lemma 1,
+   *  sqrt((b - a) times the integral of |psi'|²). NULL: from the velocity. */
+  double (*length)(void *user, double a, double b);
+  /** Writes psi'(t) [m/(unit of t)]; used where `length` is NULL, and by cprox_curve_evaluate(). May be NULL beside a length. */
+  void (*velocity)(void *user, double t, cprox_vec3 *velocity);
+  void *user;            /**< handed to all three; it must live as long as the curve */
+  double error;          /**< [m] >= 0: how far a point may be from the exact one */
+  double velocity_error; /**< >= 0: how far a velocity may be from the exact one */
+  double
+      quadrature_error; /**< >= 0: the relative error of the integral of |psi'|² by the 15 points of Gauss and Kronrod, over any
+                                part of a 64th of the range; 0 where |psi'|² is a polynomial of degree 22 or less */
+} cprox_rectifiable_curve;
+
+/** A curve that is only known by its points and the lengths of its parts; it need not be smooth.
+ *
+ *  functions      copied; what they refer to is kept by reference.
+ *  t0 < t1        finite.
+ *
+ *  A part of it lies in the ellipsoid whose foci are its ends and whose axis is its length: each query bounds distances by that,
+ *  in the same search as every other curve's, and needs some ten times as many nodes. cprox_curve_degree() is 0, it has no
+ *  control points, cprox_curve_evaluate() gives no second derivative. Intervals are as true as what the functions state. What
+ *  contradicts itself is detected where a query (or this call, at 65 parameters) comes by: a point that is not finite, two points
+ *  farther apart than the length between them; the call then fails with CPROX_INVALID and says where. A length that is too
+ *  small and yet longer than the chord cannot be told from a true one. Source: A. Lakshmanan et al. 2019, Lemma 1 and Theorem 1;
+ *  doc/rounding.md, "Ellipsoids".
+ */
+CPROX_API cprox_status cprox_curve_create_rectifiable(const cprox_rectifiable_curve *functions, double t0, double t1,
+                                                      cprox_workspace *workspace, cprox_curve **curve);
+
 /** Frees a curve; NULL is allowed. No query may be using it. */
 CPROX_API void cprox_curve_free(cprox_curve *curve);
 
 /** The ends of the parameter range. */
 CPROX_API void cprox_curve_domain(const cprox_curve *curve, double *t0, double *t1);
 
-/** The degree of the curve's polynomial pieces. */
+/** The degree of the curve's polynomial pieces; 0 for a curve that is known by its arc length. */
 CPROX_API size_t cprox_curve_degree(const cprox_curve *curve);
 
 /** The number of polynomial pieces. */

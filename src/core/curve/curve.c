@@ -5,6 +5,7 @@
 
 #include "base/rounding.h"
 #include "base/workspace.h"
+#include "curve/rectifiable.h"
 
 cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
   cprox_curve *c = calloc(1, sizeof *c);
@@ -31,6 +32,7 @@ void cprox_curve_free(cprox_curve *curve) {
   free(curve->points);
   free(curve->error);
   free(curve->capsules);
+  free(curve->arcs);
   free(curve->binomial);
   free(curve);
 }
@@ -235,7 +237,7 @@ void cprox_curve_domain(const cprox_curve *curve, double *t0, double *t1) {
 }
 
 size_t cprox_curve_degree(const cprox_curve *curve) {
-  return curve->degree;
+  return curve->arcs ? 0 : curve->degree;
 }
 
 size_t cprox_curve_pieces(const cprox_curve *curve) {
@@ -266,6 +268,23 @@ static vec3 divide(vec3 a, double length) {
   return vec(a.x / length, a.y / length, a.z / length);
 }
 
+/* The same of a curve that is known by its arc length. */
+static cprox_status evaluate_arcs(const cprox_curve *c, double t, cprox_workspace *workspace, vec3 *point, vec3 *first,
+                                  const vec3 *second) {
+  if (second || (first && !c->arcs->velocity))
+    return workspace_fail(workspace, CPROX_INVALID, "the curve has no %s derivative", second ? "second" : "first");
+  if (first) {
+    vec3 velocity = vec(NAN, NAN, NAN);
+    c->arcs->velocity(c->arcs->user, t, &velocity);
+    if (!vec_finite(velocity))
+      return workspace_fail(workspace, CPROX_INVALID, "at t = %.17g the curve's velocity is (%g, %g, %g), not finite",
+                            t, velocity.x, velocity.y, velocity.z);
+    *first = velocity;
+  }
+  vec3 unused;
+  return rectifiable_point(c, t, workspace, point ? point : &unused);
+}
+
 cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, cprox_workspace *workspace, cprox_vec3 *point,
                                   cprox_vec3 *derivative, cprox_vec3 *second_derivative) {
   workspace_clear(workspace);
@@ -273,6 +292,7 @@ cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, cprox_work
   const double t0 = curve->breaks[0], t1 = curve->breaks[curve->n_pieces];
   if (!(t0 <= t && t <= t1))
     return workspace_fail(workspace, CPROX_INVALID, "t = %.17g is outside the curve's range [%.17g, %.17g]", t, t0, t1);
+  if (curve->arcs) return evaluate_arcs(curve, t, workspace, point, derivative, second_derivative);
 
   const size_t i = piece_at(curve, t);
   const double left = curve->breaks[i], right = curve->breaks[i + 1], length = right - left;
@@ -292,6 +312,8 @@ cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, doub
   workspace_clear(workspace);
   if (!curve || !points)
     return workspace_fail(workspace, CPROX_INVALID, "the %s is NULL", curve ? "array for the points" : "curve");
+  if (curve->arcs)
+    return workspace_fail(workspace, CPROX_INVALID, "a curve known by its arc length has no control points");
   const double t0 = curve->breaks[0], t1 = curve->breaks[curve->n_pieces];
   if (!(a < b)) return workspace_fail(workspace, CPROX_INVALID, "a = %.17g is not below b = %.17g", a, b);
   if (!(t0 <= a && b <= t1))
@@ -313,6 +335,7 @@ cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, doub
 }
 
 double cprox_curve_error(const cprox_curve *curve) {
+  if (curve->arcs) return curve->arcs->error;
   double largest = 0.0;
   for (size_t i = 0; i < curve->n_pieces; i++) largest = fmax(largest, curve->error[i]);
   return largest;

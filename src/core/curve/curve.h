@@ -26,6 +26,10 @@ struct cprox_curve {
    * stand at n_leaves + i for piece i; a node without pieces has radius < 0. capsule[0] is unused. */
   curve_capsule *capsules;
   size_t n_leaves;
+  cprox_rectifiable_curve
+      *arcs;        /* NULL, or what a curve is known by that has no control points: then its pieces are chords of
+                                    degree 1, their errors how far the curve is from them, and intervals are those of
+                                    rectifiable.h */
   double *binomial; /* C(degree - 2, k) for evaluation by the last three de Casteljau points; degree - 1 of them, NULL
                        below 2 */
 };

@@ -74,8 +74,12 @@ static cprox_status check_curves(const cprox_curve *const *curves, size_t n, con
   if (!curves) return workspace_fail(workspace, CPROX_INVALID, "the curves are NULL");
   if (!(gap >= 0.0))
     return workspace_fail(workspace, CPROX_INVALID, "the largest gap is %g; it must be at least 0", gap);
-  for (size_t i = 0; i < n; i++)
+  for (size_t i = 0; i < n; i++) {
     if (!curves[i]) return workspace_fail(workspace, CPROX_INVALID, "curve %zu is NULL", i);
+    if (curves[i]->arcs)
+      return workspace_fail(workspace, CPROX_INVALID, "curve %zu is known by its arc length; it has no pieces to join",
+                            i);
+  }
   for (size_t i = 0; i < n && ends; i++) {
     if (!(fabs(ends[i]) <= CURVE_LARGEST && fabs(ends[i + 1]) <= CURVE_LARGEST))
       return workspace_fail(workspace, CPROX_INVALID, "the range [%g, %g] of curve %zu is not finite or beyond %g",

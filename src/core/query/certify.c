@@ -29,7 +29,7 @@ static size_t parts_of(const cprox_target *target) {
 }
 
 static bool is_known(const cprox_target *target) {
-  if (!target->body) return true;
+  if (!target->body) return !target->curve->arcs;
   if (target->body->kind != CPROX_COMPOUND) return reach_is_known(target->body);
   for (size_t i = 0; i < target->body->n_parts; i++)
     if (!reach_is_known(target->body->parts[i].body)) return false;
@@ -141,6 +141,8 @@ cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size
                   .certificate = certificate};
   certificate_clear(certificate);
   if (mover->body) return workspace_fail(workspace, CPROX_INVALID, "carried bodies have no certificates");
+  if (mover->curve->arcs)
+    return workspace_fail(workspace, CPROX_INVALID, "curves known by their arc length have no certificates");
   for (size_t i = 0; i < n; i++)
     if (!is_known(&targets[i]))
       return workspace_fail(workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates", i);

@@ -69,6 +69,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     m.point[1] = curve_side_point(&o->side[1], m.s[1]);
   }
   consider(c, &m, error);
+  if (curve_side_status(&o->side[0]) < 0) return curve_side_status(&o->side[0]);
   *best = o->best_bound;
 
   /* measuring at a junction may have loaded other pieces */

@@ -14,7 +14,7 @@ static bool piece_is_planar(curve_convex *o) {
     const size_t degree = o->side.curve->degree;
     const double *z = points_pool_at(&o->pool, SLOT_ROOT) + 2 * (degree + 1);
     o->planar_piece = o->side.root_piece;
-    o->planar = o->shape->ops->kind == CPROX_POLYGON && o->side.frame.about_z;
+    o->planar = o->shape->ops->kind == CPROX_POLYGON && o->side.frame.about_z && !o->side.curve->arcs;
     for (size_t i = 0; i <= degree && o->planar; i++) o->planar = z[i] == 0.0;
   }
   return o->planar;
@@ -60,10 +60,9 @@ static bool cover_is_the_body(const curve_convex *o) {
 
 /* Where the curve bends round a vertex or an edge, a plane is too weak; the distance from the cover's centre is not. */
 static void bound_by_cover(curve_convex *o, search_node *node) {
-  const double *points = points_pool_at(&o->pool, (size_t)node->side[0].slot);
   const double from_centre =
-      control_distance_from(points, o->side.curve->degree, o->cover.centre, o->cover.cylinder ? &o->cover.axis : NULL,
-                            points_pool_at(&o->pool, SLOT_SCRATCH));
+      curve_side_distance_from(&o->side, &node->side[0], o->cover.centre, o->cover.cylinder ? &o->cover.axis : NULL,
+                               points_pool_at(&o->pool, SLOT_SCRATCH));
   const double bound = from_centre - o->cover.radius - o->offset;
   const double slack = ROUND_UP * (node->side[0].error + 4.0 * ROUND_U * (from_centre + o->cover.radius + o->offset));
   node->lower = fmax(node->lower, bound - slack);
@@ -102,6 +101,8 @@ static double filter(void *self, search_node *node, double goal) {
 
 cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sight *sight,
                                   search_best *bound) {
+  const cprox_status usable = curve_side_status(&o->side);
+  if (usable < 0) return usable;
   o->probes++;
   sight->piece = piece, sight->s = s, sight->y = y;
   if (piece_is_planar(o))
@@ -168,8 +169,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   o->nodes++;
   const bool piece = is_piece(o, node);
   if (piece) {
-    if (!curve_side_materialise(&o->side, &node->side[0]))
-      return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
+    if (!curve_side_materialise(&o->side, &node->side[0])) return curve_side_trouble(&o->side);
     if (best_inside(o, node) >= 0.0) {
       if (node->seen != o->incumbent) curve_convex_bound(o, node, &o->best);
       node->seen = o->incumbent;
@@ -208,7 +208,7 @@ static int split(void *self, search_node *node, search_node *child) {
     const double cut = inside < 0.0 ? 0.5 * (at->a + at->b) : o->best.s;
     if (!(at->a < cut && cut < at->b)) return 0;
     if (!curve_side_cut_piece(&o->side, at, cut, inside < 0.0 ? 0.5 : inside, half))
-      return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
+      return curve_side_trouble(&o->side);
   }
   int children = 0;
   for (int k = 0; k < 2; k++) {

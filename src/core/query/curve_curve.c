@@ -150,7 +150,7 @@ cprox_status curve_curve_materialise(curve_curve *o, search_node *node, bool *pi
     if (!curve_side_is_piece(&o->side[k], &node->side[k])) {
       *pieces = false;
     } else if (!curve_side_materialise(&o->side[k], &node->side[k])) {
-      return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
+      return curve_side_trouble(&o->side[k]);
     }
   }
   return CPROX_OK;
@@ -189,6 +189,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     curve_meeting m = curve_curve_meeting_near(o, node, fraction, &error);
     const uint32_t before = o->incumbent;
     consider(o, &m, error);
+    if (curve_side_status(&o->side[0]) < 0) return curve_side_status(&o->side[0]); /* both sides keep it in one place */
     if (o->fault)
       return workspace_fail(o->workspace, CPROX_INVALID, "the support callback did not return a point of its body");
     if (o->carries) { /* its own normal is worth more than that of the chords */
@@ -264,7 +265,7 @@ int curve_curve_cut(curve_curve *o, search_node *node, const curve_curve_cuts *c
   for (int k = 0; k < 2; k++) {
     n[k] = cut_side(o, node, k, cuts, part[k]);
     if (n[k] == 0) return 0;
-    if (n[k] < 0) return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
+    if (n[k] < 0) return curve_side_trouble(&o->side[k]);
   }
 
   /* every pair of parts is a child; a part that serves a second child gets points of its own */
@@ -277,7 +278,7 @@ int curve_curve_cut(curve_curve *o, search_node *node, const curve_curve_cuts *c
       made->side[1] = part[1][j];
       if ((j > 0 && !curve_side_copy(&o->side[0], &made->side[0])) ||
           (i > 0 && !curve_side_copy(&o->side[1], &made->side[1])))
-        return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for another parameter interval");
+        return curve_side_trouble(&o->side[0]);
       curve_curve_bound(o, made, o->best.normal);
       curve_curve_bound(o, made, o->last_normal);
       made->seen = o->incumbent;

@@ -5,11 +5,16 @@
 
 #include "base/rounding.h"
 #include "curve/control.h"
+#include "curve/rectifiable.h"
 
 /* ---- memory ----------------------------------------------------------------------------------------------------------- */
 
+/* A slot holds the control points of a piece, or two end points and a hull. */
+enum { ARC_HULL = 6, ARC_SIZE = 8 };
+
 bool points_pool_begin(points_pool *pool, size_t degree, size_t reserved, cprox_workspace *workspace) {
-  *pool = (points_pool){.workspace = workspace, .stride = control_size(degree), .slots = reserved};
+  const size_t size = control_size(degree);
+  *pool = (points_pool){.workspace = workspace, .stride = size > ARC_SIZE ? size : ARC_SIZE, .slots = reserved};
   return workspace_reserve(workspace, WORKSPACE_POINTS, reserved * pool->stride * sizeof(double));
 }
 
@@ -34,6 +39,15 @@ void points_pool_give(points_pool *pool, int32_t slot) {
   if (slot < 0) return;
   int32_t *free_slots = workspace_reserve(pool->workspace, WORKSPACE_FREE_SLOTS, 0);
   free_slots[pool->free_slots++] = slot;
+}
+
+cprox_status curve_side_trouble(const curve_side *side) {
+  if (side->pool->trouble < 0) return side->pool->trouble;
+  return workspace_fail(side->pool->workspace, CPROX_MEMORY, "no memory for another parameter interval");
+}
+
+cprox_status curve_side_status(const curve_side *side) {
+  return side->pool->trouble;
 }
 
 /* ---- pieces ----------------------------------------------------------------------------------------------------------- */
@@ -90,9 +104,90 @@ void curve_side_load(curve_side *side, size_t piece) {
     x[i] = p.x, y[i] = p.y, z[i] = p.z;
   }
   side->root_piece = piece;
-  side->root_error = side->curve->error[piece] + turned;
+  side->root_error = (side->curve->arcs ? side->curve->arcs->error : side->curve->error[piece]) + turned;
   side->root_magnitude = control_magnitude(x, degree);
 }
+
+/* ---- intervals of curves that are known by their arc length -------------------------------------------------------------- */
+
+/* Whether all went well; else the trouble is kept, with its reason. */
+static bool went_well(const curve_side *side, cprox_status status) {
+  if (status < 0) side->pool->trouble = status;
+  return status >= 0;
+}
+
+/* The curve's parameter, never beyond its piece. */
+static double arc_parameter(const curve_side *side, size_t piece, double s) {
+  return fmin(curve_side_parameter(side, piece, s), side->curve->breaks[piece + 1]);
+}
+
+/* The point at s of a piece, in the side's frame; *error becomes at least how far it may be from the exact one. */
+static bool arc_point(const curve_side *side, size_t piece, double s, vec3 *point, double *error) {
+  vec3 world;
+  const double t = arc_parameter(side, piece, s);
+  if (!went_well(side, rectifiable_point(side->curve, t, side->pool->workspace, &world))) return false;
+  double turned = 0.0;
+  *point = frame_to_local(&side->frame, world, &turned);
+  *error = fmax(*error, ROUND_UP * (side->curve->arcs->error + turned));
+  return true;
+}
+
+/* Fills the slot of an interval with its ends and their hull. */
+static bool arc_fill(const curve_side *side, search_interval *at, vec3 a, vec3 b, double error) {
+  const size_t piece = curve_side_piece(side, at);
+  const double ta = arc_parameter(side, piece, at->a), tb = arc_parameter(side, piece, at->b);
+  rectifiable_hull hull;
+  if (!went_well(side, rectifiable_hull_of(side->curve, ta, tb, a, b, error, side->pool->workspace, &hull)))
+    return false;
+  const double numbers[ARC_SIZE] = {a.x, b.x, a.y, b.y, a.z, b.z, hull.axis, hull.radius};
+  memcpy(points_pool_at(side->pool, (size_t)at->slot), numbers, sizeof numbers);
+  at->error = error;
+  return true;
+}
+
+static void arc_ends(const curve_side *side, const search_interval *at, vec3 *a, vec3 *b) {
+  const double *p = points_pool_at(side->pool, (size_t)at->slot);
+  *a = vec(p[0], p[2], p[4]);
+  *b = vec(p[1], p[3], p[5]);
+}
+
+static rectifiable_hull arc_hull(const curve_side *side, const search_interval *at) {
+  const double *p = points_pool_at(side->pool, (size_t)at->slot);
+  return (rectifiable_hull){.axis = p[ARC_HULL], .radius = p[ARC_HULL + 1]};
+}
+
+/* An interval of its own. Where it is asked to end within a piece its ends are rounded, by 4u of the parameters in all: what lies
+ * between is within its length of an end. */
+static bool arc_materialise(const curve_side *side, search_interval *at) {
+  const size_t piece = curve_side_piece(side, at);
+  vec3 a, b;
+  double error = 0.0, beyond = 0.0;
+  if (!arc_point(side, piece, at->a, &a, &error) || !arc_point(side, piece, at->b, &b, &error)) return false;
+  const double least = side->curve->breaks[piece], most = side->curve->breaks[piece + 1];
+  const double step = 4.0 * ROUND_U * fmax(fabs(least), fabs(most));
+  for (int k = 0; k < 2; k++) {
+    const double s = k == 0 ? at->a : at->b, t = arc_parameter(side, piece, s);
+    const double from = k == 0 ? fmax(t - step, least) : t, to = k == 0 ? t : fmin(t + step, most);
+    double length;
+    if (!(from < to)) continue;
+    if (!went_well(side, rectifiable_length(side->curve, from, to, side->pool->workspace, &length))) return false;
+    beyond = fmax(beyond, length);
+  }
+  if (!arc_fill(side, at, a, b, error)) return false;
+  at->error += beyond;
+  return true;
+}
+
+/* The right half keeps the slot. */
+static bool arc_cut(const curve_side *side, const search_interval *whole, search_interval half[2]) {
+  vec3 a, b, middle;
+  double error = whole->error;
+  arc_ends(side, whole, &a, &b);
+  return arc_point(side, curve_side_piece(side, whole), half[0].b, &middle, &error) &&
+         arc_fill(side, &half[0], a, middle, error) && arc_fill(side, &half[1], middle, b, error);
+}
+
+/* ---- intervals of pieces ------------------------------------------------------------------------------------------------ */
 
 /* Cuts the points of a whole piece down to those of [a, b]. False where memory is out. */
 static bool cut_to_section(curve_side *side, search_interval *at) {
@@ -118,6 +213,7 @@ bool curve_side_materialise(curve_side *side, search_interval *at) {
   if (at->slot >= 0) return true;
   at->slot = points_pool_take(side->pool);
   if (at->slot < 0) return false;
+  if (side->curve->arcs) return arc_materialise(side, at);
   const size_t bytes = control_size(side->curve->degree) * sizeof(double);
   memcpy(points_pool_at(side->pool, (size_t)at->slot), points_pool_at(side->pool, side->root_slot), bytes);
   at->error = side->root_error;
@@ -128,7 +224,7 @@ bool curve_side_copy(const curve_side *side, search_interval *at) {
   if (at->slot < 0) return true;
   const int32_t slot = points_pool_take(side->pool);
   if (slot < 0) return false;
-  const size_t bytes = control_size(side->curve->degree) * sizeof(double);
+  const size_t bytes = side->pool->stride * sizeof(double);
   memcpy(points_pool_at(side->pool, (size_t)slot), points_pool_at(side->pool, (size_t)at->slot), bytes);
   at->slot = slot;
   return true;
@@ -136,7 +232,26 @@ bool curve_side_copy(const curve_side *side, search_interval *at) {
 
 /* ---- bounds ----------------------------------------------------------------------------------------------------------- */
 
+/* What an ellipsoid reaches: rectifiable.h says within what. */
+static curve_reach arc_reach(const curve_side *side, const search_interval *at, vec3 n) {
+  const rectifiable_hull hull = arc_hull(side, at);
+  vec3 a, b;
+  arc_ends(side, at, &a, &b);
+  return (curve_reach){.least = rectifiable_reach(&hull, a, b, n),
+                       .error = at->error,
+                       .magnitude = fmax(vec_norm(a), vec_norm(b)) + hull.axis};
+}
+
+double curve_side_distance_from(const curve_side *side, const search_interval *at, vec3 centre, const vec3 *axis,
+                                double *scratch) {
+  const double *points = points_pool_at(side->pool, (size_t)at->slot);
+  const double distance = control_distance_from(points, side->curve->degree, centre, axis, scratch);
+  /* an ellipsoid lies in the capsule round its chord */
+  return side->curve->arcs ? fmax(distance - ROUND_UP * arc_hull(side, at).radius, 0.0) : distance;
+}
+
 curve_reach curve_side_reach(const curve_side *side, const search_interval *at, vec3 n) {
+  if (at->slot >= 0 && side->curve->arcs) return arc_reach(side, at, n);
   if (at->slot >= 0)
     return (curve_reach){.least = control_least(points_pool_at(side->pool, (size_t)at->slot), side->curve->degree, n),
                          .error = at->error,
@@ -154,6 +269,11 @@ curve_reach curve_side_reach(const curve_side *side, const search_interval *at, 
 /* ---- points ----------------------------------------------------------------------------------------------------------- */
 
 vec3 curve_side_point(const curve_side *side, double s) {
+  if (side->curve->arcs) {
+    vec3 at;
+    double error = 0.0;
+    return arc_point(side, side->root_piece, s, &at, &error) ? at : vec(NAN, NAN, NAN);
+  }
   const size_t degree = side->curve->degree;
   const double *x = points_pool_at(side->pool, side->root_slot), *y = x + degree + 1, *z = y + degree + 1;
   vec3 point;
@@ -162,6 +282,12 @@ vec3 curve_side_point(const curve_side *side, double s) {
 }
 
 double curve_side_point_error(const curve_side *side) {
+  if (side->curve->arcs) {
+    /* every point of a piece is as near to its ends as the piece is long */
+    const double reach =
+        side->root_magnitude + vec_norm(side->frame.centre) + 2.0 * side->curve->error[side->root_piece];
+    return ROUND_UP * (side->curve->arcs->error + (ROUND_ROTATION + 4.0) * ROUND_U * reach);
+  }
   const double n = (double)side->curve->degree;
   return ROUND_UP * (side->root_error + (3.0 * n + 8.0) * ROUND_U * 1.7320508075688774 * side->root_magnitude);
 }
@@ -179,7 +305,7 @@ vec3 curve_side_junction(curve_side *side, const search_interval *range, size_t 
   double turned = 0.0;
   const vec3 world = curve_piece(side->curve, *piece)[*s == 0.0 ? 0 : side->curve->degree];
   const vec3 local = frame_to_local(&side->frame, world, &turned);
-  *error = side->curve->error[*piece] + turned;
+  *error = (side->curve->arcs ? side->curve->arcs->error : side->curve->error[*piece]) + turned;
   curve_side_load(side, *piece);
   return local;
 }
@@ -196,6 +322,12 @@ void curve_side_cut_range(const search_interval *range, search_interval half[2])
 bool curve_side_cut_piece(curve_side *side, search_interval *piece, double cut, double s, search_interval half[2]) {
   const int32_t left = points_pool_take(side->pool);
   if (left < 0) return false;
+  if (side->curve->arcs) {
+    half[0] = half[1] = *piece;
+    half[0].slot = left;
+    half[0].b = half[1].a = cut;
+    return arc_cut(side, piece, half);
+  }
   const double added =
       control_split(points_pool_at(side->pool, (size_t)left), points_pool_at(side->pool, (size_t)piece->slot),
                     side->curve->degree, s, side->root_magnitude);

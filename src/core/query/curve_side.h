@@ -14,6 +14,7 @@ typedef struct points_pool {
   cprox_workspace *workspace;
   size_t stride; /* numbers a slot */
   size_t slots, free_slots;
+  cprox_status trouble; /* negative where a curve's own functions failed; the workspace has the reason */
 } points_pool;
 
 /* A pool whose first `reserved` slots are never given out: each side's root, scratch. False where memory is out. */
@@ -33,6 +34,11 @@ typedef struct curve_side {
 
 curve_side curve_side_create(const cprox_curve *curve, frame placed, points_pool *pool, size_t root_slot);
 
+/* The status of a call below that returned false: CPROX_MEMORY with its reason, or what a curve's own functions did wrong. And the
+ * latter alone, CPROX_OK where they did nothing wrong: to be asked where points were taken. */
+cprox_status curve_side_trouble(const curve_side *side);
+cprox_status curve_side_status(const curve_side *side);
+
 /* The interval that is the whole curve. */
 search_interval curve_side_whole(void);
 
@@ -46,7 +52,8 @@ void curve_side_load(curve_side *side, size_t piece);
 /* The interval that is [a, b] of a piece, 0 <= a < b <= 1. */
 search_interval curve_side_section(const cprox_curve *curve, size_t piece, double a, double b);
 
-/* Gives a piece's interval control points of its own. False where memory is out. */
+/* Gives a piece's interval control points of its own: of a curve that is known by its arc length, its ends and their ellipsoid
+ * (rectifiable.h), which bounds see and others need not. False where memory is out, or by curve_side_trouble(). */
 bool curve_side_materialise(curve_side *side, search_interval *at);
 
 /* Gives an interval that shares its control points with another a copy of its own. False where memory is out. */
@@ -61,6 +68,11 @@ typedef struct curve_reach {
 
 /* n: unit within 4 u. A piece with points of its own must be the loaded one. */
 curve_reach curve_side_reach(const curve_side *side, const search_interval *at, vec3 n);
+
+/* A lower bound of the distance from a centre, or an axis through it (NULL for none), over an interval with points of its own, as
+ * control_distance_from() gives it. `scratch` holds a slot's numbers. */
+double curve_side_distance_from(const curve_side *side, const search_interval *at, vec3 centre, const vec3 *axis,
+                                double *scratch);
 
 /* A point of the loaded piece, and how far a point computed so may be from the exact curve. */
 vec3 curve_side_point(const curve_side *side, double s);

@@ -130,6 +130,7 @@ static vec3 gap_of(const jet *x, const jet *y, const vec3 *shift) {
 }
 
 bool meeting_descend(const curve_side side[2], const vec3 *shift, curve_meeting *meeting, double step) {
+  if (side[0].curve->arcs || side[1].curve->arcs) return false; /* no derivatives to go by */
   double s[2] = {meeting->s[0], meeting->s[1]};
   jet x = jet_at(&side[0], s[0]), y = jet_at(&side[1], s[1]);
   const vec3 seen = gap_of(&x, &y, shift);

@@ -90,6 +90,7 @@ static double descend(const curve_convex *o, const double *points, const curve_s
 }
 
 cprox_status polish(curve_convex *o, const double *points, double step) {
+  if (o->side.curve->arcs) return CPROX_OK; /* no derivatives to go by */
   const double error = curve_side_point_error(&o->side);
   curve_sight from = o->best;
   for (int round = 0; round < MAX_ROUNDS; round++) {

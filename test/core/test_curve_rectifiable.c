@@ -1,0 +1,402 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Curves that are known by their arc length alone. The same Bézier curve is asked both ways: by its control points, and by its
+ * points and sqrt((b - a) integral of |psi'|²); both answers are intervals that hold one true distance. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/rounding.h"
+#include "curve/rectifiable.h"
+#include "curve_proximity/cprox.h"
+#include "support/curves.h"
+#include "support/reference.h"
+
+/* ---- a Bézier curve on [0, 1] as a caller's functions ---- */
+
+enum { MOST_DEGREE = 9 };
+
+typedef struct bezier {
+  vec3 p[MOST_DEGREE + 1];
+  size_t degree;
+  double nan_from;              /* points are no numbers from here on */
+  double short_below, short_by; /* lengths of shorter intervals are said to be this part of what they are */
+  unsigned long points, lengths;
+} bezier;
+
+static void point(void *user, double t, vec3 *x) {
+  bezier *b = user;
+  b->points++;
+  const vec3l at = ref_bezier(b->p, b->degree, t, 0);
+  *x = vec((double)at.x, (double)at.y, (double)at.z);
+  if (t >= b->nan_from) x->y = NAN;
+}
+
+static void velocity(void *user, double t, vec3 *v) {
+  const bezier *b = user;
+  const vec3l at = ref_bezier(b->p, b->degree, t, 1);
+  *v = vec((double)at.x, (double)at.y, (double)at.z);
+}
+
+/* u_psi by Gauss' rule with 10 nodes, exact for |psi'|² up to degree 19, in long double and rounded up. */
+static double length(void *user, double from, double to) {
+  static const long double node[5] = {0.14887433898163121089L, 0.43339539412924719080L, 0.67940956829902440623L,
+                                      0.86506336668898451073L, 0.97390652851717172008L};
+  static const long double weight[5] = {0.29552422471475287017L, 0.26926671930999635509L, 0.21908636251598204400L,
+                                        0.14945134915058059315L, 0.06667134430868813759L};
+  bezier *b = user;
+  b->lengths++;
+  const long double half = 0.5L * ((long double)to - from), middle = 0.5L * ((long double)to + from);
+  long double sum = 0.0L;
+  for (int i = 0; i < 10; i++) {
+    const vec3l v = ref_bezier(b->p, b->degree, middle + (i < 5 ? 1 : -1) * half * node[i % 5], 1);
+    sum += half * weight[i % 5] * ref_dot(v, v);
+  }
+  const long double exact = sqrtl(2.0L * half * sum) * (1.0L + 1e-18L);
+  const double u = (double)exact;
+  return (to - from < b->short_below ? b->short_by : 1.0) * ((long double)u < exact ? nextafter(u, INFINITY) : u);
+}
+
+static bezier random_bezier(rng *r) {
+  bezier b = {.degree = 1 + rng_index(r, 8), .nan_from = INFINITY};
+  for (size_t i = 0; i <= b.degree; i++) b.p[i] = rng_in_cube(r, 1.0);
+  return b;
+}
+
+/* Points are rounded once. */
+static cprox_rectifiable_curve functions(bezier *b) {
+  return (cprox_rectifiable_curve){.point = point, .length = length, .user = b, .error = 2.0 * ROUND_U};
+}
+
+static cprox_curve *by_arcs(bezier *b) {
+  const cprox_rectifiable_curve f = functions(b);
+  cprox_curve *c = NULL;
+  assert_int_equal(cprox_curve_create_rectifiable(&f, 0.0, 1.0, NULL, &c), CPROX_OK);
+  return c;
+}
+
+static cprox_curve *by_velocity(bezier *b) {
+  const cprox_rectifiable_curve f = {
+      .point = point, .velocity = velocity, .user = b, .error = 2.0 * ROUND_U, .velocity_error = 40.0 * ROUND_U};
+  cprox_curve *c = NULL;
+  assert_int_equal(cprox_curve_create_rectifiable(&f, 0.0, 1.0, NULL, &c), CPROX_OK);
+  return c;
+}
+
+static cprox_curve *by_points(const bezier *b) {
+  cprox_curve *c = NULL;
+  assert_int_equal(cprox_curve_create_bezier(b->p, b->degree + 1, 0.0, 1.0, NULL, &c), CPROX_OK);
+  return c;
+}
+
+/* ---- the hull ---- */
+
+static double least_of(const bezier *b, double from, double to, vec3 n) {
+  const vec3l at = ref_vec(n);
+  long double least = INFINITY;
+  for (int i = 0; i <= 40; i++)
+    least = fminl(least, ref_dot(at, ref_bezier(b->p, b->degree, from + (i / 40.0L) * ((long double)to - from), 0)));
+  return (double)least;
+}
+
+/* A line at even speed whose points are exact, and its length to the last digit: products of numbers of 26 digits. */
+static void exact_line(rng *r, bezier *b, double *from, double *to) {
+  b->degree = 1;
+  b->p[0] = vec(0, 0, 0);
+  b->p[1] = vec((double)rng_index(r, 1 << 26), (double)rng_index(r, 1 << 26), 1.0 + (double)rng_index(r, 1 << 26));
+  const double length = 1.0 + floor(rng_log_uniform(r, 1.0, 3e7)), most = ldexp(1.0, 26) - length;
+  *from = ldexp(floor(rng_uniform(r, 0.0, most)), -26);
+  *to = *from + ldexp(length, -26);
+}
+
+/* seed 641, 20000 intervals down to 1e-12 long, of which a third on exact lines at even speed: there W² - L² is all rounding, and
+ * a normal across the chord shows it. The reach is within 8u of the sizes, as its header says; n's own length is u from 1. */
+static void no_ellipsoid_leaves_out_a_point(void **state) {
+  (void)state;
+  rng r = rng_seed(641);
+  double largest = -INFINITY;
+  for (size_t i = test_cases(20000); i-- > 0;) {
+    bezier b = random_bezier(&r);
+    const double h = rng_log_uniform(&r, 1e-12, 1.0);
+    double from = rng_uniform(&r, 0.0, 1.0 - h), to = from + h;
+    cprox_rectifiable_curve f = functions(&b);
+    if (i % 3 == 0) {
+      exact_line(&r, &b, &from, &to);
+      f.error = 0.0;
+    }
+    const cprox_curve c = {.arcs = (cprox_rectifiable_curve *)&f};
+    vec3 ends[2];
+    assert_int_equal(rectifiable_point(&c, from, NULL, &ends[0]), CPROX_OK);
+    assert_int_equal(rectifiable_point(&c, to, NULL, &ends[1]), CPROX_OK);
+    rectifiable_hull hull;
+    assert_int_equal(rectifiable_hull_of(&c, from, to, ends[0], ends[1], f.error, NULL, &hull), CPROX_OK);
+
+    /* across the chord, or nearly */
+    vec3 n = vec_cross(vec_sub(ends[1], ends[0]), rng_unit(&r));
+    if (rng_index(&r, 4) == 0 || vec_norm2(n) == 0.0) n = rng_unit(&r);
+    n = vec_scale(1.0 / vec_norm(n), n);
+    n = vec_axpy(n, rng_index(&r, 2) ? rng_log_uniform(&r, 1e-12, 1e-6) : 0.0, rng_unit(&r));
+    n = vec_scale(1.0 / vec_norm(n), n);
+    const double reach = rectifiable_reach(&hull, ends[0], ends[1], n), least = least_of(&b, from, to, n);
+    const double size = hull.axis + fmax(vec_norm(ends[0]), vec_norm(ends[1]));
+    if (!(reach <= least + 8.0 * ROUND_U * size))
+      fail_msg("[%.17g, %.17g]: reach %.17g, but a point at %.17g", from, to, reach, least);
+    /* and it is no wider than the capsule that it lies in */
+    const double capsule = fmin(vec_dot(n, ends[0]), vec_dot(n, ends[1])) - hull.radius;
+    assert_true(reach >= capsule - 8.0 * ROUND_U * size);
+    largest = fmax(largest, (reach - least) / (8.0 * ROUND_U * size));
+  }
+  print_message("the tightest reach is %.3g of its rounding above a point\n", largest);
+}
+
+/* ---- queries ---- */
+
+static cprox_body *random_body(rng *r, bool *point_like) {
+  cprox_body *body = NULL;
+  cprox_status status = CPROX_OK;
+  vec3 v[12];
+  *point_like = false;
+  switch (rng_index(r, 4)) {
+    case 0: status = cprox_body_create_point(vec(0, 0, 0), NULL, &body), *point_like = true; break;
+    case 1: status = cprox_body_create_sphere(rng_uniform(r, 0.05, 0.5), NULL, &body), *point_like = true; break;
+    case 2:
+      status = cprox_body_create_box(vec(rng_uniform(r, 0.1, 1), rng_uniform(r, 0.1, 1), rng_uniform(r, 0.1, 1)), NULL,
+                                     &body);
+      break;
+    default:
+      for (int i = 0; i < 12; i++) v[i] = rng_in_cube(r, 0.4);
+      status = cprox_body_create_polytope(v, 12, NULL, &body);
+  }
+  assert_int_equal(status, CPROX_OK);
+  return body;
+}
+
+static cprox_pose random_pose(rng *r) {
+  const vec3 axis = rng_unit(r);
+  return (cprox_pose){.position = rng_in_cube(r, 1.5), .orientation = {rng_uniform(r, -1, 1), axis.x, axis.y, axis.z}};
+}
+
+/* What both ways say of one distance. */
+static void agree(const cprox_result *arcs, const cprox_result *points, double epsilon) {
+  if (!(arcs->lower <= points->upper && points->lower <= arcs->upper))
+    fail_msg("[%.17g, %.17g] by arcs, [%.17g, %.17g] by points", arcs->lower, arcs->upper, points->lower,
+             points->upper);
+  if (arcs->status == CPROX_OK && arcs->upper - arcs->lower > epsilon)
+    fail_msg("ok, but %g wide", arcs->upper - arcs->lower);
+}
+
+/* seed 642, 400 curves, every other one by Gauss and Kronrod, against bodies; 1e-6. */
+static void distances_by_arcs_and_by_points_agree(void **state) {
+  (void)state;
+  rng r = rng_seed(642);
+  cprox_workspace *ws = cprox_workspace_create();
+  unsigned long nodes = 0, most = 0, n = 0, not_ok = 0;
+  for (size_t i = test_cases(400); i-- > 0;) {
+    bezier b = random_bezier(&r);
+    cprox_curve *arcs = i % 2 ? by_arcs(&b) : by_velocity(&b), *points = by_points(&b);
+    bool point_like;
+    cprox_body *body = random_body(&r, &point_like);
+    const cprox_target target = cprox_padded(cprox_at(body, random_pose(&r)), rng_index(&r, 2) ? 0.0 : 0.05);
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-6;
+    cprox_result of_arcs, of_points;
+    const double radius = rng_index(&r, 2) ? 0.0 : 0.02;
+    const cprox_status status = cprox_distance(cprox_tube_along(arcs, radius), target, &options, ws, &of_arcs);
+    if (status < 0) fail_msg("%s", cprox_workspace_reason(ws));
+    assert_true(cprox_distance(cprox_tube_along(points, radius), target, &options, ws, &of_points) >= 0);
+    agree(&of_arcs, &of_points, options.epsilon);
+    not_ok += status != CPROX_OK;
+    nodes += of_arcs.nodes, most = of_arcs.nodes > most ? of_arcs.nodes : most, n++;
+
+    /* the verdicts follow */
+    for (int k = 0; k < 2; k++) {
+      const double delta = of_points.lower * (k ? 1.01 : 0.99);
+      cprox_result verdict;
+      assert_true(cprox_tolerance(cprox_tube_along(arcs, radius), target, delta, &options, ws, &verdict) >= 0);
+      if (verdict.verdict == CPROX_YES) assert_true(delta < of_points.upper);
+      if (verdict.verdict == CPROX_NO) assert_true(delta >= of_points.lower);
+      assert_true(verdict.verdict != CPROX_UNDECIDED || 0.01 * of_points.lower < 2e-6);
+    }
+    cprox_body_free(body);
+    cprox_curve_free(points);
+    cprox_curve_free(arcs);
+  }
+  print_message("%lu nodes a distance on average, %lu at most; %lu of %lu not to epsilon\n", nodes / n, most, not_ok,
+                n);
+  assert_true(not_ok <= n / 50);
+  cprox_workspace_free(ws);
+}
+
+/* seed 643, 60 pairs; 1e-4, both by arcs or one by points. */
+static void curves_by_arcs_and_by_points_agree(void **state) {
+  (void)state;
+  rng r = rng_seed(643);
+  cprox_workspace *ws = cprox_workspace_create();
+  unsigned long nodes = 0, n = 0, not_ok = 0;
+  for (size_t i = test_cases(60); i-- > 0;) {
+    bezier b[2] = {random_bezier(&r), random_bezier(&r)};
+    const vec3 shift = rng_in_cube(&r, 1.5);
+    for (size_t k = 0; k <= b[1].degree; k++) b[1].p[k] = vec_add(b[1].p[k], shift);
+    cprox_curve *arcs[2] = {by_arcs(&b[0]), i % 3 ? by_arcs(&b[1]) : by_points(&b[1])};
+    cprox_curve *points[2] = {by_points(&b[0]), by_points(&b[1])};
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-4;
+    cprox_result of_arcs, of_points;
+    const cprox_status status =
+        cprox_distance(cprox_point_along(arcs[0]), cprox_curve_target(arcs[1], 0.0), &options, ws, &of_arcs);
+    if (status < 0) fail_msg("%s", cprox_workspace_reason(ws));
+    assert_true(cprox_distance(cprox_point_along(points[0]), cprox_curve_target(points[1], 0.0), &options, ws,
+                               &of_points) >= 0);
+    agree(&of_arcs, &of_points, options.epsilon);
+    not_ok += status != CPROX_OK;
+    nodes += of_arcs.nodes, n++;
+    for (int k = 0; k < 2; k++) {
+      cprox_curve_free(arcs[k]);
+      cprox_curve_free(points[k]);
+    }
+  }
+  print_message("%lu nodes a pair of curves on average; %lu of %lu not to epsilon\n", nodes / n, not_ok, n);
+  assert_true(not_ok <= n / 10);
+  cprox_workspace_free(ws);
+}
+
+/* ---- what is wrong ---- */
+
+static void what_contradicts_itself_is_refused_at_once(void **state) {
+  (void)state;
+  rng r = rng_seed(644);
+  cprox_workspace *ws = cprox_workspace_create();
+  cprox_curve *c = NULL;
+  bezier b = random_bezier(&r);
+  b.nan_from = 0.7;
+  cprox_rectifiable_curve f = functions(&b);
+  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_non_null(strstr(cprox_workspace_reason(ws), "at t = 0.703125 the curve's point is ("));
+  b.nan_from = INFINITY, b.short_below = 1.0, b.short_by = 0.9;
+  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_non_null(
+      strstr(cprox_workspace_reason(ws), "between t = 0 and 0.015625 the arc length is said to be at most"));
+  b.short_by = NAN;
+  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_string_equal(
+      cprox_workspace_reason(ws),
+      "between t = 0 and 0.015625 the bound of the arc length is nan; it must be at least 0 and finite");
+  b.short_below = 0.0;
+
+  const cprox_rectifiable_curve good = f;
+  f.point = NULL;
+  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "the function point is NULL");
+  f = good, f.length = NULL;
+  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "the functions length and velocity are both NULL; one is needed");
+  f = good, f.error = NAN;
+  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "error is nan; it must be at least 0 and finite");
+  f = good, f.length = NULL, f.velocity = velocity, f.quadrature_error = -1.0;
+  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "quadrature_error is -1; it must be at least 0 and finite");
+  assert_int_equal(cprox_curve_create_rectifiable(&good, 1, 1, ws, &c), CPROX_INVALID);
+  assert_int_equal(cprox_curve_create_rectifiable(NULL, 0, 1, ws, &c), CPROX_INVALID);
+  assert_null(c);
+  cprox_workspace_free(ws);
+}
+
+/* Distances and first contacts with a curve whose functions go wrong after it was made: an honest status and sentence and no result,
+ * or an answer that did not need to ask. */
+static void what_goes_wrong_midway_ends_the_query(void **state) {
+  (void)state;
+  rng r = rng_seed(645);
+  cprox_workspace *ws = cprox_workspace_create();
+  bool unused;
+  int asked = 0, refused = 0;
+  for (int i = 0; i < 60; i++) {
+    bezier b = random_bezier(&r), other = random_bezier(&r);
+    cprox_curve *c = by_arcs(&b), *straight = by_points(&other);
+    cprox_body *body = random_body(&r, &unused);
+    if (i % 2)
+      b.nan_from = 0.0;
+    else
+      b.short_below = 0.01, b.short_by = 0.5;
+    const char *reason = i % 2 ? "the curve's point is (" : "the arc length is said to be at most ";
+    const cprox_mover mover = cprox_point_along(c);
+    const cprox_target targets[2] = {cprox_at(body, random_pose(&r)), cprox_curve_target(straight, 0.0)};
+    for (int verb = 0; verb < 6; verb++) {
+      const cprox_target target = targets[verb % 2];
+      cprox_options options = cprox_options_default();
+      options.epsilon = 1e-9;
+      cprox_result result = {.t = -123.0};
+      cprox_status status = CPROX_OK;
+      if (verb < 2) status = cprox_distance(mover, target, &options, ws, &result);
+      if (verb / 2 == 1) status = cprox_first_contact(mover, target, &options, ws, &result);
+      if (verb / 2 == 2)
+        status = cprox_distance(cprox_point_along(straight), cprox_curve_target(c, 0.0), &options, ws, &result);
+      asked++;
+      if (status >= 0) continue;
+      refused++;
+      assert_int_equal(status, CPROX_INVALID);
+      if (!strstr(cprox_workspace_reason(ws), reason)) fail_msg("verb %d: \"%s\"", verb, cprox_workspace_reason(ws));
+      assert_true(result.t == -123.0);
+    }
+    /* and the workspace is as good as ever */
+    cprox_result result;
+    assert_true(cprox_distance(cprox_point_along(straight), targets[0], NULL, ws, &result) >= 0);
+    cprox_body_free(body);
+    cprox_curve_free(straight);
+    cprox_curve_free(c);
+  }
+  print_message("%d of %d queries came by and were refused\n", refused, asked);
+  assert_true(refused > asked / 2);
+  cprox_workspace_free(ws);
+}
+
+/* What such a curve has not is said, and what it has is right. */
+static void it_says_what_it_is(void **state) {
+  (void)state;
+  rng r = rng_seed(646);
+  bezier b = random_bezier(&r);
+  cprox_workspace *ws = cprox_workspace_create();
+  cprox_curve *c = by_arcs(&b), *v = by_velocity(&b), *whole = NULL;
+  assert_int_equal(cprox_curve_degree(c), 0);
+  assert_true(cprox_curve_error(c) == 2.0 * ROUND_U);
+  vec3 x, d, p[4];
+  assert_int_equal(cprox_curve_evaluate(c, 0.25, ws, &x, NULL, NULL), CPROX_OK);
+  vec3 should;
+  point(&b, 0.25, &should);
+  assert_true(vec_equal(x, should));
+  assert_int_equal(cprox_curve_evaluate(c, 0.25, ws, &x, &d, NULL), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "the curve has no first derivative");
+  assert_int_equal(cprox_curve_evaluate(v, 0.25, ws, &x, &d, NULL), CPROX_OK);
+  velocity(&b, 0.25, &should);
+  assert_true(vec_equal(d, should));
+  assert_int_equal(cprox_curve_evaluate(v, 0.25, ws, NULL, NULL, &d), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "the curve has no second derivative");
+  assert_int_equal(cprox_curve_control_points(c, 0, 0.001, ws, p), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "a curve known by its arc length has no control points");
+  const cprox_curve *one[1] = {c};
+  assert_int_equal(cprox_curve_create_piecewise(one, 1, NULL, 0.0, ws, &whole), CPROX_INVALID);
+  vec3 low, high;
+  cprox_curve_bounds(c, &low, &high);
+  for (double t = 0.0; t <= 1.0; t += 1.0 / 256.0) {
+    point(&b, t, &x);
+    assert_true(low.x <= x.x && low.y <= x.y && low.z <= x.z && x.x <= high.x && x.y <= high.y && x.z <= high.z);
+  }
+  cprox_curve_free(v);
+  cprox_curve_free(c);
+  cprox_workspace_free(ws);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(no_ellipsoid_leaves_out_a_point),
+      cmocka_unit_test(distances_by_arcs_and_by_points_agree),
+      cmocka_unit_test(curves_by_arcs_and_by_points_agree),
+      cmocka_unit_test(what_contradicts_itself_is_refused_at_once),
+      cmocka_unit_test(what_goes_wrong_midway_ends_the_query),
+      cmocka_unit_test(it_says_what_it_is),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
