@@ -57,7 +57,8 @@ static void implicit_nearest(const convex *shape, vec3 y, convex_hint *hint, con
   const implicit_goal goal = {
       .epsilon = IMPLICIT_EPSILON * body->radius, .relative_epsilon = IMPLICIT_RELATIVE, .max_steps = 2000};
   implicit_answer answer;
-  solve_on_stack(&question, &goal, &answer);
+  const double width = goal.epsilon + goal.relative_epsilon * vec_norm(y) + shape->slack;
+  if (!body->orthogonal || !implicit_closed_nearest(body, y, width, &answer)) solve_on_stack(&question, &goal, &answer);
   near->point = answer.x;
   near->distance = vec_norm(vec_sub(y, answer.x));
   near->normal = vec_neg(answer.normal);

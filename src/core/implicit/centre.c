@@ -144,38 +144,6 @@ static bool power_gram(const implicit *body, implicit_power *power) {
   return true;
 }
 
-bool implicit_is_closed(const implicit *body, double inverse[9]) {
-  if (body->n_powers != 1 || body->n_planes + body->n_quadrics > 0 || body->n_terms != 3) return false;
-  const vec3 a = body->term[0].a, b = body->term[1].a, c = body->term[2].a;
-  const vec3 bc = vec_cross(b, c), ca = vec_cross(c, a), ab = vec_cross(a, b);
-  const double det = vec_dot(a, bc);
-  if (!(fabs(det) > 1e-6 * vec_norm(a) * vec_norm(b) * vec_norm(c))) return false;
-  const vec3 column[3] = {vec_scale(1.0 / det, bc), vec_scale(1.0 / det, ca), vec_scale(1.0 / det, ab)};
-  for (int i = 0; i < 3; i++) {
-    inverse[i] = column[i].x;
-    inverse[3 + i] = column[i].y;
-    inverse[6 + i] = column[i].z;
-  }
-  return true;
-}
-
-double implicit_closed_radius(const implicit *body) {
-  const implicit_term *term = body->term;
-  double most = 0.0, exponent = 1.0, sum = 0.0;
-  for (int i = 0; i < 3; i++) {
-    const vec3 a = term[i].a, b = term[(i + 1) % 3].a;
-    if (fabs(vec_dot(a, b)) > 1e-14 * vec_norm(a) * vec_norm(b)) return INFINITY;
-    most = fmax(most, 1.0 / vec_norm(a));
-    exponent = fmax(exponent, term[i].p);
-  }
-  const double up = 1.0 + 1e-12;
-  if (exponent <= 2.0) return up * most;
-  /* sum (x_i/a_i)^p <= 1 for the largest p, so |x|² <= (sum a_i^2q)^(1/q), 1/p/2 + 1/q = 1, by Hölder's inequality */
-  const double q = exponent / (exponent - 2.0);
-  for (int i = 0; i < 3; i++) sum += pow(1.0 / (vec_norm(term[i].a) * most), 2.0 * q);
-  return up * most * pow(sum, 0.5 / q);
-}
-
 /* |a|·box: how large the parts of a row's value get over the body. */
 static double row_size(vec3 a, vec3 box) {
   return fabs(a.x) * box.x + fabs(a.y) * box.y + fabs(a.z) * box.z;
@@ -230,6 +198,7 @@ bool implicit_measure(implicit *body) {
   }
   body->inner = inner * (1.0 - 1e-12);
   body->closed = implicit_is_closed(body, body->inverse);
+  body->orthogonal = body->closed && isfinite(implicit_closed_radius(body));
   body->give = body_give(body);
   return inner > 0.0;
 }

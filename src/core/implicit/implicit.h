@@ -49,6 +49,7 @@ typedef struct implicit {
   double inner;      /* a ball of it about the origin is inside */
   double give;       /* a point whose computed constraints are all <= 0 is within it of a point of the body */
   bool closed;       /* one hyperquadric of three independent terms: its support function has a closed form */
+  bool orthogonal;   /* closed, and its rows are orthogonal to each other */
   double inverse[9]; /* closed: the inverse of its rows' matrix, row-major */
 } implicit;
 
@@ -163,6 +164,10 @@ typedef struct implicit_answer {
   uint32_t steps;    /* Newton steps, over all attempts */
   int attempt;       /* which rung of the ladder of settings answered, 0 the first */
 } implicit_answer;
+
+/* The nearest point of an orthogonal body to a point outside, in a fraction of the time; false where it could not be found
+ * to within the width: then implicit_solve() does. The bounds are without give and rounding. */
+bool implicit_closed_nearest(const implicit *body, vec3 y, double width, implicit_answer *answer);
 
 /* The bytes that implicit_solve() needs; b may be NULL. */
 size_t implicit_memory(const implicit *a, const implicit *b);
