@@ -221,8 +221,7 @@ static bool closest_apart(closest *c) {
   return true;
 }
 
-/* Two unit vectors across n. */
-static void across(vec3 n, vec3 *e, vec3 *f) {
+void implicit_across(vec3 n, vec3 *e, vec3 *f) {
   const double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
   const vec3 axis = x <= y && x <= z ? vec(1, 0, 0) : y <= z ? vec(0, 1, 0) : vec(0, 0, 1);
   const vec3 w = vec_cross(axis, n);
@@ -233,7 +232,7 @@ static void across(vec3 n, vec3 *e, vec3 *f) {
 /* The second derivative of the distance d: S (1 + d S)^-1, S the shape operator in the tangent plane. */
 static void closest_hessian(const implicit *body, const double u[3], double slope, vec3 n, double d, double h[6]) {
   vec3 e, f;
-  across(n, &e, &f);
+  implicit_across(n, &e, &f);
   double ee = 0.0, ef = 0.0, ff = 0.0;
   for (int i = 0; i < 3; i++) {
     const implicit_term *term = &body->term[i];

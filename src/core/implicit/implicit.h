@@ -169,6 +169,13 @@ typedef struct implicit_answer {
  * to within the width: then implicit_solve() does. The bounds are without give and rounding. */
 bool implicit_closed_nearest(const implicit *body, vec3 y, double width, implicit_answer *answer);
 
+/* Two closed bodies that stand apart, by their support functions; false where that stalls or there is no gap to be seen: then
+ * implicit_solve() answers. What it found is true all the same, rounding included. */
+bool implicit_separate(const implicit_question *question, const implicit_goal *goal, implicit_answer *answer);
+
+/* Two unit vectors across the unit vector n. */
+void implicit_across(vec3 n, vec3 *e, vec3 *f);
+
 /* The bytes that implicit_solve() needs; b may be NULL. */
 size_t implicit_memory(const implicit *a, const implicit *b);
 

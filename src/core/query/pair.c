@@ -159,12 +159,23 @@ static bool is_implicit(const convex *shape) {
   return shape->implicit != NULL;
 }
 
-static bool pair_is_narrow(const pair_answer *answer, const pair_goal *goal) {
-  return answer->upper - answer->lower <= fmax(goal->epsilon, goal->relative_epsilon * answer->upper);
+/* Takes over what a search of two implicit cores found: their margins and the pose's error on top. */
+static void pair_take(const implicit_answer *found, const pair_side *a, const pair_side *b, double rounding,
+                      pair_answer *answer) {
+  const double margins = a->margin + b->margin;
+  answer->overlap = found->overlap;
+  answer->lower = (found->overlap ? -INFINITY : found->lower) - margins - rounding;
+  answer->upper = found->overlap ? -margins : found->upper - margins + rounding;
+  answer->normal = found->overlap ? vec(0, 0, 0) : found->normal;
+  answer->common = found->x;
+  answer->on_a = vec_axpy(found->x, -a->margin, answer->normal);
+  answer->on_b = answer->on_a;
+  answer->rounding = rounding;
 }
 
-/* Two implicit bodies by the interior point method: what it finds makes the answer narrower. False where memory is out. */
-static bool pair_interior(const pair_side *a, const pair_side *b, const pair_placement *place, const pair_goal *goal,
+/* Two implicit bodies: the climb of the dual where it does not stall, else the interior point method. How deep they overlap
+ * the search by supports says. False where memory is out. */
+static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_placement *place, const pair_goal *goal,
                           cprox_workspace *workspace, pair_answer *answer) {
   const implicit *x = a->shape->implicit, *y = b->shape->implicit;
   void *memory = workspace_reserve(workspace, WORKSPACE_INTERIOR, implicit_memory(x, y));
@@ -176,40 +187,25 @@ static bool pair_interior(const pair_side *a, const pair_side *b, const pair_pla
                                .relative_epsilon = margins > 0.0 ? 0.0 : goal->relative_epsilon,
                                .max_steps = goal->max_steps};
   implicit_answer found;
-  implicit_solve(&question, &inner, NULL, memory, &found);
-
-  answer->steps += found.steps;
-  answer->exhausted = answer->exhausted && found.steps >= goal->max_steps;
-  answer->lower = fmax(answer->lower, found.overlap ? -INFINITY : found.lower - margins - rounding);
-  const double upper = found.upper - margins + rounding;
+  uint32_t steps = 0;
+  if (!x->closed || !y->closed || !implicit_separate(&question, &inner, &found)) {
+    if (x->closed && y->closed) steps = found.steps;
+    implicit_solve(&question, &inner, NULL, memory, &found);
+  }
   if (found.overlap) {
-    answer->overlap = true;
-    answer->common = found.x;
-    answer->upper = fmin(answer->upper, -margins);
-  } else if (upper < answer->upper) {
-    answer->upper = upper;
-  } else {
-    return true;
-  }
-  answer->normal = found.overlap ? vec(0, 0, 0) : found.normal;
-  answer->on_a = vec_axpy(found.x, -a->margin, answer->normal);
-  answer->on_b = vec_axpy(vec_sub(found.x, vec_scale(found.upper, answer->normal)), b->margin, answer->normal);
-  answer->rounding = fmax(answer->rounding, rounding);
-  return true;
-}
-
-/* Where both have support functions of closed form, those answer first: they are faster until they stall. Without a workspace
- * they answer alone. */
-static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_placement *place, const pair_goal *goal,
-                          cprox_workspace *workspace, pair_answer *answer) {
-  const bool closed = a->shape->implicit->closed && b->shape->implicit->closed;
-  *answer = (pair_answer){.lower = -INFINITY, .upper = INFINITY, .exhausted = true};
-  if (closed || !workspace) {
     pair_separate(a->shape, a->margin, b->shape, b->margin, place, goal, answer);
-    if (answer->overlap || pair_is_narrow(answer, goal) || !workspace) return true;
+    if (answer->overlap) return true;
   }
-  if (!pair_interior(a, b, place, goal, workspace, answer)) return false;
-  if (answer->overlap && !closed) pair_separate(a->shape, a->margin, b->shape, b->margin, place, goal, answer);
+  *answer = (pair_answer){.steps = steps + found.steps, .exhausted = found.steps >= goal->max_steps};
+  pair_take(&found, a, b, rounding, answer);
+  if (!found.overlap) {
+    /* y in a's frame, its margin towards a */
+    const double *r = place->r;
+    const vec3 turned = vec(r[0] * found.y.x + r[1] * found.y.y + r[2] * found.y.z,
+                            r[3] * found.y.x + r[4] * found.y.y + r[5] * found.y.z,
+                            r[6] * found.y.x + r[7] * found.y.y + r[8] * found.y.z);
+    answer->on_b = vec_axpy(vec_add(turned, place->t), b->margin, answer->normal);
+  }
   return true;
 }
 
@@ -226,7 +222,7 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
     pair_halfspace(first, second, &place, answer);
   else if (is_ball(second->shape) && has_closed_form(first->shape))
     pair_ball(first, second, &place, answer);
-  else if (!is_implicit(first->shape) || !is_implicit(second->shape))
+  else if (!workspace || !is_implicit(first->shape) || !is_implicit(second->shape))
     pair_separate(first->shape, first->margin, second->shape, second->margin, &place, goal, answer);
   else if (!pair_implicit(first, second, &place, goal, workspace, answer))
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of implicit bodies");

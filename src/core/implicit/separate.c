@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Two closed bodies by the dual alone: phi(u) = min of u·(x - y) over both, a lower bound for any unit u, climbed by Newton's
+ * method on the sphere. Where the surfaces are round it needs half the work of the interior point method; where they are flat
+ * it stalls, and says so soon. */
+#include "base/rounding.h"
+#include "implicit/implicit.h"
+
+enum { SEPARATE_STEPS = 10 };
+
+/* With a flat on both sides the climb stalls more often than not. */
+static const double SEPARATE_FLAT = 8.0;
+
+/* A climb whose gap shrinks less in two steps has stalled. */
+static const double SEPARATE_GAIN = 0.3;
+
+typedef struct climb {
+  const implicit_question *q;
+  double mu[2]; /* where Newton's method for the supports ended */
+  vec3 u;       /* from b to a: the direction looked along */
+  double phi;
+  vec3 x, y, apart; /* the supports, in a's and b's frame, and x - (M y + t) */
+  double h[2][6];   /* their derivatives */
+  vec3 e, f;        /* across u */
+} climb;
+
+static vec3 turn(const double *m, vec3 v) {
+  return vec(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
+             m[6] * v.x + m[7] * v.y + m[8] * v.z);
+}
+
+static vec3 turn_back(const double *m, vec3 v) {
+  return vec(m[0] * v.x + m[3] * v.y + m[6] * v.z, m[1] * v.x + m[4] * v.y + m[7] * v.z,
+             m[2] * v.x + m[5] * v.y + m[8] * v.z);
+}
+
+static vec3 unit(vec3 v) {
+  return vec_scale(1.0 / vec_norm(v), v);
+}
+
+static void look(climb *c, vec3 u) {
+  const implicit_question *q = c->q;
+  c->u = u;
+  const double ha = implicit_closed_support(q->a, vec_neg(u), &c->mu[0], &c->x, c->h[0]);
+  const double hb = implicit_closed_support(q->b, turn_back(q->m, u), &c->mu[1], &c->y, c->h[1]);
+  c->phi = -ha - hb - vec_dot(u, q->t);
+  c->apart = vec_sub(c->x, vec_add(turn(q->m, c->y), q->t));
+}
+
+static double form(const double h[6], vec3 x, vec3 y) {
+  return x.x * (h[0] * y.x + h[1] * y.y + h[2] * y.z) + x.y * (h[1] * y.x + h[3] * y.y + h[4] * y.z) +
+         x.z * (h[2] * y.x + h[4] * y.y + h[5] * y.z);
+}
+
+/* Newton's step in the tangent plane: (K + d) step = tangential part of x - y, K the sum of both derivatives. */
+static bool newton(climb *c, double distance, double step[2]) {
+  implicit_across(c->u, &c->e, &c->f);
+  const double *m = c->q->m;
+  const vec3 e = turn_back(m, c->e), f = turn_back(m, c->f);
+  const double d = 0.5 * (fmax(c->phi, 0.0) + distance);
+  const double ee = form(c->h[0], c->e, c->e) + form(c->h[1], e, e) + d;
+  const double ef = form(c->h[0], c->e, c->f) + form(c->h[1], e, f);
+  const double ff = form(c->h[0], c->f, c->f) + form(c->h[1], f, f) + d, det = ee * ff - ef * ef;
+  if (!(det > 0.0)) return false;
+  const double ge = vec_dot(c->apart, c->e), gf = vec_dot(c->apart, c->f);
+  step[0] = (ff * ge - ef * gf) / det;
+  step[1] = (ee * gf - ef * ge) / det;
+  const double length = sqrt(step[0] * step[0] + step[1] * step[1]), most = 0.5;
+  if (!isfinite(length)) return false;
+  if (length > most) step[0] *= most / length, step[1] *= most / length;
+  return true;
+}
+
+static bool has_flat(const implicit *body) {
+  return fmax(body->term[0].p, fmax(body->term[1].p, body->term[2].p)) > SEPARATE_FLAT;
+}
+
+bool implicit_separate(const implicit_question *question, const implicit_goal *goal, implicit_answer *answer) {
+  const implicit_question *q = question;
+  *answer = (implicit_answer){.lower = -INFINITY, .upper = INFINITY};
+  const double far = vec_norm(q->t), reach = q->a->radius + q->b->radius;
+  if (!(far > 0.0) || (has_flat(q->a) && has_flat(q->b))) return false;
+  /* the supports' own error, twice for the two ends, and that of turning and adding */
+  const double rounding = q->a->give + q->b->give + ROUND_UP * 64.0 * ROUND_U * (reach + far);
+
+  climb c = {.q = q};
+  vec3 from = vec(0, 0, 0), e = from, f = from, next = vec_scale(-1.0 / far, q->t);
+  double step[2] = {0, 0}, before[2] = {INFINITY, INFINITY}, damp = 1.0;
+  for (int i = 0; i < SEPARATE_STEPS; i++) {
+    look(&c, next);
+    answer->steps++;
+    const double distance = vec_norm(c.apart);
+    if (distance + rounding < answer->upper) {
+      answer->upper = distance + rounding;
+      answer->x = c.x;
+      answer->y = c.y;
+    }
+    const bool higher = c.phi - rounding > answer->lower;
+    if (higher) {
+      answer->lower = c.phi - rounding;
+      answer->normal = c.u;
+    }
+    const double gap = answer->upper - answer->lower;
+    if (gap <= fmax(goal->epsilon, goal->relative_epsilon * answer->upper)) {
+      answer->certified = true;
+      break;
+    }
+    if (i > 4 && gap > SEPARATE_GAIN * before[0]) break;
+    before[0] = before[1];
+    before[1] = gap;
+
+    /* lower than before: back towards the best direction */
+    if (!higher) {
+      damp *= 0.35;
+    } else {
+      if ((c.phi < 0.0 && i > 2) || !newton(&c, answer->upper, step)) break;
+      from = c.u, e = c.e, f = c.f;
+      damp = 1.0;
+    }
+    next = unit(vec_axpy(vec_axpy(from, damp * step[0], e), damp * step[1], f));
+  }
+  return answer->certified;
+}
