@@ -72,10 +72,13 @@ static cprox_curve *compile(series s) {
   return curve;
 }
 
+static size_t asked;
+
 /* The reference is rounded to 17 digits and coefficients to double: 1e-15. 2π as a double leaves out less than that. */
 static void check(const char *id, const cprox_curve *curve, cprox_target target) {
   csv_table ref = csv_read("reference/named_ref.csv");
   const double reference = csv_number(&ref, csv_find(&ref, id), 1);
+  asked++;
   cprox_workspace *ws = cprox_workspace_create();
   for (int k = 0; k < 3; k++) {
     const double epsilon[3] = {1e-6, 1e-9, 1e-12};
@@ -142,6 +145,38 @@ static void an_euler_spiral_against_a_polygon(void **state) {
   check_polygon("c_euler_poly_table", curve);
 }
 
+/* The rows that are Bézier curves, in the layout of the other reference files. */
+static void bezier_curves_with_names(void **state) {
+  (void)state;
+  csv_table in = csv_read("reference/namedbez_inputs.csv");
+  for (size_t i = 0; i < in.n; i++) {
+    const csv_row *row = &in.row[i];
+    const char *id = row->field[0];
+    const bool polygon = strcmp(row->field[1], "polygon") == 0;
+    const size_t n = csv_count(&in, row, 3) + 1, m = csv_count(&in, row, 4) + (polygon ? 0 : 1);
+    vec3 first[64], second[64];
+    assert_true(csv_count(&in, row, 2) == 2 && n <= 64 && m <= 64);
+    csv_points(&in, row, 5, 2, n, first);
+    csv_points(&in, row, 5 + 2 * n, 2, m, second);
+    cprox_curve *curve = NULL, *other = NULL;
+    cprox_body *body = NULL;
+    assert_int_equal(cprox_curve_create_bezier(first, n, 0, 1, NULL, &curve), CPROX_OK);
+    if (polygon) {
+      double xy[64][2];
+      for (size_t k = 0; k < m; k++) xy[k][0] = second[k].x, xy[k][1] = second[k].y;
+      assert_int_equal(cprox_body_create_polygon((const double(*)[2])xy, m, NULL, &body), CPROX_OK);
+      check(id, curve, cprox_at(body, cprox_pose_identity()));
+    } else {
+      assert_int_equal(cprox_curve_create_bezier(second, m, 0, 1, NULL, &other), CPROX_OK);
+      check(id, curve, cprox_curve_target(other, 0.0));
+    }
+    cprox_body_free(body);
+    cprox_curve_free(other);
+    cprox_curve_free(curve);
+  }
+  csv_free(&in);
+}
+
 static cprox_curve *involute(double turned, double x, double y) {
   cprox_curve *curve = NULL;
   assert_int_equal(cprox_curve_create_involute(vec(x, y, 0), 0.035, turned, 0.0, 10.0, NULL, &curve), CPROX_OK);
@@ -154,12 +189,24 @@ static void involutes_against_curves(void **state) {
   check_curves("fig1b_heart_involute", compile(heart()), involute(3.141592653589793, -1.0, 0.0));
 }
 
+/* One row asks the Euler spiral by another method of its own; it has the reference of the other. */
+static void every_reference_was_asked(void **state) {
+  (void)state;
+  csv_table ref = csv_read("reference/named_ref.csv"), in = csv_read("reference/named_inputs.csv");
+  assert_int_equal(asked, ref.n);
+  assert_int_equal(asked + 1, in.n);
+  csv_free(&in);
+  csv_free(&ref);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(hearts_and_ranunculoids_against_polygons),
       cmocka_unit_test(a_fish_against_lissajous_curves),
       cmocka_unit_test(an_euler_spiral_against_a_polygon),
       cmocka_unit_test(involutes_against_curves),
+      cmocka_unit_test(bezier_curves_with_names),
+      cmocka_unit_test(every_reference_was_asked),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
