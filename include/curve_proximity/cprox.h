@@ -15,5 +15,6 @@
 #include <curve_proximity/cprox/fourier.h>
 #include <curve_proximity/cprox/implicit.h>
 #include <curve_proximity/cprox/query.h>
+#include <curve_proximity/cprox/translation.h>
 
 #endif

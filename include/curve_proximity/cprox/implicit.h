@@ -57,6 +57,18 @@ CPROX_API cprox_status cprox_body_create_implicit(const cprox_implicit_descripti
                                                   const cprox_affine *map, cprox_workspace *workspace,
                                                   cprox_body **body);
 
+/** A superquadric or implicit body deformed: its image under a map, with other exponents.
+ *
+ *  map        x -> linear x + translation in the body's frame; NULL: none
+ *  exponents  one for each term in the order of the description (a superquadric's x, y, z), 1 … 1000; NULL: as they are
+ *  n          their number, that of the body's terms
+ *
+ *  Cheaper than making the body anew: what a map does to centre and size is known. Meant for bodies that deform from query to
+ *  query. Errors as cprox_body_create_implicit(). */
+CPROX_API cprox_status cprox_body_create_deformed(const cprox_body *body, const cprox_affine *map,
+                                                  const double *exponents, size_t n, cprox_workspace *workspace,
+                                                  cprox_body **deformed);
+
 #ifdef __cplusplus
 }
 #endif

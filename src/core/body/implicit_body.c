@@ -122,16 +122,9 @@ cprox_affine cprox_affine_identity(void) {
   return (cprox_affine){.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 }
 
-/* Takes the coefficients over: checks, maps and centres them. */
-static cprox_status create(implicit *given, const implicit_map *map, bool superquadric, cprox_workspace *workspace,
-                           cprox_body **body) {
-  vec3 centre;
-  implicit *made = NULL;
-  cprox_status status = implicit_check(given, map, workspace);
-  if (!status) status = implicit_build(given, map, workspace, &centre, &made);
-  free(given);
-  if (status) return status;
-
+/* The handle of a built body about its centre, which it takes over. */
+static cprox_status wrap(implicit *made, bool superquadric, vec3 centre, cprox_workspace *workspace,
+                         cprox_body **body) {
   const convex_ops *ops = superquadric ? &superquadric_ops : made->closed ? &closed_ops : &open_ops;
   cprox_body *handle = body_allocate(ops, ops->kind);
   if (!handle) {
@@ -144,6 +137,17 @@ static cprox_status create(implicit *given, const implicit_map *map, bool superq
   handle->centre = handle->ball_centre = centre;
   *body = handle;
   return CPROX_OK;
+}
+
+/* Takes the coefficients over: checks, maps and centres them. */
+static cprox_status create(implicit *given, const implicit_map *map, bool superquadric, cprox_workspace *workspace,
+                           cprox_body **body) {
+  vec3 centre;
+  implicit *made = NULL;
+  cprox_status status = implicit_check(given, map, workspace);
+  if (!status) status = implicit_build(given, map, workspace, &centre, &made);
+  free(given);
+  return status ? status : wrap(made, superquadric, centre, workspace, body);
 }
 
 cprox_status cprox_body_create_superquadric(cprox_vec3 semi_axes, cprox_vec3 exponents, cprox_workspace *workspace,
@@ -229,4 +233,48 @@ cprox_status cprox_body_create_implicit(const cprox_implicit_description *descri
   implicit_map inner = {.shift = map->translation};
   for (int i = 0; i < 9; i++) inner.linear[i] = map->linear[i];
   return create(given, &inner, false, workspace, body);
+}
+
+/* The built body's constraints once more, about its centre, for changes. */
+static implicit *copy(const implicit *body) {
+  implicit *given = implicit_allocate((size_t)body->n_planes, (size_t)body->n_quadrics, (size_t)body->n_powers,
+                                      (size_t)body->n_terms);
+  if (given) implicit_recentre(body, vec(0, 0, 0), given);
+  return given;
+}
+
+cprox_status cprox_body_create_deformed(const cprox_body *body, const cprox_affine *map, const double *exponents,
+                                        size_t n, cprox_workspace *workspace, cprox_body **deformed) {
+  if (!deformed) return workspace_fail(workspace, CPROX_INVALID, "deformed is NULL: nowhere to put the handle");
+  if (!body || !body->shape.implicit)
+    return workspace_fail(workspace, CPROX_INVALID, "the body is %s, must be a superquadric or an implicit body",
+                          body ? cprox_body_kind_name(body->kind) : "NULL");
+  const implicit *shape = body->shape.implicit;
+  if (exponents && n != (size_t)shape->n_terms)
+    return workspace_fail(workspace, CPROX_INVALID, "%zu exponents for a body of %d terms", n, shape->n_terms);
+
+  /* the centre's image, and the map about it */
+  const cprox_affine affine = map ? *map : cprox_affine_identity();
+  const double *l = affine.linear;
+  implicit_map inner = {.shift = affine.translation};
+  for (int i = 0; i < 9; i++) inner.linear[i] = l[i];
+  implicit *given = copy(shape);
+  if (!given) return body_out_of_memory(workspace);
+  for (int32_t i = 0; exponents && i < shape->n_terms; i++) given->term[i].p = exponents[i];
+  cprox_status status = implicit_check(given, &inner, workspace);
+
+  const vec3 c = body->centre, moved = {l[0] * c.x + l[1] * c.y + l[2] * c.z, l[3] * c.x + l[4] * c.y + l[5] * c.z,
+                                        l[6] * c.x + l[7] * c.y + l[8] * c.z};
+  vec3 offset = vec(0, 0, 0);
+  implicit *made = NULL;
+  if (!status && (exponents || shape->closed)) {
+    inner.shift = vec(0, 0, 0);
+    status = implicit_build(given, &inner, workspace, &offset, &made);
+  } else if (!status) {
+    status = implicit_deform(shape, l, workspace, &made);
+  }
+  free(given);
+  if (status) return status;
+  const bool superquadric = body->kind == CPROX_SUPERQUADRIC && made->orthogonal;
+  return wrap(made, superquadric, vec_add(vec_add(moved, affine.translation), offset), workspace, deformed);
 }

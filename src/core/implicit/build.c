@@ -349,3 +349,30 @@ cprox_status implicit_build(const implicit *given, const implicit_map *map, cpro
   *made = about;
   return CPROX_OK;
 }
+
+cprox_status implicit_deform(const implicit *body, const double linear[9], cprox_workspace *workspace,
+                             implicit **made) {
+  implicit *about = implicit_like(body);
+  if (!about) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a body");
+  implicit_map map = {{0}, {0, 0, 0}};
+  double square = 0.0;
+  for (int i = 0; i < 9; i++) {
+    map.linear[i] = linear[i];
+    square += linear[i] * linear[i];
+  }
+  implicit_transform(body, &map, about);
+
+  /* the box's image is in a box, the ball's in a ball */
+  const double up = 1.0 + 16.0 * ROUND_U;
+  const vec3 box = body->box;
+  about->box = vec(up * (fabs(linear[0]) * box.x + fabs(linear[1]) * box.y + fabs(linear[2]) * box.z),
+                   up * (fabs(linear[3]) * box.x + fabs(linear[4]) * box.y + fabs(linear[5]) * box.z),
+                   up * (fabs(linear[6]) * box.x + fabs(linear[7]) * box.y + fabs(linear[8]) * box.z));
+  about->radius = fmin(up * vec_norm(about->box), up * sqrt(square) * body->radius);
+  if (!implicit_measure(about) || about->inner < 1e-9 * about->radius) {
+    free(about);
+    return fail_interior(workspace);
+  }
+  *made = about;
+  return CPROX_OK;
+}

@@ -79,6 +79,9 @@ cprox_status implicit_check(const implicit *given, const implicit_map *map, cpro
 cprox_status implicit_build(const implicit *given, const implicit_map *map, cprox_workspace *workspace, vec3 *centre,
                             implicit **made);
 
+/* The image of a built body under linear map, about the image of its centre: *made for free(). */
+cprox_status implicit_deform(const implicit *body, const double linear[9], cprox_workspace *workspace, implicit **made);
+
 /* from about c, or mapped: coefficients in twice the precision, rounded once. Arrays of `to` have the sizes of `from`'s. */
 void implicit_recentre(const implicit *from, vec3 c, implicit *to);
 

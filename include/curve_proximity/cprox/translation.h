@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Two convex bodies that move without turning, each at a constant velocity: how close they come, and when they first touch;
+ *  and the least scaling at which two bodies touch.
+ *
+ *  Along polylines and splines a body is carried by cprox_body_along(). Source: Chakraborty et al. 2008, Eq. 13 and 14, by the
+ *  methods of doc/implicit.md. */
+#ifndef CURVE_PROXIMITY_CPROX_TRANSLATION_H
+#define CURVE_PROXIMITY_CPROX_TRANSLATION_H
+
+#include <curve_proximity/cprox/query.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A body that starts at the target's pose and moves on at the velocity [m/s], world frame. */
+typedef struct cprox_translating {
+  cprox_target from;
+  cprox_vec3 velocity;
+} cprox_translating;
+
+/** The least distance over the times 0 … duration [s], duration > 0, of two superquadrics or implicit bodies.
+ *
+ *  lower <= the least distance <= upper; t: when upper was attained; the points stand where the bodies are then. 0 where they
+ *  touch or overlap at some time: verdict yes where a common point is proven, no where lower > 0.
+ *  Returns as cprox_pair(), and CPROX_INVALID for other kinds of bodies. Cost: one interior point search; no allocation once the
+ *  workspace has grown. */
+CPROX_API cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b, double duration,
+                                                  const cprox_options *options, cprox_workspace *workspace,
+                                                  cprox_result *result);
+
+/** When two convex bodies (no compounds) that translate first touch.
+ *
+ *  t_free   no contact at any time < t_free, certified
+ *  verdict  yes: at t the distance is at most epsilon [m]. no: they do not touch up to the duration. undecided: the budget was
+ *           too small; t_free is true.
+ *  lower, upper, points: of the distance at t. Where contact is deep already at 0: t = t_free = 0.
+ *  Returns as cprox_pair(). Cost: about four pairs. */
+CPROX_API cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b, double duration,
+                                                 const cprox_options *options, cprox_workspace *workspace,
+                                                 cprox_result *result);
+
+/** The growth distance: the least factor by which both bodies, each scaled about its centre, touch. */
+typedef struct cprox_growth {
+  cprox_status status;
+  double lower, upper; /**< certified; > 1 apart, < 1 overlapping, 0 where the centres coincide */
+  cprox_vec3 normal;   /**< unit, world frame, from b to a, of the planes between which the scaled bodies just fit */
+  uint32_t pairs;      /**< what it cost: pairs of bodies answered */
+} cprox_growth;
+
+/** The growth distance of two superquadrics or implicit bodies, to a relative width of options->epsilon (default 1e-6).
+ *
+ *  It measures penetration where there is some: the bodies overlap if and only if it is below 1. The centre is that of
+ *  cprox_body_bounding_sphere(); padding is not scaled and must be 0. Returns as cprox_pair(). */
+CPROX_API cprox_status cprox_growth_distance(cprox_target a, cprox_target b, const cprox_options *options,
+                                             cprox_workspace *workspace, cprox_growth *growth);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

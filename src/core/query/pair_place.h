@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Where two standing convex shapes are, seen from the first. */
+#ifndef CPROX_QUERY_PAIR_PLACE_H
+#define CPROX_QUERY_PAIR_PLACE_H
+
+#include "body/body.h"
+#include "convex/pair.h"
+#include "curve_proximity/cprox/query.h"
+
+/* A convex shape somewhere in the world. */
+typedef struct pair_side {
+  const convex *shape;
+  frame f;
+  double margin; /* the shape's own and the padding */
+  double error;  /* of the pose, where it had to be composed */
+} pair_side;
+
+pair_side pair_place_side(const cprox_target *target, size_t part);
+
+/* b in a's frame. Positions are subtracted first: what they share does not enter the rounding. */
+pair_placement pair_place(const pair_side *a, const pair_side *b);
+
+#endif
