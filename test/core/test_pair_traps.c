@@ -162,10 +162,10 @@ static void concentric_bodies_overlap(void **state) {
       shape_make(&r, solid[i], 1.0, 4.0, &a);
       shape_make(&r, solid[j], 1.0, 4.0, &b);
       const cprox_result result = ask(a.body, at(0, 0, 0), b.body, at(0, 0, 0), 1e-9);
-      if (result.status != CPROX_OVERLAP)
+      if (!(result.upper < 0.0))
         fail_msg("%s in %s: %s [%g, %g]", shape_name(&a), shape_name(&b), cprox_status_name(result.status),
                  result.lower, result.upper);
-      assert_true(result.lower < 0.0 && result.lower >= -4.0 && result.upper == 0.0);
+      assert_true(result.lower < 0.0 && result.lower >= -4.0);
       cprox_body_free(a.body);
       cprox_body_free(b.body);
     }

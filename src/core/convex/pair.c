@@ -5,6 +5,7 @@
 #include "convex/pair.h"
 
 #include "base/rounding.h"
+#include "convex/expand.h"
 #include "convex/feature.h"
 #include "convex/simplex.h"
 
@@ -319,20 +320,24 @@ static void pair_draw_apart(pair *p, double size, const pair_goal *goal) {
   }
 }
 
-/* The points of the cores that make up the nearest point of the simplex, and the margins beyond them. */
-static void pair_points(const pair *p, double margin_a, double margin_b, pair_answer *answer) {
-  vec3 a = vec(0, 0, 0), b = vec(0, 0, 0);
-  const bool inside = p->nearest.inside;
+/* The points of the cores that make up the nearest point of the simplex. */
+static void pair_core_points(const pair *p, vec3 *a, vec3 *b) {
+  *a = *b = vec(0, 0, 0);
   for (int i = 0; i < p->s.n; i++) {
-    a = vec_axpy(a, p->s.weight[i], p->s.vertex[i].a);
-    b = vec_axpy(b, p->s.weight[i], p->s.vertex[i].b);
+    *a = vec_axpy(*a, p->s.weight[i], p->s.vertex[i].a);
+    *b = vec_axpy(*b, p->s.weight[i], p->s.vertex[i].b);
   }
-  b = vec_add(turn(p->r, b), p->t);
+  *b = vec_add(turn(p->r, *b), p->t);
+}
+
+/* Those points, and the margins beyond them. */
+static void pair_points(const pair *p, double margin_a, double margin_b, pair_answer *answer) {
+  vec3 a, b, along;
+  pair_core_points(p, &a, &b);
   const vec3 core = a;
-  if (inside) { /* 0 = sum of weight (a - b): the same point but for rounding, of both */
+  if (p->nearest.inside) { /* 0 = sum of weight (a - b): the same point but for rounding, of both */
     a = b = vec_axpy(vec_scale(0.5, a), 0.5, b);
   } else { /* out of the cores along the line between the two, so that what is left of it is upper */
-    vec3 along;
     if (feature_unit(p->nearest.v, &along) == 0.0) along = p->u;
     a = vec_axpy(a, -margin_a, along);
     b = vec_axpy(b, margin_b, along);
@@ -340,8 +345,8 @@ static void pair_points(const pair *p, double margin_a, double margin_b, pair_an
   answer->on_a = a;
   answer->on_b = b;
   /* the ball round b reaches a, or the two balls reach each other */
-  answer->common = inside || p->nearest.distance > margin_b ? b : core;
-  answer->normal = inside ? vec(0, 0, 0) : p->u;
+  answer->common = p->nearest.inside || p->nearest.distance > margin_b ? b : core;
+  answer->normal = p->nearest.inside ? vec(0, 0, 0) : p->u;
 }
 
 /* The distance d has the second derivative (K + d)^-1 in the tangent plane, and none along a ridge or a face. */
@@ -372,6 +377,39 @@ static void pair_describe(const pair *p, pair_feature *feature) {
       feature->hessian[k++] = ee * x[i] * x[j] + ef * (x[i] * y[j] + y[i] * x[j]) + ff * y[i] * y[j];
 }
 
+static simplex_vertex pair_farthest(void *self, vec3 n) {
+  return pair_extreme(self, vec_neg(n));
+}
+
+/* 0 is inside the simplex, or on it; it expands until it has found the nearest way out of M. */
+static void pair_measure_depth(pair *p, double margin_a, double margin_b, const pair_goal *goal, pair_answer *answer) {
+  const double relative = goal->relative_epsilon * (p->nearest.depth + margin_a + margin_b);
+  const expand_set set = {.self = p, .farthest = pair_farthest};
+  const expand_goal inner = {.rounding = p->rounding,
+                             .width = fmax(fmax(goal->epsilon, relative) - 2.0 * p->rounding, 0.25 * p->rounding),
+                             .max_steps = goal->max_steps > p->steps ? goal->max_steps - p->steps : 0};
+  expand_depth depth;
+  if (!expand_from(&set, &p->s, &inner, &depth) || !(depth.most < INFINITY)) return;
+  p->steps += depth.steps;
+  p->nearest.inside = true;
+  p->nearest.depth = depth.least;
+  pair_raise_lower(p, vec_neg(depth.normal), -depth.most);
+  answer->overlap = answer->measured = true;
+  answer->exhausted = depth.exhausted;
+
+  /* the nearest point of M's surface, as far as it is known, and the way out past both margins */
+  p->s = depth.touch;
+  pair_core_points(p, &answer->on_a, &answer->on_b);
+  vec3 along;
+  feature_unit(vec_sub(answer->on_b, answer->on_a), &along);
+  answer->on_a = vec_axpy(answer->on_a, -margin_a, along);
+  answer->on_b = vec_axpy(answer->on_b, margin_b, along);
+  answer->normal = p->u;
+  if (!goal->wants_feature) return;
+  p->nearest.distance = -depth.least;
+  pair_describe(p, &answer->feature);
+}
+
 void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *placement,
                    const pair_goal *goal, pair_answer *answer) {
   *answer = (pair_answer){0};
@@ -386,17 +424,23 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   vec3 u;
   feature_unit(vec_neg(p.t), &u);
   pair_search(&p, vec_norm2(u) > 0.0 ? u : vec(1, 0, 0), margins, goal);
-  if (p.nearest.inside || p.nearest.distance <= p.hair) pair_draw_apart(&p, size, goal);
+  answer->exhausted = p.steps >= goal->max_steps || p.steps >= PAIR_MAX_STEPS;
+  answer->overlap = p.nearest.inside && p.nearest.depth + margins > p.rounding;
+  pair_points(&p, margin_a, margin_b, answer);
+  if (goal->wants_feature && !p.nearest.inside && !p.fault) pair_describe(&p, &answer->feature);
+  if (goal->wants_depth && (answer->overlap || p.nearest.distance <= p.hair))
+    pair_measure_depth(&p, margin_a, margin_b, goal, answer);
+  if (!answer->measured && (p.nearest.inside || p.nearest.distance <= p.hair)) {
+    pair_draw_apart(&p, size, goal);
+    if (!p.nearest.inside) answer->normal = p.u;
+  }
 
   answer->fault = p.fault;
   answer->steps = p.steps;
   answer->supports = p.supports;
   answer->rounding = p.rounding;
-  answer->exhausted = p.steps >= goal->max_steps || p.steps >= PAIR_MAX_STEPS;
-  answer->overlap = p.nearest.inside && p.nearest.depth + margins > p.rounding;
-  answer->upper = answer->overlap ? 0.0 : p.nearest.distance - margins + p.rounding;
-  answer->lower = fmin(p.lower - margins - p.rounding, answer->upper);
   answer->depth = p.nearest.inside ? p.nearest.depth : 0.0;
-  if (goal->wants_feature && !p.nearest.inside && !p.fault) pair_describe(&p, &answer->feature);
-  pair_points(&p, margin_a, margin_b, answer);
+  answer->upper = (p.nearest.inside ? 0.0 : p.nearest.distance) - margins + p.rounding;
+  if (answer->overlap) answer->upper = answer->measured ? fmin(p.rounding - p.nearest.depth - margins, 0.0) : 0.0;
+  answer->lower = fmin(p.lower - margins - p.rounding, answer->upper);
 }

@@ -17,6 +17,7 @@ typedef struct pair_goal {
   double epsilon, relative_epsilon;
   uint32_t max_steps;
   bool wants_feature;
+  bool wants_depth; /* how deep the cores overlap, not only that they do */
 } pair_goal;
 
 /* What the point of M = A - B that is nearest to 0 lies on: how the distance changes when 0 moves. */
@@ -30,14 +31,15 @@ typedef struct pair_feature {
 typedef struct pair_answer {
   bool fault;           /* a support callback misbehaved: nothing else is set */
   bool exhausted;       /* max_steps were not enough */
-  bool overlap;         /* the cores overlap, proven: upper is 0, lower a bound on minus the depth */
+  bool overlap;         /* the cores overlap, proven */
+  bool measured;        /* then: lower and upper are those of minus the depth; else upper is 0 */
   double lower, upper;  /* of the signed distance, margins and rounding included */
   double rounding;      /* how much of each end is rounding */
   vec3 on_a, on_b;      /* a's frame, margins included: the points that attain upper */
   vec3 common;          /* a's frame: where they overlap or touch, a point of both but for rounding */
   vec3 normal;          /* a's frame, unit, from b to a; (0,0,0) where there is none */
   double depth;         /* overlap: the cores' own depth is proven to be at least this */
-  pair_feature feature; /* only where the goal asks for it, and the cores are apart */
+  pair_feature feature; /* only where the goal asks for it, and the cores are apart or their depth is measured */
   uint32_t steps, supports;
 } pair_answer;
 

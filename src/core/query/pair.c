@@ -225,8 +225,7 @@ static cprox_status pair_over_parts(const cprox_target *a, const cprox_target *b
       steps += answer.steps;
       supports += answer.supports;
       lower = fmin(lower, answer.lower);
-      /* an overlap that is proven outweighs a touch */
-      if (best->answer.overlap || (answer.upper >= best->answer.upper && !answer.overlap)) continue;
+      if (answer.upper >= best->answer.upper) continue;
       best->answer = answer;
       best->part = (int32_t)j;
     }
@@ -239,8 +238,8 @@ static cprox_status pair_over_parts(const cprox_target *a, const cprox_target *b
 
 static cprox_status pair_status(const pair_answer *answer, const cprox_options *options) {
   const double width = answer->upper - answer->lower;
-  if (answer->overlap) return CPROX_OVERLAP;
-  if (width <= fmax(options->epsilon, options->relative_epsilon * answer->upper)) return CPROX_OK;
+  if (answer->overlap && !answer->measured) return CPROX_OVERLAP;
+  if (width <= fmax(options->epsilon, options->relative_epsilon * fabs(answer->upper))) return CPROX_OK;
   return answer->exhausted ? CPROX_BUDGET : CPROX_PRECISION;
 }
 
@@ -254,8 +253,10 @@ cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *opt
       (status = pair_check_target("b", &b, workspace)))
     return status;
 
-  const pair_goal goal = {
-      .epsilon = asked.epsilon, .relative_epsilon = asked.relative_epsilon, .max_steps = asked.max_nodes};
+  const pair_goal goal = {.epsilon = asked.epsilon,
+                          .relative_epsilon = asked.relative_epsilon,
+                          .max_steps = asked.max_nodes,
+                          .wants_depth = true};
   pair_reply best;
   if ((status = pair_over_parts(&a, &b, &goal, workspace, &best))) return status;
 
