@@ -14,6 +14,17 @@ double control_least(const double *points, size_t degree, vec3 n) {
   return least;
 }
 
+size_t control_lowest(const double *points, size_t degree, vec3 n) {
+  const double *x = points, *y = points + degree + 1, *z = y + degree + 1;
+  size_t lowest = 0;
+  double least = INFINITY;
+  for (size_t i = 0; i <= degree; i++) {
+    const double g = n.x * x[i] + n.y * y[i] + n.z * z[i];
+    if (g < least) least = g, lowest = i;
+  }
+  return lowest;
+}
+
 double control_magnitude(const double *points, size_t degree) {
   const double *x = points, *y = points + degree + 1, *z = y + degree + 1;
   double most = 0.0;

@@ -16,6 +16,9 @@ static inline size_t control_size(size_t degree) {
 /* min over the control points of n·P. */
 double control_least(const double *points, size_t degree, vec3 n);
 
+/* Which control point is that, the first of several. */
+size_t control_lowest(const double *points, size_t degree, vec3 n);
+
 /* The largest |P|, an upper bound up to its own rounding. */
 double control_magnitude(const double *points, size_t degree);
 

@@ -89,7 +89,7 @@ static double filter(void *self, search_node *node, double goal) {
     curve_convex_bound(o, node, &o->best);
     node->seen = o->incumbent;
   }
-  if (node->side[0].slot >= 0 && node->lower < goal && node->seen_ball != o->incumbent && know_cover(o) &&
+  if (node->side[0].slot >= 0 && node->lower < goal && node->seen_ball != o->incumbent && o->nodes >= o->polish_after && know_cover(o) &&
       (cover_is_the_body(o) || holds_best(o, node))) {
     bound_by_cover(o, node);
     node->seen_ball = o->incumbent;
@@ -152,9 +152,20 @@ static cprox_status probe_range(curve_convex *o, const search_node *node) {
   return status;
 }
 
+/* Where the interval's lowest control point along the best normal pulls most, but well inside; without a normal, the middle. */
+static double promising(const curve_convex *o, const search_interval *at) {
+  double fraction = 0.5;
+  if (o->incumbent > 0 && vec_norm2(o->best.normal) > 0.0) {
+    const size_t degree = o->side.curve->degree;
+    const size_t lowest = control_lowest(points_pool_at(&o->pool, (size_t)at->slot), degree, o->best.normal);
+    fraction = fmin(fmax((double)lowest / (double)degree, 0.125), 0.875);
+  }
+  return at->a + fraction * (at->b - at->a);
+}
+
 static cprox_status probe_piece(curve_convex *o, const search_node *node) {
   const search_interval *at = &node->side[0];
-  const double s = 0.5 * (at->a + at->b);
+  const double s = promising(o, at);
   search_best bound = {.upper = INFINITY};
   const cprox_status status = curve_convex_measure(o, curve_side_piece(&o->side, at), s, curve_side_point(&o->side, s),
                                                    curve_side_point_error(&o->side), &o->last, &bound);

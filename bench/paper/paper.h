@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The method of Lakshmanan, Patterson, Cichella, Hovakimyan (RSS 2019) as they describe it, the baseline of all ratios: best-first
+ * bisection; an interval's lower bound is the GJK distance to a polytope round the ellipsoid of Theorem 1, whose size is the
+ * closed-form arc-length bound of Eq. 6; its upper bound is the GJK distance of the curve's point at the middle.
+ *
+ * Kept as published: plain double arithmetic without regard to rounding. Its u² - L² cancels, so that lower bounds may come out too
+ * high: the benches count that. Mended, in its favour: the 3-D hull's axes are orthogonal here (as published they are not, and the
+ * hull misses part of the ellipsoid), and lower bounds are GJK's own lower bounds. */
+#ifndef CPROX_BENCH_PAPER_H
+#define CPROX_BENCH_PAPER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/vec.h"
+
+enum { PAPER_MAX_DEGREE = 64, PAPER_MAX_HULL = 16, PAPER_MAX_NODES = 100000 };
+
+/* A curve on [t0, t1] that knows its points and the integral of |psi'|². */
+typedef struct paper_curve {
+  double t0, t1;
+  bool planar;
+  const void *self;
+  vec3 (*point)(const void *self, double t);
+  double (*energy)(const void *self, double t); /* from t0 to t, of |psi'|² */
+} paper_curve;
+
+/* A Bézier curve on [0, 1]; the energy is a polynomial in Bernstein form, found once. */
+typedef struct paper_bezier {
+  size_t degree;
+  vec3 points[PAPER_MAX_DEGREE];
+  double energy[2 * PAPER_MAX_DEGREE];
+} paper_bezier;
+
+void paper_bezier_make(const vec3 *points, size_t degree, paper_bezier *bezier);
+paper_curve paper_bezier_curve(const paper_bezier *bezier, bool planar);
+
+/* A convex obstacle: its vertices. */
+typedef struct paper_obstacle {
+  const vec3 *vertex;
+  size_t n;
+} paper_obstacle;
+
+/* Distance of two vertex sets by GJK; *lower is its lower bound. Counts support evaluations in *evaluations. */
+double paper_gjk(const vec3 *a, size_t na, const vec3 *b, size_t nb, double *lower, uint32_t *evaluations);
+
+typedef enum paper_verb { PAPER_DISTANCE, PAPER_TOLERANCE, PAPER_COLLISION } paper_verb;
+
+typedef struct paper_question {
+  paper_verb verb;
+  double delta, epsilon;
+  uint32_t max_nodes;
+} paper_question;
+
+typedef struct paper_answer {
+  double lower, upper;
+  bool ended;   /* within max_nodes */
+  bool verdict; /* tolerance: farther than delta; collision: touches */
+  uint32_t nodes, evaluations;
+} paper_answer;
+
+/* Algorithms 1, 3, 4 and 2. `heap` is memory for PAPER_MAX_NODES nodes, kept by the caller. */
+typedef struct paper_node {
+  double lower, a[2], b[2];
+} paper_node;
+void paper_search(const paper_curve *curve, const paper_obstacle *obstacle, const paper_question *q, paper_node *heap,
+                  paper_answer *answer);
+void paper_search_curves(const paper_curve *first, const paper_curve *second, const paper_question *q, paper_node *heap,
+                         paper_answer *answer);
+
+#endif

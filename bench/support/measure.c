@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#define _POSIX_C_SOURCE 200809L
+#include "measure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { MAX_ROUNDS = 64, MAX_METHODS = 16 };
+
+/* A sample lasts at least this long, so that the clock's own cost does not count [s]. */
+static const double SHORTEST_SAMPLE = 2e-5;
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double quantile(double *values, size_t n, double q) {
+  qsort(values, n, sizeof *values, ascending);
+  return values[(size_t)(q * (double)(n - 1) + 0.5)];
+}
+
+/* ---- the command line --------------------------------------------------------------------------------------------------- */
+
+bench_size bench_arguments(int argc, char **argv) {
+  bench_size size = {.problems = 200, .rounds = 7};
+  for (int i = 1; i < argc; i++) {
+    if (strcmp(argv[i], "--quick") == 0) {
+      size.problems = 40;
+      size.rounds = 3;
+    } else if (strcmp(argv[i], "--only") == 0 && i + 1 < argc) {
+      size.only = argv[++i];
+    } else {
+      fprintf(stderr, "usage: %s [--quick] [--only WORKLOAD]\n", argv[0]);
+      exit(2);
+    }
+  }
+  return size;
+}
+
+bool bench_wanted(const bench_size *size, const char *workload) {
+  return !size->only || strstr(workload, size->only);
+}
+
+/* ---- one workload --------------------------------------------------------------------------------------------------------- */
+
+/* What is kept of one method. */
+typedef struct record {
+  double *time; /* medians, one a problem [s] */
+  double *nodes, *probes;
+  double error;
+  size_t unsound, failures;
+} record;
+
+static double time_of(const bench_workload *w, const bench_method *m, size_t problem, size_t repeats,
+                      bench_answer *answer) {
+  const double start = now();
+  for (size_t k = 0; k < repeats; k++) m->run(w->problems, problem, m->state, answer);
+  return (now() - start) / (double)repeats;
+}
+
+static size_t repeats_for(const bench_workload *w, const bench_method *m, size_t problem) {
+  bench_answer answer;
+  time_of(w, m, problem, 1, &answer); /* warm */
+  const double once = time_of(w, m, problem, 1, &answer);
+  return once >= SHORTEST_SAMPLE ? 1 : (size_t)fmin(SHORTEST_SAMPLE / fmax(once, 1e-8), 1000.0) + 1;
+}
+
+static void judge(const bench_workload *w, size_t problem, const bench_answer *answer, record *r) {
+  r->nodes[problem] = answer->nodes;
+  r->probes[problem] = answer->probes;
+  if (answer->failed) {
+    r->failures++;
+    return;
+  }
+  if (answer->wrong) r->unsound++;
+  if (!w->truth || isnan(w->truth[problem]) || isnan(answer->upper)) return;
+  const double truth = w->truth[problem];
+  if (isfinite(answer->upper)) r->error = fmax(r->error, fabs(answer->upper - truth));
+  if (answer->lower < answer->upper && (answer->lower > truth + w->doubt || answer->upper < truth - w->doubt))
+    r->unsound++;
+}
+
+static void measure_problem(const bench_workload *w, const bench_size *size, const bench_method *methods, size_t n,
+                            size_t problem, record *records) {
+  double sample[MAX_METHODS][MAX_ROUNDS];
+  size_t repeats[MAX_METHODS];
+  bench_answer answer[MAX_METHODS];
+  for (size_t m = 0; m < n; m++) repeats[m] = repeats_for(w, &methods[m], problem);
+  for (int round = 0; round < size->rounds; round++) {
+    for (size_t m = 0; m < n; m++) {
+      answer[m] = (bench_answer){.lower = NAN, .upper = NAN};
+      sample[m][round] = time_of(w, &methods[m], problem, repeats[m], &answer[m]);
+    }
+  }
+  for (size_t m = 0; m < n; m++) {
+    records[m].time[problem] = quantile(sample[m], (size_t)size->rounds, 0.5);
+    judge(w, problem, &answer[m], &records[m]);
+  }
+}
+
+void bench_measure(const bench_workload *w, const bench_size *size, const bench_method *methods, size_t n) {
+  if (n > MAX_METHODS || size->rounds > MAX_ROUNDS) abort();
+  record records[MAX_METHODS];
+  memset(records, 0, sizeof records);
+  for (size_t m = 0; m < n; m++) {
+    records[m].time = calloc(3 * w->n, sizeof(double));
+    if (!records[m].time) abort();
+    records[m].nodes = records[m].time + w->n;
+    records[m].probes = records[m].nodes + w->n;
+  }
+
+  for (size_t i = 0; i < w->n; i++) {
+    if (i % 10 == 0) fprintf(stderr, "\r%s: %s %s, %zu of %zu        ", w->group, w->name, w->parameter, i, w->n);
+    measure_problem(w, size, methods, n, i, records);
+  }
+  fprintf(stderr, "\r%s: %s %s, done                    \n", w->group, w->name, w->parameter);
+
+  for (size_t m = 0; m < n; m++) {
+    record *r = &records[m];
+    printf("%s,%s,%s,%s,%.4g,%.4g,%.4g,%.4g,", w->group, w->name, methods[m].name, w->parameter,
+           1e6 * quantile(r->time, w->n, 0.5), 1e6 * quantile(r->time, w->n, 0.95), quantile(r->nodes, w->n, 0.5),
+           quantile(r->probes, w->n, 0.5));
+    if (w->truth) printf("%.3g", r->error);
+    printf(",%zu,%zu\n", r->unsound, r->failures);
+    free(r->time);
+  }
+  fflush(stdout);
+}
