@@ -57,8 +57,9 @@ typedef struct gjk {
   simplex_nearest nearest;
   double least; /* the shortest distance so far */
   int idle;     /* steps since that got shorter by more than a hair */
-  double lower; /* the best lower bound, and the direction that gave it */
+  double lower; /* the best lower bound, the direction that gave it, and the core's height along that */
   vec3 normal;
+  double height;
 } gjk;
 
 /* Takes a grown simplex over. One that is nearer by less than a hair may still face a better way: some of those are let
@@ -86,6 +87,7 @@ static bool gjk_look(gjk *g, vec3 u) {
   if (lower > g->lower) {
     g->lower = lower;
     g->normal = vec_neg(u);
+    g->height = vec_dot(g->normal, vertex.a);
   }
   if (simplex_has(&g->s, vertex.w) || g->s.n == 4) return false;
   simplex grown = g->s;
@@ -149,4 +151,5 @@ void gjk_nearest(const convex *shape, vec3 y, convex_hint *hint, gjk_answer *ans
   answer->distance = inside ? -g.nearest.depth : g.nearest.distance;
   answer->point = inside ? y : gjk_point(&g.s);
   answer->normal = inside || g.nearest.distance == 0.0 ? vec(0, 0, 0) : g.normal;
+  answer->height = g.height;
 }

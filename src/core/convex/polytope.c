@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The hull of vertices, any number of them in any dimension. */
+#include "base/rounding.h"
 #include "convex/feature.h"
 #include "convex/gjk.h"
 #include "convex/vertices.h"
@@ -9,6 +10,8 @@ static void polytope_nearest(const convex *shape, vec3 y, convex_hint *hint, con
   gjk_nearest(shape, y, hint, &answer);
   *near = (convex_near){.distance = answer.distance, .point = answer.point, .normal = answer.normal};
   if (!(answer.distance > 0.0)) return;
+  near->height_known = fabs(vec_norm2(answer.normal) - 1.0) <= 4.0 * ROUND_U;
+  near->height = answer.height;
 
   /* the feature is what the nearest point needs: one vertex, an edge, a face */
   const simplex *s = &answer.feature;

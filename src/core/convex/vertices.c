@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "convex/vertices.h"
 
+#include "base/lanes.h"
 #include "convex/feature.h"
 
 enum { LANES = 8 }; /* the arrays are padded to a multiple of this */
 
+LANES_DISPATCHED
 int32_t vertices_extreme(const convex *shape, vec3 d, double *most) {
   /* the best of each lane; indices are kept as doubles so that a lane is as wide as its value */
   double best[LANES], where[LANES];

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "curve/control.h"
 
+#include "base/lanes.h"
 #include "base/rounding.h"
 
+LANES_DISPATCHED
 double control_least(const double *points, size_t degree, vec3 n) {
   const double *x = points, *y = points + degree + 1, *z = y + degree + 1;
   double least = INFINITY;
@@ -25,6 +27,7 @@ size_t control_lowest(const double *points, size_t degree, vec3 n) {
   return lowest;
 }
 
+LANES_DISPATCHED
 double control_magnitude(const double *points, size_t degree) {
   const double *x = points, *y = points + degree + 1, *z = y + degree + 1;
   double most = 0.0;
@@ -36,6 +39,7 @@ double control_magnitude(const double *points, size_t degree) {
   return sqrt(most);
 }
 
+LANES_DISPATCHED
 double control_split(double *left, double *right, size_t degree, double s, double magnitude) {
   const double r = 1.0 - s;
   for (int k = 0; k < 3; k++) {
@@ -58,6 +62,7 @@ static vec3 orthogonal_part(vec3 v, const vec3 *axis) {
   return axis ? vec_axpy(v, -vec_dot(*axis, v), *axis) : v;
 }
 
+LANES_DISPATCHED
 double control_distance_from(const double *points, size_t degree, vec3 centre, const vec3 *axis, double *scratch) {
   const double *x = points, *y = points + degree + 1, *z = y + degree + 1;
   double *wx = scratch, *wy = wx + degree + 1, *wz = wy + degree + 1;
@@ -71,13 +76,14 @@ double control_distance_from(const double *points, size_t degree, vec3 centre, c
     binomial = binomial * (double)(degree - i) / (double)(i + 1);
   }
 
-  /* coefficient k of |w|^2 in the Bernstein basis of degree 2n: sum over i of w_i w_(k-i) / C(2n, k) */
+  /* coefficient k of |w|^2 in the Bernstein basis of degree 2n: sum over i of w_i w_(k-i) / C(2n, k); i and k - i count twice */
   double least = INFINITY, divisor = 1.0;
   for (size_t k = 0; k <= 2 * degree; k++) {
-    const size_t first = k > degree ? k - degree : 0, last = k < degree ? k : degree;
+    const size_t first = k > degree ? k - degree : 0, half = (k + 1) / 2;
     double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-    for (size_t i = first; i <= last; i++) sum += wx[i] * wx[k - i] + wy[i] * wy[k - i] + wz[i] * wz[k - i];
+    for (size_t i = first; i < half; i++) sum += wx[i] * wx[k - i] + wy[i] * wy[k - i] + wz[i] * wz[k - i];
+    sum *= 2.0;
+    if (k % 2 == 0) sum += wx[half] * wx[half] + wy[half] * wy[half] + wz[half] * wz[half];
     least = fmin(least, sum / divisor);
     divisor = divisor * (double)(2 * degree - k) / (double)(k + 1);
   }
