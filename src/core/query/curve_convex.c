@@ -89,8 +89,8 @@ static double filter(void *self, search_node *node, double goal) {
     curve_convex_bound(o, node, &o->best);
     node->seen = o->incumbent;
   }
-  if (node->side[0].slot >= 0 && node->lower < goal && node->seen_ball != o->incumbent && o->nodes >= o->polish_after && know_cover(o) &&
-      (cover_is_the_body(o) || holds_best(o, node))) {
+  if (node->side[0].slot >= 0 && node->lower < goal && node->seen_ball != o->incumbent && o->nodes >= o->polish_after &&
+      know_cover(o) && (cover_is_the_body(o) || holds_best(o, node))) {
     bound_by_cover(o, node);
     node->seen_ball = o->incumbent;
   }
