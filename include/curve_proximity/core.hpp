@@ -8,6 +8,9 @@
 
 #include <array>
 #include <Eigen/Geometry>
+#include <exception>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -126,12 +129,16 @@ BodyHandle makeBody(Create create, Keep keep = nullptr) {
   });
 }
 
-template <typename Create>
-CurveHandle makeCurve(Create create) {
+/** The same of a curve. */
+template <typename Create, typename Keep = std::nullptr_t>
+CurveHandle makeCurve(Create create, Keep keep = nullptr) {
   Workspace workspace;
   cprox_curve *curve = nullptr;
   require(create(workspace.get(), &curve), workspace);
-  return CurveHandle(curve, [](const cprox_curve *c) { cprox_curve_free(const_cast<cprox_curve *>(c)); });
+  return CurveHandle(curve, [keep](const cprox_curve *c) {
+    (void)keep;
+    cprox_curve_free(const_cast<cprox_curve *>(c));
+  });
 }
 
 } // namespace detail
@@ -261,6 +268,144 @@ inline CurveHandle makeTrigonometric(const Eigen::Matrix3Xd &coefficients, doubl
   return detail::makeCurve([&](cprox_workspace *w, cprox_curve **curve) {
     return cprox_curve_create_trigonometric(c.data(), c.size(), t0, t1, w, curve);
   });
+}
+
+/** A clothoid: at `start` with the heading and curvature at t = 0, t being arc length. */
+inline CurveHandle makeClothoid(const Eigen::Vector3d &start, double heading, double curvature, double curvature_rate,
+                                double t0, double t1) {
+  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
+    return cprox_curve_create_clothoid(toVec3(start), heading, curvature, curvature_rate, t0, t1, w, c);
+  });
+}
+
+/** A Dubins path over [0, its length]; *path, if given, receives what it consists of. */
+inline CurveHandle makeDubins(const Eigen::Vector3d &start, double start_heading, const Eigen::Vector3d &end,
+                              double end_heading, double radius, cprox_dubins_word word = CPROX_DUBINS_SHORTEST,
+                              cprox_dubins_path *path = nullptr) {
+  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
+    return cprox_curve_create_dubins(toVec3(start), start_heading, toVec3(end), end_heading, radius, word, w, path, c);
+  });
+}
+
+/** The involute of a circle; it leaves the circle at t = 0 in the direction of the angle. */
+inline CurveHandle makeInvolute(const Eigen::Vector3d &centre, double radius, double angle, double t0, double t1) {
+  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
+    return cprox_curve_create_involute(toVec3(centre), radius, angle, t0, t1, w, c);
+  });
+}
+
+/** A Pythagorean-hodograph curve by the Bernstein coefficients of its preimage; planar ones have x = y = 0. */
+inline CurveHandle makePythagoreanHodograph(const Eigen::Vector3d &start,
+                                            const std::vector<Eigen::Quaterniond> &preimage, double t0 = 0.0,
+                                            double t1 = 1.0) {
+  std::vector<cprox_quat> a;
+  for (const Eigen::Quaterniond &q : preimage) a.push_back({q.w(), q.x(), q.y(), q.z()});
+  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
+    return cprox_curve_create_pythagorean_hodograph(toVec3(start), a.data(), a.size(), t0, t1, w, c);
+  });
+}
+
+/** Curves end to end. `ends`: empty, for their own ranges, or one more than there are curves. */
+inline CurveHandle makePiecewise(const std::vector<CurveHandle> &curves, const std::vector<double> &ends = {},
+                                 double gap = 0.0) {
+  if (!ends.empty() && ends.size() != curves.size() + 1) throw Error("n curves have n + 1 ends of their ranges");
+  std::vector<const cprox_curve *> handles;
+  for (const CurveHandle &curve : curves) handles.push_back(curve.get());
+  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
+    return cprox_curve_create_piecewise(handles.data(), handles.size(), ends.empty() ? nullptr : ends.data(), gap, w,
+                                        c);
+  });
+}
+
+/** A smooth curve by functions, as cprox_smooth_curve: value and two derivatives, a bound of the sixth, errors, accuracy. */
+struct SmoothCurve {
+  std::function<std::array<Eigen::Vector3d, 3>(double)> evaluate;
+  std::function<double(double, double)> sixth;
+  std::array<double, 3> error = {{0.0, 0.0, 0.0}};
+  double accuracy = 1e-12;
+};
+
+/** Compiles it; what the functions throw is thrown on. */
+inline CurveHandle makeSmooth(const SmoothCurve &functions, double t0, double t1) {
+  if (!functions.evaluate || !functions.sixth) throw Error("a smooth curve needs both its functions");
+  struct Call {
+    const SmoothCurve &functions;
+    std::exception_ptr thrown;
+  } call = {functions, nullptr};
+  cprox_smooth_curve c{};
+  c.evaluate = [](void *user, double t, cprox_vec3 jet[3]) {
+    auto *self = static_cast<Call *>(user);
+    try {
+      const std::array<Eigen::Vector3d, 3> d = self->functions.evaluate(t);
+      for (std::size_t k = 0; k < 3; ++k) jet[k] = toVec3(d[k]);
+    } catch (...) {
+      if (!self->thrown) self->thrown = std::current_exception();
+    }
+  };
+  c.sixth = [](void *user, double a, double b) {
+    auto *self = static_cast<Call *>(user);
+    try {
+      return self->functions.sixth(a, b);
+    } catch (...) {
+      if (!self->thrown) self->thrown = std::current_exception();
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+  c.user = &call;
+  for (std::size_t k = 0; k < 3; ++k) c.error[k] = functions.error[k];
+  c.accuracy = functions.accuracy;
+  try {
+    return detail::makeCurve(
+        [&](cprox_workspace *w, cprox_curve **curve) { return cprox_curve_create_smooth(&c, t0, t1, w, curve); });
+  } catch (const Error &) {
+    if (call.thrown) std::rethrow_exception(call.thrown);
+    throw;
+  }
+}
+
+/** A curve by its points and the lengths of its parts, as cprox_rectifiable_curve; `length` or `velocity` may be empty. Queries
+ *  call the functions from their own threads; one that throws ends the query with an Error that says where. */
+struct RectifiableCurve {
+  std::function<Eigen::Vector3d(double)> point;
+  std::function<double(double, double)> length;
+  std::function<Eigen::Vector3d(double)> velocity;
+  double error = 0.0, velocity_error = 0.0, quadrature_error = 0.0;
+};
+
+/** The functions live as long as the curve. */
+inline CurveHandle makeRectifiable(RectifiableCurve functions, double t0, double t1) {
+  const auto keep = std::make_shared<RectifiableCurve>(std::move(functions));
+  cprox_rectifiable_curve c{};
+  if (keep->point) {
+    c.point = [](void *user, double t, cprox_vec3 *point) {
+      try {
+        *point = toVec3(static_cast<RectifiableCurve *>(user)->point(t));
+      } catch (...) { // no exception may pass through C: the point stays the NaN that it was
+      }
+    };
+  }
+  if (keep->length) {
+    c.length = [](void *user, double a, double b) {
+      try {
+        return static_cast<RectifiableCurve *>(user)->length(a, b);
+      } catch (...) {
+        return std::numeric_limits<double>::quiet_NaN();
+      }
+    };
+  }
+  if (keep->velocity) {
+    c.velocity = [](void *user, double t, cprox_vec3 *velocity) {
+      try {
+        *velocity = toVec3(static_cast<RectifiableCurve *>(user)->velocity(t));
+      } catch (...) { // as for points
+      }
+    };
+  }
+  c.user = keep.get();
+  c.error = keep->error, c.velocity_error = keep->velocity_error, c.quadrature_error = keep->quadrature_error;
+  return detail::makeCurve(
+      [&](cprox_workspace *w, cprox_curve **curve) { return cprox_curve_create_rectifiable(&c, t0, t1, w, curve); },
+      keep);
 }
 
 /* ---- the verbs: as in cprox/query.h, throwing Error where there is no answer ------------------------------------- */

@@ -99,3 +99,74 @@ TEST(CoreHpp, a_refused_question_throws_and_the_next_is_answered) {
   expectContains(reasonOf([&] { distance(along(curve), at(box), options, workspace); }), "epsilon");
   EXPECT_GT(distance(along(curve), at(box), cprox_options_default(), workspace).lower, 0.0);
 }
+
+/* The unit circle about z, four ways, and the ball of radius 1/2 about (3, 0, 0) that is 1.5 away from it. */
+TEST(CoreHpp, every_maker_of_a_circle_makes_the_same_circle) {
+  Workspace workspace;
+  const double pi = 3.14159265358979323846;
+  SmoothCurve smooth;
+  smooth.evaluate = [](double t) {
+    const Eigen::Vector3d x(std::cos(t), std::sin(t), 0.0);
+    return std::array<Eigen::Vector3d, 3>{{x, Eigen::Vector3d(-x.y(), x.x(), 0.0), -x}};
+  };
+  smooth.sixth = [](double, double) { return 1.0; };
+  smooth.error = {{4e-16, 4e-16, 4e-16}};
+  RectifiableCurve rectifiable;
+  rectifiable.point = [](double t) { return Eigen::Vector3d(std::cos(t), std::sin(t), 0.0); };
+  rectifiable.length = [](double a, double b) { return (b - a) * (1.0 + 1e-15); };
+  rectifiable.error = 4e-16;
+
+  const std::vector<CurveHandle> circles = {
+      makeClothoid({1, 0, 0}, 0.5 * pi, 1.0, 0.0, -pi, pi),
+      makeDubins({0, -1, 0}, 0.0, {0, 1, 0}, pi, 1.0),
+      makeSmooth(smooth, -pi, pi),
+      makeRectifiable(rectifiable, -pi, pi),
+      makePiecewise({makeSmooth(smooth, -pi, 0.0), makeSmooth(smooth, 0.0, pi)}),
+  };
+  const BodyHandle ball = makeSphere(0.5);
+  for (const CurveHandle &circle : circles) {
+    const cprox_result r = distance(along(circle), at(ball, translation(3, 0, 0)), cprox_options_default(), workspace);
+    EXPECT_LE(r.lower, 1.5);
+    EXPECT_GE(r.upper, 1.5);
+    EXPECT_EQ(r.status, CPROX_OK);
+  }
+}
+
+TEST(CoreHpp, curves_of_functions_keep_them_and_say_what_went_wrong) {
+  Workspace workspace;
+  CurveHandle curve;
+  {
+    RectifiableCurve line;
+    const auto far = std::make_shared<double>(5.0);
+    line.point = [far](double t) { return Eigen::Vector3d(*far, t, 0.0); };
+    line.velocity = [](double) { return Eigen::Vector3d(0.0, 1.0, 0.0); };
+    line.error = 1e-15;
+    curve = makeRectifiable(line, -1.0, 1.0);
+  }
+  const BodyHandle ball = makeSphere(1.0);
+  const cprox_result r = distance(along(curve), at(ball), cprox_options_default(), workspace);
+  EXPECT_NEAR(r.upper, 4.0, 1e-5);
+
+  RectifiableCurve wrong;
+  wrong.point = [](double t) -> Eigen::Vector3d { return t < 0.5 ? Eigen::Vector3d(t, 0, 0) : throw Error("no"); };
+  wrong.length = [](double a, double b) { return b - a; };
+  expectContains(reasonOf([&] { makeRectifiable(wrong, 0.0, 1.0); }), "at t = 0.5 the curve's point is (nan");
+
+  SmoothCurve thrower;
+  thrower.evaluate = [](double) -> std::array<Eigen::Vector3d, 3> { throw Error("mine"); };
+  thrower.sixth = [](double, double) { return 0.0; };
+  EXPECT_EQ(reasonOf([&] { makeSmooth(thrower, 0.0, 1.0); }), "mine");
+}
+
+TEST(CoreHpp, involutes_and_pythagorean_curves_are_made) {
+  const CurveHandle involute = makeInvolute({1, 2, 3}, 0.5, 0.0, 0.0, 6.0);
+  cprox_vec3 x;
+  ASSERT_EQ(cprox_curve_evaluate(involute.get(), 0.0, nullptr, &x, nullptr, nullptr), CPROX_OK);
+  EXPECT_NEAR((toEigen(x) - Eigen::Vector3d(1.5, 2, 3)).norm(), 0.0, 1e-12);
+
+  // (1 + is)²: (s - s³/3, s²)
+  const CurveHandle cubic = makePythagoreanHodograph({0, 0, 0}, {{1, 0, 0, 0}, {1, 0, 0, 1}});
+  ASSERT_EQ(cprox_curve_evaluate(cubic.get(), 1.0, nullptr, &x, nullptr, nullptr), CPROX_OK);
+  EXPECT_NEAR((toEigen(x) - Eigen::Vector3d(2.0 / 3.0, 1, 0)).norm(), 0.0, 1e-15);
+  expectContains(reasonOf([&] { makePiecewise({cubic, cubic}, {0.0, 1.0}); }), "n + 1");
+}

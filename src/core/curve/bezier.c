@@ -7,12 +7,12 @@
 
 cprox_status cprox_curve_create_bezier(const cprox_vec3 *points, size_t n_points, double t0, double t1,
                                        cprox_workspace *workspace, cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status != CPROX_OK) return status;
   if (n_points > CPROX_MAX_DEGREE + 1)
     return workspace_fail(workspace, CPROX_INVALID, "a Bézier curve has at most %d control points (degree %d), got %zu",
                           CPROX_MAX_DEGREE + 1, CPROX_MAX_DEGREE, n_points);
-  cprox_status status = curve_check_points(points, n_points, workspace);
+  status = curve_check_points(points, n_points, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;
 

@@ -74,9 +74,8 @@ static double convert_span(const vec3 *control, const double *knots, size_t degr
 cprox_status cprox_curve_create_bspline(const cprox_vec3 *points, size_t n_points, size_t degree, const double *knots,
                                         size_t n_knots, double t0, double t1, cprox_workspace *workspace,
                                         cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
-  cprox_status status = curve_check_points(points, n_points, workspace);
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status == CPROX_OK) status = curve_check_points(points, n_points, workspace);
   if (status == CPROX_OK) status = check_knots(knots, n_points, degree, n_knots, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;

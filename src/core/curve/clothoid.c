@@ -23,9 +23,8 @@ static cprox_status check_clothoid(vec3 start, double heading, double curvature,
 
 cprox_status cprox_curve_create_clothoid(cprox_vec3 start, double heading, double curvature, double curvature_rate,
                                          double t0, double t1, cprox_workspace *workspace, cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
-  cprox_status status = curve_check_range(t0, t1, workspace);
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   const double most = fmax(fabs(t0), fabs(t1));
   if (status == CPROX_OK) status = check_clothoid(start, heading, curvature, curvature_rate, most, workspace);
   if (status != CPROX_OK) return status;

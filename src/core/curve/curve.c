@@ -52,6 +52,12 @@ static cprox_status check_finite(const char *name, const vec3 *values, size_t n,
   return CPROX_OK;
 }
 
+cprox_status curve_check_handle(cprox_curve **curve, cprox_workspace *workspace) {
+  workspace_clear(workspace);
+  if (curve) return CPROX_OK;
+  return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
+}
+
 cprox_status curve_check_points(const vec3 *points, size_t n, cprox_workspace *workspace) {
   if (n < 2) return workspace_fail(workspace, CPROX_INVALID, "a curve needs at least 2 control points, got %zu", n);
   if (!points) return workspace_fail(workspace, CPROX_INVALID, "the control points are NULL");
@@ -72,6 +78,13 @@ cprox_status curve_check_range(double t0, double t1, cprox_workspace *workspace)
                           CURVE_LARGEST);
   if (!(t0 < t1)) return workspace_fail(workspace, CPROX_INVALID, "t0 = %.17g is not below t1 = %.17g", t0, t1);
   return CPROX_OK;
+}
+
+cprox_status curve_check_sum(const vec3 *coefficients, size_t n, double t0, double t1, cprox_workspace *workspace,
+                             cprox_curve **curve) {
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status == CPROX_OK) status = curve_check_values("coefficient", coefficients, n, CPROX_MAX_DEGREE + 1, workspace);
+  return status == CPROX_OK ? curve_check_range(t0, t1, workspace) : status;
 }
 
 /* ---- chord capsules ---- */

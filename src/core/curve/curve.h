@@ -45,13 +45,18 @@ cprox_curve *curve_allocate(size_t degree, size_t n_pieces);
 /* Builds the capsules and tables over pieces that are filled in. */
 void curve_finish(cprox_curve *c);
 
-/* Checks that every constructor shares: CPROX_OK, or CPROX_INVALID with the sentence set. The points: at least 2, finite,
+/* Checks that constructors share: CPROX_OK, or CPROX_INVALID with the sentence set. The pointer for the new curve, first of all: the
+ * reason of the call before is forgotten. The points: at least 2, finite,
  * small enough that their squares do not overflow. The range: finite, t0 < t1. */
+cprox_status curve_check_handle(cprox_curve **curve, cprox_workspace *workspace);
 cprox_status curve_check_points(const vec3 *points, size_t n, cprox_workspace *workspace);
 /* 1 … most vectors that are no points of the curve, under a name of their own ("coefficient"). */
 cprox_status curve_check_values(const char *name, const vec3 *values, size_t n, size_t most,
                                 cprox_workspace *workspace);
 cprox_status curve_check_range(double t0, double t1, cprox_workspace *workspace);
+/* All of it for a sum of coefficients times functions of t. */
+cprox_status curve_check_sum(const vec3 *coefficients, size_t n, double t0, double t1, cprox_workspace *workspace,
+                             cprox_curve **curve);
 
 /* The largest magnitude of a coordinate, a knot or a parameter. */
 #define CURVE_LARGEST 1e150

@@ -132,11 +132,11 @@ static cprox_status compile_path(vec3 start, double heading, double radius, cons
 cprox_status cprox_curve_create_dubins(cprox_vec3 start, double start_heading, cprox_vec3 end, double end_heading,
                                        double radius, cprox_dubins_word word, cprox_workspace *workspace,
                                        cprox_dubins_path *path, cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status != CPROX_OK) return status;
   if (word < CPROX_DUBINS_SHORTEST || word > CPROX_DUBINS_LRL)
     return workspace_fail(workspace, CPROX_INVALID, "%d is no word of a Dubins path", (int)word);
-  const cprox_status status = check_poses(start, start_heading, end, end_heading, radius, workspace);
+  status = check_poses(start, start_heading, end, end_heading, radius, workspace);
   if (status != CPROX_OK) return status;
 
   const double dx = end.x - start.x, dy = end.y - start.y, line = atan2(dy, dx);

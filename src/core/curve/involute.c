@@ -32,9 +32,8 @@ static double sixth_derivative(void *self, double a, double b) {
 
 cprox_status cprox_curve_create_involute(cprox_vec3 centre, double radius, double turned, double t0, double t1,
                                          cprox_workspace *workspace, cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
-  cprox_status status = curve_check_values("centre", &centre, 1, 1, workspace);
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status == CPROX_OK) status = curve_check_values("centre", &centre, 1, 1, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;
   if (!(radius > 0.0 && radius <= sqrt(CURVE_LARGEST)))

@@ -113,9 +113,8 @@ static cprox_status stand_still(const vec3 *point, double t0, double t1, cprox_w
 
 cprox_status cprox_curve_create_lagrange(const cprox_vec3 *points, const double *nodes, size_t n_points, double t0,
                                          double t1, cprox_workspace *workspace, cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
-  cprox_status status = curve_check_values("point", points, n_points, CPROX_MAX_DEGREE + 1, workspace);
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status == CPROX_OK) status = curve_check_values("point", points, n_points, CPROX_MAX_DEGREE + 1, workspace);
   if (status == CPROX_OK && !nodes) return workspace_fail(workspace, CPROX_INVALID, "the nodes are NULL");
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;

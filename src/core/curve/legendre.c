@@ -25,11 +25,7 @@ static void add_term(dd *b, size_t k, double c) {
 
 cprox_status cprox_curve_create_legendre(const cprox_vec3 *coefficients, size_t n_coefficients, double t0, double t1,
                                          cprox_workspace *workspace, cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
-  cprox_status status =
-      curve_check_values("coefficient", coefficients, n_coefficients, CPROX_MAX_DEGREE + 1, workspace);
-  if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
+  const cprox_status status = curve_check_sum(coefficients, n_coefficients, t0, t1, workspace, curve);
   if (status != CPROX_OK) return status;
 
   /* a constant is a line that stands still */

@@ -130,9 +130,8 @@ static cprox_status append(cprox_curve *whole, size_t first, const cprox_curve *
 
 cprox_status cprox_curve_create_piecewise(const cprox_curve *const *curves, size_t n_curves, const double *ends,
                                           double gap, cprox_workspace *workspace, cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
-  cprox_status status = check_curves(curves, n_curves, ends, gap, workspace);
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status == CPROX_OK) status = check_curves(curves, n_curves, ends, gap, workspace);
   for (size_t i = 1; i < n_curves && status == CPROX_OK; i++) status = check_joint(curves, i, !ends, gap, workspace);
   if (status != CPROX_OK) return status;
 

@@ -66,9 +66,8 @@ static convert_point hodograph(const cprox_quat *preimage, size_t m, size_t k, d
 cprox_status cprox_curve_create_pythagorean_hodograph(cprox_vec3 start, const cprox_quat *preimage, size_t n_preimage,
                                                       double t0, double t1, cprox_workspace *workspace,
                                                       cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
-  cprox_status status = curve_check_values("start point", &start, 1, 1, workspace);
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status == CPROX_OK) status = curve_check_values("start point", &start, 1, 1, workspace);
   if (status == CPROX_OK) status = check_preimage(preimage, n_preimage, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;

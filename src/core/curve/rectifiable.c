@@ -130,9 +130,8 @@ static cprox_status fill_pieces(cprox_curve *c, cprox_workspace *workspace) {
 
 cprox_status cprox_curve_create_rectifiable(const cprox_rectifiable_curve *functions, double t0, double t1,
                                             cprox_workspace *workspace, cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
-  cprox_status status = check_functions(functions, workspace);
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status == CPROX_OK) status = check_functions(functions, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;
 

@@ -47,9 +47,8 @@ static cprox_status check_smooth(const cprox_smooth_curve *given, cprox_workspac
 
 cprox_status cprox_curve_create_smooth(const cprox_smooth_curve *functions, double t0, double t1,
                                        cprox_workspace *workspace, cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
-  cprox_status status = check_smooth(functions, workspace);
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status == CPROX_OK) status = check_smooth(functions, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;
 

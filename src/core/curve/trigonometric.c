@@ -97,9 +97,8 @@ static cprox_status check_series(const vec3 *coefficients, size_t n, cprox_works
 
 cprox_status cprox_curve_create_trigonometric(const cprox_vec3 *coefficients, size_t n_coefficients, double t0,
                                               double t1, cprox_workspace *workspace, cprox_curve **curve) {
-  workspace_clear(workspace);
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
-  cprox_status status = check_series(coefficients, n_coefficients, workspace);
+  cprox_status status = curve_check_handle(curve, workspace);
+  if (status == CPROX_OK) status = check_series(coefficients, n_coefficients, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;
 
