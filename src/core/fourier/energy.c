@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The integral of the square of a solid's function, exactly where pieces are loops in the plane, else bounded from above: what
- * is left of it bounds the rest of a gap's sum (doc/fourier.md, "Early exit"). */
+/* The integral of the square of a solid's function and its largest value: exactly where pieces are loops in the plane, else
+ * bounded from above. What is left of the first bounds the rest of a gap's sum, the second enters the over-reach (doc/fourier.md, "Early
+ * exit" and "Over-reach"). */
 #include <stdlib.h>
 
 #include "fourier/solid.h"
@@ -43,7 +44,7 @@ static size_t list_heights(const edges *e, double *heights) {
 }
 
 /* The integral over the slab at height y, per unit of height: widths times the winding number squared. */
-static double slab(const edges *e, double y, crossing *list) {
+static double slab(const edges *e, double y, crossing *list, double *peak) {
   size_t n = 0;
   for (size_t i = 0; i < e->n; i++) {
     const vec3 a = e->from[i], b = e->to[i];
@@ -56,51 +57,62 @@ static double slab(const edges *e, double y, crossing *list) {
   for (size_t i = 0; i + 1 < n; i++) {
     winding += list[i].winding;
     sum += (list[i + 1].x - list[i].x) * winding * winding;
+    *peak = fmax(*peak, winding);
   }
   return sum;
 }
 
 /* Between two heights widths are linear in y, so that the middle times the height is exact. */
-static double integrate(const edges *e, double *heights, crossing *list) {
+static solid_bounds integrate(const edges *e, double *heights, crossing *list) {
   const size_t n = list_heights(e, heights);
-  double sum = 0.0;
+  solid_bounds bounds = {0.0, 0.0};
   for (size_t i = 0; i + 1 < n; i++)
     if (heights[i + 1] > heights[i])
-      sum += (heights[i + 1] - heights[i]) * slab(e, 0.5 * (heights[i] + heights[i + 1]), list);
-  return sum;
+      bounds.energy += (heights[i + 1] - heights[i]) * slab(e, 0.5 * (heights[i] + heights[i + 1]), list, &bounds.peak);
+  return bounds;
 }
 
-static double energy_of_loops(const cprox_solid *solid, bool *failed) {
+static bool bound_loops(const cprox_solid *solid, solid_bounds *bounds) {
   edges e = {0};
   for (size_t i = 0; i < solid->n; i++) e.n += solid->pieces[i].n_corners;
   e.from = malloc(e.n * sizeof *e.from);
   e.to = malloc(e.n * sizeof *e.to);
   double *heights = malloc((e.n + e.n * (e.n - 1) / 2) * sizeof *heights);
   crossing *list = malloc(e.n * sizeof *list);
-  double sum = INFINITY;
-  if (e.from && e.to && heights && list) {
-    size_t at = 0;
-    for (size_t i = 0; i < solid->n; i++) {
-      const piece *p = &solid->pieces[i];
-      for (size_t j = 0; j < p->n_corners; j++, at++) {
-        e.from[at] = p->corner[j];
-        e.to[at] = p->corner[(j + 1) % p->n_corners];
-      }
+  const bool ok = e.from && e.to && heights && list;
+  size_t at = 0;
+  for (size_t i = 0; ok && i < solid->n; i++) {
+    const piece *p = &solid->pieces[i];
+    for (size_t j = 0; j < p->n_corners; j++, at++) {
+      e.from[at] = p->corner[j];
+      e.to[at] = p->corner[(j + 1) % p->n_corners];
     }
-    sum = integrate(&e, heights, list) * (1.0 + 1e-12);
-  } else {
-    *failed = true;
   }
+  if (ok) *bounds = integrate(&e, heights, list);
   free(e.from);
   free(e.to);
   free(heights);
   free(list);
-  return sum;
+  return ok;
 }
 
-/* A solid body's is its measure. Soups and sweeps may count more than once: unknown. */
-static double energy_of_piece(const piece *p, int dimension) {
-  return p->kind == PIECE_SOUP || p->kind == PIECE_SWEEP ? INFINITY : piece_measure(p, dimension);
+/* Whether a loop turns left alone, once around: then its function is an indicator. Loops here wind once at least, and the offset of
+ * a convex loop turns by 2 pi exactly. */
+static bool is_convex(const piece *p) {
+  double turned = 0.0;
+  for (size_t i = 0; i < p->n_corners; i++) {
+    const vec3 a = p->corner[i], b = p->corner[(i + 1) % p->n_corners], c = p->corner[(i + 2) % p->n_corners];
+    const vec3 d = vec_sub(b, a), e = vec_sub(c, b);
+    const double cross = d.x * e.y - d.y * e.x;
+    if (cross < 0.0) return false;
+    turned += atan2(cross, d.x * e.x + d.y * e.y);
+  }
+  return turned < 9.0;
+}
+
+static bool is_indicator(const piece *p) {
+  if (p->kind == PIECE_POLYGON) return is_convex(p);
+  return p->kind != PIECE_SWEEP && !(p->kind == PIECE_SOUP && p->folded);
 }
 
 static double box_overlap(const piece *a, const piece *b, int dimension) {
@@ -112,25 +124,42 @@ static double box_overlap(const piece *a, const piece *b, int dimension) {
   return x > 0.0 && y > 0.0 && z > 0.0 ? x * y * z : 0.0;
 }
 
-/* Beyond this many edges or pieces the pairs are not worth their time. */
-enum { MOST_PAIRED = 3000 };
+/* Beyond this many edges the slabs are not worth their time, and beyond this many pieces their pairs. */
+enum { MOST_EDGES = 300, MOST_PIECES = 3000 };
 
-double solid_energy(const cprox_solid *solid, bool *failed) {
-  size_t loops = 0, corners = 0;
+/* Pieces that are indicators: each pair overlaps no more than its boxes and its smaller one do; the function is at most one more
+ * than the number of boxes that meet a piece's. */
+static void bound_pairs(const cprox_solid *solid, solid_bounds *bounds) {
+  for (size_t i = 0; i < solid->n; i++) {
+    const double own = piece_measure(&solid->pieces[i], solid->dimension);
+    double meeting = 1.0;
+    bounds->energy += own;
+    for (size_t j = 0; j < solid->n; j++) {
+      const double overlap = j == i ? 0.0 : box_overlap(&solid->pieces[i], &solid->pieces[j], solid->dimension);
+      meeting += overlap > 0.0;
+      bounds->energy += fmin(overlap, fmin(own, piece_measure(&solid->pieces[j], solid->dimension)));
+    }
+    bounds->peak = fmax(bounds->peak, meeting);
+  }
+}
+
+bool solid_find_bounds(const cprox_solid *solid, solid_bounds *bounds) {
+  size_t loops = 0, corners = 0, indicators = 0;
   for (size_t i = 0; i < solid->n; i++) {
     loops += solid->pieces[i].kind == PIECE_POLYGON;
     corners += solid->pieces[i].n_corners;
+    indicators += is_indicator(&solid->pieces[i]);
   }
-  if (loops == solid->n) return corners <= MOST_PAIRED ? energy_of_loops(solid, failed) : INFINITY;
-  if (loops > 0 || solid->n > MOST_PAIRED) return INFINITY;
-
-  double sum = 0.0;
-  for (size_t i = 0; i < solid->n; i++) {
-    const double own = energy_of_piece(&solid->pieces[i], solid->dimension);
-    sum += own;
-    for (size_t j = 0; j < i; j++)
-      sum += 2.0 * fmin(fmin(own, energy_of_piece(&solid->pieces[j], solid->dimension)),
-                        box_overlap(&solid->pieces[i], &solid->pieces[j], solid->dimension));
-  }
-  return sum * (1.0 + 1e-12);
+  *bounds = (solid_bounds){0.0, 0.0};
+  bool ok = true;
+  if (solid->n == 1 && indicators == 1)
+    *bounds = (solid_bounds){cprox_solid_measure(solid), 1.0};
+  else if (loops == solid->n && corners <= MOST_EDGES)
+    ok = bound_loops(solid, bounds);
+  else if (indicators == solid->n && solid->n <= MOST_PIECES)
+    bound_pairs(solid, bounds);
+  else
+    *bounds = (solid_bounds){INFINITY, INFINITY};
+  bounds->energy *= 1.0 + 1e-12;
+  return ok;
 }

@@ -161,7 +161,9 @@ static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cpro
     gap->constant = cprox_solid_measure(fixed) * measure;
     const double volume = dimension == 2 ? L * L : L * L * L;
     /* folded: T is 1 at each term, so that what is left of its energy is the number of lattice points left: of no use */
-    gap->half_energy = folded ? INFINITY : 0.5 * fmax(0.0, volume * solid_energy(turned, &failed) - measure * measure);
+    solid_bounds bounds = {INFINITY, INFINITY};
+    failed = !folded && !solid_find_bounds(turned, &bounds);
+    gap->half_energy = 0.5 * fmax(0.0, volume * bounds.energy - measure * measure);
     gap->info.rounding = rounding_bound(gap, w, fixed, turned, (double)(corners_of(fixed) + corners_of(turned)));
     gap->turned = folded ? NULL : turned;
     if (folded) cprox_solid_free(turned);

@@ -33,30 +33,16 @@ void kernel_signal(kernel *k, int N) {
   for (int i = 0; i <= N; i++) k->w[i] = exp(-0.5 * s * s * i * i);
 }
 
-/* Where each value of n begins (doc/fourier.md, "Kernels"). */
-typedef struct chosen {
-  int from;
-  double beta, certified, tuned;
-} chosen;
-
-static const chosen CHOSEN[] = {{0, 1.5, 0.5, 0.35},  {13, 2.5, 0.6, 0.5},  {25, 2.5, 0.75, 0.5},
-                                {49, 3.5, 0.75, 0.6}, {97, 3.5, 0.9, 0.75}, {161, 4.5, 0.6, 0.75}};
-
-static const chosen *chosen_for(int samples) {
-  const chosen *best = CHOSEN;
-  for (size_t i = 0; i < sizeof CHOSEN / sizeof *CHOSEN; i++)
-    if (samples >= CHOSEN[i].from) best = &CHOSEN[i];
-  return best;
-}
-
 double kernel_beta(int dimension, int samples) {
-  return dimension == 3 ? 3.0 : chosen_for(samples)->beta;
+  return 2.0 + (dimension == 2 ? 0.7 : 1.07) * fmax(0.0, log2(samples / 9.0));
 }
 
+/* The tuned mode's falls in steps, the others' does not depend on n. */
 double kernel_offset(int dimension, int samples, cprox_gap_mode mode) {
   if (mode == CPROX_GAP_SIGNAL) return 0.0;
-  if (mode == CPROX_GAP_TUNED) return dimension == 3 ? 0.75 : chosen_for(samples)->tuned;
-  return dimension == 3 ? 1.0 : chosen_for(samples)->certified;
+  if (mode == CPROX_GAP_CERTIFIED) return dimension == 2 ? 0.75 : 1.05;
+  if (dimension == 3 || samples >= 97) return 0.75;
+  return samples < 13 ? 0.35 : samples < 49 ? 0.5 : 0.6;
 }
 
 /* The transform of the ball of radius rho at |q|. */
@@ -98,7 +84,7 @@ static void list_masses(const kernel *k, int M, double *mass) {
   }
 }
 
-/* A lower bound of the product kernel's integral over the disc of radius R/(2M): strips of the one axis, each over the chord at its
+/* A lower bound of the product kernel's integral over the ball of radius R/(2M): strips of the one axis, each over the chord at its
  * outer end of the other, whose integral `inner` lists. Both are non-decreasing, since the kernel is nonnegative. */
 static double disc_mass(const double *mass, const double *inner, int R) {
   double sum = 0.0;
@@ -109,28 +95,37 @@ static double disc_mass(const double *mass, const double *inner, int R) {
   return sum;
 }
 
-bool kernel_reach(const kernel *k, int dimension, const double *masses, size_t n, double *reach) {
-  const int M = dimension == 2 ? 256 * (k->n + 1) : 48 * (k->n + 1);
+int kernel_steps(int N) {
+  return 16 * (N + 1);
+}
+
+bool kernel_list_outside(const kernel *k, int dimension, int steps, double *outside) {
+  const int fine = dimension == 2 ? 8 : 4, M = fine * steps;
   double *mass = malloc(2 * (size_t)(M + 1) * sizeof *mass);
   if (!mass) return false;
-  double *disc = mass + M + 1;
+  double *disc = mass + M + 1, *inner = mass;
   list_masses(k, M, mass);
-  const double *inner = mass;
   if (dimension == 3) {
     for (int i = 0; i <= M; i++) disc[i] = disc_mass(mass, mass, i);
     inner = disc;
   }
-  for (size_t j = 0; j < n; j++) {
-    int low = 0, high = M; /* outside low: too much; outside high: assumed little enough */
-    while (high - low > 1) {
-      const int mid = (low + high) / 2;
-      if (1.0 - disc_mass(mass, inner, mid) > masses[j])
-        low = mid;
-      else
-        high = mid;
-    }
-    reach[j] = (double)high / (2.0 * M);
-  }
+  for (int i = 0; i <= steps; i++) outside[i] = fmax(0.0, 1.0 - disc_mass(mass, inner, fine * i)) + 1e-13;
   free(mass);
   return true;
+}
+
+/* V <= integral over |u| > x of K(u) min(most, slope (|u| - x)) = slope times the integral of outside(s) over s from x to
+ * x + most/slope; outside() falls, so that the left ends of the steps bound it. */
+double kernel_reach(const double *outside, int steps, double most, double slope, double t) {
+  const double step = 0.5 / steps;
+  const double span = fmin(ceil(most / slope / step), (double)steps);
+  const int width = (int)span;
+  double sum = 0.0;
+  for (int j = steps; j > 0; j--) {
+    /* sum over [j, j + width) of outside */
+    sum += outside[j];
+    if (j + width <= steps) sum -= outside[j + width];
+    if (slope * step * sum >= t) return j == steps ? 0.5 : step * (j + 1);
+  }
+  return 0.0;
 }

@@ -19,7 +19,8 @@ void kernel_certified(kernel *k, int N, double beta);
 void kernel_tuned(kernel *k, int N);
 void kernel_signal(kernel *k, int N);
 
-/* Kaiser's beta and the offset rho n/L that suit n samples. */
+/* Kaiser's beta, and the offset rho n/L, that make the certified over-reach of bodies of ordinary proportions least, within 3 % (a
+ * scan over both; doc/fourier.md, "Kernels"); the tuned mode's offsets. */
 double kernel_beta(int dimension, int samples);
 double kernel_offset(int dimension, int samples, cprox_gap_mode mode);
 
@@ -34,8 +35,13 @@ static inline double kernel_weight(const kernel *k, const int at[3]) {
  * two balls u apart (NULL if not needed). */
 double kernel_threshold(const kernel *k, int dimension, double rho, double *bend);
 
-/* The least x, up to a grid, such that a kernel >= 0 has no more than `mass` of its integral outside the ball of radius x; 0.5
- * where there is none below. false where memory is out. */
-bool kernel_reach(const kernel *k, int dimension, const double *masses, size_t n, double *reach);
+/* Upper bounds of the part of a nonnegative kernel's integral outside the balls of radius i/(2 steps), i = 0 … steps.
+ * kernel_steps() says how fine the table should be; false where memory is out. */
+int kernel_steps(int N);
+bool kernel_list_outside(const kernel *k, int dimension, int steps, double *outside);
+
+/* The least x of the table's radii such that V < t wherever the obstacle is farther away than x, where the overlap of two bodies
+ * is at most `most` and grows by at most `slope` for each unit of depth; 0.5 where there is none below. */
+double kernel_reach(const double *outside, int steps, double most, double slope, double t);
 
 #endif

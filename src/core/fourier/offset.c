@@ -44,7 +44,7 @@ static bool offset_corners(const piece *p, double rho, piece *out, double *reach
     offset_loop(p->vertex, p->n_vertices, rho, &corners);
     *reach = fmax(*reach, rho / cos(0.5 * ARC_STEP));
   } else {
-    offset_mesh(p, rho, &corners, reach);
+    out->folded = offset_mesh(p, rho, &corners, reach);
   }
   for (size_t i = 0; rho > 0.0 && i < p->n_planes; i++) {
     const double plane[4] = {p->plane[i][0], p->plane[i][1], p->plane[i][2], p->plane[i][3] + rho};

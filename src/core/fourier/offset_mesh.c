@@ -61,18 +61,20 @@ static void add_wedge(points *soup, vec3 a, vec3 b, vec3 m, vec3 n, double rho) 
   }
 }
 
-static void add_edge(const piece *mesh, const half_edge *left, const half_edge *right, double rho, points *soup) {
+/* Returns whether the edge is reflex: then the prisms beside it overlap. */
+static bool add_edge(const piece *mesh, const half_edge *left, const half_edge *right, double rho, points *soup) {
   const vec3 a = mesh->vertex[left->low], b = mesh->vertex[left->high];
   const vec3 m = unit_normal(mesh, left->triangle), n = unit_normal(mesh, right->triangle);
   const double bend = vec_dot(vec_cross(m, n), vec_sub(b, a)) / vec_norm(vec_sub(b, a));
   const bool folded = vec_dot(m, n) < 0.0;
-  if (fabs(bend) < 1e-14 && !folded) return; /* flat: the walls of the two prisms cancel */
+  if (fabs(bend) < 1e-14 && !folded) return false; /* flat: the walls of the two prisms cancel */
   if (bend > 0.0) {
     add_wedge(soup, a, b, m, n, rho);
-  } else {
-    add_wall(soup, a, b, m, rho);
-    add_wall(soup, b, a, n, rho);
+    return false;
   }
+  add_wall(soup, a, b, m, rho);
+  add_wall(soup, b, a, n, rho);
+  return true;
 }
 
 /* The 42-vertex polytope: an icosahedron with its faces in four, turned out of every likely plane, circumscribed to the unit
@@ -156,7 +158,8 @@ static void list_edges(const piece *mesh, const half_edge *halves, size_t n_halv
   start[mesh->n_vertices] = n_halves;
 }
 
-void offset_mesh(const piece *mesh, double rho, points *soup, double *reach) {
+bool offset_mesh(const piece *mesh, double rho, points *soup, double *reach) {
+  bool reflex = false;
   const size_t n_halves = 3 * mesh->n_triangles;
   half_edge *halves = malloc(n_halves * sizeof *halves);
   size_t *start = calloc(mesh->n_vertices + 2, sizeof *start);
@@ -175,7 +178,8 @@ void offset_mesh(const piece *mesh, double rho, points *soup, double *reach) {
       points_add_triangle(soup, vec_add(mesh->vertex[t[0]], up), vec_add(mesh->vertex[t[1]], up),
                           vec_add(mesh->vertex[t[2]], up));
     }
-    for (size_t i = 0; i < n_halves; i += 2) add_edge(mesh, &halves[i], &halves[i + 1], rho, soup);
+    for (size_t i = 0; i < n_halves; i += 2)
+      if (add_edge(mesh, &halves[i], &halves[i + 1], rho, soup)) reflex = true;
 
     vec3 faces[CAP_FACES][3];
     points part = {0};
@@ -190,4 +194,5 @@ void offset_mesh(const piece *mesh, double rho, points *soup, double *reach) {
   free(halves);
   free(start);
   free(edges);
+  return reflex;
 }

@@ -175,3 +175,34 @@ double piece_error_scale(const piece *p, int dimension, double q) {
   const double measure = fabs(piece_measure(p, dimension));
   return p->kind == PIECE_POLYGON || p->kind == PIECE_SOUP ? fmax(measure, boundary(p) / q) : measure;
 }
+
+static double grid_boundary(const piece *p, int dimension) {
+  const int64_t n[3] = {p->counts[0], p->counts[1], p->counts[2]}, stride[3] = {1, n[0], n[0] * n[1]};
+  size_t open = 0;
+  for (int64_t i = 0; i < n[0] * n[1] * n[2]; i++)
+    for (int j = 0; p->cells[i] && j < dimension; j++) {
+      const int64_t at = i / stride[j] % n[j];
+      open += (size_t)(at == 0 || !p->cells[i - stride[j]]) + (size_t)(at + 1 == n[j] || !p->cells[i + stride[j]]);
+    }
+  return (double)open * p->size[0] * (dimension == 2 ? 1.0 : p->size[0]);
+}
+
+double piece_slope(const piece *p, int dimension) {
+  const double *s = p->size;
+  const bool plane = dimension == 2;
+  const double disc = plane ? 2.0 * s[0] : ball_measure(2, s[0]);
+  switch (p->kind) {
+    case PIECE_ELLIPSOID: {
+      const double least = fmin(s[0], fmin(s[1], s[2]));
+      return plane ? 2.0 * fmax(s[0], s[1]) : ball_measure(2, 1.0) * s[0] * s[1] * s[2] / least;
+    }
+    case PIECE_BOX: return plane ? 2.0 * hypot(s[0], s[1]) : 4.0 * vec_norm(vec(s[0] * s[1], s[1] * s[2], s[2] * s[0]));
+    case PIECE_CYLINDER: return hypot(disc, 4.0 * s[0] * s[1]);
+    case PIECE_CAPSULE: return disc + (plane ? 2.0 * s[1] : 4.0 * s[0] * s[1]);
+    case PIECE_SWEEP: return piece_measure(p, dimension) / ball_measure(dimension, s[0]) * disc;
+    case PIECE_GRID: return 0.5 * grid_boundary(p, dimension);
+    case PIECE_POLYGON:
+    case PIECE_SOUP: break;
+  }
+  return 0.5 * boundary(p);
+}

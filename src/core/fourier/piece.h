@@ -38,6 +38,8 @@ typedef struct piece {
 
   uint32_t counts[3];
   unsigned char *cells;
+
+  bool folded; /* a soup whose winding number may exceed 1 */
 } piece;
 
 /* A piece of the kind with its own frame at the origin and no memory. */
@@ -49,6 +51,9 @@ bool piece_copy(const piece *p, const double turn[9], vec3 shift, piece *copy);
 
 /* Integral of the function. */
 double piece_measure(const piece *p, int dimension);
+
+/* How much of it a shift by a unit length uncovers at most: the largest projection of a convex piece, half the boundary of another. */
+double piece_slope(const piece *p, int dimension);
 
 /* Every point of the piece is within the answer of the point. */
 double piece_radius_about(const piece *p, int dimension, vec3 point);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* How many samples, which period, offset and kernel: no more than the accuracy asked needs. */
+#include <stdlib.h>
+
 #include "fourier/gap.h"
 
 cprox_gap_options cprox_gap_options_default(void) {
@@ -11,19 +13,28 @@ static double tuned_reach(int dimension) {
   return dimension == 2 ? 2.1 : 1.9;
 }
 
-/* Offsets and measures of both solids at rho: what over-reach depends on. */
+/* Both solids at rho, as far as the over-reach depends on them: how far the offsets go, how much they can overlap, and how fast that
+ * grows with depth. */
 typedef struct enlarged {
-  double reach, least_measure;
+  double reach, most, slope;
   bool ok;
 } enlarged;
 
+static double slope_of(const cprox_solid *s) {
+  double sum = 0.0;
+  for (size_t i = 0; i < s->n; i++) sum += piece_slope(&s->pieces[i], s->dimension);
+  return sum;
+}
+
 static enlarged enlarge(const cprox_solid *a, const cprox_solid *b, double rho) {
   double reach_a, reach_b;
+  solid_bounds bound_a, bound_b;
   cprox_solid *p = solid_offset(a, rho, &reach_a), *q = solid_offset(b, rho, &reach_b);
-  enlarged e = {.ok = p && q};
+  enlarged e = {.ok = p && q && solid_find_bounds(p, &bound_a) && solid_find_bounds(q, &bound_b)};
   if (e.ok) {
     e.reach = reach_a + reach_b;
-    e.least_measure = fmin(cprox_solid_measure(p), cprox_solid_measure(q));
+    e.most = fmin(cprox_solid_measure(p) * bound_b.peak, cprox_solid_measure(q) * bound_a.peak);
+    e.slope = fmin(slope_of(p) * bound_b.peak, slope_of(q) * bound_a.peak);
   }
   cprox_solid_free(p);
   cprox_solid_free(q);
@@ -56,40 +67,62 @@ double gap_threshold(const kernel *k, const gap_plan *plan, const cprox_solid *a
 
 /* The least period that keeps images apart for N, and the over-reach there: L >= 2 (r_a + r_b) + over-reach, where the over-reach
  * itself depends on L. Each step enlarges L; over_reach is infinite where it does not settle: then clear is still a proof. */
-static cprox_status settle(const cprox_solid *a, const cprox_solid *b, cprox_workspace *workspace, gap_plan *plan) {
-  const double size = 2.0 * (a->radius + b->radius), asked = plan->period;
-  const double rho = kernel_offset(plan->dimension, 2 * plan->N + 1, plan->mode) / (2 * plan->N + 1);
-  kernel k;
-  kernel_certified(&k, plan->N, plan->beta);
+static cprox_status no_memory(cprox_workspace *workspace) {
+  return workspace_fail(workspace, CPROX_MEMORY, "no memory to plan a gap");
+}
 
+/* The over-reach at the plan's period. `outside` is the certified kernel's table. */
+static double over_reach(const gap_plan *plan, const enlarged *e, double t, const double *outside) {
+  if (plan->mode == CPROX_GAP_SIGNAL) return INFINITY;
+  if (plan->mode == CPROX_GAP_TUNED) return tuned_reach(plan->dimension) * plan->period / (2 * plan->N + 1);
+  if (isinf(e->most)) return INFINITY;
+  const double L = plan->period, volume = power(L, plan->dimension);
+  /* lengths in units of L, overlaps in units of L^d */
+  const double x = kernel_reach(outside, kernel_steps(plan->N), e->most / volume, e->slope * L / volume, t / volume);
+  return x < 0.5 ? e->reach + x * L : INFINITY;
+}
+
+enum { MOST_STEPS = 60 };
+
+/* Enlarges L until images are apart: from each other at the offsets, and by the over-reach where there is one. */
+static cprox_status settle_period(const cprox_solid *a, const cprox_solid *b, const double *outside, const kernel *k,
+                                  cprox_workspace *workspace, gap_plan *plan) {
+  const double size = 2.0 * (a->radius + b->radius), asked = plan->period;
+  const int n = 2 * plan->N + 1;
   plan->period = asked > 0.0 ? asked : 1.05 * size;
-  for (int step = 0; step < 40; step++) {
-    plan->offset = rho * plan->period;
+  for (int step = 0; step < MOST_STEPS; step++) {
+    plan->offset = kernel_offset(plan->dimension, n, plan->mode) * plan->period / n;
     const enlarged e = enlarge(a, b, plan->offset);
-    if (!e.ok) return workspace_fail(workspace, CPROX_MEMORY, "no memory for the offset solids");
-    double reach = INFINITY;
-    if (plan->mode == CPROX_GAP_CERTIFIED) {
-      const double mass = gap_threshold(&k, plan, a, b) / e.least_measure;
-      double x;
-      if (!kernel_reach(&k, plan->dimension, &mass, 1, &x))
-        return workspace_fail(workspace, CPROX_MEMORY, "no memory for a kernel");
-      if (x < 0.5) reach = e.reach + x * plan->period;
-    } else if (plan->mode == CPROX_GAP_TUNED) {
-      reach = tuned_reach(plan->dimension) * plan->period / (2 * plan->N + 1);
-    }
-    /* what images must stay apart for the guarantee alone, and for the over-reach */
-    const double needed = size + e.reach + (isinf(reach) ? 0.0 : fmax(0.0, reach - e.reach));
-    plan->over_reach = reach;
-    if (asked > 0.0 ? asked >= needed
-                    : plan->period >= needed && (step > 8 || reach < INFINITY || plan->mode == CPROX_GAP_SIGNAL))
-      return CPROX_OK;
-    if (asked > 0.0)
+    if (!e.ok) return no_memory(workspace);
+    plan->over_reach = over_reach(plan, &e, gap_threshold(k, plan, a, b), outside);
+    const bool known = plan->over_reach < INFINITY;
+    const double needed = size + (known ? fmax(e.reach, plan->over_reach) : e.reach);
+    if (asked > 0.0 && asked < needed)
       return workspace_fail(workspace, CPROX_INVALID, "period %g is too small: images of the solids need %g at n = %d",
-                            asked, needed, 2 * plan->N + 1);
-    plan->period = fmax(needed * 1.002, plan->period * (reach < INFINITY ? 1.0 : 1.15));
+                            asked, needed, n);
+    /* a period four times the solids is the end of trying for an over-reach that coarse samples do not have */
+    const bool hopeless = plan->mode != CPROX_GAP_CERTIFIED || isinf(e.most) || plan->period > 4.0 * size;
+    if (asked > 0.0 || (plan->period >= needed && (known || hopeless))) return CPROX_OK;
+    plan->period = known || plan->period < needed ? fmax(1.002 * needed, plan->period) : 1.15 * plan->period;
   }
-  plan->over_reach = INFINITY;
-  return CPROX_OK;
+  return workspace_fail(workspace, CPROX_INVALID, "n = %d samples are too few for these solids", n);
+}
+
+static cprox_status settle(const cprox_solid *a, const cprox_solid *b, cprox_workspace *workspace, gap_plan *plan) {
+  kernel k;
+  if (plan->mode == CPROX_GAP_TUNED)
+    kernel_tuned(&k, plan->N);
+  else
+    kernel_certified(&k, plan->N, plan->beta);
+  const int steps = kernel_steps(plan->N);
+  double *outside = malloc((size_t)(steps + 1) * sizeof *outside);
+  cprox_status status = outside ? CPROX_OK : no_memory(workspace);
+  if (status == CPROX_OK && plan->mode == CPROX_GAP_CERTIFIED &&
+      !kernel_list_outside(&k, plan->dimension, steps, outside))
+    status = no_memory(workspace);
+  if (status == CPROX_OK) status = settle_period(a, b, outside, &k, workspace, plan);
+  free(outside);
+  return status;
 }
 
 static cprox_status plan_for(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options, int N,
@@ -143,6 +176,10 @@ cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const c
     status = plan_for(a, b, options, high, workspace, plan);
     if (status != CPROX_OK) return status;
     if (accuracy(plan) <= options->delta) break;
+    if (isinf(accuracy(plan)) && high > 8)
+      return workspace_fail(workspace, CPROX_INVALID,
+                            "no over-reach can be proven for these solids (two folded meshes, or parts of wholly "
+                            "different sizes): give samples");
     low = high;
     if (high == KERNEL_MOST_N)
       return workspace_fail(workspace, CPROX_INVALID,

@@ -45,7 +45,12 @@ void solid_spectrum(const cprox_solid *solid, vec3 q, bool gradient, wave_jet *j
 /* Sum of the pieces' error scales at |q|. */
 double solid_error_scale(const cprox_solid *solid, double q);
 
-/* At least the integral of the function's square. *failed turns true where memory is out. */
-double solid_energy(const cprox_solid *solid, bool *failed);
+/* Upper bounds of a solid's function: the integral of its square, and its largest value; infinite where unknown. */
+typedef struct solid_bounds {
+  double energy, peak;
+} solid_bounds;
+
+/* false where memory is out. */
+bool solid_find_bounds(const cprox_solid *solid, solid_bounds *bounds);
 
 #endif
