@@ -208,6 +208,49 @@ CPROX_API cprox_status cprox_gap_test(const cprox_gap *gap, const cprox_pose *po
 CPROX_API cprox_status cprox_gap_evaluate(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_pose *pose_b,
                                           cprox_workspace *workspace, cprox_gap_result *result);
 
+/* ---- From coarse to fine ---- */
+
+/** Certified gaps of one pair with n = 9, 17, 33, … up to what the accuracy needs. */
+typedef struct cprox_gap_cascade cprox_gap_cascade;
+
+/** As cprox_gap_create(); options->mode must be CPROX_GAP_CERTIFIED. The memory limit holds for each level. */
+CPROX_API cprox_status cprox_gap_cascade_create(const cprox_solid *a, const cprox_solid *b,
+                                                const cprox_gap_options *options, cprox_workspace *workspace,
+                                                cprox_gap_cascade **cascade);
+
+CPROX_API void cprox_gap_cascade_free(cprox_gap_cascade *cascade);
+
+/** The finest level: owned by the cascade. */
+CPROX_API const cprox_gap *cprox_gap_cascade_finest(const cprox_gap_cascade *cascade);
+
+/** As cprox_gap_test() of the finest level, but stops at the first level that proves the pair clear. terms: of all levels. */
+CPROX_API cprox_status cprox_gap_cascade_test(const cprox_gap_cascade *cascade, const cprox_pose *pose_a,
+                                              const cprox_pose *pose_b, cprox_workspace *workspace,
+                                              cprox_gap_result *result);
+
+/* ---- Along a curve ---- */
+
+/** The second solid carried along a curve without turning, its origin at psi(t): result as of cprox_gap_evaluate() at that pose.
+ *
+ *  derivative  d value/dt [1/unit of t], NULL if not needed.
+ *  CPROX_INVALID if t is outside the curve's range, or the curve outside the plane of a planar gap. */
+CPROX_API cprox_status cprox_gap_along(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_curve *curve,
+                                       const cprox_quat *orientation, double t, cprox_workspace *workspace,
+                                       cprox_gap_result *result, double *derivative);
+
+typedef struct cprox_gap_along_result {
+  cprox_gap_verdict verdict; /**< clear: at every t of the interval (a proof in the certified mode) */
+  double t;                  /**< where the value below was met; collide, undecided: the first such t that was found */
+  double value;              /**< the largest V/t met at the parameters looked at */
+  uint32_t nodes;            /**< intervals looked at */
+} cprox_gap_along_result;
+
+/** The verdict over the whole interval [t0, t1] of the curve: between the parameters looked at, value and gradient there and a
+ *  bound of the second derivative keep V below t. max_nodes >= 1: CPROX_BUDGET beyond it, and undecided. */
+CPROX_API cprox_status cprox_gap_along_test(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_curve *curve,
+                                            const cprox_quat *orientation, double t0, double t1, uint32_t max_nodes,
+                                            cprox_workspace *workspace, cprox_gap_along_result *result);
+
 #ifdef __cplusplus
 }
 #endif

@@ -127,6 +127,24 @@ static void order(cprox_gap *gap, draft *drafts) {
   }
 }
 
+/* Bounds of the derivatives by the position: sum over J of |C| |q|^m |T|, by Cauchy-Schwarz from T's energy or from its measure,
+ * whichever is less; T = 1 where it is folded into C. */
+static void bound_derivatives(cprox_gap *gap, bool folded, double measure) {
+  double square[2] = {0, 0}, plain[2] = {0, 0};
+  for (size_t i = 0; i < gap->n_blocks; i++)
+    for (int lane = 0; lane < LANES; lane++) {
+      const double *c = gap->c + 2 * LANES * i + lane, c2 = c[0] * c[0] + c[LANES] * c[LANES];
+      const double q2 = vec_norm2(frequency(gap, &gap->blocks[i], lane));
+      square[0] += c2 * q2, square[1] += c2 * q2 * q2;
+      plain[0] += sqrt(c2 * q2), plain[1] += sqrt(c2) * q2;
+    }
+  double bound[2];
+  for (int m = 0; m < 2; m++)
+    bound[m] = folded ? plain[m] : fmin(sqrt(square[m]) * sqrt(gap->half_energy), plain[m] * measure);
+  gap->steepness = 2.0 * gap->inverse * bound[0] * (1.0 + 1e-9);
+  gap->curvature = 2.0 * gap->inverse * bound[1] * (1.0 + 1e-9);
+}
+
 static size_t count_terms(const cprox_gap *gap) {
   size_t n = 0;
   for (size_t i = 0; i < gap->n_blocks; i++)
@@ -164,6 +182,7 @@ static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cpro
     solid_bounds bounds = {INFINITY, INFINITY};
     failed = !folded && !solid_find_bounds(turned, &bounds);
     gap->half_energy = 0.5 * fmax(0.0, volume * bounds.energy - measure * measure);
+    bound_derivatives(gap, folded, measure);
     gap->info.rounding = rounding_bound(gap, w, fixed, turned, (double)(corners_of(fixed) + corners_of(turned)));
     gap->turned = folded ? NULL : turned;
     if (folded) cprox_solid_free(turned);

@@ -30,6 +30,8 @@ struct cprox_gap {
   double inverse;     /* of the threshold times L^d: the sum times this is the value */
   double half_energy; /* (L^d integral of T² - T(0)²)/2, at least the sum over J of |T|² */
   double constant;    /* C(0) T(0) */
+  double steepness;   /* the gradient of a value by the position is never longer [1/m] */
+  double curvature;   /* no second derivative of a value along a line of positions is larger [1/m²] */
   vec3 centre_a, centre_b;
   double radius_a, radius_b; /* of the bare solids about these */
   cprox_solid *turned;       /* offset, about its centre; NULL: a ball, folded into the coefficients */
