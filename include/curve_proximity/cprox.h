@@ -16,5 +16,6 @@
 #include <curve_proximity/cprox/implicit.h>
 #include <curve_proximity/cprox/query.h>
 #include <curve_proximity/cprox/translation.h>
+#include <curve_proximity/cprox/robot.h>
 
 #endif

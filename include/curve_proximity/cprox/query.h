@@ -33,6 +33,9 @@ CPROX_API cprox_target cprox_padded(cprox_target target, double padding);
  *  that two without radius that cross or touch are answered [0, upper] and undecided. */
 CPROX_API cprox_target cprox_curve_target(const cprox_curve *curve, double radius);
 
+struct cprox_motion;
+struct cprox_robot_pair;
+
 /** What moves: a value. The curve is kept by reference. */
 typedef struct cprox_mover {
   const cprox_curve *curve;
@@ -40,6 +43,10 @@ typedef struct cprox_mover {
   const cprox_body
       *body; /**< what is carried along the curve without turning, its frame's origin on the curve and its axes those
                                of the world; NULL: a point. Convex or a compound, no halfspace. Kept by reference. */
+  const struct cprox_motion *motion; /**< instead of a curve: a robot along a joint motion, see robot.h */
+  const struct cprox_robot_pair *pairs;
+  size_t n_pairs;
+  bool self;
 } cprox_mover;
 
 CPROX_API cprox_mover cprox_point_along(const cprox_curve *curve);

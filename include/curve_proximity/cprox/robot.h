@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Robots: kinematic trees with bodies on their links, and motions of all their joints at once.
+ *
+ *  A motion becomes a mover (cprox_robot_along, cprox_robot_self), and every verb of query.h answers for it: t is the time of the
+ *  motion [s], mover_part a geometry of the robot, target_index a target, or in a question about the robot itself the other
+ *  geometry. Robots and motions are immutable once made, shared by any number of threads. Constructors copy what they are given,
+ *  but keep bodies by reference; they return CPROX_INVALID with a sentence in the workspace, or CPROX_MEMORY, and leave the
+ *  handle untouched on failure. */
+#ifndef CURVE_PROXIMITY_CPROX_ROBOT_H
+#define CURVE_PROXIMITY_CPROX_ROBOT_H
+
+#include <curve_proximity/cprox/query.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A kinematic tree with bodies on its links. */
+typedef struct cprox_robot cprox_robot;
+
+/** How a link moves on its parent, and how many variables that takes. */
+typedef enum cprox_joint_type {
+  CPROX_JOINT_FIXED,    /**< 0 */
+  CPROX_JOINT_REVOLUTE, /**< 1 [rad], about the axis; URDF's continuous joints too: angles as they are, never wrapped */
+  CPROX_JOINT_PRISMATIC, /**< 1 [m], along the axis */
+  CPROX_JOINT_PLANAR,    /**< 3: x, y [m] in the plane z = 0 of the joint's frame, then theta [rad] about its z */
+  CPROX_JOINT_FLOATING   /**< 7: x, y, z [m] and the quaternion's x, y, z, w: of any norm, so that its components may be
+                              polynomials; a motion on which it comes near 0 is refused */
+} cprox_joint_type;
+
+/** One link and the joint that it hangs on. Its frame is the joint's, moved. */
+typedef struct cprox_link {
+  int32_t parent; /**< which link, one before this one; -1: the world */
+  cprox_joint_type type;
+  cprox_pose origin;         /**< of the joint's frame in the parent link's */
+  cprox_vec3 axis;           /**< revolute and prismatic: in the joint's frame, not 0, of any length */
+  int32_t variable;          /**< the first of the joint's variables; links may share one (mimic joints) */
+  double multiplier, offset; /**< revolute and prismatic: the joint is at multiplier * variable + offset */
+} cprox_link;
+
+/** A body on a link. */
+typedef struct cprox_link_geometry {
+  const cprox_body *body; /**< convex or a compound, no halfspace; kept by reference */
+  cprox_pose pose;        /**< in the link's frame */
+  int32_t link;
+  double padding; /**< [m] >= 0 */
+} cprox_link_geometry;
+
+/** A robot of n_links >= 1 links, parents first, and n_geometries bodies; its variables are numbered from 0 to n_variables - 1. */
+CPROX_API cprox_status cprox_robot_create(const cprox_link *links, size_t n_links,
+                                          const cprox_link_geometry *geometries, size_t n_geometries,
+                                          size_t n_variables, cprox_workspace *workspace, cprox_robot **robot);
+
+/** Frees a robot; NULL is allowed. No motion may be using it. */
+CPROX_API void cprox_robot_free(cprox_robot *robot);
+
+/** Where the origin of a link's frame is, and where its axes point: columns of a row-major matrix, for the given values of all
+ *  variables. A plain evaluation: 1e-15 of the robot's size a joint. */
+CPROX_API void cprox_robot_link_frame(const cprox_robot *robot, const double *variables, size_t link,
+                                      cprox_vec3 *position, double rotation[9]);
+
+/** All variables of a robot as functions of time. */
+typedef struct cprox_motion cprox_motion;
+
+/** Where some variables are at one time. */
+typedef struct cprox_waypoint {
+  double time;              /**< [s] */
+  const double *positions;  /**< one a variable */
+  const double *velocities; /**< a second; NULL: unknown */
+  const double *accelerations;
+} cprox_waypoint;
+
+/** How variables go from one waypoint to the next, as joint_trajectory_controller has it. */
+typedef enum cprox_interpolation {
+  CPROX_BY_WAYPOINTS, /**< by what both waypoints know: positions: linear; velocities too: cubic; accelerations too: quintic */
+  CPROX_LINEAR,
+  CPROX_CUBIC,
+  CPROX_QUINTIC
+} cprox_interpolation;
+
+/** The motion through n_points >= 2 waypoints at ascending times: Hermite polynomials between them. Where a controller would start
+ *  from the state that the robot is in, that state is the first waypoint.
+ *
+ *  variables  which ones the waypoints speak of, n of them, none twice.
+ *  rest       the values of all the robot's variables, for those that stand still; NULL: all 0. */
+CPROX_API cprox_status cprox_motion_create_waypoints(const cprox_robot *robot, const int32_t *variables, size_t n,
+                                                     const cprox_waypoint *points, size_t n_points,
+                                                     cprox_interpolation interpolation, const double *rest,
+                                                     cprox_workspace *workspace, cprox_motion **motion);
+
+/** The motion along a B-spline in the space of n variables, from knots[degree] to knots[n_control].
+ *
+ *  control    n_control rows of n values.
+ *  knots      n_control + degree + 1, non-decreasing, none more than degree + 1 times. 1 <= degree <= 9. */
+CPROX_API cprox_status cprox_motion_create_bspline(const cprox_robot *robot, const int32_t *variables, size_t n,
+                                                   size_t degree, const double *control, size_t n_control,
+                                                   const double *knots, const double *rest, cprox_workspace *workspace,
+                                                   cprox_motion **motion);
+
+/** Frees a motion; NULL is allowed. */
+CPROX_API void cprox_motion_free(cprox_motion *motion);
+
+/** The time that a motion begins and ends at [s]. */
+CPROX_API void cprox_motion_domain(const cprox_motion *motion, double *t0, double *t1);
+
+/** The values of all the robot's variables at a time (clamped to the domain). A plain evaluation. */
+CPROX_API void cprox_motion_evaluate(const cprox_motion *motion, double t, double *variables);
+
+/** Does the motion move the link? Of a link that it does not, nothing is asked unless pairs are given. */
+CPROX_API bool cprox_motion_moves_link(const cprox_motion *motion, size_t link);
+
+/** Can two links come closer in a way that is worth asking for: are there at least two joints that can move between them, and at
+ *  least one that this motion moves? */
+CPROX_API bool cprox_motion_relates_links(const cprox_motion *motion, size_t link_a, size_t link_b);
+
+/** A pair that is asked about: a geometry of the robot, and the number of a target or of another geometry. */
+typedef struct cprox_robot_pair {
+  int32_t geometry, other;
+} cprox_robot_pair;
+
+/** The robot along a motion. pairs: those that are asked about, kept by reference, `other` being targets; NULL: all geometries of
+ *  links that the motion moves, against all targets. */
+CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
+
+/** The robot along a motion against itself: ask without targets (cprox_distance_all(mover, NULL, 0, …)). pairs: those that are
+ *  asked about, kept by reference, `other` being geometries; NULL: all on links that cprox_motion_relates_links(). */
+CPROX_API cprox_mover cprox_robot_self(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
