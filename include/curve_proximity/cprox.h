@@ -15,7 +15,7 @@
 #include <curve_proximity/cprox/fourier.h>
 #include <curve_proximity/cprox/implicit.h>
 #include <curve_proximity/cprox/query.h>
-#include <curve_proximity/cprox/translation.h>
 #include <curve_proximity/cprox/robot.h>
+#include <curve_proximity/cprox/translation.h>
 
 #endif
