@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Charts of results.csv, one look for all: SVG and PNG beside the file."""
+import os
+import re
+
+import matplotlib
+
+matplotlib.use('Agg')
+import matplotlib.pyplot as plt  # noqa: E402
+
+OURS = 'curve_proximity'
+COLOURS = {OURS: '#0b6e99', 'paper': '#c2571a'}
+OTHERS = ['#6b8e23', '#7b4ea3', '#8c6d3f', '#4d4d4d', '#b03060']
+LABELS = {OURS: 'curve_proximity (certified)', 'paper': "Lakshmanan et al. 2019, as published"}
+
+
+def style():
+    plt.rcParams.update({'figure.figsize': (7.2, 4.4), 'figure.dpi': 110, 'font.size': 10, 'axes.spines.top': False,
+                         'axes.spines.right': False, 'axes.grid': True, 'grid.color': '#dddddd', 'grid.linewidth': 0.6,
+                         'legend.frameon': False, 'lines.linewidth': 1.8, 'lines.markersize': 5, 'svg.hashsalt': 'cprox'})
+
+
+def colour_of(method, seen):
+    if method in COLOURS:
+        return COLOURS[method]
+    if method not in seen:
+        seen.append(method)
+    return OTHERS[seen.index(method) % len(OTHERS)]
+
+
+def save(figure, out, name):
+    for suffix in ('svg', 'png'):
+        figure.savefig(os.path.join(out, f'{name}.{suffix}'), bbox_inches='tight')
+    plt.close(figure)
+    return name
+
+
+def methods_of(rows):
+    """Ours first, then in the order of the file."""
+    names = list(dict.fromkeys(row['method'] for row in rows))
+    return sorted(names, key=lambda name: (not name.startswith(OURS), names.index(name)))
+
+
+def work_precision(rows, out, group, workload, parameter, title, name):
+    """Time against the accuracy asked: rows whose parameter matches the pattern, whose one group is the accuracy."""
+    points = []
+    for row in rows:
+        match = re.fullmatch(parameter, row['parameter'])
+        if row['group'] == group and row['workload'] == workload and match:
+            points.append((row['method'], float(match.group(1)), float(row['median_us']), float(row['p95_us'])))
+    if not points:
+        return None
+    figure, axes = plt.subplots()
+    seen = []
+    for method in methods_of([{'method': p[0]} for p in points]):
+        mine = sorted(p[1:] for p in points if p[0] == method)
+        x, median, p95 = zip(*mine)
+        colour = colour_of(method, seen)
+        axes.loglog(x, median, 'o-', color=colour, label=LABELS.get(method, method))
+        axes.fill_between(x, median, p95, color=colour, alpha=0.13, linewidth=0)
+    axes.invert_xaxis()
+    axes.set_xlabel('width of the interval asked for [m]')
+    axes.set_ylabel('time a query [µs]; the band reaches to the 95 % quantile')
+    axes.set_title(title)
+    axes.legend()
+    return save(figure, out, name)
+
+
+def bars(rows, out, group, select, title, name, label=lambda row: f"{row['workload']}\n{row['parameter']}"):
+    """Time of each method, one cluster for each workload and parameter that select(row) takes."""
+    rows = [row for row in rows if row['group'] == group and select(row)]
+    keys = list(dict.fromkeys(label(row) for row in rows))
+    if not keys:
+        return None
+    methods, seen = methods_of(rows), []
+    figure, axes = plt.subplots(figsize=(max(7.2, 0.75 * len(keys) + 2), 4.4))
+    width = 0.8 / len(methods)
+    for k, method in enumerate(methods):
+        values = {label(row): float(row['median_us']) for row in rows if row['method'] == method}
+        x = [i + (k - (len(methods) - 1) / 2) * width for i, key in enumerate(keys) if key in values]
+        axes.bar(x, [values[key] for key in keys if key in values], width * 0.92, color=colour_of(method, seen),
+                 label=LABELS.get(method, method))
+    axes.set_yscale('log')
+    axes.set_xticks(range(len(keys)))
+    axes.set_xticklabels(keys, fontsize=8)
+    axes.set_ylabel('median time a query [µs]')
+    axes.set_title(title)
+    axes.grid(axis='x', visible=False)
+    axes.legend()
+    return save(figure, out, name)
+
+
+def curves(rows, out):
+    pattern = r'order \d+ eps (1e-\d+)'
+    for workload, name in (('polytope 3-D distance', 'polytope'), ('polygon 2-D distance', 'polygon'), ('point 2-D distance', 'point'),
+                           ('curves 3-D distance', 'curve_curve')):
+        order = '5' if name == 'curve_curve' else '15'
+        yield work_precision(rows, out, 'curves', workload, pattern.replace(r'\d+ eps', order + ' eps', 1),
+                             f'{workload}, order {order}: time against accuracy', f'work_precision_{name}')
+    yield bars(rows, out, 'curves', lambda row: row['workload'].endswith('distance') and row['parameter'].endswith('eps 1e-10'),
+               'Distance to 1e-10', 'distance_by_order', lambda row: f"{row['workload'][:-9]}\n{row['parameter'][:8]}")
+    yield bars(rows, out, 'curves', lambda row: 'tolerance' in row['workload'] and 'order 15' in row['parameter'],
+               'Farther than delta? Order 15, delta as a fraction of the distance', 'tolerance',
+               lambda row: f"{row['workload'].split(' tolerance')[0]}\n{row['parameter'][14:]}")
+
+
+def draw_all(rows, out):
+    """All charts for which there are rows; their names."""
+    style()
+    drawn = []
+    for draw in (curves,):
+        drawn += [name for name in draw(rows, out) if name]
+    return drawn
