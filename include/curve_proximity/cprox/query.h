@@ -79,6 +79,10 @@ typedef struct cprox_options {
   void *stop_user;          /**< handed to stop */
   cprox_certificate *certificate; /**< receives the proof of the answer, against all targets at once; NULL: none. For a
                                 distance the claim is that of lower, or where lower is 0 that of upper */
+  bool
+      signed_distance; /**< distance: where they overlap, the answer is minus the depth of the deepest overlap along the curve:
+                             the shortest way by which the mover, there, could leave the target (a part of it, for compounds).
+                             Curves have no inside beyond their radius. Default false: distances are 0 at least */
 } cprox_options;
 
 CPROX_API cprox_options cprox_options_default(void);
@@ -103,7 +107,8 @@ typedef struct cprox_result {
   double t;              /**< where on the mover's curve upper was attained */
   double t_target;       /**< where on a target that is a curve; NaN for bodies */
   cprox_vec3 on_mover, on_target; /**< [m] world frame, the two points that attain upper (surfaces, radius and padding
-                                       included); equal where they overlap */
+                                       included); equal where they overlap, and either end of
+                                       the way out for signed distances */
   cprox_vec3 normal;              /**< unit, world frame, from target to mover; (0,0,0) where there is none */
   int32_t target_index;           /**< which target; -1 for none */
   int32_t target_part;            /**< which part of a compound; 0 otherwise */

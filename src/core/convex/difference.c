@@ -2,6 +2,7 @@
 #include "convex/difference.h"
 
 #include "base/rounding.h"
+#include "convex/depth.h"
 #include "convex/feature.h"
 #include "convex/pair.h"
 
@@ -65,24 +66,6 @@ static void nearest_of_ball(const convex *shape, vec3 y, convex_near *near) {
   if (!seen.flat) turn_hessian(r, seen.hessian, near->hessian);
 }
 
-/* How the distance behaves near y, from what the nearest point of M lies on. */
-static void describe(const pair_feature *feature, double margin, vec3 y, convex_near *near) {
-  near->flat = feature->flat;
-  for (int i = 0; i < 6; i++) near->hessian[i] = feature->hessian[i];
-  if (!feature->flat) return;
-  const vec3 vertex = vec_add(feature->w[0], y);
-  vec3 e, f;
-  if (feature->n == 1) feature_vertex(near, vertex, margin);
-  if (feature->n == 2) {
-    feature_unit(vec_sub(feature->w[1], feature->w[0]), &e);
-    feature_edge(near, vertex, e, margin);
-  }
-  if (feature->n == 3) {
-    feature_tangents(near->normal, &e, &f);
-    feature_face(near, e, f);
-  }
-}
-
 static void difference_nearest(const convex *shape, vec3 y, convex_hint *hint, convex_near *near) {
   (void)hint;
   const convex *standing = shape->standing, *carried = shape->carried;
@@ -104,7 +87,7 @@ static void difference_nearest(const convex *shape, vec3 y, convex_hint *hint, c
   near->normal = vec_neg(answer.normal);
   near->distance = answer.overlap ? -(answer.depth + shape->margin) : answer.upper - answer.rounding;
   near->point = vec_axpy(y, -near->distance, near->normal);
-  if (!answer.overlap) describe(&answer.feature, shape->margin, y, near);
+  if (!answer.overlap) depth_describe(&answer.feature, shape->margin, y, near);
 }
 
 /* near_rounding: that of pair_separate, 32, and the steps to and from it; no closed form of a carried shape needs more. */

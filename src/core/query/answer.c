@@ -27,7 +27,7 @@ cprox_verdict question_verdict(const question *q, const cprox_result *r) {
 static bool is_satisfied(const question *q, double ceiling, const cprox_result *r) {
   if (question_wants_verdict(q) && question_verdict(q, r) != CPROX_UNDECIDED) return true;
   const double upper = fmin(r->upper, ceiling);
-  return !(upper - r->lower > fmax(q->options.epsilon, q->options.relative_epsilon * upper));
+  return !(upper - r->lower > fmax(q->options.epsilon, q->options.relative_epsilon * fabs(upper)));
 }
 
 const char *question_shortfall(cprox_status status) {
@@ -54,7 +54,7 @@ cprox_status question_answer(const question *q, size_t first, size_t last, doubl
     /* sorted: when one ball is too far to matter, so are the rest */
     const bool too_far =
         question_wants_verdict(q) ? list[i].lower > q->limit : list[i].lower > fmin(all.upper, ceiling);
-    const bool answered = all.upper <= fmax(q->limit, 0.0);
+    const bool answered = !q->is_signed && all.upper <= fmax(q->limit, 0.0);
     if (too_far || answered || trouble == CPROX_STOPPED) break;
 
     cprox_result one = {0};
@@ -71,7 +71,7 @@ cprox_status question_answer(const question *q, size_t first, size_t last, doubl
   }
 
   /* the rest is at least as far as the first ball of it */
-  if (i < n) all.lower = fmin(all.lower, fmax(list[i].lower, 0.0));
+  if (i < n) all.lower = fmin(all.lower, q->is_signed ? list[i].lower : fmax(list[i].lower, 0.0));
   if (i == 0 && n > 0) all.rung = CPROX_RUNG_SPHERE;
   all.lower = fmin(all.lower, all.upper);
   all.status = is_satisfied(q, ceiling, &all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;

@@ -6,6 +6,7 @@
 #include "base/frame.h"
 #include "base/workspace.h"
 #include "body/body.h"
+#include "curve/curve.h"
 
 cprox_target cprox_at(const cprox_body *body, cprox_pose pose) {
   return (cprox_target){.body = body, .pose = pose, .padding = 0.0};
@@ -77,6 +78,10 @@ cprox_status arguments_check_target(const cprox_target *target, size_t index, cp
 static cprox_status check_clock(const cprox_curve *curve, const cprox_target *target, size_t index,
                                 cprox_workspace *workspace) {
   if (!target->on_clock) return CPROX_OK;
+  if (curve->arcs || target->curve->arcs)
+    return workspace_fail(
+        workspace, CPROX_INVALID,
+        "target %zu is on the mover's clock, but of one of the two curves only the arc length is known", index);
   double t0, t1, u0, u1;
   cprox_curve_domain(curve, &t0, &t1);
   cprox_curve_domain(target->curve, &u0, &u1);

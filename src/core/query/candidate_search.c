@@ -15,12 +15,14 @@ static uint32_t nodes_before_newton(const question *q) {
 
 /* An upper bound that needs no improvement. */
 static double good_enough(const question *q) {
+  if (q->is_signed) return -INFINITY;
   return question_wants_verdict(q) ? q->limit : q->options.epsilon;
 }
 
 static search_goal goal_of(const question *q, double ceiling) {
   return (search_goal){.order = question_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST,
                        .limit = q->limit,
+                       .is_signed = q->is_signed,
                        .ceiling = ceiling,
                        .horizon = INFINITY,
                        .epsilon = q->options.epsilon,
@@ -31,13 +33,13 @@ static search_goal goal_of(const question *q, double ceiling) {
 }
 
 /* The two surface points and their normal: where the ball of the mover and the padded target come closest, or one point of both
- * where they overlap. */
+ * where they overlap; signed, the two ends of the way out. */
 static void report_points(const question *q, const candidate *c, vec3 centre, vec3 surface, vec3 normal, double apart,
                           cprox_result *r) {
   const double padding = q->targets[c->target].padding;
   r->normal = normal;
   r->target_index = c->target, r->target_part = c->part;
-  if (apart > padding + q->mover.radius) {
+  if (q->is_signed || apart > padding + q->mover.radius) {
     r->on_target = vec_axpy(surface, padding, normal);
     r->on_mover = vec_axpy(centre, -q->mover.radius, normal);
   } else {
@@ -52,7 +54,7 @@ static void report_pair(const question *q, const candidate *c, vec3 centre, cons
   const cprox_target moved = {.body = q->mover.body ? q->mover.body : &carried_point,
                               .pose = {.position = centre, .orientation = {1, 0, 0, 0}},
                               .padding = q->mover.radius};
-  const pair_witness witness = pair_witness_of(&moved, (size_t)c->mover_part, standing, (size_t)part);
+  const pair_witness witness = pair_witness_of(&moved, (size_t)c->mover_part, standing, (size_t)part, q->is_signed);
   const bool normal_known = vec_norm2(normal) > 0.0;
   r->normal = normal_known ? normal : witness.normal;
   r->target_index = c->target, r->target_part = c->part, r->mover_part = c->mover_part;
@@ -158,6 +160,7 @@ static cprox_status search_convex(const question *q, const candidate *c, const s
   o.polish_after = nodes_before_newton(q);
   o.good_enough = good_enough(q);
   o.epsilon = q->options.epsilon;
+  o.is_signed = q->is_signed;
   const search_oracle oracle = curve_convex_oracle(&o);
   const cprox_status status = search_run(goal, &oracle, curve_convex_root(&o), q->workspace, found);
   r->probes = o.probes;
@@ -171,6 +174,8 @@ static cprox_status search_curve(const question *q, const candidate *c, const se
   if (!candidate_begin_curve(q, c, &o)) return CPROX_MEMORY;
   o.polish_after = nodes_before_newton(q);
   o.good_enough = good_enough(q);
+  o.epsilon = q->options.epsilon;
+  o.is_signed = q->is_signed;
   const search_oracle oracle = curve_curve_oracle(&o);
   const cprox_status status = search_run(goal, &oracle, curve_curve_root(&o), q->workspace, found);
   r->probes = o.probes;
@@ -186,10 +191,11 @@ cprox_status candidate_search(const question *q, const candidate *c, double ceil
   if (r.status == CPROX_MEMORY) return workspace_fail(q->workspace, r.status, "no memory for the open intervals");
   if (r.status < 0) return r.status;
 
-  /* distances are not negative; the ball knew a lower bound too */
+  /* distances are not negative, unless asked for; the ball knew a lower bound too */
+  const double least = q->is_signed ? -INFINITY : 0.0;
   r.nodes = found.nodes;
-  r.upper = fmax(found.best.upper, 0.0);
-  r.lower = fmin(fmax(fmax(found.lower, c->lower), 0.0), r.upper);
+  r.upper = fmax(found.best.upper, least);
+  r.lower = fmin(fmax(fmax(found.lower, c->lower), least), r.upper);
   *result = r;
   return r.status;
 }

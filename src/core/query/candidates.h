@@ -14,6 +14,7 @@ typedef struct question {
   const cprox_target *targets;
   size_t n;
   double limit;        /* verdicts: delta, 0 for collision; distance: -1 */
+  bool is_signed;      /* distance: overlaps are measured, too */
   bool farther_is_yes; /* tolerance's yes is collision's no */
   cprox_options options;
   cprox_workspace *workspace;

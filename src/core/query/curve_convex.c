@@ -2,6 +2,7 @@
 #include "query/curve_convex.h"
 
 #include "base/rounding.h"
+#include "convex/depth.h"
 #include "curve/control.h"
 #include "query/polish.h"
 
@@ -109,6 +110,8 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
     convex_polygon_nearest_in_plane(o->shape, y, &sight->near);
   else
     o->shape->ops->nearest(o->shape, y, &o->hint, &sight->near);
+  if (o->is_signed && sight->near.distance <= 0.0 && vec_norm2(sight->near.normal) == 0.0)
+    depth_of_point(o->shape, y, 0.1 * o->epsilon, &sight->near);
   const double d = sight->near.distance;
   if (isnan(d))
     return workspace_fail(o->workspace, CPROX_INVALID, "the support callback did not return a point of its body");

@@ -26,6 +26,7 @@ typedef struct curve_convex {
   uint32_t polish_after; /* nodes before Newton is allowed to look for better points */
   double good_enough;    /* an upper bound at or below this needs no polish */
   double epsilon;
+  bool is_signed; /* depths are measured */
 
   /* what is known */
   curve_sight best, last; /* of the least upper bound; of the last probe */

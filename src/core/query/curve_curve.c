@@ -2,6 +2,7 @@
 #include "query/curve_curve.h"
 
 #include "base/rounding.h"
+#include "convex/depth.h"
 #include "query/carried.h"
 #include "query/meeting.h"
 
@@ -73,6 +74,8 @@ static void measure_carried(curve_curve *o, curve_meeting *m, double error, sear
   const convex *shape = &o->joined;
   const vec3 apart = vec_add(vec_sub(m->point[0], m->point[1]), o->shift);
   shape->ops->nearest(shape, apart, NULL, &m->near);
+  if (o->is_signed && m->near.distance <= 0.0 && vec_norm2(m->near.normal) == 0.0)
+    depth_of_point(shape, apart, 0.1 * o->epsilon, &m->near);
   o->fault |= isnan(m->near.distance);
   m->distance = m->near.distance;
   m->normal = m->near.normal;

@@ -25,7 +25,9 @@ typedef struct curve_curve {
   convex joined;
   vec3 shift;
   uint32_t polish_after; /* nodes before Newton is allowed to look for better points */
-  double good_enough;    /* an upper bound at or below this needs no polish */
+  bool is_signed;        /* depths of a carried body are measured, to a tenth of epsilon */
+  double epsilon;
+  double good_enough; /* an upper bound at or below this needs no polish */
 
   /* what is known */
   curve_meeting best;

@@ -192,13 +192,13 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
   return CPROX_OK;
 }
 
-pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b) {
+pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b, bool depth) {
   const pair_side side_a = pair_place_side(a, part_a), side_b = pair_place_side(b, part_b);
-  const pair_goal goal = {.relative_epsilon = 1e-13, .max_steps = 256};
+  const pair_goal goal = {.relative_epsilon = depth ? 1e-10 : 1e-13, .max_steps = 400, .wants_depth = depth};
   pair_answer answer;
   pair_solve(&side_a, &side_b, &goal, NULL, &answer);
   pair_witness witness = {.on_a = answer.on_a, .on_b = answer.on_b, .normal = answer.normal};
-  if (answer.upper <= answer.rounding) witness.on_a = witness.on_b = answer.common;
+  if (!depth && answer.upper <= answer.rounding) witness.on_a = witness.on_b = answer.common;
   return witness;
 }
 

@@ -6,13 +6,13 @@
 #include "base/vec.h"
 #include "curve_proximity/cprox/query.h"
 
-/* In the world. Apart: on either surface. Overlapping: one point of both. */
+/* In the world, on either surface. Overlapping: one point of both, unless the depth was asked for. */
 typedef struct pair_witness {
   vec3 on_a, on_b;
   vec3 normal; /* from b to a; (0,0,0) where there is none */
 } pair_witness;
 
 /* Of these parts of the two (0 where the body is no compound), which are not both halfspaces. */
-pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b);
+pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b, bool depth);
 
 #endif

@@ -9,7 +9,7 @@
 
 /* The proof that was asked for. That there is none changes nothing in the answer. */
 static void leave_certificate(const question *q, const cprox_result *answer) {
-  if (!q->options.certificate) return;
+  if (!q->options.certificate || answer->upper < 0.0) return;
   const double delta = question_wants_verdict(q) ? q->limit : answer->lower > 0.0 ? answer->lower : answer->upper;
   certify(&q->mover, q->targets, q->n, delta, answer, q->options.max_nodes, q->workspace, q->options.certificate);
 }
@@ -52,6 +52,7 @@ static cprox_status ask(question *q, cprox_result *nearest, cprox_result *each) 
 cprox_status cprox_distance_all(cprox_mover mover, const cprox_target *targets, size_t n, const cprox_options *options,
                                 cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {
   question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  q.is_signed = q.options.signed_distance;
   return ask(&q, nearest, each);
 }
 

@@ -51,7 +51,7 @@ static search_node frontier_pop(frontier *f) {
 }
 
 double search_width(const search_goal *goal, double upper) {
-  return fmax(goal->epsilon, goal->relative_epsilon * upper);
+  return fmax(goal->epsilon, goal->relative_epsilon * fabs(upper));
 }
 
 static double known_upper(const search_goal *goal, const search_best *best) {
@@ -79,7 +79,7 @@ static bool is_stuck(const search_goal *goal, const search_best *best, const sea
 
 /* The best point alone ends the search: it violates the limit, or it is as close to 0 as was asked. */
 static bool is_answered(const search_goal *goal, const search_best *best) {
-  if (goal->order == SEARCH_LEFT_TO_RIGHT) return false;
+  if (goal->order == SEARCH_LEFT_TO_RIGHT || goal->is_signed) return false;
   return goal->limit >= 0.0 ? best->upper <= goal->limit : best->upper <= search_width(goal, best->upper);
 }
 
@@ -179,7 +179,7 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
     outcome->free_until = fmin(outcome->free_until, horizon(goal, &outcome->best));
   if (status == CPROX_OK && goal->limit < 0.0) {
     const double upper = known_upper(goal, &outcome->best);
-    if (fmax(left, 0.0) < upper - search_width(goal, upper)) status = CPROX_PRECISION;
+    if ((goal->is_signed ? left : fmax(left, 0.0)) < upper - search_width(goal, upper)) status = CPROX_PRECISION;
   }
   return status;
 }

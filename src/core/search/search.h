@@ -65,6 +65,7 @@ typedef enum search_order { SEARCH_BEST_FIRST, SEARCH_DEPTH_FIRST, SEARCH_LEFT_T
 typedef struct search_goal {
   search_order order;
   double limit;   /* verdicts: delta; distance: -1 */
+  bool is_signed; /* distance: bounds below 0 are not as good as 0 */
   double ceiling; /* distance: an upper bound known from elsewhere, or infinity */
   double horizon; /* left to right: parameters from here on are of no interest; infinity: all are */
   double epsilon, relative_epsilon;
