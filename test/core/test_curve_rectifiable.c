@@ -22,6 +22,7 @@ enum { MOST_DEGREE = 9 };
 typedef struct bezier {
   vec3 p[MOST_DEGREE + 1];
   size_t degree;
+  double scale, far;            /* its size, and how far from the origin it is */
   double nan_from;              /* points are no numbers from here on */
   double short_below, short_by; /* lengths of shorter intervals are said to be this part of what they are */
   unsigned long points, lengths;
@@ -61,14 +62,20 @@ static double length(void *user, double from, double to) {
 }
 
 static bezier random_bezier(rng *r) {
-  bezier b = {.degree = 1 + rng_index(r, 8), .nan_from = INFINITY};
+  bezier b = {.degree = 1 + rng_index(r, 8), .scale = 1.0, .nan_from = INFINITY};
   for (size_t i = 0; i <= b.degree; i++) b.p[i] = rng_in_cube(r, 1.0);
   return b;
 }
 
+static void scale_and_move(bezier *b, double scale, vec3 by) {
+  for (size_t i = 0; i <= b->degree; i++) b->p[i] = vec_axpy(by, scale, b->p[i]);
+  b->scale = scale, b->far = vec_norm(by);
+}
+
 /* Points are rounded once. */
 static cprox_rectifiable_curve functions(bezier *b) {
-  return (cprox_rectifiable_curve){.point = point, .length = length, .user = b, .error = 2.0 * ROUND_U};
+  return (cprox_rectifiable_curve){
+      .point = point, .length = length, .user = b, .error = 2.0 * ROUND_U * (b->scale + b->far)};
 }
 
 static cprox_curve *by_arcs(bezier *b) {
@@ -78,9 +85,12 @@ static cprox_curve *by_arcs(bezier *b) {
   return c;
 }
 
+/* A derivative of degree n is 2n times as large as the points, at most, and rounded once. */
 static cprox_curve *by_velocity(bezier *b) {
-  const cprox_rectifiable_curve f = {
-      .point = point, .velocity = velocity, .user = b, .error = 2.0 * ROUND_U, .velocity_error = 40.0 * ROUND_U};
+  cprox_rectifiable_curve f = functions(b);
+  f.length = NULL;
+  f.velocity = velocity;
+  f.velocity_error = 40.0 * ROUND_U * (b->scale + b->far);
   cprox_curve *c = NULL;
   assert_int_equal(cprox_curve_create_rectifiable(&f, 0.0, 1.0, NULL, &c), CPROX_OK);
   return c;
@@ -154,29 +164,29 @@ static void no_ellipsoid_leaves_out_a_point(void **state) {
 
 /* ---- queries ---- */
 
-static cprox_body *random_body(rng *r, bool *point_like) {
+static cprox_body *random_body(rng *r, double scale) {
   cprox_body *body = NULL;
   cprox_status status = CPROX_OK;
   vec3 v[12];
-  *point_like = false;
   switch (rng_index(r, 4)) {
-    case 0: status = cprox_body_create_point(vec(0, 0, 0), NULL, &body), *point_like = true; break;
-    case 1: status = cprox_body_create_sphere(rng_uniform(r, 0.05, 0.5), NULL, &body), *point_like = true; break;
+    case 0: status = cprox_body_create_point(vec(0, 0, 0), NULL, &body); break;
+    case 1: status = cprox_body_create_sphere(scale * rng_uniform(r, 0.05, 0.5), NULL, &body); break;
     case 2:
-      status = cprox_body_create_box(vec(rng_uniform(r, 0.1, 1), rng_uniform(r, 0.1, 1), rng_uniform(r, 0.1, 1)), NULL,
-                                     &body);
+      for (int i = 0; i < 3; i++) v[i] = vec(0, 0, scale * rng_uniform(r, 0.1, 1));
+      status = cprox_body_create_box(vec(v[0].z, v[1].z, v[2].z), NULL, &body);
       break;
     default:
-      for (int i = 0; i < 12; i++) v[i] = rng_in_cube(r, 0.4);
+      for (int i = 0; i < 12; i++) v[i] = rng_in_cube(r, 0.4 * scale);
       status = cprox_body_create_polytope(v, 12, NULL, &body);
   }
   assert_int_equal(status, CPROX_OK);
   return body;
 }
 
-static cprox_pose random_pose(rng *r) {
+static cprox_pose random_pose(rng *r, double scale, vec3 about) {
   const vec3 axis = rng_unit(r);
-  return (cprox_pose){.position = rng_in_cube(r, 1.5), .orientation = {rng_uniform(r, -1, 1), axis.x, axis.y, axis.z}};
+  return (cprox_pose){.position = vec_add(about, rng_in_cube(r, 1.5 * scale)),
+                      .orientation = {rng_uniform(r, -1, 1), axis.x, axis.y, axis.z}};
 }
 
 /* What both ways say of one distance. */
@@ -188,7 +198,31 @@ static void agree(const cprox_result *arcs, const cprox_result *points, double e
     fail_msg("ok, but %g wide", arcs->upper - arcs->lower);
 }
 
-/* seed 642, 400 curves, every other one by Gauss and Kronrod, against bodies; 1e-6. */
+/* The interval by arcs holds the distance that the other one holds, too; the verdicts follow. */
+static void check_body(bezier *b, bool with_velocity, const cprox_target *target, double radius, double epsilon,
+                       cprox_workspace *ws, cprox_result *of_arcs) {
+  cprox_curve *arcs = with_velocity ? by_velocity(b) : by_arcs(b), *points = by_points(b);
+  cprox_options options = cprox_options_default();
+  options.epsilon = epsilon;
+  cprox_result of_points;
+  const cprox_status status = cprox_distance(cprox_tube_along(arcs, radius), *target, &options, ws, of_arcs);
+  if (status < 0) fail_msg("%s", cprox_workspace_reason(ws));
+  assert_true(cprox_distance(cprox_tube_along(points, radius), *target, &options, ws, &of_points) >= 0);
+  agree(of_arcs, &of_points, epsilon);
+  for (int k = 0; k < 2; k++) {
+    const double delta = of_points.lower * (k ? 1.01 : 0.99);
+    cprox_result verdict;
+    assert_true(cprox_tolerance(cprox_tube_along(arcs, radius), *target, delta, &options, ws, &verdict) >= 0);
+    if (verdict.verdict == CPROX_YES) assert_true(delta < of_points.upper);
+    if (verdict.verdict == CPROX_NO) assert_true(delta >= of_points.lower);
+    assert_true(verdict.verdict != CPROX_UNDECIDED || 0.01 * of_points.lower < 2.0 * epsilon);
+  }
+  cprox_curve_free(points);
+  cprox_curve_free(arcs);
+}
+
+/* seed 642, 400 curves of 1e-6 … 1e6 m, half of them up to 1e6 m from the origin, every other one by Gauss and Kronrod. Epsilon
+ * is 1e-6 of the size; where the points' own error of 2u at 1e6 m is not far below that, the answer may say so. */
 static void distances_by_arcs_and_by_points_agree(void **state) {
   (void)state;
   rng r = rng_seed(642);
@@ -196,37 +230,65 @@ static void distances_by_arcs_and_by_points_agree(void **state) {
   unsigned long nodes = 0, most = 0, n = 0, not_ok = 0;
   for (size_t i = test_cases(400); i-- > 0;) {
     bezier b = random_bezier(&r);
-    cprox_curve *arcs = i % 2 ? by_arcs(&b) : by_velocity(&b), *points = by_points(&b);
-    bool point_like;
-    cprox_body *body = random_body(&r, &point_like);
-    const cprox_target target = cprox_padded(cprox_at(body, random_pose(&r)), rng_index(&r, 2) ? 0.0 : 0.05);
-    cprox_options options = cprox_options_default();
-    options.epsilon = 1e-6;
-    cprox_result of_arcs, of_points;
-    const double radius = rng_index(&r, 2) ? 0.0 : 0.02;
-    const cprox_status status = cprox_distance(cprox_tube_along(arcs, radius), target, &options, ws, &of_arcs);
-    if (status < 0) fail_msg("%s", cprox_workspace_reason(ws));
-    assert_true(cprox_distance(cprox_tube_along(points, radius), target, &options, ws, &of_points) >= 0);
-    agree(&of_arcs, &of_points, options.epsilon);
-    not_ok += status != CPROX_OK;
-    nodes += of_arcs.nodes, most = of_arcs.nodes > most ? of_arcs.nodes : most, n++;
-
-    /* the verdicts follow */
-    for (int k = 0; k < 2; k++) {
-      const double delta = of_points.lower * (k ? 1.01 : 0.99);
-      cprox_result verdict;
-      assert_true(cprox_tolerance(cprox_tube_along(arcs, radius), target, delta, &options, ws, &verdict) >= 0);
-      if (verdict.verdict == CPROX_YES) assert_true(delta < of_points.upper);
-      if (verdict.verdict == CPROX_NO) assert_true(delta >= of_points.lower);
-      assert_true(verdict.verdict != CPROX_UNDECIDED || 0.01 * of_points.lower < 2e-6);
-    }
+    const double scale = rng_log_uniform(&r, 1e-6, 1e6);
+    const vec3 by = rng_index(&r, 2) ? vec(0, 0, 0) : rng_in_cube(&r, 1e6);
+    scale_and_move(&b, scale, by);
+    cprox_body *body = random_body(&r, scale);
+    const cprox_target target =
+        cprox_padded(cprox_at(body, random_pose(&r, scale, by)), rng_index(&r, 2) ? 0.0 : 0.05 * scale);
+    const double radius = rng_index(&r, 2) ? 0.0 : 0.02 * scale;
+    cprox_result of_arcs;
+    check_body(&b, i % 2, &target, radius, 1e-6 * scale, ws, &of_arcs);
+    const bool precise = 2.0 * ROUND_U * b.far < 1e-9 * scale;
+    not_ok += precise && of_arcs.status != CPROX_OK;
+    n += precise;
+    nodes += precise ? of_arcs.nodes : 0, most = precise && of_arcs.nodes > most ? of_arcs.nodes : most;
     cprox_body_free(body);
-    cprox_curve_free(points);
-    cprox_curve_free(arcs);
   }
   print_message("%lu nodes a distance on average, %lu at most; %lu of %lu not to epsilon\n", nodes / n, most, not_ok,
                 n);
   assert_true(not_ok <= n / 50);
+  cprox_workspace_free(ws);
+}
+
+/* seed 647, 200 curves: the first contact by arcs is not after the one by points, nor before the free stretch that is proven; and
+ * every stretch of the profile holds what the stretch by points holds. */
+static void first_contacts_and_profiles_agree(void **state) {
+  (void)state;
+  rng r = rng_seed(647);
+  cprox_workspace *ws = cprox_workspace_create();
+  unsigned long hits = 0;
+  for (size_t i = test_cases(200); i-- > 0;) {
+    bezier b = random_bezier(&r);
+    cprox_curve *arcs = by_arcs(&b), *points = by_points(&b);
+    cprox_body *body = random_body(&r, 1.0);
+    const cprox_target target = cprox_at(body, random_pose(&r, 0.6, vec(0, 0, 0)));
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-6;
+    cprox_result of_arcs, of_points;
+    if (cprox_first_contact(cprox_point_along(arcs), target, &options, ws, &of_arcs) < 0)
+      fail_msg("%s", cprox_workspace_reason(ws));
+    assert_true(cprox_first_contact(cprox_point_along(points), target, &options, ws, &of_points) >= 0);
+    if (of_points.verdict == CPROX_YES) {
+      hits++;
+      assert_true(of_arcs.t_free <= of_points.t);
+    }
+    if (of_arcs.verdict == CPROX_YES) assert_true(of_points.t_free <= of_arcs.t);
+    if (of_arcs.verdict == CPROX_NO) assert_true(of_points.verdict != CPROX_YES);
+
+    cprox_stretch by_arc[7], by_point[7];
+    double breaks[8] = {0.0};
+    for (int k = 0; k < 7; k++) breaks[k + 1] = (k + rng_uniform(&r, 0.5, 1.0)) / 7.0;
+    assert_true(cprox_profile(cprox_point_along(arcs), &target, 1, breaks, 7, &options, ws, by_arc) >= 0);
+    assert_true(cprox_profile(cprox_point_along(points), &target, 1, breaks, 7, &options, ws, by_point) >= 0);
+    for (int k = 0; k < 7; k++)
+      assert_true(by_arc[k].lower <= by_point[k].upper && by_point[k].lower <= by_arc[k].upper);
+    cprox_body_free(body);
+    cprox_curve_free(points);
+    cprox_curve_free(arcs);
+  }
+  print_message("%lu contacts\n", hits);
+  assert_true(hits > 10);
   cprox_workspace_free(ws);
 }
 
@@ -311,19 +373,19 @@ static void what_goes_wrong_midway_ends_the_query(void **state) {
   (void)state;
   rng r = rng_seed(645);
   cprox_workspace *ws = cprox_workspace_create();
-  bool unused;
   int asked = 0, refused = 0;
   for (int i = 0; i < 60; i++) {
     bezier b = random_bezier(&r), other = random_bezier(&r);
     cprox_curve *c = by_arcs(&b), *straight = by_points(&other);
-    cprox_body *body = random_body(&r, &unused);
+    cprox_body *body = random_body(&r, 1.0);
     if (i % 2)
       b.nan_from = 0.0;
     else
       b.short_below = 0.01, b.short_by = 0.5;
     const char *reason = i % 2 ? "the curve's point is (" : "the arc length is said to be at most ";
     const cprox_mover mover = cprox_point_along(c);
-    const cprox_target targets[2] = {cprox_at(body, random_pose(&r)), cprox_curve_target(straight, 0.0)};
+    const cprox_target targets[2] = {cprox_at(body, random_pose(&r, 1.0, vec(0, 0, 0))),
+                                     cprox_curve_target(straight, 0.0)};
     for (int verb = 0; verb < 6; verb++) {
       const cprox_target target = targets[verb % 2];
       cprox_options options = cprox_options_default();
@@ -393,6 +455,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(no_ellipsoid_leaves_out_a_point),
       cmocka_unit_test(distances_by_arcs_and_by_points_agree),
+      cmocka_unit_test(first_contacts_and_profiles_agree),
       cmocka_unit_test(curves_by_arcs_and_by_points_agree),
       cmocka_unit_test(what_contradicts_itself_is_refused_at_once),
       cmocka_unit_test(what_goes_wrong_midway_ends_the_query),
