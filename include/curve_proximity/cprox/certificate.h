@@ -49,7 +49,8 @@ CPROX_API double cprox_certificate_delta(const cprox_certificate *certificate);
  *  Returns CPROX_OK        there is a proof
  *          CPROX_BUDGET    max_nodes were not enough
  *          CPROX_PRECISION the distance is too close to delta
- *          CPROX_INVALID   an argument is unusable, or of a kind that has no certificates: support callbacks, carried bodies
+ *          CPROX_INVALID   an argument is unusable, or of a kind that has no certificates: support callbacks, carried
+ *                          bodies, movers on one clock
  *          CPROX_MEMORY    an allocation failed
  *  with the reason in the workspace. Cost: a few times that of the query; memory is allocated for the certificate.
  *  Source: doc/certificates.md.

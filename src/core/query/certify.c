@@ -29,6 +29,7 @@ static size_t parts_of(const cprox_target *target) {
 }
 
 static bool is_known(const cprox_target *target) {
+  if (target->on_clock) return false;
   if (!target->body) return !target->curve->arcs;
   if (target->body->kind != CPROX_COMPOUND) return reach_is_known(target->body);
   for (size_t i = 0; i < target->body->n_parts; i++)
