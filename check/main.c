@@ -45,7 +45,7 @@ static bool report(const problem *p, reader *file) {
   }
   const unsigned char *bytes = file->at;
   file->at += size;
-  if (size == 0) {
+  if (size == 0 || p->mover.none) {
     printf("%s: nothing is claimed\n", p->mover.id);
     return false;
   }

@@ -130,62 +130,81 @@ static void read_set(words *w, set *s) {
 
 /* ---- lines -------------------------------------------------------------------------------------------------------------- */
 
-/* The next line that is not empty, its first word being `first`. */
-static bool next_line(problem *p, const char *first, words *w) {
+/* The first word of the next line that is not empty, or NULL. */
+static const char *next_line(problem *p, words *w) {
   const char *found = NULL;
+  w->wrong = false;
   while (!found) {
-    if (getline(&p->line, &p->capacity, p->in) < 0) return false;
+    if (getline(&p->line, &p->capacity, p->in) < 0) return NULL;
     p->number++;
     found = strtok_r(p->line, " \t\r\n", &w->rest);
   }
-  w->wrong = strcmp(found, first) != 0;
-  return true;
+  return found;
 }
 
 /* Nothing was wrong, and nothing is left. */
-static bool line_is_good(problem *p, words *w, const char *what) {
+static bool line_is_good(problem *p, words *w) {
   if (!w->wrong && strtok_r(NULL, " \t\r\n", &w->rest)) w->wrong = true;
-  if (w->wrong) snprintf(p->fault, sizeof p->fault, "line %zu of the problem is no %s", p->number, what);
+  if (w->wrong) snprintf(p->fault, sizeof p->fault, "line %zu of the problem is not understood", p->number);
   return !w->wrong;
 }
 
-bool problem_open(problem *p, FILE *in) {
-  *p = (problem){.in = in};
-  words w = {0};
-  if (!next_line(p, "cprox-problem", &w)) w.wrong = true;
-  const double version = number(&w);
-  if (version != 1.0) w.wrong = true;
-  if (!line_is_good(p, &w, "head 'cprox-problem 1'")) return false;
-  if (!next_line(p, "targets", &w)) w.wrong = true;
-  const double n = number(&w);
-  if (!(n >= 0.0 && n <= 1e7)) w.wrong = true;
-  if (!line_is_good(p, &w, "'targets N'")) return false;
-  p->sets = room(&w, (size_t)n, sizeof *p->sets);
-  for (; p->n_sets < (size_t)n && !w.wrong;) {
-    if (!next_line(p, "target", &w)) w.wrong = true;
-    read_set(&w, &p->sets[p->n_sets++]);
-    if (!line_is_good(p, &w, "target")) return false;
-  }
-  return !w.wrong;
-}
-
-bool problem_next(problem *p) {
-  words w = {0};
-  free_curve(&p->mover.curve);
-  if (!next_line(p, "mover", &w)) return false;
-  snprintf(p->mover.id, sizeof p->mover.id, "%s", word(&w));
-  p->mover.radius = number(&w);
-  if (!(p->mover.radius >= 0.0)) w.wrong = true;
-  read_curve(&w, &p->mover.curve);
-  return line_is_good(p, &w, "mover");
-}
-
-void problem_close(problem *p) {
+static void free_sets(problem *p) {
   for (size_t i = 0; i < p->n_sets; i++) {
     free(p->sets[i].vertices);
     free_curve(&p->sets[i].curve);
   }
   free(p->sets);
+  p->sets = NULL;
+  p->n_sets = 0;
+}
+
+bool problem_open(problem *p, FILE *in) {
+  *p = (problem){.in = in};
+  words w = {0};
+  const char *first = next_line(p, &w);
+  if (!first || strcmp(first, "cprox-problem") != 0 || number(&w) != 1.0) w.wrong = true;
+  return line_is_good(p, &w);
+}
+
+/* The N lines of targets, "targets" being read. */
+static bool read_sets(problem *p, words *w) {
+  const double n = number(w);
+  if (!(n >= 0.0 && n <= 1e7 && n == floor(n))) w->wrong = true;
+  if (!line_is_good(p, w)) return false;
+  free_sets(p);
+  p->sets = room(w, (size_t)n, sizeof *p->sets);
+  while (!w->wrong && p->n_sets < (size_t)n) {
+    const char *first = next_line(p, w);
+    if (!first || strcmp(first, "target") != 0) w->wrong = true;
+    read_set(w, &p->sets[p->n_sets++]);
+    if (!line_is_good(p, w)) return false;
+  }
+  return !w->wrong;
+}
+
+bool problem_next(problem *p) {
+  words w = {0};
+  free_curve(&p->mover.curve);
+  const char *first = next_line(p, &w);
+  while (first && strcmp(first, "targets") == 0) {
+    if (!read_sets(p, &w)) return false;
+    first = next_line(p, &w);
+  }
+  if (!first) return false;
+  p->mover.none = strcmp(first, "none") == 0;
+  if (!p->mover.none && strcmp(first, "mover") != 0) w.wrong = true;
+  snprintf(p->mover.id, sizeof p->mover.id, "%s", word(&w));
+  if (!p->mover.none) {
+    p->mover.radius = number(&w);
+    if (!(p->mover.radius >= 0.0)) w.wrong = true;
+    read_curve(&w, &p->mover.curve);
+  }
+  return line_is_good(p, &w);
+}
+
+void problem_close(problem *p) {
+  free_sets(p);
   free_curve(&p->mover.curve);
   free(p->line);
   *p = (problem){0};

@@ -40,6 +40,7 @@ typedef struct set {
 
 typedef struct mover {
   char id[256];
+  bool none; /* there is no curve of this name to be asked about */
   double radius;
   curve curve;
 } mover;
@@ -54,10 +55,11 @@ typedef struct problem {
   FILE *in;
 } problem;
 
-/* Reads the head and the targets. False, with a sentence in fault. */
+/* Reads the head. False, with a sentence in fault. */
 bool problem_open(problem *p, FILE *in);
 
-/* Reads the next mover. False at the end, or with a sentence in fault. */
+/* Reads the next mover, and before it targets that take the place of those there are. False at the end, or with a sentence in
+ * fault. */
 bool problem_next(problem *p);
 
 void problem_close(problem *p);

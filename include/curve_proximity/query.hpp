@@ -86,6 +86,13 @@ class Targets {
   std::unique_ptr<const Data> data_;
 };
 
+/** Everything that a question is about, as the core takes it; valid as long as `targets` is. Certificates are about
+ *  these: where things stand, in doubles, when rounding before the core is done. */
+std::vector<cprox_target> coreTargets(const Targets &targets);
+
+/** Which of them an answer names; -1 for none. */
+std::int32_t coreTargetOf(const Targets &targets, const Answer &answer);
+
 /** Answers a question for one curve: one answer, or with per_object one for each object and link in the order of their
  *  names (objects first; none at all: one answer with b empty).
  *

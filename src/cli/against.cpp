@@ -2,6 +2,7 @@
 /* Curves against curves: row i of one file against row i of the other. */
 #include <chrono>
 
+#include "certificates.h"
 #include "csv.h"
 #include "failure.h"
 #include "finish.h"
@@ -59,6 +60,10 @@ Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Questi
     out.stopped = row.result.status == CPROX_STOPPED;
     if (row.result.status < 0)
       out.complaints.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_reason(workspace.get()));
+    out.certificate =
+        arguments.certificate.empty()
+            ? ""
+            : certificateRecord(a, {cprox_curve_target(b.curve.get(), b.radius)}, row.result, question, workspace);
   } catch (const std::bad_alloc &) {
     row.result.status = CPROX_MEMORY;
     out.complaints.push_back(arguments.curves + ": id '" + row.id + "': " + cprox_status_text(CPROX_MEMORY));
@@ -67,6 +72,7 @@ Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Questi
     const bool own = !rows.second && rows.first;
     out.complaints.push_back(own ? placeOf(*rows.first, arguments.curves) + ": " + e.what() : e.what());
   }
+  if (out.certificate.empty() && !arguments.certificate.empty()) out.certificate = emptyRecord();
   out.text = resultsLine(row);
   return out;
 }
@@ -77,7 +83,10 @@ int answerAgainst(const Arguments &arguments, Console &console) {
   Question question = arguments.question;
   question.options.stop = interrupted;
   CsvFile first(arguments.curves), second(arguments.against);
-  ResultsFile results(arguments.out, {arguments.curves, arguments.against});
+  const std::vector<std::string> inputs{arguments.curves, arguments.against};
+  ResultsFile results(arguments.out, inputs);
+  std::optional<ResultsFile> certificates;
+  if (!arguments.certificate.empty()) certificates.emplace(arguments.certificate, inputs, "--certificate");
   Warnings warnings;
   for (const std::string &sentence : arguments.warnings) warnings.add(sentence);
   console.warn(warnings);
@@ -92,6 +101,7 @@ int answerAgainst(const Arguments &arguments, Console &console) {
         [&, pair = std::move(pair)](Workspace &workspace) { return answerPair(pair, arguments, question, workspace); };
   };
   rows.write = [&](const std::string &text) { results.write(text); };
+  if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };
   rows.portion = [&] { return first.portion(); };
   return finish(runRows(arguments.threads, rows, console), console);
 }

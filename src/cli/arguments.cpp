@@ -24,12 +24,13 @@ struct Option {
 
 const std::map<std::string, Option> &options() {
   static const std::map<std::string, Option> table = {
-      {"--curves", {true, {Action::CURVES}}},
-      {"--against", {true, {Action::CURVES}}},
-      {"--scene", {true, {Action::CURVES}}},
-      {"--robot", {true, {Action::CURVES}}},
-      {"--srdf", {true, {Action::CURVES}}},
-      {"--state", {true, {Action::CURVES}}},
+      {"--curves", {true, {Action::CURVES, Action::CHECK}}},
+      {"--against", {true, {Action::CURVES, Action::CHECK}}},
+      {"--scene", {true, {Action::CURVES, Action::CHECK}}},
+      {"--robot", {true, {Action::CURVES, Action::CHECK}}},
+      {"--srdf", {true, {Action::CURVES, Action::CHECK}}},
+      {"--state", {true, {Action::CURVES, Action::CHECK}}},
+      {"--certificate", {true, {Action::CURVES}}},
       {"--in", {true, {Action::PAIRS}}},
       {"--node", {true, {Action::SEND}}},
       {"--epsilon", {true, {Action::CURVES, Action::PAIRS}}},
@@ -45,7 +46,7 @@ const std::map<std::string, Option> &options() {
 }
 
 /* Words of the manual that this version cannot act upon. */
-const std::vector<std::string> kNotAvailable = {"--trajectory", "--self", "--signed", "--certificate", "--provider"};
+const std::vector<std::string> kNotAvailable = {"--trajectory", "--self", "--signed", "--provider"};
 
 struct VerbName {
   const char *word;
@@ -55,7 +56,7 @@ struct VerbName {
 const VerbName kVerbs[] = {
     {"distance", Action::CURVES, Verb::DISTANCE},   {"tolerance", Action::CURVES, Verb::TOLERANCE},
     {"collision", Action::CURVES, Verb::COLLISION}, {"pairs", Action::PAIRS, Verb::DISTANCE},
-    {"send", Action::SEND, Verb::DISTANCE},
+    {"send", Action::SEND, Verb::DISTANCE},         {"check", Action::CHECK, Verb::DISTANCE},
 };
 
 [[noreturn]] void notAvailable(const std::string &word) {
@@ -66,8 +67,9 @@ const VerbName &findVerb(const std::string &word) {
   for (const VerbName &verb : kVerbs) {
     if (word == verb.word) return verb;
   }
-  if (word == "constraints" || word == "check") notAvailable("'" + word + "'");
-  throw BadUsage("'" + word + "' is no verb; the verbs are distance, tolerance, collision, pairs, send (see --help)");
+  if (word == "constraints") notAvailable("'" + word + "'");
+  throw BadUsage("'" + word +
+                 "' is no verb; the verbs are distance, tolerance, collision, pairs, send, check (see --help)");
 }
 
 /* The words behind the verb: options with their values, and what is no option. */
@@ -179,7 +181,7 @@ void readAgainst(const Words &words, Arguments &out) {
     if (words.has(name))
       throw BadUsage("--against takes no " + std::string(name) + ": curves are measured against curves");
   }
-  out.action = Action::AGAINST;
+  if (out.action == Action::CURVES) out.action = Action::AGAINST;
   out.against = words.text("--against");
 }
 
@@ -192,6 +194,11 @@ void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
   std::vector<std::string> plain = words.plain;
 
   switch (verb.action) {
+    case Action::CHECK:
+      if (plain.empty()) throw BadUsage("'check' needs a file: cprox check FILE with the inputs of the question");
+      out.certificate = plain.front();
+      plain.erase(plain.begin());
+      [[fallthrough]];
     case Action::CURVES:
       out.curves = required("--curves", "CURVES.csv");
       if (words.has("--against")) {
@@ -222,7 +229,8 @@ void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
 
 Arguments parseArguments(const std::vector<std::string> &words) {
   Arguments out;
-  if (words.empty()) throw BadUsage("no verb; the verbs are distance, tolerance, collision, pairs, send (see --help)");
+  if (words.empty())
+    throw BadUsage("no verb; the verbs are distance, tolerance, collision, pairs, send, check (see --help)");
 
   /* help and version win over everything else on the line */
   const auto said = [&](const char *word) { return std::find(words.begin(), words.end(), word) != words.end(); };
@@ -239,6 +247,10 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   readFiles(split, verb, out);
 
   out.out = split.text("--out");
+  if (split.has("--certificate")) out.certificate = split.text("--certificate");
+  if (split.has("--certificate") && out.question.per_object) {
+    throw BadUsage("--certificate takes no --per-object: a certificate is about all objects at once");
+  }
   out.skipped = split.has("--skipped");
   out.threads = std::max(1u, std::thread::hardware_concurrency());
   if (split.has("--delta") && out.question.verb != Verb::TOLERANCE) {
@@ -257,6 +269,7 @@ cprox tolerance --delta D  (as above)   yes: farther than D everywhere
 cprox collision            (as above)   yes: they touch or overlap somewhere
 cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodies
 cprox send      SCENE.yaml [--node NAME] hands a scene file to a running node
+cprox check     FILE  (the inputs of the question)  what the certificates in FILE prove
 
   --curves FILE     one curve a row: id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knots]; basis bezier, bspline,
                     polynomial, legendre, lagrange (nodes for knots) or trigonometric; lines that begin with # are
@@ -268,6 +281,7 @@ cprox send      SCENE.yaml [--node NAME] hands a scene file to a running node
   --state TEXT      joint values in radians or metres; others as in the scene's robot_state, else 0
                     (mid-range where 0 is beyond the limits)
   --in FILE         a list of {id, a: BODY, b: BODY}
+  --certificate FILE  proofs of the answers, for 'check': whoever doubts the search need not believe it
   --epsilon E       width of the intervals asked for, metres, above 0 (default 1e-06)
   --delta D         the clearance asked of 'tolerance', metres
   --max-nodes N     budget of parameter intervals for each target (default 20000)

@@ -11,14 +11,15 @@
 
 namespace curve_proximity::cli {
 
-enum class Action { HELP, VERSION, CURVES, AGAINST, PAIRS, SEND };
+enum class Action { HELP, VERSION, CURVES, AGAINST, PAIRS, SEND, CHECK };
 
 struct Arguments {
   Action action = Action::HELP;
   Question question; /**< CURVES, AGAINST and PAIRS: the verb, and how it is to be answered */
 
-  std::string curves, scene; /**< files; curves: of CURVES and AGAINST, scene: of CURVES and SEND */
-  std::string against;       /**< file of AGAINST */
+  std::string curves, scene; /**< files; curves: of CURVES, AGAINST and CHECK, scene: of CURVES, CHECK and SEND */
+  std::string against;       /**< file of AGAINST; of CHECK where it was given */
+  std::string certificate;   /**< file: written by CURVES and AGAINST, empty: none; read by CHECK */
   std::string robot, srdf;   /**< files of the robot; empty: none */
   std::string state;         /**< "joint: value, …" */
   std::string pairs;         /**< file of PAIRS */

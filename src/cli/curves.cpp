@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "certificates.h"
 #include "csv.h"
 #include "failure.h"
 #include "finish.h"
@@ -19,6 +20,7 @@ Outcome failedCurve(const std::string &id, const std::string &place, const std::
   Outcome out;
   out.text = resultsLine(row);
   out.complaints.push_back(place + ": " + why);
+  out.certificate = emptyRecord();
   return out;
 }
 
@@ -37,7 +39,7 @@ ResultRow toRow(const Answer &answer, Verb verb) {
 
 /* All rows of one curve. */
 Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &targets, const Question &question,
-                    Workspace &workspace) {
+                    const std::optional<std::vector<cprox_target>> &to_certify, Workspace &workspace) {
   const std::string id = rowId(csv.text);
   const std::string place = placeOf(csv, file);
   try {
@@ -47,6 +49,11 @@ Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &t
       const cprox_status status = answer.result.status;
       out.stopped = out.stopped || status == CPROX_STOPPED;
       out.text += resultsLine(toRow(answer, question.verb));
+      if (to_certify) {
+        cprox_result named = answer.result;
+        named.target_index = coreTargetOf(targets, answer);
+        out.certificate = certificateRecord(curve, *to_certify, named, question, workspace);
+      }
       if (status < 0) {
         const std::string against = answer.b.empty() ? "" : ": against '" + answer.b + "'";
         out.complaints.push_back(place + against + ": " + answer.message);
@@ -74,7 +81,14 @@ int answerCurves(const Arguments &arguments, Console &console) {
   const Targets targets(world.snapshot, world.links, question);
 
   CsvFile file(arguments.curves);
-  ResultsFile results(arguments.out, {arguments.curves, arguments.scene, arguments.robot, arguments.srdf});
+  const std::vector<std::string> inputs{arguments.curves, arguments.scene, arguments.robot, arguments.srdf};
+  ResultsFile results(arguments.out, inputs);
+  std::optional<ResultsFile> certificates;
+  std::optional<std::vector<cprox_target>> to_certify;
+  if (!arguments.certificate.empty()) {
+    certificates.emplace(arguments.certificate, inputs, "--certificate");
+    to_certify = coreTargets(targets);
+  }
   console.warn(warnings);
   if (arguments.skipped) tellSkipped(world.skipped, console);
 
@@ -86,10 +100,11 @@ int answerCurves(const Arguments &arguments, Console &console) {
     std::optional<CsvRow> row = file.next();
     if (!row) return std::nullopt;
     return [&, csv = *std::move(row)](Workspace &workspace) {
-      return answerCurve(csv, arguments.curves, targets, question, workspace);
+      return answerCurve(csv, arguments.curves, targets, question, to_certify, workspace);
     };
   };
   rows.write = [&](const std::string &text) { results.write(text); };
+  if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };
   rows.portion = [&] { return file.portion(); };
   return finish(runRows(arguments.threads, rows, console), console);
 }

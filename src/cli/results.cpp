@@ -77,18 +77,19 @@ std::string resultsLine(const ResultRow &row) {
   return line + '\n';
 }
 
-ResultsFile::ResultsFile(const std::string &path, const std::vector<std::string> &inputs)
+ResultsFile::ResultsFile(const std::string &path, const std::vector<std::string> &inputs, const std::string &option)
     : path_(path.empty() ? "standard output" : path), file_(path.empty() ? stdout : nullptr) {
   if (file_) return;
 
   /* opening empties the file: not one that is yet to be read */
   for (const std::string &input : inputs) {
     std::error_code error;
-    if (std::filesystem::equivalent(path, input, error)) throw BadUsage("--out " + path + ": is an input of this run");
+    if (std::filesystem::equivalent(path, input, error))
+      throw BadUsage(option + " " + path + ": is an input of this run");
   }
   errno = 0;
   file_ = std::fopen(path.c_str(), "wb");
-  if (!file_) throw BadUsage("--out " + path + ": cannot be written: " + std::strerror(errno));
+  if (!file_) throw BadUsage(option + " " + path + ": cannot be written: " + std::strerror(errno));
 }
 
 ResultsFile::~ResultsFile() {

@@ -32,8 +32,9 @@ std::string resultsLine(const ResultRow &row);
 /** Where results go: standard output, or a file that is written anew. */
 class ResultsFile {
  public:
-  /** path empty: standard output. Throws BadUsage where the file cannot be written, or is one of the inputs. */
-  ResultsFile(const std::string &path, const std::vector<std::string> &inputs);
+  /** path empty: standard output. Throws BadUsage, naming the option, where the file cannot be written, or is one of
+   *  the inputs. */
+  ResultsFile(const std::string &path, const std::vector<std::string> &inputs, const std::string &option = "--out");
   ~ResultsFile();
   ResultsFile(const ResultsFile &) = delete;
   ResultsFile &operator=(const ResultsFile &) = delete;

@@ -92,19 +92,21 @@ class Run {
   void deliver(std::size_t number, Outcome outcome) {
     const std::lock_guard<std::mutex> lock(mutex_);
     waiting_.emplace(number, std::move(outcome));
-    std::string lines;
+    std::string lines, records;
     for (auto it = waiting_.find(written_); it != waiting_.end() && !stopped_; it = waiting_.find(written_)) {
       const Outcome &next = it->second;
       stopped_ = next.stopped;
       if (stopped_) break;
       for (const std::string &complaint : next.complaints) console_.say(complaint);
       lines += next.text;
+      records += next.certificate;
       ++tally_.rows;
       tally_.failed += next.complaints.empty() ? 0 : 1;
       waiting_.erase(it);
       ++written_;
     }
     if (!lines.empty()) rows_.write(lines);
+    if (!records.empty() && rows_.certify) rows_.certify(records);
     room_.notify_all();
   }
 

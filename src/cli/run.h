@@ -18,6 +18,7 @@ namespace curve_proximity::cli {
 /** What became of one row of the input. */
 struct Outcome {
   std::string text;                    /**< the lines of the results */
+  std::string certificate;             /**< its record, where certificates are wanted */
   std::vector<std::string> complaints; /**< for standard error: why there is no answer */
   bool stopped = false;                /**< it was interrupted: it is not to be written */
 };
@@ -28,9 +29,10 @@ using Task = std::function<Outcome(Workspace &)>;
 /** Where the rows come from and where they go. Each function is called by one thread at a time; `next` may wait for its
  *  input while the others go on. */
 struct Rows {
-  std::function<std::optional<Task>()> next;      /**< nothing at the end */
-  std::function<void(const std::string &)> write; /**< lines of the results */
-  std::function<std::optional<double>()> portion; /**< of the input that has been read, 0 to 1, if it is known */
+  std::function<std::optional<Task>()> next;        /**< nothing at the end */
+  std::function<void(const std::string &)> write;   /**< lines of the results */
+  std::function<void(const std::string &)> certify; /**< records of certificates; empty where none are wanted */
+  std::function<std::optional<double>()> portion;   /**< of the input that has been read, 0 to 1, if it is known */
 };
 
 struct Tally {

@@ -17,6 +17,9 @@ int answerAgainst(const Arguments &arguments, Console &console);
 /** pairs: signed distances of standing bodies. */
 int answerPairs(const Arguments &arguments, Console &console);
 
+/** check: what certificates prove about a question. */
+int checkCertificates(const Arguments &arguments, Console &console);
+
 /** send: a scene file to a running node. */
 int sendScene(const Arguments &arguments, Console &console);
 

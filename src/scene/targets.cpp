@@ -78,4 +78,21 @@ Targets::~Targets() = default;
 Targets::Targets(Targets &&) noexcept = default;
 Targets &Targets::operator=(Targets &&) noexcept = default;
 
+std::vector<cprox_target> coreTargets(const Targets &targets) {
+  std::vector<cprox_target> all;
+  for (const Item &item : targets.data().items) all.push_back(item.shape->target);
+  return all;
+}
+
+std::int32_t coreTargetOf(const Targets &targets, const Answer &answer) {
+  if (answer.result.target_index < 0) return -1;
+  const std::vector<Item> &items = targets.data().items;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Item &item = items[i];
+    if (item.is_link == answer.b_is_link && item.part == answer.result.target_index && *item.owner == answer.b)
+      return static_cast<std::int32_t>(i);
+  }
+  return -1;
+}
+
 } // namespace curve_proximity

@@ -286,20 +286,23 @@ class Set:
 
 
 def read_problem(path):
+    """The targets, the name, the radius and the curve of each mover."""
+    movers, sets = [], []
     with open(path) as lines:
         head = next(lines).split()
         assert head == ['cprox-problem', '1'], head
-        n = int(next(lines).split()[1])
-        sets, movers = [], []
         for line in lines:
             words = Words(line)
             what = words.word()
-            if what == 'target':
+            if what == 'targets':
+                sets = []
+            elif what == 'target':
                 sets.append(Set(words))
             elif what == 'mover':
-                movers.append((words.word(), words.number(), Curve(words)))
-        assert len(sets) == n
-        return sets, movers
+                movers.append((sets, words.word(), words.number(), Curve(words)))
+            elif what == 'none':
+                movers.append((sets, words.word(), None, None))
+    return movers
 
 
 # ---- certificates --------------------------------------------------------------------------------------------------------
@@ -467,10 +470,10 @@ def records(path):
 
 
 def main():
-    sets, movers = read_problem(sys.argv[1])
     proven = True
-    for (name, radius, curve), data in zip(movers, records(sys.argv[2])):
+    for (sets, name, radius, curve), data in zip(read_problem(sys.argv[1]), records(sys.argv[2])):
         try:
+            require(curve, 'there is no such mover')
             claim, delta = check(sets, radius, curve, data)
             print(name, 'proven', claim, float(delta).hex())
         except Refused as why:

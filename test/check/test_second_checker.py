@@ -32,9 +32,9 @@ def by_cprox_check(program, problem, certificates):
 
 
 def by_fractions(problem, certificates):
-    sets, movers = second_checker.read_problem(problem)
     found = []
-    for (_, radius, curve), data in zip(movers, second_checker.records(certificates)):
+    movers = second_checker.read_problem(problem)
+    for (sets, _, radius, curve), data in zip(movers, second_checker.records(certificates)):
         try:
             claim, delta = second_checker.check(sets, radius, curve, data)
             found.append((claim, float(delta)))

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "certificates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "failure.h"
+
+namespace curve_proximity::cli {
+namespace {
+
+using CertificateHandle = std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)>;
+
+std::string recordOf(const void *bytes, std::size_t size) {
+  std::string record;
+  for (int i = 0; i < 4; ++i) record += static_cast<char>(size >> (8 * i) & 255);
+  return record.append(static_cast<const char *>(bytes), size);
+}
+
+void append(std::string &line, double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, " %a", value);
+  line += text;
+}
+
+/* An id is one word there. */
+std::string wordOf(const std::string &id) {
+  std::string word = id.empty() ? "-" : id;
+  std::replace_if(
+      word.begin(), word.end(), [](unsigned char c) { return c <= ' '; }, '_');
+  return word;
+}
+
+std::string curveWords(const CurveDescription &curve) {
+  const Eigen::Index n = curve.points.cols();
+  const std::size_t degree = curve.basis == "bezier" ? static_cast<std::size_t>(n) - 1 : curve.degree;
+  std::string line = " " + curve.basis + " " + std::to_string(degree);
+  append(line, curve.t0);
+  append(line, curve.t1);
+  line += " " + std::to_string(n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (int k = 0; k < 3; ++k) append(line, curve.points(k, i));
+  line += " " + std::to_string(curve.knots.size());
+  for (const double knot : curve.knots) append(line, knot);
+  return line;
+}
+
+/* What the answer claims: the limit of a verdict; of a distance its lower bound, or where that is 0 its upper bound. */
+double claimOf(const Question &question, const cprox_result &result) {
+  switch (question.verb) {
+    case Verb::DISTANCE: break;
+    case Verb::TOLERANCE: return question.delta;
+    case Verb::COLLISION: return 0.0;
+  }
+  return result.lower > 0.0 ? result.lower : result.upper;
+}
+
+} // namespace
+
+std::string emptyRecord() {
+  return recordOf("", 0);
+}
+
+std::string certificateRecord(const CompiledCurve &curve, const std::vector<cprox_target> &targets,
+                              const cprox_result &result, const Question &question, Workspace &workspace) {
+  const double delta = claimOf(question, result);
+  if (result.status < 0 || targets.empty() || !std::isfinite(delta)) return emptyRecord();
+  const CertificateHandle certificate(cprox_certificate_create(), cprox_certificate_free);
+  if (!certificate) return emptyRecord();
+  cprox_certify(along(curve.curve, curve.radius), targets.data(), targets.size(), delta, &result, &question.options,
+                workspace.get(), certificate.get());
+  return recordOf(cprox_certificate_bytes(certificate.get()), cprox_certificate_size(certificate.get()));
+}
+
+std::string problemHead() {
+  return "cprox-problem 1\n";
+}
+
+std::string targetLines(const std::vector<cprox_target> &targets) {
+  std::string lines;
+  for (const cprox_target &target : targets) {
+    std::string text(cprox_target_describe(&target, nullptr, 0) + 1, '\0');
+    if (text.size() == 1) throw BadUsage("the scene holds a body of a kind that has no certificates");
+    cprox_target_describe(&target, text.data(), text.size());
+    text.pop_back();
+    lines += text;
+  }
+  return "targets " + std::to_string(std::count(lines.begin(), lines.end(), '\n')) + "\n" + lines;
+}
+
+std::string curveTargetLines(const CurveDescription &curve) {
+  std::string line = "targets 1\ntarget";
+  append(line, curve.radius);
+  return line + " 0 curve" + curveWords(curve) + "\n";
+}
+
+std::string moverLine(const CurveDescription &curve) {
+  std::string line = "mover " + wordOf(curve.id);
+  append(line, curve.radius);
+  return line + curveWords(curve) + "\n";
+}
+
+std::string noMoverLine(const std::string &id) {
+  return "none " + wordOf(id) + "\n";
+}
+
+} // namespace curve_proximity::cli
