@@ -38,8 +38,14 @@ if(CPROX_ROS)
   set_target_properties(cprox_cli PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_BIN_DESTINATION})
   install(TARGETS cprox_cli RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
+  # Where cprox looks for it.
+  set_target_properties(cprox_check PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_BIN_DESTINATION})
+  install(TARGETS cprox_check RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
   install(DIRECTORY launch config rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
   install(FILES nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
   # The demo's robot and scenes, so that demo.launch works from the install space too.
   install(DIRECTORY test/data/robots test/data/scenes DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/test/data)
+elseif(TARGET cprox_check)
+  install(TARGETS cprox_check RUNTIME DESTINATION bin)
 endif()

@@ -8,10 +8,10 @@ class Usage(Case):
         answer = cprox('--help')
         self.assertEqual((answer.code, answer.err), (0, ''))
         for word in ('distance', 'tolerance', 'collision', 'pairs', 'send', '--curves', '--scene', '--robot', '--srdf', '--state',
-                     '--in', '--against', '--epsilon', '--delta', '--max-nodes', '--threads', '--per-object', '--max-rung', '--skipped',
+                     '--in', '--against', 'check', '--certificate', '--epsilon', '--delta', '--max-nodes', '--threads', '--per-object', '--max-rung', '--skipped',
                      '--out', '--node', '--version'):
             self.assertIn(word, answer.out)
-        for word in ('--trajectory', '--self', '--signed', '--certificate', 'constraints', 'check'):
+        for word in ('--trajectory', '--self', '--signed', 'constraints'):
             self.assertNotIn(word, answer.out)
 
     def help_wins_over_everything_else(self):
@@ -54,8 +54,8 @@ class Usage(Case):
 
     def what_belongs_to_later_versions_is_refused_in_one_sentence(self):
         for words in (['distance', '--trajectory', 't.yaml'], ['distance', '--self'],
-                      ['pairs', '--signed'], ['distance', '--certificate', 'f'], ['distance', '--curves', 'c', '--scene', 's', '--max-rung', 'mesh'],
-                      ['constraints', '--provider', 'x', '--in', 'y'], ['check', 'file']):
+                      ['pairs', '--signed'], ['distance', '--curves', 'c', '--scene', 's', '--max-rung', 'mesh'],
+                      ['constraints', '--provider', 'x', '--in', 'y']):
             with self.subTest(words=words):
                 self.assertRefused(cprox(*words), 'is not available in this version')
         self.assertRefused(cprox('distance', '--curves', 'c', '--scene', 's', '--max-rung', 'finest'), '--max-rung', 'hull')

@@ -43,8 +43,10 @@ CPROX_API double cprox_certificate_delta(const cprox_certificate *certificate);
  *  options     max_nodes bounds the parts of the cover that are tried, for each target; NULL: the default.
  *  certificate receives the proof, or nothing (CPROX_CLAIM_NONE) where none was found.
  *
- *  A claim that is as tight as double arithmetic allows may be proven for a delta that is weaker by a few roundings: see
- *  cprox_certificate_delta(). Touching a flat target without radius or padding cannot be proven.
+ *  A claim that is as tight as double arithmetic allows may be proven for a delta that is weaker by a few roundings; that of a
+ *  distance (delta == answer->lower) by epsilon, where the curve bends round a target at a constant distance and planes cannot
+ *  follow as closely as the search did. cprox_certificate_delta() tells. Touching a flat target without radius or padding
+ *  cannot be proven.
  *
  *  Returns CPROX_OK        there is a proof
  *          CPROX_BUDGET    max_nodes were not enough

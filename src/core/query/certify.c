@@ -10,8 +10,7 @@
 #define SHORTEST_DOUBLE 0x1p-50
 
 /* By how much a claim that is too tight is lowered, in roundings of the sizes. */
-static const double LOWERED[] = {0.0, 64.0, 4096.0};
-enum { N_LOWERED = 3 };
+#define LOWERED 64.0
 
 typedef struct task {
   const cprox_mover *mover;
@@ -20,6 +19,7 @@ typedef struct task {
   double delta;
   const cprox_result *answer;
   uint32_t budget;
+  double epsilon; /* what a distance may give away */
   cprox_workspace *workspace;
   cprox_certificate *certificate;
 } task;
@@ -87,19 +87,12 @@ static double size_of_problem(const task *t, const cover *c) {
   return size_of(c->curve, c->pose.position) + of_set + c->set.offset + t->delta;
 }
 
-/* One attempt: the whole certificate with normals of the width, the claim lowered by so many roundings. */
-static cprox_status attempt(const task *t, uint32_t width, double lowered) {
+/* One attempt: the whole certificate, with normals of the width. */
+static cprox_status attempt(const task *t, uint32_t width, double delta) {
   size_t sections = 0;
   for (size_t i = 0; i < t->n; i++) sections += parts_of(&t->targets[i]);
-  certificate_begin(t->certificate, width, CPROX_CLAIM_APART, t->delta, (uint32_t)sections);
+  certificate_begin(t->certificate, width, CPROX_CLAIM_APART, delta, (uint32_t)sections);
   certificate_breaks(t->certificate, t->mover->curve->breaks, t->mover->curve->n_pieces);
-  double delta = t->delta;
-  if (lowered > 0.0 && t->answer && t->answer->target_index >= 0) {
-    const cover c = cover_of(t, (size_t)t->answer->target_index, (size_t)t->answer->target_part, width);
-    delta -= lowered * ROUND_U * size_of_problem(t, &c);
-    if (!(delta >= 0.0)) return CPROX_PRECISION;
-    certificate_restate(t->certificate, delta);
-  }
   for (size_t i = 0; i < t->n; i++) {
     for (size_t part = 0; part < parts_of(&t->targets[i]); part++) {
       cover c = cover_of(t, i, part, width);
@@ -111,9 +104,22 @@ static cprox_status attempt(const task *t, uint32_t width, double lowered) {
   return t->certificate->failed ? CPROX_MEMORY : CPROX_OK;
 }
 
+/* Is the claim the lower bound of a distance? A verdict's limit may not be lowered but for rounding. */
+static bool is_of_distance(const task *t) {
+  return t->answer && t->answer->verdict == CPROX_UNDECIDED && t->delta == t->answer->lower;
+}
+
 static cprox_status certify_apart(const task *t) {
-  cprox_status status = attempt(t, 4, 0.0);
-  for (int i = 0; i < N_LOWERED && status > 0; i++) status = attempt(t, 8, LOWERED[i]);
+  cprox_status status = attempt(t, 4, t->delta);
+  if (status > 0) status = attempt(t, 8, t->delta);
+  if (status <= 0 || !t->answer || t->answer->target_index < 0) return status;
+
+  /* the search's own bounds, which know tangent balls, may be tighter than planes can be */
+  const cover c = cover_of(t, (size_t)t->answer->target_index, (size_t)t->answer->target_part, 8);
+  const double rounding = LOWERED * ROUND_U * size_of_problem(t, &c);
+  if (t->delta > rounding) status = attempt(t, 8, t->delta - rounding);
+  const double given = fmax(t->epsilon, LOWERED * rounding);
+  if (status > 0 && is_of_distance(t) && t->delta > given) status = attempt(t, 8, t->delta - given);
   return status;
 }
 
@@ -130,14 +136,15 @@ static cprox_status certify_near(const task *t) {
 }
 
 cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
-                     const cprox_result *answer, uint32_t max_nodes, cprox_workspace *workspace,
+                     const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                      cprox_certificate *certificate) {
   const task t = {.mover = mover,
                   .targets = targets,
                   .n = n,
                   .delta = delta,
                   .answer = answer,
-                  .budget = max_nodes,
+                  .budget = options->max_nodes,
+                  .epsilon = answer ? fmax(options->epsilon, options->relative_epsilon * answer->upper) : 0.0,
                   .workspace = workspace,
                   .certificate = certificate};
   certificate_clear(certificate);
@@ -165,5 +172,5 @@ cprox_status cprox_certify(cprox_mover mover, const cprox_target *targets, size_
   if (status == CPROX_OK) status = arguments_check_delta(delta, workspace);
   if (status != CPROX_OK) return status;
   if (!certificate) return workspace_fail(workspace, CPROX_INVALID, "certificate is NULL: nowhere to put the proof");
-  return certify(&mover, targets, n, delta, answer, chosen.max_nodes, workspace, certificate);
+  return certify(&mover, targets, n, delta, answer, &chosen, workspace, certificate);
 }

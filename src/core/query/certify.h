@@ -7,7 +7,7 @@
 
 /* Proves an answer whose arguments were checked, as cprox_certify() does. */
 cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
-                     const cprox_result *answer, uint32_t max_nodes, cprox_workspace *workspace,
+                     const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                      cprox_certificate *certificate);
 
 #endif

@@ -11,7 +11,7 @@
 static void leave_certificate(const question *q, const cprox_result *answer) {
   if (!q->options.certificate || answer->upper < 0.0) return;
   const double delta = question_wants_verdict(q) ? q->limit : answer->lower > 0.0 ? answer->lower : answer->upper;
-  certify(&q->mover, q->targets, q->n, delta, answer, q->options.max_nodes, q->workspace, q->options.certificate);
+  certify(&q->mover, q->targets, q->n, delta, answer, &q->options, q->workspace, q->options.certificate);
 }
 
 static cprox_status ask_all(question *q, cprox_result *nearest, cprox_result *each) {
