@@ -53,7 +53,7 @@ double claimOf(const Question &question, const cprox_result &result) {
     case Verb::TOLERANCE: return question.delta;
     case Verb::COLLISION: return 0.0;
   }
-  return result.lower > 0.0 ? result.lower : result.upper;
+  return result.lower > 0.0 ? result.lower : std::max(result.upper, 0.0);
 }
 
 } // namespace

@@ -148,7 +148,8 @@ cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size
                   .workspace = workspace,
                   .certificate = certificate};
   certificate_clear(certificate);
-  if (mover->body) return workspace_fail(workspace, CPROX_INVALID, "carried bodies have no certificates");
+  if (mover->body || mover->motion || !mover->curve)
+    return workspace_fail(workspace, CPROX_INVALID, "bodies and robots that move have no certificates");
   if (mover->curve->arcs)
     return workspace_fail(workspace, CPROX_INVALID, "curves known by their arc length have no certificates");
   for (size_t i = 0; i < n; i++)

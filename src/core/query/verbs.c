@@ -9,8 +9,10 @@
 
 /* The proof that was asked for. That there is none changes nothing in the answer. */
 static void leave_certificate(const question *q, const cprox_result *answer) {
-  if (!q->options.certificate || answer->upper < 0.0) return;
-  const double delta = question_wants_verdict(q) ? q->limit : answer->lower > 0.0 ? answer->lower : answer->upper;
+  if (!q->options.certificate) return;
+  const double delta = question_wants_verdict(q) ? q->limit
+                       : answer->lower > 0.0     ? answer->lower
+                                                 : fmax(answer->upper, 0.0);
   certify(&q->mover, q->targets, q->n, delta, answer, &q->options, q->workspace, q->options.certificate);
 }
 
