@@ -15,8 +15,6 @@
 #include "base/rounding.h"
 #include "base/workspace.h"
 
-#define MOST_PIECES 65536
-
 /* ---- memory ---- */
 
 static void give_back(compile *c) {
@@ -43,10 +41,13 @@ static bool make_room(compile *c) {
 
 /* ---- steps ---- */
 
+double compile_step(double sixth, double accuracy) {
+  return sixth > 0.0 ? pow(46080.0 * (accuracy / sixth), 1.0 / 6.0) : sixth == 0.0 ? INFINITY : 0.0;
+}
+
 /* How long a piece may be for what is known of [from, from + h]. */
 static double reach(const compile_source *source, double from, double h) {
-  const double sixth = source->sixth(source->self, from, from + h);
-  return sixth > 0.0 ? pow(46080.0 * (source->accuracy / sixth), 1.0 / 6.0) : sixth == 0.0 ? INFINITY : 0.0;
+  return compile_step(source->sixth(source->self, from, from + h), source->accuracy);
 }
 
 /* A length that the remainder allows, near the longest one of at most `limit`. As |psi^(6)| is smaller on less, min(h, reach(h))
@@ -164,10 +165,10 @@ static cprox_status append_pieces(compile *c, const compile_source *source, doub
       return workspace_fail(c->workspace, CPROX_INVALID,
                             "at t = %.15g the curve needs pieces of %.3g, shorter than the steps of double arithmetic",
                             a, h);
-    if (c->n == MOST_PIECES)
+    if (c->n == COMPILE_MOST_PIECES)
       return workspace_fail(c->workspace, CPROX_INVALID,
                             "[%.15g, %.15g] would need more than %d pieces: at t = %.15g they are %.3g long", t0, t1,
-                            MOST_PIECES, a, h);
+                            COMPILE_MOST_PIECES, a, h);
     const cprox_status status = append_piece(c, source, a, b, &at0, &at1);
     if (status != CPROX_OK) return status;
     at0 = at1;

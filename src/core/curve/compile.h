@@ -26,6 +26,11 @@ typedef struct compile_source {
 /* The remainder that the bases here aim at, in units of the curve's size. */
 #define COMPILE_ACCURACY 1e-13
 
+/* The length of pieces that a bound of the sixth derivative allows. */
+double compile_step(double sixth, double accuracy);
+
+enum { COMPILE_MOST_PIECES = 65536 };
+
 /* The pieces so far; {.workspace = …} is an empty one. */
 typedef struct compile {
   cprox_workspace *workspace;

@@ -109,5 +109,9 @@ cprox_status cprox_curve_create_trigonometric(const cprox_vec3 *coefficients, si
                                  .sixth = sixth_derivative,
                                  .constant = coefficients[0],
                                  .accuracy = COMPILE_ACCURACY * s.size.axes + ROUND_U * vec_norm(coefficients[0])};
+  const double pieces = (t1 - t0) / compile_step(s.size.sixth, source.accuracy);
+  if (!(pieces <= COMPILE_MOST_PIECES))
+    return workspace_fail(workspace, CPROX_INVALID, "[%.15g, %.15g] would need %.3g pieces of the series, above %d", t0,
+                          t1, pieces, COMPILE_MOST_PIECES);
   return compile_curve(&source, t0, t1, workspace, curve);
 }
