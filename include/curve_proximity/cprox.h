@@ -8,6 +8,7 @@
 #define CURVE_PROXIMITY_CPROX_H
 
 #include <curve_proximity/cprox/base.h>
+#include <curve_proximity/cprox/batch.h>
 #include <curve_proximity/cprox/body.h>
 #include <curve_proximity/cprox/certificate.h>
 #include <curve_proximity/cprox/clearance.h>

@@ -15,6 +15,8 @@ typedef enum workspace_buffer {
   WORKSPACE_RANKING,
   WORKSPACE_COVER,
   WORKSPACE_INTERIOR,
+  WORKSPACE_BATCH,
+  WORKSPACE_BATCH_NEAR,
   WORKSPACE_BUFFERS
 } workspace_buffer;
 

@@ -39,6 +39,26 @@ const char *question_shortfall(cprox_status status) {
   }
 }
 
+cprox_result question_nothing(void) {
+  return (cprox_result){.lower = INFINITY, .upper = INFINITY, .t_target = NAN, .target_index = -1};
+}
+
+void question_join(cprox_result *all, const cprox_result *one) {
+  const double lower = fmin(all->lower, one->lower);
+  const uint32_t nodes = all->nodes + one->nodes, probes = all->probes + one->probes;
+  if (one->upper < all->upper || all->target_index < 0) *all = *one;
+  all->lower = lower, all->nodes = nodes, all->probes = probes;
+  all->rung = CPROX_RUNG_HULL;
+}
+
+cprox_status question_conclude(const question *q, double ceiling, cprox_status trouble, cprox_result *all) {
+  all->lower = fmin(all->lower, all->upper);
+  all->status = is_satisfied(q, ceiling, all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
+  all->verdict = question_verdict(q, all);
+  if (all->status != CPROX_OK) workspace_fail(q->workspace, all->status, "%s", question_shortfall(all->status));
+  return all->status;
+}
+
 cprox_status question_answer(const question *q, size_t first, size_t last, double ceiling, cprox_result *result) {
   size_t n = 0;
   const candidate *list = NULL;
@@ -47,7 +67,7 @@ cprox_status question_answer(const question *q, size_t first, size_t last, doubl
     if (!list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
   }
 
-  cprox_result all = {.lower = INFINITY, .upper = INFINITY, .t_target = NAN, .target_index = -1};
+  cprox_result all = question_nothing();
   cprox_status trouble = CPROX_OK;
   size_t i = 0;
   for (; i < n; i++) {
@@ -61,22 +81,13 @@ cprox_status question_answer(const question *q, size_t first, size_t last, doubl
     const cprox_status status = candidate_search(q, &list[i], fmin(all.upper, ceiling), &one);
     if (status < 0) return status;
     if (status != CPROX_OK) trouble = status;
-
-    /* the union's interval: the least of both ends, with the witness of the upper one */
-    const double lower = fmin(all.lower, one.lower);
-    const uint32_t nodes = all.nodes + one.nodes, probes = all.probes + one.probes;
-    if (one.upper < all.upper || all.target_index < 0) all = one;
-    all.lower = lower, all.nodes = nodes, all.probes = probes;
-    all.rung = CPROX_RUNG_HULL;
+    question_join(&all, &one);
   }
 
   /* the rest is at least as far as the first ball of it */
   if (i < n) all.lower = fmin(all.lower, q->is_signed ? list[i].lower : fmax(list[i].lower, 0.0));
   if (i == 0 && n > 0) all.rung = CPROX_RUNG_SPHERE;
-  all.lower = fmin(all.lower, all.upper);
-  all.status = is_satisfied(q, ceiling, &all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
-  all.verdict = question_verdict(q, &all);
-  if (all.status != CPROX_OK) workspace_fail(q->workspace, all.status, "%s", question_shortfall(all.status));
+  question_conclude(q, ceiling, trouble, &all);
   *result = all;
   return all.status;
 }

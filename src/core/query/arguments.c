@@ -74,6 +74,16 @@ cprox_status arguments_check_target(const cprox_target *target, size_t index, cp
                         target->padding);
 }
 
+cprox_status arguments_check_targets(const cprox_target *targets, size_t n, cprox_workspace *workspace) {
+  if (n > 0 && !targets) return workspace_fail(workspace, CPROX_INVALID, "targets is NULL, but %zu are announced", n);
+  if (n > INT32_MAX) return workspace_fail(workspace, CPROX_INVALID, "%zu targets are more than 2147483647", n);
+  for (size_t i = 0; i < n; i++) {
+    const cprox_status target = arguments_check_target(&targets[i], i, workspace);
+    if (target != CPROX_OK) return target;
+  }
+  return CPROX_OK;
+}
+
 /* What is on one clock must run over the same time. */
 static cprox_status check_clock(const cprox_curve *curve, const cprox_target *target, size_t index,
                                 cprox_workspace *workspace) {
@@ -109,13 +119,11 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target 
     return workspace_fail(workspace, CPROX_INVALID, "radius is %g, must be finite and 0 or more", mover->radius);
   const cprox_status carried = check_carried(mover->body, workspace);
   if (carried != CPROX_OK) return carried;
-  if (n > 0 && !targets) return workspace_fail(workspace, CPROX_INVALID, "targets is NULL, but %zu are announced", n);
-  if (n > INT32_MAX) return workspace_fail(workspace, CPROX_INVALID, "%zu targets are more than 2147483647", n);
   const cprox_status checked = arguments_check_options(options, workspace);
   if (checked != CPROX_OK) return checked;
+  const cprox_status standing = arguments_check_targets(targets, n, workspace);
+  if (standing != CPROX_OK) return standing;
   for (size_t i = 0; i < n; i++) {
-    const cprox_status target = arguments_check_target(&targets[i], i, workspace);
-    if (target != CPROX_OK) return target;
     const cprox_status clock = check_clock(mover->curve, &targets[i], i, workspace);
     if (clock != CPROX_OK) return clock;
   }

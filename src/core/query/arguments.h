@@ -9,6 +9,7 @@
 cprox_status arguments_check_options(const cprox_options *options, cprox_workspace *workspace);
 cprox_status arguments_check_delta(double delta, cprox_workspace *workspace);
 cprox_status arguments_check_target(const cprox_target *target, size_t index, cprox_workspace *workspace);
+cprox_status arguments_check_targets(const cprox_target *targets, size_t n, cprox_workspace *workspace);
 cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target *targets, size_t n,
                                    const cprox_options *options, cprox_workspace *workspace);
 

@@ -162,7 +162,19 @@ static cprox_status search_convex(const question *q, const candidate *c, const s
   o.epsilon = q->options.epsilon;
   o.is_signed = q->is_signed;
   const search_oracle oracle = curve_convex_oracle(&o);
-  const cprox_status status = search_run(goal, &oracle, curve_convex_root(&o), q->workspace, found);
+  search_node root = curve_convex_root(&o);
+  search_goal rest = *goal;
+  if (c->seed_s > 0.0) {
+    const cprox_status seeded = curve_convex_seed(&o, c->seed_piece, c->seed_s, &root);
+    if (seeded < 0) return seeded;
+    rest.ceiling = fmin(rest.ceiling, o.best_bound.upper);
+  }
+  cprox_status status = CPROX_OK;
+  if (question_wants_verdict(q) && o.best_bound.upper <= q->limit)
+    found->lower = root.lower;
+  else
+    status = search_run(&rest, &oracle, root, q->workspace, found);
+  found->best = o.best_bound;
   r->probes = o.probes;
   if (status >= 0) candidate_report_convex(q, c, &o, r);
   return status;

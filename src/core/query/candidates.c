@@ -45,23 +45,17 @@ static double distance_to_segment(vec3 p, vec3 a, vec3 b) {
   return vec_norm(vec_sub(p, vec_lerp(a, b, s)));
 }
 
-typedef struct ball {
-  vec3 centre;
-  double radius;
-} ball;
-
 /* Round a whole curve, in its frame. */
-static ball ball_of_curve(const cprox_curve *curve) {
+static candidate_ball ball_of_curve(const cprox_curve *curve) {
   const curve_capsule *capsule = &curve->capsules[1];
   const double length = vec_norm(vec_sub(capsule->b, capsule->a));
-  return (ball){.centre = vec_lerp(capsule->a, capsule->b, 0.5), .radius = 0.5 * length + capsule->radius};
+  return (candidate_ball){.centre = vec_lerp(capsule->a, capsule->b, 0.5), .radius = 0.5 * length + capsule->radius};
 }
 
-/* Round a candidate, in the world, but for rounding; `sizes` is the sum of the lengths that entered. */
-static ball ball_of(const question *q, const candidate *c, double *sizes) {
+candidate_ball candidate_bounding_ball(const question *q, const candidate *c, double *sizes) {
   const cprox_target *target = &q->targets[c->target];
   const cprox_body *body = candidate_body(q, c);
-  ball round = {0};
+  candidate_ball round = {0};
   *sizes = 0.0;
   if (body) {
     const cprox_pose pose = candidate_pose(q, c);
@@ -71,7 +65,7 @@ static ball ball_of(const question *q, const candidate *c, double *sizes) {
     *sizes += vec_norm(body->ball_centre) + vec_norm(pose.position);
   }
   if (target->curve) {
-    const ball run = ball_of_curve(target->curve);
+    const candidate_ball run = ball_of_curve(target->curve);
     const frame f = frame_create(&target->pose, vec(0, 0, 0));
     round.centre = vec_add(round.centre, frame_to_world(&f, run.centre));
     round.radius += run.radius;
@@ -81,20 +75,20 @@ static ball ball_of(const question *q, const candidate *c, double *sizes) {
 }
 
 /* The ball round what is carried, about the curve's point. */
-static ball carried_ball(const question *q, const candidate *c) {
+static candidate_ball carried_ball(const question *q, const candidate *c) {
   cprox_pose pose;
   const cprox_body *body = candidate_carried(q, c, &pose);
-  if (!body) return (ball){0};
+  if (!body) return (candidate_ball){0};
   const frame f = frame_create(&pose, vec(0, 0, 0));
-  return (ball){.centre = frame_to_world(&f, body->ball_centre), .radius = body->ball_radius};
+  return (candidate_ball){.centre = frame_to_world(&f, body->ball_centre), .radius = body->ball_radius};
 }
 
 /* The mover's capsule against the candidate's ball: never above the true distance. */
 static double ball_bound(const question *q, const candidate *c) {
   double placing;
-  const ball round = ball_of(q, c, &placing);
+  const candidate_ball round = candidate_bounding_ball(q, c, &placing);
   if (!isfinite(round.radius)) return -INFINITY;
-  const ball own = carried_ball(q, c);
+  const candidate_ball own = carried_ball(q, c);
   const vec3 centre = vec_sub(round.centre, own.centre);
   const curve_capsule *capsule = &q->reach;
   const double reach = capsule->radius + round.radius + own.radius + candidate_offset(q, c);

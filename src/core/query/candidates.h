@@ -34,10 +34,19 @@ static inline bool question_wants_verdict(const question *q) {
 typedef struct candidate {
   double lower;
   int32_t target, part, mover_part;
+  uint32_t seed_piece; /* where a search against a convex body begins to measure: */
+  double seed_s;       /* s of that piece, inside (0, 1); 0: wherever it likes */
 } candidate;
 
 /* The candidates of targets first … last - 1, nearest ball first, in the workspace. NULL where memory is out. */
 candidate *candidates_list(const question *q, size_t first, size_t last, size_t *count);
+
+/* Round a candidate, in the world, without padding and but for rounding; *sizes becomes the sum of the lengths that entered. */
+typedef struct candidate_ball {
+  vec3 centre;
+  double radius;
+} candidate_ball;
+candidate_ball candidate_bounding_ball(const question *q, const candidate *c, double *sizes);
 
 /* Ascending by lower. */
 void candidates_sort(candidate *list, size_t n);

@@ -166,16 +166,31 @@ static double promising(const curve_convex *o, const search_interval *at) {
   return at->a + fraction * (at->b - at->a);
 }
 
-static cprox_status probe_piece(curve_convex *o, const search_node *node) {
-  const search_interval *at = &node->side[0];
-  const double s = promising(o, at);
+/* Measures at s of the loaded piece, and goes on from there by Newton's steps, the first no longer than `step`. */
+static cprox_status probe_at(curve_convex *o, size_t piece, double s, double step) {
   search_best bound = {.upper = INFINITY};
-  const cprox_status status = curve_convex_measure(o, curve_side_piece(&o->side, at), s, curve_side_point(&o->side, s),
+  const cprox_status status = curve_convex_measure(o, piece, s, curve_side_point(&o->side, s),
                                                    curve_side_point_error(&o->side), &o->last, &bound);
   if (status < 0 || bound.upper >= o->best_bound.upper) return status;
   curve_convex_adopt(o, &o->last, bound);
   const bool worthwhile = bound.upper > o->good_enough && o->nodes > o->polish_after;
-  return worthwhile ? polish(o, points_pool_at(&o->pool, SLOT_ROOT), 0.25 * (at->b - at->a)) : CPROX_OK;
+  return worthwhile ? polish(o, points_pool_at(&o->pool, SLOT_ROOT), step) : CPROX_OK;
+}
+
+static cprox_status probe_piece(curve_convex *o, const search_node *node) {
+  const search_interval *at = &node->side[0];
+  return probe_at(o, curve_side_piece(&o->side, at), promising(o, at), 0.25 * (at->b - at->a));
+}
+
+cprox_status curve_convex_seed(curve_convex *o, size_t piece, double s, search_node *root) {
+  o->nodes++;
+  curve_side_load(&o->side, piece);
+  const cprox_status status = probe_at(o, piece, s, 1.0 / 16);
+  if (status < 0 || o->incumbent == 0 || o->best_bound.upper <= o->good_enough) return status;
+  if (is_piece(o, root) && !curve_side_materialise(&o->side, &root->side[0])) return curve_side_trouble(&o->side);
+  curve_convex_bound(o, root, &o->best);
+  root->seen = o->incumbent;
+  return CPROX_OK;
 }
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {

@@ -51,6 +51,10 @@ bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex 
 /* The node that is all that is asked about: side.part. */
 search_node curve_convex_root(const curve_convex *o);
 
+/* Measures at s of a piece before the search begins, as a probe would, and bounds the root by what it learned. CPROX_OK or a negative
+ * status. The search then starts with o->best_bound. */
+cprox_status curve_convex_seed(curve_convex *o, size_t piece, double s, search_node *root);
+
 /* The functions of the contract in search/search.h, self being the curve_convex. */
 search_oracle curve_convex_oracle(curve_convex *o);
 

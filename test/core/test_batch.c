@@ -1,0 +1,457 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Batches against the queries of one mover, against dense sampling, and against themselves in other splits and threads. */
+#include <curve_proximity/cprox.h>
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "query/batch_lanes.h"
+#include "support/counting.h"
+#include "support/curves.h"
+#include "support/reference.h"
+#include "support/shapes.h"
+
+enum { MOVERS = 64, TARGETS = 12, POLYGON_SIDES = 9 };
+
+/* A scene with every kind of target, and movers of every kind. */
+typedef struct scene {
+  cprox_body *bodies[TARGETS];
+  cprox_target targets[TARGETS];
+  size_t n_targets;
+  cprox_curve *curves[MOVERS];
+  cprox_mover movers[MOVERS];
+  cprox_body *carried, *ball;
+  cprox_curve *standing;
+  test_shape shapes[TARGETS];
+} scene;
+
+static cprox_body *polygon(rng *r, cprox_workspace *workspace) {
+  double vertices[POLYGON_SIDES][2];
+  const double radius = rng_uniform(r, 0.1, 0.4);
+  for (int i = 0; i < POLYGON_SIDES; i++) {
+    vertices[i][0] = radius * cos(6.283185307179586 * i / POLYGON_SIDES);
+    vertices[i][1] = radius * sin(6.283185307179586 * i / POLYGON_SIDES);
+  }
+  cprox_body *body = NULL;
+  assert_int_equal(cprox_body_create_polygon((const double(*)[2])vertices, POLYGON_SIDES, workspace, &body), CPROX_OK);
+  return body;
+}
+
+/* planar: polygons in z = 0 and curves in it; else one of each convex kind, a compound, a curve. */
+static void scene_targets(rng *r, bool planar, cprox_workspace *workspace, scene *s) {
+  for (int i = 0; i < TARGETS; i++) {
+    cprox_pose pose = rng_pose(r, 1.0);
+    if (planar) {
+      s->bodies[i] = polygon(r, workspace);
+      pose = (cprox_pose){.position = {rng_uniform(r, -1, 1), rng_uniform(r, -1, 1), 0},
+                          .orientation = {cos(i), 0, 0, sin(i)}};
+    } else if (i < TEST_N_BOUNDED) {
+      shape_make(r, TEST_BOUNDED[i], 0.3, 3.0, &s->shapes[i]);
+      s->bodies[i] = s->shapes[i].body;
+    } else if (i == TEST_N_BOUNDED) {
+      const cprox_pose poses[2] = {rng_pose(r, 0.2), rng_pose(r, 0.2)};
+      const cprox_body *parts[2] = {s->bodies[1], s->bodies[2]};
+      assert_int_equal(cprox_body_create_compound(parts, poses, 2, workspace, &s->bodies[i]), CPROX_OK);
+    } else {
+      const cprox_vec3 points[4] = {rng_in_cube(r, 1), rng_in_cube(r, 1), rng_in_cube(r, 1), rng_in_cube(r, 1)};
+      assert_int_equal(cprox_curve_create_bezier(points, 4, 0, 1, workspace, &s->standing), CPROX_OK);
+      s->targets[i] = cprox_curve_target(s->standing, 0.02);
+      continue;
+    }
+    s->targets[i] = cprox_at(s->bodies[i], pose);
+    if (i % 3 == 2) s->targets[i].padding = 0.03;
+  }
+  s->n_targets = TARGETS;
+}
+
+static void scene_movers(rng *r, bool planar, cprox_workspace *workspace, scene *s) {
+  assert_int_equal(cprox_body_create_box((cprox_vec3){0.1, 0.05, 0.02}, workspace, &s->carried), CPROX_OK);
+  for (int i = 0; i < MOVERS; i++) {
+    cprox_vec3 points[40];
+    double knots[44];
+    for (int k = 0; k < 40; k++) {
+      points[k] = rng_in_cube(r, 1.2);
+      if (planar) points[k].z = 0;
+    }
+    const double t0 = rng_uniform(r, -2, 0), t1 = t0 + rng_uniform(r, 0.5, 3);
+    if (i % 8 == 7) { /* splines of 2 and of 37 pieces */
+      const size_t n = i % 16 == 7 ? 5 : 40;
+      for (size_t k = 0; k < n + 4; k++) knots[k] = (double)k;
+      const double end = (double)n;
+      assert_int_equal(cprox_curve_create_bspline(points, n, 3, knots, n + 4, 3, end, workspace, &s->curves[i]), 0);
+    } else {
+      const size_t n = 2 + rng_index(r, 9);
+      assert_int_equal(cprox_curve_create_bezier(points, n, t0, t1, workspace, &s->curves[i]), CPROX_OK);
+    }
+    s->movers[i] = i % 4 == 1 ? cprox_tube_along(s->curves[i], 0.05) : cprox_point_along(s->curves[i]);
+    if (!planar && i % 16 == 3) s->movers[i] = cprox_body_along(s->carried, s->curves[i]);
+  }
+}
+
+static void scene_free(scene *s) {
+  for (int i = TARGETS - 1; i >= 0; i--) cprox_body_free(s->bodies[i]);
+  for (int i = 0; i < MOVERS; i++) cprox_curve_free(s->curves[i]);
+  cprox_body_free(s->carried);
+  cprox_curve_free(s->standing);
+}
+
+typedef enum verb { DISTANCE, TOLERANCE, COLLISION, VERBS } verb;
+static const double DELTA = 0.1;
+
+static cprox_status ask_range(verb v, const cprox_batch *batch, const scene *s, size_t first, size_t last,
+                              cprox_workspace *workspace, cprox_result *results) {
+  switch (v) {
+    case DISTANCE: return cprox_batch_distance(batch, s->movers, first, last, NULL, workspace, results);
+    case TOLERANCE: return cprox_batch_tolerance(batch, s->movers, first, last, DELTA, NULL, workspace, results);
+    default: return cprox_batch_collision(batch, s->movers, first, last, NULL, workspace, results);
+  }
+}
+
+static void ask_alone(verb v, const scene *s, size_t i, cprox_workspace *workspace, cprox_result *r) {
+  if (v == DISTANCE) cprox_distance_all(s->movers[i], s->targets, s->n_targets, NULL, workspace, r, NULL);
+  if (v == TOLERANCE) cprox_tolerance_all(s->movers[i], s->targets, s->n_targets, DELTA, NULL, workspace, r, NULL);
+  if (v == COLLISION) cprox_collision_all(s->movers[i], s->targets, s->n_targets, NULL, workspace, r, NULL);
+}
+
+static bool same(const cprox_result *a, const cprox_result *b) {
+  const bool t_target = a->t_target == b->t_target || (isnan(a->t_target) && isnan(b->t_target));
+  return a->status == b->status && a->verdict == b->verdict && a->lower == b->lower && a->upper == b->upper &&
+         a->t == b->t && t_target && vec_equal(a->on_mover, b->on_mover) && vec_equal(a->on_target, b->on_target) &&
+         vec_equal(a->normal, b->normal) && a->target_index == b->target_index && a->target_part == b->target_part &&
+         a->rung == b->rung && a->nodes == b->nodes && a->probes == b->probes;
+}
+
+/* The least distance over many parameters, by the plain nearest-point function of bodies: an upper bound on the truth. */
+static double sampled_distance(const scene *s, size_t i) {
+  enum { STEPS = 200 };
+  double least = INFINITY, t0, t1;
+  cprox_curve_domain(s->curves[i], &t0, &t1);
+  for (int k = 0; k <= STEPS; k++) {
+    cprox_vec3 at;
+    cprox_curve_evaluate(s->curves[i], t0 + (t1 - t0) * k / STEPS, NULL, &at, NULL, NULL);
+    for (size_t j = 0; j < s->n_targets; j++) {
+      const cprox_target *target = &s->targets[j];
+      if (!target->body) continue;
+      const frame f = frame_create(&target->pose, vec(0, 0, 0));
+      double error = 0.0;
+      const double d = cprox_body_nearest(target->body, frame_to_local(&f, at, &error), NULL);
+      least = fmin(least, d - target->padding - s->movers[i].radius);
+    }
+  }
+  return fmax(least, 0.0);
+}
+
+/* Seed 11, 20 scenes of 64 movers; the two answers are of one truth, so their intervals share a point. A verdict that one gives and
+ * the other does not, though both are within their epsilon, is counted: none is met at this seed. */
+static void answers_agree_with_those_of_one_mover(void **state) {
+  (void)state;
+  rng r = rng_seed(11);
+  cprox_workspace *workspace = cprox_workspace_create();
+  size_t settled_by_samples = 0, answers = 0;
+  for (size_t round = 0; round < test_cases(20); round++) {
+    scene s = {0};
+    const bool planar = round % 2;
+    scene_targets(&r, planar, workspace, &s);
+    scene_movers(&r, planar, workspace, &s);
+    if (round % 4 >= 2) s.n_targets = 1 + rng_index(&r, TARGETS - 2); /* sparse: more verdicts are "clear" */
+    cprox_batch *batch = NULL;
+    assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
+    for (int v = 0; v < VERBS; v++) {
+      cprox_result results[MOVERS];
+      assert_int_equal(ask_range((verb)v, batch, &s, 0, MOVERS, workspace, results), CPROX_OK);
+      for (size_t i = 0; i < MOVERS; i++) {
+        const cprox_result *one = &results[i];
+        cprox_result alone;
+        ask_alone((verb)v, &s, i, workspace, &alone);
+        assert_int_equal(one->status, CPROX_OK);
+        assert_int_equal(one->verdict, alone.verdict);
+        assert_true(one->lower <= alone.upper && alone.lower <= one->upper && one->lower <= one->upper);
+        if (v == DISTANCE) assert_true(one->upper - one->lower <= 1e-6);
+        settled_by_samples += one->probes == 0 && one->upper == 0.0;
+        answers++;
+        if (s.movers[i].body || s.n_targets == TARGETS) continue;
+        /* plain evaluation is within 1e-12 at this scale */
+        const double sampled = sampled_distance(&s, i);
+        assert_true(one->lower <= sampled + 1e-12);
+        if (v == TOLERANCE && one->verdict == CPROX_YES) assert_true(sampled > DELTA - 1e-12);
+        if (v == COLLISION && one->verdict == CPROX_NO) assert_true(sampled > 0.0);
+      }
+    }
+    cprox_batch_free(batch);
+    scene_free(&s);
+  }
+  /* both ways of answering are exercised */
+  assert_true(settled_by_samples > answers / 20 && settled_by_samples < answers / 2);
+  cprox_workspace_free(workspace);
+}
+
+/* A witness is where it says: the mover's surface point is within its radius of the curve's point, and both points are `upper` apart
+ * or one. Seed 12; 1e-9 is the plain evaluation's own rounding, amply. */
+static void witnesses_lie_where_they_say(void **state) {
+  (void)state;
+  rng r = rng_seed(12);
+  cprox_workspace *workspace = cprox_workspace_create();
+  scene s = {0};
+  scene_targets(&r, false, workspace, &s);
+  scene_movers(&r, false, workspace, &s);
+  cprox_batch *batch = NULL;
+  assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
+  for (int v = 0; v < VERBS; v++) {
+    cprox_result results[MOVERS];
+    ask_range((verb)v, batch, &s, 0, MOVERS, workspace, results);
+    for (size_t i = 0; i < MOVERS; i++) {
+      const cprox_result *one = &results[i];
+      if (one->target_index < 0 || s.movers[i].body) continue;
+      cprox_vec3 at;
+      cprox_curve_evaluate(s.curves[i], one->t, NULL, &at, NULL, NULL);
+      assert_true(vec_norm(vec_sub(at, one->on_mover)) <= s.movers[i].radius + 1e-9);
+      assert_true(fabs(vec_norm(vec_sub(one->on_mover, one->on_target)) - one->upper) <= 1e-9);
+      const cprox_target *target = &s.targets[one->target_index];
+      if (!target->body) continue;
+      const frame f = frame_create(&target->pose, vec(0, 0, 0));
+      double error = 0.0;
+      const vec3 local = frame_to_local(&f, one->on_target, &error);
+      assert_true(cprox_body_nearest(target->body, local, NULL) <= target->padding + 1e-9);
+    }
+  }
+  cprox_batch_free(batch);
+  scene_free(&s);
+  cprox_workspace_free(workspace);
+}
+
+/* ---- splits and threads ------------------------------------------------------------------------------------------------- */
+
+typedef struct worker {
+  const cprox_batch *batch;
+  const scene *scene;
+  verb verb;
+  size_t first, last;
+  cprox_result *results;
+} worker;
+
+static void *work(void *argument) {
+  const worker *w = argument;
+  cprox_workspace *workspace = cprox_workspace_create();
+  ask_range(w->verb, w->batch, w->scene, w->first, w->last, workspace, w->results);
+  cprox_workspace_free(workspace);
+  return NULL;
+}
+
+/* Seed 13: 1 to 8 threads on ranges of random lengths, each with a workspace of its own, write into one array. */
+static void results_are_the_same_for_every_split_and_number_of_threads(void **state) {
+  (void)state;
+  rng r = rng_seed(13);
+  cprox_workspace *workspace = cprox_workspace_create();
+  for (int planar = 0; planar < 2; planar++) {
+    scene s = {0};
+    scene_targets(&r, planar, workspace, &s);
+    scene_movers(&r, planar, workspace, &s);
+    cprox_batch *batch = NULL;
+    assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
+    for (int v = 0; v < VERBS; v++) {
+      cprox_result whole[MOVERS], split[MOVERS];
+      ask_range((verb)v, batch, &s, 0, MOVERS, workspace, whole);
+      for (size_t threads = 1; threads <= 8; threads++) {
+        memset(split, 0, sizeof split);
+        pthread_t thread[8];
+        worker workers[8];
+        size_t from = 0;
+        for (size_t k = 0; k < threads; k++) {
+          const size_t to = k + 1 == threads ? MOVERS : from + rng_index(&r, MOVERS - from + 1);
+          workers[k] = (worker){batch, &s, (verb)v, from, to, split};
+          from = to;
+          assert_int_equal(pthread_create(&thread[k], NULL, work, &workers[k]), 0);
+        }
+        for (size_t k = 0; k < threads; k++) assert_int_equal(pthread_join(thread[k], NULL), 0);
+        for (size_t i = 0; i < MOVERS; i++) assert_true(same(&whole[i], &split[i]));
+      }
+    }
+    cprox_batch_free(batch);
+    scene_free(&s);
+  }
+  cprox_workspace_free(workspace);
+}
+
+/* ---- the loops ---------------------------------------------------------------------------------------------------------- */
+
+/* Seed 14, 2000 sets of 13 balls, scales 1e-6 … 1e6, offsets to 1e6 of them: never above the distance in long double, and no
+ * farther below than twice the rounding that the code states. */
+static void ball_bounds_are_never_above_the_true_distance(void **state) {
+  (void)state;
+  enum { BALLS = 13, PADDED = 16 };
+  rng r = rng_seed(14);
+  for (size_t round = 0; round < test_cases(2000); round++) {
+    double numbers[5][PADDED] = {{0}}, lower[PADDED];
+    const lanes_balls balls = {BALLS, PADDED, numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]};
+    const double scale = rng_log_uniform(&r, 1e-6, 1e6);
+    const vec3 offset = vec_scale(round % 2 ? 0.0 : 1e6 * scale, rng_unit(&r));
+    curve_capsule c = {vec_add(offset, rng_in_cube(&r, scale)), vec_add(offset, rng_in_cube(&r, scale)), scale};
+    if (round % 7 == 0) c.b = c.a;
+    for (int k = 0; k < BALLS; k++) {
+      const vec3 x = vec_add(offset, rng_in_cube(&r, 3 * scale));
+      balls.x[k] = x.x, balls.y[k] = x.y, balls.z[k] = x.z;
+      balls.reach[k] = rng_uniform(&r, 0, scale);
+      balls.sizes[k] = vec_norm(x) + balls.reach[k];
+    }
+    lanes_ball_bounds(&balls, &c, 0.25 * scale, lower);
+    for (int k = 0; k < BALLS; k++) {
+      const vec3 x = vec(balls.x[k], balls.y[k], balls.z[k]);
+      const long double apart = ref_point_segment(ref_vec(x), ref_vec(c.a), ref_vec(c.b));
+      const long double truth =
+          apart - (long double)c.radius - 0.25L * (long double)scale - (long double)balls.reach[k];
+      assert_true((long double)lower[k] <= truth);
+      assert_true((double)(truth - (long double)lower[k]) <= 128 * 0x1p-53 * (10 * scale + 4 * vec_norm(offset)));
+    }
+  }
+}
+
+/* Seed 15, 3000 pieces of all degrees: within (10 n + 16) u of de Casteljau's points in long double. */
+static void samples_are_points_of_the_piece(void **state) {
+  (void)state;
+  rng r = rng_seed(15);
+  double basis[(CPROX_MAX_DEGREE + 1) * SAMPLES], samples[3 * SAMPLES];
+  for (size_t round = 0; round < test_cases(3000); round++) {
+    const size_t degree = random_degree(&r);
+    vec3 points[CPROX_MAX_DEGREE + 1];
+    random_points(&r, degree + 1, points);
+    lanes_basis(degree, basis);
+    lanes_sample(basis, points, degree, samples);
+    const double allowed = (10.0 * (double)degree + 16) * 0x1p-53 * ref_largest(points, degree + 1);
+    for (size_t k = 0; k < SAMPLES; k++) {
+      const vec3l exact = ref_bezier(points, degree, ((long double)k + 0.5L) / SAMPLES, 0);
+      assert_true(ref_error(exact, vec(samples[k], samples[SAMPLES + k], samples[2 * SAMPLES + k])) <= allowed);
+    }
+    size_t first;
+    const double least = lanes_closest(samples, points[0], &first);
+    for (size_t k = 0; k < SAMPLES; k++) {
+      const vec3 y = vec(samples[k], samples[SAMPLES + k], samples[2 * SAMPLES + k]);
+      const double square = vec_norm2(vec_sub(y, points[0]));
+      assert_true(square >= least && (square > least || k >= first) && (k != first || square == least));
+    }
+  }
+}
+
+/* ---- input -------------------------------------------------------------------------------------------------------------- */
+
+static void a_mover_that_is_unusable_fails_alone(void **state) {
+  (void)state;
+  rng r = rng_seed(16);
+  cprox_workspace *workspace = cprox_workspace_create();
+  scene s = {0};
+  scene_targets(&r, false, workspace, &s);
+  scene_movers(&r, false, workspace, &s);
+  cprox_batch *batch = NULL;
+  assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
+  cprox_result good[MOVERS], results[MOVERS];
+  assert_int_equal(cprox_batch_distance(batch, s.movers, 0, MOVERS, NULL, workspace, good), CPROX_OK);
+  s.movers[5].radius = NAN;
+  s.movers[9].curve = NULL;
+  assert_int_equal(cprox_batch_distance(batch, s.movers, 0, MOVERS, NULL, workspace, results), CPROX_INVALID);
+  assert_non_null(strstr(cprox_workspace_reason(workspace), "mover 5: radius is nan"));
+  for (size_t i = 0; i < MOVERS; i++) {
+    const bool bad = i == 5 || i == 9;
+    assert_true(bad ? results[i].status == CPROX_INVALID && results[i].lower == 0.0 && results[i].upper == INFINITY
+                    : same(&results[i], &good[i]));
+  }
+
+  /* only the range is written */
+  memset(results, 0x5a, sizeof results);
+  cprox_result untouched;
+  memset(&untouched, 0x5a, sizeof untouched);
+  assert_int_equal(cprox_batch_distance(batch, s.movers, 20, 30, NULL, workspace, results), CPROX_OK);
+  assert_string_equal(cprox_workspace_reason(workspace), "");
+  for (size_t i = 0; i < MOVERS; i++) {
+    if (i >= 20 && i < 30)
+      assert_true(same(&results[i], &good[i]));
+    else
+      assert_memory_equal(&results[i], &untouched, sizeof untouched);
+  }
+  cprox_batch_free(batch);
+  scene_free(&s);
+  cprox_workspace_free(workspace);
+}
+
+static void unusable_calls_are_refused_with_a_sentence(void **state) {
+  (void)state;
+  cprox_workspace *workspace = cprox_workspace_create();
+  cprox_result result;
+  cprox_batch *batch = NULL;
+  const cprox_target nothing = {0};
+  assert_int_equal(cprox_batch_create(&nothing, 1, workspace, &batch), CPROX_INVALID);
+  assert_null(batch);
+  assert_non_null(strstr(cprox_workspace_reason(workspace), "target 0"));
+  assert_int_equal(cprox_batch_create(NULL, 3, workspace, &batch), CPROX_INVALID);
+  assert_int_equal(cprox_batch_create(NULL, 0, NULL, &batch), CPROX_INVALID);
+
+  assert_int_equal(cprox_batch_create(NULL, 0, workspace, &batch), CPROX_OK);
+  cprox_curve *curve = NULL;
+  const cprox_vec3 points[2] = {{0, 0, 0}, {1, 0, 0}};
+  assert_int_equal(cprox_curve_create_bezier(points, 2, 0, 1, workspace, &curve), CPROX_OK);
+  const cprox_mover mover = cprox_point_along(curve);
+  assert_int_equal(cprox_batch_tolerance(batch, &mover, 0, 1, 0.1, NULL, workspace, &result), CPROX_OK);
+  assert_true(result.lower == INFINITY && result.verdict == CPROX_YES && result.target_index == -1);
+  assert_int_equal(cprox_batch_distance(batch, &mover, 0, 0, NULL, workspace, NULL), CPROX_OK);
+
+  assert_int_equal(cprox_batch_distance(batch, &mover, 1, 0, NULL, workspace, &result), CPROX_INVALID);
+  assert_int_equal(cprox_batch_distance(NULL, &mover, 0, 1, NULL, workspace, &result), CPROX_INVALID);
+  assert_int_equal(cprox_batch_distance(batch, NULL, 0, 1, NULL, workspace, &result), CPROX_INVALID);
+  assert_int_equal(cprox_batch_distance(batch, &mover, 0, 1, NULL, workspace, NULL), CPROX_INVALID);
+  assert_int_equal(cprox_batch_distance(batch, &mover, 0, 1, NULL, NULL, &result), CPROX_INVALID);
+  assert_int_equal(cprox_batch_tolerance(batch, &mover, 0, 1, -1, NULL, workspace, &result), CPROX_INVALID);
+  cprox_options options = cprox_options_default();
+  options.epsilon = NAN;
+  assert_int_equal(cprox_batch_collision(batch, &mover, 0, 1, &options, workspace, &result), CPROX_INVALID);
+  assert_non_null(strstr(cprox_workspace_reason(workspace), "epsilon"));
+  cprox_batch_free(batch);
+  cprox_batch_free(NULL);
+  cprox_curve_free(curve);
+  cprox_workspace_free(workspace);
+}
+
+static void a_warm_workspace_allocates_nothing_and_no_memory_is_reported(void **state) {
+  (void)state;
+  rng r = rng_seed(17);
+  cprox_workspace *workspace = cprox_workspace_create();
+  scene s = {0};
+  scene_targets(&r, true, workspace, &s);
+  scene_movers(&r, true, workspace, &s);
+  for (size_t k = 0; k < 5; k++) {
+    cprox_batch *none = NULL;
+    allocations_fail_after(k);
+    const cprox_status status = cprox_batch_create(s.targets, s.n_targets, workspace, &none);
+    allocations_allow();
+    assert_int_equal(status, CPROX_MEMORY);
+    assert_null(none);
+  }
+  cprox_batch *batch = NULL;
+  assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
+  cprox_result results[MOVERS];
+  for (int v = 0; v < VERBS; v++) ask_range((verb)v, batch, &s, 0, MOVERS, workspace, results);
+  const size_t before = allocations_made();
+  for (int v = 0; v < VERBS; v++) ask_range((verb)v, batch, &s, 0, MOVERS, workspace, results);
+  assert_int_equal(allocations_made(), before);
+  cprox_batch_free(batch);
+  scene_free(&s);
+  cprox_workspace_free(workspace);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(answers_agree_with_those_of_one_mover),
+      cmocka_unit_test(witnesses_lie_where_they_say),
+      cmocka_unit_test(results_are_the_same_for_every_split_and_number_of_threads),
+      cmocka_unit_test(ball_bounds_are_never_above_the_true_distance),
+      cmocka_unit_test(samples_are_points_of_the_piece),
+      cmocka_unit_test(a_mover_that_is_unusable_fails_alone),
+      cmocka_unit_test(unusable_calls_are_refused_with_a_sentence),
+      cmocka_unit_test(a_warm_workspace_allocates_nothing_and_no_memory_is_reported),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
