@@ -1,0 +1,530 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What is asked of a gap: gradients, early exit, lanes, memory, symmetry, signals, cascades, regions, sweeps, curves. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fourier/gap.h"
+#include "support/counting.h"
+#include "support/random.h"
+
+static cprox_workspace *ws;
+
+static int open_workspace(void **state) {
+  (void)state;
+  ws = cprox_workspace_create();
+  return ws ? 0 : -1;
+}
+
+static int close_workspace(void **state) {
+  (void)state;
+  cprox_workspace_free(ws);
+  return 0;
+}
+
+#define MADE(call) assert_int_equal(call, CPROX_OK)
+
+static const double L_SHAPE[6][2] = {{-0.5, -0.5}, {0.7, -0.5}, {0.7, -0.2}, {-0.1, -0.2}, {-0.1, 0.6}, {-0.5, 0.6}};
+
+static cprox_gap *gap_of(const cprox_solid *a, const cprox_solid *b, cprox_gap_mode mode, uint32_t samples) {
+  cprox_gap_options o = cprox_gap_options_default();
+  o.mode = mode, o.samples = samples;
+  cprox_gap *gap = NULL;
+  if (cprox_gap_create(a, b, &o, ws, &gap) != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  return gap;
+}
+
+static cprox_pose planar(double x, double y, double angle) {
+  return (cprox_pose){.position = {x, y, 0}, .orientation = {cos(0.5 * angle), 0, 0, sin(0.5 * angle)}};
+}
+
+static cprox_pose random_pose(rng *r, int dimension, double half) {
+  cprox_pose p = rng_pose(r, half);
+  if (dimension == 2) p.orientation.x = p.orientation.y = p.position.z = 0.0;
+  return p;
+}
+
+/* Pairs of every kind that may be turned, with centres off their origins. */
+enum { PAIRS = 10 };
+static void make_pair(int i, cprox_solid *out[2]) {
+  const cprox_vec3 line[3] = {{-0.4, 0.1, 0}, {0.3, 0.2, 0.1}, {0.5, -0.4, 0}};
+  cprox_solid *s[2];
+  cprox_pose shift = planar(0.3, -0.2, 0.4);
+  const double cut[1][4] = {{1, 0.2, 0, 0.3}};
+  const int dimension = i < 4 ? 2 : 3;
+  if (dimension == 2) {
+    MADE(cprox_solid_create_polygon(L_SHAPE, 6, ws, &s[0]));
+    if (i == 0) MADE(cprox_solid_create_polygon(L_SHAPE, 6, ws, &s[1]));
+    if (i == 1) MADE(cprox_solid_create_box(2, vec(0.9, 0.4, 0), ws, &s[1]));
+    if (i == 2) MADE(cprox_solid_create_ellipsoid(2, vec(0.7, 0.3, 0), ws, &s[1]));
+    if (i == 3) MADE(cprox_solid_create_clipped(s[0], cut, 1, ws, &s[1]));
+  } else {
+    shift.position.z = 0.15;
+    shift.orientation.x = 0.3;
+    MADE(cprox_solid_create_box(3, vec(0.9, 0.5, 0.7), ws, &s[0]));
+    if (i == 4) MADE(cprox_solid_create_box(3, vec(0.6, 0.8, 0.3), ws, &s[1]));
+    if (i == 5) MADE(cprox_solid_create_ellipsoid(3, vec(0.7, 0.3, 0.4), ws, &s[1]));
+    if (i == 6) MADE(cprox_solid_create_ball(3, 0.5, ws, &s[1]));
+    if (i >= 7) {
+      cprox_solid_free(s[0]);
+      if (i == 7) MADE(cprox_solid_create_cylinder(0.8, 0.3, ws, &s[0]));
+      if (i == 8) MADE(cprox_solid_create_capsule(3, 0.8, 0.3, ws, &s[0]));
+      if (i == 9) {
+        cprox_solid *box;
+        MADE(cprox_solid_create_box(3, vec(0.9, 0.5, 0.7), ws, &box));
+        MADE(cprox_solid_create_clipped(box, cut, 1, ws, &s[0]));
+        cprox_solid_free(box);
+      }
+      MADE(cprox_solid_create_polyline(3, line, 3, 0.2, ws, &s[1]));
+      if (i == 9) {
+        cprox_solid_free(s[1]);
+        MADE(cprox_solid_create_union((const cprox_solid *const[]){s[0]}, (const cprox_pose[]){planar(0, 0, 1)}, 1, ws,
+                                      &s[1]));
+      }
+    }
+  }
+  for (int k = 0; k < 2; k++) {
+    MADE(cprox_solid_create_union((const cprox_solid *const[]){s[k]}, &shift, 1, ws, &out[k]));
+    cprox_solid_free(s[k]);
+  }
+}
+
+/* p exp(s [w]) of a pose, and its shift. */
+static cprox_pose nudged(cprox_pose p, int axis, double s) {
+  double *const position[3] = {&p.position.x, &p.position.y, &p.position.z};
+  if (axis < 3) {
+    *position[axis] += s;
+    return p;
+  }
+  cprox_pose turn = {.orientation = {cos(0.5 * s), axis == 3 ? sin(0.5 * s) : 0, axis == 4 ? sin(0.5 * s) : 0,
+                                     axis == 5 ? sin(0.5 * s) : 0}};
+  return frame_compose(&p, &turn);
+}
+
+static double component(vec3 position, vec3 rotation, int axis) {
+  const double v[6] = {position.x, position.y, position.z, rotation.x, rotation.y, rotation.z};
+  return v[axis];
+}
+
+/* Seed 721, every pair, certified and signal: central differences of order 4, step 2e-3 of the size over N; tolerance 1e-7 of
+ * max(|gradient|, 1e-3/rho) and, in the signal, 1e-7 of max(|gradient|, 1). Value and relative gradients too. */
+static void gradients_agree_with_differences(void **state) {
+  (void)state;
+  rng r = rng_seed(721);
+  for (int i = 0; i < 2 * PAIRS; i++) {
+    cprox_solid *s[2];
+    make_pair(i / 2, s);
+    const int dimension = s[0]->dimension;
+    const cprox_gap_mode mode = i % 2 ? CPROX_GAP_SIGNAL : CPROX_GAP_CERTIFIED;
+    cprox_gap *gap = gap_of(s[0], s[1], mode, dimension == 2 ? 17 : 9);
+    const cprox_gap_info info = cprox_gap_get_info(gap);
+    const double h = 2e-3 * info.period / info.samples;
+    for (size_t k = 0; k < test_cases(dimension == 2 ? 8 : 3); k++) {
+      const cprox_pose p[2] = {random_pose(&r, dimension, 0.3), random_pose(&r, dimension, 0.3)};
+      cprox_gap_result x, y;
+      MADE(cprox_gap_evaluate(gap, &p[0], &p[1], ws, &x));
+      double size = mode == CPROX_GAP_SIGNAL ? 1.0 : 1e-3 / info.offset;
+      for (int axis = 0; axis < 6; axis++)
+        size = fmax(size, fmax(fabs(component(x.position_a, x.rotation_a, axis)),
+                               fabs(component(x.position_b, x.rotation_b, axis))));
+      for (int body = 0; body < 2; body++)
+        for (int axis = 0; axis < 6; axis++) {
+          if (dimension == 2 && axis > 1 && axis < 5) continue;
+          const double step[4] = {-2, -1, 1, 2}, weight[4] = {1, -8, 8, -1};
+          double slope = 0.0;
+          for (int j = 0; j < 4; j++) {
+            cprox_pose q[2] = {p[0], p[1]};
+            q[body] = nudged(p[body], axis, step[j] * h);
+            if (dimension == 2) q[body].orientation.x = q[body].orientation.y = 0.0;
+            MADE(cprox_gap_evaluate(gap, &q[0], &q[1], ws, &y));
+            slope += weight[j] * y.value / (12 * h);
+          }
+          const double got =
+              body ? component(x.position_b, x.rotation_b, axis) : component(x.position_a, x.rotation_a, axis);
+          if (!(fabs(got - slope) <= 1e-7 * size))
+            fail_msg("pair %d, body %d, axis %d: %.12g, differences %.12g (size %g)", i, body, axis, got, slope, size);
+        }
+      /* the relative ones, from those of the second body */
+      const frame f = frame_create(&p[0], vec(0, 0, 0));
+      assert_true(vec_norm(vec_sub(x.position, frame_turn_to_local(&f, x.position_b))) <= 1e-14 * size);
+      assert_true(vec_equal(x.rotation, x.rotation_b));
+    }
+    cprox_gap_free(gap);
+    cprox_solid_free(s[0]);
+    cprox_solid_free(s[1]);
+  }
+}
+
+/* Seed 722, every pair, both modes with verdicts: the early exit says what the whole sum says, within its own error, and often
+ * with fewer terms. All lane widths of this machine agree to the last bit. */
+static void early_exit_and_lanes_change_no_verdict(void **state) {
+  (void)state;
+  rng r = rng_seed(722);
+  size_t fewer = 0, all = 0;
+  for (int i = 0; i < 2 * PAIRS; i++) {
+    cprox_solid *s[2];
+    make_pair(i / 2, s);
+    const int dimension = s[0]->dimension;
+    cprox_gap *gap = gap_of(s[0], s[1], i % 2 ? CPROX_GAP_TUNED : CPROX_GAP_CERTIFIED, dimension == 2 ? 33 : 9);
+    const gap_lanes widest = gap->lanes;
+    for (size_t k = 0; k < test_cases(dimension == 2 ? 200 : 20); k++) {
+      const cprox_pose p[2] = {random_pose(&r, dimension, 0.9), random_pose(&r, dimension, 0.9)};
+      cprox_gap_result fast, full, other;
+      MADE(cprox_gap_test(gap, &p[0], &p[1], ws, &fast));
+      MADE(cprox_gap_evaluate(gap, &p[0], &p[1], ws, &full));
+      if (fast.verdict != full.verdict)
+        fail_msg("pair %d: %s, the sum says %s, V/t %.15g", i, cprox_gap_verdict_name(fast.verdict),
+                 cprox_gap_verdict_name(full.verdict), full.value);
+      assert_true(fabs(fast.value - full.value) <= fast.error + full.error || full.verdict == CPROX_GAP_FAR);
+      fewer += fast.terms < full.terms;
+      all += full.terms > 0;
+      for (gap_lanes w = GAP_LANES_128; w < widest; w++) {
+        gap->lanes = w;
+        MADE(cprox_gap_evaluate(gap, &p[0], &p[1], ws, &other));
+        assert_memory_equal(&other, &full, sizeof full);
+        gap->lanes = widest;
+      }
+    }
+    cprox_gap_free(gap);
+    cprox_solid_free(s[0]);
+    cprox_solid_free(s[1]);
+  }
+  print_message("early exit in %zu of %zu\n", fewer, all);
+  assert_true(fewer > all / 2);
+}
+
+/* The stated rounding covers the difference between the two roles' sums of equal balls, where both lattices see the same, and
+ * moving the world: seed 723. */
+static void values_do_not_depend_on_where_the_world_is(void **state) {
+  (void)state;
+  rng r = rng_seed(723);
+  for (int i = 0; i < PAIRS; i++) {
+    cprox_solid *s[2];
+    make_pair(i, s);
+    const int dimension = s[0]->dimension;
+    cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, dimension == 2 ? 33 : 9);
+    for (int k = 0; k < 20; k++) {
+      const cprox_pose p[2] = {random_pose(&r, dimension, 0.2), random_pose(&r, dimension, 0.2)},
+                       world = random_pose(&r, dimension, 1.0);
+      const cprox_pose q[2] = {frame_compose(&world, &p[0]), frame_compose(&world, &p[1])};
+      cprox_gap_result x, y;
+      MADE(cprox_gap_evaluate(gap, &p[0], &p[1], ws, &x));
+      MADE(cprox_gap_evaluate(gap, &q[0], &q[1], ws, &y));
+      /* poses round by 1e-15 of a few metres */
+      assert_true(fabs(x.value - y.value) <= x.error + y.error + 1e-14 * gap->steepness);
+    }
+    cprox_gap_free(gap);
+    cprox_solid_free(s[0]);
+    cprox_solid_free(s[1]);
+  }
+}
+
+static void queries_do_not_allocate_once_warm(void **state) {
+  (void)state;
+  cprox_solid *s[2];
+  make_pair(0, s);
+  cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, 33);
+  const cprox_pose a = planar(0, 0, 0), b = planar(0.5, 0.4, 1);
+  cprox_gap_result r;
+  MADE(cprox_gap_evaluate(gap, &a, &b, ws, &r));
+  const size_t before = allocations_made();
+  MADE(cprox_gap_evaluate(gap, &a, &b, ws, &r));
+  MADE(cprox_gap_test(gap, &a, &b, ws, &r));
+  assert_int_equal(allocations_made(), before);
+  cprox_gap_free(gap);
+  cprox_solid_free(s[0]);
+  cprox_solid_free(s[1]);
+}
+
+/* Squares at one place: nowhere is down. The gradient is 0 within rounding, and says nothing of the way out. */
+static void perfect_symmetry_has_no_gradient(void **state) {
+  (void)state;
+  cprox_solid *s;
+  MADE(cprox_solid_create_box(2, vec(1, 1, 0), ws, &s));
+  cprox_gap *gap = gap_of(s, s, CPROX_GAP_CERTIFIED, 17);
+  const cprox_pose p = planar(3, 4, 0.7);
+  cprox_gap_result r;
+  MADE(cprox_gap_evaluate(gap, &p, &p, ws, &r));
+  assert_true(vec_norm(r.position_b) < 1e-10 && vec_norm(r.rotation_b) < 1e-10);
+  assert_true(r.verdict == CPROX_GAP_COLLIDE && r.value > 5.0);
+  cprox_gap_free(gap);
+  cprox_solid_free(s);
+}
+
+/* At touch V/t is far larger face to face than corner to corner: a value is no distance. */
+static void level_sets_are_not_equidistant(void **state) {
+  (void)state;
+  cprox_solid *s;
+  MADE(cprox_solid_create_box(2, vec(1, 1, 0), ws, &s));
+  cprox_gap *gap = gap_of(s, s, CPROX_GAP_CERTIFIED, 65);
+  const cprox_pose a = planar(0, 0, 0), face = planar(1, 0, 0), corner = planar(1, 1, 0);
+  cprox_gap_result x, y;
+  MADE(cprox_gap_evaluate(gap, &a, &face, ws, &x));
+  MADE(cprox_gap_evaluate(gap, &a, &corner, ws, &y));
+  assert_true(y.value >= 1.0 && x.value > 4.0 * y.value);
+  cprox_gap_free(gap);
+  cprox_solid_free(s);
+}
+
+/* c grows all the way out of a deep overlap to the edge of the bounding spheres, and its gradient leads there. */
+static void the_signal_rises_with_clearance(void **state) {
+  (void)state;
+  cprox_solid *s;
+  MADE(cprox_solid_create_polygon(L_SHAPE, 6, ws, &s));
+  cprox_gap *gap = gap_of(s, s, CPROX_GAP_SIGNAL, 33);
+  const cprox_pose a = planar(0, 0, 0);
+  double last = -INFINITY;
+  for (double x = 0.1; x < 1.9 * s->radius; x += 0.05) {
+    const cprox_pose b = planar(0.8 * x, 0.6 * x, 2);
+    cprox_gap_result r;
+    MADE(cprox_gap_evaluate(gap, &a, &b, ws, &r));
+    assert_int_equal(r.verdict, CPROX_GAP_UNDECIDED);
+    if (r.clearance > 0) break;
+    assert_true(r.value > last);
+    assert_true(x < 0.3 || 0.8 * r.position_b.x + 0.6 * r.position_b.y > 0);
+    last = r.value;
+  }
+  cprox_gap_free(gap);
+  cprox_solid_free(s);
+}
+
+static void bad_questions_are_refused_in_words(void **state) {
+  (void)state;
+  cprox_solid *s[2], *space;
+  make_pair(1, s);
+  MADE(cprox_solid_create_ball(3, 1, ws, &space));
+  cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, 9), *none = NULL;
+  cprox_gap_result r = {.value = 77};
+  cprox_pose good = planar(0, 0, 0), bad = good;
+  bad.position.x = NAN;
+  assert_int_equal(cprox_gap_test(gap, &bad, &good, ws, &r), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "pose_a: the position is not finite");
+  bad = good, bad.orientation.w = 0;
+  assert_int_equal(cprox_gap_evaluate(gap, &good, &bad, ws, &r), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "pose_b: the quaternion's norm is 0");
+  bad = good, bad.orientation.x = 0.1;
+  assert_int_equal(cprox_gap_test(gap, &good, &bad, ws, &r), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "pose_b: a planar pose turns about z only");
+  assert_true(r.value == 77);
+  cprox_gap_options o = cprox_gap_options_default();
+  o.samples = 9;
+  assert_int_equal(cprox_gap_create(s[0], space, &o, ws, &none), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "the solids have dimensions 2 and 3");
+  assert_null(none);
+  cprox_gap_free(gap);
+  cprox_solid_free(s[0]);
+  cprox_solid_free(s[1]);
+  cprox_solid_free(space);
+}
+
+/* Seed 724: a cascade says clear only where a level proves it, says clear wherever its finest does, and mostly stops early. */
+static void a_cascade_stops_at_the_first_proof(void **state) {
+  (void)state;
+  rng r = rng_seed(724);
+  cprox_solid *s[2];
+  make_pair(0, s);
+  cprox_gap_options o = cprox_gap_options_default();
+  o.delta = 0.25;
+  cprox_gap_cascade *cascade;
+  MADE(cprox_gap_cascade_create(s[0], s[1], &o, ws, &cascade));
+  const cprox_gap *finest = cprox_gap_cascade_finest(cascade);
+  assert_true(cprox_gap_get_info(finest).over_reach <= 0.25);
+  for (size_t i = 0; i < test_cases(500); i++) {
+    const cprox_pose p[2] = {random_pose(&r, 2, 0.9), random_pose(&r, 2, 0.9)};
+    cprox_gap_result x, y;
+    MADE(cprox_gap_cascade_test(cascade, &p[0], &p[1], ws, &x));
+    MADE(cprox_gap_test(finest, &p[0], &p[1], ws, &y));
+    if (y.verdict == CPROX_GAP_COLLIDE) assert_true(x.verdict == CPROX_GAP_COLLIDE || x.verdict == CPROX_GAP_CLEAR);
+    if (y.verdict == CPROX_GAP_CLEAR) assert_true(x.verdict == CPROX_GAP_CLEAR);
+    if (y.verdict == CPROX_GAP_FAR) assert_true(x.verdict == CPROX_GAP_FAR);
+  }
+  o.mode = CPROX_GAP_TUNED;
+  cprox_gap_cascade *none = NULL;
+  assert_int_equal(cprox_gap_cascade_create(s[0], s[1], &o, ws, &none), CPROX_INVALID);
+  cprox_gap_cascade_free(cascade);
+  cprox_solid_free(s[0]);
+  cprox_solid_free(s[1]);
+}
+
+/* Theorem 2: overlap outside the region does not count, overlap inside does. */
+static void a_region_localises_the_test(void **state) {
+  (void)state;
+  cprox_solid *bar, *ball, *right;
+  MADE(cprox_solid_create_box(2, vec(4, 0.4, 0), ws, &bar));
+  MADE(cprox_solid_create_ball(2, 0.3, ws, &ball));
+  const double region[1][4] = {{-2, 0, 0, -1}}; /* x >= 0.5 */
+  MADE(cprox_solid_create_clipped(bar, region, 1, ws, &right));
+  assert_true(fabs(cprox_solid_measure(right) - 1.5 * 0.4) < 1e-14);
+  cprox_gap *whole = gap_of(bar, ball, CPROX_GAP_CERTIFIED, 33), *local = gap_of(right, ball, CPROX_GAP_CERTIFIED, 33);
+  const cprox_pose here = planar(0, 0, 0), left = planar(-1.5, 0, 0), inside = planar(1.2, 0.1, 0);
+  cprox_gap_result r;
+  MADE(cprox_gap_test(whole, &here, &left, ws, &r));
+  assert_int_equal(r.verdict, CPROX_GAP_COLLIDE);
+  MADE(cprox_gap_test(local, &here, &left, ws, &r));
+  assert_true(r.verdict == CPROX_GAP_CLEAR || r.verdict == CPROX_GAP_FAR);
+  MADE(cprox_gap_test(local, &here, &inside, ws, &r));
+  assert_int_equal(r.verdict, CPROX_GAP_COLLIDE);
+  cprox_gap_free(whole);
+  cprox_gap_free(local);
+  cprox_solid_free(bar);
+  cprox_solid_free(ball);
+  cprox_solid_free(right);
+}
+
+static cprox_curve *wave_curve(void) {
+  const cprox_vec3 p[5] = {{-1, 0, 0}, {-0.5, 1.2, 0}, {0, -1.5, 0}, {0.6, 1.4, 0}, {1, 0, 0}};
+  cprox_curve *c;
+  MADE(cprox_curve_create_bezier(p, 5, 0, 1, ws, &c));
+  return c;
+}
+
+/* The distance between a box |x| <= h and the curve moved by a pose, by samples: an upper bound that is 1e-4 off at most. */
+static double box_to_curve(const cprox_curve *c, const cprox_pose *box, const cprox_pose *curve, double hx, double hy) {
+  const frame f = frame_create(box, vec(0, 0, 0)), g = frame_create(curve, vec(0, 0, 0));
+  double best = INFINITY, error = 0;
+  for (int i = 0; i <= 20000; i++) {
+    vec3 x;
+    MADE(cprox_curve_evaluate(c, i / 20000.0, ws, &x, NULL, NULL));
+    const vec3 y = frame_to_local(&f, frame_to_world(&g, x), &error);
+    best = fmin(best, hypot(fmax(0, fabs(y.x) - hx), fmax(0, fabs(y.y) - hy)));
+  }
+  return best;
+}
+
+/* Seed 725: a sphere swept along a curve against a box, one sum. Wherever the sphere overlaps the box (by more than the samples'
+ * own 1e-3) the verdict is not clear, wherever the distance exceeds the over-reach it is; the threshold of a plain pair would have been too high. */
+static void a_sweep_is_never_called_clear_where_it_hits(void **state) {
+  (void)state;
+  rng r = rng_seed(725);
+  const double radius = 0.05;
+  cprox_curve *c = wave_curve();
+  cprox_solid *sweep, *box;
+  MADE(cprox_solid_create_sweep(2, c, radius, 1e-3, ws, &sweep));
+  MADE(cprox_solid_create_box(2, vec(0.5, 0.3, 0), ws, &box));
+  cprox_gap *gap = gap_of(sweep, box, CPROX_GAP_CERTIFIED, 65);
+  const cprox_gap_info info = cprox_gap_get_info(gap);
+  assert_true(info.guaranteed && info.over_reach < 1.0);
+  size_t hits = 0, clears = 0;
+  for (size_t i = 0; i < test_cases(300); i++) {
+    const cprox_pose p = random_pose(&r, 2, 0.3), q = random_pose(&r, 2, 1.0);
+    const double d = box_to_curve(c, &q, &p, 0.25, 0.15) - radius;
+    cprox_gap_result x;
+    MADE(cprox_gap_test(gap, &p, &q, ws, &x));
+    const bool clear = x.verdict == CPROX_GAP_CLEAR || x.verdict == CPROX_GAP_FAR;
+    hits += d < -1e-3, clears += clear;
+    if (clear && d < -1e-3) fail_msg("clear at an overlap of %g, value %g", -d, x.value);
+    if (!clear && !(d <= info.over_reach)) fail_msg("called colliding %g apart, over-reach %g", d, info.over_reach);
+  }
+  assert_true(hits > 20 && clears > 20);
+  cprox_gap_options o = cprox_gap_options_default();
+  o.samples = 9;
+  cprox_gap *none = NULL;
+  assert_int_equal(cprox_gap_create(sweep, sweep, &o, ws, &none), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "both solids are sweeps: at most one may be");
+  cprox_gap_free(gap);
+  cprox_solid_free(sweep);
+  cprox_solid_free(box);
+  cprox_curve_free(c);
+}
+
+/* Seed 726: the derivative along t by differences of order 4; the verdict over an interval against 2000 tests inside it: clear only if
+ * all are, and the value never above 1. */
+static void along_a_curve_the_verdict_holds_at_every_parameter(void **state) {
+  (void)state;
+  rng r = rng_seed(726);
+  cprox_curve *c = wave_curve();
+  cprox_solid *s[2];
+  make_pair(0, s);
+  cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, 33);
+  size_t clear = 0, hit = 0;
+  for (size_t i = 0; i < test_cases(60); i++) {
+    const cprox_pose a = random_pose(&r, 2, 1.8);
+    const cprox_quat q = random_pose(&r, 2, 1).orientation;
+    const double t0 = rng_uniform(&r, 0, 0.9), t1 = rng_uniform(&r, t0, 1);
+    cprox_gap_along_result v;
+    MADE(cprox_gap_along_test(gap, &a, c, &q, t0, t1, 100000, ws, &v));
+    clear += v.verdict == CPROX_GAP_CLEAR, hit += v.verdict == CPROX_GAP_COLLIDE;
+    assert_true(v.t >= t0 && v.t <= t1);
+    cprox_gap_result x;
+    MADE(cprox_gap_along(gap, &a, c, &q, v.t, ws, &x, NULL));
+    if (v.verdict == CPROX_GAP_COLLIDE) assert_int_equal(x.verdict, CPROX_GAP_COLLIDE);
+    for (int k = 0; v.verdict == CPROX_GAP_CLEAR && k <= 200; k++) {
+      MADE(cprox_gap_along(gap, &a, c, &q, t0 + (t1 - t0) * k / 200, ws, &x, NULL));
+      assert_true(x.verdict == CPROX_GAP_CLEAR || x.verdict == CPROX_GAP_FAR);
+    }
+    const double t = rng_uniform(&r, 0.1, 0.9), h = 1e-4, step[4] = {-2, -1, 1, 2}, weight[4] = {1, -8, 8, -1};
+    double slope = 0, derivative;
+    bool far = false;
+    for (int k = 0; k < 4; k++) {
+      MADE(cprox_gap_along(gap, &a, c, &q, t + step[k] * h, ws, &x, NULL));
+      slope += weight[k] * x.value / (12 * h);
+      far = far || x.verdict == CPROX_GAP_FAR;
+    }
+    MADE(cprox_gap_along(gap, &a, c, &q, t, ws, &x, &derivative));
+    if (!far) assert_true(fabs(slope - derivative) <= 1e-7 * fmax(fabs(derivative), 1.0));
+  }
+  print_message("%zu clear, %zu hit\n", clear, hit);
+  assert_true(clear > 5 && hit > 5);
+
+  /* too few nodes: undecided, and the reason says how far it is clear */
+  const cprox_pose near = planar(0, 1.9, 0);
+  const cprox_quat q = {1, 0, 0, 0};
+  cprox_gap_along_result v;
+  assert_int_equal(cprox_gap_along_test(gap, &near, c, &q, 0, 1, 1, ws, &v), CPROX_BUDGET);
+  assert_int_equal(v.verdict, CPROX_GAP_UNDECIDED);
+  assert_int_equal(cprox_gap_along_test(gap, &near, c, &q, 0, 2, 1, ws, &v), CPROX_INVALID);
+  assert_string_equal(cprox_workspace_reason(ws), "the interval [0, 2] must lie within [0, 1]");
+  cprox_gap_free(gap);
+  cprox_solid_free(s[0]);
+  cprox_solid_free(s[1]);
+  cprox_curve_free(c);
+}
+
+/* Each allocation of making a gap or a cascade fails in turn. */
+static void gaps_survive_every_failed_allocation(void **state) {
+  (void)state;
+  cprox_solid *s[2];
+  make_pair(1, s);
+  cprox_gap_options o = cprox_gap_options_default();
+  o.delta = 0.4;
+  for (size_t n = 0;; n++) {
+    const size_t live = allocations_live();
+    cprox_gap *gap = NULL;
+    cprox_gap_cascade *cascade = NULL;
+    allocations_fail_after(n);
+    const cprox_status first = cprox_gap_create(s[0], s[1], &o, ws, &gap);
+    const cprox_status second = first == CPROX_OK ? cprox_gap_cascade_create(s[0], s[1], &o, ws, &cascade) : first;
+    allocations_allow();
+    cprox_gap_free(gap);
+    cprox_gap_cascade_free(cascade);
+    assert_int_equal(allocations_live(), live);
+    if (second == CPROX_OK) break;
+    assert_int_equal(second, CPROX_MEMORY);
+    assert_true(n < 100000);
+  }
+  cprox_solid_free(s[0]);
+  cprox_solid_free(s[1]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(gradients_agree_with_differences),
+      cmocka_unit_test(early_exit_and_lanes_change_no_verdict),
+      cmocka_unit_test(values_do_not_depend_on_where_the_world_is),
+      cmocka_unit_test(queries_do_not_allocate_once_warm),
+      cmocka_unit_test(perfect_symmetry_has_no_gradient),
+      cmocka_unit_test(level_sets_are_not_equidistant),
+      cmocka_unit_test(the_signal_rises_with_clearance),
+      cmocka_unit_test(bad_questions_are_refused_in_words),
+      cmocka_unit_test(a_cascade_stops_at_the_first_proof),
+      cmocka_unit_test(a_region_localises_the_test),
+      cmocka_unit_test(a_sweep_is_never_called_clear_where_it_hits),
+      cmocka_unit_test(along_a_curve_the_verdict_holds_at_every_parameter),
+      cmocka_unit_test(gaps_survive_every_failed_allocation),
+  };
+  return cmocka_run_group_tests(tests, open_workspace, close_workspace);
+}
