@@ -93,6 +93,15 @@ static void make_pair(int i, cprox_solid *out[2]) {
   }
 }
 
+/* Samples and cases that suit what turning the pair costs: polylines and meshes go one frequency after the other. */
+static uint32_t samples_of(int pair, uint32_t plane) {
+  return pair < 4 ? plane : pair < 8 ? 9 : 5;
+}
+
+static size_t cases_of(int pair, size_t plane) {
+  return test_cases(pair < 4 ? plane : pair < 8 ? (plane + 9) / 10 : pair < 9 ? 2 : 1);
+}
+
 /* p exp(s [w]) of a pose, and its shift. */
 static cprox_pose nudged(cprox_pose p, int axis, double s) {
   double *const position[3] = {&p.position.x, &p.position.y, &p.position.z};
@@ -120,10 +129,10 @@ static void gradients_agree_with_differences(void **state) {
     make_pair(i / 2, s);
     const int dimension = s[0]->dimension;
     const cprox_gap_mode mode = i % 2 ? CPROX_GAP_SIGNAL : CPROX_GAP_CERTIFIED;
-    cprox_gap *gap = gap_of(s[0], s[1], mode, dimension == 2 ? 17 : 9);
+    cprox_gap *gap = gap_of(s[0], s[1], mode, samples_of(i / 2, 17));
     const cprox_gap_info info = cprox_gap_get_info(gap);
     const double h = 2e-3 * info.period / info.samples;
-    for (size_t k = 0; k < test_cases(dimension == 2 ? 8 : 3); k++) {
+    for (size_t k = 0; k < cases_of(i / 2, 8); k++) {
       const cprox_pose p[2] = {random_pose(&r, dimension, 0.3), random_pose(&r, dimension, 0.3)};
       cprox_gap_result x, y;
       MADE(cprox_gap_evaluate(gap, &p[0], &p[1], ws, &x));
@@ -169,9 +178,9 @@ static void early_exit_and_lanes_change_no_verdict(void **state) {
     cprox_solid *s[2];
     make_pair(i / 2, s);
     const int dimension = s[0]->dimension;
-    cprox_gap *gap = gap_of(s[0], s[1], i % 2 ? CPROX_GAP_TUNED : CPROX_GAP_CERTIFIED, dimension == 2 ? 33 : 9);
+    cprox_gap *gap = gap_of(s[0], s[1], i % 2 ? CPROX_GAP_TUNED : CPROX_GAP_CERTIFIED, samples_of(i / 2, 33));
     const gap_lanes widest = gap->lanes;
-    for (size_t k = 0; k < test_cases(dimension == 2 ? 200 : 20); k++) {
+    for (size_t k = 0; k < cases_of(i / 2, 200); k++) {
       const cprox_pose p[2] = {random_pose(&r, dimension, 0.9), random_pose(&r, dimension, 0.9)};
       cprox_gap_result fast, full, other;
       MADE(cprox_gap_test(gap, &p[0], &p[1], ws, &fast));
@@ -206,8 +215,8 @@ static void values_do_not_depend_on_where_the_world_is(void **state) {
     cprox_solid *s[2];
     make_pair(i, s);
     const int dimension = s[0]->dimension;
-    cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, dimension == 2 ? 33 : 9);
-    for (int k = 0; k < 20; k++) {
+    cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, samples_of(i, 33));
+    for (size_t k = 0; k < cases_of(i, 20); k++) {
       const cprox_pose p[2] = {random_pose(&r, dimension, 0.2), random_pose(&r, dimension, 0.2)},
                        world = random_pose(&r, dimension, 1.0);
       const cprox_pose q[2] = {frame_compose(&world, &p[0]), frame_compose(&world, &p[1])};
@@ -490,7 +499,7 @@ static void gaps_survive_every_failed_allocation(void **state) {
   cprox_solid *s[2];
   make_pair(1, s);
   cprox_gap_options o = cprox_gap_options_default();
-  o.delta = 0.4;
+  o.samples = 17;
   for (size_t n = 0;; n++) {
     const size_t live = allocations_live();
     cprox_gap *gap = NULL;
