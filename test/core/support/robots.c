@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "support/robots.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* ---- random robots -------------------------------------------------------------------------------------------------------- */
+
+static size_t width_of(cprox_joint_type type) {
+  static const size_t WIDTH[] = {0, 1, 1, 3, 7};
+  return WIDTH[type];
+}
+
+static void make_links(rng *r, test_robot *t) {
+  t->n_links = 2 + rng_index(r, TEST_MAX_LINKS - 1);
+  t->n_variables = 0;
+  for (size_t i = 0; i < t->n_links; i++) {
+    static const cprox_joint_type OFTEN[] = {CPROX_JOINT_REVOLUTE,  CPROX_JOINT_REVOLUTE, CPROX_JOINT_REVOLUTE,
+                                             CPROX_JOINT_PRISMATIC, CPROX_JOINT_FIXED,    CPROX_JOINT_PLANAR,
+                                             CPROX_JOINT_FLOATING};
+    cprox_link *l = &t->links[i];
+    *l = (cprox_link){.parent = i == 0 ? -1 : (int32_t)(i - 1 - rng_index(r, i < 3 ? i : 3) % i),
+                      .type = OFTEN[rng_index(r, 7)],
+                      .origin = rng_pose(r, 0.4),
+                      .axis = vec_scale(rng_log_uniform(r, 0.1, 10), rng_unit(r)),
+                      .multiplier = 1.0};
+    if (t->n_variables + width_of(l->type) > TEST_MAX_VARIABLES) l->type = CPROX_JOINT_FIXED;
+    /* some joints mimic the one before */
+    const bool single = width_of(l->type) == 1;
+    if (single && i > 0 && width_of(t->links[i - 1].type) == 1 && rng_index(r, 4) == 0) {
+      l->variable = t->links[i - 1].variable;
+      l->multiplier = rng_uniform(r, -2, 2), l->offset = rng_uniform(r, -1, 1);
+      continue;
+    }
+    l->variable = (int32_t)t->n_variables;
+    t->n_variables += width_of(l->type);
+  }
+}
+
+static void make_geometries(rng *r, test_robot *t) {
+  t->margin = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0, 0.05);
+  for (size_t i = 0; i < t->n_links; i++) {
+    cprox_body *body = NULL;
+    for (size_t k = 0; k < TEST_VERTICES; k++) t->vertices[i][k] = rng_in_cube(r, 0.2);
+    assert_int_equal(cprox_body_create_polytope(t->vertices[i], TEST_VERTICES, NULL, &body), CPROX_OK);
+    t->geometries[i] =
+        (cprox_link_geometry){.body = body, .pose = rng_pose(r, 0.2), .link = (int32_t)i, .padding = t->margin};
+  }
+}
+
+/* ---- random motions ------------------------------------------------------------------------------------------------------- */
+
+static void make_points(rng *r, double speed, test_robot *t) {
+  t->spline = rng_index(r, 4) == 0;
+  t->interpolation = (cprox_interpolation)(CPROX_LINEAR + rng_index(r, 3));
+  t->n_points = t->spline ? TEST_MAX_WAYPOINTS : 2 + rng_index(r, TEST_MAX_WAYPOINTS - 1);
+  for (size_t k = 0; k < t->n_variables; k++) {
+    t->variables[k] = (int32_t)k;
+    t->rest[k] = t->positions[0][k] = rng_uniform(r, -2, 2);
+  }
+  for (size_t i = 0; i < t->n_points; i++)
+    for (size_t k = 0; k < t->n_variables; k++) {
+      if (i > 0) t->positions[i][k] = t->positions[i - 1][k] + rng_uniform(r, -speed, speed);
+      t->velocities[i][k] = rng_uniform(r, -speed, speed);
+      t->accelerations[i][k] = rng_uniform(r, -speed, speed);
+    }
+  t->times[0] = rng_uniform(r, -1, 1);
+  for (size_t i = 1; i < t->n_points + TEST_SPLINE_DEGREE + 1; i++)
+    t->times[i] = t->times[i - 1] + rng_uniform(r, 0.5, 1.5);
+}
+
+/* Quaternions stay away from 0: their real part is large. */
+static void tame_quaternions(test_robot *t) {
+  for (size_t i = 0; i < t->n_links; i++) {
+    if (t->links[i].type != CPROX_JOINT_FLOATING) continue;
+    const size_t w = (size_t)t->links[i].variable + 6;
+    t->rest[w] += 5.0;
+    for (size_t k = 0; k < t->n_points; k++) t->positions[k][w] += 5.0;
+  }
+}
+
+void robot_make(rng *r, double speed, test_robot *t) {
+  cprox_workspace *ws = cprox_workspace_create();
+  make_links(r, t);
+  make_geometries(r, t);
+  if (cprox_robot_create(t->links, t->n_links, t->geometries, t->n_links, t->n_variables, ws, &t->robot) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_reason(ws));
+  make_points(r, speed, t);
+  tame_quaternions(t);
+  cprox_status status;
+  if (t->spline) {
+    double control[TEST_MAX_WAYPOINTS * TEST_MAX_VARIABLES];
+    for (size_t i = 0; i < t->n_points; i++)
+      memcpy(control + i * t->n_variables, t->positions[i], t->n_variables * sizeof *control);
+    const size_t degree = TEST_SPLINE_DEGREE;
+    status = cprox_motion_create_bspline(t->robot, t->variables, t->n_variables, degree, control, t->n_points, t->times,
+                                         t->rest, ws, &t->motion);
+  } else {
+    cprox_waypoint points[TEST_MAX_WAYPOINTS];
+    for (size_t i = 0; i < t->n_points; i++)
+      points[i] = (cprox_waypoint){t->times[i], t->positions[i], t->velocities[i], t->accelerations[i]};
+    status = cprox_motion_create_waypoints(t->robot, t->variables, t->n_variables, points, t->n_points,
+                                           t->interpolation, t->rest, ws, &t->motion);
+  }
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  cprox_workspace_free(ws);
+}
+
+void robot_free(test_robot *t) {
+  cprox_motion_free(t->motion);
+  cprox_robot_free(t->robot);
+  for (size_t i = 0; i < t->n_links; i++) cprox_body_free((cprox_body *)t->geometries[i].body);
+}
+
+/* ---- values --------------------------------------------------------------------------------------------------------------- */
+
+static long double hermite(const test_robot *t, size_t i, size_t k, long double time) {
+  const long double h = (long double)t->times[i + 1] - t->times[i], u = (time - t->times[i]) / h;
+  const long double p = t->positions[i][k], q = t->positions[i + 1][k];
+  if (t->interpolation == CPROX_LINEAR) return p + u * (q - p);
+  const long double v = h * t->velocities[i][k], w = h * t->velocities[i + 1][k], u2 = u * u, u3 = u2 * u;
+  if (t->interpolation == CPROX_CUBIC)
+    return (2 * u3 - 3 * u2 + 1) * p + (u3 - 2 * u2 + u) * v + (3 * u2 - 2 * u3) * q + (u3 - u2) * w;
+  const long double a = h * h * t->accelerations[i][k], b = h * h * t->accelerations[i + 1][k], u4 = u3 * u,
+                    u5 = u4 * u;
+  return (1 - 10 * u3 + 15 * u4 - 6 * u5) * p + (u - 6 * u3 + 8 * u4 - 3 * u5) * v +
+         (u2 / 2 - 1.5L * u3 + 1.5L * u4 - u5 / 2) * a + (10 * u3 - 15 * u4 + 6 * u5) * q +
+         (-4 * u3 + 7 * u4 - 3 * u5) * w + (u3 / 2 - u4 + u5 / 2) * b;
+}
+
+static long double de_boor(const test_robot *t, size_t k, long double time) {
+  const size_t p = TEST_SPLINE_DEGREE;
+  size_t span = p;
+  while (span + 1 < t->n_points && time >= t->times[span + 1]) span++;
+  long double d[TEST_SPLINE_DEGREE + 1];
+  for (size_t i = 0; i <= p; i++) d[i] = t->positions[span - p + i][k];
+  for (size_t r = 1; r <= p; r++)
+    for (size_t i = p; i >= r; i--) {
+      const long double left = t->times[span - p + i], right = t->times[i + 1 + span - r];
+      const long double s = (time - left) / (right - left);
+      d[i] = (1 - s) * d[i - 1] + s * d[i];
+    }
+  return d[p];
+}
+
+void robot_ref_values(const test_robot *t, long double time, long double *values) {
+  size_t i = 0;
+  while (i + 2 < t->n_points && time >= t->times[i + 1]) i++;
+  for (size_t k = 0; k < t->n_variables; k++) values[k] = t->spline ? de_boor(t, k, time) : hermite(t, i, k, time);
+}
+
+/* ---- poses ---------------------------------------------------------------------------------------------------------------- */
+
+static vec3l turn(const long double *q, vec3l x) {
+  const vec3l v = {q[0], q[1], q[2]};
+  const vec3l twice = ref_scale(2.0L, ref_cross(v, x));
+  return ref_add(ref_add(x, ref_scale(q[3], twice)), ref_cross(v, twice));
+}
+
+vec3l ref_pose_apply(const ref_pose *pose, vec3l x) {
+  return ref_add(turn(pose->q, x), pose->p);
+}
+
+vec3l ref_pose_undo(const ref_pose *pose, vec3l x) {
+  const long double back[4] = {-pose->q[0], -pose->q[1], -pose->q[2], pose->q[3]};
+  return turn(back, ref_sub(x, pose->p));
+}
+
+static ref_pose unit_pose(vec3l p, long double x, long double y, long double z, long double w) {
+  const long double n = sqrtl(x * x + y * y + z * z + w * w);
+  return (ref_pose){.p = p, .q = {x / n, y / n, z / n, w / n}};
+}
+
+static ref_pose compose(const ref_pose *a, const ref_pose *b) {
+  const long double *p = a->q, *q = b->q;
+  return unit_pose(ref_pose_apply(a, b->p), p[3] * q[0] + p[0] * q[3] + p[1] * q[2] - p[2] * q[1],
+                   p[3] * q[1] + p[1] * q[3] + p[2] * q[0] - p[0] * q[2],
+                   p[3] * q[2] + p[2] * q[3] + p[0] * q[1] - p[1] * q[0],
+                   p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2]);
+}
+
+static ref_pose given(const cprox_pose *pose) {
+  return unit_pose(ref_vec(pose->position), pose->orientation.x, pose->orientation.y, pose->orientation.z,
+                   pose->orientation.w);
+}
+
+static ref_pose about(vec3l axis, long double angle) {
+  const vec3l v = ref_scale(sinl(angle / 2) / ref_norm(axis), axis);
+  return unit_pose((vec3l){0, 0, 0}, v.x, v.y, v.z, cosl(angle / 2));
+}
+
+static ref_pose joint(const cprox_link *l, const long double *q) {
+  const vec3l axis = ref_vec(l->axis), nowhere = {0, 0, 0};
+  switch (l->type) {
+    case CPROX_JOINT_REVOLUTE: return about(axis, l->multiplier * q[0] + l->offset);
+    case CPROX_JOINT_PRISMATIC:
+      return unit_pose(ref_scale((l->multiplier * q[0] + l->offset) / ref_norm(axis), axis), 0, 0, 0, 1);
+    case CPROX_JOINT_PLANAR: {
+      ref_pose pose = about((vec3l){0, 0, 1}, q[2]);
+      pose.p = (vec3l){q[0], q[1], 0};
+      return pose;
+    }
+    case CPROX_JOINT_FLOATING: return unit_pose((vec3l){q[0], q[1], q[2]}, q[3], q[4], q[5], q[6]);
+    case CPROX_JOINT_FIXED: break;
+  }
+  return unit_pose(nowhere, 0, 0, 0, 1);
+}
+
+void robot_ref_links(const test_robot *t, const long double *values, ref_pose *links) {
+  for (size_t i = 0; i < t->n_links; i++) {
+    const cprox_link *l = &t->links[i];
+    const ref_pose origin = given(&l->origin), moved = joint(l, values + l->variable), here = compose(&origin, &moved);
+    links[i] = l->parent < 0 ? here : compose(&links[l->parent], &here);
+  }
+}
+
+void robot_ref_vertices(const test_robot *t, const ref_pose *links, size_t geometry, vec3l *vertices) {
+  const ref_pose pose = given(&t->geometries[geometry].pose);
+  for (size_t k = 0; k < TEST_VERTICES; k++)
+    vertices[k] =
+        ref_pose_apply(&links[t->geometries[geometry].link], ref_pose_apply(&pose, ref_vec(t->vertices[geometry][k])));
+}

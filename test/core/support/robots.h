@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Random robots on random motions, and where their links are in long double: by quaternions, Hermite's basis functions and
+ * de Boor's recursion, none of which the core uses. */
+#ifndef CPROX_TEST_ROBOTS_H
+#define CPROX_TEST_ROBOTS_H
+
+#include "curve_proximity/cprox/robot.h"
+#include "support/random.h"
+#include "support/reference.h"
+
+enum { TEST_MAX_LINKS = 8, TEST_MAX_VARIABLES = 24, TEST_MAX_WAYPOINTS = 5, TEST_VERTICES = 5, TEST_SPLINE_DEGREE = 4 };
+
+typedef struct test_robot {
+  cprox_link links[TEST_MAX_LINKS];
+  cprox_link_geometry geometries[TEST_MAX_LINKS]; /* one a link */
+  vec3 vertices[TEST_MAX_LINKS][TEST_VERTICES];   /* a geometry's, in its own frame */
+  double margin;                                  /* padding of all */
+  size_t n_links, n_variables;
+  int32_t variables[TEST_MAX_VARIABLES];
+  double rest[TEST_MAX_VARIABLES];
+
+  /* the motion */
+  bool spline;
+  cprox_interpolation interpolation;
+  size_t n_points;
+  double times[TEST_MAX_WAYPOINTS + TEST_SPLINE_DEGREE + 1]; /* or knots */
+  double positions[TEST_MAX_WAYPOINTS][TEST_MAX_VARIABLES], velocities[TEST_MAX_WAYPOINTS][TEST_MAX_VARIABLES],
+      accelerations[TEST_MAX_WAYPOINTS][TEST_MAX_VARIABLES];
+  cprox_robot *robot;
+  cprox_motion *motion;
+} test_robot;
+
+/* `speed`: how far variables go from point to point [rad, m]. Fails the running test where the core refuses it. */
+void robot_make(rng *r, double speed, test_robot *t);
+void robot_free(test_robot *t);
+
+/* All variables at a time. */
+void robot_ref_values(const test_robot *t, long double time, long double *values);
+
+typedef struct ref_pose {
+  vec3l p;
+  long double q[4]; /* x, y, z, w, unit */
+} ref_pose;
+
+vec3l ref_pose_apply(const ref_pose *pose, vec3l x);
+vec3l ref_pose_undo(const ref_pose *pose, vec3l x);
+
+/* The frames of all links. */
+void robot_ref_links(const test_robot *t, const long double *values, ref_pose *links);
+
+/* The vertices of a geometry in the world. */
+void robot_ref_vertices(const test_robot *t, const ref_pose *links, size_t geometry, vec3l *vertices);
+
+#endif
