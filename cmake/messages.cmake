@@ -5,6 +5,7 @@ set(CURVE_PROXIMITY_MESSAGES
   Body.msg
   CollisionObject.msg
   Curve.msg
+  Hyperquadric.msg
   LinkPadding.msg
   Proximity.msg
 )

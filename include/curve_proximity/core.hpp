@@ -186,6 +186,32 @@ inline BodyHandle makeHalfspace(const Eigen::Vector3d &normal, double offset) {
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_halfspace(toVec3(normal), offset, w, b); });
 }
 
+/** sum |x_i/semi_axes_i|^exponents_i <= 1. */
+inline BodyHandle makeSuperquadric(const Eigen::Vector3d &semi_axes, const Eigen::Vector3d &exponents) {
+  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+    return cprox_body_create_superquadric(toVec3(semi_axes), toVec3(exponents), w, b);
+  });
+}
+
+/** The intersection of hyperquadrics, each a list of terms [a, b, c, d, n], planes [b1, b2, b3, c] and quadrics
+ *  [q11, q12, q13, q22, q23, q33, b1, b2, b3, c]. */
+inline BodyHandle makeImplicit(const std::vector<std::vector<std::array<double, 5>>> &hyperquadrics,
+                               const std::vector<std::array<double, 4>> &planes,
+                               const std::vector<std::array<double, 10>> &quadrics) {
+  std::vector<cprox_hyperquadric> lists;
+  for (const auto &terms : hyperquadrics)
+    lists.push_back({reinterpret_cast<const double(*)[5]>(terms.data()), terms.size()});
+  cprox_implicit_description description = {};
+  description.hyperquadrics = lists.data();
+  description.n_hyperquadrics = lists.size();
+  description.planes = reinterpret_cast<const double(*)[4]>(planes.data());
+  description.n_planes = planes.size();
+  description.quadrics = reinterpret_cast<const double(*)[10]>(quadrics.data());
+  description.n_quadrics = quadrics.size();
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_implicit(&description, nullptr, w, b); });
+}
+
 /** The convex hull of the columns, in any order and of any dimension. */
 inline BodyHandle makePolytope(const Eigen::Matrix3Xd &vertices) {
   const std::vector<cprox_vec3> points = toVec3s(vertices);

@@ -4,6 +4,7 @@
 #ifndef CURVE_PROXIMITY_DESCRIPTION_HPP
 #define CURVE_PROXIMITY_DESCRIPTION_HPP
 
+#include <array>
 #include <cstddef>
 #include <Eigen/Geometry>
 #include <optional>
@@ -24,9 +25,24 @@ using Triangles = Eigen::Matrix<int, 3, Eigen::Dynamic>;
  *    CONE       [height, radius] along z about mid-height, apex at +z
  *    ELLIPSOID  [x, y, z] semi-axes
  *    HALFSPACE  [a, b, c, d]: ax + by + cz + d <= 0
+ *    SUPERQUADRIC  [a1, a2, a3, n1, n2, n3]: sum |x_i/a_i|^n_i <= 1, exponents 1 … 1000
+ *    IMPLICIT   none; the intersection of `hyperquadrics`, `planes` and `quadrics`, bounded and with an interior
  *    POLYTOPE   none; the convex hull of `vertices`, solid, of any dimension
  *    MESH       none, or a scale [x, y, z]; `vertices` and `triangles`, or `resource`; answered by its convex hull */
-enum class ShapeType { POINT, SPHERE, BOX, CAPSULE, CYLINDER, CONE, ELLIPSOID, HALFSPACE, POLYTOPE, MESH };
+enum class ShapeType {
+  POINT,
+  SPHERE,
+  BOX,
+  CAPSULE,
+  CYLINDER,
+  CONE,
+  ELLIPSOID,
+  HALFSPACE,
+  POLYTOPE,
+  MESH,
+  SUPERQUADRIC,
+  IMPLICIT
+};
 
 /** "point", "sphere", …, "mesh". */
 const char *shapeTypeName(ShapeType type);
@@ -34,12 +50,19 @@ const char *shapeTypeName(ShapeType type);
 /** The type of that name (lower case, as above); nothing for any other word. */
 std::optional<ShapeType> shapeTypeFromName(const std::string &name);
 
+/** sum over its terms [a, b, c, d, n] of |a x + b y + c z + d|^n <= 1. */
+using HyperquadricTerms = std::vector<std::array<double, 5>>;
+
 struct ShapeDescription {
   ShapeType type = ShapeType::BOX;
-  std::vector<double> dimensions; /**< [m], see ShapeType */
-  Eigen::Matrix3Xd vertices;      /**< [m] in the shape's frame */
-  Triangles triangles;            /**< of a MESH given by its vertices */
-  std::string resource;           /**< URI or path of a MESH file; then vertices and triangles are empty */
+  std::vector<double> dimensions;               /**< [m], see ShapeType */
+  Eigen::Matrix3Xd vertices;                    /**< [m] in the shape's frame */
+  Triangles triangles;                          /**< of a MESH given by its vertices */
+  std::vector<HyperquadricTerms> hyperquadrics; /**< of an IMPLICIT */
+  std::vector<std::array<double, 4>> planes;    /**< of an IMPLICIT, each [b1, b2, b3, c]: b·x + c <= 0 */
+  std::vector<std::array<double, 10>> quadrics; /**< of an IMPLICIT, each [q11, q12, q13, q22, q23, q33, b1, b2, b3, c]:
+                                                     x'Qx + b·x + c <= 0 */
+  std::string resource; /**< URI or path of a MESH file; then vertices and triangles are empty */
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the object's frame */
 };
 

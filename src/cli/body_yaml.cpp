@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "body_yaml.h"
 
+#include <algorithm>
+#include <array>
 #include <limits>
 
 #include "failure.h"
@@ -19,6 +21,28 @@ Eigen::Vector3i readTriangle(const YamlValue &value) {
     out[k] = static_cast<int>(index);
   }
   return out;
+}
+
+/* A list of lists of N numbers, under a key that may be missing. */
+template <std::size_t N>
+std::vector<std::array<double, N>> readRows(const std::vector<YamlValue> &rows, const char *what) {
+  std::vector<std::array<double, N>> out;
+  for (const YamlValue &row : rows) {
+    const std::vector<double> numbers = row.numbers();
+    if (numbers.size() != N)
+      row.fail(std::string(what) + " has " + std::to_string(N) + " numbers, not " + std::to_string(numbers.size()));
+    out.emplace_back();
+    std::copy(numbers.begin(), numbers.end(), out.back().begin());
+  }
+  return out;
+}
+
+void readImplicit(const YamlValue &value, ShapeDescription &shape, Warnings &warnings) {
+  value.warnOfOthers({"type", "terms", "planes", "quadrics", "pose"}, warnings);
+  for (const YamlValue &hyperquadric : value.itemsOf("terms"))
+    shape.hyperquadrics.push_back(readRows<5>(hyperquadric.items(), "a term [a, b, c, d, n]"));
+  shape.planes = readRows<4>(value.itemsOf("planes"), "a plane [b1, b2, b3, c]");
+  shape.quadrics = readRows<10>(value.itemsOf("quadrics"), "a quadric");
 }
 
 } // namespace
@@ -60,11 +84,10 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
   /* the type */
   const YamlValue type = value.at("type");
   const std::string name = type.text();
-  if (name == "superquadric" || name == "implicit") type.fail("type '" + name + "' is not available in this version");
   const std::optional<ShapeType> known = shapeTypeFromName(name);
   if (!known) {
     type.fail("type '" + name + "' is unknown; it must be point, sphere, box, capsule, cylinder, cone, ellipsoid, " +
-              "halfspace, polytope or mesh");
+              "halfspace, polytope, mesh, superquadric or implicit");
   }
   shape.type = *known;
 
@@ -73,6 +96,12 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
     const std::optional<YamlValue> mesh = value.find("mesh");
     if (mesh) value.warnOfOthers({"type", "mesh", "pose"}, warnings);
     readMesh(mesh ? *mesh : value, shape, warnings);
+    return shape;
+  }
+
+  /* lists of constraints */
+  if (shape.type == ShapeType::IMPLICIT) {
+    readImplicit(value, shape, warnings);
     return shape;
   }
 

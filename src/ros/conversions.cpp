@@ -2,6 +2,7 @@
 #include "conversions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -76,6 +77,24 @@ ShapeDescription toShape(const shape_msgs::Plane &plane) {
   return shape;
 }
 
+/** A flat list as rows of N numbers; `what` names a row in a sentence. */
+template <std::size_t N>
+std::vector<std::array<double, N>> toRows(const std::vector<double> &numbers, const char *what) {
+  if (numbers.size() % N != 0)
+    throw Error(std::to_string(numbers.size()) + " numbers are not a whole number of " + what + " of " +
+                std::to_string(N));
+  std::vector<std::array<double, N>> out(numbers.size() / N);
+  for (std::size_t i = 0; i < numbers.size(); ++i) out[i / N][i % N] = numbers[i];
+  return out;
+}
+
+template <std::size_t N>
+std::vector<double> toNumbers(const std::vector<std::array<double, N>> &rows) {
+  std::vector<double> out;
+  for (const auto &row : rows) out.insert(out.end(), row.begin(), row.end());
+  return out;
+}
+
 ShapeDescription toShape(const Body &body) {
   const std::optional<ShapeType> type = shapeTypeFromName(body.type);
   if (!type) throw Error("unknown type '" + body.type + "'");
@@ -84,6 +103,9 @@ ShapeDescription toShape(const Body &body) {
   shape.dimensions = body.dimensions;
   shape.vertices = toPoints(body.vertices);
   shape.resource = body.resource;
+  for (const Hyperquadric &h : body.hyperquadrics) shape.hyperquadrics.push_back(toRows<5>(h.terms, "terms"));
+  shape.planes = toRows<4>(body.planes, "planes");
+  shape.quadrics = toRows<10>(body.quadrics, "quadrics");
   return shape;
 }
 
@@ -181,6 +203,12 @@ void addBody(CollisionObject &message, const ShapeDescription &shape) {
   body.dimensions = shape.dimensions;
   body.vertices = toPointMessages(shape.vertices);
   body.resource = shape.resource;
+  for (const auto &terms : shape.hyperquadrics) {
+    body.hyperquadrics.emplace_back();
+    body.hyperquadrics.back().terms = toNumbers(terms);
+  }
+  body.planes = toNumbers(shape.planes);
+  body.quadrics = toNumbers(shape.quadrics);
   message.bodies.push_back(body);
   message.body_poses.push_back(toMessage(shape.pose));
 }

@@ -7,7 +7,7 @@
 namespace curve_proximity {
 namespace {
 
-constexpr std::array<std::pair<ShapeType, const char *>, 10> SHAPE_TYPES = {{{ShapeType::POINT, "point"},
+constexpr std::array<std::pair<ShapeType, const char *>, 12> SHAPE_TYPES = {{{ShapeType::POINT, "point"},
                                                                              {ShapeType::SPHERE, "sphere"},
                                                                              {ShapeType::BOX, "box"},
                                                                              {ShapeType::CAPSULE, "capsule"},
@@ -16,7 +16,9 @@ constexpr std::array<std::pair<ShapeType, const char *>, 10> SHAPE_TYPES = {{{Sh
                                                                              {ShapeType::ELLIPSOID, "ellipsoid"},
                                                                              {ShapeType::HALFSPACE, "halfspace"},
                                                                              {ShapeType::POLYTOPE, "polytope"},
-                                                                             {ShapeType::MESH, "mesh"}}};
+                                                                             {ShapeType::MESH, "mesh"},
+                                                                             {ShapeType::SUPERQUADRIC, "superquadric"},
+                                                                             {ShapeType::IMPLICIT, "implicit"}}};
 
 } // namespace
 

@@ -25,8 +25,10 @@ Expected expectedDimensions(ShapeType type) {
     case ShapeType::CONE: return {2, "[height, radius]"};
     case ShapeType::ELLIPSOID: return {3, "[x, y, z] (semi-axes)"};
     case ShapeType::HALFSPACE: return {4, "[a, b, c, d]"};
+    case ShapeType::SUPERQUADRIC: return {6, "[a1, a2, a3, n1, n2, n3]"};
     case ShapeType::POINT:
     case ShapeType::POLYTOPE:
+    case ShapeType::IMPLICIT:
     case ShapeType::MESH: break;
   }
   return {0, ""};
@@ -81,6 +83,13 @@ void checkVertices(const ShapeDescription &shape) {
   }
 }
 
+void checkConstraints(const ShapeDescription &shape) {
+  const bool any = !shape.hyperquadrics.empty() || !shape.planes.empty() || !shape.quadrics.empty();
+  if (shape.type == ShapeType::IMPLICIT && !any) throw Error("implicit has no terms, planes or quadrics");
+  if (shape.type != ShapeType::IMPLICIT && any)
+    throw Error(std::string(shapeTypeName(shape.type)) + " takes no terms, planes or quadrics");
+}
+
 Geometry makeMesh(const ShapeDescription &shape, const ResourceOptions &options) {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   if (!shape.dimensions.empty()) scale = Eigen::Map<const Eigen::Vector3d>(shape.dimensions.data());
@@ -107,6 +116,8 @@ BodyHandle makePrimitive(const ShapeDescription &shape) {
     case ShapeType::ELLIPSOID: return makeEllipsoid({d[0], d[1], d[2]});
     case ShapeType::HALFSPACE: return makeHalfspace({d[0], d[1], d[2]}, d[3]);
     case ShapeType::POLYTOPE: return makePolytope(shape.vertices);
+    case ShapeType::SUPERQUADRIC: return makeSuperquadric({d[0], d[1], d[2]}, {d[3], d[4], d[5]});
+    case ShapeType::IMPLICIT: return makeImplicit(shape.hyperquadrics, shape.planes, shape.quadrics);
     case ShapeType::MESH: break;
   }
   throw Error("a shape's type is not known");
@@ -174,6 +185,7 @@ std::string resolveResource(const std::string &uri, const ResourceOptions &optio
 Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options) {
   checkDimensions(shape);
   checkVertices(shape);
+  checkConstraints(shape);
   if (shape.type == ShapeType::MESH) return makeMesh(shape, options);
   Geometry out;
   out.body = makePrimitive(shape);

@@ -84,11 +84,27 @@ class Pairs(Case):
         self.assertPoint(answer.row('long'), 'b', (0, 3, 0))
         self.assertRegex(answer.err, 'warning: .*norm')
 
+    def implicit_bodies_are_measured(self):
+        ball = '{type: implicit, quadrics: [[1, 0, 0, 1, 0, 1, 0, 0, 0, -1]]'
+        cube = '{type: implicit, planes: [[1, 0, 0, -1], [-1, 0, 0, -1], [0, 1, 0, -1], [0, -1, 0, -1], [0, 0, 1, -1], [0, 0, -1, -1]]'
+        can = '{type: implicit, terms: [[[1, 0, 0, 0, 2], [0, 1, 0, 0, 2], [0, 0, 1, 0, 16]]], planes: [[0, 0, 1, -0.5]]'
+        answer = self.pairs(pair('round', '{type: superquadric, dimensions: [1, 2, 3, 2, 2, 2]}', f'{{type: point, {at(0, 0, 5)}}}')
+                            + pair('squares', cube + '}', f'{cube}, {at(4)}}}')
+                            + pair('mixed', ball + '}', f'{{type: box, dimensions: [2, 2, 2], {at(3)}}}')
+                            + pair('cut', can + '}', f'{ball}, {at(0, 0, 4)}}}'))
+        for name, distance in (('round', 2), ('squares', 2), ('mixed', 1), ('cut', 2.5)):
+            self.assertAnswer(answer.row(name), distance)
+
     def a_bad_pair_fails_alone(self):
         good = f'{{type: point, {at(3)}}}'
         bad = {
-            '{type: superquadric, dimensions: [1, 1, 1, 4, 4, 4]}': ["'superquadric' is not available"],
-            '{type: implicit, planes: [[1, 0, 0, -1]]}': ["'implicit' is not available"],
+            '{type: superquadric, dimensions: [1, 1, 1, 4, 4]}': ['superquadric', '6 dimensions'],
+            '{type: superquadric, dimensions: [1, 1, 1, 4, 0.5, 4]}': ['exponents.y is 0.5'],
+            '{type: implicit, planes: [[1, 0, 0, -1]]}': ['unbounded'],
+            '{type: implicit, planes: [[1, 0, 0]]}': ['[b1, b2, b3, c]'],
+            '{type: implicit, terms: [[[1, 0, 0, 0]]]}': ['[a, b, c, d, n]'],
+            '{type: implicit, quadrics: [[1, 0, 0, 1, 0, -1, 0, 0, 0, -1]]}': ['not convex'],
+            '{type: implicit}': ['no terms'],
             '{type: ball, dimensions: [1]}': ["'ball' is unknown"],
             '{dimensions: [1]}': ["'type'"],
             '{type: sphere}': ['sphere'],
