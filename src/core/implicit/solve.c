@@ -253,8 +253,8 @@ static void certify_along(solve *s, vec3 n, double share, barrier_reading readin
   const double sizes = vec_norm(q->t) + fabs(ha) + fabs(others) + (s->sides == 2 ? q->b->radius : 0.0) +
                        (q->moving ? vec_norm(q->velocity) * q->duration : 0.0);
   const double lower = apart - ha - others - ROUND_UP * 8.0 * ROUND_U * sizes;
-  if (!(lower > answer->lower) && vec_norm2(answer->normal) > 0.0) return;
-  answer->lower = fmax(answer->lower, lower);
+  if (!(lower > answer->lower)) return;
+  answer->lower = lower;
   answer->normal = vec_neg(n);
   answer->height = ha;
 }
@@ -301,7 +301,8 @@ static bool solve_overlaps(solve *s) {
   s->answer->x = x;
   s->answer->y = y;
   s->answer->time = s->time.tau;
-  s->answer->lower = s->answer->upper = 0.0;
+  s->answer->lower = -s->reach;
+  s->answer->upper = 0.0;
   return true;
 }
 
@@ -458,7 +459,7 @@ void implicit_solve(const implicit_question *question, const implicit_goal *goal
   s.n = 3 * s.sides + (q->moving ? 1 : 0);
   s.reach = q->a->radius + (q->b ? q->b->radius : 0.0);
   s.floor = solve_floor(q);
-  *answer = (implicit_answer){.lower = q->far ? -INFINITY : 0.0, .upper = INFINITY, .attempt = SOLVE_RUNGS};
+  *answer = (implicit_answer){.lower = q->far ? -INFINITY : -s.reach, .upper = INFINITY, .attempt = SOLVE_RUNGS};
   solve_place(&s, memory);
 
   s.least = 4.0 * s.floor + 64.0 * ROUND_U * s.reach;

@@ -120,8 +120,8 @@ static void pair_take(const implicit_answer *found, const pair_side *a, const pa
                       pair_answer *answer) {
   const double margins = a->margin + b->margin;
   answer->overlap = found->overlap;
-  answer->lower = (found->overlap ? -INFINITY : found->lower) - margins - rounding;
-  answer->upper = found->overlap ? -margins : found->upper - margins + rounding;
+  answer->lower = found->lower - margins - rounding;
+  answer->upper = found->upper - margins + (found->overlap ? 0.0 : rounding);
   answer->normal = found->overlap ? vec(0, 0, 0) : found->normal;
   answer->common = found->x;
   answer->on_a = vec_axpy(found->x, -a->margin, answer->normal);
