@@ -1,0 +1,282 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Implicit bodies: the tables and the figure of Chakraborty et al. 2008 made again, the interior point method beside the climb of
+ * the dual that goes before it, the search by support functions, and Ipopt where it is installed. `nodes` are iterations. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "body/body.h"
+#include "convex/pair.h"
+#include "curve_proximity/cprox/translation.h"
+#include "support/implicit_problems.h"
+#include "support/measure.h"
+#ifdef CPROX_BENCH_IPOPT
+#include "peers/ipopt.h"
+#endif
+
+static const double ACCURACY = 1e-8;
+
+/* What the methods need besides the problem. */
+typedef struct bench_state {
+  cprox_workspace *workspace;
+  void *memory;
+  const double *truth;
+  double duration;
+  const double *exponents; /* deformation: to these */
+  cprox_affine scale;      /* or by this */
+} bench_state;
+
+static double accuracy_of(const implicit_problem *p) {
+  return ACCURACY * (p->question.a->radius + p->question.b->radius);
+}
+
+/* ---- Table I -------------------------------------------------------------------------------------------------------------- */
+
+static void hybrid(const void *problems, size_t i, void *state, bench_answer *a) {
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  const bench_state *s = state;
+  cprox_options options = cprox_options_default();
+  options.epsilon = accuracy_of(p);
+  cprox_result r;
+  const cprox_status status =
+      cprox_pair(cprox_at(p->a, cprox_pose_identity()), cprox_at(p->b, p->pose), &options, s->workspace, &r);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes};
+  a->failed = status != CPROX_OK;
+}
+
+static void interior_point(const void *problems, size_t i, void *state, bench_answer *a) {
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  const bench_state *s = state;
+  const implicit_goal goal = {.epsilon = accuracy_of(p), .max_steps = 2000};
+  implicit_answer r;
+  implicit_solve(&p->question, &goal, NULL, s->memory, &r);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.steps, .failed = !r.certified};
+}
+
+/* The search by support functions alone; other bodies than superquadrics have theirs by an interior point method each time. */
+static void supports(const void *problems, size_t i, void *state, bench_answer *a) {
+  (void)state;
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  pair_placement place = {.t = p->question.t};
+  for (int k = 0; k < 9; k++) place.r[k] = p->question.m[k];
+  const pair_goal goal = {.epsilon = accuracy_of(p), .max_steps = 2000};
+  pair_answer r;
+  pair_separate(&p->a->shape, 0.0, &p->b->shape, 0.0, &place, &goal, &r);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.steps, .probes = r.supports};
+  a->failed = !(r.upper - r.lower <= goal.epsilon);
+}
+
+#ifdef CPROX_BENCH_IPOPT
+static void ipopt(const void *problems, size_t i, void *state, bench_answer *a) {
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  const bench_state *s = state;
+  const ipopt_answer r = ipopt_pair(&p->question);
+  *a = (bench_answer){.lower = r.distance, .upper = r.distance, .nodes = (uint32_t)r.iterations, .failed = !r.solved};
+  /* it has no certificate: what is off by more than 1e-6 counts as failed */
+  if (s->truth) a->failed = a->failed || fabs(r.distance - s->truth[i]) > 1e-6 * (1.0 + s->truth[i]);
+}
+#endif
+
+static size_t add_peers(bench_method *methods, size_t n, bench_state *s) {
+#ifdef CPROX_BENCH_IPOPT
+  methods[n++] = (bench_method){"ipopt", ipopt, s};
+#else
+  (void)methods, (void)s;
+#endif
+  return n;
+}
+
+static void *memory_of(const cprox_body *a, const cprox_body *b) {
+  return malloc(implicit_memory(a->shape.implicit, b->shape.implicit));
+}
+
+static void table_1(const bench_size *size, cprox_body *const *object, bench_state *s) {
+  static const int pairs[8][2] = {{1, 2}, {1, 3}, {2, 3}, {3, 4}, {2, 4}, {3, 5}, {5, 6}, {3, 6}};
+  static const char *const names[] = {"", "I", "II", "III", "IV", "V", "VI"};
+  for (int k = 0; k < 8; k++) {
+    char parameter[32];
+    snprintf(parameter, sizeof parameter, "%s-%s", names[pairs[k][0]], names[pairs[k][1]]);
+    const cprox_body *a = object[pairs[k][0]], *b = object[pairs[k][1]];
+    implicit_problem *problems = implicit_problems_make(a, b, 2, 8, 31 + (uint64_t)k, size->problems);
+    double *truth = implicit_problems_truth(problems, size->problems);
+    s->truth = truth;
+    s->memory = memory_of(a, b);
+    bench_method methods[4] = {
+        {"curve_proximity", hybrid, s}, {"interior_point", interior_point, s}, {"supports", supports, s}};
+    const size_t n = add_peers(methods, 3, s);
+    const bench_workload w = {.group = "implicit",
+                              .name = "table I",
+                              .parameter = parameter,
+                              .problems = problems,
+                              .n = size->problems,
+                              .truth = truth,
+                              .doubt = 1e-9};
+    bench_measure(&w, size, methods, n);
+    free(s->memory);
+    free(truth);
+    free(problems);
+  }
+}
+
+/* ---- Table II: b flies past a, or into it ------------------------------------------------------------------------------------ */
+
+static void closest(const void *problems, size_t i, void *state, bench_answer *a) {
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  const bench_state *s = state;
+  const cprox_translating x = {.from = cprox_at(p->a, cprox_pose_identity())};
+  const vec3 aim = vec_scale(-1.0, p->pose.position);
+  const cprox_translating y = {.from = cprox_at(p->b, p->pose), .velocity = {aim.y + aim.x, aim.y - aim.x, aim.z}};
+  cprox_options options = cprox_options_default();
+  options.epsilon = accuracy_of(p);
+  cprox_result r;
+  const cprox_status status = cprox_translating_distance(x, y, s->duration, &options, s->workspace, &r);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .failed = status != CPROX_OK};
+}
+
+static void first_contact(const void *problems, size_t i, void *state, bench_answer *a) {
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  const bench_state *s = state;
+  const cprox_translating x = {.from = cprox_at(p->a, cprox_pose_identity())};
+  const cprox_translating y = {.from = cprox_at(p->b, p->pose), .velocity = vec_scale(-1.0, p->pose.position)};
+  cprox_options options = cprox_options_default();
+  options.epsilon = 1e-7 * (p->question.a->radius + p->question.b->radius);
+  cprox_result r;
+  const cprox_status status = cprox_translating_contact(x, y, s->duration, &options, s->workspace, &r);
+  *a = (bench_answer){.lower = r.t_free, .upper = r.t, .nodes = r.probes, .failed = status != CPROX_OK};
+  a->failed = a->failed || r.verdict != CPROX_YES;
+}
+
+static void table_2(const bench_size *size, cprox_body *const *object, bench_state *s) {
+  static const int pairs[2][2] = {{1, 3}, {2, 3}};
+  for (int k = 0; k < 2; k++) {
+    const char *parameter = k == 0 ? "I-III" : "II-III";
+    implicit_problem *problems =
+        implicit_problems_make(object[pairs[k][0]], object[pairs[k][1]], 4, 8, 41 + (uint64_t)k, size->problems);
+    bench_workload w = {.group = "implicit", .parameter = parameter, .problems = problems, .n = size->problems};
+    s->duration = 1.0;
+    w.name = "table II closest distance";
+    bench_measure(&w, size, &(bench_method){"curve_proximity", closest, s}, 1);
+    w.name = "table II first contact";
+    bench_measure(&w, size, &(bench_method){"curve_proximity", first_contact, s}, 1);
+    free(problems);
+  }
+}
+
+/* ---- Table III: the deformed body is made and measured ----------------------------------------------------------------------- */
+
+/* The step of ten that the problem's number picks. */
+static void deformed(const void *problems, size_t i, void *state, bench_answer *a) {
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  const bench_state *s = state;
+  const double part = (double)(i % 10 + 1) / 10.0;
+  cprox_affine map = cprox_affine_identity();
+  double exponents[3];
+  for (int k = 0; k < 3; k++) {
+    const double from = p->question.a->term[k].p;
+    exponents[k] = s->exponents ? from + part * (s->exponents[k] - from) : from;
+    if (!s->exponents) map.linear[4 * k] = 1.0 + part * (s->scale.linear[4 * k] - 1.0);
+  }
+  cprox_body *body = NULL;
+  cprox_options options = cprox_options_default();
+  options.epsilon = accuracy_of(p);
+  cprox_result r = {.status = CPROX_INVALID};
+  if (cprox_body_create_deformed(p->a, s->exponents ? NULL : &map, s->exponents ? exponents : NULL, 3, s->workspace,
+                                 &body) == CPROX_OK)
+    cprox_pair(cprox_at(body, cprox_pose_identity()), cprox_at(p->b, p->pose), &options, s->workspace, &r);
+  cprox_body_free(body);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .failed = r.status != CPROX_OK};
+}
+
+static void table_3(const bench_size *size, cprox_body *const *object, bench_state *s) {
+  static const double third[3] = {76.0 / 9, 71.0 / 5, 179.0 / 13};
+  for (int k = 0; k < 4; k++) {
+    const int first = k % 2 + 1;
+    implicit_problem *problems =
+        implicit_problems_make(object[first], object[3], 5, 8, 51 + (uint64_t)k, size->problems);
+    const bench_workload w = {.group = "implicit",
+                              .name = k < 2 ? "table III scaling" : "table III exponents",
+                              .parameter = first == 1 ? "I-III" : "II-III",
+                              .problems = problems,
+                              .n = size->problems};
+    s->exponents = k < 2 ? NULL : third;
+    s->scale = (cprox_affine){.linear = {1, 0, 0, 0, 0.5, 0, 0, 0, 2}};
+    bench_measure(&w, size, &(bench_method){"curve_proximity", deformed, s}, 1);
+    free(problems);
+  }
+}
+
+/* ---- Fig. 2: growth in the number of constraints ------------------------------------------------------------------------------- */
+
+static void figure_2(const bench_size *size, bench_state *s) {
+  static const char *const names[3] = {"figure 2 planes", "figure 2 quadrics", "figure 2 superquadrics"};
+  const size_t n = size->problems < 50 ? size->problems : 50;
+  for (int kind = 0; kind < 3; kind++) {
+    for (size_t count = 6; count <= 192; count *= 2) {
+      cprox_body *a = implicit_body_of_many((implicit_many)kind, count, 61);
+      cprox_body *b = implicit_body_of_many((implicit_many)kind, count, 62);
+      implicit_problem *problems = implicit_problems_make(a, b, 2.7, 8, 63, n);
+      char parameter[32];
+      snprintf(parameter, sizeof parameter, "%zu", 2 * count);
+      s->memory = memory_of(a, b);
+      s->truth = NULL;
+      bench_method methods[2] = {{"interior_point", interior_point, s}};
+      const size_t many = count <= 48 ? add_peers(methods, 1, s) : 1;
+      const bench_workload w = {
+          .group = "implicit", .name = names[kind], .parameter = parameter, .problems = problems, .n = n};
+      bench_measure(&w, size, methods, many);
+      free(s->memory);
+      free(problems);
+      cprox_body_free(a);
+      cprox_body_free(b);
+    }
+  }
+}
+
+/* ---- one point, and curves ------------------------------------------------------------------------------------------------------- */
+
+static void point_quick(const void *problems, size_t i, void *state, bench_answer *a) {
+  (void)state;
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  convex_near near;
+  p->a->shape.ops->nearest(&p->a->shape, p->question.t, NULL, &near);
+  *a = (bench_answer){.lower = near.distance, .upper = near.distance};
+}
+
+static void point_interior(const void *problems, size_t i, void *state, bench_answer *a) {
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  const bench_state *s = state;
+  const implicit_question question = {.a = p->question.a, .t = p->question.t};
+  const implicit_goal goal = {.epsilon = 1e-12 * p->question.a->radius, .relative_epsilon = 1e-12, .max_steps = 2000};
+  implicit_answer r;
+  implicit_solve(&question, &goal, NULL, s->memory, &r);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.steps, .failed = !r.certified};
+}
+
+static void points(const bench_size *size, cprox_body *const *object, bench_state *s) {
+  static const char *const names[] = {"", "I", "II", "III", "IV", "V", "VI"};
+  for (int k = 1; k <= 6; k++) {
+    implicit_problem *problems = implicit_problems_make(object[k], object[3], 4, 8, 71 + (uint64_t)k, size->problems);
+    s->memory = memory_of(object[k], object[3]);
+    const bench_method methods[2] = {{"curve_proximity", point_quick, s}, {"interior_point", point_interior, s}};
+    const bench_workload w = {
+        .group = "implicit", .name = "point", .parameter = names[k], .problems = problems, .n = size->problems};
+    bench_measure(&w, size, methods, 2);
+    free(s->memory);
+    free(problems);
+  }
+}
+
+int main(int argc, char **argv) {
+  const bench_size size = bench_arguments(argc, argv);
+  bench_state s = {.workspace = cprox_workspace_create()};
+  cprox_body *object[7] = {NULL};
+  for (int k = 1; k <= 6; k++) object[k] = implicit_object(k);
+  if (bench_wanted(&size, "table I")) table_1(&size, object, &s);
+  if (bench_wanted(&size, "table II")) table_2(&size, object, &s);
+  if (bench_wanted(&size, "table III")) table_3(&size, object, &s);
+  if (bench_wanted(&size, "figure 2")) figure_2(&size, &s);
+  if (bench_wanted(&size, "point")) points(&size, object, &s);
+  for (int k = 1; k <= 6; k++) cprox_body_free(object[k]);
+  cprox_workspace_free(s.workspace);
+  return 0;
+}
