@@ -14,6 +14,7 @@
 #include <curve_proximity/cprox/clearance.h>
 #include <curve_proximity/cprox/curve.h>
 #include <curve_proximity/cprox/fourier.h>
+#include <curve_proximity/cprox/gradient.h>
 #include <curve_proximity/cprox/implicit.h>
 #include <curve_proximity/cprox/query.h>
 #include <curve_proximity/cprox/robot.h>

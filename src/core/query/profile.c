@@ -82,6 +82,7 @@ cprox_status cprox_profile(cprox_mover mover, const cprox_target *targets, size_
                            size_t n_stretches, const cprox_options *options, cprox_workspace *workspace,
                            cprox_stretch *stretches) {
   question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  q.is_signed = q.options.signed_distance;
   workspace_clear(workspace);
   cprox_status status = arguments_check_query(&mover, targets, n, &q.options, workspace);
   if (status == CPROX_OK) status = check_breaks(mover.curve, breaks, n_stretches, workspace);

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The weights of a curve's coefficients at one parameter, a function a basis. */
+#include <math.h>
+
+#include "curve_proximity/cprox/gradient.h"
+
+/* De Casteljau on the weights: degree by degree, each weight passes on to its two successors. */
+void cprox_bezier_weights(size_t n_points, double t0, double t1, double t, double *weights) {
+  const double after = (t - t0) / (t1 - t0), before = (t1 - t) / (t1 - t0);
+  weights[0] = 1.0;
+  for (size_t n = 1; n < n_points; n++) {
+    weights[n] = after * weights[n - 1];
+    for (size_t i = n - 1; i > 0; i--) weights[i] = before * weights[i] + after * weights[i - 1];
+    weights[0] *= before;
+  }
+}
+
+/* Cox and de Boor's recurrence on the degree + 1 functions that live at t. */
+void cprox_bspline_weights(size_t n_points, size_t degree, const double *knots, double t, double *weights) {
+  /* the span that t belongs to: the last one that begins at or before it and has a length */
+  size_t span = degree;
+  for (size_t i = degree; i < n_points; i++)
+    if (knots[i] <= t && knots[i] < knots[i + 1]) span = i;
+  for (size_t i = 0; i < n_points; i++) weights[i] = 0.0;
+  double *w = weights + (span - degree);
+  w[0] = 1.0;
+  for (size_t p = 1; p <= degree; p++) {
+    double passed = 0.0;
+    for (size_t i = 0; i < p; i++) {
+      const double left = knots[span + 1 + i - p], right = knots[span + 1 + i], length = right - left;
+      const double share = length > 0.0 ? w[i] / length : 0.0;
+      w[i] = passed + (right - t) * share;
+      passed = (t - left) * share;
+    }
+    w[p] = passed;
+  }
+}
+
+void cprox_polynomial_weights(size_t n_coefficients, double t, double *weights) {
+  for (size_t i = 0; i < n_coefficients; i++) weights[i] = i == 0 ? 1.0 : t * weights[i - 1];
+}
+
+/* (k + 1) P_(k+1) = (2k + 1) x P_k - k P_(k-1) */
+void cprox_legendre_weights(size_t n_coefficients, double t0, double t1, double t, double *weights) {
+  const double x = ((t - t0) - (t1 - t)) / (t1 - t0);
+  for (size_t i = 0; i < n_coefficients; i++) {
+    const double k = (double)i - 1.0;
+    weights[i] = i == 0 ? 1.0 : i == 1 ? x : ((2.0 * k + 1.0) * x * weights[i - 1] - k * weights[i - 2]) / (k + 1.0);
+  }
+}
+
+void cprox_lagrange_weights(const double *nodes, size_t n_points, double t, double *weights) {
+  for (size_t i = 0; i < n_points; i++) {
+    weights[i] = 1.0;
+    for (size_t k = 0; k < n_points; k++)
+      if (k != i) weights[i] *= (t - nodes[k]) / (nodes[i] - nodes[k]);
+  }
+}
+
+/* 1, cos t, sin t, cos 2t, … */
+void cprox_trigonometric_weights(size_t n_coefficients, double t, double *weights) {
+  for (size_t i = 0; i < n_coefficients; i++) {
+    const double angle = (double)((i + 1) / 2) * t;
+    weights[i] = i % 2 ? cos(angle) : sin(angle);
+  }
+  weights[0] = 1.0;
+}
