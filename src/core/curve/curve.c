@@ -195,7 +195,7 @@ void curve_blossom(const vec3 *d, const double *u, size_t p, double lo, double h
  *
  * Error: r = 1 - s has one rounding, so r^(m-k) has 2(m-k) - 1, s^k has k - 1, the binomial two (from degree 59 on),
  * their two products two: a weight has at most 2m + 2. A term of Q_j has one more for its product and at most m for its
- * sums: 3m + 3 = 3n - 3. The last step adds 3 for r², 1 for the product and 2 for the sums: 3n + 3 <= 3n + 8. All
+ * sums: 3m + 3 = 3n - 3. The last step adds 3 for r², 1 for the product and 2 for the sums: 3n + 3; of degree 1 there are 3. All
  * weights are positive and sum to 1, so this times u max|P| bounds the error in every direction at once. Powers that
  * underflow are off by less than 2^-1074, times a binomial below 2^55: far below u;
  * products that underflow (|P| below 1e-290) add up to 200 times 2^-1074.

@@ -69,7 +69,7 @@ cprox_status curve_check_sum(const vec3 *coefficients, size_t n, double t0, doub
 void curve_blossom(const vec3 *d, const double *u, size_t p, double lo, double hi, vec3 *b);
 
 /* Value and derivatives (by the local parameter s of [0,1]) of one Bézier piece of degree >= 1, SoA or not is the
- * caller's: x, y, z with the given stride. Any output may be NULL. The value is within (3 n + 8) u max|P| of the exact
+ * caller's: x, y, z with the given stride. Any output may be NULL. The value is within (3 n + 3) u max|P| of the exact
  * one. */
 void curve_bezier_evaluate(const double *x, const double *y, const double *z, size_t stride, size_t degree,
                            const double *binomial, double s, vec3 *value, vec3 *first, vec3 *second);

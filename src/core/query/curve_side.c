@@ -289,7 +289,8 @@ double curve_side_point_error(const curve_side *side) {
     return ROUND_UP * (side->curve->arcs->error + (ROUND_ROTATION + 4.0) * ROUND_U * reach);
   }
   const double n = (double)side->curve->degree;
-  return ROUND_UP * (side->root_error + (3.0 * n + 8.0) * ROUND_U * 1.7320508075688774 * side->root_magnitude);
+  const double steps = n < 2.0 ? 3.0 : 3.0 * n + 3.0; /* counted at curve_bezier_evaluate() */
+  return ROUND_UP * (side->root_error + steps * ROUND_U * 1.7320508075688774 * side->root_magnitude);
 }
 
 vec3 curve_side_junction(curve_side *side, const search_interval *range, size_t *piece, double *s, double *error) {
