@@ -82,7 +82,7 @@ static void judge(const bench_workload *w, size_t problem, const bench_answer *a
     r->failures++;
     return;
   }
-  if (answer->wrong) r->unsound++;
+  r->unsound += answer->wrong;
   if (!w->truth || isnan(w->truth[problem]) || isnan(answer->upper)) return;
   const double truth = w->truth[problem];
   if (isfinite(answer->upper)) r->error = fmax(r->error, fabs(answer->upper - truth));

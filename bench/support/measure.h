@@ -17,8 +17,8 @@ extern "C" {
 typedef struct bench_answer {
   double lower, upper; /* of the distance; a method without bounds sets both to its value */
   uint32_t nodes, probes;
-  bool failed; /* it did not end, or said that it could not answer */
-  bool wrong;  /* verdicts: not what the truth says */
+  bool failed;    /* it did not end, or said that it could not answer */
+  uint32_t wrong; /* how many verdicts are not what the truth says */
 } bench_answer;
 
 /* Answers problem i. `state` is the method's own, `problems` the workload's. */

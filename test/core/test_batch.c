@@ -154,7 +154,7 @@ static void answers_agree_with_those_of_one_mover(void **state) {
   (void)state;
   rng r = rng_seed(11);
   cprox_workspace *workspace = cprox_workspace_create();
-  size_t settled_by_samples = 0, answers = 0;
+  size_t settled_by_balls = 0, answers = 0;
   for (size_t round = 0; round < test_cases(20); round++) {
     scene s = {0};
     const bool planar = round % 2;
@@ -174,7 +174,7 @@ static void answers_agree_with_those_of_one_mover(void **state) {
         assert_int_equal(one->verdict, alone.verdict);
         assert_true(one->lower <= alone.upper && alone.lower <= one->upper && one->lower <= one->upper);
         if (v == DISTANCE) assert_true(one->upper - one->lower <= 1e-6);
-        settled_by_samples += one->probes == 0 && one->upper == 0.0;
+        settled_by_balls += one->probes == 0 && one->upper == 0.0;
         answers++;
         if (s.movers[i].body || s.n_targets == TARGETS) continue;
         /* plain evaluation is within 1e-12 at this scale */
@@ -188,7 +188,7 @@ static void answers_agree_with_those_of_one_mover(void **state) {
     scene_free(&s);
   }
   /* both ways of answering are exercised */
-  assert_true(settled_by_samples > answers / 20 && settled_by_samples < answers / 2);
+  assert_true(settled_by_balls > answers / 20 && settled_by_balls < answers / 2);
   cprox_workspace_free(workspace);
 }
 
@@ -312,29 +312,37 @@ static void ball_bounds_are_never_above_the_true_distance(void **state) {
   }
 }
 
-/* Seed 15, 3000 pieces of all degrees: within (10 n + 16) u of de Casteljau's points in long double. */
-static void samples_are_points_of_the_piece(void **state) {
+/* Seed 15, 3000 pieces of all degrees: chords begin within (10 n + 16) u of de Casteljau's points in long double; the nearest point of
+ * the chords is no farther and no nearer than that of each by itself, within 16 u of the sizes. */
+static void chords_are_those_of_the_piece(void **state) {
   (void)state;
   rng r = rng_seed(15);
-  double basis[(CPROX_MAX_DEGREE + 1) * SAMPLES], samples[3 * SAMPLES];
+  double basis[(CPROX_MAX_DEGREE + 1) * CHORDS];
   for (size_t round = 0; round < test_cases(3000); round++) {
     const size_t degree = random_degree(&r);
-    vec3 points[CPROX_MAX_DEGREE + 1];
+    vec3 points[CPROX_MAX_DEGREE + 1], begin[CHORDS + 1];
     random_points(&r, degree + 1, points);
     lanes_basis(degree, basis);
-    lanes_sample(basis, points, degree, samples);
-    const double allowed = (10.0 * (double)degree + 16) * 0x1p-53 * ref_largest(points, degree + 1);
-    for (size_t k = 0; k < SAMPLES; k++) {
-      const vec3l exact = ref_bezier(points, degree, ((long double)k + 0.5L) / SAMPLES, 0);
-      assert_true(ref_error(exact, vec(samples[k], samples[SAMPLES + k], samples[2 * SAMPLES + k])) <= allowed);
+    lanes_chords chords;
+    lanes_cut(basis, points, degree, &chords);
+    const double size = ref_largest(points, degree + 1);
+    const double allowed = (10.0 * (double)degree + 16) * 0x1p-53 * size;
+    for (size_t k = 0; k < CHORDS; k++) {
+      const vec3l exact = ref_bezier(points, degree, (long double)k / CHORDS, 0);
+      begin[k] = vec(chords.x[k], chords.y[k], chords.z[k]);
+      assert_true(ref_error(exact, begin[k]) <= allowed);
     }
-    size_t first;
-    const double least = lanes_closest(samples, points[0], &first);
-    for (size_t k = 0; k < SAMPLES; k++) {
-      const vec3 y = vec(samples[k], samples[SAMPLES + k], samples[2 * SAMPLES + k]);
-      const double square = vec_norm2(vec_sub(y, points[0]));
-      assert_true(square >= least && (square > least || k >= first) && (k != first || square == least));
-    }
+    begin[CHORDS] = points[degree];
+    const vec3 from = vec_axpy(points[0], size, rng_unit(&r));
+    size_t chord;
+    double s;
+    const double distance = sqrt(lanes_closest(&chords, from, &chord, &s));
+    long double least = INFINITY;
+    for (size_t k = 0; k < CHORDS; k++)
+      least = fminl(least, ref_point_segment(ref_vec(from), ref_vec(begin[k]), ref_vec(begin[k + 1])));
+    assert_true(fabsl((long double)distance - least) <= 16 * 0x1p-53 * 3 * size);
+    const vec3 at = vec_lerp(begin[chord], begin[chord + 1], s);
+    assert_true(fabs(vec_norm(vec_sub(from, at)) - distance) <= 16 * 0x1p-53 * 3 * size);
   }
 }
 
@@ -448,7 +456,7 @@ int main(void) {
       cmocka_unit_test(witnesses_lie_where_they_say),
       cmocka_unit_test(results_are_the_same_for_every_split_and_number_of_threads),
       cmocka_unit_test(ball_bounds_are_never_above_the_true_distance),
-      cmocka_unit_test(samples_are_points_of_the_piece),
+      cmocka_unit_test(chords_are_those_of_the_piece),
       cmocka_unit_test(a_mover_that_is_unusable_fails_alone),
       cmocka_unit_test(unusable_calls_are_refused_with_a_sentence),
       cmocka_unit_test(a_warm_workspace_allocates_nothing_and_no_memory_is_reported),

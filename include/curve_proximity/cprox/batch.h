@@ -34,7 +34,7 @@ CPROX_API void cprox_batch_free(cprox_batch *batch);
  *  movers    at least `last` of them; first <= last.
  *  options   NULL: the default. A certificate is refused: ask the query of one mover for it.
  *  results   results[i] receives what cprox_distance_all() answers for movers[i]: the same guarantees, not the same digits.
- *            The others are untouched. nodes and probes are 0 where sampled points inside the target settled it.
+ *            The others are untouched. nodes and probes are 0 where balls settled it.
  *
  *  A mover that is unusable fails alone: its result has the negative status and the interval [0, infinity], all others are
  *  answered. Returns the first negative status, else the largest; the reason names the first mover that it belongs to.

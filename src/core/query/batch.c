@@ -12,61 +12,55 @@
 #include "query/batch_targets.h"
 #include "query/candidate_search.h"
 
-enum { MOST_PIECES = 4 }; /* curves of more are searched along their tree of capsules instead of sampled */
+enum { MOST_PIECES = 4 }; /* curves of more are searched along their tree of capsules instead of cut into chords */
 
 /* One call. */
 typedef struct batch_run {
   const cprox_batch *batch;
   question q;
-  double *lower; /* of each part's ball, padded */
-  candidate *near;
-  double *basis; /* of the degree below; 0: none yet */
+  double *lower;   /* of each part's ball, padded */
+  candidate *near; /* what may matter to the mover */
+  double *basis;   /* of the degree below; 0: none yet */
   size_t degree;
-  bool sampled; /* the mover has samples: */
-  double samples[MOST_PIECES][3 * SAMPLES];
-  double samples_slack; /* how far they may be from the curve */
+  bool cut; /* the mover has chords: */
+  lanes_chords chords[MOST_PIECES];
+  double beside; /* how far the curve may be from the chords' points of the same parameter */
+  double slack;  /* how much rounding may add to that */
 } batch_run;
 
-/* The part that is near in any case, and may already be met. */
+/* What the chords tell of the parts. */
 typedef struct first_look {
-  size_t most_promising; /* in `near` */
-  double upper;          /* on the distance from it */
-  bool met;              /* the sample of its seed lies in it, */
-  vec3 at;               /* here */
+  size_t n;         /* candidates in `near`, */
+  size_t promising; /* the one that has the least upper bound, */
+  double upper;     /* this */
+  double beyond;    /* the least lower bound of all others */
+  bool met;         /* the promising one is met at its seed: the ball about `centre` with radius `within` is of it */
+  vec3 centre;
+  double within;
 } first_look;
 
-/* ---- samples ------------------------------------------------------------------------------------------------------------ */
+/* ---- chords ------------------------------------------------------------------------------------------------------------- */
 
-static void take_samples(batch_run *run, const cprox_curve *curve) {
-  run->sampled = curve->n_pieces <= MOST_PIECES;
-  if (!run->sampled) return;
+/* Chords of parameter length h are within h²/8 max|psi''| of the curve, |psi''| <= n (n-1) max|second difference|. */
+static void cut_curve(batch_run *run, const cprox_curve *curve) {
+  run->cut = curve->n_pieces <= MOST_PIECES;
+  if (!run->cut) return;
   if (run->degree != curve->degree) {
     lanes_basis(curve->degree, run->basis);
     run->degree = curve->degree;
   }
-  double error = 0.0;
+  double error = 0.0, bend2 = 0.0;
   for (size_t i = 0; i < curve->n_pieces; i++) {
-    lanes_sample(run->basis, curve_piece(curve, i), curve->degree, run->samples[i]);
+    lanes_cut(run->basis, curve_piece(curve, i), curve->degree, &run->chords[i]);
+    bend2 = fmax(bend2, lanes_bend2(curve_piece(curve, i), curve->degree));
     error = fmax(error, curve->error[i]);
   }
-  /* the basis is within 4 n u of itself, sums of n + 1 products follow; the capsule holds all control points */
+  const double n = (double)curve->degree;
+  run->beside = ROUND_UP * n * (n - 1.0) * sqrt(bend2) / (8.0 * CHORDS * CHORDS);
+  /* the capsule holds all control points */
   const curve_capsule *capsule = &curve->capsules[1];
   const double magnitude = fmax(vec_norm(capsule->a), vec_norm(capsule->b)) + capsule->radius;
-  const double n = (double)curve->degree;
-  run->samples_slack = ROUND_UP * (error + (10.0 * n + 16.0) * ROUND_U * magnitude);
-}
-
-/* The sample that is nearest to a point; its square distance, and where it is on the curve. */
-static double closest_sample(const batch_run *run, vec3 centre, size_t *piece, size_t *sample) {
-  double least = INFINITY;
-  for (size_t i = 0; i < run->q.mover.curve->n_pieces; i++) {
-    size_t k;
-    const double square = lanes_closest(run->samples[i], centre, &k);
-    if (square >= least) continue;
-    least = square;
-    *piece = i, *sample = k;
-  }
-  return least;
+  run->slack = ROUND_UP * (error + (10.0 * n + 40.0 + n * n / (CHORDS * CHORDS)) * ROUND_U * magnitude);
 }
 
 /* The whole curve lies in a plane of constant z, exactly. */
@@ -77,89 +71,113 @@ static bool lies_in_plane(const cprox_curve *curve, double z) {
   return true;
 }
 
-/* Samples against the ball inside a part: where the search against it should begin, and an upper bound on the distance. */
-static double look_at(const batch_run *run, candidate *c, size_t part, bool *met, vec3 *at) {
+/* Chords against the balls of a part: bounds on the distance, and where the search should begin. Sets look->met
+ * where the curve is seen to meet the part there. */
+static double look_at(const batch_run *run, candidate *c, size_t part, first_look *look) {
   const batch_core *core = &run->batch->cores[part];
-  size_t piece = 0, sample = 0;
-  const double distance = sqrt(closest_sample(run, core->centre, &piece, &sample));
-  c->seed_piece = (uint32_t)piece;
-  c->seed_s = ((double)sample + 0.5) / SAMPLES;
-
-  /* any point of the part is within the bounding ball, and all points of the inscribed ball are of the part */
+  double least = INFINITY, along = 0.0;
+  size_t chord = 0, piece = 0;
+  for (size_t i = 0; i < run->q.mover.curve->n_pieces; i++) {
+    size_t k;
+    double s;
+    const double square = lanes_closest(&run->chords[i], core->centre, &k, &s);
+    if (square >= least) continue;
+    least = square;
+    piece = i, chord = k, along = s;
+  }
   const cprox_target *target = &run->batch->targets[c->target];
-  const double margin = target->padding + run->q.mover.radius;
-  const double slack = ROUND_UP * (run->samples_slack + 16.0 * ROUND_U * (distance + run->batch->balls.sizes[part]));
-  const bool inside =
-      core->radius >= 0.0 && (!core->flat || lies_in_plane(run->q.mover.curve, target->pose.position.z));
-  const double reach = inside ? -core->radius : core->extent;
-  const double upper = distance + reach - margin + slack;
-  *met = inside && upper <= 0.0;
-  if (*met) {
-    const double *x = run->samples[piece] + sample;
-    const vec3 y = vec(x[0], x[SAMPLES], x[2 * SAMPLES]);
-    const double within = core->radius + target->padding;
-    *at = distance > within ? vec_lerp(core->centre, y, within / distance) : y;
+  const double distance = sqrt(least), margin = target->padding + run->q.mover.radius;
+  const double slack =
+      run->beside + ROUND_UP * (run->slack + 32.0 * ROUND_U * (distance + margin + run->batch->balls.sizes[part]));
+  c->lower = fmax(c->lower, distance - core->outer - margin - slack);
+  c->seed_piece = (uint32_t)piece;
+  c->seed_s = fmin(fmax(((double)chord + along) / CHORDS, 1e-3), 1.0 - 1e-3);
+
+  /* any point of the part is within the outer ball, and all points of the inner ball are of the part */
+  const bool inside = core->inner >= 0.0 && (!core->flat || lies_in_plane(run->q.mover.curve, target->pose.position.z));
+  const double upper = distance + (inside ? -core->inner : core->outer) - margin + slack;
+  look->met = inside && upper <= 0.0;
+  if (look->met) {
+    look->within = core->inner + target->padding;
+    look->centre = core->centre;
+    c->seed_s = ((double)chord + along) / CHORDS;
   }
   return upper;
 }
 
-/* Looks at all that is near; stops where the curve is seen to meet a part. */
-static first_look look_around(batch_run *run, size_t n) {
-  first_look look = {.upper = INFINITY};
-  for (size_t i = 0; i < n && run->sampled && !look.met; i++) {
-    candidate *c = &run->near[i];
-    if (!candidate_body(&run->q, c)) continue;
-    const size_t part = (size_t)c->mover_part;
-    c->mover_part = 0;
-    const double upper = look_at(run, c, part, &look.met, &look.at);
-    if (upper < look.upper) look.upper = upper, look.most_promising = i;
+/* Collects what comes within `most` as far as balls and chords can tell; stops where the curve is seen to meet a part. */
+static first_look look_around(batch_run *run, double most) {
+  const cprox_batch *batch = run->batch;
+  const question *q = &run->q;
+  first_look look = {.upper = INFINITY, .beyond = INFINITY};
+  lanes_ball_bounds(&batch->balls, &q->reach, q->mover.radius, run->lower);
+  bool cut = false;
+  for (size_t k = 0; k < batch->balls.n; k++) {
+    candidate c = batch->parts[k];
+    c.lower = run->lower[k];
+    double upper = INFINITY;
+    if (c.lower <= fmin(most, look.upper) && batch->targets[c.target].body) {
+      if (!cut) cut_curve(run, q->mover.curve);
+      cut = true;
+      if (run->cut) upper = look_at(run, &c, k, &look);
+    }
+    if (c.lower > fmin(most, look.upper)) {
+      look.beyond = fmin(look.beyond, c.lower);
+      continue;
+    }
+    if (upper < look.upper || look.met) look.upper = upper, look.promising = look.n;
+    run->near[look.n++] = c;
+    if (look.met) break;
   }
   return look;
 }
 
+/* The promising candidate first, the others nearest first; those that a later one has ruled out leave. */
+static void put_in_order(batch_run *run, first_look *look) {
+  if (look->n == 0) return;
+  candidate *near = run->near;
+  const candidate first = near[look->promising];
+  near[look->promising] = near[0];
+  near[0] = first;
+  size_t kept = 1;
+  for (size_t i = 1; i < look->n; i++) {
+    if (near[i].lower > look->upper)
+      look->beyond = fmin(look->beyond, near[i].lower);
+    else
+      near[kept++] = near[i];
+  }
+  look->n = kept;
+  candidates_sort(near + 1, kept - 1);
+}
+
 /* ---- one mover ---------------------------------------------------------------------------------------------------------- */
 
-/* The parts whose balls come within `most`, nearest first; *beyond becomes the least bound of the others. mover_part is lent to the
- * number of the part. */
-static size_t gather(batch_run *run, double most, double *beyond) {
-  const lanes_balls *balls = &run->batch->balls;
-  lanes_ball_bounds(balls, &run->q.reach, run->q.mover.radius, run->lower);
-  size_t n = 0;
-  *beyond = INFINITY;
-  for (size_t k = 0; k < balls->n; k++) {
-    if (run->lower[k] > most) {
-      *beyond = fmin(*beyond, run->lower[k]);
-      continue;
-    }
-    run->near[n] = run->batch->parts[k];
-    run->near[n].lower = run->lower[k];
-    run->near[n++].mover_part = (int32_t)k;
-  }
-  candidates_sort(run->near, n);
-  return n;
-}
-
-/* A sample lies in a part: they meet there, whatever else there is. */
-static void report_meeting(const batch_run *run, const candidate *c, vec3 at, cprox_result *r) {
+/* The curve's point of the seed lies in a part: they meet there, whatever else there is. */
+static cprox_status report_meeting(const batch_run *run, const first_look *look, cprox_result *r) {
   const cprox_curve *curve = run->q.mover.curve;
+  const candidate *c = &run->near[look->promising];
   const double t0 = curve->breaks[c->seed_piece], t1 = curve->breaks[c->seed_piece + 1];
+  const vec3 *p = curve_piece(curve, c->seed_piece);
+  vec3 y;
+  curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, curve->degree, curve->binomial, c->seed_s, &y, NULL, NULL);
+  const double distance = vec_norm(vec_sub(y, look->centre));
+  if (distance > look->within) y = vec_lerp(look->centre, y, look->within / distance);
   *r = question_nothing();
   r->lower = r->upper = 0.0;
-  r->t = t0 + c->seed_s * (t1 - t0);
-  r->on_mover = r->on_target = at;
+  r->t = c->seed_s == 1.0 ? t1 : t0 + c->seed_s * (t1 - t0);
+  r->on_mover = r->on_target = y;
   r->target_index = c->target, r->target_part = c->part;
   r->rung = CPROX_RUNG_SPHERE;
+  return question_conclude(&run->q, INFINITY, CPROX_OK, r);
 }
 
-/* The union of what is near, the most promising part first. */
-static cprox_status search_near(const batch_run *run, size_t n, size_t most_promising, double beyond,
-                                cprox_result *all) {
+/* The union of what is near. */
+static cprox_status search_near(const batch_run *run, const first_look *look, cprox_result *all) {
   const question *q = &run->q;
   cprox_status trouble = CPROX_OK;
   *all = question_nothing();
-  double rest = INFINITY; /* the least bound of what was not searched */
-  for (size_t turn = 0; turn < n; turn++) {
-    const size_t i = turn == 0 ? most_promising : turn <= most_promising ? turn - 1 : turn;
+  double rest = look->beyond; /* the least bound of what was not searched */
+  for (size_t i = 0; i < look->n; i++) {
     const candidate *c = &run->near[i];
     const bool too_far = !question_wants_verdict(q) && c->lower > all->upper;
     if (too_far || all->upper <= fmax(q->limit, 0.0) || trouble == CPROX_STOPPED) {
@@ -172,34 +190,26 @@ static cprox_status search_near(const batch_run *run, size_t n, size_t most_prom
     if (status != CPROX_OK) trouble = status;
     question_join(all, &one);
   }
-  if (n == 0 && isfinite(beyond)) all->rung = CPROX_RUNG_SPHERE;
-  all->lower = fmin(all->lower, fmax(fmin(rest, beyond), 0.0));
+  if (look->n == 0 && run->batch->n > 0) all->rung = CPROX_RUNG_SPHERE;
+  all->lower = fmin(all->lower, fmax(rest, 0.0));
   return question_conclude(q, INFINITY, trouble, all);
 }
 
 static cprox_status answer_fast(batch_run *run, cprox_result *r) {
-  question *q = &run->q;
-  question_ask_whole(q);
-  double beyond;
-  size_t n = gather(run, question_wants_verdict(q) ? q->limit : INFINITY, &beyond);
-  if (n > 0) take_samples(run, q->mover.curve);
-  const first_look look = look_around(run, n);
-  for (size_t i = 0; i < n; i++) run->near[i].mover_part = 0;
-  if (look.met) {
-    report_meeting(run, &run->near[look.most_promising], look.at, r);
-    return question_conclude(q, INFINITY, CPROX_OK, r);
-  }
-  /* distances: what is farther than that does not matter */
-  while (n > 0 && run->near[n - 1].lower > look.upper) beyond = fmin(beyond, run->near[--n].lower);
-  return search_near(run, n, look.most_promising, beyond, r);
+  const question *q = &run->q;
+  question_ask_whole(&run->q);
+  first_look look = look_around(run, question_wants_verdict(q) ? q->limit : INFINITY);
+  if (look.met) return report_meeting(run, &look, r);
+  put_in_order(run, &look);
+  return search_near(run, &look, r);
 }
 
 /* ---- the call ----------------------------------------------------------------------------------------------------------- */
 
 /* The short way is for points and balls along curves with control points. */
 static bool may_be_fast(const batch_run *run, const cprox_mover *mover) {
-  return mover->curve && !mover->curve->arcs && !mover->body && mover->radius >= 0.0 && isfinite(mover->radius) &&
-         !run->batch->on_clock;
+  return mover->curve && !mover->curve->arcs && !mover->body && !mover->motion && mover->radius >= 0.0 &&
+         isfinite(mover->radius) && !run->batch->on_clock;
 }
 
 static cprox_status answer_one(batch_run *run, const cprox_mover *mover, cprox_result *r) {
@@ -233,7 +243,7 @@ static cprox_status check_call(const batch_run *run, const cprox_mover *movers, 
 
 static bool reserve(batch_run *run) {
   const lanes_balls *balls = &run->batch->balls;
-  const size_t numbers = balls->padded + (CPROX_MAX_DEGREE + 1) * SAMPLES;
+  const size_t numbers = balls->padded + (CPROX_MAX_DEGREE + 1) * CHORDS;
   run->lower = workspace_reserve(run->q.workspace, WORKSPACE_BATCH, numbers * sizeof(double));
   run->near = workspace_reserve(run->q.workspace, WORKSPACE_BATCH_NEAR, (balls->n + 1) * sizeof *run->near);
   if (!run->lower || !run->near) return false;

@@ -4,6 +4,9 @@
 #include "base/lanes.h"
 #include "base/rounding.h"
 
+/* Below this the square of a length may have lost its digits, and its reciprocal overflows. */
+static const double LEAST_SQUARE = 1e-280;
+
 LANES_DISPATCHED
 void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, double radius, double *lower) {
   const double *restrict x = balls->x, *restrict y = balls->y, *restrict z = balls->z;
@@ -11,8 +14,8 @@ void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, d
   double *restrict out = lower;
   const vec3 a = capsule->a, ab = vec_sub(capsule->b, a);
   /* a chord whose square would underflow is a point and a little more */
-  const double length2 = vec_norm2(ab), per_length2 = length2 > 1e-280 ? 1.0 / length2 : 0.0;
-  const double own = capsule->radius + radius + (length2 > 1e-280 ? 0.0 : 1e-140);
+  const double length2 = vec_norm2(ab), per_length2 = length2 > LEAST_SQUARE ? 1.0 / length2 : 0.0;
+  const double own = capsule->radius + radius + (length2 > LEAST_SQUARE ? 0.0 : 1e-140);
   const double own_sizes = vec_norm(a) + vec_norm(capsule->b) + own;
 #pragma omp simd
   for (size_t k = 0; k < balls->padded; k++) {
@@ -28,46 +31,65 @@ void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, d
 }
 
 void lanes_basis(size_t degree, double *basis) {
-  for (size_t k = 0; k < SAMPLES; k++) {
-    const double s = ((double)k + 0.5) / SAMPLES, r = 1.0 - s;
+  for (size_t k = 0; k < CHORDS; k++) {
+    const double s = (double)k / CHORDS, r = 1.0 - s;
     basis[k] = 1.0;
     for (size_t n = 1; n <= degree; n++) {
       /* B(n, j) = r B(n-1, j) + s B(n-1, j-1), from above so that one row is enough */
-      basis[n * SAMPLES + k] = s * basis[(n - 1) * SAMPLES + k];
+      basis[n * CHORDS + k] = s * basis[(n - 1) * CHORDS + k];
       for (size_t j = n - 1; j > 0; j--)
-        basis[j * SAMPLES + k] = r * basis[j * SAMPLES + k] + s * basis[(j - 1) * SAMPLES + k];
+        basis[j * CHORDS + k] = r * basis[j * CHORDS + k] + s * basis[(j - 1) * CHORDS + k];
       basis[k] *= r;
     }
   }
 }
 
 LANES_DISPATCHED
-void lanes_sample(const double *basis, const vec3 *points, size_t degree, double *samples) {
-  double x[SAMPLES] = {0}, y[SAMPLES] = {0}, z[SAMPLES] = {0};
+void lanes_cut(const double *basis, const vec3 *points, size_t degree, lanes_chords *chords) {
+  double x[CHORDS] = {0}, y[CHORDS] = {0}, z[CHORDS] = {0};
   for (size_t j = 0; j <= degree; j++) {
-    const double *restrict b = basis + j * SAMPLES;
+    const double *restrict b = basis + j * CHORDS;
     const vec3 p = points[j];
 #pragma omp simd
-    for (int k = 0; k < SAMPLES; k++) {
+    for (int k = 0; k < CHORDS; k++) {
       x[k] += b[k] * p.x;
       y[k] += b[k] * p.y;
       z[k] += b[k] * p.z;
     }
   }
-  for (int k = 0; k < SAMPLES; k++) {
-    samples[k] = x[k];
-    samples[SAMPLES + k] = y[k];
-    samples[2 * SAMPLES + k] = z[k];
+  for (int k = 0; k < CHORDS; k++) {
+    chords->x[k] = x[k];
+    chords->y[k] = y[k];
+    chords->z[k] = z[k];
+  }
+  for (int k = 0; k < CHORDS - 1; k++) {
+    chords->dx[k] = x[k + 1] - x[k];
+    chords->dy[k] = y[k + 1] - y[k];
+    chords->dz[k] = z[k + 1] - z[k];
+  }
+  const vec3 end = points[degree];
+  chords->dx[CHORDS - 1] = end.x - x[CHORDS - 1];
+  chords->dy[CHORDS - 1] = end.y - y[CHORDS - 1];
+  chords->dz[CHORDS - 1] = end.z - z[CHORDS - 1];
+#pragma omp simd
+  for (int k = 0; k < CHORDS; k++) {
+    const double dx = chords->dx[k], dy = chords->dy[k], dz = chords->dz[k];
+    const double length2 = dx * dx + dy * dy + dz * dz;
+    chords->per_length2[k] = length2 > LEAST_SQUARE ? 1.0 / length2 : 0.0;
   }
 }
 
 LANES_DISPATCHED
-double lanes_closest(const double *samples, vec3 centre, size_t *sample) {
-  const double *restrict x = samples, *restrict y = x + SAMPLES, *restrict z = y + SAMPLES;
-  double square[SAMPLES];
+double lanes_closest(const lanes_chords *c, vec3 point, size_t *chord, double *along) {
+  double square[CHORDS], at[CHORDS];
 #pragma omp simd
-  for (int k = 0; k < SAMPLES; k++) {
-    const double dx = x[k] - centre.x, dy = y[k] - centre.y, dz = z[k] - centre.z;
+  for (int k = 0; k < CHORDS; k++) {
+    const double px = point.x - c->x[k], py = point.y - c->y[k], pz = point.z - c->z[k];
+    double s = (px * c->dx[k] + py * c->dy[k] + pz * c->dz[k]) * c->per_length2[k];
+    s = s < 0.0 ? 0.0 : s;
+    s = s > 1.0 ? 1.0 : s;
+    const double dx = px - s * c->dx[k], dy = py - s * c->dy[k], dz = pz - s * c->dz[k];
+    at[k] = s;
     square[k] = dx * dx + dy * dy + dz * dz;
   }
   double least[LANES];
@@ -76,7 +98,18 @@ double lanes_closest(const double *samples, vec3 centre, size_t *sample) {
   for (int half = LANES / 2; half > 0; half /= 2)
     for (int k = 0; k < half; k++) least[k] = least[k] < least[k + half] ? least[k] : least[k + half];
   size_t first = 0;
-  while (first + 1 < SAMPLES && square[first] != least[0]) first++;
-  *sample = first;
+  while (first + 1 < CHORDS && square[first] != least[0]) first++;
+  *chord = first;
+  *along = at[first];
   return least[0];
+}
+
+double lanes_bend2(const vec3 *p, size_t degree) {
+  double most = 0.0;
+  for (size_t i = 0; i + 2 <= degree; i++) {
+    const double x = p[i].x - 2.0 * p[i + 1].x + p[i + 2].x, y = p[i].y - 2.0 * p[i + 1].y + p[i + 2].y;
+    const double z = p[i].z - 2.0 * p[i + 1].z + p[i + 2].z;
+    most = fmax(most, x * x + y * y + z * z);
+  }
+  return most;
 }

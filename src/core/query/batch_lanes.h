@@ -5,8 +5,8 @@
 
 #include "curve/curve.h"
 
-/* Sets of balls are padded to a multiple of LANES; a piece is sampled at SAMPLES parameters, s = (k + 1/2)/SAMPLES. */
-enum { LANES = 8, SAMPLES = 16 };
+/* Sets of balls are padded to a multiple of LANES; a piece is cut into CHORDS of equal parameter length. */
+enum { LANES = 8, CHORDS = 16 };
 
 /* Balls, one array a number, `padded` of each. */
 typedef struct lanes_balls {
@@ -19,13 +19,21 @@ typedef struct lanes_balls {
 /* lower[k]: the distance of the capsule, grown by `radius`, from ball k, rounding included; negative where they overlap. */
 void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, double radius, double *lower);
 
-/* basis[j * SAMPLES + k]: Bernstein polynomial j of the degree at sample k. */
+/* basis[j * CHORDS + k]: Bernstein polynomial j of the degree at k/CHORDS. */
 void lanes_basis(size_t degree, double *basis);
 
-/* The samples of a Bézier piece: x, y, z of SAMPLES numbers each, after one another. */
-void lanes_sample(const double *basis, const vec3 *points, size_t degree, double *samples);
+/* The chords of a Bézier piece: chord k begins at the point of s = k/CHORDS, and how it goes on to the next. */
+typedef struct lanes_chords {
+  double x[CHORDS], y[CHORDS], z[CHORDS], dx[CHORDS], dy[CHORDS], dz[CHORDS];
+  double per_length2[CHORDS]; /* 1/|d|², 0 where that would overflow */
+} lanes_chords;
 
-/* The least |sample - centre|², and the first sample that has it. */
-double lanes_closest(const double *samples, vec3 centre, size_t *sample);
+void lanes_cut(const double *basis, const vec3 *points, size_t degree, lanes_chords *chords);
+
+/* The square distance of a point from the chords, and where it is attained: the first chord that has it, and s in [0, 1] of it. */
+double lanes_closest(const lanes_chords *chords, vec3 point, size_t *chord, double *s);
+
+/* max|P_(i+2) - 2 P_(i+1) + P_i|² over the control points. */
+double lanes_bend2(const vec3 *points, size_t degree);
 
 #endif

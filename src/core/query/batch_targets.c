@@ -57,9 +57,22 @@ static bool has_depth(const cprox_body *body) {
   }
 }
 
-static batch_core core_of(const question *q, const candidate *c, vec3 ball_centre, double extent) {
+/* About a centre of the shape's frame: the ball round the core where its vertices are known, else the one through the other ball. */
+static double outer_radius(const cprox_body *body, vec3 centre) {
+  const convex *shape = &body->shape;
+  const vec3 ball = vec_sub(body->ball_centre, body->centre);
+  double most = vec_norm(vec_sub(centre, ball)) + body->ball_radius;
+  if (shape->n > 0) {
+    most = 0.0;
+    for (int32_t i = 0; i < shape->n; i++)
+      most = fmax(most, vec_norm(vec_sub(vec(shape->x[i], shape->y[i], shape->z[i]), centre)));
+  }
+  return most;
+}
+
+static batch_core core_of(const question *q, const candidate *c, candidate_ball round) {
   const cprox_body *body = candidate_body(q, c);
-  batch_core core = {.centre = ball_centre, .radius = -1.0, .extent = extent};
+  batch_core core = {.centre = round.centre, .inner = -1.0, .outer = round.radius};
   if (!body || !has_depth(body)) return core;
   const cprox_pose pose = candidate_pose(q, c);
   const frame f = frame_create(&pose, body->centre);
@@ -69,7 +82,8 @@ static batch_core core_of(const question *q, const candidate *c, vec3 ball_centr
   const double depth = deepest(&body->shape, &centre);
   if (!(depth > 0.0)) return core;
   core.centre = frame_to_world(&f, centre);
-  core.radius = depth * (1.0 - 2.0 * ROUND_U);
+  core.inner = depth * (1.0 - 2.0 * ROUND_U);
+  core.outer = outer_radius(body, centre);
   return core;
 }
 
@@ -113,7 +127,7 @@ static void describe(cprox_batch *batch, const question *q, size_t k) {
   batch->balls.z[k] = round.centre.z;
   batch->balls.reach[k] = round.radius + target->padding;
   batch->balls.sizes[k] = vec_norm(round.centre) + placing + batch->balls.reach[k];
-  batch->cores[k] = core_of(q, c, round.centre, round.radius);
+  batch->cores[k] = core_of(q, c, round);
 }
 
 cprox_status cprox_batch_create(const cprox_target *targets, size_t n, cprox_workspace *workspace,

@@ -7,12 +7,12 @@
 #include "query/batch_lanes.h"
 #include "query/candidates.h"
 
-/* A ball inside a target, in the world, padding left out. */
+/* A point in a target or near it, in the world, and balls about it: one inside the target, one round it. Padding is left out. */
 typedef struct batch_core {
-  vec3 centre;   /* where there is no such ball, the centre of the bounding ball */
-  double radius; /* rounding of the radius included; 0: the centre is a point of the target; < 0: there is no ball */
-  bool flat;     /* a disc in the plane of constant z: it tells of curves in that plane only */
-  double extent; /* of the bounding ball, without padding */
+  vec3 centre;
+  double inner; /* rounding included; < 0: there is no such ball */
+  double outer;
+  bool flat; /* the inner ball is a disc in the plane of constant z: it tells of curves in that plane only */
 } batch_core;
 
 struct cprox_batch {
