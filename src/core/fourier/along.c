@@ -12,6 +12,9 @@ static cprox_status check_arguments(const cprox_gap *gap, const cprox_curve *cur
   if (!workspace) return CPROX_INVALID;
   const char *missing = !gap ? "gap" : !curve ? "curve" : !orientation ? "orientation" : !result ? "result" : NULL;
   if (missing) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", missing);
+  if (curve->arcs)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "a curve known by its arc lengths alone has no derivative to go by");
   if (gap->info.dimension == 2)
     for (size_t i = 0; i < curve->n_pieces * (curve->degree + 1); i++)
       if (curve->points[i].z != 0.0)

@@ -95,6 +95,9 @@ cprox_status cprox_solid_create_sweep(int dimension, const cprox_curve *curve, d
   if (status == CPROX_OK) status = solid_check_length("tolerance", tolerance, workspace);
   if (status != CPROX_OK) return status;
   if (!curve) return workspace_fail(workspace, CPROX_INVALID, "curve is NULL");
+  if (curve->arcs)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "a curve known by its arc lengths alone cannot be swept: it has no control points");
   if (!(radius >= 0.0) || radius > SOLID_LARGEST)
     return workspace_fail(workspace, CPROX_INVALID, "radius is %g, must be >= 0 and at most %g", radius, SOLID_LARGEST);
   const size_t degree = curve->degree, width = degree + 1;

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Over-reach against n, and outlines of obstacles: rays from deep overlap outwards, the last place called colliding on each. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "fourier/gap.h"
+#include "fourier/parts.h"
+#include "fourier/shapes.h"
+#include "support/random.h"
+#ifdef HAVE_LIQUID
+#include <liquid/liquid.h>
+#endif
+
+#define PI 3.14159265358979323846
+
+/* The gap of a method, or NULL where it has none. */
+typedef cprox_gap *(*gap_maker)(const shape *a, const shape *b, uint32_t samples, cprox_workspace *ws);
+
+static cprox_gap *make(const shape *a, const shape *b, cprox_gap_mode mode, uint32_t samples, cprox_workspace *ws) {
+  cprox_gap_options o = cprox_gap_options_default();
+  o.mode = mode, o.samples = samples;
+  cprox_gap *gap = NULL;
+  cprox_gap_create(a->solid, b->solid, &o, ws, &gap);
+  return gap;
+}
+
+static cprox_gap *make_certified(const shape *a, const shape *b, uint32_t samples, cprox_workspace *ws) {
+  return make(a, b, CPROX_GAP_CERTIFIED, samples, ws);
+}
+
+static cprox_gap *make_tuned(const shape *a, const shape *b, uint32_t samples, cprox_workspace *ws) {
+  return make(a, b, CPROX_GAP_TUNED, samples, ws);
+}
+
+#ifdef HAVE_LIQUID
+/* The least value of the kernel of separable weights w over its period. */
+static double least_value(const kernel *w) {
+  double low = INFINITY, high = 0.0;
+  for (int i = 0; i <= 4096; i++) {
+    double sum = w->w[0];
+    for (int k = 1; k <= w->n; k++) sum += 2.0 * w->w[k] * cos(PI * i * k / 4096.0);
+    low = fmin(low, sum), high = fmax(high, sum);
+  }
+  return fmin(0.0, low * high); /* the plane's: one factor negative, the other at its peak */
+}
+
+/* The paper's kernel: Parks-McClellan with pass band x0 and stop band x1, as weights with w[0] = 1. */
+static bool paper_kernel(int N, double x0, double x1, kernel *w) {
+  float bands[4] = {0.0F, (float)x0, (float)x1, 0.5F}, want[2] = {1.0F, 0.0F}, taps[2 * KERNEL_MOST_N + 1];
+  float weights[2] = {1.0F, 1.0F};
+  liquid_firdespm_wtype kinds[2] = {LIQUID_FIRDESPM_FLATWEIGHT, LIQUID_FIRDESPM_FLATWEIGHT};
+  if (firdespm_run((unsigned)(2 * N + 1), 2, bands, want, weights, kinds, LIQUID_FIRDESPM_BANDPASS, taps) != 0)
+    return false;
+  *w = (kernel){.n = N};
+  for (int k = 0; k <= N; k++) w->w[k] = (double)taps[N + k] / (double)taps[N];
+  return isfinite(w->w[N]) && taps[N] > 0.0F;
+}
+
+/* A gap with that kernel and the threshold that its negative part leaves: t - eta mu mu (the corrected theorem). Pass and stop band
+ * are those of the least 2 rho + x1 with a threshold above 0 out of a scan. */
+static cprox_gap *make_paper(const shape *a, const shape *b, uint32_t samples, cprox_workspace *ws) {
+  const int N = (int)samples / 2;
+  double best = INFINITY, best_threshold = 0.0;
+  kernel chosen = {.n = 0};
+  gap_plan plan = {.mode = CPROX_GAP_CERTIFIED, .dimension = 2, .N = N, .beta = kernel_beta(2, (int)samples)};
+  plan.period = 2.6 * (a->solid->radius + b->solid->radius);
+  const double area = plan.period * plan.period;
+  for (double x0 = 0.3 / samples; x0 < 0.15; x0 *= 1.25)
+    for (double dx = 0.5 / samples; x0 + dx < 0.3; dx *= 1.25) {
+      kernel w;
+      if (2.0 * x0 + x0 + dx >= best || !paper_kernel(N, x0, x0 + dx, &w)) continue;
+      double reach;
+      cprox_solid *p = solid_offset(a->solid, x0 * plan.period, &reach),
+                  *q = solid_offset(b->solid, x0 * plan.period, &reach);
+      const double mu = cprox_solid_measure(p) / area * (cprox_solid_measure(q) / area);
+      const double t = kernel_threshold(&w, 2, x0, NULL) + least_value(&w) * mu;
+      cprox_solid_free(p);
+      cprox_solid_free(q);
+      if (t > 0.0) best = 3.0 * x0 + dx, best_threshold = t, chosen = w, plan.offset = x0 * plan.period;
+    }
+  if (isinf(best)) return NULL;
+
+  double reach;
+  cprox_gap *gap;
+  if (gap_build(&plan, solid_offset(a->solid, plan.offset, &reach), solid_offset(b->solid, plan.offset, &reach),
+                (size_t)1 << 30, ws, &gap))
+    return NULL;
+  kernel certified;
+  kernel_certified(&certified, N, plan.beta);
+  for (size_t i = 0; i < gap->n_blocks; i++) {
+    for (int j = 0; j < 2 * LANES; j++) {
+      const int k[3] = {gap->blocks[i].k[0] + j % LANES, gap->blocks[i].k[1], 0};
+      const double was = kernel_weight(&certified, k);
+      if (was > 0.0) gap->c[2 * LANES * i + (size_t)j] *= kernel_weight(&chosen, k) / was;
+    }
+  }
+  gap->inverse = 1.0 / (best_threshold * area * area);
+  gap->centre_a = a->solid->centre, gap->centre_b = b->solid->centre;
+  gap->radius_a = a->solid->radius, gap->radius_b = b->solid->radius;
+  return gap;
+}
+#endif
+
+typedef struct method {
+  const char *name;
+  gap_maker make;
+} method;
+
+static const method METHODS[] = {
+    {"curve_proximity", make_certified},
+    {"curve_proximity tuned", make_tuned},
+#ifdef HAVE_LIQUID
+    {"paper", make_paper},
+#endif
+};
+enum { N_METHODS = sizeof METHODS / sizeof *METHODS };
+
+static double value_at(const cprox_gap *gap, const cprox_pose *a, const cprox_pose *b, cprox_workspace *ws) {
+  cprox_gap_result r;
+  if (cprox_gap_evaluate(gap, a, b, ws, &r) < CPROX_OK) return NAN;
+  return r.verdict == CPROX_GAP_FAR ? 0.0 : r.value;
+}
+
+/* Outwards from the edge of the bounding spheres: the first distance along the ray at which the gap says "may collide", to 1e-4. */
+static double ray_end(const cprox_gap *gap, double phi, double theta, cprox_workspace *ws) {
+  const double most = gap->radius_a + gap->radius_b, step = most / 150.0;
+  const cprox_pose a = shape_pose(0, 0, 0);
+  for (double x = most; x > 0.0; x -= step) {
+    const cprox_pose b = shape_pose(x * cos(phi), x * sin(phi), theta);
+    if (!(value_at(gap, &a, &b, ws) >= 1.0)) continue;
+    double low = x, high = x + step;
+    for (int i = 0; i < 10; i++) {
+      const double mid = 0.5 * (low + high);
+      const cprox_pose at = shape_pose(mid * cos(phi), mid * sin(phi), theta);
+      if (value_at(gap, &a, &at, ws) >= 1.0)
+        low = mid;
+      else
+        high = mid;
+    }
+    return low;
+  }
+  return 0.0;
+}
+
+/* The largest clearance called colliding on random rays around random rotations, over the period; overlaps called clear are
+ * unsound. */
+static void measure_reach(const method *m, const shape *a, const shape *b, uint32_t samples, size_t rays,
+                          cprox_workspace *ws) {
+  char parameter[64], workload[64];
+  cprox_gap *gap = m->make(a, b, samples, ws);
+  snprintf(parameter, sizeof parameter, "n %u", samples);
+  snprintf(workload, sizeof workload, "over-reach %s %s", a->name, b->name);
+  if (!gap) {
+    fourier_row(workload, m->name, parameter, NAN, 0, NAN, 0, 0);
+    return;
+  }
+  const cprox_gap_info info = cprox_gap_get_info(gap);
+  rng r = rng_seed(77);
+  double most = 0.0;
+  unsigned long unsound = 0;
+  const cprox_pose here = shape_pose(0, 0, 0);
+  for (size_t i = 0; i < rays; i++) {
+    const double phi = rng_uniform(&r, 0, 2 * PI), theta = rng_uniform(&r, 0, 2 * PI), x = ray_end(gap, phi, theta, ws);
+    const cprox_pose end = shape_pose(x * cos(phi), x * sin(phi), theta);
+    most = fmax(most, shape_distance(a, &here, b, &end));
+    const cprox_pose beyond = shape_pose((x + 1e-3) * cos(phi), (x + 1e-3) * sin(phi), theta);
+    unsound += shape_distance(a, &here, b, &beyond) < -1e-9;
+  }
+  fourier_row(workload, m->name, parameter, NAN, (double)info.terms, most / info.period, unsound, 0);
+  cprox_gap_free(gap);
+}
+
+void fourier_over_reach(const bench_size *size) {
+  shape s[SHAPES];
+  shapes_create(s);
+  cprox_workspace *ws = cprox_workspace_create();
+  const int pairs[4][2] = {{0, 1}, {2, 3}, {4, 3}, {5, 2}};
+  const uint32_t samples[] = {9, 17, 33, 65, 129};
+  for (int p = 0; p < 4; p++)
+    for (int i = 0; i < (size->problems >= 200 ? 5 : 4); i++)
+      for (int m = 0; m < N_METHODS; m++)
+        measure_reach(&METHODS[m], &s[pairs[p][0]], &s[pairs[p][1]], samples[i], size->problems >= 200 ? 100 : 24, ws);
+  cprox_workspace_free(ws);
+  shapes_free(s);
+}
+
+/* Outlines of the obstacle of an L and a T: at one rotation for several n and exactly, and at n = 17 for twelve rotations. */
+static double exact_end(const shape *a, const shape *b, double phi, double theta) {
+  const cprox_pose here = shape_pose(0, 0, 0);
+  double x = 3.0;
+  for (int i = 0; i < 200 && x > 0.0; i++) { /* sphere tracing: no step passes the obstacle */
+    const cprox_pose at = shape_pose(x * cos(phi), x * sin(phi), theta);
+    const double d = shape_distance(a, &here, b, &at);
+    if (d < 1e-5) break;
+    x -= d;
+  }
+  return fmax(0.0, x);
+}
+
+void fourier_obstacle(const bench_size *size) {
+  shape s[SHAPES];
+  shapes_create(s);
+  cprox_workspace *ws = cprox_workspace_create();
+  const int rays = size->problems >= 200 ? 120 : 48;
+  const uint32_t samples[] = {0, 9, 17, 33, 65};
+  for (int i = 0; i < 5; i++) {
+    cprox_gap *gap = samples[i] ? make_certified(&s[0], &s[1], samples[i], ws) : NULL;
+    for (int slice = 0; slice < (samples[i] == 17 ? 12 : 1); slice++)
+      for (int k = 0; k < rays; k++) {
+        const double phi = 2 * PI * k / rays, theta = 0.6 + 2 * PI * slice / 12;
+        char parameter[96];
+        snprintf(parameter, sizeof parameter, "n %u theta %.4f phi %.4f", samples[i], theta, phi);
+        const double x = gap ? ray_end(gap, phi, theta, ws) : exact_end(&s[0], &s[1], phi, theta);
+        fourier_row("obstacle L T", gap ? "curve_proximity" : "exact", parameter, NAN, 0, x, 0, 0);
+      }
+    cprox_gap_free(gap);
+  }
+  cprox_workspace_free(ws);
+  shapes_free(s);
+}
