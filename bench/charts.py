@@ -8,6 +8,8 @@ import matplotlib
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402
 
+from fourier import charts as fourier_charts  # noqa: E402
+
 OURS = 'curve_proximity'
 COLOURS = {OURS: '#0b6e99', 'paper': '#c2571a'}
 OTHERS = ['#6b8e23', '#7b4ea3', '#8c6d3f', '#4d4d4d', '#b03060']
@@ -104,10 +106,15 @@ def curves(rows, out):
                lambda row: f"{row['workload'].split(' tolerance')[0]}\n{row['parameter'][14:]}")
 
 
+def fourier(rows, out):
+    yield from fourier_charts.draw(rows, out, save)
+    yield bars(rows, out, 'fourier', lambda row: row['workload'] == 'boxes', 'Two boxes: a gap beside a distance', 'fourier_boxes')
+
+
 def draw_all(rows, out):
     """All charts for which there are rows; their names."""
     style()
     drawn = []
-    for draw in (curves,):
+    for draw in (curves, fourier):
         drawn += [name for name in draw(rows, out) if name]
     return drawn

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Charts of the Fourier group: over-reach against n, outlines of obstacles, nesting."""
+import collections
+import math
+import re
+
+import matplotlib.pyplot as plt
+
+NAMES = {'curve_proximity': 'certified', 'curve_proximity tuned': 'tuned (no guarantee)',
+         'paper': "Parks-McClellan kernel, Lysenko 2011, threshold corrected"}
+COLOURS = {'curve_proximity': '#0b6e99', 'curve_proximity tuned': '#6b8e23', 'paper': '#c2571a', 'exact': '#333333'}
+
+
+def over_reach(rows, out, save):
+    """Mean over the pairs, with the band of all pairs: the paper's Fig. 3."""
+    found = collections.defaultdict(lambda: collections.defaultdict(list))
+    for row in rows:
+        error = float(row['error'] or 'nan')
+        if row['workload'].startswith('over-reach') and not math.isnan(error):
+            found[row['method']][int(row['parameter'].split()[1])].append(error)
+    if not found:
+        return None
+    figure, axes = plt.subplots()
+    for method, by_n in found.items():
+        n = sorted(by_n)
+        axes.loglog(n, [sum(by_n[k]) / len(by_n[k]) for k in n], 'o-', color=COLOURS[method], label=NAMES[method])
+        axes.fill_between(n, [min(by_n[k]) for k in n], [max(by_n[k]) for k in n], color=COLOURS[method], alpha=0.13, linewidth=0)
+    axes.set_xlabel('samples an axis n')
+    axes.set_ylabel('largest clearance called colliding, over the period')
+    axes.set_title('Over-reach of Fourier gaps: four pairs of planar shapes')
+    axes.legend()
+    return save(figure, out, 'fourier_over_reach')
+
+
+def outlines(rows):
+    """n, theta -> closed lists of x, y."""
+    found = collections.defaultdict(lambda: ([], []))
+    for row in rows:
+        match = re.fullmatch(r'n (\d+) theta ([\d.]+) phi ([\d.]+)', row['parameter'])
+        if row['workload'].startswith('obstacle') and match:
+            n, theta, phi = int(match.group(1)), float(match.group(2)), float(match.group(3))
+            x, y = found[n, theta]
+            x.append(float(row['error']) * math.cos(phi))
+            y.append(float(row['error']) * math.sin(phi))
+    for x, y in found.values():
+        x.append(x[0])
+        y.append(y[0])
+    return found
+
+
+def convergence(rows, out, save):
+    """The outline of one obstacle for several n around the exact one: the paper's Fig. 5."""
+    found = outlines(rows)
+    if not found:
+        return None
+    theta = min(key[1] for key in found)
+    figure, axes = plt.subplots(figsize=(5.4, 5.4))
+    for k, n in enumerate(sorted({key[0] for key in found} - {0})):
+        axes.plot(*found[n, theta], color=plt.cm.viridis(0.15 + 0.2 * k), label=f'n = {n}')
+    axes.plot(*found[0, theta], color=COLOURS['exact'], label='exact', linewidth=1.2)
+    axes.set_aspect('equal')
+    axes.set_title('Outline of the obstacle of an L and a T, one rotation (certified)')
+    axes.legend()
+    return save(figure, out, 'fourier_convergence')
+
+
+def obstacle(rows, out, save):
+    """Slices of the SE(2) obstacle at n = 17, rotation upwards: the paper's Fig. 6."""
+    slices = {key[1]: value for key, value in outlines(rows).items() if key[0] == 17}
+    if not slices:
+        return None
+    figure = plt.figure(figsize=(5.8, 6.2))
+    axes = figure.add_subplot(projection='3d')
+    for theta, (x, y) in sorted(slices.items()):
+        axes.plot(x, y, [theta] * len(x), color=plt.cm.twilight(theta / 7.0))
+    axes.set_zlabel('relative rotation [rad]')
+    axes.set_title('SE(2) obstacle of an L and a T, n = 17')
+    return save(figure, out, 'fourier_obstacle')
+
+
+def nesting(rows, out, save):
+    rows = [row for row in rows if row['workload'].startswith('nesting')]
+    keys = list(dict.fromkeys(row['workload'][len('nesting: '):] for row in rows))
+    if not keys:
+        return None
+    methods = list(dict.fromkeys(row['method'] for row in rows))
+    figure, axes = plt.subplots()
+    for k, method in enumerate(methods):
+        values = {row['workload'][len('nesting: '):]: float(row['nodes']) for row in rows if row['method'] == method}
+        axes.bar([i + (k - 1) * 0.26 for i in range(len(keys))], [values[key] for key in keys], 0.24, color=list(COLOURS.values())[k],
+                 label=method.replace('curve_proximity', 'certified gap, coarse to fine'))
+    axes.set_xticks(range(len(keys)))
+    axes.set_xticklabels(keys)
+    axes.set_ylabel('of random starts [%]')
+    axes.set_title('Nesting an L in an E by SLSQP')
+    axes.grid(axis='x', visible=False)
+    axes.legend()
+    return save(figure, out, 'fourier_nesting')
+
+
+def draw(rows, out, save):
+    rows = [row for row in rows if row['group'] == 'fourier']
+    for chart in (over_reach, convergence, obstacle, nesting):
+        yield chart(rows, out, save)
