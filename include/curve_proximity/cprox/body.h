@@ -31,7 +31,10 @@ typedef enum cprox_body_kind {
   CPROX_COMPOUND,
   CPROX_SUPPORT,
   CPROX_SUPERQUADRIC,
-  CPROX_IMPLICIT
+  CPROX_IMPLICIT,
+  CPROX_MESH,
+  CPROX_POINTS,
+  CPROX_OCTREE
 } cprox_body_kind;
 
 /** One point [m], finite. */
@@ -97,6 +100,44 @@ typedef void (*cprox_support_fn)(const void *shape, const double direction[3], d
 CPROX_API cprox_status cprox_body_create_support(cprox_support_fn support, const void *shape, cprox_vec3 centre,
                                                  double radius, double slack, double margin, cprox_workspace *workspace,
                                                  cprox_body **body);
+
+/** What the inside of a mesh is. */
+typedef enum cprox_mesh_fill {
+  CPROX_MESH_SURFACE = 0, /**< nothing: the mesh is its triangles */
+  CPROX_MESH_SOLID = 1    /**< part of the body, if the mesh is closed; see cprox_body_is_solid() */
+} cprox_mesh_fill;
+
+/** A triangle mesh.
+ *
+ *  vertices      n of them [m], finite, at most 1e60 m from the origin; duplicates are allowed
+ *  triangles     m of them, each three indices below n; degenerate and repeated triangles are allowed
+ *  fill          CPROX_MESH_SOLID asks for the inside too, by the generalised winding number (Jacobson et al. 2013). It is granted
+ *                where the mesh is closed: every edge run through as often one way as the other, vertices with equal coordinates
+ *                being one. Where it is not, the body is the surface, and cprox_body_is_solid() says so.
+ *  memory_limit  the most bytes that the body may take, SIZE_MAX: any. Beyond it CPROX_MEMORY, and the reason names the bytes.
+ *
+ *  Curves, tubes, balls and convex bodies are held against meshes; meshes are not carried along curves. A surface has no inside, so
+ *  that depth is not measured: what a surface overlaps has distance 0. Both arrays are copied. Cost: n log n.
+ *  Source: doc/non-convex.md. */
+CPROX_API cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const uint32_t (*triangles)[3],
+                                              size_t m, cprox_mesh_fill fill, size_t memory_limit,
+                                              cprox_workspace *workspace, cprox_body **body);
+
+/** Points, each a ball of the radius [m] >= 0. n >= 1, finite. memory_limit as for meshes. Built for speed: for what a sensor
+ *  measures thirty times a second. */
+CPROX_API cprox_status cprox_body_create_points(const cprox_vec3 *points, size_t n, double radius, size_t memory_limit,
+                                                cprox_workspace *workspace, cprox_body **body);
+
+/** Boxes along the axes, from low[i] to high[i], low <= high, as an octree's occupied leaves are. n >= 1, finite. They may overlap.
+ *  Each is solid. memory_limit as for meshes. */
+CPROX_API cprox_status cprox_body_create_boxes(const cprox_vec3 *low, const cprox_vec3 *high, size_t n,
+                                               size_t memory_limit, cprox_workspace *workspace, cprox_body **body);
+
+/** Whether the inside belongs to the body: false for mesh surfaces only. */
+CPROX_API bool cprox_body_is_solid(const cprox_body *body);
+
+/** The bytes that a mesh, a set of points or a set of boxes takes; 0 for other kinds. */
+CPROX_API size_t cprox_body_bytes(const cprox_body *body);
 
 /** Frees a body; NULL is allowed. No query and no compound may be using it. */
 CPROX_API void cprox_body_free(cprox_body *body);

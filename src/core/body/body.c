@@ -8,7 +8,10 @@
 #include "base/rounding.h"
 #include "base/workspace.h"
 #include "body/construct.h"
+#include "body/elements.h"
 #include "convex/feature.h"
+#include "tree/tree.h"
+#include "tree/winding.h"
 
 /* Lengths beyond these would lose their squares to underflow or overflow. */
 static const double LEAST_LENGTH = 1e-100, MOST_LENGTH = 1e100;
@@ -328,6 +331,8 @@ void cprox_body_free(cprox_body *body) {
   free(body->shape.x); /* y and z are in the same block */
   free(body->parts);
   free(body->shape.implicit); /* one block */
+  tree_free(body->tree);
+  winding_free(body->winding);
   free(body);
 }
 
@@ -353,6 +358,9 @@ const char *cprox_body_kind_name(cprox_body_kind kind) {
     case CPROX_SUPPORT: return "support";
     case CPROX_SUPERQUADRIC: return "superquadric";
     case CPROX_IMPLICIT: return "implicit";
+    case CPROX_MESH: return "mesh";
+    case CPROX_POINTS: return "points";
+    case CPROX_OCTREE: return "octree";
   }
   return "unknown";
 }
@@ -364,6 +372,7 @@ void cprox_body_bounding_sphere(const cprox_body *body, cprox_vec3 *centre, doub
 
 double cprox_body_support(const cprox_body *body, cprox_vec3 direction, cprox_vec3 *point) {
   if (body->kind == CPROX_COMPOUND) return compound_support(body, direction, point);
+  if (body->tree) return elements_support(body, direction, point);
   const convex *shape = &body->shape;
   vec3 at, unit;
   double h = shape->ops->support(shape, direction, NULL, &at);
@@ -383,6 +392,7 @@ double cprox_body_support(const cprox_body *body, cprox_vec3 direction, cprox_ve
 
 double cprox_body_nearest(const cprox_body *body, cprox_vec3 point, cprox_vec3 *nearest) {
   if (body->kind == CPROX_COMPOUND) return compound_nearest(body, point, nearest);
+  if (body->tree) return elements_nearest(body, point, nearest);
   convex_near near;
   body->shape.ops->nearest(&body->shape, vec_sub(point, body->centre), NULL, &near);
   if (nearest) *nearest = vec_add(near.point, body->centre);

@@ -20,6 +20,9 @@ struct cprox_body {
   double ball_radius;
   body_part *parts; /* compounds */
   size_t n_parts;
+  struct tree
+      *tree; /* meshes, points, boxes: the elements, about `centre`; the shape has the margin and the scale alone */
+  struct winding *winding; /* solid meshes: what tells inside from outside */
 };
 
 #endif

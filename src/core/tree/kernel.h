@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The loops over lanes, compiled once for each instruction set: the including page defines TREE_TARGET, the attribute of its
+ * functions, and TREE_KERNEL, the name of its table. Loops of eight with no branch inside are what compilers make vectors of. */
+#include <math.h>
+
+#include "tree/kernels.h"
+
+/* Normals shorter than this have no direction. */
+static const double LEAST_LENGTH2 = 1e-200;
+
+/* Divisors that may be 0 are kept from it; what is divided is 0 then, or does not matter. */
+static const double LEAST_DIVISOR = 1e-300;
+
+/* What is nearest to the origin: n from there to the origin, d2 the square of a distance that is attained. */
+typedef struct lane_near {
+  double nx, ny, nz, d2;
+} lane_near;
+
+/* An edge from a along e. One Gram-Schmidt step makes n orthogonal to the edge, where the nearest point is within it. */
+TREE_TARGET static inline lane_near near_edge(double ax, double ay, double az, double ex, double ey, double ez) {
+  const double l2 = ex * ex + ey * ey + ez * ez, divisor = l2 > LEAST_DIVISOR ? l2 : LEAST_DIVISOR;
+  const double wanted = -(ax * ex + ay * ey + az * ez) / divisor;
+  const double above = wanted > 0.0 ? wanted : 0.0, t = above < 1.0 ? above : 1.0;
+  const double nx = -(ax + t * ex), ny = -(ay + t * ey), nz = -(az + t * ez);
+  const double along = (nx * ex + ny * ey + nz * ez) / divisor, off = t == wanted ? along : 0.0;
+  return (lane_near){nx - off * ex, ny - off * ey, nz - off * ez, nx * nx + ny * ny + nz * nz};
+}
+
+TREE_TARGET static inline lane_near nearer(lane_near a, lane_near b) {
+  const int first = a.d2 <= b.d2;
+  return (lane_near){first ? a.nx : b.nx, first ? a.ny : b.ny, first ? a.nz : b.nz, first ? a.d2 : b.d2};
+}
+
+/* The triangle abc. Its inside counts only where the point that its weights make is nearer than the edges: slivers whose
+ * computed normal is noise fall back to their edges. */
+TREE_TARGET static inline lane_near near_triangle(double ax, double ay, double az, double bx, double by, double bz,
+                                                  double cx, double cy, double cz) {
+  const double ux = bx - ax, uy = by - ay, uz = bz - az;
+  const double vx = cx - bx, vy = cy - by, vz = cz - bz;
+  const double wx = ax - cx, wy = ay - cy, wz = az - cz;
+  const lane_near edges = nearer(nearer(near_edge(ax, ay, az, ux, uy, uz), near_edge(bx, by, bz, vx, vy, vz)),
+                                 near_edge(cx, cy, cz, wx, wy, wz));
+
+  /* the plane's normal, orthogonal to the longest edge */
+  double mx = uy * vz - uz * vy, my = uz * vx - ux * vz, mz = ux * vy - uy * vx;
+  const double u2 = ux * ux + uy * uy + uz * uz, v2 = vx * vx + vy * vy + vz * vz, w2 = wx * wx + wy * wy + wz * wz;
+  const int by_v = v2 > u2;
+  const double kx = by_v ? vx : ux, ky = by_v ? vy : uy, kz = by_v ? vz : uz, k2 = by_v ? v2 : u2;
+  const int by_w = w2 > k2;
+  const double lx = by_w ? wx : kx, ly = by_w ? wy : ky, lz = by_w ? wz : kz, l2 = by_w ? w2 : k2;
+  const double off = (mx * lx + my * ly + mz * lz) / (l2 > LEAST_DIVISOR ? l2 : LEAST_DIVISOR);
+  mx -= off * lx, my -= off * ly, mz -= off * lz;
+  const double m2 = mx * mx + my * my + mz * mz;
+
+  /* weights of a, b, c in the foot of the origin */
+  const double wa = mx * (by * vz - bz * vy) + my * (bz * vx - bx * vz) + mz * (bx * vy - by * vx);
+  const double wb = mx * (cy * wz - cz * wy) + my * (cz * wx - cx * wz) + mz * (cx * wy - cy * wx);
+  const double wc = mx * (ay * uz - az * uy) + my * (az * ux - ax * uz) + mz * (ax * uy - ay * ux);
+  const double sum = wa + wb + wc, divisor = sum > LEAST_DIVISOR ? sum : LEAST_DIVISOR;
+  const double px = (wa * ax + wb * bx + wc * cx) / divisor, py = (wa * ay + wb * by + wc * cy) / divisor,
+               pz = (wa * az + wb * bz + wc * cz) / divisor;
+  const double d2 = px * px + py * py + pz * pz;
+  const int inside = (wa >= 0.0) & (wb >= 0.0) & (wc >= 0.0) & (sum > LEAST_DIVISOR) & (d2 < edges.d2);
+  const double s = -(mx * ax + my * ay + mz * az) / (m2 > LEAST_DIVISOR ? m2 : LEAST_DIVISOR);
+  return (lane_near){inside ? s * mx : edges.nx, inside ? s * my : edges.ny, inside ? s * mz : edges.nz,
+                     inside ? d2 : edges.d2};
+}
+
+/* n from the nearest point of each lane to x, and the support value of each lane along its n, less n·x. */
+typedef struct normals {
+  _Alignas(64) double n[3][TREE_LANES], d2[TREE_LANES], support[TREE_LANES];
+} normals;
+
+TREE_TARGET static inline void near_boxes(const double low[3][TREE_LANES], const double high[3][TREE_LANES], vec3 x,
+                                          normals *out) {
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) {
+    const double lx = low[0][l] > x.x ? low[0][l] : x.x, ly = low[1][l] > x.y ? low[1][l] : x.y,
+                 lz = low[2][l] > x.z ? low[2][l] : x.z;
+    const double nx = x.x - (high[0][l] < lx ? high[0][l] : lx), ny = x.y - (high[1][l] < ly ? high[1][l] : ly),
+                 nz = x.z - (high[2][l] < lz ? high[2][l] : lz);
+    const double d2 = nx * nx + ny * ny + nz * nz;
+    out->n[0][l] = nx, out->n[1][l] = ny, out->n[2][l] = nz;
+    out->d2[l] = d2;
+    out->support[l] = -d2; /* the nearest point is the farthest along n */
+  }
+}
+
+TREE_TARGET static inline void near_points(const double *pack, vec3 x, normals *out) {
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) {
+    const double nx = x.x - pack[l], ny = x.y - pack[TREE_LANES + l], nz = x.z - pack[2 * TREE_LANES + l];
+    const double d2 = nx * nx + ny * ny + nz * nz;
+    out->n[0][l] = nx, out->n[1][l] = ny, out->n[2][l] = nz;
+    out->d2[l] = d2;
+    out->support[l] = -d2;
+  }
+}
+
+TREE_TARGET static inline void near_triangles(const double *pack, vec3 x, normals *out) {
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) {
+    const double ax = pack[l] - x.x, ay = pack[8 + l] - x.y, az = pack[16 + l] - x.z;
+    const double bx = pack[24 + l] - x.x, by = pack[32 + l] - x.y, bz = pack[40 + l] - x.z;
+    const double cx = pack[48 + l] - x.x, cy = pack[56 + l] - x.y, cz = pack[64 + l] - x.z;
+    const lane_near near = near_triangle(ax, ay, az, bx, by, bz, cx, cy, cz);
+    const double a = near.nx * ax + near.ny * ay + near.nz * az, b = near.nx * bx + near.ny * by + near.nz * bz,
+                 c = near.nx * cx + near.ny * cy + near.nz * cz;
+    const double ab = a > b ? a : b;
+    out->n[0][l] = near.nx, out->n[1][l] = near.ny, out->n[2][l] = near.nz;
+    out->d2[l] = near.d2;
+    out->support[l] = ab > c ? ab : c;
+  }
+}
+
+TREE_TARGET static inline void near_pack(const tree *t, const double *pack, vec3 x, normals *out) {
+  if (t->kind == TREE_TRIANGLES)
+    near_triangles(pack, x, out);
+  else if (t->kind == TREE_POINTS)
+    near_points(pack, x, out);
+  else
+    near_boxes((const double(*)[TREE_LANES])pack, (const double(*)[TREE_LANES])(pack + 3 * TREE_LANES), x, out);
+}
+
+/* (min n·p - support)/|n| for each lane's own n; 0 where n has no direction. */
+TREE_TARGET static inline void bound_by_own(const normals *near, const tree_stretch *stretch, tree_lanes *lanes) {
+  _Alignas(64) double least[TREE_LANES];
+  for (int l = 0; l < TREE_LANES; l++) least[l] = INFINITY;
+  for (size_t k = 0; k < stretch->n; k++) {
+    const double px = stretch->p[0][k], py = stretch->p[1][k], pz = stretch->p[2][k];
+#pragma omp simd
+    for (int l = 0; l < TREE_LANES; l++) {
+      const double g = near->n[0][l] * px + near->n[1][l] * py + near->n[2][l] * pz;
+      least[l] = g < least[l] ? g : least[l];
+    }
+  }
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) {
+    const double n2 = near->n[0][l] * near->n[0][l] + near->n[1][l] * near->n[1][l] + near->n[2][l] * near->n[2][l];
+    const double length = sqrt(n2 > LEAST_LENGTH2 ? n2 : LEAST_LENGTH2);
+    const double bound = (least[l] - near->support[l]) / length - stretch->radius;
+    lanes->bound[l] = n2 > LEAST_LENGTH2 ? bound : -stretch->radius;
+    lanes->distance2[l] = near->d2[l];
+  }
+}
+
+/* The same normals at the first point, and the line through there below all others. */
+TREE_TARGET static inline void find_slopes(const normals *near, const tree_stretch *stretch, tree_lanes *lanes) {
+  _Alignas(64) double slope[TREE_LANES] = {0};
+  const double degree = (double)(stretch->n - 1);
+  for (size_t k = 1; k < stretch->n; k++) {
+    const double f = degree / (double)k;
+    const double px = f * stretch->p[0][k], py = f * stretch->p[1][k], pz = f * stretch->p[2][k];
+#pragma omp simd
+    for (int l = 0; l < TREE_LANES; l++) {
+      const double g = near->n[0][l] * px + near->n[1][l] * py + near->n[2][l] * pz;
+      slope[l] = g < slope[l] ? g : slope[l];
+    }
+  }
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) {
+    const double n2 = near->n[0][l] * near->n[0][l] + near->n[1][l] * near->n[1][l] + near->n[2][l] * near->n[2][l];
+    const double length = sqrt(n2 > LEAST_LENGTH2 ? n2 : LEAST_LENGTH2);
+    lanes->first[l] = n2 > LEAST_LENGTH2 ? -near->support[l] / length : 0.0;
+    lanes->slope[l] = slope[l] / length;
+  }
+}
+
+TREE_TARGET static inline void raise(tree_lanes *lanes, const double bound[TREE_LANES]) {
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) lanes->bound[l] = bound[l] > lanes->bound[l] ? bound[l] : lanes->bound[l];
+}
+
+TREE_TARGET static inline void bound_boxes_by_known(const double low[3][TREE_LANES], const double high[3][TREE_LANES],
+                                                    const tree_stretch *stretch, tree_lanes *lanes) {
+  _Alignas(64) double bound[TREE_LANES];
+  const vec3 n = stretch->normal, x = stretch->x;
+  const double *sx = n.x > 0.0 ? high[0] : low[0], *sy = n.y > 0.0 ? high[1] : low[1],
+               *sz = n.z > 0.0 ? high[2] : low[2];
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++)
+    bound[l] = stretch->along - (n.x * (sx[l] - x.x) + n.y * (sy[l] - x.y) + n.z * (sz[l] - x.z));
+  raise(lanes, bound);
+}
+
+TREE_TARGET static inline void bound_corners_by_known(const double *pack, int corners, const tree_stretch *stretch,
+                                                      tree_lanes *lanes) {
+  _Alignas(64) double bound[TREE_LANES];
+  const vec3 n = stretch->normal, x = stretch->x;
+  for (int l = 0; l < TREE_LANES; l++) bound[l] = INFINITY;
+  for (int j = 0; j < corners; j++) {
+    const double *v = pack + 24 * j;
+#pragma omp simd
+    for (int l = 0; l < TREE_LANES; l++) {
+      const double b = stretch->along - (n.x * (v[l] - x.x) + n.y * (v[8 + l] - x.y) + n.z * (v[16 + l] - x.z));
+      bound[l] = b < bound[l] ? b : bound[l];
+    }
+  }
+  raise(lanes, bound);
+}
+
+TREE_TARGET static void measure(const tree *t, uint32_t at, const tree_stretch *stretch, tree_lanes *lanes) {
+  normals near;
+  const bool leaf = (at & TREE_LEAF) != 0;
+  const tree_node *node = leaf ? NULL : &t->nodes[at];
+  const double *pack = leaf ? t->packs + (at & ~TREE_LEAF) * tree_pack_size(t->kind) : NULL;
+  if (leaf)
+    near_pack(t, pack, stretch->x, &near);
+  else
+    near_boxes(node->low, node->high, stretch->x, &near);
+  bound_by_own(&near, stretch, lanes);
+  if (stretch->stepping) find_slopes(&near, stretch, lanes);
+
+  if (stretch->known) {
+    if (!leaf)
+      bound_boxes_by_known(node->low, node->high, stretch, lanes);
+    else if (t->kind == TREE_BOXES)
+      bound_boxes_by_known((const double(*)[TREE_LANES])pack, (const double(*)[TREE_LANES])(pack + 3 * TREE_LANES),
+                           stretch, lanes);
+    else
+      bound_corners_by_known(pack, t->kind == TREE_TRIANGLES ? 3 : 1, stretch, lanes);
+  }
+  if (leaf) return;
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) {
+    const double dx = node->high[0][l] - node->low[0][l], dy = node->high[1][l] - node->low[1][l],
+                 dz = node->high[2][l] - node->low[2][l];
+    lanes->width2[l] = dx * dx + dy * dy + dz * dz;
+  }
+}
+
+/* ---- the element nearest to a point ----------------------------------------------------------------------------------- */
+
+typedef struct open_node {
+  double d2;
+  uint32_t at;
+} open_node;
+
+TREE_TARGET static inline void visit_pack(const tree *t, uint32_t pack, vec3 x, tree_hit *hit, double *best2) {
+  normals near;
+  near_pack(t, t->packs + (size_t)pack * tree_pack_size(t->kind), x, &near);
+  double least = INFINITY;
+  uint32_t nearest = 0;
+  for (uint32_t l = 0; l < TREE_LANES; l++)
+    if (near.d2[l] < least) least = near.d2[l], nearest = l;
+  if (least < *best2) {
+    *best2 = least;
+    hit->found = true;
+    hit->at = (tree_place){pack, nearest};
+  }
+  if (t->kind != TREE_TRIANGLES) return; /* closed forms: the distance attained is the least one */
+  double lower = hit->lower;
+#pragma omp simd reduction(min : lower)
+  for (int l = 0; l < TREE_LANES; l++) {
+    const double n2 = near.n[0][l] * near.n[0][l] + near.n[1][l] * near.n[1][l] + near.n[2][l] * near.n[2][l];
+    const double bound = -near.support[l] / sqrt(n2 > LEAST_LENGTH2 ? n2 : LEAST_LENGTH2);
+    const double known = n2 > LEAST_LENGTH2 ? bound : 0.0;
+    lower = known < lower ? known : lower;
+  }
+  hit->lower = lower;
+}
+
+TREE_TARGET static tree_hit nearest(const tree *t, vec3 x, double bound) {
+  open_node open[TREE_LANES * TREE_DEEPEST];
+  size_t count = 0;
+  tree_hit hit = {.upper = bound, .lower = INFINITY};
+  double best2 = bound < 1e150 ? bound * bound : INFINITY;
+  uint32_t at = 0;
+  for (;;) {
+    if (at & TREE_LEAF) {
+      visit_pack(t, at & ~TREE_LEAF, x, &hit, &best2);
+    } else {
+      normals near;
+      const tree_node *node = &t->nodes[at];
+      near_boxes(node->low, node->high, x, &near);
+      uint32_t live = 0;
+#pragma omp simd reduction(| : live)
+      for (uint32_t l = 0; l < TREE_LANES; l++) live |= near.d2[l] < best2 ? 1u << l : 0u;
+      /* the nearest lanes end on top */
+      const size_t floor = count;
+      for (live &= node->lanes; live; live &= live - 1) {
+        const unsigned l = (unsigned)__builtin_ctz(live);
+        const open_node child = {near.d2[l], node->child[l]};
+        size_t i = count++;
+        for (; i > floor && open[i - 1].d2 < child.d2; i--) open[i] = open[i - 1];
+        open[i] = child;
+      }
+    }
+    while (count > 0 && !(open[count - 1].d2 < best2)) count--;
+    if (count == 0) break;
+    at = open[--count].at;
+  }
+  if (hit.found) hit.upper = sqrt(best2);
+  hit.lower = hit.lower < hit.upper ? hit.lower : hit.upper;
+  return hit;
+}
+
+const tree_kernel TREE_KERNEL = {.measure = measure, .nearest = nearest};
