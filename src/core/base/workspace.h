@@ -17,6 +17,7 @@ typedef enum workspace_buffer {
   WORKSPACE_INTERIOR,
   WORKSPACE_BATCH,
   WORKSPACE_BATCH_NEAR,
+  WORKSPACE_LISTS,
   WORKSPACE_BUFFERS
 } workspace_buffer;
 

@@ -46,9 +46,10 @@ cprox_result question_nothing(void) {
 void question_join(cprox_result *all, const cprox_result *one) {
   const double lower = fmin(all->lower, one->lower);
   const uint32_t nodes = all->nodes + one->nodes, probes = all->probes + one->probes;
+  const cprox_rung rung = all->rung > one->rung ? all->rung : one->rung;
   if (one->upper < all->upper || all->target_index < 0) *all = *one;
   all->lower = lower, all->nodes = nodes, all->probes = probes;
-  all->rung = CPROX_RUNG_HULL;
+  all->rung = rung;
 }
 
 cprox_status question_conclude(const question *q, double ceiling, cprox_status trouble, cprox_result *all) {

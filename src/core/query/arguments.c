@@ -103,11 +103,22 @@ static cprox_status check_clock(const cprox_curve *curve, const cprox_target *ta
       index, u0, u1, t0, t1);
 }
 
+bool arguments_has_tree(const cprox_body *body) {
+  if (!body || body->kind != CPROX_COMPOUND) return body && body->tree;
+  for (size_t i = 0; i < body->n_parts; i++)
+    if (body->parts[i].body->tree) return true;
+  return false;
+}
+
 /* Convex parts without end have no Minkowski difference that a search could use. */
 static cprox_status check_carried(const cprox_body *body, cprox_workspace *workspace) {
   if (!body) return CPROX_OK;
   if (!isfinite(body->ball_radius))
     return workspace_fail(workspace, CPROX_INVALID, "the mover's body is a halfspace or has one: it must be bounded");
+  if (arguments_has_tree(body))
+    return workspace_fail(
+        workspace, CPROX_INVALID,
+        "the mover's body is a mesh, points or boxes, or has such a part: only convex parts are carried");
   return CPROX_OK;
 }
 
@@ -126,6 +137,11 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target 
   for (size_t i = 0; i < n; i++) {
     const cprox_status clock = check_clock(mover->curve, &targets[i], i, workspace);
     if (clock != CPROX_OK) return clock;
+    if (mover->body && arguments_has_tree(targets[i].body))
+      return workspace_fail(workspace, CPROX_INVALID,
+                            "target %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
+                            "it, balls are (radius)",
+                            i);
   }
   return CPROX_OK;
 }

@@ -125,6 +125,52 @@ void candidate_report_convex(const question *q, const candidate *c, const curve_
                 frame_turn_to_world(f, best->normal), best->near.distance, r);
 }
 
+bool candidate_is_tree(const question *q, const candidate *c) {
+  const cprox_body *body = candidate_body(q, c);
+  return body && body->tree;
+}
+
+bool candidate_begin_tree(const question *q, const candidate *c, curve_tree *o) {
+  const cprox_target *target = &q->targets[c->target];
+  const cprox_body *body = candidate_body(q, c);
+  const cprox_pose pose = candidate_pose(q, c);
+  const cprox_curve *curve = q->mover.curve;
+  cprox_curve relative;
+  if (target->on_clock) {
+    if (!relative_create(curve, target->curve, &target->pose, q->t0, q->t1, q->workspace, &relative)) return false;
+    curve = &relative;
+  }
+  const frame placed = frame_create(&pose, body->centre);
+  if (!curve_tree_begin(o, curve, body, placed, candidate_offset(q, c), q->workspace)) return false;
+  o->side.part = q->part;
+  if (target->on_clock) {
+    o->relative = relative;
+    o->side.curve = &o->relative;
+    o->side.part = curve_side_whole();
+  }
+  return true;
+}
+
+void candidate_report_tree(const question *q, const candidate *c, const curve_tree *o, cprox_result *r) {
+  if (!o->found) return;
+  const frame *f = &o->side.frame;
+  const tree_sight *best = &o->best;
+  const double margin = o->body->shape.margin;
+  const cprox_target *target = &q->targets[c->target];
+  r->t = curve_side_parameter(&o->side, best->piece, best->s);
+  r->rung = CPROX_RUNG_MESH;
+  vec3 shift = vec(0, 0, 0);
+  if (target->on_clock) {
+    const frame other = frame_create(&target->pose, vec(0, 0, 0));
+    shift = frame_to_world(&other, relative_point(target->curve, r->t, best->s == 1.0, q->workspace));
+    r->t_target = r->t;
+  }
+  const vec3 centre = frame_to_world(f, best->y);
+  const vec3 surface = frame_to_world(f, vec_axpy(best->near.point, margin, best->near.normal));
+  report_points(q, c, vec_add(centre, shift), vec_add(surface, shift), frame_turn_to_world(f, best->near.normal),
+                best->near.distance - margin, r);
+}
+
 bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o) {
   const cprox_target *target = &q->targets[c->target];
   const double offset = candidate_offset(q, c);
@@ -195,11 +241,35 @@ static cprox_status search_curve(const question *q, const candidate *c, const se
   return status;
 }
 
+static cprox_status search_tree(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                                cprox_result *r) {
+  curve_tree o;
+  search_node root;
+  if (!candidate_begin_tree(q, c, &o) || !curve_tree_root(&o, &root)) return CPROX_MEMORY;
+  o.asked = *goal;
+  o.asked.order = SEARCH_DEPTH_FIRST; /* lists of elements are kept on a stack */
+  o.polish_after = nodes_before_newton(q);
+  o.good_enough = good_enough(q);
+  const search_oracle oracle = curve_tree_oracle(&o);
+  const cprox_status status = search_run(&o.asked, &oracle, root, q->workspace, found);
+  r->probes = o.probes;
+  r->rung = CPROX_RUNG_MESH;
+  if (status >= 0) candidate_report_tree(q, c, &o, r);
+  return status;
+}
+
+/* The one place that says which kernel answers. */
+static cprox_status search_any(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                               cprox_result *r) {
+  if (candidate_is_tree(q, c)) return search_tree(q, c, goal, found, r);
+  return candidate_body(q, c) ? search_convex(q, c, goal, found, r) : search_curve(q, c, goal, found, r);
+}
+
 cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result) {
   cprox_result r = {.target_index = -1, .t_target = NAN, .rung = CPROX_RUNG_HULL};
   const search_goal goal = goal_of(q, ceiling);
   search_outcome found = {0};
-  r.status = candidate_body(q, c) ? search_convex(q, c, &goal, &found, &r) : search_curve(q, c, &goal, &found, &r);
+  r.status = search_any(q, c, &goal, &found, &r);
   if (r.status == CPROX_MEMORY) return workspace_fail(q->workspace, r.status, "no memory for the open intervals");
   if (r.status < 0) return r.status;
 

@@ -6,6 +6,7 @@
 #include "query/candidates.h"
 #include "query/curve_convex.h"
 #include "query/curve_curve.h"
+#include "query/curve_tree.h"
 
 /* Searches one candidate; *result holds its own interval and the witness. `ceiling`: an upper bound known from others. */
 cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result);
@@ -15,6 +16,11 @@ bool candidate_begin_convex(const question *q, const candidate *c, curve_convex 
 
 /* Parameter, points and normal of its best sight, if it has one. */
 void candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r);
+
+/* The same of a candidate made of many elements: a mesh, points, boxes. */
+bool candidate_is_tree(const question *q, const candidate *c);
+bool candidate_begin_tree(const question *q, const candidate *c, curve_tree *o);
+void candidate_report_tree(const question *q, const candidate *c, const curve_tree *o, cprox_result *r);
 
 /* The same of a candidate that is a curve. */
 bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o);

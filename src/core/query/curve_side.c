@@ -266,6 +266,28 @@ curve_reach curve_side_reach(const curve_side *side, const search_interval *at, 
                        .magnitude = fmax(vec_norm(a), vec_norm(b)) + capsule->radius};
 }
 
+curve_hull curve_side_hull(const curve_side *side, const search_interval *at, vec3 from, double *x, double *y,
+                           double *z) {
+  const size_t degree = side->curve->degree;
+  if (at->slot >= 0) {
+    const double *points = points_pool_at(side->pool, (size_t)at->slot);
+    for (size_t i = 0; i <= degree; i++) {
+      x[i] = points[i] - from.x;
+      y[i] = points[degree + 1 + i] - from.y;
+      z[i] = points[2 * (degree + 1) + i] - from.z;
+    }
+    const double radius = side->curve->arcs ? ROUND_UP * arc_hull(side, at).radius : 0.0;
+    return (curve_hull){.n = degree + 1, .radius = radius, .error = at->error};
+  }
+  const curve_capsule *capsule = &side->curve->capsules[at->part];
+  double turned = 0.0;
+  const vec3 a = vec_sub(frame_to_local(&side->frame, capsule->a, &turned), from),
+             b = vec_sub(frame_to_local(&side->frame, capsule->b, &turned), from);
+  x[0] = a.x, y[0] = a.y, z[0] = a.z;
+  x[1] = b.x, y[1] = b.y, z[1] = b.z;
+  return (curve_hull){.n = 2, .radius = capsule->radius, .error = turned};
+}
+
 /* ---- points ----------------------------------------------------------------------------------------------------------- */
 
 vec3 curve_side_point(const curve_side *side, double s) {

@@ -69,6 +69,17 @@ typedef struct curve_reach {
 /* n: unit within 4 u. A piece with points of its own must be the loaded one. */
 curve_reach curve_side_reach(const curve_side *side, const search_interval *at, vec3 n);
 
+/* An interval lies in the hull of balls about points: how many (at most degree + 1), and their one radius. */
+typedef struct curve_hull {
+  size_t n;
+  double radius;
+  double error; /* as in curve_reach */
+} curve_hull;
+
+/* Fills points, relative to `from`. A piece must have points of its own. */
+curve_hull curve_side_hull(const curve_side *side, const search_interval *at, vec3 from, double *x, double *y,
+                           double *z);
+
 /* A lower bound of the distance from a centre, or an axis through it (NULL for none), over an interval with points of its own, as
  * control_distance_from() gives it. `scratch` holds a slot's numbers. */
 double curve_side_distance_from(const curve_side *side, const search_interval *at, vec3 centre, const vec3 *axis,

@@ -8,6 +8,7 @@
 #include "query/candidate_search.h"
 #include "query/contact_convex.h"
 #include "query/contact_curve.h"
+#include "query/contact_tree.h"
 
 /* What one candidate, or all so far, say of first contact. */
 typedef struct contact {
@@ -80,6 +81,36 @@ static cprox_status meet_curve(const question *q, const candidate *c, const sear
   return status;
 }
 
+static cprox_status meet_tree(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                              contact *met) {
+  contact_tree state;
+  curve_tree *o = &state.base;
+  search_node root;
+  if (!candidate_begin_tree(q, c, o)) return CPROX_MEMORY;
+  o->asked = *goal;
+  if (!contact_tree_begin(&state, &root)) return CPROX_MEMORY;
+  const search_oracle oracle = contact_tree_oracle(&state);
+  const cprox_status status = search_run(goal, &oracle, root, q->workspace, found);
+  if (status < 0) return status;
+  candidate_report_tree(q, c, o, &met->near);
+  met->near.upper = o->best_bound.upper;
+  contact_tree_prove(&state);
+  if (state.proven_bound.at < goal->horizon) {
+    o->best = state.proven;
+    candidate_report_tree(q, c, o, &met->touch);
+    met->touch.upper = state.proven_bound.upper;
+    met->touch.t = state.proven_bound.at;
+  }
+  met->probes = o->probes;
+  return status;
+}
+
+static cprox_status meet_any(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                             contact *met) {
+  if (candidate_is_tree(q, c)) return meet_tree(q, c, goal, found, met);
+  return candidate_body(q, c) ? meet_convex(q, c, goal, found, met) : meet_curve(q, c, goal, found, met);
+}
+
 /* Contact is proven nowhere near the first place within epsilon; perhaps farther along. */
 static cprox_status prove_farther(const question *q, const candidate *c, contact *met) {
   cprox_result r;
@@ -94,7 +125,7 @@ static cprox_status meet(const question *q, const candidate *c, double horizon, 
   *met = (contact){.touch = nothing(), .near = nothing()};
   const search_goal goal = goal_of(q, horizon);
   search_outcome found = {0};
-  met->status = candidate_body(q, c) ? meet_convex(q, c, &goal, &found, met) : meet_curve(q, c, &goal, &found, met);
+  met->status = meet_any(q, c, &goal, &found, met);
   if (met->status == CPROX_MEMORY)
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the open intervals");
   if (met->status < 0) return met->status;
@@ -134,7 +165,9 @@ static cprox_status fill(const question *q, const contact *all, cprox_result *re
   r.upper = fmax(r.upper, 0.0);
   r.verdict = touch ? CPROX_YES : isinf(all->free_until) ? CPROX_NO : CPROX_UNDECIDED;
   if (!touch && !near) r.t = r.target_index < 0 ? NAN : r.t;
-  r.rung = all->nodes > 0 ? CPROX_RUNG_HULL : q->n > 0 ? CPROX_RUNG_SPHERE : CPROX_RUNG_NONE;
+  r.rung = all->nodes > 0 ? (r.rung > CPROX_RUNG_HULL ? r.rung : CPROX_RUNG_HULL)
+           : q->n > 0     ? CPROX_RUNG_SPHERE
+                          : CPROX_RUNG_NONE;
   r.nodes = all->nodes, r.probes = all->probes;
   r.status = all->status;
   if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", question_shortfall(r.status));

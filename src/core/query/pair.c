@@ -23,6 +23,8 @@ typedef struct pair_reply {
 static cprox_status pair_check_target(const char *name, const cprox_target *target, cprox_workspace *workspace) {
   if (target->curve) return workspace_fail(workspace, CPROX_INVALID, "%s is a curve: a pair is of two bodies", name);
   if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "%s: the body is NULL", name);
+  if (arguments_has_tree(target->body))
+    return workspace_fail(workspace, CPROX_INVALID, "%s is a mesh, points or boxes, or has such a part", name);
   const char *fault = frame_pose_fault(&target->pose);
   if (fault) return workspace_fail(workspace, CPROX_INVALID, "%s: %s", name, fault);
   if (!(target->padding >= 0.0) || !isfinite(target->padding))

@@ -27,6 +27,8 @@ typedef struct search_node {
   double start; /* left to right: the parameter at which the node begins */
   search_interval side[2];
   uint32_t seen, seen_ball; /* the incumbents that its bound knows already */
+  uint32_t list, list_end;  /* against trees: the lanes that still matter to it, */
+  double rest;              /* and the least bound of those that do not */
 } search_node;
 
 enum { SEARCH_MAX_CHILDREN = 4 };

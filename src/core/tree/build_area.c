@@ -90,24 +90,23 @@ static size_t partition(builder *b, size_t first, size_t last, const cut *c) {
   return m;
 }
 
-/* Brings the m-th element of a range, by its middle along the axis, to place m, the lesser before it (Hoare's selection). */
+/* Brings the m-th element of a range, by its middle along the axis, to place m, the lesser before it (Hoare's FIND). */
 static void select_middle(builder *b, size_t first, size_t last, size_t m, int axis) {
-  while (last - first > 1) {
-    const double pivot = axis_of(middle2(b, b->order[first + (last - first) / 2]), axis);
-    size_t i = first, j = last - 1;
-    for (;;) {
+  ptrdiff_t low = (ptrdiff_t)first, high = (ptrdiff_t)last - 1;
+  const ptrdiff_t wanted = (ptrdiff_t)m;
+  while (low < high) {
+    const double pivot = axis_of(middle2(b, b->order[wanted]), axis);
+    ptrdiff_t i = low, j = high;
+    while (i <= j) {
       while (axis_of(middle2(b, b->order[i]), axis) < pivot) i++;
-      while (axis_of(middle2(b, b->order[j]), axis) > pivot) j--;
-      if (i >= j) break;
+      while (pivot < axis_of(middle2(b, b->order[j]), axis)) j--;
+      if (i > j) break;
       const uint32_t moved = b->order[i];
       b->order[i++] = b->order[j];
       b->order[j--] = moved;
     }
-    const size_t second = j + 1;
-    if (m < second)
-      last = second;
-    else
-      first = second;
+    if (j < wanted) low = i;
+    if (wanted < i) high = j;
   }
 }
 
