@@ -31,4 +31,7 @@ typedef struct expand_depth {
  * nothing is set. */
 bool expand_from(const expand_set *set, const simplex *start, const expand_goal *goal, expand_depth *depth);
 
+/* For a set of revolution about z, made of two shapes of revolution about their own z: from scratch. */
+bool expand_ring(const expand_set *set, const expand_goal *goal, expand_depth *depth);
+
 #endif

@@ -381,15 +381,57 @@ static simplex_vertex pair_farthest(void *self, vec3 n) {
   return pair_extreme(self, vec_neg(n));
 }
 
+static bool is_of_revolution(const convex *shape) {
+  switch (shape->ops->kind) {
+    case CPROX_POINT:
+    case CPROX_SPHERE:
+    case CPROX_CAPSULE:
+    case CPROX_CYLINDER:
+    case CPROX_CONE: return true;
+    case CPROX_ELLIPSOID: return shape->size[0] == shape->size[1];
+    default: return false;
+  }
+}
+
+/* How far a point of b is moved at most if b's axis is laid on a's; infinity where one of them has none. */
+static double pair_misalignment(const pair *p) {
+  if (!is_of_revolution(p->a) || !is_of_revolution(p->b)) return INFINITY;
+  const double tilt = feature_hypot(p->r[2], p->r[5]); /* the sine; the chord is at most sqrt(2) times as long */
+  return 1.5 * tilt * p->b->scale + feature_hypot(p->t.x, p->t.y);
+}
+
+/* Coaxial bodies may be as deep all round a ring: their profile is a problem of the plane. What are nearly coaxial are so but for
+ * `off`. */
+static bool pair_expand_ring(const expand_set *set, const expand_goal *goal, double off, expand_depth *depth) {
+  expand_goal inner = *goal;
+  inner.rounding += off;
+  if (!expand_ring(set, &inner, depth)) return false;
+  depth->least -= off;
+  depth->most += off;
+  return depth->least > goal->rounding;
+}
+
+static bool pair_expand(pair *p, const expand_goal *goal, expand_depth *depth) {
+  const expand_set set = {.self = p, .farthest = pair_farthest};
+  const double off = pair_misalignment(p);
+  if (off <= 0.25 * goal->width && pair_expand_ring(&set, goal, off, depth)) return true;
+  if (!expand_from(&set, &p->s, goal, depth)) return false;
+  expand_depth ring;
+  const double width = depth->most - depth->least;
+  if (depth->exhausted && 2.0 * off < width && pair_expand_ring(&set, goal, off, &ring) &&
+      ring.most - ring.least < width)
+    *depth = ring;
+  return true;
+}
+
 /* 0 is inside the simplex, or on it; it expands until it has found the nearest way out of M. */
 static void pair_measure_depth(pair *p, double margin_a, double margin_b, const pair_goal *goal, pair_answer *answer) {
   const double relative = goal->relative_epsilon * (p->nearest.depth + margin_a + margin_b);
-  const expand_set set = {.self = p, .farthest = pair_farthest};
   const expand_goal inner = {.rounding = p->rounding,
                              .width = fmax(fmax(goal->epsilon, relative) - 2.0 * p->rounding, 0.25 * p->rounding),
                              .max_steps = goal->max_steps > p->steps ? goal->max_steps - p->steps : 0};
   expand_depth depth;
-  if (!expand_from(&set, &p->s, &inner, &depth) || !(depth.most < INFINITY)) return;
+  if (!pair_expand(p, &inner, &depth) || !(depth.most < INFINITY)) return;
   p->steps += depth.steps;
   p->nearest.inside = true;
   p->nearest.depth = depth.least;
