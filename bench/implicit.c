@@ -8,6 +8,7 @@
 #include "body/body.h"
 #include "convex/pair.h"
 #include "curve_proximity/cprox/translation.h"
+#include "peers/naive.h"
 #include "support/implicit_problems.h"
 #include "support/measure.h"
 #ifdef CPROX_BENCH_IPOPT
@@ -66,22 +67,32 @@ static void supports(const void *problems, size_t i, void *state, bench_answer *
   a->failed = !(r.upper - r.lower <= goal.epsilon);
 }
 
+/* Neither has a certificate: what is off by more than 1e-6 counts as failed. */
+static bool is_off(const bench_state *s, const implicit_problem *p, size_t i, double distance) {
+  const double reach = p->question.a->radius + p->question.b->radius;
+  return s->truth && !(fabs(distance - s->truth[i]) <= 1e-6 * (reach + s->truth[i]));
+}
+
+static void naive(const void *problems, size_t i, void *state, bench_answer *a) {
+  const implicit_problem *p = (const implicit_problem *)problems + i;
+  const naive_answer r = naive_pair(&p->question, ACCURACY);
+  *a = (bench_answer){.lower = r.distance, .upper = r.distance, .nodes = (uint32_t)r.iterations};
+  a->failed = !r.converged || is_off(state, p, i, r.distance);
+}
+
 #ifdef CPROX_BENCH_IPOPT
 static void ipopt(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
-  const bench_state *s = state;
   const ipopt_answer r = ipopt_pair(&p->question);
-  *a = (bench_answer){.lower = r.distance, .upper = r.distance, .nodes = (uint32_t)r.iterations, .failed = !r.solved};
-  /* it has no certificate: what is off by more than 1e-6 counts as failed */
-  if (s->truth) a->failed = a->failed || fabs(r.distance - s->truth[i]) > 1e-6 * (1.0 + s->truth[i]);
+  *a = (bench_answer){.lower = r.distance, .upper = r.distance, .nodes = (uint32_t)r.iterations};
+  a->failed = !r.solved || is_off(state, p, i, r.distance);
 }
 #endif
 
 static size_t add_peers(bench_method *methods, size_t n, bench_state *s) {
+  methods[n++] = (bench_method){"naive", naive, s};
 #ifdef CPROX_BENCH_IPOPT
   methods[n++] = (bench_method){"ipopt", ipopt, s};
-#else
-  (void)methods, (void)s;
 #endif
   return n;
 }
@@ -101,7 +112,7 @@ static void table_1(const bench_size *size, cprox_body *const *object, bench_sta
     double *truth = implicit_problems_truth(problems, size->problems);
     s->truth = truth;
     s->memory = memory_of(a, b);
-    bench_method methods[4] = {
+    bench_method methods[6] = {
         {"curve_proximity", hybrid, s}, {"interior_point", interior_point, s}, {"supports", supports, s}};
     const size_t n = add_peers(methods, 3, s);
     const bench_workload w = {.group = "implicit",
@@ -219,8 +230,8 @@ static void figure_2(const bench_size *size, bench_state *s) {
       snprintf(parameter, sizeof parameter, "%zu", 2 * count);
       s->memory = memory_of(a, b);
       s->truth = NULL;
-      bench_method methods[2] = {{"interior_point", interior_point, s}};
-      const size_t many = count <= 48 ? add_peers(methods, 1, s) : 1;
+      bench_method methods[6] = {{"interior_point", interior_point, s}};
+      const size_t many = count <= 24 ? add_peers(methods, 1, s) : 1;
       const bench_workload w = {
           .group = "implicit", .name = names[kind], .parameter = parameter, .problems = problems, .n = n};
       bench_measure(&w, size, methods, many);
@@ -232,7 +243,36 @@ static void figure_2(const bench_size *size, bench_state *s) {
   }
 }
 
-/* ---- one point, and curves ------------------------------------------------------------------------------------------------------- */
+/* ---- the families on which solvers fail ------------------------------------------------------------------------------------------ */
+
+static void hard(const bench_size *size, bench_state *s) {
+  static const char *const tags[] = {"exponent", "aspect", "scale",  "mixedscale", "far",        "faceface",
+                                     "apexapex", "discs",  "parcyl", "spheres",    "cuboidflat", "mixed"};
+  for (size_t k = 0; k < sizeof tags / sizeof *tags; k++) {
+    implicit_problem *problems;
+    double *truth;
+    const size_t n = implicit_problems_read(BENCH_DATA_DIR "/reference/implicit_hard.csv", tags[k], &problems, &truth);
+    if (n > 0) {
+      s->truth = truth;
+      size_t most = 0;
+      for (size_t i = 0; i < n; i++) {
+        const size_t bytes = implicit_memory(problems[i].question.a, problems[i].question.b);
+        most = bytes > most ? bytes : most;
+      }
+      s->memory = malloc(most);
+      bench_method methods[6] = {{"curve_proximity", hybrid, s}, {"interior_point", interior_point, s}};
+      const size_t all = add_peers(methods, 2, s);
+      const bench_workload w = {
+          .group = "implicit", .name = "hard families", .parameter = tags[k], .problems = problems, .n = n};
+      bench_measure(&w, size, methods, all);
+      free(s->memory);
+    }
+    free(problems);
+    free(truth);
+  }
+}
+
+/* ---- one point ----------------------------------------------------------------------------------------------------------------- */
 
 static void point_quick(const void *problems, size_t i, void *state, bench_answer *a) {
   (void)state;
@@ -257,7 +297,7 @@ static void points(const bench_size *size, cprox_body *const *object, bench_stat
   for (int k = 1; k <= 6; k++) {
     implicit_problem *problems = implicit_problems_make(object[k], object[3], 4, 8, 71 + (uint64_t)k, size->problems);
     s->memory = memory_of(object[k], object[3]);
-    const bench_method methods[2] = {{"curve_proximity", point_quick, s}, {"interior_point", point_interior, s}};
+    const bench_method methods[6] = {{"curve_proximity", point_quick, s}, {"interior_point", point_interior, s}};
     const bench_workload w = {
         .group = "implicit", .name = "point", .parameter = names[k], .problems = problems, .n = size->problems};
     bench_measure(&w, size, methods, 2);
@@ -275,6 +315,7 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "table II")) table_2(&size, object, &s);
   if (bench_wanted(&size, "table III")) table_3(&size, object, &s);
   if (bench_wanted(&size, "figure 2")) figure_2(&size, &s);
+  if (bench_wanted(&size, "hard families")) hard(&size, &s);
   if (bench_wanted(&size, "point")) points(&size, object, &s);
   for (int k = 1; k <= 6; k++) cprox_body_free(object[k]);
   cprox_workspace_free(s.workspace);

@@ -5,58 +5,20 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "peers/constraints.h"
+
 /* The problem, and how many iterations it has taken so far. */
 typedef struct task {
   const implicit_question *q;
   int iterations;
 } task;
 
-static vec3 turn(const double *m, vec3 v) {
-  return vec(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
-             m[6] * v.x + m[7] * v.y + m[8] * v.z);
-}
-
-static vec3 turn_back(const double *m, vec3 v) {
-  return vec(m[0] * v.x + m[3] * v.y + m[6] * v.z, m[1] * v.x + m[4] * v.y + m[7] * v.z,
-             m[2] * v.x + m[5] * v.y + m[8] * v.z);
-}
-
 static vec3 at(const double *x) {
   return vec(x[0], x[1], x[2]);
 }
 
 static vec3 apart(const task *t, const double *x) {
-  return vec_sub(vec_sub(at(x), turn(t->q->m, at(x + 3))), t->q->t);
-}
-
-/* Constraint k of a body: value, gradient, second derivative (xx, xy, xz, yy, yz, zz). */
-static double constraint(const implicit *body, int32_t k, vec3 x, vec3 *g, double h[6]) {
-  for (int i = 0; i < 6; i++) h[i] = 0.0;
-  if (k < body->n_planes) {
-    *g = body->plane[k].b;
-    return vec_dot(*g, x) + body->plane[k].c;
-  }
-  k -= body->n_planes;
-  if (k < body->n_quadrics) {
-    for (int i = 0; i < 6; i++) h[i] = 2.0 * body->quadric[k].q[i];
-    return implicit_quadric_at(&body->quadric[k], x, g);
-  }
-  const implicit_power *power = &body->power[k - body->n_quadrics];
-  double value = -1.0;
-  *g = vec(0, 0, 0);
-  for (int32_t i = power->first; i < power->first + power->n; i++) {
-    const implicit_term *term = &body->term[i];
-    const double row = implicit_row(term, x), u = fabs(row), raised = implicit_raise(term, u);
-    const double slope = u > 0.0 ? term->p * raised / row : 0.0;
-    /* p < 2 has no second derivative at 0: a large number stands for it */
-    const double bend = u > 1e-12 ? term->p * (term->p - 1.0) * raised / (u * u) : term->p < 2.0 ? 1e8 : 0.0;
-    value += raised;
-    *g = vec_axpy(*g, slope, term->a);
-    const vec3 a = term->a;
-    h[0] += bend * a.x * a.x, h[1] += bend * a.x * a.y, h[2] += bend * a.x * a.z;
-    h[3] += bend * a.y * a.y, h[4] += bend * a.y * a.z, h[5] += bend * a.z * a.z;
-  }
-  return value;
+  return vec_sub(vec_sub(at(x), constraint_turn(t->q->m, at(x + 3))), t->q->t);
 }
 
 static Bool objective(Index n, Number *x, Bool new_x, Number *value, UserDataPtr user) {
@@ -67,7 +29,7 @@ static Bool objective(Index n, Number *x, Bool new_x, Number *value, UserDataPtr
 
 static Bool objective_gradient(Index n, Number *x, Bool new_x, Number *gradient, UserDataPtr user) {
   (void)n, (void)new_x;
-  const vec3 e = apart(user, x), back = turn_back(((const task *)user)->q->m, e);
+  const vec3 e = apart(user, x), back = constraint_turn_back(((const task *)user)->q->m, e);
   gradient[0] = e.x, gradient[1] = e.y, gradient[2] = e.z;
   gradient[3] = -back.x, gradient[4] = -back.y, gradient[5] = -back.z;
   return TRUE;
@@ -79,8 +41,8 @@ static Bool constraints(Index n, Number *x, Bool new_x, Index m, Number *value, 
   const int32_t first = implicit_count(q->a), second = implicit_count(q->b);
   vec3 g;
   double h[6];
-  for (int32_t k = 0; k < first; k++) value[k] = constraint(q->a, k, at(x), &g, h);
-  for (int32_t k = 0; k < second; k++) value[first + k] = constraint(q->b, k, at(x + 3), &g, h);
+  for (int32_t k = 0; k < first; k++) value[k] = constraint_at(q->a, k, at(x), &g, h);
+  for (int32_t k = 0; k < second; k++) value[first + k] = constraint_at(q->b, k, at(x + 3), &g, h);
   return TRUE;
 }
 
@@ -94,7 +56,7 @@ static Bool jacobian(Index n, Number *x, Bool new_x, Index m, Index nonzeros, In
     vec3 g;
     double h[6];
     if (value) {
-      constraint(k < first ? q->a : q->b, k < first ? k : k - first, at(x + offset), &g, h);
+      constraint_at(k < first ? q->a : q->b, k < first ? k : k - first, at(x + offset), &g, h);
       value[3 * k] = g.x, value[3 * k + 1] = g.y, value[3 * k + 2] = g.z;
       continue;
     }
@@ -117,7 +79,7 @@ static Bool lagrangian(Index n, Number *x, Bool new_x, Number factor, Index m, N
       const int o = k < first ? 0 : 3;
       vec3 g;
       double h[6];
-      constraint(k < first ? q->a : q->b, k < first ? k : k - first, at(x + o), &g, h);
+      constraint_at(k < first ? q->a : q->b, k < first ? k : k - first, at(x + o), &g, h);
       full[o][o] += lambda[k] * h[0], full[o + 1][o] += lambda[k] * h[1], full[o + 2][o] += lambda[k] * h[2];
       full[o + 1][o + 1] += lambda[k] * h[3], full[o + 2][o + 1] += lambda[k] * h[4];
       full[o + 2][o + 2] += lambda[k] * h[5];
@@ -156,6 +118,7 @@ ipopt_answer ipopt_pair(const implicit_question *question) {
   AddIpoptNumOption(problem, "tol", 1e-8);
   AddIpoptIntOption(problem, "print_level", 0);
   AddIpoptIntOption(problem, "max_iter", 500);
+  AddIpoptNumOption(problem, "max_cpu_time", 0.1);
   AddIpoptStrOption(problem, "sb", "yes");
   SetIntermediateCallback(problem, count);
   const enum ApplicationReturnStatus status = IpoptSolve(problem, x, NULL, &value, NULL, NULL, NULL, &t);

@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/frame.h"
 #include "body/body.h"
@@ -127,4 +128,75 @@ cprox_body *implicit_body_of_many(implicit_many kind, size_t n, uint64_t seed) {
   free(terms);
   free(lists);
   return body;
+}
+
+/* ---- reference files (test/data/README.md) ---- */
+
+/* A body from `H:…|P:…|Q:…`. */
+static cprox_body *read_body(const char *text) {
+  static const size_t width[3] = {5, 4, 10};
+  double numbers[3][256];
+  size_t n[3] = {0, 0, 0}, lists = 0;
+  cprox_hyperquadric list[8];
+  while (*text) {
+    const int kind = *text == 'H' ? 0 : *text == 'P' ? 1 : 2;
+    const size_t first = n[kind];
+    text++;
+    while (*text == ':' && n[kind] < 256) {
+      char *end;
+      numbers[kind][n[kind]++] = strtod(text + 1, &end);
+      text = end;
+    }
+    if (kind == 0 && lists < 8)
+      list[lists++] = (cprox_hyperquadric){(const double(*)[5])(void *)&numbers[0][first], (n[0] - first) / 5};
+    if (*text == '|') text++;
+  }
+  const cprox_implicit_description d = {.hyperquadrics = list,
+                                        .n_hyperquadrics = lists,
+                                        .planes = (const double(*)[4])(void *)numbers[1],
+                                        .n_planes = n[1] / width[1],
+                                        .quadrics = (const double(*)[10])(void *)numbers[2],
+                                        .n_quadrics = n[2] / width[2]};
+  return make(&d);
+}
+
+static cprox_pose read_pose(char **field) {
+  double p[7];
+  for (int i = 0; i < 7; i++) p[i] = strtod(field[i], NULL);
+  return (cprox_pose){.position = {p[4], p[5], p[6]}, .orientation = {p[0], p[1], p[2], p[3]}};
+}
+
+/* b as a sees it. */
+static cprox_pose relative(const cprox_pose *a, const cprox_pose *b) {
+  const cprox_pose turned = {
+      .orientation = {a->orientation.w, -a->orientation.x, -a->orientation.y, -a->orientation.z}};
+  const cprox_pose moved = {.position = vec_sub(b->position, a->position), .orientation = b->orientation};
+  return frame_compose(&turned, &moved);
+}
+
+size_t implicit_problems_read(const char *path, const char *tag, implicit_problem **problems, double **truth) {
+  enum { MOST = 400, FIELDS = 22 };
+  FILE *file = fopen(path, "r");
+  *problems = calloc(MOST, sizeof **problems);
+  *truth = calloc(MOST, sizeof **truth);
+  if (!file || !*problems || !*truth) exit(1);
+  static char line[8192];
+  size_t n = 0;
+  while (n < MOST && fgets(line, sizeof line, file)) {
+    char *field[FIELDS], *cursor = line;
+    for (int i = 0; i < FIELDS; i++) {
+      field[i] = cursor;
+      cursor += strcspn(cursor, ",\n");
+      if (*cursor) *cursor++ = '\0';
+    }
+    const double distance = strtod(field[21], NULL);
+    if ((tag && strcmp(field[1], tag) != 0) || !(distance > 0.0)) continue;
+    const cprox_pose a = read_pose(field + 6), b = read_pose(field + 13);
+    implicit_problem *p = &(*problems)[n];
+    *p = (implicit_problem){.a = read_body(field[4]), .b = read_body(field[5])};
+    implicit_problem_place(p, relative(&a, &b));
+    (*truth)[n++] = distance;
+  }
+  fclose(file);
+  return n;
 }

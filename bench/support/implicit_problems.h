@@ -27,6 +27,10 @@ void implicit_problem_place(implicit_problem *problem, cprox_pose pose);
 /* The distances, to 1e-11 of distance and sizes. free() frees. */
 double *implicit_problems_truth(const implicit_problem *problems, size_t n);
 
+/* The rows of a reference file with one tag, apart from each other: problems and distances, both for free(); the bodies are never
+ * freed. Returns how many; `tag` NULL: all. */
+size_t implicit_problems_read(const char *path, const char *tag, implicit_problem **problems, double **truth);
+
 /* A ball of radius 1.3 cut by n planes, by n quadrics, by n superquadrics that each touch the unit ball. */
 typedef enum implicit_many { MANY_PLANES, MANY_QUADRICS, MANY_SUPERQUADRICS } implicit_many;
 cprox_body *implicit_body_of_many(implicit_many kind, size_t n, uint64_t seed);
