@@ -3,6 +3,9 @@
 #include "base/rounding.h"
 #include "implicit/barrier.h"
 
+/* A multiplier that is smaller than this fraction of the largest one is taken for 0. */
+static const double HEIGHT_SLIGHT = 1e-7;
+
 /* What a bound is made of. */
 typedef struct height {
   double sum;   /* of the constraints' shares */
@@ -63,13 +66,13 @@ static vec3 power_left(const implicit *body, const implicit_power *power, const 
 }
 
 static void height_power(height *h, const barrier *b, const implicit_power *power, double l, double share,
-                         barrier_reading reading) {
+                         barrier_reading reading, bool takes_rest) {
   enum { REFINEMENTS = 2, NEWTON = 4 };
   const implicit *body = b->body;
   const implicit_term *term = body->term + power->first;
   double w[IMPLICIT_MOST_TERMS], u[IMPLICIT_MOST_TERMS], mu = l * share;
   power_multipliers(b, power, mu, share, reading, w);
-  for (int i = 0; i < REFINEMENTS && power->spans; i++)
+  for (int i = 0; i < REFINEMENTS && takes_rest; i++)
     power_take_rest(body, power, power_left(body, power, w, h->left), w);
 
   double offset = 0.0, weights = 0.0;
@@ -94,14 +97,16 @@ double barrier_height(const barrier *b, vec3 n, double share, barrier_reading re
   for (int32_t k = 0; k < body->n_quadrics; k++)
     height_quadric(&h, &body->quadric[k], b->row[body->n_planes + k].l * share, b->z);
 
-  /* those that span the space come last: the first of them takes what is left */
-  for (int pass = 0; pass < 2; pass++) {
-    for (int32_t k = 0; k < body->n_powers; k++) {
-      const implicit_power *power = &body->power[k];
-      if (power->spans != (pass == 1)) continue;
-      height_power(&h, b, power, b->row[first_power + k].l, share, reading);
-    }
-  }
+  /* of those that span the space, the one with the largest multiplier takes what the others leave; any split will do, so
+   * that powers which hardly pull are left out */
+  int32_t last = -1;
+  for (int32_t k = 0; k < body->n_powers; k++)
+    if (body->power[k].spans && (last < 0 || b->row[first_power + k].l > b->row[first_power + last].l)) last = k;
+  const double least = last >= 0 ? HEIGHT_SLIGHT * b->row[first_power + last].l : 0.0;
+  for (int32_t k = 0; k < body->n_powers; k++)
+    if (k != last && b->row[first_power + k].l >= least)
+      height_power(&h, b, &body->power[k], b->row[first_power + k].l, share, reading, false);
+  if (last >= 0) height_power(&h, b, &body->power[last], b->row[first_power + last].l, share, reading, true);
   const double rounding = ROUND_U * (h.n + 8) * (h.sizes + body->radius * (vec_norm(n) + h.pulls));
   return h.sum + (1.0 + 4.0 * ROUND_U) * vec_norm(h.left) * body->radius + ROUND_UP * rounding + body->give;
 }
