@@ -3,6 +3,7 @@
 if(CPROX_ROS OR CPROX_TESTS)
   pkg_check_modules(PC_MPFR REQUIRED mpfr)
 else()
+  #catkin_lint: ignore_once duplicate_find
   find_package(PkgConfig QUIET)
   if(PKG_CONFIG_FOUND)
     pkg_check_modules(PC_MPFR QUIET mpfr)
