@@ -226,27 +226,45 @@ static void bound_child(curve_convex *o, search_node *child) {
   child->seen = o->incumbent;
 }
 
+/* A child that is this part of the node; the number of children then. */
+static int add_child(curve_convex *o, const search_node *node, const search_interval *part, search_node *child, int n) {
+  if (curve_side_is_empty(&o->side, part)) return n;
+  child[n] = *node;
+  child[n].side[0] = *part;
+  child[n].seen_ball = 0;
+  bound_child(o, &child[n]);
+  return n + 1;
+}
+
+/* A range of pieces falls into four where it has as many: a bound costs much less than a measurement. */
+static int split_range(curve_convex *o, const search_node *node, search_node *child) {
+  search_interval half[2], quarter[2];
+  int children = 0;
+  curve_side_cut_range(&node->side[0], half);
+  for (int k = 0; k < 2; k++) {
+    if (curve_side_is_piece(&o->side, &half[k])) {
+      children = add_child(o, node, &half[k], child, children);
+      continue;
+    }
+    if (curve_side_is_empty(&o->side, &half[k])) continue;
+    curve_side_cut_range(&half[k], quarter);
+    for (int j = 0; j < 2; j++) children = add_child(o, node, &quarter[j], child, children);
+  }
+  return children;
+}
+
 static int split(void *self, search_node *node, search_node *child) {
   curve_convex *o = self;
+  if (!is_piece(o, node)) return split_range(o, node, child);
+
+  /* at the witness point, or in the middle */
   search_interval *at = &node->side[0], half[2];
-  if (!is_piece(o, node)) {
-    curve_side_cut_range(at, half);
-  } else {
-    /* at the witness point, or in the middle */
-    const double inside = best_inside(o, node);
-    const double cut = inside < 0.0 ? 0.5 * (at->a + at->b) : o->best.s;
-    if (!(at->a < cut && cut < at->b)) return 0;
-    if (!curve_side_cut_piece(&o->side, at, cut, inside < 0.0 ? 0.5 : inside, half))
-      return curve_side_trouble(&o->side);
-  }
+  const double inside = best_inside(o, node);
+  const double cut = inside < 0.0 ? 0.5 * (at->a + at->b) : o->best.s;
+  if (!(at->a < cut && cut < at->b)) return 0;
+  if (!curve_side_cut_piece(&o->side, at, cut, inside < 0.0 ? 0.5 : inside, half)) return curve_side_trouble(&o->side);
   int children = 0;
-  for (int k = 0; k < 2; k++) {
-    if (curve_side_is_empty(&o->side, &half[k])) continue;
-    child[children] = *node;
-    child[children].side[0] = half[k];
-    child[children].seen_ball = 0;
-    bound_child(o, &child[children++]);
-  }
+  for (int k = 0; k < 2; k++) children = add_child(o, node, &half[k], child, children);
   return children;
 }
 

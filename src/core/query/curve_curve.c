@@ -233,10 +233,19 @@ void curve_curve_cut_middle(curve_curve_cuts *cuts, const search_node *node, int
   cuts->at[k] = 0.5 * (node->side[k].a + node->side[k].b);
 }
 
+static bool are_ranges(const curve_curve *o, const search_node *node) {
+  return !curve_side_is_piece(&o->side[0], &node->side[0]) && !curve_side_is_piece(&o->side[1], &node->side[1]);
+}
+
+/* The longer side in its middle; two ranges of about one length both, since bounds cost less than measurements. */
 static curve_curve_cuts choose_cuts(const curve_curve *o, const search_node *node) {
   curve_curve_cuts cuts = {.wanted = {false, false}};
   if (!holds_best(o, node)) {
-    curve_curve_cut_middle(&cuts, node, curve_curve_longer_side(o, node));
+    const int longer = curve_curve_longer_side(o, node), other = 1 - longer;
+    curve_curve_cut_middle(&cuts, node, longer);
+    if (are_ranges(o, node) &&
+        2.0 * length_of(&o->side[other], &node->side[other]) > length_of(&o->side[longer], &node->side[longer]))
+      curve_curve_cut_middle(&cuts, node, other);
     return cuts;
   }
   for (int k = 0; k < 2; k++) {

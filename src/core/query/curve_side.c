@@ -52,13 +52,43 @@ cprox_status curve_side_status(const curve_side *side) {
 
 /* ---- pieces ----------------------------------------------------------------------------------------------------------- */
 
+/* The rounding of local = R^T (world - position) - centre, by the local size m: |world - position| <= m + |centre| loses u of itself
+ * in the difference and 26u in the turn, the last difference u of m. What a frame does not do costs nothing. */
+static void measure_frame(curve_side *side) {
+  const frame *f = &side->frame;
+  const double first = (vec_norm2(f->position) > 0.0 ? 1.0 : 0.0) + (f->rotated ? ROUND_ROTATION : 0.0);
+  const double centre = vec_norm(f->centre), second = centre > 0.0 ? 1.0 : 0.0;
+  side->turned_slope = ROUND_UP * ROUND_U * (first + second);
+  side->turned_offset = ROUND_UP * ROUND_U * first * centre;
+}
+
+static vec3 local_of(const frame *f, vec3 world) {
+  return vec_sub(frame_turn_to_local(f, vec_sub(world, f->position)), f->centre);
+}
+
+/* How far from the frame's origin the whole curve reaches, and what range_reach() loses to rounding: 26u to turn n where the frame is
+ * turned, u to subtract the position, 3u for each product of three, 2u for the sums; of sizes that are at most the curve's reach and
+ * the centre's distance from the position. */
+static void measure_ranges(curve_side *side) {
+  const curve_capsule *all = &side->curve->capsules[1];
+  const vec3 a = local_of(&side->frame, all->a), b = local_of(&side->frame, all->b);
+  const double computed = fmax(vec_norm(a), vec_norm(b));
+  const double most = ROUND_UP * (computed + all->radius + side->turned_slope * computed + side->turned_offset);
+  const double roundings = (side->frame.rotated ? ROUND_ROTATION : 0.0) + 9.0;
+  side->range_magnitude = most;
+  side->range_error = ROUND_UP * ROUND_U * roundings * (most + vec_norm(side->frame.centre));
+}
+
 curve_side curve_side_create(const cprox_curve *curve, frame placed, points_pool *pool, size_t root_slot) {
-  return (curve_side){.curve = curve,
-                      .frame = placed,
-                      .part = curve_side_whole(),
-                      .pool = pool,
-                      .root_slot = root_slot,
-                      .root_piece = SIZE_MAX};
+  curve_side side = {.curve = curve,
+                     .frame = placed,
+                     .part = curve_side_whole(),
+                     .pool = pool,
+                     .root_slot = root_slot,
+                     .root_piece = SIZE_MAX};
+  measure_frame(&side);
+  measure_ranges(&side);
+  return side;
 }
 
 search_interval curve_side_whole(void) {
@@ -98,14 +128,14 @@ void curve_side_load(curve_side *side, size_t piece) {
   const size_t degree = side->curve->degree;
   const vec3 *world = curve_piece(side->curve, piece);
   double *x = points_pool_at(side->pool, side->root_slot), *y = x + degree + 1, *z = y + degree + 1;
-  double turned = 0.0;
   for (size_t i = 0; i <= degree; i++) {
-    const vec3 p = frame_to_local(&side->frame, world[i], &turned);
+    const vec3 p = local_of(&side->frame, world[i]);
     x[i] = p.x, y[i] = p.y, z[i] = p.z;
   }
   side->root_piece = piece;
-  side->root_error = (side->curve->arcs ? side->curve->arcs->error : side->curve->error[piece]) + turned;
   side->root_magnitude = control_magnitude(x, degree);
+  const double turned = side->turned_slope * side->root_magnitude + side->turned_offset;
+  side->root_error = (side->curve->arcs ? side->curve->arcs->error : side->curve->error[piece]) + turned;
 }
 
 /* ---- intervals of curves that are known by their arc length -------------------------------------------------------------- */
@@ -242,6 +272,17 @@ static curve_reach arc_reach(const curve_side *side, const search_interval *at, 
                        .magnitude = fmax(vec_norm(a), vec_norm(b)) + hull.axis};
 }
 
+/* The pieces lie in a capsule round the chord from the first to the last point. The normal is turned, not the points. */
+static curve_reach range_reach(const curve_side *side, const search_interval *at, vec3 n) {
+  const curve_capsule *capsule = &side->curve->capsules[at->part];
+  const vec3 turned = frame_turn_to_world(&side->frame, n);
+  const double a = vec_dot(turned, vec_sub(capsule->a, side->frame.position));
+  const double b = vec_dot(turned, vec_sub(capsule->b, side->frame.position));
+  return (curve_reach){.least = fmin(a, b) - vec_dot(n, side->frame.centre) - capsule->radius,
+                       .error = side->range_error,
+                       .magnitude = side->range_magnitude};
+}
+
 double curve_side_distance_from(const curve_side *side, const search_interval *at, vec3 centre, const vec3 *axis,
                                 double *scratch) {
   const double *points = points_pool_at(side->pool, (size_t)at->slot);
@@ -256,14 +297,7 @@ curve_reach curve_side_reach(const curve_side *side, const search_interval *at, 
     return (curve_reach){.least = control_least(points_pool_at(side->pool, (size_t)at->slot), side->curve->degree, n),
                          .error = at->error,
                          .magnitude = side->root_magnitude};
-  /* the pieces lie in a capsule round the chord from the first to the last point */
-  const curve_capsule *capsule = &side->curve->capsules[at->part];
-  double turned = 0.0;
-  const vec3 a = frame_to_local(&side->frame, capsule->a, &turned),
-             b = frame_to_local(&side->frame, capsule->b, &turned);
-  return (curve_reach){.least = fmin(vec_dot(n, a), vec_dot(n, b)) - capsule->radius,
-                       .error = turned,
-                       .magnitude = fmax(vec_norm(a), vec_norm(b)) + capsule->radius};
+  return range_reach(side, at, n);
 }
 
 curve_hull curve_side_hull(const curve_side *side, const search_interval *at, vec3 from, double *x, double *y,
@@ -325,12 +359,11 @@ vec3 curve_side_junction(curve_side *side, const search_interval *range, size_t 
     *piece = side->curve->n_pieces - 1;
     *s = 1.0;
   }
-  double turned = 0.0;
-  const vec3 world = curve_piece(side->curve, *piece)[*s == 0.0 ? 0 : side->curve->degree];
-  const vec3 local = frame_to_local(&side->frame, world, &turned);
-  *error = (side->curve->arcs ? side->curve->arcs->error : side->curve->error[*piece]) + turned;
   curve_side_load(side, *piece);
-  return local;
+  *error = side->root_error;
+  const size_t degree = side->curve->degree, at = *s == 0.0 ? 0 : degree;
+  const double *x = points_pool_at(side->pool, side->root_slot), *y = x + degree + 1, *z = y + degree + 1;
+  return vec(x[at], y[at], z[at]);
 }
 
 /* ---- cuts ------------------------------------------------------------------------------------------------------------- */

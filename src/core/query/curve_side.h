@@ -30,6 +30,9 @@ typedef struct curve_side {
   size_t root_slot;  /* reserved: the whole piece that was asked for last */
   size_t root_piece; /* SIZE_MAX: none yet */
   double root_error, root_magnitude;
+  double turned_slope,
+      turned_offset; /* bringing points of |local| <= m into the frame is off by at most slope m + offset */
+  double range_error, range_magnitude; /* what curve_side_reach() says of ranges of pieces, all of them */
 } curve_side;
 
 curve_side curve_side_create(const cprox_curve *curve, frame placed, points_pool *pool, size_t root_slot);
