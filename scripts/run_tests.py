@@ -232,7 +232,7 @@ def sanitized():
 def threads():
     """The tests with threads, of the core and of the scene, under ThreadSanitizer."""
     sanitizer = ['-DCPROX_SANITIZE=thread', '-DCMAKE_BUILD_TYPE=RelWithDebInfo']
-    count = core_tests('threads', *sanitizer, only='thread|batch')
+    count = core_tests('threads', *sanitizer, only='thread|batch|parallel')
     flavour = 'threads-scene'
     devel = os.path.join(WORKSPACE, 'core', flavour, 'devel')
     options = [*sanitizer, '-DPYTHON_EXECUTABLE=/usr/bin/python3', f'-DCATKIN_DEVEL_PREFIX={devel}']

@@ -46,35 +46,35 @@ void lanes_basis(size_t degree, double *basis) {
 
 LANES_DISPATCHED
 void lanes_cut(const double *basis, const vec3 *points, size_t degree, lanes_chords *chords) {
-  double x[CHORDS] = {0}, y[CHORDS] = {0}, z[CHORDS] = {0};
-  for (size_t j = 0; j <= degree; j++) {
-    const double *restrict b = basis + j * CHORDS;
-    const vec3 p = points[j];
+  /* half of the lanes at a time: so many sums stay in registers */
+  for (size_t first = 0; first < CHORDS; first += LANES) {
+    double x[LANES] = {0}, y[LANES] = {0}, z[LANES] = {0};
+    for (size_t j = 0; j <= degree; j++) {
+      const double *restrict b = basis + j * CHORDS + first;
+      const vec3 p = points[j];
 #pragma omp simd
-    for (int k = 0; k < CHORDS; k++) {
-      x[k] += b[k] * p.x;
-      y[k] += b[k] * p.y;
-      z[k] += b[k] * p.z;
+      for (int k = 0; k < LANES; k++) {
+        x[k] += b[k] * p.x;
+        y[k] += b[k] * p.y;
+        z[k] += b[k] * p.z;
+      }
+    }
+    for (size_t k = 0; k < LANES; k++) {
+      chords->x[first + k] = x[k];
+      chords->y[first + k] = y[k];
+      chords->z[first + k] = z[k];
     }
   }
-  for (int k = 0; k < CHORDS; k++) {
-    chords->x[k] = x[k];
-    chords->y[k] = y[k];
-    chords->z[k] = z[k];
-  }
-  for (int k = 0; k < CHORDS - 1; k++) {
-    chords->dx[k] = x[k + 1] - x[k];
-    chords->dy[k] = y[k + 1] - y[k];
-    chords->dz[k] = z[k + 1] - z[k];
-  }
-  const vec3 end = points[degree];
-  chords->dx[CHORDS - 1] = end.x - x[CHORDS - 1];
-  chords->dy[CHORDS - 1] = end.y - y[CHORDS - 1];
-  chords->dz[CHORDS - 1] = end.z - z[CHORDS - 1];
+  chords->x[CHORDS] = points[degree].x;
+  chords->y[CHORDS] = points[degree].y;
+  chords->z[CHORDS] = points[degree].z;
 #pragma omp simd
   for (int k = 0; k < CHORDS; k++) {
-    const double dx = chords->dx[k], dy = chords->dy[k], dz = chords->dz[k];
-    const double length2 = dx * dx + dy * dy + dz * dz;
+    const double dx = chords->x[k + 1] - chords->x[k], dy = chords->y[k + 1] - chords->y[k];
+    const double dz = chords->z[k + 1] - chords->z[k], length2 = dx * dx + dy * dy + dz * dz;
+    chords->dx[k] = dx;
+    chords->dy[k] = dy;
+    chords->dz[k] = dz;
     chords->per_length2[k] = length2 > LEAST_SQUARE ? 1.0 / length2 : 0.0;
   }
 }

@@ -24,7 +24,8 @@ void lanes_basis(size_t degree, double *basis);
 
 /* The chords of a Bézier piece: chord k begins at the point of s = k/CHORDS, and how it goes on to the next. */
 typedef struct lanes_chords {
-  double x[CHORDS], y[CHORDS], z[CHORDS], dx[CHORDS], dy[CHORDS], dz[CHORDS];
+  double x[CHORDS + 1], y[CHORDS + 1], z[CHORDS + 1]; /* the last is the end of the piece */
+  double dx[CHORDS], dy[CHORDS], dz[CHORDS];
   double per_length2[CHORDS]; /* 1/|d|², 0 where that would overflow */
 } lanes_chords;
 

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Threads for batches: a pool whose threads wait for ranges, and many movers against the same targets over it.
+ *
+ *  Header-only over libcprox and the standard library's threads. The core starts none: a batch call takes a range and a workspace. */
+#ifndef CURVE_PROXIMITY_PARALLEL_HPP
+#define CURVE_PROXIMITY_PARALLEL_HPP
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <curve_proximity/core.hpp>
+
+namespace curve_proximity {
+
+/** Threads that wait for work, each with a workspace that stays warm. */
+class Pool {
+ public:
+  /** Answers 0 … n-1 in ranges: [first, last) is this call's, and the workspace this thread's. */
+  using Work = std::function<void(std::size_t first, std::size_t last, Workspace &workspace)>;
+
+  /** threads  in all, the one that calls run() among them; 0: as many as the machine runs at once. */
+  explicit Pool(unsigned threads = 0) {
+    if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+    try {
+      for (unsigned i = 1; i < threads; ++i)
+        threads_.emplace_back([this, workspace = Workspace()]() mutable { serve(workspace); });
+    } catch (...) {
+      stop();
+      throw;
+    }
+  }
+
+  ~Pool() {
+    stop();
+  }
+
+  Pool(const Pool &) = delete;
+  Pool &operator=(const Pool &) = delete;
+
+  /** The threads that work on a run. */
+  unsigned threads() const {
+    return static_cast<unsigned>(threads_.size()) + 1;
+  }
+
+  /** Calls work for ranges of at most `grain` >= 1 that together are 0 … n-1, in any order and at once; returns when all are done.
+   *  After an exception the ranges that have not begun are left out, and the first one is thrown on. One run at a time: a
+   *  second thread that calls this waits for the first. */
+  void run(std::size_t n, std::size_t grain, const Work &work) {
+    const std::lock_guard<std::mutex> alone(runs_);
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      work_ = &work;
+      next_ = 0;
+      end_ = n;
+      grain_ = std::max<std::size_t>(grain, 1);
+      failure_ = nullptr;
+    }
+    wake_.notify_all();
+    takeRanges(own_);
+    std::unique_lock<std::mutex> lock(mutex_);
+    idle_.wait(lock, [this] { return busy_ == 0; });
+    work_ = nullptr;
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  }
+
+ private:
+  void serve(Workspace &workspace) {
+    for (;;) {
+      {
+        std::unique_lock<std::mutex> lock(mutex_);
+        wake_.wait(lock, [this] { return stopping_ || (work_ && next_ < end_); });
+        if (stopping_) return;
+      }
+      takeRanges(workspace);
+    }
+  }
+
+  void takeRanges(Workspace &workspace) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (work_ && next_ < end_) {
+      const std::size_t first = next_, last = end_ - first > grain_ ? first + grain_ : end_;
+      const Work &work = *work_;
+      next_ = last;
+      ++busy_;
+      lock.unlock();
+      std::exception_ptr failure;
+      try {
+        work(first, last, workspace);
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      lock.lock();
+      if (failure) {
+        next_ = end_;
+        if (!failure_) failure_ = failure;
+      }
+      if (--busy_ == 0) idle_.notify_all();
+    }
+  }
+
+  void stop() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      stopping_ = true;
+    }
+    wake_.notify_all();
+    for (std::thread &thread : threads_) thread.join();
+  }
+
+  std::mutex runs_;  // held by the run
+  std::mutex mutex_; // of all that follows
+  std::condition_variable wake_, idle_;
+  const Work *work_ = nullptr;
+  std::size_t next_ = 0, end_ = 0, grain_ = 1, busy_ = 0;
+  std::exception_ptr failure_;
+  bool stopping_ = false;
+  Workspace own_; // of the thread that runs
+  std::vector<std::thread> threads_;
+};
+
+/** Targets that many movers are held against: cprox_batch over a pool. Immutable, shared by any number of threads. */
+class Batch {
+ public:
+  /** What cprox_batch_distance() and its like say; the same for every number of threads. */
+  struct Answers {
+    std::vector<cprox_result> results; /**< one a mover */
+    cprox_status status = CPROX_OK;    /**< the first negative one of them, else the largest */
+    std::string reason;                /**< which mover that was, and why; "" for CPROX_OK */
+  };
+
+  /** What the targets name must outlive the batch. Throws Error as cprox_batch_create() fails. */
+  explicit Batch(const std::vector<cprox_target> &targets) {
+    const Workspace workspace;
+    cprox_batch *made = nullptr;
+    require(cprox_batch_create(targets.data(), targets.size(), workspace.get(), &made), workspace);
+    handle_.reset(made);
+  }
+
+  Answers distance(const std::vector<cprox_mover> &movers, const cprox_options &options, Pool &pool) const {
+    return ask(movers, pool,
+               [&](std::size_t first, std::size_t last, cprox_workspace *workspace, cprox_result *results) {
+                 return cprox_batch_distance(handle_.get(), movers.data(), first, last, &options, workspace, results);
+               });
+  }
+
+  /** delta >= 0 [m]. */
+  Answers tolerance(const std::vector<cprox_mover> &movers, double delta, const cprox_options &options,
+                    Pool &pool) const {
+    return ask(
+        movers, pool, [&](std::size_t first, std::size_t last, cprox_workspace *workspace, cprox_result *results) {
+          return cprox_batch_tolerance(handle_.get(), movers.data(), first, last, delta, &options, workspace, results);
+        });
+  }
+
+  Answers collision(const std::vector<cprox_mover> &movers, const cprox_options &options, Pool &pool) const {
+    return ask(movers, pool,
+               [&](std::size_t first, std::size_t last, cprox_workspace *workspace, cprox_result *results) {
+                 return cprox_batch_collision(handle_.get(), movers.data(), first, last, &options, workspace, results);
+               });
+  }
+
+  /** The C handle, owned by this object. */
+  const cprox_batch *get() const {
+    return handle_.get();
+  }
+
+ private:
+  static constexpr std::size_t kGrain = 32;
+
+  template <typename Ask>
+  static Answers ask(const std::vector<cprox_mover> &movers, Pool &pool, const Ask &ask_range) {
+    Answers answers;
+    cprox_result none{};
+    none.status = CPROX_INVALID; // where the call itself is refused nothing is written
+    answers.results.assign(movers.size(), none);
+    std::mutex mutex;
+    std::size_t where = movers.size(); // the range that status and reason are of
+    pool.run(movers.size(), kGrain, [&](std::size_t first, std::size_t last, Workspace &workspace) {
+      const cprox_status status = ask_range(first, last, workspace.get(), answers.results.data());
+      if (status == CPROX_OK) return;
+      const std::lock_guard<std::mutex> lock(mutex);
+      const bool graver = status < 0 ? answers.status >= 0 || first < where
+                                     : status > answers.status || (status == answers.status && first < where);
+      if (!graver || (answers.status < 0 && status >= 0)) return;
+      answers.status = status;
+      answers.reason = workspace.reason();
+      where = first;
+    });
+    return answers;
+  }
+
+  struct Free {
+    void operator()(cprox_batch *handle) const {
+      cprox_batch_free(handle);
+    }
+  };
+  std::unique_ptr<cprox_batch, Free> handle_;
+};
+
+} // namespace curve_proximity
+
+#endif
