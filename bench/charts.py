@@ -68,7 +68,8 @@ def work_precision(rows, out, group, workload, parameter, title, name):
     return save(figure, out, name)
 
 
-def bars(rows, out, group, select, title, name, label=lambda row: f"{row['workload']}\n{row['parameter']}"):
+def bars(rows, out, group, select, title, name, label=lambda row: f"{row['workload']}\n{row['parameter']}",
+         time='median time a query [µs]'):
     """Time of each method, one cluster for each workload and parameter that select(row) takes."""
     rows = [row for row in rows if row['group'] == group and select(row)]
     keys = list(dict.fromkeys(label(row) for row in rows))
@@ -85,7 +86,7 @@ def bars(rows, out, group, select, title, name, label=lambda row: f"{row['worklo
     axes.set_yscale('log')
     axes.set_xticks(range(len(keys)))
     axes.set_xticklabels(keys, fontsize=8)
-    axes.set_ylabel('median time a query [µs]')
+    axes.set_ylabel(time)
     axes.set_title(title)
     axes.grid(axis='x', visible=False)
     axes.legend()
@@ -106,6 +107,11 @@ def curves(rows, out):
                lambda row: f"{row['workload'].split(' tolerance')[0]}\n{row['parameter'][14:]}")
 
 
+def batches(rows, out):
+    yield bars(rows, out, 'batches', lambda row: True, 'A thousand quintic Bézier curves', 'batches',
+               lambda row: f"{row['workload'].replace(' ', chr(10))}\n{row['parameter'].split()[0]}", 'median time of all curves [µs]')
+
+
 def fourier(rows, out):
     yield from fourier_charts.draw(rows, out, save)
     yield bars(rows, out, 'fourier', lambda row: row['workload'] == 'boxes', 'Two boxes: a gap beside a distance', 'fourier_boxes')
@@ -115,6 +121,6 @@ def draw_all(rows, out):
     """All charts for which there are rows; their names."""
     style()
     drawn = []
-    for draw in (curves, fourier):
+    for draw in (curves, batches, fourier):
         drawn += [name for name in draw(rows, out) if name]
     return drawn
