@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/rounding.h"
+#include "fourier/grid.h"
 
 #define TAU 6.28318530717958647693
 
@@ -70,18 +71,27 @@ static vec3 frequency(const cprox_gap *gap, const block *b, int lane) {
   return vec(step * (b->k[0] + lane), step * b->k[1], step * b->k[2]);
 }
 
+/* What coefficients are made of: W, S, T where it is a ball; S as a table where it is an aligned grid. */
+typedef struct sources {
+  const kernel *w;
+  const cprox_solid *fixed, *ball;
+  grid_table grid;
+} sources;
+
 /* Coefficients of a block: W S(q), times T(q) of a turned ball. */
-static void fill_block(const cprox_gap *gap, const kernel *w, const cprox_solid *fixed, const cprox_solid *ball,
-                       draft *d) {
+static void fill_block(const cprox_gap *gap, const sources *from, draft *d) {
   const block *b = &d->at;
   for (int lane = 0; lane < LANES; lane++) {
-    const double weight = kernel_weight(w, (const int[3]){b->k[0] + lane, b->k[1], b->k[2]});
+    const double weight = kernel_weight(from->w, (const int[3]){b->k[0] + lane, b->k[1], b->k[2]});
     wave_jet s = {0}, t;
     if (weight != 0.0) {
       const vec3 q = frequency(gap, b, lane);
-      solid_spectrum(fixed, q, false, &s);
-      if (ball) {
-        solid_spectrum(ball, q, false, &t);
+      if (from->grid.value)
+        s.value = grid_at(&from->grid, b->k[0] + lane, b->k[1], b->k[2], gap->info.dimension);
+      else
+        solid_spectrum(from->fixed, q, false, &s);
+      if (from->ball) {
+        solid_spectrum(from->ball, q, false, &t);
         s.value = wave_times(s.value, (wave){t.value.re, -t.value.im});
       }
     }
@@ -164,16 +174,27 @@ static bool allocate(cprox_gap *gap) {
   return gap->blocks && gap->c && gap->tail;
 }
 
+/* All coefficients; false where memory is out. */
+static bool fill_blocks(const cprox_gap *gap, const kernel *w, const cprox_solid *fixed, const cprox_solid *ball,
+                        draft *drafts) {
+  sources from = {.w = w, .fixed = fixed, .ball = ball};
+  if (fixed->n == 1 && grid_is_aligned(&fixed->pieces[0]) &&
+      !grid_transform(&fixed->pieces[0], gap->info.dimension, gap->N, TAU / gap->info.period, &from.grid))
+    return false;
+  list_blocks(w, gap->info.dimension, drafts);
+  for (size_t i = 0; i < gap->n_blocks; i++) fill_block(gap, &from, &drafts[i]);
+  free(from.grid.value);
+  return true;
+}
+
 /* Everything that depends on the spectra. */
 static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cprox_solid *turned) {
   const int dimension = gap->info.dimension;
   gap->n_blocks = list_blocks(w, dimension, NULL);
   draft *drafts = calloc(gap->n_blocks, sizeof *drafts);
-  bool failed = !drafts || !allocate(gap);
+  const bool folded = is_centred_ball(turned);
+  bool failed = !drafts || !allocate(gap) || !fill_blocks(gap, w, fixed, folded ? turned : NULL, drafts);
   if (!failed) {
-    const bool folded = is_centred_ball(turned);
-    list_blocks(w, dimension, drafts);
-    for (size_t i = 0; i < gap->n_blocks; i++) fill_block(gap, w, fixed, folded ? turned : NULL, &drafts[i]);
     order(gap, drafts);
     const double measure = cprox_solid_measure(turned), L = gap->info.period;
     gap->constant = cprox_solid_measure(fixed) * measure;
