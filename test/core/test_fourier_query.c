@@ -136,6 +136,7 @@ static void gradients_agree_with_differences(void **state) {
       const cprox_pose p[2] = {random_pose(&r, dimension, 0.3), random_pose(&r, dimension, 0.3)};
       cprox_gap_result x, y;
       MADE(cprox_gap_evaluate(gap, &p[0], &p[1], ws, &x));
+      if (x.verdict == CPROX_GAP_FAR) continue;
       double size = mode == CPROX_GAP_SIGNAL ? 1.0 : 1e-3 / info.offset;
       for (int axis = 0; axis < 6; axis++)
         size = fmax(size, fmax(fabs(component(x.position_a, x.rotation_a, axis)),
