@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "query/candidate_search.h"
+#include "query/robot_answer.h"
 
 question question_create(cprox_mover mover, const cprox_target *targets, size_t n, double limit, bool farther_is_yes,
                          const cprox_options *options, cprox_workspace *workspace) {
@@ -61,6 +62,7 @@ cprox_status question_conclude(const question *q, double ceiling, cprox_status t
 }
 
 cprox_status question_answer(const question *q, size_t first, size_t last, double ceiling, cprox_result *result) {
+  if (q->mover.motion) return robot_answer(q, first, last, ceiling, result);
   size_t n = 0;
   const candidate *list = NULL;
   if (last > first) {

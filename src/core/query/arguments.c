@@ -7,6 +7,7 @@
 #include "base/workspace.h"
 #include "body/body.h"
 #include "curve/curve.h"
+#include "query/robot_answer.h"
 
 cprox_target cprox_at(const cprox_body *body, cprox_pose pose) {
   return (cprox_target){.body = body, .pose = pose, .padding = 0.0};
@@ -125,7 +126,7 @@ static cprox_status check_carried(const cprox_body *body, cprox_workspace *works
 cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target *targets, size_t n,
                                    const cprox_options *options, cprox_workspace *workspace) {
   if (!workspace) return CPROX_INVALID;
-  if (!mover->curve) return workspace_fail(workspace, CPROX_INVALID, "the mover has no curve");
+  if (!mover->curve && !mover->motion) return workspace_fail(workspace, CPROX_INVALID, "the mover has no curve");
   if (!(mover->radius >= 0.0 && isfinite(mover->radius)))
     return workspace_fail(workspace, CPROX_INVALID, "radius is %g, must be finite and 0 or more", mover->radius);
   const cprox_status carried = check_carried(mover->body, workspace);
@@ -134,6 +135,7 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target 
   if (checked != CPROX_OK) return checked;
   const cprox_status standing = arguments_check_targets(targets, n, workspace);
   if (standing != CPROX_OK) return standing;
+  if (mover->motion) return robot_check(mover, targets, n, workspace);
   for (size_t i = 0; i < n; i++) {
     const cprox_status clock = check_clock(mover->curve, &targets[i], i, workspace);
     if (clock != CPROX_OK) return clock;

@@ -6,8 +6,13 @@
 #include "body/body.h"
 #include "query/carried.h"
 #include "query/curve_side.h"
+#include "query/robot_answer.h"
 
 void question_ask_whole(question *q) {
+  if (q->mover.motion) {
+    robot_ask_whole(q);
+    return;
+  }
   q->part = curve_side_whole();
   q->reach = q->mover.curve->capsules[1];
   cprox_curve_domain(q->mover.curve, &q->t0, &q->t1);

@@ -17,6 +17,10 @@ static candidate *rank_targets(const question *q) {
   if (!rank) return NULL;
   for (size_t i = 0; i < q->n; i++) {
     size_t n;
+    if (q->mover.motion) { /* its search ranks by itself */
+      rank[i] = (candidate){.target = (int32_t)i};
+      continue;
+    }
     const candidate *parts = candidates_list(q, i, i + 1, &n);
     if (!parts) return NULL;
     rank[i] = parts[0];

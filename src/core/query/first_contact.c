@@ -9,6 +9,7 @@
 #include "query/contact_convex.h"
 #include "query/contact_curve.h"
 #include "query/contact_tree.h"
+#include "query/robot_answer.h"
 
 /* What one candidate, or all so far, say of first contact. */
 typedef struct contact {
@@ -182,6 +183,7 @@ cprox_status cprox_first_contact_all(cprox_mover mover, const cprox_target *targ
   const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, workspace);
   if (checked != CPROX_OK) return checked;
   question_ask_whole(&q);
+  if (mover.motion) return robot_first_contact(&q, result);
 
   size_t count = 0;
   const candidate *list = n > 0 ? candidates_list(&q, 0, n, &count) : NULL;

@@ -8,12 +8,11 @@
 #include "query/arguments.h"
 #include "query/curve_side.h"
 
-static cprox_status check_breaks(const cprox_curve *curve, const double *breaks, size_t n, cprox_workspace *workspace) {
-  double t0, t1;
-  cprox_curve_domain(curve, &t0, &t1);
+static cprox_status check_breaks(const question *q, const double *breaks, size_t n, cprox_workspace *workspace) {
+  const double t0 = q->t0, t1 = q->t1;
   for (size_t i = 0; i <= n; i++) {
     if (!(breaks[i] >= t0 && breaks[i] <= t1))
-      return workspace_fail(workspace, CPROX_INVALID, "break %zu is %g, outside the curve's range [%g, %g]", i,
+      return workspace_fail(workspace, CPROX_INVALID, "break %zu is %g, outside the mover's range [%g, %g]", i,
                             breaks[i], t0, t1);
     if (i > 0 && !(breaks[i] > breaks[i - 1]))
       return workspace_fail(workspace, CPROX_INVALID, "break %zu is %g, not above break %zu at %g", i, breaks[i], i - 1,
@@ -78,6 +77,21 @@ static cprox_status measure(question *q, double t0, double t1, size_t *piece, cp
   return trouble;
 }
 
+/* The same of a robot, whose search knows of segments itself. */
+static cprox_status measure_motion(question *q, double t0, double t1, cprox_stretch *stretch) {
+  q->t0 = t0, q->t1 = t1;
+  cprox_result r;
+  const cprox_status status = question_answer(q, 0, q->n, INFINITY, &r);
+  if (status < 0) return status;
+  *stretch = (cprox_stretch){.t0 = t0,
+                             .t1 = t1,
+                             .lower = r.lower,
+                             .upper = r.upper,
+                             .t = r.target_index < 0 ? t0 : fmin(fmax(r.t, t0), t1),
+                             .target_index = r.target_index};
+  return status;
+}
+
 cprox_status cprox_profile(cprox_mover mover, const cprox_target *targets, size_t n, const double *breaks,
                            size_t n_stretches, const cprox_options *options, cprox_workspace *workspace,
                            cprox_stretch *stretches) {
@@ -85,13 +99,16 @@ cprox_status cprox_profile(cprox_mover mover, const cprox_target *targets, size_
   q.is_signed = q.options.signed_distance;
   workspace_clear(workspace);
   cprox_status status = arguments_check_query(&mover, targets, n, &q.options, workspace);
-  if (status == CPROX_OK) status = check_breaks(mover.curve, breaks, n_stretches, workspace);
+  if (status != CPROX_OK) return status;
+  question_ask_whole(&q);
+  status = check_breaks(&q, breaks, n_stretches, workspace);
   if (status != CPROX_OK) return status;
 
   size_t piece = 0;
   cprox_status trouble = CPROX_OK;
   for (size_t i = 0; i < n_stretches; i++) {
-    status = measure(&q, breaks[i], breaks[i + 1], &piece, &stretches[i]);
+    status = mover.motion ? measure_motion(&q, breaks[i], breaks[i + 1], &stretches[i])
+                          : measure(&q, breaks[i], breaks[i + 1], &piece, &stretches[i]);
     if (status < 0) return status;
     if (status != CPROX_OK) trouble = status;
   }

@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "query/robot_scene.h"
+
+#include <math.h>
+
+#include "base/rounding.h"
+#include "convex/pair.h"
+#include "query/pair_place.h"
+
+enum { GAP_STEPS = 128 };
+
+static bool is_halfspace(const robot_body *body) {
+  return body->side.shape->ops->kind == CPROX_HALFSPACE;
+}
+
+/* ---- bodies --------------------------------------------------------------------------------------------------------------- */
+
+/* The box that the core's support function draws round it. */
+static void find_box(robot_body *body) {
+  const convex *shape = body->side.shape;
+  double low[3], high[3];
+  for (int i = 0; i < 3; i++) {
+    const vec3 axis = vec(i == 0, i == 1, i == 2);
+    high[i] = shape->ops->support(shape, axis, NULL, NULL);
+    low[i] = -shape->ops->support(shape, vec_neg(axis), NULL, NULL);
+  }
+  const double grow = ROUND_SUPPORT * ROUND_U * shape->scale + shape->slack;
+  body->middle = vec(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2]));
+  body->half = vec(0.5 * (high[0] - low[0]) + grow, 0.5 * (high[1] - low[1]) + grow, 0.5 * (high[2] - low[2]) + grow);
+}
+
+static size_t parts_of(const cprox_target *target) {
+  return target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
+}
+
+static robot_body obstacle(const cprox_target *target, size_t index, size_t part) {
+  const pair_side placed = pair_place_side(target, part);
+  const convex *shape = placed.shape;
+  robot_body body = {.index = (int32_t)index, .part = (int32_t)part};
+  body.side = (bound_side){.shape = shape, .margin = placed.margin};
+  for (int i = 0; i < 9; i++) body.side.at.r[i] = placed.f.r[i];
+  body.side.at.p = frame_to_world(&placed.f, vec(0, 0, 0));
+  const double sizes = vec_norm(placed.f.centre) + shape->scale;
+  body.side.error = ROUND_UP * (placed.error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(body.side.at.p)));
+  body.radius = shape->scale + placed.margin;
+  if (!is_halfspace(&body)) find_box(&body);
+  return body;
+}
+
+static robot_body part_body(const cprox_motion *motion, size_t i) {
+  const robot_part *part = &motion->robot->parts[i];
+  robot_body body = {.radius = part->radius, .steps = part->steps, .index = part->geometry, .part = (int32_t)i};
+  body.side = (bound_side){.shape = part->shape, .margin = part->margin, .error = motion->part_error[i]};
+  find_box(&body);
+  return body;
+}
+
+/* ---- pairs ---------------------------------------------------------------------------------------------------------------- */
+
+/* Adds the pairs of convex parts of a geometry and a target, or of two geometries; only counts them where there is no room. */
+static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, robot_pair *pairs, size_t *n) {
+  const cprox_robot *robot = s->motion->robot;
+  const size_t others = s->self ? robot->n_parts : s->n_obstacles;
+  for (size_t i = 0; i < robot->n_parts; i++) {
+    if (robot->parts[i].geometry != geometry) continue;
+    for (size_t k = 0; k < others; k++) {
+      if ((s->self ? robot->parts[k].geometry : s->obstacles[k].index) != other) continue;
+      if (pairs) pairs[*n] = (robot_pair){.moving = (int32_t)i, .standing = (int32_t)k};
+      (*n)++;
+    }
+  }
+}
+
+/* All pairs that are worth asking for. */
+static void add_all_pairs(const robot_scene *s, robot_pair *pairs, size_t *n) {
+  const cprox_robot *robot = s->motion->robot;
+  const size_t others = s->self ? robot->n_parts : s->n_obstacles;
+  for (size_t i = 0; i < robot->n_parts; i++) {
+    const robot_part *part = &robot->parts[i];
+    if (!s->self && !cprox_motion_moves_link(s->motion, (size_t)part->link)) continue;
+    for (size_t k = 0; k < others; k++) {
+      const robot_part *other = &robot->parts[k];
+      if (s->self && (other->geometry >= part->geometry ||
+                      !cprox_motion_relates_links(s->motion, (size_t)part->link, (size_t)other->link)))
+        continue;
+      if (pairs) pairs[*n] = (robot_pair){.moving = (int32_t)i, .standing = (int32_t)k};
+      (*n)++;
+    }
+  }
+}
+
+/* Lists the pairs, or counts them where there is no room given. */
+static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
+  const cprox_mover *mover = &s->q->mover;
+  size_t n = 0;
+  if (!mover->pairs) add_all_pairs(s, pairs, &n);
+  for (size_t i = 0; mover->pairs && i < mover->n_pairs; i++)
+    add_pairs(s, mover->pairs[i].geometry, mover->pairs[i].other, pairs, &n);
+  return n;
+}
+
+/* ---- beginning ------------------------------------------------------------------------------------------------------------ */
+
+bool robot_scene_begin(robot_scene *s, const question *q, size_t first, size_t last) {
+  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = q->mover.self};
+  const cprox_robot *robot = s->motion->robot;
+  for (size_t i = first; i < last; i++) s->n_obstacles += parts_of(&q->targets[i]);
+
+  const size_t n_axes = robot->n_axes + 1;
+  const size_t bytes = s->n_obstacles * sizeof *s->obstacles + (robot->n_parts + 1) * sizeof *s->parts +
+                       n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch) +
+                       (robot->n_variables + 1) * sizeof *s->values;
+  char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
+  if (!memory) return false;
+  s->parts = (part_state *)(void *)memory;
+  s->obstacles = (robot_body *)(void *)(s->parts + robot->n_parts + 1);
+  s->axes = (axis_state *)(void *)(s->obstacles + s->n_obstacles);
+  s->chain = (chain_axis *)(void *)(s->axes + n_axes);
+  s->values = (double *)(void *)(s->chain + n_axes);
+  s->scratch = s->values + robot->n_variables + 1;
+
+  size_t n = 0;
+  for (size_t i = first; i < last; i++)
+    for (size_t k = 0; k < parts_of(&q->targets[i]); k++) s->obstacles[n++] = obstacle(&q->targets[i], i, k);
+  for (size_t i = 0; i < robot->n_parts; i++) s->parts[i] = (part_state){.body = part_body(s->motion, i)};
+
+  s->n_pairs = list_pairs(s, NULL);
+  s->pairs = workspace_reserve(q->workspace, WORKSPACE_ROBOT_PAIRS, (s->n_pairs + 1) * sizeof *s->pairs);
+  if (!s->pairs) return false;
+  list_pairs(s, s->pairs);
+  return true;
+}
+
+/* ---- over a node ---------------------------------------------------------------------------------------------------------- */
+
+void robot_scene_enter(robot_scene *s, size_t segment, double a, double b) {
+  s->node++;
+  motion_node(s->motion, segment, a, b, s->values, s->axes);
+}
+
+static part_state *place(robot_scene *s, int32_t index) {
+  part_state *state = &s->parts[index];
+  if (state->placed == s->node) return state;
+  const robot_part *part = &s->motion->robot->parts[index];
+  state->body.side.at = part->axis < 0 ? part->at : placement_compose(&s->axes[part->axis].frame, &part->at);
+  state->placed = s->node;
+  return state;
+}
+
+const robot_body *robot_scene_moving(robot_scene *s, const robot_pair *pair) {
+  return &place(s, pair->moving)->body;
+}
+
+const robot_body *robot_scene_standing(robot_scene *s, const robot_pair *pair) {
+  return s->self ? &place(s, pair->standing)->body : &s->obstacles[pair->standing];
+}
+
+static void find_motion(robot_scene *s, int32_t from, const part_state *state, chain_motion *m) {
+  const robot_part *part = &s->motion->robot->parts[state->body.part];
+  const size_t n = motion_chain(s->motion, from, part->axis, s->chain);
+  motion_of_part(s->axes, s->chain, n, state->body.side.at.p, state->body.radius + state->body.side.error, s->scratch,
+                 m);
+}
+
+const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, chain_motion *own) {
+  part_state *state = place(s, pair->moving);
+  if (s->self) {
+    find_motion(s, s->motion->robot->parts[pair->standing].axis, state, own);
+    return own;
+  }
+  if (state->moved != s->node) find_motion(s, -1, state, &state->motion);
+  state->moved = s->node;
+  return &state->motion;
+}
+
+/* ---- cheap distances ------------------------------------------------------------------------------------------------------ */
+
+/* Of a point from the box round a body, or from its halfspace. */
+static double from_box(const robot_body *body, vec3 point) {
+  const vec3 y = placement_turn_back(&body->side.at, vec_sub(point, body->side.at.p));
+  if (is_halfspace(body)) {
+    const double *h = body->side.shape->size;
+    return h[0] * y.x + h[1] * y.y + h[2] * y.z + h[3];
+  }
+  const vec3 z = vec_sub(y, body->middle);
+  const vec3 out = vec(fmax(fabs(z.x) - body->half.x, 0.0), fmax(fabs(z.y) - body->half.y, 0.0),
+                       fmax(fabs(z.z) - body->half.z, 0.0));
+  return vec_norm(out);
+}
+
+double robot_scene_apart(const robot_body *moving, const robot_body *standing) {
+  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p);
+  double most = from_box(standing, moving->side.at.p) - standing->side.margin - moving->radius;
+  if (!is_halfspace(standing))
+    most = fmax(most, from_box(moving, standing->side.at.p) - moving->side.margin - standing->radius);
+  const double sizes = vec_norm(apart) + moving->radius +
+                       (is_halfspace(standing) ? fabs(standing->side.shape->size[3]) : standing->radius);
+  return most - ROUND_UP * (moving->side.error + standing->side.error + 40.0 * ROUND_U * sizes);
+}
+
+double robot_scene_height(const robot_body *standing, vec3 normal) {
+  if (!is_halfspace(standing)) return bound_height(&standing->side, normal);
+  return standing->side.margin - standing->side.shape->size[3];
+}
+
+/* ---- the distance --------------------------------------------------------------------------------------------------------- */
+
+static void measure_halfspace(const robot_body *moving, const robot_body *standing, robot_gap *gap) {
+  const double *h = standing->side.shape->size;
+  const vec3 n = placement_turn(&standing->side.at, vec(h[0], h[1], h[2]));
+  vec3 at;
+  const convex *shape = moving->side.shape;
+  const double low = -shape->ops->support(shape, placement_turn_back(&moving->side.at, vec_neg(n)), NULL, &at);
+  const double along = vec_dot(n, vec_sub(moving->side.at.p, standing->side.at.p));
+  const double distance = along + h[3] + low - moving->side.margin - standing->side.margin;
+  const double sizes =
+      vec_norm(vec_sub(moving->side.at.p, standing->side.at.p)) + fabs(h[3]) + moving->radius + standing->side.margin;
+  const double rounding =
+      ROUND_UP * (moving->side.error + standing->side.error + 40.0 * ROUND_U * sizes + 2.0 * shape->slack);
+  const vec3 lowest = vec_axpy(placement_apply(&moving->side.at, at), -moving->side.margin, n);
+  *gap = (robot_gap){.lower = distance - rounding,
+                     .upper = distance + rounding,
+                     .slack = rounding,
+                     .on_moving = lowest,
+                     .on_standing = distance > 0.0 ? vec_axpy(lowest, -distance, n) : lowest,
+                     .normal = n,
+                     .fault = isnan(distance)};
+}
+
+/* What moves, in the frame of what stands. */
+static pair_placement seen_from(const robot_body *standing, const robot_body *moving) {
+  pair_placement seen = {.error = moving->side.error + standing->side.error};
+  for (int i = 0; i < 3; i++) {
+    const double *r = moving->side.at.r;
+    const vec3 column = placement_turn_back(&standing->side.at, vec(r[i], r[3 + i], r[6 + i]));
+    seen.r[i] = column.x, seen.r[3 + i] = column.y, seen.r[6 + i] = column.z;
+  }
+  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p);
+  seen.t = placement_turn_back(&standing->side.at, apart);
+  seen.error += ROUND_UP * ROUND_U * ROUND_ROTATION * (vec_norm(apart) + moving->radius);
+  return seen;
+}
+
+void robot_scene_measure(const robot_body *moving, const robot_body *standing, double epsilon, robot_gap *gap) {
+  if (is_halfspace(standing)) {
+    measure_halfspace(moving, standing, gap);
+    return;
+  }
+  const pair_placement seen = seen_from(standing, moving);
+  const pair_goal goal = {.epsilon = epsilon, .max_steps = GAP_STEPS};
+  pair_answer answer;
+  pair_separate(standing->side.shape, standing->side.margin, moving->side.shape, moving->side.margin, &seen, &goal,
+                &answer);
+  *gap = (robot_gap){.fault = answer.fault, .lower = answer.lower, .upper = answer.upper, .slack = answer.rounding};
+  if (answer.fault) return;
+  const bool apart = answer.upper > 0.0;
+  gap->on_standing = placement_apply(&standing->side.at, apart ? answer.on_a : answer.common);
+  gap->on_moving = placement_apply(&standing->side.at, apart ? answer.on_b : answer.common);
+  gap->normal = vec_neg(placement_turn(&standing->side.at, answer.normal));
+}

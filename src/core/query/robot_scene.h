@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A question about a robot, made ready: what stands, the pairs, and where everything is over a node. */
+#ifndef CPROX_QUERY_ROBOT_SCENE_H
+#define CPROX_QUERY_ROBOT_SCENE_H
+
+#include "motion/bound.h"
+#include "query/candidates.h"
+
+/* A convex part somewhere, with what the cheap tests need. */
+typedef struct robot_body {
+  bound_side side;
+  vec3 middle, half;   /* of a box, axes those of the shape, that contains the core; half is infinite for halfspaces */
+  double radius;       /* of a ball about the shape's origin that contains the part, margin included */
+  uint32_t steps;      /* transforms that its place went through */
+  int32_t index, part; /* target and part of it; or geometry and its number among the robot's parts */
+} robot_body;
+
+/* A pair of a part of the robot that moves and what it is held against. */
+typedef struct robot_pair {
+  int32_t moving;   /* which part of the robot */
+  int32_t standing; /* which obstacle, or in a question about the robot itself which part */
+  vec3 normal;      /* the last separating direction, from what stands to what moves, in the frame of what stands */
+  bool normal_known;
+} robot_pair;
+
+/* A part over the node at hand. */
+typedef struct part_state {
+  uint32_t placed, moved; /* the node for which `body.side.at` and `motion` were found */
+  robot_body body;
+  chain_motion motion; /* seen from the world */
+} part_state;
+
+typedef struct robot_scene {
+  const question *q;
+  const cprox_motion *motion;
+  bool self;
+  robot_body *obstacles;
+  part_state *parts;
+  axis_state *axes;
+  double *values, *scratch;
+  chain_axis *chain;
+  robot_pair *pairs;
+  size_t n_pairs, n_obstacles;
+  uint32_t node; /* counts the nodes, so that part states know whether they are of the present one */
+} robot_scene;
+
+/* Makes the scene of targets first … last - 1 ready; false where memory is out. */
+bool robot_scene_begin(robot_scene *scene, const question *q, size_t first, size_t last);
+
+/* A new node: all axes at its middle. */
+void robot_scene_enter(robot_scene *scene, size_t segment, double a, double b);
+
+/* The two sides of a pair in the middle of the node, and how the one moves as the other sees it. */
+const robot_body *robot_scene_moving(robot_scene *scene, const robot_pair *pair);
+const robot_body *robot_scene_standing(robot_scene *scene, const robot_pair *pair);
+const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, chain_motion *own);
+
+/* A lower bound on the distance of two parts, by their balls and boxes. */
+double robot_scene_apart(const robot_body *moving, const robot_body *standing);
+
+/* The distance in the middle of the node. */
+typedef struct robot_gap {
+  double lower, upper, slack;
+  vec3 on_moving, on_standing; /* world */
+  vec3 normal;                 /* world, unit, from standing to moving; (0,0,0) where there is none */
+  bool fault;
+} robot_gap;
+
+void robot_scene_measure(const robot_body *moving, const robot_body *standing, double epsilon, robot_gap *gap);
+
+/* Along a normal of the world: the height of what stands, as bound_height(), exact for halfspaces. */
+double robot_scene_height(const robot_body *standing, vec3 normal);
+
+#endif

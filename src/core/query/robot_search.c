@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "query/robot_search.h"
+
+#include <math.h>
+
+#include "base/rounding.h"
+
+enum { SEEDS_PER_SEGMENT = 4 };
+
+/* A gap is measured to this fraction of the width asked for. */
+static const double GAP_FRACTION = 0.02;
+
+/* Stretches that are shorter are measured even where a part moves farther than its own size. */
+#define SHORT_STRETCH 0x1p-8
+
+/* Parts that move farther than their own size, and than this fraction of their distance, are too blurred to be measured. */
+static const double BLUR = 0.25;
+
+#define SHORTEST_STRETCH 0x1p-46
+
+/* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
+
+/* From u = a of segment first(n) to u = b of segment last(n). */
+static size_t first_of(const search_node *node) {
+  return node->side[0].part;
+}
+
+static size_t last_of(const search_node *node) {
+  return node->side[1].part;
+}
+
+static search_node node_of(const robot_search *o, const search_node *parent, size_t first, double a, size_t last,
+                           double b) {
+  search_node node = *parent;
+  node.side[0].part = (uint32_t)first, node.side[0].a = a;
+  node.side[1].part = (uint32_t)last, node.side[1].b = b;
+  node.start = motion_time(o->scene.motion, first, a);
+  return node;
+}
+
+search_node robot_search_root(robot_search *o, size_t first, double u0, size_t last, double u1) {
+  search_node root = {.lower = -INFINITY};
+  const size_t n = o->scene.n_pairs;
+  const int32_t slot = lists_take(&o->lists, n);
+  root.side[0].slot = slot;
+  if (slot < 0) return root;
+  list_entry *entry = lists_at(&o->lists, slot);
+  for (size_t i = 0; i < n; i++) entry[i] = (list_entry){.lower = -INFINITY, .pair = (int32_t)i};
+  lists_set_count(&o->lists, slot, n);
+  return node_of(o, &root, first, u0, last, u1);
+}
+
+/* ---- measuring ------------------------------------------------------------------------------------------------------------ */
+
+/* The lower bound from which on a pair needs no more work. */
+static double settling_bound(const robot_search *o) {
+  if (o->limit >= 0.0) return o->limit;
+  const double upper = fmin(o->best_bound.upper, o->ceiling);
+  return upper - fmax(o->epsilon, o->relative_epsilon * upper);
+}
+
+/* Distances: the least one. Left to right: the earliest one within epsilon of contact, and until there is one, the least. */
+static bool is_better(const robot_search *o, double upper, double at) {
+  if (o->order != SEARCH_LEFT_TO_RIGHT) return upper < o->best_bound.upper;
+  const double near = o->limit + o->epsilon;
+  if (o->best_bound.upper <= near) return upper <= near && at < o->best_bound.at;
+  return upper < o->best_bound.upper;
+}
+
+static cprox_status measure(robot_search *o, int32_t index, size_t segment, double u, robot_gap *gap) {
+  robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  robot_scene_measure(moving, standing, GAP_FRACTION * o->epsilon, gap);
+  o->gaps++;
+  if (gap->fault)
+    return workspace_fail(o->scene.q->workspace, CPROX_INVALID,
+                          "a support callback answered with a point that is not finite or outside its radius");
+  if (vec_norm2(gap->normal) > 0.0) {
+    pair->normal = placement_turn_back(&standing->side.at, gap->normal);
+    pair->normal_known = true;
+  }
+  const double upper = fmax(gap->upper, 0.0), at = motion_time(o->scene.motion, segment, u);
+  const robot_sight sight = {.gap = *gap, .pair = index, .segment = segment, .u = u};
+  if (is_better(o, upper, at)) {
+    o->best = sight;
+    o->best_bound = (search_best){.upper = upper, .slack = gap->slack, .at = at};
+  }
+  if (upper <= o->limit && at < o->touch_at) {
+    o->touch = sight;
+    o->touch_at = at;
+  }
+  return CPROX_OK;
+}
+
+/* Measures the pair whose balls and boxes come closest in a few places, so that the search begins with a distance. */
+static cprox_status seed(robot_search *o, const search_node *node) {
+  const list_entry *entry = lists_at(&o->lists, node->side[0].slot);
+  const size_t n = lists_count(&o->lists, node->side[0].slot), first = first_of(node), last = last_of(node);
+  const size_t places = (last - first) * SEEDS_PER_SEGMENT + 2;
+  for (size_t i = 0; i < places; i++) {
+    size_t segment = first + i / SEEDS_PER_SEGMENT;
+    double u = ((double)(i % SEEDS_PER_SEGMENT) + 0.5) / SEEDS_PER_SEGMENT;
+    if (i == places - 2) segment = first, u = node->side[0].a;
+    if (i == places - 1) segment = last - 1, u = node->side[1].b;
+    robot_scene_enter(&o->scene, segment, u, u);
+    double least = INFINITY;
+    int32_t nearest = -1;
+    for (size_t k = 0; k < n; k++) {
+      const robot_pair *pair = &o->scene.pairs[entry[k].pair];
+      const double apart =
+          robot_scene_apart(robot_scene_moving(&o->scene, pair), robot_scene_standing(&o->scene, pair));
+      if (apart < least) least = apart, nearest = entry[k].pair;
+    }
+    if (nearest < 0 || least >= o->best_bound.upper) continue;
+    robot_gap gap;
+    const cprox_status status = measure(o, nearest, segment, u, &gap);
+    if (status < 0) return status;
+    if (o->limit >= 0.0 && o->best_bound.upper <= o->limit) return CPROX_OK;
+  }
+  return CPROX_OK;
+}
+
+/* ---- bounds --------------------------------------------------------------------------------------------------------------- */
+
+/* What the pair's last normal says of the node. */
+static double bound_by_normal(robot_search *o, const robot_pair *pair, const robot_body *moving,
+                              const robot_body *standing, const chain_motion *motion, double goal, double *slack) {
+  const vec3 n = placement_turn(&standing->side.at, pair->normal);
+  const double length = vec_norm(n);
+  const vec3 unit = vec_scale(1.0 / length, n);
+  o->planes++;
+  return motion_plane_bound(motion, &moving->side, &standing->side, robot_scene_height(standing, unit), unit,
+                            moving->steps + standing->steps, goal, slack);
+}
+
+/* Raises the bound of one pair over the node that the scene is at, by the cheapest way that settles it. */
+static cprox_status bound_pair(robot_search *o, const search_node *node, list_entry *entry, double *slack) {
+  robot_pair *pair = &o->scene.pairs[entry->pair];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  chain_motion own;
+  const chain_motion *motion = robot_scene_motion(&o->scene, pair, &own);
+  const double apart = robot_scene_apart(moving, standing);
+  entry->lower = fmax(entry->lower, apart - motion->travel);
+  *slack = moving->side.error + standing->side.error;
+  if (entry->lower >= settling_bound(o) && entry->lower > o->limit) return CPROX_OK;
+
+  /* too blurred: halves will tell more */
+  const double width = node->side[1].b - node->side[0].a;
+  const double size = fmax(moving->radius, BLUR * fmax(apart, 0.0));
+  if (motion->travel > size && width > SHORT_STRETCH) return CPROX_OK;
+
+  if (pair->normal_known) {
+    const double bound = bound_by_normal(o, pair, moving, standing, motion, settling_bound(o), slack);
+    entry->lower = fmax(entry->lower, bound);
+    if (entry->lower >= settling_bound(o) && entry->lower > o->limit) return CPROX_OK;
+  }
+
+  robot_gap gap;
+  const double u = 0.5 * (node->side[0].a + node->side[1].b);
+  const cprox_status status = measure(o, entry->pair, first_of(node), u, &gap);
+  if (status < 0) return status;
+  entry->lower = fmax(entry->lower, gap.lower - motion->travel);
+  if (!pair->normal_known || gap.upper <= 0.0) return CPROX_OK;
+  const double bound = bound_by_normal(o, pair, moving, standing, motion, settling_bound(o), slack);
+  entry->lower = fmax(entry->lower, bound);
+  return CPROX_OK;
+}
+
+static bool is_settled(const robot_search *o, double lower) {
+  return o->limit >= 0.0 ? lower > o->limit : lower >= settling_bound(o);
+}
+
+/* Bounds all pairs of a node of one segment; those that still matter become its own list. */
+static cprox_status bound_node(robot_search *o, search_node *node) {
+  const int32_t old = node->side[0].slot;
+  const size_t n = lists_count(&o->lists, old);
+  const int32_t own = lists_take(&o->lists, n);
+  if (own < 0) return CPROX_MEMORY;
+  robot_scene_enter(&o->scene, first_of(node), node->side[0].a, node->side[1].b);
+
+  const list_entry *from = lists_at(&o->lists, old);
+  list_entry *to = lists_at(&o->lists, own);
+  size_t kept = 0;
+  double lower = INFINITY;
+  for (size_t i = 0; i < n; i++) {
+    list_entry entry = from[i];
+    double slack = 0.0;
+    if (!is_settled(o, entry.lower)) {
+      const cprox_status status = bound_pair(o, node, &entry, &slack);
+      if (status < 0) return status;
+    }
+    if (is_settled(o, entry.lower)) {
+      o->dropped = fmin(o->dropped, entry.lower);
+      continue;
+    }
+    to[kept++] = entry;
+    if (entry.lower < lower) lower = entry.lower, node->slack = slack;
+  }
+  lists_set_count(&o->lists, own, kept);
+  lists_give(&o->lists, old);
+  node->side[0].slot = own;
+  node->lower = fmax(node->lower, lower);
+  return CPROX_OK;
+}
+
+/* ---- the oracle ----------------------------------------------------------------------------------------------------------- */
+
+static double filter(void *self, search_node *node, double goal) {
+  (void)self, (void)goal;
+  return node->lower;
+}
+
+static cprox_status probe(void *self, search_node *node, search_best *best) {
+  robot_search *o = self;
+  cprox_status status = CPROX_OK;
+  if (!o->seeded) {
+    o->seeded = true;
+    status = seed(o, node);
+  }
+  const bool answered = o->order != SEARCH_LEFT_TO_RIGHT && o->best_bound.upper <= fmax(o->limit, 0.0);
+  if (status == CPROX_OK && !answered && first_of(node) + 1 == last_of(node)) status = bound_node(o, node);
+  *best = o->best_bound;
+  return status;
+}
+
+static int split(void *self, search_node *node, search_node *child) {
+  robot_search *o = self;
+  const size_t first = first_of(node), last = last_of(node);
+  const double a = node->side[0].a, b = node->side[1].b;
+  if (first + 1 < last) {
+    const size_t middle = (first + last) / 2;
+    child[0] = node_of(o, node, first, a, middle, 1.0);
+    child[1] = node_of(o, node, middle, 0.0, last, b);
+  } else {
+    const double middle = 0.5 * (a + b);
+    if (!(b - a > SHORTEST_STRETCH)) return 0;
+    child[0] = node_of(o, node, first, a, last, middle);
+    child[1] = node_of(o, node, first, middle, last, b);
+  }
+  lists_share(&o->lists, node->side[0].slot);
+  return 2;
+}
+
+static void release(void *self, const search_node *node) {
+  robot_search *o = self;
+  lists_give(&o->lists, node->side[0].slot);
+}
+
+void robot_search_begin(robot_search *o, const search_goal *goal) {
+  o->order = goal->order;
+  o->limit = goal->limit, o->epsilon = goal->epsilon, o->relative_epsilon = goal->relative_epsilon;
+  o->ceiling = goal->ceiling;
+  o->best = o->touch = (robot_sight){.pair = -1};
+  o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
+  o->dropped = o->touch_at = INFINITY;
+  o->seeded = false;
+  o->gaps = o->planes = 0;
+  lists_begin(&o->lists, o->scene.q->workspace);
+}
+
+search_oracle robot_search_oracle(robot_search *o) {
+  return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
+}

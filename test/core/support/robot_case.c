@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "support/robot_case.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static bool numbers(FILE *f, double *x, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    if (fscanf(f, "%lf", &x[i]) != 1) return false;
+  return true;
+}
+
+static bool read_pose(FILE *f, cprox_pose *pose) {
+  double x[7];
+  if (!numbers(f, x, 7)) return false;
+  *pose = (cprox_pose){.position = {x[0], x[1], x[2]}, .orientation = {x[3], x[4], x[5], x[6]}};
+  return true;
+}
+
+static cprox_body *read_polytope(FILE *f) {
+  size_t n;
+  cprox_body *body = NULL;
+  if (fscanf(f, "%zu", &n) != 1 || n > 100000) return NULL;
+  cprox_vec3 *v = calloc(n, sizeof *v);
+  bool good = v != NULL;
+  for (size_t i = 0; i < n && good; i++) good = fscanf(f, "%lf %lf %lf", &v[i].x, &v[i].y, &v[i].z) == 3;
+  if (good) cprox_body_create_polytope(v, n, NULL, &body);
+  free(v);
+  return body;
+}
+
+static cprox_body *read_body(FILE *f) {
+  char kind[24];
+  double x[3];
+  cprox_body *body = NULL;
+  if (fscanf(f, "%23s", kind) != 1) return NULL;
+  if (strcmp(kind, "polytope") == 0) return read_polytope(f);
+  if (strcmp(kind, "box") == 0 && numbers(f, x, 3))
+    cprox_body_create_box((cprox_vec3){x[0], x[1], x[2]}, NULL, &body);
+  else if (strcmp(kind, "sphere") == 0 && numbers(f, x, 1))
+    cprox_body_create_sphere(x[0], NULL, &body);
+  else if (strcmp(kind, "cylinder") == 0 && numbers(f, x, 2))
+    cprox_body_create_cylinder(x[0], x[1], NULL, &body);
+  return body;
+}
+
+/* Links, geometries, and which pairs of links are disabled. */
+static bool read_robot(FILE *f, robot_case *c, size_t *n_variables, bool disabled[CASE_MAX_LINKS][CASE_MAX_LINKS]) {
+  cprox_link links[CASE_MAX_LINKS];
+  cprox_link_geometry geometries[CASE_MAX_GEOMETRIES];
+  size_t n_links, n_disabled;
+  if (fscanf(f, "%zu %zu %zu", &n_links, n_variables, &c->n_geometries) != 3 || n_links > CASE_MAX_LINKS ||
+      c->n_geometries > CASE_MAX_GEOMETRIES || *n_variables > CASE_MAX_VARIABLES)
+    return false;
+  for (size_t i = 0; i < n_links; i++) {
+    int parent, type, variable;
+    double x[3], y[2];
+    if (fscanf(f, "%39s %d %d", c->link_names[i], &parent, &type) != 3 || !read_pose(f, &links[i].origin) ||
+        !numbers(f, x, 3) || fscanf(f, "%d", &variable) != 1 || !numbers(f, y, 2))
+      return false;
+    links[i].parent = parent, links[i].type = (cprox_joint_type)type, links[i].variable = variable;
+    links[i].axis = (cprox_vec3){x[0], x[1], x[2]}, links[i].multiplier = y[0], links[i].offset = y[1];
+  }
+  for (size_t i = 0; i < c->n_geometries; i++) {
+    geometries[i] = (cprox_link_geometry){0};
+    if (fscanf(f, "%d", &geometries[i].link) != 1 || !read_pose(f, &geometries[i].pose)) return false;
+    geometries[i].body = c->bodies[i] = read_body(f);
+    c->links[i] = geometries[i].link;
+    if (!c->bodies[i]) return false;
+  }
+  if (fscanf(f, "%zu", &n_disabled) != 1) return false;
+  for (size_t i = 0; i < n_disabled; i++) {
+    size_t a, b;
+    if (fscanf(f, "%zu %zu", &a, &b) != 2 || a >= n_links || b >= n_links) return false;
+    disabled[a][b] = disabled[b][a] = true;
+  }
+  return cprox_robot_create(links, n_links, geometries, c->n_geometries, *n_variables, NULL, &c->robot) == CPROX_OK;
+}
+
+static bool read_motion(FILE *f, robot_case *c, size_t n_variables) {
+  double rest[CASE_MAX_VARIABLES], positions[CASE_MAX_POINTS][CASE_MAX_VARIABLES],
+      velocities[CASE_MAX_POINTS][CASE_MAX_VARIABLES];
+  int32_t variables[CASE_MAX_VARIABLES];
+  cprox_waypoint points[CASE_MAX_POINTS];
+  size_t n, n_points;
+  if (!numbers(f, rest, n_variables) || fscanf(f, "%zu %zu", &n, &n_points) != 2 || n > CASE_MAX_VARIABLES ||
+      n_points > CASE_MAX_POINTS)
+    return false;
+  for (size_t i = 0; i < n; i++)
+    if (fscanf(f, "%d", &variables[i]) != 1) return false;
+  for (size_t i = 0; i < n_points; i++) {
+    points[i] = (cprox_waypoint){.positions = positions[i], .velocities = velocities[i]};
+    if (!numbers(f, &points[i].time, 1) || !numbers(f, positions[i], n) || !numbers(f, velocities[i], n)) return false;
+  }
+  return cprox_motion_create_waypoints(c->robot, variables, n, points, n_points, CPROX_CUBIC, rest, NULL, &c->motion) ==
+         CPROX_OK;
+}
+
+static bool read_scene(FILE *f, robot_case *c) {
+  if (fscanf(f, "%zu", &c->n_targets) != 1 || c->n_targets > CASE_MAX_OBJECTS) return false;
+  for (size_t i = 0; i < c->n_targets; i++) {
+    char id[80];
+    cprox_pose pose;
+    if (fscanf(f, "%79s", id) != 1 || !read_pose(f, &pose)) return false;
+    c->targets[i] = cprox_at(read_body(f), pose);
+    if (!c->targets[i].body) return false;
+  }
+  if (fscanf(f, "%zu", &c->n_answers) != 1 || c->n_answers > 2) return false;
+  for (size_t i = 0; i < c->n_answers; i++) {
+    char kind[24];
+    case_answer *a = &c->answers[i];
+    if (fscanf(f, "%23s %lf %lf %lf", kind, &a->lower, &a->upper, &a->sampled) != 4) return false;
+    a->self = strcmp(kind, "self") == 0;
+  }
+  return true;
+}
+
+bool robot_case_read(FILE *cases, const char *folder, robot_case *c) {
+  bool disabled[CASE_MAX_LINKS][CASE_MAX_LINKS] = {{false}};
+  char path[400];
+  size_t n_variables;
+  memset(c, 0, sizeof *c);
+  if (fscanf(cases, "%79s %39s", c->name, c->robot_name) != 2) return false;
+  snprintf(path, sizeof path, "%s/%s.robot", folder, c->robot_name);
+  FILE *f = fopen(path, "r");
+  const bool robot = f && read_robot(f, c, &n_variables, disabled);
+  if (f) fclose(f);
+  if (!robot || !read_motion(cases, c, n_variables) || !read_scene(cases, c)) {
+    fprintf(stderr, "%s: not a robot case\n", c->name);
+    return false;
+  }
+  for (size_t i = 0; i < c->n_geometries; i++)
+    for (size_t k = 0; k < i; k++) {
+      const size_t a = (size_t)c->links[i], b = (size_t)c->links[k];
+      if (disabled[a][b] || !cprox_motion_relates_links(c->motion, a, b)) continue;
+      c->self_pairs[c->n_self_pairs++] = (cprox_robot_pair){(int32_t)i, (int32_t)k};
+    }
+  return true;
+}
+
+void robot_case_free(robot_case *c) {
+  cprox_motion_free(c->motion);
+  cprox_robot_free(c->robot);
+  for (size_t i = 0; i < c->n_geometries; i++) cprox_body_free((cprox_body *)c->bodies[i]);
+  for (size_t i = 0; i < c->n_targets; i++) cprox_body_free((cprox_body *)c->targets[i].body);
+}

@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What robots in motion are asked: against the saved answers of another program for real robots, against static pairs at many times
+ * (which know nothing of motions), and against hulls in long double. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "curve_proximity/cprox.h"
+#include "support/counting.h"
+#include "support/robot_case.h"
+#include "support/robots.h"
+
+static cprox_workspace *ws;
+
+static int setup(void **state) {
+  (void)state;
+  ws = cprox_workspace_create();
+  return ws ? 0 : 1;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  cprox_workspace_free(ws);
+  return 0;
+}
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* ---- real robots ---------------------------------------------------------------------------------------------------------- */
+
+enum { REFERENCE_CASES = 64 };
+
+/* The saved answers have 9 decimals and come from a search without rounding bounds: 1e-8. */
+static const double SAVED = 1e-8;
+
+static const char *folder(void) {
+  return TEST_DATA_DIR "/motion";
+}
+
+static FILE *open_cases(size_t *n) {
+  char path[400];
+  snprintf(path, sizeof path, "%s/cases.txt", folder());
+  FILE *f = fopen(path, "r");
+  assert_non_null(f);
+  assert_int_equal(fscanf(f, "%zu", n), 1);
+  return f;
+}
+
+static cprox_mover mover_of(const robot_case *c, const case_answer *a) {
+  return a->self ? cprox_robot_self(c->motion, c->self_pairs, c->n_self_pairs) : cprox_robot_along(c->motion, NULL, 0);
+}
+
+static cprox_result ask(const robot_case *c, const case_answer *a, double delta) {
+  const cprox_mover mover = mover_of(c, a);
+  const size_t n = a->self ? 0 : c->n_targets;
+  cprox_result r;
+  const cprox_status status = delta < 0.0 ? cprox_distance_all(mover, c->targets, n, NULL, ws, &r, NULL)
+                                          : cprox_tolerance_all(mover, c->targets, n, delta, NULL, ws, &r, NULL);
+  if (status != CPROX_OK) fail_msg("%s: %s", c->name, cprox_workspace_reason(ws));
+  return r;
+}
+
+static void saved_answers_are_found_again(void **state) {
+  (void)state;
+  size_t n, counted = 0;
+  FILE *f = open_cases(&n);
+  double nodes[REFERENCE_CASES], probes[REFERENCE_CASES];
+  for (size_t i = 0; i < n; i++) {
+    robot_case c;
+    assert_true(robot_case_read(f, folder(), &c));
+    for (size_t k = 0; k < c.n_answers; k++) {
+      const case_answer *a = &c.answers[k];
+      const cprox_result r = ask(&c, a, -1.0);
+      if (!(r.lower <= a->upper + SAVED && r.upper >= a->lower - SAVED && r.lower <= a->sampled + SAVED &&
+            r.upper - r.lower <= 1e-6))
+        fail_msg("%s: [%.10g, %.10g], saved [%.10g, %.10g], sampled %.10g", c.name, r.lower, r.upper, a->lower,
+                 a->upper, a->sampled);
+      if (a->lower == 0.0) continue;
+      nodes[counted] = r.nodes, probes[counted++] = r.probes;
+
+      /* verdicts on either side of the distance */
+      assert_int_equal(ask(&c, a, 0.99 * r.lower).verdict, CPROX_YES);
+      assert_int_equal(ask(&c, a, 1.01 * r.upper).verdict, CPROX_NO);
+    }
+    robot_case_free(&c);
+  }
+  fclose(f);
+  qsort(nodes, counted, sizeof *nodes, ascending);
+  qsort(probes, counted, sizeof *probes, ascending);
+  print_message("%zu answers: nodes %g in the median, %g at most; distances %g, %g\n", counted, nodes[counted / 2],
+                nodes[counted - 1], probes[counted / 2], probes[counted - 1]);
+  assert_true(nodes[counted / 2] <= 150 && probes[counted / 2] <= 200 && nodes[counted - 1] <= 800);
+}
+
+static void nothing_is_allocated_once_the_workspace_has_grown(void **state) {
+  (void)state;
+  size_t n;
+  FILE *f = open_cases(&n);
+  robot_case c;
+  assert_true(robot_case_read(f, folder(), &c));
+  fclose(f);
+  for (size_t k = 0; k < c.n_answers; k++) ask(&c, &c.answers[k], -1.0);
+  const size_t before = allocations_made();
+  for (size_t k = 0; k < c.n_answers; k++) ask(&c, &c.answers[k], -1.0);
+  assert_int_equal(allocations_made(), before);
+  robot_case_free(&c);
+}
+
+/* ---- random robots -------------------------------------------------------------------------------------------------------- */
+
+enum { SAMPLES = 60, TARGETS = 3 };
+
+/* The distance of a point from everything on the robot that moves, at a time, in long double (hulls of the vertices rounded to
+ * double: 1e-15). */
+static long double distance_at(const test_robot *t, long double time, const vec3 *points, size_t n) {
+  long double values[TEST_MAX_VARIABLES + 1], least = HUGE_VALL;
+  ref_pose links[TEST_MAX_LINKS];
+  robot_ref_values(t, time, values);
+  robot_ref_links(t, values, links);
+  for (size_t g = 0; g < t->n_links; g++) {
+    if (!cprox_motion_moves_link(t->motion, g)) continue;
+    vec3l exact[TEST_VERTICES];
+    vec3 v[TEST_VERTICES];
+    robot_ref_vertices(t, links, g, exact);
+    for (size_t k = 0; k < TEST_VERTICES; k++) v[k] = vec((double)exact[k].x, (double)exact[k].y, (double)exact[k].z);
+    for (size_t i = 0; i < n; i++)
+      least = fminl(least, fmaxl(ref_point_hull(ref_vec(points[i]), v, TEST_VERTICES) - t->margin, 0.0L));
+  }
+  return least;
+}
+
+static void make_points(rng *r, vec3 *points, cprox_target *targets) {
+  for (size_t i = 0; i < TARGETS; i++) {
+    cprox_body *body;
+    points[i] = rng_in_cube(r, 2.0);
+    assert_int_equal(cprox_body_create_point(points[i], ws, &body), CPROX_OK);
+    targets[i] = cprox_at(body, cprox_pose_identity());
+  }
+}
+
+static void free_targets(cprox_target *targets) {
+  for (size_t i = 0; i < TARGETS; i++) cprox_body_free((cprox_body *)targets[i].body);
+}
+
+static void no_sample_is_nearer_than_lower(void **state) {
+  (void)state;
+  rng r = rng_seed(4411);
+  for (size_t i = 0; i < test_cases(250); i++) {
+    test_robot t;
+    vec3 points[TARGETS];
+    cprox_target targets[TARGETS];
+    robot_make(&r, rng_log_uniform(&r, 0.1, 2), &t);
+    make_points(&r, points, targets);
+    cprox_result d, first;
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-5;
+    const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
+    const cprox_status status = cprox_distance_all(mover, targets, TARGETS, &options, ws, &d, NULL);
+    if (status != CPROX_OK) fail_msg("robot %zu: %s", i, cprox_workspace_reason(ws));
+    if (d.target_index < 0) { /* nothing moves */
+      assert_true(isinf(d.lower));
+    } else {
+      double t0, t1;
+      cprox_motion_domain(t.motion, &t0, &t1);
+      assert_true(cprox_first_contact_all(mover, targets, TARGETS, &options, ws, &first) >= 0);
+      assert_true(fabsl(distance_at(&t, d.t, points, TARGETS) - d.upper) <= 1e-9L);
+      for (int k = 0; k <= SAMPLES; k++) {
+        const long double time = t0 + ((long double)t1 - t0) * k / SAMPLES;
+        const long double at = distance_at(&t, time, points, TARGETS);
+        if (at < d.lower) fail_msg("robot %zu: %.12Lg at %.12Lg, lower is %.12g", i, at, time, d.lower);
+        if (at <= 0.0L && time < first.t_free)
+          fail_msg("robot %zu: contact at %.12Lg, late at %.12g", i, time, first.t_free);
+      }
+      if (d.lower > 0.0) assert_int_equal(first.verdict, CPROX_NO);
+      if (first.verdict == CPROX_YES) assert_true(first.t >= first.t_free && d.upper <= 0.0);
+    }
+    free_targets(targets);
+    robot_free(&t);
+  }
+}
+
+/* Wherever a link is: what static pairs say there. */
+static double static_distance(const test_robot *t, double time, const cprox_robot_pair *pair) {
+  double values[TEST_MAX_VARIABLES + 1];
+  cprox_motion_evaluate(t->motion, time, values);
+  cprox_target side[2];
+  for (int k = 0; k < 2; k++) {
+    const cprox_link_geometry *g = &t->geometries[k ? pair->other : pair->geometry];
+    long double exact[TEST_MAX_VARIABLES + 1];
+    for (size_t v = 0; v < t->n_variables; v++) exact[v] = values[v];
+    ref_pose links[TEST_MAX_LINKS];
+    robot_ref_links(t, exact, links);
+    const long double *q = links[g->link].q;
+    const vec3l p = links[g->link].p;
+    const cprox_pose link = {.position = {(double)p.x, (double)p.y, (double)p.z},
+                             .orientation = {(double)q[3], (double)q[0], (double)q[1], (double)q[2]}};
+    side[k] = cprox_padded(cprox_at(g->body, frame_compose(&link, &g->pose)), g->padding);
+  }
+  cprox_result r;
+  assert_true(cprox_pair(side[0], side[1], NULL, ws, &r) >= 0);
+  return fmax(r.upper, 0.0);
+}
+
+static void the_robot_is_no_nearer_to_itself_than_lower(void **state) {
+  (void)state;
+  rng r = rng_seed(4412);
+  size_t asked = 0;
+  for (size_t i = 0; i < test_cases(250); i++) {
+    test_robot t;
+    robot_make(&r, rng_log_uniform(&r, 0.1, 2), &t);
+    for (int32_t a = 1; a < (int32_t)t.n_links; a++) {
+      const cprox_robot_pair pair = {a, (int32_t)rng_index(&r, (size_t)a)};
+      if (!cprox_motion_relates_links(t.motion, (size_t)pair.geometry, (size_t)pair.other)) continue;
+      cprox_result d;
+      const cprox_status status = cprox_distance_all(cprox_robot_self(t.motion, &pair, 1), NULL, 0, NULL, ws, &d, NULL);
+      if (status < 0) fail_msg("robot %zu: %s", i, cprox_workspace_reason(ws));
+      double t0, t1;
+      cprox_motion_domain(t.motion, &t0, &t1);
+      for (int k = 0; k <= SAMPLES; k++) {
+        const double time = t0 + (t1 - t0) * k / SAMPLES, at = static_distance(&t, time, &pair);
+        if (at < d.lower - 1e-12) fail_msg("robot %zu: %.12g at %.12g, lower is %.12g", i, at, time, d.lower);
+      }
+      if (d.upper > 0.0) assert_true(fabs(static_distance(&t, d.t, &pair) - d.upper) <= 2e-6);
+      asked++;
+    }
+    robot_free(&t);
+  }
+  assert_true(asked > 300);
+}
+
+static void a_profile_is_true_on_every_stretch(void **state) {
+  (void)state;
+  rng r = rng_seed(4413);
+  for (size_t i = 0; i < test_cases(40); i++) {
+    enum { STRETCHES = 7 };
+    test_robot t;
+    vec3 points[TARGETS];
+    cprox_target targets[TARGETS];
+    robot_make(&r, 1.0, &t);
+    make_points(&r, points, targets);
+    double t0, t1, breaks[STRETCHES + 1];
+    cprox_stretch stretches[STRETCHES];
+    cprox_motion_domain(t.motion, &t0, &t1);
+    for (int k = 0; k <= STRETCHES; k++) breaks[k] = k == STRETCHES ? t1 : t0 + (t1 - t0) * k / STRETCHES;
+    const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
+    cprox_result whole, nearest[2];
+    size_t count;
+    assert_int_equal(cprox_profile(mover, targets, TARGETS, breaks, STRETCHES, NULL, ws, stretches), CPROX_OK);
+    assert_int_equal(cprox_distance_all(mover, targets, TARGETS, NULL, ws, &whole, NULL), CPROX_OK);
+    assert_int_equal(cprox_nearest(mover, targets, TARGETS, 2, NULL, ws, nearest, &count), CPROX_OK);
+    double least = INFINITY;
+    for (int k = 0; k < STRETCHES; k++) {
+      for (int s = 0; s <= 10 && stretches[k].target_index >= 0; s++) {
+        const long double time = breaks[k] + ((long double)breaks[k + 1] - breaks[k]) * s / 10;
+        assert_true(distance_at(&t, time, points, TARGETS) >= stretches[k].lower - 1e-14L);
+      }
+      least = fmin(least, stretches[k].lower);
+    }
+    if (whole.target_index >= 0) {
+      assert_true(least <= whole.upper && whole.lower <= least + 1e-6);
+      assert_true(count == 2 && nearest[0].lower <= whole.upper && whole.lower <= nearest[0].upper);
+    }
+    free_targets(targets);
+    robot_free(&t);
+  }
+}
+
+/* ---- what is refused ------------------------------------------------------------------------------------------------------ */
+
+#define REFUSED(call, part)                                                                    \
+  do {                                                                                         \
+    assert_int_equal(call, CPROX_INVALID);                                                     \
+    if (!strstr(cprox_workspace_reason(ws), part)) fail_msg("%s", cprox_workspace_reason(ws)); \
+  } while (0)
+
+static void bad_input_gets_a_sentence(void **state) {
+  (void)state;
+  rng r = rng_seed(4414);
+  test_robot t;
+  robot_make(&r, 1.0, &t);
+  cprox_robot *robot = NULL;
+  cprox_link link = {
+      .parent = -1, .type = CPROX_JOINT_REVOLUTE, .origin = cprox_pose_identity(), .axis = {0, 0, 1}, .multiplier = 1};
+  REFUSED(cprox_robot_create(NULL, 0, NULL, 0, 0, ws, &robot), "at least one link");
+  REFUSED(cprox_robot_create(&link, 1, NULL, 0, 0, ws, &robot), "needs 1 variables");
+  link.axis.z = 0;
+  REFUSED(cprox_robot_create(&link, 1, NULL, 0, 1, ws, &robot), "axis is (0, 0, 0)");
+  link.axis.z = 1, link.parent = 0;
+  REFUSED(cprox_robot_create(&link, 1, NULL, 0, 1, ws, &robot), "parents stand before");
+  assert_null(robot);
+
+  link.parent = -1;
+  assert_int_equal(cprox_robot_create(&link, 1, NULL, 0, 1, ws, &robot), CPROX_OK);
+  const double still[] = {0.0}, bad[] = {NAN};
+  const int32_t variables[] = {0, 0}, wrong[] = {3};
+  cprox_waypoint points[] = {{.time = 0.0, .positions = still}, {.time = 0.0, .positions = still}};
+  cprox_motion *motion = NULL;
+  REFUSED(cprox_motion_create_waypoints(robot, variables, 1, points, 1, CPROX_LINEAR, NULL, ws, &motion), "at least 2");
+  REFUSED(cprox_motion_create_waypoints(robot, variables, 1, points, 2, CPROX_LINEAR, NULL, ws, &motion),
+          "must ascend");
+  points[1].time = 1.0;
+  REFUSED(cprox_motion_create_waypoints(robot, variables, 2, points, 2, CPROX_LINEAR, NULL, ws, &motion),
+          "named twice");
+  REFUSED(cprox_motion_create_waypoints(robot, wrong, 1, points, 2, CPROX_LINEAR, NULL, ws, &motion), "no variable 3");
+  REFUSED(cprox_motion_create_waypoints(robot, variables, 1, points, 2, CPROX_CUBIC, NULL, ws, &motion),
+          "no velocities");
+  points[1].positions = bad;
+  REFUSED(cprox_motion_create_waypoints(robot, variables, 1, points, 2, CPROX_LINEAR, NULL, ws, &motion),
+          "position 0 is");
+  assert_null(motion);
+
+  /* quaternions through 0 */
+  cprox_robot *flying = NULL;
+  link.type = CPROX_JOINT_FLOATING;
+  assert_int_equal(cprox_robot_create(&link, 1, NULL, 0, 7, ws, &flying), CPROX_OK);
+  const double q0[] = {0, 0, 0, 0, 0, 0, 1}, q1[] = {0, 0, 0, 0, 0, 0, -1};
+  const int32_t seven[] = {0, 1, 2, 3, 4, 5, 6};
+  const cprox_waypoint turn[] = {{.time = 0.0, .positions = q0}, {.time = 1.0, .positions = q1}};
+  REFUSED(cprox_motion_create_waypoints(flying, seven, 7, turn, 2, CPROX_LINEAR, NULL, ws, &motion), "too near 0");
+
+  const cprox_robot_pair pair = {0, 9}, far = {99, 0};
+  cprox_result result;
+  REFUSED(cprox_distance_all(cprox_robot_self(t.motion, &pair, 1), NULL, 0, NULL, ws, &result, NULL), "no geometry 9");
+  REFUSED(cprox_distance_all(cprox_robot_self(t.motion, &far, 1), NULL, 0, NULL, ws, &result, NULL), "no geometry 99");
+  cprox_robot_free(flying);
+  cprox_robot_free(robot);
+  robot_free(&t);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(saved_answers_are_found_again),
+      cmocka_unit_test(nothing_is_allocated_once_the_workspace_has_grown),
+      cmocka_unit_test(no_sample_is_nearer_than_lower),
+      cmocka_unit_test(the_robot_is_no_nearer_to_itself_than_lower),
+      cmocka_unit_test(a_profile_is_true_on_every_stretch),
+      cmocka_unit_test(bad_input_gets_a_sentence),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
