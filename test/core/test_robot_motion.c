@@ -131,7 +131,7 @@ typedef struct bound_claim {
   double second, both; /* n·x is at least this */
 } bound_claim;
 
-static bound_claim claim_of(const test_robot *t, const bound_case *c, vec3 n) {
+static bound_claim claim_of(const test_robot *t, const bound_case *c, vec3 n, vec3 drift) {
   double values[TEST_MAX_VARIABLES + 1], scratch[MAX_AXES];
   axis_state axes[MAX_AXES + 1];
   chain_axis chain[MAX_AXES];
@@ -155,9 +155,10 @@ static bound_claim claim_of(const test_robot *t, const bound_case *c, vec3 n) {
                                .error = c->standing < 0 ? 0.0 : t->motion->part_error[c->standing]};
   const uint32_t steps = part->steps + (c->standing < 0 ? 0 : t->robot->parts[c->standing].steps);
   double slack;
-  const double height = bound_height(&standing, n);
-  claim.second = motion_plane_bound(&claim.motion, &moving, &standing, height, n, steps, -INFINITY, &slack);
-  claim.both = motion_plane_bound(&claim.motion, &moving, &standing, height, n, steps, INFINITY, &slack);
+  const double heights[2] = {bound_height(&standing, vec_axpy(n, -0.5, drift)),
+                             bound_height(&standing, vec_axpy(n, 0.5, drift))};
+  claim.second = motion_plane_bound(&claim.motion, &moving, &standing, n, drift, heights, steps, -INFINITY, &slack);
+  claim.both = motion_plane_bound(&claim.motion, &moving, &standing, n, drift, heights, steps, INFINITY, &slack);
   cprox_body_free(origin);
   return claim;
 }
@@ -174,7 +175,9 @@ static void no_point_is_nearer_than_the_bounds_say(void **state) {
       const bound_case c = random_case(&r, &t);
       vec3 n = rng_unit(&r);
       n = vec_scale(1.0 / vec_norm(n), n);
-      const bound_claim claim = claim_of(&t, &c, n);
+      vec3 drift = rng_index(&r, 3) ? vec_scale(rng_log_uniform(&r, 1e-3, 1), rng_unit(&r)) : vec(0, 0, 0);
+      drift = vec_axpy(drift, -vec_dot(drift, n), n);
+      const bound_claim claim = claim_of(&t, &c, n, drift);
       const ref_pose middle = pose_in_the_middle(&t, &c);
       vec3l at_middle[TEST_VERTICES], seen[TEST_VERTICES];
       seen_vertices(&t, &c, ((long double)c.a + c.b) / 2, &middle, at_middle);
@@ -184,7 +187,8 @@ static void no_point_is_nearer_than_the_bounds_say(void **state) {
         const long double u = c.a + ((long double)c.b - c.a) * s / SAMPLES;
         seen_vertices(&t, &c, u, &middle, seen);
         for (size_t v = 0; v < TEST_VERTICES; v++) {
-          const long double height = ref_dot(ref_vec(n), seen[v]) - t.margin;
+          const vec3l turned = ref_add(ref_vec(n), ref_scale((long double)s / SAMPLES - 0.5L, ref_vec(drift)));
+          const long double height = ref_dot(turned, seen[v]) / ref_norm(turned) - t.margin;
           const long double way = ref_norm(ref_sub(seen[v], at_middle[v]));
           if (height < claim.both || height < claim.second)
             fail_msg("robot %zu case %d: height %.17Lg below the bounds %.17g, %.17g", i, k, height, claim.second,
@@ -215,7 +219,7 @@ static void bounds_are_of_their_order(void **state) {
     double gap[2][3];
     for (int k = 0; k < 2; k++) {
       c.a = 0.5 - (k == 0 ? 0.005 : 0.0025), c.b = 1.0 - c.a;
-      const bound_claim claim = claim_of(&t, &c, n);
+      const bound_claim claim = claim_of(&t, &c, n, vec(0, 0, 0));
       vec3l seen[TEST_VERTICES];
       const ref_pose middle = pose_in_the_middle(&t, &c);
       long double least = HUGE_VALL;

@@ -353,7 +353,7 @@ static void pair_points(const pair *p, double margin_a, double margin_b, pair_an
 static void pair_describe(const pair *p, pair_feature *feature) {
   *feature = (pair_feature){.flat = !p->curved, .n = p->s.n};
   if (feature->flat) {
-    for (int i = 0; i < p->s.n && i < 3; i++) feature->w[i] = p->s.vertex[i].w;
+    for (int i = 0; i < p->s.n && i < 3; i++) feature->w[i] = p->s.vertex[i].w, feature->b[i] = p->s.vertex[i].b;
     return;
   }
   vec3 e, f;

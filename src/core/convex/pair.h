@@ -25,6 +25,7 @@ typedef struct pair_feature {
   bool flat;         /* polyhedra: a vertex, an edge or a face of M */
   int n;             /* then: its vertices */
   vec3 w[3];         /* a - b */
+  vec3 b[3];         /* the points of b in that, in b's own frame */
   double hessian[6]; /* else: the second derivative of the distance (xx, xy, xz, yy, yz, zz), as well as it is known */
 } pair_feature;
 

@@ -97,7 +97,8 @@ void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, v
 }
 
 double bound_height(const bound_side *side, vec3 n) {
-  return side->shape->ops->support(side->shape, placement_turn_back(&side->at, n), NULL, NULL) + side->margin;
+  return side->shape->ops->support(side->shape, placement_turn_back(&side->at, n), NULL, NULL) +
+         vec_norm(n) * side->margin;
 }
 
 /* min over the moving side of d·(x - c). */
@@ -111,48 +112,64 @@ static bool usable(vec3 d) {
   return vec_norm2(d) > 1e-200;
 }
 
-/* What rounding can take from a plane bound, without the sizes of the bound itself. */
+/* What rounding can take from a plane bound, without the size of the bound itself. */
 static double plane_slack(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 apart,
-                          uint32_t steps) {
-  const double k = (double)steps;
+                          double drift, uint32_t steps) {
+  const double joints = ROUND_JOINT * (double)steps + 32.0;
   const double sizes =
       vec_norm(apart) + moving->shape->scale + moving->margin + standing->shape->scale + standing->margin;
-  const double turned = 1.0 + 0.5 * m->rate + 0.125 * m->second;
-  return ROUND_UP * (moving->error + standing->error + m->error +
-                     ROUND_U * (12.0 * sizes * turned +
-                                (ROUND_JOINT * k + 32.0) * (0.5 * m->rate + 0.25 * m->second + m->third / 24.0)) +
-                     moving->shape->slack * turned + standing->shape->slack);
+  const double turned = (1.0 + drift) * (1.0 + 0.5 * m->rate + 0.125 * m->second);
+  const double rounding =
+      12.0 * sizes * turned + (1.0 + drift) * joints * (0.5 * m->rate + 0.25 * m->second + m->third / 24.0);
+  return ROUND_UP * ((1.0 + drift) * (moving->error + standing->error + m->error) + ROUND_U * rounding +
+                     (moving->shape->slack + standing->shape->slack) * turned);
 }
 
-double motion_plane_bound(const chain_motion *m, const bound_side *moving, const bound_side *standing, double height,
-                          vec3 n, uint32_t steps, double goal, double *slack) {
+/* The least of (a + b theta) / sqrt(1 + k theta) for theta in [0, 1], k >= 0. */
+static double least_quotient(double a, double b, double k) {
+  if (a <= 0.0 || a + b <= 0.0) return fmin(a, a + b);
+  const double end = (a + b) / sqrt(1.0 + k), slope = b - 0.5 * k * a;
+  if (slope >= 0.0) return a;
+  const double theta = b > 0.0 ? -2.0 * slope / (b * k) : 1.0;
+  return theta < 1.0 ? (a + b * theta) / sqrt(1.0 + k * theta) : end;
+}
+
+double motion_plane_bound(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 n,
+                          vec3 drift, const double heights[2], uint32_t steps, double goal, double *slack) {
   const vec3 apart = vec_sub(moving->at.p, standing->at.p);
-  const double start = vec_dot(n, apart) - height;
-  *slack = plane_slack(m, moving, standing, apart, steps) + 8.0 * ROUND_U * fabs(start);
+  const double speed = vec_norm(drift), k = 0.25 * speed * speed;
+  *slack = plane_slack(m, moving, standing, apart, speed, steps);
 
   /* second order: the ends of tau, the node's half-width being 1/2 */
-  const vec3 turn = vec_cross(n, m->omega);
-  const double along = vec_dot(n, m->v);
-  double first = INFINITY;
-  for (int k = 0; k < 2; k++) {
-    const double tau = k == 0 ? -0.5 : 0.5;
+  const vec3 turn = vec_add(vec_cross(n, m->omega), drift);
+  const double along = vec_dot(n, m->v) + vec_dot(drift, apart), start = vec_dot(n, apart);
+  double first[2], least = INFINITY;
+  for (int end = 0; end < 2; end++) {
+    const double tau = end == 0 ? -0.5 : 0.5;
     const vec3 d = vec_axpy(n, tau, turn);
     if (!usable(d)) return -INFINITY;
-    first = fmin(first, lowest(moving, d) + tau * along);
+    first[end] = start + tau * along + lowest(moving, d) - heights[end];
+    least = fmin(least, first[end]);
   }
-  const double second = start + first - 0.125 * m->second - *slack;
+  const double rounding = *slack + 16.0 * ROUND_U * fabs(least);
+  const double second = least_quotient(least - 0.125 * m->second - 0.25 * speed * m->rate - rounding, 0.0, k);
+  *slack = rounding;
   if (second > goal) return second;
 
   /* third order: the corners of (tau, sigma), sigma standing for tau² */
+  const double speed_squared = vec_norm2(m->omega);
   const vec3 bend =
-      vec_add(vec_cross(n, m->alpha), vec_axpy(vec_scale(vec_dot(n, m->omega), m->omega), -vec_norm2(m->omega), n));
-  const double curve = vec_dot(n, m->a);
-  double all = first;
-  for (int k = 0; k < 2; k++) {
-    const double tau = k == 0 ? -0.5 : 0.5;
-    const vec3 d = vec_axpy(vec_axpy(n, tau, turn), 0.125, bend);
+      vec_add(vec_cross(n, m->alpha), vec_axpy(vec_scale(vec_dot(n, m->omega), m->omega), -speed_squared, n));
+  const vec3 bent = vec_axpy(vec_scale(0.125, bend), 0.25, vec_cross(drift, m->omega));
+  const double curve = 0.125 * vec_dot(n, m->a) + 0.25 * vec_dot(drift, m->v);
+  const double rest = m->third / 48.0 + speed * m->second / 16.0 + rounding;
+  double third = INFINITY;
+  for (int end = 0; end < 2; end++) {
+    const double tau = end == 0 ? -0.5 : 0.5;
+    const vec3 d = vec_add(vec_axpy(n, tau, turn), bent);
     if (!usable(d)) return second;
-    all = fmin(all, lowest(moving, d) + tau * along + 0.125 * curve);
+    const double far = start + tau * along + curve + lowest(moving, d) - heights[end];
+    third = fmin(third, least_quotient(first[end] - rest, far - first[end], k));
   }
-  return fmax(second, start + all - m->third / 48.0 - *slack);
+  return fmax(second, third);
 }

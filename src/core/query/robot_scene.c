@@ -247,7 +247,7 @@ void robot_scene_measure(const robot_body *moving, const robot_body *standing, d
     return;
   }
   const pair_placement seen = seen_from(standing, moving);
-  const pair_goal goal = {.epsilon = epsilon, .max_steps = GAP_STEPS};
+  const pair_goal goal = {.epsilon = epsilon, .max_steps = GAP_STEPS, .wants_feature = true};
   pair_answer answer;
   pair_separate(standing->side.shape, standing->side.margin, moving->side.shape, moving->side.margin, &seen, &goal,
                 &answer);
@@ -257,4 +257,61 @@ void robot_scene_measure(const robot_body *moving, const robot_body *standing, d
   gap->on_standing = placement_apply(&standing->side.at, apart ? answer.on_a : answer.common);
   gap->on_moving = placement_apply(&standing->side.at, apart ? answer.on_b : answer.common);
   gap->normal = vec_neg(placement_turn(&standing->side.at, answer.normal));
+  if (!apart) return;
+  if (!answer.feature.flat) {
+    for (int i = 0; i < 6; i++) gap->hessian[i] = answer.feature.hessian[i];
+    return;
+  }
+  gap->n = answer.feature.n;
+  for (int i = 0; i < gap->n && i < 3; i++) {
+    gap->on_edge[i] = placement_apply(&moving->side.at, answer.feature.b[i]);
+    gap->across[i] = vec_neg(placement_turn(&standing->side.at, answer.feature.w[i]));
+  }
+}
+
+/* The direction from 0 to the flat through the points, towards `like`; (0,0,0) where there is none. */
+static vec3 direction_of(const vec3 *w, int n, vec3 like) {
+  vec3 v = w[0];
+  if (n == 2) {
+    const vec3 e = vec_sub(w[1], w[0]);
+    v = vec_axpy(v, -vec_dot(v, e) / vec_norm2(e), e);
+  } else if (n == 3) {
+    v = vec_cross(vec_sub(w[1], w[0]), vec_sub(w[2], w[0]));
+  }
+  const double length = vec_norm(v);
+  if (!(length > 0.0)) return vec(0, 0, 0);
+  return vec_scale((vec_dot(v, like) < 0.0 ? -1.0 : 1.0) / length, v);
+}
+
+static vec3 orthogonal_part(vec3 drift, vec3 normal) {
+  return vec_finite(drift) ? vec_axpy(drift, -vec_dot(drift, normal), normal) : vec(0, 0, 0);
+}
+
+/* As if what moves were only shifted, as fast as its nearest point moves. */
+static vec3 drift_of_curved(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
+                            const chain_motion *motion) {
+  const vec3 from = vec_sub(gap->on_moving, moving->side.at.p);
+  const vec3 v = placement_turn_back(&standing->side.at, vec_add(motion->v, vec_cross(motion->omega, from)));
+  const double *h = gap->hessian;
+  const vec3 turned = vec(h[0] * v.x + h[1] * v.y + h[2] * v.z, h[1] * v.x + h[3] * v.y + h[4] * v.z,
+                          h[2] * v.x + h[4] * v.y + h[5] * v.z);
+  return orthogonal_part(placement_turn(&standing->side.at, turned), gap->normal);
+}
+
+/* By a difference quotient: any drift is allowed, this one is near the best. */
+vec3 robot_scene_drift(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
+                       const chain_motion *motion) {
+  static const double STEP = 1e-5;
+  vec3 n[2];
+  if (gap->n < 1) return drift_of_curved(gap, moving, standing, motion);
+  for (int k = 0; k < 2; k++) {
+    vec3 w[3];
+    for (int i = 0; i < gap->n; i++) {
+      const vec3 from = vec_sub(gap->on_edge[i], moving->side.at.p);
+      const vec3 velocity = vec_add(motion->v, vec_cross(motion->omega, from));
+      w[i] = vec_axpy(gap->across[i], k == 0 ? -STEP : STEP, velocity);
+    }
+    n[k] = direction_of(w, gap->n, gap->normal);
+  }
+  return orthogonal_part(vec_scale(0.5 / STEP, vec_sub(n[1], n[0])), gap->normal);
 }

@@ -19,7 +19,11 @@ typedef struct robot_body {
 typedef struct robot_pair {
   int32_t moving;   /* which part of the robot */
   int32_t standing; /* which obstacle, or in a question about the robot itself which part */
-  vec3 normal;      /* the last separating direction, from what stands to what moves, in the frame of what stands */
+  /* the last separating direction, from what stands to what moves, in the frame of what stands, where it was found, and how fast
+   * it turned there, by u of the segment */
+  vec3 normal, drift;
+  size_t segment;
+  double u;
   bool normal_known;
 } robot_pair;
 
@@ -63,10 +67,19 @@ typedef struct robot_gap {
   double lower, upper, slack;
   vec3 on_moving, on_standing; /* world */
   vec3 normal;                 /* world, unit, from standing to moving; (0,0,0) where there is none */
+  /* Polyhedra, world: points of the moving side, and the ways to them from points of the standing one, n of them: the feature that
+   * the normal stands on. Curved shapes, n = 0: the derivative of the normal by a shift of the moving side, in the standing frame. */
+  vec3 on_edge[3], across[3];
+  int n;
+  double hessian[6];
   bool fault;
 } robot_gap;
 
 void robot_scene_measure(const robot_body *moving, const robot_body *standing, double epsilon, robot_gap *gap);
+
+/* How fast the normal turns where what moves does so as `motion` says, by u of the node; orthogonal to it. */
+vec3 robot_scene_drift(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
+                       const chain_motion *motion);
 
 /* Along a normal of the world: the height of what stands, as bound_height(), exact for halfspaces. */
 double robot_scene_height(const robot_body *standing, vec3 normal);

@@ -16,6 +16,9 @@ static const double GAP_FRACTION = 0.02;
 /* Parts that move farther than their own size, and than this fraction of their distance, are too blurred to be measured. */
 static const double BLUR = 0.25;
 
+/* Normals that turn faster than this over a node are taken to stand still. */
+static const double FASTEST_DRIFT = 0.5;
+
 #define SHORTEST_STRETCH 0x1p-46
 
 /* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
@@ -77,6 +80,8 @@ static cprox_status measure(robot_search *o, int32_t index, size_t segment, doub
                           "a support callback answered with a point that is not finite or outside its radius");
   if (vec_norm2(gap->normal) > 0.0) {
     pair->normal = placement_turn_back(&standing->side.at, gap->normal);
+    pair->drift = vec(0, 0, 0);
+    pair->segment = segment, pair->u = u;
     pair->normal_known = true;
   }
   const double upper = fmax(gap->upper, 0.0), at = motion_time(o->scene.motion, segment, u);
@@ -122,15 +127,26 @@ static cprox_status seed(robot_search *o, const search_node *node) {
 
 /* ---- bounds --------------------------------------------------------------------------------------------------------------- */
 
-/* What the pair's last normal says of the node. */
-static double bound_by_normal(robot_search *o, const robot_pair *pair, const robot_body *moving,
-                              const robot_body *standing, const chain_motion *motion, double goal, double *slack) {
-  const vec3 n = placement_turn(&standing->side.at, pair->normal);
-  const double length = vec_norm(n);
-  const vec3 unit = vec_scale(1.0 / length, n);
+/* What the pair's last normal says of the node, carried on to its middle as it turned. */
+static double bound_by_normal(robot_search *o, const search_node *node, const robot_pair *pair,
+                              const robot_body *moving, const robot_body *standing, const chain_motion *motion,
+                              double goal, double *slack) {
+  const double width = node->side[1].b - node->side[0].a, middle = 0.5 * (node->side[0].a + node->side[1].b);
+  const bool same_segment = pair->segment == first_of(node);
+  const double away = same_segment ? middle - pair->u : 0.0;
+  vec3 n = placement_turn(&standing->side.at, vec_axpy(pair->normal, away, pair->drift));
+  n = vec_scale(1.0 / vec_norm(n), n);
+  n = vec_scale(1.0 / vec_norm(n), n);
+
+  vec3 drift = placement_turn(&standing->side.at, vec_scale(same_segment ? width : 0.0, pair->drift));
+  drift = vec_axpy(drift, -vec_dot(drift, n), n);
+  if (!(vec_norm2(drift) < FASTEST_DRIFT * FASTEST_DRIFT)) drift = vec(0, 0, 0);
+  double heights[2];
+  heights[0] = robot_scene_height(standing, vec_axpy(n, -0.5, drift));
+  heights[1] = vec_norm2(drift) > 0.0 ? robot_scene_height(standing, vec_axpy(n, 0.5, drift)) : heights[0];
   o->planes++;
-  return motion_plane_bound(motion, &moving->side, &standing->side, robot_scene_height(standing, unit), unit,
-                            moving->steps + standing->steps, goal, slack);
+  return motion_plane_bound(motion, &moving->side, &standing->side, n, drift, heights, moving->steps + standing->steps,
+                            goal, slack);
 }
 
 /* Raises the bound of one pair over the node that the scene is at, by the cheapest way that settles it. */
@@ -150,7 +166,7 @@ static cprox_status bound_pair(robot_search *o, const search_node *node, list_en
   if (motion->travel > size && width > SHORT_STRETCH) return CPROX_OK;
 
   if (pair->normal_known) {
-    const double bound = bound_by_normal(o, pair, moving, standing, motion, settling_bound(o), slack);
+    const double bound = bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
     entry->lower = fmax(entry->lower, bound);
     if (entry->lower >= settling_bound(o) && entry->lower > o->limit) return CPROX_OK;
   }
@@ -161,7 +177,9 @@ static cprox_status bound_pair(robot_search *o, const search_node *node, list_en
   if (status < 0) return status;
   entry->lower = fmax(entry->lower, gap.lower - motion->travel);
   if (!pair->normal_known || gap.upper <= 0.0) return CPROX_OK;
-  const double bound = bound_by_normal(o, pair, moving, standing, motion, settling_bound(o), slack);
+  const vec3 drift = vec_scale(1.0 / width, robot_scene_drift(&gap, moving, standing, motion));
+  pair->drift = placement_turn_back(&standing->side.at, drift);
+  const double bound = bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
   entry->lower = fmax(entry->lower, bound);
   return CPROX_OK;
 }
