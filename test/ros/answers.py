@@ -6,8 +6,8 @@ import unittest
 
 from curve_proximity.msg import AllowedContact, Body, CollisionObject, LinkPadding
 from geometry_msgs.msg import Pose
-from helpers import (BOX, CONE, CYLINDER, SPHERE, Server, bezier, body, box, bspline, mesh, plane, point, pose, run,
-                     solid, sphere, thing)
+from helpers import (BOX, CONE, CYLINDER, SPHERE, Server, bezier, body, box, bspline, implicit, mesh, plane, point, pose,
+                     run, solid, sphere, thing)
 
 EPSILON = 1e-9  # [m] asked for in each query that is compared
 ABOVE = bezier((0, 0, 1), (2, 0, 1), id='above')  # a straight line one metre up, middle over (1, 0, 0)
@@ -81,7 +81,10 @@ class Answers(TestCase):
             (body('s', 'box', [1, 2, 3]), 0.5), (body('s', 'capsule', [1, 0.5]), 1.0),
             (body('s', 'cylinder', [3, 0.4]), 0.5), (body('s', 'cone', [3, 0.4]), 0.5),
             (body('s', 'ellipsoid', [1, 1, 0.5]), 1.5), (body('s', 'halfspace', [0, 0, 2, -1]), 1.5),
-            (body('s', 'polytope', vertices=corners), 1.0)]
+            (body('s', 'polytope', vertices=corners), 1.0),
+            (body('s', 'superquadric', [1, 1, 0.5, 4, 1.5, 8]), 1.5),
+            (implicit('s', [[(0.5, 0, 0, 0, 4), (0, 0.5, 0, 0, 4), (0, 0, 0.5, 0, 4)]], [(0, 0, 2, -1)]), 1.5),
+            (implicit('s', planes=[(0, 0, 1, -1), (0, 0, -1, -1)], quadrics=[(1, 0, 0, 1, 0, 0, 0, 0, 0, -1)]), 1.0)]
         for thing_, true_distance in cases:
             with self.subTest(thing_.bodies or thing_.primitives or thing_.planes or 'mesh'):
                 self.server.replace(thing_)
@@ -161,6 +164,8 @@ class Scene(TestCase):
             mesh('mesh', corners, [(0, 1, 3), (4, 5, 7)], (0, 0, 8)), plane('floor', [0, 0, 1, 4]),
             body('capsule', 'capsule', [1, 0.2], position=(3, 3, 3)),
             body('hull', 'polytope', vertices=corners, position=(-4, 0, 0)),
+            body('can', 'superquadric', [1, 1, 2, 2, 2, 16], position=(-9, 0, 0)),
+            implicit('lens', planes=[(0, 0, 1, -0.5)], quadrics=[(1, 0, 0, 1, 0, 1, 0, 0, 0, -1)], position=(0, -9, 0)),
             allowed_contacts=[AllowedContact('cone', 'box', True)])
         first = self.server.scene()
         self.assertEqual(first.frame_id, 'world')

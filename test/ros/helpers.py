@@ -8,7 +8,7 @@ import time
 
 import rospy
 import rostest
-from curve_proximity.msg import Body, CollisionObject, Curve
+from curve_proximity.msg import Body, CollisionObject, Curve, Hyperquadric
 from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, CollisionRequest, Distance,
                                  DistanceRequest, GetScene, Tolerance, ToleranceRequest)
 from geometry_msgs.msg import Point, Pose, Quaternion
@@ -76,6 +76,15 @@ def box(name, size, position=(0, 0, 0), **fields):
 def body(name, kind, dimensions=(), vertices=(), position=(0, 0, 0), **fields):
     return thing(name, position, bodies=[Body(type=kind, dimensions=[float(d) for d in dimensions],
                                               vertices=[point(v) for v in vertices])], **fields)
+
+
+def implicit(name, hyperquadrics=(), planes=(), quadrics=(), position=(0, 0, 0), **fields):
+    """The intersection of hyperquadrics, each a list of terms of five, planes of four and quadrics of ten numbers."""
+    def flat(rows):
+        return [float(x) for row in rows for x in row]
+    return thing(name, position, bodies=[Body(type='implicit', planes=flat(planes), quadrics=flat(quadrics),
+                                              hyperquadrics=[Hyperquadric(terms=flat(h)) for h in hyperquadrics])],
+                 **fields)
 
 
 def mesh(name, vertices, triangles, position=(0, 0, 0), **fields):
