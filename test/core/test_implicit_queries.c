@@ -109,7 +109,7 @@ static void other_kinds_are_measured_against_implicit_bodies(void **state) {
 }
 
 /* Seed 33: a carried twin and its known kind along the same curve, against a twin and a known kind that stand; and the same in a
- * compound: distance and first contact agree. */
+ * compound: distance, signed distance and first contact agree. */
 static void a_carried_twin_is_measured_like_the_kind_it_equals(void **state) {
   cprox_workspace *w = *state;
   rng r = rng_seed(33);
@@ -132,6 +132,11 @@ static void a_carried_twin_is_measured_like_the_kind_it_equals(void **state) {
     assert_agree(&expected, &found);
     assert_true(found.upper - found.lower <= 1.0001e-6);
     assert_true(cprox_distance(cprox_body_along(body[0], curve), cprox_at(compound, pose), NULL, w, &found) >= 0);
+    assert_agree(&expected, &found);
+    cprox_options deep = cprox_options_default();
+    deep.signed_distance = true;
+    assert_true(cprox_distance(cprox_point_along(curve), cprox_at(known[1], pose), &deep, w, &expected) >= 0);
+    assert_true(cprox_distance(cprox_point_along(curve), cprox_at(body[1], pose), &deep, w, &found) >= 0);
     assert_agree(&expected, &found);
     cprox_result first, second;
     assert_true(cprox_first_contact(cprox_point_along(curve), cprox_at(known[1], pose), NULL, w, &first) >= 0);
