@@ -13,7 +13,6 @@
 #include "curve_proximity/cprox.h"
 #include "support/counting.h"
 #include "support/meshes.h"
-#include "tree/kernels.h"
 
 static cprox_workspace *ws;
 
@@ -122,9 +121,292 @@ static void distance_holds_everywhere_and_at_its_witness(void **state) {
   if (unconverged > cases / 4) fail_msg("%zu of %zu did not converge", unconverged, cases);
 }
 
+/* ---- first contact ---------------------------------------------------------------------------------------------------- */
+
+/* 240 runs (seed 53; CPROX_TEST_SCALE=15 makes 3,600) of points and tubes through thin plates and past them so that they graze, over a
+ * torus, and through it; epsilon 1e-9. Never late: at 60 parameters before t_free, the last one 1e-9 before it, the distance in long
+ * double is above 0. Not missed: at t_free it is at most epsilon, unless t_free is the end. Where contact is said to be proven, the
+ * distance at t is at most rounding, 1e-13, or the curve has gone through. */
+static void first_contact_is_never_late_and_never_missed(void **state) {
+  (void)state;
+  rng r = rng_seed(53);
+  const cprox_options options = accurate(1e-9);
+  size_t hits = 0;
+  const size_t cases = test_cases(240);
+  for (size_t i = 0; i < cases; i++) {
+    test_mesh mesh = i % 4 == 0   ? mesh_torus(12, 8, 0.5, 0.2, 0.1)
+                     : i % 4 == 1 ? mesh_plate(1 + rng_index(&r, 6), 0.6)
+                                  : mesh_box(vec(0.5, 0.5, rng_log_uniform(&r, 1e-6, 1e-2)));
+    cprox_body *body = mesh_body(&mesh, i % 8 < 4 ? CPROX_MESH_SURFACE : CPROX_MESH_SOLID, ws);
+    const cprox_pose pose = rng_pose(&r, 0.3);
+    const double radius = i % 3 == 0 ? 0.0 : rng_log_uniform(&r, 1e-4, 0.2);
+    vec3 points[4];
+    for (size_t k = 0; k < 4; k++) points[k] = rng_in_cube(&r, 1.2);
+    if (i % 5 == 0) { /* a parabola that comes within a hair of the plate's plane, or into it by a hair */
+      const double depth = rng_uniform(&r, -1e-7, 1e-7);
+      const frame f = frame_create(&pose, vec(0, 0, 0));
+      const double height = radius + depth + (i % 4 >= 2 ? mesh.vertices[7].z : 0.0);
+      points[0] = frame_to_world(&f, vec(-0.4, 0.1, height + 0.5));
+      points[1] = frame_to_world(&f, vec(0.0, 0.1, height - 0.5));
+      points[2] = frame_to_world(&f, vec(0.4, 0.1, height + 0.5));
+    }
+    const test_bezier b = bezier_make(points, i % 5 == 0 ? 2 : 3);
+    cprox_result result;
+    const cprox_status status =
+        cprox_first_contact(cprox_tube_along(b.curve, radius), cprox_at(body, pose), &options, ws, &result);
+    if (status != CPROX_OK) fail_msg("case %zu: %s: %s", i, cprox_status_name(status), cprox_workspace_reason(ws));
+    const bool inside_first = cprox_body_is_solid(body) && result.t_free == 0.0;
+    if (result.verdict != CPROX_NO) {
+      hits++;
+      const long double there = distance_at(&b, &mesh, &pose, result.t_free) - (long double)radius;
+      if (there > 1e-9L && !inside_first) fail_msg("case %zu: %Lg away at t_free", i, there);
+    } else if (result.t_free != 1.0 || !(result.lower > 0.0)) {
+      fail_msg("case %zu: no contact, but free to %g and at least %g away", i, result.t_free, result.lower);
+    }
+    for (int k = 1; k <= 60; k++) {
+      const long double t = k == 60 ? (long double)result.t_free - 1e-9L
+                                    : (long double)result.t_free * (long double)rng_uniform(&r, 0.0, 1.0);
+      if (t < 0.0L || t >= (long double)result.t_free) continue;
+      const long double before = distance_at(&b, &mesh, &pose, t) - (long double)radius;
+      if (before <= 0.0L) fail_msg("case %zu: late: %Lg at %.17Lg, free to %.17g", i, before, t, result.t_free);
+    }
+    if (result.verdict == CPROX_YES && result.t < result.t_free) fail_msg("case %zu: proven before it is free", i);
+    cprox_curve_free(b.curve);
+    cprox_body_free(body);
+    mesh_free(&mesh);
+  }
+  assert_true(hits > cases / 4 && hits < cases);
+}
+
+/* A point that goes through a surface: the crossing itself is the proof. */
+static void a_point_through_a_surface_is_a_proven_collision(void **state) {
+  (void)state;
+  rng r = rng_seed(57);
+  test_mesh mesh = mesh_torus(24, 16, 1.0, 0.3, 0.1);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  for (int i = 0; i < 100; i++) {
+    const vec3 points[3] = {vec(rng_uniform(&r, -0.1, 0.1), 0.02, 0.0), rng_in_cube(&r, 1.0),
+                            vec_scale(1.0, vec(1.0, rng_uniform(&r, -0.05, 0.05), 0.01))};
+    const test_bezier b = bezier_make(points, 2);
+    cprox_result result;
+    assert_int_equal(
+        cprox_collision(cprox_point_along(b.curve), cprox_at(body, cprox_pose_identity()), NULL, ws, &result),
+        CPROX_OK);
+    if (result.verdict != CPROX_YES)
+      fail_msg("case %d: %s, [%g, %g]", i, cprox_verdict_name(result.verdict), result.lower, result.upper);
+    assert_int_equal(result.rung, CPROX_RUNG_MESH);
+    cprox_curve_free(b.curve);
+  }
+  cprox_body_free(body);
+  mesh_free(&mesh);
+}
+
+/* ---- solids ----------------------------------------------------------------------------------------------------------- */
+
+/* 300 points (seed 59) against the winding number of all triangles in long double, where they are 1e-9 off the surface. */
+static void a_closed_mesh_is_solid_inside(void **state) {
+  (void)state;
+  rng r = rng_seed(59);
+  test_mesh mesh = mesh_torus(30, 20, 1.0, 0.4, 0.2);
+  cprox_body *solid = mesh_body(&mesh, CPROX_MESH_SOLID, ws);
+  assert_true(cprox_body_is_solid(solid));
+  size_t inside = 0;
+  for (int i = 0; i < 300; i++) {
+    const vec3 p = rng_in_cube(&r, 1.4);
+    if (mesh_distance(&mesh, ref_vec(p)) < 1e-9L) continue;
+    const bool wanted = fabsl(mesh_winding(&mesh, ref_vec(p))) > 0.5L;
+    inside += wanted;
+    assert_true((cprox_body_nearest(solid, p, NULL) < 0.0) == wanted);
+    const vec3 points[2] = {p, vec_add(p, rng_in_cube(&r, 1e-12))};
+    const test_bezier b = bezier_make(points, 1);
+    cprox_result result;
+    cprox_collision(cprox_point_along(b.curve), cprox_at(solid, cprox_pose_identity()), NULL, ws, &result);
+    if (wanted) assert_int_equal(result.verdict, CPROX_YES);
+    if (mesh_distance(&mesh, ref_vec(p)) > 1e-5L && !wanted) assert_int_equal(result.verdict, CPROX_NO);
+    cprox_curve_free(b.curve);
+  }
+  assert_true(inside > 30);
+  cprox_body_free(solid);
+
+  /* one triangle less, and it is a surface */
+  mesh.m--;
+  solid = mesh_body(&mesh, CPROX_MESH_SOLID, ws);
+  assert_false(cprox_body_is_solid(solid));
+  cprox_body_free(solid);
+  mesh_free(&mesh);
+}
+
+/* ---- points and boxes ------------------------------------------------------------------------------------------------- */
+
+/* 600 random queries (seed 61) against clouds and boxes, held against every element in long double; epsilon 1e-6. */
+static void clouds_and_boxes_hold_too(void **state) {
+  (void)state;
+  rng r = rng_seed(61);
+  const cprox_options options = accurate(1e-6);
+  for (size_t i = 0; i < test_cases(600); i++) {
+    vec3 low[200], high[200];
+    const size_t n = 1 + rng_index(&r, 200);
+    const bool boxes = i % 2;
+    const double radius = rng_uniform(&r, 0.0, 0.05);
+    for (size_t k = 0; k < n; k++) {
+      low[k] = rng_in_cube(&r, 1.0);
+      high[k] = vec_add(low[k], vec(rng_uniform(&r, 0, 0.2), rng_uniform(&r, 0, 0.2), k % 9 ? 0.1 : 0.0));
+    }
+    cprox_body *body = NULL;
+    assert_int_equal(boxes ? cprox_body_create_boxes(low, high, n, SIZE_MAX, ws, &body)
+                           : cprox_body_create_points(low, n, radius, SIZE_MAX, ws, &body),
+                     CPROX_OK);
+    const cprox_pose pose = rng_pose(&r, 0.5);
+    vec3 points[5];
+    for (size_t k = 0; k < 5; k++) points[k] = rng_in_cube(&r, 1.5);
+    const test_bezier b = bezier_make(points, 4);
+    cprox_result result;
+    const cprox_status status = cprox_distance(cprox_point_along(b.curve), cprox_at(body, pose), &options, ws, &result);
+    if (status != CPROX_OK)
+      fail_msg("case %zu: %s, [%.12g, %.12g], %u nodes", i, cprox_status_name(status), result.lower, result.upper,
+               result.nodes);
+    for (int k = 0; k < 30; k++) {
+      const long double t = k ? (long double)rng_uniform(&r, 0.0, 1.0) : (long double)result.t;
+      const vec3l p = ref_to_local(&pose, ref_bezier(b.points, 4, t, 0));
+      long double least = INFINITY;
+      for (size_t e = 0; e < n; e++) {
+        const vec3l middle = ref_scale(0.5L, ref_add(ref_vec(low[e]), ref_vec(high[e])));
+        const vec3 half = vec_scale(0.5, vec_sub(high[e], low[e]));
+        least = fminl(least, boxes ? ref_point_box(ref_sub(p, middle), half)
+                                   : fmaxl(ref_norm(ref_sub(p, ref_vec(low[e]))) - (long double)radius, 0.0L));
+      }
+      if (least < result.lower - 1e-15L) fail_msg("case %zu: %Lg, below lower %g", i, least, result.lower);
+      if (k == 0 && least > result.upper + 1e-15L) fail_msg("case %zu: %Lg, above upper %g", i, least, result.upper);
+    }
+    cprox_curve_free(b.curve);
+    cprox_body_free(body);
+  }
+}
+
+/* ---- static pairs ----------------------------------------------------------------------------------------------------- */
+
+/* 400 pairs (seed 71) of a soup or torus with a ball, and with a box by every triangle's own pair; epsilon 1e-9, so that two answers
+ * differ by twice that where they are apart. */
+static void pairs_answer_as_their_triangles_do(void **state) {
+  (void)state;
+  rng r = rng_seed(71);
+  const cprox_options options = accurate(1e-9);
+  for (size_t i = 0; i < test_cases(400); i++) {
+    test_mesh mesh = i % 2 ? mesh_soup(&r, 1 + rng_index(&r, 40), 1.0, 0.2) : mesh_torus(9, 7, 1.0, 0.3, 0.2);
+    cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws), *other = NULL;
+    const double radius = rng_uniform(&r, 0.01, 0.2);
+    const bool ball = i % 4 < 2;
+    if (ball)
+      assert_int_equal(cprox_body_create_sphere(radius, ws, &other), CPROX_OK);
+    else
+      assert_int_equal(cprox_body_create_box(vec(0.3, 0.2, 0.1), ws, &other), CPROX_OK);
+    const cprox_pose at = rng_pose(&r, 1.0), there = rng_pose(&r, 1.5);
+    cprox_result result;
+    const cprox_status status = cprox_pair(cprox_at(other, there), cprox_at(body, at), &options, ws, &result);
+    if (status < 0) fail_msg("case %zu: %s", i, cprox_workspace_reason(ws));
+    if (ball) {
+      const long double d = mesh_distance(&mesh, ref_to_local(&at, ref_vec(there.position))) - (long double)radius;
+      if (!(result.lower - 1e-15 <= (double)d && (double)d <= result.upper + 1e-15))
+        fail_msg("case %zu: %Lg, not in [%g, %g]", i, d, result.lower, result.upper);
+    } else {
+      double least = INFINITY;
+      for (size_t k = 0; k < mesh.m; k++) {
+        vec3 v[3];
+        for (int c = 0; c < 3; c++) v[c] = mesh.vertices[mesh.triangles[k][c]];
+        cprox_body *triangle = NULL;
+        assert_int_equal(cprox_body_create_polytope(v, 3, ws, &triangle), CPROX_OK);
+        cprox_result one;
+        cprox_pair(cprox_at(other, there), cprox_at(triangle, at), &options, ws, &one);
+        least = fmin(least, one.upper);
+        cprox_body_free(triangle);
+      }
+      if (least > 1e-8 && fabs(result.upper - least) > 2e-9) fail_msg("case %zu: %g, but %g", i, result.upper, least);
+      if (least > 1e-8 && !(result.upper - result.lower <= 1e-9))
+        fail_msg("case %zu: [%g, %g]", i, result.lower, result.upper);
+      if (least <= 0.0) assert_true(result.upper <= 1e-9);
+    }
+    cprox_body_free(other);
+    cprox_body_free(body);
+    mesh_free(&mesh);
+  }
+}
+
+/* ---- bad input -------------------------------------------------------------------------------------------------------- */
+
+static void expect_reason(cprox_status status, cprox_status wanted, const char *words) {
+  assert_int_equal(status, wanted);
+  if (!strstr(cprox_workspace_reason(ws), words)) fail_msg("'%s' does not say '%s'", cprox_workspace_reason(ws), words);
+}
+
+static void bad_input_is_refused_with_a_sentence(void **state) {
+  (void)state;
+  cprox_body *body = NULL;
+  vec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const uint32_t good[1][3] = {{0, 1, 2}}, bad[2][3] = {{0, 1, 2}, {0, 1, 3}};
+  expect_reason(cprox_body_create_mesh(v, 3, bad, 2, CPROX_MESH_SURFACE, SIZE_MAX, ws, &body), CPROX_INVALID,
+                "triangle 1 names vertex 3");
+  expect_reason(cprox_body_create_mesh(v, 3, good, 0, CPROX_MESH_SURFACE, SIZE_MAX, ws, &body), CPROX_INVALID,
+                "no triangles");
+  expect_reason(cprox_body_create_mesh(v, 3, good, 1, CPROX_MESH_SURFACE, 100, ws, &body), CPROX_MEMORY, "bytes");
+  expect_reason(cprox_body_create_points(v, 10000000, 0.0, 1000000, ws, &body), CPROX_MEMORY, "10000000 points need");
+  expect_reason(cprox_body_create_points(v, 0, 0.0, SIZE_MAX, ws, &body), CPROX_INVALID, "no points");
+  expect_reason(cprox_body_create_points(v, 3, -1.0, SIZE_MAX, ws, &body), CPROX_INVALID, "radius");
+  const vec3 low[1] = {{0, 0, 0}}, high[1] = {{1, -1, 1}};
+  expect_reason(cprox_body_create_boxes(low, high, 1, SIZE_MAX, ws, &body), CPROX_INVALID, "box 0");
+  for (int k = 0; k < 2; k++) {
+    v[1].y = k ? NAN : INFINITY;
+    expect_reason(cprox_body_create_mesh(v, 3, good, 1, CPROX_MESH_SURFACE, SIZE_MAX, ws, &body), CPROX_INVALID,
+                  "vertex 1");
+    expect_reason(cprox_body_create_points(v, 3, 0.0, SIZE_MAX, ws, &body), CPROX_INVALID, "point 1");
+  }
+  assert_null(body);
+
+  /* one triangle without area is a mesh */
+  const vec3 flat[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  assert_int_equal(cprox_body_create_mesh(flat, 3, good, 1, CPROX_MESH_SOLID, SIZE_MAX, ws, &body), CPROX_OK);
+  assert_false(cprox_body_is_solid(body));
+  const vec3 line[2] = {{1, -1, 0}, {1, 1, 0}};
+  const test_bezier b = bezier_make(line, 1);
+  cprox_result result;
+  assert_int_equal(cprox_distance(cprox_point_along(b.curve), cprox_at(body, cprox_pose_identity()), NULL, ws, &result),
+                   CPROX_OK);
+  assert_true(result.lower <= 1.0 && 1.0 <= result.upper);
+  cprox_body_free(body);
+  cprox_curve_free(b.curve);
+}
+
+/* A tube between two sheets, and after it a second query of the same kind: the second one allocates nothing. */
+static void queries_do_not_allocate_once_the_workspace_has_grown(void **state) {
+  (void)state;
+  rng r = rng_seed(67);
+  test_mesh mesh = mesh_torus(40, 30, 1.0, 0.3, 0.1);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  vec3 points[6];
+  for (size_t k = 0; k < 6; k++) points[k] = rng_in_cube(&r, 1.0);
+  const test_bezier b = bezier_make(points, 5);
+  size_t before = 0;
+  for (int i = 0; i < 2; i++) {
+    before = allocations_made();
+    cprox_result result;
+    cprox_distance(cprox_tube_along(b.curve, 0.01), cprox_at(body, cprox_pose_identity()), NULL, ws, &result);
+    cprox_first_contact(cprox_tube_along(b.curve, 0.01), cprox_at(body, cprox_pose_identity()), NULL, ws, &result);
+  }
+  assert_int_equal(allocations_made(), before);
+  cprox_curve_free(b.curve);
+  cprox_body_free(body);
+  mesh_free(&mesh);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(distance_holds_everywhere_and_at_its_witness),
+      cmocka_unit_test(first_contact_is_never_late_and_never_missed),
+      cmocka_unit_test(a_point_through_a_surface_is_a_proven_collision),
+      cmocka_unit_test(a_closed_mesh_is_solid_inside),
+      cmocka_unit_test(clouds_and_boxes_hold_too),
+      cmocka_unit_test(pairs_answer_as_their_triangles_do),
+      cmocka_unit_test(bad_input_is_refused_with_a_sentence),
+      cmocka_unit_test(queries_do_not_allocate_once_the_workspace_has_grown),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

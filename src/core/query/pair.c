@@ -9,6 +9,7 @@
 #include "curve_proximity/cprox/query.h"
 #include "implicit/implicit.h"
 #include "query/arguments.h"
+#include "query/pair_elements.h"
 #include "query/pair_place.h"
 #include "query/pair_witness.h"
 
@@ -23,8 +24,6 @@ typedef struct pair_reply {
 static cprox_status pair_check_target(const char *name, const cprox_target *target, cprox_workspace *workspace) {
   if (target->curve) return workspace_fail(workspace, CPROX_INVALID, "%s is a curve: a pair is of two bodies", name);
   if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "%s: the body is NULL", name);
-  if (arguments_has_tree(target->body))
-    return workspace_fail(workspace, CPROX_INVALID, "%s is a mesh, points or boxes, or has such a part", name);
   const char *fault = frame_pose_fault(&target->pose);
   if (fault) return workspace_fail(workspace, CPROX_INVALID, "%s: %s", name, fault);
   if (!(target->padding >= 0.0) || !isfinite(target->padding))
@@ -167,9 +166,32 @@ static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_pla
   return true;
 }
 
+static void pair_answer_to_world(const pair_side *a, pair_answer *answer) {
+  answer->on_a = pair_to_world(a, answer->on_a);
+  answer->on_b = pair_to_world(a, answer->on_b);
+  answer->common = pair_to_world(a, answer->common);
+  answer->normal = frame_turn_to_world(&a->f, answer->normal);
+}
+
+/* One of the two is made of many elements. */
+static cprox_status pair_with_elements(const pair_side *a, const pair_side *b, const pair_goal *goal,
+                                       cprox_workspace *workspace, pair_answer *answer) {
+  const bool swapped = !a->body->tree;
+  const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
+  if (second->body->tree)
+    return workspace_fail(workspace, CPROX_INVALID, "both are meshes, points or boxes: one of a pair must be convex");
+  if (second->shape->ops->kind == CPROX_HALFSPACE)
+    return workspace_fail(workspace, CPROX_INVALID, "a halfspace has no distance to a mesh, points or boxes here");
+  pair_elements(first, second, goal, answer);
+  if (swapped) pair_swap(answer);
+  pair_answer_to_world(first, answer);
+  return CPROX_OK;
+}
+
 /* One pair of convex shapes. The special ways want their shape first: the frame of the answer is the first one's. */
 static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pair_goal *goal,
                                cprox_workspace *workspace, pair_answer *answer) {
+  if (a->body->tree || b->body->tree) return pair_with_elements(a, b, goal, workspace, answer);
   const bool halfspace = b->shape->ops->kind == CPROX_HALFSPACE;
   const bool ball = is_ball(a->shape) && has_closed_form(b->shape) && !is_ball(b->shape);
   const bool swapped = halfspace || (ball && a->shape->ops->kind != CPROX_HALFSPACE);
@@ -187,10 +209,7 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
 
   /* pair_separate's normal is from b to a, the special ways' as well */
   if (swapped) pair_swap(answer);
-  answer->on_a = pair_to_world(first, answer->on_a);
-  answer->on_b = pair_to_world(first, answer->on_b);
-  answer->common = pair_to_world(first, answer->common);
-  answer->normal = frame_turn_to_world(&first->f, answer->normal);
+  pair_answer_to_world(first, answer);
   return CPROX_OK;
 }
 
@@ -216,7 +235,8 @@ static cprox_status pair_over_parts(const cprox_target *a, const cprox_target *b
     const pair_side side_a = pair_place_side(a, i);
     for (size_t j = 0; j < pair_count_parts(b->body); j++) {
       const pair_side side_b = pair_place_side(b, j);
-      if (side_a.shape->ops->kind == CPROX_HALFSPACE && side_b.shape->ops->kind == CPROX_HALFSPACE)
+      if (!side_a.body->tree && !side_b.body->tree && side_a.shape->ops->kind == CPROX_HALFSPACE &&
+          side_b.shape->ops->kind == CPROX_HALFSPACE)
         return workspace_fail(workspace, CPROX_INVALID, "two halfspaces have no distance");
       pair_answer answer;
       const cprox_status status = pair_solve(&side_a, &side_b, goal, workspace, &answer);
@@ -264,18 +284,19 @@ cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *opt
 
   const pair_answer *answer = &best.answer;
   status = pair_status(answer, &asked);
-  *result = (cprox_result){.status = status,
-                           .verdict = CPROX_UNDECIDED,
-                           .lower = answer->lower,
-                           .upper = answer->upper,
-                           .t_target = NAN,
-                           .on_mover = answer->on_a,
-                           .on_target = answer->on_b,
-                           .normal = answer->normal,
-                           .target_part = best.part,
-                           .rung = CPROX_RUNG_HULL,
-                           .nodes = answer->steps,
-                           .probes = answer->supports};
+  *result = (cprox_result){
+      .status = status,
+      .verdict = CPROX_UNDECIDED,
+      .lower = answer->lower,
+      .upper = answer->upper,
+      .t_target = NAN,
+      .on_mover = answer->on_a,
+      .on_target = answer->on_b,
+      .normal = answer->normal,
+      .target_part = best.part,
+      .rung = arguments_has_tree(a.body) || arguments_has_tree(b.body) ? CPROX_RUNG_MESH : CPROX_RUNG_HULL,
+      .nodes = answer->steps,
+      .probes = answer->supports};
   if (status != CPROX_OK) workspace_fail(workspace, status, "%s", cprox_status_text(status));
   return status;
 }

@@ -14,6 +14,7 @@ pair_side pair_place_side(const cprox_target *target, size_t part) {
     side.error = ROUND_U * (ROUND_ROTATION * (vec_norm(p->pose.position) + vec_norm(body->centre) + body->shape.scale) +
                             3.0 * vec_norm(pose.position));
   }
+  side.body = body;
   side.shape = &body->shape;
   side.f = frame_create(&pose, body->centre);
   side.margin += body->shape.margin;

@@ -13,6 +13,7 @@ typedef struct pair_side {
   frame f;
   double margin; /* the shape's own and the padding */
   double error;  /* of the pose, where it had to be composed */
+  const cprox_body *body;
 } pair_side;
 
 pair_side pair_place_side(const cprox_target *target, size_t part);

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A standing mesh, points or boxes against a standing convex shape. doc/non-convex.md derives it. */
+#ifndef CPROX_QUERY_PAIR_ELEMENTS_H
+#define CPROX_QUERY_PAIR_ELEMENTS_H
+
+#include "query/pair_place.h"
+
+/* The answer is in the frame of the elements, which are its a. The convex shape is bounded. */
+void pair_elements(const pair_side *elements, const pair_side *convex_side, const pair_goal *goal, pair_answer *answer);
+
+#endif
