@@ -264,11 +264,20 @@ static double free_share(const tree_lanes *lanes, uint32_t l, double offset, dou
   return lanes->slope[l] < 0.0 ? above / -lanes->slope[l] : INFINITY;
 }
 
+/* Boxes that are wide against the stretch say little. Small ones serve as well as what is in them, but for the distances that only
+ * elements attain: a box of one point would stay closed for ever. */
+static bool is_worth_opening(const tree_node *node, const tree_lanes *lanes, uint32_t l, double wide2, double best2) {
+  if (lanes->width2[l] > wide2) return true;
+  const bool last = (node->child[l] & TREE_LEAF) != 0 || 64.0 * lanes->width2[l] < wide2;
+  return last && lanes->distance2[l] < best2;
+}
+
 cprox_status curve_tree_filter(curve_tree *o, search_node *node, const tree_stretch *stretch, double slack,
                                tree_place *nearest, double *least2, double *share) {
   tree_entry open[TREE_LANES * TREE_DEEPEST];
   size_t count = 0, end = node->list_end;
   const double taken = o->offset + slack, wide2 = 0.25 * width2_of(stretch), goal = goal_of(o);
+  const double best = fmax(o->best_bound.upper + o->offset, 0.0), best2 = best < 1e150 ? best * best : INFINITY;
   double kept = INFINITY, rest = node->rest;
   *least2 = INFINITY;
   tree_entry *list = list_reserve(o, end);
@@ -289,7 +298,7 @@ cprox_status curve_tree_filter(curve_tree *o, search_node *node, const tree_stre
       }
       if (bound > goal) {
         rest = fmin(rest, bound);
-      } else if (!leaf && lanes.width2[l] > wide2) {
+      } else if (!leaf && is_worth_opening(&o->tree->nodes[entry.at], &lanes, l, wide2, best2)) {
         const uint32_t child = o->tree->nodes[entry.at].child[l];
         open[count++] = (tree_entry){child, child & TREE_LEAF ? ALL_LANES : o->tree->nodes[child].lanes};
       } else {
