@@ -195,7 +195,7 @@ static void coaxial_bodies_are_measured_in_their_profile(void **state) {
                cprox_status_name(result.status));
     assert_true(phi(&a, &pa, &b, &pb, ref_vec(result.normal)) >= (long double)result.lower - 1e-16L);
     for (int i = 0; i < 1000; i++) {
-      const double angle = 3.14159265358979 * i / 999.0;
+      const double angle = 3.14159265358979 * (i + 0.5) / 1000.0;
       const vec3l u = ref_add(ref_scale(cos(angle), along), ref_scale(sin(angle), across));
       assert_true((long double)result.upper >= phi(&a, &pa, &b, &pb, u) - 1e-16L);
     }

@@ -41,10 +41,10 @@ static void profile_set_edge(profile *p, int32_t at, int32_t from, int32_t to) {
   const corner *a = &p->corner[from], *b = &p->corner[to];
   const double x = b->z - a->z, z = a->rho - b->rho, length = feature_hypot(x, z);
   edge e = {.from = from, .to = to};
-  if (length > 0.0) {
+  const double far = feature_hypot(a->rho, a->z);
+  if (length > 64.0 * ROUND_U * far) {
     e.x = x / length, e.z = z / length;
-  } else { /* no edge at all: the direction of the corner proves the most */
-    const double far = feature_hypot(a->rho, a->z);
+  } else { /* no edge but for rounding: the direction of the corner proves the most */
     e.x = a->rho / far, e.z = a->z / far;
   }
   e.offset = fmin(reach_along(a, e.x, e.z), reach_along(b, e.x, e.z));
@@ -58,12 +58,15 @@ static int32_t profile_nearest(const profile *p) {
   return best;
 }
 
+/* A hair off the axis, so that the extreme points of an end lie in the half plane like all the others. */
+static const double TILT = 1e-8;
+
 /* The lowest, the widest and the highest point. */
 static bool profile_begin(profile *p, const expand_set *set, double rounding) {
   p->n_corners = 0;
-  profile_add_corner(p, set, 0.0, -1.0);
+  profile_add_corner(p, set, TILT, -1.0);
   profile_add_corner(p, set, 1.0, 0.0);
-  profile_add_corner(p, set, 0.0, 1.0);
+  profile_add_corner(p, set, TILT, 1.0);
   p->n_edges = 2;
   profile_set_edge(p, 0, 0, 1);
   profile_set_edge(p, 1, 1, 2);
@@ -71,24 +74,30 @@ static bool profile_begin(profile *p, const expand_set *set, double rounding) {
          p->edge[1].offset > rounding;
 }
 
-/* The foot of 0: on the nearest edge, or in the middle of an end, between a corner and its image across the axis. */
-static void find_touch(const profile *p, double rounding, expand_depth *depth) {
-  const double end = fmin(-p->corner[0].z, p->corner[2].z);
-  const edge *nearest = &p->edge[profile_nearest(p)];
-  simplex *touch = &depth->touch;
-  touch->n = 2;
-  touch->vertex[0] = p->corner[nearest->from].vertex;
-  touch->vertex[1] = p->corner[nearest->to].vertex;
-  if (end <= nearest->offset + rounding) {
-    const simplex_vertex v = p->corner[-p->corner[0].z <= p->corner[2].z ? 0 : 2].vertex;
-    touch->vertex[0] = touch->vertex[1] = v;
-    touch->vertex[1].a = vec(-v.a.x, -v.a.y, v.a.z);
-    touch->vertex[1].b = vec(-v.b.x, -v.b.y, v.b.z);
-    touch->vertex[1].w = vec(-v.w.x, -v.w.y, v.w.z);
+/* The foot of 0: on one of the nearest edges, or in the middle of an end, between a corner and its image across the axis. */
+static void find_touch(const profile *p, double room, expand_depth *depth) {
+  simplex_nearest found;
+  const corner *end = &p->corner[-p->corner[0].z <= p->corner[2].z ? 0 : 2];
+  double nearest = INFINITY;
+  if (fabs(end->z) <= depth->least + room) {
+    const simplex_vertex v = end->vertex;
+    depth->touch = (simplex){.n = 2, .vertex = {v, v}};
+    depth->touch.vertex[1].a = vec(-v.a.x, -v.a.y, v.a.z);
+    depth->touch.vertex[1].b = vec(-v.b.x, -v.b.y, v.b.z);
+    depth->touch.vertex[1].w = vec(-v.w.x, -v.w.y, v.w.z);
+    if (vec_equal(depth->touch.vertex[0].w, depth->touch.vertex[1].w)) depth->touch.n = 1;
+    simplex_reduce(&depth->touch, &found);
+    nearest = found.distance;
   }
-  if (vec_equal(touch->vertex[0].w, touch->vertex[1].w)) touch->n = 1;
-  simplex_nearest unused;
-  simplex_reduce(touch, &unused);
+  for (int32_t i = 0; i < p->n_edges; i++) {
+    if (p->edge[i].offset > depth->least + room) continue;
+    simplex s = {.n = 2, .vertex = {p->corner[p->edge[i].from].vertex, p->corner[p->edge[i].to].vertex}};
+    if (vec_equal(s.vertex[0].w, s.vertex[1].w)) s.n = 1;
+    simplex_reduce(&s, &found);
+    if (found.distance >= nearest) continue;
+    nearest = found.distance;
+    depth->touch = s;
+  }
 }
 
 static void lower_most(expand_depth *depth, double reach, double x, double z) {
@@ -100,9 +109,9 @@ static void lower_most(expand_depth *depth, double reach, double x, double z) {
 bool expand_ring(const expand_set *set, const expand_goal *goal, expand_depth *depth) {
   profile p;
   if (!profile_begin(&p, set, goal->rounding)) return false;
-  *depth = (expand_depth){.least = -INFINITY, .most = INFINITY, .exhausted = true, .steps = 3};
-  lower_most(depth, -p.corner[0].z, 0.0, -1.0);
-  lower_most(depth, p.corner[2].z, 0.0, 1.0);
+  *depth = (expand_depth){.least = -INFINITY, .most = INFINITY, .exhausted = true, .steps = 5};
+  lower_most(depth, -set->farthest(set->self, vec(0, 0, -1)).w.z, 0.0, -1.0);
+  lower_most(depth, set->farthest(set->self, vec(0, 0, 1)).w.z, 0.0, 1.0);
   lower_most(depth, p.corner[1].rho, 1.0, 0.0);
   const double ends = fmin(-p.corner[0].z, p.corner[2].z);
   while (p.n_corners < MOST_CORNERS && depth->steps < goal->max_steps) {
@@ -126,6 +135,6 @@ bool expand_ring(const expand_set *set, const expand_goal *goal, expand_depth *d
     profile_set_edge(&p, best, e.from, top);
     profile_set_edge(&p, best + 1, top, e.to);
   }
-  find_touch(&p, goal->rounding, depth);
+  find_touch(&p, fmax(goal->rounding, goal->width), depth);
   return true;
 }
