@@ -168,8 +168,15 @@ static cprox_body *random_body(rng *r, double scale) {
   cprox_body *body = NULL;
   cprox_status status = CPROX_OK;
   vec3 v[12];
-  switch (rng_index(r, 4)) {
+  switch (rng_index(r, 5)) {
     case 0: status = cprox_body_create_point(vec(0, 0, 0), NULL, &body); break;
+    case 4: {
+      /* a surface that is no hull: two triangles with a fold */
+      static const uint32_t triangles[2][3] = {{0, 1, 2}, {1, 2, 3}};
+      for (int i = 0; i < 4; i++) v[i] = rng_in_cube(r, 0.4 * scale);
+      status = cprox_body_create_mesh(v, 4, triangles, 2, CPROX_MESH_SURFACE, SIZE_MAX, NULL, &body);
+      break;
+    }
     case 1: status = cprox_body_create_sphere(scale * rng_uniform(r, 0.05, 0.5), NULL, &body); break;
     case 2:
       for (int i = 0; i < 3; i++) v[i] = vec(0, 0, scale * rng_uniform(r, 0.1, 1));

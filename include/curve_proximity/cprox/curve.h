@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Parametric curves: psi(t) for t in [t0, t1], compiled once into Bézier pieces, then immutable.
+/** Parametric curves: psi(t) for t in [t0, t1], compiled once into Bézier pieces, then immutable. (One kind has none and
+ *  keeps its caller's functions: cprox_curve_create_rectifiable().)
  *
  *  A curve may be shared by any number of threads. Constructors copy what they are given and check it once; they return
  *  CPROX_INVALID with a sentence in the workspace (which may be NULL: then without the sentence), or CPROX_MEMORY, and
