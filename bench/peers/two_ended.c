@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "peers/two_ended.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "query/answer.h"
+#include "query/robot_answer.h"
+#include "query/robot_scene.h"
+
+/* A pair on a stretch: what is known of its distance at both ends. */
+typedef struct ends {
+  double lower, at[2];
+  int32_t pair;
+  bool known[2];
+} ends;
+
+typedef struct stretch {
+  size_t segment;
+  double a, b, lower;
+  ends *list;
+  size_t n;
+} stretch;
+
+typedef struct search {
+  robot_scene scene;
+  stretch *heap;
+  size_t count, room;
+  double upper, dropped, epsilon;
+  uint32_t nodes, probes;
+} search;
+
+static void push(search *s, stretch node) {
+  if (s->count == s->room) {
+    s->room = 2 * s->room + 64;
+    s->heap = realloc(s->heap, s->room * sizeof *s->heap);
+  }
+  size_t i = s->count++;
+  for (; i > 0 && s->heap[(i - 1) / 2].lower > node.lower; i = (i - 1) / 2) s->heap[i] = s->heap[(i - 1) / 2];
+  s->heap[i] = node;
+}
+
+static stretch pop(search *s) {
+  const stretch top = s->heap[0], moved = s->heap[--s->count];
+  size_t i = 0;
+  for (size_t child = 1; child < s->count; child = 2 * i + 1) {
+    if (child + 1 < s->count && s->heap[child + 1].lower < s->heap[child].lower) child++;
+    if (s->heap[child].lower >= moved.lower) break;
+    s->heap[i] = s->heap[child], i = child;
+  }
+  s->heap[i] = moved;
+  return top;
+}
+
+/* How far the part can get along the way: the variation of each axis times a lever that holds everywhere. */
+static double way_of(search *s, const robot_pair *pair, const axis_state *axes, chain_axis *chain) {
+  const cprox_robot *robot = s->scene.motion->robot;
+  const robot_part *part = &robot->parts[pair->moving];
+  const int32_t from = s->scene.self ? robot->parts[pair->standing].axis : -1;
+  const double standing = s->scene.self ? robot->parts[pair->standing].reach : 0.0;
+  const size_t n = motion_chain(s->scene.motion, from, part->axis, chain);
+  double way = 0.0;
+  for (size_t i = 0; i < n; i++) {
+    const robot_axis *axis = &robot->axes[chain[i].axis];
+    double lever = part->reach - axis->reach;
+    if (chain[i].sign < 0.0) lever += standing; /* passed upwards: the part beyond hangs on it, too */
+    way += axes[chain[i].axis].variation * (axis->kind == AXIS_PRISMATIC ? 1.0 : lever);
+  }
+  return way;
+}
+
+static double ball_gap(search *s, const robot_pair *pair) {
+  return robot_scene_apart(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair));
+}
+
+static double measured_gap(search *s, const robot_pair *pair) {
+  robot_gap gap;
+  robot_scene_measure(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair), 0.02 * s->epsilon,
+                      &gap);
+  s->probes++;
+  s->upper = fmin(s->upper, fmax(gap.upper, 0.0));
+  return fmax(gap.lower, 0.0);
+}
+
+/* Bounds all pairs of a stretch; keeps those that matter. Balls first, then distances at the ends. */
+static void bound(search *s, stretch *node) {
+  const size_t n_axes = s->scene.motion->robot->n_axes;
+  double *ways = malloc(node->n * sizeof *ways);
+  chain_axis *chain = malloc((n_axes + 1) * sizeof *chain);
+  s->nodes++;
+  robot_scene_enter(&s->scene, node->segment, node->a, node->b);
+  for (size_t i = 0; i < node->n; i++) ways[i] = way_of(s, &s->scene.pairs[node->list[i].pair], s->scene.axes, chain);
+  double *balls[2] = {malloc(node->n * sizeof(double)), malloc(node->n * sizeof(double))};
+  for (int end = 0; end < 2; end++) {
+    const double u = end == 0 ? node->a : node->b;
+    robot_scene_enter(&s->scene, node->segment, u, u);
+    for (size_t i = 0; i < node->n; i++) {
+      ends *e = &node->list[i];
+      balls[end][i] = e->known[end] ? e->at[end] : ball_gap(s, &s->scene.pairs[e->pair]);
+    }
+  }
+  for (int end = 0; end < 2; end++) {
+    const double u = end == 0 ? node->a : node->b;
+    robot_scene_enter(&s->scene, node->segment, u, u);
+    for (size_t i = 0; i < node->n; i++) {
+      ends *e = &node->list[i];
+      e->lower = fmax(e->lower, 0.5 * (balls[0][i] + balls[1][i] - ways[i]));
+      if (e->known[end] || e->lower > s->upper - s->epsilon) continue;
+      e->at[end] = balls[end][i] = measured_gap(s, &s->scene.pairs[e->pair]);
+      e->known[end] = true;
+    }
+  }
+  size_t kept = 0;
+  node->lower = INFINITY;
+  for (size_t i = 0; i < node->n; i++) {
+    ends e = node->list[i];
+    e.lower = fmax(e.lower, 0.5 * (balls[0][i] + balls[1][i] - ways[i]));
+    if (e.lower > s->upper - s->epsilon) {
+      s->dropped = fmin(s->dropped, e.lower);
+      continue;
+    }
+    node->lower = fmin(node->lower, e.lower);
+    node->list[kept++] = e;
+  }
+  node->n = kept;
+  free(ways), free(chain), free(balls[0]), free(balls[1]);
+}
+
+static void add(search *s, size_t segment, double a, double b, const stretch *parent, int side) {
+  stretch node = {.segment = segment, .a = a, .b = b, .n = parent ? parent->n : s->scene.n_pairs};
+  node.list = malloc((node.n + 1) * sizeof *node.list);
+  for (size_t i = 0; i < node.n; i++) {
+    node.list[i] = parent ? parent->list[i] : (ends){.lower = -INFINITY, .pair = (int32_t)i};
+    if (parent) node.list[i].known[1 - side] = false;
+  }
+  bound(s, &node);
+  if (node.n > 0)
+    push(s, node);
+  else
+    free(node.list);
+}
+
+static bool begin(search *s, question *q, const cprox_mover *mover, const cprox_target *targets, size_t n,
+                  double epsilon, cprox_workspace *workspace) {
+  *q = question_create(*mover, targets, n, -1.0, false, NULL, workspace);
+  robot_ask_whole(q);
+  *s = (search){.upper = INFINITY, .dropped = INFINITY, .epsilon = epsilon};
+  return robot_scene_begin(&s->scene, q, 0, n);
+}
+
+void two_ended_distance(const cprox_mover *mover, const cprox_target *targets, size_t n, double epsilon,
+                        uint32_t max_nodes, cprox_workspace *workspace, peer_answer *answer) {
+  search s;
+  question q;
+  *answer = (peer_answer){0};
+  if (!begin(&s, &q, mover, targets, n, epsilon, workspace)) return;
+  for (size_t i = 0; i < s.scene.motion->n_segments; i++) add(&s, i, 0.0, 1.0, NULL, 0);
+  double lower = INFINITY;
+  bool complete = true;
+  while (s.count > 0) {
+    stretch node = pop(&s);
+    complete = s.nodes < max_nodes;
+    const bool done = node.lower > s.upper - epsilon || s.upper <= 0.0 || !complete;
+    if (done) lower = fmin(lower, node.lower);
+    if (!done) {
+      const double middle = 0.5 * (node.a + node.b);
+      add(&s, node.segment, node.a, middle, &node, 0);
+      add(&s, node.segment, middle, node.b, &node, 1);
+    }
+    free(node.list);
+    if (done) break;
+  }
+  for (size_t i = 0; i < s.count; i++) free(s.heap[i].list);
+  free(s.heap);
+  *answer = (peer_answer){.lower = fmax(fmin(fmin(lower, s.dropped), s.upper), 0.0),
+                          .upper = s.upper,
+                          .nodes = s.nodes,
+                          .probes = s.probes,
+                          .complete = complete};
+}
+
+/* How far the fastest variable moves over a segment. */
+static double swing(const cprox_motion *m, size_t segment) {
+  double most = 0.0;
+  for (size_t k = 0; k < m->n_moving; k++) {
+    const double *c = m->coefficients + (segment * m->n_moving + k) * m->stride;
+    double way = 0.0;
+    for (size_t i = 0; i < m->degree[segment]; i++) way += fabs(c[i + 1] - c[i]);
+    most = fmax(most, way);
+  }
+  return most;
+}
+
+void sampled_distance(const cprox_mover *mover, const cprox_target *targets, size_t n, double step, bool first_hit,
+                      cprox_workspace *workspace, peer_answer *answer) {
+  search s;
+  question q;
+  *answer = (peer_answer){0};
+  if (!begin(&s, &q, mover, targets, n, 1e-9, workspace)) return;
+  for (size_t segment = 0; segment < s.scene.motion->n_segments; segment++) {
+    const int count = 1 + (int)(swing(s.scene.motion, segment) / step);
+    for (int i = segment == 0 ? 0 : 1; i <= count; i++) {
+      const double u = (double)i / count;
+      robot_scene_enter(&s.scene, segment, u, u);
+      s.nodes++;
+      for (size_t k = 0; k < s.scene.n_pairs; k++) {
+        const double near = ball_gap(&s, &s.scene.pairs[k]);
+        if (near < s.upper && !(first_hit && near > 0.0)) measured_gap(&s, &s.scene.pairs[k]);
+      }
+      if (first_hit && s.upper <= 0.0) segment = s.scene.motion->n_segments - 1, i = count;
+    }
+  }
+  *answer = (peer_answer){.lower = s.upper, .upper = s.upper, .nodes = s.nodes, .probes = s.probes, .complete = true};
+}

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What certified answers for robots cost without this library's bounds, on its own kinematics and distances: half the sum of the
+ * distances at both ends minus how far the joints can carry the part between (constant levers), best first; and samples. */
+#ifndef CPROX_BENCH_TWO_ENDED_H
+#define CPROX_BENCH_TWO_ENDED_H
+
+#include "curve_proximity/cprox/robot.h"
+
+typedef struct peer_answer {
+  double lower, upper;
+  uint32_t nodes, probes;
+  bool complete; /* within the budget */
+} peer_answer;
+
+void two_ended_distance(const cprox_mover *mover, const cprox_target *targets, size_t n, double epsilon,
+                        uint32_t max_nodes, cprox_workspace *workspace, peer_answer *answer);
+
+/* The least distance of samples between which no joint moves farther than `step`, or the first one at 0 where `first_hit` is set. */
+void sampled_distance(const cprox_mover *mover, const cprox_target *targets, size_t n, double step, bool first_hit,
+                      cprox_workspace *workspace, peer_answer *answer);
+
+#endif

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Robots along joint splines, 23 trajectories (test/data/motion): the least distance to the scene and to the robot itself, verdicts, and
+ * thin obstacles. Beside ours: the bound of both ends, and samples, both on our own kinematics and distances. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "curve_proximity/cprox.h"
+#include "peers/two_ended.h"
+#include "support/measure.h"
+#include "support/random.h"
+#include "support/robot_case.h"
+
+enum { MAX_CASES = 32, MAX_PROBLEMS = 64, TWO_ENDED_NODES = 60000 };
+
+typedef struct problem {
+  const robot_case *c;
+  bool self;
+  double truth;
+} problem;
+
+typedef struct method_state {
+  cprox_workspace *workspace;
+  double epsilon, factor, step; /* factor: verdicts at that much of the true distance, below 0: none */
+} method_state;
+
+static cprox_mover mover_of(const problem *p) {
+  return p->self ? cprox_robot_self(p->c->motion, p->c->self_pairs, p->c->n_self_pairs)
+                 : cprox_robot_along(p->c->motion, NULL, 0);
+}
+
+static size_t targets_of(const problem *p) {
+  return p->self ? 0 : p->c->n_targets;
+}
+
+static void ours(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  method_state *s = state;
+  cprox_options options = cprox_options_default();
+  options.epsilon = s->epsilon;
+  cprox_result r;
+  cprox_status status;
+  if (s->factor < 0.0) {
+    status = cprox_distance_all(mover_of(p), p->c->targets, targets_of(p), &options, s->workspace, &r, NULL);
+    *answer = (bench_answer){.lower = r.lower, .upper = r.upper};
+  } else {
+    status = cprox_tolerance_all(mover_of(p), p->c->targets, targets_of(p), s->factor * p->truth, &options,
+                                 s->workspace, &r, NULL);
+    *answer = (bench_answer){.lower = p->truth, .upper = p->truth};
+    answer->wrong = r.verdict != (s->factor < 1.0 ? CPROX_YES : CPROX_NO);
+  }
+  answer->nodes = r.nodes, answer->probes = r.probes, answer->failed = status != CPROX_OK;
+}
+
+static void two_ended(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  method_state *s = state;
+  const cprox_mover mover = mover_of(p);
+  peer_answer r;
+  two_ended_distance(&mover, p->c->targets, targets_of(p), s->epsilon, TWO_ENDED_NODES, s->workspace, &r);
+  *answer =
+      (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes, .failed = !r.complete};
+}
+
+static void sampled(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  method_state *s = state;
+  const cprox_mover mover = mover_of(p);
+  peer_answer r;
+  sampled_distance(&mover, p->c->targets, targets_of(p), s->step, false, s->workspace, &r);
+  *answer = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes};
+  if (s->factor < 0.0) return;
+  *answer = (bench_answer){.lower = p->truth, .upper = p->truth, .nodes = r.nodes, .probes = r.probes};
+  answer->wrong = (r.upper > s->factor * p->truth) != (s->factor < 1.0);
+}
+
+static void distances(const problem *problems, size_t n, bool self, const bench_size *size, cprox_workspace *ws) {
+  static const double EPSILON[] = {1e-3, 1e-4, 1e-6};
+  problem some[MAX_PROBLEMS];
+  double truth[MAX_PROBLEMS];
+  size_t count = 0;
+  for (size_t i = 0; i < n; i++)
+    if (problems[i].self == self) some[count] = problems[i], truth[count++] = problems[i].truth;
+  for (int k = 0; k < 3; k++) {
+    method_state state = {.workspace = ws, .epsilon = EPSILON[k], .factor = -1.0};
+    char parameter[40];
+    snprintf(parameter, sizeof parameter, "epsilon %g", EPSILON[k]);
+    const bench_workload w = {"robots", self ? "self" : "environment", parameter, some, count, truth, 1.1e-6};
+    const bench_method methods[] = {{"curve_proximity", ours, &state}, {"two-ended bound", two_ended, &state}};
+    bench_measure(&w, size, methods, 2);
+  }
+  static const double STEP[] = {0.05, 0.01};
+  for (int k = 0; k < 2; k++) {
+    method_state state = {.workspace = ws, .epsilon = 1e-4, .factor = -1.0, .step = STEP[k]};
+    char parameter[40];
+    snprintf(parameter, sizeof parameter, "step %g", STEP[k]);
+    const bench_workload w = {"robots", self ? "self" : "environment", parameter, some, count, truth, 1.1e-6};
+    const bench_method methods[] = {{"sampling", sampled, &state}};
+    bench_measure(&w, size, methods, 1);
+  }
+}
+
+static void verdicts(const problem *problems, size_t n, const bench_size *size, cprox_workspace *ws) {
+  static const double FACTOR[] = {0.5, 0.9, 0.99, 1.01, 1.1};
+  for (int k = 0; k < 5; k++) {
+    method_state state = {.workspace = ws, .epsilon = 1e-6, .factor = FACTOR[k], .step = 0.05};
+    char parameter[40];
+    snprintf(parameter, sizeof parameter, "delta %g D", FACTOR[k]);
+    const bench_workload w = {"robots", "tolerance", parameter, problems, n, NULL, 0.0};
+    const bench_method methods[] = {{"curve_proximity", ours, &state}, {"sampling .05", sampled, &state}};
+    bench_measure(&w, size, methods, 2);
+  }
+}
+
+/* ---- thin obstacles ------------------------------------------------------------------------------------------------------- */
+
+enum { MAX_THIN = 10000 };
+
+typedef struct thin {
+  const robot_case *c;
+  cprox_target target;
+} thin;
+
+static cprox_body *thin_body(rng *r) {
+  cprox_body *body = NULL;
+  const double length = rng_uniform(r, 0.05, 0.6), width = rng_log_uniform(r, 5e-4, 3e-3);
+  if (rng_index(r, 2))
+    cprox_body_create_cylinder(length, width, NULL, &body);
+  else
+    cprox_body_create_box((cprox_vec3){length, rng_index(r, 2) ? length : width, width}, NULL, &body);
+  return body;
+}
+
+static void ours_thin(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const thin *p = (const thin *)problems + i;
+  method_state *s = state;
+  cprox_result r;
+  peer_answer fine;
+  const cprox_mover mover = cprox_robot_along(p->c->motion, NULL, 0);
+  const cprox_status status = cprox_collision(mover, p->target, NULL, s->workspace, &r);
+  *answer = (bench_answer){.nodes = r.nodes, .probes = r.probes, .failed = status < 0};
+  if (s->step > 0.0 && r.verdict == CPROX_NO) { /* a sample that hits would give the lie to it */
+    sampled_distance(&mover, &p->target, 1, s->step, true, s->workspace, &fine);
+    answer->wrong = fine.upper <= 0.0;
+  }
+}
+
+static void sampled_thin(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const thin *p = (const thin *)problems + i;
+  method_state *s = state;
+  const cprox_mover mover = cprox_robot_along(p->c->motion, NULL, 0);
+  peer_answer r;
+  cprox_result certified;
+  sampled_distance(&mover, &p->target, 1, s->step, true, s->workspace, &r);
+  *answer = (bench_answer){.nodes = r.nodes, .probes = r.probes};
+  if (r.upper <= 0.0) return;
+  cprox_collision(mover, p->target, NULL, s->workspace, &certified); /* a hit with a witness that the samples missed */
+  answer->wrong = certified.verdict == CPROX_YES;
+}
+
+static void thin_obstacles(const robot_case *cases, size_t n_cases, const bench_size *size, cprox_workspace *ws) {
+  rng r = rng_seed(77);
+  const size_t n = size->problems < MAX_THIN ? size->problems : MAX_THIN;
+  thin *problems = calloc(n, sizeof *problems);
+  for (size_t i = 0; i < n; i++) {
+    const cprox_pose pose = {
+        .position = {rng_uniform(&r, -0.9, 0.9), rng_uniform(&r, -0.9, 0.9), rng_uniform(&r, 0, 1.2)},
+        .orientation = rng_quat(&r)};
+    problems[i] = (thin){&cases[rng_index(&r, n_cases)], cprox_at(thin_body(&r), pose)};
+  }
+  method_state certified = {.workspace = ws}, coarse = {.workspace = ws, .step = 0.05},
+               fine = {.workspace = ws, .step = 0.01}, checked = {.workspace = ws, .step = 0.003};
+  const bench_workload w = {"robots", "thin obstacles", "wires pins plates", problems, n, NULL, 0.0};
+  const bench_method methods[] = {{"curve_proximity", ours_thin, &certified},
+                                  {"curve_proximity checked", ours_thin, &checked},
+                                  {"sampling .05", sampled_thin, &coarse},
+                                  {"sampling .01", sampled_thin, &fine}};
+  bench_measure(&w, size, methods, 4);
+  for (size_t i = 0; i < n; i++) cprox_body_free((cprox_body *)problems[i].target.body);
+  free(problems);
+}
+
+int main(int argc, char **argv) {
+  const bench_size size = bench_arguments(argc, argv);
+  static robot_case cases[MAX_CASES];
+  problem problems[MAX_PROBLEMS];
+  size_t n_cases = 0, n = 0;
+  cprox_workspace *ws = cprox_workspace_create();
+  FILE *f = fopen(BENCH_DATA_DIR "/motion/cases.txt", "r");
+  if (!f || fscanf(f, "%zu", &n_cases) != 1 || n_cases > MAX_CASES) return 1;
+  for (size_t i = 0; i < n_cases; i++) {
+    robot_case *c = &cases[i];
+    if (!robot_case_read(f, BENCH_DATA_DIR "/motion", c)) return 1;
+    for (size_t k = 0; k < c->n_answers; k++)
+      if (c->answers[k].lower > 0.0)
+        problems[n++] = (problem){c, c->answers[k].self, 0.5 * (c->answers[k].lower + c->answers[k].upper)};
+  }
+  fclose(f);
+  if (bench_wanted(&size, "environment")) distances(problems, n, false, &size, ws);
+  if (bench_wanted(&size, "self")) distances(problems, n, true, &size, ws);
+  if (bench_wanted(&size, "tolerance")) verdicts(problems, n, &size, ws);
+  if (bench_wanted(&size, "thin obstacles")) thin_obstacles(cases, n_cases, &size, ws);
+  for (size_t i = 0; i < n_cases; i++) robot_case_free(&cases[i]);
+  cprox_workspace_free(ws);
+  return 0;
+}
