@@ -245,8 +245,9 @@ INLINE void polygon_lanes(const turned_piece *t, const block *b, bool gradient, 
       are[l] += w * cm[l];
       aim[l] -= w * sm[l];
       if (gradient) {
-        /* (∇A)×q: from q×d: q·d = 2y; from e^{-iq·m}: -i w m×q; from the sinc: cross h×q, h×q = -cross/2 */
-        const double turn = 2.0 * y * s - 0.5 * cross * cross * lane_sinc_slope(y, s, ch[l]);
+        /* (∇A)×q: from e^{-iq·m}: -i w m×q; from the sinc: cross h×q, h×q = -cross/2; what q×d gives, 2y s e^{-iq·m}, is the
+         * difference of the phases at the edge's ends and adds up to 0 around the loop */
+        const double turn = -0.5 * cross * cross * lane_sinc_slope(y, s, ch[l]);
         const double swing = w * (m.x * qy - m.y * o->qx[l]);
         mre[l] += turn * cm[l] - swing * sm[l];
         mim[l] -= turn * sm[l] + swing * cm[l];
