@@ -13,12 +13,10 @@ enum { SLOT_FIRST, SLOT_SECOND, SLOTS_RESERVED };
 
 /* Along any unit n: the first curve's least n·P less the second's greatest n·Q is a lower bound. A carried body takes off what it
  * reaches. */
-void curve_curve_bound(const curve_curve *o, search_node *node, vec3 n) {
-  if (vec_norm2(n) == 0.0) return;
-  const curve_reach first = curve_side_reach(&o->side[0], &node->side[0], n);
-  const curve_reach second = curve_side_reach(&o->side[1], &node->side[1], vec_neg(n));
-  double bound = first.least + second.least - o->offset;
-  double sizes = first.magnitude + second.magnitude + o->offset, error = first.error + second.error;
+static void bound_by_reaches(const curve_curve *o, search_node *node, vec3 n, const curve_reach *first,
+                             const curve_reach *second) {
+  double bound = first->least + second->least - o->offset;
+  double sizes = first->magnitude + second->magnitude + o->offset, error = first->error + second->error;
   if (o->carries) {
     const convex *shape = &o->joined;
     bound += vec_dot(n, o->shift) - (shape->ops->support(shape, n, NULL, NULL) + shape->margin);
@@ -28,6 +26,25 @@ void curve_curve_bound(const curve_curve *o, search_node *node, vec3 n) {
   const double slack = ROUND_UP * (error + ROUND_SUPPORT * ROUND_U * (sizes + fabs(bound)));
   node->lower = fmax(node->lower, bound - slack);
   node->slack = slack;
+}
+
+void curve_curve_bound(const curve_curve *o, search_node *node, vec3 n) {
+  if (vec_norm2(n) == 0.0) return;
+  const curve_reach first = curve_side_reach(&o->side[0], &node->side[0], n);
+  const curve_reach second = curve_side_reach(&o->side[1], &node->side[1], vec_neg(n));
+  bound_by_reaches(o, node, n, &first, &second);
+}
+
+/* The same for children that are all pairs of the parts: each part is asked once. */
+static void bound_children(const curve_curve *o, search_node *child, search_interval part[2][2], const int n_parts[2],
+                           vec3 n) {
+  if (vec_norm2(n) == 0.0) return;
+  curve_reach reach[2][2];
+  for (int k = 0; k < 2; k++)
+    for (int i = 0; i < n_parts[k]; i++)
+      reach[k][i] = curve_side_reach(&o->side[k], &part[k][i], k == 0 ? n : vec_neg(n));
+  for (int i = 0; i < n_parts[0]; i++)
+    for (int j = 0; j < n_parts[1]; j++) bound_by_reaches(o, child++, n, &reach[0][i], &reach[1][j]);
 }
 
 /* Pieces with points of their own are bounded with their whole piece loaded. */
@@ -291,11 +308,11 @@ int curve_curve_cut(curve_curve *o, search_node *node, const curve_curve_cuts *c
       if ((j > 0 && !curve_side_copy(&o->side[0], &made->side[0])) ||
           (i > 0 && !curve_side_copy(&o->side[1], &made->side[1])))
         return curve_side_trouble(&o->side[0]);
-      curve_curve_bound(o, made, o->best.normal);
-      curve_curve_bound(o, made, o->last_normal);
       made->seen = o->incumbent;
     }
   }
+  bound_children(o, child, part, n, o->best.normal);
+  if (!vec_equal(o->last_normal, o->best.normal)) bound_children(o, child, part, n, o->last_normal);
   return children;
 }
 

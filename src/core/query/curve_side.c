@@ -15,12 +15,12 @@ enum { ARC_HULL = 6, ARC_SIZE = 8 };
 bool points_pool_begin(points_pool *pool, size_t degree, size_t reserved, cprox_workspace *workspace) {
   const size_t size = control_size(degree);
   *pool = (points_pool){.workspace = workspace, .stride = size > ARC_SIZE ? size : ARC_SIZE, .slots = reserved};
-  return workspace_reserve(workspace, WORKSPACE_POINTS, reserved * pool->stride * sizeof(double));
+  pool->points = workspace_reserve(workspace, WORKSPACE_POINTS, reserved * pool->stride * sizeof(double));
+  return pool->points;
 }
 
 double *points_pool_at(const points_pool *pool, size_t slot) {
-  double *points = workspace_reserve(pool->workspace, WORKSPACE_POINTS, 0);
-  return points + slot * pool->stride;
+  return pool->points + slot * pool->stride;
 }
 
 static int32_t points_pool_take(points_pool *pool) {
@@ -29,7 +29,9 @@ static int32_t points_pool_take(points_pool *pool) {
     return free_slots[--pool->free_slots];
   }
   const size_t bytes = (pool->slots + 1) * pool->stride * sizeof(double);
-  if (pool->slots >= INT32_MAX || !workspace_reserve(pool->workspace, WORKSPACE_POINTS, bytes)) return -1;
+  double *points = pool->slots < INT32_MAX ? workspace_reserve(pool->workspace, WORKSPACE_POINTS, bytes) : NULL;
+  if (!points) return -1;
+  pool->points = points;
   /* room for every slot in the free list, so that giving one back cannot fail */
   if (!workspace_reserve(pool->workspace, WORKSPACE_FREE_SLOTS, (pool->slots + 1) * sizeof(int32_t))) return -1;
   return (int32_t)pool->slots++;

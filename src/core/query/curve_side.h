@@ -12,7 +12,8 @@
 /* Sets of control points by slot, in the workspace; slots given back are used again. */
 typedef struct points_pool {
   cprox_workspace *workspace;
-  size_t stride; /* numbers a slot */
+  double *points; /* of slot 0 */
+  size_t stride;  /* numbers a slot */
   size_t slots, free_slots;
   cprox_status trouble; /* negative where a curve's own functions failed; the workspace has the reason */
 } points_pool;
