@@ -47,6 +47,8 @@ static void examine(const asked *q, cprox_workspace *ws, cprox_certificate *c, t
     assert_int_equal(found.claim, cprox_certificate_claim(c));
     assert_true(found.delta == cprox_certificate_delta(c));
     sum->apart += found.claim == CLAIM_APART;
+    if (i == 0 && found.claim == CLAIM_APART && found.delta < r.lower - 1e-12 * q->scale)
+      fail_msg("distance > %.17g is proven, but not > %.17g", found.delta, r.lower);
     sum->near += found.claim == CLAIM_NEAR;
     if (found.claim == CLAIM_APART && i == 1) {
       sum->bytes += cprox_certificate_size(c);

@@ -36,6 +36,21 @@ frame frame_create(const cprox_pose *pose, vec3 centre) {
   return f;
 }
 
+/* local = R2^T (R1^T (p - x1) - x2) - c = (R1 R2)^T (p - x1) - (R2^T x2 + c). The product of two quaternions is within 8u of its
+ * length, which turns by 16u. */
+frame frame_create_within(const cprox_pose *outer, const cprox_pose *inner, vec3 centre) {
+  const frame second = frame_create(&(cprox_pose){.orientation = inner->orientation}, vec(0, 0, 0));
+  const vec3 shift = frame_turn_to_local(&second, inner->position);
+  cprox_pose both = frame_compose(outer, inner);
+  both.position = outer->position;
+  frame f = frame_create(&both, vec_add(centre, shift));
+  const cprox_quat q = outer->orientation;
+  const bool first_turns = q.x != 0.0 || q.y != 0.0 || q.z != 0.0;
+  f.misturned = first_turns && second.rotated ? 16.0 : 0.0;
+  f.misplaced = ROUND_UP * ROUND_U * ((second.rotated ? ROUND_ROTATION * vec_norm(shift) : 0.0) + vec_norm(f.centre));
+  return f;
+}
+
 vec3 frame_turn_to_local(const frame *f, vec3 v) {
   if (!f->rotated) return v;
   const double *r = f->r;
@@ -64,13 +79,13 @@ vec3 frame_to_local(const frame *f, vec3 world, double *error) {
   }
   if (f->rotated) {
     p = frame_turn_to_local(f, p);
-    bound += ROUND_ROTATION * vec_norm(p);
+    bound += (ROUND_ROTATION + f->misturned) * vec_norm(p);
   }
   if (!is_zero(f->centre)) {
     p = vec_sub(p, f->centre);
     bound += vec_norm(p);
   }
-  bound *= ROUND_UP * ROUND_U;
+  bound = ROUND_UP * (ROUND_U * bound + f->misplaced);
   if (bound > *error) *error = bound;
   return p;
 }

@@ -14,12 +14,17 @@ typedef struct frame {
   double r[9]; /* row-major, body to world */
   vec3 position;
   vec3 centre;
-  bool rotated; /* false: R is exactly the identity and is skipped */
-  bool about_z; /* R turns about z only, exactly */
+  bool rotated;     /* false: R is exactly the identity and is skipped */
+  bool about_z;     /* R turns about z only, exactly */
+  double misplaced; /* where it ought to stand may be as far off as this [m], */
+  double misturned; /* and for each metre that a point is away from `position` as this times u: of a composed pose */
 } frame;
 
 /* pose must have been checked by frame_pose_usable(). */
 frame frame_create(const cprox_pose *pose, vec3 centre);
+
+/* The frame of `inner` within `outer`. Their positions are not added, so that sizes and not positions enter the rounding. */
+frame frame_create_within(const cprox_pose *outer, const cprox_pose *inner, vec3 centre);
 
 /* Why a pose is not usable, as part of a sentence ("the quaternion's norm is 0"), or NULL if it is. */
 const char *frame_pose_fault(const cprox_pose *pose);

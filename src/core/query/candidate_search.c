@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* One search: the engine with the oracle that the candidate asks for, and what it found in the terms of the caller. */
 #include "query/candidate_search.h"
+#include "base/rounding.h"
 #include "body/body.h"
 #include "query/carried.h"
 #include "query/pair_witness.h"
@@ -75,10 +76,16 @@ bool candidate_begin_convex(const question *q, const candidate *c, curve_convex 
   }
 
   /* a carried body and what stands make one shape */
-  carried_shape joined = {.placed = frame_create(&pose, body->centre)};
+  carried_shape joined = {.placed = candidate_frame(q, c)};
   cprox_pose carried_pose;
   const cprox_body *carried = candidate_carried(q, c, &carried_pose);
   if (carried && !carried_join(body, &pose, carried, &carried_pose, &joined)) return false;
+  if (carried && target->body && target->body->kind == CPROX_COMPOUND) {
+    /* the composed pose: a turn of both shapes, and the sum of the positions */
+    const double turned = vec_norm(target->body->parts[c->part].pose.position) + vec_norm(body->centre) +
+                          body->shape.scale + carried->shape.scale;
+    joined.shape.slack += ROUND_UP * ROUND_U * (2.0 * ROUND_ROTATION * turned + 3.0 * vec_norm(pose.position));
+  }
 
   const double offset = candidate_offset(q, c) + joined.offset;
   if (!curve_convex_begin(o, curve, &body->shape, joined.placed, offset, q->workspace)) return false;
@@ -133,14 +140,13 @@ bool candidate_is_tree(const question *q, const candidate *c) {
 bool candidate_begin_tree(const question *q, const candidate *c, curve_tree *o) {
   const cprox_target *target = &q->targets[c->target];
   const cprox_body *body = candidate_body(q, c);
-  const cprox_pose pose = candidate_pose(q, c);
   const cprox_curve *curve = q->mover.curve;
   cprox_curve relative;
   if (target->on_clock) {
     if (!relative_create(curve, target->curve, &target->pose, q->t0, q->t1, q->workspace, &relative)) return false;
     curve = &relative;
   }
-  const frame placed = frame_create(&pose, body->centre);
+  const frame placed = candidate_frame(q, c);
   if (!curve_tree_begin(o, curve, body, placed, candidate_offset(q, c), q->workspace)) return false;
   o->side.part = q->part;
   if (target->on_clock) {

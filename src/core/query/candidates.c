@@ -32,6 +32,15 @@ cprox_pose candidate_pose(const question *q, const candidate *c) {
   return frame_compose(&pose, &target->body->parts[c->part].pose);
 }
 
+frame candidate_frame(const question *q, const candidate *c) {
+  const cprox_target *target = &q->targets[c->target];
+  const vec3 centre = candidate_body(q, c)->centre;
+  cprox_pose pose = target->pose;
+  if (target->on_clock) pose.position = vec(0, 0, 0);
+  if (!target->body || target->body->kind != CPROX_COMPOUND) return frame_create(&pose, centre);
+  return frame_create_within(&pose, &target->body->parts[c->part].pose, centre);
+}
+
 double candidate_offset(const question *q, const candidate *c) {
   return q->mover.radius + q->targets[c->target].padding;
 }

@@ -3,6 +3,7 @@
 #ifndef CPROX_QUERY_CANDIDATES_H
 #define CPROX_QUERY_CANDIDATES_H
 
+#include "base/frame.h"
 #include "base/workspace.h"
 #include "curve/curve.h"
 #include "curve_proximity/cprox/query.h"
@@ -55,6 +56,9 @@ void candidates_sort(candidate *list, size_t n);
  * is on the mover's clock has a body, if only a point, and stands where it would if its curve were at the origin. */
 const cprox_body *candidate_body(const question *q, const candidate *c);
 cprox_pose candidate_pose(const question *q, const candidate *c);
+
+/* The body's frame, with what composing its poses may have moved it. */
+frame candidate_frame(const question *q, const candidate *c);
 double candidate_offset(const question *q, const candidate *c);
 
 /* The convex part that the mover carries (NULL for none), and its pose while the curve is at the origin. */

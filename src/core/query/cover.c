@@ -52,13 +52,13 @@ static bool separates(const cover *c, const trial *t, reach_part part) {
   return reach_separates(c->curve, part, &t->direction, &t->reach, c->delta);
 }
 
-/* The direction away from the body at a point of the curve; (0,0,0) where the point is not farther than delta. */
+/* The direction away from the body at a point of the curve; (0,0,0) inside, where there may be none. */
 static vec3 normal_at(const cover *c, const frame *f, double sigma, convex_hint *hint) {
   const convex *shape = &c->set.body->shape;
   double error = 0.0;
   convex_near near;
   shape->ops->nearest(shape, frame_to_local(f, cover_point(c->curve, sigma), &error), hint, &near);
-  return near.distance - c->set.offset > c->delta ? frame_turn_to_world(f, near.normal) : vec(0, 0, 0);
+  return near.distance > 0.0 ? frame_turn_to_world(f, near.normal) : vec(0, 0, 0);
 }
 
 /* ---- leaves --------------------------------------------------------------------------------------------------------------- */

@@ -55,13 +55,14 @@ cprox_status curve_side_status(const curve_side *side) {
 /* ---- pieces ----------------------------------------------------------------------------------------------------------- */
 
 /* The rounding of local = R^T (world - position) - centre, by the local size m: |world - position| <= m + |centre| loses u of itself
- * in the difference and 26u in the turn, the last difference u of m. What a frame does not do costs nothing. */
+ * in the difference and 26u in the turn, the last difference u of m. What a frame does not do costs nothing. What composing its poses
+ * may have moved the frame itself comes on top. */
 static void measure_frame(curve_side *side) {
   const frame *f = &side->frame;
-  const double first = (vec_norm2(f->position) > 0.0 ? 1.0 : 0.0) + (f->rotated ? ROUND_ROTATION : 0.0);
+  const double first = (vec_norm2(f->position) > 0.0 ? 1.0 : 0.0) + (f->rotated ? ROUND_ROTATION : 0.0) + f->misturned;
   const double centre = vec_norm(f->centre), second = centre > 0.0 ? 1.0 : 0.0;
   side->turned_slope = ROUND_UP * ROUND_U * (first + second);
-  side->turned_offset = ROUND_UP * ROUND_U * first * centre;
+  side->turned_offset = ROUND_UP * (ROUND_U * first * centre + f->misplaced);
 }
 
 static vec3 local_of(const frame *f, vec3 world) {
@@ -76,9 +77,9 @@ static void measure_ranges(curve_side *side) {
   const vec3 a = local_of(&side->frame, all->a), b = local_of(&side->frame, all->b);
   const double computed = fmax(vec_norm(a), vec_norm(b));
   const double most = ROUND_UP * (computed + all->radius + side->turned_slope * computed + side->turned_offset);
-  const double roundings = (side->frame.rotated ? ROUND_ROTATION : 0.0) + 9.0;
+  const double roundings = (side->frame.rotated ? ROUND_ROTATION : 0.0) + 9.0 + side->frame.misturned;
   side->range_magnitude = most;
-  side->range_error = ROUND_UP * ROUND_U * roundings * (most + vec_norm(side->frame.centre));
+  side->range_error = ROUND_UP * (ROUND_U * roundings * (most + vec_norm(side->frame.centre)) + side->frame.misplaced);
 }
 
 curve_side curve_side_create(const cprox_curve *curve, frame placed, points_pool *pool, size_t root_slot) {
@@ -344,7 +345,8 @@ double curve_side_point_error(const curve_side *side) {
     /* every point of a piece is as near to its ends as the piece is long */
     const double reach =
         side->root_magnitude + vec_norm(side->frame.centre) + 2.0 * side->curve->error[side->root_piece];
-    return ROUND_UP * (side->curve->arcs->error + (ROUND_ROTATION + 4.0) * ROUND_U * reach);
+    return ROUND_UP * (side->curve->arcs->error + (ROUND_ROTATION + side->frame.misturned + 4.0) * ROUND_U * reach +
+                       side->frame.misplaced);
   }
   const double n = (double)side->curve->degree;
   const double steps = n < 2.0 ? 3.0 : 3.0 * n + 3.0; /* counted at curve_bezier_evaluate() */
