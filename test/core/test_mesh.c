@@ -353,6 +353,27 @@ static void bad_input_is_refused_with_a_sentence(void **state) {
   expect_reason(cprox_body_create_points(v, 3, -1.0, SIZE_MAX, ws, &body), CPROX_INVALID, "radius");
   const vec3 low[1] = {{0, 0, 0}}, high[1] = {{1, -1, 1}};
   expect_reason(cprox_body_create_boxes(low, high, 1, SIZE_MAX, ws, &body), CPROX_INVALID, "box 0");
+
+  /* what these bodies cannot answer */
+  const vec3 top[1] = {{1, 1, 1}}, way[2] = {{1, -1, 0}, {1, 1, 0}};
+  const test_bezier path = bezier_make(way, 1);
+  cprox_body *boxes = NULL, *ball = NULL;
+  cprox_result unused;
+  cprox_options deep = cprox_options_default();
+  deep.signed_distance = true;
+  assert_int_equal(cprox_body_create_boxes(low, top, 1, SIZE_MAX, ws, &boxes), CPROX_OK);
+  assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
+  const cprox_target target = cprox_at(boxes, cprox_pose_identity());
+  expect_reason(cprox_distance(cprox_point_along(path.curve), target, &deep, ws, &unused), CPROX_INVALID, "depth");
+  expect_reason(cprox_distance(cprox_body_along(ball, path.curve), target, NULL, ws, &unused), CPROX_INVALID,
+                "carried");
+  expect_reason(cprox_distance(cprox_body_along(boxes, path.curve), target, NULL, ws, &unused), CPROX_INVALID,
+                "carried");
+  expect_reason(cprox_pair(target, target, NULL, ws, &unused), CPROX_INVALID, "convex");
+  cprox_body_free(boxes);
+  cprox_body_free(ball);
+  cprox_curve_free(path.curve);
+
   for (int k = 0; k < 2; k++) {
     v[1].y = k ? NAN : INFINITY;
     expect_reason(cprox_body_create_mesh(v, 3, good, 1, CPROX_MESH_SURFACE, SIZE_MAX, ws, &body), CPROX_INVALID,
