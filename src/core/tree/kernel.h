@@ -5,6 +5,9 @@
 
 #include "tree/kernels.h"
 
+/* Calls would keep the loops over lanes from becoming vectors. */
+#define TREE_INLINE TREE_TARGET static inline __attribute__((always_inline))
+
 /* Normals shorter than this have no direction. */
 static const double LEAST_LENGTH2 = 1e-200;
 
@@ -17,7 +20,7 @@ typedef struct lane_near {
 } lane_near;
 
 /* An edge from a along e. One Gram-Schmidt step makes n orthogonal to the edge, where the nearest point is within it. */
-TREE_TARGET static inline lane_near near_edge(double ax, double ay, double az, double ex, double ey, double ez) {
+TREE_INLINE lane_near near_edge(double ax, double ay, double az, double ex, double ey, double ez) {
   const double l2 = ex * ex + ey * ey + ez * ez, divisor = l2 > LEAST_DIVISOR ? l2 : LEAST_DIVISOR;
   const double wanted = -(ax * ex + ay * ey + az * ez) / divisor;
   const double above = wanted > 0.0 ? wanted : 0.0, t = above < 1.0 ? above : 1.0;
@@ -26,15 +29,15 @@ TREE_TARGET static inline lane_near near_edge(double ax, double ay, double az, d
   return (lane_near){nx - off * ex, ny - off * ey, nz - off * ez, nx * nx + ny * ny + nz * nz};
 }
 
-TREE_TARGET static inline lane_near nearer(lane_near a, lane_near b) {
+TREE_INLINE lane_near nearer(lane_near a, lane_near b) {
   const int first = a.d2 <= b.d2;
   return (lane_near){first ? a.nx : b.nx, first ? a.ny : b.ny, first ? a.nz : b.nz, first ? a.d2 : b.d2};
 }
 
 /* The triangle abc. Its inside counts only where the point that its weights make is nearer than the edges: slivers whose
  * computed normal is noise fall back to their edges. */
-TREE_TARGET static inline lane_near near_triangle(double ax, double ay, double az, double bx, double by, double bz,
-                                                  double cx, double cy, double cz) {
+TREE_INLINE lane_near near_triangle(double ax, double ay, double az, double bx, double by, double bz, double cx,
+                                    double cy, double cz) {
   const double ux = bx - ax, uy = by - ay, uz = bz - az;
   const double vx = cx - bx, vy = cy - by, vz = cz - bz;
   const double wx = ax - cx, wy = ay - cy, wz = az - cz;
