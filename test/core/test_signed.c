@@ -221,6 +221,27 @@ static void a_compound_is_as_deep_as_its_deepest_part(void **state) {
   cprox_curve_free(curve);
 }
 
+/* Cells have an inside, but trees of them do not measure it: the status says so, and lower is a bound all the same. */
+static void bodies_that_cannot_tell_their_depth_say_so(void **state) {
+  (void)state;
+  cprox_body *cells = NULL;
+  const vec3 low[2] = {{-1, -1, -1}, {3, 0, 0}}, high[2] = {{1, 1, 1}, {4, 1, 1}};
+  assert_int_equal(cprox_body_create_boxes(low, high, 2, SIZE_MAX, ws, &cells), CPROX_OK);
+  cprox_curve *through = bezier((vec3[]){{-3, 0, 0}, {3, 0.5, 0}}, 2),
+              *past = bezier((vec3[]){{-3, 3, 0}, {3, 3, 0}}, 2);
+  const cprox_target target = cprox_at(cells, cprox_pose_identity());
+  const cprox_options options = asked(1e-9);
+  cprox_result result;
+  assert_int_equal(cprox_distance(cprox_point_along(through), target, &options, ws, &result), CPROX_OVERLAP);
+  assert_true(result.lower <= -0.7 && result.upper <= 1e-12);
+  assert_string_not_equal(cprox_workspace_reason(ws), "");
+  assert_int_equal(cprox_distance(cprox_point_along(past), target, &options, ws, &result), CPROX_OK);
+  assert_true(result.lower <= 2.0 && 2.0 <= result.upper);
+  cprox_body_free(cells);
+  cprox_curve_free(through);
+  cprox_curve_free(past);
+}
+
 /* Tubes about two curves that cross: minus the sum of the radii. */
 static void tubes_that_cross_are_as_deep_as_their_radii(void **state) {
   (void)state;
@@ -277,6 +298,7 @@ int main(void) {
       cmocka_unit_test(every_kind_knows_how_deep_it_goes),
       cmocka_unit_test(a_compound_is_as_deep_as_its_deepest_part),
       cmocka_unit_test(tubes_that_cross_are_as_deep_as_their_radii),
+      cmocka_unit_test(bodies_that_cannot_tell_their_depth_say_so),
       cmocka_unit_test(medians_stay_within_60_nodes),
   };
   return cmocka_run_group_tests(tests, setup, teardown);

@@ -82,7 +82,8 @@ typedef struct cprox_options {
   bool
       signed_distance; /**< distance: where they overlap, the answer is minus the depth of the deepest overlap along the curve:
                              the shortest way by which the mover, there, could leave the target (a part of it, for compounds).
-                             Curves have no inside beyond their radius. Default false: distances are 0 at least */
+                             Curves have no inside beyond their radius. Meshes, points and octrees cannot tell: CPROX_OVERLAP,
+                             and lower only bounds it. Default false: distances are 0 at least */
 } cprox_options;
 
 CPROX_API cprox_options cprox_options_default(void);

@@ -36,6 +36,7 @@ const char *question_shortfall(cprox_status status) {
     case CPROX_BUDGET: return "the budget of nodes ended the search: raise max_nodes or epsilon";
     case CPROX_PRECISION: return "epsilon is below what double arithmetic allows at this scale";
     case CPROX_STOPPED: return "the stop function ended the search";
+    case CPROX_OVERLAP: return cprox_status_text(status);
     default: return "";
   }
 }

@@ -273,7 +273,9 @@ static cprox_status search_any(const question *q, const candidate *c, const sear
 
 cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result) {
   cprox_result r = {.target_index = -1, .t_target = NAN, .rung = CPROX_RUNG_HULL};
-  const search_goal goal = goal_of(q, ceiling);
+  search_goal goal = goal_of(q, ceiling);
+  const bool depth_unknown = q->is_signed && candidate_is_tree(q, c);
+  if (depth_unknown) goal.is_signed = false;
   search_outcome found = {0};
   r.status = search_any(q, c, &goal, &found, &r);
   if (r.status == CPROX_MEMORY) return workspace_fail(q->workspace, r.status, "no memory for the open intervals");
@@ -284,6 +286,11 @@ cprox_status candidate_search(const question *q, const candidate *c, double ceil
   r.nodes = found.nodes;
   r.upper = fmax(found.best.upper, least);
   r.lower = fmin(fmax(fmax(found.lower, c->lower), least), r.upper);
+  if (depth_unknown &&
+      !(found.lower > 0.0)) { /* how deep cells and clouds go is not known: only the ball round all bounds it */
+    r.lower = fmin(c->lower, r.upper);
+    if (r.upper <= 2.0 * found.best.slack) r.status = CPROX_OVERLAP; /* 0 but for rounding */
+  }
   *result = r;
   return r.status;
 }
