@@ -267,8 +267,8 @@ static void dubins_paths_are_within_their_error_and_reach_their_end(void **state
     const double gap = quad_distance(placed(p.start, d.w.x, d.w.y), placed(p.end, 0, 0));
     const double turning = (double)remainderl(heading_of(&d.w, path.ends[2]) - (long double)p.heading[1], 2.0L * PI);
     const double left_out = 2e-15 * (8.0 + fabs(p.heading[0]) + fabs(p.heading[1]));
-    const double allowed =
-        left_out * path.ends[2] + 40.0 * ROUND_U * (path.ends[2] + p.radius + vec_norm(p.start) + vec_norm(p.end));
+    const double allowed = left_out * (path.ends[2] + p.radius) +
+                           40.0 * ROUND_U * (path.ends[2] + p.radius + vec_norm(p.start) + vec_norm(p.end));
     if (gap > allowed || fabs(turning) > left_out + 1e-14 + 4.0 * ROUND_U * path.ends[2] / p.radius)
       fail_msg("word %d, %.17g from the end, %g allowed; the heading is off by %g", path.word, gap, allowed, turning);
     largest_gap = fmax(largest_gap, gap / allowed);

@@ -143,8 +143,8 @@ typedef struct cprox_dubins_path {
  *  path           receives what the path consists of, NULL if not needed.
  *
  *  The curve runs over [0, length], t is arc length [m]. It is the path that begins at the start pose and turns as *path says, and
- *  cprox_curve_error() speaks of that one; it reaches the end pose to about 1e-14 of its length, turns below 1e-15 (8 + |headings|) rad
- *  being left out.
+ *  cprox_curve_error() speaks of that one; it reaches the end pose to about 1e-14 of its length and radius, turns below
+ *  1e-15 (8 + |headings|) rad being left out.
  *  Poses that are the same have no path: CPROX_INVALID. Compiled as a clothoid is. Source: L. E. Dubins 1957; A. M. Shkel,
  *  V. Lumelsky, "Classification of the Dubins set", 2001.
  */
