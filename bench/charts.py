@@ -112,6 +112,12 @@ def batches(rows, out):
                lambda row: f"{row['workload'].replace(' ', chr(10))}\n{row['parameter'].split()[0]}", 'median time of all curves [µs]')
 
 
+def robots(rows, out):
+    for workload in ('environment', 'self'):
+        yield work_precision(rows, out, 'robots', workload, r'epsilon ([0-9.e-]+)', f'Robots, {workload}: time against accuracy',
+                             f'robots_{workload}')
+
+
 def fourier(rows, out):
     yield from fourier_charts.draw(rows, out, save)
     yield bars(rows, out, 'fourier', lambda row: row['workload'] == 'boxes', 'Two boxes: a gap beside a distance', 'fourier_boxes')
@@ -121,6 +127,6 @@ def draw_all(rows, out):
     """All charts for which there are rows; their names."""
     style()
     drawn = []
-    for draw in (curves, batches, fourier):
+    for draw in (curves, batches, robots, fourier):
         drawn += [name for name in draw(rows, out) if name]
     return drawn

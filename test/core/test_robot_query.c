@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "body/body.h"
 #include "curve_proximity/cprox.h"
 #include "support/counting.h"
 #include "support/robot_case.h"
@@ -99,6 +100,48 @@ static void saved_answers_are_found_again(void **state) {
   print_message("%zu answers: nodes %g in the median, %g at most; distances %g, %g\n", counted, nodes[counted / 2],
                 nodes[counted - 1], probes[counted / 2], probes[counted - 1]);
   assert_true(nodes[counted / 2] <= 150 && probes[counted / 2] <= 200 && nodes[counted - 1] <= 600);
+}
+
+/* The surface of a box as 12 triangles. */
+static cprox_body *mesh_of_box(const cprox_body *box) {
+  static const uint32_t TRIANGLES[12][3] = {{0, 1, 3}, {0, 3, 2}, {4, 7, 5}, {4, 6, 7}, {0, 5, 1}, {0, 4, 5},
+                                            {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 7, 3}, {1, 5, 7}};
+  cprox_vec3 v[8];
+  const double *half = box->shape.size;
+  for (int i = 0; i < 8; i++)
+    v[i] = vec(i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], i & 4 ? half[2] : -half[2]);
+  cprox_body *mesh = NULL;
+  assert_int_equal(cprox_body_create_mesh(v, 8, TRIANGLES, 12, CPROX_MESH_SURFACE, SIZE_MAX, ws, &mesh), CPROX_OK);
+  return mesh;
+}
+
+/* The robot starts outside; where it does not touch, the surface is as far as the solid. */
+static void surfaces_of_boxes_are_as_far_as_boxes(void **state) {
+  (void)state;
+  size_t n, compared = 0;
+  FILE *f = open_cases(&n);
+  for (size_t i = 0; i < n; i++) {
+    robot_case c;
+    assert_true(robot_case_read(f, folder(), &c));
+    if (i % 5 == 0 && c.answers[0].lower > 0.0) {
+      const cprox_result solid = ask(&c, &c.answers[0], -1.0);
+      for (size_t k = 0; k < c.n_targets; k++) {
+        if (cprox_body_get_kind(c.targets[k].body) != CPROX_BOX) continue;
+        cprox_body *mesh = mesh_of_box(c.targets[k].body);
+        cprox_body_free((cprox_body *)c.targets[k].body);
+        c.targets[k].body = mesh;
+        compared++;
+      }
+      const cprox_result surface = ask(&c, &c.answers[0], -1.0);
+      assert_true(surface.lower <= solid.upper && solid.lower <= surface.upper);
+      assert_int_equal(surface.rung, CPROX_RUNG_MESH);
+      assert_int_equal(ask(&c, &c.answers[0], 0.99 * solid.lower).verdict, CPROX_YES);
+      assert_int_equal(ask(&c, &c.answers[0], 1.01 * solid.upper).verdict, CPROX_NO);
+    }
+    robot_case_free(&c);
+  }
+  fclose(f);
+  assert_true(compared > 10);
 }
 
 static void nothing_is_allocated_once_the_workspace_has_grown(void **state) {
@@ -339,6 +382,7 @@ static void bad_input_gets_a_sentence(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(saved_answers_are_found_again),
+      cmocka_unit_test(surfaces_of_boxes_are_as_far_as_boxes),
       cmocka_unit_test(nothing_is_allocated_once_the_workspace_has_grown),
       cmocka_unit_test(no_sample_is_nearer_than_lower),
       cmocka_unit_test(the_robot_is_no_nearer_to_itself_than_lower),

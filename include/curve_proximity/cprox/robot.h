@@ -118,8 +118,9 @@ typedef struct cprox_robot_pair {
   int32_t geometry, other;
 } cprox_robot_pair;
 
-/** The robot along a motion. pairs: those that are asked about, kept by reference, `other` being targets; NULL: all geometries of
- *  links that the motion moves, against all targets. */
+/** The robot along a motion. Targets are bodies; of meshes, clouds and octrees the surface counts, and solid meshes are refused.
+ *  pairs: those that are asked about, kept by reference, `other` being targets; NULL: all geometries of links that the motion
+ *  moves, against all targets. */
 CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
 /** The robot along a motion against itself: ask without targets (cprox_distance_all(mover, NULL, 0, …)). pairs: those that are

@@ -24,6 +24,13 @@ static cprox_status check_pairs(const cprox_mover *mover, size_t n, cprox_worksp
   return CPROX_OK;
 }
 
+/* A mesh with an inside, or a union with one. */
+static bool is_solid(const cprox_body *body) {
+  bool solid = body->winding != NULL;
+  for (size_t i = 0; i < body->n_parts; i++) solid = solid || body->parts[i].body->winding != NULL;
+  return solid;
+}
+
 cprox_status robot_check(const cprox_mover *mover, const cprox_target *targets, size_t n, cprox_workspace *workspace) {
   if (mover->curve || mover->body || mover->radius != 0.0)
     return workspace_fail(workspace, CPROX_INVALID,
@@ -34,9 +41,10 @@ cprox_status robot_check(const cprox_mover *mover, const cprox_target *targets, 
     const cprox_body *body = targets[i].body;
     if (!body || targets[i].curve)
       return workspace_fail(workspace, CPROX_INVALID, "target %zu is a curve: a robot is asked about bodies", i);
-    if (body->kind != CPROX_COMPOUND && !body->shape.ops)
-      return workspace_fail(workspace, CPROX_INVALID, "target %zu: a %s is not convex; give its hull or its parts", i,
-                            cprox_body_kind_name(body->kind));
+    if (is_solid(body))
+      return workspace_fail(workspace, CPROX_INVALID,
+                            "target %zu is a solid mesh: a robot is asked about surfaces; fill it with convex parts",
+                            i);
   }
   return check_pairs(mover, n, workspace);
 }
@@ -98,7 +106,10 @@ static void report(const robot_search *o, const robot_sight *sight, cprox_result
 
 static cprox_rung rung_of(const robot_search *o) {
   if (o->scene.n_pairs == 0) return CPROX_RUNG_NONE;
-  return o->gaps + o->planes > 0 ? CPROX_RUNG_HULL : CPROX_RUNG_SPHERE;
+  if (o->gaps + o->planes == 0) return CPROX_RUNG_SPHERE;
+  for (size_t i = 0; i < o->scene.n_obstacles; i++)
+    if (o->scene.obstacles[i].of_mesh) return CPROX_RUNG_MESH;
+  return CPROX_RUNG_HULL;
 }
 
 static bool is_satisfied(const question *q, double ceiling, const cprox_result *r) {

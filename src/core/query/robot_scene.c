@@ -6,6 +6,7 @@
 #include "base/rounding.h"
 #include "convex/pair.h"
 #include "query/pair_place.h"
+#include "tree/tree.h"
 
 enum { GAP_STEPS = 128 };
 
@@ -29,22 +30,92 @@ static void find_box(robot_body *body) {
   body->half = vec(0.5 * (high[0] - low[0]) + grow, 0.5 * (high[1] - low[1]) + grow, 0.5 * (high[2] - low[2]) + grow);
 }
 
+/* ---- obstacles ------------------------------------------------------------------------------------------------------------ */
+
+/* A triangle, a point or a box of a mesh, a cloud or an octree, as a convex shape of its own. */
+typedef struct element {
+  convex shape;
+  double x[8], y[8], z[8];
+} element;
+
+/* What is being filled, or only counted where there is no room. */
+typedef struct obstacle_list {
+  robot_body *bodies;
+  element *elements;
+  size_t n_bodies, n_elements;
+} obstacle_list;
+
+static robot_body placed_body(const pair_side *placed, const convex *shape, vec3 middle, double radius) {
+  robot_body body = {.radius = radius};
+  body.side = (bound_side){.shape = shape, .margin = placed->margin};
+  for (int i = 0; i < 9; i++) body.side.at.r[i] = placed->f.r[i];
+  body.side.at.p = frame_to_world(&placed->f, middle);
+  const double sizes = vec_norm(placed->f.centre) + vec_norm(middle) + radius;
+  body.side.error = ROUND_UP * (placed->error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(body.side.at.p)));
+  if (!is_halfspace(&body)) find_box(&body);
+  return body;
+}
+
+/* About its own middle: a small ball is what most pairs are settled by. */
+static double make_element(const tree *t, tree_place at, element *e, vec3 *middle) {
+  vec3 v[3];
+  const int n = tree_corners(t, at, v);
+  *middle = v[0];
+  if (n == 2) *middle = vec_axpy(vec_scale(0.5, v[0]), 0.5, v[1]);
+  if (n == 3) *middle = vec_scale(1.0 / 3.0, vec_add(vec_add(v[0], v[1]), v[2]));
+  double reach = 0.0;
+  for (int i = 0; i < 8; i++) {
+    const vec3 corner = vec_sub(v[i < n ? i : n - 1], *middle);
+    e->x[i] = corner.x, e->y[i] = corner.y, e->z[i] = corner.z;
+    reach = fmax(reach, vec_norm(corner));
+  }
+  reach *= 1.0 + 8.0 * ROUND_U;
+  e->shape = (convex){.ops = n == 3 ? &convex_polytope : n == 2 ? &convex_box : &convex_point, .scale = reach};
+  if (n == 3) e->shape.n = 3, e->shape.padded = 8, e->shape.x = e->x, e->shape.y = e->y, e->shape.z = e->z;
+  if (n == 2) /* the middle may be off by half a rounding: a box that contains both corners */
+    e->shape.size[0] = fmax(fabs(e->x[0]), fabs(e->x[1])), e->shape.size[1] = fmax(fabs(e->y[0]), fabs(e->y[1])),
+    e->shape.size[2] = fmax(fabs(e->z[0]), fabs(e->z[1]));
+  return reach;
+}
+
+static void add_elements(obstacle_list *list, const tree *t, const pair_side *placed, size_t index) {
+  for (uint32_t pack = 0; pack < t->n_packs; pack++) {
+    for (uint32_t lane = 0; lane < TREE_LANES; lane++) {
+      const tree_place at = {pack, lane};
+      const uint32_t id = tree_element(t, at);
+      if (lane > 0 && id == tree_element(t, (tree_place){pack, lane - 1})) break; /* what is repeated fills the pack */
+      if (list->bodies) {
+        element *e = &list->elements[list->n_elements];
+        vec3 middle;
+        const double reach = make_element(t, at, e, &middle);
+        robot_body *body = &list->bodies[list->n_bodies];
+        *body = placed_body(placed, &e->shape, middle, reach + placed->margin);
+        body->index = (int32_t)index, body->of_mesh = true;
+      }
+      list->n_elements++, list->n_bodies++;
+    }
+  }
+}
+
 static size_t parts_of(const cprox_target *target) {
   return target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
 }
 
-static robot_body obstacle(const cprox_target *target, size_t index, size_t part) {
-  const pair_side placed = pair_place_side(target, part);
-  const convex *shape = placed.shape;
-  robot_body body = {.index = (int32_t)index, .part = (int32_t)part};
-  body.side = (bound_side){.shape = shape, .margin = placed.margin};
-  for (int i = 0; i < 9; i++) body.side.at.r[i] = placed.f.r[i];
-  body.side.at.p = frame_to_world(&placed.f, vec(0, 0, 0));
-  const double sizes = vec_norm(placed.f.centre) + shape->scale;
-  body.side.error = ROUND_UP * (placed.error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(body.side.at.p)));
-  body.radius = shape->scale + placed.margin;
-  if (!is_halfspace(&body)) find_box(&body);
-  return body;
+static void add_target(obstacle_list *list, const cprox_target *target, size_t index) {
+  for (size_t part = 0; part < parts_of(target); part++) {
+    const cprox_body *body = target->body->kind == CPROX_COMPOUND ? target->body->parts[part].body : target->body;
+    const pair_side placed = pair_place_side(target, part);
+    if (body->tree) {
+      add_elements(list, body->tree, &placed, index);
+      continue;
+    }
+    if (list->bodies) {
+      robot_body *added = &list->bodies[list->n_bodies];
+      *added = placed_body(&placed, placed.shape, vec(0, 0, 0), placed.shape->scale + placed.margin);
+      added->index = (int32_t)index, added->part = (int32_t)part;
+    }
+    list->n_bodies++;
+  }
 }
 
 static robot_body part_body(const cprox_motion *motion, size_t i) {
@@ -104,24 +175,27 @@ static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
 bool robot_scene_begin(robot_scene *s, const question *q, size_t first, size_t last) {
   *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = q->mover.self};
   const cprox_robot *robot = s->motion->robot;
-  for (size_t i = first; i < last; i++) s->n_obstacles += parts_of(&q->targets[i]);
+  obstacle_list list = {0};
+  for (size_t i = first; i < last; i++) add_target(&list, &q->targets[i], i);
+  s->n_obstacles = list.n_bodies;
 
   const size_t n_axes = robot->n_axes + 1;
-  const size_t bytes = s->n_obstacles * sizeof *s->obstacles + (robot->n_parts + 1) * sizeof *s->parts +
+  const size_t bytes = list.n_elements * sizeof *list.elements + s->n_obstacles * sizeof *s->obstacles +
+                       (robot->n_parts + 1) * sizeof *s->parts +
                        n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch) +
                        (robot->n_variables + 1) * sizeof *s->values;
   char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
   if (!memory) return false;
   s->parts = (part_state *)(void *)memory;
   s->obstacles = (robot_body *)(void *)(s->parts + robot->n_parts + 1);
-  s->axes = (axis_state *)(void *)(s->obstacles + s->n_obstacles);
+  element *elements = (element *)(void *)(s->obstacles + s->n_obstacles);
+  s->axes = (axis_state *)(void *)(elements + list.n_elements);
   s->chain = (chain_axis *)(void *)(s->axes + n_axes);
   s->values = (double *)(void *)(s->chain + n_axes);
   s->scratch = s->values + robot->n_variables + 1;
 
-  size_t n = 0;
-  for (size_t i = first; i < last; i++)
-    for (size_t k = 0; k < parts_of(&q->targets[i]); k++) s->obstacles[n++] = obstacle(&q->targets[i], i, k);
+  list = (obstacle_list){.bodies = s->obstacles, .elements = elements};
+  for (size_t i = first; i < last; i++) add_target(&list, &q->targets[i], i);
   for (size_t i = 0; i < robot->n_parts; i++) s->parts[i] = (part_state){.body = part_body(s->motion, i)};
 
   s->n_pairs = list_pairs(s, NULL);

@@ -13,6 +13,7 @@ typedef struct robot_body {
   double radius;       /* of a ball about the shape's origin that contains the part, margin included */
   uint32_t steps;      /* transforms that its place went through */
   int32_t index, part; /* target and part of it; or geometry and its number among the robot's parts */
+  bool of_mesh;        /* one of the elements of a mesh, a cloud or an octree */
 } robot_body;
 
 /* A pair of a part of the robot that moves and what it is held against. */

@@ -5,7 +5,7 @@
 
 #include "base/rounding.h"
 
-enum { SEEDS_PER_SEGMENT = 4 };
+enum { SEEDS_PER_SEGMENT = 4, MOST_SEED_TESTS = 40000 };
 
 /* A gap is measured to this fraction of the width asked for. */
 static const double GAP_FRACTION = 0.02;
@@ -101,7 +101,8 @@ static cprox_status measure(robot_search *o, int32_t index, size_t segment, doub
 static cprox_status seed(robot_search *o, const search_node *node) {
   const list_entry *entry = lists_at(&o->lists, node->side[0].slot);
   const size_t n = lists_count(&o->lists, node->side[0].slot), first = first_of(node), last = last_of(node);
-  const size_t places = (last - first) * SEEDS_PER_SEGMENT + 2;
+  size_t places = (last - first) * SEEDS_PER_SEGMENT + 2;
+  while (places > 1 && places * n > MOST_SEED_TESTS) places /= 2;
   for (size_t i = 0; i < places; i++) {
     size_t segment = first + i / SEEDS_PER_SEGMENT;
     double u = ((double)(i % SEEDS_PER_SEGMENT) + 0.5) / SEEDS_PER_SEGMENT;
