@@ -204,6 +204,60 @@ static void no_point_is_nearer_than_the_bounds_say(void **state) {
                 100.0 * (double)third_wins / (double)checks);
 }
 
+/* ---- balls ---------------------------------------------------------------------------------------------------------------- */
+
+/* The angular velocity of a floating link at u of a segment, by u, from central differences of its quaternion in long double. */
+static vec3l angular_velocity(const test_robot *t, size_t segment, int32_t variable, long double u) {
+  static const long double STEP = 1e-5L;
+  const long double t0 = t->motion->times[segment], t1 = t->motion->times[segment + 1];
+  long double q[3][TEST_MAX_VARIABLES + 1];
+  for (int k = 0; k < 3; k++) robot_ref_values(t, t0 + (t1 - t0) * (u + (k - 1) * STEP), q[k]);
+  const long double *p = q[1] + variable;
+  long double d[4], square = 0;
+  for (int k = 0; k < 4; k++) {
+    d[k] = (q[2][variable + k] - q[0][variable + k]) / (2 * STEP);
+    square += p[k] * p[k];
+  }
+  const vec3l a = {d[0], d[1], d[2]}, b = {p[0], p[1], p[2]};
+  return ref_scale(2 / square, ref_sub(ref_sub(ref_scale(p[3], a), ref_scale(d[3], b)), ref_cross(a, b)));
+}
+
+/* Differences of differences leave 1e-5 of the rates. */
+static void balls_turn_no_faster_than_said(void **state) {
+  (void)state;
+  static const long double STEP = 1e-3L, LEFT = 1e-5L;
+  rng r = rng_seed(4405);
+  double nearest[3] = {0};
+  for (size_t i = 0; i < test_cases(1500); i++) {
+    test_robot t;
+    robot_make(&r, 4.0, &t);
+    for (size_t axis = 0; axis < t.robot->n_axes; axis++) {
+      if (t.robot->axes[axis].kind != AXIS_BALL || t.spline) continue;
+      const double a = rng_uniform(&r, 0.1, 0.8), width = 0.05;
+      double values[TEST_MAX_VARIABLES + 1];
+      axis_state axes[MAX_AXES + 1];
+      motion_node(t.motion, 0, a, a + width, values, axes);
+      vec3l omega[4];
+      const long double u = a + 0.5L * width;
+      for (int k = 0; k < 4; k++) omega[k] = angular_velocity(&t, 0, t.robot->axes[axis].variable, u + (k - 1) * STEP);
+      const vec3l second = ref_add(ref_sub(omega[2], ref_scale(2, omega[1])), omega[0]);
+      const long double rate[3] = {width * ref_norm(omega[1]),
+                                   width * width * ref_norm(ref_sub(omega[2], omega[0])) / (2 * STEP),
+                                   width * width * width * ref_norm(second) / (STEP * STEP)};
+      const double said[3] = {axes[axis].w, axes[axis].a, axes[axis].g};
+      for (int k = 0; k < 3; k++) {
+        if (rate[k] > said[k] * (1 + LEFT) + LEFT * width)
+          fail_msg("robot %zu axis %zu: derivative %d is %.9Lg, said to be at most %.9g", i, axis, k + 1, rate[k],
+                   said[k]);
+        if (said[k] > 0.0) nearest[k] = fmax(nearest[k], (double)rate[k] / said[k]);
+      }
+    }
+    robot_free(&t);
+  }
+  print_message("largest rate / bound: %.3f, %.3f, %.3f\n", nearest[0], nearest[1], nearest[2]);
+  assert_true(nearest[0] > 0.5 && nearest[1] > 0.3 && nearest[2] > 0.1);
+}
+
 /* Halving a node takes the bound of third order an eighth nearer, that of second order a quarter, the travel a half. */
 static void bounds_are_of_their_order(void **state) {
   (void)state;
@@ -247,6 +301,7 @@ int main(void) {
       cmocka_unit_test(parts_are_within_their_error_of_where_they_are),
       cmocka_unit_test(evaluation_agrees_with_the_splines),
       cmocka_unit_test(no_point_is_nearer_than_the_bounds_say),
+      cmocka_unit_test(balls_turn_no_faster_than_said),
       cmocka_unit_test(bounds_are_of_their_order),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -277,7 +277,7 @@ static void the_robot_is_no_nearer_to_itself_than_lower(void **state) {
     }
     robot_free(&t);
   }
-  assert_true(asked > 300);
+  assert_true(asked > test_cases(250));
 }
 
 static void a_profile_is_true_on_every_stretch(void **state) {
