@@ -111,9 +111,9 @@ typedef struct cprox_result {
                                        included); equal where they overlap, and either end of
                                        the way out for signed distances */
   cprox_vec3 normal;              /**< unit, world frame, from target to mover; (0,0,0) where there is none */
-  int32_t target_index;           /**< which target; -1 for none */
-  int32_t target_part;            /**< which part of a compound; 0 otherwise */
-  int32_t mover_part;             /**< which part of a carried compound; 0 otherwise */
+  int32_t target_index; /**< which target; which other geometry, where a robot is asked about itself; -1 for none */
+  int32_t target_part;  /**< which part of a compound; 0 otherwise */
+  int32_t mover_part;   /**< which part of a carried compound; which geometry of a robot, -1 for none; 0 otherwise */
   cprox_rung rung;
   uint32_t nodes, probes; /**< what it cost: intervals examined, nearest-point queries */
   double t_free;          /**< first contact: no contact at any smaller parameter; other verbs: 0 */
