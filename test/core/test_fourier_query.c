@@ -429,7 +429,7 @@ static void a_sweep_is_never_called_clear_where_it_hits(void **state) {
     if (clear && d < -1e-3) fail_msg("clear at an overlap of %g, value %g", -d, x.value);
     if (!clear && !(d <= info.over_reach)) fail_msg("called colliding %g apart, over-reach %g", d, info.over_reach);
   }
-  assert_true(hits > 20 && clears > 20);
+  assert_true(hits > test_cases(20) / 4 && clears > test_cases(20) / 4);
   cprox_gap_options o = cprox_gap_options_default();
   o.samples = 9;
   cprox_gap *none = NULL;
@@ -478,7 +478,7 @@ static void along_a_curve_the_verdict_holds_at_every_parameter(void **state) {
     if (!far) assert_true(fabs(slope - derivative) <= 1e-7 * fmax(fabs(derivative), 1.0));
   }
   print_message("%zu clear, %zu hit\n", clear, hit);
-  assert_true(clear > 5 && hit > 5);
+  assert_true(clear > 0 && hit > 0);
 
   /* too few nodes: undecided, and the reason says how far it is clear */
   const cprox_pose near = planar(0, 1.9, 0);

@@ -148,8 +148,8 @@ typedef struct cprox_gap_info {
   double offset;     /**< rho [m], by which both solids are enlarged; 0 in the signal mode */
   double threshold;  /**< t, in units of the measure squared over L^d; V_ref in the signal mode */
   double over_reach; /**< [m] solids farther apart than this are never called colliding. Certified: proven. Tuned:
-                           what was measured, times 1.25. Infinity in the signal mode, and where the gap is too coarse
-                           to say */
+                           what was measured, times 1.25. To a clipped solid: from the solid or from its region,
+                           whichever is farther. Infinity in the signal mode, and where the gap is too coarse to say */
   bool guaranteed;   /**< clear is a proof */
   bool turned_first; /**< the first solid, the simpler one, is the one whose spectrum is turned */
   size_t terms;      /**< of the sum */
