@@ -26,7 +26,18 @@ typedef struct batch_run {
   lanes_chords chords[MOST_PIECES];
   double beside; /* how far the curve may be from the chords' points of the same parameter */
   double slack;  /* how much rounding may add to that */
+  bool flat;     /* the whole curve lies in the plane of constant z */
+  double plane;  /* this, exactly */
 } batch_run;
+
+/* As fmin and fmax for numbers, without a call. */
+static inline double lesser(double a, double b) {
+  return a < b ? a : b;
+}
+
+static inline double greater(double a, double b) {
+  return a > b ? a : b;
+}
 
 /* What the chords tell of the parts. */
 typedef struct first_look {
@@ -41,6 +52,14 @@ typedef struct first_look {
 
 /* ---- chords ------------------------------------------------------------------------------------------------------------- */
 
+/* The whole curve lies in a plane of constant z, exactly. */
+static bool lies_in_plane(const cprox_curve *curve, double z) {
+  const size_t n = curve->n_pieces * (curve->degree + 1);
+  for (size_t i = 0; i < n; i++)
+    if (curve->points[i].z != z) return false;
+  return true;
+}
+
 /* Chords of parameter length h are within h²/8 max|psi''| of the curve, |psi''| <= n (n-1) max|second difference|. */
 static void cut_curve(batch_run *run, const cprox_curve *curve) {
   run->cut = curve->n_pieces <= MOST_PIECES;
@@ -52,23 +71,17 @@ static void cut_curve(batch_run *run, const cprox_curve *curve) {
   double error = 0.0, bend2 = 0.0;
   for (size_t i = 0; i < curve->n_pieces; i++) {
     lanes_cut(run->basis, curve_piece(curve, i), curve->degree, &run->chords[i]);
-    bend2 = fmax(bend2, lanes_bend2(curve_piece(curve, i), curve->degree));
-    error = fmax(error, curve->error[i]);
+    bend2 = greater(bend2, lanes_bend2(curve_piece(curve, i), curve->degree));
+    error = greater(error, curve->error[i]);
   }
+  run->plane = curve->points[0].z;
+  run->flat = lies_in_plane(curve, run->plane);
   const double n = (double)curve->degree;
   run->beside = ROUND_UP * n * (n - 1.0) * sqrt(bend2) / (8.0 * CHORDS * CHORDS);
   /* the capsule holds all control points */
   const curve_capsule *capsule = &curve->capsules[1];
-  const double magnitude = fmax(vec_norm(capsule->a), vec_norm(capsule->b)) + capsule->radius;
+  const double magnitude = greater(vec_norm(capsule->a), vec_norm(capsule->b)) + capsule->radius;
   run->slack = ROUND_UP * (error + (10.0 * n + 40.0 + n * n / (CHORDS * CHORDS)) * ROUND_U * magnitude);
-}
-
-/* The whole curve lies in a plane of constant z, exactly. */
-static bool lies_in_plane(const cprox_curve *curve, double z) {
-  const size_t n = curve->n_pieces * (curve->degree + 1);
-  for (size_t i = 0; i < n; i++)
-    if (curve->points[i].z != z) return false;
-  return true;
 }
 
 /* Chords against the balls of a part: bounds on the distance, and where the search should begin. Sets look->met
@@ -89,12 +102,12 @@ static double look_at(const batch_run *run, candidate *c, size_t part, first_loo
   const double distance = sqrt(least), margin = target->padding + run->q.mover.radius;
   const double slack =
       run->beside + ROUND_UP * (run->slack + 32.0 * ROUND_U * (distance + margin + run->batch->balls.sizes[part]));
-  c->lower = fmax(c->lower, distance - core->outer - margin - slack);
+  c->lower = greater(c->lower, distance - core->outer - margin - slack);
   c->seed_piece = (uint32_t)piece;
-  c->seed_s = fmin(fmax(((double)chord + along) / CHORDS, 1e-3), 1.0 - 1e-3);
+  c->seed_s = lesser(greater(((double)chord + along) / CHORDS, 1e-3), 1.0 - 1e-3);
 
   /* any point of the part is within the outer ball, and all points of the inner ball are of the part */
-  const bool inside = core->inner >= 0.0 && (!core->flat || lies_in_plane(run->q.mover.curve, target->pose.position.z));
+  const bool inside = core->inner >= 0.0 && (!core->flat || (run->flat && run->plane == target->pose.position.z));
   const double upper = distance + (inside ? -core->inner : core->outer) - margin + slack;
   look->met = inside && upper <= 0.0;
   if (look->met) {
@@ -116,13 +129,13 @@ static first_look look_around(batch_run *run, double most) {
     candidate c = batch->parts[k];
     c.lower = run->lower[k];
     double upper = INFINITY;
-    if (c.lower <= fmin(most, look.upper) && batch->targets[c.target].body) {
+    if (c.lower <= lesser(most, look.upper) && batch->targets[c.target].body) {
       if (!cut) cut_curve(run, q->mover.curve);
       cut = true;
       if (run->cut) upper = look_at(run, &c, k, &look);
     }
-    if (c.lower > fmin(most, look.upper)) {
-      look.beyond = fmin(look.beyond, c.lower);
+    if (c.lower > lesser(most, look.upper)) {
+      look.beyond = lesser(look.beyond, c.lower);
       continue;
     }
     if (upper < look.upper || look.met) look.upper = upper, look.promising = look.n;
@@ -162,12 +175,13 @@ static cprox_status report_meeting(const batch_run *run, const first_look *look,
   curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, curve->degree, curve->binomial, c->seed_s, &y, NULL, NULL);
   const double distance = vec_norm(vec_sub(y, look->centre));
   if (distance > look->within) y = vec_lerp(look->centre, y, look->within / distance);
-  *r = question_nothing();
-  r->lower = r->upper = 0.0;
-  r->t = c->seed_s == 1.0 ? t1 : t0 + c->seed_s * (t1 - t0);
-  r->on_mover = r->on_target = y;
-  r->target_index = c->target, r->target_part = c->part;
-  r->rung = CPROX_RUNG_SPHERE;
+  *r = (cprox_result){.t = c->seed_s == 1.0 ? t1 : t0 + c->seed_s * (t1 - t0),
+                      .t_target = NAN,
+                      .on_mover = y,
+                      .on_target = y,
+                      .target_index = c->target,
+                      .target_part = c->part,
+                      .rung = CPROX_RUNG_SPHERE};
   return question_conclude(&run->q, INFINITY, CPROX_OK, r);
 }
 

@@ -109,7 +109,8 @@ double lanes_bend2(const vec3 *p, size_t degree) {
   for (size_t i = 0; i + 2 <= degree; i++) {
     const double x = p[i].x - 2.0 * p[i + 1].x + p[i + 2].x, y = p[i].y - 2.0 * p[i + 1].y + p[i + 2].y;
     const double z = p[i].z - 2.0 * p[i + 1].z + p[i + 2].z;
-    most = fmax(most, x * x + y * y + z * z);
+    const double square = x * x + y * y + z * z;
+    most = square > most ? square : most;
   }
   return most;
 }
