@@ -226,6 +226,36 @@ static void witnesses_lie_where_they_say(void **state) {
   cprox_workspace_free(workspace);
 }
 
+/* A polygon of width 1 in the plane z = 0: curves 0.05 above it, across it, and in it. */
+static void a_disc_tells_nothing_of_curves_off_its_plane(void **state) {
+  (void)state;
+  cprox_workspace *workspace = cprox_workspace_create();
+  const double square[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+  cprox_body *body = NULL;
+  assert_int_equal(cprox_body_create_polygon(square, 4, workspace, &body), CPROX_OK);
+  const cprox_target target = cprox_at(body, cprox_pose_identity());
+  cprox_batch *batch = NULL;
+  assert_int_equal(cprox_batch_create(&target, 1, workspace, &batch), CPROX_OK);
+  const cprox_vec3 points[3][3] = {{{-1, 0, 0.05}, {0, 0.1, 0.05}, {1, 0, 0.05}},
+                                   {{-0.2, 0, 0.05}, {0, 0.1, 0.1}, {0.2, 0, 0.1}},
+                                   {{-1, 0, 0}, {0, 0.1, 0}, {1, 0, 0}}};
+  const double distance[3] = {0.05, 0.05, 0.0};
+  for (int i = 0; i < 3; i++) {
+    cprox_curve *curve = NULL;
+    assert_int_equal(cprox_curve_create_bezier(points[i], 3, 0, 1, workspace, &curve), CPROX_OK);
+    const cprox_mover mover = cprox_point_along(curve);
+    cprox_result r;
+    assert_int_equal(cprox_batch_distance(batch, &mover, 0, 1, NULL, workspace, &r), CPROX_OK);
+    assert_true(r.lower <= distance[i] && distance[i] <= r.upper && r.upper - r.lower <= 1e-6);
+    assert_int_equal(cprox_batch_collision(batch, &mover, 0, 1, NULL, workspace, &r), CPROX_OK);
+    assert_int_equal(r.verdict, i == 2 ? CPROX_YES : CPROX_NO);
+    cprox_curve_free(curve);
+  }
+  cprox_batch_free(batch);
+  cprox_body_free(body);
+  cprox_workspace_free(workspace);
+}
+
 /* ---- splits and threads ------------------------------------------------------------------------------------------------- */
 
 typedef struct worker {
@@ -454,6 +484,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(answers_agree_with_those_of_one_mover),
       cmocka_unit_test(witnesses_lie_where_they_say),
+      cmocka_unit_test(a_disc_tells_nothing_of_curves_off_its_plane),
       cmocka_unit_test(results_are_the_same_for_every_split_and_number_of_threads),
       cmocka_unit_test(ball_bounds_are_never_above_the_true_distance),
       cmocka_unit_test(chords_are_those_of_the_piece),

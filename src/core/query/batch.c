@@ -145,7 +145,8 @@ static first_look look_around(batch_run *run, double most) {
   return look;
 }
 
-/* The promising candidate first, the others nearest first; those that a later one has ruled out leave. */
+/* The promising candidate first, the others nearest first. Those that a later one has ruled out leave: farther than the first one is,
+ * they do not lower the union's bound. */
 static void put_in_order(batch_run *run, first_look *look) {
   if (look->n == 0) return;
   candidate *near = run->near;
@@ -154,10 +155,7 @@ static void put_in_order(batch_run *run, first_look *look) {
   near[0] = first;
   size_t kept = 1;
   for (size_t i = 1; i < look->n; i++) {
-    if (near[i].lower > look->upper)
-      look->beyond = fmin(look->beyond, near[i].lower);
-    else
-      near[kept++] = near[i];
+    if (near[i].lower <= look->upper) near[kept++] = near[i];
   }
   look->n = kept;
   candidates_sort(near + 1, kept - 1);
