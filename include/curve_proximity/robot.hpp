@@ -37,6 +37,19 @@ struct LinkGeometry {
 /** Immutable once made; shared by any number of threads. */
 class Robot {
  public:
+  enum class JointType { FIXED, REVOLUTE, PRISMATIC, PLANAR, FLOATING };
+
+  struct Joint {
+    std::string name;
+    JointType type = JointType::FIXED;
+    std::string parent, child;                                /**< links */
+    Eigen::Isometry3d origin = Eigen::Isometry3d::Identity(); /**< of the joint's frame in the parent's */
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitX();          /**< unit; planar: the plane's normal */
+    double rest = 0.0;                                        /**< the value where none is given */
+    std::string leader;                                       /**< of a mimic joint, never a mimic itself; else empty */
+    double multiplier = 1.0, offset = 0.0;                    /**< of a mimic joint */
+  };
+
   /** Reads a URDF.
    *
    *  Throws Error, naming link or joint and what is wrong: XML that is not a URDF; a tree that is none; a collision
@@ -58,6 +71,11 @@ class Robot {
   /** All links by name, each with its collision elements in the order of the URDF (none: an empty list). */
   const std::map<std::string, std::vector<LinkGeometry>> &links() const {
     return links_;
+  }
+
+  /** All joints, parents first. */
+  const std::vector<Joint> &joints() const {
+    return joints_;
   }
 
   /** What was left out under allow_missing_geometry, a sentence each. */
@@ -89,19 +107,6 @@ class Robot {
                       const Eigen::Isometry3d &base = Eigen::Isometry3d::Identity()) const;
 
  private:
-  enum class JointType { FIXED, REVOLUTE, PRISMATIC, PLANAR, FLOATING };
-
-  struct Joint {
-    std::string name;
-    JointType type = JointType::FIXED;
-    std::string parent, child;
-    Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-    double rest = 0.0;  /* the value where none is given */
-    std::string leader; /* of a mimic joint, never a mimic itself; else empty */
-    double multiplier = 1.0, offset = 0.0;
-  };
-
   friend class RobotReader;
 
   Robot() = default;

@@ -6,6 +6,7 @@
 
 #include <curve_proximity/query.hpp>
 
+#include "answering.h"
 #include "placing.h"
 #include "targets.h"
 
@@ -159,42 +160,8 @@ cprox_status runCore(const Search &search, const cprox_options &options, cprox_r
   std::vector<cprox_target> targets;
   targets.reserve(search.chosen.size());
   for (const std::uint32_t index : search.chosen) targets.push_back(search.shape(index).target);
-
-  const cprox_mover mover = along(search.curve.curve, search.curve.radius);
-  cprox_workspace *workspace = search.workspace.get();
-  switch (search.question.verb) {
-    case Verb::DISTANCE:
-      return cprox_distance_all(mover, targets.data(), targets.size(), &options, workspace, &result, nullptr);
-    case Verb::TOLERANCE:
-      return cprox_tolerance_all(mover, targets.data(), targets.size(), search.question.delta, &options, workspace,
-                                 &result, nullptr);
-    case Verb::COLLISION: break;
-  }
-  return cprox_collision_all(mover, targets.data(), targets.size(), &options, workspace, &result, nullptr);
-}
-
-/* The verdict once more, by the interval as it is now: it may only have become less certain. */
-void reviewVerdict(const Question &question, cprox_result &result) {
-  const bool tolerance = question.verb == Verb::TOLERANCE;
-  const cprox_verdict apart = tolerance ? CPROX_YES : CPROX_NO;
-  const double limit = tolerance ? question.delta : 0.0;
-  if (result.verdict == apart && !(result.lower > limit)) result.verdict = CPROX_UNDECIDED;
-  if (tolerance && result.verdict == CPROX_NO && !(result.upper <= limit)) result.verdict = CPROX_UNDECIDED;
-}
-
-/* Widens the core's interval by what it does not know: rounding before it, shapes that it was not shown. */
-void widen(const Search &search, double rounding, cprox_result &result) {
-  const cprox_options &options = search.question.options;
-  result.lower = std::max(0.0, std::min(result.lower - rounding, search.left_out));
-  if (result.upper > 0.0) result.upper += rounding;
-
-  if (search.question.verb != Verb::DISTANCE) {
-    reviewVerdict(search.question, result);
-    return;
-  }
-  const double asked = std::max(options.epsilon, options.relative_epsilon * result.upper);
-  const bool narrow = result.upper - result.lower <= asked;
-  if (result.status == CPROX_OK && !narrow) result.status = CPROX_PRECISION;
+  return askCore(search.question, options, along(search.curve.curve, search.curve.radius), targets, search.workspace,
+                 result);
 }
 
 void nameTarget(const Search &search, Answer &answer) {
@@ -208,23 +175,12 @@ void nameTarget(const Search &search, Answer &answer) {
   if (answer.by_hull) answer.message = "the nearest shape is a mesh: its convex hull answers for it";
 }
 
-/* Nothing to measure. */
-void answerNothing(const Question &question, cprox_result &result) {
-  result.lower = result.upper = INFINITE;
-  result.target_index = -1;
-  result.verdict = question.verb == Verb::DISTANCE    ? CPROX_UNDECIDED
-                   : question.verb == Verb::TOLERANCE ? CPROX_YES
-                                                      : CPROX_NO;
-}
-
 Answer answerOf(const Search &search) {
   Answer answer;
   answer.id = answer.a = search.curve.id;
 
-  // The part of epsilon that rounding takes is not the core's to use.
   const double rounding = roundingOf(search);
-  cprox_options options = search.question.options;
-  if (options.epsilon > 4.0 * rounding) options.epsilon -= 2.0 * rounding;
+  const cprox_options options = withoutRounding(search.question.options, rounding);
 
   cprox_result &result = answer.result;
   result.target_index = -1;
@@ -234,7 +190,7 @@ Answer answerOf(const Search &search) {
   } else if (search.chosen.empty()) {
     answerNothing(search.question, result);
   } else {
-    widen(search, rounding, result);
+    widen(search.question, rounding, search.left_out, result);
     nameTarget(search, answer);
   }
   if (result.status != CPROX_OK && answer.message.empty()) answer.message = cprox_status_text(result.status);

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** A robot along a joint trajectory, asked about the scene and about itself. */
+#ifndef CURVE_PROXIMITY_MOTION_HPP
+#define CURVE_PROXIMITY_MOTION_HPP
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/query.hpp>
+#include <curve_proximity/trajectory.hpp>
+
+namespace curve_proximity {
+
+/** The robot of a snapshot along a trajectory. Immutable; shared by any number of threads. */
+class RobotMotion {
+ public:
+  /** snapshot    is kept: its robot, paddings, objects and allowed pairs are what is asked about.
+   *  trajectory  its fixed_joints are not looked at: the caller puts them into `rest`, in the order of precedence that it has.
+   *  rest        values of joints that the trajectory does not move; others are at 0, or at mid-range where 0 is outside their
+   *              limits. Names that the robot does not have are an error.
+   *  disabled    pairs of links that are not checked against each other (an SRDF's).
+   *
+   *  Throws Error: no robot, what checkTrajectory() finds, joints that the robot does not have, a trajectory of one point, a base
+   *  joint whose child is not the root link. A mimic joint follows its leader; what a trajectory says of it is not looked at. */
+  RobotMotion(SnapshotPtr snapshot, const TrajectoryDescription &trajectory, const JointPositions &rest,
+              const std::vector<std::array<std::string, 2>> &disabled = {});
+  ~RobotMotion();
+  RobotMotion(RobotMotion &&) noexcept;
+  RobotMotion &operator=(RobotMotion &&) noexcept;
+
+  /** The trajectory's first and last time [s]. */
+  std::array<double, 2> domain() const;
+
+  /** Where every link is at a time. */
+  LinkPoses linkPoses(double t) const;
+
+  /** What takes no part, and why: a sentence each. */
+  const std::vector<std::string> &skipped() const;
+
+  struct Data;
+  const Data &data() const {
+    return *data_;
+  }
+
+ private:
+  std::unique_ptr<const Data> data_;
+};
+
+/** How close the moving links come to the objects (question.objects: only these; per_object: an answer for each object, in the order
+ *  of their names). kind "environment", a the link, b the object, result.t the time [s], result.mover_part the number of the
+ *  collision element of a. As ask() of query.hpp in everything else. */
+std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &question, Workspace &workspace);
+
+/** How close the robot comes to itself: pairs of links between which at least two joints can move and this trajectory moves one,
+ *  less those that are disabled or allowed to touch. kind "self", a and b links; result.target_index is the number of the
+ *  collision element of b. */
+Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &workspace);
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "answering.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace curve_proximity {
+namespace {
+
+/* The verdict once more, by the interval as it is now: it may only have become less certain. */
+void reviewVerdict(const Question &question, cprox_result &result) {
+  const bool tolerance = question.verb == Verb::TOLERANCE;
+  const cprox_verdict apart = tolerance ? CPROX_YES : CPROX_NO;
+  const double limit = tolerance ? question.delta : 0.0;
+  if (result.verdict == apart && !(result.lower > limit)) result.verdict = CPROX_UNDECIDED;
+  if (tolerance && result.verdict == CPROX_NO && !(result.upper <= limit)) result.verdict = CPROX_UNDECIDED;
+}
+
+} // namespace
+
+cprox_options withoutRounding(cprox_options options, double rounding) {
+  if (options.epsilon > 4.0 * rounding) options.epsilon -= 2.0 * rounding;
+  return options;
+}
+
+cprox_status askCore(const Question &question, const cprox_options &options, const cprox_mover &mover,
+                     const std::vector<cprox_target> &targets, Workspace &workspace, cprox_result &result) {
+  cprox_workspace *w = workspace.get();
+  switch (question.verb) {
+    case Verb::DISTANCE:
+      return cprox_distance_all(mover, targets.data(), targets.size(), &options, w, &result, nullptr);
+    case Verb::TOLERANCE:
+      return cprox_tolerance_all(mover, targets.data(), targets.size(), question.delta, &options, w, &result, nullptr);
+    case Verb::COLLISION: break;
+  }
+  return cprox_collision_all(mover, targets.data(), targets.size(), &options, w, &result, nullptr);
+}
+
+void widen(const Question &question, double rounding, double left_out, cprox_result &result) {
+  const cprox_options &options = question.options;
+  result.lower = std::max(0.0, std::min(result.lower - rounding, left_out));
+  if (result.upper > 0.0) result.upper += rounding;
+
+  if (question.verb != Verb::DISTANCE) {
+    reviewVerdict(question, result);
+    return;
+  }
+  const double asked = std::max(options.epsilon, options.relative_epsilon * result.upper);
+  const bool narrow = result.upper - result.lower <= asked;
+  if (result.status == CPROX_OK && !narrow) result.status = CPROX_PRECISION;
+}
+
+void answerNothing(const Question &question, cprox_result &result) {
+  result.lower = result.upper = std::numeric_limits<double>::infinity();
+  result.target_index = -1;
+  result.verdict = question.verb == Verb::DISTANCE    ? CPROX_UNDECIDED
+                   : question.verb == Verb::TOLERANCE ? CPROX_YES
+                                                      : CPROX_NO;
+}
+
+} // namespace curve_proximity
