@@ -19,4 +19,4 @@ set(CURVE_PROXIMITY_SERVICES
 
 add_message_files(DIRECTORY msg FILES ${CURVE_PROXIMITY_MESSAGES})
 add_service_files(DIRECTORY srv FILES ${CURVE_PROXIMITY_SERVICES})
-generate_messages(DEPENDENCIES geometry_msgs sensor_msgs shape_msgs std_msgs)
+generate_messages(DEPENDENCIES geometry_msgs sensor_msgs shape_msgs std_msgs trajectory_msgs)

@@ -20,12 +20,14 @@ class RobotMotion {
    *  trajectory  its fixed_joints are not looked at: the caller puts them into `rest`, in the order of precedence that it has.
    *  rest        values of joints that the trajectory does not move; others are at 0, or at mid-range where 0 is outside their
    *              limits. Names that the robot does not have are an error.
+   *  base        where the root link, or the parent frame of its virtual joint, stands in the fixed frame.
    *  disabled    pairs of links that are not checked against each other (an SRDF's).
    *
    *  Throws Error: no robot, what checkTrajectory() finds, joints that the robot does not have, a trajectory of one point, a base
    *  joint whose child is not the root link. A mimic joint follows its leader; what a trajectory says of it is not looked at. */
   RobotMotion(SnapshotPtr snapshot, const TrajectoryDescription &trajectory, const JointPositions &rest,
-              const std::vector<std::array<std::string, 2>> &disabled = {});
+              const std::vector<std::array<std::string, 2>> &disabled = {},
+              const Eigen::Isometry3d &base = Eigen::Isometry3d::Identity());
   ~RobotMotion();
   RobotMotion(RobotMotion &&) noexcept;
   RobotMotion &operator=(RobotMotion &&) noexcept;

@@ -39,6 +39,9 @@ struct TrajectoryDescription {
                                              z, w); empty: as MoveIt names them, NAME/x … */
 };
 
+/** Gives a trajectory that names parts of one of these joints (NAME/x …) and no base of its own that joint as its base. */
+void adoptBase(const std::vector<VirtualJoint> &joints, TrajectoryDescription &trajectory);
+
 /** Throws Error, naming point and joint: no joints or points, a name twice, counts that differ, numbers that are not finite, times
  *  that do not ascend, an interpolation for which points lack velocities or accelerations. */
 void checkTrajectory(const TrajectoryDescription &trajectory);

@@ -26,6 +26,9 @@ const std::map<std::string, Option> &options() {
   static const std::map<std::string, Option> table = {
       {"--curves", {true, {Action::CURVES, Action::CHECK}}},
       {"--against", {true, {Action::CURVES, Action::CHECK}}},
+      {"--trajectory", {true, {Action::CURVES}}},
+      {"--self", {false, {Action::CURVES}}},
+      {"--signed", {false, {Action::CURVES}}},
       {"--scene", {true, {Action::CURVES, Action::CHECK}}},
       {"--robot", {true, {Action::CURVES, Action::CHECK}}},
       {"--srdf", {true, {Action::CURVES, Action::CHECK}}},
@@ -46,7 +49,7 @@ const std::map<std::string, Option> &options() {
 }
 
 /* Words of the manual that this version cannot act upon. */
-const std::vector<std::string> kNotAvailable = {"--trajectory", "--self", "--signed", "--provider"};
+const std::vector<std::string> kNotAvailable = {"--provider"};
 
 struct VerbName {
   const char *word;
@@ -151,6 +154,8 @@ std::uint64_t readCount(const Words &words, const std::string &name, std::uint64
 void readQuestion(const Words &words, const VerbName &verb, Question &question) {
   question.verb = verb.verb;
   question.per_object = words.has("--per-object");
+  question.options.signed_distance = words.has("--signed");
+  if (words.has("--signed") && verb.verb != Verb::DISTANCE) throw BadUsage("--signed is for 'distance'");
 
   /* accuracy and budget */
   if (words.has("--epsilon")) {
@@ -185,6 +190,21 @@ void readAgainst(const Words &words, Arguments &out) {
   out.against = words.text("--against");
 }
 
+/* The robot along a trajectory, instead of curves. */
+void readTrajectoryWords(const Words &words, Arguments &out) {
+  for (const char *name : {"--curves", "--against", "--certificate", "--signed"}) {
+    if (words.has(name)) throw BadUsage("--trajectory takes no " + std::string(name));
+  }
+  if (!words.has("--robot")) throw BadUsage("--trajectory needs --robot URDF");
+  out.action = Action::TRAJECTORY;
+  out.trajectory = words.text("--trajectory");
+  out.self = words.has("--self");
+  out.scene = words.text("--scene");
+  out.robot = words.text("--robot");
+  out.srdf = words.text("--srdf");
+  out.state = words.text("--state");
+}
+
 /* The files that a verb cannot do without, and words that it does not understand. */
 void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
   const auto required = [&](const std::string &name, const std::string &what) {
@@ -200,6 +220,11 @@ void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
       plain.erase(plain.begin());
       [[fallthrough]];
     case Action::CURVES:
+      if (words.has("--trajectory")) {
+        readTrajectoryWords(words, out);
+        break;
+      }
+      if (words.has("--self")) throw BadUsage("--self needs --trajectory T.yaml");
       out.curves = required("--curves", "CURVES.csv");
       if (words.has("--against")) {
         readAgainst(words, out);
@@ -265,6 +290,8 @@ std::string helpText() {
 
 cprox distance  --curves CURVES.csv --scene SCENE.yaml [--robot URDF [--srdf SRDF] [--state "joint: value, ..."]]
 cprox distance  --curves A.csv --against B.csv    row i of A against row i of B, each anywhere on its curve
+cprox distance  --robot URDF [--srdf SRDF] --trajectory T.yaml [--scene SCENE.yaml] [--self]
+                                        the robot along a joint trajectory: a row of kind environment, one of kind self
 cprox tolerance --delta D  (as above)   yes: farther than D everywhere
 cprox collision            (as above)   yes: they touch or overlap somewhere
 cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodies
@@ -277,7 +304,11 @@ cprox check     FILE  (the inputs of the question)  what the certificates in FIL
   --against FILE    curves, too: instead of a scene
   --scene FILE      moveit_msgs/PlanningScene as YAML; may be left out where there is a robot
   --robot FILE      a URDF: its links are objects, too; meshes count as their convex hulls
-  --srdf FILE       names the frame in which the robot stands (its virtual joint's parent_frame)
+  --trajectory FILE a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint
+  --self            how close the robot comes to itself, too
+  --signed          distances of curves inside a body are negative: minus the deepest penetration
+  --srdf FILE       links that are not checked against each other, and the frame in which the robot stands
+                    (its virtual joint's parent_frame)
   --state TEXT      joint values in radians or metres; others as in the scene's robot_state, else 0
                     (mid-range where 0 is beyond the limits)
   --in FILE         a list of {id, a: BODY, b: BODY}

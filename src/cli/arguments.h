@@ -11,7 +11,7 @@
 
 namespace curve_proximity::cli {
 
-enum class Action { HELP, VERSION, CURVES, AGAINST, PAIRS, SEND, CHECK };
+enum class Action { HELP, VERSION, CURVES, AGAINST, TRAJECTORY, PAIRS, SEND, CHECK };
 
 struct Arguments {
   Action action = Action::HELP;
@@ -19,6 +19,8 @@ struct Arguments {
 
   std::string curves, scene; /**< files; curves: of CURVES, AGAINST and CHECK, scene: of CURVES, CHECK and SEND */
   std::string against;       /**< file of AGAINST; of CHECK where it was given */
+  std::string trajectory;    /**< file of TRAJECTORY */
+  bool self = false;         /**< TRAJECTORY: ask about the robot itself, too */
   std::string certificate;   /**< file: written by CURVES and AGAINST, empty: none; read by CHECK */
   std::string robot, srdf;   /**< files of the robot; empty: none */
   std::string state;         /**< "joint: value, …" */

@@ -24,19 +24,6 @@ Outcome failedCurve(const std::string &id, const std::string &place, const std::
   return out;
 }
 
-ResultRow toRow(const Answer &answer, Verb verb) {
-  ResultRow row;
-  row.id = answer.id;
-  row.kind = answer.kind;
-  row.result = answer.result;
-  row.a = answer.a;
-  row.b = answer.b;
-  row.microseconds = answer.microseconds;
-  row.has_verdict = verb != Verb::DISTANCE;
-  row.has_t = row.has_points = answer.result.target_index >= 0;
-  return row;
-}
-
 /* All rows of one curve. */
 Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &targets, const Question &question,
                     const std::optional<std::vector<cprox_target>> &to_certify, Workspace &workspace) {

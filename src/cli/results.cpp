@@ -43,6 +43,19 @@ void appendGeometry(std::string &line, const ResultRow &row) {
 
 } // namespace
 
+ResultRow toRow(const Answer &answer, Verb verb) {
+  ResultRow row;
+  row.id = answer.id;
+  row.kind = answer.kind;
+  row.result = answer.result;
+  row.a = answer.a;
+  row.b = answer.b;
+  row.microseconds = answer.microseconds;
+  row.has_verdict = verb != Verb::DISTANCE;
+  row.has_t = row.has_points = answer.result.target_index >= 0;
+  return row;
+}
+
 std::string resultsHeader() {
   return "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,probes,microseconds,t_b,rung\n";
 }

@@ -23,6 +23,9 @@ struct ResultRow {
   bool has_points = false;  /**< there is something to measure against */
 };
 
+/** What the scene says, as a row. */
+ResultRow toRow(const Answer &answer, Verb verb);
+
 /** The first line, with its newline. */
 std::string resultsHeader();
 

@@ -14,6 +14,9 @@ int answerCurves(const Arguments &arguments, Console &console);
 /** distance, tolerance, collision: curves against curves, row by row. */
 int answerAgainst(const Arguments &arguments, Console &console);
 
+/** distance, tolerance, collision: the robot along a joint trajectory, against the scene and itself. */
+int answerTrajectory(const Arguments &arguments, Console &console);
+
 /** pairs: signed distances of standing bodies. */
 int answerPairs(const Arguments &arguments, Console &console);
 

@@ -17,6 +17,8 @@ struct PlacedRobot {
   std::shared_ptr<const Robot> robot; /* null: there is none */
   std::set<std::string> fixed;        /* names that the fixed frame has because of it */
   LinkPoses links_of_scene, links_now;
+  JointPositions scene_joints, state;
+  Srdf srdf;
 };
 
 /* The scene's robot_state, without the joints that this robot does not have. */
@@ -41,15 +43,16 @@ PlacedRobot placeRobot(const Arguments &arguments, const SceneFile &file, Warnin
   out.fixed.insert(out.robot->rootLink());
   if (!arguments.srdf.empty()) {
     /* the robot stands in the parent frame of its first virtual joint */
-    const Srdf srdf = readSrdf(arguments.srdf);
-    if (!srdf.virtual_joints.empty()) out.fixed.insert(srdf.virtual_joints.front().parent_frame);
+    out.srdf = readSrdf(arguments.srdf);
+    if (!out.srdf.virtual_joints.empty()) out.fixed.insert(out.srdf.virtual_joints.front().parent_frame);
   }
 
-  JointPositions joints = stateOfScene(file, *out.robot, warnings);
-  const JointPositions asked = readState(arguments.state, *out.robot);
+  out.scene_joints = stateOfScene(file, *out.robot, warnings);
+  out.state = readState(arguments.state, *out.robot);
+  JointPositions joints = out.scene_joints;
   try {
     out.links_of_scene = out.robot->linkPoses(joints);
-    for (const auto &[joint, value] : asked) joints[joint] = value;
+    for (const auto &[joint, value] : out.state) joints[joint] = value;
     out.links_now = out.robot->linkPoses(joints);
   } catch (const Error &e) {
     throw BadUsage(arguments.robot + ": " + e.what());
@@ -150,7 +153,7 @@ World readWorld(const Arguments &arguments, Warnings &warnings) {
   } catch (const BadUsage &e) {
     throw BadUsage(arguments.scene + ": " + e.what());
   }
-  return {scene.snapshot(), robot.links_now, skippedOf(file, robot)};
+  return {scene.snapshot(), robot.links_now, robot.scene_joints, robot.state, robot.srdf, skippedOf(file, robot)};
 }
 
 } // namespace curve_proximity::cli

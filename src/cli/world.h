@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <curve_proximity/scene.hpp>
+#include <curve_proximity/srdf.hpp>
 
 #include "arguments.h"
 #include "yaml_value.h"
@@ -17,6 +18,9 @@ namespace curve_proximity::cli {
 struct World {
   SnapshotPtr snapshot;
   LinkPoses links;                  /**< empty without a robot */
+  JointPositions scene_joints;      /**< the scene's robot_state, as far as the robot has its joints */
+  JointPositions state;             /**< --state */
+  Srdf srdf;                        /**< empty without --srdf */
   std::vector<std::string> skipped; /**< what takes no part, a sentence each */
 };
 

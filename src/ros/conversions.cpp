@@ -465,4 +465,26 @@ JointPositions toJointPositions(const sensor_msgs::JointState &state) {
   return positions;
 }
 
+/* ---- trajectories ------------------------------------------------------------------------------------------------- */
+
+TrajectoryDescription toDescription(const trajectory_msgs::JointTrajectory &trajectory, const JointPositions &now) {
+  TrajectoryDescription out;
+  out.joints = trajectory.joint_names;
+  for (const trajectory_msgs::JointTrajectoryPoint &point : trajectory.points)
+    out.points.push_back({point.positions, point.velocities, point.accelerations, point.time_from_start.toSec()});
+  if (out.points.empty() || !(out.points.front().time > 0.0)) return out;
+
+  // The way from where the robot is.
+  TrajectoryPoint start;
+  for (const std::string &joint : out.joints) {
+    const auto it = now.find(joint);
+    if (it == now.end()) return out;
+    start.positions.push_back(it->second);
+  }
+  if (!out.points.front().velocities.empty()) start.velocities.assign(out.joints.size(), 0.0);
+  if (!out.points.front().accelerations.empty()) start.accelerations.assign(out.joints.size(), 0.0);
+  out.points.insert(out.points.begin(), start);
+  return out;
+}
+
 } // namespace curve_proximity

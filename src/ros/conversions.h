@@ -12,9 +12,11 @@
 #include <curve_proximity/Proximity.h>
 #include <geometry_msgs/Pose.h>
 #include <sensor_msgs/JointState.h>
+#include <trajectory_msgs/JointTrajectory.h>
 
 #include <curve_proximity/query.hpp>
 #include <curve_proximity/scene.hpp>
+#include <curve_proximity/trajectory.hpp>
 #include <functional>
 #include <string>
 #include <vector>
@@ -58,6 +60,10 @@ Proximity toFailedRow(const std::string &id, const std::string &why);
 
 /** Throws Error where names and positions are not as many, or a joint is named twice. */
 JointPositions toJointPositions(const sensor_msgs::JointState &state);
+
+/** A joint trajectory. Where its first point comes after 0 and `now` has all of its joints, it begins at 0 with the way from there:
+ *  at rest if that point has velocities, without acceleration if it has accelerations. */
+TrajectoryDescription toDescription(const trajectory_msgs::JointTrajectory &trajectory, const JointPositions &now);
 
 } // namespace curve_proximity
 #endif

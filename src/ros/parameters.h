@@ -20,6 +20,7 @@ class ParameterError : public std::runtime_error {
 /** Units, meanings and defaults as config/defaults.yaml documents them; a test compares the two. */
 struct Parameters {
   std::string robot_description = "robot_description";
+  std::string robot_description_semantic = "robot_description_semantic";
   std::string urdf_dir;
   bool allow_missing_geometry = false;
   std::string fixed_frame = "world";
@@ -46,6 +47,7 @@ template <class Fields, class Visitor>
 void visitParameters(Fields &parameters, Visitor &&visit) {
   constexpr double count = std::numeric_limits<int>::max();
   visit("robot_description", parameters.robot_description);
+  visit("robot_description_semantic", parameters.robot_description_semantic);
   visit("urdf_dir", parameters.urdf_dir);
   visit("allow_missing_geometry", parameters.allow_missing_geometry);
   visit("fixed_frame", parameters.fixed_frame);

@@ -6,6 +6,8 @@
 #include <map>
 #include <sstream>
 
+#include <curve_proximity/motion.hpp>
+
 #include "conversions.h"
 
 namespace curve_proximity {
@@ -159,7 +161,7 @@ void Queries::checkLimits(const QueryRequest &request, const Snapshot &snapshot)
 }
 
 void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing) {
-  // One snapshot for all curves: what changes meanwhile does not change this answer.
+  // One snapshot for all: what changes meanwhile does not change this answer.
   TimeBudget budget(parameters_.budget_ms, stop_);
   Question question = toQuestion(request);
   question.options.stop = TimeBudget::isOver;
@@ -167,6 +169,16 @@ void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawi
   const SnapshotPtr snapshot = scene_.snapshot();
   checkLimits(request, *snapshot);
 
+  answerCurves(request, question, snapshot, response, drawing);
+  if (!request.trajectory.joint_names.empty() || !request.trajectory.points.empty())
+    answerTrajectory(request, question, snapshot, response);
+  for (Proximity &row : response.results)
+    if (row.status == cprox_status_name(CPROX_STOPPED)) row.message = budget.reason();
+  drawing.snapshot = snapshot;
+}
+
+void Queries::answerCurves(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+                           QueryResponse &response, Drawing &drawing) {
   // Each curve is answered on its own: what is wrong with it fails its row only.
   FrameLookup lookup(frames_);
   StampedTargets targets(snapshot, question, request.joint_state, lookup);
@@ -182,8 +194,7 @@ void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawi
       CompiledCurve curve = compile(description);
       const StampedTargets::Stamped &stamped = targets.at(message.header.stamp);
       std::vector<Answer> answers = ask(stamped.targets, curve, question, *workspace);
-      for (Answer &answer : answers) {
-        if (answer.result.status == CPROX_STOPPED) answer.message = budget.reason();
+      for (const Answer &answer : answers) {
         response.results.push_back(toMessage(answer, request.verb));
         if (answer.result.status < 0) failures.count(response.results.back(), i);
       }
@@ -197,7 +208,41 @@ void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawi
     }
   }
   failures.tell(response);
-  drawing.snapshot = snapshot;
+}
+
+void Queries::answerTrajectory(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+                               QueryResponse &response) {
+  if (!snapshot->robot()) throw Error("a trajectory needs a robot, and this server has none");
+  limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points),
+        request.trajectory.points.size() * request.trajectory.joint_names.size(), "joint values");
+
+  // The trajectory, the joints that it leaves alone, and where the robot stands.
+  const std::string id = "trajectory";
+  try {
+    const JointPositions rest = toJointPositions(request.joint_state);
+    TrajectoryDescription trajectory = toDescription(request.trajectory, rest);
+    trajectory.id = id;
+    adoptBase(srdf_.virtual_joints, trajectory);
+    FrameLookup lookup(frames_);
+    const std_msgs::Header &header = request.trajectory.header;
+    const std::string frame =
+        trajectory.base.empty() ? snapshot->robot()->rootLink() : trajectory.base.front().parent_frame;
+    const RobotMotion motion(snapshot, trajectory, rest, srdf_.disabled, lookup.toFixed(frame, header.stamp));
+
+    const WorkspacePool::Lease workspace(workspaces_);
+    std::vector<Answer> answers = askEnvironment(motion, question, *workspace);
+    if (request.self_collision) answers.push_back(askSelf(motion, question, *workspace));
+    for (const Answer &answer : answers) response.results.push_back(toMessage(answer, request.verb));
+  } catch (const Error &error) {
+    response.results.push_back(toFailedRow(id, error.what()));
+  }
+
+  // A row that failed fails the call, as a curve's does.
+  const Proximity &last = response.results.back();
+  if (response.success && last.status == cprox_status_name(CPROX_INVALID)) {
+    response.success = false;
+    response.message = "trajectory: " + last.message;
+  }
 }
 
 } // namespace curve_proximity

@@ -6,10 +6,12 @@
 #include <curve_proximity/Curve.h>
 #include <curve_proximity/Proximity.h>
 #include <sensor_msgs/JointState.h>
+#include <trajectory_msgs/JointTrajectory.h>
 
 #include <atomic>
 #include <curve_proximity/query.hpp>
 #include <curve_proximity/scene.hpp>
+#include <curve_proximity/srdf.hpp>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,8 @@ struct QueryRequest {
   Verb verb;
   double delta; /**< [m] of TOLERANCE */
   const std::vector<Curve> &curves;
+  const trajectory_msgs::JointTrajectory &trajectory;
+  bool self_collision;
   const std::vector<std::string> &objects, &links;
   const sensor_msgs::JointState &joint_state;
   double epsilon;          /**< [m] 0: the server's */
@@ -53,8 +57,9 @@ struct Drawing {
 class Queries {
  public:
   /** All are kept by reference. stop: set, it ends running queries with the intervals that they have. */
-  Queries(const Parameters &parameters, const Scene &scene, const Frames &frames, const std::atomic<bool> &stop)
-      : parameters_(parameters), scene_(scene), frames_(frames), stop_(stop) {}
+  Queries(const Parameters &parameters, const Scene &scene, const Srdf &srdf, const Frames &frames,
+          const std::atomic<bool> &stop)
+      : parameters_(parameters), scene_(scene), srdf_(srdf), frames_(frames), stop_(stop) {}
 
   /** Fills the response and the drawing. Throws Error where nothing can be answered at all; what is
    *  wrong with one curve becomes its row. */
@@ -62,10 +67,15 @@ class Queries {
 
  private:
   Question toQuestion(const QueryRequest &request) const;
+  void answerCurves(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+                    QueryResponse &response, Drawing &drawing);
+  void answerTrajectory(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+                        QueryResponse &response);
   void checkLimits(const QueryRequest &request, const Snapshot &snapshot) const;
 
   const Parameters &parameters_;
   const Scene &scene_;
+  const Srdf &srdf_;
   const Frames &frames_;
   const std::atomic<bool> &stop_;
   WorkspacePool workspaces_;

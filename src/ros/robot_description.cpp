@@ -15,19 +15,40 @@ ResourceOptions resourceOptions(const std::string &base_dir) {
   return options;
 }
 
-std::shared_ptr<const Robot> loadRobot(const ros::NodeHandle &handle, const Parameters &parameters) {
-  // Where the URDF is; the default name may be missing, one that was given may not.
-  // The search begins above the server's own namespace, where ~robot_description is that name and no URDF.
+namespace {
+
+/** A text in the parameter of that name, searched upwards. The search begins above the server's own namespace, where the private
+ *  parameter of the same name is that name and no text. Empty where there is none; a name that is not the default must exist. */
+std::string findText(const ros::NodeHandle &handle, const std::string &wanted, const std::string &by_default,
+                     const char *parameter, const char *what, std::string &name) {
   const std::string above = ros::names::parentNamespace(handle.getNamespace());
-  std::string name, xml;
-  const bool found = !parameters.robot_description.empty() &&
-                     ros::param::search(above, parameters.robot_description, name) && handle.getParam(name, xml);
-  if (!found) {
-    const bool by_default =
-        parameters.robot_description.empty() || parameters.robot_description == Parameters().robot_description;
-    if (!by_default)
-      throw ParameterError("parameter ~robot_description: there is no URDF in the parameter '" +
-                           parameters.robot_description + "'");
+  std::string text;
+  if (!wanted.empty() && ros::param::search(above, wanted, name) && handle.getParam(name, text)) return text;
+  if (!wanted.empty() && wanted != by_default)
+    throw ParameterError(std::string("parameter ~") + parameter + ": there is no " + what + " in the parameter '" +
+                         wanted + "'");
+  return "";
+}
+
+} // namespace
+
+Srdf loadSrdf(const ros::NodeHandle &handle, const Parameters &parameters) {
+  std::string name;
+  const std::string xml = findText(handle, parameters.robot_description_semantic,
+                                   Parameters().robot_description_semantic, "robot_description_semantic", "SRDF", name);
+  if (xml.empty()) return {};
+  try {
+    return parseSrdf(xml);
+  } catch (const Error &error) {
+    throw Error("the SRDF in '" + name + "': " + error.what(), error.status());
+  }
+}
+
+std::shared_ptr<const Robot> loadRobot(const ros::NodeHandle &handle, const Parameters &parameters) {
+  std::string name;
+  const std::string xml =
+      findText(handle, parameters.robot_description, Parameters().robot_description, "robot_description", "URDF", name);
+  if (xml.empty()) {
     ROS_INFO("there is no robot_description: this server knows objects only");
     return nullptr;
   }

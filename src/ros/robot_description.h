@@ -6,6 +6,7 @@
 #include <ros/node_handle.h>
 
 #include <curve_proximity/robot.hpp>
+#include <curve_proximity/srdf.hpp>
 #include <memory>
 
 #include "parameters.h"
@@ -19,6 +20,9 @@ ResourceOptions resourceOptions(const std::string &base_dir);
  *  namespace; null, with a line in the log, where nobody has set one.
  *  Throws ParameterError where a name was given but no URDF stands there, Error where the URDF is unusable. */
 std::shared_ptr<const Robot> loadRobot(const ros::NodeHandle &handle, const Parameters &parameters);
+
+/** The SRDF that ~robot_description_semantic names; an empty one where nobody has set it. Throws likewise. */
+Srdf loadSrdf(const ros::NodeHandle &handle, const Parameters &parameters);
 
 } // namespace curve_proximity
 #endif

@@ -39,7 +39,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       handle_(onQueue(handle, queue_)),
       frames_(parameters_.fixed_frame, parameters_.tf_timeout, stop_),
       scene_(loadRobot(handle, parameters_), resourceOptions("")),
-      queries_(parameters_, scene_, frames_, stop_) {
+      srdf_(loadSrdf(handle, parameters_)),
+      queries_(parameters_, scene_, srdf_, frames_, stop_) {
   markers_ = std::make_unique<MarkerPublisher>(handle_, scene_, parameters_.fixed_frame);
   services_ = {handle_.advertiseService("distance", &ProximityServer::distance, this),
                handle_.advertiseService("tolerance", &ProximityServer::tolerance, this),
@@ -90,6 +91,8 @@ bool ProximityServer::query(Verb verb, double delta, const Request &request, Res
     const QueryRequest common{verb,
                               delta,
                               request.curves,
+                              request.trajectory,
+                              request.self_collision != 0,
                               request.objects,
                               request.links,
                               request.joint_state,

@@ -57,6 +57,7 @@ class ProximityServer {
   ros::NodeHandle handle_; /* its callbacks go to queue_ */
   Frames frames_;
   Scene scene_;
+  const Srdf srdf_;
   Queries queries_;
   std::unique_ptr<MarkerPublisher> markers_;
   std::vector<ros::ServiceServer> services_;

@@ -38,8 +38,9 @@ cprox_status askCore(const Question &question, const cprox_options &options, con
 
 void widen(const Question &question, double rounding, double left_out, cprox_result &result) {
   const cprox_options &options = question.options;
-  result.lower = std::max(0.0, std::min(result.lower - rounding, left_out));
-  if (result.upper > 0.0) result.upper += rounding;
+  result.lower = std::min(result.lower - rounding, left_out);
+  if (!options.signed_distance) result.lower = std::max(0.0, result.lower);
+  if (options.signed_distance || result.upper > 0.0) result.upper += rounding;
 
   if (question.verb != Verb::DISTANCE) {
     reviewVerdict(question, result);

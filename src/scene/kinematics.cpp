@@ -13,8 +13,9 @@ class Builder {
  public:
   Builder(const Snapshot &snapshot, Kinematics &out) : snapshot_(snapshot), robot_(*snapshot.robot()), out_(out) {}
 
-  void build(const std::vector<VirtualJoint> &base, const std::vector<std::string> &base_joints) {
-    addRoot(base, base_joints);
+  void build(const std::vector<VirtualJoint> &base, const std::vector<std::string> &base_joints,
+             const Eigen::Isometry3d &place) {
+    addRoot(base, base_joints, place);
     for (const Robot::Joint &joint : robot_.joints()) addJoint(joint);
     for (const auto &[name, geometries] : robot_.links()) addGeometries(name, geometries);
 
@@ -51,8 +52,8 @@ class Builder {
     return addLink(parent, CPROX_JOINT_FIXED, origin, Eigen::Vector3d::UnitZ(), 0, 1.0, 0.0);
   }
 
-  void addRoot(const std::vector<VirtualJoint> &base, const std::vector<std::string> &base_joints) {
-    const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+  void addRoot(const std::vector<VirtualJoint> &base, const std::vector<std::string> &base_joints,
+               const Eigen::Isometry3d &here) {
     const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
     if (base.empty() || base.front().type == "fixed") {
       out_.links[robot_.rootLink()] = addFixed(-1, here);
@@ -138,11 +139,12 @@ class Builder {
 } // namespace
 
 std::shared_ptr<const Kinematics> makeKinematics(const Snapshot &snapshot, const std::vector<VirtualJoint> &base,
-                                                 const std::vector<std::string> &base_joints) {
+                                                 const std::vector<std::string> &base_joints,
+                                                 const Eigen::Isometry3d &place) {
   if (!snapshot.robot()) throw Error("a trajectory needs a robot, and the scene has none");
   auto out = std::make_shared<Kinematics>();
   out->robot = snapshot.robot();
-  Builder(snapshot, *out).build(base, base_joints);
+  Builder(snapshot, *out).build(base, base_joints, place);
   return out;
 }
 

@@ -292,12 +292,12 @@ Answer answerItems(const RobotMotion::Data &data, const std::vector<std::size_t>
 } // namespace
 
 RobotMotion::RobotMotion(SnapshotPtr snapshot, const TrajectoryDescription &trajectory, const JointPositions &rest,
-                         const std::vector<std::array<std::string, 2>> &disabled) {
+                         const std::vector<std::array<std::string, 2>> &disabled, const Eigen::Isometry3d &base) {
   checkTrajectory(trajectory);
   auto data = std::make_unique<Data>();
   data->snapshot = std::move(snapshot);
   data->id = trajectory.id;
-  data->kinematics = makeKinematics(*data->snapshot, trajectory.base, trajectory.base_joints);
+  data->kinematics = makeKinematics(*data->snapshot, trajectory.base, trajectory.base_joints, base);
   makeMotion(trajectory, rest, *data);
   choosePairs(disabled, *data);
   data_ = std::move(data);

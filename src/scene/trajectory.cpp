@@ -25,6 +25,14 @@ void checkList(const TrajectoryDescription &trajectory, std::size_t i, const cha
 
 } // namespace
 
+void adoptBase(const std::vector<VirtualJoint> &joints, TrajectoryDescription &trajectory) {
+  for (const VirtualJoint &joint : joints) {
+    for (const std::string &name : trajectory.joints) {
+      if (trajectory.base.empty() && name.rfind(joint.name + "/", 0) == 0) trajectory.base.push_back(joint);
+    }
+  }
+}
+
 void checkTrajectory(const TrajectoryDescription &trajectory) {
   if (trajectory.joints.empty()) throw Error("the trajectory names no joints");
   if (trajectory.points.empty()) throw Error("the trajectory has no points");

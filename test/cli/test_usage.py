@@ -8,10 +8,10 @@ class Usage(Case):
         answer = cprox('--help')
         self.assertEqual((answer.code, answer.err), (0, ''))
         for word in ('distance', 'tolerance', 'collision', 'pairs', 'send', '--curves', '--scene', '--robot', '--srdf', '--state',
-                     '--in', '--against', 'check', '--certificate', '--epsilon', '--delta', '--max-nodes', '--threads', '--per-object', '--max-rung', '--skipped',
+                     '--in', '--against', '--trajectory', '--self', '--signed', 'check', '--certificate', '--epsilon', '--delta', '--max-nodes', '--threads', '--per-object', '--max-rung', '--skipped',
                      '--out', '--node', '--version'):
             self.assertIn(word, answer.out)
-        for word in ('--trajectory', '--self', '--signed', 'constraints'):
+        for word in ('constraints', '--provider'):
             self.assertNotIn(word, answer.out)
 
     def help_wins_over_everything_else(self):
@@ -53,8 +53,7 @@ class Usage(Case):
                                        if name != '--delta' else cprox('tolerance', *files, name, value), name, value)
 
     def what_belongs_to_later_versions_is_refused_in_one_sentence(self):
-        for words in (['distance', '--trajectory', 't.yaml'], ['distance', '--self'],
-                      ['pairs', '--signed'], ['distance', '--curves', 'c', '--scene', 's', '--max-rung', 'mesh'],
+        for words in (['distance', '--curves', 'c', '--scene', 's', '--max-rung', 'mesh'],
                       ['constraints', '--provider', 'x', '--in', 'y']):
             with self.subTest(words=words):
                 self.assertRefused(cprox(*words), 'is not available in this version')

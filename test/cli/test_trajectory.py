@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Robots along joint trajectories."""
+import json
+import os
+
+from support import DATA, Case, cprox
+
+# A slider of one joint that carries a bar of 0.2 along x; beside it a pole that nothing moves.
+SLIDER = '''<robot name="slider">
+  <link name="rail"/>
+  <link name="cart"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="arm"><collision><origin xyz="0 0 0.5"/><geometry><box size="0.1 0.1 1"/></geometry></collision></link>
+  <link name="hand"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <joint name="slide" type="prismatic"><parent link="rail"/><child link="cart"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+  <joint name="swing" type="revolute"><parent link="cart"/><child link="arm"/><origin xyz="0 0 0.2"/><axis xyz="0 1 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+  <joint name="wrist" type="revolute"><parent link="arm"/><child link="hand"/><origin xyz="0 0 1.2"/><axis xyz="0 1 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+</robot>'''
+WALL = '''
+world:
+  collision_objects:
+    - {id: wall, primitives: [{type: box, dimensions: [1, 4, 4]}], primitive_poses: [{position: [3.5, 0, 0]}]}
+    - {id: post, primitives: [{type: sphere, dimensions: [0.25]}], primitive_poses: [{position: [0, 2, 0]}]}
+'''
+SLIDE = '''
+joint_trajectory:
+  joint_names: [slide]
+  points:
+    - {positions: [0], time_from_start: 0}
+    - {positions: [2], time_from_start: {secs: 4, nsecs: 0}}
+'''
+
+
+class Trajectory(Case):
+    def robot(self, verb, trajectory, *more, urdf=SLIDER, scene=WALL, srdf=None):
+        words = [verb, '--robot', self.file('robot.urdf', urdf), '--trajectory', self.file('go.yaml', trajectory)]
+        if scene:
+            words += ['--scene', self.file('scene.yaml', scene)]
+        if srdf:
+            words += ['--srdf', self.file('robot.srdf', srdf)]
+        return cprox(*words, *more)
+
+    def the_environment_row_names_link_object_and_time(self):
+        answer = self.robot('distance', SLIDE)
+        self.assertEqual((answer.code, answer.err), (0, ''))
+        row = answer.row('go')
+        self.assertAnswer(row, 3 - 2 - 0.1)
+        self.assertEqual((row['kind'], row['b']), ('environment', 'wall'))
+        self.assertIn(row['a'], ('cart', 'hand'))  # both reach 0.1 ahead
+        self.assertAlmostEqual(float(row['t']), 4.0, places=5)
+        self.assertAlmostEqual(float(row['b_x']), 3.0, places=5)
+
+    def verdicts_are_given(self):
+        self.assertEqual(self.robot('tolerance', SLIDE, '--delta', '0.89').row('go')['verdict'], 'yes')
+        self.assertEqual(self.robot('tolerance', SLIDE, '--delta', '0.91').row('go')['verdict'], 'no')
+        self.assertEqual(self.robot('collision', SLIDE).row('go')['verdict'], 'no')
+        self.assertEqual(self.robot('collision', SLIDE.replace('[2]', '[3]')).row('go')['verdict'], 'yes')
+
+    def each_object_has_a_row_of_its_own_when_asked(self):
+        answer = self.robot('distance', SLIDE, '--per-object')
+        self.assertEqual([row['b'] for row in answer.rows], ['post', 'wall'])
+        self.assertAnswer(answer.rows[0], 2 - 0.1 - 0.25)  # the cart's side at its start, level with the post
+
+    def self_pairs_need_two_joints_between_them_and_one_that_moves(self):
+        swing = '''
+joint_trajectory:
+  joint_names: [swing]
+  points: [{positions: [0], time_from_start: 0}, {positions: [0.5], time_from_start: 1}]
+'''
+        answer = self.robot('distance', swing, '--self', '--skipped')
+        row = [row for row in answer.rows if row['kind'] == 'self'][0]
+        self.assertEqual({row['a'], row['b']}, {'cart', 'hand'})
+        self.assertAnswer(row, 1.4 - 0.1 - 0.1)  # straight up is nearest: hand at 1.4 above the cart's middle
+        self.assertIn("links 'arm' and 'cart'", answer.err.replace("'cart' and 'arm'", "'arm' and 'cart'"))
+        off = '<robot name="slider"><disable_collisions link1="cart" link2="hand" reason="Never"/></robot>'
+        row = [row for row in self.robot('distance', swing, '--self', srdf=off).rows if row['kind'] == 'self'][0]
+        self.assertEqual((row['status'], row['lower'], row['b']), ('ok', 'inf', ''))
+
+    def joints_that_do_not_move_have_their_values_in_the_order_of_precedence(self):
+        bent = SLIDE + 'fixed_joints: {swing: 1.5707963267948966}\n'
+        reach = 0.1 + 0.0  # swung forward, the hand's middle is 1.2 ahead
+        self.assertAnswer(self.robot('distance', bent).row('go'), 3 - 2 - 1.2 - reach if 3 - 2 - 1.2 - reach > 0 else 0.0)
+        answer = self.robot('distance', bent.replace('[2]', '[1]'))
+        self.assertAnswer(answer.row('go'), 3 - 1 - 1.2 - 0.1, slack=1e-9)
+        straight = self.robot('distance', bent.replace('[2]', '[1]'), '--state', 'swing: 0')
+        self.assertAnswer(straight.row('go'), 3 - 1 - 0.1)
+
+    def allowed_pairs_are_left_out(self):
+        scene = WALL + 'allowed_collision_matrix: {default_entry_names: [wall], default_entry_values: [true]}\n'
+        answer = self.robot('distance', SLIDE, scene=scene)
+        self.assertEqual(answer.row('go')['b'], 'post')
+
+    def what_is_wrong_is_one_line(self):
+        for text, words in ((SLIDE.replace('[slide]', '[slyde]'), ("'slyde'",)),
+                            (SLIDE.replace('[2]', '[2, 3]'), ('point 1', '2 positions')),
+                            (SLIDE.replace('[2]', '[.nan]'), ('go.yaml',)),
+                            (SLIDE.replace('secs: 4', 'secs: 0'), ('point 1', 'not after')),
+                            ('interpolation: quintic\n' + SLIDE, ('point 0', 'velocities')),
+                            ('interpolation: spline\n' + SLIDE, ("'spline'",)),
+                            ('joint_trajectory: {joint_names: [slide], points: [{positions: [1], time_from_start: 0}]}', ('one point',)),
+                            ('joint_trajectory: {joint_names: [], points: []}', ('no joints',)),
+                            ('[1, 2]', ('go.yaml',))):
+            with self.subTest(text=text):
+                self.assertRefused(self.robot('distance', text), *words)
+        self.assertRefused(cprox('distance', '--trajectory', 't.yaml'), '--robot')
+        self.assertRefused(cprox('distance', '--robot', 'r.urdf', '--self'), '--trajectory')
+        self.assertRefused(self.robot('distance', SLIDE, '--curves', 'c.csv'), '--trajectory takes no --curves')
+
+    def reference_answers_overlap(self):
+        """Robots, scenes and splines of test/data against certified answers of another program, at 1e-6; what was sampled is never
+        below our lower bound (5e-9: the digits of the file)."""
+        with open(DATA + '/reference/expected_hull_model.json') as text:
+            cases = json.load(text)['cases']
+        self.assertEqual(len(cases), 23)
+        for case in cases:
+            words = ['distance', '--robot', f"{DATA}/{case['robot']}", '--scene', f"{DATA}/{case['scene']}", '--self', '--epsilon', '1e-6',
+                     '--trajectory', f"{DATA}/trajectories/{os.path.basename(case['trajectory'])}"]
+            if case.get('srdf'):
+                words += ['--srdf', f"{DATA}/{case['srdf']}"]
+            answer = cprox(*words)
+            for expected in case['results']:
+                with self.subTest(trajectory=case['trajectory'], kind=expected['kind']):
+                    row = [row for row in answer.rows if row['kind'] == expected['kind']][0]
+                    self.assertEqual(row['status'], 'ok', answer.err)
+                    lower, upper = float(row['lower']), float(row['upper'])
+                    self.assertLessEqual(upper - lower, 1e-6)
+                    self.assertLessEqual(lower, expected['upper'] + 5e-9)
+                    self.assertGreaterEqual(upper, expected['lower'] - 5e-9)
+                    self.assertLessEqual(lower, expected['sampled_min_step_0p001rad'] + 5e-9)
+                    if expected['lower'] > 0:
+                        self.assertEqual({row['a'], row['b']}, set(expected['pair']))
