@@ -253,7 +253,7 @@ def tidy():
         return Count(0, 1, ['clang-tidy: the core does not build'])
     files = [path for path in sources('src/core') if path.endswith('.c')]
     command = ['xargs', '-a', write_list(files), '-P2', '-n4', 'clang-tidy', '--quiet', '-p', build]
-    return run_one(command, 'clang-tidy', count_exit)
+    return run_one(command, 'clang-tidy', count_exit, limit=1800)
 
 
 def write_list(files):
