@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Robots along joint trajectories."""
 import json
+import math
 import os
 
 from support import DATA, Case, cprox
@@ -69,20 +70,18 @@ joint_trajectory:
         answer = self.robot('distance', swing, '--self', '--skipped')
         row = [row for row in answer.rows if row['kind'] == 'self'][0]
         self.assertEqual({row['a'], row['b']}, {'cart', 'hand'})
-        self.assertAnswer(row, 1.4 - 0.1 - 0.1)  # straight up is nearest: hand at 1.4 above the cart's middle
+        # at the end the hand's middle is 1.2 from the swing's axis, 0.1 above the cart's top, and beyond its edge
+        self.assertAnswer(row, math.hypot(1.2 * math.sin(0.5) - 0.1, 0.1 + 1.2 * math.cos(0.5)) - 0.1)
         self.assertIn("links 'arm' and 'cart'", answer.err.replace("'cart' and 'arm'", "'arm' and 'cart'"))
         off = '<robot name="slider"><disable_collisions link1="cart" link2="hand" reason="Never"/></robot>'
         row = [row for row in self.robot('distance', swing, '--self', srdf=off).rows if row['kind'] == 'self'][0]
         self.assertEqual((row['status'], row['lower'], row['b']), ('ok', 'inf', ''))
 
     def joints_that_do_not_move_have_their_values_in_the_order_of_precedence(self):
-        bent = SLIDE + 'fixed_joints: {swing: 1.5707963267948966}\n'
-        reach = 0.1 + 0.0  # swung forward, the hand's middle is 1.2 ahead
-        self.assertAnswer(self.robot('distance', bent).row('go'), 3 - 2 - 1.2 - reach if 3 - 2 - 1.2 - reach > 0 else 0.0)
-        answer = self.robot('distance', bent.replace('[2]', '[1]'))
-        self.assertAnswer(answer.row('go'), 3 - 1 - 1.2 - 0.1, slack=1e-9)
-        straight = self.robot('distance', bent.replace('[2]', '[1]'), '--state', 'swing: 0')
-        self.assertAnswer(straight.row('go'), 3 - 1 - 0.1)
+        bent = SLIDE + 'fixed_joints: {swing: 1.5707963267948966}\n'  # the hand's middle is 1.2 ahead
+        self.assertAnswer(self.robot('distance', bent).row('go'), 0.0)
+        self.assertAnswer(self.robot('distance', bent.replace('[2]', '[1]')).row('go'), 3 - 1 - 1.2 - 0.1, slack=1e-9)
+        self.assertAnswer(self.robot('distance', bent, '--state', 'swing: 0').row('go'), 3 - 2 - 0.1)
 
     def allowed_pairs_are_left_out(self):
         scene = WALL + 'allowed_collision_matrix: {default_entry_names: [wall], default_entry_values: [true]}\n'
