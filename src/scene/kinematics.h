@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <curve_proximity/cprox/robot.h>
+#include <curve_proximity/cprox.h>
 #include <curve_proximity/scene.hpp>
 #include <curve_proximity/srdf.hpp>
 
