@@ -103,7 +103,7 @@ class Trajectory(unittest.TestCase):
 
     def test_the_way_from_the_present_state_counts(self):
         # the trajectory begins at one second, on the far side of a ball that only the way there meets
-        self.server.replace(sphere('ball', 0.1, (0.55, 0, 0.6)))
+        self.server.replace(sphere('ball', 0.1, (0.35, 0, 0.5)))
         path = trajectory([1.5] + READY[1:], [1.6] + READY[1:])
         for row in path.points:
             row.time_from_start += rospy.Duration(1)
