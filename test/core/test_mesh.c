@@ -359,12 +359,9 @@ static void bad_input_is_refused_with_a_sentence(void **state) {
   const test_bezier path = bezier_make(way, 1);
   cprox_body *boxes = NULL, *ball = NULL;
   cprox_result unused;
-  cprox_options deep = cprox_options_default();
-  deep.signed_distance = true;
   assert_int_equal(cprox_body_create_boxes(low, top, 1, SIZE_MAX, ws, &boxes), CPROX_OK);
   assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
   const cprox_target target = cprox_at(boxes, cprox_pose_identity());
-  expect_reason(cprox_distance(cprox_point_along(path.curve), target, &deep, ws, &unused), CPROX_INVALID, "depth");
   expect_reason(cprox_distance(cprox_body_along(ball, path.curve), target, NULL, ws, &unused), CPROX_INVALID,
                 "carried");
   expect_reason(cprox_distance(cprox_body_along(boxes, path.curve), target, NULL, ws, &unused), CPROX_INVALID,

@@ -111,14 +111,6 @@ bool arguments_has_tree(const cprox_body *body) {
   return false;
 }
 
-/* Solids of many elements: how deep a point lies in their union no element tells. */
-static bool lacks_depth(const cprox_body *body) {
-  if (!body) return false;
-  for (size_t i = 0; i < body->n_parts; i++)
-    if (lacks_depth(body->parts[i].body)) return true;
-  return body->kind == CPROX_OCTREE || body->winding;
-}
-
 /* Convex parts without end have no Minkowski difference that a search could use. */
 static cprox_status check_carried(const cprox_body *body, cprox_workspace *workspace) {
   if (!body) return CPROX_OK;
@@ -147,12 +139,6 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target 
   for (size_t i = 0; i < n; i++) {
     const cprox_status clock = check_clock(mover->curve, &targets[i], i, workspace);
     if (clock != CPROX_OK) return clock;
-    if (options->signed_distance && lacks_depth(targets[i].body))
-      return workspace_fail(
-          workspace, CPROX_INVALID,
-          "target %zu is a solid mesh or boxes, or has such a part: their depth is not known, and signed "
-          "distance was asked for",
-          i);
     if (mover->body && arguments_has_tree(targets[i].body))
       return workspace_fail(workspace, CPROX_INVALID,
                             "target %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
