@@ -76,19 +76,20 @@ static void box_boundary(const piece *p, int dimension, points *out) {
 
 /* Gives a box the corners, and the sources of offsets, of a polygon or a mesh. */
 static bool box_to_corners(piece *p, int dimension) {
+  const bool plane = dimension == 2;
   points boundary = {0};
   box_boundary(p, dimension, &boundary);
   if (!boundary.failed) {
     p->vertex = malloc(boundary.n * sizeof *p->vertex);
-    p->triangle = dimension == 3 ? malloc(boundary.n / 3 * sizeof *p->triangle) : NULL;
+    p->triangle = plane ? NULL : malloc(boundary.n / 3 * sizeof *p->triangle);
   }
-  if (!p->vertex || (dimension == 3 && !p->triangle)) {
+  if (!p->vertex || (!plane && !p->triangle)) {
     free(boundary.at);
     return false;
   }
-  p->kind = dimension == 2 ? PIECE_POLYGON : PIECE_SOUP;
+  p->kind = plane ? PIECE_POLYGON : PIECE_SOUP;
   p->corner = boundary.at, p->n_corners = boundary.n;
-  if (dimension == 2) {
+  if (plane) {
     memcpy(p->vertex, boundary.at, boundary.n * sizeof *p->vertex);
     p->n_vertices = boundary.n;
     return true;

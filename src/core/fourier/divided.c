@@ -40,7 +40,7 @@ static wave of_sorted(const double *t, int n) {
 }
 
 wave divided_exponential(const double *nodes, int n) {
-  double t[DIVIDED_MOST];
+  double t[DIVIDED_MOST] = {0.0};
   for (int i = 0; i < n; i++) {
     int j = i;
     for (; j > 0 && t[j - 1] > nodes[i]; j--) t[j] = t[j - 1];

@@ -75,6 +75,7 @@ static solid_bounds integrate(const edges *e, double *heights, crossing *list) {
 static bool bound_loops(const cprox_solid *solid, solid_bounds *bounds) {
   edges e = {0};
   for (size_t i = 0; i < solid->n; i++) e.n += solid->pieces[i].n_corners;
+  if (e.n == 0) return true; /* without an edge the function is 0, and so are its bounds */
   e.from = malloc(e.n * sizeof *e.from);
   e.to = malloc(e.n * sizeof *e.to);
   double *heights = malloc((e.n + e.n * (e.n - 1) / 2) * sizeof *heights);

@@ -11,8 +11,8 @@
 
 double gap_bytes(int dimension, int N) {
   const double rows = dimension == 2 ? N + 1.0 : (2.0 * N + 1.0) * (N + 1.0);
-  const double blocks = rows * ((2 * N + 1 + LANES - 1) / LANES);
-  return blocks * (double)(sizeof(block) + (2 * LANES + 1) * sizeof(double)) + (double)sizeof(cprox_gap);
+  const int blocks_of_row = (2 * N + 1 + LANES - 1) / LANES;
+  return rows * blocks_of_row * (double)(sizeof(block) + (2 * LANES + 1) * sizeof(double)) + (double)sizeof(cprox_gap);
 }
 
 double gap_cost_of_turning(const cprox_solid *s) {
@@ -83,7 +83,7 @@ static void fill_block(const cprox_gap *gap, const sources *from, draft *d) {
   const block *b = &d->at;
   for (int lane = 0; lane < LANES; lane++) {
     const double weight = kernel_weight(from->w, (const int[3]){b->k[0] + lane, b->k[1], b->k[2]});
-    wave_jet s = {0}, t;
+    wave_jet s = {0}, t = {0};
     if (weight != 0.0) {
       const vec3 q = frequency(gap, b, lane);
       if (from->grid.value)
@@ -191,7 +191,8 @@ static bool fill_blocks(const cprox_gap *gap, const kernel *w, const cprox_solid
 static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cprox_solid *turned) {
   const int dimension = gap->info.dimension;
   gap->n_blocks = list_blocks(w, dimension, NULL);
-  draft *drafts = calloc(gap->n_blocks, sizeof *drafts);
+  /* three samples are the fewest, so that there is a block */
+  draft *drafts = gap->n_blocks > 0 ? calloc(gap->n_blocks, sizeof *drafts) : NULL;
   const bool folded = is_centred_ball(turned);
   bool failed = !drafts || !allocate(gap) || !fill_blocks(gap, w, fixed, folded ? turned : NULL, drafts);
   if (!failed) {
@@ -277,9 +278,9 @@ cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const 
     cprox_solid_free(q);
     return solid_out_of_memory(workspace);
   }
-  cprox_gap *made;
+  cprox_gap *made = NULL;
   status = gap_build(&plan, p, q, used.memory_limit, workspace, &made);
-  if (status != CPROX_OK) return status;
+  if (!made) return status;
   made->centre_a = a->centre, made->centre_b = b->centre;
   made->radius_a = a->radius, made->radius_b = b->radius;
   *gap = made;

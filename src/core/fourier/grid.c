@@ -54,8 +54,8 @@ static void transform_cells(const piece *p, const wave *phases, size_t w, wave *
 bool grid_transform(const piece *p, int dimension, int N, double step, grid_table *table) {
   const size_t w = 2 * (size_t)N + 1, ny = p->counts[1], nz = p->counts[2];
   const size_t most = ny > nz ? ny : nz, longest = p->counts[0] > most ? p->counts[0] : most;
-  wave *phases = malloc(w * longest * sizeof *phases), *x = malloc(w * ny * nz * sizeof *x);
-  wave *y = malloc(w * w * nz * sizeof *y), *z = malloc((dimension == 2 ? 1 : w * w * w) * sizeof *z);
+  wave *phases = calloc(w * longest, sizeof *phases), *x = calloc(w * ny * nz, sizeof *x);
+  wave *y = calloc(w * w * nz, sizeof *y), *z = calloc(dimension == 2 ? 1 : w * w * w, sizeof *z);
   const bool ok = phases && x && y && z;
   if (ok) {
     fill_phases(p->centre.x, p->size[0], p->counts[0], N, step, phases);

@@ -101,7 +101,7 @@ int kernel_steps(int N) {
 
 bool kernel_list_outside(const kernel *k, int dimension, int steps, double *outside) {
   const int fine = dimension == 2 ? 8 : 4, M = fine * steps;
-  double *mass = malloc(2 * (size_t)(M + 1) * sizeof *mass);
+  double *mass = calloc(2 * ((size_t)M + 1), sizeof *mass);
   if (!mass) return false;
   double *disc = mass + M + 1, *inner = mass;
   list_masses(k, M, mass);

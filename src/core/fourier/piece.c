@@ -178,9 +178,10 @@ double piece_error_scale(const piece *p, int dimension, double q) {
 
 static double grid_boundary(const piece *p, int dimension) {
   const int64_t n[3] = {p->counts[0], p->counts[1], p->counts[2]}, stride[3] = {1, n[0], n[0] * n[1]};
+  const int axes = dimension == 2 ? 2 : 3;
   size_t open = 0;
   for (int64_t i = 0; i < n[0] * n[1] * n[2]; i++)
-    for (int j = 0; p->cells[i] && j < dimension; j++) {
+    for (int j = 0; p->cells[i] && j < axes; j++) {
       const int64_t at = i / stride[j] % n[j];
       open += (size_t)(at == 0 || !p->cells[i - stride[j]]) + (size_t)(at + 1 == n[j] || !p->cells[i + stride[j]]);
     }

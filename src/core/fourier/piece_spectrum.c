@@ -219,14 +219,15 @@ static void grid(const piece *p, int dimension, vec3 q, wave_jet *jet) {
   const size_t nx = p->counts[0], rows = (size_t)p->counts[1] * p->counts[2];
   for (size_t row = 0; row < rows; row++) {
     const unsigned char *cells = p->cells + row * nx;
+    const size_t y = row % p->counts[1], z = row / p->counts[1];
     for (size_t i = 0; i < nx; i++) {
       if (!cells[i]) continue;
       const size_t first = i;
       while (i < nx && cells[i]) i++;
       piece run = piece_create(PIECE_BOX);
       run.size[0] = 0.5 * cell * (double)(i - first), run.size[1] = run.size[2] = 0.5 * cell;
-      const vec3 m = vec(0.5 * cell * (double)(first + i), cell * ((double)(row % p->counts[1]) + 0.5),
-                         dimension == 2 ? 0.0 : cell * ((double)(row / p->counts[1]) + 0.5));
+      const vec3 m = vec(0.5 * cell * (double)(first + i), cell * ((double)y + 0.5),
+                         dimension == 2 ? 0.0 : cell * ((double)z + 0.5));
       const real_jet b = box(&run, dimension, q);
       const wave e = wave_back(vec_dot(q, m));
       jet->value.re += b.value * e.re, jet->value.im += b.value * e.im;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* j0 and j1 are POSIX's, not C11's. */
-#define _XOPEN_SOURCE 700
+/* j0 and j1 are POSIX's, not C11's; this macro, reserved for the purpose, is how POSIX has them asked for. */
+#define _XOPEN_SOURCE 700 /* NOLINT(bugprone-reserved-identifier) */
 #include "fourier/profile.h"
 
 #include <math.h>

@@ -34,7 +34,7 @@ static void fill_axis(double theta, int N, double *re, double *im) {
 /* Takes the next tables of the job for the vector w. */
 static phase make_phase(const gap_job *job, double **tables, vec3 w) {
   const int N = job->gap->N;
-  const size_t width = (size_t)(2 * N + 2 * LANES);
+  const size_t width = 2 * (size_t)N + 2 * LANES;
   const double step = TAU / job->gap->info.period, theta[3] = {step * w.x, step * w.y, step * w.z};
   phase p;
   for (int j = 0; j < 3; j++) {
