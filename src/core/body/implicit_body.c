@@ -176,11 +176,7 @@ cprox_status cprox_body_create_superquadric(cprox_vec3 semi_axes, cprox_vec3 exp
   return create(given, NULL, true, workspace, body);
 }
 
-static cprox_status check_description(const cprox_implicit_description *d, size_t *terms, cprox_workspace *workspace) {
-  if (!d) return workspace_fail(workspace, CPROX_INVALID, "description is NULL");
-  if ((d->n_planes > 0 && !d->planes) || (d->n_quadrics > 0 && !d->quadrics) ||
-      (d->n_hyperquadrics > 0 && !d->hyperquadrics))
-    return workspace_fail(workspace, CPROX_INVALID, "an array of the description is NULL and its count is not 0");
+static cprox_status check_rows(const cprox_implicit_description *d, size_t *terms, cprox_workspace *workspace) {
   *terms = 0;
   size_t rows = 0;
   const size_t most = IMPLICIT_MOST_ROWS;
@@ -206,8 +202,12 @@ cprox_status cprox_body_create_implicit(const cprox_implicit_description *descri
                                         cprox_workspace *workspace, cprox_body **body) {
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   const cprox_implicit_description *d = description;
+  if (!d) return workspace_fail(workspace, CPROX_INVALID, "description is NULL");
+  if ((d->n_planes > 0 && !d->planes) || (d->n_quadrics > 0 && !d->quadrics) ||
+      (d->n_hyperquadrics > 0 && !d->hyperquadrics))
+    return workspace_fail(workspace, CPROX_INVALID, "an array of the description is NULL and its count is not 0");
   size_t terms = 0;
-  const cprox_status status = check_description(d, &terms, workspace);
+  const cprox_status status = check_rows(d, &terms, workspace);
   if (status) return status;
   implicit *given = implicit_allocate(d->n_planes, d->n_quadrics, d->n_hyperquadrics, terms);
   if (!given) return body_out_of_memory(workspace);

@@ -73,8 +73,10 @@ static bool edges_balance(const uint32_t (*triangles)[3], size_t m, const uint32
   return n > 0;
 }
 
-/* *closed is set, unless memory is out. */
+/* False where memory is out. No triangles close nothing. */
 static bool find_closedness(const vec3 *vertices, size_t n, const uint32_t (*triangles)[3], size_t m, bool *closed) {
+  *closed = false;
+  if (n == 0 || m == 0) return true;
   placed_vertex *sorted = malloc(n * sizeof *sorted);
   uint32_t *merged = malloc(n * sizeof *merged);
   edge *edges = malloc(3 * m * sizeof *edges);

@@ -188,6 +188,10 @@ cprox_status compile_append(compile *c, const compile_source *source, double t0,
 }
 
 cprox_status compile_finish(compile *c, cprox_curve **curve) {
+  if (c->n == 0) {
+    give_back(c);
+    return workspace_fail(c->workspace, CPROX_INVALID, "the curve has no pieces");
+  }
   cprox_curve *made = curve_allocate(5, c->n);
   if (made) {
     made->breaks[0] = c->from;

@@ -79,7 +79,8 @@ bool heading_advance(heading_curve *c, double to) {
   const double steps = fmax(1.0, ceil((0.6 * largest_curvature(c, c->at, to) + 1.2 * sqrt(fabs(c->rate))) * length));
   if (!(steps <= MOST_STEPS)) return false;
   const double from = c->at;
-  for (double i = 1.0; i < steps; i++) step(c, from + (to - from) * (i / steps));
+  const int n = (int)steps;
+  for (int i = 1; i < n; i++) step(c, from + (to - from) * (i / steps));
   step(c, to);
   return true;
 }

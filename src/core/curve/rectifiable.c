@@ -117,7 +117,7 @@ static cprox_status fill_pieces(cprox_curve *c, cprox_workspace *workspace) {
   cprox_status status = rectifiable_point(c, c->breaks[0], workspace, &at0);
   for (size_t i = 0; i < c->n_pieces && status == CPROX_OK; i++, at0 = at1) {
     const double from = c->breaks[i], to = c->breaks[i + 1];
-    rectifiable_hull hull;
+    rectifiable_hull hull = {0};
     status = rectifiable_point(c, to, workspace, &at1);
     if (status == CPROX_OK) status = rectifiable_hull_of(c, from, to, at0, at1, c->arcs->error, workspace, &hull);
     if (status != CPROX_OK) return status;

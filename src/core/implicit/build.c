@@ -309,7 +309,7 @@ static cprox_status place(const implicit *mapped, implicit *about, void *memory,
     if (!implicit_measure(about)) return fail_interior(workspace);
     about->give = 0.0; /* of the size that is not known yet: counted below */
     vec3 mean;
-    double box[6];
+    double box[6] = {0};
     const cprox_status status = find_box(about, memory, workspace, &mean, box);
     if (status) return status;
 

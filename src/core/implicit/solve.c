@@ -337,7 +337,7 @@ static double solve_gap(solve *s, double *mu) {
 static double solve_step(solve *s, double target) {
   solve_assemble(s, target);
   solve_factor(s);
-  double b[SOLVE_MOST_VARIABLES];
+  double b[SOLVE_MOST_VARIABLES] = {0};
   for (int i = 0; i < s->n; i++) b[i] = s->rhs[i];
   solve_substitute(s, b);
 
