@@ -29,7 +29,7 @@ static void section(const double *root, size_t degree, double a, double b, doubl
 }
 
 static double at_middle(const double *c, size_t degree) {
-  double v[MOTION_MAX_DEGREE + 1];
+  double v[MOTION_MAX_DEGREE + 1] = {0};
   memcpy(v, c, (degree + 1) * sizeof *v);
   for (size_t r = 1; r <= degree; r++)
     for (size_t i = 0; i + r <= degree; i++) v[i] = 0.5 * (v[i] + v[i + 1]);
@@ -99,7 +99,7 @@ static void ball_over(const cprox_motion *m, size_t segment, size_t axis_index, 
   const robot_axis *axis = &m->robot->axes[axis_index];
   const size_t degree = m->degree[segment];
   const double n = (double)degree;
-  double c[4][MOTION_MAX_DEGREE + 1], p[3][4] = {{0}}, bound[4] = {0}, error = 0.0, factor = 2.0 * n;
+  double c[4][MOTION_MAX_DEGREE + 1] = {{0}}, p[3][4] = {{0}}, bound[4] = {0}, error = 0.0, factor = 2.0 * n;
   for (int k = 0; k < 4; k++) {
     error += coefficients_over(m, segment, axis->variable + k, a, b, c[k]);
     p[0][k] = at_middle(c[k], degree);
@@ -133,7 +133,7 @@ static void ball_over(const cprox_motion *m, size_t segment, size_t axis_index, 
 
 static void line_over(const cprox_motion *m, size_t segment, const robot_axis *axis, double a, double b, double *values,
                       axis_state *state) {
-  double c[MOTION_MAX_DEGREE + 1];
+  double c[MOTION_MAX_DEGREE + 1] = {0};
   variable_state v = {.value = m->rest[axis->variable]};
   double error = 0.0;
   if (state->moves) {

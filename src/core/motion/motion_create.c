@@ -100,15 +100,15 @@ static cprox_status check_spline(size_t degree, const double *control, size_t n_
 static cprox_motion *allocate(const motion_source *s, size_t n_segments, size_t degree) {
   cprox_motion *m = calloc(1, sizeof *m);
   if (!m) return NULL;
-  const size_t n = s->n + 1, n_variables = s->robot->n_variables + 1;
+  const size_t n = s->n + 1, n_variables = s->robot->n_variables + 1, room = n_segments + 1;
   m->robot = s->robot;
   m->n_segments = n_segments;
   m->n_moving = s->n;
   m->stride = degree + 1;
-  m->times = calloc(n_segments + 1, sizeof *m->times);
-  m->degree = calloc(n_segments, sizeof *m->degree);
-  m->coefficients = calloc(n_segments * n * m->stride, sizeof *m->coefficients);
-  m->error = calloc(n_segments * n, sizeof *m->error);
+  m->times = calloc(room, sizeof *m->times);
+  m->degree = calloc(room, sizeof *m->degree);
+  m->coefficients = calloc(room * n * m->stride, sizeof *m->coefficients);
+  m->error = calloc(room * n, sizeof *m->error);
   m->moving = calloc(n, sizeof *m->moving);
   m->slot = calloc(n_variables, sizeof *m->slot);
   m->rest = calloc(n_variables, sizeof *m->rest);

@@ -131,7 +131,9 @@ bool curve_tree_meets(curve_tree *o, tree_sight *sight, double *until) {
   if (o->tree->kind != TREE_TRIANGLES || o->side.curve->arcs) return false;
   curve_side_load(&o->side, sight->piece);
   const double error = curve_side_point_error(&o->side);
-  for (double step = 1e-12; step < 0.1; step *= 10.0) {
+  enum { MOST_WIDTHS = 12 };
+  double step = 1e-12;
+  for (int i = 0; i < MOST_WIDTHS && step < 0.1; i++, step *= 10.0) {
     const double from = fmax(sight->s - step, o->side.part.a), to = fmin(sight->s + step, o->side.part.b);
     *until = to;
     if (goes_through(o, sight, from, to)) return true;

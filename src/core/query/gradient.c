@@ -77,11 +77,13 @@ static cprox_status find_root(curve_convex *o, double left, double right, look *
 
 /* The minimiser near t, to the last digits; *end: -1 or 1 where it is an end of the range. */
 static cprox_status refine(curve_convex *o, double t0, double t1, double *t, int *end) {
+  enum { MOST_STEPS = 8 };
   const double range = t1 - t0;
   *end = 0;
-  for (double step = 1e-8 * range; step < 0.05 * range; step *= 8.0) {
+  double step = 1e-8 * range;
+  for (int i = 0; i < MOST_STEPS && step < 0.05 * range; i++, step *= 8.0) {
     const double left = fmax(*t - step, t0), right = fmin(*t + step, t1);
-    look a, b;
+    look a = {.slope = 0.0}, b = {.slope = 0.0};
     cprox_status status = look_at(o, left, true, &a);
     if (status == CPROX_OK) status = look_at(o, right, false, &b);
     if (status < 0) return status;
@@ -236,7 +238,7 @@ static cprox_status gradient_of_body(const question *q, const candidate *c, cpro
   o.epsilon = 1e-3 * q->options.epsilon;
   int end;
   cprox_status status = refine(&o, q->t0, q->t1, &g->t, &end);
-  look here;
+  look here = {.slope = 0.0};
   if (status == CPROX_OK) status = look_at(&o, g->t, end > 0, &here);
   if (status < 0) return status;
   const double distance = here.sight.near.distance - o.offset;

@@ -216,7 +216,7 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
 pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b, bool depth) {
   const pair_side side_a = pair_place_side(a, part_a), side_b = pair_place_side(b, part_b);
   const pair_goal goal = {.relative_epsilon = depth ? 1e-10 : 1e-13, .max_steps = 400, .wants_depth = depth};
-  pair_answer answer;
+  pair_answer answer = {.upper = INFINITY};
   pair_solve(&side_a, &side_b, &goal, NULL, &answer);
   pair_witness witness = {.on_a = answer.on_a, .on_b = answer.on_b, .normal = answer.normal};
   if (!depth && answer.upper <= answer.rounding) witness.on_a = witness.on_b = answer.common;
@@ -238,7 +238,7 @@ static cprox_status pair_over_parts(const cprox_target *a, const cprox_target *b
       if (!side_a.body->tree && !side_b.body->tree && side_a.shape->ops->kind == CPROX_HALFSPACE &&
           side_b.shape->ops->kind == CPROX_HALFSPACE)
         return workspace_fail(workspace, CPROX_INVALID, "two halfspaces have no distance");
-      pair_answer answer;
+      pair_answer answer = {.upper = INFINITY};
       const cprox_status status = pair_solve(&side_a, &side_b, goal, workspace, &answer);
       if (status) return status;
       if (answer.fault)

@@ -60,7 +60,8 @@ void cprox_lagrange_weights(const double *nodes, size_t n_points, double t, doub
 /* 1, cos t, sin t, cos 2t, … */
 void cprox_trigonometric_weights(size_t n_coefficients, double t, double *weights) {
   for (size_t i = 0; i < n_coefficients; i++) {
-    const double angle = (double)((i + 1) / 2) * t;
+    const size_t multiple = (i + 1) / 2;
+    const double angle = (double)multiple * t;
     weights[i] = i % 2 ? cos(angle) : sin(angle);
   }
   weights[0] = 1.0;

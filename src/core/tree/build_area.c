@@ -43,7 +43,8 @@ static int bin_of(const builder *b, uint32_t element, const cut *c) {
 }
 
 static double packs_for(size_t n) {
-  return (double)((n + TREE_LANES - 1) / TREE_LANES);
+  const size_t packs = (n + TREE_LANES - 1) / TREE_LANES;
+  return (double)packs;
 }
 
 /* The cheapest boundary across one axis. */
