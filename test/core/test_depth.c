@@ -55,6 +55,21 @@ static void overlap(rng *r, const test_shape *a, const cprox_pose *pa, const tes
   pb->position = vec((double)x.x, (double)x.y, (double)x.z);
 }
 
+/* No direction that is found by climbing leads out by less than the interval says, and the normal leads out by as much. */
+static void compare_with_directions(rng *r, const test_shape *a, const cprox_pose *pa, const test_shape *b,
+                                    const cprox_pose *pb, const cprox_result *result, long double hair) {
+  const vec3l n = ref_vec(result->normal);
+  if (result->lower > -hair || vec_norm2(result->normal) == 0.0)
+    return; /* points fall together, flat bodies touch, no more */
+  if (!(phi(a, pa, b, pb, n) >= (long double)result->lower - hair))
+    fail_msg("%s in %s: lower %.17g, along the normal %.20Lg", shape_name(a), shape_name(b), result->lower,
+             phi(a, pa, b, pb, n));
+  long double best = climb(r, a, pa, b, pb, n, 1e-3);
+  for (int m = 0; m < 6; m++) best = fmaxl(best, climb(r, a, pa, b, pb, ref_vec(rng_unit(r)), 0.3));
+  if (!((long double)result->upper >= best - hair))
+    fail_msg("%s in %s: upper %.17g, but %.20Lg leads out", shape_name(a), shape_name(b), result->upper, best);
+}
+
 /* Seed 81, 55 pairs of kinds, 40 cases each, sizes 1e-3 to 1e3, from just touching to concentric. The tolerance is long double's own. */
 static void no_direction_leads_out_sooner_and_the_normal_leads_out_so_soon(void **state) {
   (void)state;
@@ -73,17 +88,10 @@ static void no_direction_leads_out_sooner_and_the_normal_leads_out_so_soon(void 
         const cprox_result result = ask(a.body, pa, b.body, pb, 1e-8 * scale);
         asked++;
         open += result.status != CPROX_OK;
-        const long double hair = 1e-17L * (scale + vec_norm(pa.position) + vec_norm(pb.position));
-        const vec3l n = ref_vec(result.normal);
-        if (result.lower > -hair || vec_norm2(result.normal) == 0.0)
-          continue; /* points fall together, flat bodies touch, no more */
-        if (!(phi(&a, &pa, &b, &pb, n) >= (long double)result.lower - hair))
-          fail_msg("%s in %s: lower %.17g, along the normal %.20Lg", shape_name(&a), shape_name(&b), result.lower,
-                   phi(&a, &pa, &b, &pb, n));
-        long double best = climb(&r, &a, &pa, &b, &pb, n, 1e-3);
-        for (int m = 0; m < 6; m++) best = fmaxl(best, climb(&r, &a, &pa, &b, &pb, ref_vec(rng_unit(&r)), 0.3));
-        if (!((long double)result.upper >= best - hair))
-          fail_msg("%s in %s: upper %.17g, but %.20Lg leads out", shape_name(&a), shape_name(&b), result.upper, best);
+        compare_with_directions(&r, &a, &pa, &b, &pb, &result,
+                                1e-17L * (scale + vec_norm(pa.position) + vec_norm(pb.position)));
+        cprox_body_free(a.body);
+        cprox_body_free(b.body);
       }
   print_message("open %zu of %zu\n", open, asked);
   assert_true(open * 200 <= asked);
