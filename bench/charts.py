@@ -62,7 +62,7 @@ def work_precision(rows, out, group, workload, parameter, title, name):
         axes.fill_between(x, median, p95, color=colour, alpha=0.13, linewidth=0)
     axes.invert_xaxis()
     axes.set_xlabel('width of the interval asked for [m]')
-    axes.set_ylabel('time a query [µs]; the band reaches to the 95 % quantile')
+    axes.set_ylabel('time a query [µs]; band: to 95 %')
     axes.set_title(title)
     axes.legend()
     return save(figure, out, name)
@@ -89,7 +89,7 @@ def bars(rows, out, group, select, title, name, label=lambda row: f"{row['worklo
     axes.set_ylabel(time)
     axes.set_title(title)
     axes.grid(axis='x', visible=False)
-    axes.legend()
+    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
     return save(figure, out, name)
 
 
