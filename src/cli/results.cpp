@@ -41,6 +41,11 @@ void appendGeometry(std::string &line, const ResultRow &row) {
   }
 }
 
+/* What is handed over leaves in one piece, so that a run that is killed leaves no half row. */
+void writeWhole(std::FILE *file) {
+  std::setvbuf(file, nullptr, _IONBF, 0);
+}
+
 } // namespace
 
 ResultRow toRow(const Answer &answer, Verb verb) {
@@ -92,7 +97,10 @@ std::string resultsLine(const ResultRow &row) {
 
 ResultsFile::ResultsFile(const std::string &path, const std::vector<std::string> &inputs, const std::string &option)
     : path_(path.empty() ? "standard output" : path), file_(path.empty() ? stdout : nullptr) {
-  if (file_) return;
+  if (file_) {
+    writeWhole(file_);
+    return;
+  }
 
   /* opening empties the file: not one that is yet to be read */
   for (const std::string &input : inputs) {
@@ -103,6 +111,7 @@ ResultsFile::ResultsFile(const std::string &path, const std::vector<std::string>
   errno = 0;
   file_ = std::fopen(path.c_str(), "wb");
   if (!file_) throw BadUsage(option + " " + path + ": cannot be written: " + std::strerror(errno));
+  writeWhole(file_);
 }
 
 ResultsFile::~ResultsFile() {
