@@ -85,19 +85,27 @@ static vec3 closed_follow(const convex *shape, vec3 d, vec3 x) {
   return x;
 }
 
-/* The bound from above; the point attains it but for the shape's slack, or the answer is not a number. */
+/* The bound from above; the point attains it but for the shape's slack, or the answer is not a number. Where the solver stalls just short
+ * of that, a direction turned by far less than the slack may do: h(d) <= h(d') + |d - d'| radius, on both sides. */
 static double open_support(const convex *shape, vec3 d, convex_hint *hint, vec3 *at) {
   (void)hint;
+  enum { MOST_TURNS = 6 };
   const implicit *body = shape->implicit;
   vec3 unit;
-  const double norm = feature_unit(d, &unit);
-  const implicit_question question = {.a = body, .far = true, .t = unit};
-  const implicit_goal goal = {.epsilon = IMPLICIT_SUPPORT * body->radius, .max_steps = 2000};
-  implicit_answer answer;
-  solve_on_stack(&question, &goal, &answer);
-  if (!(answer.upper - answer.lower <= shape->slack)) return NAN;
-  if (at) *at = answer.x;
-  return norm * answer.upper;
+  const double norm = feature_unit(d, &unit), step = 0.125 * shape->slack / body->radius;
+  for (int turn = 0; turn <= MOST_TURNS; turn++) {
+    const double aside = turn == 0 ? 0.0 : turn % 2 ? step : -step;
+    const vec3 off = vec(turn <= 2 ? aside : 0.0, turn == 3 || turn == 4 ? aside : 0.0, turn > 4 ? aside : 0.0);
+    const double moved = ROUND_UP * fabs(aside) * body->radius;
+    const implicit_question question = {.a = body, .far = true, .t = vec_add(unit, off)};
+    const implicit_goal goal = {.epsilon = IMPLICIT_SUPPORT * body->radius, .max_steps = 2000};
+    implicit_answer answer;
+    solve_on_stack(&question, &goal, &answer);
+    if (!(answer.upper - answer.lower <= shape->slack - 2.0 * moved)) continue;
+    if (at) *at = answer.x;
+    return norm * (answer.upper + moved);
+  }
+  return NAN;
 }
 
 /* near_rounding: the interval of the search is IMPLICIT_EPSILON wide; what is more shows in the certificate of the query. */
