@@ -191,26 +191,34 @@ def formatting():
     return run_one(['clang-format', '--dry-run', '-Werror', *files], 'clang-format', count_exit)
 
 
-def build_apart(flavour, options, target='all'):
-    """Configures and builds in a folder of its own beside the workspace's build. Returns that folder, or None."""
+def step_apart(flavour, word, command):
+    """One step of a build in a folder of its own. Returns whether it went well."""
+    log = log_path(f'{flavour}-{word}')
+    if execute(command, log, limit=1800)[1] == 0:
+        return True
+    show_failure(log)
+    return False
+
+
+def build_apart(flavour, options, targets=lambda build: ['all']):
+    """Configures and builds in a folder of its own beside the workspace's build; targets names what, given the configured
+    folder. Returns that folder, or None."""
     build = os.path.join(WORKSPACE, 'core', flavour)
-    steps = (['cmake', '-S', REPO, '-B', build, '-DCPROX_WERROR=ON', *options],
-             ['cmake', '--build', build, '--target', target, '--', '-j2'])
-    for step, word in zip(steps, ('configure', 'build')):
-        log = log_path(f'{flavour}-{word}')
-        if execute(step, log, limit=1800)[1] != 0:
-            show_failure(log)
-            return None
-    return build
+    if not step_apart(flavour, 'configure', ['cmake', '-S', REPO, '-B', build, '-DCPROX_WERROR=ON', *options]):
+        return None
+    command = ['cmake', '--build', build, '--target', *targets(build), '--', '-j2']
+    return build if step_apart(flavour, 'build', command) else None
 
 
-def build_core(flavour, *options):
-    """The core alone, as one who has no ROS builds it, with its tests."""
-    return build_apart(flavour, ['-DCPROX_ROS=OFF', '-DCPROX_TESTS=ON', '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON', *options])
+def build_core(flavour, *options, only=''):
+    """The core alone, as one who has no ROS builds it, with its tests, or with those alone that `only` matches."""
+    def targets(build):
+        return [name.split('.', 1)[1] for name, _, _ in ctest_entries(build) if re.search(only, name)] if only else ['all']
+    return build_apart(flavour, ['-DCPROX_ROS=OFF', '-DCPROX_TESTS=ON', '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON', *options], targets)
 
 
 def core_tests(flavour, *options, env=None, only=''):
-    build = build_core(flavour, *options)
+    build = build_core(flavour, *options, only=only)
     if build is None:
         return Count(0, 1, [f'core-{flavour}: the build failed'])
     count = Count()
@@ -238,7 +246,7 @@ def threads():
     flavour = 'threads-scene'
     devel = os.path.join(WORKSPACE, 'core', flavour, 'devel')
     options = [*sanitizer, '-DPYTHON_EXECUTABLE=/usr/bin/python3', f'-DCATKIN_DEVEL_PREFIX={devel}']
-    if build_apart(flavour, options, 'scene_test_threads') is None:
+    if build_apart(flavour, options, lambda build: ['scene_test_threads']) is None:
         return count + Count(0, 1, [f'{flavour}: the build failed'])
     results = log_path(flavour) + '.xml'
     if os.path.exists(results):
