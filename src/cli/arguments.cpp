@@ -7,8 +7,8 @@
 #include <optional>
 #include <thread>
 
+#include "../scene/yaml/numbers.h"
 #include "failure.h"
-#include "numbers.h"
 
 namespace curve_proximity::cli {
 namespace {

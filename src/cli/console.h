@@ -6,7 +6,8 @@
 #include <mutex>
 #include <string>
 
-#include "yaml_value.h"
+#include "../scene/yaml/yaml_value.h"
+#include "failure.h"
 
 namespace curve_proximity::cli {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "../scene/yaml/numbers.h"
 #include "failure.h"
-#include "numbers.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <variant>
 
+#include "../scene/yaml/scene_change.h"
 #include "failure.h"
 #include "finish.h"
 #include "packages.h"

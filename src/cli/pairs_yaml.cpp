@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "pairs_yaml.h"
 
-#include "body_yaml.h"
+#include "../scene/yaml/body_yaml.h"
 #include "failure.h"
 
 namespace curve_proximity::cli {

@@ -9,7 +9,8 @@
 #include <curve_proximity/core.hpp>
 #include <curve_proximity/description.hpp>
 
-#include "yaml_value.h"
+#include "../scene/yaml/yaml_value.h"
+#include "failure.h"
 
 namespace curve_proximity::cli {
 

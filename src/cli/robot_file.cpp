@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "../scene/yaml/scene_change.h"
 #include "failure.h"
 #include "packages.h"
 
@@ -20,11 +21,6 @@ std::string readText(const std::string &path) {
 }
 
 } // namespace
-
-std::string folderOf(const std::string &path) {
-  std::error_code error;
-  return std::filesystem::absolute(path, error).parent_path().string();
-}
 
 std::shared_ptr<const Robot> readRobot(const std::string &path) {
   RobotOptions options;

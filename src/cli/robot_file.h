@@ -9,7 +9,8 @@
 #include <curve_proximity/robot.hpp>
 #include <curve_proximity/srdf.hpp>
 
-#include "yaml_value.h"
+#include "../scene/yaml/yaml_value.h"
+#include "failure.h"
 
 namespace curve_proximity::cli {
 
@@ -22,9 +23,6 @@ Srdf readSrdf(const std::string &path);
 /** "joint: value, …" of --state. Throws BadUsage: no such text, a value that is not a finite number, a joint that the
  *  robot does not have. */
 JointPositions readState(const std::string &text, const Robot &robot);
-
-/** The folder that a file lies in. */
-std::string folderOf(const std::string &path);
 
 } // namespace curve_proximity::cli
 #endif

@@ -7,7 +7,8 @@
 
 #include <curve_proximity/trajectory.hpp>
 
-#include "yaml_value.h"
+#include "../scene/yaml/yaml_value.h"
+#include "failure.h"
 
 namespace curve_proximity::cli {
 

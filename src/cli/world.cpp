@@ -3,11 +3,12 @@
 
 #include <set>
 
+#include "../scene/yaml/frames.h"
+#include "../scene/yaml/scene_change.h"
+#include "../scene/yaml/scene_yaml.h"
 #include "failure.h"
-#include "frames.h"
 #include "packages.h"
 #include "robot_file.h"
-#include "scene_yaml.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -9,8 +9,9 @@
 #include <curve_proximity/scene.hpp>
 #include <curve_proximity/srdf.hpp>
 
+#include "../scene/yaml/yaml_value.h"
 #include "arguments.h"
-#include "yaml_value.h"
+#include "failure.h"
 
 namespace curve_proximity::cli {
 

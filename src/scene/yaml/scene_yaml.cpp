@@ -7,7 +7,7 @@
 #include "failure.h"
 #include "numbers.h"
 
-namespace curve_proximity::cli {
+namespace curve_proximity::yaml {
 namespace {
 
 /* ---- words or numbers, as the constants of moveit_msgs and shape_msgs count them */
@@ -265,4 +265,4 @@ SceneFile readScene(const std::string &path, Warnings &warnings) {
   return out;
 }
 
-} // namespace curve_proximity::cli
+} // namespace curve_proximity::yaml

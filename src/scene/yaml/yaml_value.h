@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** YAML values that know where they stand, so that what is wrong with them can be told. */
-#ifndef CURVE_PROXIMITY_CLI_YAML_VALUE_H
-#define CURVE_PROXIMITY_CLI_YAML_VALUE_H
+#ifndef CURVE_PROXIMITY_YAML_YAML_VALUE_H
+#define CURVE_PROXIMITY_YAML_YAML_VALUE_H
 
 #include <yaml-cpp/yaml.h>
 
@@ -15,7 +15,7 @@
 
 #include <curve_proximity/core.hpp>
 
-namespace curve_proximity::cli {
+namespace curve_proximity::yaml {
 
 /** Sentences for a person, each once, in the order in which they were first said. */
 class Warnings {
@@ -101,5 +101,5 @@ class YamlValue {
 /** The whole of a YAML file. Throws BadUsage where it cannot be read or is no YAML, with the line. */
 YamlValue loadYaml(const std::string &path);
 
-} // namespace curve_proximity::cli
+} // namespace curve_proximity::yaml
 #endif

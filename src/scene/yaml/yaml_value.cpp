@@ -9,7 +9,7 @@
 #include "failure.h"
 #include "numbers.h"
 
-namespace curve_proximity::cli {
+namespace curve_proximity::yaml {
 namespace {
 
 std::string join(const std::string &where, const std::string &key) {
@@ -174,4 +174,4 @@ YamlValue loadYaml(const std::string &path) {
   }
 }
 
-} // namespace curve_proximity::cli
+} // namespace curve_proximity::yaml

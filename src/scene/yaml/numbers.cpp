@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace curve_proximity::cli {
+namespace curve_proximity::yaml {
 
 std::string_view trimmed(std::string_view text) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
@@ -44,4 +44,4 @@ std::optional<std::uint64_t> parseCount(std::string_view text) {
   return value;
 }
 
-} // namespace curve_proximity::cli
+} // namespace curve_proximity::yaml

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** SCENE.yaml: the shape of moveit_msgs/PlanningScene. */
-#ifndef CURVE_PROXIMITY_CLI_SCENE_YAML_H
-#define CURVE_PROXIMITY_CLI_SCENE_YAML_H
+#ifndef CURVE_PROXIMITY_YAML_SCENE_YAML_H
+#define CURVE_PROXIMITY_YAML_SCENE_YAML_H
 
 #include <map>
 #include <string>
@@ -12,7 +12,7 @@
 
 #include "yaml_value.h"
 
-namespace curve_proximity::cli {
+namespace curve_proximity::yaml {
 
 /** An entry of fixed_frame_transforms: where the frame `child` stands in `parent`. */
 struct FrameTransform {
@@ -41,5 +41,5 @@ struct SceneFile {
  *  put it elsewhere. What can be ignored is ignored with a warning. */
 SceneFile readScene(const std::string &path, Warnings &warnings);
 
-} // namespace curve_proximity::cli
+} // namespace curve_proximity::yaml
 #endif

@@ -7,7 +7,7 @@
 
 #include "failure.h"
 
-namespace curve_proximity::cli {
+namespace curve_proximity::yaml {
 namespace {
 
 /* A triangle as shape_msgs/MeshTriangle prints it, or as a list. */
@@ -114,4 +114,4 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
   return shape;
 }
 
-} // namespace curve_proximity::cli
+} // namespace curve_proximity::yaml

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Frames of a scene file: from their names to poses in the fixed frame. */
-#ifndef CURVE_PROXIMITY_CLI_FRAMES_H
-#define CURVE_PROXIMITY_CLI_FRAMES_H
+#ifndef CURVE_PROXIMITY_YAML_FRAMES_H
+#define CURVE_PROXIMITY_YAML_FRAMES_H
 
 #include <map>
 #include <set>
@@ -12,7 +12,7 @@
 
 #include "scene_yaml.h"
 
-namespace curve_proximity::cli {
+namespace curve_proximity::yaml {
 
 class Frames {
  public:
@@ -35,5 +35,5 @@ class Frames {
   LinkPoses links_;
 };
 
-} // namespace curve_proximity::cli
+} // namespace curve_proximity::yaml
 #endif

@@ -3,7 +3,7 @@
 
 #include "failure.h"
 
-namespace curve_proximity::cli {
+namespace curve_proximity::yaml {
 namespace {
 
 std::string bare(const std::string &name) {
@@ -60,4 +60,4 @@ Eigen::Isometry3d Frames::find(const std::string &name) const {
   throw BadInput("the frame '" + name + "' stands in itself: fixed_frame_transforms go in a ring");
 }
 
-} // namespace curve_proximity::cli
+} // namespace curve_proximity::yaml
