@@ -43,8 +43,8 @@ def methods_of(rows):
     return sorted(names, key=lambda name: (not name.startswith(OURS), names.index(name)))
 
 
-def work_precision(rows, out, group, workload, parameter, title, name):
-    """Time against the accuracy asked: rows whose parameter matches the pattern, whose one group is the accuracy."""
+def work_precision(rows, out, group, workload, parameter, title, name, x_label='width of the interval asked for [m]', reverse=True):
+    """Time against the accuracy asked, or another number: rows whose parameter matches the pattern, whose one group is that number."""
     points = []
     for row in rows:
         match = re.fullmatch(parameter, row['parameter'])
@@ -58,10 +58,11 @@ def work_precision(rows, out, group, workload, parameter, title, name):
         mine = sorted(p[1:] for p in points if p[0] == method)
         x, median, p95 = zip(*mine)
         colour = colour_of(method, seen)
-        axes.loglog(x, median, 'o-', color=colour, label=LABELS.get(method, method))
+        (axes.loglog if reverse else axes.semilogy)(x, median, 'o-', color=colour, label=LABELS.get(method, method))
         axes.fill_between(x, median, p95, color=colour, alpha=0.13, linewidth=0)
-    axes.invert_xaxis()
-    axes.set_xlabel('width of the interval asked for [m]')
+    if reverse:
+        axes.invert_xaxis()
+    axes.set_xlabel(x_label)
     axes.set_ylabel('time a query [µs]; band: to 95 %')
     axes.set_title(title)
     axes.legend()
@@ -123,10 +124,39 @@ def fourier(rows, out):
     yield bars(rows, out, 'fourier', lambda row: row['workload'] == 'boxes', 'Two boxes: a gap beside a distance', 'fourier_boxes')
 
 
+def seeds(rows, out):
+    """Fig. 7 and 10 of Lakshmanan et al., and its Table II as bars."""
+    yield narrowing(rows, out)
+    for verb in ('distance', 'tolerance', 'collision'):
+        yield work_precision(rows, out, 'seeds', f'figure 10 {verb}', r'order (\d+)', f'Bézier curves and a point, {verb}',
+                             f'seeds_figure_10_{verb}', 'order of the curve', reverse=False)
+    yield bars(rows, out, 'seeds', lambda row: row['workload'].startswith('table II'), 'The pairs of Table II', 'seeds_table_2',
+               lambda row: f"{row['parameter'][0]}\n{row['workload'][9:]}")
+
+
+def narrowing(rows, out):
+    figure, axes = plt.subplots()
+    found = [row for row in rows if row['group'] == 'seeds' and row['workload'] == 'figure 7']
+    for method in methods_of(found):
+        mine = [row for row in found if row['method'] == method]
+        axes.semilogy([float(row['nodes']) for row in mine], [float(row['error']) for row in mine], 'o-', color=colour_of(method, []),
+                      label=LABELS.get(method, method))
+    axes.set_xlabel('intervals examined')
+    axes.set_ylabel('upper - lower [m]')
+    axes.set_title('A curve of order 13 and a polygon: how the interval narrows')
+    axes.legend()
+    return save(figure, out, 'seeds_figure_7') if found else plt.close(figure)
+
+
+def present(out):
+    """The charts that are there from an earlier run."""
+    return sorted(name[:-4] for name in os.listdir(out) if name.endswith('.png'))
+
+
 def draw_all(rows, out):
     """All charts for which there are rows; their names."""
     style()
     drawn = []
-    for draw in (curves, batches, robots, fourier):
+    for draw in (curves, seeds, batches, robots, fourier):
         drawn += [name for name in draw(rows, out) if name]
     return drawn

@@ -9,10 +9,12 @@ import subprocess
 import sys
 
 import charts
+import pages
 import targets
 
 PREFIX = 'curve_proximity_bench_'
 NOT_GROUPS = {'core', 'service'}  # Google benchmark's and the node's: no rows of results.csv
+MADE = 'made.txt'  # how the results came to be
 COLUMNS = ['group', 'workload', 'method', 'parameter', 'median_us', 'p95_us', 'nodes', 'probes', 'error', 'unsound', 'failures']
 
 
@@ -36,31 +38,42 @@ def read_results(path):
         return list(csv.DictReader(text))
 
 
+def measure(parser, arguments):
+    """Runs the groups into results.csv, and notes how. The names of those that failed."""
+    groups = programs(arguments.programs)
+    unknown = [name for name in arguments.only or [] if name not in groups]
+    if unknown:
+        parser.error(f"no group {', '.join(unknown)}; there are {', '.join(groups)}")
+    flags = ['--quick'] * arguments.quick + [f'--only {name}' for name in arguments.only or []] + ['--check'] * arguments.check
+    with open(os.path.join(arguments.out, MADE), 'w') as text:
+        text.write(pages.how_made(' '.join(['scripts/bench', *flags]), pages.commit_of(os.path.dirname(__file__))) + '\n')
+    failed = []
+    with open(os.path.join(arguments.out, 'results.csv'), 'w') as out:
+        out.write(','.join(COLUMNS) + '\n')
+        for name in arguments.only or groups:
+            print(f'{name} ...', file=sys.stderr)
+            if run_group(groups[name], arguments.quick, out) != 0:
+                failed.append(name)
+    return failed
+
+
 def main():
     parser = argparse.ArgumentParser(prog='scripts/bench', description=__doc__)
     parser.add_argument('--programs', help=argparse.SUPPRESS)
     parser.add_argument('--out', required=True, help='folder for results.csv and the charts')
     parser.add_argument('--quick', action='store_true', help='smaller problems, fewer rounds: within five minutes')
     parser.add_argument('--only', action='append', metavar='GROUP', help='this group only; may be given more than once')
+    parser.add_argument('--pages', action='store_true', help='measure nothing: write the pages of DIR/results.csv again')
     parser.add_argument('--check', action='store_true', help='end with 1 where a target of bench/targets.csv is missed')
     arguments = parser.parse_args()
 
-    groups = programs(arguments.programs)
-    unknown = [name for name in arguments.only or [] if name not in groups]
-    if unknown:
-        parser.error(f"no group {', '.join(unknown)}; there are {', '.join(groups)}")
     os.makedirs(arguments.out, exist_ok=True)
-    results = os.path.join(arguments.out, 'results.csv')
-    failed = []
-    with open(results, 'w') as out:
-        out.write(','.join(COLUMNS) + '\n')
-        for name in arguments.only or groups:
-            print(f'{name} ...', file=sys.stderr)
-            if run_group(groups[name], arguments.quick, out) != 0:
-                failed.append(name)
-    rows = read_results(results)
-    drawn = charts.draw_all(rows, arguments.out)
-    print(f'{len(rows)} rows in {results}, {len(drawn)} charts beside it')
+    failed = [] if arguments.pages else measure(parser, arguments)
+    rows = read_results(os.path.join(arguments.out, 'results.csv'))
+    drawn = charts.draw_all(rows, arguments.out) if not arguments.pages else charts.present(arguments.out)
+    with open(os.path.join(arguments.out, MADE)) as text:
+        written = pages.write_all(rows, drawn, arguments.out, text.read().strip())
+    print(f"{len(rows)} rows in {arguments.out}/results.csv, {len(drawn)} charts and {', '.join(written)} beside it")
     for name in failed:
         print(f'FAILED: group {name} ended with an error')
     missed = targets.report(rows, arguments.only) if arguments.check else 0

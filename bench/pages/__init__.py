@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The pages that stand beside the charts, written from results.csv."""
+import os
+import subprocess
+
+from pages import choosing, readme, seeds
+from pages.figures import Figures
+
+NEEDS = {'seeds.md': {'seeds', 'batches', 'implicit'}, 'choosing.md': {'curves', 'batches', 'robots', 'implicit'}}
+
+
+def how_made(command, commit):
+    """The sentence that says where the figures come from."""
+    with open('/proc/cpuinfo') as text:
+        model = next((line.split(':', 1)[1].strip() for line in text if line.startswith('model name')), 'an unnamed processor')
+    return f'Made by `{command}` at commit {commit} on {os.cpu_count()} cores ({model}).'
+
+
+def commit_of(repository):
+    found = subprocess.run(['git', '-C', repository, 'rev-parse', '--short', 'HEAD'], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    return found.stdout.strip() or 'unknown'
+
+
+def write_all(rows, drawn, out, made):
+    """The pages for which all groups were run; their names."""
+    figures = Figures(rows)
+    groups = {row['group'] for row in rows}
+    pages = {'README.md': lambda: readme.page(figures, drawn, made), 'seeds.md': lambda: seeds.page(figures),
+             'choosing.md': lambda: choosing.page(figures)}
+    written = []
+    for name, write in pages.items():
+        if NEEDS.get(name, set()) <= groups:
+            with open(os.path.join(out, name), 'w') as text:
+                text.write(write())
+            written.append(name)
+    return written

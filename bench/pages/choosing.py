@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""choosing.md: which method, which epsilon, which verb, for which scene; every number from results.csv."""
+from pages.figures import short
+
+
+def page(figures):
+    polytope, order = 'polytope 3-D distance', 'order 15 eps '
+    loose, tight = (figures.time('curves', polytope, order + e) for e in ('1e-02', '1e-10'))
+    growth = short(figures.number('curves', polytope, order + '1e-14') / figures.number('curves', polytope, order + '1e-02'))
+    clear = figures.time('curves', 'polytope 3-D tolerance clear', 'order 15 delta 0.50 d')
+    near = figures.time('curves', 'polytope 3-D tolerance clear', 'order 15 delta 0.99 d')
+    distance = figures.time('curves', polytope, order + '1e-06')
+    batch = ('batches', 'boxes {}', '100 obstacles')
+    tolerance_batch, distance_batch = (figures.time(batch[0], batch[1].format(verb), batch[2]) for verb in ('tolerance', 'distance'))
+    missed = figures.row('batches', 'boxes collision', '100 obstacles', 'FCL at 100 points')['unsound']
+    robot = figures.time('robots', 'environment', 'epsilon 1e-06')
+    robot_loose = figures.time('robots', 'environment', 'epsilon 0.001')
+    superquadric = figures.time('implicit', 'table I', 'I-II')
+    general = figures.ratio('implicit', 'table I', 'I-II', baseline='ipopt')
+    return f'''# Choosing
+
+Five minutes for whoever plans motions. All times are medians of one run ([README.md](README.md) says of which), one core; what counts is how they relate.
+
+## Which question
+- **Only "is it farther than Δ?"**: ask `tolerance`. Against a 3-D polytope, for a curve of order 15, it takes {clear} when Δ is half of the distance, {near} when it is
+  99 % of it; the distance itself to 1e-6 takes {distance}. The farther Δ is from the distance, the cheaper.
+- **Only "does it hit?"**: ask `collision`: a tolerance with Δ = 0.
+- **When does it hit?** `first contact`: never late.
+- **How close, where, and in which direction?** `distance`.
+- **A gradient for an optimiser?** A constraint provider: by curve distance where curves are what you optimise, by superquadrics where the gradient must be smooth
+  between bodies, by Fourier gaps where bodies may overlap and must be pushed apart.
+
+## Which epsilon
+An answer to 1e-2 m takes {loose}, to 1e-10 m {tight}; to 1e-14 it takes {growth} times what 1e-2 takes. So do not save on ε for curves: the default, 1e-6 m, is already
+below what a robot can be controlled to. Robots along joint splines against a scene take {robot_loose} at 1e-3, {robot} at 1e-6 (medians over the reference cases).
+
+## Which model
+- Boxes, spheres, capsules, cylinders, cones, polytopes: give them as they are; they are closed forms or support functions.
+- Meshes: leave them meshes. Their hull answers first, the triangles only where the hull cannot decide (`max_rung` stops at the hull).
+- Superquadrics and implicit bodies: {superquadric} a pair to 1e-8, certified; a general interior-point solver takes {general} times as long.
+- What a sensor sees: point clouds and octrees, rebuilt at sensor rate.
+
+## One or many
+A batch of a thousand quintics against a hundred boxes takes {tolerance_batch} for all tolerances, {distance_batch} for all distances. Sampling a hundred points of each
+curve gave {missed} wrong verdicts about the same collisions; no ε makes up for that.
+
+## When an answer is not `ok`
+`undecided` means within ε of the limit: count it as unsafe, or ask for a smaller ε. `budget` means that the interval is true but wide: a continuum of nearest points (an
+arc about a point at its centre) does that; raise `max_nodes` only if you need the width. `precision` means that double arithmetic ends there.
+'''

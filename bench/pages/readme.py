@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""README.md of a folder of results: how they were made, targets, growth, where others are faster, what each chart shows."""
+import csv
+import fnmatch
+import os
+
+import targets
+from pages.figures import short, table
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+CHARTS = [
+    ('work_precision_*', 'time against the accuracy asked: a point, a polygon, a polytope, another curve'),
+    ('distance_by_order', 'the same questions over orders 5, 15, 45'),
+    ('tolerance', 'verdicts over delta, as a fraction of the distance'),
+    ('seeds_*', 'figures of the first paper, drawn again; [seeds.md](seeds.md) has its tables, and those of the second'),
+    ('batches', 'a thousand quintics against 2, 50 and 100 obstacles, beside sampling by FCL'),
+    ('robots_*', 'arms along joint splines, against the scene and themselves, beside the bound by both ends of an interval'),
+    ('worlds_*', 'meshes, point clouds, octree leaves, sets of bodies, beside FCL'),
+    ('fourier_*', 'over-reach of gap functions by kernel and n, an SE(2) obstacle, convergence, boxes, nesting'),
+    ('providers_*', 'constraint providers beside the core calls that they wrap'),
+    ('ros_*', 'what the service and the nodelet add'),
+    ('stability_*', 'families of hard inputs: right, wrong, failed, not ended'),
+]
+
+
+def reasons():
+    with open(os.path.join(HERE, 'losses.csv'), newline='') as text:
+        return list(csv.DictReader(line for line in text if not line.startswith('#')))
+
+
+def reason_for(name, known):
+    return next((line['why'] for line in known if fnmatch.fnmatchcase(name, line['pattern'])), 'Not explained yet.')
+
+
+def target_lines(rows):
+    for verdict, target, value in targets.judge_all(rows):
+        shown = 'no rows' if value is None else f'{value:.3g}'
+        yield [verdict, target['name'], shown, targets.asked(target), target['kind'] + (f" to {target['baseline']}" if target['baseline'] else '')]
+
+
+def growth_lines(rows):
+    """Every workload whose parameters count something, three of them at least: its fitted exponent."""
+    found = {}
+    for row in rows:
+        if row['workload'].startswith(('growth', 'figure 2')):
+            found.setdefault((row['group'], row['workload'], row['method']), []).append(row)
+    for (group, workload, method), of in sorted(found.items()):
+        if len(of) >= 3:
+            yield [group, workload, method, ', '.join(row['parameter'] for row in of), f'{targets.exponent(of):.2f}']
+
+
+def losses(rows):
+    """Workloads in which another method is faster than ours in the geometric mean, and by how much."""
+    for group, workload in dict.fromkeys((row['group'], row['workload']) for row in rows):
+        of = [row for row in rows if (row['group'], row['workload']) == (group, workload)]
+        for method in dict.fromkeys(row['method'] for row in of):
+            if targets.is_ours({'method': method}):
+                continue
+            values = targets.ratios(of, method)
+            mean = targets.geometric_mean(values) if values else 1.0
+            if mean < 0.95:
+                yield group, workload, method, mean
+
+
+def loss_lines(rows):
+    known = reasons()
+    for verdict, target, _ in targets.judge_all(rows):
+        if verdict == 'MISSED':
+            yield f"- **{target['name']}** (missed). {reason_for(target['name'], known)}"
+    for group, workload, method, ratio in losses(rows):
+        name = f'{group}/{workload}/{method}'
+        yield f'- {group}, {workload}: **{method}** takes {short(ratio)} of our time. {reason_for(name, known)}'
+
+
+def page(figures, drawn, made):
+    chart_lines = [[f'`{pattern}`', text] for pattern, text in CHARTS if any(fnmatch.fnmatchcase(name, pattern) for name in drawn)]
+    return f'''# Charts
+
+{made}
+
+Trust ratios and counts, not microseconds. `results.csv` has every row. [choosing.md](choosing.md) says what follows from them for a planner.
+
+{table(['chart', 'shows'], chart_lines)}
+
+## Targets
+`bench/targets.csv`, held against this run; "within slack" is what two runs on the same machine may differ by.
+
+{table(['', 'target', 'figure', 'asked', 'kind'], list(target_lines(figures.rows)))}
+
+## Growth
+Time against size: the exponent of a power, fitted by least squares to the logarithms.
+
+{table(['group', 'workload', 'method', 'sizes', 'exponent'], list(growth_lines(figures.rows)))}
+
+## Where we lose
+{chr(10).join(loss_lines(figures.rows)) or 'Nowhere in this run.'}
+'''

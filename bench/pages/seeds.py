@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""seeds.md: the tables of the papers, measured again, beside the values that they print."""
+from pages.figures import microseconds, table
+
+PAPER = 'paper'
+
+
+def arc_lengths(figures):
+    """Table I of Lakshmanan et al.: printed in nanoseconds."""
+    printed = {'2 cos t | sin t': (1710.70, 58.02), 't^3 + t | t': (1673.80, 44.69), '1/(t + 1) | t': (2102.11, 38.43)}
+    lines = []
+    for curve, (length, bound) in printed.items():
+        here = [figures.number('seeds', 'table I', curve, method=name) for name in ('length by quadrature', 'bound in closed form')]
+        lines.append([curve.replace(' | ', ', '), f'{length:.0f} ns', microseconds(here[0]), f'{bound:.0f} ns', microseconds(here[1])])
+    return table(['curve', 'length, printed', 'length, here', 'bound, printed', 'bound, here'], lines)
+
+
+def proximity(figures):
+    """Table II of Lakshmanan et al.: printed in microseconds."""
+    printed = {'a heart | polygon': (208.22, 10.52, 10.38), 'b epicycloid | polygon': (234.52, 80.90, 59.19),
+               'c Euler spiral | polygon': (150.03e3, 29.70e3, 17.08e3), 'd Bezier | Bezier': (425.66, 49.20, 37.66),
+               'e involute | involute': (1.21e3, 204.68, 116.22), 'f fish | Lissajous': (3.74e3, 471.99, 229.25)}
+    lines = []
+    for pair, values in printed.items():
+        for verb, value in zip(('distance', 'tolerance', 'collision'), values):
+            key = ('seeds', f'table II {verb}', pair)
+            lines.append([pair.replace(' | ', ', ') if verb == 'distance' else '', verb, microseconds(value),
+                          figures.time(*key, method=PAPER), figures.time(*key), figures.count(*key, method=PAPER, column='nodes'),
+                          figures.count(*key, column='nodes')])
+    return table(['pair', 'query', 'printed', 'its method here', 'ours', 'its intervals', 'ours'], lines)
+
+
+def orders(figures):
+    lines = []
+    for order in range(5, 50, 5):
+        line = [str(order)]
+        for verb in ('distance', 'tolerance', 'collision'):
+            key = ('seeds', f'figure 10 {verb}', f'order {order:02d}')
+            line += [figures.time(*key, method=PAPER), figures.time(*key)]
+        lines.append(line)
+    return table(['order', 'distance, its method', 'ours', 'tolerance, its method', 'ours', 'collision, its method', 'ours'], lines)
+
+
+def replanning(figures):
+    key = ('batches', 'polygons tolerance', '2 obstacles')
+    return (f"Printed: 11.6 ms for 1000 quintics and both obstacles. Here its method takes {figures.time(*key, method=PAPER)}, "
+            f"ours {figures.time(*key)}.")
+
+
+def implicit_pairs(figures):
+    """Table I of Chakraborty et al.: printed in milliseconds."""
+    printed = {'I-II': .84, 'I-III': .91, 'II-III': .70, 'III-IV': .85, 'II-IV': .76, 'III-V': .78, 'V-VI': .89, 'III-VI': .89}
+    lines = []
+    for pair, value in printed.items():
+        key = ('implicit', 'table I', pair)
+        ipopt = [row for row in figures.rows if (row['workload'], row['parameter'], row['method']) == ('table I', pair, 'ipopt')]
+        peer = [microseconds(float(ipopt[0]['median_us'])), ipopt[0]['failures']] if ipopt else ['not measured', '']
+        lines.append([pair, microseconds(1e3 * value), *peer, figures.time(*key, method='interior_point'), figures.time(*key),
+                      figures.row(*key)['failures']])
+    return table(['objects', 'printed', 'Ipopt', 'its failures', 'our interior point', 'ours together', 'our failures'], lines)
+
+
+def implicit_motion(figures):
+    """Tables II and III of Chakraborty et al.: printed in milliseconds."""
+    printed = [('table II closest distance', 'I-III', 1.32), ('table II closest distance', 'II-III', .97),
+               ('table II first contact', 'I-III', 2.03), ('table II first contact', 'II-III', 1.51),
+               ('table III scaling', 'I-III', 1.04), ('table III scaling', 'II-III', .75),
+               ('table III exponents', 'I-III', .87), ('table III exponents', 'II-III', .84)]
+    lines = [[name, pair, microseconds(1e3 * value), figures.time('implicit', name, pair)] for name, pair, value in printed]
+    return table(['table and query', 'objects', 'printed', 'ours'], lines)
+
+
+def page(figures):
+    return f'''# The papers' own tables, measured again
+
+Printed values come from other machines and, where inputs are not published (where the curves of Fig. 11 stand, the polygons, the vehicle's
+curves), from other problems of the same kind: compare orders of magnitude there. What was run here ran in one process, in turns; "its
+method" is the published method, written again as described (`bench/paper`).
+
+## A. Lakshmanan, A. Patterson, V. Cichella, N. Hovakimyan, "Proximity Queries for Absolutely Continuous Parametric Curves", RSS 2019
+(printed: Julia, 2.3 GHz Core i5)
+
+**Table I**, the length of a stretch of a curve and its bound by Eq. 6:
+
+{arc_lengths(figures)}
+
+**Table II**, the pairs of Fig. 11, to 1e-10; tolerance at half of the distance:
+
+{proximity(figures)}
+
+**Fig. 7**, the width of the interval against intervals examined: `seeds_figure_7`.
+
+**Fig. 10**, ten random Bézier curves of each order and a point, medians:
+
+{orders(figures)}
+
+**Fig. 12**, replanning. {replanning(figures)}
+
+## N. Chakraborty, J. Peng, S. Akella, J. Mitchell, "Proximity Queries Between Convex Objects: An Interior Point Approach for Implicit Surfaces", 2008
+(printed: KNITRO 5.0 on a 2.2 GHz Athlon 64, to 1e-8)
+
+**Table I**:
+
+{implicit_pairs(figures)}
+
+**Tables II and III**, translation and deformation:
+
+{implicit_motion(figures)}
+
+**Fig. 2**, time against the number of constraints: [growth](README.md#growth).
+
+## M. Lysenko, "Fourier Collision Detection", 2011
+It prints no figures, only pictures: Fig. 3 is `fourier_over_reach`, Fig. 5 `fourier_convergence`, Fig. 6 `fourier_obstacle`.
+'''

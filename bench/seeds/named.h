@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The kinds of curves in Fig. 11 of Lakshmanan et al. (2019), for us and for their method: each with the integral of |psi'|² in
+ * closed form. The sizes and places are ours: the paper does not print them. */
+#ifndef CPROX_BENCH_SEEDS_NAMED_H
+#define CPROX_BENCH_SEEDS_NAMED_H
+
+#include "../paper/paper.h"
+#include "curve_proximity/cprox.h"
+
+enum { NAMED_MAX_HARMONIC = 8 };
+
+/* A planar curve that the paper's method can take: what `paper.self` points to is this. */
+typedef struct named_curve {
+  cprox_curve *curve;
+  paper_curve paper;
+  size_t harmonics;
+  vec3 coefficient[2 * NAMED_MAX_HARMONIC + 1]; /* 1, cos t, sin t, cos 2t, … */
+  double energy[4 * NAMED_MAX_HARMONIC + 1];    /* of |psi'|²: 1, cos t, sin t, … */
+  vec3 centre;                                  /* of the involute's circle */
+} named_curve;
+
+/* Made in place, since paper.self is the curve itself. */
+void named_heart(vec3 centre, double size, named_curve *c);
+void named_epicycloid(vec3 centre, double size, named_curve *c);
+void named_fish(vec3 centre, double size, named_curve *c);
+void named_lissajous(vec3 centre, double size, named_curve *c);
+void named_involute(vec3 centre, double t1, named_curve *c);
+/* Of unit speed, its curvature t, t from -2 pi to 2 pi. The paper's method gets our compiled points: it need not integrate. */
+void named_spiral(vec3 centre, named_curve *c);
+
+#endif
