@@ -18,7 +18,7 @@ LABELS = {OURS: 'curve_proximity (certified)', 'paper': "Lakshmanan et al. 2019,
 
 def style():
     plt.rcParams.update({'figure.figsize': (7.2, 4.4), 'figure.dpi': 110, 'font.size': 10, 'axes.spines.top': False,
-                         'axes.spines.right': False, 'axes.grid': True, 'grid.color': '#dddddd', 'grid.linewidth': 0.6,
+                         'axes.spines.right': False, 'axes.grid': True, 'axes.axisbelow': True, 'grid.color': '#dddddd', 'grid.linewidth': 0.6,
                          'legend.frameon': False, 'lines.linewidth': 1.8, 'lines.markersize': 5, 'svg.hashsalt': 'cprox'})
 
 

@@ -27,10 +27,12 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('--cprox', required=True, help='the program')
     parser.add_argument('--node', default='', help='curve_proximity_node')
+    parser.add_argument('--example-ompl', default='', help='example_ompl')
     parser.add_argument('names', nargs='*')
     arguments = parser.parse_args()
     os.environ['CPROX'] = os.path.abspath(arguments.cprox)
     os.environ['CPROX_NODE'] = os.path.abspath(arguments.node) if arguments.node else ''
+    os.environ['CPROX_EXAMPLE_OMPL'] = os.path.abspath(arguments.example_ompl) if arguments.example_ompl else ''
     sys.path.insert(0, HERE)
 
     # all modules beside this one, or those that are named

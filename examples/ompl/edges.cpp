@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "edges.hpp"
+
+#include <ompl/base/SpaceInformation.h>
+#include <ompl/base/spaces/RealVectorStateSpace.h>
+
+using curve_proximity::Answer;
+using curve_proximity::Question;
+using curve_proximity::RobotMotion;
+using curve_proximity::TrajectoryDescription;
+using curve_proximity::Verb;
+
+namespace {
+
+/* What does not move is not asked about: a state is an edge of so many radians to either side. */
+constexpr double BLINK = 1e-9;
+
+std::vector<double> valuesOf(const Task &task, const ompl::base::State *state) {
+  const double *values = state->as<ompl::base::RealVectorStateSpace::StateType>()->values;
+  return {values, values + task.joints.size()};
+}
+
+} // namespace
+
+bool clearBetween(const Task &task, const std::vector<double> &from, const std::vector<double> &to,
+                  curve_proximity::Workspace &workspace) {
+  TrajectoryDescription edge;
+  edge.joints = task.joints;
+  edge.points = {{from, {}, {}, 0.0}, {to, {}, {}, 1.0}};
+  const RobotMotion motion(task.snapshot, edge, task.rest, task.disabled);
+
+  Question question;
+  question.verb = Verb::TOLERANCE;
+  question.delta = task.clearance;
+  for (const Answer &answer : askEnvironment(motion, question, workspace)) {
+    if (answer.result.verdict != CPROX_YES) return false;
+  }
+  question.delta = 0.0;
+  return askSelf(motion, question, workspace).result.verdict == CPROX_YES;
+}
+
+bool CertifiedMotionValidator::checkMotion(const ompl::base::State *from, const ompl::base::State *to) const {
+  const bool clear = clearBetween(task_, valuesOf(task_, from), valuesOf(task_, to), workspace_);
+  ++(clear ? valid_ : invalid_);
+  return clear;
+}
+
+bool CertifiedMotionValidator::checkMotion(const ompl::base::State *from, const ompl::base::State *to,
+                                           std::pair<ompl::base::State *, double> &last_valid) const {
+  const bool clear = checkMotion(from, to);
+  if (!clear) {
+    last_valid.second = 0.0;
+    if (last_valid.first) si_->copyState(last_valid.first, from);
+  }
+  return clear;
+}
+
+bool StateChecker::isValid(const ompl::base::State *state) const {
+  if (!si_->satisfiesBounds(state)) return false;
+  std::vector<double> before = valuesOf(task_, state), after = before;
+  for (double &value : before) value -= BLINK;
+  for (double &value : after) value += BLINK;
+  return clearBetween(task_, before, after, workspace_);
+}
