@@ -69,6 +69,17 @@ typedef enum cprox_verdict { CPROX_NO = 0, CPROX_YES = 1, CPROX_UNDECIDED = 2 } 
 /** "no", "yes", "undecided". */
 CPROX_API const char *cprox_verdict_name(cprox_verdict verdict);
 
+/** The models of a body, from coarse to fine; in a result, the finest one that the answer needed. */
+typedef enum cprox_rung {
+  CPROX_RUNG_NONE = 0,
+  CPROX_RUNG_SPHERE = 1,
+  CPROX_RUNG_HULL = 2,
+  CPROX_RUNG_MESH = 3
+} cprox_rung;
+
+/** "none", "sphere", "hull", "mesh". Convex bodies are their own hull. */
+CPROX_API const char *cprox_rung_name(cprox_rung rung);
+
 /** How a query is to be answered. Start from cprox_options_default(). */
 typedef struct cprox_options {
   double epsilon;           /**< [m] width of the interval asked for, >= 0; 0 asks for the narrowest one that double
@@ -84,20 +95,14 @@ typedef struct cprox_options {
                              the shortest way by which the mover, there, could leave the target (a part of it, for compounds).
                              Curves have no inside beyond their radius. Meshes, points and octrees cannot tell: CPROX_OVERLAP,
                              and lower only bounds it. Default false: distances are 0 at least */
+  cprox_rung
+      max_rung; /**< the finest model of targets that may answer, CPROX_RUNG_MESH (or NONE): any. HULL: ladders by their hulls.
+                          SPHERE: all bodies by their bounding balls, but for points, octrees and halfspaces, which stay what they
+                          are. A coarser model contains the body: lower and "clear" hold for the body itself as well, but upper,
+                          the witness and "hit" are the model's */
 } cprox_options;
 
 CPROX_API cprox_options cprox_options_default(void);
-
-/** The coarsest model of a target that decided the answer. */
-typedef enum cprox_rung {
-  CPROX_RUNG_NONE = 0,
-  CPROX_RUNG_SPHERE = 1,
-  CPROX_RUNG_HULL = 2,
-  CPROX_RUNG_MESH = 3
-} cprox_rung;
-
-/** "none", "sphere", "hull", "mesh". Convex bodies are their own hull. */
-CPROX_API const char *cprox_rung_name(cprox_rung rung);
 
 typedef struct cprox_result {
   cprox_status status;   /**< the same that the call returned */

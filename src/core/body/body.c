@@ -361,6 +361,7 @@ const char *cprox_body_kind_name(cprox_body_kind kind) {
     case CPROX_MESH: return "mesh";
     case CPROX_POINTS: return "points";
     case CPROX_OCTREE: return "octree";
+    case CPROX_LADDER: return "ladder";
   }
   return "unknown";
 }
@@ -372,6 +373,7 @@ void cprox_body_bounding_sphere(const cprox_body *body, cprox_vec3 *centre, doub
 
 double cprox_body_support(const cprox_body *body, cprox_vec3 direction, cprox_vec3 *point) {
   if (body->kind == CPROX_COMPOUND) return compound_support(body, direction, point);
+  if (body->mesh) return cprox_body_support(body->mesh, direction, point);
   if (body->tree) return elements_support(body, direction, point);
   const convex *shape = &body->shape;
   vec3 at, unit;
@@ -392,6 +394,7 @@ double cprox_body_support(const cprox_body *body, cprox_vec3 direction, cprox_ve
 
 double cprox_body_nearest(const cprox_body *body, cprox_vec3 point, cprox_vec3 *nearest) {
   if (body->kind == CPROX_COMPOUND) return compound_nearest(body, point, nearest);
+  if (body->mesh) return cprox_body_nearest(body->mesh, point, nearest);
   if (body->tree) return elements_nearest(body, point, nearest);
   convex_near near;
   body->shape.ops->nearest(&body->shape, vec_sub(point, body->centre), NULL, &near);

@@ -22,7 +22,9 @@ struct cprox_body {
   size_t n_parts;
   struct tree
       *tree; /* meshes, points, boxes: the elements, about `centre`; the shape has the margin and the scale alone */
-  struct winding *winding; /* solid meshes: what tells inside from outside */
+  struct winding *winding;       /* solid meshes: what tells inside from outside */
+  const cprox_body *hull, *mesh; /* ladders: the two models, */
+  double excess;                 /* and how far the mesh may stick out of the hull */
 };
 
 #endif

@@ -84,7 +84,7 @@ cprox_status elements_create(cprox_body_kind kind, tree_source *source, size_t n
 /* ---- questions -------------------------------------------------------------------------------------------------------- */
 
 bool cprox_body_is_solid(const cprox_body *body) {
-  return body->kind != CPROX_MESH || body->winding;
+  return body->mesh ? cprox_body_is_solid(body->mesh) : body->kind != CPROX_MESH || body->winding;
 }
 
 size_t cprox_body_bytes(const cprox_body *body) {

@@ -8,13 +8,15 @@
 
 question question_create(cprox_mover mover, const cprox_target *targets, size_t n, double limit, bool farther_is_yes,
                          const cprox_options *options, cprox_workspace *workspace) {
-  return (question){.mover = mover,
-                    .targets = targets,
-                    .n = n,
-                    .limit = limit,
-                    .farther_is_yes = farther_is_yes,
-                    .options = options ? *options : cprox_options_default(),
-                    .workspace = workspace};
+  question q = {.mover = mover,
+                .targets = targets,
+                .n = n,
+                .limit = limit,
+                .farther_is_yes = farther_is_yes,
+                .options = options ? *options : cprox_options_default(),
+                .workspace = workspace};
+  if (q.options.max_rung == CPROX_RUNG_NONE) q.options.max_rung = CPROX_RUNG_MESH;
+  return q;
 }
 
 cprox_verdict question_verdict(const question *q, const cprox_result *r) {
@@ -62,10 +64,17 @@ cprox_status question_conclude(const question *q, double ceiling, cprox_status t
   return all->status;
 }
 
+/* The bound of list[i] has grown: moves it back to where it belongs. */
+static void sort_again(candidate *list, size_t i, size_t n) {
+  const candidate moved = list[i];
+  for (; i + 1 < n && list[i + 1].lower < moved.lower; i++) list[i] = list[i + 1];
+  list[i] = moved;
+}
+
 cprox_status question_answer(const question *q, size_t first, size_t last, double ceiling, cprox_result *result) {
   if (q->mover.motion) return robot_answer(q, first, last, ceiling, result);
   size_t n = 0;
-  const candidate *list = NULL;
+  candidate *list = NULL;
   if (last > first) {
     list = candidates_list(q, first, last, &n);
     if (!list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
@@ -74,15 +83,23 @@ cprox_status question_answer(const question *q, size_t first, size_t last, doubl
   cprox_result all = question_nothing();
   cprox_status trouble = CPROX_OK;
   size_t i = 0;
-  for (; i < n; i++) {
+  while (i < n) {
     /* sorted: when one ball is too far to matter, so are the rest */
     const bool too_far =
         question_wants_verdict(q) ? list[i].lower > q->limit : list[i].lower > fmin(all.upper, ceiling);
     const bool answered = !q->is_signed && all.upper <= fmax(q->limit, 0.0);
     if (too_far || answered || trouble == CPROX_STOPPED) break;
 
+    /* with nothing to compare with, a mesh waits until it is the nearest by its hull */
+    const bool unknown = !question_wants_verdict(q) && isinf(fmin(all.upper, ceiling));
+    if (unknown && i + 1 < n && candidate_may_climb(q, &list[i])) {
+      const cprox_status ranked = candidate_rank(q, &list[i], &all.nodes, &all.probes);
+      if (ranked < 0) return ranked;
+      sort_again(list, i, n);
+      continue;
+    }
     cprox_result one = {0};
-    const cprox_status status = candidate_search(q, &list[i], fmin(all.upper, ceiling), &one);
+    const cprox_status status = candidate_search(q, &list[i++], fmin(all.upper, ceiling), &one);
     if (status < 0) return status;
     if (status != CPROX_OK) trouble = status;
     question_join(&all, &one);

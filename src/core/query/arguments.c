@@ -7,6 +7,7 @@
 #include "base/workspace.h"
 #include "body/body.h"
 #include "curve/curve.h"
+#include "query/model.h"
 #include "query/robot_answer.h"
 
 cprox_target cprox_at(const cprox_body *body, cprox_pose pose) {
@@ -23,7 +24,7 @@ cprox_target cprox_curve_target(const cprox_curve *curve, double radius) {
 }
 
 cprox_options cprox_options_default(void) {
-  return (cprox_options){.epsilon = 1e-6, .relative_epsilon = 0.0, .max_nodes = 20000, .stop = NULL, .stop_user = NULL};
+  return (cprox_options){.epsilon = 1e-6, .relative_epsilon = 0.0, .max_nodes = 20000, .max_rung = CPROX_RUNG_MESH};
 }
 
 const char *cprox_verdict_name(cprox_verdict verdict) {
@@ -53,6 +54,9 @@ cprox_status arguments_check_options(const cprox_options *options, cprox_workspa
                           options->relative_epsilon);
   if (options->max_nodes == 0)
     return workspace_fail(workspace, CPROX_INVALID, "max_nodes is 0: a query needs a budget of at least 1 node");
+  if ((int)options->max_rung < CPROX_RUNG_NONE || options->max_rung > CPROX_RUNG_MESH)
+    return workspace_fail(workspace, CPROX_INVALID, "max_rung is %d, must be sphere, hull or mesh",
+                          (int)options->max_rung);
   return CPROX_OK;
 }
 
@@ -104,19 +108,13 @@ static cprox_status check_clock(const cprox_curve *curve, const cprox_target *ta
       index, u0, u1, t0, t1);
 }
 
-bool arguments_has_tree(const cprox_body *body) {
-  if (!body || body->kind != CPROX_COMPOUND) return body && body->tree;
-  for (size_t i = 0; i < body->n_parts; i++)
-    if (body->parts[i].body->tree) return true;
-  return false;
-}
-
 /* Convex parts without end have no Minkowski difference that a search could use. */
-static cprox_status check_carried(const cprox_body *body, cprox_workspace *workspace) {
+static cprox_status check_carried(const cprox_body *body, cprox_rung finest, cprox_workspace *workspace) {
   if (!body) return CPROX_OK;
   if (!isfinite(body->ball_radius))
     return workspace_fail(workspace, CPROX_INVALID, "the mover's body is a halfspace or has one: it must be bounded");
-  if (arguments_has_tree(body))
+  /* past some targets it goes by its hull even where balls are asked for */
+  if (model_has_tree(body, finest == CPROX_RUNG_SPHERE ? CPROX_RUNG_HULL : finest))
     return workspace_fail(
         workspace, CPROX_INVALID,
         "the mover's body is a mesh, points or boxes, or has such a part: only convex parts are carried");
@@ -129,17 +127,17 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target 
   if (!mover->curve && !mover->motion) return workspace_fail(workspace, CPROX_INVALID, "the mover has no curve");
   if (!(mover->radius >= 0.0 && isfinite(mover->radius)))
     return workspace_fail(workspace, CPROX_INVALID, "radius is %g, must be finite and 0 or more", mover->radius);
-  const cprox_status carried = check_carried(mover->body, workspace);
-  if (carried != CPROX_OK) return carried;
   const cprox_status checked = arguments_check_options(options, workspace);
   if (checked != CPROX_OK) return checked;
+  const cprox_status carried = check_carried(mover->body, options->max_rung, workspace);
+  if (carried != CPROX_OK) return carried;
   const cprox_status standing = arguments_check_targets(targets, n, workspace);
   if (standing != CPROX_OK) return standing;
   if (mover->motion) return robot_check(mover, targets, n, workspace);
   for (size_t i = 0; i < n; i++) {
     const cprox_status clock = check_clock(mover->curve, &targets[i], i, workspace);
     if (clock != CPROX_OK) return clock;
-    if (mover->body && arguments_has_tree(targets[i].body))
+    if (mover->body && model_has_tree(targets[i].body, options->max_rung))
       return workspace_fail(workspace, CPROX_INVALID,
                             "target %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
                             "it, balls are (radius)",

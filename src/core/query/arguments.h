@@ -13,7 +13,4 @@ cprox_status arguments_check_targets(const cprox_target *targets, size_t n, cpro
 cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target *targets, size_t n,
                                    const cprox_options *options, cprox_workspace *workspace);
 
-/* Whether a body is made of many elements, or has a part that is: a mesh, points, boxes. */
-bool arguments_has_tree(const cprox_body *body);
-
 #endif

@@ -37,7 +37,7 @@ static search_goal goal_of(const question *q, double ceiling) {
  * where they overlap; signed, the two ends of the way out. */
 static void report_points(const question *q, const candidate *c, vec3 centre, vec3 surface, vec3 normal, double apart,
                           cprox_result *r) {
-  const double padding = q->targets[c->target].padding;
+  const double padding = candidate_padding(q, c);
   r->normal = normal;
   r->target_index = c->target, r->target_part = c->part;
   if (q->is_signed || apart > padding + q->mover.radius) {
@@ -55,7 +55,8 @@ static void report_pair(const question *q, const candidate *c, vec3 centre, cons
   const cprox_target moved = {.body = q->mover.body ? q->mover.body : &carried_point,
                               .pose = {.position = centre, .orientation = {1, 0, 0, 0}},
                               .padding = q->mover.radius};
-  const pair_witness witness = pair_witness_of(&moved, (size_t)c->mover_part, standing, (size_t)part, q->is_signed);
+  const pair_witness witness =
+      pair_witness_of(&moved, (size_t)c->mover_part, standing, (size_t)part, candidate_rung(q, c), q->is_signed);
   const bool normal_known = vec_norm2(normal) > 0.0;
   r->normal = normal_known ? normal : witness.normal;
   r->target_index = c->target, r->target_part = c->part, r->mover_part = c->mover_part;
@@ -80,12 +81,7 @@ bool candidate_begin_convex(const question *q, const candidate *c, curve_convex 
   cprox_pose carried_pose;
   const cprox_body *carried = candidate_carried(q, c, &carried_pose);
   if (carried && !carried_join(body, &pose, carried, &carried_pose, &joined)) return false;
-  if (carried && target->body && target->body->kind == CPROX_COMPOUND) {
-    /* the composed pose: a turn of both shapes, and the sum of the positions */
-    const double turned = vec_norm(target->body->parts[c->part].pose.position) + vec_norm(body->centre) +
-                          body->shape.scale + carried->shape.scale;
-    joined.shape.slack += ROUND_UP * ROUND_U * (2.0 * ROUND_ROTATION * turned + 3.0 * vec_norm(pose.position));
-  }
+  if (carried) joined.shape.slack += candidate_misplaced(q, c);
 
   const double offset = candidate_offset(q, c) + joined.offset;
   if (!curve_convex_begin(o, curve, &body->shape, joined.placed, offset, q->workspace)) return false;
@@ -164,7 +160,6 @@ void candidate_report_tree(const question *q, const candidate *c, const curve_tr
   const double margin = o->body->shape.margin;
   const cprox_target *target = &q->targets[c->target];
   r->t = curve_side_parameter(&o->side, best->piece, best->s);
-  r->rung = CPROX_RUNG_MESH;
   vec3 shift = vec(0, 0, 0);
   if (target->on_clock) {
     const frame other = frame_create(&target->pose, vec(0, 0, 0));
@@ -259,7 +254,6 @@ static cprox_status search_tree(const question *q, const candidate *c, const sea
   const search_oracle oracle = curve_tree_oracle(&o);
   const cprox_status status = search_run(&o.asked, &oracle, root, q->workspace, found);
   r->probes = o.probes;
-  r->rung = CPROX_RUNG_MESH;
   if (status >= 0) candidate_report_tree(q, c, &o, r);
   return status;
 }
@@ -271,8 +265,9 @@ static cprox_status search_any(const question *q, const candidate *c, const sear
   return candidate_body(q, c) ? search_convex(q, c, goal, found, r) : search_curve(q, c, goal, found, r);
 }
 
-cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result) {
-  cprox_result r = {.target_index = -1, .t_target = NAN, .rung = CPROX_RUNG_HULL};
+/* By the one model that the candidate names. */
+static cprox_status search_model(const question *q, const candidate *c, double ceiling, cprox_result *result) {
+  cprox_result r = {.target_index = -1, .t_target = NAN, .rung = candidate_rung(q, c)};
   search_goal goal = goal_of(q, ceiling);
   const bool depth_unknown = q->is_signed && candidate_is_tree(q, c);
   if (depth_unknown) goal.is_signed = false;
@@ -293,4 +288,79 @@ cprox_status candidate_search(const question *q, const candidate *c, double ceil
   }
   *result = r;
   return r.status;
+}
+
+/* ---- ladders ---------------------------------------------------------------------------------------------------------- */
+
+bool candidate_may_climb(const question *q, const candidate *c) {
+  const cprox_body *body = q->targets[c->target].body;
+  if (!body || c->rung != CPROX_RUNG_NONE || q->options.max_rung != CPROX_RUNG_MESH) return false;
+  if (body->kind == CPROX_COMPOUND) body = body->parts[c->part].body;
+  return body->kind == CPROX_LADDER;
+}
+
+cprox_status candidate_measure_mesh(const question *q, const candidate *c, cprox_result *result) {
+  curve_tree o;
+  if (!candidate_begin_tree(q, c, &o)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a curve");
+  curve_tree_look(&o, result->t);
+  if (curve_side_status(&o.side) < 0) return curve_side_status(&o.side);
+  result->probes += o.probes;
+  result->upper = fmax(o.best_bound.upper, 0.0);
+  candidate_report_tree(q, c, &o, result);
+  return CPROX_OK;
+}
+
+/* Whether the hull alone settles the question: it stays beyond the limit, or beyond what would be of interest. */
+static cprox_status search_hull(const question *q, const candidate *c, double ceiling, cprox_result *r, bool *settled) {
+  question of_hull = *q;
+  of_hull.is_signed = false;
+  if (!question_wants_verdict(q))
+    of_hull.limit = ceiling - fmax(q->options.epsilon, q->options.relative_epsilon * fabs(ceiling));
+  *settled = false;
+  *r = (cprox_result){.upper = INFINITY};
+  if (!(of_hull.limit >= 0.0 && of_hull.limit < INFINITY)) return CPROX_OK;
+  candidate hull = *c;
+  hull.rung = CPROX_RUNG_HULL;
+  const cprox_status status = search_model(&of_hull, &hull, INFINITY, r);
+  if (status < 0) return status;
+  *settled = r->lower > of_hull.limit;
+  r->status = CPROX_OK;
+  if (!*settled || !question_wants_verdict(q) || r->target_index < 0) {
+    /* what the hull attains the mesh need not attain */
+    r->upper = INFINITY, r->target_index = -1;
+    return CPROX_OK;
+  }
+  return candidate_measure_mesh(q, c, r);
+}
+
+cprox_status candidate_rank(const question *q, candidate *c, uint32_t *nodes, uint32_t *probes) {
+  static const double CLOSE_ENOUGH = 0.01;
+  question of_hull = *q;
+  of_hull.is_signed = false;
+  of_hull.options.relative_epsilon = fmax(q->options.relative_epsilon, CLOSE_ENOUGH);
+  c->rung = CPROX_RUNG_HULL;
+  cprox_result r = {0};
+  const cprox_status status = search_model(&of_hull, c, INFINITY, &r);
+  if (status < 0) return status;
+  c->rung = CPROX_RUNG_MESH;
+  if (r.lower > 0.0) c->lower = fmax(c->lower, r.lower);
+  *nodes += r.nodes, *probes += r.probes;
+  return CPROX_OK;
+}
+
+cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result) {
+  if (!candidate_may_climb(q, c)) return search_model(q, c, ceiling, result);
+  bool settled;
+  cprox_result by_hull = {0};
+  const cprox_status looked = search_hull(q, c, ceiling, &by_hull, &settled);
+  if (looked < 0) return looked;
+  if (settled) {
+    *result = by_hull;
+    return CPROX_OK;
+  }
+  const cprox_status status = search_model(q, c, ceiling, result);
+  if (status < 0) return status;
+  if (by_hull.lower > 0.0) result->lower = fmin(fmax(result->lower, by_hull.lower), result->upper);
+  result->nodes += by_hull.nodes, result->probes += by_hull.probes;
+  return status;
 }

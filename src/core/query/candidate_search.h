@@ -8,8 +8,20 @@
 #include "query/curve_curve.h"
 #include "query/curve_tree.h"
 
-/* Searches one candidate; *result holds its own interval and the witness. `ceiling`: an upper bound known from others. */
+/* Searches one candidate; *result holds its own interval and the witness. `ceiling`: an upper bound known from others. A ladder is
+ * searched by its hull first where that may do, unless the candidate says which rung. */
 cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result);
+
+/* Whether it has a hull that could spare the search of its mesh. */
+bool candidate_may_climb(const question *q, const candidate *c);
+
+/* Where nothing is known yet, the hull says how far a ladder is at least, to one part in a hundred: raises c->lower, and from then on it
+ * is the mesh that is searched. */
+cprox_status candidate_rank(const question *q, candidate *c, uint32_t *nodes, uint32_t *probes);
+
+/* The hull of a ladder is out of the question. Where it came closest, at result->t, the mesh is measured: *result gets a witness of
+ * its own, and an upper bound. */
+cprox_status candidate_measure_mesh(const question *q, const candidate *c, cprox_result *result);
 
 /* The oracle of a candidate with a convex body, ready to search; false where memory is out. */
 bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o);

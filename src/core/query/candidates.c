@@ -6,6 +6,7 @@
 #include "body/body.h"
 #include "query/carried.h"
 #include "query/curve_side.h"
+#include "query/model.h"
 #include "query/robot_answer.h"
 
 void question_ask_whole(question *q) {
@@ -18,38 +19,79 @@ void question_ask_whole(question *q) {
   cprox_curve_domain(q->mover.curve, &q->t0, &q->t1);
 }
 
-const cprox_body *candidate_body(const question *q, const candidate *c) {
+/* The model that is searched, and its pose in the frame of the target. */
+typedef struct placed_model {
+  model is;
+  cprox_pose inner;
+  bool moved; /* false: the pose is the identity */
+} placed_model;
+
+static placed_model model_at(const question *q, const candidate *c) {
   const cprox_target *target = &q->targets[c->target];
   const cprox_body *body = target->on_clock && !target->body ? &carried_point : target->body;
-  return body && body->kind == CPROX_COMPOUND ? body->parts[c->part].body : body;
+  placed_model m = {.is = {.rung = CPROX_RUNG_HULL}, .inner = cprox_pose_identity()};
+  const cprox_rung finest = c->rung != CPROX_RUNG_NONE ? c->rung : q->options.max_rung;
+  if (body) m.is = model_of_part(body, (size_t)c->part, finest, &m.inner, &m.moved);
+  return m;
+}
+
+const cprox_body *candidate_body(const question *q, const candidate *c) {
+  return model_at(q, c).is.body;
+}
+
+cprox_rung candidate_rung(const question *q, const candidate *c) {
+  return model_at(q, c).is.rung;
+}
+
+/* Of what is carried past it, on the same rung. */
+static placed_model carried_model(const question *q, const candidate *c) {
+  placed_model m = {.inner = cprox_pose_identity()};
+  if (q->mover.body)
+    m.is = model_of_part(q->mover.body, (size_t)c->mover_part, candidate_rung(q, c), &m.inner, &m.moved);
+  return m;
+}
+
+static cprox_pose clock_pose(const question *q, const candidate *c) {
+  cprox_pose pose = q->targets[c->target].pose;
+  if (q->targets[c->target].on_clock) pose.position = vec(0, 0, 0);
+  return pose;
 }
 
 cprox_pose candidate_pose(const question *q, const candidate *c) {
-  const cprox_target *target = &q->targets[c->target];
-  cprox_pose pose = target->pose;
-  if (target->on_clock) pose.position = vec(0, 0, 0);
-  if (!target->body || target->body->kind != CPROX_COMPOUND) return pose;
-  return frame_compose(&pose, &target->body->parts[c->part].pose);
+  const placed_model m = model_at(q, c);
+  const cprox_pose pose = clock_pose(q, c);
+  return m.moved ? frame_compose(&pose, &m.inner) : pose;
+}
+
+double candidate_misplaced(const question *q, const candidate *c) {
+  const placed_model m = model_at(q, c), carried = carried_model(q, c);
+  if (!m.moved || !m.is.body) return 0.0;
+  /* a turn of both shapes, and the sum of the positions */
+  const double own = carried.is.body ? carried.is.body->shape.scale : 0.0;
+  const double turned = vec_norm(m.inner.position) + vec_norm(m.is.body->centre) + m.is.body->shape.scale + own;
+  const cprox_pose pose = candidate_pose(q, c);
+  return ROUND_UP * ROUND_U * (2.0 * ROUND_ROTATION * turned + 3.0 * vec_norm(pose.position));
 }
 
 frame candidate_frame(const question *q, const candidate *c) {
-  const cprox_target *target = &q->targets[c->target];
-  const vec3 centre = candidate_body(q, c)->centre;
-  cprox_pose pose = target->pose;
-  if (target->on_clock) pose.position = vec(0, 0, 0);
-  if (!target->body || target->body->kind != CPROX_COMPOUND) return frame_create(&pose, centre);
-  return frame_create_within(&pose, &target->body->parts[c->part].pose, centre);
+  const placed_model m = model_at(q, c);
+  const cprox_pose pose = clock_pose(q, c);
+  const vec3 centre = m.is.body ? m.is.body->centre : vec(0, 0, 0);
+  return m.moved ? frame_create_within(&pose, &m.inner, centre) : frame_create(&pose, centre);
+}
+
+double candidate_padding(const question *q, const candidate *c) {
+  return q->targets[c->target].padding + model_at(q, c).is.excess;
 }
 
 double candidate_offset(const question *q, const candidate *c) {
-  return q->mover.radius + q->targets[c->target].padding;
+  return q->mover.radius + carried_model(q, c).is.excess + candidate_padding(q, c);
 }
 
 const cprox_body *candidate_carried(const question *q, const candidate *c, cprox_pose *pose) {
-  const cprox_body *body = q->mover.body;
-  const bool compound = body && body->kind == CPROX_COMPOUND;
-  *pose = compound ? body->parts[c->mover_part].pose : cprox_pose_identity();
-  return compound ? body->parts[c->mover_part].body : body;
+  const placed_model m = carried_model(q, c);
+  *pose = m.inner;
+  return m.is.body;
 }
 
 static double distance_to_segment(vec3 p, vec3 a, vec3 b) {

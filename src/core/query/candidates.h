@@ -37,6 +37,7 @@ typedef struct candidate {
   int32_t target, part, mover_part;
   uint32_t seed_piece; /* where a search against a convex body begins to measure: */
   double seed_s;       /* s of that piece, inside (0, 1); 0: wherever it likes */
+  cprox_rung rung;     /* the model that is searched; CPROX_RUNG_NONE: the finest that the question allows */
 } candidate;
 
 /* The candidates of targets first … last - 1, nearest ball first, in the workspace. NULL where memory is out. */
@@ -52,10 +53,18 @@ candidate_ball candidate_bounding_ball(const question *q, const candidate *c, do
 /* Ascending by lower. */
 void candidates_sort(candidate *list, size_t n);
 
-/* A candidate's convex body (NULL for a curve at its own parameter), its pose in the world, and the sum of padding and radius. What
- * is on the mover's clock has a body, if only a point, and stands where it would if its curve were at the origin. */
+/* The model of a candidate that is searched (its body is NULL for a curve at its own parameter), its pose in the world, what is
+ * round it, and that and the ball that rides the curve. What is on the mover's clock has a body, if only a point, and stands where
+ * it would if its curve were at the origin. */
 const cprox_body *candidate_body(const question *q, const candidate *c);
 cprox_pose candidate_pose(const question *q, const candidate *c);
+double candidate_padding(const question *q, const candidate *c);
+
+/* How far the pose may be off, and what turns with it, because it had to be composed. */
+double candidate_misplaced(const question *q, const candidate *c);
+
+/* The rung of that model. */
+cprox_rung candidate_rung(const question *q, const candidate *c);
 
 /* The body's frame, with what composing its poses may have moved it. */
 frame candidate_frame(const question *q, const candidate *c);

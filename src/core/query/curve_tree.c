@@ -189,6 +189,13 @@ static void seed_at(curve_tree *o, size_t piece, double s) {
   adopt_better(o, &sight, &at);
 }
 
+void curve_tree_look(curve_tree *o, double t) {
+  const double *breaks = o->side.curve->breaks;
+  size_t piece = 0;
+  while (piece + 1 < o->side.curve->n_pieces && breaks[piece + 1] <= t) piece++;
+  seed_at(o, piece, fmin(fmax((t - breaks[piece]) / (breaks[piece + 1] - breaks[piece]), 0.0), 1.0));
+}
+
 /* Distances begin with a few points along the curve, verdicts with its ends. */
 static void seed(curve_tree *o) {
   tree_sight sight;

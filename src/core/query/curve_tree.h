@@ -47,6 +47,9 @@ bool curve_tree_begin(curve_tree *o, const cprox_curve *curve, const cprox_body 
 /* The node that is all that is asked about. False where memory is out. */
 bool curve_tree_root(curve_tree *o, search_node *root);
 
+/* Measures where the curve's parameter is t, into o->best and o->best_bound. */
+void curve_tree_look(curve_tree *o, double t);
+
 /* The functions of the contract in search/search.h, self being the curve_tree. */
 search_oracle curve_tree_oracle(curve_tree *o);
 

@@ -19,6 +19,7 @@ typedef struct contact {
   cprox_result
       near; /* t: that of contact within epsilon, or infinity; if there is none, upper is the least distance measured */
   uint32_t nodes, probes;
+  cprox_rung rung;     /* the finest that was needed */
   cprox_status status; /* CPROX_OK: free_until is as far as it goes, to within epsilon of contact */
 } contact;
 
@@ -122,8 +123,8 @@ static cprox_status prove_farther(const question *q, const candidate *c, contact
   return CPROX_OK;
 }
 
-static cprox_status meet(const question *q, const candidate *c, double horizon, contact *met) {
-  *met = (contact){.touch = nothing(), .near = nothing()};
+static cprox_status meet_model(const question *q, const candidate *c, double horizon, contact *met) {
+  *met = (contact){.touch = nothing(), .near = nothing(), .rung = candidate_rung(q, c)};
   const search_goal goal = goal_of(q, horizon);
   search_outcome found = {0};
   met->status = meet_any(q, c, &goal, &found, met);
@@ -137,6 +138,32 @@ static cprox_status meet(const question *q, const candidate *c, double horizon, 
   const double end = near ? fmin(met->near.t, horizon) : horizon;
   if (met->status == CPROX_OK && met->free_until < end) met->status = CPROX_PRECISION;
   return near && !isfinite(met->touch.t) && !isfinite(horizon) ? prove_farther(q, c, met) : CPROX_OK;
+}
+
+/* By the hull of a ladder first: what does not touch that before the horizon does not touch the mesh. */
+static cprox_status meet(const question *q, const candidate *c, double horizon, contact *met) {
+  if (!candidate_may_climb(q, c)) return meet_model(q, c, horizon, met);
+  candidate model = *c;
+  model.rung = CPROX_RUNG_HULL;
+  contact by_hull;
+  cprox_status status = meet_model(q, &model, horizon, &by_hull);
+  if (status < 0) return status;
+  if (by_hull.free_until >= horizon) {
+    /* what is near the hull need not be near the mesh */
+    const double t = by_hull.near.t;
+    *met = by_hull;
+    met->near = met->touch = nothing();
+    met->status = CPROX_OK;
+    if (!isfinite(t)) return CPROX_OK;
+    met->near.t = t;
+    status = candidate_measure_mesh(q, c, &met->near);
+    return status;
+  }
+  model.rung = CPROX_RUNG_MESH;
+  status = meet_model(q, &model, horizon, met);
+  if (status < 0) return status;
+  met->nodes += by_hull.nodes, met->probes += by_hull.probes;
+  return status;
 }
 
 /* ---- all candidates --------------------------------------------------------------------------------------------------- */
@@ -153,6 +180,7 @@ static void merge(contact *all, const contact *one, double epsilon) {
   if (one->touch.t < all->touch.t) all->touch = one->touch;
   merge_place(&all->near, &one->near, epsilon);
   all->nodes += one->nodes, all->probes += one->probes;
+  if (one->rung > all->rung) all->rung = one->rung;
   if (one->status != CPROX_OK) all->status = one->status;
 }
 
@@ -166,9 +194,7 @@ static cprox_status fill(const question *q, const contact *all, cprox_result *re
   r.upper = fmax(r.upper, 0.0);
   r.verdict = touch ? CPROX_YES : isinf(all->free_until) ? CPROX_NO : CPROX_UNDECIDED;
   if (!touch && !near) r.t = r.target_index < 0 ? NAN : r.t;
-  r.rung = all->nodes > 0 ? (r.rung > CPROX_RUNG_HULL ? r.rung : CPROX_RUNG_HULL)
-           : q->n > 0     ? CPROX_RUNG_SPHERE
-                          : CPROX_RUNG_NONE;
+  r.rung = all->rung != CPROX_RUNG_NONE ? all->rung : q->n > 0 ? CPROX_RUNG_SPHERE : CPROX_RUNG_NONE;
   r.nodes = all->nodes, r.probes = all->probes;
   r.status = all->status;
   if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", question_shortfall(r.status));

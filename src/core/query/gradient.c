@@ -9,6 +9,7 @@
 #include "query/arguments.h"
 #include "query/candidate_search.h"
 #include "query/carried.h"
+#include "query/model.h"
 
 /* How near another minimiser must not come, in lengths of the curve, unless epsilon is less still. */
 static const double APART = 1e-9;
@@ -310,12 +311,12 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, con
   if (!result || !gradient)
     return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", result ? "gradient" : "result");
   const candidate c = {.part = result->target_part, .mover_part = result->mover_part};
-  const cprox_body *body = target.body && target.body->kind == CPROX_COMPOUND ? NULL : target.body;
   if (result->target_index < 0 || !isfinite(result->upper))
     return workspace_fail(workspace, CPROX_INVALID, "the result has no witness: ask for a distance");
-  if (mover.curve->arcs || (target.curve && target.curve->arcs) || (body && !body->shape.ops))
+  const bool many = model_has_tree(target.body, q.options.max_rung);
+  if (mover.curve->arcs || (target.curve && target.curve->arcs) || many)
     return workspace_fail(workspace, CPROX_INVALID, "no gradient is known for %s",
-                          body && !body->shape.ops ? cprox_body_kind_name(body->kind) : "a curve without derivatives");
+                          many ? "meshes, points and boxes" : "a curve without derivatives");
   question_ask_whole(&q);
   if (!(q.t0 <= result->t && result->t <= q.t1))
     return workspace_fail(workspace, CPROX_INVALID, "the result's t = %.17g is not on the mover's curve", result->t);

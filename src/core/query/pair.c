@@ -17,6 +17,7 @@
 typedef struct pair_reply {
   pair_answer answer; /* points and normal in the world */
   int32_t part;       /* of b */
+  cprox_rung rung;
 } pair_reply;
 
 /* ---- arguments ---- */
@@ -213,8 +214,9 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
   return CPROX_OK;
 }
 
-pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b, bool depth) {
-  const pair_side side_a = pair_place_side(a, part_a), side_b = pair_place_side(b, part_b);
+pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b,
+                             cprox_rung finest, bool depth) {
+  const pair_side side_a = pair_place_model(a, part_a, finest), side_b = pair_place_model(b, part_b, finest);
   const pair_goal goal = {.relative_epsilon = depth ? 1e-10 : 1e-13, .max_steps = 400, .wants_depth = depth};
   pair_answer answer = {.upper = INFINITY};
   pair_solve(&side_a, &side_b, &goal, NULL, &answer);
@@ -225,36 +227,71 @@ pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_t
 
 /* ---- the verb ---- */
 
-/* The nearest of all pairs of parts; *lower is the least of all their lower bounds. */
-static cprox_status pair_over_parts(const cprox_target *a, const cprox_target *b, const pair_goal *goal,
-                                    cprox_workspace *workspace, pair_reply *best) {
-  double lower = INFINITY;
-  uint32_t steps = 0, supports = 0;
-  *best = (pair_reply){.answer = {.upper = INFINITY}};
-  for (size_t i = 0; i < pair_count_parts(a->body); i++) {
-    const pair_side side_a = pair_place_side(a, i);
-    for (size_t j = 0; j < pair_count_parts(b->body); j++) {
-      const pair_side side_b = pair_place_side(b, j);
-      if (!side_a.body->tree && !side_b.body->tree && side_a.shape->ops->kind == CPROX_HALFSPACE &&
-          side_b.shape->ops->kind == CPROX_HALFSPACE)
-        return workspace_fail(workspace, CPROX_INVALID, "two halfspaces have no distance");
-      pair_answer answer = {.upper = INFINITY};
-      const cprox_status status = pair_solve(&side_a, &side_b, goal, workspace, &answer);
+/* What is asked of each pair of parts. */
+typedef struct pair_task {
+  const cprox_target *a, *b;
+  const pair_goal *goal;
+  cprox_rung finest;
+  cprox_workspace *workspace;
+} pair_task;
+
+/* Parts i of a and j of b, by their finest models up to the rung. */
+static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cprox_rung finest, pair_reply *reply) {
+  const pair_side a = pair_place_model(task->a, i, finest), b = pair_place_model(task->b, j, finest);
+  if (!a.body->tree && !b.body->tree && a.shape->ops->kind == CPROX_HALFSPACE && b.shape->ops->kind == CPROX_HALFSPACE)
+    return workspace_fail(task->workspace, CPROX_INVALID, "two halfspaces have no distance");
+  *reply = (pair_reply){.answer = {.upper = INFINITY}, .part = (int32_t)j};
+  reply->rung = a.rung > b.rung ? a.rung : b.rung;
+  const cprox_status status = pair_solve(&a, &b, task->goal, task->workspace, &reply->answer);
+  if (status) return status;
+  if (!reply->answer.fault) return CPROX_OK;
+  return workspace_fail(task->workspace, CPROX_INVALID,
+                        "a support callback answered with a point that is not finite or outside its radius");
+}
+
+static bool pair_has_ladder(const pair_task *task, size_t i, size_t j) {
+  const cprox_body *a = task->a->body, *b = task->b->body;
+  if (a->kind == CPROX_COMPOUND) a = a->parts[i].body;
+  if (b->kind == CPROX_COMPOUND) b = b->parts[j].body;
+  return a->kind == CPROX_LADDER || b->kind == CPROX_LADDER;
+}
+
+static void pair_join(pair_reply *all, const pair_reply *one) {
+  const double lower = fmin(all->answer.lower, one->answer.lower);
+  const uint32_t steps = all->answer.steps + one->answer.steps, supports = all->answer.supports + one->answer.supports;
+  const cprox_rung rung = all->rung > one->rung ? all->rung : one->rung;
+  if (one->answer.upper < all->answer.upper) *all = *one;
+  all->answer.lower = lower, all->answer.steps = steps, all->answer.supports = supports, all->rung = rung;
+}
+
+/* Whether the hulls of two parts are farther apart than the best so far: then they need not be looked into. */
+static cprox_status pair_ends_at_hulls(const pair_task *task, size_t i, size_t j, pair_reply *best, bool *ends) {
+  *ends = false;
+  if (!pair_has_ladder(task, i, j) || !isfinite(best->answer.upper) || task->finest < CPROX_RUNG_MESH) return CPROX_OK;
+  pair_reply one = {.part = 0};
+  const cprox_status status = pair_of_models(task, i, j, CPROX_RUNG_HULL, &one);
+  if (status) return status;
+  *ends = one.answer.lower > best->answer.upper;
+  one.answer.upper = INFINITY;
+  if (!*ends) one.answer.lower = INFINITY;
+  pair_join(best, &one);
+  return CPROX_OK;
+}
+
+/* The nearest of all pairs of parts; its lower is the least of all their lower bounds. */
+static cprox_status pair_over_parts(const pair_task *task, pair_reply *best) {
+  *best = (pair_reply){.answer = {.lower = INFINITY, .upper = INFINITY}};
+  for (size_t i = 0; i < pair_count_parts(task->a->body); i++) {
+    for (size_t j = 0; j < pair_count_parts(task->b->body); j++) {
+      bool ends;
+      cprox_status status = pair_ends_at_hulls(task, i, j, best, &ends);
       if (status) return status;
-      if (answer.fault)
-        return workspace_fail(workspace, CPROX_INVALID,
-                              "a support callback answered with a point that is not finite or outside its radius");
-      steps += answer.steps;
-      supports += answer.supports;
-      lower = fmin(lower, answer.lower);
-      if (answer.upper >= best->answer.upper) continue;
-      best->answer = answer;
-      best->part = (int32_t)j;
+      if (ends) continue;
+      pair_reply one = {.part = 0};
+      if ((status = pair_of_models(task, i, j, task->finest, &one))) return status;
+      pair_join(best, &one);
     }
   }
-  best->answer.lower = lower;
-  best->answer.steps = steps;
-  best->answer.supports = supports;
   return CPROX_OK;
 }
 
@@ -280,23 +317,24 @@ cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *opt
                           .max_steps = asked.max_nodes,
                           .wants_depth = true};
   pair_reply best;
-  if ((status = pair_over_parts(&a, &b, &goal, workspace, &best))) return status;
+  const cprox_rung finest = asked.max_rung == CPROX_RUNG_NONE ? CPROX_RUNG_MESH : asked.max_rung;
+  const pair_task task = {.a = &a, .b = &b, .goal = &goal, .finest = finest, .workspace = workspace};
+  if ((status = pair_over_parts(&task, &best))) return status;
 
   const pair_answer *answer = &best.answer;
   status = pair_status(answer, &asked);
-  *result = (cprox_result){
-      .status = status,
-      .verdict = CPROX_UNDECIDED,
-      .lower = answer->lower,
-      .upper = answer->upper,
-      .t_target = NAN,
-      .on_mover = answer->on_a,
-      .on_target = answer->on_b,
-      .normal = answer->normal,
-      .target_part = best.part,
-      .rung = arguments_has_tree(a.body) || arguments_has_tree(b.body) ? CPROX_RUNG_MESH : CPROX_RUNG_HULL,
-      .nodes = answer->steps,
-      .probes = answer->supports};
+  *result = (cprox_result){.status = status,
+                           .verdict = CPROX_UNDECIDED,
+                           .lower = answer->lower,
+                           .upper = answer->upper,
+                           .t_target = NAN,
+                           .on_mover = answer->on_a,
+                           .on_target = answer->on_b,
+                           .normal = answer->normal,
+                           .target_part = best.part,
+                           .rung = best.rung,
+                           .nodes = answer->steps,
+                           .probes = answer->supports};
   if (status != CPROX_OK) workspace_fail(workspace, status, "%s", cprox_status_text(status));
   return status;
 }

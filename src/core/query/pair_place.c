@@ -3,22 +3,23 @@
 
 #include "base/rounding.h"
 
-pair_side pair_place_side(const cprox_target *target, size_t part) {
-  const cprox_body *body = target->body;
-  pair_side side = {.margin = target->padding};
-  cprox_pose pose = target->pose;
-  if (body->kind == CPROX_COMPOUND) {
-    const body_part *p = &body->parts[part];
-    pose = frame_compose(&target->pose, &p->pose);
-    body = p->body;
-    side.error = ROUND_U * (ROUND_ROTATION * (vec_norm(p->pose.position) + vec_norm(body->centre) + body->shape.scale) +
-                            3.0 * vec_norm(pose.position));
+pair_side pair_place_model(const cprox_target *target, size_t part, cprox_rung finest) {
+  cprox_pose inner, pose = target->pose;
+  bool moved;
+  const model m = model_of_part(target->body, part, finest, &inner, &moved);
+  pair_side side = {.body = m.body, .shape = &m.body->shape, .rung = m.rung};
+  if (moved) {
+    pose = frame_compose(&target->pose, &inner);
+    const double turned = vec_norm(inner.position) + vec_norm(m.body->centre) + m.body->shape.scale;
+    side.error = ROUND_U * (ROUND_ROTATION * turned + 3.0 * vec_norm(pose.position));
   }
-  side.body = body;
-  side.shape = &body->shape;
-  side.f = frame_create(&pose, body->centre);
-  side.margin += body->shape.margin;
+  side.f = frame_create(&pose, m.body->centre);
+  side.margin = target->padding + m.excess + m.body->shape.margin;
   return side;
+}
+
+pair_side pair_place_side(const cprox_target *target, size_t part) {
+  return pair_place_model(target, part, CPROX_RUNG_MESH);
 }
 
 pair_placement pair_place(const pair_side *a, const pair_side *b) {

@@ -6,6 +6,7 @@
 #include "body/body.h"
 #include "convex/pair.h"
 #include "curve_proximity/cprox/query.h"
+#include "query/model.h"
 
 /* A convex shape somewhere in the world. */
 typedef struct pair_side {
@@ -14,8 +15,11 @@ typedef struct pair_side {
   double margin; /* the shape's own and the padding */
   double error;  /* of the pose, where it had to be composed */
   const cprox_body *body;
+  cprox_rung rung;
 } pair_side;
 
+/* Part of a target, by the finest model up to the rung; of its finest one. */
+pair_side pair_place_model(const cprox_target *target, size_t part, cprox_rung finest);
 pair_side pair_place_side(const cprox_target *target, size_t part);
 
 /* b in a's frame. Positions are subtracted first: what they share does not enter the rounding. */

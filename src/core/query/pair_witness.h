@@ -13,6 +13,7 @@ typedef struct pair_witness {
 } pair_witness;
 
 /* Of these parts of the two (0 where the body is no compound), which are not both halfspaces. */
-pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b, bool depth);
+pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b,
+                             cprox_rung finest, bool depth);
 
 #endif

@@ -103,10 +103,9 @@ static size_t parts_of(const cprox_target *target) {
 
 static void add_target(obstacle_list *list, const cprox_target *target, size_t index) {
   for (size_t part = 0; part < parts_of(target); part++) {
-    const cprox_body *body = target->body->kind == CPROX_COMPOUND ? target->body->parts[part].body : target->body;
     const pair_side placed = pair_place_side(target, part);
-    if (body->tree) {
-      add_elements(list, body->tree, &placed, index);
+    if (placed.body->tree) {
+      add_elements(list, placed.body->tree, &placed, index);
       continue;
     }
     if (list->bodies) {

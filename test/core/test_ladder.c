@@ -1,0 +1,375 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Ladders: the hull answers what it can, the mesh the rest, and both agree. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "curve_proximity/cprox.h"
+#include "support/meshes.h"
+
+static cprox_workspace *ws;
+
+static int setup(void **state) {
+  (void)state;
+  ws = cprox_workspace_create();
+  return ws ? 0 : 1;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  cprox_workspace_free(ws);
+  return 0;
+}
+
+/* ---- builders --------------------------------------------------------------------------------------------------------- */
+
+typedef struct test_ladder {
+  cprox_body *hull, *mesh, *body;
+} test_ladder;
+
+static test_ladder ladder_make(const test_mesh *mesh) {
+  test_ladder l = {0};
+  l.mesh = mesh_body(mesh, CPROX_MESH_SURFACE, ws);
+  assert_int_equal(cprox_body_create_polytope(mesh->vertices, mesh->n, ws, &l.hull), CPROX_OK);
+  if (cprox_body_create_ladder(l.hull, 0.0, l.mesh, ws, &l.body) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_reason(ws));
+  return l;
+}
+
+static void ladder_free(test_ladder *l) {
+  cprox_body_free(l->body);
+  cprox_body_free(l->mesh);
+  cprox_body_free(l->hull);
+}
+
+static cprox_curve *bezier(const vec3 *points, size_t n) {
+  cprox_curve *curve = NULL;
+  assert_int_equal(cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve), CPROX_OK);
+  return curve;
+}
+
+static cprox_curve *random_curve(rng *r, double reach) {
+  vec3 points[5];
+  for (size_t k = 0; k < 5; k++) points[k] = rng_in_cube(r, reach);
+  return bezier(points, 5);
+}
+
+static cprox_options up_to(cprox_rung rung, double epsilon) {
+  cprox_options options = cprox_options_default();
+  options.max_rung = rung;
+  options.epsilon = epsilon;
+  return options;
+}
+
+/* An angle: two thick plates that meet, as L-shaped brackets are; 0.1 thick, 1 long. Their hull fills the corner. */
+static test_mesh mesh_bracket(void) {
+  static const double outline[6][2] = {{0, 0}, {1, 0}, {1, 0.1}, {0.1, 0.1}, {0.1, 1}, {0, 1}};
+  static const uint32_t faces[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}};
+  test_mesh mesh = {.n = 12, .m = 20};
+  mesh.vertices = malloc(mesh.n * sizeof *mesh.vertices);
+  mesh.triangles = malloc(mesh.m * sizeof *mesh.triangles);
+  for (size_t k = 0; k < 12; k++) mesh.vertices[k] = vec(outline[k % 6][0], outline[k % 6][1], k < 6 ? -0.2 : 0.2);
+  size_t m = 0;
+  for (uint32_t k = 0; k < 4; k++) {
+    for (uint32_t side = 0; side < 2; side++, m++)
+      for (uint32_t c = 0; c < 3; c++) mesh.triangles[m][side ? c : 2 - c] = faces[k][c] + 6 * side;
+  }
+  for (uint32_t k = 0; k < 6; k++) {
+    const uint32_t next = (k + 1) % 6;
+    const uint32_t quad[2][3] = {{k, next, next + 6}, {k, next + 6, k + 6}};
+    memcpy(mesh.triangles[m], quad, sizeof quad);
+    m += 2;
+  }
+  return mesh;
+}
+
+/* ---- rungs ------------------------------------------------------------------------------------------------------------ */
+
+/* 400 curves (seed 81) past tori and a bracket at any pose, epsilon 1e-7. A coarser model contains the finer one: ball <= hull <= mesh but
+ * for epsilon, each by the interval of its own body, and the ladder's own answer is the mesh's. */
+static void rungs_contain_each_other_and_are_what_they_are_called(void **state) {
+  (void)state;
+  rng r = rng_seed(81);
+  test_mesh torus = mesh_torus(16, 10, 1.0, 0.3, 0.1), bracket = mesh_bracket();
+  test_ladder ladders[2] = {ladder_make(&torus), ladder_make(&bracket)};
+  for (size_t i = 0; i < test_cases(400); i++) {
+    const test_ladder *l = &ladders[i % 2];
+    const cprox_pose pose = rng_pose(&r, 1.0);
+    cprox_curve *curve = random_curve(&r, 2.5);
+    const cprox_mover mover = cprox_tube_along(curve, i % 3 ? 0.0 : 0.02);
+    const cprox_target target = cprox_padded(cprox_at(l->body, pose), i % 5 ? 0.0 : 0.01);
+    cprox_result by[4], alone[4];
+    for (cprox_rung rung = CPROX_RUNG_SPHERE; rung <= CPROX_RUNG_MESH; rung++) {
+      const cprox_options options = up_to(rung, 1e-7);
+      assert_int_equal(cprox_distance(mover, target, &options, ws, &by[rung]), CPROX_OK);
+      assert_int_equal(by[rung].rung, rung);
+      cprox_target own = target;
+      own.body = rung == CPROX_RUNG_MESH ? l->mesh : l->hull;
+      if (rung == CPROX_RUNG_SPHERE) continue;
+      assert_int_equal(cprox_distance(mover, own, NULL, ws, &alone[rung]), CPROX_OK);
+      if (by[rung].lower > alone[rung].upper || alone[rung].lower > by[rung].upper)
+        fail_msg("case %zu, %s: [%.9g, %.9g], alone [%.9g, %.9g]", i, cprox_rung_name(rung), by[rung].lower,
+                 by[rung].upper, alone[rung].lower, alone[rung].upper);
+    }
+    assert_true(by[CPROX_RUNG_SPHERE].lower <= by[CPROX_RUNG_HULL].upper);
+    assert_true(by[CPROX_RUNG_HULL].lower <= by[CPROX_RUNG_MESH].upper);
+
+    /* the ball's distance, by the distance of its centre */
+    vec3 centre;
+    double radius;
+    cprox_body_bounding_sphere(l->body, &centre, &radius);
+    cprox_body *point = NULL;
+    cprox_result to_centre;
+    assert_int_equal(cprox_body_create_point(centre, ws, &point), CPROX_OK);
+    cprox_target middle = target;
+    middle.body = point;
+    assert_int_equal(cprox_distance(mover, middle, NULL, ws, &to_centre), CPROX_OK);
+    const double wanted = fmax(to_centre.upper - radius, 0.0);
+    assert_true(fabs(by[CPROX_RUNG_SPHERE].upper - wanted) < 3e-6);
+    cprox_body_free(point);
+    cprox_curve_free(curve);
+  }
+  for (int k = 0; k < 2; k++) ladder_free(&ladders[k]);
+  mesh_free(&torus);
+  mesh_free(&bracket);
+}
+
+/* 300 curves (seed 83), Delta and first contact: the ladder's verdict is that of the mesh alone wherever that has one, t_free agrees with
+ * the mesh's to epsilon / the curve's least speed near contact (1e-5 here), and "clear" by the hull is rung hull. */
+static void verdicts_are_those_of_the_mesh(void **state) {
+  (void)state;
+  rng r = rng_seed(83);
+  test_mesh torus = mesh_torus(16, 10, 1.0, 0.3, 0.1), bracket = mesh_bracket();
+  test_ladder ladders[2] = {ladder_make(&torus), ladder_make(&bracket)};
+  size_t by_hull = 0, by_mesh = 0;
+  for (size_t i = 0; i < test_cases(300); i++) {
+    const test_ladder *l = &ladders[i % 2];
+    const cprox_pose pose = rng_pose(&r, 1.0);
+    cprox_curve *curve = random_curve(&r, 2.5);
+    const cprox_mover mover = cprox_tube_along(curve, i % 3 ? 0.0 : 0.02);
+    const cprox_target ladder = cprox_at(l->body, pose), mesh = cprox_at(l->mesh, pose), hull = cprox_at(l->hull, pose);
+    const double delta = rng_uniform(&r, 0.0, 0.5);
+    cprox_result a, b, h;
+    assert_int_equal(cprox_tolerance(mover, ladder, delta, NULL, ws, &a), CPROX_OK);
+    assert_int_equal(cprox_tolerance(mover, mesh, delta, NULL, ws, &b), CPROX_OK);
+    assert_int_equal(cprox_tolerance(mover, hull, delta, NULL, ws, &h), CPROX_OK);
+    assert_int_equal(a.verdict, b.verdict);
+    if (h.verdict == CPROX_YES) assert_true(a.rung <= CPROX_RUNG_HULL);
+    by_hull += a.rung == CPROX_RUNG_HULL, by_mesh += a.rung == CPROX_RUNG_MESH;
+    /* the witness is the mesh's own */
+    cprox_result all;
+    assert_int_equal(cprox_distance(mover, mesh, NULL, ws, &all), CPROX_OK);
+    assert_true(a.lower <= all.upper && all.lower <= a.upper);
+
+    cprox_result first, own;
+    const cprox_status met = cprox_first_contact(mover, ladder, NULL, ws, &first);
+    assert_true(met >= 0);
+    assert_true(cprox_first_contact(mover, mesh, NULL, ws, &own) >= 0);
+    assert_int_equal(first.verdict, own.verdict);
+    if (first.rung == CPROX_RUNG_MESH) assert_true(first.t_free == own.t_free);
+    assert_true(fabs(first.t_free - own.t_free) < 1e-5);
+    cprox_curve_free(curve);
+  }
+  if (by_hull < 20 || by_mesh < 20) fail_msg("%zu by the hull, %zu by the mesh", by_hull, by_mesh);
+  for (int k = 0; k < 2; k++) ladder_free(&ladders[k]);
+  mesh_free(&torus);
+  mesh_free(&bracket);
+}
+
+/* Along the inside of the bracket's corner: within the hull, 0.2 off the mesh. Through the torus's hole: likewise. */
+static void a_curve_through_the_hull_but_clear_of_the_mesh_is_clear(void **state) {
+  (void)state;
+  test_mesh bracket = mesh_bracket(), torus = mesh_torus(32, 16, 1.0, 0.3, 0.0);
+  test_ladder ladders[2] = {ladder_make(&bracket), ladder_make(&torus)};
+  const vec3 ways[2][2] = {{{0.3, 0.3, -1}, {0.3, 0.3, 1}}, {{0.1, 0, -1}, {-0.1, 0, 1}}};
+  const double clear[2] = {0.2, 0.6};
+  for (int i = 0; i < 2; i++) {
+    cprox_curve *curve = bezier(ways[i], 2);
+    const cprox_target target = cprox_at(ladders[i].body, cprox_pose_identity());
+    const cprox_options coarse = up_to(CPROX_RUNG_HULL, 1e-6);
+    cprox_result r;
+    assert_int_equal(cprox_collision(cprox_point_along(curve), target, &coarse, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, CPROX_YES);
+    assert_int_equal(r.rung, CPROX_RUNG_HULL);
+    assert_int_equal(cprox_collision(cprox_point_along(curve), target, NULL, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, CPROX_NO);
+    assert_int_equal(r.rung, CPROX_RUNG_MESH);
+    assert_int_equal(cprox_first_contact(cprox_point_along(curve), target, NULL, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, CPROX_NO);
+    assert_int_equal(cprox_tolerance(cprox_point_along(curve), target, clear[i] * 0.9, NULL, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, CPROX_YES);
+    cprox_curve_free(curve);
+    ladder_free(&ladders[i]);
+  }
+  mesh_free(&bracket);
+  mesh_free(&torus);
+}
+
+/* ---- what the hull spares --------------------------------------------------------------------------------------------- */
+
+/* 30 tori (seed 87) in a cube, their bounding balls overlapping; 60 curves. All ways to ask about many answer as the meshes would.
+ * Together with a small box the answer is rung hull, no mesh looked into, where every hull is farther than the box by the hundredth
+ * part that ranking may give away; where one is nearer, rung mesh. */
+static void a_distance_climbs_only_where_the_hull_is_nearer_than_the_best(void **state) {
+  (void)state;
+  enum { N = 30 };
+  rng r = rng_seed(87);
+  test_mesh torus = mesh_torus(24, 16, 0.4, 0.05, 0.1);
+  test_ladder l = ladder_make(&torus);
+  cprox_body *box = NULL;
+  assert_int_equal(cprox_body_create_box(vec(0.1, 0.1, 0.1), ws, &box), CPROX_OK);
+  cprox_target ladders[N + 1], meshes[N], hulls[N];
+  for (int k = 0; k < N; k++) {
+    const cprox_pose pose = rng_pose(&r, 2.5);
+    ladders[k] = cprox_at(l.body, pose), meshes[k] = cprox_at(l.mesh, pose), hulls[k] = cprox_at(l.hull, pose);
+  }
+  ladders[N] = cprox_at(box, rng_pose(&r, 1.5));
+  const vec3 there = ladders[N].pose.position;
+  size_t spared = 0, climbed = 0;
+  for (size_t i = 0; i < 60; i++) {
+    const vec3 way[2] = {vec_add(there, rng_in_cube(&r, 0.2)), vec_add(there, rng_in_cube(&r, 0.2))};
+    cprox_curve *curve = i % 2 ? bezier(way, 2) : random_curve(&r, 2.5);
+    cprox_result a, b, c, d;
+    assert_int_equal(cprox_distance_all(cprox_point_along(curve), ladders, N + 1, NULL, ws, &a, NULL), CPROX_OK);
+    assert_int_equal(cprox_distance(cprox_point_along(curve), ladders[N], NULL, ws, &b), CPROX_OK);
+    assert_int_equal(cprox_distance_all(cprox_point_along(curve), hulls, N, NULL, ws, &c, NULL), CPROX_OK);
+    assert_int_equal(cprox_distance_all(cprox_point_along(curve), meshes, N, NULL, ws, &d, NULL), CPROX_OK);
+    const double upper = fmin(d.upper, b.upper), lower = fmin(d.lower, b.lower);
+    assert_true(a.lower <= upper && lower <= a.upper && a.upper - a.lower <= 1e-6);
+    if (0.99 * c.lower > b.upper + 1e-6) {
+      spared++;
+      assert_int_equal(a.rung, CPROX_RUNG_HULL);
+    }
+    if (c.upper < b.lower - 1e-6) {
+      climbed++;
+      assert_int_equal(a.rung, CPROX_RUNG_MESH);
+    }
+    cprox_curve_free(curve);
+  }
+  if (spared < 3 || climbed < 3) fail_msg("%zu were spared, %zu climbed", spared, climbed);
+  for (size_t i = 0; i < 20; i++) {
+    cprox_curve *curve = random_curve(&r, 1.0);
+    cprox_result near[3], near_mesh[3];
+    size_t n, m;
+    assert_int_equal(cprox_nearest(cprox_point_along(curve), ladders, N, 3, NULL, ws, near, &n), CPROX_OK);
+    assert_int_equal(cprox_nearest(cprox_point_along(curve), meshes, N, 3, NULL, ws, near_mesh, &m), CPROX_OK);
+    assert_int_equal(n, 3);
+    for (int k = 0; k < 3; k++) assert_true(fabs(near[k].upper - near_mesh[k].upper) <= 2e-6);
+    cprox_result within[N], within_mesh[N];
+    assert_int_equal(cprox_within(cprox_point_along(curve), ladders, N, 0.3, NULL, ws, within, &n), CPROX_OK);
+    assert_int_equal(cprox_within(cprox_point_along(curve), meshes, N, 0.3, NULL, ws, within_mesh, &m), CPROX_OK);
+    assert_int_equal(n, m);
+    for (size_t k = 0; k < n; k++) assert_int_equal(within[k].target_index, within_mesh[k].target_index);
+    const double breaks[3] = {0.0, 0.3, 1.0};
+    cprox_stretch p[2], q[2];
+    assert_int_equal(cprox_profile(cprox_point_along(curve), ladders, N, breaks, 2, NULL, ws, p), CPROX_OK);
+    assert_int_equal(cprox_profile(cprox_point_along(curve), meshes, N, breaks, 2, NULL, ws, q), CPROX_OK);
+    for (int k = 0; k < 2; k++) assert_true(p[k].lower <= q[k].upper && q[k].lower <= p[k].upper);
+    cprox_curve_free(curve);
+  }
+  cprox_body_free(box);
+  ladder_free(&l);
+  mesh_free(&torus);
+}
+
+/* A compound of 12 ladders (seed 89) against boxes and balls: cprox_pair is that of the meshes; by hulls alone it is no farther. */
+static void pairs_climb_too(void **state) {
+  (void)state;
+  enum { N = 12 };
+  rng r = rng_seed(89);
+  test_mesh torus = mesh_torus(12, 8, 0.4, 0.1, 0.1);
+  test_ladder l = ladder_make(&torus);
+  const cprox_body *parts[N], *mesh_parts[N];
+  cprox_pose poses[N];
+  for (int k = 0; k < N; k++) parts[k] = l.body, mesh_parts[k] = l.mesh, poses[k] = rng_pose(&r, 2.0);
+  cprox_body *all = NULL, *meshes = NULL, *box = NULL;
+  assert_int_equal(cprox_body_create_compound(parts, poses, N, ws, &all), CPROX_OK);
+  assert_int_equal(cprox_body_create_compound(mesh_parts, poses, N, ws, &meshes), CPROX_OK);
+  assert_int_equal(cprox_body_create_box(vec(0.3, 0.2, 0.1), ws, &box), CPROX_OK);
+  for (size_t i = 0; i < 60; i++) {
+    const cprox_target other = cprox_at(box, rng_pose(&r, 2.5));
+    const cprox_options hull = up_to(CPROX_RUNG_HULL, 1e-9), ball = up_to(CPROX_RUNG_SPHERE, 1e-9);
+    cprox_result a, b, c, d;
+    assert_true(cprox_pair(cprox_at(all, cprox_pose_identity()), other, NULL, ws, &a) >= 0);
+    assert_true(cprox_pair(cprox_at(meshes, cprox_pose_identity()), other, NULL, ws, &b) >= 0);
+    assert_true(cprox_pair(cprox_at(all, cprox_pose_identity()), other, &hull, ws, &c) >= 0);
+    assert_true(cprox_pair(cprox_at(all, cprox_pose_identity()), other, &ball, ws, &d) >= 0);
+    assert_true(a.lower <= b.upper && b.lower <= a.upper);
+    assert_true(c.lower <= b.upper && d.lower <= c.upper);
+    assert_int_equal(a.rung, CPROX_RUNG_MESH);
+    assert_int_equal(c.rung, CPROX_RUNG_HULL);
+    assert_int_equal(d.rung, CPROX_RUNG_SPHERE);
+  }
+  cprox_body_free(all);
+  cprox_body_free(meshes);
+  cprox_body_free(box);
+  ladder_free(&l);
+  mesh_free(&torus);
+}
+
+/* ---- bad input -------------------------------------------------------------------------------------------------------- */
+
+static void expect_reason(cprox_status status, const char *words) {
+  assert_int_equal(status, CPROX_INVALID);
+  if (!strstr(cprox_workspace_reason(ws), words)) fail_msg("'%s' does not say '%s'", cprox_workspace_reason(ws), words);
+}
+
+static void bad_input_is_refused_with_a_sentence(void **state) {
+  (void)state;
+  test_mesh torus = mesh_torus(12, 8, 1.0, 0.3, 0.0);
+  test_ladder l = ladder_make(&torus);
+  cprox_body *ball = NULL, *made = NULL, *halfspace = NULL;
+  assert_int_equal(cprox_body_create_sphere(1.0, ws, &ball), CPROX_OK);
+  assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 0.0, ws, &halfspace), CPROX_OK);
+  expect_reason(cprox_body_create_ladder(ball, 0.1, l.mesh, ws, &made), "beyond the hull");
+  expect_reason(cprox_body_create_ladder(l.hull, -1.0, l.mesh, ws, &made), "excess");
+  expect_reason(cprox_body_create_ladder(l.mesh, 0.0, l.mesh, ws, &made), "must be convex");
+  expect_reason(cprox_body_create_ladder(halfspace, 0.0, l.mesh, ws, &made), "must be convex");
+  expect_reason(cprox_body_create_ladder(l.hull, 0.0, l.hull, ws, &made), "must be a mesh");
+  expect_reason(cprox_body_create_ladder(NULL, 0.0, l.mesh, ws, &made), "hull is NULL");
+  assert_null(made);
+  /* a hull that is too small, made up for by the excess */
+  assert_int_equal(cprox_body_create_ladder(ball, 0.31, l.mesh, ws, &made), CPROX_OK);
+  const vec3 way[2] = {{2, -1, 0}, {2, 1, 0}};
+  cprox_curve *curve = bezier(way, 2);
+  const cprox_target target = cprox_at(made, cprox_pose_identity());
+  cprox_result r;
+  const cprox_options coarse = up_to(CPROX_RUNG_HULL, 1e-6), wrong = up_to((cprox_rung)9, 1e-6);
+  assert_int_equal(cprox_distance(cprox_point_along(curve), target, &coarse, ws, &r), CPROX_OK);
+  assert_true(fabs(r.upper - (2.0 - 1.0 - 0.31)) < 2e-6);
+  expect_reason(cprox_distance(cprox_point_along(curve), target, &wrong, ws, &r), "max_rung");
+  expect_reason(cprox_distance(cprox_body_along(l.body, curve), target, NULL, ws, &r), "carried");
+
+  /* carried, and past a ladder, by the hulls where that is allowed: the same as the hulls themselves */
+  cprox_result own;
+  assert_int_equal(
+      cprox_distance(cprox_body_along(l.body, curve), cprox_at(l.body, cprox_pose_identity()), &coarse, ws, &r),
+      CPROX_OK);
+  assert_int_equal(
+      cprox_distance(cprox_body_along(l.hull, curve), cprox_at(l.hull, cprox_pose_identity()), &coarse, ws, &own),
+      CPROX_OK);
+  assert_true(r.lower <= own.upper && own.lower <= r.upper);
+  cprox_body_free(made);
+  cprox_body_free(ball);
+  cprox_body_free(halfspace);
+  cprox_curve_free(curve);
+  ladder_free(&l);
+  mesh_free(&torus);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rungs_contain_each_other_and_are_what_they_are_called),
+      cmocka_unit_test(verdicts_are_those_of_the_mesh),
+      cmocka_unit_test(a_curve_through_the_hull_but_clear_of_the_mesh_is_clear),
+      cmocka_unit_test(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best),
+      cmocka_unit_test(pairs_climb_too),
+      cmocka_unit_test(bad_input_is_refused_with_a_sentence),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
