@@ -35,8 +35,12 @@ static void make_polygon(rng *r, vec3 centre, double radius, obstacle *o) {
   o->n = 5 + rng_index(r, 36);
   for (size_t i = 0; i < o->n; i++) angle[i] = rng_uniform(r, 0.0, 6.283185307179586);
   qsort(angle, o->n, sizeof *angle, ascending);
-  for (size_t i = 0; i < o->n; i++)
+  double plane[OBSTACLE_MAX_VERTICES][2];
+  for (size_t i = 0; i < o->n; i++) {
     o->vertex[i] = vec_add(centre, vec(radius * cos(angle[i]), radius * sin(angle[i]), 0.0));
+    plane[i][0] = o->vertex[i].x, plane[i][1] = o->vertex[i].y;
+  }
+  check(cprox_body_create_polygon((const double(*)[2])plane, o->n, NULL, &o->body));
 }
 
 /* All triples with every other vertex on one side: for a few dozen vertices. */
@@ -72,7 +76,7 @@ static void make_obstacle(rng *r, obstacle_kind kind, obstacle *o) {
       o->vertex[0] = centre;
       check(cprox_body_create_point(centre, NULL, &o->body));
       return;
-    case OBSTACLE_POLYGON: make_polygon(r, centre, radius, o); break;
+    case OBSTACLE_POLYGON: make_polygon(r, centre, radius, o); return;
     default:
       o->n = kind == OBSTACLE_POLYTOPE ? 8 + rng_index(r, 57) : 500;
       for (size_t i = 0; i < o->n; i++) o->vertex[i] = vec_axpy(centre, radius, rng_unit(r));

@@ -347,14 +347,15 @@ static void ball_bounds_are_never_above_the_true_distance(void **state) {
 static void chords_are_those_of_the_piece(void **state) {
   (void)state;
   rng r = rng_seed(15);
-  double basis[(CPROX_MAX_DEGREE + 1) * CHORDS];
+  cprox_workspace *workspace = cprox_workspace_create();
   for (size_t round = 0; round < test_cases(3000); round++) {
     const size_t degree = random_degree(&r);
     vec3 points[CPROX_MAX_DEGREE + 1], begin[CHORDS + 1];
     random_points(&r, degree + 1, points);
-    lanes_basis(degree, basis);
+    const double *basis = lanes_basis(degree, workspace);
     lanes_chords chords;
-    lanes_cut(basis, points, degree, &chords);
+    lanes_points(basis, points, degree, false, &chords);
+    lanes_join(&chords);
     const double size = ref_largest(points, degree + 1);
     const double allowed = (10.0 * (double)degree + 16) * 0x1p-53 * size;
     for (size_t k = 0; k < CHORDS; k++) {
@@ -374,6 +375,7 @@ static void chords_are_those_of_the_piece(void **state) {
     const vec3 at = vec_lerp(begin[chord], begin[chord + 1], s);
     assert_true(fabs(vec_norm(vec_sub(from, at)) - distance) <= 16 * 0x1p-53 * 3 * size);
   }
+  cprox_workspace_free(workspace);
 }
 
 /* ---- input -------------------------------------------------------------------------------------------------------------- */

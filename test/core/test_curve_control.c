@@ -9,6 +9,7 @@
 
 #include "base/rounding.h"
 #include "curve/control.h"
+#include "curve/curve.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -95,7 +96,10 @@ static void distances_from_a_centre_are_never_overstated(void **state) {
       for (size_t i = 0; i <= degree; i++) p[i] = rng_in_cube(&r, 2.0 * scale);
     double points[3 * (MAX_DEGREE + 1)], scratch[3 * (MAX_DEGREE + 1)];
     to_arrays(p, degree, points);
-    const double bound = control_distance_from(points, degree, centre, along, scratch);
+    double tables[4 * (MAX_DEGREE + 1)];
+    curve_fill_tables(degree, tables);
+    const double *square = tables + (degree < 2 ? 0 : degree - 1);
+    const double bound = control_distance_from(points, degree, square, centre, along, scratch);
     for (int i = 0; i < 4; i++) {
       const double s = i == 0 ? 0.0 : i == 1 ? 1.0 : rng_uniform(&r, 0.0, 1.0);
       vec3l w = ref_sub(ref_bezier(p, degree, s, 0), ref_vec(centre));

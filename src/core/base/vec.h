@@ -10,6 +10,15 @@
 
 typedef cprox_vec3 vec3;
 
+/* As fmin and fmax, but without a call, and with b where one is not a number. */
+static inline double lesser(double a, double b) {
+  return a < b ? a : b;
+}
+
+static inline double greater(double a, double b) {
+  return a > b ? a : b;
+}
+
 static inline vec3 vec(double x, double y, double z) {
   return (vec3){x, y, z};
 }

@@ -292,7 +292,13 @@ cprox_status cprox_body_create_polygon(const double (*vertices)[2], size_t n, cp
   if (made && clean) {
     const size_t kept = polygon_clean(vertices, n, area2 < 0.0, clean);
     status = polygon_check_turns(clean, kept, workspace);
-    if (!status && body_store_vertices(made, clean, kept)) status = body_out_of_memory(workspace);
+    if (!status) {
+      made->shape.edge = malloc(3 * kept * sizeof *made->shape.edge);
+      if (!made->shape.edge || body_store_vertices(made, clean, kept))
+        status = body_out_of_memory(workspace);
+      else
+        convex_polygon_measure_edges(&made->shape);
+    }
   } else {
     status = body_out_of_memory(workspace);
   }
@@ -329,6 +335,7 @@ cprox_status cprox_body_create_support(cprox_support_fn support, const void *sha
 void cprox_body_free(cprox_body *body) {
   if (!body) return;
   free(body->shape.x); /* y and z are in the same block */
+  free(body->shape.edge);
   free(body->parts);
   free(body->shape.implicit); /* one block */
   tree_free(body->tree);

@@ -73,7 +73,7 @@ bool feature_cover(const convex_near *near, int32_t n, const double *x, const do
     const double w2 = vec_norm2(w), along = vec_dot(normal, w);
     if (w2 <= same * same) continue;
     if (w2 > 2e6 * scale * along) return false; /* so flat that the ball says no more than the plane */
-    radius = fmax(radius, w2 / (2.0 * along));
+    radius = greater(w2 / (2.0 * along), radius);
   }
 
   /* measured again, over all of them: what the rounding of b, n and R did to it is in the measure */
@@ -81,7 +81,7 @@ bool feature_cover(const convex_near *near, int32_t n, const double *x, const do
   double measured = 0.0;
   for (int32_t i = 0; i < n; i++) {
     const vec3 w = cover_across(cover, vec_sub(vec(x[i], y[i], z[i]), cover->centre));
-    measured = fmax(measured, vec_norm2(w));
+    measured = greater(vec_norm2(w), measured);
   }
   cover->radius = sqrt(measured) * (1.0 + 8.0 * ROUND_U) + 16.0 * ROUND_U * (radius + 2.0 * scale);
   return true;

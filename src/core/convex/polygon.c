@@ -16,15 +16,24 @@ typedef struct polygon_place {
 /* Signed distance of p from the line of edge i, measured from the nearer end so that it is exact to u about either. */
 static double polygon_height(const convex *shape, int32_t i, double px, double py, double *ex, double *ey,
                              double *along, double *length) {
-  const int32_t j = i + 1 < shape->n ? i + 1 : 0;
-  *ex = shape->x[j] - shape->x[i];
-  *ey = shape->y[j] - shape->y[i];
-  *length = feature_hypot(*ex, *ey);
-  *ex /= *length;
-  *ey /= *length;
-  const double ax = px - shape->x[i], ay = py - shape->y[i], bx = px - shape->x[j], by = py - shape->y[j];
+  *ex = shape->edge[i];
+  *ey = shape->edge[shape->n + i];
+  *length = shape->edge[2 * shape->n + i];
+  const double ax = px - shape->x[i], ay = py - shape->y[i];
   *along = ax * *ex + ay * *ey;
-  return *along < 0.5 * *length ? ax * *ey - ay * *ex : bx * *ey - by * *ex;
+  if (*along < 0.5 * *length) return ax * *ey - ay * *ex;
+  const int32_t j = i + 1 < shape->n ? i + 1 : 0;
+  return (px - shape->x[j]) * *ey - (py - shape->y[j]) * *ex;
+}
+
+void convex_polygon_measure_edges(convex *shape) {
+  for (int32_t i = 0; i < shape->n; i++) {
+    const int32_t j = i + 1 < shape->n ? i + 1 : 0;
+    const double ex = shape->x[j] - shape->x[i], ey = shape->y[j] - shape->y[i], length = feature_hypot(ex, ey);
+    shape->edge[i] = ex / length;
+    shape->edge[shape->n + i] = ey / length;
+    shape->edge[2 * shape->n + i] = length;
+  }
 }
 
 static polygon_place polygon_locate(const convex *shape, double px, double py) {

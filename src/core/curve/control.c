@@ -3,6 +3,7 @@
 
 #include "base/lanes.h"
 #include "base/rounding.h"
+#include "curve/curve.h"
 
 LANES_DISPATCHED
 double control_least(const double *points, size_t degree, vec3 n) {
@@ -57,35 +58,41 @@ double control_split(double *left, double *right, size_t degree, double s, doubl
   return ROUND_UP * levels * ROUND_U * 1.7320508075688774 * magnitude;
 }
 
-/* What is left of v when its part along the unit axis is taken away. */
-static vec3 orthogonal_part(vec3 v, const vec3 *axis) {
-  return axis ? vec_axpy(v, -vec_dot(*axis, v), *axis) : v;
-}
-
 LANES_DISPATCHED
-double control_distance_from(const double *points, size_t degree, vec3 centre, const vec3 *axis, double *scratch) {
-  const double *x = points, *y = points + degree + 1, *z = y + degree + 1;
-  double *wx = scratch, *wy = wx + degree + 1, *wz = wy + degree + 1;
+double control_distance_from(const double *points, size_t degree, const double *square, vec3 centre, const vec3 *axis,
+                             double *scratch) {
+  const double *restrict x = points, *restrict y = points + degree + 1, *restrict z = y + degree + 1;
+  const double *restrict once = square, *restrict per_twice = square + degree + 1;
+  double *restrict wx = scratch, *restrict wy = wx + degree + 1, *restrict wz = wy + degree + 1;
 
-  /* w_i = C(n, i) (P_i - centre), so that products of two of them need no further weight */
-  double binomial = 1.0, reach2 = 0.0;
+  /* w_i = C(n, i) (P_i - centre), or its part across the axis, so that products of two of them need no further weight */
+  const vec3 e = axis ? *axis : vec(0, 0, 0);
+  double reach2 = 0.0;
+#pragma omp simd reduction(max : reach2)
   for (size_t i = 0; i <= degree; i++) {
-    const vec3 v = vec(x[i] - centre.x, y[i] - centre.y, z[i] - centre.z), w = orthogonal_part(v, axis);
-    reach2 = fmax(reach2, vec_norm2(v));
-    wx[i] = binomial * w.x, wy[i] = binomial * w.y, wz[i] = binomial * w.z;
-    binomial = binomial * (double)(degree - i) / (double)(i + 1);
+    const double vx = x[i] - centre.x, vy = y[i] - centre.y, vz = z[i] - centre.z;
+    const double along = e.x * vx + e.y * vy + e.z * vz, v2 = vx * vx + vy * vy + vz * vz;
+    reach2 = v2 > reach2 ? v2 : reach2;
+    wx[i] = once[i] * (vx - along * e.x);
+    wy[i] = once[i] * (vy - along * e.y);
+    wz[i] = once[i] * (vz - along * e.z);
   }
 
   /* coefficient k of |w|^2 in the Bernstein basis of degree 2n: sum over i of w_i w_(k-i) / C(2n, k); i and k - i count twice */
-  double least = INFINITY, divisor = 1.0;
+  double sum[2 * CPROX_MAX_DEGREE + 1];
+  for (size_t k = 0; k <= 2 * degree; k++) sum[k] = 0.0;
+  for (size_t i = 0; i <= degree; i++) {
+    const double ax = 2.0 * wx[i], ay = 2.0 * wy[i], az = 2.0 * wz[i];
+    double *restrict at = sum + i;
+    at[i] += 0.5 * (ax * wx[i] + ay * wy[i] + az * wz[i]);
+#pragma omp simd
+    for (size_t j = i + 1; j <= degree; j++) at[j] += ax * wx[j] + ay * wy[j] + az * wz[j];
+  }
+  double least = INFINITY;
+#pragma omp simd reduction(min : least)
   for (size_t k = 0; k <= 2 * degree; k++) {
-    const size_t first = k > degree ? k - degree : 0, half = (k + 1) / 2;
-    double sum = 0.0;
-    for (size_t i = first; i < half; i++) sum += wx[i] * wx[k - i] + wy[i] * wy[k - i] + wz[i] * wz[k - i];
-    sum *= 2.0;
-    if (k % 2 == 0) sum += wx[half] * wx[half] + wy[half] * wy[half] + wz[half] * wz[half];
-    least = fmin(least, sum / divisor);
-    divisor = divisor * (double)(2 * degree - k) / (double)(k + 1);
+    const double coefficient = sum[k] * per_twice[k];
+    least = coefficient < least ? coefficient : least;
   }
 
   /* the coefficients are convex combinations of products below reach^2; doc/rounding.md counts (14 n + 40) u of them */

@@ -28,7 +28,8 @@ double control_split(double *left, double *right, size_t degree, double s, doubl
 
 /* A lower bound of |w| over the piece, w = psi - centre or its part orthogonal to the unit `axis` (NULL for none), from the
  * Bernstein coefficients of |w|^2, rounding included; 0 where they say nothing. Cost: degree^2. `scratch` holds
- * control_size(degree) numbers. */
-double control_distance_from(const double *points, size_t degree, vec3 centre, const vec3 *axis, double *scratch);
+ * control_size(degree) numbers, `square` is the curve's table. */
+double control_distance_from(const double *points, size_t degree, const double *square, vec3 centre, const vec3 *axis,
+                             double *scratch);
 
 #endif

@@ -18,8 +18,8 @@ cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
   c->points = calloc(n_pieces * (degree + 1), sizeof *c->points);
   c->error = calloc(n_pieces, sizeof *c->error);
   c->capsules = calloc(2 * c->n_leaves, sizeof *c->capsules);
-  if (degree >= 2) c->binomial = calloc(degree - 1, sizeof *c->binomial);
-  if (!c->breaks || !c->points || !c->error || !c->capsules || (degree >= 2 && !c->binomial)) {
+  c->tables = calloc(curve_tables_size(degree), sizeof *c->tables);
+  if (!c->breaks || !c->points || !c->error || !c->capsules || !c->tables) {
     cprox_curve_free(c);
     return NULL;
   }
@@ -33,7 +33,7 @@ void cprox_curve_free(cprox_curve *curve) {
   free(curve->error);
   free(curve->capsules);
   free(curve->arcs);
-  free(curve->binomial);
+  free(curve->tables);
   free(curve);
 }
 
@@ -123,12 +123,9 @@ static curve_capsule join_capsules(const curve_capsule *left, const curve_capsul
 }
 
 void curve_finish(cprox_curve *c) {
-  /* C(m, k) by Pascal's rule: exact up to m = 56, one rounding a number beyond */
-  for (size_t row = 0; row + 2 <= c->degree; row++) {
-    c->binomial[row] = 1.0;
-    for (size_t k = row; k-- > 1;) c->binomial[k] += c->binomial[k - 1];
-  }
-
+  curve_fill_tables(c->degree, c->tables);
+  c->binomial = c->tables;
+  c->square = c->tables + (c->degree < 2 ? 0 : c->degree - 1);
   for (size_t i = 0; i < c->n_leaves; i++) {
     curve_capsule *leaf = &c->capsules[c->n_leaves + i];
     if (i < c->n_pieces)
@@ -187,59 +184,6 @@ void curve_blossom(const vec3 *d, const double *u, size_t p, double lo, double h
       row[i] = combine(weights_between(u[i + l - 1], lo, u[i + p]), row[i], row[i + 1]);
     first += p - given;
   }
-}
-
-/* With m = n - 2, the last three de Casteljau points are Q_j = sum_k B_k^m(s) P_(k+j), j = 0, 1, 2, and
- *   value = (1-s)² Q_0 + 2 s(1-s) Q_1 + s² Q_2,   first = n ((1-s)(Q_1 - Q_0) + s (Q_2 - Q_1)),
- *   second = n(n-1)((Q_2 - Q_1) - (Q_1 - Q_0)).
- *
- * Error: r = 1 - s has one rounding, so r^(m-k) has 2(m-k) - 1, s^k has k - 1, the binomial two (from degree 59 on),
- * their two products two: a weight has at most 2m + 2. A term of Q_j has one more for its product and at most m for its
- * sums: 3m + 3 = 3n - 3. The last step adds 3 for r², 1 for the product and 2 for the sums: 3n + 3; of degree 1 there are 3. All
- * weights are positive and sum to 1, so this times u max|P| bounds the error in every direction at once. Powers that
- * underflow are off by less than 2^-1074, times a binomial below 2^55: far below u;
- * products that underflow (|P| below 1e-290) add up to 200 times 2^-1074.
- * At s = 0 and s = 1 one weight is 1 and the others are 0: the ends are exact. */
-void curve_bezier_evaluate(const double *x, const double *y, const double *z, size_t stride, size_t degree,
-                           const double *binomial, double s, vec3 *value, vec3 *first, vec3 *second) {
-  const double r = 1.0 - s;
-  if (degree < 2) {
-    const vec3 a = vec(x[0], y[0], z[0]), b = vec(x[stride], y[stride], z[stride]);
-    if (value) *value = vec_lerp(a, b, s);
-    if (first) *first = vec_sub(b, a);
-    if (second) *second = vec(0, 0, 0);
-    return;
-  }
-
-  /* the falling factors of the weights, C(m, k) r^(m-k) */
-  double falling[CPROX_MAX_DEGREE];
-  const size_t m = degree - 2;
-  double power = 1.0;
-  for (size_t k = m + 1; k-- > 0;) {
-    falling[k] = binomial[k] * power;
-    power *= r;
-  }
-
-  /* the last three de Casteljau points; three control points stand in registers and move on by one */
-  vec3 q0 = vec(0, 0, 0), q1 = vec(0, 0, 0), q2 = vec(0, 0, 0);
-  vec3 p0 = vec(x[0], y[0], z[0]), p1 = vec(x[stride], y[stride], z[stride]);
-  power = 1.0;
-  for (size_t k = 0, i = 2 * stride; k <= m; k++, i += stride) {
-    const vec3 p2 = vec(x[i], y[i], z[i]);
-    const double weight = falling[k] * power;
-    power *= s;
-    q0 = vec_axpy(q0, weight, p0);
-    q1 = vec_axpy(q1, weight, p1);
-    q2 = vec_axpy(q2, weight, p2);
-    p0 = p1;
-    p1 = p2;
-  }
-
-  const vec3 d0 = vec_sub(q1, q0), d1 = vec_sub(q2, q1);
-  const double n = (double)degree;
-  if (value) *value = vec_axpy(vec_axpy(vec_scale(r * r, q0), 2.0 * s * r, q1), s * s, q2);
-  if (first) *first = vec_scale(n, vec_lerp(d0, d1, s));
-  if (second) *second = vec_scale(n * (n - 1.0), vec_sub(d1, d0));
 }
 
 /* ---- what users ask a curve ---- */

@@ -27,11 +27,12 @@ struct cprox_curve {
   curve_capsule *capsules;
   size_t n_leaves;
   cprox_rectifiable_curve
-      *arcs;        /* NULL, or what a curve is known by that has no control points: then its pieces are chords of
+      *arcs;              /* NULL, or what a curve is known by that has no control points: then its pieces are chords of
                                     degree 1, their errors how far the curve is from them, and intervals are those of
                                     rectifiable.h */
-  double *binomial; /* C(degree - 2, k) for evaluation by the last three de Casteljau points; degree - 1 of them, NULL
-                       below 2 */
+  double *tables;         /* numbers of the degree, curve_tables_size() of them, which curve_finish() fills: */
+  const double *binomial; /* C(degree - 2, k), for evaluation by the last three de Casteljau points; none below 2, */
+  const double *square;   /* and for control_distance_from(): C(degree, k), then 1 / C(2 degree, k) */
 };
 
 static inline const vec3 *curve_piece(const cprox_curve *c, size_t i) {
@@ -41,6 +42,9 @@ static inline const vec3 *curve_piece(const cprox_curve *c, size_t i) {
 /* A curve with room for the pieces; breaks, points and error are the caller's to fill, then curve_finish(). NULL where
  * memory is out (cprox_curve_free() frees). */
 cprox_curve *curve_allocate(size_t degree, size_t n_pieces);
+
+size_t curve_tables_size(size_t degree);
+void curve_fill_tables(size_t degree, double *tables);
 
 /* Builds the capsules and tables over pieces that are filled in. */
 void curve_finish(cprox_curve *c);

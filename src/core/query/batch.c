@@ -1,190 +1,50 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Many movers against the same targets. doc/batches.md says what is done for each, and why that is sound. */
+/* Many movers against the same targets. doc/batches.md says what is done for each. */
 #include "curve_proximity/cprox/batch.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#include "base/rounding.h"
 #include "base/workspace.h"
 #include "query/answer.h"
 #include "query/arguments.h"
-#include "query/batch_targets.h"
+#include "query/batch_look.h"
 #include "query/candidate_search.h"
-
-enum { MOST_PIECES = 4 }; /* curves of more are searched along their tree of capsules instead of cut into chords */
-
-/* One call. */
-typedef struct batch_run {
-  const cprox_batch *batch;
-  question q;
-  double *lower;   /* of each part's ball, padded */
-  candidate *near; /* what may matter to the mover */
-  double *basis;   /* of the degree below; 0: none yet */
-  size_t degree;
-  bool cut; /* the mover has chords: */
-  lanes_chords chords[MOST_PIECES];
-  double beside; /* how far the curve may be from the chords' points of the same parameter */
-  double slack;  /* how much rounding may add to that */
-  bool flat;     /* the whole curve lies in the plane of constant z */
-  double plane;  /* this, exactly */
-} batch_run;
-
-/* As fmin and fmax for numbers, without a call. */
-static inline double lesser(double a, double b) {
-  return a < b ? a : b;
-}
-
-static inline double greater(double a, double b) {
-  return a > b ? a : b;
-}
-
-/* What the chords tell of the parts. */
-typedef struct first_look {
-  size_t n;         /* candidates in `near`, */
-  size_t promising; /* the one that has the least upper bound, */
-  double upper;     /* this */
-  double beyond;    /* the least lower bound of all others */
-  bool met;         /* the promising one is met at its seed: the ball about `centre` with radius `within` is of it */
-  vec3 centre;
-  double within;
-} first_look;
-
-/* ---- chords ------------------------------------------------------------------------------------------------------------- */
-
-/* The whole curve lies in a plane of constant z, exactly. */
-static bool lies_in_plane(const cprox_curve *curve, double z) {
-  const size_t n = curve->n_pieces * (curve->degree + 1);
-  for (size_t i = 0; i < n; i++)
-    if (curve->points[i].z != z) return false;
-  return true;
-}
-
-/* Chords of parameter length h are within h²/8 max|psi''| of the curve, |psi''| <= n (n-1) max|second difference|. */
-static void cut_curve(batch_run *run, const cprox_curve *curve) {
-  run->cut = curve->n_pieces <= MOST_PIECES;
-  if (!run->cut) return;
-  if (run->degree != curve->degree) {
-    lanes_basis(curve->degree, run->basis);
-    run->degree = curve->degree;
-  }
-  double error = 0.0, bend2 = 0.0;
-  for (size_t i = 0; i < curve->n_pieces; i++) {
-    lanes_cut(run->basis, curve_piece(curve, i), curve->degree, &run->chords[i]);
-    bend2 = greater(bend2, lanes_bend2(curve_piece(curve, i), curve->degree));
-    error = greater(error, curve->error[i]);
-  }
-  run->plane = curve->points[0].z;
-  run->flat = lies_in_plane(curve, run->plane);
-  const double n = (double)curve->degree;
-  run->beside = ROUND_UP * n * (n - 1.0) * sqrt(bend2) / (8.0 * CHORDS * CHORDS);
-  /* the capsule holds all control points */
-  const curve_capsule *capsule = &curve->capsules[1];
-  const double magnitude = greater(vec_norm(capsule->a), vec_norm(capsule->b)) + capsule->radius;
-  run->slack = ROUND_UP * (error + (10.0 * n + 40.0 + n * n / (CHORDS * CHORDS)) * ROUND_U * magnitude);
-}
-
-/* Chords against the balls of a part: bounds on the distance, and where the search should begin. Sets look->met
- * where the curve is seen to meet the part there. */
-static double look_at(const batch_run *run, candidate *c, size_t part, first_look *look) {
-  const batch_core *core = &run->batch->cores[part];
-  double least = INFINITY, along = 0.0;
-  size_t chord = 0, piece = 0;
-  for (size_t i = 0; i < run->q.mover.curve->n_pieces; i++) {
-    size_t k;
-    double s;
-    const double square = lanes_closest(&run->chords[i], core->centre, &k, &s);
-    if (square >= least) continue;
-    least = square;
-    piece = i, chord = k, along = s;
-  }
-  const cprox_target *target = &run->batch->targets[c->target];
-  const double distance = sqrt(least), margin = target->padding + run->q.mover.radius;
-  const double slack =
-      run->beside + ROUND_UP * (run->slack + 32.0 * ROUND_U * (distance + margin + run->batch->balls.sizes[part]));
-  c->lower = greater(c->lower, distance - core->outer - margin - slack);
-  c->seed_piece = (uint32_t)piece;
-  c->seed_s = lesser(greater(((double)chord + along) / CHORDS, 1e-3), 1.0 - 1e-3);
-
-  /* any point of the part is within the outer ball, and all points of the inner ball are of the part */
-  const bool inside = core->inner >= 0.0 && (!core->flat || (run->flat && run->plane == target->pose.position.z));
-  const double upper = distance + (inside ? -core->inner : core->outer) - margin + slack;
-  look->met = inside && upper <= 0.0;
-  if (look->met) {
-    look->within = core->inner + target->padding;
-    look->centre = core->centre;
-    c->seed_s = ((double)chord + along) / CHORDS;
-  }
-  return upper;
-}
-
-/* Collects what comes within `most` as far as balls and chords can tell; stops where the curve is seen to meet a part. */
-static first_look look_around(batch_run *run, double most) {
-  const cprox_batch *batch = run->batch;
-  const question *q = &run->q;
-  first_look look = {.upper = INFINITY, .beyond = INFINITY};
-  lanes_ball_bounds(&batch->balls, &q->reach, q->mover.radius, run->lower);
-  bool cut = false;
-  for (size_t k = 0; k < batch->balls.n; k++) {
-    candidate c = batch->parts[k];
-    c.lower = run->lower[k];
-    double upper = INFINITY;
-    if (c.lower <= lesser(most, look.upper) && batch->targets[c.target].body) {
-      if (!cut) cut_curve(run, q->mover.curve);
-      cut = true;
-      if (run->cut) upper = look_at(run, &c, k, &look);
-    }
-    if (c.lower > lesser(most, look.upper)) {
-      look.beyond = lesser(look.beyond, c.lower);
-      continue;
-    }
-    if (upper < look.upper || look.met) look.upper = upper, look.promising = look.n;
-    run->near[look.n++] = c;
-    if (look.met) break;
-  }
-  return look;
-}
-
-/* The promising candidate first, the others nearest first. Those that a later one has ruled out leave: farther than the first one is,
- * they do not lower the union's bound. */
-static void put_in_order(batch_run *run, first_look *look) {
-  if (look->n == 0) return;
-  candidate *near = run->near;
-  const candidate first = near[look->promising];
-  near[look->promising] = near[0];
-  near[0] = first;
-  size_t kept = 1;
-  for (size_t i = 1; i < look->n; i++) {
-    if (near[i].lower <= look->upper) near[kept++] = near[i];
-  }
-  look->n = kept;
-  candidates_sort(near + 1, kept - 1);
-}
 
 /* ---- one mover ---------------------------------------------------------------------------------------------------------- */
 
-/* The curve's point of the seed lies in a part: they meet there, whatever else there is. */
-static cprox_status report_meeting(const batch_run *run, const first_look *look, cprox_result *r) {
-  const cprox_curve *curve = run->q.mover.curve;
-  const candidate *c = &run->near[look->promising];
-  const double t0 = curve->breaks[c->seed_piece], t1 = curve->breaks[c->seed_piece + 1];
-  const vec3 *p = curve_piece(curve, c->seed_piece);
-  vec3 y;
-  curve_bezier_evaluate(&p->x, &p->y, &p->z, 3, curve->degree, curve->binomial, c->seed_s, &y, NULL, NULL);
-  const double distance = vec_norm(vec_sub(y, look->centre));
-  if (distance > look->within) y = vec_lerp(look->centre, y, look->within / distance);
-  *r = (cprox_result){.t = c->seed_s == 1.0 ? t1 : t0 + c->seed_s * (t1 - t0),
+/* A point of the curve is so near to a ball inside a part that the limit is violated, whatever else there is. */
+static cprox_status report_hit(const batch_run *run, const batch_look *look, cprox_result *r) {
+  const batch_hit *hit = &look->hit;
+  const candidate *part = &run->batch->parts[hit->part];
+  const double *breaks = run->q.mover.curve->breaks, radius = run->q.mover.radius;
+  *r = (cprox_result){.lower = look->beyond < 0.0 ? 0.0 : look->beyond,
+                      .upper = hit->upper,
+                      .t = breaks[hit->piece] + hit->s * (breaks[hit->piece + 1] - breaks[hit->piece]),
                       .t_target = NAN,
-                      .on_mover = y,
-                      .on_target = y,
-                      .target_index = c->target,
-                      .target_part = c->part,
+                      .on_mover = hit->point,
+                      .on_target = hit->point,
+                      .target_index = part->target,
+                      .target_part = part->part,
                       .rung = CPROX_RUNG_SPHERE};
-  return question_conclude(&run->q, INFINITY, CPROX_OK, r);
+
+  /* the nearest points of that ball and the mover's, or one of both */
+  const vec3 from = vec_sub(hit->point, hit->centre);
+  const double distance = vec_norm(from);
+  if (distance > hit->within) {
+    const vec3 normal = vec_scale(1.0 / distance, from);
+    r->on_mover = r->on_target = vec_axpy(hit->centre, hit->within, normal);
+    if (distance > hit->within + radius) {
+      r->normal = normal;
+      r->on_mover = vec_axpy(hit->point, -radius, normal);
+    }
+  }
+  r->verdict = question_verdict(&run->q, r);
+  return CPROX_OK;
 }
 
 /* The union of what is near. */
-static cprox_status search_near(const batch_run *run, const first_look *look, cprox_result *all) {
+static cprox_status search_near(const batch_run *run, const batch_look *look, cprox_result *all) {
   const question *q = &run->q;
   cprox_status trouble = CPROX_OK;
   *all = question_nothing();
@@ -208,12 +68,9 @@ static cprox_status search_near(const batch_run *run, const first_look *look, cp
 }
 
 static cprox_status answer_fast(batch_run *run, cprox_result *r) {
-  const question *q = &run->q;
   question_ask_whole(&run->q);
-  first_look look = look_around(run, question_wants_verdict(q) ? q->limit : INFINITY);
-  if (look.met) return report_meeting(run, &look, r);
-  put_in_order(run, &look);
-  return search_near(run, &look, r);
+  const batch_look look = batch_look_around(run);
+  return look.is_hit ? report_hit(run, &look, r) : search_near(run, &look, r);
 }
 
 /* ---- the call ----------------------------------------------------------------------------------------------------------- */
@@ -255,12 +112,9 @@ static cprox_status check_call(const batch_run *run, const cprox_mover *movers, 
 
 static bool reserve(batch_run *run) {
   const lanes_balls *balls = &run->batch->balls;
-  const size_t numbers = balls->padded + (CPROX_MAX_DEGREE + 1) * CHORDS;
-  run->lower = workspace_reserve(run->q.workspace, WORKSPACE_BATCH, numbers * sizeof(double));
+  run->lower = workspace_reserve(run->q.workspace, WORKSPACE_BATCH, balls->padded * sizeof(double));
   run->near = workspace_reserve(run->q.workspace, WORKSPACE_BATCH_NEAR, (balls->n + 1) * sizeof *run->near);
-  if (!run->lower || !run->near) return false;
-  run->basis = run->lower + balls->padded;
-  return true;
+  return run->lower && run->near;
 }
 
 static cprox_status answer_range(question q, const cprox_batch *batch, const cprox_mover *movers, size_t first,

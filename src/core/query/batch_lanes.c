@@ -3,6 +3,7 @@
 
 #include "base/lanes.h"
 #include "base/rounding.h"
+#include "base/workspace.h"
 
 /* Below this the square of a length may have lost its digits, and its reciprocal overflows. */
 static const double LEAST_SQUARE = 1e-280;
@@ -30,7 +31,7 @@ void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, d
   }
 }
 
-void lanes_basis(size_t degree, double *basis) {
+static void fill_basis(size_t degree, double *basis) {
   for (size_t k = 0; k < CHORDS; k++) {
     const double s = (double)k / CHORDS, r = 1.0 - s;
     basis[k] = 1.0;
@@ -44,19 +45,45 @@ void lanes_basis(size_t degree, double *basis) {
   }
 }
 
+/* The buffer begins with the degree that its table is of. */
+const double *lanes_basis(size_t degree, cprox_workspace *workspace) {
+  const bool fresh = !workspace_reserve(workspace, WORKSPACE_BASIS, 0);
+  double *buffer = workspace_reserve(workspace, WORKSPACE_BASIS, (1 + CHORDS * (degree + 1)) * sizeof(double));
+  if (!buffer) return NULL;
+  if (fresh || buffer[0] != (double)degree) {
+    fill_basis(degree, buffer + 1);
+    buffer[0] = (double)degree;
+  }
+  return buffer + 1;
+}
+
 LANES_DISPATCHED
-void lanes_cut(const double *basis, const vec3 *points, size_t degree, lanes_chords *chords) {
+void lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, lanes_chords *chords) {
   /* half of the lanes at a time: so many sums stay in registers */
   for (size_t first = 0; first < CHORDS; first += LANES) {
     double x[LANES] = {0}, y[LANES] = {0}, z[LANES] = {0};
-    for (size_t j = 0; j <= degree; j++) {
-      const double *restrict b = basis + j * CHORDS + first;
-      const vec3 p = points[j];
+    if (flat) {
+      for (size_t j = 0; j <= degree; j++) {
+        const double *restrict b = basis + j * CHORDS + first;
+        const vec3 p = points[j];
 #pragma omp simd
-      for (int k = 0; k < LANES; k++) {
-        x[k] += b[k] * p.x;
-        y[k] += b[k] * p.y;
-        z[k] += b[k] * p.z;
+        for (int k = 0; k < LANES; k++) {
+          x[k] += b[k] * p.x;
+          y[k] += b[k] * p.y;
+        }
+      }
+#pragma omp simd
+      for (int k = 0; k < LANES; k++) z[k] = points[0].z;
+    } else {
+      for (size_t j = 0; j <= degree; j++) {
+        const double *restrict b = basis + j * CHORDS + first;
+        const vec3 p = points[j];
+#pragma omp simd
+        for (int k = 0; k < LANES; k++) {
+          x[k] += b[k] * p.x;
+          y[k] += b[k] * p.y;
+          z[k] += b[k] * p.z;
+        }
       }
     }
     for (size_t k = 0; k < LANES; k++) {
@@ -68,6 +95,10 @@ void lanes_cut(const double *basis, const vec3 *points, size_t degree, lanes_cho
   chords->x[CHORDS] = points[degree].x;
   chords->y[CHORDS] = points[degree].y;
   chords->z[CHORDS] = points[degree].z;
+}
+
+LANES_DISPATCHED
+void lanes_join(lanes_chords *chords) {
 #pragma omp simd
   for (int k = 0; k < CHORDS; k++) {
     const double dx = chords->x[k + 1] - chords->x[k], dy = chords->y[k + 1] - chords->y[k];
@@ -77,6 +108,53 @@ void lanes_cut(const double *basis, const vec3 *points, size_t degree, lanes_cho
     chords->dz[k] = dz;
     chords->per_length2[k] = length2 > LEAST_SQUARE ? 1.0 / length2 : 0.0;
   }
+}
+
+LANES_DISPATCHED
+double lanes_nearest_point(const lanes_chords *c, vec3 point, double most, size_t *nearest) {
+  double square[CHORDS];
+#pragma omp simd
+  for (int k = 0; k < CHORDS; k++) {
+    const double dx = point.x - c->x[k], dy = point.y - c->y[k], dz = point.z - c->z[k];
+    square[k] = dx * dx + dy * dy + dz * dz;
+  }
+  double least = INFINITY;
+#pragma omp simd reduction(min : least)
+  for (int k = 0; k < CHORDS; k++) least = square[k] < least ? square[k] : least;
+  if (least > most) return least;
+  size_t first = 0;
+  while (first + 1 < CHORDS && square[first] != least) first++;
+  *nearest = first;
+  return least;
+}
+
+LANES_DISPATCHED
+double lanes_first_look(const double *basis, const double *x, const double *y, const double *z, size_t degree) {
+  double square[CHORDS + 1];
+  for (size_t first = 0; first < CHORDS; first += LANES) {
+    double px[LANES] = {0}, py[LANES] = {0}, pz[LANES] = {0};
+    for (size_t j = 0; j <= degree; j++) {
+      const double *restrict b = basis + j * CHORDS + first;
+#pragma omp simd
+      for (int k = 0; k < LANES; k++) {
+        px[k] += b[k] * x[j];
+        py[k] += b[k] * y[j];
+        pz[k] += b[k] * z[j];
+      }
+    }
+#pragma omp simd
+    for (int k = 0; k < LANES; k++) square[first + (size_t)k] = px[k] * px[k] + py[k] * py[k] + pz[k] * pz[k];
+  }
+  square[CHORDS] = x[degree] * x[degree] + y[degree] * y[degree] + z[degree] * z[degree];
+  size_t nearest = 0;
+  for (size_t k = 1; k <= CHORDS; k++)
+    if (square[k] < square[nearest]) nearest = k;
+  if (nearest == 0 || nearest == CHORDS) return (double)nearest / CHORDS;
+
+  /* the lowest point of the parabola through three of them */
+  const double left = square[nearest - 1] - square[nearest], right = square[nearest + 1] - square[nearest];
+  const double shift = left + right > 0.0 ? 0.5 * (left - right) / (left + right) : 0.0;
+  return ((double)nearest + shift) / CHORDS;
 }
 
 LANES_DISPATCHED

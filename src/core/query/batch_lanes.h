@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The loops of a batch that run in vector registers. All of them give the same results whatever the registers' width. */
+/* Loops over many points at once that run in vector registers, for batches and for the first look of a search. All of them give the same results whatever the registers' width. */
 #ifndef CPROX_QUERY_BATCH_LANES_H
 #define CPROX_QUERY_BATCH_LANES_H
 
@@ -19,8 +19,12 @@ typedef struct lanes_balls {
 /* lower[k]: the distance of the capsule, grown by `radius`, from ball k, rounding included; negative where they overlap. */
 void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, double radius, double *lower);
 
-/* basis[j * CHORDS + k]: Bernstein polynomial j of the degree at k/CHORDS. */
-void lanes_basis(size_t degree, double *basis);
+/* basis[j * CHORDS + k]: Bernstein polynomial j of the degree at k/CHORDS. Kept in the workspace until another degree is asked for;
+ * NULL where memory is out. */
+const double *lanes_basis(size_t degree, cprox_workspace *workspace);
+
+/* Where on a piece (control points one array a coordinate) it comes nearest to the origin, as far as CHORDS + 1 points tell: s. */
+double lanes_first_look(const double *basis, const double *x, const double *y, const double *z, size_t degree);
 
 /* The chords of a Bézier piece: chord k begins at the point of s = k/CHORDS, and how it goes on to the next. */
 typedef struct lanes_chords {
@@ -29,7 +33,14 @@ typedef struct lanes_chords {
   double per_length2[CHORDS]; /* 1/|d|², 0 where that would overflow */
 } lanes_chords;
 
-void lanes_cut(const double *basis, const vec3 *points, size_t degree, lanes_chords *chords);
+/* The points where the chords begin, and the end. Where the piece is flat z is that of its control points, exactly. */
+void lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, lanes_chords *chords);
+
+/* How each point goes on to the next. */
+void lanes_join(lanes_chords *chords);
+
+/* The square distance of a point from those where the chords begin; the first that has it, if it is within `most`. */
+double lanes_nearest_point(const lanes_chords *chords, vec3 point, double most, size_t *k);
 
 /* The square distance of a point from the chords, and where it is attained: the first chord that has it, and s in [0, 1] of it. */
 double lanes_closest(const lanes_chords *chords, vec3 point, size_t *chord, double *s);

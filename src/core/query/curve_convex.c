@@ -4,6 +4,7 @@
 #include "base/rounding.h"
 #include "convex/depth.h"
 #include "curve/control.h"
+#include "query/batch_lanes.h"
 #include "query/polish.h"
 
 /* Slots of the pool that nodes never get. */
@@ -40,7 +41,7 @@ void curve_convex_bound(const curve_convex *o, search_node *node, const curve_si
   const curve_reach reach = curve_side_reach(&o->side, &node->side[0], sight->normal);
   const double bound = reach.least - sight->support;
   const double slack = bound_slack(o, reach.error, reach.magnitude, bound);
-  node->lower = fmax(node->lower, bound - slack);
+  node->lower = greater(bound - slack, node->lower);
   node->slack = slack;
 }
 
@@ -66,7 +67,7 @@ static void bound_by_cover(curve_convex *o, search_node *node) {
                                points_pool_at(&o->pool, SLOT_SCRATCH));
   const double bound = from_centre - o->cover.radius - o->offset;
   const double slack = ROUND_UP * (node->side[0].error + 4.0 * ROUND_U * (from_centre + o->cover.radius + o->offset));
-  node->lower = fmax(node->lower, bound - slack);
+  node->lower = greater(bound - slack, node->lower);
 }
 
 /* Nodes touch at their ends, so the best point may belong to two of them. */
@@ -155,13 +156,21 @@ static cprox_status probe_range(curve_convex *o, const search_node *node) {
   return status;
 }
 
-/* Where the interval's lowest control point along the best normal pulls most, but well inside; without a normal, the middle. */
-static double promising(const curve_convex *o, const search_interval *at) {
+/* Where the interval's lowest control point along the best normal pulls most, but well inside. Without a normal, where the piece comes
+ * nearest to the frame's origin, about which the body stands, as far as a few points tell, or the middle. */
+static double promising(const curve_convex *o, const search_interval *at, double *step) {
   double fraction = 0.5;
+  *step = 0.25 * (at->b - at->a);
+  if (o->incumbent == 0 && !o->side.curve->arcs && at->a == 0.0 && at->b == 1.0) {
+    const size_t degree = o->side.curve->degree;
+    const double *basis = lanes_basis(degree, o->workspace), *x = points_pool_at(&o->pool, (size_t)at->slot);
+    *step = 0.5 / CHORDS;
+    return basis ? lanes_first_look(basis, x, x + degree + 1, x + 2 * (degree + 1), degree) : fraction;
+  }
   if (o->incumbent > 0 && vec_norm2(o->best.normal) > 0.0) {
     const size_t degree = o->side.curve->degree;
     const size_t lowest = control_lowest(points_pool_at(&o->pool, (size_t)at->slot), degree, o->best.normal);
-    fraction = fmin(fmax((double)lowest / (double)degree, 0.125), 0.875);
+    fraction = lesser(greater((double)lowest / (double)degree, 0.125), 0.875);
   }
   return at->a + fraction * (at->b - at->a);
 }
@@ -179,7 +188,9 @@ static cprox_status probe_at(curve_convex *o, size_t piece, double s, double ste
 
 static cprox_status probe_piece(curve_convex *o, const search_node *node) {
   const search_interval *at = &node->side[0];
-  return probe_at(o, curve_side_piece(&o->side, at), promising(o, at), 0.25 * (at->b - at->a));
+  double step;
+  const double s = promising(o, at, &step);
+  return probe_at(o, curve_side_piece(&o->side, at), s, step);
 }
 
 cprox_status curve_convex_seed(curve_convex *o, size_t piece, double s, search_node *root) {

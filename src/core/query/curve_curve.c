@@ -24,7 +24,7 @@ static void bound_by_reaches(const curve_curve *o, search_node *node, vec3 n, co
     error += shape->slack;
   }
   const double slack = ROUND_UP * (error + ROUND_SUPPORT * ROUND_U * (sizes + fabs(bound)));
-  node->lower = fmax(node->lower, bound - slack);
+  node->lower = greater(bound - slack, node->lower);
   node->slack = slack;
 }
 

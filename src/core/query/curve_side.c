@@ -75,7 +75,7 @@ static vec3 local_of(const frame *f, vec3 world) {
 static void measure_ranges(curve_side *side) {
   const curve_capsule *all = &side->curve->capsules[1];
   const vec3 a = local_of(&side->frame, all->a), b = local_of(&side->frame, all->b);
-  const double computed = fmax(vec_norm(a), vec_norm(b));
+  const double computed = greater(vec_norm(a), vec_norm(b));
   const double most = ROUND_UP * (computed + all->radius + side->turned_slope * computed + side->turned_offset);
   const double roundings = (side->frame.rotated ? ROUND_ROTATION : 0.0) + 9.0 + side->frame.misturned;
   side->range_magnitude = most;
@@ -281,7 +281,7 @@ static curve_reach range_reach(const curve_side *side, const search_interval *at
   const vec3 turned = frame_turn_to_world(&side->frame, n);
   const double a = vec_dot(turned, vec_sub(capsule->a, side->frame.position));
   const double b = vec_dot(turned, vec_sub(capsule->b, side->frame.position));
-  return (curve_reach){.least = fmin(a, b) - vec_dot(n, side->frame.centre) - capsule->radius,
+  return (curve_reach){.least = lesser(a, b) - vec_dot(n, side->frame.centre) - capsule->radius,
                        .error = side->range_error,
                        .magnitude = side->range_magnitude};
 }
@@ -289,7 +289,8 @@ static curve_reach range_reach(const curve_side *side, const search_interval *at
 double curve_side_distance_from(const curve_side *side, const search_interval *at, vec3 centre, const vec3 *axis,
                                 double *scratch) {
   const double *points = points_pool_at(side->pool, (size_t)at->slot);
-  const double distance = control_distance_from(points, side->curve->degree, centre, axis, scratch);
+  const double distance =
+      control_distance_from(points, side->curve->degree, side->curve->square, centre, axis, scratch);
   /* an ellipsoid lies in the capsule round its chord */
   return side->curve->arcs ? fmax(distance - ROUND_UP * arc_hull(side, at).radius, 0.0) : distance;
 }

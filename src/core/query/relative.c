@@ -98,7 +98,7 @@ static bool lay_out(size_t degree, size_t n_pieces, cprox_workspace *workspace, 
   while (leaves < n_pieces) leaves *= 2;
   const size_t points = n_pieces * (degree + 1);
   const size_t bytes = 2 * leaves * sizeof *c->capsules + points * sizeof *c->points +
-                       (n_pieces + 1 + n_pieces + degree) * sizeof(double);
+                       (n_pieces + 1 + n_pieces + curve_tables_size(degree)) * sizeof(double);
   char *memory = workspace_reserve(workspace, WORKSPACE_RELATIVE, bytes);
   if (!memory) return false;
   *c = (cprox_curve){.degree = degree, .n_pieces = n_pieces, .n_leaves = leaves};
@@ -106,7 +106,7 @@ static bool lay_out(size_t degree, size_t n_pieces, cprox_workspace *workspace, 
   c->points = (vec3 *)(void *)(c->capsules + 2 * leaves);
   c->breaks = (double *)(void *)(c->points + points);
   c->error = c->breaks + n_pieces + 1;
-  c->binomial = c->error + n_pieces;
+  c->tables = c->error + n_pieces;
   return true;
 }
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "search/search.h"
 
-#include <math.h>
-
+#include "base/vec.h"
 #include "base/workspace.h"
 
 enum { STOP_POLL_INTERVAL = 16 };
@@ -51,11 +50,11 @@ static search_node frontier_pop(frontier *f) {
 }
 
 double search_width(const search_goal *goal, double upper) {
-  return fmax(goal->epsilon, goal->relative_epsilon * fabs(upper));
+  return greater(goal->epsilon, goal->relative_epsilon * fabs(upper));
 }
 
 static double known_upper(const search_goal *goal, const search_best *best) {
-  return fmin(best->upper, goal->ceiling);
+  return lesser(best->upper, goal->ceiling);
 }
 
 /* The lower bound from which on a node needs no more work. */
@@ -85,7 +84,7 @@ static bool is_answered(const search_goal *goal, const search_best *best) {
 
 /* Left to right: from here on nothing is asked any more, since contact came before. */
 static double horizon(const search_goal *goal, const search_best *best) {
-  return best->upper <= goal->limit + goal->epsilon ? fmin(best->at, goal->horizon) : goal->horizon;
+  return best->upper <= goal->limit + goal->epsilon ? lesser(best->at, goal->horizon) : goal->horizon;
 }
 
 typedef enum node_fate { NODE_OPEN, NODE_SETTLED, NODE_STUCK, NODE_BEYOND } node_fate;
@@ -163,23 +162,23 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
     }
 
     /* the node leaves */
-    left = fmin(left, node.lower);
-    if (fate != NODE_SETTLED) outcome->free_until = fmin(outcome->free_until, node.start);
+    left = lesser(node.lower, left);
+    if (fate != NODE_SETTLED) outcome->free_until = lesser(outcome->free_until, node.start);
     oracle->release(oracle->self, &node);
     if (status != CPROX_OK || settled_all || is_answered(goal, &outcome->best)) break;
   }
 
   /* what is still open counts too */
   for (size_t i = 0; i < open.count; i++) {
-    left = fmin(left, open.nodes[i].lower);
-    outcome->free_until = fmin(outcome->free_until, open.nodes[i].start);
+    left = lesser(open.nodes[i].lower, left);
+    outcome->free_until = lesser(outcome->free_until, open.nodes[i].start);
   }
   outcome->lower = left;
   if (goal->order == SEARCH_LEFT_TO_RIGHT)
-    outcome->free_until = fmin(outcome->free_until, horizon(goal, &outcome->best));
+    outcome->free_until = lesser(outcome->free_until, horizon(goal, &outcome->best));
   if (status == CPROX_OK && goal->limit < 0.0) {
     const double upper = known_upper(goal, &outcome->best);
-    if ((goal->is_signed ? left : fmax(left, 0.0)) < upper - search_width(goal, upper)) status = CPROX_PRECISION;
+    if ((goal->is_signed ? left : greater(left, 0.0)) < upper - search_width(goal, upper)) status = CPROX_PRECISION;
   }
   return status;
 }

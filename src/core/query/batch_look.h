@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What balls and chords tell of one mover and all parts of a batch, before anything is searched. doc/batches.md says why it is sound. */
+#ifndef CPROX_QUERY_BATCH_LOOK_H
+#define CPROX_QUERY_BATCH_LOOK_H
+
+#include "query/batch_targets.h"
+
+enum {
+  BATCH_MOST_PIECES = 4
+}; /* curves of more are searched along their tree of capsules instead of cut into chords */
+
+/* One call, and the mover that it is at. */
+typedef struct batch_run {
+  const cprox_batch *batch;
+  question q;
+  double *lower;    /* of each part's ball, padded */
+  candidate *near;  /* what may matter to the mover */
+  bool cut, joined; /* the mover's curve has points at equal parameters below, and the chords between them are known */
+  lanes_chords chords[BATCH_MOST_PIECES];
+  double beside; /* how far the curve may be from the chords' points of the same parameter */
+  double slack;  /* how much rounding may add to that */
+  bool flat;     /* the whole curve lies in the plane of constant z */
+  double plane;  /* this, exactly */
+} batch_run;
+
+/* Where the curve comes within the limit of a ball inside a part. */
+typedef struct batch_hit {
+  double upper;  /* of the distance, rounding included */
+  size_t part;   /* number in the batch */
+  vec3 centre;   /* of the ball, which with the padding has the radius */
+  double within; /* this */
+  vec3 point;    /* the curve's, at s of the piece */
+  size_t piece;
+  double s;
+} batch_hit;
+
+typedef struct batch_look {
+  bool is_hit; /* that settles it: nothing below is known but `beyond` */
+  batch_hit hit;
+  size_t n;      /* candidates in `near`: the one of the least upper bound first, the others nearest first */
+  double beyond; /* the least lower bound of all others */
+} batch_look;
+
+/* Looks at all parts from the curve of run->q.mover, a point or a ball with control points. */
+batch_look batch_look_around(batch_run *run);
+
+#endif
