@@ -88,7 +88,8 @@ struct convex {
    * one */
   int32_t n, padded;
   double *x, *y, *z;
-  double *edge; /* polygons: of each edge from vertex i on, its unit direction's x and y, its length; three arrays of n */
+  double
+      *edge; /* polygons: of each edge from vertex i on, its unit direction's x and y, its length; three arrays of n */
   /* support callbacks */
   cprox_support_fn callback;
   const void *user;
