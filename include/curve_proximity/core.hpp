@@ -6,6 +6,7 @@
 #ifndef CURVE_PROXIMITY_CORE_HPP
 #define CURVE_PROXIMITY_CORE_HPP
 
+#include <algorithm>
 #include <array>
 #include <Eigen/Geometry>
 #include <exception>
@@ -477,6 +478,72 @@ inline cprox_result pair(const cprox_target &a, const cprox_target &b, const cpr
   require(cprox_pair(a, b, &options, workspace.get(), &result), workspace);
   return result;
 }
+
+/** cprox_set: many targets in one tree; a mover tests itself once against it. Any number of threads may ask, each with its own
+ *  workspace. Functions throw Error where there is no answer. */
+class Set {
+ public:
+  /** What the targets name must outlive the set. */
+  explicit Set(const std::vector<cprox_target> &targets) {
+    const Workspace workspace;
+    cprox_set *made = nullptr;
+    require(cprox_set_create(targets.data(), targets.size(), workspace.get(), &made), workspace);
+    handle_.reset(made);
+  }
+
+  cprox_result distance(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
+    cprox_result result{};
+    require(cprox_set_distance(handle_.get(), mover, &options, workspace.get(), &result), workspace);
+    return result;
+  }
+
+  /** delta >= 0 [m]. */
+  cprox_result tolerance(const cprox_mover &mover, double delta, const cprox_options &options,
+                         Workspace &workspace) const {
+    cprox_result result{};
+    require(cprox_set_tolerance(handle_.get(), mover, delta, &options, workspace.get(), &result), workspace);
+    return result;
+  }
+
+  cprox_result collision(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
+    cprox_result result{};
+    require(cprox_set_collision(handle_.get(), mover, &options, workspace.get(), &result), workspace);
+    return result;
+  }
+
+  cprox_result firstContact(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
+    cprox_result result{};
+    require(cprox_set_first_contact(handle_.get(), mover, &options, workspace.get(), &result), workspace);
+    return result;
+  }
+
+  /** The k >= 1 closest, ascending. */
+  std::vector<cprox_result> nearest(const cprox_mover &mover, std::size_t k, const cprox_options &options,
+                                    Workspace &workspace) const {
+    std::vector<cprox_result> results(std::min(k, size()));
+    std::size_t count = 0;
+    require(cprox_set_nearest(handle_.get(), mover, k, &options, workspace.get(), results.data(), &count), workspace);
+    results.resize(count);
+    return results;
+  }
+
+  std::size_t size() const {
+    return cprox_set_size(handle_.get());
+  }
+
+  /** The C handle, owned by this object. */
+  const cprox_set *get() const {
+    return handle_.get();
+  }
+
+ private:
+  struct Free {
+    void operator()(cprox_set *handle) const {
+      cprox_set_free(handle);
+    }
+  };
+  std::unique_ptr<cprox_set, Free> handle_;
+};
 
 } // namespace curve_proximity
 #endif

@@ -18,6 +18,7 @@
 #include <curve_proximity/cprox/implicit.h>
 #include <curve_proximity/cprox/query.h>
 #include <curve_proximity/cprox/robot.h>
+#include <curve_proximity/cprox/set.h>
 #include <curve_proximity/cprox/translation.h>
 
 #endif

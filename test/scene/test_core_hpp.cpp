@@ -170,3 +170,26 @@ TEST(CoreHpp, involutes_and_pythagorean_curves_are_made) {
   EXPECT_NEAR((toEigen(x) - Eigen::Vector3d(2.0 / 3.0, 1, 0)).norm(), 0.0, 1e-15);
   expectContains(reasonOf([&] { makePiecewise({cubic, cubic}, {0.0, 1.0}); }), "n + 1");
 }
+
+TEST(CoreHpp, a_set_answers_as_its_targets_do) {
+  const BodyHandle ball = makeSphere(0.5), floor = makeHalfspace({0, 0, 1}, 3.0);
+  std::vector<cprox_target> targets{at(floor)};
+  for (int i = 0; i < 40; ++i) targets.push_back(at(ball, Eigen::Isometry3d(Eigen::Translation3d(i, 0.1 * i, 2.0))));
+  const Set set(targets);
+  EXPECT_EQ(set.size(), 41u);
+  const CurveHandle curve = makeBezier((Eigen::Matrix3Xd(3, 2) << 5, 9, 0, 0, 0, 0).finished());
+  Workspace workspace;
+  const cprox_options options = cprox_options_default();
+  cprox_result all;
+  ASSERT_EQ(cprox_distance_all(along(curve), targets.data(), targets.size(), &options, workspace.get(), &all, nullptr),
+            CPROX_OK);
+  EXPECT_NEAR(set.distance(along(curve), options, workspace).upper, all.upper, 1e-6);
+  EXPECT_EQ(set.collision(along(curve), options, workspace).verdict, CPROX_NO);
+  EXPECT_EQ(set.tolerance(along(curve), 1.0, options, workspace).verdict, CPROX_YES);
+  EXPECT_EQ(set.firstContact(along(curve, 1.6), options, workspace).verdict, CPROX_YES);
+  const std::vector<cprox_result> nearest = set.nearest(along(curve), 3, options, workspace);
+  ASSERT_EQ(nearest.size(), 3u);
+  EXPECT_LE(nearest[0].upper, nearest[2].upper);
+  EXPECT_EQ(nearest[0].target_index, all.target_index);
+  expectContains(reasonOf([&] { Set({cprox_target{}}); }), "target 0");
+}

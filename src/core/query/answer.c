@@ -56,6 +56,18 @@ void question_join(cprox_result *all, const cprox_result *one) {
   all->rung = rung;
 }
 
+void question_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r) {
+  size_t i = *count;
+  if (i == k) {
+    if (!(r->upper < nearest[k - 1].upper)) return;
+    i = k - 1;
+  } else {
+    (*count)++;
+  }
+  for (; i > 0 && nearest[i - 1].upper > r->upper; i--) nearest[i] = nearest[i - 1];
+  nearest[i] = *r;
+}
+
 cprox_status question_conclude(const question *q, double ceiling, cprox_status trouble, cprox_result *all) {
   all->lower = fmin(all->lower, all->upper);
   all->status = is_satisfied(q, ceiling, all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;

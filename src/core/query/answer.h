@@ -21,6 +21,9 @@ cprox_result question_nothing(void);
 /* Adds the answer against another set to the union's: the least of both ends, with the witness of the upper one. */
 void question_join(cprox_result *all, const cprox_result *one);
 
+/* Puts a result where it belongs among the k nearest so far, ascending by upper. */
+void question_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r);
+
 /* The union is complete: its status (`trouble` is the last that a search had), verdict and reason. */
 cprox_status question_conclude(const question *q, double ceiling, cprox_status trouble, cprox_result *all);
 

@@ -29,13 +29,6 @@ static candidate *rank_targets(const question *q) {
   return rank;
 }
 
-/* Puts a result where it belongs among the best so far, of which the last is dropped when there are k already. */
-static void insert(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r) {
-  size_t i = *count < k ? (*count)++ : k - 1;
-  for (; i > 0 && nearest[i - 1].upper > r->upper; i--) nearest[i] = nearest[i - 1];
-  nearest[i] = *r;
-}
-
 cprox_status cprox_nearest(cprox_mover mover, const cprox_target *targets, size_t n, size_t k,
                            const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                            size_t *count) {
@@ -58,7 +51,7 @@ cprox_status cprox_nearest(cprox_mover mover, const cprox_target *targets, size_
     const cprox_status status = question_answer(&q, target, target + 1, ceiling, &r);
     if (status < 0) return status;
     trouble = worse(trouble, status);
-    if (r.upper < ceiling || *count < k) insert(nearest, count, k, &r);
+    question_rank(nearest, count, k, &r);
   }
   if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
   return trouble;

@@ -9,19 +9,8 @@
 #include "query/contact_convex.h"
 #include "query/contact_curve.h"
 #include "query/contact_tree.h"
+#include "query/first_contact.h"
 #include "query/robot_answer.h"
-
-/* What one candidate, or all so far, say of first contact. */
-typedef struct contact {
-  double free_until;  /* no contact before */
-  double lower;       /* of the distance, over the whole range */
-  cprox_result touch; /* t: the leftmost parameter of proven contact, or infinity; upper <= 0 */
-  cprox_result
-      near; /* t: that of contact within epsilon, or infinity; if there is none, upper is the least distance measured */
-  uint32_t nodes, probes;
-  cprox_rung rung;     /* the finest that was needed */
-  cprox_status status; /* CPROX_OK: free_until is as far as it goes, to within epsilon of contact */
-} contact;
 
 static cprox_result nothing(void) {
   return (cprox_result){.lower = INFINITY, .upper = INFINITY, .t = INFINITY, .t_target = NAN, .target_index = -1};
@@ -41,7 +30,7 @@ static search_goal goal_of(const question *q, double horizon) {
 /* ---- one candidate ---------------------------------------------------------------------------------------------------- */
 
 static cprox_status meet_convex(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
-                                contact *met) {
+                                first_contact *met) {
   contact_convex state;
   curve_convex *o = &state.base;
   if (!candidate_begin_convex(q, c, o)) return CPROX_MEMORY;
@@ -63,7 +52,7 @@ static cprox_status meet_convex(const question *q, const candidate *c, const sea
 }
 
 static cprox_status meet_curve(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
-                               contact *met) {
+                               first_contact *met) {
   contact_curve state;
   curve_curve *o = &state.base;
   if (!candidate_begin_curve(q, c, o)) return CPROX_MEMORY;
@@ -84,7 +73,7 @@ static cprox_status meet_curve(const question *q, const candidate *c, const sear
 }
 
 static cprox_status meet_tree(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
-                              contact *met) {
+                              first_contact *met) {
   contact_tree state;
   curve_tree *o = &state.base;
   search_node root;
@@ -108,13 +97,13 @@ static cprox_status meet_tree(const question *q, const candidate *c, const searc
 }
 
 static cprox_status meet_any(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
-                             contact *met) {
+                             first_contact *met) {
   if (candidate_is_tree(q, c)) return meet_tree(q, c, goal, found, met);
   return candidate_body(q, c) ? meet_convex(q, c, goal, found, met) : meet_curve(q, c, goal, found, met);
 }
 
 /* Contact is proven nowhere near the first place within epsilon; perhaps farther along. */
-static cprox_status prove_farther(const question *q, const candidate *c, contact *met) {
+static cprox_status prove_farther(const question *q, const candidate *c, first_contact *met) {
   cprox_result r;
   const cprox_status status = candidate_search(q, c, INFINITY, &r);
   if (status < 0) return status;
@@ -123,8 +112,8 @@ static cprox_status prove_farther(const question *q, const candidate *c, contact
   return CPROX_OK;
 }
 
-static cprox_status meet_model(const question *q, const candidate *c, double horizon, contact *met) {
-  *met = (contact){.touch = nothing(), .near = nothing(), .rung = candidate_rung(q, c)};
+static cprox_status meet_model(const question *q, const candidate *c, double horizon, first_contact *met) {
+  *met = (first_contact){.touch = nothing(), .near = nothing(), .rung = candidate_rung(q, c)};
   const search_goal goal = goal_of(q, horizon);
   search_outcome found = {0};
   met->status = meet_any(q, c, &goal, &found, met);
@@ -141,11 +130,11 @@ static cprox_status meet_model(const question *q, const candidate *c, double hor
 }
 
 /* By the hull of a ladder first: what does not touch that before the horizon does not touch the mesh. */
-static cprox_status meet(const question *q, const candidate *c, double horizon, contact *met) {
+static cprox_status meet(const question *q, const candidate *c, double horizon, first_contact *met) {
   if (!candidate_may_climb(q, c)) return meet_model(q, c, horizon, met);
   candidate model = *c;
   model.rung = CPROX_RUNG_HULL;
-  contact by_hull;
+  first_contact by_hull;
   cprox_status status = meet_model(q, &model, horizon, &by_hull);
   if (status < 0) return status;
   if (by_hull.free_until >= horizon) {
@@ -174,7 +163,7 @@ static void merge_place(cprox_result *all, const cprox_result *one, double epsil
   if (has ? (!had || one->t < all->t) : (!had && one->upper < all->upper)) *all = *one;
 }
 
-static void merge(contact *all, const contact *one, double epsilon) {
+static void merge(first_contact *all, const first_contact *one, double epsilon) {
   all->free_until = fmin(all->free_until, one->free_until);
   all->lower = fmin(all->lower, one->lower);
   if (one->touch.t < all->touch.t) all->touch = one->touch;
@@ -184,7 +173,7 @@ static void merge(contact *all, const contact *one, double epsilon) {
   if (one->status != CPROX_OK) all->status = one->status;
 }
 
-static cprox_status fill(const question *q, const contact *all, cprox_result *result) {
+cprox_status first_contact_conclude(const first_contact *all, const question *q, cprox_result *result) {
   double t0, t1;
   cprox_curve_domain(q->mover.curve, &t0, &t1);
   const bool touch = isfinite(all->touch.t), near = all->near.upper <= q->options.epsilon;
@@ -202,6 +191,27 @@ static cprox_status fill(const question *q, const contact *all, cprox_result *re
   return r.status;
 }
 
+first_contact first_contact_begin(void) {
+  return (first_contact){.free_until = INFINITY, .lower = INFINITY, .touch = nothing(), .near = nothing()};
+}
+
+cprox_status first_contact_with(first_contact *all, const question *q, size_t first, size_t last) {
+  size_t count = 0;
+  const candidate *list = last > first ? candidates_list(q, first, last, &count) : NULL;
+  if (last > first && !list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
+  size_t i = 0;
+  for (; i < count && list[i].lower <= 0.0 && all->status != CPROX_STOPPED; i++) {
+    first_contact one;
+    const cprox_status status = meet(q, &list[i], all->touch.t, &one);
+    if (status < 0) return status;
+    merge(all, &one, q->options.epsilon);
+  }
+  /* the rest is too far to touch, unless the caller stopped */
+  if (i < count) all->lower = fmin(all->lower, list[i].lower);
+  if (i < count && list[i].lower <= 0.0) cprox_curve_domain(q->mover.curve, &all->free_until, &(double){0.0});
+  return CPROX_OK;
+}
+
 cprox_status cprox_first_contact_all(cprox_mover mover, const cprox_target *targets, size_t n,
                                      const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   question q = question_create(mover, targets, n, 0.0, false, options, workspace);
@@ -210,22 +220,9 @@ cprox_status cprox_first_contact_all(cprox_mover mover, const cprox_target *targ
   if (checked != CPROX_OK) return checked;
   question_ask_whole(&q);
   if (mover.motion) return robot_first_contact(&q, result);
-
-  size_t count = 0;
-  const candidate *list = n > 0 ? candidates_list(&q, 0, n, &count) : NULL;
-  if (n > 0 && !list) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of targets");
-  contact all = {.free_until = INFINITY, .lower = INFINITY, .touch = nothing(), .near = nothing()};
-  size_t i = 0;
-  for (; i < count && list[i].lower <= 0.0 && all.status != CPROX_STOPPED; i++) {
-    contact one;
-    const cprox_status status = meet(&q, &list[i], all.touch.t, &one);
-    if (status < 0) return status;
-    merge(&all, &one, q.options.epsilon);
-  }
-  /* the rest is too far to touch, unless the caller stopped */
-  if (i < count) all.lower = fmin(all.lower, list[i].lower);
-  if (i < count && list[i].lower <= 0.0) cprox_curve_domain(mover.curve, &all.free_until, &(double){0.0});
-  return fill(&q, &all, result);
+  first_contact all = first_contact_begin();
+  const cprox_status met = first_contact_with(&all, &q, 0, n);
+  return met < 0 ? met : first_contact_conclude(&all, &q, result);
 }
 
 cprox_status cprox_first_contact(cprox_mover mover, cprox_target target, const cprox_options *options,
