@@ -3,10 +3,10 @@
 import os
 import subprocess
 
-from pages import choosing, readme, seeds
+from pages import choosing, readme, seeds, stability
 from pages.figures import Figures
 
-NEEDS = {'seeds.md': {'seeds', 'batches', 'implicit'}, 'choosing.md': {'curves', 'batches', 'robots', 'implicit'}}
+NEEDS = {'stability.md': {'stability'}, 'seeds.md': {'seeds', 'batches', 'implicit'}, 'choosing.md': {'curves', 'batches', 'robots', 'implicit'}}
 
 
 def how_made(command, commit):
@@ -26,6 +26,7 @@ def write_all(rows, drawn, out, made):
     figures = Figures(rows)
     groups = {row['group'] for row in rows}
     pages = {'README.md': lambda: readme.page(figures, drawn, made), 'seeds.md': lambda: seeds.page(figures),
+             'stability.md': lambda: stability.page(figures),
              'choosing.md': lambda: choosing.page(figures)}
     written = []
     for name, write in pages.items():

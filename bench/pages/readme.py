@@ -13,14 +13,13 @@ CHARTS = [
     ('work_precision_*', 'time against the accuracy asked: a point, a polygon, a polytope, another curve'),
     ('distance_by_order', 'the same questions over orders 5, 15, 45'),
     ('tolerance', 'verdicts over delta, as a fraction of the distance'),
-    ('seeds_*', 'figures of the first paper, drawn again; [seeds.md](seeds.md) has its tables, and those of the second'),
+    ('seeds_*', 'figures of the first paper, drawn again'),
     ('batches', 'a thousand quintics against 2, 50 and 100 obstacles, beside sampling by FCL'),
     ('robots_*', 'arms along joint splines, against the scene and themselves, beside the bound by both ends of an interval'),
     ('worlds_*', 'meshes, point clouds, octree leaves, sets of bodies, beside FCL'),
     ('fourier_*', 'over-reach of gap functions by kernel and n, an SE(2) obstacle, convergence, boxes, nesting'),
     ('providers_*', 'constraint providers beside the core calls that they wrap'),
     ('ros_*', 'what the service and the nodelet add'),
-    ('stability_*', 'families of hard inputs: right, wrong, failed, not ended'),
 ]
 
 
@@ -79,7 +78,8 @@ def page(figures, drawn, made):
 
 {made}
 
-Trust ratios and counts, not microseconds. `results.csv` has every row. [choosing.md](choosing.md) says what follows from them for a planner.
+Trust ratios and counts, not microseconds. `results.csv` has every row. [choosing.md](choosing.md) says what follows from them for a planner,
+[seeds.md](seeds.md) has the papers' own tables, [stability.md](stability.md) hard inputs: right, wrong, given up.
 
 {table(['chart', 'shows'], chart_lines)}
 
