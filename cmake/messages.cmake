@@ -7,6 +7,7 @@ set(CURVE_PROXIMITY_MESSAGES
   Curve.msg
   Hyperquadric.msg
   LinkPadding.msg
+  Octree.msg
   Proximity.msg
 )
 set(CURVE_PROXIMITY_SERVICES

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <Eigen/Geometry>
 #include <exception>
 #include <functional>
@@ -118,6 +120,12 @@ inline std::vector<cprox_vec3> toVec3s(const Eigen::Matrix3Xd &points) {
 
 namespace detail {
 
+/** The columns as the C library reads them, in place. */
+inline const cprox_vec3 *columns(const Eigen::Matrix3Xd &points) {
+  static_assert(sizeof(cprox_vec3) == 3 * sizeof(double), "a column is a cprox_vec3");
+  return reinterpret_cast<const cprox_vec3 *>(points.data());
+}
+
 /** Runs a C constructor of a body and takes the handle over. `keep` lives as long as the body. */
 template <typename Create, typename Keep = std::nullptr_t>
 BodyHandle makeBody(Create create, Keep keep = nullptr) {
@@ -218,6 +226,38 @@ inline BodyHandle makePolytope(const Eigen::Matrix3Xd &vertices) {
   const std::vector<cprox_vec3> points = toVec3s(vertices);
   return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
     return cprox_body_create_polytope(points.data(), points.size(), w, b);
+  });
+}
+
+/** Points, each a ball of the radius >= 0. memory_limit: the most bytes that the body may take. */
+inline BodyHandle makePoints(const Eigen::Matrix3Xd &points, double radius = 0.0,
+                             std::size_t memory_limit = std::numeric_limits<std::size_t>::max()) {
+  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+    return cprox_body_create_points(detail::columns(points), static_cast<std::size_t>(points.cols()), radius,
+                                    memory_limit, w, b);
+  });
+}
+
+/** Boxes along the axes, from low.col(i) to high.col(i), each solid; as many columns in both. */
+inline BodyHandle makeBoxes(const Eigen::Matrix3Xd &low, const Eigen::Matrix3Xd &high,
+                            std::size_t memory_limit = std::numeric_limits<std::size_t>::max()) {
+  if (low.cols() != high.cols()) throw Error("boxes need as many low corners as high ones");
+  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+    return cprox_body_create_boxes(detail::columns(low), detail::columns(high), static_cast<std::size_t>(low.cols()),
+                                   memory_limit, w, b);
+  });
+}
+
+/** A triangle mesh, a column of `triangles` three indices of columns of `vertices`, from 0. */
+inline BodyHandle makeMesh(const Eigen::Matrix3Xd &vertices, const Eigen::Matrix<int, 3, Eigen::Dynamic> &triangles,
+                           cprox_mesh_fill fill = CPROX_MESH_SURFACE,
+                           std::size_t memory_limit = std::numeric_limits<std::size_t>::max()) {
+  // An index below 0 becomes one that is out of range.
+  const Eigen::Matrix<std::uint32_t, 3, Eigen::Dynamic> indices = triangles.cast<std::uint32_t>();
+  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+    return cprox_body_create_mesh(detail::columns(vertices), static_cast<std::size_t>(vertices.cols()),
+                                  reinterpret_cast<const std::uint32_t(*)[3]>(indices.data()),
+                                  static_cast<std::size_t>(indices.cols()), fill, memory_limit, w, b);
   });
 }
 

@@ -28,7 +28,9 @@ using Triangles = Eigen::Matrix<int, 3, Eigen::Dynamic>;
  *    SUPERQUADRIC  [a1, a2, a3, n1, n2, n3]: sum |x_i/a_i|^n_i <= 1, exponents 1 … 1000
  *    IMPLICIT   none; the intersection of `hyperquadrics`, `planes` and `quadrics`, bounded and with an interior
  *    POLYTOPE   none; the convex hull of `vertices`, solid, of any dimension
- *    MESH       none, or a scale [x, y, z]; `vertices` and `triangles`, or `resource`; answered by its convex hull */
+ *    MESH       none, or a scale [x, y, z]; `vertices` and `triangles`, or `resource`; answered by its convex hull
+ *    POINTS     none, or [radius] >= 0: a ball of that radius about each of `vertices`, as sensors measure them
+ *    OCTREE     none; the occupied cells of `octree`, or of the .bt or .ot file `resource` */
 enum class ShapeType {
   POINT,
   SPHERE,
@@ -41,7 +43,9 @@ enum class ShapeType {
   POLYTOPE,
   MESH,
   SUPERQUADRIC,
-  IMPLICIT
+  IMPLICIT,
+  POINTS,
+  OCTREE
 };
 
 /** "point", "sphere", …, "mesh". */
@@ -49,6 +53,14 @@ const char *shapeTypeName(ShapeType type);
 
 /** The type of that name (lower case, as above); nothing for any other word. */
 std::optional<ShapeType> shapeTypeFromName(const std::string &name);
+
+/** An occupancy octree as octomap serialises it, the fields of octomap_msgs/Octomap. Cell (0, 0, 0) begins at the origin. */
+struct OctreeData {
+  std::string id = "OcTree"; /**< of its nodes: "OcTree" or "ColorOcTree" */
+  double resolution = 0.0;   /**< [m] > 0: edge length of the smallest cells */
+  bool binary = true;        /**< what follows `data` in a .bt file, else in an .ot file */
+  std::string data;          /**< the bytes; empty: no octree */
+};
 
 /** sum over its terms [a, b, c, d, n] of |a x + b y + c z + d|^n <= 1. */
 using HyperquadricTerms = std::vector<std::array<double, 5>>;
@@ -62,7 +74,12 @@ struct ShapeDescription {
   std::vector<std::array<double, 4>> planes;    /**< of an IMPLICIT, each [b1, b2, b3, c]: b·x + c <= 0 */
   std::vector<std::array<double, 10>> quadrics; /**< of an IMPLICIT, each [q11, q12, q13, q22, q23, q33, b1, b2, b3, c]:
                                                      x'Qx + b·x + c <= 0 */
-  std::string resource; /**< URI or path of a MESH file; then vertices and triangles are empty */
+  bool solid = false;                           /**< of a MESH: its inside belongs to it, if it is closed */
+  std::string resource; /**< URI or path of the file of a MESH or an OCTREE; then what it stands for is empty */
+  OctreeData octree;    /**< of an OCTREE given by its bytes */
+  bool unknown_is_occupied =
+      false; /**< of an OCTREE: cells that were never measured count as occupied, within the box of those
+                                         that were; else as free */
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the object's frame */
 };
 

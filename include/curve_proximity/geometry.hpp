@@ -3,7 +3,9 @@
 #ifndef CURVE_PROXIMITY_GEOMETRY_HPP
 #define CURVE_PROXIMITY_GEOMETRY_HPP
 
+#include <cstddef>
 #include <functional>
+#include <limits>
 #include <string>
 
 #include <curve_proximity/core.hpp>
@@ -11,7 +13,7 @@
 
 namespace curve_proximity {
 
-/** Where mesh files are looked for. */
+/** Where files of meshes and octrees are looked for, and how large what they hold may be. */
 struct ResourceOptions {
   /** The folder to which paths without a scheme are relative; empty: only absolute paths are accepted. */
   std::string base_dir;
@@ -19,12 +21,15 @@ struct ResourceOptions {
   /** The folder of a ROS package, "" if there is none of that name (ros::package::getPath has this shape). Empty: then
    *  package:// is an error. Called from the thread that makes the body. */
   std::function<std::string(const std::string &package)> find_package;
+
+  /** [bytes] The most that the body of one mesh, set of points or octree may take. */
+  std::size_t memory_limit = std::numeric_limits<std::size_t>::max();
 };
 
-/** The file that a mesh URI means: package://NAME/path, file:///path, an absolute path, or a path relative to base_dir.
- *  Throws Error, naming the URI, for http and other schemes, an unknown package, and a file that is not there, is no
- *  regular file or is empty. */
-std::string resolveResource(const std::string &uri, const ResourceOptions &options);
+/** The file that a URI means: package://NAME/path, file:///path, an absolute path, or a path relative to base_dir.
+ *  Throws Error, naming `what` it is for ("mesh", "octree") and the URI, for http and other schemes, an unknown package, and a
+ *  file that is not there, is no regular file or is empty. */
+std::string resolveResource(const std::string &uri, const ResourceOptions &options, const std::string &what = "mesh");
 
 /** A body made of a description. */
 struct Geometry {
@@ -40,7 +45,9 @@ struct Geometry {
  *  Throws Error: dimensions that are too few or too many, not finite or not positive ("cylinder needs 2 dimensions
  *  [height, radius], got 1"); vertices that are missing or not finite; a mesh without triangles or with an index out of
  *  range, a scale that is 0 or not finite; a resource that cannot be read (see resolveResource), has no triangle or a
- *  vertex that is not finite. Flat meshes and polytopes of any dimension are accepted.
+ *  vertex that is not finite; points that are none; an octree that is cut short, of an unknown kind or without an occupied
+ *  cell; CPROX_MEMORY, with the bytes that it needs, for what would exceed the memory limit. Flat meshes and polytopes of any
+ *  dimension are accepted.
  *  Thread safety: any number of threads. */
 Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options = {});
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "conversions.h"
 
+#include "cloud.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -53,21 +55,54 @@ ShapeDescription toShape(const shape_msgs::SolidPrimitive &primitive) {
   return shape;
 }
 
+Triangles toTriangles(const std::vector<shape_msgs::MeshTriangle> &triangles, std::size_t vertices) {
+  Triangles out(3, static_cast<Eigen::Index>(triangles.size()));
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t index = triangles[i].vertex_indices[k];
+      if (index >= vertices)
+        throw Error("triangle " + std::to_string(i) + " names vertex " + std::to_string(index) + ", there are " +
+                    std::to_string(vertices));
+      out(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = static_cast<int>(index);
+    }
+  }
+  return out;
+}
+
+std::vector<shape_msgs::MeshTriangle> toTriangleMessages(const Triangles &triangles) {
+  std::vector<shape_msgs::MeshTriangle> out(static_cast<std::size_t>(triangles.cols()));
+  for (Eigen::Index i = 0; i < triangles.cols(); ++i) {
+    for (Eigen::Index k = 0; k < 3; ++k)
+      out[static_cast<std::size_t>(i)].vertex_indices[static_cast<std::size_t>(k)] =
+          static_cast<std::uint32_t>(triangles(k, i));
+  }
+  return out;
+}
+
 ShapeDescription toShape(const shape_msgs::Mesh &mesh) {
   ShapeDescription shape;
   shape.type = ShapeType::MESH;
   shape.vertices = toPoints(mesh.vertices);
-  shape.triangles.resize(3, static_cast<Eigen::Index>(mesh.triangles.size()));
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t index = mesh.triangles[i].vertex_indices[k];
-      if (index >= mesh.vertices.size())
-        throw Error("triangle " + std::to_string(i) + " names vertex " + std::to_string(index) + ", there are " +
-                    std::to_string(mesh.vertices.size()));
-      shape.triangles(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = static_cast<int>(index);
-    }
-  }
+  shape.triangles = toTriangles(mesh.triangles, mesh.vertices.size());
   return shape;
+}
+
+OctreeData toOctree(const Octree &octree) {
+  return {octree.id, octree.resolution, octree.binary != 0, std::string(octree.data.begin(), octree.data.end())};
+}
+
+Octree toOctreeMessage(const OctreeData &octree) {
+  Octree message;
+  message.binary = octree.binary;
+  message.id = octree.id;
+  message.resolution = octree.resolution;
+  message.data.assign(octree.data.begin(), octree.data.end());
+  return message;
+}
+
+/** Does somebody mean the cloud? */
+bool isSet(const sensor_msgs::PointCloud2 &cloud) {
+  return !cloud.fields.empty() || !cloud.data.empty() || cloud.width > 0;
 }
 
 ShapeDescription toShape(const shape_msgs::Plane &plane) {
@@ -102,7 +137,16 @@ ShapeDescription toShape(const Body &body) {
   shape.type = *type;
   shape.dimensions = body.dimensions;
   shape.vertices = toPoints(body.vertices);
+  shape.triangles = toTriangles(body.triangles, body.vertices.size());
   shape.resource = body.resource;
+  shape.solid = body.solid != 0;
+  if (isSet(body.cloud)) {
+    if (shape.type != ShapeType::POINTS) throw Error("'" + body.type + "' takes no cloud");
+    if (!body.vertices.empty()) throw Error("points have both vertices and a cloud: give one of the two");
+    shape.vertices = toCloud(body.cloud).points;
+  }
+  shape.octree = toOctree(body.octree);
+  shape.unknown_is_occupied = body.unknown_is_occupied != 0;
   for (const Hyperquadric &h : body.hyperquadrics) shape.hyperquadrics.push_back(toRows<5>(h.terms, "terms"));
   shape.planes = toRows<4>(body.planes, "planes");
   shape.quadrics = toRows<10>(body.quadrics, "quadrics");
@@ -152,6 +196,17 @@ void bringToFixed(Operation &operation, const Eigen::Isometry3d &frame_in_fixed)
   if (!relative) operation.object.pose = frame_in_fixed * operation.object.pose;
 }
 
+/** The points of a cloud stand in the frame of their object: no other may be meant. */
+void checkCloudFrames(const CollisionObject &object) {
+  for (const Body &body : object.bodies) {
+    const std::string &frame = body.cloud.header.frame_id;
+    if (!frame.empty() && frame != object.header.frame_id) {
+      throw Error("a cloud in frame '" + frame + "' is part of an object in frame '" + object.header.frame_id +
+                  "': give both the same");
+    }
+  }
+}
+
 /** A missing transform is told with the object's name. */
 Eigen::Isometry3d frameOf(const CollisionObject &object, const ToFixed &to_fixed) {
   try {
@@ -171,30 +226,17 @@ void addPrimitive(CollisionObject &message, std::uint8_t type, const ShapeDescri
   message.primitive_poses.push_back(toMessage(shape.pose));
 }
 
-/** shape_msgs knows neither a scale nor a file. */
+/** shape_msgs knows neither a scale nor a file nor an inside. */
 bool isPlainMesh(const ShapeDescription &shape) {
-  return shape.resource.empty() && shape.dimensions.empty();
+  return shape.resource.empty() && shape.dimensions.empty() && !shape.solid;
 }
 
 void addMesh(CollisionObject &message, const ShapeDescription &shape) {
   shape_msgs::Mesh mesh;
   mesh.vertices = toPointMessages(shape.vertices);
-  for (Eigen::Index i = 0; i < shape.triangles.cols(); ++i) {
-    shape_msgs::MeshTriangle triangle;
-    for (Eigen::Index k = 0; k < 3; ++k)
-      triangle.vertex_indices[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(shape.triangles(k, i));
-    mesh.triangles.push_back(triangle);
-  }
+  mesh.triangles = toTriangleMessages(shape.triangles);
   message.meshes.push_back(mesh);
   message.mesh_poses.push_back(toMessage(shape.pose));
-}
-
-/** The vertices of a scaled mesh, so that shape_msgs can carry it. */
-ShapeDescription withoutScale(ShapeDescription shape) {
-  if (shape.dimensions.size() == 3)
-    shape.vertices = Eigen::Vector3d(shape.dimensions.data()).asDiagonal() * shape.vertices;
-  shape.dimensions.clear();
-  return shape;
 }
 
 void addBody(CollisionObject &message, const ShapeDescription &shape) {
@@ -202,7 +244,11 @@ void addBody(CollisionObject &message, const ShapeDescription &shape) {
   body.type = shapeTypeName(shape.type);
   body.dimensions = shape.dimensions;
   body.vertices = toPointMessages(shape.vertices);
+  body.triangles = toTriangleMessages(shape.triangles);
   body.resource = shape.resource;
+  body.solid = shape.solid;
+  if (!shape.octree.data.empty()) body.octree = toOctreeMessage(shape.octree);
+  body.unknown_is_occupied = shape.unknown_is_occupied;
   for (const auto &terms : shape.hyperquadrics) {
     body.hyperquadrics.emplace_back();
     body.hyperquadrics.back().terms = toNumbers(terms);
@@ -229,9 +275,7 @@ void addShape(CollisionObject &message, const ShapeDescription &shape) {
     case ShapeType::HALFSPACE:
       if (shape.dimensions.size() == shape_msgs::Plane().coef.size()) return addPlane(message, shape);
       return addBody(message, shape); // wrong as it is, so that the node can say so
-    case ShapeType::MESH:
-      if (!shape.resource.empty()) return addBody(message, shape);
-      return addMesh(message, isPlainMesh(shape) ? shape : withoutScale(shape));
+    case ShapeType::MESH: return isPlainMesh(shape) ? addMesh(message, shape) : addBody(message, shape);
     default: addBody(message, shape);
   }
 }
@@ -329,6 +373,7 @@ Operation toOperation(const CollisionObject &message) {
     append(message.primitives, message.primitive_poses, "primitive", out.object.shapes);
     append(message.meshes, message.mesh_poses, "mesh", out.object.shapes);
     append(message.planes, message.plane_poses, "plane", out.object.shapes);
+    checkCloudFrames(message);
     append(message.bodies, message.body_poses, "body", out.object.shapes);
   } catch (const Error &error) {
     throw Error("object '" + message.id + "': " + error.what());

@@ -7,7 +7,7 @@
 namespace curve_proximity {
 namespace {
 
-constexpr std::array<std::pair<ShapeType, const char *>, 12> SHAPE_TYPES = {{{ShapeType::POINT, "point"},
+constexpr std::array<std::pair<ShapeType, const char *>, 14> SHAPE_TYPES = {{{ShapeType::POINT, "point"},
                                                                              {ShapeType::SPHERE, "sphere"},
                                                                              {ShapeType::BOX, "box"},
                                                                              {ShapeType::CAPSULE, "capsule"},
@@ -18,7 +18,9 @@ constexpr std::array<std::pair<ShapeType, const char *>, 12> SHAPE_TYPES = {{{Sh
                                                                              {ShapeType::POLYTOPE, "polytope"},
                                                                              {ShapeType::MESH, "mesh"},
                                                                              {ShapeType::SUPERQUADRIC, "superquadric"},
-                                                                             {ShapeType::IMPLICIT, "implicit"}}};
+                                                                             {ShapeType::IMPLICIT, "implicit"},
+                                                                             {ShapeType::POINTS, "points"},
+                                                                             {ShapeType::OCTREE, "octree"}}};
 
 } // namespace
 

@@ -6,14 +6,17 @@
 #include <curve_proximity/geometry.hpp>
 
 #include "mesh.h"
+#include "octree.h"
 
 namespace curve_proximity {
 namespace {
 
-/* What a type expects in `dimensions`: how many, and what they are called. */
+/* What a type expects in `dimensions`: how many, what they are called, and from which value on; `optional`: or none at all. */
 struct Expected {
   std::size_t n;
   const char *names;
+  enum Range { ANY, NOT_NEGATIVE, POSITIVE } range = POSITIVE;
+  bool optional = false;
 };
 
 Expected expectedDimensions(ShapeType type) {
@@ -24,12 +27,14 @@ Expected expectedDimensions(ShapeType type) {
     case ShapeType::CYLINDER:
     case ShapeType::CONE: return {2, "[height, radius]"};
     case ShapeType::ELLIPSOID: return {3, "[x, y, z] (semi-axes)"};
-    case ShapeType::HALFSPACE: return {4, "[a, b, c, d]"};
+    case ShapeType::HALFSPACE: return {4, "[a, b, c, d]", Expected::ANY};
     case ShapeType::SUPERQUADRIC: return {6, "[a1, a2, a3, n1, n2, n3]"};
+    case ShapeType::MESH: return {3, "[x, y, z] (the scale)", Expected::ANY, true};
+    case ShapeType::POINTS: return {1, "[radius]", Expected::NOT_NEGATIVE, true};
     case ShapeType::POINT:
     case ShapeType::POLYTOPE:
     case ShapeType::IMPLICIT:
-    case ShapeType::MESH: break;
+    case ShapeType::OCTREE: break;
   }
   return {0, ""};
 }
@@ -45,20 +50,24 @@ void checkDimensions(const ShapeDescription &shape) {
   const Expected expected = expectedDimensions(shape.type);
   const std::size_t n = shape.dimensions.size();
 
-  const bool scaled_mesh = shape.type == ShapeType::MESH && n == 3;
-  if (n != expected.n && !scaled_mesh) {
+  if (n != expected.n && !(expected.optional && n == 0)) {
     const std::string wanted = expected.n == 0   ? "no dimensions"
                                : expected.n == 1 ? "1 dimension "
                                                  : std::to_string(expected.n) + " dimensions ";
-    throw Error(name + " needs " + wanted + expected.names + ", got " + std::to_string(n));
+    throw Error(name + " needs " + (expected.optional ? "none or " : "") + wanted + expected.names + ", got " +
+                std::to_string(n));
   }
 
-  const bool positive = shape.type != ShapeType::HALFSPACE && shape.type != ShapeType::MESH;
   for (std::size_t i = 0; i < n; ++i) {
     const double x = shape.dimensions[i];
-    if (std::isfinite(x) && (x > 0.0 || !positive)) continue;
-    throw Error(name + " dimension " + std::to_string(i) + " of " + (expected.n ? expected.names : "the scale") +
-                " is " + number(x) + ": it must be finite" + (positive ? " and above 0" : ""));
+    const bool large =
+        expected.range == Expected::ANY || x > 0.0 || (expected.range == Expected::NOT_NEGATIVE && x == 0.0);
+    if (std::isfinite(x) && large) continue;
+    const char *range = expected.range == Expected::POSITIVE       ? " and above 0"
+                        : expected.range == Expected::NOT_NEGATIVE ? " and not below 0"
+                                                                   : "";
+    throw Error(name + " dimension " + std::to_string(i) + " of " + expected.names + " is " + number(x) +
+                ": it must be finite" + range);
   }
 }
 
@@ -70,14 +79,21 @@ void checkVertices(const ShapeDescription &shape) {
   }
 
   // Which types have vertices, and what else belongs to a mesh alone.
-  const bool mesh = shape.type == ShapeType::MESH;
+  const bool mesh = shape.type == ShapeType::MESH, octree = shape.type == ShapeType::OCTREE;
+  const bool points = shape.type == ShapeType::POLYTOPE || shape.type == ShapeType::POINTS;
   if (shape.type == ShapeType::POINT && n > 1) throw Error("point needs at most 1 vertex, got " + std::to_string(n));
-  if (shape.type == ShapeType::POLYTOPE && n == 0) throw Error("polytope has no vertices");
-  if (shape.type != ShapeType::POINT && shape.type != ShapeType::POLYTOPE && !mesh && n > 0) {
+  if (points && n == 0) throw Error(name + " has no vertices");
+  if (shape.type != ShapeType::POINT && !points && !mesh && n > 0) {
     throw Error(name + " takes no vertices, got " + std::to_string(n));
   }
   if (!mesh && shape.triangles.cols() > 0) throw Error(name + " takes no triangles");
-  if (!mesh && !shape.resource.empty()) throw Error(name + " takes no mesh file, got '" + shape.resource + "'");
+  if (!mesh && !octree && !shape.resource.empty()) throw Error(name + " takes no file, got '" + shape.resource + "'");
+  if (!octree && !shape.octree.data.empty()) throw Error(name + " takes no octree");
+  if (octree && shape.resource.empty() == shape.octree.data.empty()) {
+    throw Error(shape.resource.empty()
+                    ? "octree has neither a file nor bytes"
+                    : "octree '" + shape.resource + "' has bytes beside the file: give one of the two");
+  }
   if (mesh && !shape.resource.empty() && (n > 0 || shape.triangles.cols() > 0)) {
     throw Error("mesh '" + shape.resource + "' has vertices or triangles beside the file: give one of the two");
   }
@@ -103,7 +119,18 @@ Geometry makeMesh(const ShapeDescription &shape, const ResourceOptions &options)
   }
 }
 
-BodyHandle makePrimitive(const ShapeDescription &shape) {
+BodyHandle makeCells(const ShapeDescription &shape, const ResourceOptions &options) {
+  const OctreeData octree =
+      shape.resource.empty() ? shape.octree : readOctree(resolveResource(shape.resource, options, "octree"));
+  try {
+    return makeOctree(octree, shape.unknown_is_occupied, options.memory_limit);
+  } catch (const Error &error) {
+    if (shape.resource.empty()) throw;
+    throw Error("octree '" + shape.resource + "': " + error.what(), error.status());
+  }
+}
+
+BodyHandle makeBody(const ShapeDescription &shape, const ResourceOptions &options) {
   const std::vector<double> &d = shape.dimensions;
   switch (shape.type) {
     case ShapeType::POINT:
@@ -118,6 +145,8 @@ BodyHandle makePrimitive(const ShapeDescription &shape) {
     case ShapeType::POLYTOPE: return makePolytope(shape.vertices);
     case ShapeType::SUPERQUADRIC: return makeSuperquadric({d[0], d[1], d[2]}, {d[3], d[4], d[5]});
     case ShapeType::IMPLICIT: return makeImplicit(shape.hyperquadrics, shape.planes, shape.quadrics);
+    case ShapeType::POINTS: return makePoints(shape.vertices, d.empty() ? 0.0 : d[0], options.memory_limit);
+    case ShapeType::OCTREE: return makeCells(shape, options);
     case ShapeType::MESH: break;
   }
   throw Error("a shape's type is not known");
@@ -140,8 +169,8 @@ std::string decodePercent(const std::string &text) {
 }
 
 /* The path that a URI means, whether it is there or not. */
-std::string pathOf(const std::string &uri, const ResourceOptions &options) {
-  const std::string who = "mesh '" + uri + "': ";
+std::string pathOf(const std::string &uri, const ResourceOptions &options, const std::string &what) {
+  const std::string who = what + " '" + uri + "': ";
   if (startsWith(uri, "package://")) {
     const std::string rest = uri.substr(10);
     const std::size_t slash = rest.find('/');
@@ -168,17 +197,17 @@ std::string pathOf(const std::string &uri, const ResourceOptions &options) {
 
 } // namespace
 
-std::string resolveResource(const std::string &uri, const ResourceOptions &options) {
-  if (uri.empty()) throw Error("mesh without a file name");
-  const std::string path = pathOf(uri, options);
+std::string resolveResource(const std::string &uri, const ResourceOptions &options, const std::string &what) {
+  if (uri.empty()) throw Error(what + " without a file name");
+  const std::string path = pathOf(uri, options, what), who = what + " '" + uri + "': '";
 
   // There, a file, and not empty.
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw Error("mesh '" + uri + "': there is no file '" + path + "'");
-  if (!std::filesystem::is_regular_file(status)) throw Error("mesh '" + uri + "': '" + path + "' is no regular file");
+  if (!std::filesystem::exists(status)) throw Error(what + " '" + uri + "': there is no file '" + path + "'");
+  if (!std::filesystem::is_regular_file(status)) throw Error(who + path + "' is no regular file");
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size == 0) throw Error("mesh '" + uri + "': '" + path + "' is empty");
+  if (error || size == 0) throw Error(who + path + "' is empty");
   return path;
 }
 
@@ -188,7 +217,7 @@ Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &opti
   checkConstraints(shape);
   if (shape.type == ShapeType::MESH) return makeMesh(shape, options);
   Geometry out;
-  out.body = makePrimitive(shape);
+  out.body = makeBody(shape, options);
   return out;
 }
 

@@ -45,6 +45,12 @@ void readImplicit(const YamlValue &value, ShapeDescription &shape, Warnings &war
   shape.quadrics = readRows<10>(value.itemsOf("quadrics"), "a quadric");
 }
 
+void readOctree(const YamlValue &value, ShapeDescription &shape, Warnings &warnings) {
+  value.warnOfOthers({"type", "resource", "unknown_is_occupied", "pose"}, warnings);
+  shape.resource = value.at("resource").text();
+  if (const auto occupied = value.find("unknown_is_occupied")) shape.unknown_is_occupied = occupied->truth();
+}
+
 } // namespace
 
 Eigen::Matrix3Xd readVertices(const YamlValue &value) {
@@ -62,12 +68,13 @@ void readMesh(const YamlValue &value, ShapeDescription &shape, Warnings &warning
     shape.resource = value.text();
     return;
   }
-  value.warnOfOthers({"type", "vertices", "triangles", "resource", "dimensions", "scale", "pose"}, warnings);
+  value.warnOfOthers({"type", "vertices", "triangles", "resource", "dimensions", "scale", "solid", "pose"}, warnings);
   if (const auto resource = value.find("resource")) shape.resource = resource->text();
   for (const char *key : {"dimensions", "scale"}) {
     if (const auto scale = value.find(key)) shape.dimensions = scale->numbers();
   }
 
+  if (const auto solid = value.find("solid")) shape.solid = solid->truth();
   shape.vertices = readVertices(value);
   const std::vector<YamlValue> triangles = value.itemsOf("triangles");
   shape.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
@@ -87,7 +94,7 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
   const std::optional<ShapeType> known = shapeTypeFromName(name);
   if (!known) {
     type.fail("type '" + name + "' is unknown; it must be point, sphere, box, capsule, cylinder, cone, ellipsoid, " +
-              "halfspace, polytope, mesh, superquadric or implicit");
+              "halfspace, polytope, mesh, points, octree, superquadric or implicit");
   }
   shape.type = *known;
 
@@ -105,11 +112,17 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
     return shape;
   }
 
+  if (shape.type == ShapeType::OCTREE) {
+    readOctree(value, shape, warnings);
+    return shape;
+  }
+
   /* numbers, or points */
   value.warnOfOthers({"type", "dimensions", "vertices", "pose"}, warnings);
   if (const auto dimensions = value.find("dimensions")) shape.dimensions = dimensions->numbers();
   shape.vertices = readVertices(value);
-  const bool by_vertices = shape.type == ShapeType::POLYTOPE || shape.type == ShapeType::POINT;
+  const bool by_vertices =
+      shape.type == ShapeType::POLYTOPE || shape.type == ShapeType::POINT || shape.type == ShapeType::POINTS;
   if (!by_vertices && shape.vertices.cols() > 0) value.fail("a " + name + " has dimensions, not vertices");
   return shape;
 }

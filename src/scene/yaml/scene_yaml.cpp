@@ -131,21 +131,36 @@ Operation readObject(const YamlValue &plain, Warnings &warnings) {
 
 /* ---- the other parts of the file */
 
+/* octomap_msgs/OctomapWithPose; without data there is none. Its name is the one by which MoveIt knows it. */
+void readOctomap(const YamlValue &value, SceneFile &out, Warnings &warnings) {
+  const std::optional<YamlValue> map = value.find("octomap");
+  const std::vector<YamlValue> bytes = map ? map->itemsOf("data") : std::vector<YamlValue>();
+  if (bytes.empty()) return;
+  value.warnOfOthers({"header", "origin", "octomap"}, warnings);
+  map->warnOfOthers({"header", "binary", "id", "resolution", "data"}, warnings);
+
+  Operation operation;
+  ObjectDescription &object = operation.object;
+  object.id = "<octomap>";
+  object.frame = readFrame(value, warnings);
+  if (const auto origin = value.find("origin")) object.pose = toIsometry(origin->pose(warnings));
+  object.shapes.emplace_back();
+  object.shapes.front().type = ShapeType::OCTREE;
+  OctreeData &octree = object.shapes.front().octree;
+  octree.binary = map->at("binary").truth();
+  octree.id = map->at("id").text();
+  octree.resolution = map->at("resolution").number();
+  for (const YamlValue &byte : bytes) octree.data += static_cast<char>(static_cast<int>(byte.number()));
+  out.operations.push_back(std::move(operation));
+}
+
 void readWorld(const YamlValue &world, SceneFile &out, Warnings &warnings) {
   world.warnOfOthers({"collision_objects", "octomap"}, warnings);
   for (const YamlValue &object : world.itemsOf("collision_objects")) {
     out.operations.push_back(readObject(object, warnings));
   }
 
-  /* an octomap that holds something: a part of the world that the answers do not speak of */
-  const std::optional<YamlValue> stamped = world.find("octomap");
-  const std::optional<YamlValue> map = stamped && stamped->isMap() ? stamped->find("octomap") : std::nullopt;
-  const std::optional<YamlValue> data = map && map->isMap() ? map->find("data") : std::nullopt;
-  if (data && (data->isSequence() ? !data->items().empty() : !data->text().empty())) {
-    const std::string sentence = "world.octomap: octomaps are not available in this version; it takes no part";
-    warnings.add(sentence);
-    out.skipped.push_back(sentence);
-  }
+  if (const auto stamped = world.find("octomap")) readOctomap(*stamped, out, warnings);
 }
 
 void readTransforms(const YamlValue &root, SceneFile &out, Warnings &warnings) {
