@@ -51,5 +51,8 @@ struct Geometry {
  *  Thread safety: any number of threads. */
 Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options = {});
 
+/** Whether nothing of an octree can be held against, which makeGeometry() refuses. Throws as that does. */
+bool isEmpty(const OctreeData &octree, bool unknown_is_occupied);
+
 } // namespace curve_proximity
 #endif

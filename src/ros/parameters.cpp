@@ -103,6 +103,9 @@ Parameters readParameters(const ros::NodeHandle &handle) {
     throw ParameterError("parameter ~memory_limit_mb: 0 or at least " + std::to_string(LEAST_MEMORY_MB) +
                          " is expected");
   if (parameters.fixed_frame.empty()) throw ParameterError("parameter ~fixed_frame: the name of a frame is expected");
+  if (parameters.cloud_id.empty()) throw ParameterError("parameter ~cloud_id: the name of an object is expected");
+  if (parameters.octomap_id.empty() || parameters.octomap_id == parameters.cloud_id)
+    throw ParameterError("parameter ~octomap_id: the name of an object is expected, another than ~cloud_id");
   if (parameters.robot_description.find('<') != std::string::npos)
     throw ParameterError(
         "parameter ~robot_description: the name of the parameter that holds the URDF is expected, not the URDF itself");

@@ -33,6 +33,11 @@ struct Parameters {
   int max_curves = 20000;
   int max_control_points = 2000000;
   int max_results = 200000;
+  int max_shape_mb = 1024;
+  std::string cloud_id = "cloud";
+  double cloud_radius = 0.01;
+  std::string octomap_id = "<octomap>";
+  bool unknown_is_occupied = false;
 };
 
 /** The values a number may take: least < value or least <= value, value <= most. */
@@ -60,6 +65,11 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("max_curves", parameters.max_curves, Range{1.0, false, count});
   visit("max_control_points", parameters.max_control_points, Range{1.0, false, count});
   visit("max_results", parameters.max_results, Range{1.0, false, count});
+  visit("max_shape_mb", parameters.max_shape_mb, Range{1.0, false, count});
+  visit("cloud_id", parameters.cloud_id);
+  visit("cloud_radius", parameters.cloud_radius, Range{0.0, false, 1e6});
+  visit("octomap_id", parameters.octomap_id);
+  visit("unknown_is_occupied", parameters.unknown_is_occupied);
 }
 
 /** Reads the parameters of a private handle; those that are not set keep their defaults.

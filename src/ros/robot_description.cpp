@@ -8,8 +8,9 @@
 
 namespace curve_proximity {
 
-ResourceOptions resourceOptions(const std::string &base_dir) {
+ResourceOptions resourceOptions(const std::string &base_dir, int max_shape_mb) {
   ResourceOptions options;
+  options.memory_limit = static_cast<std::size_t>(max_shape_mb) << 20;
   options.base_dir = base_dir;
   options.find_package = [](const std::string &package) { return ros::package::getPath(package); };
   return options;
@@ -55,7 +56,7 @@ std::shared_ptr<const Robot> loadRobot(const ros::NodeHandle &handle, const Para
 
   // Geometry that is left out must never read as free space without a word.
   RobotOptions options;
-  options.resources = resourceOptions(parameters.urdf_dir);
+  options.resources = resourceOptions(parameters.urdf_dir, parameters.max_shape_mb);
   options.allow_missing_geometry = parameters.allow_missing_geometry;
   std::shared_ptr<const Robot> robot;
   try {

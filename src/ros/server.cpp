@@ -38,10 +38,11 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
     : parameters_(parameters),
       handle_(onQueue(handle, queue_)),
       frames_(parameters_.fixed_frame, parameters_.tf_timeout, stop_),
-      scene_(loadRobot(handle, parameters_), resourceOptions("")),
+      scene_(loadRobot(handle, parameters_), resourceOptions("", parameters_.max_shape_mb)),
       srdf_(loadSrdf(handle, parameters_)),
       queries_(parameters_, scene_, srdf_, frames_, stop_) {
   markers_ = std::make_unique<MarkerPublisher>(handle_, scene_, parameters_.fixed_frame);
+  sensors_ = std::make_unique<Sensors>(handle, parameters_, scene_, frames_);
   services_ = {handle_.advertiseService("distance", &ProximityServer::distance, this),
                handle_.advertiseService("tolerance", &ProximityServer::tolerance, this),
                handle_.advertiseService("collision", &ProximityServer::collision, this),
@@ -63,6 +64,7 @@ ProximityServer::~ProximityServer() {
   // No new calls, then no thread in a callback, then nothing left that names this object.
   for (ros::ServiceServer &service : services_) service.shutdown();
   spinner_->stop();
+  sensors_.reset();
   markers_.reset();
   queue_.clear();
 }

@@ -22,6 +22,7 @@
 #include "markers.h"
 #include "parameters.h"
 #include "queries.h"
+#include "sensors.h"
 
 namespace curve_proximity {
 
@@ -60,6 +61,7 @@ class ProximityServer {
   const Srdf srdf_;
   Queries queries_;
   std::unique_ptr<MarkerPublisher> markers_;
+  std::unique_ptr<Sensors> sensors_;
   std::vector<ros::ServiceServer> services_;
   std::unique_ptr<ros::AsyncSpinner> spinner_;
 };

@@ -107,7 +107,7 @@ void visit(const Tree &tree, const typename Tree::NodeType *node, const Cube &cu
 }
 
 template <class Tree>
-Cells cellsOf(const OctreeData &octree, bool unknown_is_occupied) {
+Cells cellsIn(const OctreeData &octree, bool unknown_is_occupied) {
   Tree tree(octree.resolution);
   std::istringstream stream(octree.data);
   stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
@@ -138,7 +138,18 @@ Cells cellsOf(const OctreeData &octree, bool unknown_is_occupied) {
   return cells;
 }
 
+Cells cellsOf(const OctreeData &octree, bool unknown_is_occupied) {
+  return octree.id == "ColorOcTree" ? cellsIn<octomap::ColorOcTree>(octree, unknown_is_occupied)
+                                    : cellsIn<octomap::OcTree>(octree, unknown_is_occupied);
+}
+
 } // namespace
+
+bool isEmpty(const OctreeData &octree, bool unknown_is_occupied) {
+  if (octree.data.empty()) return true;
+  countNodes(octree);
+  return cellsOf(octree, unknown_is_occupied).boxes.empty();
+}
 
 OctreeData readOctree(const std::string &file) {
   std::ifstream stream(file, std::ios::binary);
@@ -164,8 +175,7 @@ BodyHandle makeOctree(const OctreeData &octree, bool unknown_is_occupied, std::s
                     " bytes, above the limit of " + std::to_string(memory_limit),
                 CPROX_MEMORY);
   }
-  const Cells cells = octree.id == "ColorOcTree" ? cellsOf<octomap::ColorOcTree>(octree, unknown_is_occupied)
-                                                 : cellsOf<octomap::OcTree>(octree, unknown_is_occupied);
+  const Cells cells = cellsOf(octree, unknown_is_occupied);
   if (cells.boxes.empty()) throw Error("octree has no occupied cell");
 
   // Faces are products of whole numbers with the resolution, so that neighbours share theirs to the last bit.

@@ -10,6 +10,15 @@ from support import BOX_SCENE, DATA, PASSING, Case, bezier, cprox
 ORIGIN = bezier('o', (0, 0, 0), (1e-9, 0, 0))
 
 
+# an octree with cells of 0.5 m, of which one is measured, and occupied: [0, 0.5]³. Sixteen levels lead to it: from the root
+# the last of eight children, then always the first, two bits each: 11 has children, 10 (bit 1 alone) is occupied
+BT_HEADER = b'# Octomap OcTree binary file\n# a comment\nid OcTree\nsize 17\nres 0.5\ndata\n'
+
+
+def one_cell():
+    return b'\x00\xc0' + b'\x03\x00' * 14 + b'\x02\x00'
+
+
 def one(body):
     """A scene with one object; `body` is a flow map without its braces."""
     return 'world: {collision_objects: [{id: thing, ' + body + '}]}'
@@ -95,6 +104,19 @@ class Shapes(Case):
                                           'primitive_poses: [{position: [10, 0, 0]}]'))
         self.assertAnswer(row, 8.5, slack=2e-9)
         self.assertPoint(row, 'b', (8.5, 0, 0))
+
+    def point_clouds_and_octree_files_are_bodies(self):
+        cloud = 'bodies: [{type: points, dimensions: [0.25], vertices: [[1, 0, 0], {x: -4, y: 1, z: 0}]}]'
+        self.assertAnswer(self.distance_to_origin(one(cloud)), 0.75, slack=2e-9)
+        bare = cloud.replace('dimensions: [0.25], ', '')
+        self.assertAnswer(self.distance_to_origin(one(bare)), 1, slack=2e-9)
+        octree = one('pose: {position: [3, 0, 0]}, bodies: [{type: octree, resource: map.bt}]')
+        self.file('map.bt', BT_HEADER + one_cell())
+        self.assertAnswer(self.distance_to_origin(octree), 3, slack=2e-9)
+        self.file('map.bt', BT_HEADER + one_cell()[:-3])
+        self.assertRefused(self.ask('distance', [ORIGIN], octree), "'thing'", 'map.bt', 'cut short')
+        self.file('map.bt', b'octomap' + BT_HEADER)
+        self.assertRefused(self.ask('distance', [ORIGIN], octree), 'map.bt', 'no octomap header')
 
 
 class Poses(Case):
@@ -187,12 +209,16 @@ class Files(Case):
         answer = cprox('distance', '--curves', curves, '--scene', scene, '--robot', DATA + '/robots/husky/husky.urdf')
         self.assertEqual((answer.code, answer.err, answer.row('c')['status']), (0, '', 'ok'))
 
-    def an_octomap_is_left_out_with_a_warning(self):
-        scene = BOX_SCENE + '  octomap: {header: {frame_id: world}, octomap: {binary: true, id: OcTree, data: [1, 2, 3]}}\n'
-        answer = self.ask('distance', [PASSING], scene, '--skipped')
-        self.assertEqual(answer.code, 0)
-        self.assertRegex(answer.err, r'warning: .*octomap')
-        self.assertRegex(answer.err, r'skipped: .*octomap')
+    def an_octomap_takes_part_under_the_name_that_moveit_gives_it(self):
+        # one cell of 0.5 m at the origin's corner, moved by its origin to x = 2 … 2.5: nearer to x = 3 than the box
+        cells = ', '.join(str(byte if byte < 128 else byte - 256) for byte in one_cell())
+        octomap = '{binary: true, id: OcTree, resolution: 0.5, data: [%s]}'
+        scene = BOX_SCENE + '  octomap: {header: {frame_id: world}, origin: {position: [2, 0, 0]}, octomap: ' + octomap % cells + '}\n'
+        row = self.ask('distance', [PASSING], scene).row('passing')
+        self.assertAnswer(row, 0.5)
+        self.assertEqual(row['b'], '<octomap>')
+        short = BOX_SCENE + '  octomap: {octomap: ' + octomap % '3, 0' + '}\n'
+        self.assertRefused(self.ask('distance', [PASSING], short), '<octomap>', 'cut short')
         empty = BOX_SCENE + '  octomap: {octomap: {data: []}}\n'
         self.assertEqual(self.ask('distance', [PASSING], empty).err, '')
 

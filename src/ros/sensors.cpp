@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "sensors.h"
+
+#include <ros/console.h>
+
+#include <utility>
+
+#include "cloud.h"
+#include "guard.h"
+
+namespace curve_proximity {
+namespace {
+
+/** The same complaint is made once in this time, however fast the sensor is. */
+constexpr std::chrono::seconds COMPLAIN_EVERY{5};
+
+ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue) {
+  ros::NodeHandle own(handle);
+  own.setCallbackQueue(&queue);
+  return own;
+}
+
+} // namespace
+
+Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, Scene &scene, const Frames &frames)
+    : parameters_(parameters), scene_(scene), frames_(frames), handle_(onQueue(handle, queue_)), spinner_(1, &queue_) {
+  subscribers_ = {handle_.subscribe("cloud", 1, &Sensors::takeCloud, this),
+                  handle_.subscribe("octomap", 1, &Sensors::takeOctomap, this)};
+  spinner_.start();
+}
+
+Sensors::~Sensors() {
+  for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
+  spinner_.stop();
+  queue_.clear();
+}
+
+void Sensors::takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message) {
+  guarded(
+      [&] {
+        Cloud cloud = toCloud(*message);
+        if (cloud.points.cols() == 0) {
+          remove(parameters_.cloud_id);
+          return;
+        }
+        ShapeDescription shape;
+        shape.type = ShapeType::POINTS;
+        shape.dimensions = {parameters_.cloud_radius};
+        shape.vertices = std::move(cloud.points);
+        replace(parameters_.cloud_id, message->header, std::move(shape));
+      },
+      [&](const std::string &why) { complain("~cloud", why); });
+}
+
+void Sensors::takeOctomap(const OctomapMessage::ConstPtr &message) {
+  guarded(
+      [&] {
+        ShapeDescription shape;
+        shape.type = ShapeType::OCTREE;
+        shape.unknown_is_occupied = parameters_.unknown_is_occupied;
+        shape.octree = {message->id, message->resolution, message->binary != 0,
+                        std::string(message->data.begin(), message->data.end())};
+        try {
+          replace(parameters_.octomap_id, message->header, shape);
+        } catch (const Error &) {
+          if (!isEmpty(shape.octree, shape.unknown_is_occupied)) throw;
+          remove(parameters_.octomap_id);
+        }
+      },
+      [&](const std::string &why) { complain("~octomap", why); });
+}
+
+void Sensors::replace(const std::string &id, const std_msgs::Header &header, ShapeDescription shape) {
+  Operation operation;
+  operation.object.id = id;
+  operation.object.pose = frames_.toFixed(header.frame_id, header.stamp, frames_.deadline());
+  operation.object.shapes.push_back(std::move(shape));
+  SceneChange change;
+  change.operations.push_back(std::move(operation));
+  for (const std::string &fault : scene_.apply(change)) throw Error(fault);
+}
+
+void Sensors::remove(const std::string &id) {
+  if (scene_.snapshot()->objects().count(id) == 0) return;
+  SceneChange change;
+  change.operations.resize(1);
+  change.operations.front().kind = Operation::Kind::REMOVE;
+  change.operations.front().object.id = id;
+  scene_.apply(change);
+}
+
+void Sensors::complain(const std::string &topic, const std::string &why) {
+  const std::string complaint = topic + ": " + why + "; the object stays as it was";
+  const auto now = std::chrono::steady_clock::now();
+  if (complaint == last_complaint_ && now - last_complained_ < COMPLAIN_EVERY) return;
+  last_complaint_ = complaint;
+  last_complained_ = now;
+  ROS_WARN_STREAM(complaint);
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What sensors see, as topics: each message takes the place of the object that the one before it made. */
+#ifndef CURVE_PROXIMITY_ROS_SENSORS_H
+#define CURVE_PROXIMITY_ROS_SENSORS_H
+
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/spinner.h>
+#include <ros/subscriber.h>
+#include <sensor_msgs/PointCloud2.h>
+
+#include <chrono>
+#include <curve_proximity/scene.hpp>
+#include <string>
+#include <vector>
+
+#include "frames.h"
+#include "octomap_message.h"
+#include "parameters.h"
+
+namespace curve_proximity {
+
+/** ~cloud and ~octomap. They have a thread of their own, so that what is built at the rate of a sensor takes no thread from the
+ *  queries, which work on the snapshot before it. Of messages that come too fast the oldest are dropped.
+ *
+ *  A message without a point, or without an occupied cell, takes the object away: nothing is seen. One that cannot be used leaves
+ *  the object as it was, and a warning says why. */
+class Sensors {
+ public:
+  /** All are kept by reference. handle: private. */
+  Sensors(const ros::NodeHandle &handle, const Parameters &parameters, Scene &scene, const Frames &frames);
+
+  /** No callback runs, nor will one begin, when it has ended. */
+  ~Sensors();
+
+  Sensors(const Sensors &) = delete;
+  Sensors &operator=(const Sensors &) = delete;
+
+ private:
+  void takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message);
+  void takeOctomap(const OctomapMessage::ConstPtr &message);
+  void replace(const std::string &id, const std_msgs::Header &header, ShapeDescription shape);
+  void remove(const std::string &id);
+  void complain(const std::string &topic, const std::string &why);
+
+  const Parameters &parameters_;
+  Scene &scene_;
+  const Frames &frames_;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle handle_; /* its callbacks go to queue_ */
+  std::vector<ros::Subscriber> subscribers_;
+  std::string last_complaint_;
+  std::chrono::steady_clock::time_point last_complained_;
+  ros::AsyncSpinner spinner_;
+};
+
+} // namespace curve_proximity
+#endif
