@@ -1,0 +1,274 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Point clouds and octrees, published to the live node and sent to it; what cannot be used is told and changes nothing."""
+import struct
+import threading
+import time
+import unittest
+
+import genpy.dynamic
+import numpy
+import rospy
+from curve_proximity.msg import Body, Octree
+from geometry_msgs.msg import Point
+from helpers import Server, bezier, run, sphere, thing, until
+from rosgraph_msgs.msg import Log
+from sensor_msgs.msg import PointCloud2, PointField
+from shape_msgs.msg import MeshTriangle
+
+NODE = '/curve_proximity'
+EPSILON = 1e-9                                   # [m] asked for in each query that is compared
+RADIUS = 0.25                                    # [m] ~cloud_radius of the launch file
+ABOVE = bezier((0, 0, 1), (2, 0, 1), id='above')  # a straight line one metre up, middle over (1, 0, 0)
+PATIENCE = 20                                    # seconds for a message to arrive; a failure takes that long
+
+# octomap_msgs/Octomap as octomap_msgs publishes it, which need not be installed here.
+OCTOMAP = genpy.dynamic.generate_dynamic('octomap_msgs/Octomap', '''Header header
+bool binary
+string id
+float64 resolution
+int8[] data
+================================================================================
+MSG: std_msgs/Header
+uint32 seq
+time stamp
+string frame_id
+''')['octomap_msgs/Octomap']
+
+# One cell of 0.5 m at the origin's corner, occupied: from the root the last child, then always the first, two bits each.
+CELL = b'\x00\xc0' + b'\x03\x00' * 14 + b'\x02\x00'
+FREE_CELL = CELL[:-2] + b'\x01\x00'
+
+
+def cloud(points, frame='', order='<', kind='f', names='xyz', padding=0, width=None):
+    """A PointCloud2 of rows of `width` points, `padding` bytes behind each point and each row."""
+    points = numpy.asarray(points, dtype=float).reshape(-1, 3)
+    size = {'f': 4, 'd': 8}[kind]
+    width = width or len(points)
+    step = 3 * size + padding
+    out = PointCloud2(height=len(points) // width if width else 0, width=width, is_bigendian=order == '>', point_step=step,
+                      row_step=step * width + padding, is_dense=False)
+    out.fields = [PointField(name, i * size, {'f': 7, 'd': 8}[kind], 1) for i, name in enumerate(names)]
+    out.header.frame_id = frame
+    rows = []
+    for start in range(0, len(points), width or 1):
+        rows.append(b''.join(struct.pack(order + 3 * kind, *p) + b'\xff' * padding for p in points[start:start + width]))
+    out.data = b''.join(row + b'\xff' * padding for row in rows)
+    return out
+
+
+def fast_cloud(points):
+    """The same of many points at once."""
+    out = PointCloud2(height=1, width=len(points), point_step=12, row_step=12 * len(points))
+    out.fields = [PointField(name, 4 * i, 7, 1) for i, name in enumerate('xyz')]
+    out.data = numpy.asarray(points, dtype='<f4').tobytes()
+    return out
+
+
+def signed(data):
+    return list(struct.unpack('%db' % len(data), data))
+
+
+class TestCase(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+        cls.lines = []
+        cls.log = rospy.Subscriber('/rosout', Log, lambda line: cls.lines.append(line.msg))
+        cls.clouds = rospy.Publisher(NODE + '/cloud', PointCloud2, queue_size=1)
+        cls.octomaps = rospy.Publisher(NODE + '/octomap', OCTOMAP, queue_size=1)
+        connected = until(lambda: cls.clouds.get_num_connections() and cls.octomaps.get_num_connections()
+                          and cls.log.get_num_connections(), PATIENCE)
+        assert connected, 'the node does not subscribe, or has other message types than octomap_msgs'
+
+    def setUp(self):
+        self.server.replace()
+
+    def answer(self, curve=ABOVE):
+        response = self.server.distance(curve, epsilon=EPSILON)
+        self.assertTrue(response.success, response.message)
+        return response.results[0]
+
+    def assertNearest(self, name, distance):
+        """Soon the answer names the object, at that distance; the points of the tests are exact as floats."""
+        row = until(lambda: [row for row in [self.answer()] if row.b == name and abs(row.upper - distance) < 1e-6], PATIENCE)
+        self.assertTrue(row, 'still %s' % self.answer())
+        self.assertLessEqual(row[0].lower, distance + 1e-12)
+        self.assertGreaterEqual(row[0].upper, distance - 1e-12)
+        self.assertEqual(row[0].rung, 'mesh')
+
+    def assertTold(self, *words):
+        """Soon one line of the log holds all the words."""
+        told = until(lambda: any(all(word in line for word in words) for line in list(self.lines)), PATIENCE)
+        self.assertTrue(told, '%s is not in %s' % (words, self.lines[-5:]))
+
+    def assertRefused(self, thing, *words):
+        response = self.server.apply(thing)
+        self.assertFalse(response.success)
+        for word in words:
+            self.assertIn(word, response.message)
+
+
+class Clouds(TestCase):
+    def test_a_published_cloud_changes_the_next_answer_and_the_next_cloud_replaces_it(self):
+        self.assertEqual(self.answer().b, '')
+        self.clouds.publish(cloud([(1, 0, 0), (5, 5, 5)]))
+        self.assertNearest('cloud', 1 - RADIUS)
+        self.clouds.publish(cloud([(0, 0, -1)]))
+        self.assertNearest('cloud', 2 - RADIUS)
+        self.assertEqual(len(self.server.scene().objects), 1)
+
+    def test_a_cloud_stands_where_its_frame_does(self):
+        self.clouds.publish(cloud([(1, 0, -2.5)], frame='camera'))
+        self.assertNearest('cloud', 1.5 - RADIUS)
+
+    def test_every_layout_of_floats_is_read(self):
+        for i, fields in enumerate((dict(kind='d'), dict(order='>'), dict(order='>', kind='d'), dict(padding=5),
+                                    dict(padding=3, width=2), dict(names='yxz'))):
+            depth = 0.5 * (i + 1)
+            self.clouds.publish(cloud([(0, 0, -depth)] * 4, **fields))
+            self.assertNearest('cloud', 1 + depth - RADIUS)
+
+    def test_points_that_are_not_finite_are_left_out(self):
+        nan, inf = float('nan'), float('inf')
+        self.clouds.publish(cloud([(nan, 0, 1), (1, 0, 0), (1, inf, 1), (nan, nan, nan)]))
+        self.assertNearest('cloud', 1 - RADIUS)
+
+    def test_a_cloud_without_points_takes_the_object_away(self):
+        for nothing in (PointCloud2(), cloud([(float('nan'), 0, 0)])):
+            self.clouds.publish(cloud([(1, 0, 0)]))
+            self.assertNearest('cloud', 1 - RADIUS)
+            self.clouds.publish(nothing)
+            self.assertTrue(until(lambda: self.answer().b == '', PATIENCE))
+
+    def test_a_cloud_that_cannot_be_used_is_told_and_leaves_the_object_as_it_was(self):
+        self.clouds.publish(cloud([(1, 0, 0)]))
+        self.assertNearest('cloud', 1 - RADIUS)
+        near = [(1, 0, 1), (1, 0, 1)]
+
+        def broken(**fields):
+            out = cloud(near)
+            for name, value in fields.items():
+                setattr(out, name, value)
+            return out
+
+        integers = cloud(near)
+        integers.fields[2].datatype = PointField.UINT16
+        beyond = cloud(near)
+        beyond.fields[1].offset = 9
+        for bad, words in ((cloud(near, names='xyq'), ("no field 'z'", 'x, y, q')),
+                           (integers, ("'z'", 'datatype 4', 'float32')),
+                           (beyond, ("'y'", 'byte 13', 'point_step is 12')),
+                           (broken(point_step=0), ("'x'", 'point_step is 0')),
+                           (broken(width=3), ('24 bytes', '3 points')),
+                           (broken(height=2, row_step=8), ('row_step is 8', '24')),
+                           (broken(height=2 ** 32 - 1, width=2 ** 32 - 1, row_step=2 ** 32 - 1), ('row_step',)),
+                           (cloud(near, frame='nowhere'), ("'nowhere'", "'world'"))):
+            with self.subTest(words=words):
+                self.clouds.publish(bad)
+                self.assertTold('~cloud', 'stays as it was', *words)
+                self.assertNearest('cloud', 1 - RADIUS)
+
+    def test_a_cloud_beyond_the_limit_is_refused_with_the_bytes_that_it_would_need(self):
+        self.clouds.publish(fast_cloud(numpy.zeros((10 ** 7, 3))))
+        self.assertTold('10000000 points need up to', 'bytes, above the limit of %d' % (64 << 20))
+        self.assertEqual(self.answer().b, '')
+
+    def test_a_cloud_is_a_body_of_the_scene(self):
+        def scan(cloud, dimensions=(RADIUS,), frame='camera'):
+            out = thing('scan', bodies=[Body(type='points', dimensions=dimensions, cloud=cloud)])
+            out.header.frame_id = frame
+            return out
+
+        self.server.replace(scan(cloud([(1, 0, -2.5)], frame='camera')))
+        self.assertNearest('scan', 1.5 - RADIUS)
+        self.server.replace(self.server.scene().objects[0])  # what it says of itself makes it again
+        self.assertNearest('scan', 1.5 - RADIUS)
+        self.assertRefused(scan(cloud([], frame='camera')), "'scan'", 'no vertices')
+        self.assertRefused(scan(cloud([(1, 2, 3)], frame='world')), "'scan'", "'world'", "'camera'")
+        self.assertRefused(scan(cloud([(1, 2, 3)], names='abc')), "'scan'", "no field 'x'")
+        self.assertRefused(scan(cloud([(1, 2, 3)]), dimensions=(-1,)), 'not below 0')
+        self.assertRefused(thing('ball', bodies=[Body(type='sphere', dimensions=[1], cloud=cloud([(1, 2, 3)]))]), 'no cloud')
+        self.assertNearest('scan', 1.5 - RADIUS)
+
+    def test_clouds_of_100000_points_30_times_a_second_and_queries_meanwhile_agree_with_one_of_them(self):
+        # seed 16; two clouds whose nearest point is 0.75 and 1.25 below the line: no answer may lie between
+        random = numpy.random.RandomState(16)
+        points = random.uniform((-2, -2, -5), (4, 2, -2), (100000, 3))
+        both = []
+        for depth in (0.0, -0.5):
+            points[500] = (1, 0, depth)
+            both.append(fast_cloud(points))
+        self.clouds.publish(both[0])
+        self.assertNearest('cloud', 1 - RADIUS)
+
+        answers, stop = [], threading.Event()
+
+        def ask():
+            server = Server()
+            while not stop.is_set():
+                row = server.distance(ABOVE, epsilon=EPSILON).results[0]
+                answers.append(row.upper)
+
+        asking = threading.Thread(target=ask)
+        asking.start()
+        rate = rospy.Rate(30)
+        for i in range(90):
+            self.clouds.publish(both[i % 2])
+            rate.sleep()
+        stop.set()
+        asking.join()
+        self.assertNearest('cloud', 1.5 - RADIUS)
+        for value in answers:
+            self.assertTrue(min(abs(value - (1 - RADIUS)), abs(value - (1.5 - RADIUS))) < 1e-6, value)
+        changes = sum(abs(a - b) > 0.1 for a, b in zip(answers, answers[1:]))
+        print('%d answers, %d changes seen of 90 clouds' % (len(answers), changes))
+        self.assertGreater(changes, 10)
+
+
+class Octrees(TestCase):
+    def octomap(self, data, resolution=0.5, frame='', **fields):
+        out = OCTOMAP(binary=True, id='OcTree', resolution=resolution, data=signed(data), **fields)
+        out.header.frame_id = frame
+        return out
+
+    def test_a_published_octomap_changes_the_next_answer(self):
+        self.octomaps.publish(self.octomap(CELL))
+        self.assertNearest('<octomap>', 0.5)
+        self.octomaps.publish(self.octomap(CELL, frame='camera'))
+        self.assertNearest('<octomap>', 1.0)
+        for nothing in (b'', FREE_CELL):
+            self.octomaps.publish(self.octomap(CELL))
+            self.assertNearest('<octomap>', 0.5)
+            self.octomaps.publish(self.octomap(nothing))
+            self.assertTrue(until(lambda: self.answer().b == '', PATIENCE))
+
+    def test_an_octomap_that_cannot_be_used_is_told_and_leaves_the_object_as_it_was(self):
+        self.octomaps.publish(self.octomap(CELL))
+        self.assertNearest('<octomap>', 0.5)
+        other = self.octomap(CELL)
+        other.id = 'Quadtree'
+        for bad, words in ((self.octomap(CELL[:-1]), ('cut short',)), (self.octomap(b'\xff' * 200), ('deeper',)),
+                           (self.octomap(CELL, resolution=0.0), ('resolution',)), (other, ("'Quadtree'",)),
+                           (self.octomap(CELL, frame='nowhere'), ("'nowhere'",))):
+            with self.subTest(words=words):
+                self.octomaps.publish(bad)
+                self.assertTold('~octomap', *words)
+                self.assertNearest('<octomap>', 0.5)
+
+    def test_an_octree_is_a_body_of_the_scene(self):
+        def map_of(**fields):
+            return thing('map', bodies=[Body(type='octree', **fields)])
+
+        octree = Octree(binary=True, id='OcTree', resolution=0.5, data=signed(CELL))
+        self.server.replace(map_of(octree=octree))
+        self.assertNearest('map', 0.5)
+        self.server.replace(self.server.scene().objects[0])
+        self.assertNearest('map', 0.5)
+        self.assertRefused(map_of(), "'map'", 'neither a file nor bytes')
+        self.assertRefused(map_of(resource='/nowhere.bt'), "'map'", "'/nowhere.bt'", 'no file')
+        self.assertRefused(map_of(octree=octree, resource='/nowhere.bt'), 'give one of the two')
+
+
+if __name__ == '__main__':
+    run('worlds')
