@@ -2,12 +2,14 @@
 # The messages and services of the package, in msg/ and srv/.
 set(CURVE_PROXIMITY_MESSAGES
   AllowedContact.msg
+  AttachedCollisionObject.msg
   Body.msg
   CollisionObject.msg
   Curve.msg
   Hyperquadric.msg
   LinkPadding.msg
   Octree.msg
+  LinkScale.msg
   Proximity.msg
 )
 set(CURVE_PROXIMITY_SERVICES

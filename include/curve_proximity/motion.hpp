@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_MOTION_HPP
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,6 +42,10 @@ class RobotMotion {
   /** What takes no part, and why: a sentence each. */
   const std::vector<std::string> &skipped() const;
 
+  /** Joints that the trajectory takes beyond their limits: a sentence each. They are answered as they are, and every answer's message
+   *  says it too. */
+  const std::vector<std::string> &warnings() const;
+
   struct Data;
   const Data &data() const {
     return *data_;
@@ -50,15 +55,40 @@ class RobotMotion {
   std::unique_ptr<const Data> data_;
 };
 
-/** How close the moving links come to the objects (question.objects: only these; per_object: an answer for each object, in the order
- *  of their names). kind "environment", a the link, b the object, result.t the time [s], result.mover_part the number of the
+/** How close the moving links and what they carry come to the objects (question.objects: only these; per_object: an answer for each object, in the order
+ *  of their names). kind "environment", a the link or the carried object, b the object, result.t the time [s], result.mover_part the number of the
  *  collision element of a. As ask() of query.hpp in everything else. */
 std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &question, Workspace &workspace);
 
 /** How close the robot comes to itself: pairs of links between which at least two joints can move and this trajectory moves one,
- *  less those that are disabled or allowed to touch. kind "self", a and b links; result.target_index is the number of the
+ *  and pairs of what a link carries and any other link, or what that carries, that this trajectory moves against each other; less
+ *  those that are disabled, touch_links or allowed to touch. kind "self", a and b links or carried objects; result.target_index is the number of the
  *  collision element of b. */
 Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &workspace);
+
+/** How many pairs are asked about at most, and how close they must come. */
+struct PairLimits {
+  std::size_t count = 10;
+  double within = std::numeric_limits<double>::infinity(); /**< [m] >= 0 */
+};
+
+/** The pairs that come closest, nearest first: of a link or carried object and an object (question.objects: only these), or, `self`,
+ *  of two that belong to the robot. Each answer is that to DISTANCE for its pair alone; pairs are of single collision elements. */
+std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits,
+                                 const Question &question, Workspace &workspace);
+
+/** The clearance of a robot on one stretch of its trajectory. */
+struct ClearanceStretch {
+  double t0 = 0.0, t1 = 0.0;       /**< [s] */
+  double lower = 0.0, upper = 0.0; /**< [m] contain the least distance over the stretch; infinity: nothing to measure */
+  double t = 0.0;                  /**< [s] where upper was attained */
+  std::string a, b;                /**< of whom: empty where nothing was measured */
+};
+
+/** The swept clearance: the least distance of the robot to the objects (question.objects: only these), or with `self` to itself, on each
+ *  stretch between two breaks [s], ascending and within domain(). Throws Error for breaks that are not, and where the core refuses. */
+std::vector<ClearanceStretch> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
+                                               const Question &question, Workspace &workspace);
 
 } // namespace curve_proximity
 #endif

@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_ROBOT_HPP
 #define CURVE_PROXIMITY_ROBOT_HPP
 
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
@@ -45,6 +46,7 @@ class Robot {
     std::string parent, child;                                /**< links */
     Eigen::Isometry3d origin = Eigen::Isometry3d::Identity(); /**< of the joint's frame in the parent's */
     Eigen::Vector3d axis = Eigen::Vector3d::UnitX();          /**< unit; planar: the plane's normal */
+    double lower = -INFINITY, upper = INFINITY;               /**< limits, where the URDF has them */
     double rest = 0.0;                                        /**< the value where none is given */
     std::string leader;                                       /**< of a mimic joint, never a mimic itself; else empty */
     double multiplier = 1.0, offset = 0.0;                    /**< of a mimic joint */
@@ -62,6 +64,11 @@ class Robot {
 
   const std::string &name() const {
     return name_;
+  }
+
+  /** Where its mesh files were looked for. */
+  const ResourceOptions &resources() const {
+    return resources_;
   }
 
   const std::string &rootLink() const {
@@ -115,6 +122,7 @@ class Robot {
   Eigen::Isometry3d motion(const Joint &joint, const JointPositions &positions) const;
 
   std::string name_, root_link_;
+  ResourceOptions resources_;
   std::map<std::string, std::vector<LinkGeometry>> links_;
   std::vector<Joint> joints_; /* parents first */
   std::map<std::string, std::size_t> joint_by_name_;

@@ -42,12 +42,28 @@ struct AllowedPair {
   bool allowed = true;
 };
 
+/** One change of what the robot carries. */
+struct Attachment {
+  /** ATTACH  a link carries an object from now on: `object`, its pose in the link's frame, in the place of one of that id in the
+   *          scene or on any link; without shapes the object of the scene of that id, which stays where it is at link_pose.
+   *  DETACH  the object of that id stands in the scene from now on, where it is at link_pose; with an empty id, all that the link
+   *          carries; with an empty link too, everything. */
+  enum class Kind { ATTACH, DETACH };
+  Kind kind = Kind::ATTACH;
+  std::string link;
+  std::vector<std::string> touch_links; /**< links that the object may touch, beside the one that carries it */
+  ObjectDescription object;
+  std::map<std::string, Eigen::Isometry3d> link_poses; /**< where links are in the fixed frame: those that are needed */
+};
+
 /** A change of the scene. What is left empty stays as it was. */
 struct SceneChange {
-  bool clear = false;                         /**< first away with all objects, allowed pairs and link paddings */
+  bool clear = false; /**< first away with all objects, carried ones too, allowed pairs, link paddings and scales */
   std::vector<Operation> operations;          /**< applied in order */
+  std::vector<Attachment> attachments;        /**< after the operations, in order */
   std::map<std::string, double> link_padding; /**< [m] >= 0, by link */
   std::optional<double> default_link_padding; /**< [m] >= 0, of the links not named */
+  std::map<std::string, double> link_scale;   /**< > 0, by link: see Snapshot::linkGeometry() */
   std::vector<AllowedPair> allowed;           /**< each replaces the entry of the same two names, in either order */
 };
 
@@ -72,6 +88,14 @@ struct SceneObject {
   std::vector<ObjectShape> shapes; /**< as many as description.shapes */
 };
 
+/** An object that a link carries. */
+struct AttachedObject {
+  std::string link;
+  std::vector<std::string> touch_links;
+  ObjectDescription description;    /**< as given; its pose is in the link's frame */
+  std::vector<LinkGeometry> shapes; /**< in the link's frame, at the link's scale */
+};
+
 /** The scene at one moment: immutable, read by any number of threads. */
 class Snapshot {
  public:
@@ -90,6 +114,25 @@ class Snapshot {
   /** Null where the scene has no robot. */
   const std::shared_ptr<const Robot> &robot() const {
     return robot_;
+  }
+
+  /** What links carry, by id; no object has the same id. It moves with its link, and is enlarged as the link is. */
+  const std::map<std::string, std::shared_ptr<const AttachedObject>> &attached() const {
+    return attached_;
+  }
+
+  /** [m] The padding of a carried object: its own and its link's. */
+  double attachedPadding(const AttachedObject &object) const {
+    return object.description.padding + linkPadding(object.link);
+  }
+
+  /** The collision elements of a link of the robot at its scale. A scale enlarges each of them, of any type, about its own origin;
+   *  a mesh about the mean of its vertices, as MoveIt does. */
+  const std::vector<LinkGeometry> &linkGeometry(const std::string &link) const;
+
+  /** The scales that are not 1, by link. */
+  const std::map<std::string, double> &linkScales() const {
+    return link_scale_;
   }
 
   /** [m] The padding of a link: its own, else the default. */
@@ -115,11 +158,14 @@ class Snapshot {
   friend class Scene;
   Snapshot();
   Snapshot(const Snapshot &other);
+  void scaleLinks(const std::map<std::string, double> &scales, const ResourceOptions &resources);
 
   std::uint64_t version_ = 0;
   std::map<std::string, std::shared_ptr<const SceneObject>> objects_;
   std::shared_ptr<const Robot> robot_;
-  std::map<std::string, double> link_padding_;
+  std::map<std::string, std::shared_ptr<const AttachedObject>> attached_;
+  std::map<std::string, double> link_padding_, link_scale_;
+  std::map<std::string, std::shared_ptr<const std::vector<LinkGeometry>>> scaled_; /* of the links in link_scale_ */
   double default_link_padding_ = 0.0;
   std::vector<AllowedPair> allowed_;
   std::unique_ptr<const World> world_;
@@ -139,11 +185,11 @@ class Scene {
 
   /** Applies a change; what can be applied becomes visible at once, as one new snapshot.
    *
-   *  All or nothing for each operation, and for the link paddings and allowed pairs each: what is faulty leaves the
+   *  All or nothing for each operation and attachment, and for the link paddings, scales and allowed pairs each: what is faulty leaves the
    *  scene as it was and is told in a sentence that names it ("object 'box1': cylinder needs 2 dimensions
    *  [height, radius], got 1"). Returns these sentences in the order of the change; none: all was applied. An unknown id
-   *  on MOVE or REMOVE, an object without an id, poses and paddings that are not finite, a padding < 0 and an unknown
-   *  link are faults.
+   *  on MOVE or REMOVE, an object without an id or with that of a carried one, poses and paddings that are not finite, a
+   *  padding < 0, an unknown link and a halfspace that is to be carried are faults.
    *  Cost: microseconds an object that stays, more for those that are made; bodies that stay are shared. */
   std::vector<std::string> apply(const SceneChange &change);
 

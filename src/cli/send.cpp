@@ -48,7 +48,8 @@ int sendScene(const Arguments &arguments, Console &console) {
   call.request = toMessage(change);
   if (!ros::service::call(service, call)) throw BadUsage("send: the call of " + service + " failed");
   if (!call.response.success) throw BadUsage("send: " + service + ": " + call.response.message);
-  console.say("sent: " + std::to_string(change.operations.size()) + " objects to " + arguments.node);
+  console.say("sent: " + std::to_string(change.operations.size() + change.attachments.size()) + " objects to " +
+              arguments.node);
   return kAllAnswered;
 }
 

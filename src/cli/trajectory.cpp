@@ -48,6 +48,7 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   for (const std::string &sentence : arguments.warnings) warnings.add(sentence);
   const World world = readWorld(arguments, warnings);
   const RobotMotion motion = readMotion(arguments, world, warnings);
+  for (const std::string &sentence : motion.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
   Question question = arguments.question;
   question.options.stop = interrupted;
 

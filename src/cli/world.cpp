@@ -76,18 +76,24 @@ Operation toFixed(Operation operation, const Frames &frames) {
   return operation;
 }
 
-/* An object that the robot carries moves with its link, from where the scene's robot_state has the link to where it is
- * now. */
-Operation toFixed(const AttachedObject &attached, const Frames &frames, const PlacedRobot &robot) {
-  Operation operation = toFixed(Operation{Operation::Kind::ADD, attached.object}, frames);
-  if (!robot.robot) return operation;
-  const auto before = robot.links_of_scene.find(attached.link), now = robot.links_now.find(attached.link);
-  if (before == robot.links_of_scene.end() || now == robot.links_now.end()) {
-    throw BadUsage("object '" + attached.object.id + "' is attached to '" + attached.link +
+/* What a link carries, from the frame that it names to the link's, by where the scene's robot_state has the link. Without a robot it
+ * stands where it is. */
+void attach(const Attachment &given, const Frames &frames, const PlacedRobot &robot, SceneChange &change) {
+  if (!robot.robot) {
+    change.operations.push_back(toFixed(Operation{Operation::Kind::ADD, given.object}, frames));
+    return;
+  }
+  const auto link = robot.links_of_scene.find(given.link);
+  if (link == robot.links_of_scene.end()) {
+    throw BadUsage("object '" + given.object.id + "' is attached to '" + given.link +
                    "', which is no link of the robot");
   }
-  operation.object.pose = now->second * before->second.inverse() * operation.object.pose;
-  return operation;
+  Attachment attachment = given;
+  if (given.object.frame != given.link) {
+    const Operation standing = toFixed(Operation{Operation::Kind::ADD, given.object}, frames);
+    attachment.object.pose = link->second.inverse() * standing.object.pose;
+  }
+  change.attachments.push_back(std::move(attachment));
 }
 
 /* An id that comes twice: the later object takes the earlier one's place, which is hardly what was meant. */
@@ -109,13 +115,12 @@ void warnOfReplaced(const std::vector<Operation> &operations, Warnings &warnings
 SceneChange changeOf(const SceneFile &file, const Frames &frames, const PlacedRobot &robot, Warnings &warnings) {
   SceneChange change;
   for (const Operation &operation : file.operations) change.operations.push_back(toFixed(operation, frames));
-  for (const AttachedObject &attached : file.attached) {
-    change.operations.push_back(toFixed(attached, frames, robot));
-  }
+  for (const Attachment &attached : file.attached) attach(attached, frames, robot, change);
   warnOfReplaced(change.operations, warnings);
 
-  /* without a robot there are no links to be padded */
+  /* without a robot there are no links to be enlarged */
   if (robot.robot) change.link_padding = file.link_padding;
+  if (robot.robot) change.link_scale = file.link_scale;
   change.allowed = file.allowed;
   return change;
 }

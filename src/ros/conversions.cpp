@@ -216,6 +216,51 @@ Eigen::Isometry3d frameOf(const CollisionObject &object, const ToFixed &to_fixed
   }
 }
 
+/* ---- what links carry --------------------------------------------------------------------------------------------- */
+
+std_msgs::Header headerOf(const std::string &frame, const ros::Time &stamp) {
+  std_msgs::Header header;
+  header.frame_id = frame;
+  header.stamp = stamp;
+  return header;
+}
+
+/** An object that names its link's frame needs no transform; others are brought there. */
+Attachment toAttachment(const AttachedCollisionObject &message, const ToFixed &to_fixed, const Snapshot &before) {
+  Operation operation = toOperation(message.object);
+  Attachment out;
+  out.link = message.link_name;
+  out.touch_links = message.touch_links;
+  const std_msgs::Header &header = message.object.header;
+  const auto locate = [&](const std::string &link) {
+    if (out.link_poses.count(link) == 0) out.link_poses[link] = to_fixed(headerOf(link, header.stamp));
+  };
+  try {
+    if (operation.kind == Operation::Kind::REMOVE) {
+      out.kind = Attachment::Kind::DETACH;
+      for (const auto &entry : before.attached()) locate(entry.second->link);
+    } else if (operation.kind != Operation::Kind::ADD) {
+      throw Error("what a link carries is added or removed, not appended to or moved");
+    } else if (operation.object.shapes.empty()) {
+      locate(out.link);
+    } else if (header.frame_id != out.link) {
+      locate(out.link);
+      operation.object.pose = out.link_poses.at(out.link).inverse() * to_fixed(header) * operation.object.pose;
+    }
+  } catch (const std::exception &error) {
+    throw Error("object '" + message.object.id + "': " + error.what());
+  }
+  out.object = std::move(operation.object);
+  return out;
+}
+
+LinkScale toScaleMessage(const std::pair<const std::string, double> &scale) {
+  LinkScale message;
+  message.link_name = scale.first;
+  message.scale = scale.second;
+  return message;
+}
+
 /* ---- shapes, to messages ------------------------------------------------------------------------------------------ */
 
 void addPrimitive(CollisionObject &message, std::uint8_t type, const ShapeDescription &shape) {
@@ -400,9 +445,29 @@ SceneChange toSceneChange(const ApplySceneRequest &request, const ToFixed &to_fi
       change.link_padding[padding.link_name] = padding.padding;
     }
   }
+  for (const LinkScale &scale : request.link_scale) change.link_scale[scale.link_name] = scale.scale;
   for (const AllowedContact &contact : request.allowed_contacts)
     change.allowed.push_back({contact.first, contact.second, contact.allowed != 0});
   return change;
+}
+
+void addAttachments(const ApplySceneRequest &request, const ToFixed &to_fixed, const Snapshot &before,
+                    SceneChange &change, std::vector<std::string> &faults) {
+  for (const AttachedCollisionObject &message : request.attached_collision_objects) {
+    try {
+      change.attachments.push_back(toAttachment(message, to_fixed, before));
+    } catch (const std::exception &error) {
+      faults.push_back(error.what());
+    }
+  }
+}
+
+AttachedCollisionObject toMessage(const Attachment &attachment) {
+  AttachedCollisionObject message;
+  message.link_name = attachment.link;
+  message.touch_links = attachment.touch_links;
+  message.object = toMessage(attachment.object);
+  return message;
 }
 
 CollisionObject toMessage(const ObjectDescription &object) {
@@ -422,9 +487,19 @@ void toMessage(const Snapshot &snapshot, const std::vector<std::string> &ids, Ge
   }
   for (const std::string &id : ids) {
     const auto object = snapshot.objects().find(id);
-    if (object == snapshot.objects().end()) throw Error("there is no object '" + id + "'");
-    response.objects.push_back(toMessage(object->second->description));
+    if (object != snapshot.objects().end()) {
+      response.objects.push_back(toMessage(object->second->description));
+    } else if (snapshot.attached().count(id) == 0) {
+      throw Error("there is no object '" + id + "'");
+    }
   }
+  for (const auto &entry : snapshot.attached()) {
+    if (!ids.empty() && std::find(ids.begin(), ids.end(), entry.first) == ids.end()) continue;
+    const AttachedObject &object = *entry.second;
+    response.attached_collision_objects.push_back(
+        toMessage(Attachment{Attachment::Kind::ATTACH, object.link, object.touch_links, object.description, {}}));
+  }
+  for (const auto &scale : snapshot.linkScales()) response.link_scale.push_back(toScaleMessage(scale));
   if (snapshot.defaultLinkPadding() != 0.0)
     response.link_padding.push_back(toPaddingMessage("", snapshot.defaultLinkPadding()));
   for (const auto &padding : snapshot.linkPaddings())
@@ -442,6 +517,9 @@ ApplySceneRequest toMessage(const SceneChange &change) {
   if (change.default_link_padding) request.link_padding.push_back(toPaddingMessage("", *change.default_link_padding));
   for (const auto &padding : change.link_padding)
     request.link_padding.push_back(toPaddingMessage(padding.first, padding.second));
+  for (const Attachment &attachment : change.attachments)
+    request.attached_collision_objects.push_back(toMessage(attachment));
+  for (const auto &scale : change.link_scale) request.link_scale.push_back(toScaleMessage(scale));
   for (const AllowedPair &pair : change.allowed) request.allowed_contacts.push_back(toMessage(pair));
   return request;
 }

@@ -5,10 +5,12 @@
 
 #include <curve_proximity/AllowedContact.h>
 #include <curve_proximity/ApplyScene.h>
+#include <curve_proximity/AttachedCollisionObject.h>
 #include <curve_proximity/CollisionObject.h>
 #include <curve_proximity/Curve.h>
 #include <curve_proximity/GetScene.h>
 #include <curve_proximity/LinkPadding.h>
+#include <curve_proximity/LinkScale.h>
 #include <curve_proximity/Proximity.h>
 #include <geometry_msgs/Pose.h>
 #include <sensor_msgs/JointState.h>
@@ -42,6 +44,11 @@ Operation toOperation(const CollisionObject &object);
  *  throw. An object that cannot be converted becomes a sentence in `faults`, and the others stay. */
 using ToFixed = std::function<Eigen::Isometry3d(const std_msgs::Header &header)>;
 SceneChange toSceneChange(const ApplySceneRequest &request, const ToFixed &to_fixed, std::vector<std::string> &faults);
+
+/** What links are to carry, the same way. `before`: the scene that the attachments are for, since what is detached must be known to
+ *  stand on its link. */
+void addAttachments(const ApplySceneRequest &request, const ToFixed &to_fixed, const Snapshot &before,
+                    SceneChange &change, std::vector<std::string> &faults);
 
 /** An object as ~apply_scene would take it with operation ADD. Mesh files stay names of files. */
 CollisionObject toMessage(const ObjectDescription &object);

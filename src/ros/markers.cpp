@@ -201,10 +201,20 @@ void addRobot(Canvas &canvas, const Snapshot &scene, const LinkPoses &links, std
   for (const auto &link : links) {
     const auto found = scene.robot()->links().find(link.first);
     if (found == scene.robot()->links().end()) continue;
-    for (const LinkGeometry &element : found->second) {
+    for (const LinkGeometry &element : scene.linkGeometry(link.first)) {
       const Eigen::Isometry3d pose = link.second * element.pose;
       addShape(canvas, "robot", element.description, element.geometry.body, pose, colour(0.9, 0.85, 0.7, 0.5));
       placed.push_back({element.geometry.body.get(), pose.inverse(), scene.linkPadding(link.first)});
+    }
+  }
+  for (const auto &entry : scene.attached()) {
+    const AttachedObject &object = *entry.second;
+    const auto link = links.find(object.link);
+    if (link == links.end()) continue;
+    for (const LinkGeometry &shape : object.shapes) {
+      const Eigen::Isometry3d pose = link->second * shape.pose;
+      addShape(canvas, "robot", shape.description, shape.geometry.body, pose, colour(0.75, 0.6, 0.75, 0.6));
+      placed.push_back({shape.geometry.body.get(), pose.inverse(), scene.attachedPadding(object)});
     }
   }
 }

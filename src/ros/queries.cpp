@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "queries.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -58,7 +59,10 @@ class StampedTargets {
     const bool everything = question.objects.empty() && question.links.empty();
     if (!question.links.empty() && !snapshot_->robot())
       throw Error("link '" + question.links.front() + "': this server has no robot, only objects");
-    with_robot_ = snapshot_->robot() && (everything || !question.links.empty());
+    const auto carried = [&](const std::string &id) { return snapshot_->attached().count(id) > 0; };
+    carried_ = everything ? !snapshot_->attached().empty()
+                          : std::any_of(question.objects.begin(), question.objects.end(), carried);
+    with_robot_ = snapshot_->robot() && (everything || carried_ || !question.links.empty());
     from_joints_ = with_robot_ && !joint_state.name.empty();
     if (from_joints_) positions_ = toJointPositions(joint_state);
   }
@@ -94,13 +98,16 @@ class StampedTargets {
     for (const std::string &link : question_.links) {
       if (robot.links().count(link)) poses[link] = lookup_.toFixed(link, stamp);
     }
+    for (const auto &object : snapshot_->attached()) {
+      if (carried_) poses[object.second->link] = lookup_.toFixed(object.second->link, stamp);
+    }
     return poses;
   }
 
   const SnapshotPtr snapshot_;
   const Question &question_;
   FrameLookup &lookup_;
-  bool with_robot_ = false, from_joints_ = false;
+  bool with_robot_ = false, from_joints_ = false, carried_ = false;
   JointPositions positions_;
   std::map<ros::Time, Stamped> stamped_;
 };

@@ -128,8 +128,11 @@ bool ProximityServer::applyScene(ApplyScene::Request &request, ApplyScene::Respo
   return handle(response, [&] {
     FrameLookup lookup(frames_);
     std::vector<std::string> faults;
-    const SceneChange change = toSceneChange(
-        request, [&](const std_msgs::Header &header) { return lookup.toFixed(header.frame_id, header.stamp); }, faults);
+    const ToFixed to_fixed = [&](const std_msgs::Header &header) {
+      return lookup.toFixed(header.frame_id, header.stamp);
+    };
+    SceneChange change = toSceneChange(request, to_fixed, faults);
+    addAttachments(request, to_fixed, *scene_.snapshot(), change, faults);
     for (std::string &fault : scene_.apply(change)) faults.push_back(std::move(fault));
     response.success = faults.empty();
     response.message = joined(faults);

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "kinematics.h"
 
+#include <algorithm>
+#include <cstdio>
+
 #include "joint_parts.h"
 
 namespace curve_proximity {
@@ -17,7 +20,12 @@ class Builder {
              const Eigen::Isometry3d &place) {
     addRoot(base, base_joints, place);
     for (const Robot::Joint &joint : robot_.joints()) addJoint(joint);
-    for (const auto &[name, geometries] : robot_.links()) addGeometries(name, geometries);
+    for (const auto &[name, geometries] : robot_.links())
+      addGeometries(name, snapshot_.linkGeometry(name), nullptr, snapshot_.linkPadding(name));
+    for (const auto &[id, object] : snapshot_.attached()) {
+      const std::string &link = robot_.links().find(object->link)->first;
+      addGeometries(link, object->shapes, object.get(), snapshot_.attachedPadding(*object));
+    }
 
     cprox_robot *made = nullptr;
     const cprox_status status = cprox_robot_create(links_.data(), links_.size(), geometries_.data(), geometries_.size(),
@@ -119,12 +127,13 @@ class Builder {
     return to_plane.matrix().isIdentity(0.0) ? moved : addFixed(static_cast<int>(moved), to_plane.inverse());
   }
 
-  void addGeometries(const std::string &name, const std::vector<LinkGeometry> &geometries) {
+  void addGeometries(const std::string &name, const std::vector<LinkGeometry> &geometries,
+                     const AttachedObject *attached, double padding) {
     const int link = static_cast<int>(out_.links.at(name));
     for (std::size_t i = 0; i < geometries.size(); ++i) {
       const Geometry &geometry = geometries[i].geometry;
-      geometries_.push_back({geometry.body.get(), toPose(geometries[i].pose), link, snapshot_.linkPadding(name)});
-      out_.geometries.push_back({&name, static_cast<int>(i), geometry.excess, geometry.by_hull});
+      geometries_.push_back({geometry.body.get(), toPose(geometries[i].pose), link, padding});
+      out_.geometries.push_back({&name, attached, static_cast<int>(i), geometry.excess, geometry.by_hull});
     }
   }
 
@@ -145,6 +154,30 @@ std::shared_ptr<const Kinematics> makeKinematics(const Snapshot &snapshot, const
   auto out = std::make_shared<Kinematics>();
   out->robot = snapshot.robot();
   Builder(snapshot, *out).build(base, base_joints, place);
+  return out;
+}
+
+std::vector<std::string> beyondLimits(const Kinematics &kinematics, const cprox_motion &motion) {
+  constexpr double ROOM = 1e-6; /* what printing a limit with a few digits costs is no fault */
+  std::vector<std::string> out;
+  for (const Robot::Joint &joint : kinematics.robot->joints()) {
+    const auto variable = kinematics.variables.find(joint.leader.empty() ? joint.name : joint.leader);
+    if (variable == kinematics.variables.end() || !(std::isfinite(joint.lower) && std::isfinite(joint.upper))) continue;
+    double low = 0.0, high = 0.0;
+    cprox_motion_range(&motion, static_cast<std::size_t>(variable->second), &low, &high);
+    low = joint.multiplier * low + joint.offset;
+    high = joint.multiplier * high + joint.offset;
+    if (low > high) std::swap(low, high);
+    char text[96];
+    if (low < joint.lower - ROOM) {
+      std::snprintf(text, sizeof text, "goes to %.6g, below its lower limit %.6g", low, joint.lower);
+      out.push_back("joint '" + joint.name + "' " + text);
+    }
+    if (high > joint.upper + ROOM) {
+      std::snprintf(text, sizeof text, "goes to %.6g, above its upper limit %.6g", high, joint.upper);
+      out.push_back("joint '" + joint.name + "' " + text);
+    }
+  }
   return out;
 }
 

@@ -14,17 +14,22 @@
 
 namespace curve_proximity {
 
-/* One collision element. */
+/* One collision element of a link, or one shape of an object that a link carries. */
 struct MovingGeometry {
-  const std::string *link = nullptr; /* its name, the robot's own */
-  int part = 0;                      /* its number among the link's */
-  double excess = 0.0;               /* [m] how far points of the shape may be outside its body */
+  const std::string *link = nullptr;        /* its name, the robot's own */
+  const AttachedObject *attached = nullptr; /* NULL: the link's own */
+  int part = 0;                             /* its number among the link's or the object's */
+  double excess = 0.0;                      /* [m] how far points of the shape may be outside its body */
   bool by_hull = false;
+
+  const std::string &owner() const {
+    return attached ? attached->description.id : *link;
+  }
 };
 
-/* Immutable. */
+/* Immutable; lives as long as the snapshot that it was made of, which owns the bodies. */
 struct Kinematics {
-  std::shared_ptr<const Robot> robot; /* owns the bodies */
+  std::shared_ptr<const Robot> robot;
   std::unique_ptr<cprox_robot, void (*)(cprox_robot *)> core{nullptr, cprox_robot_free};
   std::map<std::string, std::size_t> links;   /* by name: number in the core */
   std::map<std::string, int> variables;       /* joint values by name; mimic joints have none */
@@ -37,6 +42,9 @@ struct Kinematics {
 std::shared_ptr<const Kinematics> makeKinematics(const Snapshot &snapshot, const std::vector<VirtualJoint> &base,
                                                  const std::vector<std::string> &base_joints,
                                                  const Eigen::Isometry3d &place);
+
+/* The joints that the motion takes beyond their limits, followers included: a sentence each. */
+std::vector<std::string> beyondLimits(const Kinematics &kinematics, const cprox_motion &motion);
 
 } // namespace curve_proximity
 #endif

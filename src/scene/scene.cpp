@@ -6,6 +6,7 @@
 
 #include <curve_proximity/scene.hpp>
 
+#include "attaching.h"
 #include "placing.h"
 #include "world.h"
 
@@ -87,13 +88,16 @@ std::shared_ptr<const SceneObject> moved(const SceneObject &before, const Object
 }
 
 /* One operation; throws Error and leaves the objects as they were where it cannot be done. */
-void applyOperation(const Operation &operation, const ResourceOptions &resources, Objects &objects) {
+void applyOperation(const Operation &operation, const ResourceOptions &resources, const AttachedObjects &attached,
+                    Objects &objects) {
   const ObjectDescription &given = operation.object;
   if (operation.kind == Operation::Kind::REMOVE && given.id.empty()) {
     objects.clear();
     return;
   }
   if (given.id.empty()) throw Error("it has no id");
+  const auto held = attached.find(given.id);
+  if (held != attached.end()) throw Error("link '" + held->second->link + "' carries it: detach it first");
   const auto it = objects.find(given.id);
   const bool known = it != objects.end();
   if (operation.kind == Operation::Kind::REMOVE) {
@@ -117,6 +121,65 @@ void applyOperation(const Operation &operation, const ResourceOptions &resources
       [[fallthrough]];
     default: objects[given.id] = added(given, resources); break;
   }
+}
+
+/* ---- what links carry ---------------------------------------------------------------------------------------------- */
+
+/* What an attachment changes of a scene. */
+struct Carrying {
+  const Robot *robot;
+  const std::map<std::string, double> &link_scale;
+  const ResourceOptions &resources;
+  Objects &objects;
+  AttachedObjects &attached;
+
+  double scaleOf(const std::string &link) const {
+    const auto it = link_scale.find(link);
+    return it == link_scale.end() ? 1.0 : it->second;
+  }
+};
+
+/* Without shapes of its own, the object of the scene of that id, where it stands. */
+void attach(const Attachment &given, Carrying &scene) {
+  const std::string &id = given.object.id;
+  if (id.empty()) throw Error("it has no id");
+  checkLink(given.link, scene.robot);
+  checkPose(given.object.pose, "its pose");
+  checkPadding(given.object.padding);
+  Attachment whole = given;
+  const auto standing = scene.objects.find(id);
+  if (given.object.shapes.empty() && standing != scene.objects.end()) {
+    whole.object = standing->second->description;
+    whole.object.pose = poseOfLink(given, given.link).inverse() * whole.object.pose;
+  }
+  scene.attached[id] = carried(whole, scene.scaleOf(given.link), scene.resources);
+  if (standing != scene.objects.end()) scene.objects.erase(standing);
+}
+
+/* The object stands in the scene, at its own size. */
+void detach(const AttachedObject &object, const Attachment &given, Carrying &scene) {
+  ObjectDescription standing = object.description;
+  standing.frame.clear();
+  standing.pose = poseOfLink(given, object.link) * standing.pose;
+  scene.objects[standing.id] = added(standing, scene.resources);
+}
+
+void applyAttachment(const Attachment &given, Carrying &scene) {
+  if (given.kind == Attachment::Kind::ATTACH) return attach(given, scene);
+  const bool one = !given.object.id.empty();
+  if (one && scene.attached.count(given.object.id) == 0) throw Error("no link carries an object of that id");
+  AttachedObjects left;
+  for (const auto &[id, object] : scene.attached) {
+    const bool meant = one ? id == given.object.id : given.link.empty() || object->link == given.link;
+    if (meant && one && !given.link.empty() && object->link != given.link)
+      throw Error("link '" + object->link + "' carries it, not '" + given.link + "'");
+    if (meant) {
+      detach(*object, given, scene);
+    } else {
+      left.emplace(id, object);
+    }
+  }
+  scene.attached = std::move(left);
 }
 
 void checkLinkPaddings(const std::map<std::string, double> &paddings, const Robot *robot) {
@@ -180,13 +243,38 @@ Snapshot::Snapshot(const Snapshot &other)
     : version_(other.version_),
       objects_(other.objects_),
       robot_(other.robot_),
+      attached_(other.attached_),
       link_padding_(other.link_padding_),
+      link_scale_(other.link_scale_),
+      scaled_(other.scaled_),
       default_link_padding_(other.default_link_padding_),
       allowed_(other.allowed_) {}
 
 double Snapshot::linkPadding(const std::string &link) const {
   const auto it = link_padding_.find(link);
   return it == link_padding_.end() ? default_link_padding_ : it->second;
+}
+
+const std::vector<LinkGeometry> &Snapshot::linkGeometry(const std::string &link) const {
+  const auto it = scaled_.find(link);
+  return it == scaled_.end() ? robot_->links().at(link) : *it->second;
+}
+
+/* All or nothing: what links carry is enlarged with them. */
+void Snapshot::scaleLinks(const std::map<std::string, double> &scales, const ResourceOptions &resources) {
+  checkLinkScales(scales, robot_.get());
+  auto scaled = scaled_;
+  auto attached = attached_;
+  for (const auto &[link, scale] : scales) {
+    scaled.erase(link);
+    if (scale != 1.0) scaled[link] = scaledLink(*robot_, link, scale);
+    for (auto &[id, object] : attached)
+      if (object->link == link) object = rescaled(*object, scale, resources);
+  }
+  scaled_ = std::move(scaled);
+  attached_ = std::move(attached);
+  for (const auto &[link, scale] : scales) link_scale_[link] = scale;
+  for (auto it = link_scale_.begin(); it != link_scale_.end();) it = it->second == 1.0 ? link_scale_.erase(it) : ++it;
 }
 
 /* ---- Scene --------------------------------------------------------------------------------------------------------- */
@@ -211,15 +299,35 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
   if (change.clear) {
     next->objects_.clear();
     next->allowed_.clear();
+    next->attached_.clear();
     next->link_padding_.clear();
     next->default_link_padding_ = 0.0;
+    next->link_scale_.clear();
+    next->scaled_.clear();
   }
 
   for (const Operation &operation : change.operations) {
     try {
-      applyOperation(operation, resources_, next->objects_);
+      applyOperation(operation, resources_, next->attached_, next->objects_);
     } catch (const std::exception &error) {
       faults.push_back("object '" + operation.object.id + "': " + error.what());
+    }
+  }
+  try {
+    next->scaleLinks(change.link_scale, resources_);
+  } catch (const std::exception &error) {
+    faults.push_back(error.what());
+  }
+  for (const Attachment &attachment : change.attachments) {
+    Objects objects = next->objects_;
+    AttachedObjects attached = next->attached_;
+    Carrying carrying{next->robot_.get(), next->link_scale_, resources_, objects, attached};
+    try {
+      applyAttachment(attachment, carrying);
+      next->objects_ = std::move(objects);
+      next->attached_ = std::move(attached);
+    } catch (const std::exception &error) {
+      faults.push_back("object '" + attachment.object.id + "': " + error.what());
     }
   }
   try {

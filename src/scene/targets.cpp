@@ -13,7 +13,8 @@ using Names = std::set<std::string>;
 
 void checkObjects(const Names &names, const Snapshot &snapshot) {
   for (const std::string &name : names) {
-    if (snapshot.objects().count(name) == 0) throw Error("there is no object '" + name + "' in the scene");
+    if (snapshot.objects().count(name) == 0 && snapshot.attached().count(name) == 0)
+      throw Error("there is no object '" + name + "' in the scene");
   }
 }
 
@@ -46,14 +47,30 @@ void addObjects(bool everything, const Names &names, Targets::Data &data) {
 
 /* The links with geometry, each where its pose says. */
 void addLinks(bool everything, const Names &names, const LinkPoses &poses, Targets::Data &data) {
-  for (const auto &[name, geometries] : data.snapshot->robot()->links()) {
-    if (geometries.empty() || (!everything && names.count(name) == 0)) continue;
+  for (const auto &[name, of_robot] : data.snapshot->robot()->links()) {
+    if (of_robot.empty() || (!everything && names.count(name) == 0)) continue;
+    const std::vector<LinkGeometry> &geometries = data.snapshot->linkGeometry(name);
     const auto pose = poses.find(name);
     if (pose == poses.end()) throw Error("link '" + name + "' has collision geometry, but its pose is not known");
     const double padding = data.snapshot->linkPadding(name);
     for (std::size_t i = 0; i < geometries.size(); ++i) {
       data.links.push_back(place(geometries[i].geometry, pose->second, geometries[i].pose, padding));
       data.items.push_back({&data.links.back(), &name, true, static_cast<int>(i)});
+    }
+  }
+}
+
+/* What links carry, each where its link is. */
+void addAttached(bool everything, const Names &names, const LinkPoses &poses, Targets::Data &data) {
+  for (const auto &[id, object] : data.snapshot->attached()) {
+    if (!everything && names.count(id) == 0) continue;
+    const auto pose = poses.find(object->link);
+    if (pose == poses.end())
+      throw Error("object '" + id + "' is carried by link '" + object->link + "', whose pose is not known");
+    for (std::size_t i = 0; i < object->shapes.size(); ++i) {
+      const LinkGeometry &shape = object->shapes[i];
+      data.links.push_back(place(shape.geometry, pose->second, shape.pose, data.snapshot->attachedPadding(*object)));
+      data.items.push_back({&data.links.back(), &id, false, static_cast<int>(i)});
     }
   }
 }
@@ -71,6 +88,7 @@ Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Question &q
   const bool everything = objects.empty() && named_links.empty();
   addObjects(everything, objects, *data);
   if (!links.empty() || !named_links.empty()) addLinks(everything, named_links, links, *data);
+  if (!links.empty() || !everything) addAttached(everything, objects, links, *data);
   data_ = std::move(data);
 }
 

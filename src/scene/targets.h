@@ -15,13 +15,13 @@ namespace curve_proximity {
 struct Targets::Data {
   SnapshotPtr snapshot;
 
-  /* Objects' shapes first, then the links': each owner's stand together. */
+  /* Objects' shapes first, then the links', then those of what links carry: each owner's stand together. */
   std::vector<Item> items;
 
   /* The first items[] are the snapshot's world, all of it, in its order: its tree may be asked. Else 0. */
   std::size_t in_tree = 0;
 
-  std::deque<PlacedShape> links; /* where the items of links point to */
+  std::deque<PlacedShape> links; /* where the items of links and of what they carry point to */
 };
 
 } // namespace curve_proximity

@@ -218,6 +218,7 @@ class RobotReader {
     document.Print(&printer);
     const urdf::ModelInterfaceSharedPtr model = parse(printer.CStr());
     robot_->name_ = model->getName();
+    robot_->resources_ = options_.resources;
     robot_->root_link_ = model->getRoot()->name;
 
     readJoints(*model);
@@ -286,6 +287,8 @@ class RobotReader {
       if (!(lower <= upper)) throw Error(who + "its lower limit is above its upper limit, or none is a number");
       if (lower > 0.0 || upper < 0.0) joint.rest = 0.5 * lower + 0.5 * upper;
       if (!std::isfinite(joint.rest)) throw Error(who + "its limits are not finite");
+      joint.lower = lower;
+      joint.upper = upper;
     }
     addVariables(joint);
     robot_->joints_.push_back(std::move(joint));

@@ -88,6 +88,32 @@ joint_trajectory:
         answer = self.robot('distance', SLIDE, scene=scene)
         self.assertEqual(answer.row('go')['b'], 'post')
 
+    def objects_that_a_link_carries_ride_along(self):
+        # a ball of 0.1 half a metre ahead of the cart, given in the frame of the link, and of the scene
+        held = ('robot_state:\n  attached_collision_objects: [{link_name: cart, touch_links: [TOUCH], object: {id: held, header: {frame_id: FRAME}, '
+                'primitives: [{type: 2, dimensions: [0.1]}], primitive_poses: [{position: [0.5, 0, 0]}]}}]\n')
+        for frame in ('cart', 'rail'):
+            row = self.robot('distance', SLIDE, scene=WALL + held.replace('FRAME', frame).replace('TOUCH', '')).row('go')
+            self.assertAnswer(row, 3 - 2 - 0.5 - 0.1)
+            self.assertEqual((row['a'], row['b']), ('held', 'wall'))
+        padded = WALL + held.replace('FRAME', 'cart').replace('TOUCH', '') + 'link_padding: [{link_name: cart, padding: 0.05}]\n'
+        self.assertAnswer(self.robot('distance', SLIDE, scene=padded).row('go'), 0.35)
+
+        # against the arm, from which a single joint parts it
+        swing = SLIDE.replace('[slide]', '[swing]').replace('[2]', '[1]')
+        for touch, expected in (('', {'held', 'arm'}), ('arm', {'held', 'hand'})):
+            scene = WALL + held.replace('FRAME', 'cart').replace('TOUCH', touch)
+            row = [row for row in self.robot('distance', swing, '--self', scene=scene).rows if row['kind'] == 'self'][0]
+            self.assertEqual({row['a'], row['b']}, expected)
+
+    def a_link_scale_enlarges_a_link_before_its_padding(self):
+        scene = WALL + 'link_scale: [{link_name: cart, scale: 2}]\nlink_padding: [{link_name: cart, padding: 0.01}]\n'
+        row = self.robot('distance', SLIDE, scene=scene).row('go')
+        self.assertAnswer(row, 3 - 2 - 0.2 - 0.01)
+        self.assertEqual(row['a'], 'cart')
+        self.assertRefused(self.robot('distance', SLIDE, scene=scene.replace('scale: 2', 'scale: 0')), 'above 0')
+        self.assertRefused(self.robot('distance', SLIDE, scene=scene.replace('cart', 'carr')), "'carr'")
+
     def what_is_wrong_is_one_line(self):
         for text, words in ((SLIDE.replace('[slide]', '[slyde]'), ("'slyde'",)),
                             (SLIDE.replace('[2]', '[2, 3]'), ('point 1', '2 positions')),

@@ -35,6 +35,22 @@ CPROX_API cprox_status cprox_within(cprox_mover mover, const cprox_target *targe
                                     const cprox_options *options, cprox_workspace *workspace, cprox_result *near,
                                     size_t *count);
 
+/** The pairs of a robot that come closest: of a geometry and a target (cprox_robot_along()), or of two geometries
+ *  (cprox_robot_self(), n = 0). Which pairs are asked about says the mover.
+ *
+ *  k         at most so many, >= 1; the number of all pairs: a result for every pair.
+ *  delta     [m] >= 0: only pairs that come within it; infinity: any.
+ *  nearest   receives up to k results, ascending by upper; mover_part and target_index say which pair. Each is as
+ *            cprox_distance() gives it for that pair alone.
+ *            Every pair that is not among them is farther than delta everywhere, or at least nearest[last].upper - w away, w =
+ *            max(epsilon, relative_epsilon * nearest[last].upper).
+ *  count     receives their number.
+ *
+ *  Returns as cprox_nearest(). Cost: a search a pair, which ends where the pair is out of question. */
+CPROX_API cprox_status cprox_nearest_pairs(cprox_mover mover, const cprox_target *targets, size_t n, size_t k,
+                                           double delta, const cprox_options *options, cprox_workspace *workspace,
+                                           cprox_result *nearest, size_t *count);
+
 /** The clearance of the mover on one stretch of its way. */
 typedef struct cprox_stretch {
   double t0, t1; /**< the stretch of the parameter */
@@ -42,6 +58,7 @@ typedef struct cprox_stretch {
       upper; /**< [m] lower <= min over [t0, t1] of the distance to the nearest target <= upper; infinity: no target */
   double t;  /**< where in [t0, t1] upper was attained */
   int32_t target_index; /**< which target that was; -1 for none */
+  int32_t mover_part;   /**< of a robot: which geometry; else as in cprox_result */
 } cprox_stretch;
 
 /** The clearance profile: lower and upper clearance on each stretch of a partition, for colouring a path and for planners.

@@ -106,8 +106,15 @@ CPROX_API void cprox_motion_domain(const cprox_motion *motion, double *t0, doubl
 /** The values of all the robot's variables at a time (clamped to the domain). A plain evaluation. */
 CPROX_API void cprox_motion_evaluate(const cprox_motion *motion, double t, double *variables);
 
+/** The values that a variable of the robot takes along the motion: all of them are in [*low, *high], and those come as near to both as
+ *  1e-9 of the motion's largest coefficient. */
+CPROX_API void cprox_motion_range(const cprox_motion *motion, size_t variable, double *low, double *high);
+
 /** Does the motion move the link? Of a link that it does not, nothing is asked unless pairs are given. */
 CPROX_API bool cprox_motion_moves_link(const cprox_motion *motion, size_t link);
+
+/** Does the motion move the two links against each other? */
+CPROX_API bool cprox_motion_moves_between(const cprox_motion *motion, size_t link_a, size_t link_b);
 
 /** Can two links come closer in a way that is worth asking for: are there at least two joints that can move between them, and at
  *  least one that this motion moves? */

@@ -207,6 +207,64 @@ void cprox_motion_evaluate(const cprox_motion *motion, double t, double *variabl
   values_at(motion, segment, fmin(fmax((t - t0) / (t1 - t0), 0.0), 1.0), variables);
 }
 
+/* ---- ranges --------------------------------------------------------------------------------------------------------------- */
+
+enum { RANGE_HALVINGS = 40 };
+
+typedef struct value_range {
+  double low, high; /* values that are taken */
+  double room;      /* what is beyond them by less is not looked for */
+} value_range;
+
+/* Takes in the values of a polynomial. Stretches whose coefficients promise more than is known are cut in halves, from left to right. */
+static void take_in(const double *root, size_t degree, value_range *range) {
+  double stack[RANGE_HALVINGS + 1][MOTION_MAX_DEGREE + 1];
+  int depths[RANGE_HALVINGS + 1], n = 1;
+  memcpy(stack[0], root, (degree + 1) * sizeof *root);
+  depths[0] = 0;
+  while (n > 0) {
+    double *c = stack[n - 1], right[MOTION_MAX_DEGREE + 1];
+    double low = c[0], high = c[0];
+    for (size_t i = 1; i <= degree; i++) low = fmin(low, c[i]), high = fmax(high, c[i]);
+    range->low = fmin(range->low, fmin(c[0], c[degree]));
+    range->high = fmax(range->high, fmax(c[0], c[degree]));
+    const bool known = low >= range->low - range->room && high <= range->high + range->room;
+    if (known || depths[n - 1] >= RANGE_HALVINGS) {
+      range->low = fmin(range->low, low), range->high = fmax(range->high, high);
+      n--;
+      continue;
+    }
+
+    /* the right half takes the place of the whole, the left one is looked at next */
+    memcpy(right, c, (degree + 1) * sizeof *c);
+    double left[MOTION_MAX_DEGREE + 1] = {c[0]};
+    for (size_t r = 1; r <= degree; r++) {
+      for (size_t i = 0; i + r <= degree; i++) right[i] = 0.5 * (right[i] + right[i + 1]);
+      left[r] = right[0];
+    }
+    const int depth = ++depths[n - 1];
+    memcpy(stack[n - 1], right, (degree + 1) * sizeof *right);
+    memcpy(stack[n], left, (degree + 1) * sizeof *left);
+    depths[n++] = depth;
+  }
+}
+
+void cprox_motion_range(const cprox_motion *motion, size_t variable, double *low, double *high) {
+  const int32_t slot = motion->slot[variable];
+  *low = *high = motion->rest[variable];
+  if (slot < 0) return;
+  value_range range = {.low = INFINITY, .high = -INFINITY};
+  for (int pass = 0; pass < 2; pass++) {
+    for (size_t segment = 0; segment < motion->n_segments; segment++) {
+      const double *c = motion->coefficients + (segment * motion->n_moving + (size_t)slot) * motion->stride;
+      for (size_t i = 0; pass == 0 && i <= motion->degree[segment]; i++)
+        range.room = fmax(range.room, 1e-9 * fabs(c[i]));
+      if (pass == 1) take_in(c, motion->degree[segment], &range);
+    }
+  }
+  *low = range.low, *high = range.high;
+}
+
 /* ---- what moves ----------------------------------------------------------------------------------------------------------- */
 
 /* Counts the joints from an axis up to, not including, another one, and those of them that the motion moves. */
@@ -223,11 +281,22 @@ bool cprox_motion_moves_link(const cprox_motion *motion, size_t link) {
   return moved > 0;
 }
 
-bool cprox_motion_relates_links(const cprox_motion *motion, size_t link_a, size_t link_b) {
+/* The same between two links. */
+static void count_between(const cprox_motion *motion, size_t link_a, size_t link_b, size_t *joints, size_t *moved) {
   const int32_t a = motion->robot->links[link_a].axis, b = motion->robot->links[link_b].axis;
   const int32_t common = robot_common_axis(motion->robot, a, b);
+  count_joints(motion, a, common, joints, moved);
+  count_joints(motion, b, common, joints, moved);
+}
+
+bool cprox_motion_moves_between(const cprox_motion *motion, size_t link_a, size_t link_b) {
   size_t joints = 0, moved = 0;
-  count_joints(motion, a, common, &joints, &moved);
-  count_joints(motion, b, common, &joints, &moved);
+  count_between(motion, link_a, link_b, &joints, &moved);
+  return moved >= 1;
+}
+
+bool cprox_motion_relates_links(const cprox_motion *motion, size_t link_a, size_t link_b) {
+  size_t joints = 0, moved = 0;
+  count_between(motion, link_a, link_b, &joints, &moved);
   return joints >= 2 && moved >= 1;
 }

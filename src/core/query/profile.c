@@ -51,7 +51,8 @@ static double fraction_of(const cprox_curve *curve, size_t piece, double t) {
 /* The least clearance over [t0, t1], a piece at a time. */
 static cprox_status measure(question *q, double t0, double t1, size_t *piece, cprox_stretch *stretch) {
   const cprox_curve *curve = q->mover.curve;
-  *stretch = (cprox_stretch){.t0 = t0, .t1 = t1, .lower = INFINITY, .upper = INFINITY, .t = t0, .target_index = -1};
+  *stretch = (cprox_stretch){
+      .t0 = t0, .t1 = t1, .lower = INFINITY, .upper = INFINITY, .t = t0, .target_index = -1, .mover_part = -1};
   cprox_status trouble = CPROX_OK;
   while (*piece + 1 < curve->n_pieces && curve->breaks[*piece + 1] <= t0) (*piece)++;
   for (size_t i = *piece; i < curve->n_pieces && curve->breaks[i] < t1; i++) {
@@ -71,6 +72,7 @@ static cprox_status measure(question *q, double t0, double t1, size_t *piece, cp
       stretch->upper = r.upper;
       stretch->t = fmin(fmax(r.t, t0), t1);
       stretch->target_index = r.target_index;
+      stretch->mover_part = r.mover_part;
     }
   }
   stretch->lower = fmin(stretch->lower, stretch->upper);
@@ -88,7 +90,8 @@ static cprox_status measure_motion(question *q, double t0, double t1, cprox_stre
                              .lower = r.lower,
                              .upper = r.upper,
                              .t = r.target_index < 0 ? t0 : fmin(fmax(r.t, t0), t1),
-                             .target_index = r.target_index};
+                             .target_index = r.target_index,
+                             .mover_part = r.mover_part};
   return status;
 }
 

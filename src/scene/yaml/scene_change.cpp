@@ -36,20 +36,19 @@ SceneChange toChange(const SceneFile &file, const std::string &path, Warnings &w
   const Frames frames({}, file.transforms, {}, warnings);
   SceneChange change;
   change.operations = file.operations;
-  for (const AttachedObject &attached : file.attached) {
-    warnings.add("object '" + attached.object.id + "' is attached to '" + attached.link +
-                 "'; in the node it stands still where the link is now");
-    change.operations.push_back({Operation::Kind::ADD, attached.object});
-  }
-  for (Operation &operation : change.operations) {
+  change.attachments = file.attached;
+  const auto prepare = [&](ObjectDescription &object) {
     try {
-      resolveFrame(operation.object, frames);
+      resolveFrame(object, frames);
     } catch (const BadInput &e) {
-      throw BadUsage(path + ": object '" + operation.object.id + "': " + e.what());
+      throw BadUsage(path + ": object '" + object.id + "': " + e.what());
     }
-    makeResourcesAbsolute(operation.object, folderOf(path));
-  }
+    makeResourcesAbsolute(object, folderOf(path));
+  };
+  for (Operation &operation : change.operations) prepare(operation.object);
+  for (Attachment &attachment : change.attachments) prepare(attachment.object);
   change.link_padding = file.link_padding;
+  change.link_scale = file.link_scale;
   change.allowed = file.allowed;
   return change;
 }

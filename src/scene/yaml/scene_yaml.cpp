@@ -204,11 +204,15 @@ void readRobotState(const YamlValue &root, SceneFile &out, Warnings &warnings) {
     value.warnOfOthers({"link_name", "object", "touch_links", "detach_posture", "weight"}, warnings);
     const Operation operation = readObject(value.at("object"), warnings);
     if (operation.kind != Operation::Kind::ADD) value.fail("an attached object's operation must be add (0)");
-    out.attached.push_back({value.at("link_name").text(), operation.object});
+    Attachment attachment;
+    attachment.link = value.at("link_name").text();
+    attachment.object = operation.object;
+    for (const YamlValue &link : value.itemsOf("touch_links")) attachment.touch_links.push_back(link.text());
+    out.attached.push_back(std::move(attachment));
   }
 }
 
-void readLinkPadding(const YamlValue &root, SceneFile &out, Warnings &warnings) {
+void readLinkSizes(const YamlValue &root, SceneFile &out, Warnings &warnings) {
   for (const YamlValue &value : root.itemsOf("link_padding")) {
     value.warnOfOthers({"link_name", "padding"}, warnings);
     const YamlValue padding = value.at("padding");
@@ -216,7 +220,10 @@ void readLinkPadding(const YamlValue &root, SceneFile &out, Warnings &warnings) 
     out.link_padding[value.at("link_name").text()] = padding.number();
   }
   for (const YamlValue &value : root.itemsOf("link_scale")) {
-    if (value.at("scale").number() != 1.0) warnings.add("link_scale is ignored: links keep their size");
+    value.warnOfOthers({"link_name", "scale"}, warnings);
+    const YamlValue scale = value.at("scale");
+    if (!(scale.number() > 0.0)) scale.fail("a scale must be above 0");
+    if (scale.number() != 1.0) out.link_scale[value.at("link_name").text()] = scale.number();
   }
 }
 
@@ -268,7 +275,7 @@ SceneFile readScene(const std::string &path, Warnings &warnings) {
     if (const auto world = root.find("world")) readWorld(*world, out, warnings);
     readTransforms(root, out, warnings);
     readRobotState(root, out, warnings);
-    readLinkPadding(root, out, warnings);
+    readLinkSizes(root, out, warnings);
     readAllowed(root, out, warnings);
   } catch (const BadInput &e) {
     throw BadUsage(path + ": " + e.what());

@@ -20,19 +20,13 @@ struct FrameTransform {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
 };
 
-/** An object that the robot carries. */
-struct AttachedObject {
-  std::string link;
-  ObjectDescription object;
-};
-
 /** The file as it stands: poses are still in the frames that the objects name. */
 struct SceneFile {
   std::vector<Operation> operations; /**< the collision objects, in order */
-  std::vector<AttachedObject> attached;
+  std::vector<Attachment> attached;  /**< their poses in the frames that the objects name, as all others */
   std::vector<FrameTransform> transforms;
   JointPositions joints; /**< robot_state */
-  std::map<std::string, double> link_padding;
+  std::map<std::string, double> link_padding, link_scale;
   std::vector<AllowedPair> allowed;
   std::vector<std::string> skipped; /**< what of the file takes no part, a sentence each */
 };

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Questions about a robot in motion, and their answers by name. */
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "answering.h"
+#include "motion_data.h"
+
+namespace curve_proximity {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
+
+double mostExcess(const std::vector<MovingGeometry> &geometries) {
+  double most = 0.0;
+  for (const MovingGeometry &geometry : geometries) most = std::max(most, geometry.excess);
+  return most;
+}
+
+/* Whom a question is about: pairs of geometries and some of the world's items, or of geometries alone. */
+struct Asked {
+  const RobotMotion::Data &data;
+  bool self;
+  std::vector<std::size_t> items; /* by target */
+  std::vector<cprox_target> targets;
+  std::vector<cprox_robot_pair> pairs;
+  double rounding; /* [m] that the core does not know of */
+
+  cprox_mover mover() const {
+    return self ? cprox_robot_self(data.core.get(), pairs.data(), pairs.size())
+                : cprox_robot_along(data.core.get(), pairs.data(), pairs.size());
+  }
+};
+
+Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted) {
+  Asked asked{data, false, std::move(wanted), {}, {}, mostExcess(data.kinematics->geometries)};
+  const std::vector<Item> &items = data.snapshot->world().items();
+  std::vector<std::int32_t> number(items.size(), -1);
+  double rounding = 0.0;
+  for (const std::size_t k : asked.items) {
+    number[k] = static_cast<std::int32_t>(asked.targets.size());
+    asked.targets.push_back(items[k].shape->target);
+    rounding = std::max(rounding, items[k].shape->rounding);
+  }
+  for (const cprox_robot_pair &pair : data.environment) {
+    const std::int32_t k = number[static_cast<std::size_t>(pair.other)];
+    if (k >= 0) asked.pairs.push_back({pair.geometry, k});
+  }
+  asked.rounding += rounding;
+  return asked;
+}
+
+Asked askedSelf(const RobotMotion::Data &data) {
+  return {data, true, {}, {}, data.self, 2.0 * mostExcess(data.kinematics->geometries)};
+}
+
+/* The items of all objects, or of those that are named. Throws Error for a name that is none. */
+std::vector<std::size_t> namedItems(const RobotMotion::Data &data, const std::vector<std::string> &names) {
+  for (const std::string &name : names) {
+    if (data.snapshot->objects().count(name) == 0) throw Error("there is no object '" + name + "' in the scene");
+  }
+  std::vector<std::size_t> out;
+  const std::vector<Item> &items = data.snapshot->world().items();
+  for (std::size_t k = 0; k < items.size(); ++k) {
+    if (names.empty() || std::find(names.begin(), names.end(), *items[k].owner) != names.end()) out.push_back(k);
+  }
+  return out;
+}
+
+/* Of an answer that there is: what is special about it. */
+void addWarnings(const RobotMotion::Data &data, Answer &answer) {
+  if (answer.result.status < 0) return;
+  for (const std::string &sentence : data.warnings) answer.message += (answer.message.empty() ? "" : "; ") + sentence;
+}
+
+void finish(const RobotMotion::Data &data, Answer &answer, Clock::time_point start) {
+  answer.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  if (answer.result.status != CPROX_OK && answer.message.empty())
+    answer.message = cprox_status_text(answer.result.status);
+  answer.status = cprox_status_name(answer.result.status);
+  addWarnings(data, answer);
+}
+
+/* Names both sides of an answer that has a witness, and leaves the numbers of their shapes in mover_part and target_index. */
+void nameSides(const Asked &asked, Answer &answer) {
+  cprox_result &result = answer.result;
+  if (result.status < 0 || result.target_index < 0) return;
+  const std::vector<MovingGeometry> &geometries = asked.data.kinematics->geometries;
+  const MovingGeometry &moving = geometries[static_cast<std::size_t>(result.mover_part)];
+  const auto other = static_cast<std::size_t>(result.target_index);
+  answer.a = moving.owner();
+  result.mover_part = moving.part;
+  answer.by_hull = moving.by_hull;
+  if (asked.self) {
+    const MovingGeometry &standing = geometries[other];
+    answer.b = standing.owner();
+    answer.b_is_link = !standing.attached;
+    result.target_index = standing.part;
+    answer.by_hull = answer.by_hull || standing.by_hull;
+  } else {
+    const Item &item = asked.data.snapshot->world().items()[asked.items[other]];
+    answer.b = *item.owner;
+    result.target_index = item.part;
+    answer.by_hull = answer.by_hull || item.shape->by_hull;
+  }
+  if (answer.by_hull) answer.message = "the nearest shape is a mesh: its convex hull answers for it";
+}
+
+/* What the core said, widened by the rounding that it does not know, and by name. */
+Answer toAnswer(const Asked &asked, const cprox_result &result, const Question &question, const Workspace &workspace,
+                Clock::time_point start) {
+  Answer answer;
+  answer.id = asked.data.id;
+  answer.kind = asked.self ? "self" : "environment";
+  answer.result = result;
+  if (result.status < 0) {
+    answer.message = workspace.reason();
+  } else {
+    if (!asked.pairs.empty()) widen(question, asked.rounding, INFINITE, answer.result);
+    nameSides(asked, answer);
+  }
+  finish(asked.data, answer, start);
+  return answer;
+}
+
+Answer answerOf(const Asked &asked, const Question &question, Workspace &workspace) {
+  const Clock::time_point start = Clock::now();
+  cprox_result result{};
+  result.target_index = -1;
+  if (asked.pairs.empty()) {
+    answerNothing(question, result);
+  } else {
+    const cprox_options options = withoutRounding(question.options, asked.rounding);
+    result.status = askCore(question, options, asked.mover(), asked.targets, workspace, result);
+  }
+  return toAnswer(asked, result, question, workspace, start);
+}
+
+Asked askedOf(const RobotMotion &motion, bool self, const Question &question) {
+  return self ? askedSelf(motion.data()) : askedItems(motion.data(), namedItems(motion.data(), question.objects));
+}
+
+} // namespace
+
+std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &question, Workspace &workspace) {
+  const RobotMotion::Data &data = motion.data();
+  const std::vector<std::size_t> named = namedItems(data, question.objects);
+  if (!question.per_object || named.empty()) return {answerOf(askedItems(data, named), question, workspace)};
+
+  /* one for each run of items of the same object */
+  const std::vector<Item> &items = data.snapshot->world().items();
+  std::vector<Answer> answers;
+  std::vector<std::size_t> wanted;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    wanted.push_back(named[i]);
+    if (i + 1 < named.size() && items[named[i + 1]].owner == items[named[i]].owner) continue;
+    answers.push_back(answerOf(askedItems(data, wanted), question, workspace));
+    answers.back().b = *items[named[i]].owner;
+    wanted.clear();
+  }
+  return answers;
+}
+
+Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &workspace) {
+  return answerOf(askedSelf(motion.data()), question, workspace);
+}
+
+std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits,
+                                 const Question &question, Workspace &workspace) {
+  const Clock::time_point start = Clock::now();
+  const Asked asked = askedOf(motion, self, question);
+  if (asked.pairs.empty()) return {};
+  Question distance = question;
+  distance.verb = Verb::DISTANCE;
+  const cprox_options options = withoutRounding(question.options, asked.rounding);
+  std::vector<cprox_result> results(std::min(limits.count, asked.pairs.size()));
+  std::size_t count = 0;
+  const cprox_status status =
+      cprox_nearest_pairs(asked.mover(), asked.targets.data(), asked.targets.size(), limits.count, limits.within,
+                          &options, workspace.get(), results.data(), &count);
+  if (status < 0) throw Error(workspace.reason(), status);
+  std::vector<Answer> answers;
+  for (std::size_t i = 0; i < count; ++i) answers.push_back(toAnswer(asked, results[i], distance, workspace, start));
+  return answers;
+}
+
+std::vector<ClearanceStretch> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
+                                               const Question &question, Workspace &workspace) {
+  if (breaks.size() < 2) throw Error("a clearance profile needs at least two breaks");
+  const Asked asked = askedOf(motion, self, question);
+  std::vector<cprox_stretch> stretches(breaks.size() - 1);
+  for (std::size_t i = 0; i < stretches.size(); ++i)
+    stretches[i] = {breaks[i], breaks[i + 1], INFINITE, INFINITE, breaks[i], -1, -1};
+  if (!asked.pairs.empty()) {
+    const cprox_options options = withoutRounding(question.options, asked.rounding);
+    const cprox_status status = cprox_profile(asked.mover(), asked.targets.data(), asked.targets.size(), breaks.data(),
+                                              stretches.size(), &options, workspace.get(), stretches.data());
+    if (status < 0) throw Error(workspace.reason(), status);
+  }
+  std::vector<ClearanceStretch> out;
+  for (const cprox_stretch &stretch : stretches) {
+    Answer names;
+    names.result.target_index = stretch.target_index;
+    names.result.mover_part = stretch.mover_part;
+    nameSides(asked, names);
+    const double upper = stretch.upper > 0.0 ? stretch.upper + asked.rounding : stretch.upper;
+    out.push_back(
+        {stretch.t0, stretch.t1, std::max(0.0, stretch.lower - asked.rounding), upper, stretch.t, names.a, names.b});
+  }
+  return out;
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What links carry, and links at another size. Distances are computed by hand. */
+#include <curve_proximity/motion.hpp>
+
+#include "scaling.h"
+#include "support.h"
+
+namespace curve_proximity {
+namespace {
+
+using test::add;
+using test::change;
+using test::expectContains;
+using test::shape;
+using test::translation;
+
+/* A cart on a rail along x, an arm on it that swings about y. */
+const char *SLIDER = R"(<robot name="slider">
+  <link name="rail"/>
+  <link name="cart"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="arm"/>
+  <joint name="slide" type="prismatic"><parent link="rail"/><child link="cart"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+  <joint name="swing" type="continuous"><parent link="cart"/><child link="arm"/><origin xyz="0 0 1"/><axis xyz="0 1 0"/></joint>
+</robot>)";
+
+struct Slider : ::testing::Test {
+  Scene scene{Robot::fromUrdf(SLIDER)};
+  Workspace workspace;
+
+  void SetUp() override {
+    EXPECT_TRUE(scene.apply(change({add("wall", {shape(ShapeType::BOX, {1, 4, 4})}, translation(3.5, 0, 0))})).empty());
+  }
+
+  static Attachment attachment(const std::string &id, const std::string &link, std::vector<ShapeDescription> shapes,
+                               const Eigen::Isometry3d &pose) {
+    Attachment out;
+    out.link = link;
+    out.object = add(id, std::move(shapes), pose).object;
+    return out;
+  }
+
+  std::vector<std::string> attach(Attachment attachment) {
+    SceneChange c;
+    c.attachments.push_back(std::move(attachment));
+    return scene.apply(c);
+  }
+
+  RobotMotion slide(double from, double to) const {
+    TrajectoryDescription t;
+    t.id = "slide";
+    t.joints = {"slide"};
+    t.points = {{{from}, {}, {}, 0.0}, {{to}, {}, {}, 1.0}};
+    return RobotMotion(scene.snapshot(), t, {});
+  }
+
+  void expectNearest(const std::string &a, double distance) {
+    const Answer answer = askEnvironment(slide(0, 2), Question(), workspace).front();
+    EXPECT_EQ(answer.status, "ok") << answer.message;
+    EXPECT_EQ(answer.a, a);
+    EXPECT_NEAR(answer.result.upper, distance, 1e-6);
+    EXPECT_LE(answer.result.lower, distance + 1e-12);
+  }
+};
+
+TEST_F(Slider, what_a_link_carries_rides_along_and_is_padded_with_it) {
+  expectNearest("cart", 0.9);
+  ASSERT_TRUE(attach(attachment("held", "cart", {shape(ShapeType::SPHERE, {0.1})}, translation(0.4, 0, 0))).empty());
+  expectNearest("held", 0.5);
+  SceneChange padding;
+  padding.link_padding["cart"] = 0.05;
+  ASSERT_TRUE(scene.apply(padding).empty());
+  expectNearest("held", 0.45);
+}
+
+TEST_F(Slider, a_curve_meets_what_a_link_carries_where_the_link_is) {
+  ASSERT_TRUE(attach(attachment("held", "cart", {shape(ShapeType::SPHERE, {0.1})}, translation(0.4, 0, 0))).empty());
+  LinkPoses poses = scene.snapshot()->robot()->linkPoses({{"slide", 1.0}});
+  Question question;
+  question.objects = {"held"};
+  const Answer answer = test::askOne(scene, poses, test::line({1.4, -1, 0.5}, {1.4, 1, 0.5}), question);
+  EXPECT_EQ(answer.b, "held");
+  EXPECT_NEAR(answer.result.upper, 0.4, 1e-6);
+  expectContains(test::askOne(scene, {}, test::line({0, 0, 0}, {1, 0, 0}), question).message, "'cart'");
+}
+
+TEST_F(Slider, an_object_of_the_scene_is_taken_up_and_put_down_where_it_is) {
+  ASSERT_TRUE(
+      scene.apply(change({add("box", {shape(ShapeType::BOX, {0.2, 0.2, 0.2})}, translation(1.5, 0, 0))})).empty());
+  Attachment up;
+  up.link = "cart";
+  up.object.id = "box";
+  expectContains(attach(up).at(0), "where link 'cart' is");
+  up.link_poses["cart"] = translation(1, 0, 0);
+  ASSERT_TRUE(attach(up).empty());
+  EXPECT_EQ(scene.snapshot()->objects().count("box"), 0u);
+  expectNearest("box", 3 - 2 - 0.6);
+  expectContains(scene.apply(change({add("box", {shape(ShapeType::SPHERE, {1})})})).at(0), "'cart' carries it");
+
+  Attachment down = up;
+  down.kind = Attachment::Kind::DETACH;
+  down.link.clear();
+  down.link_poses["cart"] = translation(0, 2, 0);
+  ASSERT_TRUE(attach(down).empty());
+  EXPECT_TRUE(scene.snapshot()->attached().empty());
+  const Eigen::Vector3d at = scene.snapshot()->objects().at("box")->description.pose.translation();
+  EXPECT_LT((at - Eigen::Vector3d(0.5, 2, 0)).norm(), 1e-12);
+}
+
+TEST_F(Slider, what_is_carried_is_checked_against_links_that_one_joint_moves_unless_it_may_touch_them) {
+  Attachment held = attachment("held", "arm", {shape(ShapeType::SPHERE, {0.1})}, translation(0.5, 0, 0));
+  TrajectoryDescription t;
+  t.joints = {"swing"};
+  t.points = {{{0.0}, {}, {}, 0.0}, {{M_PI}, {}, {}, 1.0}}; /* the ball passes below the axis, above the cart */
+  ASSERT_TRUE(attach(held).empty());
+  Answer answer = askSelf(RobotMotion(scene.snapshot(), t, {}), Question(), workspace);
+  EXPECT_EQ(answer.a, "cart");
+  EXPECT_EQ(answer.b, "held");
+  EXPECT_FALSE(answer.b_is_link);
+  EXPECT_NEAR(answer.result.upper, 1.0 - 0.1 - 0.5 - 0.1, 1e-6);
+
+  held.touch_links = {"cart"};
+  ASSERT_TRUE(attach(held).empty());
+  const RobotMotion motion(scene.snapshot(), t, {});
+  answer = askSelf(motion, Question(), workspace);
+  EXPECT_EQ(answer.b, "");
+  std::string skipped;
+  for (const std::string &sentence : motion.skipped()) skipped += sentence + "\n";
+  expectContains(skipped, "touch_links");
+}
+
+TEST_F(Slider, a_scale_enlarges_a_link_and_what_it_carries_before_the_padding) {
+  ASSERT_TRUE(attach(attachment("held", "cart", {shape(ShapeType::SPHERE, {0.1})}, translation(0.4, 0, 0))).empty());
+  SceneChange c;
+  c.link_scale["cart"] = 2.0;
+  c.link_padding["cart"] = 0.01;
+  ASSERT_TRUE(scene.apply(c).empty());
+  expectNearest("held", 3 - 2 - 0.4 - 0.2 - 0.01);
+  EXPECT_EQ(scene.snapshot()->linkScales().at("cart"), 2.0);
+  EXPECT_EQ(scene.snapshot()->linkGeometry("cart").front().description.dimensions.front(), 0.4);
+  c = SceneChange();
+  c.link_scale["cart"] = 1.0;
+  ASSERT_TRUE(scene.apply(c).empty());
+  expectNearest("held", 3 - 2 - 0.4 - 0.1 - 0.01);
+  EXPECT_TRUE(scene.snapshot()->linkScales().empty());
+}
+
+TEST_F(Slider, what_cannot_be_carried_or_scaled_is_told_by_name_and_changes_nothing) {
+  const auto ball = shape(ShapeType::SPHERE, {0.1});
+  expectContains(attach(attachment("held", "leg", {ball}, translation(0, 0, 0))).at(0), "'leg'");
+  expectContains(attach(attachment("", "cart", {ball}, translation(0, 0, 0))).at(0), "id");
+  expectContains(attach(attachment("held", "cart", {}, translation(0, 0, 0))).at(0), "no shapes");
+  expectContains(
+      attach(attachment("held", "cart", {shape(ShapeType::HALFSPACE, {0, 0, 1, 0})}, translation(0, 0, 0))).at(0),
+      "halfspace");
+  expectContains(attach(attachment("held", "cart", {ball}, translation(NAN, 0, 0))).at(0), "not finite");
+  Attachment down = attachment("held", "", {}, translation(0, 0, 0));
+  down.kind = Attachment::Kind::DETACH;
+  expectContains(attach(down).at(0), "no link carries");
+  for (const double scale : {0.0, -1.0, double(NAN), double(INFINITY)}) {
+    SceneChange c;
+    c.link_scale["cart"] = scale;
+    expectContains(scene.apply(c).at(0), "'cart'");
+  }
+  SceneChange c;
+  c.link_scale["leg"] = 2.0;
+  expectContains(scene.apply(c).at(0), "'leg'");
+  EXPECT_TRUE(scene.snapshot()->attached().empty());
+  EXPECT_TRUE(scene.snapshot()->linkScales().empty());
+}
+
+/* The support function of every type at scale 1.7 is 1.7 times its own, about its origin; 1e-9 for the solver of implicit bodies. */
+TEST(Scaling, enlarges_every_type_of_shape_about_its_origin) {
+  ShapeDescription polytope = shape(ShapeType::POLYTOPE, {}), mesh = shape(ShapeType::MESH, {2, 1, 1}),
+                   implicit = shape(ShapeType::IMPLICIT, {}), point = shape(ShapeType::POINT, {});
+  polytope.vertices.resize(3, 4);
+  polytope.vertices << 0.1, 0.5, 0, 0, 0, 0, 0.4, 0, 0, 0, 0, 0.3;
+  point.vertices = Eigen::Vector3d(0.1, 0.2, 0.3);
+  mesh.vertices = polytope.vertices;
+  mesh.triangles.resize(3, 2);
+  mesh.triangles << 0, 0, 1, 2, 2, 3;
+  implicit.quadrics = {{1, 0, 0, 2, 0, 3, 0.1, 0, 0, -1}};
+  implicit.planes = {{0, 0, 1, -0.2}};
+  implicit.hyperquadrics = {{{1, 0, 0, 0, 4}, {0, 1, 0, 0.1, 4}, {0, 0, 1, 0, 4}}};
+  const std::vector<ShapeDescription> shapes = {point,
+                                                shape(ShapeType::SPHERE, {0.3}),
+                                                shape(ShapeType::BOX, {0.3, 0.4, 0.5}),
+                                                shape(ShapeType::CAPSULE, {0.3, 0.1}),
+                                                shape(ShapeType::CYLINDER, {0.3, 0.1}),
+                                                shape(ShapeType::CONE, {0.3, 0.1}),
+                                                shape(ShapeType::ELLIPSOID, {0.3, 0.4, 0.5}),
+                                                shape(ShapeType::SUPERQUADRIC, {0.3, 0.4, 0.5, 3, 4, 2}),
+                                                polytope,
+                                                mesh,
+                                                implicit};
+  test::Random random(5);
+  for (const ShapeDescription &one : shapes) {
+    const ShapeDescription larger = scaledShape(one, 1.7, {});
+    const Geometry a = makeGeometry(one), b = makeGeometry(larger);
+    Eigen::Vector3d about = Eigen::Vector3d::Zero(); /* of a mesh the mean, at its own scale */
+    if (one.type == ShapeType::MESH) about = Eigen::Vector3d(0.3, 0.1, 0.075);
+    for (int k = 0; k < 50; ++k) {
+      const Eigen::Vector3d n = random.vector(1.0).normalized();
+      const double before = cprox_body_support(a.body.get(), toVec3(n), nullptr);
+      const double after = cprox_body_support(b.body.get(), toVec3(n), nullptr) + n.dot(larger.pose.translation());
+      EXPECT_NEAR(after, 1.7 * before - 0.7 * n.dot(about), 1e-9) << shapeTypeName(one.type);
+    }
+  }
+  const ShapeDescription half = scaledShape(shape(ShapeType::HALFSPACE, {0, 0, 1, -0.5}), 2.0, {});
+  EXPECT_EQ(half.dimensions, (std::vector<double>{0, 0, 1, -1.0}));
+}
+
+} // namespace
+} // namespace curve_proximity
