@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 
 from support import DATA, Case, cprox
 
@@ -119,6 +120,12 @@ joint_trajectory:
                             (SLIDE.replace('[2]', '[2, 3]'), ('point 1', '2 positions')),
                             (SLIDE.replace('[2]', '[.nan]'), ('go.yaml',)),
                             (SLIDE.replace('secs: 4', 'secs: 0'), ('point 1', 'not after')),
+                            (SLIDE.replace('[slide]', '[slide, slide]').replace('[0]', '[0, 0]').replace('[2]', '[2, 2]'), ("'slide'", 'twice')),
+                            (SLIDE.replace('[slide]', "['']"), ("''",)),
+                            (SLIDE.replace('[2], ', '[2], velocities: [1, 1], '), ('point 1', '2 velocities', '1 joints')),
+                            (SLIDE.replace('[0], ', '[0], accelerations: [.inf], '), ('go.yaml',)),
+                            (SLIDE.replace('[2]', '[]'), ('point 1', '0 positions')),
+                            (SLIDE.replace('secs: 4', 'secs: -1'), ('point 1', 'not after')),
                             ('interpolation: quintic\n' + SLIDE, ('point 0', 'velocities')),
                             ('interpolation: spline\n' + SLIDE, ("'spline'",)),
                             ('joint_trajectory: {joint_names: [slide], points: [{positions: [1], time_from_start: 0}]}', ('one point',)),
@@ -129,6 +136,39 @@ joint_trajectory:
         self.assertRefused(cprox('distance', '--trajectory', 't.yaml'), '--robot')
         self.assertRefused(cprox('distance', '--robot', 'r.urdf', '--self'), '--trajectory')
         self.assertRefused(self.robot('distance', SLIDE, '--curves', 'c.csv'), '--trajectory takes no --curves')
+
+    def robots_that_are_none_are_one_line(self):
+        no_shapes = re.sub('<collision>.*?</collision>', '', SLIDER)
+        loop = SLIDER.replace('</robot>', '<joint name="back" type="fixed"><parent link="hand"/><child link="rail"/></joint></robot>')
+        twice = SLIDER.replace('</robot>', '<joint name="back" type="fixed"><parent link="hand"/><child link="arm"/></joint></robot>')
+        ring = SLIDER.replace('name="swing" type="revolute">', 'name="swing" type="revolute"><mimic joint="wrist"/>')
+        ring = ring.replace('name="wrist" type="revolute">', 'name="wrist" type="revolute"><mimic joint="swing"/>')
+        mesh = SLIDER.replace('<sphere radius="0.1"/>', '<mesh filename="hand.stl"/>')
+        for urdf, words in ((no_shapes, ('no collision geometry',)), (loop, ('tree',)), (twice, ("'arm'", 'child of two joints')), (ring, ("'swing'", 'ring'))):
+            with self.subTest(words=words):
+                self.assertRefused(self.robot('distance', SLIDE, urdf=urdf), *words)
+        for text, words in (('solid hand\nendsolid hand\n', ("'hand'", 'hand.stl')),
+                            ('solid hand\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 nan 0\nendloop\nendfacet\nendsolid hand\n', ("'hand'",))):
+            with self.subTest(words=words):
+                self.file('hand.stl', text)
+                self.assertRefused(self.robot('distance', SLIDE, urdf=mesh), *words)
+
+    def what_is_doubtful_is_answered_with_a_warning_that_names_it(self):
+        far = SLIDER.replace('lower="-9" upper="9"', 'lower="-1" upper="1.5"', 1)
+        answer = self.robot('distance', SLIDE, urdf=far)
+        self.assertEqual(answer.code, 0)
+        self.assertAnswer(answer.row('go'), 3 - 2 - 0.1)
+        self.assertIn("joint 'slide' goes to 2, above its upper limit 1.5", answer.err)
+        # between its points a cubic goes farther than at any of them: by 4/27 v T on each side
+        swing = SLIDE.replace('[0], ', '[0], velocities: [3], ').replace('[2], ', '[0], velocities: [3], ')
+        answer = self.robot('distance', swing, urdf=far)
+        self.assertIn("joint 'slide' goes to -1.1547, below its lower limit -1", answer.err)
+        self.assertNotIn('above', answer.err)
+
+        srdf = '<robot name="other"><disable_collisions link1="cart" link2="leg"/></robot>'
+        answer = self.robot('distance', SLIDE, '--self', srdf=srdf)
+        self.assertEqual(answer.code, 0)
+        self.assertIn("'leg'", answer.err)
 
     def reference_answers_overlap(self):
         """Robots, scenes and splines of test/data against certified answers of another program, at 1e-6; what was sampled is never

@@ -4,6 +4,7 @@
 
 #include "base/workspace.h"
 #include "curve_proximity/cprox/clearance.h"
+#include "motion/motion.h"
 #include "query/answer.h"
 #include "query/arguments.h"
 #include "query/robot_answer.h"
