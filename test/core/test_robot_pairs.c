@@ -91,8 +91,11 @@ static void a_range_holds_all_values_and_is_reached(void **state) {
       cprox_motion_range(t.motion, v, &low[v], &high[v]);
       least[v] = INFINITY, most[v] = -INFINITY;
     }
-    for (int s = 0; s <= 4000; s++) {
-      robot_ref_values(&t, t0 + ((long double)t1 - t0) * s / 4000, values);
+    const int n = 4000 + (int)t.n_points; /* at the waypoints too: motions bend there */
+    for (int s = 0; s <= n; s++) {
+      const long double at = s <= 4000 ? t0 + ((long double)t1 - t0) * s / 4000 : (long double)t.times[s - 4001];
+      if (at < t0 || at > t1) continue;
+      robot_ref_values(&t, at, values);
       for (size_t v = 0; v < t.n_variables; v++) {
         least[v] = fminl(least[v], values[v]), most[v] = fmaxl(most[v], values[v]);
         assert_true(values[v] >= low[v] - 1e-13L && values[v] <= high[v] + 1e-13L);
