@@ -144,12 +144,12 @@ static bound_claim claim_of(const test_robot *t, const bound_case *c, vec3 n, ve
   const size_t length =
       motion_chain(t->motion, c->standing < 0 ? -1 : t->robot->parts[c->standing].axis, part->axis, chain);
   bound_claim claim;
-  motion_of_part(axes, chain, length, at.p, part->radius + error, scratch, &claim.motion);
+  motion_of_part(axes, chain, length, at.p, part->model.radius + error, scratch, &claim.motion);
 
   /* against the origin of the world: a point that stands there */
   cprox_body *origin;
   assert_int_equal(cprox_body_create_point(vec(0, 0, 0), NULL, &origin), CPROX_OK);
-  const bound_side moving = {.shape = part->shape, .at = at, .margin = part->margin, .error = error};
+  const bound_side moving = {.shape = part->model.shape, .at = at, .margin = part->model.margin, .error = error};
   const bound_side standing = {.shape = &origin->shape,
                                .at = {.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}},
                                .error = c->standing < 0 ? 0.0 : t->motion->part_error[c->standing]};

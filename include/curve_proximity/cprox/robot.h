@@ -40,8 +40,9 @@ typedef struct cprox_link {
 
 /** A body on a link. */
 typedef struct cprox_link_geometry {
-  const cprox_body *body; /**< convex or a compound, no halfspace; kept by reference */
-  cprox_pose pose;        /**< in the link's frame */
+  const cprox_body *
+      body; /**< convex, a ladder, a mesh's surface, points, boxes, or a compound of these; no halfspace; kept by reference */
+  cprox_pose pose; /**< in the link's frame */
   int32_t link;
   double padding; /**< [m] >= 0 */
 } cprox_link_geometry;
@@ -125,7 +126,8 @@ typedef struct cprox_robot_pair {
   int32_t geometry, other;
 } cprox_robot_pair;
 
-/** The robot along a motion. Targets are bodies; of meshes, clouds and octrees the surface counts, and solid meshes are refused.
+/** The robot along a motion. Targets are bodies; of meshes the surface counts, and solid
+ *  ones are refused. Of ladders, on links and as targets, the mesh is asked where the hull cannot decide; result.rung says whether.
  *  pairs: those that are asked about, kept by reference, `other` being targets; NULL: all geometries of links that the motion
  *  moves, against all targets. */
 CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);

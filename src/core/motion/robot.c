@@ -58,9 +58,9 @@ static cprox_status check_geometry(const cprox_link_geometry *g, size_t i, size_
   if (!isfinite(g->body->ball_radius))
     return workspace_fail(workspace, CPROX_INVALID,
                           "geometry %zu: a halfspace, or a compound with one; must be bounded", i);
-  if (g->body->kind != CPROX_COMPOUND && !g->body->shape.ops)
-    return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: a %s is not convex; give its hull", i,
-                          cprox_body_kind_name(g->body->kind));
+  if (part_model_is_solid(g->body))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "geometry %zu is a solid mesh: robots have surfaces; fill it with convex parts", i);
   return CPROX_OK;
 }
 
@@ -173,18 +173,17 @@ static size_t parts_of(const cprox_body *body) {
 
 static void add_part(cprox_robot *robot, const chain_end *at, const cprox_body *body, double padding, size_t geometry,
                      int32_t link) {
-  const double radius = body->ball_radius + padding;
+  part_model model = part_model_of(body);
+  model.margin += padding, model.radius += padding, model.tree_margin += padding;
   const chain_end end =
-      extend(at, &(cprox_pose){.position = body->centre, .orientation = {.w = 1.0}}); /* the shape's own origin */
-  robot->parts[robot->n_parts++] = (robot_part){.shape = &body->shape,
+      extend(at, &(cprox_pose){.position = model.centre, .orientation = {.w = 1.0}}); /* the shape's own origin */
+  robot->parts[robot->n_parts++] = (robot_part){.model = model,
                                                 .geometry = (int32_t)geometry,
                                                 .link = link,
                                                 .axis = end.axis,
                                                 .at = end.at,
-                                                .margin = body->shape.margin + padding,
-                                                .radius = radius,
                                                 .steps = end.steps,
-                                                .reach = end.reach + radius};
+                                                .reach = end.reach + model.radius};
 }
 
 static void add_geometry(cprox_robot *robot, const cprox_link_geometry *g, size_t i) {

@@ -7,6 +7,7 @@
 
 #include "body/body.h"
 #include "curve_proximity/cprox/robot.h"
+#include "motion/part_model.h"
 
 typedef enum axis_kind { AXIS_REVOLUTE, AXIS_PRISMATIC, AXIS_BALL } axis_kind;
 
@@ -36,13 +37,11 @@ typedef struct robot_link {
   double reach;
 } robot_link;
 
-/* A convex part of a geometry. */
+/* A part of a geometry. */
 typedef struct robot_part {
-  const convex *shape;
+  part_model model; /* with the padding in its margins and its radius */
   int32_t geometry, link, axis;
-  placement at;   /* of the shape's own frame, in the axis's moved frame */
-  double margin;  /* the shape's and the padding */
-  double radius;  /* of a ball about the shape's origin that contains the part, margin included */
+  placement at;   /* of the model's frame, in the axis's moved frame */
   uint32_t steps; /* transforms between the shape and the world */
   double reach;   /* the sum of their lengths and the radius, shifts along prismatic axes not counted */
 } robot_part;

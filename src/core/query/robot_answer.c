@@ -24,13 +24,6 @@ static cprox_status check_pairs(const cprox_mover *mover, size_t n, cprox_worksp
   return CPROX_OK;
 }
 
-/* A mesh with an inside, or a union with one. */
-static bool is_solid(const cprox_body *body) {
-  bool solid = body->winding != NULL;
-  for (size_t i = 0; i < body->n_parts; i++) solid = solid || body->parts[i].body->winding != NULL;
-  return solid;
-}
-
 cprox_status robot_check(const cprox_mover *mover, const cprox_target *targets, size_t n, cprox_workspace *workspace) {
   if (mover->curve || mover->body || mover->radius != 0.0)
     return workspace_fail(workspace, CPROX_INVALID,
@@ -41,7 +34,7 @@ cprox_status robot_check(const cprox_mover *mover, const cprox_target *targets, 
     const cprox_body *body = targets[i].body;
     if (!body || targets[i].curve)
       return workspace_fail(workspace, CPROX_INVALID, "target %zu is a curve: a robot is asked about bodies", i);
-    if (is_solid(body))
+    if (part_model_is_solid(body))
       return workspace_fail(workspace, CPROX_INVALID,
                             "target %zu is a solid mesh: a robot is asked about surfaces; fill it with convex parts",
                             i);
@@ -106,10 +99,9 @@ static void report(const robot_search *o, const robot_sight *sight, cprox_result
 
 static cprox_rung rung_of(const robot_search *o) {
   if (o->scene.n_pairs == 0) return CPROX_RUNG_NONE;
-  if (o->gaps + o->planes == 0) return CPROX_RUNG_SPHERE;
-  for (size_t i = 0; i < o->scene.n_obstacles; i++)
-    if (o->scene.obstacles[i].of_mesh) return CPROX_RUNG_MESH;
-  return CPROX_RUNG_HULL;
+  if (o->climbed) return CPROX_RUNG_MESH;
+  const bool by_balls = o->gaps + o->planes == 0 || o->scene.q->options.max_rung == CPROX_RUNG_SPHERE;
+  return by_balls ? CPROX_RUNG_SPHERE : CPROX_RUNG_HULL;
 }
 
 static bool is_satisfied(const question *q, double ceiling, const cprox_result *r) {

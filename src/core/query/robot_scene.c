@@ -5,8 +5,6 @@
 
 #include "base/rounding.h"
 #include "convex/pair.h"
-#include "query/pair_place.h"
-#include "tree/tree.h"
 
 enum { GAP_STEPS = 128 };
 
@@ -30,102 +28,66 @@ static void find_box(robot_body *body) {
   body->half = vec(0.5 * (high[0] - low[0]) + grow, 0.5 * (high[1] - low[1]) + grow, 0.5 * (high[2] - low[2]) + grow);
 }
 
+/* The finest model that the question allows. Clouds and octrees stay what they are, and so do halfspaces. */
+static part_model model_for(const question *q, part_model model) {
+  const bool many = model.tree && model.tree->kind != TREE_TRIANGLES && model.by_ball;
+  if (q->options.max_rung == CPROX_RUNG_MESH || many) return model;
+  if (model.tree && model.by_ball && q->options.max_rung == CPROX_RUNG_HULL) return model; /* it has no hull */
+  model.tree = NULL;
+  const bool endless = model.shape->ops->kind == CPROX_HALFSPACE;
+  return q->options.max_rung == CPROX_RUNG_SPHERE && !endless ? part_model_ball(&model) : model;
+}
+
 /* ---- obstacles ------------------------------------------------------------------------------------------------------------ */
 
-/* A triangle, a point or a box of a mesh, a cloud or an octree, as a convex shape of its own. */
-typedef struct element {
-  convex shape;
-  double x[8], y[8], z[8];
-} element;
-
-/* What is being filled, or only counted where there is no room. */
-typedef struct obstacle_list {
-  robot_body *bodies;
-  element *elements;
-  size_t n_bodies, n_elements;
-} obstacle_list;
-
-static robot_body placed_body(const pair_side *placed, const convex *shape, vec3 middle, double radius) {
-  robot_body body = {.radius = radius};
-  body.side = (bound_side){.shape = shape, .margin = placed->margin};
-  for (int i = 0; i < 9; i++) body.side.at.r[i] = placed->f.r[i];
-  body.side.at.p = frame_to_world(&placed->f, middle);
-  const double sizes = vec_norm(placed->f.centre) + vec_norm(middle) + radius;
-  body.side.error = ROUND_UP * (placed->error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(body.side.at.p)));
-  if (!is_halfspace(&body)) find_box(&body);
-  return body;
-}
-
-/* About its own middle: a small ball is what most pairs are settled by. */
-static double make_element(const tree *t, tree_place at, element *e, vec3 *middle) {
-  vec3 v[3];
-  const int n = tree_corners(t, at, v);
-  *middle = v[0];
-  if (n == 2) *middle = vec_axpy(vec_scale(0.5, v[0]), 0.5, v[1]);
-  if (n == 3) *middle = vec_scale(1.0 / 3.0, vec_add(vec_add(v[0], v[1]), v[2]));
-  double reach = 0.0;
-  for (int i = 0; i < 8; i++) {
-    const vec3 corner = vec_sub(v[i < n ? i : n - 1], *middle);
-    e->x[i] = corner.x, e->y[i] = corner.y, e->z[i] = corner.z;
-    reach = fmax(reach, vec_norm(corner));
+/* A part of a target; the frames of parts of unions are composed. */
+static robot_body obstacle_of(const question *q, size_t index, size_t part) {
+  const cprox_target *target = &q->targets[index];
+  const cprox_body *body = target->body;
+  cprox_pose pose = target->pose;
+  double error = 0.0;
+  if (body->kind == CPROX_COMPOUND) {
+    const body_part *p = &body->parts[part];
+    body = p->body;
+    pose = frame_compose(&target->pose, &p->pose);
+    const double turned = vec_norm(p->pose.position) + vec_norm(body->ball_centre) + 2.0 * body->ball_radius;
+    error = isfinite(turned) ? turned : vec_norm(p->pose.position) + vec_norm(body->centre) + body->shape.scale;
+    error = ROUND_U * (ROUND_ROTATION * error + 3.0 * vec_norm(pose.position));
   }
-  reach *= 1.0 + 8.0 * ROUND_U;
-  e->shape = (convex){.ops = n == 3 ? &convex_polytope : n == 2 ? &convex_box : &convex_point, .scale = reach};
-  if (n == 3) e->shape.n = 3, e->shape.padded = 8, e->shape.x = e->x, e->shape.y = e->y, e->shape.z = e->z;
-  if (n == 2) /* the middle may be off by half a rounding: a box that contains both corners */
-    e->shape.size[0] = fmax(fabs(e->x[0]), fabs(e->x[1])), e->shape.size[1] = fmax(fabs(e->y[0]), fabs(e->y[1])),
-    e->shape.size[2] = fmax(fabs(e->z[0]), fabs(e->z[1]));
-  return reach;
-}
-
-static void add_elements(obstacle_list *list, const tree *t, const pair_side *placed, size_t index) {
-  for (uint32_t pack = 0; pack < t->n_packs; pack++) {
-    for (uint32_t lane = 0; lane < TREE_LANES; lane++) {
-      const tree_place at = {pack, lane};
-      const uint32_t id = tree_element(t, at);
-      if (lane > 0 && id == tree_element(t, (tree_place){pack, lane - 1})) break; /* what is repeated fills the pack */
-      if (list->bodies) {
-        element *e = &list->elements[list->n_elements];
-        vec3 middle;
-        const double reach = make_element(t, at, e, &middle);
-        robot_body *body = &list->bodies[list->n_bodies];
-        *body = placed_body(placed, &e->shape, middle, reach + placed->margin);
-        body->index = (int32_t)index, body->of_mesh = true;
-      }
-      list->n_elements++, list->n_bodies++;
-    }
-  }
+  const part_model m = model_for(q, part_model_of(body));
+  const frame f = frame_create(&pose, m.centre);
+  robot_body placed = {.radius = m.radius + target->padding, .index = (int32_t)index, .part = (int32_t)part};
+  placed.side = (bound_side){.shape = m.shape, .margin = m.margin + target->padding};
+  for (int i = 0; i < 9; i++) placed.side.at.r[i] = f.r[i];
+  placed.side.at.p = frame_to_world(&f, vec(0, 0, 0));
+  placed.tree = m.tree, placed.tree_at = m.tree_at, placed.tree_margin = m.tree_margin + target->padding;
+  if (is_halfspace(&placed)) placed.radius = m.shape->scale + placed.side.margin;
+  const double sizes = vec_norm(m.centre) + placed.radius;
+  placed.side.error = ROUND_UP * (error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(placed.side.at.p)));
+  if (!is_halfspace(&placed)) find_box(&placed);
+  return placed;
 }
 
 static size_t parts_of(const cprox_target *target) {
   return target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
 }
 
-static void add_target(obstacle_list *list, const cprox_target *target, size_t index) {
-  for (size_t part = 0; part < parts_of(target); part++) {
-    const pair_side placed = pair_place_side(target, part);
-    if (placed.body->tree) {
-      add_elements(list, placed.body->tree, &placed, index);
-      continue;
-    }
-    if (list->bodies) {
-      robot_body *added = &list->bodies[list->n_bodies];
-      *added = placed_body(&placed, placed.shape, vec(0, 0, 0), placed.shape->scale + placed.margin);
-      added->index = (int32_t)index, added->part = (int32_t)part;
-    }
-    list->n_bodies++;
-  }
-}
-
-static robot_body part_body(const cprox_motion *motion, size_t i) {
+static robot_body part_body(const question *q, size_t i) {
+  const cprox_motion *motion = q->mover.motion;
   const robot_part *part = &motion->robot->parts[i];
-  robot_body body = {.radius = part->radius, .steps = part->steps, .index = part->geometry, .part = (int32_t)i};
-  body.side = (bound_side){.shape = part->shape, .margin = part->margin, .error = motion->part_error[i]};
+  const part_model m = model_for(q, part->model);
+  robot_body body = {.radius = m.radius, .steps = part->steps, .index = part->geometry, .part = (int32_t)i};
+  body.side = (bound_side){.shape = m.shape, .margin = m.margin, .error = motion->part_error[i]};
+  body.tree = m.tree, body.tree_at = m.tree_at, body.tree_margin = m.tree_margin;
   find_box(&body);
   return body;
 }
 
 /* ---- pairs ---------------------------------------------------------------------------------------------------------------- */
+
+static robot_pair pair_of(size_t moving, size_t standing) {
+  return (robot_pair){.moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}};
+}
 
 /* Adds the pairs of convex parts of a geometry and a target, or of two geometries; only counts them where there is no room. */
 static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, robot_pair *pairs, size_t *n) {
@@ -135,7 +97,7 @@ static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, rob
     if (robot->parts[i].geometry != geometry) continue;
     for (size_t k = 0; k < others; k++) {
       if ((s->self ? robot->parts[k].geometry : s->obstacles[k].index) != other) continue;
-      if (pairs) pairs[*n] = (robot_pair){.moving = (int32_t)i, .standing = (int32_t)k};
+      if (pairs) pairs[*n] = pair_of(i, k);
       (*n)++;
     }
   }
@@ -153,7 +115,7 @@ static void add_all_pairs(const robot_scene *s, robot_pair *pairs, size_t *n) {
       if (s->self && (other->geometry >= part->geometry ||
                       !cprox_motion_relates_links(s->motion, (size_t)part->link, (size_t)other->link)))
         continue;
-      if (pairs) pairs[*n] = (robot_pair){.moving = (int32_t)i, .standing = (int32_t)k};
+      if (pairs) pairs[*n] = pair_of(i, k);
       (*n)++;
     }
   }
@@ -174,34 +136,40 @@ static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
 bool robot_scene_begin(robot_scene *s, const question *q, size_t first, size_t last) {
   *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = q->mover.self};
   const cprox_robot *robot = s->motion->robot;
-  obstacle_list list = {0};
-  for (size_t i = first; i < last; i++) add_target(&list, &q->targets[i], i);
-  s->n_obstacles = list.n_bodies;
+  for (size_t i = first; i < last; i++) s->n_obstacles += parts_of(&q->targets[i]);
 
   const size_t n_axes = robot->n_axes + 1;
-  const size_t bytes = list.n_elements * sizeof *list.elements + s->n_obstacles * sizeof *s->obstacles +
-                       (robot->n_parts + 1) * sizeof *s->parts +
+  const size_t bytes = s->n_obstacles * sizeof *s->obstacles + (robot->n_parts + 1) * sizeof *s->parts +
                        n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch) +
                        (robot->n_variables + 1) * sizeof *s->values;
   char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
   if (!memory) return false;
   s->parts = (part_state *)(void *)memory;
   s->obstacles = (robot_body *)(void *)(s->parts + robot->n_parts + 1);
-  element *elements = (element *)(void *)(s->obstacles + s->n_obstacles);
-  s->axes = (axis_state *)(void *)(elements + list.n_elements);
+  s->axes = (axis_state *)(void *)(s->obstacles + s->n_obstacles);
   s->chain = (chain_axis *)(void *)(s->axes + n_axes);
   s->values = (double *)(void *)(s->chain + n_axes);
   s->scratch = s->values + robot->n_variables + 1;
 
-  list = (obstacle_list){.bodies = s->obstacles, .elements = elements};
-  for (size_t i = first; i < last; i++) add_target(&list, &q->targets[i], i);
-  for (size_t i = 0; i < robot->n_parts; i++) s->parts[i] = (part_state){.body = part_body(s->motion, i)};
+  size_t count = 0;
+  for (size_t i = first; i < last; i++)
+    for (size_t part = 0; part < parts_of(&q->targets[i]); part++) s->obstacles[count++] = obstacle_of(q, i, part);
+  for (size_t i = 0; i < robot->n_parts; i++) s->parts[i] = (part_state){.body = part_body(q, i)};
 
   s->n_pairs = list_pairs(s, NULL);
   s->pairs = workspace_reserve(q->workspace, WORKSPACE_ROBOT_PAIRS, (s->n_pairs + 1) * sizeof *s->pairs);
   if (!s->pairs) return false;
   list_pairs(s, s->pairs);
   return true;
+}
+
+int32_t robot_scene_add_pair(robot_scene *s, const robot_pair *pair) {
+  if (s->n_pairs >= INT32_MAX / sizeof *pair) return -1;
+  robot_pair *pairs = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_PAIRS, (s->n_pairs + 1) * sizeof *pairs);
+  if (!pairs) return -1;
+  s->pairs = pairs;
+  pairs[s->n_pairs] = *pair;
+  return (int32_t)s->n_pairs++;
 }
 
 /* ---- over a node ---------------------------------------------------------------------------------------------------------- */
@@ -221,27 +189,30 @@ static part_state *place(robot_scene *s, int32_t index) {
 }
 
 const robot_body *robot_scene_moving(robot_scene *s, const robot_pair *pair) {
-  return &place(s, pair->moving)->body;
+  const robot_body *body = &place(s, pair->moving)->body;
+  return pair->element[0] < 0 ? body : robot_element_make(body, pair->element[0], &s->element[0]);
 }
 
 const robot_body *robot_scene_standing(robot_scene *s, const robot_pair *pair) {
-  return s->self ? &place(s, pair->standing)->body : &s->obstacles[pair->standing];
+  const robot_body *body = s->self ? &place(s, pair->standing)->body : &s->obstacles[pair->standing];
+  return pair->element[1] < 0 ? body : robot_element_make(body, pair->element[1], &s->element[1]);
 }
 
-static void find_motion(robot_scene *s, int32_t from, const part_state *state, chain_motion *m) {
-  const robot_part *part = &s->motion->robot->parts[state->body.part];
+static void find_motion(robot_scene *s, int32_t from, const robot_body *body, chain_motion *m) {
+  const robot_part *part = &s->motion->robot->parts[body->part];
   const size_t n = motion_chain(s->motion, from, part->axis, s->chain);
-  motion_of_part(s->axes, s->chain, n, state->body.side.at.p, state->body.radius + state->body.side.error, s->scratch,
-                 m);
+  motion_of_part(s->axes, s->chain, n, body->side.at.p, body->radius + body->side.error, s->scratch, m);
 }
 
-const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, chain_motion *own) {
-  part_state *state = place(s, pair->moving);
-  if (s->self) {
-    find_motion(s, s->motion->robot->parts[pair->standing].axis, state, own);
+const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, const robot_body *moving,
+                                       chain_motion *own) {
+  const int32_t from = s->self ? s->motion->robot->parts[pair->standing].axis : -1;
+  if (s->self || pair->element[0] >= 0) {
+    find_motion(s, from, moving, own);
     return own;
   }
-  if (state->moved != s->node) find_motion(s, -1, state, &state->motion);
+  part_state *state = place(s, pair->moving);
+  if (state->moved != s->node) find_motion(s, -1, moving, &state->motion);
   state->moved = s->node;
   return &state->motion;
 }

@@ -5,21 +5,13 @@
 
 #include "motion/bound.h"
 #include "query/candidates.h"
-
-/* A convex part somewhere, with what the cheap tests need. */
-typedef struct robot_body {
-  bound_side side;
-  vec3 middle, half;   /* of a box, axes those of the shape, that contains the core; half is infinite for halfspaces */
-  double radius;       /* of a ball about the shape's origin that contains the part, margin included */
-  uint32_t steps;      /* transforms that its place went through */
-  int32_t index, part; /* target and part of it; or geometry and its number among the robot's parts */
-  bool of_mesh;        /* one of the elements of a mesh, a cloud or an octree */
-} robot_body;
+#include "query/robot_element.h"
 
 /* A pair of a part of the robot that moves and what it is held against. */
 typedef struct robot_pair {
-  int32_t moving;   /* which part of the robot */
-  int32_t standing; /* which obstacle, or in a question about the robot itself which part */
+  int32_t moving;     /* which part of the robot */
+  int32_t standing;   /* which obstacle, or in a question about the robot itself which part */
+  int32_t element[2]; /* of what the moving and the standing side are made of: -1: all of it, by its convex shape */
   /* the last separating direction, from what stands to what moves, in the frame of what stands, where it was found, and how fast
    * it turned there, by u of the segment */
   vec3 normal, drift;
@@ -46,7 +38,8 @@ typedef struct robot_scene {
   chain_axis *chain;
   robot_pair *pairs;
   size_t n_pairs, n_obstacles;
-  uint32_t node; /* counts the nodes, so that part states know whether they are of the present one */
+  robot_element element[2]; /* those of the pair that was placed last: moving, standing */
+  uint32_t node;            /* counts the nodes, so that part states know whether they are of the present one */
 } robot_scene;
 
 /* Makes the scene of targets first … last - 1 ready; false where memory is out. */
@@ -55,10 +48,15 @@ bool robot_scene_begin(robot_scene *scene, const question *q, size_t first, size
 /* A new node: all axes at its middle. */
 void robot_scene_enter(robot_scene *scene, size_t segment, double a, double b);
 
-/* The two sides of a pair in the middle of the node, and how the one moves as the other sees it. */
+/* One more pair; its number, or -1 where memory is out. It may move all pairs in memory. */
+int32_t robot_scene_add_pair(robot_scene *scene, const robot_pair *pair);
+
+/* The two sides of a pair in the middle of the node, and how the one moves as the other sees it. Of pairs of elements, only those of
+ * one pair at a time. */
 const robot_body *robot_scene_moving(robot_scene *scene, const robot_pair *pair);
 const robot_body *robot_scene_standing(robot_scene *scene, const robot_pair *pair);
-const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, chain_motion *own);
+const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, const robot_body *moving,
+                                       chain_motion *own);
 
 /* A lower bound on the distance of two parts, by their balls and boxes. */
 double robot_scene_apart(const robot_body *moving, const robot_body *standing);

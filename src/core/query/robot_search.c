@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/rounding.h"
+#include "base/workspace.h"
 
 enum { SEEDS_PER_SEGMENT = 4, MOST_SEED_TESTS = 40000 };
 
@@ -70,20 +71,17 @@ static bool is_better(const robot_search *o, double upper, double at) {
   return upper < o->best_bound.upper;
 }
 
-static cprox_status measure(robot_search *o, int32_t index, size_t segment, double u, robot_gap *gap) {
-  robot_pair *pair = &o->scene.pairs[index];
-  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  robot_scene_measure(moving, standing, GAP_FRACTION * o->epsilon, gap);
-  o->gaps++;
-  if (gap->fault)
-    return workspace_fail(o->scene.q->workspace, CPROX_INVALID,
-                          "a support callback answered with a point that is not finite or outside its radius");
-  if (vec_norm2(gap->normal) > 0.0) {
-    pair->normal = placement_turn_back(&standing->side.at, gap->normal);
-    pair->drift = vec(0, 0, 0);
-    pair->segment = segment, pair->u = u;
-    pair->normal_known = true;
-  }
+static bool is_convex(const robot_body *moving, const robot_body *standing) {
+  return !moving->tree && !standing->tree;
+}
+
+static cprox_status refuse_callback(const robot_search *o) {
+  return workspace_fail(o->scene.q->workspace, CPROX_INVALID,
+                        "a support callback answered with a point that is not finite or outside its radius");
+}
+
+/* What was measured may be the least so far, or a contact. */
+static void keep_sight(robot_search *o, int32_t index, size_t segment, double u, const robot_gap *gap) {
   const double upper = fmax(gap->upper, 0.0), at = motion_time(o->scene.motion, segment, u);
   const robot_sight sight = {.gap = *gap, .pair = index, .segment = segment, .u = u};
   if (is_better(o, upper, at)) {
@@ -94,7 +92,61 @@ static cprox_status measure(robot_search *o, int32_t index, size_t segment, doub
     o->touch = sight;
     o->touch_at = at;
   }
+}
+
+static void keep_normal(robot_pair *pair, const robot_body *standing, size_t segment, double u, const robot_gap *gap) {
+  if (!(vec_norm2(gap->normal) > 0.0)) return;
+  pair->normal = placement_turn_back(&standing->side.at, gap->normal);
+  pair->drift = vec(0, 0, 0);
+  pair->segment = segment, pair->u = u;
+  pair->normal_known = true;
+}
+
+/* The distance of the convex sides of a pair; it is that of the pair itself where that has no elements. */
+static cprox_status measure(robot_search *o, int32_t index, size_t segment, double u, robot_gap *gap) {
+  robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  robot_scene_measure(moving, standing, GAP_FRACTION * o->epsilon, gap);
+  o->gaps++;
+  if (gap->fault) return refuse_callback(o);
+  keep_normal(pair, standing, segment, u, gap);
+  if (is_convex(moving, standing)) keep_sight(o, index, segment, u, gap);
   return CPROX_OK;
+}
+
+/* Sets out from what is known of the hulls. No element is farther from the other side than the hulls' distance and their sizes. */
+static robot_climb climb_from(robot_search *o, int32_t index, const robot_gap *hulls, double reach, double room) {
+  const robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  const double most = fmax(hulls->upper, 0.0) + (moving->tree ? 4.0 * moving->radius : 0.0) +
+                      (standing->tree ? 4.0 * standing->radius : 0.0);
+  return (robot_climb){.scene = &o->scene,
+                       .pair = index,
+                       .reach = fmin(reach, most + room),
+                       .room = room,
+                       .accuracy = GAP_FRACTION * o->epsilon,
+                       .normal = hulls->upper > 0.0 ? hulls->normal : vec(0, 0, 0)};
+}
+
+static cprox_status climb(robot_search *o, robot_climb *c, size_t segment, double u) {
+  robot_climb_run(c);
+  o->gaps += c->gaps;
+  o->climbed = true;
+  if (c->fault) return refuse_callback(o);
+  if (c->no_memory) return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
+  if (c->nearest.gap.upper < INFINITY) keep_sight(o, c->pair, segment, u, &c->nearest.gap);
+  return CPROX_OK;
+}
+
+/* The distance of a pair, elements and all, as far as it can be less than the best. */
+static cprox_status measure_whole(robot_search *o, int32_t index, size_t segment, double u) {
+  robot_gap gap;
+  const cprox_status status = measure(o, index, segment, u, &gap);
+  const robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  if (status < 0 || is_convex(moving, standing) || gap.lower >= o->best_bound.upper) return status;
+  robot_climb c = climb_from(o, index, &gap, o->best_bound.upper, 0.0);
+  return climb(o, &c, segment, u);
 }
 
 /* Measures the pair whose balls and boxes come closest in a few places, so that the search begins with a distance. */
@@ -118,8 +170,7 @@ static cprox_status seed(robot_search *o, const search_node *node) {
       if (apart < least) least = apart, nearest = entry[k].pair;
     }
     if (nearest < 0 || least >= o->best_bound.upper) continue;
-    robot_gap gap;
-    const cprox_status status = measure(o, nearest, segment, u, &gap);
+    const cprox_status status = measure_whole(o, nearest, segment, u);
     if (status < 0) return status;
     if (o->limit >= 0.0 && o->best_bound.upper <= o->limit) return CPROX_OK;
   }
@@ -150,16 +201,80 @@ static double bound_by_normal(robot_search *o, const search_node *node, const ro
                             goal, slack);
 }
 
+static bool is_settled(const robot_search *o, double lower) {
+  return o->limit >= 0.0 ? lower > o->limit : lower >= settling_bound(o);
+}
+
+/* The plane of the distance just measured, turning as its feature does. */
+static double bound_by_gap(robot_search *o, const search_node *node, robot_pair *pair, const robot_body *moving,
+                           const robot_body *standing, const chain_motion *motion, const robot_gap *gap,
+                           double *slack) {
+  const double width = node->side[1].b - node->side[0].a;
+  const vec3 drift = vec_scale(1.0 / width, robot_scene_drift(gap, moving, standing, motion));
+  pair->drift = placement_turn_back(&standing->side.at, drift);
+  return bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
+}
+
+static bool keep_entry(robot_search *o, const list_entry *entry) {
+  list_entry *next = workspace_reserve(o->scene.q->workspace, WORKSPACE_ROBOT_NEXT, (o->n_next + 1) * sizeof *next);
+  if (!next) return false;
+  o->next = next;
+  next[o->n_next++] = *entry;
+  return true;
+}
+
+/* One of the pairs of elements that take the place of a pair: kept where its own plane does not settle it. */
+static cprox_status enlist(robot_search *o, search_node *node, const robot_pair *whole, const robot_found *found) {
+  const double u = 0.5 * (node->side[0].a + node->side[1].b);
+  robot_pair pair = {
+      .moving = whole->moving, .standing = whole->standing, .element = {found->element[0], found->element[1]}};
+  const robot_body *moving = robot_scene_moving(&o->scene, &pair), *standing = robot_scene_standing(&o->scene, &pair);
+  chain_motion own;
+  const chain_motion *motion = robot_scene_motion(&o->scene, &pair, moving, &own);
+  keep_normal(&pair, standing, first_of(node), u, &found->gap);
+  list_entry entry = {.lower = found->gap.lower - motion->travel};
+  double slack = moving->side.error + standing->side.error;
+  if (!is_settled(o, entry.lower) && pair.normal_known && found->gap.upper > 0.0)
+    entry.lower = fmax(entry.lower, bound_by_gap(o, node, &pair, moving, standing, motion, &found->gap, &slack));
+  if (is_settled(o, entry.lower)) {
+    o->dropped = fmin(o->dropped, entry.lower);
+    return CPROX_OK;
+  }
+  entry.pair = robot_scene_add_pair(&o->scene, &pair);
+  if (entry.pair < 0 || !keep_entry(o, &entry))
+    return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
+  if (entry.lower < node->lower) node->lower = entry.lower, node->slack = slack;
+  return CPROX_OK;
+}
+
+/* The hulls do not settle it: what of their elements comes near enough takes the place of the pair. */
+static cprox_status climb_pair(robot_search *o, search_node *node, list_entry *entry, const robot_gap *hulls,
+                               double travel) {
+  const double u = 0.5 * (node->side[0].a + node->side[1].b);
+  const double spare = 4.0 * hulls->slack;
+  robot_climb c = climb_from(o, entry->pair, hulls, settling_bound(o) + travel + spare, travel + spare);
+  c.listing = true;
+  const cprox_status status = climb(o, &c, first_of(node), u);
+  if (status < 0 || c.too_many) return status;
+  entry->lower = fmax(entry->lower, c.rest - travel - hulls->slack);
+  const robot_pair whole = o->scene.pairs[entry->pair];
+  for (size_t i = 0; i < c.n_found; i++) {
+    const cprox_status listed = enlist(o, node, &whole, &c.found[i]);
+    if (listed < 0) return listed;
+  }
+  return CPROX_OK;
+}
+
 /* Raises the bound of one pair over the node that the scene is at, by the cheapest way that settles it. */
-static cprox_status bound_pair(robot_search *o, const search_node *node, list_entry *entry, double *slack) {
+static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *entry, double *slack) {
   robot_pair *pair = &o->scene.pairs[entry->pair];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   chain_motion own;
-  const chain_motion *motion = robot_scene_motion(&o->scene, pair, &own);
+  const chain_motion *motion = robot_scene_motion(&o->scene, pair, moving, &own);
   const double apart = robot_scene_apart(moving, standing);
   entry->lower = fmax(entry->lower, apart - motion->travel);
   *slack = moving->side.error + standing->side.error;
-  if (entry->lower >= settling_bound(o) && entry->lower > o->limit) return CPROX_OK;
+  if (is_settled(o, entry->lower)) return CPROX_OK;
 
   /* too blurred: halves will tell more */
   const double width = node->side[1].b - node->side[0].a;
@@ -169,7 +284,7 @@ static cprox_status bound_pair(robot_search *o, const search_node *node, list_en
   if (pair->normal_known) {
     const double bound = bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
     entry->lower = fmax(entry->lower, bound);
-    if (entry->lower >= settling_bound(o) && entry->lower > o->limit) return CPROX_OK;
+    if (is_settled(o, entry->lower)) return CPROX_OK;
   }
 
   robot_gap gap;
@@ -177,32 +292,31 @@ static cprox_status bound_pair(robot_search *o, const search_node *node, list_en
   const cprox_status status = measure(o, entry->pair, first_of(node), u, &gap);
   if (status < 0) return status;
   entry->lower = fmax(entry->lower, gap.lower - motion->travel);
-  if (!pair->normal_known || gap.upper <= 0.0) return CPROX_OK;
-  const vec3 drift = vec_scale(1.0 / width, robot_scene_drift(&gap, moving, standing, motion));
-  pair->drift = placement_turn_back(&standing->side.at, drift);
-  const double bound = bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
-  entry->lower = fmax(entry->lower, bound);
-  return CPROX_OK;
-}
+  if (pair->normal_known && gap.upper > 0.0)
+    entry->lower = fmax(entry->lower, bound_by_gap(o, node, pair, moving, standing, motion, &gap, slack));
+  if (is_convex(moving, standing) || is_settled(o, entry->lower)) return CPROX_OK;
 
-static bool is_settled(const robot_search *o, double lower) {
-  return o->limit >= 0.0 ? lower > o->limit : lower >= settling_bound(o);
+  /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
+  const double travel = motion->travel;
+  if (o->limit < 0.0 && gap.lower < o->best_bound.upper) {
+    robot_climb nearest = climb_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
+    const cprox_status climbed = climb(o, &nearest, first_of(node), u);
+    if (climbed < 0) return climbed;
+  }
+  if (is_settled(o, gap.lower) && width > SHORT_STRETCH) return CPROX_OK;
+  return climb_pair(o, node, entry, &gap, travel);
 }
 
 /* Bounds all pairs of a node of one segment; those that still matter become its own list. */
 static cprox_status bound_node(robot_search *o, search_node *node) {
   const int32_t old = node->side[0].slot;
   const size_t n = lists_count(&o->lists, old);
-  const int32_t own = lists_take(&o->lists, n);
-  if (own < 0) return CPROX_MEMORY;
+  const double inherited = node->lower;
   robot_scene_enter(&o->scene, first_of(node), node->side[0].a, node->side[1].b);
-
-  const list_entry *from = lists_at(&o->lists, old);
-  list_entry *to = lists_at(&o->lists, own);
-  size_t kept = 0;
-  double lower = INFINITY;
+  o->n_next = 0;
+  node->lower = INFINITY;
   for (size_t i = 0; i < n; i++) {
-    list_entry entry = from[i];
+    list_entry entry = lists_at(&o->lists, old)[i];
     double slack = 0.0;
     if (!is_settled(o, entry.lower)) {
       const cprox_status status = bound_pair(o, node, &entry, &slack);
@@ -212,13 +326,18 @@ static cprox_status bound_node(robot_search *o, search_node *node) {
       o->dropped = fmin(o->dropped, entry.lower);
       continue;
     }
-    to[kept++] = entry;
-    if (entry.lower < lower) lower = entry.lower, node->slack = slack;
+    if (!keep_entry(o, &entry)) return CPROX_MEMORY;
+    if (entry.lower < node->lower) node->lower = entry.lower, node->slack = slack;
   }
-  lists_set_count(&o->lists, own, kept);
+
+  const int32_t own = lists_take(&o->lists, o->n_next);
+  if (own < 0) return CPROX_MEMORY;
+  list_entry *to = lists_at(&o->lists, own);
+  for (size_t i = 0; i < o->n_next; i++) to[i] = o->next[i];
+  lists_set_count(&o->lists, own, o->n_next);
   lists_give(&o->lists, old);
   node->side[0].slot = own;
-  node->lower = fmax(node->lower, lower);
+  node->lower = fmax(node->lower, inherited);
   return CPROX_OK;
 }
 
@@ -272,7 +391,7 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   o->best = o->touch = (robot_sight){.pair = -1};
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
   o->dropped = o->touch_at = INFINITY;
-  o->seeded = false;
+  o->seeded = o->climbed = false;
   o->gaps = o->planes = 0;
   lists_begin(&o->lists, o->scene.q->workspace);
 }

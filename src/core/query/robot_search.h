@@ -4,6 +4,7 @@
 #ifndef CPROX_QUERY_ROBOT_SEARCH_H
 #define CPROX_QUERY_ROBOT_SEARCH_H
 
+#include "query/robot_climb.h"
 #include "query/robot_lists.h"
 #include "query/robot_scene.h"
 #include "search/search.h"
@@ -30,6 +31,9 @@ typedef struct robot_search {
   double touch_at;
   bool seeded;
   uint32_t gaps, planes; /* distances measured, plane bounds asked for */
+  bool climbed;          /* elements of meshes were looked at */
+  list_entry *next;      /* what the node at hand keeps, in the workspace */
+  size_t n_next;
 } robot_search;
 
 /* The scene must have begun. */

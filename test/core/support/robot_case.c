@@ -17,24 +17,32 @@ static bool read_pose(FILE *f, cprox_pose *pose) {
   return true;
 }
 
-static cprox_body *read_polytope(FILE *f) {
-  size_t n;
-  cprox_body *body = NULL;
-  if (fscanf(f, "%zu", &n) != 1 || n > 100000) return NULL;
+/* The hull of a mesh, and its surface. */
+static cprox_body *read_mesh(FILE *f, const cprox_body **surface) {
+  size_t n, m;
+  if (fscanf(f, "%zu %zu", &n, &m) != 2 || n > 100000 || m > 100000) return NULL;
+  cprox_body *hull = NULL, *mesh = NULL;
   cprox_vec3 *v = calloc(n, sizeof *v);
-  bool good = v != NULL;
+  uint32_t(*t)[3] = calloc(m, sizeof *t);
+  bool good = v && t;
   for (size_t i = 0; i < n && good; i++) good = fscanf(f, "%lf %lf %lf", &v[i].x, &v[i].y, &v[i].z) == 3;
-  if (good) cprox_body_create_polytope(v, n, NULL, &body);
+  for (size_t i = 0; i < m && good; i++) good = fscanf(f, "%u %u %u", &t[i][0], &t[i][1], &t[i][2]) == 3;
+  if (good &&
+      cprox_body_create_mesh(v, n, (const uint32_t(*)[3])t, m, CPROX_MESH_SURFACE, SIZE_MAX, NULL, &mesh) == CPROX_OK)
+    cprox_body_create_polytope(v, n, NULL, &hull);
+  *surface = mesh;
+  free(t);
   free(v);
-  return body;
+  return hull;
 }
 
-static cprox_body *read_body(FILE *f) {
+static cprox_body *read_body(FILE *f, const cprox_body **surface) {
   char kind[24];
   double x[3];
   cprox_body *body = NULL;
+  *surface = NULL;
   if (fscanf(f, "%23s", kind) != 1) return NULL;
-  if (strcmp(kind, "polytope") == 0) return read_polytope(f);
+  if (strcmp(kind, "mesh") == 0) return read_mesh(f, surface);
   if (strcmp(kind, "box") == 0 && numbers(f, x, 3))
     cprox_body_create_box((cprox_vec3){x[0], x[1], x[2]}, NULL, &body);
   else if (strcmp(kind, "sphere") == 0 && numbers(f, x, 1))
@@ -44,10 +52,24 @@ static cprox_body *read_body(FILE *f) {
   return body;
 }
 
+/* A geometry by its hull; *finer with the mesh under it, where there is one. */
+static bool read_geometry(FILE *f, robot_case *c, size_t i, cprox_link_geometry *by_hull, cprox_link_geometry *finer) {
+  *by_hull = (cprox_link_geometry){0};
+  if (fscanf(f, "%d", &by_hull->link) != 1 || !read_pose(f, &by_hull->pose)) return false;
+  by_hull->body = c->bodies[i] = read_body(f, &c->surfaces[i]);
+  c->links[i] = by_hull->link;
+  *finer = *by_hull;
+  if (!c->surfaces[i] || !c->bodies[i]) return c->bodies[i] != NULL;
+  cprox_body *ladder = NULL;
+  cprox_body_create_ladder(c->bodies[i], 0.0, c->surfaces[i], NULL, &ladder);
+  finer->body = c->ladders[i] = ladder;
+  return ladder != NULL;
+}
+
 /* Links, geometries, and which pairs of links are disabled. */
 static bool read_robot(FILE *f, robot_case *c, size_t *n_variables, bool disabled[CASE_MAX_LINKS][CASE_MAX_LINKS]) {
   cprox_link links[CASE_MAX_LINKS];
-  cprox_link_geometry geometries[CASE_MAX_GEOMETRIES];
+  cprox_link_geometry geometries[CASE_MAX_GEOMETRIES], finer[CASE_MAX_GEOMETRIES];
   size_t n_links, n_disabled;
   if (fscanf(f, "%zu %zu %zu", &n_links, n_variables, &c->n_geometries) != 3 || n_links > CASE_MAX_LINKS ||
       c->n_geometries > CASE_MAX_GEOMETRIES || *n_variables > CASE_MAX_VARIABLES)
@@ -61,20 +83,16 @@ static bool read_robot(FILE *f, robot_case *c, size_t *n_variables, bool disable
     links[i].parent = parent, links[i].type = (cprox_joint_type)type, links[i].variable = variable;
     links[i].axis = (cprox_vec3){x[0], x[1], x[2]}, links[i].multiplier = y[0], links[i].offset = y[1];
   }
-  for (size_t i = 0; i < c->n_geometries; i++) {
-    geometries[i] = (cprox_link_geometry){0};
-    if (fscanf(f, "%d", &geometries[i].link) != 1 || !read_pose(f, &geometries[i].pose)) return false;
-    geometries[i].body = c->bodies[i] = read_body(f);
-    c->links[i] = geometries[i].link;
-    if (!c->bodies[i]) return false;
-  }
+  for (size_t i = 0; i < c->n_geometries; i++)
+    if (!read_geometry(f, c, i, &geometries[i], &finer[i])) return false;
   if (fscanf(f, "%zu", &n_disabled) != 1) return false;
   for (size_t i = 0; i < n_disabled; i++) {
     size_t a, b;
     if (fscanf(f, "%zu %zu", &a, &b) != 2 || a >= n_links || b >= n_links) return false;
     disabled[a][b] = disabled[b][a] = true;
   }
-  return cprox_robot_create(links, n_links, geometries, c->n_geometries, *n_variables, NULL, &c->robot) == CPROX_OK;
+  return cprox_robot_create(links, n_links, geometries, c->n_geometries, *n_variables, NULL, &c->robot) == CPROX_OK &&
+         cprox_robot_create(links, n_links, finer, c->n_geometries, *n_variables, NULL, &c->mesh_robot) == CPROX_OK;
 }
 
 static bool read_motion(FILE *f, robot_case *c, size_t n_variables) {
@@ -93,7 +111,9 @@ static bool read_motion(FILE *f, robot_case *c, size_t n_variables) {
     if (!numbers(f, &points[i].time, 1) || !numbers(f, positions[i], n) || !numbers(f, velocities[i], n)) return false;
   }
   return cprox_motion_create_waypoints(c->robot, variables, n, points, n_points, CPROX_CUBIC, rest, NULL, &c->motion) ==
-         CPROX_OK;
+             CPROX_OK &&
+         cprox_motion_create_waypoints(c->mesh_robot, variables, n, points, n_points, CPROX_CUBIC, rest, NULL,
+                                       &c->mesh_motion) == CPROX_OK;
 }
 
 static bool read_scene(FILE *f, robot_case *c) {
@@ -102,8 +122,9 @@ static bool read_scene(FILE *f, robot_case *c) {
     char id[80];
     cprox_pose pose;
     if (fscanf(f, "%79s", id) != 1 || !read_pose(f, &pose)) return false;
-    c->targets[i] = cprox_at(read_body(f), pose);
-    if (!c->targets[i].body) return false;
+    const cprox_body *surface;
+    c->targets[i] = cprox_at(read_body(f, &surface), pose);
+    if (!c->targets[i].body || surface) return false;
   }
   if (fscanf(f, "%zu", &c->n_answers) != 1 || c->n_answers > 2) return false;
   for (size_t i = 0; i < c->n_answers; i++) {
@@ -140,7 +161,13 @@ bool robot_case_read(FILE *cases, const char *folder, robot_case *c) {
 
 void robot_case_free(robot_case *c) {
   cprox_motion_free(c->motion);
+  cprox_motion_free(c->mesh_motion);
   cprox_robot_free(c->robot);
-  for (size_t i = 0; i < c->n_geometries; i++) cprox_body_free((cprox_body *)c->bodies[i]);
+  cprox_robot_free(c->mesh_robot);
+  for (size_t i = 0; i < c->n_geometries; i++) {
+    cprox_body_free((cprox_body *)c->ladders[i]);
+    cprox_body_free((cprox_body *)c->surfaces[i]);
+    cprox_body_free((cprox_body *)c->bodies[i]);
+  }
   for (size_t i = 0; i < c->n_targets; i++) cprox_body_free((cprox_body *)c->targets[i].body);
 }

@@ -24,10 +24,14 @@ typedef struct case_answer {
 typedef struct robot_case {
   char name[80], robot_name[40];
   char link_names[CASE_MAX_LINKS][40];
-  cprox_robot *robot;
+  cprox_robot *robot; /* meshes by their hulls */
   cprox_motion *motion;
-  const cprox_body *bodies[CASE_MAX_GEOMETRIES];
-  int32_t links[CASE_MAX_GEOMETRIES]; /* of the geometries */
+  cprox_robot *mesh_robot; /* meshes with their hulls, as ladders */
+  cprox_motion *mesh_motion;
+  const cprox_body *bodies[CASE_MAX_GEOMETRIES];   /* hulls */
+  const cprox_body *surfaces[CASE_MAX_GEOMETRIES]; /* NULL where there is no mesh; */
+  const cprox_body *ladders[CASE_MAX_GEOMETRIES];  /* likewise */
+  int32_t links[CASE_MAX_GEOMETRIES];              /* of the geometries */
   size_t n_geometries;
   cprox_target targets[CASE_MAX_OBJECTS];
   size_t n_targets;

@@ -3,8 +3,7 @@
 """Writes robots, trajectories and scenes as plain numbers, which the core's tests and benches read (support/robot_case.c).
 
 robot_cases.py DATA OUT: DATA holds robots/, scenes/, trajectories/ and expected_hull_model.json. OUT receives a file NAME.robot for
-each robot (links, geometries, disabled pairs) and cases.txt (trajectories, scenes, expected answers). Meshes become the vertices
-that they have; the hull of them is the body."""
+each robot (links, geometries, disabled pairs) and cases.txt (trajectories, scenes, expected answers)."""
 import json
 import math
 import os
@@ -30,19 +29,20 @@ def pose_of(origin):
                   cr * cp * sy - sr * sp * cy]
 
 
-def stl_vertices(path, scale):
+def stl_mesh(path, scale):
+    """the vertices, each once, and the triangles"""
     data = open(path, 'rb').read()
     count = struct.unpack_from('<I', data, 80)[0]
-    seen = {}
+    seen, triangles = {}, []
     for i in range(count):
         v = struct.unpack_from('<12f', data, 84 + 50 * i)
-        for k in range(3):
-            seen[tuple(a * s for a, s in zip(v[3 + 3 * k:6 + 3 * k], scale))] = True
-    return list(seen)
+        corners = [tuple(a * s for a, s in zip(v[3 + 3 * k:6 + 3 * k], scale)) for k in range(3)]
+        triangles.append([seen.setdefault(c, len(seen)) for c in corners])
+    return list(seen), triangles
 
 
 def shape_of(node, folder):
-    """a body as text: box x y z | sphere r | cylinder height radius | polytope n x y z ..."""
+    """a body as text: box x y z | sphere r | cylinder height radius | mesh n m x y z ... i j k ..."""
     child = node[0]
     if child.tag == 'box':
         return 'box ' + child.get('size')
@@ -51,8 +51,9 @@ def shape_of(node, folder):
     if child.tag == 'cylinder':
         return 'cylinder %s %s' % (child.get('length'), child.get('radius'))
     path = child.get('filename').replace('file://', '')
-    vertices = stl_vertices(os.path.join(folder, path), numbers(child.get('scale', '1 1 1')))
-    return 'polytope %d %s' % (len(vertices), ' '.join(repr(x) for v in vertices for x in v))
+    vertices, triangles = stl_mesh(os.path.join(folder, path), numbers(child.get('scale', '1 1 1')))
+    return 'mesh %d %d %s %s' % (len(vertices), len(triangles), ' '.join(repr(x) for v in vertices for x in v),
+                                 ' '.join(str(i) for t in triangles for i in t))
 
 
 def text(values):

@@ -85,14 +85,10 @@ static void tame_quaternions(test_robot *t) {
   }
 }
 
-void robot_make(rng *r, double speed, test_robot *t) {
+static void build(test_robot *t) {
   cprox_workspace *ws = cprox_workspace_create();
-  make_links(r, t);
-  make_geometries(r, t);
   if (cprox_robot_create(t->links, t->n_links, t->geometries, t->n_links, t->n_variables, ws, &t->robot) != CPROX_OK)
     fail_msg("%s", cprox_workspace_reason(ws));
-  make_points(r, speed, t);
-  tame_quaternions(t);
   cprox_status status;
   if (t->spline) {
     double control[TEST_MAX_WAYPOINTS * TEST_MAX_VARIABLES];
@@ -110,6 +106,20 @@ void robot_make(rng *r, double speed, test_robot *t) {
   }
   if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
   cprox_workspace_free(ws);
+}
+
+void robot_make(rng *r, double speed, test_robot *t) {
+  make_links(r, t);
+  make_geometries(r, t);
+  make_points(r, speed, t);
+  tame_quaternions(t);
+  build(t);
+}
+
+void robot_rebuild(test_robot *t) {
+  cprox_motion_free(t->motion);
+  cprox_robot_free(t->robot);
+  build(t);
 }
 
 void robot_free(test_robot *t) {

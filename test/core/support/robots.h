@@ -34,6 +34,9 @@ typedef struct test_robot {
 void robot_make(rng *r, double speed, test_robot *t);
 void robot_free(test_robot *t);
 
+/* The same robot on the same motion, with the geometries as they are now. */
+void robot_rebuild(test_robot *t);
+
 /* All variables at a time. */
 void robot_ref_values(const test_robot *t, long double time, long double *values);
 
