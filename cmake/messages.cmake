@@ -8,8 +8,8 @@ set(CURVE_PROXIMITY_MESSAGES
   Curve.msg
   Hyperquadric.msg
   LinkPadding.msg
-  Octree.msg
   LinkScale.msg
+  Octree.msg
   Proximity.msg
 )
 set(CURVE_PROXIMITY_SERVICES

@@ -41,6 +41,11 @@ ShapeDescription scaledShape(const ShapeDescription &shape, double scale, const 
     case ShapeType::MESH: scaleMesh(out, scale, resources); break;
     case ShapeType::POINT:
     case ShapeType::POLYTOPE: out.vertices *= scale; break;
+    case ShapeType::POINTS: /* [radius] */
+      out.vertices *= scale;
+      for (double &radius : out.dimensions) radius *= scale;
+      break;
+    case ShapeType::OCTREE: throw Error("an octree has no other size than its own");
     case ShapeType::IMPLICIT: scaleConstraints(out, scale); break;
     case ShapeType::HALFSPACE: /* [a, b, c, d] */
       if (out.dimensions.size() == 4) out.dimensions[3] *= scale;

@@ -171,10 +171,12 @@ TEST_F(Slider, what_cannot_be_carried_or_scaled_is_told_by_name_and_changes_noth
 /* The support function of every type at scale 1.7 is 1.7 times its own, about its origin; 1e-9 for the solver of implicit bodies. */
 TEST(Scaling, enlarges_every_type_of_shape_about_its_origin) {
   ShapeDescription polytope = shape(ShapeType::POLYTOPE, {}), mesh = shape(ShapeType::MESH, {2, 1, 1}),
-                   implicit = shape(ShapeType::IMPLICIT, {}), point = shape(ShapeType::POINT, {});
+                   implicit = shape(ShapeType::IMPLICIT, {}), point = shape(ShapeType::POINT, {}),
+                   points = shape(ShapeType::POINTS, {0.05});
   polytope.vertices.resize(3, 4);
   polytope.vertices << 0.1, 0.5, 0, 0, 0, 0, 0.4, 0, 0, 0, 0, 0.3;
   point.vertices = Eigen::Vector3d(0.1, 0.2, 0.3);
+  points.vertices = polytope.vertices;
   mesh.vertices = polytope.vertices;
   mesh.triangles.resize(3, 2);
   mesh.triangles << 0, 0, 1, 2, 2, 3;
@@ -190,6 +192,7 @@ TEST(Scaling, enlarges_every_type_of_shape_about_its_origin) {
                                                 shape(ShapeType::ELLIPSOID, {0.3, 0.4, 0.5}),
                                                 shape(ShapeType::SUPERQUADRIC, {0.3, 0.4, 0.5, 3, 4, 2}),
                                                 polytope,
+                                                points,
                                                 mesh,
                                                 implicit};
   test::Random random(5);
