@@ -256,6 +256,55 @@ static void a_disc_tells_nothing_of_curves_off_its_plane(void **state) {
   cprox_workspace_free(workspace);
 }
 
+/* Seed 18, 4000 balls, each part of a compound, 1e6 m from the compound's origin, which stands as far off the other way: where the ball
+ * stands depends on the rounding of both, 1e-10 m. Limits are nearly as near to the truth as that. The reference's own error is 1e-12. */
+static void parts_far_from_their_compound_stay_where_the_interval_is(void **state) {
+  (void)state;
+  rng r = rng_seed(18);
+  cprox_workspace *workspace = cprox_workspace_create();
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(1.0, workspace, &ball), CPROX_OK);
+  size_t settled_by_points = 0;
+  for (size_t i = 0; i < test_cases(4000); i++) {
+    const cprox_pose inner = rng_pose(&r, 1e6);
+    cprox_pose outer = {.position = {0, 0, 0}, .orientation = rng_quat(&r)};
+    const vec3l turned = ref_to_world(&outer, ref_vec(inner.position));
+    outer.position = vec_add(vec(-(double)turned.x, -(double)turned.y, -(double)turned.z), rng_in_cube(&r, 1.0));
+    const vec3l centre = ref_to_world(&outer, ref_vec(inner.position));
+    const cprox_body *part = ball;
+    cprox_body *body = NULL;
+    assert_int_equal(cprox_body_create_compound(&part, &inner, 1, workspace, &body), CPROX_OK);
+    const cprox_target target = cprox_at(body, outer);
+    cprox_batch *batch = NULL;
+    assert_int_equal(cprox_batch_create(&target, 1, workspace, &batch), CPROX_OK);
+
+    /* a segment that begins where it is nearest */
+    const vec3 out = rng_unit(&r), at = vec((double)centre.x, (double)centre.y, (double)centre.z);
+    const vec3 near = vec_axpy(at, rng_uniform(&r, 1.1, 2.0), out), ends[2] = {near, vec_axpy(near, 1.0, out)};
+    cprox_curve *curve = NULL;
+    assert_int_equal(cprox_curve_create_bezier(ends, 2, 0, 1, workspace, &curve), CPROX_OK);
+    const long double truth = ref_point_segment(centre, ref_vec(ends[0]), ref_vec(ends[1])) - 1.0L;
+    const cprox_mover mover = cprox_point_along(curve);
+    cprox_options options = cprox_options_default();
+    options.epsilon = 0.0;
+    cprox_result answers[2];
+    const double delta = (double)truth + rng_uniform(&r, -1e-8, 1e-8);
+    cprox_batch_distance(batch, &mover, 0, 1, &options, workspace, &answers[0]);
+    cprox_batch_tolerance(batch, &mover, 0, 1, delta, &options, workspace, &answers[1]);
+    for (int k = 0; k < 2; k++) {
+      assert_true((long double)answers[k].lower <= truth + 1e-12L);
+      assert_true(truth - 1e-12L <= (long double)answers[k].upper);
+    }
+    settled_by_points += answers[1].probes == 0 && answers[1].verdict == CPROX_NO;
+    cprox_curve_free(curve);
+    cprox_batch_free(batch);
+    cprox_body_free(body);
+  }
+  assert_true(settled_by_points > 0);
+  cprox_body_free(ball);
+  cprox_workspace_free(workspace);
+}
+
 /* ---- splits and threads ------------------------------------------------------------------------------------------------- */
 
 typedef struct worker {
@@ -487,6 +536,7 @@ int main(void) {
       cmocka_unit_test(answers_agree_with_those_of_one_mover),
       cmocka_unit_test(witnesses_lie_where_they_say),
       cmocka_unit_test(a_disc_tells_nothing_of_curves_off_its_plane),
+      cmocka_unit_test(parts_far_from_their_compound_stay_where_the_interval_is),
       cmocka_unit_test(results_are_the_same_for_every_split_and_number_of_threads),
       cmocka_unit_test(ball_bounds_are_never_above_the_true_distance),
       cmocka_unit_test(chords_are_those_of_the_piece),

@@ -112,7 +112,7 @@ static cprox_status check_call(const batch_run *run, const cprox_mover *movers, 
 
 static bool reserve(batch_run *run) {
   const lanes_balls *balls = &run->batch->balls;
-  run->lower = workspace_reserve(run->q.workspace, WORKSPACE_BATCH, balls->padded * sizeof(double));
+  run->lower = workspace_reserve(run->q.workspace, WORKSPACE_BATCH, (balls->padded + 1) * sizeof(double));
   run->near = workspace_reserve(run->q.workspace, WORKSPACE_BATCH_NEAR, (balls->n + 1) * sizeof *run->near);
   return run->lower && run->near;
 }

@@ -119,6 +119,9 @@ candidate_ball candidate_bounding_ball(const question *q, const candidate *c, do
     round.centre = frame_to_world(&f, body->ball_centre);
     round.radius = body->ball_radius;
     *sizes += vec_norm(body->ball_centre) + vec_norm(pose.position);
+    /* a compound's part: what the two positions lose may be more than their sum, which is small where they cancel */
+    if (target->body && target->body->kind == CPROX_COMPOUND)
+      *sizes += vec_norm(target->body->parts[c->part].pose.position);
   }
   if (target->curve) {
     const candidate_ball run = ball_of_curve(target->curve);
