@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "base/rounding.h"
+#include "curve/compile.h"
 #include "support/curves.h"
 #include "support/quad.h"
 #include "support/reference.h"
@@ -357,6 +358,17 @@ static void bad_clothoids_and_involutes_are_refused(void **state) {
   cprox_workspace_free(ws);
 }
 
+/* No constructor leads there: what is without length is refused before. */
+static void a_curve_without_pieces_is_not_made(void **state) {
+  (void)state;
+  cprox_workspace *ws = cprox_workspace_create();
+  compile none = {.workspace = ws};
+  cprox_curve *c = NULL;
+  refused(compile_finish(&none, &c), ws, "the curve has no pieces");
+  assert_null(c);
+  cprox_workspace_free(ws);
+}
+
 static void bad_dubins_paths_are_refused(void **state) {
   (void)state;
   cprox_workspace *ws = cprox_workspace_create();
@@ -396,6 +408,7 @@ int main(void) {
       cmocka_unit_test(dubins_paths_are_within_their_error_and_reach_their_end),
       cmocka_unit_test(the_shortest_word_is_the_shortest),
       cmocka_unit_test(bad_clothoids_and_involutes_are_refused),
+      cmocka_unit_test(a_curve_without_pieces_is_not_made),
       cmocka_unit_test(bad_dubins_paths_are_refused),
   };
   return cmocka_run_group_tests(tests, find_nodes, NULL);

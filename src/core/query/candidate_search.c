@@ -50,17 +50,20 @@ static void report_points(const question *q, const candidate *c, vec3 centre, ve
 }
 
 /* The same where a body is carried, its curve at `centre`, or what stands is on the clock: asked of the pair that both make there. */
-static void report_pair(const question *q, const candidate *c, vec3 centre, const cprox_target *standing, int32_t part,
-                        vec3 normal, cprox_result *r) {
+static cprox_status report_pair(const question *q, const candidate *c, vec3 centre, const cprox_target *standing,
+                                int32_t part, vec3 normal, cprox_result *r) {
   const cprox_target moved = {.body = q->mover.body ? q->mover.body : &carried_point,
                               .pose = {.position = centre, .orientation = {1, 0, 0, 0}},
                               .padding = q->mover.radius};
-  const pair_witness witness =
-      pair_witness_of(&moved, (size_t)c->mover_part, standing, (size_t)part, candidate_rung(q, c), q->is_signed);
+  pair_witness witness;
+  const cprox_status status = pair_witness_of(&moved, (size_t)c->mover_part, standing, (size_t)part,
+                                              candidate_rung(q, c), q->is_signed, q->workspace, &witness);
+  if (status < 0) return status;
   const bool normal_known = vec_norm2(normal) > 0.0;
   r->normal = normal_known ? normal : witness.normal;
   r->target_index = c->target, r->target_part = c->part, r->mover_part = c->mover_part;
   r->on_mover = witness.on_a, r->on_target = witness.on_b;
+  return CPROX_OK;
 }
 
 bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o) {
@@ -99,7 +102,8 @@ bool candidate_begin_convex(const question *q, const candidate *c, curve_convex 
 }
 
 /* Where the other mover is at the parameter of the best sight, and this one from there. */
-static void report_clock(const question *q, const candidate *c, const curve_convex *o, vec3 apart, cprox_result *r) {
+static cprox_status report_clock(const question *q, const candidate *c, const curve_convex *o, vec3 apart,
+                                 cprox_result *r) {
   cprox_target standing = q->targets[c->target];
   const vec3 at = relative_point(standing.curve, r->t, o->best.s == 1.0, q->workspace);
   const frame f = frame_create(&standing.pose, vec(0, 0, 0));
@@ -107,25 +111,21 @@ static void report_clock(const question *q, const candidate *c, const curve_conv
   if (!standing.body) standing.body = &carried_point;
   r->t_target = r->t;
   const vec3 centre = vec_add(standing.pose.position, apart);
-  report_pair(q, c, centre, &standing, c->part, frame_turn_to_world(&o->side.frame, o->best.normal), r);
+  return report_pair(q, c, centre, &standing, c->part, frame_turn_to_world(&o->side.frame, o->best.normal), r);
 }
 
-void candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r) {
-  if (o->incumbent == 0) return;
+cprox_status candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r) {
+  if (o->incumbent == 0) return CPROX_OK;
   const frame *f = &o->side.frame;
   const curve_sight *best = &o->best;
   r->t = curve_side_parameter(&o->side, best->piece, best->s);
   const cprox_target *target = &q->targets[c->target];
-  if (target->on_clock) {
-    report_clock(q, c, o, frame_to_world(f, best->y), r);
-    return;
-  }
-  if (q->mover.body) {
-    report_pair(q, c, frame_to_world(f, best->y), target, c->part, frame_turn_to_world(f, best->normal), r);
-    return;
-  }
+  if (target->on_clock) return report_clock(q, c, o, frame_to_world(f, best->y), r);
+  if (q->mover.body)
+    return report_pair(q, c, frame_to_world(f, best->y), target, c->part, frame_turn_to_world(f, best->normal), r);
   report_points(q, c, frame_to_world(f, best->y), frame_to_world(f, best->near.point),
                 frame_turn_to_world(f, best->normal), best->near.distance, r);
+  return CPROX_OK;
 }
 
 bool candidate_is_tree(const question *q, const candidate *c) {
@@ -182,8 +182,8 @@ bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o
   return !carried || curve_curve_carry(o, &target->pose, carried, &carried_pose);
 }
 
-void candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r) {
-  if (o->incumbent == 0) return;
+cprox_status candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r) {
+  if (o->incumbent == 0) return CPROX_OK;
   const frame *f = &o->side[0].frame;
   const curve_meeting *best = &o->best;
   r->t = curve_side_parameter(&o->side[0], best->piece[0], best->s[0]);
@@ -193,11 +193,11 @@ void candidate_report_curve(const question *q, const candidate *c, const curve_c
     const cprox_target standing = {.body = &carried_point,
                                    .pose = {.position = at, .orientation = {1, 0, 0, 0}},
                                    .padding = q->targets[c->target].padding};
-    report_pair(q, c, frame_to_world(f, best->point[0]), &standing, 0, frame_turn_to_world(f, best->normal), r);
-    return;
+    return report_pair(q, c, frame_to_world(f, best->point[0]), &standing, 0, frame_turn_to_world(f, best->normal), r);
   }
   report_points(q, c, frame_to_world(f, best->point[0]), frame_to_world(f, best->point[1]),
                 frame_turn_to_world(f, best->normal), best->distance, r);
+  return CPROX_OK;
 }
 
 static cprox_status search_convex(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
@@ -223,8 +223,8 @@ static cprox_status search_convex(const question *q, const candidate *c, const s
     status = search_run(&rest, &oracle, root, q->workspace, found);
   found->best = o.best_bound;
   r->probes = o.probes;
-  if (status >= 0) candidate_report_convex(q, c, &o, r);
-  return status;
+  const cprox_status reported = status >= 0 ? candidate_report_convex(q, c, &o, r) : status;
+  return reported < 0 ? reported : status;
 }
 
 static cprox_status search_curve(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
@@ -238,8 +238,8 @@ static cprox_status search_curve(const question *q, const candidate *c, const se
   const search_oracle oracle = curve_curve_oracle(&o);
   const cprox_status status = search_run(goal, &oracle, curve_curve_root(&o), q->workspace, found);
   r->probes = o.probes;
-  if (status >= 0) candidate_report_curve(q, c, &o, r);
-  return status;
+  const cprox_status reported = status >= 0 ? candidate_report_curve(q, c, &o, r) : status;
+  return reported < 0 ? reported : status;
 }
 
 static cprox_status search_tree(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,

@@ -26,8 +26,8 @@ cprox_status candidate_measure_mesh(const question *q, const candidate *c, cprox
 /* The oracle of a candidate with a convex body, ready to search; false where memory is out. */
 bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o);
 
-/* Parameter, points and normal of its best sight, if it has one. */
-void candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r);
+/* Parameter, points and normal of its best sight, if it has one. CPROX_OK, or a negative status. */
+cprox_status candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r);
 
 /* The same of a candidate made of many elements: a mesh, points, boxes. */
 bool candidate_is_tree(const question *q, const candidate *c);
@@ -36,6 +36,6 @@ void candidate_report_tree(const question *q, const candidate *c, const curve_tr
 
 /* The same of a candidate that is a curve. */
 bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o);
-void candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r);
+cprox_status candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r);
 
 #endif

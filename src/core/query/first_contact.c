@@ -38,13 +38,15 @@ static cprox_status meet_convex(const question *q, const candidate *c, const sea
   const search_oracle oracle = contact_convex_oracle(&state);
   cprox_status status = search_run(goal, &oracle, contact_convex_root(&state), q->workspace, found);
   if (status < 0) return status;
-  candidate_report_convex(q, c, o, &met->near);
+  cprox_status reported = candidate_report_convex(q, c, o, &met->near);
+  if (reported < 0) return reported;
   met->near.upper = o->best_bound.upper;
   const cprox_status proved = contact_convex_prove(&state);
   if (proved < 0) return proved;
   if (state.proven_bound.at < goal->horizon) {
     o->best = state.proven;
-    candidate_report_convex(q, c, o, &met->touch);
+    reported = candidate_report_convex(q, c, o, &met->touch);
+    if (reported < 0) return reported;
     met->touch.upper = state.proven_bound.upper;
   }
   met->probes = o->probes;
@@ -60,12 +62,14 @@ static cprox_status meet_curve(const question *q, const candidate *c, const sear
   const search_oracle oracle = contact_curve_oracle(&state);
   const cprox_status status = search_run(goal, &oracle, contact_curve_root(&state), q->workspace, found);
   if (status < 0) return status;
-  candidate_report_curve(q, c, o, &met->near);
+  cprox_status reported = candidate_report_curve(q, c, o, &met->near);
+  if (reported < 0) return reported;
   met->near.upper = o->best_bound.upper;
   contact_curve_prove(&state);
   if (state.proven_bound.at < goal->horizon) {
     o->best = state.proven;
-    candidate_report_curve(q, c, o, &met->touch);
+    reported = candidate_report_curve(q, c, o, &met->touch);
+    if (reported < 0) return reported;
     met->touch.upper = state.proven_bound.upper;
   }
   met->probes = o->probes;

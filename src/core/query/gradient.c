@@ -249,7 +249,8 @@ static cprox_status gradient_of_body(const question *q, const candidate *c, cpro
   /* the points, as the search would report them */
   curve_convex_adopt(&o, &here.sight, (search_best){.upper = distance});
   cprox_result r = {.t_target = NAN};
-  candidate_report_convex(q, c, &o, &r);
+  status = candidate_report_convex(q, c, &o, &r);
+  if (status < 0) return status;
   fill(&q->targets[0], r.normal, r.on_target, g);
   if (q->targets[0].on_clock) g->t_target = g->t;
   if (vec_norm2(r.normal) == 0.0) return invalid(q->workspace, g, "there is no normal");

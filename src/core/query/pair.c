@@ -214,15 +214,16 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
   return CPROX_OK;
 }
 
-pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b,
-                             cprox_rung finest, bool depth) {
+cprox_status pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b,
+                             cprox_rung finest, bool depth, cprox_workspace *workspace, pair_witness *witness) {
   const pair_side side_a = pair_place_model(a, part_a, finest), side_b = pair_place_model(b, part_b, finest);
   const pair_goal goal = {.relative_epsilon = depth ? 1e-10 : 1e-13, .max_steps = 400, .wants_depth = depth};
   pair_answer answer = {.upper = INFINITY};
-  pair_solve(&side_a, &side_b, &goal, NULL, &answer);
-  pair_witness witness = {.on_a = answer.on_a, .on_b = answer.on_b, .normal = answer.normal};
-  if (!depth && answer.upper <= answer.rounding) witness.on_a = witness.on_b = answer.common;
-  return witness;
+  const cprox_status status = pair_solve(&side_a, &side_b, &goal, workspace, &answer);
+  if (status < 0) return status;
+  *witness = (pair_witness){.on_a = answer.on_a, .on_b = answer.on_b, .normal = answer.normal};
+  if (!depth && answer.upper <= answer.rounding) witness->on_a = witness->on_b = answer.common;
+  return CPROX_OK;
 }
 
 /* ---- the verb ---- */

@@ -12,8 +12,8 @@ typedef struct pair_witness {
   vec3 normal; /* from b to a; (0,0,0) where there is none */
 } pair_witness;
 
-/* Of these parts of the two (0 where the body is no compound), which are not both halfspaces. */
-pair_witness pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b,
-                             cprox_rung finest, bool depth);
+/* CPROX_OK, or a negative status with its reason in the workspace. Of these parts of the two (0 where the body is no compound), which are not both halfspaces. */
+cprox_status pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b,
+                             cprox_rung finest, bool depth, cprox_workspace *workspace, pair_witness *witness);
 
 #endif
