@@ -145,8 +145,45 @@ void curve_convex_adopt(curve_convex *o, const curve_sight *sight, search_best b
   o->cover_known = false;
 }
 
-/* Measures at the point where two ranges of pieces meet, which is a control point. */
+/* Measures at s of the loaded piece, and goes on from there by Newton's steps, the first no longer than `step`. */
+static cprox_status probe_at(curve_convex *o, size_t piece, double s, double step) {
+  search_best bound = {.upper = INFINITY};
+  const cprox_status status = curve_convex_measure(o, piece, s, curve_side_point(&o->side, s),
+                                                   curve_side_point_error(&o->side), &o->last, &bound);
+  if (status < 0 || bound.upper >= o->best_bound.upper) return status;
+  curve_convex_adopt(o, &o->last, bound);
+  const bool worthwhile = bound.upper > o->good_enough && o->nodes > o->polish_after;
+  return worthwhile ? polish(o, points_pool_at(&o->pool, SLOT_ROOT), step) : CPROX_OK;
+}
+
+/* From the frame's origin, about which the body stands, towards the chord of a range: a normal that is had without a measurement.
+ * False where the chord meets the origin. */
+static bool look_from_origin(curve_convex *o, const search_node *node) {
+  const vec3 y = curve_side_chord_from_origin(&o->side, &node->side[0]);
+  const double length2 = vec_norm2(y);
+  if (!(length2 > 0.0 && isfinite(length2))) return false;
+  o->last.normal = vec_scale(1.0 / sqrt(length2), y);
+  o->last.support =
+      o->shape->ops->support(o->shape, o->last.normal, &o->support_hint, NULL) + o->shape->margin + o->offset;
+  return true;
+}
+
+/* Where the loaded piece comes nearest to the frame's origin, about which the body stands, as far as a few points tell. */
+static double first_look(const curve_convex *o) {
+  const size_t degree = o->side.curve->degree;
+  const double *basis = lanes_basis(degree, o->workspace), *x = points_pool_at(&o->pool, SLOT_ROOT);
+  return basis ? lanes_first_look(basis, x, x + degree + 1, x + 2 * (degree + 1), degree) : 0.5;
+}
+
+/* The first measurement is on the piece that the nearer chords lead to. Then none is needed; where a normal cannot be had without,
+ * it is at the point where the two ranges meet, which is a control point. */
 static cprox_status probe_range(curve_convex *o, const search_node *node) {
+  if (o->incumbent == 0 && !o->side.curve->arcs) {
+    const size_t nearest = curve_side_nearest_piece(&o->side, &node->side[0]);
+    curve_side_load(&o->side, nearest);
+    return probe_at(o, nearest, first_look(o), 0.5 / CHORDS);
+  }
+  if (o->incumbent > 0 && look_from_origin(o, node)) return CPROX_OK;
   size_t piece;
   double s, error;
   const vec3 y = curve_side_junction(&o->side, &node->side[0], &piece, &s, &error);
@@ -162,10 +199,8 @@ static double promising(const curve_convex *o, const search_interval *at, double
   double fraction = 0.5;
   *step = 0.25 * (at->b - at->a);
   if (o->incumbent == 0 && !o->side.curve->arcs && at->a == 0.0 && at->b == 1.0) {
-    const size_t degree = o->side.curve->degree;
-    const double *basis = lanes_basis(degree, o->workspace), *x = points_pool_at(&o->pool, (size_t)at->slot);
     *step = 0.5 / CHORDS;
-    return basis ? lanes_first_look(basis, x, x + degree + 1, x + 2 * (degree + 1), degree) : fraction;
+    return first_look(o);
   }
   if (o->incumbent > 0 && vec_norm2(o->best.normal) > 0.0) {
     const size_t degree = o->side.curve->degree;
@@ -173,17 +208,6 @@ static double promising(const curve_convex *o, const search_interval *at, double
     fraction = lesser(greater((double)lowest / (double)degree, 0.125), 0.875);
   }
   return at->a + fraction * (at->b - at->a);
-}
-
-/* Measures at s of the loaded piece, and goes on from there by Newton's steps, the first no longer than `step`. */
-static cprox_status probe_at(curve_convex *o, size_t piece, double s, double step) {
-  search_best bound = {.upper = INFINITY};
-  const cprox_status status = curve_convex_measure(o, piece, s, curve_side_point(&o->side, s),
-                                                   curve_side_point_error(&o->side), &o->last, &bound);
-  if (status < 0 || bound.upper >= o->best_bound.upper) return status;
-  curve_convex_adopt(o, &o->last, bound);
-  const bool worthwhile = bound.upper > o->good_enough && o->nodes > o->polish_after;
-  return worthwhile ? polish(o, points_pool_at(&o->pool, SLOT_ROOT), step) : CPROX_OK;
 }
 
 static cprox_status probe_piece(curve_convex *o, const search_node *node) {

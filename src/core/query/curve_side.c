@@ -126,6 +126,25 @@ double curve_side_start(const curve_side *side, const search_interval *at) {
   return side->curve->breaks[leaf - side->curve->n_leaves];
 }
 
+vec3 curve_side_chord_from_origin(const curve_side *side, const search_interval *range) {
+  const curve_capsule *capsule = &side->curve->capsules[range->part];
+  const vec3 a = local_of(&side->frame, capsule->a), along = vec_sub(local_of(&side->frame, capsule->b), a);
+  const double length2 = vec_norm2(along), s = -vec_dot(a, along);
+  return vec_axpy(a, s > 0.0 && length2 > 0.0 ? lesser(s / length2, 1.0) : 0.0, along);
+}
+
+size_t curve_side_nearest_piece(const curve_side *side, const search_interval *at) {
+  search_interval half[2], nearer = *at;
+  while (!curve_side_is_piece(side, &nearer)) {
+    curve_side_cut_range(&nearer, half);
+    nearer = half[0];
+    if (!curve_side_is_empty(side, &half[1]) && vec_norm2(curve_side_chord_from_origin(side, &half[1])) <
+                                                    vec_norm2(curve_side_chord_from_origin(side, &half[0])))
+      nearer = half[1];
+  }
+  return curve_side_piece(side, &nearer);
+}
+
 void curve_side_load(curve_side *side, size_t piece) {
   if (side->root_piece == piece) return;
   const size_t degree = side->curve->degree;

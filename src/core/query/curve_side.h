@@ -50,6 +50,12 @@ search_interval curve_side_whole(void);
 bool curve_side_is_piece(const curve_side *side, const search_interval *at);
 size_t curve_side_piece(const curve_side *side, const search_interval *at);
 
+/* The point of a range's chord that is nearest to the frame's origin, but for rounding. */
+vec3 curve_side_chord_from_origin(const curve_side *side, const search_interval *range);
+
+/* Which piece of an interval may be nearest the frame's origin: the one that the nearer chords lead to. */
+size_t curve_side_nearest_piece(const curve_side *side, const search_interval *at);
+
 /* Brings a piece's control points into the frame, in the root slot. */
 void curve_side_load(curve_side *side, size_t piece);
 
