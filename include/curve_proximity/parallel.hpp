@@ -6,6 +6,7 @@
 #define CURVE_PROXIMITY_PARALLEL_HPP
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
@@ -67,17 +68,22 @@ class Pool {
     wake_.notify_all();
     takeRanges(own_);
     std::unique_lock<std::mutex> lock(mutex_);
-    idle_.wait(lock, [this] { return busy_ == 0; });
+    while (!idle_.wait_for(lock, PATIENCE, [this] { return busy_ == 0; })) {
+    }
     work_ = nullptr;
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   }
 
  private:
+  /** Before 2.41 glibc may lose a wake-up (its bug 25847): nobody waits for one longer than this. */
+  static constexpr std::chrono::seconds PATIENCE{1};
+
   void serve(Workspace &workspace) {
     for (;;) {
       {
         std::unique_lock<std::mutex> lock(mutex_);
-        wake_.wait(lock, [this] { return stopping_ || (work_ && next_ < end_); });
+        while (!wake_.wait_for(lock, PATIENCE, [this] { return stopping_ || (work_ && next_ < end_); })) {
+        }
         if (stopping_) return;
       }
       takeRanges(workspace);
