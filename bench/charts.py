@@ -108,6 +108,21 @@ def curves(rows, out):
                lambda row: f"{row['workload'].split(' tolerance')[0]}\n{row['parameter'][14:]}")
 
 
+def splines(rows, out):
+    for space in ('2-D', '3-D'):
+        yield work_precision(rows, out, 'splines', f'B-spline {space} distance', r'(\d+) segments', f'Cubic B-splines, {space}: distance to 1e-10',
+                             f'splines_{space[0]}', 'segments', reverse=False)
+    yield bars(rows, out, 'splines', lambda row: row['workload'].startswith('trigonometric'), 'Compiled trigonometric series', 'trigonometric',
+               lambda row: row['workload'][14:].replace(' ', '\n'))
+
+
+def peers(rows, out):
+    for workload, name in (('point and curve', 'points'), ('curve and curve', 'curves'), ('path distance', 'paths'),
+                           ('first contact', 'first_contact')):
+        yield bars(rows, out, 'peers', lambda row: row['workload'] == workload, workload[0].upper() + workload[1:], f'peers_{name}',
+                   lambda row: row['parameter'])
+
+
 def batches(rows, out):
     yield bars(rows, out, 'batches', lambda row: True, 'A thousand quintic Bézier curves', 'batches',
                lambda row: f"{row['workload'].replace(' ', chr(10))}\n{row['parameter'].split()[0]}", 'median time of all curves [µs]')
@@ -157,6 +172,6 @@ def draw_all(rows, out):
     """All charts for which there are rows; their names."""
     style()
     drawn = []
-    for draw in (curves, seeds, batches, robots, fourier):
+    for draw in (curves, splines, peers, seeds, batches, robots, fourier):
         drawn += [name for name in draw(rows, out) if name]
     return drawn

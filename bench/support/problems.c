@@ -65,7 +65,8 @@ static void find_faces(obstacle *o) {
   }
 }
 
-static void make_obstacle(rng *r, obstacle_kind kind, obstacle *o) {
+void obstacle_make(rng *r, obstacle_kind kind, obstacle *o) {
+  *o = (obstacle){.n = 0};
   const bool planar = kind == OBSTACLE_POINT || kind == OBSTACLE_POLYGON;
   vec3 centre = vec_add(vec(0.5, 0.5, planar ? 0.0 : 0.5), rng_in_cube(r, 1.0));
   if (planar) centre.z = 0.0;
@@ -85,7 +86,7 @@ static void make_obstacle(rng *r, obstacle_kind kind, obstacle *o) {
   check(cprox_body_create_polytope(o->vertex, o->n, NULL, &o->body));
 }
 
-static void free_obstacle(obstacle *o) {
+void obstacle_free(obstacle *o) {
   cprox_body_free(o->body);
   free(o->triangle);
   *o = (obstacle){.n = 0};
@@ -105,7 +106,7 @@ static bool make_problem(rng *r, obstacle_kind kind, size_t degree, cprox_worksp
   const bool planar = kind == OBSTACLE_POINT || kind == OBSTACLE_POLYGON;
   p->degree = degree;
   make_points(r, degree, planar, p->points);
-  make_obstacle(r, kind, &p->obstacle);
+  obstacle_make(r, kind, &p->obstacle);
   check(cprox_curve_create_bezier(p->points, degree + 1, 0.0, 1.0, NULL, &p->curve));
   p->target = cprox_at(p->obstacle.body, cprox_pose_identity());
   cprox_result result;
@@ -116,7 +117,7 @@ static bool make_problem(rng *r, obstacle_kind kind, size_t degree, cprox_worksp
     p->paper_obstacle = (paper_obstacle){.vertex = p->obstacle.vertex, .n = p->obstacle.n};
     return true;
   }
-  free_obstacle(&p->obstacle);
+  obstacle_free(&p->obstacle);
   cprox_curve_free(p->curve);
   return false;
 }
@@ -132,7 +133,7 @@ curve_problem *curve_problems_make(obstacle_kind kind, size_t degree, size_t n) 
 
 void curve_problems_free(curve_problem *problems, size_t n) {
   for (size_t i = 0; i < n; i++) {
-    free_obstacle(&problems[i].obstacle);
+    obstacle_free(&problems[i].obstacle);
     cprox_curve_free(problems[i].curve);
   }
   free(problems);

@@ -5,6 +5,7 @@
 
 #include "../paper/paper.h"
 #include "curve_proximity/cprox.h"
+#include "support/random.h"
 
 typedef enum obstacle_kind {
   OBSTACLE_POINT,
@@ -22,6 +23,10 @@ typedef struct obstacle {
   size_t triangles;
   cprox_body *body;
 } obstacle;
+
+/* One about the unit square or cube, for its kind. */
+void obstacle_make(rng *r, obstacle_kind kind, obstacle *o);
+void obstacle_free(obstacle *o);
 
 /* A Bézier curve and an obstacle that it does not touch, for us and for the paper's method. */
 typedef struct curve_problem {
