@@ -10,6 +10,7 @@ import sys
 
 import charts
 import pages
+import soundness
 import targets
 
 PREFIX = 'curve_proximity_bench_'
@@ -76,7 +77,7 @@ def main():
     print(f"{len(rows)} rows in {arguments.out}/results.csv, {len(drawn)} charts and {', '.join(written)} beside it")
     for name in failed:
         print(f'FAILED: group {name} ended with an error')
-    missed = targets.report(rows, arguments.only) if arguments.check else 0
+    missed = targets.report(rows, arguments.only) + soundness.report() if arguments.check else 0
     return 1 if failed or missed else 0
 
 
