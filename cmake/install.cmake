@@ -31,7 +31,7 @@ install(DIRECTORY include/curve_proximity/ DESTINATION include/curve_proximity F
 if(CPROX_ROS)
   install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION}
           FILES_MATCHING PATTERN "*.hpp")
-  install(TARGETS ${PROJECT_NAME}_scene ${PROJECT_NAME}_ros
+  install(TARGETS ${PROJECT_NAME}_scene ${PROJECT_NAME}_constraints ${PROJECT_NAME}_providers ${PROJECT_NAME}_ros
           LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION} ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
   install(TARGETS ${PROJECT_NAME}_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   # The command line belongs on the PATH of whoever sources the space.
@@ -43,7 +43,7 @@ if(CPROX_ROS)
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_BIN_DESTINATION})
   install(TARGETS cprox_check RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
   install(DIRECTORY launch config rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
-  install(FILES nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+  install(FILES constraint_provider_plugins.xml nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
   # The demo's robot and scenes, so that demo.launch works from the install space too.
   install(DIRECTORY test/data/robots test/data/scenes DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/test/data)
 elseif(TARGET cprox_check)

@@ -5,6 +5,8 @@ set(CURVE_PROXIMITY_MESSAGES
   AttachedCollisionObject.msg
   Body.msg
   CollisionObject.msg
+  ConstraintQuery.msg
+  ConstraintResult.msg
   Curve.msg
   Hyperquadric.msg
   LinkPadding.msg
@@ -16,6 +18,7 @@ set(CURVE_PROXIMITY_SERVICES
   ApplyScene.srv
   Collision.srv
   Distance.srv
+  EvaluateConstraints.srv
   GetScene.srv
   Tolerance.srv
 )

@@ -305,7 +305,7 @@ def on_debian_12():
 GROUPS = {
     'layering': layering, 'headers': headers, 'lint': lint, 'format': formatting,
     'core': core, 'tidy': tidy, 'sanitizers': sanitized, 'threads': threads,
-    'scene': lambda: room('scene'), 'cli': lambda: room('cli'), 'ros': lambda: room('ros'),
+    'scene': lambda: room('scene'), 'providers': lambda: room('providers'), 'cli': lambda: room('cli'), 'ros': lambda: room('ros'),
     'install': install, 'demo': demo,
 }
 

@@ -14,6 +14,69 @@ namespace {
 /** Below this a process with a few threads does not even start. */
 constexpr int LEAST_MEMORY_MB = 256;
 
+/* ---- ~constraint_providers ---------------------------------------------------------------------------------------- */
+
+using Xml = XmlRpc::XmlRpcValue;
+
+bool isNumber(const Xml &value) {
+  return value.getType() == Xml::TypeInt || value.getType() == Xml::TypeDouble;
+}
+
+double toNumber(Xml &value) {
+  return value.getType() == Xml::TypeInt ? static_cast<int>(value) : static_cast<double>(value);
+}
+
+/** A parameter of a provider; throws Error for what a ParameterValue cannot hold. */
+ParameterValue toParameterValue(Xml &value) {
+  switch (value.getType()) {
+    case Xml::TypeBoolean: return static_cast<bool>(value);
+    case Xml::TypeInt: return static_cast<int>(value);
+    case Xml::TypeDouble: return static_cast<double>(value);
+    case Xml::TypeString: return static_cast<std::string>(value);
+    case Xml::TypeArray: {
+      std::vector<double> numbers;
+      for (int i = 0; i < value.size(); ++i) {
+        if (!isNumber(value[i])) throw Error("a list holds numbers alone");
+        numbers.push_back(toNumber(value[i]));
+      }
+      return numbers;
+    }
+    default: throw Error("true or false, a number, a string or a list of numbers is expected");
+  }
+}
+
+std::string toWord(Xml &entry, const char *key) {
+  if (!entry.hasMember(key) || entry[key].getType() != Xml::TypeString)
+    throw Error(std::string(key) + ": a string is expected");
+  return static_cast<std::string>(entry[key]);
+}
+
+/** The type alone, or name, type and parameters. Throws Error. */
+ProviderSpec toProviderSpec(Xml &entry) {
+  if (entry.getType() == Xml::TypeString) {
+    const std::string type = static_cast<std::string>(entry);
+    return {type, type, {}};
+  }
+  if (entry.getType() != Xml::TypeStruct) throw Error("the name of a plugin is expected, or {name, type, parameters}");
+  ProviderSpec spec;
+  spec.type = toWord(entry, "type");
+  spec.name = entry.hasMember("name") ? toWord(entry, "name") : spec.type;
+  for (auto &member : entry) {
+    const std::string &key = member.first;
+    if (key == "name" || key == "type") continue;
+    if (key != "parameters") throw Error(key + ": this is none of name, type, parameters");
+    if (member.second.getType() != Xml::TypeStruct) throw Error("parameters: names and values are expected");
+    for (auto &parameter : member.second) {
+      try {
+        spec.parameters[parameter.first] = toParameterValue(parameter.second);
+      } catch (const Error &error) {
+        throw Error("parameter " + parameter.first + ": " + error.what());
+      }
+    }
+  }
+  return spec;
+}
+
 /** Fills one parameter after the other from the parameter server. */
 class Reader {
  public:
@@ -52,6 +115,20 @@ class Reader {
       wrong(name, "a number is expected");
     }
     check(name, value, range);
+  }
+
+  void operator()(const char *name, std::vector<ProviderSpec> &value) {
+    Xml given;
+    if (!get(name, given)) return;
+    if (given.getType() != Xml::TypeArray) wrong(name, "a list is expected");
+    value.clear();
+    for (int i = 0; i < given.size(); ++i) {
+      try {
+        value.push_back(toProviderSpec(given[i]));
+      } catch (const Error &error) {
+        throw ParameterError("parameter ~" + std::string(name) + "[" + std::to_string(i) + "]: " + error.what());
+      }
+    }
   }
 
   /** A misspelt name would otherwise leave a default in force that nobody asked for. */

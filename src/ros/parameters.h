@@ -8,6 +8,9 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
+
+#include "../providers/provider_set.h"
 
 namespace curve_proximity {
 
@@ -38,6 +41,7 @@ struct Parameters {
   double cloud_radius = 0.01;
   std::string octomap_id = "<octomap>";
   bool unknown_is_occupied = false;
+  std::vector<ProviderSpec> constraint_providers;
 };
 
 /** The values a number may take: least < value or least <= value, value <= most. */
@@ -70,6 +74,7 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("cloud_radius", parameters.cloud_radius, Range{0.0, false, 1e6});
   visit("octomap_id", parameters.octomap_id);
   visit("unknown_is_occupied", parameters.unknown_is_occupied);
+  visit("constraint_providers", parameters.constraint_providers);
 }
 
 /** Reads the parameters of a private handle; those that are not set keep their defaults.

@@ -40,14 +40,16 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       frames_(parameters_.fixed_frame, parameters_.tf_timeout, stop_),
       scene_(loadRobot(handle, parameters_), resourceOptions("", parameters_.max_shape_mb)),
       srdf_(loadSrdf(handle, parameters_)),
-      queries_(parameters_, scene_, srdf_, frames_, stop_) {
+      queries_(parameters_, scene_, srdf_, frames_, stop_),
+      constraints_(parameters_, scene_, frames_, stop_) {
   markers_ = std::make_unique<MarkerPublisher>(handle_, scene_, parameters_.fixed_frame);
   sensors_ = std::make_unique<Sensors>(handle, parameters_, scene_, frames_);
   services_ = {handle_.advertiseService("distance", &ProximityServer::distance, this),
                handle_.advertiseService("tolerance", &ProximityServer::tolerance, this),
                handle_.advertiseService("collision", &ProximityServer::collision, this),
                handle_.advertiseService("apply_scene", &ProximityServer::applyScene, this),
-               handle_.advertiseService("get_scene", &ProximityServer::getScene, this)};
+               handle_.advertiseService("get_scene", &ProximityServer::getScene, this),
+               handle_.advertiseService("evaluate_constraints", &ProximityServer::evaluateConstraints, this)};
   spinner_ = std::make_unique<ros::AsyncSpinner>(static_cast<std::uint32_t>(parameters_.threads), &queue_);
   spinner_->start();
 }
@@ -145,6 +147,14 @@ bool ProximityServer::getScene(GetScene::Request &request, GetScene::Response &r
     for (CollisionObject &object : response.objects) object.header.frame_id = frames_.fixedFrame();
     response.frame_id = frames_.fixedFrame();
     response.success = true;
+  });
+}
+
+bool ProximityServer::evaluateConstraints(EvaluateConstraints::Request &request,
+                                          EvaluateConstraints::Response &response) {
+  return handle(response, [&] {
+    response.frame_id = frames_.fixedFrame();
+    constraints_.answer(request, response);
   });
 }
 

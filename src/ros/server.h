@@ -6,6 +6,7 @@
 #include <curve_proximity/ApplyScene.h>
 #include <curve_proximity/Collision.h>
 #include <curve_proximity/Distance.h>
+#include <curve_proximity/EvaluateConstraints.h>
 #include <curve_proximity/GetScene.h>
 #include <curve_proximity/Tolerance.h>
 #include <ros/callback_queue.h>
@@ -18,6 +19,7 @@
 #include <memory>
 #include <vector>
 
+#include "constraints.h"
 #include "frames.h"
 #include "markers.h"
 #include "parameters.h"
@@ -45,6 +47,7 @@ class ProximityServer {
   bool collision(Collision::Request &request, Collision::Response &response);
   bool applyScene(ApplyScene::Request &request, ApplyScene::Response &response);
   bool getScene(GetScene::Request &request, GetScene::Response &response);
+  bool evaluateConstraints(EvaluateConstraints::Request &request, EvaluateConstraints::Response &response);
 
   template <class Request, class Response>
   bool query(Verb verb, double delta, const Request &request, Response &response);
@@ -60,6 +63,7 @@ class ProximityServer {
   Scene scene_;
   const Srdf srdf_;
   Queries queries_;
+  Constraints constraints_;
   std::unique_ptr<MarkerPublisher> markers_;
   std::unique_ptr<Sensors> sensors_;
   std::vector<ros::ServiceServer> services_;

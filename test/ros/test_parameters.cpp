@@ -35,6 +35,13 @@ class Comparer {
     EXPECT_LE(value, range.most) << name;
   }
 
+  void operator()(const char *name, const std::vector<ProviderSpec> &value) {
+    names.insert(name);
+    ASSERT_TRUE(file_[name]) << name << " is not documented";
+    EXPECT_TRUE(file_[name].IsSequence()) << name;
+    EXPECT_EQ(file_[name].size(), value.size()) << name;
+  }
+
   std::set<std::string> names;
 
  private:

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "constraint_case.h"
+
+#include <chrono>
+#include <cmath>
+#include <curve_proximity/query.hpp>
+
+namespace curve_proximity {
+namespace {
+
+/** Writes all that a pair is into one string, so that the same pair is known again. */
+class Key {
+ public:
+  void add(const std::string &text) {
+    add(text.size());
+    out_ += text;
+  }
+  void add(double x) {
+    raw(&x, sizeof x);
+  }
+  void add(std::size_t n) {
+    raw(&n, sizeof n);
+  }
+  template <class Matrix>
+  void addMatrix(const Matrix &matrix) {
+    add(static_cast<std::size_t>(matrix.cols()));
+    raw(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof *matrix.data());
+  }
+  template <class Row>
+  void addRows(const std::vector<Row> &rows) {
+    add(rows.size());
+    raw(rows.data(), rows.size() * sizeof(Row));
+  }
+
+  void add(const ObjectDescription &object) {
+    add(object.padding);
+    add(object.shapes.size());
+    for (const ShapeDescription &shape : object.shapes) {
+      add(static_cast<std::size_t>(shape.type));
+      addRows(shape.dimensions);
+      addMatrix(shape.vertices);
+      addMatrix(shape.triangles);
+      add(shape.hyperquadrics.size());
+      for (const HyperquadricTerms &terms : shape.hyperquadrics) addRows(terms);
+      addRows(shape.planes);
+      addRows(shape.quadrics);
+      add(shape.resource);
+      addMatrix(shape.pose.matrix());
+    }
+  }
+
+  const std::string &text() const {
+    return out_;
+  }
+
+ private:
+  void raw(const void *bytes, std::size_t n) {
+    if (n) out_.append(static_cast<const char *>(bytes), n);
+  }
+
+  std::string out_;
+};
+
+ConstraintBody toBody(const ObjectDescription &object, const char *name, const ResourceOptions &resources) {
+  ConstraintBody side;
+  if (!(object.padding >= 0.0) || !std::isfinite(object.padding))
+    throw Error(std::string(name) + ": the padding must be finite and at least 0");
+  side.padding = object.padding;
+  for (std::size_t i = 0; i < object.shapes.size(); ++i) {
+    const ShapeDescription &shape = object.shapes[i];
+    try {
+      if (!shape.pose.matrix().allFinite()) throw Error("its pose is not finite");
+      const Geometry geometry = makeGeometry(shape, resources);
+      side.parts.push_back({shape, geometry.body, geometry.excess});
+    } catch (const Error &error) {
+      throw Error(std::string(name) + ": shape " + std::to_string(i) + ": " + error.what(), error.status());
+    }
+  }
+  return side;
+}
+
+/** What the providers are asked, checked once for all of them. */
+struct Asked {
+  ConstraintPlace place;
+  ConstraintCurve curve;
+  std::string key;
+};
+
+void makeReady(const ConstraintCase &described, Asked &asked) {
+  if (!described.a.pose.matrix().allFinite()) throw Error("a: the pose is not finite");
+  if (!described.b.pose.matrix().allFinite()) throw Error("b: the pose is not finite");
+  asked.place.a = toPose(described.a.pose);
+  asked.place.b = toPose(described.b.pose);
+  if (described.curve) {
+    if (!described.a.pose.matrix().isIdentity(0.0))
+      throw Error("a: what rides a curve stands where the curve is: its pose must be the identity");
+    asked.curve.curve = compile(*described.curve).curve;
+    asked.curve.description = *described.curve;
+    asked.place.curve = &asked.curve;
+  }
+  Key key;
+  key.add(described.a);
+  key.add(described.b);
+  key.add(std::size_t{described.curve.has_value()});
+  asked.key = key.text();
+}
+
+ConstraintPair toPair(const ConstraintCase &described, const ResourceOptions &resources) {
+  return {toBody(described.a, "a", resources), toBody(described.b, "b", resources), described.curve.has_value()};
+}
+
+void askProvider(ProviderSet &providers, const LoadedProvider &loaded, const ConstraintCase &described,
+                 const ResourceOptions &resources, const Asked &asked, Workspace &workspace, ConstraintRow &row) {
+  if (!loaded.provider) throw Error("provider '" + loaded.spec.name + "' failed to load: " + loaded.failure);
+  const std::shared_ptr<const Constraint> constraint =
+      providers.prepared(loaded, asked.key, [&] { return toPair(described, resources); });
+  const auto begin = std::chrono::steady_clock::now();
+  constraint->evaluate(asked.place, workspace, row.value);
+  row.microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+}
+
+} // namespace
+
+ConstraintRow failedRow(const std::string &id, const std::string &why, cprox_status status) {
+  ConstraintRow row;
+  row.id = id;
+  row.status = status;
+  row.message = why;
+  return row;
+}
+
+std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCase &described,
+                                      const ResourceOptions &resources, Workspace &workspace) {
+  std::vector<std::string> names = described.providers;
+  if (names.empty())
+    for (const LoadedProvider &loaded : providers.all()) names.push_back(loaded.spec.name);
+  if (names.empty()) return {failedRow(described.id, "there are no constraint providers")};
+
+  Asked asked;
+  cprox_status fault = CPROX_OK;
+  const std::string why = sentenceOf([&] { makeReady(described, asked); }, &fault);
+  if (fault < 0) return {failedRow(described.id, why, fault)};
+
+  std::vector<ConstraintRow> rows;
+  for (const std::string &name : names) {
+    ConstraintRow row;
+    row.id = described.id;
+    row.provider = name;
+    const LoadedProvider *loaded = providers.find(name);
+    row.message = sentenceOf(
+        [&] {
+          if (!loaded) throw Error("there is no provider '" + name + "' here");
+          askProvider(providers, *loaded, described, resources, asked, workspace, row);
+        },
+        &row.status);
+    if (row.status >= 0) {
+      row.status = row.value.status;
+      row.message = row.value.reason;
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+} // namespace curve_proximity

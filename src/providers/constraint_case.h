@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** One case of a request for constraints, from its description to its answers: beneath the service and the command line. */
+#ifndef CURVE_PROXIMITY_PROVIDERS_CONSTRAINT_CASE_H
+#define CURVE_PROXIMITY_PROVIDERS_CONSTRAINT_CASE_H
+
+#include <curve_proximity/constraint_provider.hpp>
+#include <curve_proximity/geometry.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "provider_set.h"
+
+namespace curve_proximity {
+
+/** What is asked, all poses in the fixed frame. */
+struct ConstraintCase {
+  std::string id;
+  std::vector<std::string> providers;    /**< by name; none: every one that there is */
+  ObjectDescription a, b;                /**< shapes, pose, padding */
+  std::optional<CurveDescription> curve; /**< a rides it; a may then have no shape */
+};
+
+/** One provider's answer. */
+struct ConstraintRow {
+  std::string id, provider;
+  cprox_status status = CPROX_INVALID; /**< negative: no answer, and message says why */
+  std::string message;
+  ConstraintValue value;
+  double microseconds = 0.0; /**< of the evaluation */
+};
+
+/** A row for each provider that the case names, in that order. Never throws but for memory. */
+std::vector<ConstraintRow> answerCase(ProviderSet &providers, const ConstraintCase &asked,
+                                      const ResourceOptions &resources, Workspace &workspace);
+
+/** A row that says why a case could not even be asked about. */
+ConstraintRow failedRow(const std::string &id, const std::string &why, cprox_status status = CPROX_INVALID);
+
+} // namespace curve_proximity
+#endif

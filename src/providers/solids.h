@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** From shapes to the solids of cprox/fourier.h. */
+#ifndef CURVE_PROXIMITY_PROVIDERS_SOLIDS_H
+#define CURVE_PROXIMITY_PROVIDERS_SOLIDS_H
+
+#include <curve_proximity/constraint_provider.hpp>
+#include <memory>
+
+namespace curve_proximity {
+
+using SolidHandle = std::shared_ptr<const cprox_solid>;
+
+/** The union of a side's parts, each a solid that holds the shape: spheres, boxes, ellipsoids, cylinders, capsules, cones (as a
+ *  pyramid round them), polytopes, closed meshes given by vertices and triangles. In the plane: spheres, boxes, ellipsoids and
+ *  polytopes at z = 0. Throws Error, which names the type, for other shapes and for padding. dimension: 2 or 3. */
+SolidHandle makeSolid(const ConstraintBody &side, int dimension);
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* curve_proximity/SuperquadricDistance: the signed distance of standing bodies, each a superquadric, an implicit body, or a
+ * superquadric that encloses it. */
+#include <pluginlib/class_list_macros.hpp>
+
+#include <limits>
+
+#include <curve_proximity/constraint_provider.hpp>
+#include <curve_proximity/superquadric_fit.hpp>
+
+namespace curve_proximity {
+namespace {
+
+/* How far another way out, or another pair of nearest points, is looked for: fractions of the size, and of a turn. */
+constexpr double NEARBY = 1e-6, TILT = 1e-5, JUMP = 0.05, SPREAD = 1e-2, ALIKE = 1e-9;
+
+struct Parameters {
+  cprox_options options = cprox_options_default();
+  SuperquadricFitOptions fit;
+  double margin = 0.0; /* [m] */
+};
+
+/* A side as single bodies, and how far they stand out of what was described. */
+struct Side {
+  std::vector<BodyHandle> bodies;
+  double size = 0.0; /* [m] of the smallest of them: the radius of a ball that contains it; infinite of halfspaces */
+  bool may_be_flat = false; /* there may be faces or edges, or surfaces that are all but flat */
+  double padding = 0.0, excess = 0.0, missing = 0.0; /* [m]; missing: of a mesh's hull */
+};
+
+/* Exponents between these give a surface that is curved nearly everywhere. */
+constexpr double LEAST_ROUND = 1.05, MOST_ROUND = 64.0;
+
+bool mayBeFlat(const ShapeDescription &shape) {
+  if (shape.type == ShapeType::POINT || shape.type == ShapeType::SPHERE || shape.type == ShapeType::ELLIPSOID)
+    return false;
+  if (shape.type != ShapeType::SUPERQUADRIC) return true;
+  for (std::size_t i = 3; i < 6; ++i)
+    if (shape.dimensions[i] < LEAST_ROUND || shape.dimensions[i] > MOST_ROUND) return true;
+  return false;
+}
+
+double sizeOf(const BodyHandle &body) {
+  cprox_vec3 centre;
+  double radius;
+  cprox_body_bounding_sphere(body.get(), &centre, &radius);
+  return radius;
+}
+
+/* A part's body in the part's frame, with the frame's pose in the side's. */
+ConstraintBody::Part asSuperquadric(const ConstraintBody::Part &part, const SuperquadricFitOptions &options,
+                                    double &excess) {
+  ConstraintBody::Part out = part;
+  const std::vector<double> &d = part.shape.dimensions;
+  switch (part.shape.type) {
+    case ShapeType::POINT:
+    case ShapeType::SPHERE:
+    case ShapeType::HALFSPACE:
+    case ShapeType::SUPERQUADRIC:
+    case ShapeType::IMPLICIT: return out;
+    case ShapeType::ELLIPSOID:
+      out.body = makeSuperquadric({d.at(0), d.at(1), d.at(2)}, Eigen::Vector3d::Constant(2.0));
+      return out;
+    default: break;
+  }
+  try {
+    const SuperquadricFit fit = fitSuperquadric(part.body, options);
+    out.body = fit.body;
+    out.shape.pose = part.shape.pose * fit.pose;
+    excess = std::max(excess, fit.excess);
+    out.shape.type = ShapeType::SUPERQUADRIC;
+    out.shape.dimensions = {fit.semi_axes[0], fit.semi_axes[1], fit.semi_axes[2],
+                            fit.exponents[0], fit.exponents[1], fit.exponents[2]};
+    return out;
+  } catch (const Error &error) {
+    throw Error(std::string(shapeTypeName(part.shape.type)) + ": " + error.what(), error.status());
+  }
+}
+
+Side makeSide(const ConstraintBody &described, const SuperquadricFitOptions &options, const char *name) {
+  if (described.parts.empty()) throw Error(std::string("side ") + name + " has no shape");
+  Side side;
+  side.padding = described.padding;
+  side.missing = excessOf(described);
+  for (const ConstraintBody::Part &part : described.parts) {
+    ConstraintBody alone;
+    alone.parts = {asSuperquadric(part, options, side.excess)};
+    side.bodies.push_back(joinedBody(alone));
+    side.may_be_flat = side.may_be_flat || mayBeFlat(alone.parts.front().shape);
+    side.size = side.bodies.size() > 1 ? std::min(side.size, sizeOf(side.bodies.back())) : sizeOf(side.bodies.back());
+  }
+  return side;
+}
+
+class SuperquadricConstraint : public Constraint {
+ public:
+  SuperquadricConstraint(const Parameters &parameters, const ConstraintPair &pair)
+      : parameters_(parameters), a_(makeSide(pair.a, parameters.fit, "a")), b_(makeSide(pair.b, parameters.fit, "b")) {
+    if (pair.along_curve) throw Error("SuperquadricDistance is about standing bodies: ask CurveDistance about curves");
+  }
+
+  void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &out) const override {
+    if (place.curve) throw Error("there is a curve, and the pair is not along one");
+
+    // The nearest of all pairs of parts, and the next.
+    Nearest best;
+    double lower = std::numeric_limits<double>::infinity(), next = lower;
+    for (const BodyHandle &a : a_.bodies) {
+      for (const BodyHandle &b : b_.bodies) {
+        const Nearest found = ask(a, b, place, workspace);
+        lower = std::min(lower, found.result.lower);
+        next = std::min(next, std::max(found.result.upper, best.result.upper));
+        if (!best.a || found.result.upper < best.result.upper) best = found;
+      }
+    }
+    fill(best, lower, place, out);
+    check(best, next, place, workspace, out);
+  }
+
+ private:
+  struct Nearest {
+    const cprox_body *a = nullptr, *b = nullptr;
+    cprox_result result{};
+    Nearest() {
+      result.upper = std::numeric_limits<double>::infinity();
+    }
+  };
+
+  Nearest ask(const BodyHandle &a, const BodyHandle &b, const ConstraintPlace &place, Workspace &workspace) const {
+    Nearest out;
+    out.a = a.get();
+    out.b = b.get();
+    require(cprox_pair(cprox_padded(cprox_at(out.a, place.a), a_.padding),
+                       cprox_padded(cprox_at(out.b, place.b), b_.padding), &parameters_.options, workspace.get(),
+                       &out.result),
+            workspace);
+    return out;
+  }
+
+  /* d = max over unit n of -h_A(-n) - h_B(n) is minus the depth inside, the distance outside: by the support points, a turn w of a
+   * changes it by w·((p_a - x_a) x n), one of b by -w·((p_b - x_b) x n). */
+  void fill(const Nearest &best, double lower, const ConstraintPlace &place, ConstraintValue &out) const {
+    const cprox_result &r = best.result;
+    out.status = r.status;
+    out.value = r.upper - parameters_.margin;
+    out.bounded = true;
+    out.lower = lower - a_.missing - b_.missing - parameters_.margin;
+    out.upper = r.upper + a_.excess + b_.excess - parameters_.margin;
+    out.has_points = true;
+    out.point_a = toEigen(r.on_mover);
+    out.point_b = toEigen(r.on_target);
+    out.normal = toEigen(r.normal);
+    out.a.linear = out.normal;
+    out.b.linear = -out.normal;
+    out.a.angular = (out.point_a - toEigen(place.a.position)).cross(out.normal);
+    out.b.angular = out.normal.cross(out.point_b - toEigen(place.b.position));
+    out.points.resize(3, 0);
+    out.radius = 0.0;
+    out.t = std::numeric_limits<double>::quiet_NaN();
+  }
+
+  /* Is the gradient that of one minimiser alone? */
+  void check(const Nearest &best, double next, const ConstraintPlace &place, Workspace &workspace,
+             ConstraintValue &out) const {
+    const double size = std::min(a_.size, b_.size);
+    out.valid = false;
+    if (best.result.status == CPROX_OVERLAP || out.normal.isZero(0.0)) {
+      out.reason = best.result.status == CPROX_OVERLAP ? "how deep they overlap is not known" : "there is no normal";
+    } else if (next <= best.result.upper + 2.0 * parameters_.options.epsilon + ALIKE * size) {
+      out.reason = "two pairs of parts are equally near";
+    } else if (best.result.upper < 0.0 && !wayOutIsAlone(best, place, size, workspace)) {
+      out.reason = "there is more than one way out";
+    } else if (a_.may_be_flat && b_.may_be_flat && facesMeet(best, place, size, out.normal)) {
+      out.reason = "the nearest points are not the only ones";
+    } else {
+      out.reason.clear();
+      out.valid = true;
+    }
+  }
+
+  /* Inside, the way out may change from one side to another: then the normal jumps nearby. */
+  bool wayOutIsAlone(const Nearest &best, const ConstraintPlace &place, double size, Workspace &workspace) const {
+    for (int i = 0; i < 6; ++i) {
+      const double step = (i % 2 ? 1.0 : -1.0) * NEARBY * size;
+      cprox_pose moved = place.a;
+      (i / 2 == 0 ? moved.position.x : i / 2 == 1 ? moved.position.y : moved.position.z) += step;
+      cprox_result r{};
+      require(
+          cprox_pair(cprox_padded(cprox_at(best.a, moved), a_.padding),
+                     cprox_padded(cprox_at(best.b, place.b), b_.padding), &parameters_.options, workspace.get(), &r),
+          workspace);
+      if ((toEigen(r.normal) - toEigen(best.result.normal)).norm() > JUMP) return false;
+    }
+    return true;
+  }
+
+  /* Two flat faces, or an edge along a face: where the normal tilts by a little, the points of both sides run far along it. */
+  static bool facesMeet(const Nearest &best, const ConstraintPlace &place, double size, const Eigen::Vector3d &n) {
+    const Eigen::Vector3d across = n.unitOrthogonal(), other = n.cross(across);
+    const Eigen::Matrix3d turn_a = toIsometry(place.a).linear(), turn_b = toIsometry(place.b).linear();
+    for (const Eigen::Vector3d &tilt :
+         {across, other, Eigen::Vector3d(across + other), Eigen::Vector3d(across - other)}) {
+      const double along_a = run(best.a, turn_a, -n, tilt), along_b = run(best.b, turn_b, n, tilt);
+      if (std::min(along_a, along_b) > SPREAD * size) return true;
+    }
+    return false;
+  }
+
+  /* How far the support point runs when the direction tilts to either side. */
+  static double run(const cprox_body *body, const Eigen::Matrix3d &turn, const Eigen::Vector3d &n,
+                    const Eigen::Vector3d &tilt) {
+    cprox_vec3 ahead, behind;
+    if (!std::isfinite(cprox_body_support(body, toVec3(turn.transpose() * (n + TILT * tilt)), nullptr)))
+      return std::numeric_limits<double>::infinity(); // a halfspace, whose face is without end
+    cprox_body_support(body, toVec3(turn.transpose() * (n + TILT * tilt)), &ahead);
+    cprox_body_support(body, toVec3(turn.transpose() * (n - TILT * tilt)), &behind);
+    return (toEigen(ahead) - toEigen(behind)).norm();
+  }
+
+  const Parameters parameters_;
+  const Side a_, b_;
+};
+
+} // namespace
+
+class SuperquadricDistance : public ConstraintProvider {
+ public:
+  void initialise(const ParameterMap &parameters) override {
+    ParameterReader reader(parameters);
+    parameters_.options.epsilon = reader.number("epsilon", 1e-9, 0.0);
+    parameters_.margin = reader.number("margin", 0.0, 0.0);
+    parameters_.fit.most_exponent = reader.number("most_exponent", 16.0, 2.0, false, 1000.0);
+    reader.end();
+  }
+
+  std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const override {
+    return std::make_unique<SuperquadricConstraint>(parameters_, pair);
+  }
+
+ private:
+  Parameters parameters_;
+};
+
+} // namespace curve_proximity
+
+PLUGINLIB_EXPORT_CLASS(curve_proximity::SuperquadricDistance, curve_proximity::ConstraintProvider)

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** ~evaluate_constraints between its request and its response, and ~constraint_providers. */
+#ifndef CURVE_PROXIMITY_ROS_CONSTRAINTS_H
+#define CURVE_PROXIMITY_ROS_CONSTRAINTS_H
+
+#include <curve_proximity/EvaluateConstraints.h>
+#include <ros/node_handle.h>
+
+#include <atomic>
+#include <curve_proximity/scene.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../providers/constraint_case.h"
+#include "../providers/provider_set.h"
+#include "frames.h"
+#include "parameters.h"
+#include "workspaces.h"
+
+namespace curve_proximity {
+
+/** The providers of a node. */
+class Constraints {
+ public:
+  /** Loads those of parameters.constraint_providers. Throws ParameterError, naming the parameter, for a type that no package
+   *  declares and for parameters that a provider refuses. A plugin that does not load, or throws, is told by name on the log and in
+   *  every answer; the others go on. All is kept by reference. */
+  Constraints(const Parameters &parameters, const Scene &scene, const Frames &frames, const std::atomic<bool> &stop);
+
+  /** Throws Error where nothing can be answered at all; what is wrong with one case or provider becomes its row. */
+  void answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response);
+
+  /** A sentence for each provider that failed to load. */
+  std::vector<std::string> failures() const;
+
+ private:
+  void checkLimits(const EvaluateConstraints::Request &request) const;
+
+  const Parameters &parameters_;
+  const Scene &scene_;
+  const Frames &frames_;
+  const std::atomic<bool> &stop_;
+  std::unique_ptr<ProviderSet> providers_;
+  WorkspacePool workspaces_;
+};
+
+} // namespace curve_proximity
+#endif

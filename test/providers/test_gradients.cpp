@@ -1,0 +1,338 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Every provider's gradient against finite differences of its own values, over random places; values against the core. */
+#include "support.h"
+
+#include <cmath>
+
+namespace curve_proximity {
+namespace {
+
+/* A small step of everything that a value depends on. */
+struct Step {
+  Eigen::Vector3d linear_a, angular_a, linear_b, angular_b;
+  Eigen::Matrix3Xd points;
+  double radius = 0.0;
+};
+
+cprox_pose moved(const cprox_pose &pose, const Eigen::Vector3d &linear, const Eigen::Vector3d &angular, double h) {
+  const Eigen::Vector3d w = h * angular;
+  const double angle = w.norm();
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+  if (angle > 0.0) turn = Eigen::Quaterniond(Eigen::AngleAxisd(angle, w / angle));
+  const Eigen::Quaterniond q =
+      turn * Eigen::Quaterniond(pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z);
+  return {toVec3(toEigen(pose.position) + h * linear), {q.w(), q.x(), q.y(), q.z()}};
+}
+
+struct Case {
+  cprox_pose a = cprox_pose_identity(), b = cprox_pose_identity();
+  std::optional<CurveDescription> curve;
+};
+
+/* Of a series only the first coefficient is a point: it alone moves with the curve. */
+bool isSeries(const CurveDescription &curve) {
+  return curve.basis == "polynomial" || curve.basis == "legendre" || curve.basis == "trigonometric";
+}
+
+double valueAt(const Constraint &constraint, const Case &c, const Step &step, double h, Workspace &workspace,
+               ConstraintValue &value) {
+  ConstraintPlace place;
+  ConstraintCurve curve;
+  place.b = moved(c.b, step.linear_b, step.angular_b, h);
+  if (c.curve) {
+    // The curve as a whole turns about the origin and moves; its points move by themselves on top.
+    curve.description = *c.curve;
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d w = h * step.angular_a;
+    if (w.norm() > 0.0) turn = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix();
+    curve.description.points = turn * c.curve->points + h * step.points;
+    const Eigen::Index n = isSeries(*c.curve) ? 1 : curve.description.points.cols();
+    curve.description.points.leftCols(n).colwise() += h * step.linear_a;
+    curve.description.radius += h * step.radius;
+    curve.curve = compile(curve.description).curve;
+    place.curve = &curve;
+  } else {
+    place.a = moved(c.a, step.linear_a, step.angular_a, h);
+  }
+  constraint.evaluate(place, workspace, value);
+  return value.value;
+}
+
+/* How far the derivative along the step, by the gradient, is from the nearest of a few central differences with one extrapolation. */
+double misfit(const Constraint &constraint, const Case &c, const Step &step, const ConstraintValue &value,
+              Workspace &workspace, double *derivative) {
+  double expected = value.a.linear.dot(step.linear_a) + value.a.angular.dot(step.angular_a) +
+                    value.b.linear.dot(step.linear_b) + value.b.angular.dot(step.angular_b) +
+                    value.radius * step.radius;
+  if (c.curve) expected += value.points.cwiseProduct(step.points).sum();
+  *derivative = expected;
+  double best = std::numeric_limits<double>::infinity();
+  ConstraintValue unused;
+  for (const double width : {3e-3, 1e-3, 3e-4, 1e-4, 1e-5}) {
+    double slope[2];
+    for (int m = 0; m < 2; ++m) {
+      const double h = width / (m + 1);
+      slope[m] =
+          (valueAt(constraint, c, step, h, workspace, unused) - valueAt(constraint, c, step, -h, workspace, unused)) /
+          (2.0 * h);
+    }
+    best = std::min(best, std::abs((4.0 * slope[1] - slope[0]) / 3.0 - expected));
+  }
+  return best;
+}
+
+Step randomStep(Random &random, const Case &c, bool planar = false) {
+  Step s;
+  s.linear_a = random.inCube(1.0), s.angular_a = random.inCube(1.0);
+  s.linear_b = random.inCube(1.0), s.angular_b = random.inCube(1.0);
+  if (planar) {
+    s.linear_a.z() = s.linear_b.z() = 0.0;
+    s.angular_a.head<2>().setZero();
+    s.angular_b.head<2>().setZero();
+  }
+  if (c.curve) {
+    s.points = Eigen::Matrix3Xd::Random(3, c.curve->points.cols());
+    for (Eigen::Index i = 0; i < s.points.cols(); ++i) s.points.col(i) = random.inCube(1.0);
+    s.radius = c.curve->radius > 0.0 ? random.uniform(-1.0, 1.0) : 0.0;
+  }
+  return s;
+}
+
+CurveDescription randomCurve(Random &random, int k) {
+  CurveDescription c;
+  const char *names[] = {"bezier", "bspline", "polynomial", "legendre", "lagrange", "trigonometric"};
+  c.basis = names[k % 6];
+  c.degree = c.basis == "bspline" || c.basis == "trigonometric" ? 3 : 5;
+  c.points.resize(3, c.basis == "trigonometric" ? 7 : 6);
+  for (Eigen::Index i = 0; i < c.points.cols(); ++i)
+    c.points.col(i) = random.inCube(1.0) / (isSeries(c) ? 1.0 + static_cast<double>(i) : 1.0);
+  c.points.row(0).head(isSeries(c) ? 1 : c.points.cols()).array() += 1.5;
+  if (c.basis == "bspline") c.knots = {0, 0, 0, 0, 0.3, 0.6, 1, 1, 1, 1};
+  if (c.basis == "lagrange") c.knots = {0, 0.2, 0.4, 0.6, 0.8, 1};
+  c.radius = k % 2 ? 0.05 : 0.0;
+  return c;
+}
+
+/* 1e-6: central differences of values that are exact to 1e-12, at the best of several widths, err by some 1e-8; the distance along a
+ * curve is but once differentiable where the nearest feature changes, which is why the best width counts. */
+constexpr double TOLERANCE = 1e-6;
+
+/* A body carried past a superquadric: the core knows their difference by supports alone, its normal to the root of the interval. */
+constexpr double TOLERANCE_BY_SUPPORTS = 1e-5;
+
+struct Tally {
+  int valid = 0, asked = 0;
+  double worst = 0.0;
+};
+
+void check(const Constraint &constraint, const Case &c, Random &random, Workspace &workspace, bool planar,
+           Tally &tally, double tolerance = TOLERANCE) {
+  ConstraintValue value;
+  const Step step = randomStep(random, c, planar);
+  ++tally.asked;
+  valueAt(constraint, c, step, 0.0, workspace, value);
+  if (value.bounded) {
+    EXPECT_LE(value.lower, value.value);
+    EXPECT_GE(value.upper, value.value - 1e-15);
+  }
+  if (!value.valid) return;
+  ++tally.valid;
+  double derivative;
+  const double error = misfit(constraint, c, step, value, workspace, &derivative) / std::max(1.0, std::abs(derivative));
+  EXPECT_LT(error, tolerance) << "case " << tally.asked << " value " << value.value << " derivative " << derivative;
+  tally.worst = std::max(tally.worst, error);
+}
+
+TEST(Gradients, of_CurveDistance_are_those_of_finite_differences_along_random_steps_of_points_and_poses) {
+  const Loaded provider("curve_proximity/CurveDistance", {{"epsilon", 1e-12}});
+  Random random(811);
+  Workspace workspace;
+  Tally tally;
+  const std::vector<std::vector<ShapeDescription>> targets = {
+      {shape(ShapeType::BOX, {0.5, 0.7, 0.9})},
+      {shape(ShapeType::CAPSULE, {0.5, 0.2})},
+      {shape(ShapeType::SUPERQUADRIC, {0.4, 0.3, 0.5, 2.5, 3.5, 5.0})},
+      {shape(ShapeType::CYLINDER, {0.6, 0.3}), shape(ShapeType::SPHERE, {0.35})},
+      {polytope((Eigen::Matrix3Xd(3, 5) << 0.5, -0.4, 0, 0, 0.1, 0, 0.1, 0.5, -0.5, 0, -0.3, -0.2, -0.3, -0.3, 0.5)
+                    .finished())}};
+  for (int i = 0; i < 300; ++i) {
+    ConstraintPair pair;
+    pair.along_curve = true;
+    pair.b = side(targets[static_cast<std::size_t>(i) % targets.size()], i % 3 ? 0.0 : 0.02);
+    if (i % 4 == 0) pair.a = side({shape(ShapeType::BOX, {0.1, 0.2, 0.1})});
+    Case c;
+    c.curve = randomCurve(random, i);
+    c.b = random.pose(0.3);
+    const bool by_supports = i % 4 == 0 && pair.b.parts[0].shape.type == ShapeType::SUPERQUADRIC;
+    check(*provider->prepare(pair), c, random, workspace, false, tally,
+          by_supports ? TOLERANCE_BY_SUPPORTS : TOLERANCE);
+  }
+  std::printf("CurveDistance: %d of %d valid, worst %.1e\n", tally.valid, tally.asked, tally.worst);
+  EXPECT_GT(tally.valid, 200);
+}
+
+TEST(Gradients, of_SuperquadricDistance_are_those_of_finite_differences_apart_and_overlapping) {
+  const Loaded provider("curve_proximity/SuperquadricDistance", {{"epsilon", 1e-13}, {"most_exponent", 8}});
+  Random random(812);
+  Workspace workspace;
+  Tally apart, inside;
+  ShapeDescription implicit;
+  implicit.type = ShapeType::IMPLICIT;
+  implicit.hyperquadrics = {{{1.8, 0.2, 0, 0, 4.0}, {0, 2.1, 0.3, 0, 3.0}, {0.1, 0, 1.7, 0, 2.0}}};
+  const std::vector<ShapeDescription> shapes = {
+      shape(ShapeType::SUPERQUADRIC, {0.4, 0.3, 0.5, 2.5, 3.5, 5.0}), shape(ShapeType::ELLIPSOID, {0.3, 0.5, 0.4}),
+      shape(ShapeType::BOX, {0.6, 0.8, 0.5}), shape(ShapeType::SPHERE, {0.4}), implicit};
+  std::vector<std::unique_ptr<const Constraint>> constraints;
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    for (std::size_t j = 0; j < 4; ++j) {
+      ConstraintPair pair;
+      pair.a = side({shapes[i]}, j == 1 ? 0.03 : 0.0);
+      pair.b = side({shapes[j]});
+      constraints.push_back(provider->prepare(pair));
+    }
+  for (int i = 0; i < 400; ++i) {
+    const Constraint &constraint = *constraints[static_cast<std::size_t>(i) % constraints.size()];
+    Case c;
+    const bool overlapping = i % 5 == 4;
+    c.a = random.pose(0.2);
+    c.b = random.pose(0.2);
+    if (!overlapping) c.b.position = toVec3(toEigen(c.b.position) + random.uniform(1.2, 3.0) * random.direction());
+    check(constraint, c, random, workspace, false, overlapping ? inside : apart);
+  }
+  std::printf("SuperquadricDistance: apart %d of %d valid, worst %.1e; near or inside %d of %d, worst %.1e\n",
+              apart.valid, apart.asked, apart.worst, inside.valid, inside.asked, inside.worst);
+  EXPECT_GT(apart.valid, 300);
+  EXPECT_GT(inside.valid, 20);
+}
+
+TEST(Gradients, of_FourierGap_are_those_of_finite_differences_in_the_plane_and_in_space) {
+  Random random(813);
+  Workspace workspace;
+  const Eigen::Matrix3Xd kite = (Eigen::Matrix3Xd(3, 4) << 0.5, 0, -0.3, 0, 0, 0.4, 0, -0.4, 0, 0, 0, 0).finished();
+  const Eigen::Matrix3Xd tetrahedron =
+      (Eigen::Matrix3Xd(3, 4) << 0.5, -0.4, 0, 0, 0, 0.1, 0.5, -0.5, -0.3, -0.2, -0.3, 0.5).finished();
+  for (const int dimension : {2, 3}) {
+    for (const char *mode : {"certified", "tuned", "signal"}) {
+      const Loaded provider(
+          "curve_proximity/FourierGap",
+          {{"mode", std::string(mode)}, {"dimension", dimension}, {"samples", dimension == 2 ? 17 : 9}});
+      ConstraintPair pair;
+      pair.a = side({dimension == 2 ? polytope(kite) : polytope(tetrahedron)});
+      pair.b = side({shape(ShapeType::BOX, {0.5, 0.7, 0.6})});
+      const auto constraint = provider->prepare(pair);
+      Tally tally;
+      for (int i = 0; i < 60; ++i) {
+        Case c;
+        c.a = random.pose(0.3), c.b = random.pose(0.3);
+        if (dimension == 2)
+          for (cprox_pose *p : {&c.a, &c.b}) {
+            const double angle = random.uniform(-M_PI, M_PI);
+            p->position.z = 0.0;
+            p->orientation = {std::cos(angle), 0, 0, std::sin(angle)};
+          }
+        check(*constraint, c, random, workspace, dimension == 2, tally);
+      }
+      std::printf("FourierGap %d-D %s: %d of %d valid, worst %.1e\n", dimension, mode, tally.valid, tally.asked,
+                  tally.worst);
+      EXPECT_GT(tally.valid, 40) << mode << " " << dimension;
+      EXPECT_LT(tally.worst, 1e-7) << mode << " " << dimension;
+    }
+  }
+}
+
+TEST(Gradients, are_not_valid_where_the_minimiser_is_not_unique) {
+  Workspace workspace;
+  ConstraintValue value;
+
+  // Two boxes are equally near a ball between them, and a straight line runs along a face.
+  const Loaded pairs("curve_proximity/SuperquadricDistance", {});
+  ConstraintPair pair;
+  ShapeDescription left = shape(ShapeType::SPHERE, {0.2}), right = left;
+  left.pose.translation().x() = -1.0, right.pose.translation().x() = 1.0;
+  pair.a = side({shape(ShapeType::SPHERE, {0.3})});
+  pair.b = side({left, right});
+  pairs->prepare(pair)->evaluate({}, workspace, value);
+  EXPECT_FALSE(value.valid);
+  EXPECT_EQ(value.reason, "two pairs of parts are equally near");
+
+  // A ball at the middle of a ball may leave it any way.
+  pair.b = side({shape(ShapeType::SUPERQUADRIC, {0.5, 0.5, 0.5, 2, 2, 2})});
+  pair.a = side({shape(ShapeType::SUPERQUADRIC, {0.3, 0.3, 0.3, 2, 2, 2})});
+  pairs->prepare(pair)->evaluate({}, workspace, value);
+  EXPECT_FALSE(value.valid);
+  EXPECT_LE(value.lower, -0.8 + 1e-12);
+  EXPECT_GE(value.upper, -0.8 - 1e-12);
+
+  // Face to face.
+  ShapeDescription slab;
+  slab.type = ShapeType::IMPLICIT;
+  slab.planes = {{1, 0, 0, -1}, {-1, 0, 0, -1}, {0, 1, 0, -1}, {0, -1, 0, -1}, {0, 0, 1, -1}, {0, 0, -1, -1}};
+  pair.a = pair.b = side({slab});
+  ConstraintPlace place;
+  place.b.position = {0.1, 0.2, 3.0};
+  pairs->prepare(pair)->evaluate(place, workspace, value);
+  EXPECT_NEAR(value.value, 1.0, 1e-9);
+  EXPECT_FALSE(value.valid);
+  EXPECT_EQ(value.reason, "the nearest points are not the only ones");
+
+  const Loaded curves("curve_proximity/CurveDistance", {});
+  ConstraintCurve line;
+  line.description.points = (Eigen::Matrix3Xd(3, 2) << -0.2, 0.2, 0, 0, 1, 1).finished();
+  line.curve = compile(line.description).curve;
+  pair.along_curve = true;
+  pair.a = {};
+  pair.b = side({shape(ShapeType::BOX, {1, 1, 1})});
+  place = {};
+  place.curve = &line;
+  curves->prepare(pair)->evaluate(place, workspace, value);
+  EXPECT_NEAR(value.value, 0.5, 1e-9);
+  EXPECT_FALSE(value.valid);
+  EXPECT_FALSE(value.reason.empty());
+}
+
+TEST(Values, are_negative_inside_and_a_margin_is_taken_off) {
+  Workspace workspace;
+  ConstraintPair pair;
+  pair.along_curve = true;
+  pair.b = side({shape(ShapeType::SPHERE, {0.5})});
+  ConstraintCurve line;
+  line.description.points = (Eigen::Matrix3Xd(3, 2) << -2, 2, 0.2, 0.2, 0, 0).finished();
+  line.curve = compile(line.description).curve;
+  ConstraintPlace place;
+  place.curve = &line;
+  const Loaded plain("curve_proximity/CurveDistance", {}),
+      with_margin("curve_proximity/CurveDistance", {{"margin", 0.125}}),
+      without_sign("curve_proximity/CurveDistance", {{"signed", false}});
+  EXPECT_NEAR(plain->evaluate(pair, place, workspace).value, -0.3, 1e-9);
+  EXPECT_NEAR(with_margin->evaluate(pair, place, workspace).value, -0.425, 1e-9);
+  EXPECT_EQ(without_sign->evaluate(pair, place, workspace).lower, 0.0);
+}
+
+TEST(Values, of_a_certified_FourierGap_are_positive_only_where_the_interiors_do_not_overlap) {
+  const Loaded provider("curve_proximity/FourierGap", {{"samples", 9}});
+  const Loaded distance("curve_proximity/SuperquadricDistance", {});
+  Random random(814);
+  Workspace workspace;
+  ConstraintPair pair;
+  pair.a = side({shape(ShapeType::ELLIPSOID, {0.5, 0.3, 0.4})});
+  pair.b = side({shape(ShapeType::SPHERE, {0.4})});
+  const auto gap = provider->prepare(pair), exact = distance->prepare(pair);
+  ConstraintValue value, truth;
+  int clear = 0, hit = 0;
+  for (int i = 0; i < 500; ++i) {
+    ConstraintPlace place;
+    place.a = random.pose(1.0), place.b = random.pose(1.0);
+    gap->evaluate(place, workspace, value);
+    exact->evaluate(place, workspace, truth);
+    if (value.lower >= 0.0) {
+      EXPECT_GE(truth.upper, 0.0);
+      ++clear;
+    }
+    hit += truth.upper < 0.0;
+  }
+  EXPECT_GT(clear, 20);
+  EXPECT_GT(hit, 20);
+}
+
+} // namespace
+} // namespace curve_proximity
