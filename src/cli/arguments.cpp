@@ -29,27 +29,26 @@ const std::map<std::string, Option> &options() {
       {"--trajectory", {true, {Action::CURVES}}},
       {"--self", {false, {Action::CURVES}}},
       {"--signed", {false, {Action::CURVES}}},
-      {"--scene", {true, {Action::CURVES, Action::CHECK}}},
+      {"--scene", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
       {"--robot", {true, {Action::CURVES, Action::CHECK}}},
       {"--srdf", {true, {Action::CURVES, Action::CHECK}}},
       {"--state", {true, {Action::CURVES, Action::CHECK}}},
       {"--certificate", {true, {Action::CURVES}}},
-      {"--in", {true, {Action::PAIRS}}},
+      {"--in", {true, {Action::PAIRS, Action::CONSTRAINTS}}},
+      {"--provider", {true, {Action::CONSTRAINTS}}},
+      {"--parameters", {true, {Action::CONSTRAINTS}}},
       {"--node", {true, {Action::SEND}}},
       {"--epsilon", {true, {Action::CURVES, Action::PAIRS}}},
       {"--delta", {true, {Action::CURVES, Action::PAIRS}}},
       {"--max-nodes", {true, {Action::CURVES, Action::PAIRS}}},
-      {"--threads", {true, {Action::CURVES, Action::PAIRS}}},
+      {"--threads", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS}}},
       {"--per-object", {false, {Action::CURVES, Action::PAIRS}}},
       {"--max-rung", {true, {Action::CURVES, Action::PAIRS}}},
       {"--skipped", {false, {Action::CURVES, Action::PAIRS}}},
-      {"--out", {true, {Action::CURVES, Action::PAIRS}}},
+      {"--out", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS}}},
   };
   return table;
 }
-
-/* Words of the manual that this version cannot act upon. */
-const std::vector<std::string> kNotAvailable = {"--provider"};
 
 struct VerbName {
   const char *word;
@@ -57,9 +56,13 @@ struct VerbName {
   Verb verb;
 };
 const VerbName kVerbs[] = {
-    {"distance", Action::CURVES, Verb::DISTANCE},   {"tolerance", Action::CURVES, Verb::TOLERANCE},
-    {"collision", Action::CURVES, Verb::COLLISION}, {"pairs", Action::PAIRS, Verb::DISTANCE},
-    {"send", Action::SEND, Verb::DISTANCE},         {"check", Action::CHECK, Verb::DISTANCE},
+    {"distance", Action::CURVES, Verb::DISTANCE},
+    {"tolerance", Action::CURVES, Verb::TOLERANCE},
+    {"collision", Action::CURVES, Verb::COLLISION},
+    {"pairs", Action::PAIRS, Verb::DISTANCE},
+    {"send", Action::SEND, Verb::DISTANCE},
+    {"check", Action::CHECK, Verb::DISTANCE},
+    {"constraints", Action::CONSTRAINTS, Verb::DISTANCE},
 };
 
 [[noreturn]] void notAvailable(const std::string &word) {
@@ -70,9 +73,9 @@ const VerbName &findVerb(const std::string &word) {
   for (const VerbName &verb : kVerbs) {
     if (word == verb.word) return verb;
   }
-  if (word == "constraints") notAvailable("'" + word + "'");
-  throw BadUsage("'" + word +
-                 "' is no verb; the verbs are distance, tolerance, collision, pairs, send, check (see --help)");
+  throw BadUsage(
+      "'" + word +
+      "' is no verb; the verbs are distance, tolerance, collision, pairs, constraints, send, check (see --help)");
 }
 
 /* The words behind the verb: options with their values, and what is no option. */
@@ -96,7 +99,6 @@ void takeOption(const std::vector<std::string> &words, std::size_t &i, const std
   const std::string name = words[i].substr(0, equals);
 
   /* is it an option of this verb? */
-  if (std::find(kNotAvailable.begin(), kNotAvailable.end(), name) != kNotAvailable.end()) notAvailable(name);
   const auto known = options().find(name);
   if (known == options().end()) throw BadUsage("unknown option " + name + " (see --help)");
   const std::vector<Action> &actions = known->second.actions;
@@ -239,6 +241,12 @@ void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
       if (out.robot.empty() && !out.srdf.empty()) throw BadUsage("--srdf needs --robot URDF");
       break;
     case Action::PAIRS: out.pairs = required("--in", "PAIRS.yaml"); break;
+    case Action::CONSTRAINTS:
+      out.provider = required("--provider", "NAME, such as curve_proximity/CurveDistance");
+      out.cases = required("--in", "CASES.yaml");
+      out.parameters = words.text("--parameters");
+      out.scene = words.text("--scene");
+      break;
     case Action::SEND:
       if (plain.empty()) throw BadUsage("'send' needs a file: cprox send SCENE.yaml");
       out.scene = plain.front();
@@ -255,7 +263,8 @@ void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
 Arguments parseArguments(const std::vector<std::string> &words) {
   Arguments out;
   if (words.empty())
-    throw BadUsage("no verb; the verbs are distance, tolerance, collision, pairs, send, check (see --help)");
+    throw BadUsage(
+        "no verb; the verbs are distance, tolerance, collision, pairs, constraints, send, check (see --help)");
 
   /* help and version win over everything else on the line */
   const auto said = [&](const char *word) { return std::find(words.begin(), words.end(), word) != words.end(); };
@@ -295,6 +304,8 @@ cprox distance  --robot URDF [--srdf SRDF] --trajectory T.yaml [--scene SCENE.ya
 cprox tolerance --delta D  (as above)   yes: farther than D everywhere
 cprox collision            (as above)   yes: they touch or overlap somewhere
 cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodies
+cprox constraints --provider NAME --in CASES.yaml [--scene SCENE.yaml] [--parameters "name: value, ..."]
+                                        value and gradient of clearance constraints by a plugin
 cprox send      SCENE.yaml [--node NAME] hands a scene file to a running node
 cprox check     FILE  (the inputs of the question)  what the certificates in FILE prove
 
@@ -311,7 +322,9 @@ cprox check     FILE  (the inputs of the question)  what the certificates in FIL
                     (its virtual joint's parent_frame)
   --state TEXT      joint values in radians or metres; others as in the scene's robot_state, else 0
                     (mid-range where 0 is beyond the limits)
-  --in FILE         a list of {id, a: BODY, b: BODY}
+  --in FILE         a list of {id, a: BODY, b: BODY}; of 'constraints' the request of ~evaluate_constraints:
+                    cases: [{id, a: {pose, bodies: [BODY], ...} or {id: an object of --scene}, b, curve}]
+  --provider NAME   curve_proximity/CurveDistance, .../SuperquadricDistance, .../FourierGap, or another package's
   --certificate FILE  proofs of the answers, for 'check': whoever doubts the search need not believe it
   --epsilon E       width of the intervals asked for, metres, above 0 (default 1e-06)
   --delta D         the clearance asked of 'tolerance', metres
@@ -326,7 +339,9 @@ cprox check     FILE  (the inputs of the question)  what the certificates in FIL
   --help, --version
 
 Results, a CSV row each: id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,probes,microseconds,
-t_b,rung. Metres and radians. A row that fails is told on standard error and has the status 'invalid'.
+t_b,rung. Of 'constraints': id,provider,status,value,lower,upper,valid,t, gradients ga_ and gb_ by a step of side a and b
+(v: position, w: turning), a_, b_ and n_ (nearest points, normal), g_radius,microseconds,n,g0x,g0y,g0z,... by the curve's points.
+Metres and radians. A row that fails is told on standard error and has the status 'invalid'.
 Ends with 0: every row is answered; 1: some are not; 2: the command line or an input file cannot be used.
 )";
 }

@@ -11,7 +11,7 @@
 
 namespace curve_proximity::cli {
 
-enum class Action { HELP, VERSION, CURVES, AGAINST, TRAJECTORY, PAIRS, SEND, CHECK };
+enum class Action { HELP, VERSION, CURVES, AGAINST, TRAJECTORY, PAIRS, CONSTRAINTS, SEND, CHECK };
 
 struct Arguments {
   Action action = Action::HELP;
@@ -25,6 +25,9 @@ struct Arguments {
   std::string robot, srdf;   /**< files of the robot; empty: none */
   std::string state;         /**< "joint: value, …" */
   std::string pairs;         /**< file of PAIRS */
+  std::string cases;         /**< file of CONSTRAINTS */
+  std::string provider;      /**< CONSTRAINTS: the plugin */
+  std::string parameters;    /**< CONSTRAINTS: "name: value, …" */
   std::string node;          /**< SEND: the node's name */
   std::string out;           /**< file of the results; empty: standard output */
   std::size_t threads = 1;

@@ -20,6 +20,9 @@ int answerTrajectory(const Arguments &arguments, Console &console);
 /** pairs: signed distances of standing bodies. */
 int answerPairs(const Arguments &arguments, Console &console);
 
+/** constraints: values and gradients by a provider. */
+int answerConstraints(const Arguments &arguments, Console &console);
+
 /** check: what certificates prove about a question. */
 int checkCertificates(const Arguments &arguments, Console &console);
 

@@ -95,9 +95,7 @@ Side makeSide(const ConstraintBody &described, const SuperquadricFitOptions &opt
 class SuperquadricConstraint : public Constraint {
  public:
   SuperquadricConstraint(const Parameters &parameters, const ConstraintPair &pair)
-      : parameters_(parameters), a_(makeSide(pair.a, parameters.fit, "a")), b_(makeSide(pair.b, parameters.fit, "b")) {
-    if (pair.along_curve) throw Error("SuperquadricDistance is about standing bodies: ask CurveDistance about curves");
-  }
+      : parameters_(parameters), a_(makeSide(pair.a, parameters.fit, "a")), b_(makeSide(pair.b, parameters.fit, "b")) {}
 
   void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &out) const override {
     if (place.curve) throw Error("there is a curve, and the pair is not along one");
@@ -234,6 +232,7 @@ class SuperquadricDistance : public ConstraintProvider {
   }
 
   std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const override {
+    if (pair.along_curve) throw Error("SuperquadricDistance is about standing bodies: ask CurveDistance about curves");
     return std::make_unique<SuperquadricConstraint>(parameters_, pair);
   }
 

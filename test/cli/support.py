@@ -24,7 +24,7 @@ class Answer:
 
     def row(self, identifier, b=None):
         """The one row with this id (and this b)."""
-        found = [row for row in self.rows if row['id'] == identifier and b in (None, row['b'])]
+        found = [row for row in self.rows if row['id'] == identifier and b in (None, row.get('b'))]
         if len(found) != 1:
             raise AssertionError(f'{len(found)} rows with id {identifier!r}, b {b!r}\n{self.out}\n{self.err}')
         return found[0]

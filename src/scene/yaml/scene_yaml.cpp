@@ -112,16 +112,10 @@ Operation readObject(const YamlValue &plain, Warnings &warnings) {
   }
   if (object.id.empty() && out.kind != Operation::Kind::REMOVE) value.fail("the object has no id");
 
-  /* where it stands */
-  object.frame = readFrame(value, warnings);
-  if (const auto pose = value.find("pose")) object.pose = toIsometry(pose->pose(warnings));
-  if (const auto padding = value.find("padding")) object.padding = padding->number();
-
-  /* what it consists of */
-  readShapes(value, "primitives", "primitive_poses", readPrimitive, object, warnings);
-  readShapes(value, "meshes", "mesh_poses", readMeshEntry, object, warnings);
-  readShapes(value, "planes", "plane_poses", readPlane, object, warnings);
-  readShapes(value, "bodies", "body_poses", readBodyEntry, object, warnings);
+  /* where it stands, and what it consists of */
+  const std::string id = object.id;
+  object = readPlacedShapes(value, warnings);
+  object.id = id;
   const bool shapes_expected = out.kind == Operation::Kind::ADD || out.kind == Operation::Kind::APPEND;
   if (shapes_expected && object.shapes.empty()) {
     value.fail("the object has no shape: neither primitives, meshes, planes nor bodies");
@@ -260,6 +254,18 @@ void readAllowed(const YamlValue &root, SceneFile &out, Warnings &warnings) {
 }
 
 } // namespace
+
+ObjectDescription readPlacedShapes(const YamlValue &value, Warnings &warnings) {
+  ObjectDescription object;
+  object.frame = readFrame(value, warnings);
+  if (const auto pose = value.find("pose")) object.pose = toIsometry(pose->pose(warnings));
+  if (const auto padding = value.find("padding")) object.padding = padding->number();
+  readShapes(value, "primitives", "primitive_poses", readPrimitive, object, warnings);
+  readShapes(value, "meshes", "mesh_poses", readMeshEntry, object, warnings);
+  readShapes(value, "planes", "plane_poses", readPlane, object, warnings);
+  readShapes(value, "bodies", "body_poses", readBodyEntry, object, warnings);
+  return object;
+}
 
 SceneFile readScene(const std::string &path, Warnings &warnings) {
   const YamlValue root = loadYaml(path);

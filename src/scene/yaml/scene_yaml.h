@@ -31,6 +31,9 @@ struct SceneFile {
   std::vector<std::string> skipped; /**< what of the file takes no part, a sentence each */
 };
 
+/** The frame, pose, padding and shapes of an object, in the words of a collision object; each may be missing. */
+ObjectDescription readPlacedShapes(const YamlValue &object, Warnings &warnings);
+
 /** Reads a scene. Throws BadUsage naming the file, the place and the line: anything that would leave an object out or
  *  put it elsewhere. What can be ignored is ignored with a warning. */
 SceneFile readScene(const std::string &path, Warnings &warnings);

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Constraint providers from the command line, loaded as plugins without a master."""
+from support import Case, cprox
+
+CURVES, PAIRS, GAP = (f'curve_proximity/{name}' for name in ('CurveDistance', 'SuperquadricDistance', 'FourierGap'))
+BALL = '{type: sphere, dimensions: [0.25]}'
+
+
+class Constraints(Case):
+    def constraints(self, provider, cases, *more):
+        return cprox('constraints', '--provider', provider, '--in', self.file('cases.yaml', 'cases:\n' + cases), *more)
+
+    def a_curve_has_a_value_an_interval_and_gradients_by_its_points(self):
+        answer = self.constraints(CURVES, f'''
+- id: passing
+  curve: {{basis: bezier, radius: 0.1, points: [[-1, 0, 1], [3, 0, 1]]}}
+  b: {{bodies: [{BALL}], pose: {{position: [1, 0, 0]}}}}
+''')
+        self.assertEqual((answer.code, answer.err), (0, ''))
+        row = answer.row('passing')
+        self.assertEqual((row['provider'], row['status'], row['valid'], row['n']), (CURVES, 'ok', 'true', '2'))
+        self.assertLessEqual(float(row['lower']), 0.65 + 1e-15)
+        self.assertGreaterEqual(float(row['upper']), 0.65 - 1e-15)
+        self.assertAlmostEqual(float(row['t']), 0.5, delta=1e-6)
+        self.assertAlmostEqual(float(row['g0z']), 0.5, delta=1e-6)
+        self.assertAlmostEqual(float(answer.out.splitlines()[1].split(',')[-1]), 0.5, delta=1e-6)
+        self.assertAlmostEqual(float(row['gb_vz']), -1.0, delta=1e-6)
+        self.assertAlmostEqual(float(row['b_z']), 0.25, delta=1e-6)
+
+    def pairs_of_superquadrics_and_gaps_are_answered_with_parameters(self):
+        cases = '''
+- id: two
+  a: {bodies: [{type: superquadric, dimensions: [0.5, 0.5, 0.5, 2, 2, 2]}]}
+  b: {bodies: [{type: ellipsoid, dimensions: [0.5, 0.5, 0.5]}], pose: {position: [3, 0, 0]}}
+'''
+        row = self.constraints(PAIRS, cases, '--parameters', 'margin: 0.25').row('two')
+        self.assertAlmostEqual(float(row['value']), 1.75, delta=1e-8)
+        self.assertEqual((row['n'], row['t']), ('0', ''))
+        cases = cases.replace('superquadric, dimensions: [0.5, 0.5, 0.5, 2, 2, 2]', 'box, dimensions: [1, 1, 1]')
+        row = self.constraints(GAP, cases.replace('[3,', '[0.7,'), '--parameters', 'mode: signal, samples: 9').row('two')
+        self.assertEqual((row['lower'], row['a_x'], row['valid']), ('', '', 'true'))
+        self.assertGreater(float(row['gb_vx']), 0.0)
+
+    def objects_are_those_of_the_scene(self):
+        scene = self.file('scene.yaml', '''
+world:
+  collision_objects:
+    - {id: box, primitives: [{type: box, dimensions: [2, 2, 2]}], pose: {position: [5, 0, 0]}}
+''')
+        answer = self.constraints(CURVES, '''
+- {id: there, curve: {basis: bezier, points: [[0, -4, 0], [0, 4, 0]]}, b: {id: box}}
+- {id: moved, curve: {basis: bezier, points: [[0, -4, 0], [0, 4, 0]]}, b: {id: box, pose: {position: [3, 0, 0]}}}
+- {id: none, curve: {basis: bezier, points: [[0, -4, 0], [0, 4, 0]]}, b: {id: ghost}}
+''', '--scene', scene)
+        self.assertEqual(answer.code, 1)
+        self.assertAlmostEqual(float(answer.row('there')['value']), 4.0, delta=1e-8)
+        self.assertAlmostEqual(float(answer.row('moved')['value']), 2.0, delta=1e-8)
+        self.assertEqual(answer.row('none')['status'], 'invalid')
+        self.assertIn("'ghost'", answer.err)
+
+    def wrong_cases_are_rows_without_numbers_and_the_others_are_answered(self):
+        good = f'a: {{bodies: [{BALL}]}}, b: {{bodies: [{BALL}], pose: {{position: [0, 2, 0]}}}}'
+        answer = self.constraints(PAIRS, f'''
+- {{id: negative, a: {{bodies: [{{type: sphere, dimensions: [-1]}}]}}, b: {{bodies: [{BALL}]}}}}
+- {{id: curve, curve: {{basis: bezier, points: [[0, 0, 0], [1, 0, 0]]}}, b: {{bodies: [{BALL}]}}}}
+- {{id: frame, a: {{bodies: [{BALL}], header: {{frame_id: elsewhere}}}}, b: {{bodies: [{BALL}]}}}}
+- {{id: empty}}
+- {{id: good, {good}}}
+''')
+        self.assertEqual(answer.code, 1)
+        for name, word in (('negative', 'sphere'), ('curve', 'CurveDistance'), ('frame', 'elsewhere'), ('empty', "'b'")):
+            self.assertEqual((answer.row(name)['status'], answer.row(name)['value']), ('invalid', ''))
+            self.assertIn(word, [line for line in answer.err.splitlines() if f"'{name}'" in line][0])
+        self.assertAlmostEqual(float(answer.row('good')['value']), 1.5, delta=1e-8)
+
+    def wrong_providers_and_parameters_are_refused_by_name(self):
+        case = f'- {{id: x, b: {{bodies: [{BALL}]}}}}\n'
+        self.assertRefused(self.constraints('curve_proximity/Nonsense', case), '--provider curve_proximity/Nonsense', 'FourierGap')
+        for text, word in (('mode: sure', 'parameter mode'), ('samples: 2.5', 'parameter samples'), ('sample: 9', 'no such parameter'),
+                           ('samples: [1, two]', 'samples'), ('samples: {a: 1}', 'samples'), ('samples: [', '--parameters')):
+            with self.subTest(text=text):
+                self.assertRefused(self.constraints(GAP, case, '--parameters', text), word)
+        self.assertRefused(cprox('constraints', '--in', 'x'), '--provider')
+        self.assertRefused(cprox('constraints', '--provider', GAP), '--in')
+        self.assertRefused(cprox('constraints', '--provider', GAP, '--in', self.file('list.yaml', '- 1')), "a list 'cases'")
+        self.assertRefused(cprox('pairs', '--in', 'x', '--provider', GAP), "'pairs' takes no --provider")

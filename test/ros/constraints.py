@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""~evaluate_constraints on the live node: values, gradients, and what wrong requests, providers and parameters come to."""
+import math
+import unittest
+
+import rospy
+from curve_proximity.msg import ConstraintQuery
+from curve_proximity.srv import EvaluateConstraints
+from geometry_msgs.msg import Pose
+from helpers import Node, Server, bezier, body, box, mesh, plane, pose, run, sphere, thing
+
+CURVES = 'curve_proximity/CurveDistance'
+
+
+def query(a=None, b=None, curve=None, providers=(), name='case'):
+    asked = ConstraintQuery(id=name, providers=list(providers))
+    if a is not None:
+        asked.a = a
+    if b is not None:
+        asked.b = b
+    if curve is not None:
+        asked.curve = curve
+    return asked
+
+
+class Constraints(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+        rospy.wait_for_service('/curve_proximity/evaluate_constraints', 20)
+        cls.service = rospy.ServiceProxy('/curve_proximity/evaluate_constraints', EvaluateConstraints, persistent=True)
+
+    def rows(self, *cases):
+        response = self.service(list(cases))
+        self.assertTrue(response.success, response.message)
+        self.assertEqual(response.frame_id, 'world')
+        return response.results
+
+    def row(self, *arguments, **fields):
+        rows = self.rows(query(*arguments, **fields))
+        self.assertEqual(len(rows), 1)
+        return rows[0]
+
+    def refused(self, *arguments, **fields):
+        response = self.service([query(*arguments, **fields)])
+        self.assertFalse(response.success)
+        self.assertEqual(response.results[0].status, 'invalid')
+        self.assertTrue(math.isnan(response.results[0].value))
+        self.assertIn(response.results[0].message, response.message)
+        return response.results[0].message
+
+    def test_a_curve_has_a_value_an_interval_and_gradients_by_its_points_and_by_the_pose(self):
+        line = bezier((-1, 0, 1), (3, 0, 1), radius=0.1)
+        row = self.row(b=sphere('', 0.25, (1, 0, 0)), curve=line, providers=[CURVES])
+        self.assertAlmostEqual(row.value, 0.65, delta=1e-8)
+        self.assertLessEqual(row.lower, 0.65 + 1e-15)
+        self.assertGreaterEqual(row.upper, 0.65 - 1e-15)
+        self.assertTrue(row.valid, row.message)
+        self.assertAlmostEqual(row.t, 0.5, delta=1e-6)
+        self.assertEqual([round(v.z, 6) for v in row.gradient_points], [0.5, 0.5])
+        self.assertAlmostEqual(row.gradient_radius, -1.0)
+        self.assertAlmostEqual(row.gradient_b.linear.z, -1.0, delta=1e-6)
+        self.assertAlmostEqual(row.gradient_a.linear.z, 1.0, delta=1e-6)
+        self.assertAlmostEqual(row.point_b.z, 0.25, delta=1e-6)
+
+    def test_a_body_rides_a_curve(self):
+        row = self.row(a=box('', (0.2, 0.2, 0.4)), b=sphere('', 0.25, (1, 0, 0)), curve=bezier((-1, 0, 1), (3, 0, 1)),
+                       providers=[CURVES])
+        self.assertAlmostEqual(row.value, 0.55, delta=1e-6)
+
+    def test_the_gradient_is_that_of_differences_through_the_service(self):
+        """Central differences, steps of 1e-5 m, of values that are exact to the provider's epsilon of 1e-9 m: 1e-4."""
+        def at(x, y):
+            return body('', 'superquadric', (0.3, 0.4, 0.5, 4, 3, 2.5), position=(x, y, 0.1))
+        other = body('', 'superquadric', (0.2, 0.3, 0.2, 2, 3, 4), position=(1.5, 0.8, -0.2))
+        row = self.row(at(0, 0), other, providers=['pairs'])
+        h = 1e-5
+        for axis, expected in (((h, 0), row.gradient_a.linear.x), ((0, h), row.gradient_a.linear.y)):
+            ahead, behind = self.rows(query(at(*axis), other, providers=['pairs']),
+                                      query(at(-axis[0], -axis[1]), other, providers=['pairs']))
+            self.assertAlmostEqual((ahead.value - behind.value) / (2 * h), expected, delta=1e-4)
+        self.assertTrue(row.valid)
+
+    def test_objects_of_the_scene_are_named_and_may_be_placed_elsewhere(self):
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0)), box('shelf', (1, 1, 1), (0, 9, 0), padding=0.1))
+        row = self.row(a=sphere('', 0.25, (0, 0, 0)), b=thing('ball', (0, 0, 0)), providers=['pairs'])
+        self.assertLess(row.value, 0.0)  # placed at the origin by the request
+        there = thing('ball')
+        there.pose = Pose()
+        row = self.row(a=sphere('', 0.25, (3, 0, 0)), b=there, providers=['pairs'])
+        self.assertAlmostEqual(row.value, 1.5, delta=1e-8)
+        named = thing('shelf')
+        named.pose = Pose()
+        row = self.row(b=named, curve=bezier((-1, 7, 0), (1, 7, 0)), providers=[CURVES])
+        self.assertAlmostEqual(row.value, 1.4, delta=1e-8)
+
+    def test_what_is_fitted_has_an_interval_round_the_true_distance(self):
+        row = self.row(a=box('', (0.4, 0.4, 0.4)), b=box('', (0.6, 0.6, 0.6), (2, 0, 0)), providers=['pairs'])
+        self.assertLessEqual(row.lower, 1.5)
+        self.assertGreaterEqual(row.upper, 1.5)
+        self.assertLess(row.lower, row.value + 1e-12)
+
+    def test_a_gap_says_clear_only_where_it_is(self):
+        far, near = self.rows(query(sphere('', 0.3), box('', (0.5, 0.5, 0.5), (0.9, 0, 0)), providers=['gap']),
+                              query(sphere('', 0.3), box('', (0.5, 0.5, 0.5), (0.4, 0, 0)), providers=['gap']))
+        self.assertLess(near.value, 0.0)
+        self.assertGreater(far.value, near.value)
+        self.assertGreater(near.gradient_b.linear.x, 0.0)
+        self.assertLess(near.gradient_a.linear.x, 0.0)
+        self.assertTrue(math.isnan(near.point_a.x))
+
+    def test_a_provider_of_another_package_is_asked_like_ours(self):
+        row = self.row(sphere('', 0.5, (0, 0, 0)), sphere('', 0.5, (0, 3, 0)), providers=['balls'])
+        self.assertAlmostEqual(row.value, 1.75, delta=1e-12)
+        self.assertTrue(math.isnan(row.lower))
+        self.assertAlmostEqual(row.gradient_b.linear.y, 1.0)
+
+    def test_without_names_all_are_asked_and_those_that_fail_do_not_spoil_the_others(self):
+        response = self.service([query(sphere('', 0.5), sphere('', 0.5, (0.6, 2, 0)))])
+        self.assertFalse(response.success)
+        rows = {row.provider: row for row in response.results}
+        self.assertEqual(len(rows), 7)
+        truth = math.hypot(0.6, 2) - 1.0
+        self.assertAlmostEqual(rows['pairs'].value, truth, delta=1e-8)
+        self.assertAlmostEqual(rows['balls'].value, truth - 0.25, delta=1e-12)
+        self.assertEqual(rows['gap'].status, 'ok')
+        self.assertIn('CurveDistance is about curves', rows[CURVES].message)
+        self.assertIn("provider 'at_start' failed to load", rows['at_start'].message)
+        self.assertIn('no exception', rows['at_start'].message)
+        self.assertIn('no exception', rows['when_asked'].message)
+        self.assertIn("provider 'no_library' failed to load", rows['no_library'].message)
+        self.assertIn('4 of 7 rows failed', response.message)
+
+    def test_wrong_cases_are_told_by_name_and_the_others_are_answered(self):
+        good = query(sphere('', 0.5), sphere('', 0.5, (0, 3, 0)), providers=['pairs'], name='good')
+        bad = query(sphere('', -0.5), sphere('', 0.5), providers=['pairs'], name='bad')
+        response = self.service([good, bad, good])
+        self.assertFalse(response.success)
+        self.assertEqual([row.status for row in response.results], ['ok', 'invalid', 'ok'])
+        self.assertIn("case 1 ('bad')", response.message)
+        self.assertIn('a: shape 0: sphere', response.results[1].message)
+
+        ball = sphere('', 0.5)
+        self.assertIn("no provider 'nobody'", self.refused(ball, ball, providers=['nobody']))
+        self.assertIn("no object 'ghost'", self.refused(ball, thing('ghost'), providers=['pairs']))
+        self.assertIn('no shape', self.refused(ball, providers=['pairs']))
+        self.assertIn('nowhere', self.refused(sphere('', 0.5, frame='nowhere'), ball, providers=['pairs']))
+        self.assertIn('halfspace', self.refused(ball, plane('', (0, 0, 1, 0)), providers=['gap']))
+        self.assertIn('identity', self.refused(sphere('', 0.5, (1, 0, 0)), ball, bezier((0, 0, 1), (1, 0, 1)), [CURVES]))
+        self.assertIn('basis', self.refused(b=ball, curve=bezier((0, 0, 1), (1, 0, 1), basis='nurbs'), providers=[CURVES]))
+        self.assertIn('finite', self.refused(ball, sphere('', 0.5, (float('nan'), 0, 0)), providers=['pairs']))
+        self.assertIn('padding', self.refused(ball, sphere('', 0.5, padding=-1.0), providers=['pairs']))
+        turned = sphere('', 0.5)
+        turned.pose = pose((1, 0, 0), (0, 0, 0, 0))
+        self.assertIn('norm is 0', self.refused(ball, turned, providers=['pairs']))
+        self.assertIn('triangle', self.refused(ball, mesh('', [(0, 0, 0)], [(0, 1, 2)]), providers=['pairs']))
+
+    def test_more_than_the_limits_is_refused(self):
+        ball = sphere('', 0.5)
+        response = self.service([query(ball, ball, providers=['pairs'])] * 1001)
+        self.assertFalse(response.success)
+        self.assertIn('~max_curves', response.message)
+        self.assertEqual(self.service([]).results, [])
+
+    def test_many_cases_of_one_pair_are_answered_in_one_call(self):
+        cases = [query(box('', (0.4, 0.5, 0.6)), box('', (0.3, 0.3, 0.3), (0.3 + 0.001 * i, 0, 0)), providers=['gap'])
+                 for i in range(500)]
+        rows = self.rows(*cases)
+        self.assertEqual(len(rows), 500)
+        self.assertTrue(all(row.status == 'ok' for row in rows))
+
+
+class WrongProviders(unittest.TestCase):
+    def stopped(self, providers):
+        node = Node('wrong_providers', constraint_providers=providers)
+        try:
+            code = node.wait(20)
+            output = node.output()
+        finally:
+            node.end()
+        self.assertNotIn(code, (None, 0), output)
+        self.assertGreater(code, 0, 'the node died of a signal: ' + output)
+        return output
+
+    def test_each_stops_the_node_which_names_the_parameter(self):
+        gap = 'curve_proximity/FourierGap'
+        cases = [('all of them', '~constraint_providers: a list'),
+                 ([7], '~constraint_providers[0]'),
+                 ([CURVES, 'curve_proximity/Nonsense'], "~constraint_providers[1] ('curve_proximity/Nonsense')"),
+                 ([CURVES, CURVES], 'given twice'),
+                 ([{'name': 'x'}], '~constraint_providers[0]: type'),
+                 ([{'name': 3, 'type': gap}], '~constraint_providers[0]: name'),
+                 ([{'type': gap, 'parameter': {}}], '~constraint_providers[0]: parameter'),
+                 ([{'type': gap, 'parameters': 'fast'}], '~constraint_providers[0]: parameters'),
+                 ([{'type': gap, 'parameters': {'mode': 'fast'}}], 'parameter mode'),
+                 ([{'type': gap, 'parameters': {'samples': 'many'}}], 'parameter samples: a whole number'),
+                 ([{'type': gap, 'parameters': {'samples': [1, 'two']}}], 'parameter samples: a list holds numbers alone'),
+                 ([{'type': gap, 'parameters': {'sample': 9}}], 'parameter sample: there is no such parameter'),
+                 ([{'name': 'mine', 'type': 'example_provider/Balls', 'parameters': {'margin': -1}}],
+                  "~constraint_providers[0] ('mine'): parameter margin: -1 is not at least 0")]
+        for providers, word in cases:
+            with self.subTest(providers=providers):
+                self.assertIn(word, self.stopped(providers))
+
+    def test_a_plugin_that_fails_is_told_by_name_and_the_node_serves(self):
+        node = Node('faulty', constraint_providers=[{'name': 'mine', 'type': 'example_provider/NoLibrary'}])
+        try:
+            self.assertTrue(Server('/faulty').scene().success)
+            self.assertIn("constraint provider 'mine' (example_provider/NoLibrary) failed to load", node.output())
+        finally:
+            node.end()
+
+    def test_without_providers_the_service_says_so(self):
+        node = Node('bare')
+        try:
+            rospy.wait_for_service('/bare/evaluate_constraints', 20)
+            response = rospy.ServiceProxy('/bare/evaluate_constraints', EvaluateConstraints)([query()])
+            self.assertFalse(response.success)
+            self.assertIn('~constraint_providers', response.message)
+        finally:
+            node.end()
+
+
+if __name__ == '__main__':
+    run('constraints')
