@@ -125,8 +125,8 @@ struct Tally {
   double worst = 0.0;
 };
 
-void check(const Constraint &constraint, const Case &c, Random &random, Workspace &workspace, bool planar,
-           Tally &tally, double tolerance = TOLERANCE) {
+void check(const Constraint &constraint, const Case &c, Random &random, Workspace &workspace, bool planar, Tally &tally,
+           double tolerance = TOLERANCE) {
   ConstraintValue value;
   const Step step = randomStep(random, c, planar);
   ++tally.asked;
