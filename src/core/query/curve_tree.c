@@ -8,7 +8,7 @@
 /* Slots of the pool that nodes never get. */
 enum { SLOT_ROOT, SLOT_SCRATCH, SLOT_SCRATCH_LEFT, SLOTS_RESERVED };
 
-enum { ALL_LANES = (1 << TREE_LANES) - 1, MOST_STEPS = 10, LEAST_SEEDS = 5, MOST_SEEDS = 65, PIECES_A_SEED = 8 };
+enum { MOST_STEPS = 10, LEAST_SEEDS = 5, MOST_SEEDS = 65, PIECES_A_SEED = 8 };
 
 /* An entry of a list: lanes of a node or a pack. */
 typedef struct tree_entry {
@@ -281,7 +281,7 @@ static bool is_worth_opening(const tree_node *node, const tree_lanes *lanes, uin
   return last && lanes->distance2[l] < best2;
 }
 
-cprox_status curve_tree_filter(curve_tree *o, search_node *node, const tree_stretch *stretch, double slack,
+cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_stretch *stretch, double slack,
                                tree_place *nearest, double *least2, double *share) {
   tree_entry open[TREE_LANES * TREE_DEEPEST];
   size_t count = 0, end = node->list_end;
@@ -289,29 +289,31 @@ cprox_status curve_tree_filter(curve_tree *o, search_node *node, const tree_stre
   const double best = fmax(o->best_bound.upper + o->offset, 0.0), best2 = best < 1e150 ? best * best : INFINITY;
   double kept = INFINITY, rest = node->rest;
   *least2 = INFINITY;
+  /* so much farther that what is left of it, less what was taken, is still above the goal */
+  stretch->beyond = goal + taken + 4.0 * ROUND_U * (fabs(goal) + taken);
   tree_entry *list = list_reserve(o, end);
   for (size_t i = node->list; count > 0 || i < node->list_end;) {
     const tree_entry entry = count > 0 ? open[--count] : list[i++];
     const bool leaf = (entry.at & TREE_LEAF) != 0;
     tree_lanes lanes;
-    tree_measure(o->tree, entry.at, stretch, &lanes);
+    tree_measure(o->tree, entry.at, entry.lanes, stretch, &lanes);
 
     /* drop what cannot matter, look into what is wide, keep the rest */
     uint32_t kept_lanes = 0;
-    for (uint32_t left = entry.lanes; left; left &= left - 1) {
+    const double dropped = lanes.rest - taken;
+    rest = dropped < rest ? dropped : rest;
+    for (uint32_t left = lanes.live; left; left &= left - 1) {
       const uint32_t l = (uint32_t)__builtin_ctz(left);
       const double bound = lanes.bound[l] - taken;
       if (leaf && lanes.distance2[l] < *least2) {
         *least2 = lanes.distance2[l];
         *nearest = (tree_place){entry.at & ~TREE_LEAF, l};
       }
-      if (bound > goal) {
-        rest = fmin(rest, bound);
-      } else if (!leaf && is_worth_opening(&o->tree->nodes[entry.at], &lanes, l, wide2, best2)) {
+      if (!leaf && is_worth_opening(&o->tree->nodes[entry.at], &lanes, l, wide2, best2)) {
         const uint32_t child = o->tree->nodes[entry.at].child[l];
-        open[count++] = (tree_entry){child, child & TREE_LEAF ? ALL_LANES : o->tree->nodes[child].lanes};
+        open[count++] = (tree_entry){child, child & TREE_LEAF ? TREE_ALL_LANES : o->tree->nodes[child].lanes};
       } else {
-        kept = fmin(kept, bound);
+        kept = bound < kept ? bound : kept;
         kept_lanes |= 1u << l;
         if (share) *share = fmin(*share, free_share(&lanes, l, o->offset, slack));
       }

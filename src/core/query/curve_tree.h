@@ -58,7 +58,7 @@ search_oracle curve_tree_oracle(curve_tree *o);
 /* Goes through a node's list, measured as the stretch says: keeps the lanes that may come below the goal, raises node->lower. The
  * nearest element that was met stands in *nearest, squared distance *least2, infinity for none. `share`, where not NULL, becomes
  * the least fraction of the stretch that every lane leaves free. */
-cprox_status curve_tree_filter(curve_tree *o, search_node *node, const tree_stretch *stretch, double slack,
+cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_stretch *stretch, double slack,
                                tree_place *nearest, double *least2, double *share);
 
 /* The stretch that a node is, seen from x; its rounding in *slack. */

@@ -81,6 +81,7 @@ bool set_walk_begin(set_walk *w, const cprox_set *set, const question *q) {
   const bool few = !curve->arcs && points <= TREE_MOST_POINTS;
   s->n = few ? points : 2;
   s->radius = few ? 0.0 : all->radius;
+  s->beyond = INFINITY;
   double reach = 0.0, error = 0.0;
   for (size_t k = 0; k < s->n; k++) {
     const vec3 p = vec_sub(vec_sub(few ? curve->points[k] : k ? all->b : all->a, set->centre), s->x);
@@ -98,7 +99,7 @@ bool set_walk_begin(set_walk *w, const cprox_set *set, const question *q) {
 static bool open_node(set_walk *w, const set_entry *entry) {
   const tree *t = w->set->boxes;
   tree_lanes lanes;
-  tree_measure(t, entry->at, &w->stretch, &lanes);
+  tree_measure(t, entry->at, TREE_ALL_LANES, &w->stretch, &lanes);
   const bool leaf = (entry->at & TREE_LEAF) != 0;
   const uint32_t *ids = leaf ? t->ids + (size_t)(entry->at & ~TREE_LEAF) * TREE_LANES : NULL;
   for (uint32_t l = 0; l < TREE_LANES; l++) {

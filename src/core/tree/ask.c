@@ -13,8 +13,8 @@ tree_hit tree_nearest(const tree *t, vec3 x, double bound) {
   return t->kernel->nearest(t, x, bound);
 }
 
-void tree_measure(const tree *t, uint32_t at, const tree_stretch *stretch, tree_lanes *lanes) {
-  t->kernel->measure(t, at, stretch, lanes);
+void tree_measure(const tree *t, uint32_t at, uint32_t wanted, const tree_stretch *stretch, tree_lanes *lanes) {
+  t->kernel->measure(t, at, wanted, stretch, lanes);
 }
 
 /* ---- one element ------------------------------------------------------------------------------------------------------ */
@@ -117,7 +117,8 @@ void tree_seek(const tree *t, tree_seeker *seeker) {
     tree_lanes lanes;
     stretch.known = seeker->known, stretch.normal = seeker->normal;
     stretch.along = seeker->least - vec_dot(seeker->normal, seeker->centre);
-    tree_measure(t, top.at, &stretch, &lanes);
+    stretch.beyond = seeker->bound;
+    tree_measure(t, top.at, TREE_ALL_LANES, &stretch, &lanes);
     const size_t floor = count;
     open_lane sorted[TREE_LANES];
     size_t n = 0;

@@ -14,7 +14,7 @@
 
 #include "base/vec.h"
 
-enum { TREE_LANES = 8, TREE_DEEPEST = 40, TREE_MOST_POINTS = 64 };
+enum { TREE_LANES = 8, TREE_ALL_LANES = (1 << TREE_LANES) - 1, TREE_DEEPEST = 40, TREE_MOST_POINTS = 64 };
 
 /* A child with this bit is a pack of elements, else a node. */
 #define TREE_LEAF 0x80000000u
@@ -126,6 +126,7 @@ typedef struct tree_stretch {
   vec3 normal;   /* unit within 4 u, */
   double along;  /* min normal·p, less the radius */
   bool stepping; /* x is the first point, and slopes are wanted */
+  double beyond; /* lanes that are farther are of no interest: infinity, where all are */
 } tree_stretch;
 
 /* What one node or pack says of a stretch, lane by lane. */
@@ -135,10 +136,13 @@ typedef struct tree_lanes {
   double width2[TREE_LANES];             /* of a node's boxes: their diagonal, squared */
   double first[TREE_LANES];              /* stepping: the bound at the first point by the lane's own normal, */
   double slope[TREE_LANES];              /* and how fast it can fall, per stretch */
+  uint32_t live;                         /* wanted lanes that are not beyond what is of interest, */
+  double rest;                           /* and the least bound of those that are */
 } tree_lanes;
 
-/* `at` is a node, or a pack with TREE_LEAF. */
-void tree_measure(const tree *t, uint32_t at, const tree_stretch *stretch, tree_lanes *lanes);
+/* `at` is a node, or a pack with TREE_LEAF; `wanted` has a bit for each lane that matters. Of a pack of which none comes within `beyond`
+ * only the bounds are filled in, and distances are infinite. */
+void tree_measure(const tree *t, uint32_t at, uint32_t wanted, const tree_stretch *stretch, tree_lanes *lanes);
 
 /* Elements that could come nearer than `bound` to a convex shape in a ball, nearest first. The visitor measures one and may lower
  * the bound and tell a normal that the shape lies behind. */
