@@ -128,6 +128,12 @@ def batches(rows, out):
                lambda row: f"{row['workload'].replace(' ', chr(10))}\n{row['parameter'].split()[0]}", 'median time of all curves [µs]')
 
 
+def worlds(rows, out):
+    for what, unit, title in (('mesh distance', 'triangles', 'Quintic curves against a mesh: certified to 1e-6, and 100 samples'),
+                              ('set distance', 'targets', 'One curve against many boxes at one density')):
+        yield work_precision(rows, out, 'worlds', what, unit + r' (\d+)', title, 'worlds_' + what.replace(' ', '_'), x_label=unit, reverse=False)
+
+
 def robots(rows, out):
     for workload in ('environment', 'self'):
         yield work_precision(rows, out, 'robots', workload, r'epsilon ([0-9.e-]+)', f'Robots, {workload}: time against accuracy',
@@ -172,6 +178,6 @@ def draw_all(rows, out):
     """All charts for which there are rows; their names."""
     style()
     drawn = []
-    for draw in (curves, splines, peers, seeds, batches, robots, fourier):
+    for draw in (curves, splines, peers, seeds, batches, worlds, robots, fourier):
         drawn += [name for name in draw(rows, out) if name]
     return drawn
