@@ -2,8 +2,9 @@
 # Everything the ROS side stands on, found once; dependency_targets.cmake makes targets of it.
 
 find_package(catkin REQUIRED COMPONENTS
-  geometric_shapes geometry_msgs message_generation nodelet pluginlib roscpp roslib sensor_msgs shape_msgs std_msgs tf2
-  tf2_eigen tf2_ros trajectory_msgs urdf visualization_msgs)
+  actionlib actionlib_msgs diagnostic_updater dynamic_reconfigure geometric_shapes geometry_msgs message_generation
+  nav_msgs nodelet pluginlib roscpp roslib sensor_msgs shape_msgs std_msgs tf2 tf2_eigen tf2_ros trajectory_msgs urdf
+  visualization_msgs)
 find_package(Eigen3 REQUIRED)
 
 # FCL: 0.6 and 0.7 bring a CMake package with a target; 0.5 is asked for by pkg-config.

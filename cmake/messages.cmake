@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The messages and services of the package, in msg/ and srv/.
+# The messages, services and actions of the package, in msg/, srv/ and action/, and its dynamic parameters, in cfg/.
 set(CURVE_PROXIMITY_MESSAGES
   AllowedContact.msg
   AttachedCollisionObject.msg
@@ -13,6 +13,7 @@ set(CURVE_PROXIMITY_MESSAGES
   LinkScale.msg
   Octree.msg
   Proximity.msg
+  ProximityResults.msg
 )
 set(CURVE_PROXIMITY_SERVICES
   ApplyScene.srv
@@ -23,6 +24,14 @@ set(CURVE_PROXIMITY_SERVICES
   Tolerance.srv
 )
 
+set(CURVE_PROXIMITY_ACTIONS
+  Query.action
+)
+
 add_message_files(DIRECTORY msg FILES ${CURVE_PROXIMITY_MESSAGES})
 add_service_files(DIRECTORY srv FILES ${CURVE_PROXIMITY_SERVICES})
-generate_messages(DEPENDENCIES geometry_msgs sensor_msgs shape_msgs std_msgs trajectory_msgs)
+add_action_files(DIRECTORY action FILES ${CURVE_PROXIMITY_ACTIONS})
+generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs sensor_msgs shape_msgs std_msgs trajectory_msgs)
+
+# What may change while the server runs.
+generate_dynamic_reconfigure_options(cfg/ProximityServer.cfg)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "frames.h"
 
+#include <algorithm>
 #include <curve_proximity/core.hpp>
 #include <sstream>
 #include <thread>
@@ -56,6 +57,17 @@ Eigen::Isometry3d Frames::toFixed(const std::string &given, const ros::Time &sta
       throw Error(what.str());
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+std::optional<double> Frames::age(const std::string &given) const {
+  const std::string frame = withoutSlash(given);
+  if (frame == fixed_frame_) return 0.0;
+  try {
+    const ros::Time stamp = buffer_.lookupTransform(fixed_frame_, frame, ros::Time()).header.stamp;
+    return stamp.isZero() ? 0.0 : std::max(0.0, (ros::Time::now() - stamp).toSec());
+  } catch (const tf2::TransformException &) {
+    return std::nullopt;
   }
 }
 

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <Eigen/Geometry>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -32,6 +33,10 @@ class Frames {
    *  Waits until the deadline at most, then throws Error, which names both frames. */
   Eigen::Isometry3d toFixed(const std::string &frame, const ros::Time &stamp,
                             std::chrono::steady_clock::time_point deadline) const;
+
+  /** [s] How old the latest pose of `frame` in the fixed frame is, by ROS time; 0 where nothing between them moves. Does not wait:
+   *  nothing where there is no transform. */
+  std::optional<double> age(const std::string &frame) const;
 
  private:
   const std::string fixed_frame_;

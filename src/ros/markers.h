@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What RViz shows: the last query's curves coloured by clearance, its closest pairs, and the scene. */
+/** What RViz shows: the scene, the last curves and the last trajectory that were asked about, coloured by clearance, and their closest
+ *  pairs. */
 #ifndef CURVE_PROXIMITY_ROS_MARKERS_H
 #define CURVE_PROXIMITY_ROS_MARKERS_H
 
@@ -8,7 +9,6 @@
 #include <ros/wall_timer.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -17,20 +17,34 @@
 
 namespace curve_proximity {
 
-/** All markers of a drawing in the fixed frame, after one that deletes what was shown before. Drawing may be null: then
- *  the scene alone. A closest pair is shown only as long as the scene is the one it was measured in.
+/** Where the mesh files of the objects and of the robot are. */
+struct MarkerResources {
+  ResourceOptions objects, robot;
+};
+
+/** All markers in the fixed frame, after one that deletes what was shown before. By namespace:
+ *    scene    the objects
+ *    curves   the curves, coloured by clearance: tubes of their radius
+ *    open     hulls of the stretches of a curve that its budget, or epsilon, left undecided
+ *    robot    the robot: along a trajectory at its closest moment, each link coloured by its clearance from the objects
+ *    swept    the robot on its way
+ *    sweep    the way of the point of the robot that comes closest
+ *    pairs    the closest pairs, each a line with its ends; labels: how long they are
+ *  Drawings may be null. Pairs are shown only as long as the scene is the one they were measured in.
  *
- *  The colours come from plain point distances at sampled parameters: they are for the eye; the certified answer is the
- *  closest pair and its label. */
-visualization_msgs::MarkerArray toMarkers(const Snapshot &scene, const Drawing *drawing, const std::string &frame);
+ *  Colours come from plain distances at sampled parameters: they are for the eye. The certified answers are the pairs with their
+ *  labels, and the open hulls. */
+visualization_msgs::MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion,
+                                          const std::string &frame, const MarkerResources &resources);
 
 /** Publishes ~markers, latched, a few times a second at most and only where somebody listens. */
 class MarkerPublisher {
  public:
-  /** handle: its callback queue runs the timer. */
-  MarkerPublisher(ros::NodeHandle &handle, const Scene &scene, const std::string &frame);
+  /** handle: its callback queue runs the timer. scene: kept by reference. */
+  MarkerPublisher(ros::NodeHandle &handle, const Scene &scene, const std::string &frame, MarkerResources resources);
 
-  /** What is to be shown next; never waits for what is being published. */
+  /** What is to be shown next: its curves in the place of the last ones, its motion in that of the last one. Never waits for what is
+   *  being published. */
   void show(std::shared_ptr<const Drawing> drawing);
 
  private:
@@ -38,8 +52,9 @@ class MarkerPublisher {
 
   const Scene &scene_;
   const std::string frame_;
+  const MarkerResources resources_;
   std::mutex mutex_;
-  std::shared_ptr<const Drawing> drawing_;
+  std::shared_ptr<const Drawing> curves_, motion_;
   bool changed_ = true;
   std::uint64_t shown_scene_ = 0;
   ros::Publisher publisher_;

@@ -2,7 +2,6 @@
 /** The server as a process: memory limit, signals, and a watch on the master; all else is ProximityServer. */
 #include <ros/console.h>
 #include <ros/init.h>
-#include <ros/master.h>
 #include <ros/this_node.h>
 #include <signal.h>
 
@@ -10,6 +9,7 @@
 #include <exception>
 #include <thread>
 
+#include "master_watch.h"
 #include "memory_limit.h"
 #include "parameters.h"
 #include "server.h"
@@ -33,32 +33,11 @@ void catchSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-/** Asks the master now and then whether it still knows this node. */
-class MasterWatch {
- public:
-  /** A restarted master knows nobody; one that does not answer at all may come back and know us. */
-  bool hasForgottenUs() {
-    const auto now = std::chrono::steady_clock::now();
-    if (now < next_) return false;
-    next_ = now + std::chrono::seconds(2);
-    if (!ros::master::check()) return false;
-    XmlRpc::XmlRpcValue request, response, payload;
-    request[0] = request[1] = ros::this_node::getName();
-    const bool known = ros::master::execute("lookupNode", request, response, payload, false);
-    times_ = known || !ros::master::check() ? 0 : times_ + 1;
-    return times_ >= 2;
-  }
-
- private:
-  std::chrono::steady_clock::time_point next_;
-  int times_ = 0;
-};
-
 /** Until a signal, a shutdown by the graph, or the end of our registration. */
 int serve() {
-  MasterWatch master;
+  curve_proximity::MasterWatch master(ros::this_node::getName() + "/distance");
   while (ros::ok() && !interrupted) {
-    if (master.hasForgottenUs()) {
+    if (master.look() == curve_proximity::MasterWatch::State::FORGOTTEN) {
       ROS_FATAL("the master does not know this node any more (was it restarted?): ending, so that a respawn registers");
       return EXIT_UNREGISTERED;
     }

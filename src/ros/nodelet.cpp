@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The server as a nodelet: curve_proximity/ProximityServer. */
+/** The nodelets curve_proximity/ProximityServer and curve_proximity/TrajectoryGate. */
 #include <nodelet/nodelet.h>
 #include <pluginlib/class_list_macros.hpp>
 
@@ -7,6 +7,7 @@
 
 #include "parameters.h"
 #include "server.h"
+#include "trajectory_gate.h"
 
 namespace curve_proximity {
 
@@ -20,6 +21,16 @@ class ProximityServerNodelet : public nodelet::Nodelet {
   std::unique_ptr<ProximityServer> server_;
 };
 
+class TrajectoryGateNodelet : public nodelet::Nodelet {
+ private:
+  void onInit() override {
+    gate_ = std::make_unique<TrajectoryGate>(getPrivateNodeHandle(), readGateParameters(getPrivateNodeHandle()));
+  }
+
+  std::unique_ptr<TrajectoryGate> gate_;
+};
+
 } // namespace curve_proximity
 
 PLUGINLIB_EXPORT_CLASS(curve_proximity::ProximityServerNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(curve_proximity::TrajectoryGateNodelet, nodelet::Nodelet)

@@ -179,6 +179,9 @@ Parameters readParameters(const ros::NodeHandle &handle) {
   if (parameters.memory_limit_mb > 0 && parameters.memory_limit_mb < LEAST_MEMORY_MB)
     throw ParameterError("parameter ~memory_limit_mb: 0 or at least " + std::to_string(LEAST_MEMORY_MB) +
                          " is expected");
+  if (parameters.verb != "distance" && parameters.verb != "tolerance" && parameters.verb != "collision")
+    throw ParameterError("parameter ~verb: distance, tolerance or collision is expected, not '" + parameters.verb +
+                         "'");
   if (parameters.fixed_frame.empty()) throw ParameterError("parameter ~fixed_frame: the name of a frame is expected");
   if (parameters.cloud_id.empty()) throw ParameterError("parameter ~cloud_id: the name of an object is expected");
   if (parameters.octomap_id.empty() || parameters.octomap_id == parameters.cloud_id)
@@ -186,6 +189,14 @@ Parameters readParameters(const ros::NodeHandle &handle) {
   if (parameters.robot_description.find('<') != std::string::npos)
     throw ParameterError(
         "parameter ~robot_description: the name of the parameter that holds the URDF is expected, not the URDF itself");
+  return parameters;
+}
+
+GateParameters readGateParameters(const ros::NodeHandle &handle) {
+  GateParameters parameters;
+  Reader reader(handle);
+  visitGateParameters(parameters, reader);
+  reader.warnOfOthers();
   return parameters;
 }
 

@@ -28,10 +28,16 @@ struct Parameters {
   bool allow_missing_geometry = false;
   std::string fixed_frame = "world";
   double tf_timeout = 0.5;
+  std::string scene_file;
   double epsilon = 1e-6;
   int max_nodes = 20000;
   double budget_ms = 5000.0;
   int threads = 4;
+  std::string verb = "tolerance";
+  double delta = 0.0;
+  bool self_collision = true;
+  double path_radius = 0.0;
+  int queue_size = 10;
   int memory_limit_mb = 4096;
   int max_curves = 20000;
   int max_control_points = 2000000;
@@ -61,10 +67,16 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("allow_missing_geometry", parameters.allow_missing_geometry);
   visit("fixed_frame", parameters.fixed_frame);
   visit("tf_timeout", parameters.tf_timeout, Range{0.0, false, 3600.0});
+  visit("scene_file", parameters.scene_file);
   visit("epsilon", parameters.epsilon, Range{0.0, true});
   visit("max_nodes", parameters.max_nodes, Range{1.0, false, count});
   visit("budget_ms", parameters.budget_ms, Range{0.0, true, 1e9});
   visit("threads", parameters.threads, Range{1.0, false, 256.0});
+  visit("verb", parameters.verb);
+  visit("delta", parameters.delta, Range{0.0});
+  visit("self_collision", parameters.self_collision);
+  visit("path_radius", parameters.path_radius, Range{0.0});
+  visit("queue_size", parameters.queue_size, Range{1.0, false, 1e6});
   visit("memory_limit_mb", parameters.memory_limit_mb, Range{0.0, false, count});
   visit("max_curves", parameters.max_curves, Range{1.0, false, count});
   visit("max_control_points", parameters.max_control_points, Range{1.0, false, count});
@@ -77,9 +89,22 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("constraint_providers", parameters.constraint_providers);
 }
 
+/** The parameters of curve_proximity/TrajectoryGate. */
+struct GateParameters {
+  double delta = 0.0; /**< [m] */
+  int queue_size = 10;
+};
+
+template <class Fields, class Visitor>
+void visitGateParameters(Fields &parameters, Visitor &&visit) {
+  visit("delta", parameters.delta, Range{0.0});
+  visit("queue_size", parameters.queue_size, Range{1.0, false, 1e6});
+}
+
 /** Reads the parameters of a private handle; those that are not set keep their defaults.
  *  Throws ParameterError for a wrong type or value. Names that are none of ours are warned of. */
 Parameters readParameters(const ros::NodeHandle &handle);
+GateParameters readGateParameters(const ros::NodeHandle &handle);
 
 } // namespace curve_proximity
 #endif

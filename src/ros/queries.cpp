@@ -7,8 +7,6 @@
 #include <map>
 #include <sstream>
 
-#include <curve_proximity/motion.hpp>
-
 #include "conversions.h"
 
 namespace curve_proximity {
@@ -20,29 +18,40 @@ constexpr std::size_t MAX_DRAWN_CURVES = 100;
 /** Ends a query when its time is over or the server goes. */
 class TimeBudget {
  public:
-  TimeBudget(double milliseconds, const std::atomic<bool> &stop)
-      : milliseconds_(milliseconds),
-        deadline_(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                                         std::chrono::duration<double, std::milli>(milliseconds))),
-        stop_(stop) {}
+  TimeBudget(double milliseconds, const std::atomic<bool> &stop, const std::atomic<bool> *cancelled)
+      : milliseconds_(milliseconds), deadline_(deadlineOf(milliseconds)), stop_(stop), cancelled_(cancelled) {}
 
   /** In the shape of cprox_options.stop. */
   static bool isOver(void *user) {
     const TimeBudget &budget = *static_cast<const TimeBudget *>(user);
-    return budget.stop_ || std::chrono::steady_clock::now() >= budget.deadline_;
+    return budget.stop_ || budget.isCancelled() || Clock::now() >= budget.deadline_;
   }
 
   std::string reason() const {
     if (stop_) return "the server is shutting down";
+    if (isCancelled()) return "cancelled";
     std::ostringstream text;
     text << "~budget_ms = " << milliseconds_ << " are over";
     return text.str();
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  static Clock::time_point deadlineOf(double milliseconds) {
+    constexpr double FOREVER = 1e12; /* [ms] decades: within what the clock can count */
+    const std::chrono::duration<double, std::milli> wait(std::min(milliseconds, FOREVER));
+    return Clock::now() + std::chrono::duration_cast<Clock::duration>(wait);
+  }
+
+  bool isCancelled() const {
+    return cancelled_ && *cancelled_;
+  }
+
   const double milliseconds_;
-  const std::chrono::steady_clock::time_point deadline_;
+  const Clock::time_point deadline_;
   const std::atomic<bool> &stop_;
+  const std::atomic<bool> *const cancelled_;
 };
 
 void limit(const char *parameter, std::size_t most, std::size_t count, const char *what) {
@@ -133,18 +142,27 @@ class Failures {
 
 } // namespace
 
+Verb verbFromName(const std::string &name) {
+  if (name == "distance") return Verb::DISTANCE;
+  if (name == "tolerance") return Verb::TOLERANCE;
+  if (name == "collision") return Verb::COLLISION;
+  throw Error("the verb '" + name + "' is none of distance, tolerance, collision");
+}
+
 Question Queries::toQuestion(const QueryRequest &request) const {
   // Here NaN and negative numbers are told once, not once a row; 0 means the server's own.
   if (request.epsilon != 0.0 && !(request.epsilon > 0.0 && std::isfinite(request.epsilon)))
     throw Error("epsilon is " + std::to_string(request.epsilon) + ": it must be above 0 and finite, or 0 for ~epsilon");
+  if (!(request.budget_ms >= 0.0))
+    throw Error("budget_ms is " + std::to_string(request.budget_ms) + ": it must be at least 0");
   if (!(request.delta >= 0.0 && std::isfinite(request.delta)))
     throw Error("delta is " + std::to_string(request.delta) + ": it must be at least 0 and finite");
   Question question;
   question.verb = request.verb;
   question.delta = request.delta;
-  question.options.epsilon = request.epsilon != 0.0 ? request.epsilon : parameters_.epsilon;
+  question.options.epsilon = request.epsilon != 0.0 ? request.epsilon : tuning_.epsilon.load();
   question.options.max_nodes =
-      request.max_nodes != 0 ? request.max_nodes : static_cast<std::uint32_t>(parameters_.max_nodes);
+      request.max_nodes != 0 ? request.max_nodes : static_cast<std::uint32_t>(tuning_.max_nodes);
   question.per_object = request.per_object;
   question.objects = request.objects;
   question.links = request.links;
@@ -168,19 +186,30 @@ void Queries::checkLimits(const QueryRequest &request, const Snapshot &snapshot)
 }
 
 void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing) {
+  const auto begin = Statistics::Clock::now();
+  try {
+    answerAll(request, response, drawing);
+  } catch (...) {
+    statistics_.record(Statistics::Clock::now() - begin, false, response.results);
+    throw;
+  }
+  statistics_.record(Statistics::Clock::now() - begin, response.success, response.results);
+}
+
+void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing) {
   // One snapshot for all: what changes meanwhile does not change this answer.
-  TimeBudget budget(parameters_.budget_ms, stop_);
   Question question = toQuestion(request);
+  TimeBudget budget(request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load(), stop_, request.cancelled);
   question.options.stop = TimeBudget::isOver;
   question.options.stop_user = &budget;
   const SnapshotPtr snapshot = scene_.snapshot();
   checkLimits(request, *snapshot);
 
   answerCurves(request, question, snapshot, response, drawing);
-  if (!request.trajectory.joint_names.empty() || !request.trajectory.points.empty())
-    answerTrajectory(request, question, snapshot, response);
+  answerTrajectories(request, question, snapshot, response, drawing);
   for (Proximity &row : response.results)
     if (row.status == cprox_status_name(CPROX_STOPPED)) row.message = budget.reason();
+  drawing.verb = request.verb;
   drawing.snapshot = snapshot;
 }
 
@@ -192,8 +221,8 @@ void Queries::answerCurves(const QueryRequest &request, const Question &question
   const WorkspacePool::Lease workspace(workspaces_);
   response.results.reserve(request.curves.size());
   Failures failures;
-  for (std::size_t i = 0; i < request.curves.size(); ++i) {
-    const Curve &message = request.curves[i];
+  for (const Curve &message : request.curves) {
+    const auto i = static_cast<std::size_t>(&message - request.curves.begin());
     try {
       // The curve's frame, the robot and the curve itself: each may be what is wrong with this row.
       const CurveDescription description =
@@ -213,33 +242,49 @@ void Queries::answerCurves(const QueryRequest &request, const Question &question
       response.results.push_back(toFailedRow(message.id, error.what()));
       failures.count(response.results.back(), i);
     }
+    if (request.progress) (*request.progress)(response, i + 1);
   }
   failures.tell(response);
 }
 
-void Queries::answerTrajectory(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
-                               QueryResponse &response) {
+void Queries::answerTrajectories(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+                                 QueryResponse &response, Drawing &drawing) {
+  const auto &trajectories = request.trajectories;
+  if (trajectories.size() == 0) return;
   if (!snapshot->robot()) throw Error("a trajectory needs a robot, and this server has none");
-  limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points),
-        request.trajectory.points.size() * request.trajectory.joint_names.size(), "joint values");
+  std::size_t values = 0;
+  for (const auto &trajectory : trajectories) values += trajectory.points.size() * trajectory.joint_names.size();
+  limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), values, "joint values");
 
+  for (const auto &trajectory : trajectories) {
+    const auto i = static_cast<std::size_t>(&trajectory - trajectories.begin());
+    const std::string id = trajectories.size() == 1 ? "trajectory" : "trajectory/" + std::to_string(i);
+    answerTrajectory(trajectory, id, request, question, snapshot, response, drawing);
+    if (request.progress) (*request.progress)(response, request.curves.size() + i + 1);
+  }
+}
+
+void Queries::answerTrajectory(const trajectory_msgs::JointTrajectory &message, const std::string &id,
+                               const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+                               QueryResponse &response, Drawing &drawing) {
   // The trajectory, the joints that it leaves alone, and where the robot stands.
-  const std::string id = "trajectory";
   try {
     const JointPositions rest = toJointPositions(request.joint_state);
-    TrajectoryDescription trajectory = toDescription(request.trajectory, rest);
+    TrajectoryDescription trajectory = toDescription(message, rest);
     trajectory.id = id;
     adoptBase(srdf_.virtual_joints, trajectory);
     FrameLookup lookup(frames_);
-    const std_msgs::Header &header = request.trajectory.header;
     const std::string frame =
         trajectory.base.empty() ? snapshot->robot()->rootLink() : trajectory.base.front().parent_frame;
-    const RobotMotion motion(snapshot, trajectory, rest, srdf_.disabled, lookup.toFixed(frame, header.stamp));
+    auto motion = std::make_shared<const RobotMotion>(snapshot, trajectory, rest, srdf_.disabled,
+                                                      lookup.toFixed(frame, message.header.stamp));
 
     const WorkspacePool::Lease workspace(workspaces_);
-    std::vector<Answer> answers = askEnvironment(motion, question, *workspace);
-    if (request.self_collision) answers.push_back(askSelf(motion, question, *workspace));
+    std::vector<Answer> answers = askEnvironment(*motion, question, *workspace);
+    if (request.self_collision) answers.push_back(askSelf(*motion, question, *workspace));
     for (const Answer &answer : answers) response.results.push_back(toMessage(answer, request.verb));
+    drawing.motion = std::move(motion);
+    drawing.motion_answers = std::move(answers);
   } catch (const Error &error) {
     response.results.push_back(toFailedRow(id, error.what()));
   }
@@ -248,7 +293,7 @@ void Queries::answerTrajectory(const QueryRequest &request, const Question &ques
   const Proximity &last = response.results.back();
   if (response.success && last.status == cprox_status_name(CPROX_INVALID)) {
     response.success = false;
-    response.message = "trajectory: " + last.message;
+    response.message = id + ": " + last.message;
   }
 }
 

@@ -9,31 +9,70 @@
 #include <trajectory_msgs/JointTrajectory.h>
 
 #include <atomic>
+#include <curve_proximity/motion.hpp>
 #include <curve_proximity/query.hpp>
 #include <curve_proximity/scene.hpp>
 #include <curve_proximity/srdf.hpp>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "frames.h"
 #include "parameters.h"
+#include "statistics.h"
+#include "tuning.h"
 #include "workspaces.h"
 
 namespace curve_proximity {
 
-/** The request that the three services share, by reference. */
+/** Messages that somebody else holds. */
+template <class Message>
+class List {
+ public:
+  List() = default;
+  List(const Message *first, std::size_t size) : first_(first), size_(size) {}
+  explicit List(const std::vector<Message> &messages) : List(messages.data(), messages.size()) {}
+
+  const Message *begin() const {
+    return first_;
+  }
+  const Message *end() const {
+    return first_ + size_;
+  }
+  std::size_t size() const {
+    return size_;
+  }
+
+ private:
+  const Message *first_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+struct QueryResponse;
+
+/** Told of the rows so far, and how many curves and trajectories are done. */
+using Progress = std::function<void(const QueryResponse &response, std::size_t done)>;
+
+/** What services, topics and the action ask, by reference. */
 struct QueryRequest {
   Verb verb;
   double delta; /**< [m] of TOLERANCE */
-  const std::vector<Curve> &curves;
-  const trajectory_msgs::JointTrajectory &trajectory;
+  List<Curve> curves;
+  List<trajectory_msgs::JointTrajectory> trajectories;
   bool self_collision;
   const std::vector<std::string> &objects, &links;
   const sensor_msgs::JointState &joint_state;
-  double epsilon;          /**< [m] 0: the server's */
-  std::uint32_t max_nodes; /**< 0: the server's */
-  bool per_object;
+  double epsilon = 0.0;        /**< [m] 0: the server's */
+  std::uint32_t max_nodes = 0; /**< 0: the server's */
+  bool per_object = false;
+  double budget_ms = 0.0;                       /**< 0: the server's */
+  const std::atomic<bool> *cancelled = nullptr; /**< set, it ends this query; null: nobody can */
+  const Progress *progress = nullptr;           /**< called after each curve and trajectory; null: nobody is told */
 };
+
+/** "distance", "tolerance", "collision". Throws Error for any other word. */
+Verb verbFromName(const std::string &name);
 
 /** The response that they share. */
 struct QueryResponse {
@@ -48,18 +87,29 @@ struct Drawing {
     CompiledCurve curve;
     std::vector<Answer> answers;
   };
+  Verb verb = Verb::DISTANCE;
   std::vector<Line> lines; /**< of the first curves of the request */
   SnapshotPtr snapshot;
-  LinkPoses links; /**< of the last of these curves */
+  LinkPoses links; /**< of the last of these curves; without curves those of the motion at its closest moment */
+
+  /** The robot along the last trajectory of the request, and what was said of it; null: none. */
+  std::shared_ptr<const RobotMotion> motion;
+  std::vector<Answer> motion_answers;
 };
 
 /** Answers requests, from any number of threads at once. */
 class Queries {
  public:
   /** All are kept by reference. stop: set, it ends running queries with the intervals that they have. */
-  Queries(const Parameters &parameters, const Scene &scene, const Srdf &srdf, const Frames &frames,
-          const std::atomic<bool> &stop)
-      : parameters_(parameters), scene_(scene), srdf_(srdf), frames_(frames), stop_(stop) {}
+  Queries(const Parameters &parameters, const Tuning &tuning, const Scene &scene, const Srdf &srdf,
+          const Frames &frames, Statistics &statistics, const std::atomic<bool> &stop)
+      : parameters_(parameters),
+        tuning_(tuning),
+        scene_(scene),
+        srdf_(srdf),
+        frames_(frames),
+        statistics_(statistics),
+        stop_(stop) {}
 
   /** Fills the response and the drawing. Throws Error where nothing can be answered at all; what is
    *  wrong with one curve becomes its row. */
@@ -69,14 +119,21 @@ class Queries {
   Question toQuestion(const QueryRequest &request) const;
   void answerCurves(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
                     QueryResponse &response, Drawing &drawing);
-  void answerTrajectory(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
-                        QueryResponse &response);
+  void answerTrajectories(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+                          QueryResponse &response, Drawing &drawing);
+  void answerTrajectory(const trajectory_msgs::JointTrajectory &message, const std::string &id,
+                        const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+                        QueryResponse &response, Drawing &drawing);
   void checkLimits(const QueryRequest &request, const Snapshot &snapshot) const;
 
+  void answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
+
   const Parameters &parameters_;
+  const Tuning &tuning_;
   const Scene &scene_;
   const Srdf &srdf_;
   const Frames &frames_;
+  Statistics &statistics_;
   const std::atomic<bool> &stop_;
   WorkspacePool workspaces_;
 };

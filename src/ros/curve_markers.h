@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Curves and closest pairs as markers. */
+#ifndef CURVE_PROXIMITY_ROS_CURVE_MARKERS_H
+#define CURVE_PROXIMITY_ROS_CURVE_MARKERS_H
+
+#include <vector>
+
+#include "canvas.h"
+#include "queries.h"
+
+namespace curve_proximity {
+
+/** A body where it stands, for the colours of what comes near it. */
+struct PlacedBody {
+  const cprox_body *body;
+  Eigen::Isometry3d pose; /**< in the fixed frame */
+  double padding;         /**< [m] */
+};
+using PlacedBodies = std::vector<PlacedBody>;
+
+/** [m] The least plain distance of a ball to the bodies; infinite where there are none. */
+double clearance(const cprox_vec3 &centre, double radius, const PlacedBodies &placed);
+
+/** A tube along the points, a colour a point; of radius 0 a thin one. */
+void addTube(Canvas &canvas, const std::string &space, const std::vector<Eigen::Vector3d> &points,
+             const std::vector<std_msgs::ColorRGBA> &tints, double radius);
+
+void addCurve(Canvas &canvas, const CompiledCurve &curve, const PlacedBodies &placed, std::size_t samples);
+
+/** The two points with a line between them, and the distance in words. Nothing where there is no pair. */
+void addPair(Canvas &canvas, const Answer &answer);
+
+/** Did the search leave intervals that decide nothing? */
+bool isOpen(const Answer &answer, Verb verb);
+
+/** The hulls of those stretches of the curve that, with a small budget each, are not shown to be farther away than the answer's
+ *  lower bound and what was asked leave room for. */
+void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &line, const Answer &answer);
+
+} // namespace curve_proximity
+#endif

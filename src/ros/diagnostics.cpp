@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "diagnostics.h"
+
+#include <diagnostic_msgs/DiagnosticStatus.h>
+#include <ros/console.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "guard.h"
+
+namespace curve_proximity {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+constexpr double PERIOD = 1.0;         /* [s] */
+constexpr double OLD_TRANSFORM = 1.0;  /* [s] from here on a link pose that changes is a stale one */
+constexpr double QUIET_WARNING = 10.0; /* [s] between two log lines about the same */
+
+} // namespace
+
+Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, const Pipeline &pipeline,
+                         const Frames &frames, const Scene &scene)
+    : statistics_(statistics),
+      pipeline_(pipeline),
+      frames_(frames),
+      scene_(scene),
+      master_(handle.getNamespace() + "/distance"),
+      handle_(handle),
+      updater_(ros::NodeHandle(), handle, handle.getNamespace()) {
+  updater_.setHardwareID("none");
+  updater_.add("queries", this, &Diagnostics::queries);
+  updater_.add("topics", this, &Diagnostics::topics);
+  updater_.add("transforms", this, &Diagnostics::transforms);
+  updater_.add("master", this, &Diagnostics::master);
+
+  // By the wall clock: the updater's own period counts in ROS time, which may stand still.
+  timer_ = handle_.createWallTimer(ros::WallDuration(PERIOD), [this](const ros::WallTimerEvent &) {
+    guarded([this] { updater_.force_update(); },
+            [](const std::string &why) { ROS_ERROR("diagnostics: %s", why.c_str()); });
+  });
+}
+
+void Diagnostics::queries(Status &status) {
+  const Summary s = statistics_.take();
+  const double seconds = std::max(s.seconds, 1e-3);
+  if (s.failed_calls > 0) {
+    status.summary(DiagnosticStatus::WARN, "requests failed");
+  } else if (s.undecided > 0) {
+    status.summary(DiagnosticStatus::WARN, "verdicts are undecided");
+  } else {
+    status.summary(DiagnosticStatus::OK, s.calls > 0 ? "answering" : "idle");
+  }
+  status.addf("requests per second", "%.1f", static_cast<double>(s.calls) / seconds);
+  status.addf("rows per second", "%.1f", static_cast<double>(s.rows) / seconds);
+  status.addf("median time of a request [us]", "%.0f", s.p50_us);
+  status.addf("99th percentile [us]", "%.0f", s.p99_us);
+  status.add("undecided rows", s.undecided);
+  status.add("failed rows", s.failed);
+  status.add("failed requests", s.failed_calls);
+}
+
+void Diagnostics::topics(Status &status) {
+  const std::uint64_t dropped = pipeline_.dropped();
+  if (dropped != dropped_) {
+    status.summary(DiagnosticStatus::WARN, "messages are dropped: they come faster than they are answered");
+  } else {
+    status.summary(DiagnosticStatus::OK, "no messages dropped");
+  }
+  status.add("dropped", dropped);
+  status.add("dropped lately", dropped - dropped_);
+  dropped_ = dropped;
+}
+
+void Diagnostics::transforms(Status &status) {
+  const SnapshotPtr snapshot = scene_.snapshot();
+  if (!snapshot->robot()) return status.summary(DiagnosticStatus::OK, "no robot");
+
+  // The links whose poses queries need; fixed ones have no age.
+  double oldest = 0.0;
+  std::string which;
+  for (const auto &link : snapshot->robot()->links()) {
+    if (link.second.empty()) continue;
+    const std::optional<double> age = frames_.age(link.first);
+    if (!age)
+      return status.summary(DiagnosticStatus::WARN,
+                            "no transform from '" + link.first + "' to '" + frames_.fixedFrame() + "'");
+    if (*age <= oldest) continue;
+    oldest = *age;
+    which = link.first;
+  }
+  if (oldest > OLD_TRANSFORM) {
+    status.summary(DiagnosticStatus::WARN, "transforms are old");
+  } else {
+    status.summary(DiagnosticStatus::OK, "transforms are there");
+  }
+  status.addf("oldest [s]", "%.3f", oldest);
+  status.add("link", which);
+}
+
+void Diagnostics::master(Status &status) {
+  switch (master_.look()) {
+    case MasterWatch::State::KNOWN: return status.summary(DiagnosticStatus::OK, "registered");
+    case MasterWatch::State::SILENT: return status.summary(DiagnosticStatus::WARN, "the master does not answer");
+    case MasterWatch::State::FORGOTTEN: break;
+  }
+  const char *why = "the master does not know this node any more (was it restarted?): nobody new finds it";
+  status.summary(DiagnosticStatus::ERROR, why);
+  ROS_ERROR_THROTTLE(QUIET_WARNING, "%s", why);
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The server's state on /diagnostics, once a second. */
+#ifndef CURVE_PROXIMITY_ROS_DIAGNOSTICS_H
+#define CURVE_PROXIMITY_ROS_DIAGNOSTICS_H
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/node_handle.h>
+#include <ros/wall_timer.h>
+
+#include <cstdint>
+#include <string>
+
+#include "frames.h"
+#include "master_watch.h"
+#include "pipeline.h"
+#include "statistics.h"
+
+namespace curve_proximity {
+
+/** Four statuses: `queries` (rate, 50th and 99th percentile of the time of a request, undecided and failed rows), `topics` (messages
+ *  dropped), `transforms` (how old the robot's link poses in the fixed frame are), `master` (whether it still knows the server). */
+class Diagnostics {
+ public:
+  /** handle: private; its callback queue runs the timer. The others are kept by reference. */
+  Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, const Pipeline &pipeline, const Frames &frames,
+              const Scene &scene);
+
+ private:
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
+
+  void queries(Status &status);
+  void topics(Status &status);
+  void transforms(Status &status);
+  void master(Status &status);
+
+  Statistics &statistics_;
+  const Pipeline &pipeline_;
+  const Frames &frames_;
+  const Scene &scene_;
+  MasterWatch master_;
+  std::uint64_t dropped_ = 0; /* when last told */
+  ros::NodeHandle handle_;
+  diagnostic_updater::Updater updater_;
+  ros::WallTimer timer_;
+};
+
+} // namespace curve_proximity
+#endif

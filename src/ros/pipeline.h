@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Trajectories in by topic, results out by topic: the server as a stage between a planner and a controller. */
+#ifndef CURVE_PROXIMITY_ROS_PIPELINE_H
+#define CURVE_PROXIMITY_ROS_PIPELINE_H
+
+#include <curve_proximity/Curve.h>
+#include <curve_proximity/ProximityResults.h>
+#include <nav_msgs/Path.h>
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/spinner.h>
+#include <sensor_msgs/JointState.h>
+#include <trajectory_msgs/JointTrajectory.h>
+#include <trajectory_msgs/MultiDOFJointTrajectory.h>
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "bounded_queue.h"
+#include "markers.h"
+#include "parameters.h"
+#include "queries.h"
+
+namespace curve_proximity {
+
+/** Answers what comes on ~curve, ~trajectory, ~multi_dof_trajectory and ~path, one message after the other, on ~proximity. Messages
+ *  are taken and results handed on by pointer: within one nodelet manager nothing is copied. While one message is being answered
+ *  ~queue_size others wait; what is older than these is dropped and counted. */
+class Pipeline {
+ public:
+  /** handle: the server's private one. All are kept by reference. stop: as that of Queries. */
+  Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, const Tuning &tuning, const Scene &scene,
+           const Srdf &srdf, Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop);
+
+  /** Joins the threads; a query that runs must have been told to stop. */
+  ~Pipeline();
+
+  std::uint64_t dropped() const {
+    return jobs_.dropped();
+  }
+
+ private:
+  using Job = std::variant<CurveConstPtr, trajectory_msgs::JointTrajectoryConstPtr,
+                           trajectory_msgs::MultiDOFJointTrajectoryConstPtr, nav_msgs::PathConstPtr>;
+
+  template <class Message>
+  void listen(const char *topic);
+  void work();
+  void handle(const Job &job);
+  void keepJoints(const sensor_msgs::JointState &state);
+
+  /* The curves or the joint trajectory that a message speaks of. */
+  struct Asked {
+    List<Curve> curves;
+    List<trajectory_msgs::JointTrajectory> trajectories;
+    std::vector<Curve> own_curves;
+    trajectory_msgs::JointTrajectory own_trajectory;
+  };
+  void toAsked(const Curve &message, Asked &asked) const;
+  void toAsked(const trajectory_msgs::JointTrajectory &message, Asked &asked) const;
+  void toAsked(const trajectory_msgs::MultiDOFJointTrajectory &message, Asked &asked) const;
+  void toAsked(const nav_msgs::Path &message, Asked &asked) const;
+
+  const Parameters &parameters_;
+  const Tuning &tuning_;
+  const Scene &scene_;
+  const Srdf &srdf_;
+  Queries &queries_;
+  MarkerPublisher &markers_;
+  const std::atomic<bool> &stop_;
+  const Verb verb_;
+  BoundedQueue<Job> jobs_;
+  std::mutex joints_mutex_;
+  std::map<std::string, double> joints_; /* the latest of ~joint_states, by name */
+  ros::CallbackQueue queue_;
+  ros::NodeHandle handle_;
+  ros::Publisher results_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::AsyncSpinner spinner_;
+};
+
+} // namespace curve_proximity
+#endif

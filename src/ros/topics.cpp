@@ -1,0 +1,257 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "topics.h"
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace curve_proximity {
+namespace {
+
+bool isFinite(double x, double y, double z) {
+  return std::isfinite(x) && std::isfinite(y) && std::isfinite(z);
+}
+
+/* ---- splines ------------------------------------------------------------------------------------------------------- */
+
+/** The three cubic B-splines of a knot vector that are not 0 at its inner knot number i (counted from the first, i >= 1), and their
+ *  second derivatives there. */
+struct AtKnot {
+  double value[3];
+  double second[3];
+};
+
+AtKnot atKnot(const std::vector<double> &knots, std::size_t i) {
+  // With t = knots[i + 3] the B-splines i, i + 1, i + 2 live on the intervals around t.
+  const double *u = knots.data() + i;
+  const double t = u[3];
+  AtKnot out{};
+  const double wide_left = u[4] - u[1], wide_right = u[5] - u[2], inner = u[4] - u[2];
+  out.value[0] = (u[4] - t) * (u[4] - t) / (wide_left * inner);
+  out.value[2] = (t - u[2]) * (t - u[2]) / (wide_right * inner);
+  out.value[1] = 1.0 - out.value[0] - out.value[2];
+  out.second[0] = 6.0 / (wide_left * inner);
+  out.second[2] = 6.0 / (wide_right * inner);
+  out.second[1] = -out.second[0] - out.second[2];
+  return out;
+}
+
+} // namespace
+
+void fitNaturalSpline(const std::vector<geometry_msgs::Point> &points, const std::vector<double> &at, Curve &curve) {
+  // Clamped knots: three more of each end.
+  curve.basis = "bspline";
+  curve.degree = 3;
+  curve.knots.assign(3, at.front());
+  curve.knots.insert(curve.knots.end(), at.begin(), at.end());
+  curve.knots.insert(curve.knots.end(), 3, at.back());
+
+  // Unknown are the inner n control points c[1 … n]; c[0] and c[n+1] are the end points. The rows: no second derivative at the
+  // first knot, the n - 2 inner points met, no second derivative at the last knot. At a clamped end the three B-splines'
+  // second derivatives are those of atKnot() with the coinciding knots in place, so each row has three neighbours.
+  const std::size_t n = points.size();
+  std::vector<double> lower(n), diagonal(n), upper(n);
+  std::vector<Eigen::Vector3d> right(n, Eigen::Vector3d::Zero());
+  const auto vector = [](const geometry_msgs::Point &p) { return Eigen::Vector3d(p.x, p.y, p.z); };
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool end = i == 0 || i + 1 == n;
+    const AtKnot row = atKnot(curve.knots, i);
+    const double *entries = end ? row.second : row.value;
+    lower[i] = entries[0];
+    diagonal[i] = entries[1];
+    upper[i] = entries[2];
+    if (!end) right[i] = vector(points[i]);
+  }
+  right.front() -= lower.front() * vector(points.front());
+  right.back() -= upper.back() * vector(points.back());
+
+  // Thomas's algorithm; the matrix is diagonally dominant.
+  for (std::size_t i = 1; i < n; ++i) {
+    const double factor = lower[i] / diagonal[i - 1];
+    diagonal[i] -= factor * upper[i - 1];
+    right[i] -= factor * right[i - 1];
+  }
+  curve.points.assign(n + 2, points.front());
+  curve.points.back() = points.back();
+  Eigen::Vector3d next = Eigen::Vector3d::Zero();
+  for (std::size_t i = n; i-- > 0;) {
+    next = (right[i] - (i + 1 < n ? upper[i] : 0.0) * next) / diagonal[i];
+    curve.points[i + 1].x = next.x();
+    curve.points[i + 1].y = next.y();
+    curve.points[i + 1].z = next.z();
+  }
+}
+
+/* ---- paths --------------------------------------------------------------------------------------------------------- */
+
+Curve toCurve(const nav_msgs::Path &path, double radius) {
+  if (path.poses.empty()) throw Error("the path has no poses");
+  Curve curve;
+  curve.header = path.header;
+  curve.id = "path";
+  curve.radius = radius;
+
+  std::vector<geometry_msgs::Point> points;
+  std::vector<double> at;
+  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+    const std::string &frame = path.poses[i].header.frame_id;
+    const geometry_msgs::Point &p = path.poses[i].pose.position;
+    if (!frame.empty() && frame != path.header.frame_id)
+      throw Error("pose " + std::to_string(i) + " is in frame '" + frame + "', the path in '" + path.header.frame_id +
+                  "'");
+    if (!isFinite(p.x, p.y, p.z)) throw Error("pose " + std::to_string(i) + ": the position is not finite");
+    const double chord =
+        points.empty() ? 0.0 : std::hypot(p.x - points.back().x, p.y - points.back().y, p.z - points.back().z);
+    const double length = at.empty() ? 0.0 : at.back() + chord;
+    if (!at.empty() && !(length > at.back())) continue;
+    points.push_back(p);
+    at.push_back(length);
+  }
+
+  if (points.size() == 1) {
+    curve.basis = "polynomial";
+    curve.points = points;
+  } else {
+    fitNaturalSpline(points, at, curve);
+  }
+  return curve;
+}
+
+/* ---- planar and floating joints ------------------------------------------------------------------------------------ */
+
+namespace {
+
+using trajectory_msgs::MultiDOFJointTrajectory;
+
+struct FreeJoint {
+  std::string name;
+  bool planar = false;
+  std::string parent;
+};
+
+std::optional<FreeJoint> findJoint(const std::string &name, const Robot &robot, const Srdf &srdf) {
+  for (const VirtualJoint &joint : srdf.virtual_joints)
+    if (joint.name == name && joint.type != "fixed") return FreeJoint{name, joint.type == "planar", joint.parent_frame};
+  for (const Robot::Joint &joint : robot.joints()) {
+    if (joint.name != name) continue;
+    if (joint.type == Robot::JointType::PLANAR) return FreeJoint{name, true, joint.parent};
+    if (joint.type == Robot::JointType::FLOATING) return FreeJoint{name, false, joint.parent};
+  }
+  return std::nullopt;
+}
+
+const geometry_msgs::Transform &transformOf(const MultiDOFJointTrajectory &trajectory, std::size_t point,
+                                            std::size_t joint) {
+  const auto &transforms = trajectory.points[point].transforms;
+  if (transforms.size() != trajectory.joint_names.size())
+    throw Error("point " + std::to_string(point) + " has " + std::to_string(transforms.size()) +
+                " transforms, there are " + std::to_string(trajectory.joint_names.size()) + " joints");
+  const geometry_msgs::Transform &out = transforms[joint];
+  if (!isFinite(out.translation.x, out.translation.y, out.translation.z))
+    throw Error("point " + std::to_string(point) + ", joint '" + trajectory.joint_names[joint] +
+                "': the translation is not finite");
+  return out;
+}
+
+/** The unit quaternion of a transform, on the side of the one before it. */
+Eigen::Quaterniond rotationOf(const geometry_msgs::Transform &transform, const std::string &where,
+                              const Eigen::Quaterniond &before) {
+  Eigen::Quaterniond q(transform.rotation.w, transform.rotation.x, transform.rotation.y, transform.rotation.z);
+  const double norm = q.coeffs().stableNorm();
+  if (!(norm > 0.0 && std::isfinite(norm))) throw Error(where + ": the quaternion's norm is " + std::to_string(norm));
+  q.coeffs() /= norm;
+  if (q.coeffs().dot(before.coeffs()) < 0.0) q.coeffs() = -q.coeffs();
+  return q;
+}
+
+/** Appends the columns of one joint to all points. */
+void addColumns(const MultiDOFJointTrajectory &trajectory, std::size_t j, const FreeJoint &joint,
+                trajectory_msgs::JointTrajectory &out) {
+  static const char *const planar[] = {"/x", "/y", "/theta"};
+  static const char *const floating[] = {"/trans_x", "/trans_y", "/trans_z", "/rot_x", "/rot_y", "/rot_z", "/rot_w"};
+  if (joint.planar) {
+    for (const char *part : planar) out.joint_names.push_back(joint.name + part);
+  } else {
+    for (const char *part : floating) out.joint_names.push_back(joint.name + part);
+  }
+
+  constexpr double FLAT = 1e-6; /* a rotation out of the plane by more than twice this [rad] is no planar joint's */
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  double theta = 0.0;
+  for (std::size_t i = 0; i < trajectory.points.size(); ++i) {
+    const std::string where = "point " + std::to_string(i) + ", joint '" + joint.name + "'";
+    const geometry_msgs::Transform &transform = transformOf(trajectory, i, j);
+    q = rotationOf(transform, where, q);
+    const auto &p = transform.translation;
+    std::vector<double> &row = out.points[i].positions;
+    if (!joint.planar) {
+      row.insert(row.end(), {p.x, p.y, p.z, q.x(), q.y(), q.z(), q.w()});
+      continue;
+    }
+    if (std::hypot(q.x(), q.y()) > FLAT || std::abs(p.z) > FLAT)
+      throw Error(where + ": the transform leaves the joint's plane");
+    const double turn = 2.0 * std::atan2(q.z(), q.w());
+    theta += std::remainder(turn - theta, 2.0 * M_PI);
+    row.insert(row.end(), {p.x, p.y, theta});
+  }
+}
+
+} // namespace
+
+trajectory_msgs::JointTrajectory toJointTrajectory(const MultiDOFJointTrajectory &trajectory, const Robot *robot,
+                                                   const Srdf &srdf) {
+  trajectory_msgs::JointTrajectory out;
+  out.header = trajectory.header;
+  std::vector<std::optional<FreeJoint>> joints;
+  std::size_t found = 0;
+  for (const std::string &name : trajectory.joint_names) {
+    joints.push_back(robot ? findJoint(name, *robot, srdf) : std::nullopt);
+    found += joints.back().has_value();
+  }
+  if (found == 0) return out;
+
+  out.points.resize(trajectory.points.size());
+  for (std::size_t i = 0; i < trajectory.points.size(); ++i)
+    out.points[i].time_from_start = trajectory.points[i].time_from_start;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (!joints[j])
+      throw Error("joint '" + trajectory.joint_names[j] + "' is no planar or floating joint of the robot");
+    const std::string &frame = trajectory.header.frame_id;
+    if (!frame.empty() && frame != joints[j]->parent)
+      throw Error("the trajectory is in frame '" + frame + "', joint '" + joints[j]->name + "' moves in '" +
+                  joints[j]->parent + "'");
+    addColumns(trajectory, j, *joints[j], out);
+  }
+  return out;
+}
+
+std::vector<Curve> toCurves(const MultiDOFJointTrajectory &trajectory, double radius) {
+  if (trajectory.joint_names.empty()) throw Error("the trajectory names no joints");
+  if (trajectory.points.size() < 2) throw Error("the trajectory has fewer than two points");
+  std::vector<double> at;
+  for (const auto &point : trajectory.points) {
+    at.push_back(point.time_from_start.toSec());
+    if (at.size() > 1 && !(at.back() > at[at.size() - 2]))
+      throw Error("point " + std::to_string(at.size() - 1) + ": its time is not after that of the point before");
+  }
+
+  std::vector<Curve> curves;
+  for (std::size_t j = 0; j < trajectory.joint_names.size(); ++j) {
+    std::vector<geometry_msgs::Point> points(at.size());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const auto &p = transformOf(trajectory, i, j).translation;
+      points[i].x = p.x;
+      points[i].y = p.y;
+      points[i].z = p.z;
+    }
+    Curve curve;
+    curve.header = trajectory.header;
+    curve.id = trajectory.joint_names[j];
+    curve.radius = radius;
+    fitNaturalSpline(points, at, curve);
+    curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+} // namespace curve_proximity

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The stage between the server and a controller: nothing passes that is not certified to be clear. */
+#ifndef CURVE_PROXIMITY_ROS_TRAJECTORY_GATE_H
+#define CURVE_PROXIMITY_ROS_TRAJECTORY_GATE_H
+
+#include <curve_proximity/ProximityResults.h>
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/spinner.h>
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "parameters.h"
+
+namespace curve_proximity {
+
+/** Do these results prove that what they are about stays farther than delta from everything? All rows answered, at least one, and
+ *  each with a certified lower bound above delta, or the verdict that says so. */
+bool isClear(const ProximityResults &results, double delta);
+
+/** Waits for the answer (~proximity) to each message on ~curve, ~trajectory, ~multi_dof_trajectory and ~path, in whichever order they
+ *  come, and hands on those that are clear, by pointer: ~clear_curve, ~clear_trajectory, ~clear_multi_dof_trajectory, ~clear_path.
+ *  ~queue_size messages and as many answers wait for each other; what is older never passes. */
+class TrajectoryGate {
+ public:
+  TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters);
+  ~TrajectoryGate();
+
+  TrajectoryGate(const TrajectoryGate &) = delete;
+  TrajectoryGate &operator=(const TrajectoryGate &) = delete;
+
+ private:
+  struct Waiting {
+    std::uint64_t fingerprint;
+    std::function<void()> pass;
+  };
+  struct Answered {
+    std::uint64_t fingerprint;
+    bool clear;
+  };
+
+  template <class Message>
+  void connect(const std::string &topic);
+  void receive(Waiting message);
+  void answer(const ProximityResults &results);
+
+  const GateParameters parameters_;
+  std::deque<Waiting> waiting_; /* touched by the one thread of the queue alone */
+  std::deque<Answered> answered_;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle handle_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::AsyncSpinner spinner_;
+};
+
+} // namespace curve_proximity
+#endif

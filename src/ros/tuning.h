@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The parameters that may change while queries run. */
+#ifndef CURVE_PROXIMITY_ROS_TUNING_H
+#define CURVE_PROXIMITY_ROS_TUNING_H
+
+#include <atomic>
+
+#include "parameters.h"
+
+namespace curve_proximity {
+
+/** Each query reads them once, at its start. */
+struct Tuning {
+  explicit Tuning(const Parameters &parameters)
+      : epsilon(parameters.epsilon),
+        delta(parameters.delta),
+        budget_ms(parameters.budget_ms),
+        max_nodes(parameters.max_nodes) {}
+
+  std::atomic<double> epsilon, delta, budget_ms;
+  std::atomic<int> max_nodes;
+};
+
+} // namespace curve_proximity
+#endif
