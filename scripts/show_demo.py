@@ -178,7 +178,8 @@ def main(out):
         print('starting roscore and the node, with a Panda in front of a bookshelf of nine cans')
         core, log = programs.start('roscore', 'roscore', '-p', os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1])
         wait_for(master_answers, core, log, 30)
-        launch, log = programs.start('node', 'roslaunch', '--wait', 'curve_proximity', 'demo.launch', 'rviz:=false')
+        launch, log = programs.start('node', 'roslaunch', '--wait', 'curve_proximity', 'demo.launch', 'rviz:=false', 'play:=false',
+                                     'scene_file:=')
         wait_for(serving, launch, log, 60)
         run('cprox', 'send', SCENE, '--node', NODE)
         near = ask_and_tell()

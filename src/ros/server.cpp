@@ -52,7 +52,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       frames_(parameters_.fixed_frame, parameters_.tf_timeout, stop_),
       scene_(loadRobot(handle, parameters_), resourceOptions("", parameters_.max_shape_mb)),
       srdf_(loadSrdf(handle, parameters_)),
-      queries_(parameters_, tuning_, scene_, srdf_, frames_, statistics_, stop_) {
+      queries_(parameters_, tuning_, scene_, srdf_, frames_, statistics_, stop_),
+      constraints_(parameters_, scene_, frames_, stop_) {
   loadScene();
   markers_ = std::make_unique<MarkerPublisher>(
       control_handle_, scene_, parameters_.fixed_frame,
@@ -63,13 +64,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
                handle_.advertiseService("tolerance", &ProximityServer::tolerance, this),
                handle_.advertiseService("collision", &ProximityServer::collision, this),
                handle_.advertiseService("apply_scene", &ProximityServer::applyScene, this),
-<<<<<<< HEAD
                handle_.advertiseService("get_scene", &ProximityServer::getScene, this),
                handle_.advertiseService("evaluate_constraints", &ProximityServer::evaluateConstraints, this)};
-  spinner_ = std::make_unique<ros::AsyncSpinner>(static_cast<std::uint32_t>(parameters_.threads), &queue_);
-  spinner_->start();
-=======
-               handle_.advertiseService("get_scene", &ProximityServer::getScene, this)};
   objects_ = {handle_.subscribe("collision_object", OBJECTS_KEPT, &ProximityServer::takeObject, this),
               handle_.subscribe("attached_collision_object", OBJECTS_KEPT, &ProximityServer::takeAttached, this)};
   pipeline_ = std::make_unique<Pipeline>(handle, parameters_, tuning_, scene_, srdf_, queries_, *markers_, stop_);
@@ -92,7 +88,6 @@ void ProximityServer::setThreads(int threads) {
     spinners_.push_back(std::make_unique<ros::AsyncSpinner>(1, &queue_));
     spinners_.back()->start();
   }
->>>>>>> cde44f6 (The server as a stage of pipelines: trajectories in by topic, results out, a gate behind it)
 }
 
 ProximityServer::~ProximityServer() {
@@ -189,18 +184,7 @@ std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &reque
 
 bool ProximityServer::applyScene(ApplyScene::Request &request, ApplyScene::Response &response) {
   return handle(response, [&] {
-<<<<<<< HEAD
-    FrameLookup lookup(frames_);
-    std::vector<std::string> faults;
-    const ToFixed to_fixed = [&](const std_msgs::Header &header) {
-      return lookup.toFixed(header.frame_id, header.stamp);
-    };
-    SceneChange change = toSceneChange(request, to_fixed, faults);
-    addAttachments(request, to_fixed, *scene_.snapshot(), change, faults);
-    for (std::string &fault : scene_.apply(change)) faults.push_back(std::move(fault));
-=======
     const std::vector<std::string> faults = apply(request);
->>>>>>> cde44f6 (The server as a stage of pipelines: trajectories in by topic, results out, a gate behind it)
     response.success = faults.empty();
     response.message = joined(faults);
   });

@@ -22,12 +22,9 @@
 #include <memory>
 #include <vector>
 
-<<<<<<< HEAD
-#include "constraints.h"
-    =======
 #include "batch_action.h"
+#include "constraints.h"
 #include "diagnostics.h"
-    >>>>>>> cde44f6 (The server as a stage of pipelines: trajectories in by topic, results out, a gate behind it)
 #include "frames.h"
 #include "markers.h"
 #include "parameters.h"
@@ -38,66 +35,66 @@
 #include "statistics.h"
 #include "tuning.h"
 
-    namespace curve_proximity {
+namespace curve_proximity {
 
-  /** Serves until it is destroyed. It owns its callback queue and threads: a nodelet manager's own would still be running
+/** Serves until it is destroyed. It owns its callback queue and threads: a nodelet manager's own would still be running
  *  callbacks while the nodelet is being unloaded. */
-  class ProximityServer {
-   public:
-    /** handle: private; services and parameters live in its namespace. Throws what loadRobot() throws. */
-    ProximityServer(const ros::NodeHandle &handle, const Parameters &parameters);
+class ProximityServer {
+ public:
+  /** handle: private; services and parameters live in its namespace. Throws what loadRobot() throws. */
+  ProximityServer(const ros::NodeHandle &handle, const Parameters &parameters);
 
-    /** Ends running queries by their stop flag, gives their answers a moment to leave, and joins all threads. */
-    ~ProximityServer();
+  /** Ends running queries by their stop flag, gives their answers a moment to leave, and joins all threads. */
+  ~ProximityServer();
 
-    ProximityServer(const ProximityServer &) = delete;
-    ProximityServer &operator=(const ProximityServer &) = delete;
+  ProximityServer(const ProximityServer &) = delete;
+  ProximityServer &operator=(const ProximityServer &) = delete;
 
-   private:
-    bool distance(Distance::Request &request, Distance::Response &response);
-    bool tolerance(Tolerance::Request &request, Tolerance::Response &response);
-    bool collision(Collision::Request &request, Collision::Response &response);
-    bool applyScene(ApplyScene::Request &request, ApplyScene::Response &response);
-    bool getScene(GetScene::Request &request, GetScene::Response &response);
-    bool evaluateConstraints(EvaluateConstraints::Request &request, EvaluateConstraints::Response &response);
+ private:
+  bool distance(Distance::Request &request, Distance::Response &response);
+  bool tolerance(Tolerance::Request &request, Tolerance::Response &response);
+  bool collision(Collision::Request &request, Collision::Response &response);
+  bool applyScene(ApplyScene::Request &request, ApplyScene::Response &response);
+  bool getScene(GetScene::Request &request, GetScene::Response &response);
+  bool evaluateConstraints(EvaluateConstraints::Request &request, EvaluateConstraints::Response &response);
 
-    void takeObject(const CollisionObjectConstPtr &object);
-    void takeAttached(const AttachedCollisionObjectConstPtr &object);
-    template <class Fill>
-    void changeScene(const char *topic, Fill &&fill);
-    std::vector<std::string> apply(const ApplyScene::Request &request);
-    void loadScene();
+  void takeObject(const CollisionObjectConstPtr &object);
+  void takeAttached(const AttachedCollisionObjectConstPtr &object);
+  template <class Fill>
+  void changeScene(const char *topic, Fill &&fill);
+  std::vector<std::string> apply(const ApplyScene::Request &request);
+  void loadScene();
 
-    template <class Request, class Response>
-    bool query(Verb verb, double delta, const Request &request, Response &response);
-    template <class Response, class Work>
-    bool handle(Response &response, Work &&work);
+  template <class Request, class Response>
+  bool query(Verb verb, double delta, const Request &request, Response &response);
+  template <class Response, class Work>
+  bool handle(Response &response, Work &&work);
 
-    void setThreads(int threads);
+  void setThreads(int threads);
 
-    const Parameters parameters_;
-    Tuning tuning_;
-    Statistics statistics_;
-    std::atomic<bool> stop_{false};
-    std::atomic<int> running_{0};              /* handlers that have begun and not ended */
-    ros::CallbackQueue queue_, control_queue_; /* of requests; of what watches over them, with a thread of its own */
-    ros::NodeHandle handle_, control_handle_;  /* their callbacks go to these queues */
-    Frames frames_;
-    Scene scene_;
-    const Srdf srdf_;
-    Queries queries_;
-    Constraints constraints_;
-    std::unique_ptr<MarkerPublisher> markers_;
-    std::unique_ptr<Sensors> sensors_;
-    std::vector<ros::ServiceServer> services_;
-    std::vector<ros::Subscriber> objects_;
-    std::unique_ptr<Pipeline> pipeline_;
-    std::unique_ptr<BatchAction> batches_;
-    std::unique_ptr<Diagnostics> diagnostics_;
-    std::unique_ptr<Reconfigure> reconfigure_;
-    std::vector<std::unique_ptr<ros::AsyncSpinner>> spinners_; /* ~threads, of a thread each */
-    std::unique_ptr<ros::AsyncSpinner> control_spinner_;
-  };
+  const Parameters parameters_;
+  Tuning tuning_;
+  Statistics statistics_;
+  std::atomic<bool> stop_{false};
+  std::atomic<int> running_{0};              /* handlers that have begun and not ended */
+  ros::CallbackQueue queue_, control_queue_; /* of requests; of what watches over them, with a thread of its own */
+  ros::NodeHandle handle_, control_handle_;  /* their callbacks go to these queues */
+  Frames frames_;
+  Scene scene_;
+  const Srdf srdf_;
+  Queries queries_;
+  Constraints constraints_;
+  std::unique_ptr<MarkerPublisher> markers_;
+  std::unique_ptr<Sensors> sensors_;
+  std::vector<ros::ServiceServer> services_;
+  std::vector<ros::Subscriber> objects_;
+  std::unique_ptr<Pipeline> pipeline_;
+  std::unique_ptr<BatchAction> batches_;
+  std::unique_ptr<Diagnostics> diagnostics_;
+  std::unique_ptr<Reconfigure> reconfigure_;
+  std::vector<std::unique_ptr<ros::AsyncSpinner>> spinners_; /* ~threads, of a thread each */
+  std::unique_ptr<ros::AsyncSpinner> control_spinner_;
+};
 
 } // namespace curve_proximity
 #endif

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """demo.launch as it is: the Panda by robot_state_publisher, parameters from config/defaults.yaml, markers."""
+import math
+import os
 import unittest
 
 import rospy
 from helpers import Server, bezier, box, joints, run, until
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
 READY = dict(panda_joint1=0.0, panda_joint2=-0.785, panda_joint3=0.0, panda_joint4=-2.356, panda_joint5=0.0,
@@ -43,10 +46,44 @@ class Demo(unittest.TestCase):
         kinds = until(lambda: received and {m.ns for m in received[-1].markers if m.action == Marker.ADD}, 10)
         subscriber.unregister()
         self.assertEqual(kinds, {'scene', 'robot', 'curves', 'pairs', 'labels'})
-        curve, = [m for m in received[-1].markers if m.ns == 'curves']
-        self.assertEqual(len(curve.points), len(curve.colors))
-        self.assertGreater(len(curve.points), 10)
+        tube = next(m for m in received[-1].markers if m.ns == 'curves' and m.type == Marker.TRIANGLE_LIST)
+        self.assertEqual(len(tube.points), len(tube.colors))
+        self.assertGreater(len(tube.points), 1000)
+        self.assertTrue(all(math.isfinite(c) for p in tube.points for c in (p.x, p.y, p.z)))
+        # the links are their mesh files, by a name that RViz finds on any working directory
+        meshes = [m.mesh_resource for m in received[-1].markers if m.type == Marker.MESH_RESOURCE]
+        self.assertEqual(len(meshes), 11)
+        self.assertTrue(all(m.startswith('file:///') and os.path.isfile(m[7:]) for m in meshes))
         self.assertEqual({m.header.frame_id for m in received[-1].markers}, {'world'})
+
+    def markers(self, wanted):
+        """Those of the first array that has all the wanted namespaces."""
+        received = []
+        subscriber = rospy.Subscriber('/curve_proximity/markers', MarkerArray, received.append)
+        found = until(lambda: next((a for a in received if wanted <= {m.ns for m in a.markers}), None), 10)
+        subscriber.unregister()
+        self.assertTrue(found, wanted)
+        return found.markers
+
+    def test_a_budget_that_ends_early_leaves_open_hulls(self):
+        near = bezier((0.9, -0.5, 0.3), (0.9, 0.0, 0.5), (0.9, 0.4, 0.9), (0.9, 0.5, 0.3), id='open')
+        row, = self.server.distance(near, max_nodes=1, epsilon=1e-9).results
+        self.assertEqual(row.status, 'budget')
+        self.assertGreater(len([m for m in self.markers({'open'}) if m.ns == 'open']), 0)
+
+    def test_a_trajectory_is_shown_at_its_closest_moment_and_swept(self):
+        end = dict(READY, panda_joint1=1.0)
+        names = [n for n in READY if n.startswith('panda_joint')]
+        trajectory = JointTrajectory(joint_names=names, points=[
+            JointTrajectoryPoint(positions=[state[n] for n in names], time_from_start=rospy.Duration(t))
+            for t, state in ((0, READY), (2, end))])
+        response = self.server.distance([], trajectory=trajectory, joint_state=joints(panda_finger_joint1=0.035))
+        self.assertTrue(response.success, response.message)
+        shown = self.markers({'robot', 'swept', 'sweep'})
+        links = [m for m in shown if m.ns == 'robot']
+        self.assertEqual(len(links), 11)
+        self.assertGreater(len({(m.color.r, m.color.g, m.color.b) for m in links}), 2)  # each in the colour of its clearance
+        self.assertEqual(len([m for m in shown if m.ns == 'swept']) % 11, 0)
 
 
 if __name__ == '__main__':

@@ -67,6 +67,17 @@ class Nodelet(unittest.TestCase):
             rospy.delete_param('/wrong')
         self.assertEqual(self.list_nodelets().nodelets, [])
 
+    def test_wrong_parameters_of_the_gate_fail_its_load(self):
+        for name, value in (('delta', -1.0), ('delta', 'wide'), ('queue_size', 0)):
+            rospy.set_param('/wrong_gate/' + name, value)
+            try:
+                with self.assertRaises(rospy.ServiceException):
+                    if not self.load_nodelet('/wrong_gate', 'curve_proximity/TrajectoryGate', [], [], [], '').success:
+                        raise rospy.ServiceException('refused')
+            finally:
+                rospy.delete_param('/wrong_gate')
+        self.assertEqual(self.list_nodelets().nodelets, [])
+
 
 if __name__ == '__main__':
     run('nodelet')

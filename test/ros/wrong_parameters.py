@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Parameters that are wrong stop the node at start, by name."""
 import os
+import tempfile
 import unittest
 
 import rospy
@@ -33,7 +34,9 @@ class WrongParameters(unittest.TestCase):
                  ('memory_limit_mb', -1), ('memory_limit_mb', 5), ('max_curves', 0), ('max_control_points', 'many'),
                  ('max_results', 0), ('fixed_frame', ''), ('fixed_frame', 3), ('urdf_dir', 1),
                  ('allow_missing_geometry', 'yes'), ('robot_description', '<robot/>'),
-                 ('robot_description', 'no_such_parameter')]
+                 ('robot_description', 'no_such_parameter'), ('verb', 'guess'), ('verb', 1), ('delta', -0.1),
+                 ('delta', 'wide'), ('self_collision', 'yes'), ('path_radius', -1.0), ('queue_size', 0), ('queue_size', 2.5),
+                 ('scene_file', 7), ('scene_file', '/no/such/scene.yaml'), ('scene_file', ARM)]
         for name, value in cases:
             with self.subTest(parameter=name, value=value):
                 self.assertIn('~' + name, self.stopped(**{name: value}))
@@ -59,6 +62,27 @@ class WrongParameters(unittest.TestCase):
             self.assertIn('arm', node.output())
         finally:
             node.end()
+
+    def test_a_scene_file_is_there_from_the_start(self):
+        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as scene:
+            scene.write('world: {collision_objects: [{id: box, header: {frame_id: world}, pose: {position: [1, 2, 3]}, '
+                        'primitives: [{type: box, dimensions: [1, 1, 1]}]}]}')
+            scene.flush()
+            node = Node('furnished', scene_file=scene.name)
+            try:
+                found, = Server('/furnished').scene().objects
+                self.assertEqual((found.id, found.pose.position.y), ('box', 2.0))
+            finally:
+                node.end()
+
+    def test_a_scene_file_with_an_object_in_a_frame_that_nobody_knows_is_refused(self):
+        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as scene:
+            scene.write('world: {collision_objects: [{id: box, header: {frame_id: nowhere}, '
+                        'primitives: [{type: box, dimensions: [1, 1, 1]}]}]}')
+            scene.flush()
+            output = self.stopped(scene_file=scene.name, tf_timeout=0.1)
+            self.assertIn("'nowhere'", output)
+            self.assertIn('~scene_file', output)
 
     def test_a_misspelt_name_is_warned_of(self):
         node = Node('misspelt', epsilom=1e-3)

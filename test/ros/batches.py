@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The action ~query: long batches with feedback, cancelled or not."""
+import time
+import unittest
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from curve_proximity.msg import QueryAction, QueryGoal
+from helpers import Server, bezier, ring_and_shells, run, sphere, until
+
+
+class Batches(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+        cls.client = actionlib.SimpleActionClient('/curve_proximity/query', QueryAction)
+        assert cls.client.wait_for_server(rospy.Duration(20))
+
+    def send(self, seconds=20, **fields):
+        """One goal; its state and its result."""
+        self.feedback = []
+        self.client.send_goal(QueryGoal(**fields), feedback_cb=self.feedback.append)
+        self.assertTrue(until(lambda: self.client.get_state() in (GoalStatus.SUCCEEDED, GoalStatus.ABORTED), seconds))
+        return self.client.get_state(), self.client.get_result()
+
+    def test_a_batch_is_answered_as_the_service_answers_it(self):
+        self.server.replace(sphere('ball', 0.25), sphere('other', 0.1, (0, 3, 0)))
+        curves = [bezier((-1, 0, 0.3 + 0.01 * i), (1, 0.1 * i, 1), id='c%d' % i) for i in range(300)]
+        curves[7] = bezier((0, 0, 1), id='bad')
+        state, result = self.send(verb='distance', curves=curves)
+        self.assertEqual(state, GoalStatus.SUCCEEDED)
+        response = self.server.distance(curves)
+        self.assertFalse(result.success)
+        self.assertEqual((result.message, result.frame_id), (response.message, 'world'))
+        for a, b in zip(result.results, response.results):
+            self.assertEqual((a.id, a.b, a.status), (b.id, b.b, b.status))
+            if a.id != 'bad':
+                self.assertEqual((a.lower, a.upper, a.t), (b.lower, b.upper, b.t))
+        self.assertEqual(len(result.results), 300)
+
+    def test_feedback_tells_how_far_it_is(self):
+        ring, balls, _ = ring_and_shells(shells=1, n=3000)
+        self.server.replace(*balls)
+        ring.id = 'ring'
+        state, result = self.send(verb='distance', curves=[ring] * 60, epsilon=1e-12)
+        self.assertEqual(state, GoalStatus.SUCCEEDED)
+        self.assertGreater(len(self.feedback), 0)
+        done = [f.done for f in self.feedback]
+        self.assertEqual(done, sorted(done))
+        last = self.feedback[-1]
+        self.assertEqual((last.total, last.id, last.failed), (60, 'ring', 0))
+        self.assertLessEqual(min(r.lower for r in result.results), last.lower)
+
+    def test_a_cancelled_batch_hands_over_what_it_has(self):
+        ring, balls, fields = ring_and_shells()
+        self.server.replace(*balls)
+        first = bezier((0, 0, 5), (1, 0, 5), id='first')
+        self.feedback = []
+        self.client.send_goal(QueryGoal(verb='distance', curves=[first] + [ring] * 50, **fields),
+                              feedback_cb=self.feedback.append)
+        self.assertTrue(until(lambda: self.feedback, 10))
+        time.sleep(0.3)
+        begin = time.monotonic()
+        self.client.cancel_goal()
+        self.assertTrue(until(lambda: self.client.get_state() == GoalStatus.PREEMPTED, 10))
+        self.assertLess(time.monotonic() - begin, 5.0)
+        result = self.client.get_result()
+        self.assertFalse(result.success)
+        self.assertIn('cancelled', result.message)
+        self.assertEqual((result.results[0].id, result.results[0].status), ('first', 'ok'))
+        self.assertIn('stopped', {row.status for row in result.results})
+        self.assertTrue(self.server.distance(first).success)
+
+    def test_a_budget_ends_it_and_without_one_it_outlives_that_of_the_server(self):
+        ring, balls, fields = ring_and_shells()
+        self.server.replace(*balls)
+        state, result = self.send(verb='distance', curves=[ring], budget_ms=300, **fields)
+        self.assertEqual(state, GoalStatus.SUCCEEDED)
+        self.assertIn('stopped', {row.status for row in result.results})
+
+    def test_goals_that_make_no_sense_are_aborted_with_a_reason(self):
+        line = bezier((0, 0, 1), (1, 0, 1))
+        for fields, word in ((dict(verb='guess', curves=[line]), 'guess'), (dict(verb='tolerance', delta=-1, curves=[line]), 'delta'),
+                             (dict(verb='distance', curves=[line], budget_ms=-1), 'budget_ms')):
+            state, result = self.send(**fields)
+            self.assertEqual(state, GoalStatus.ABORTED, fields)
+            self.assertFalse(result.success)
+            self.assertIn(word, result.message)
+
+
+if __name__ == '__main__':
+    run('batches')

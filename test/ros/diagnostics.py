@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the server tells of itself on /diagnostics, and what may be changed while it runs."""
+import unittest
+
+import rospy
+from curve_proximity.msg import Curve
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from dynamic_reconfigure.client import Client
+from geometry_msgs.msg import TransformStamped
+from helpers import Server, bezier, ring_and_shells, run, sphere, until
+from tf2_msgs.msg import TFMessage
+
+LINE = bezier((-1, 0, 1), (1, 0, 1))
+ONLY_OBJECTS = dict(objects=['ball'])
+
+
+class Diagnostics(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+        cls.seen = []
+        rospy.Subscriber('/diagnostics', DiagnosticArray, cls.seen.append)
+
+    def setUp(self):
+        self.server.replace(sphere('ball', 0.25))
+
+    def status(self, name, condition, seconds=8):
+        """The first status of that name from now on for which the condition holds: of its level and its values."""
+        del self.seen[:]
+
+        def look():
+            for array in list(self.seen):
+                for status in array.status:
+                    values = {v.key: v.value for v in status.values}
+                    if status.name == 'curve_proximity: ' + name and condition(status, values):
+                        return status, values
+        found = until(look, seconds)
+        self.assertTrue(found, 'no such status: ' + str(self.seen[-1:]))
+        return found
+
+    def test_rates_and_times_of_requests(self):
+        def ask(*_):
+            for _ in range(50):
+                self.server.distance(LINE, **ONLY_OBJECTS)
+        ask()
+        status, values = self.status('queries', lambda s, v: ask() or float(v['requests per second']) > 10)
+        self.assertEqual(status.level, DiagnosticStatus.OK)
+        self.assertGreater(float(values['99th percentile [us]']), 0)
+        self.assertLessEqual(float(values['median time of a request [us]']), float(values['99th percentile [us]']))
+        self.status('queries', lambda s, v: s.message == 'idle')
+
+    def test_failed_and_undecided_rows_are_counted(self):
+        self.server.distance(bezier((0, 0, 1)), **ONLY_OBJECTS)
+        status, values = self.status('queries', lambda s, v: int(v['failed rows']) == 1)
+        self.assertEqual((status.level, values['failed requests']), (DiagnosticStatus.WARN, '1'))
+        # 0.75 m away, and asked about 0.75 m
+        self.assertEqual(self.server.tolerance(LINE, 0.75, **ONLY_OBJECTS).results[0].verdict, 'undecided')
+        status, values = self.status('queries', lambda s, v: int(v['undecided rows']) == 1)
+        self.assertEqual(status.level, DiagnosticStatus.WARN)
+
+    def test_dropped_messages_are_told(self):
+        ring, balls, _ = ring_and_shells(shells=100)
+        publisher = rospy.Publisher('/curve_proximity/curve', Curve, queue_size=200)
+        self.assertTrue(until(publisher.get_num_connections, 10))
+        for i in range(100):
+            publisher.publish(LINE)  # each waits ~tf_timeout for the arm, which nobody publishes
+        status, values = self.status('topics', lambda s, v: int(v['dropped']) > 50)
+        self.assertEqual(status.level, DiagnosticStatus.WARN)
+
+    def test_the_age_of_transforms_is_told(self):
+        status, _ = self.status('transforms', lambda s, v: True)
+        self.assertEqual(status.level, DiagnosticStatus.WARN)
+        self.assertIn("'arm'", status.message)
+        publisher = rospy.Publisher('/tf', TFMessage, queue_size=10)
+        self.assertTrue(until(publisher.get_num_connections, 10))
+        sent = rospy.Time.now()
+
+        def publish():
+            message = TFMessage()
+            for link, parent in (('base', 'world'), ('arm', 'base'), ('slider', 'base')):
+                t = TransformStamped(child_frame_id=link)
+                t.header.frame_id, t.header.stamp, t.transform.rotation.w = parent, sent, 1.0
+                message.transforms.append(t)
+            publisher.publish(message)
+        publish()
+        status, values = self.status('transforms', lambda s, v: 'oldest [s]' in v and float(v['oldest [s]']) > 1.0)
+        self.assertEqual(status.level, DiagnosticStatus.WARN)
+        self.assertLess(abs((rospy.Time.now() - sent).to_sec() - float(values['oldest [s]'])), 1.5)
+
+    def test_the_master_knows_it(self):
+        status, _ = self.status('master', lambda s, v: True)
+        self.assertEqual((status.level, status.message), (DiagnosticStatus.OK, 'registered'))
+
+    def test_epsilon_budget_and_threads_change_while_it_runs(self):
+        client = Client('/curve_proximity', timeout=10)
+        before = client.get_configuration()
+        self.assertEqual((before['epsilon'], before['threads']), (1e-6, 4))
+        curve = bezier((-1, 0.3, 1), (0, 0.2, 0.2), (1, 0.4, 1))
+
+        def width():
+            row, = self.server.distance(curve, **ONLY_OBJECTS).results
+            return row.upper - row.lower, row.nodes
+        fine = width()
+        self.assertLessEqual(fine[0], 1e-6)
+        client.update_configuration({'epsilon': 0.1, 'threads': 1})
+        self.assertLess(width()[1], fine[1])
+        client.update_configuration({'epsilon': 1e-6, 'threads': 3})
+        self.assertEqual(width(), fine)
+        ring, balls, fields = ring_and_shells()
+        self.server.replace(*balls)
+        client.update_configuration({'budget_ms': 200.0})
+        response = self.server.distance(ring, objects=[b.id for b in balls], **fields)
+        self.assertIn('~budget_ms = 200', ' '.join(row.message for row in response.results))
+        client.update_configuration({'budget_ms': before['budget_ms'], 'threads': 4})
+
+
+if __name__ == '__main__':
+    run('diagnostics')

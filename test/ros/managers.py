@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Nodelet managers that end while queries run, and whose master is restarted."""
+import os
+import signal
+import socket
+import subprocess
+import time
+import unittest
+
+import actionlib
+import rosgraph
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from curve_proximity.msg import Curve, QueryAction, QueryGoal
+from helpers import Call, Server, bezier, executable, ring_and_shells, run, until
+
+LOG = '/tmp/curve_proximity_manager_%d.log' % os.getpid()
+
+
+class Managers(unittest.TestCase):
+    def start(self, *arguments, environment=None):
+        """A program whose output is kept."""
+        log = open(LOG, 'a')
+        self.addCleanup(log.close)
+        process = subprocess.Popen(arguments, stdout=log, stderr=subprocess.STDOUT, env=environment)
+        self.addCleanup(lambda: (process.poll() is None and process.kill(), process.wait()))
+        return process
+
+    def setUp(self):
+        open(LOG, 'w').close()
+        self.addCleanup(os.unlink, LOG)
+
+    def manager(self, environment=None):
+        """A manager with a server and a gate."""
+        nodelet = executable('nodelet', 'nodelet')
+        manager = self.start(nodelet, 'manager', '__name:=stopped_manager', environment=environment)
+        for name, kind in (('stopped_server', 'ProximityServer'), ('stopped_gate', 'TrajectoryGate')):
+            self.start(nodelet, 'load', 'curve_proximity/' + kind, 'stopped_manager', '__name:=' + name, environment=environment)
+        return manager
+
+    def output(self):
+        with open(LOG) as log:
+            return log.read()
+
+    def test_a_manager_that_is_stopped_while_queries_run_ends_without_a_crash(self):
+        manager = self.manager()
+        server = Server('/stopped_server')
+        ring, balls, fields = ring_and_shells()
+        server.replace(*balls)
+
+        # a service, the topic and the action, all at work
+        call = Call(lambda: server.distance(ring, **fields))
+        client = actionlib.SimpleActionClient('/stopped_server/query', QueryAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(10)))
+        client.send_goal(QueryGoal(verb='distance', curves=[ring] * 100, **fields))
+        topic = rospy.Publisher('/stopped_server/curve', Curve, queue_size=100)
+        self.assertTrue(until(topic.get_num_connections, 10))
+        for i in range(50):
+            topic.publish(bezier((0, 0, 1), (1, 0, 1)))
+            topic.publish(Curve(basis='bspline', degree=3, points=ring.points, knots=ring.knots))
+        self.assertTrue(until(lambda: client.get_state() == GoalStatus.ACTIVE, 5))
+        time.sleep(0.5)
+
+        begin = time.monotonic()
+        manager.send_signal(signal.SIGINT)
+        call.join(10)
+        self.assertIsNotNone(call.ended, 'the client is still waiting')
+        self.assertLess(call.ended - begin, 6.0)
+        self.assertTrue(until(lambda: manager.poll() is not None, 15), 'the manager does not end')
+        self.assertGreaterEqual(manager.returncode, 0, 'it died of a signal:\n' + self.output())
+
+    def test_a_manager_that_its_master_has_forgotten_says_so(self):
+        with socket.socket() as free:
+            free.bind(('', 0))
+            port = free.getsockname()[1]
+        environment = dict(os.environ, ROS_MASTER_URI='http://localhost:%d' % port)
+        graph = rosgraph.Master('/test', environment['ROS_MASTER_URI'])
+
+        def master():
+            process = subprocess.Popen(['rosmaster', '--core', '-p', str(port)], env=environment, stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+            self.addCleanup(lambda: (process.kill(), process.wait()))
+            self.assertTrue(until(graph.is_online, 20))
+            return process
+        first = master()
+        manager = self.manager(environment)
+        self.assertTrue(until(lambda: any(s[0] == '/stopped_server/distance' for s in graph.getSystemState()[2]), 20))
+        first.terminate()
+        first.wait()
+        time.sleep(1)
+        master()
+        self.assertTrue(until(lambda: 'the master does not know this node any more' in self.output(), 20), self.output())
+        self.assertIsNone(manager.poll())  # a manager is not ours to end
+
+
+if __name__ == '__main__':
+    run('managers')

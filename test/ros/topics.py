@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Trajectories in by topic, results out, and the gate behind them, all in one nodelet manager."""
+import io
+import math
+import struct
+import time
+import unittest
+
+import rospy
+from curve_proximity.msg import CollisionObject, Curve, ProximityResults
+from geometry_msgs.msg import PoseStamped, Transform, TransformStamped
+from helpers import Server, bezier, box, mesh, run, sphere, until
+from nav_msgs.msg import Path
+from tf2_msgs.msg import TFMessage
+from trajectory_msgs.msg import (JointTrajectory, JointTrajectoryPoint, MultiDOFJointTrajectory,
+                                 MultiDOFJointTrajectoryPoint)
+
+LINE = ((-1, 0, 1), (1, 0, 1))
+MASK = 2**64 - 1
+
+
+def fingerprint(message):
+    """As include/curve_proximity/fingerprint.hpp documents it."""
+    buffer = io.BytesIO()
+    message.serialize(buffer)
+    data = b'\0\0\0\0' + buffer.getvalue()[4:]
+    value = 0xcbf29ce484222325 ^ len(data)
+    data += b'\0' * (-len(data) % 8)
+    for word, in struct.iter_unpack('<Q', data):
+        value = ((value ^ word) * 0x9e3779b97f4a7c15) & MASK
+        value ^= value >> 29
+    return value
+
+
+def path(*points, frame='', **fields):
+    message = Path(**fields)
+    message.header.frame_id = frame
+    for x, y, z in points:
+        pose = PoseStamped()
+        pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = x, y, z
+        message.poses.append(pose)
+    return message
+
+
+def joint_trajectory(names, *rows):
+    return JointTrajectory(joint_names=names, points=[
+        JointTrajectoryPoint(positions=row, time_from_start=rospy.Duration(i)) for i, row in enumerate(rows)])
+
+
+def free_flight(name, *points, times=None):
+    message = MultiDOFJointTrajectory(joint_names=[name])
+    for i, (x, y, z) in enumerate(points):
+        transform = Transform()
+        transform.translation.x, transform.translation.y, transform.translation.z = x, y, z
+        transform.rotation.w = 1.0
+        when = rospy.Duration(i if times is None else times[i])
+        message.points.append(MultiDOFJointTrajectoryPoint(transforms=[transform], time_from_start=when))
+    return message
+
+
+class Topics(unittest.TestCase):
+    TYPES = {'curve': Curve, 'trajectory': JointTrajectory, 'multi_dof_trajectory': MultiDOFJointTrajectory, 'path': Path}
+
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+        cls.results, cls.passed = [], []
+        cls.publishers = {topic: rospy.Publisher('/curve_proximity/' + topic, kind, queue_size=200)
+                          for topic, kind in cls.TYPES.items()}
+        cls.objects = rospy.Publisher('/curve_proximity/collision_object', CollisionObject, queue_size=200)
+        rospy.Subscriber('/curve_proximity/proximity', ProximityResults, cls.results.append)
+        gate = [rospy.Subscriber('/gate/clear_' + topic, kind, cls.passed.append) for topic, kind in cls.TYPES.items()]
+        cls.transforms = rospy.Publisher('/tf', TFMessage, queue_size=10)
+        # the manager listens to each publisher once, for the server and the gate
+        assert until(lambda: all(p.get_num_connections() for p in [*cls.publishers.values(), cls.objects, *gate]), 20)
+        time.sleep(0.5)
+
+    def setUp(self):
+        self.server.replace()
+        del self.results[:], self.passed[:]
+
+    def ask(self, topic, message, seconds=5):
+        """Sends one message; its answer."""
+        before = len(self.results)
+        self.publishers[topic].publish(message)
+        self.assertTrue(until(lambda: len(self.results) > before, seconds), 'no answer')
+        return self.results[before]
+
+    def settled(self):
+        """What the gate has let pass once everything is through."""
+        time.sleep(0.3)
+        return len(self.passed)
+
+    def test_a_curve_is_answered_with_its_id_stamp_and_fingerprint(self):
+        self.server.replace(sphere('ball', 0.25))
+        curve = bezier(*LINE, id='one', stamp=rospy.Time(12, 34))
+        answer = self.ask('curve', curve)
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual((answer.source, answer.id, answer.header.stamp), ('curve', 'one', rospy.Time(12, 34)))
+        self.assertEqual((answer.header.frame_id, answer.verb, answer.delta), ('world', 'tolerance', 0.05))
+        self.assertEqual(answer.fingerprint, fingerprint(curve))
+        row, = answer.results
+        self.assertEqual((row.id, row.verdict), ('one', 'yes'))
+        self.assertLessEqual(row.lower, 0.75)
+
+    def test_the_gate_lets_pass_what_is_clear_and_nothing_else(self):
+        self.server.replace(sphere('ball', 0.25))
+        clear = [bezier(*LINE, id='clear%d' % i) for i in range(5)]
+        hits = [bezier((-1, 0, 0.1 * i), (1, 0, 0.1 * i), id='hit%d' % i) for i in range(3)]  # 0.05 and less away
+        wrong = [bezier((0, 0, 5), id='wrong'), bezier(*LINE, id='lost', frame='nowhere')]
+        for curve in clear[:2] + hits + wrong + clear[2:]:
+            self.ask('curve', curve)  # all of them with the same stamp, 0
+        self.assertEqual(self.settled(), 5)
+        self.assertEqual([c.id for c in self.passed], [c.id for c in clear])
+        self.assertEqual([c.points for c in self.passed], [c.points for c in clear])
+
+    def test_a_path_is_the_natural_spline_through_its_poses(self):
+        # A ball of path_radius 0.1 along a straight line of poses, one of them twice: the spline is that line.
+        self.server.replace(sphere('ball', 0.25))
+        straight = path((-1, 0, 1), (0.5, 0, 1), (0.5, 0, 1), (1, 0, 1))
+        row, = self.ask('path', straight).results
+        self.assertEqual(row.verdict, 'yes')
+        self.assertEqual(row.id, 'path')
+        # Against points just off the spline's own: the natural spline through (0, 0), (1, 1), (2, 0) is z = 3x/2 - x^3/2 over
+        # the first chord, by its symmetry; delta is 0.05 and the radius 0.1.
+        bend = path((0, 0, 0), (1, 0, 1), (2, 0, 0))
+        for offset, verdict in ((0.16, 'yes'), (0.14, 'no')):
+            self.server.replace(sphere('point', 1e-9, (0.5, offset, 1.5 * 0.5 - 0.5 * 0.5**3)))
+            row, = self.ask('path', bend).results
+            self.assertEqual(row.verdict, verdict, offset)
+
+    def test_paths_that_are_none_fail_with_a_reason(self):
+        for message, word in ((path(), 'no poses'), (path((0, 0, math.nan), (1, 0, 0)), 'finite'),
+                              (path((0, 0, 0), (1, 0, 0), frame='nowhere'), 'nowhere')):
+            answer = self.ask('path', message)
+            self.assertFalse(answer.success)
+            self.assertIn(word, answer.message)
+        mixed = path((0, 0, 0), (1, 0, 0))
+        mixed.poses[1].header.frame_id = 'shelf'
+        self.assertIn("'shelf'", self.ask('path', mixed).message)
+        self.assertEqual(self.settled(), 0)
+
+    def test_one_pose_is_a_point(self):
+        self.server.replace(sphere('ball', 0.25))
+        self.assertEqual(self.ask('path', path((0, 0, 1))).results[0].verdict, 'yes')
+        self.assertEqual(self.ask('path', path((0, 0, 0.3))).results[0].verdict, 'no')
+
+    def test_joint_trajectories_move_the_robot(self):
+        # The arm stands 10 m above the ball.
+        self.server.replace(sphere('ball', 0.25))
+        joints = ['turn']
+        answer = self.ask('trajectory', joint_trajectory(joints, [0.0], [1.0]))
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual(answer.results[0].kind, 'environment')
+        self.assertEqual(answer.results[0].verdict, 'yes')
+        for message, word in ((joint_trajectory(['none'], [0.0], [1.0]), 'none'), (JointTrajectory(), 'no joints')):
+            answer = self.ask('trajectory', message)
+            self.assertFalse(answer.success)
+            self.assertIn(word, answer.message)
+        self.assertEqual(self.settled(), 1)
+
+    def test_a_flight_of_no_robots_joint_is_its_translation(self):
+        self.server.replace(sphere('ball', 0.25))
+        answer = self.ask('multi_dof_trajectory', free_flight('drone', (-1, 0, 1), (0, 0, 1), (1, 0, 1)))
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual((answer.results[0].id, answer.results[0].verdict), ('drone', 'yes'))
+        answer = self.ask('multi_dof_trajectory', free_flight('drone', (-1, 0, 0), (1, 0, 0)))
+        self.assertEqual(answer.results[0].verdict, 'no')
+        answer = self.ask('multi_dof_trajectory', free_flight('drone', (0, 0, 0), (1, 0, 0), times=[1, 1]))
+        self.assertIn('time', answer.message)
+        self.assertEqual(self.settled(), 1)
+
+    def test_what_comes_too_fast_is_dropped_oldest_first_and_counted(self):
+        before = self.ask('path', path((0, 0, 9))).dropped
+        del self.results[:]
+        self.publishers['curve'].publish(bezier(*LINE, id='slow', frame='nowhere'))  # waits ~tf_timeout for that frame
+        for i in range(40):
+            self.publishers['curve'].publish(bezier((0, 0, 5 + i), (1, 0, 5 + i), id='fast%d' % i))
+        self.assertTrue(until(lambda: self.results and self.results[-1].id == 'fast39', 10))
+        dropped = self.results[-1].dropped - before
+        self.assertGreater(dropped, 0)
+        self.assertEqual(len(self.results) + dropped, 41)
+        self.assertEqual([r.id for r in self.results[-5:]], ['fast%d' % i for i in range(35, 40)])
+
+    def test_objects_come_by_topic(self):
+        self.objects.publish(sphere('ball', 0.25, frame='shelf'))
+        self.assertTrue(until(lambda: self.server.scene().objects, 5))
+        self.assertEqual(self.server.scene().objects[0].pose.position.z, 2)
+        self.objects.publish(sphere('bad', -1.0))
+        self.objects.publish(sphere('lost', 1.0, frame='nowhere'))
+        self.objects.publish(CollisionObject(id='ball', operation=CollisionObject.REMOVE))
+        self.assertTrue(until(lambda: not self.server.scene().objects, 5))
+
+    def test_an_empty_frame_is_the_fixed_one_and_a_stamp_in_the_future_is_an_error_only_where_it_matters(self):
+        self.server.replace(box('box', (1, 1, 1)))
+        later = rospy.Time.now() + rospy.Duration(1000)
+        self.assertTrue(self.ask('path', path((0, 0, 9), (1, 0, 9))).success)
+        answer = self.ask('curve', bezier(*LINE, id='later', frame='shelf', stamp=later))
+        self.assertTrue(answer.success, answer.message)  # shelf is fixed in the world, and so is the arm's base
+        moving = TransformStamped(child_frame_id='moving')
+        moving.header.frame_id, moving.header.stamp, moving.transform.rotation.w = 'world', rospy.Time.now(), 1.0
+        self.transforms.publish(TFMessage([moving]))
+        self.assertTrue(until(lambda: self.ask('curve', bezier(*LINE, frame='moving')).success, 5))
+        answer = self.ask('curve', bezier(*LINE, id='later', frame='moving', stamp=later))
+        self.assertFalse(answer.success)
+        self.assertIn("'moving'", answer.message)
+        self.assertEqual(answer.header.stamp, later)
+
+    def test_a_mesh_of_a_hundred_megabytes_is_taken_in_or_refused_and_the_server_goes_on(self):
+        n = 2000000
+        vertices = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+        big = mesh('big', vertices, [(0, 1, 2)])
+        big.meshes[0].vertices = big.meshes[0].vertices * (n // 4)
+        big.meshes[0].triangles = big.meshes[0].triangles * n
+        buffer = io.BytesIO()
+        big.serialize(buffer)
+        self.assertGreater(len(buffer.getvalue()), 70e6)
+        self.objects.publish(big)
+        self.objects.publish(sphere('after', 0.25))
+        self.assertTrue(until(lambda: any(o.id == 'after' for o in self.server.scene('after').objects), 60, 0.5))
+        self.assertTrue(self.ask('curve', bezier((5, 5, 5), (6, 6, 6)), 20).success)
+
+
+if __name__ == '__main__':
+    run('topics')
