@@ -14,14 +14,14 @@ import soundness
 import targets
 
 PREFIX = 'curve_proximity_bench_'
-NOT_GROUPS = {'core', 'service'}  # Google benchmark's and the node's: no rows of results.csv
+NOT_GROUPS = {'core'}  # Google benchmark's: no rows of results.csv
 MADE = 'made.txt'  # how the results came to be
 COLUMNS = ['group', 'workload', 'method', 'parameter', 'median_us', 'p95_us', 'nodes', 'probes', 'error', 'unsound', 'failures']
 
 
-def programs(folder):
+def programs(folders):
     """The groups that were built: name and program."""
-    found = {os.path.basename(path)[len(PREFIX):]: path for path in glob.glob(os.path.join(folder, PREFIX + '*'))}
+    found = {os.path.basename(path)[len(PREFIX):]: path for folder in folders for path in glob.glob(os.path.join(folder, PREFIX + '*'))}
     return {name: path for name, path in sorted(found.items()) if name not in NOT_GROUPS and os.access(path, os.X_OK)}
 
 
@@ -60,7 +60,7 @@ def measure(parser, arguments):
 
 def main():
     parser = argparse.ArgumentParser(prog='scripts/bench', description=__doc__)
-    parser.add_argument('--programs', help=argparse.SUPPRESS)
+    parser.add_argument('--programs', action='append', help=argparse.SUPPRESS)
     parser.add_argument('--out', required=True, help='folder for results.csv and the charts')
     parser.add_argument('--quick', action='store_true', help='smaller problems, fewer rounds: within five minutes')
     parser.add_argument('--only', action='append', metavar='GROUP', help='this group only; may be given more than once')
