@@ -122,7 +122,19 @@ static curve_capsule join_capsules(const curve_capsule *left, const curve_capsul
   return capsule;
 }
 
+/* |x| + |y| + |z| is no less than |P|. */
+static void measure_points(cprox_curve *c) {
+  c->largest = 0.0;
+  c->flat = true;
+  for (size_t i = 0; i < c->n_pieces * (c->degree + 1); i++) {
+    const vec3 p = c->points[i];
+    c->largest = fmax(c->largest, ROUND_UP * (fabs(p.x) + fabs(p.y) + fabs(p.z)));
+    c->flat = c->flat && p.z == c->points[0].z;
+  }
+}
+
 void curve_finish(cprox_curve *c) {
+  measure_points(c);
   curve_fill_tables(c->degree, c->tables);
   c->binomial = c->tables;
   c->square = c->tables + (c->degree < 2 ? 0 : c->degree - 1);

@@ -30,6 +30,8 @@ struct cprox_curve {
       *arcs;              /* NULL, or what a curve is known by that has no control points: then its pieces are chords of
                                     degree 1, their errors how far the curve is from them, and intervals are those of
                                     rectifiable.h */
+  double largest;         /* at least |P| of every control point, */
+  bool flat;              /* all have the z of the first, exactly */
   double *tables;         /* numbers of the degree, curve_tables_size() of them, which curve_finish() fills: */
   const double *binomial; /* C(degree - 2, k), for evaluation by the last three de Casteljau points; none below 2, */
   const double *square;   /* and for control_distance_from(): C(degree, k), then 1 / C(2 degree, k) */

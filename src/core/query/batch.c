@@ -69,7 +69,8 @@ static cprox_status search_near(const batch_run *run, const batch_look *look, cp
 
 static cprox_status answer_fast(batch_run *run, cprox_result *r) {
   question_ask_whole(&run->q);
-  const batch_look look = batch_look_around(run);
+  batch_look look;
+  batch_look_around(run, &look);
   return look.is_hit ? report_hit(run, &look, r) : search_near(run, &look, r);
 }
 

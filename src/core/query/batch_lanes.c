@@ -59,32 +59,31 @@ const double *lanes_basis(size_t degree, cprox_workspace *workspace) {
 
 LANES_DISPATCHED
 void lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, lanes_chords *chords) {
-  /* half of the lanes at a time: so many sums stay in registers */
+  /* half of the lanes at a time, begun by their first terms: so many sums stay in registers */
   for (size_t first = 0; first < CHORDS; first += LANES) {
-    double x[LANES] = {0}, y[LANES] = {0}, z[LANES] = {0};
-    if (flat) {
-      for (size_t j = 0; j <= degree; j++) {
-        const double *restrict b = basis + j * CHORDS + first;
-        const vec3 p = points[j];
+    double x[LANES], y[LANES], z[LANES];
+    const double *restrict b = basis + first;
 #pragma omp simd
-        for (int k = 0; k < LANES; k++) {
-          x[k] += b[k] * p.x;
-          y[k] += b[k] * p.y;
-        }
+    for (int k = 0; k < LANES; k++) {
+      x[k] = b[k] * points[0].x;
+      y[k] = b[k] * points[0].y;
+    }
+    for (size_t j = 1; j <= degree; j++) {
+      const double *restrict next = b + j * CHORDS;
+      const vec3 p = points[j];
+#pragma omp simd
+      for (int k = 0; k < LANES; k++) {
+        x[k] += next[k] * p.x;
+        y[k] += next[k] * p.y;
       }
+    }
 #pragma omp simd
-      for (int k = 0; k < LANES; k++) z[k] = points[0].z;
-    } else {
-      for (size_t j = 0; j <= degree; j++) {
-        const double *restrict b = basis + j * CHORDS + first;
-        const vec3 p = points[j];
+    for (int k = 0; k < LANES; k++) z[k] = flat ? points[0].z : b[k] * points[0].z;
+    for (size_t j = 1; j <= degree && !flat; j++) {
+      const double *restrict next = b + j * CHORDS;
+      const double pz = points[j].z;
 #pragma omp simd
-        for (int k = 0; k < LANES; k++) {
-          x[k] += b[k] * p.x;
-          y[k] += b[k] * p.y;
-          z[k] += b[k] * p.z;
-        }
-      }
+      for (int k = 0; k < LANES; k++) z[k] += next[k] * pz;
     }
     for (size_t k = 0; k < LANES; k++) {
       chords->x[first + k] = x[k];

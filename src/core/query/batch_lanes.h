@@ -5,10 +5,10 @@
 
 #include "curve/curve.h"
 
-/* Sets of balls are padded to a multiple of LANES; a piece is cut into CHORDS of equal parameter length. */
+/* A piece is cut into CHORDS of equal parameter length, of which LANES at a time are worked on. */
 enum { LANES = 8, CHORDS = 16 };
 
-/* Balls, one array a number, `padded` of each. */
+/* Balls, one array a number, `padded` of each: n up to a multiple of 4. */
 typedef struct lanes_balls {
   size_t n, padded;
   double *x, *y, *z;

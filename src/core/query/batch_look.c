@@ -5,38 +5,20 @@
 
 #include "base/rounding.h"
 
-/* No less than |a|. */
-static inline double size_of(vec3 a) {
-  return fabs(a.x) + fabs(a.y) + fabs(a.z);
-}
-
 /* ---- the curve ---------------------------------------------------------------------------------------------------------- */
-
-/* The whole curve lies in a plane of constant z, exactly. */
-static bool lies_in_plane(const cprox_curve *curve, double z) {
-  const size_t n = curve->n_pieces * (curve->degree + 1);
-  for (size_t i = 0; i < n; i++)
-    if (curve->points[i].z != z) return false;
-  return true;
-}
 
 /* Points at equal steps of the parameter, and what rounding may do to them, to chords between them and to lengths along these. */
 static bool cut_curve(batch_run *run) {
   const cprox_curve *curve = run->q.mover.curve;
   const double *basis = lanes_basis(curve->degree, run->q.workspace);
   if (!basis) return false;
-  run->plane = curve->points[0].z;
-  run->flat = lies_in_plane(curve, run->plane);
   double error = 0.0;
   for (size_t i = 0; i < curve->n_pieces; i++) {
-    lanes_points(basis, curve_piece(curve, i), curve->degree, run->flat, &run->chords[i]);
+    lanes_points(basis, curve_piece(curve, i), curve->degree, curve->flat, &run->chords[i]);
     error = greater(error, curve->error[i]);
   }
   const double n = (double)curve->degree;
-  /* the capsule holds all control points */
-  const curve_capsule *capsule = &curve->capsules[1];
-  const double magnitude = greater(size_of(capsule->a), size_of(capsule->b)) + capsule->radius;
-  run->slack = ROUND_UP * (error + (10.0 * n + 40.0 + n * n / (CHORDS * CHORDS)) * ROUND_U * magnitude);
+  run->slack = ROUND_UP * (error + (10.0 * n + 40.0 + n * n / (CHORDS * CHORDS)) * ROUND_U * curve->largest);
   run->cut = true;
   return true;
 }
@@ -70,7 +52,8 @@ static bool has_inner_ball(const batch_run *run, size_t part) {
   const batch_core *core = &run->batch->cores[part];
   if (core->inner < 0.0) return false;
   return !core->flat ||
-         (run->flat && run->plane == run->batch->targets[run->batch->parts[part].target].pose.position.z);
+         (run->q.mover.curve->flat &&
+          run->q.mover.curve->points[0].z == run->batch->targets[run->batch->parts[part].target].pose.position.z);
 }
 
 /* A point of the curve that is within the limit of the part's inner ball. */
@@ -146,18 +129,19 @@ static void put_in_order(batch_run *run, size_t promising, double upper, batch_l
   candidates_sort(near + 1, kept - 1);
 }
 
-batch_look batch_look_around(batch_run *run) {
+void batch_look_around(batch_run *run, batch_look *look) {
   const cprox_batch *batch = run->batch;
   const question *q = &run->q;
-  batch_look look = {.beyond = INFINITY};
+  look->n = 0;
+  look->beyond = INFINITY;
   run->cut = run->joined = false;
   lanes_ball_bounds(&batch->balls, &q->reach, q->mover.radius, run->lower);
 
   const bool short_enough = q->mover.curve->n_pieces <= BATCH_MOST_PIECES;
-  look.is_hit = short_enough && find_hit(run, greater(q->limit, 0.0), &look.hit);
-  if (look.is_hit) {
-    for (size_t k = 0; k < batch->balls.n; k++) look.beyond = lesser(look.beyond, run->lower[k]);
-    return look;
+  look->is_hit = short_enough && find_hit(run, greater(q->limit, 0.0), &look->hit);
+  if (look->is_hit) {
+    for (size_t k = 0; k < batch->balls.n; k++) look->beyond = lesser(look->beyond, run->lower[k]);
+    return;
   }
 
   /* what comes within `most` as far as balls and chords can tell */
@@ -166,10 +150,10 @@ batch_look batch_look_around(batch_run *run) {
   size_t promising = 0;
   for (size_t k = 0; k < batch->balls.n; k++) {
     if (run->lower[k] > lesser(most, least_upper)) {
-      look.beyond = lesser(look.beyond, run->lower[k]);
+      look->beyond = lesser(look->beyond, run->lower[k]);
       continue;
     }
-    candidate *c = &run->near[look.n];
+    candidate *c = &run->near[look->n];
     *c = batch->parts[k];
     c->lower = run->lower[k];
     double upper = INFINITY;
@@ -178,12 +162,11 @@ batch_look batch_look_around(batch_run *run) {
       if (run->joined) upper = look_at(run, c, k);
     }
     if (c->lower > lesser(most, least_upper)) {
-      look.beyond = lesser(look.beyond, c->lower);
+      look->beyond = lesser(look->beyond, c->lower);
       continue;
     }
-    if (upper < least_upper) least_upper = upper, promising = look.n;
-    look.n++;
+    if (upper < least_upper) least_upper = upper, promising = look->n;
+    look->n++;
   }
-  put_in_order(run, promising, least_upper, &look);
-  return look;
+  put_in_order(run, promising, least_upper, look);
 }

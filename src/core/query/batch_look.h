@@ -19,8 +19,6 @@ typedef struct batch_run {
   lanes_chords chords[BATCH_MOST_PIECES];
   double beside; /* how far the curve may be from the chords' points of the same parameter */
   double slack;  /* how much rounding may add to that */
-  bool flat;     /* the whole curve lies in the plane of constant z */
-  double plane;  /* this, exactly */
 } batch_run;
 
 /* Where the curve comes within the limit of a ball inside a part. */
@@ -41,7 +39,7 @@ typedef struct batch_look {
   double beyond; /* the least lower bound of all others */
 } batch_look;
 
-/* Looks at all parts from the curve of run->q.mover, a point or a ball with control points. */
-batch_look batch_look_around(batch_run *run);
+/* Looks at all parts from the curve of run->q.mover, a point or a ball with control points. Fills *look. */
+void batch_look_around(batch_run *run, batch_look *look);
 
 #endif

@@ -96,7 +96,7 @@ static size_t parts_of(const cprox_target *target) {
 static cprox_batch *allocate(size_t n_targets, size_t n_parts) {
   cprox_batch *batch = calloc(1, sizeof *batch);
   if (!batch) return NULL;
-  const size_t padded = (n_parts + LANES - 1) / LANES * LANES;
+  const size_t padded = (n_parts + 3) / 4 * 4;
   batch->n = n_targets;
   batch->balls.n = n_parts;
   batch->balls.padded = padded;
