@@ -82,12 +82,13 @@ static void distances(const problem *problems, size_t n, bool self, const bench_
   for (size_t i = 0; i < n; i++)
     if (problems[i].self == self) some[count] = problems[i], truth[count++] = problems[i].truth;
   for (int k = 0; k < 3; k++) {
-    method_state state = {.workspace = ws, .epsilon = EPSILON[k], .factor = -1.0};
+    method_state state = {.workspace = ws, .epsilon = EPSILON[k], .factor = -1.0, .step = 0.05};
     char parameter[40];
     snprintf(parameter, sizeof parameter, "epsilon %g", EPSILON[k]);
     const bench_workload w = {"robots", self ? "self" : "environment", parameter, some, count, truth, 1.1e-6};
-    const bench_method methods[] = {{"curve_proximity", ours, &state}, {"two-ended bound", two_ended, &state}};
-    bench_measure(&w, size, methods, 2);
+    const bench_method methods[] = {
+        {"curve_proximity", ours, &state}, {"two-ended bound", two_ended, &state}, {"sampling .05", sampled, &state}};
+    bench_measure(&w, size, methods, 3);
   }
   static const double STEP[] = {0.05, 0.01};
   for (int k = 0; k < 2; k++) {

@@ -30,9 +30,23 @@ part_model part_model_of(const cprox_body *body) {
   return m;
 }
 
+void part_model_find_box(part_model *model) {
+  const convex *shape = model->shape;
+  double low[3], high[3];
+  for (int i = 0; i < 3; i++) {
+    const vec3 axis = vec(i == 0, i == 1, i == 2);
+    high[i] = shape->ops->support(shape, axis, NULL, NULL);
+    low[i] = -shape->ops->support(shape, vec_neg(axis), NULL, NULL);
+  }
+  const double grow = ROUND_SUPPORT * ROUND_U * shape->scale + shape->slack;
+  model->middle = vec(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2]));
+  model->half = vec(0.5 * (high[0] - low[0]) + grow, 0.5 * (high[1] - low[1]) + grow, 0.5 * (high[2] - low[2]) + grow);
+}
+
 part_model part_model_ball(const part_model *model) {
   part_model ball = *model;
   ball.shape = &POINT;
+  ball.middle = ball.half = vec(0, 0, 0);
   ball.margin = model->radius;
   ball.by_ball = true;
   return ball;

@@ -11,6 +11,7 @@ typedef struct part_model {
   vec3 centre;         /* of the shape, in the body's frame */
   double margin;       /* what thickens the shape, so that the body lies within */
   double radius;       /* of a ball about the centre that contains the body */
+  vec3 middle, half;   /* of a box, axes those of the shape, that contains its core: part_model_find_box() */
   bool by_ball;        /* the shape stands for nothing but that ball */
   const tree *tree;    /* the elements; NULL: the body is the shape with its margin */
   vec3 tree_at;        /* where the tree's origin is, from the centre */
@@ -19,6 +20,9 @@ typedef struct part_model {
 
 /* body: no compound. */
 part_model part_model_of(const cprox_body *body);
+
+/* Draws the box, by the shape's support function. Not of a halfspace. */
+void part_model_find_box(part_model *model);
 
 /* The ball alone. */
 part_model part_model_ball(const part_model *model);

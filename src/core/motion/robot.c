@@ -174,6 +174,7 @@ static size_t parts_of(const cprox_body *body) {
 static void add_part(cprox_robot *robot, const chain_end *at, const cprox_body *body, double padding, size_t geometry,
                      int32_t link) {
   part_model model = part_model_of(body);
+  part_model_find_box(&model);
   model.margin += padding, model.radius += padding, model.tree_margin += padding;
   const chain_end end =
       extend(at, &(cprox_pose){.position = model.centre, .orientation = {.w = 1.0}}); /* the shape's own origin */

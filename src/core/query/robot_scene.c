@@ -14,20 +14,6 @@ static bool is_halfspace(const robot_body *body) {
 
 /* ---- bodies --------------------------------------------------------------------------------------------------------------- */
 
-/* The box that the core's support function draws round it. */
-static void find_box(robot_body *body) {
-  const convex *shape = body->side.shape;
-  double low[3], high[3];
-  for (int i = 0; i < 3; i++) {
-    const vec3 axis = vec(i == 0, i == 1, i == 2);
-    high[i] = shape->ops->support(shape, axis, NULL, NULL);
-    low[i] = -shape->ops->support(shape, vec_neg(axis), NULL, NULL);
-  }
-  const double grow = ROUND_SUPPORT * ROUND_U * shape->scale + shape->slack;
-  body->middle = vec(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2]));
-  body->half = vec(0.5 * (high[0] - low[0]) + grow, 0.5 * (high[1] - low[1]) + grow, 0.5 * (high[2] - low[2]) + grow);
-}
-
 /* The finest model that the question allows. Clouds and octrees stay what they are, and so do halfspaces. */
 static part_model model_for(const question *q, part_model model) {
   const bool many = model.tree && model.tree->kind != TREE_TRIANGLES && model.by_ball;
@@ -54,7 +40,8 @@ static robot_body obstacle_of(const question *q, size_t index, size_t part) {
     error = isfinite(turned) ? turned : vec_norm(p->pose.position) + vec_norm(body->centre) + body->shape.scale;
     error = ROUND_U * (ROUND_ROTATION * error + 3.0 * vec_norm(pose.position));
   }
-  const part_model m = model_for(q, part_model_of(body));
+  part_model m = model_for(q, part_model_of(body));
+  if (m.shape->ops->kind != CPROX_HALFSPACE) part_model_find_box(&m);
   const frame f = frame_create(&pose, m.centre);
   robot_body placed = {.radius = m.radius + target->padding, .index = (int32_t)index, .part = (int32_t)part};
   placed.side = (bound_side){.shape = m.shape, .margin = m.margin + target->padding};
@@ -64,7 +51,7 @@ static robot_body obstacle_of(const question *q, size_t index, size_t part) {
   if (is_halfspace(&placed)) placed.radius = m.shape->scale + placed.side.margin;
   const double sizes = vec_norm(m.centre) + placed.radius;
   placed.side.error = ROUND_UP * (error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(placed.side.at.p)));
-  if (!is_halfspace(&placed)) find_box(&placed);
+  placed.middle = m.middle, placed.half = m.half;
   return placed;
 }
 
@@ -79,7 +66,7 @@ static robot_body part_body(const question *q, size_t i) {
   robot_body body = {.radius = m.radius, .steps = part->steps, .index = part->geometry, .part = (int32_t)i};
   body.side = (bound_side){.shape = m.shape, .margin = m.margin, .error = motion->part_error[i]};
   body.tree = m.tree, body.tree_at = m.tree_at, body.tree_margin = m.tree_margin;
-  find_box(&body);
+  body.middle = m.middle, body.half = m.half;
   return body;
 }
 

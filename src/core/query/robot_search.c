@@ -20,6 +20,9 @@ static const double BLUR = 0.25;
 /* Normals that turn faster than this over a node are taken to stand still. */
 static const double FASTEST_DRIFT = 0.5;
 
+/* Where a plane in the middle asks for more pieces than this, no distance is measured. */
+static const double ENOUGH_PIECES = 3.0;
+
 #define SHORTEST_STRETCH 0x1p-46
 
 /* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
@@ -179,17 +182,30 @@ static cprox_status seed(robot_search *o, const search_node *node) {
 
 /* ---- bounds --------------------------------------------------------------------------------------------------------------- */
 
-/* What the pair's last normal says of the node, carried on to its middle as it turned. */
+/* The pair's last normal, carried on to the middle of the node as it turned. */
+static vec3 normal_in_middle(const search_node *node, const robot_pair *pair, const robot_body *standing) {
+  const double middle = 0.5 * (node->side[0].a + node->side[1].b);
+  const double away = pair->segment == first_of(node) ? middle - pair->u : 0.0;
+  vec3 n = placement_turn(&standing->side.at, vec_axpy(pair->normal, away, pair->drift));
+  n = vec_scale(1.0 / vec_norm(n), n);
+  return vec_scale(1.0 / vec_norm(n), n);
+}
+
+/* How far the two are apart along it: only to choose by, its rounding is not counted. */
+static double plane_middle(const search_node *node, const robot_pair *pair, const robot_body *moving,
+                           const robot_body *standing) {
+  const vec3 n = normal_in_middle(node, pair, standing);
+  const double along = vec_dot(n, vec_sub(moving->side.at.p, standing->side.at.p));
+  return along - bound_height(&moving->side, vec_neg(n)) - robot_scene_height(standing, n);
+}
+
+/* What that normal says of the node. */
 static double bound_by_normal(robot_search *o, const search_node *node, const robot_pair *pair,
                               const robot_body *moving, const robot_body *standing, const chain_motion *motion,
                               double goal, double *slack) {
-  const double width = node->side[1].b - node->side[0].a, middle = 0.5 * (node->side[0].a + node->side[1].b);
+  const double width = node->side[1].b - node->side[0].a;
   const bool same_segment = pair->segment == first_of(node);
-  const double away = same_segment ? middle - pair->u : 0.0;
-  vec3 n = placement_turn(&standing->side.at, vec_axpy(pair->normal, away, pair->drift));
-  n = vec_scale(1.0 / vec_norm(n), n);
-  n = vec_scale(1.0 / vec_norm(n), n);
-
+  const vec3 n = normal_in_middle(node, pair, standing);
   vec3 drift = placement_turn(&standing->side.at, vec_scale(same_segment ? width : 0.0, pair->drift));
   drift = vec_axpy(drift, -vec_dot(drift, n), n);
   if (!(vec_norm2(drift) < FASTEST_DRIFT * FASTEST_DRIFT)) drift = vec(0, 0, 0);
@@ -199,6 +215,18 @@ static double bound_by_normal(robot_search *o, const search_node *node, const ro
   o->planes++;
   return motion_plane_bound(motion, &moving->side, &standing->side, n, drift, heights, moving->steps + standing->steps,
                             goal, slack);
+}
+
+/* What a cut into so many pieces would do for one pair counts for the node. */
+static void want_pieces(robot_search *o, double pieces) {
+  o->pieces = fmax(o->pieces, pieces);
+}
+
+/* A pair that is `middle` apart in the middle, of which the whole node says `bound`: what is lost shrinks as the square of the length
+ * on the piece that is nearest; on others it may shrink slower, but there is more to lose. */
+static double pieces_for(const robot_search *o, double middle, double bound) {
+  const double goal = settling_bound(o);
+  return middle > goal ? sqrt(1.05 * (middle - bound) / (middle - goal)) : 2.0;
 }
 
 static bool is_settled(const robot_search *o, double lower) {
@@ -279,12 +307,22 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   /* too blurred: halves will tell more */
   const double width = node->side[1].b - node->side[0].a;
   const double size = fmax(moving->radius, BLUR * fmax(apart, 0.0));
-  if (motion->travel > size && width > SHORT_STRETCH) return CPROX_OK;
+  if (motion->travel > size && width > SHORT_STRETCH) {
+    want_pieces(o, motion->travel / size);
+    return CPROX_OK;
+  }
 
   if (pair->normal_known) {
     const double bound = bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
     entry->lower = fmax(entry->lower, bound);
     if (is_settled(o, entry->lower)) return CPROX_OK;
+
+    /* verdicts: a plane that parts the two in the middle says how short the pieces must be; no distance could say much more */
+    const double pieces = o->limit >= 0.0 ? pieces_for(o, plane_middle(node, pair, moving, standing), bound) : 2.0;
+    if (pieces > ENOUGH_PIECES && width > SHORT_STRETCH) {
+      want_pieces(o, pieces);
+      return CPROX_OK;
+    }
   }
 
   robot_gap gap;
@@ -294,6 +332,7 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   entry->lower = fmax(entry->lower, gap.lower - motion->travel);
   if (pair->normal_known && gap.upper > 0.0)
     entry->lower = fmax(entry->lower, bound_by_gap(o, node, pair, moving, standing, motion, &gap, slack));
+  if (!is_settled(o, entry->lower)) want_pieces(o, pieces_for(o, gap.lower, entry->lower));
   if (is_convex(moving, standing) || is_settled(o, entry->lower)) return CPROX_OK;
 
   /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
@@ -314,6 +353,7 @@ static cprox_status bound_node(robot_search *o, search_node *node) {
   const double inherited = node->lower;
   robot_scene_enter(&o->scene, first_of(node), node->side[0].a, node->side[1].b);
   o->n_next = 0;
+  o->pieces = 2.0;
   node->lower = INFINITY;
   for (size_t i = 0; i < n; i++) {
     list_entry entry = lists_at(&o->lists, old)[i];
@@ -365,18 +405,21 @@ static int split(void *self, search_node *node, search_node *child) {
   robot_search *o = self;
   const size_t first = first_of(node), last = last_of(node);
   const double a = node->side[0].a, b = node->side[1].b;
+  int n = 2;
   if (first + 1 < last) {
     const size_t middle = (first + last) / 2;
     child[0] = node_of(o, node, first, a, middle, 1.0);
     child[1] = node_of(o, node, middle, 0.0, last, b);
   } else {
-    const double middle = 0.5 * (a + b);
     if (!(b - a > SHORTEST_STRETCH)) return 0;
-    child[0] = node_of(o, node, first, a, last, middle);
-    child[1] = node_of(o, node, first, middle, last, b);
+    n = o->pieces < 2.0 ? 2 : o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (int)ceil(o->pieces);
+    for (int k = 0; k < n; k++) {
+      const double from = k == 0 ? a : child[k - 1].side[1].b, to = k + 1 == n ? b : a + (b - a) * (k + 1) / n;
+      child[k] = node_of(o, node, first, from, last, to);
+    }
   }
-  lists_share(&o->lists, node->side[0].slot);
-  return 2;
+  for (int k = 1; k < n; k++) lists_share(&o->lists, node->side[0].slot);
+  return n;
 }
 
 static void release(void *self, const search_node *node) {

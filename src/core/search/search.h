@@ -31,7 +31,7 @@ typedef struct search_node {
   double rest;              /* and the least bound of those that do not */
 } search_node;
 
-enum { SEARCH_MAX_CHILDREN = 4 };
+enum { SEARCH_MAX_CHILDREN = 8 };
 
 /* The best point found so far. */
 typedef struct search_best {

@@ -146,6 +146,7 @@ bool robot_case_read(FILE *cases, const char *folder, robot_case *c) {
   FILE *f = fopen(path, "r");
   const bool robot = f && read_robot(f, c, &n_variables, disabled);
   if (f) fclose(f);
+  c->n_variables = robot ? n_variables : 0;
   if (!robot || !read_motion(cases, c, n_variables) || !read_scene(cases, c)) {
     fprintf(stderr, "%s: not a robot case\n", c->name);
     return false;

@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The seven MotionBenchMaker trajectories that MoveIt was measured on: the certified minimum, of hulls and of meshes, to the scene and
+ * to the robot itself, beside the boolean check of states that a planner makes, at MoveIt's usual step. MoveIt's own figures, measured
+ * by themselves with moveit_core 1.1.16 and FCL, stand beside them for reference: they are not of this process. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "body/body.h"
+#include "curve_proximity/cprox.h"
+#include "peers/robot_fcl.h"
+#include "support/measure.h"
+#include "support/robot_case.h"
+#include "tree/tree.h"
+
+/* MoveIt's longest valid segment: this fraction of the joint space's extent, which is the sum of the Panda's seven ranges [rad]. */
+static const double SEGMENT_FRACTION = 0.01, PANDA_EXTENT = 33.476;
+
+/* MoveIt's boolean check of the trajectory at that step [ms]. */
+static const struct {
+  const char *scene;
+  double milliseconds;
+} MOVEIT[] = {{"panda_bookshelf_small_0001_rrt", 0.57},
+              {"panda_bookshelf_tall_0001_rrt", 1.1},
+              {"panda_bookshelf_thin_0001_rrt", 2.6},
+              {"panda_box_0001_rrt", 1.6},
+              {"panda_cage_0001_rrt", 3.5},
+              {"panda_table_pick_0001_rrt", 0.45},
+              {"panda_table_under_pick_0001_rrt", 0.62}};
+
+enum { SCENES = sizeof MOVEIT / sizeof MOVEIT[0] };
+
+typedef struct problem {
+  robot_case c;
+  robot_fcl *fcl;
+  size_t states;
+  double truth;
+} problem;
+
+typedef struct method_state {
+  cprox_workspace *workspace;
+  bool meshes;
+} method_state;
+
+/* ---- ours ----------------------------------------------------------------------------------------------------------------- */
+
+static void ours(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  const method_state *s = state;
+  const cprox_motion *motion = s->meshes ? p->c.mesh_motion : p->c.motion;
+  cprox_options options = cprox_options_default();
+  options.epsilon = 1e-3;
+  cprox_result scene, self;
+  const cprox_status a = cprox_distance_all(cprox_robot_along(motion, NULL, 0), p->c.targets, p->c.n_targets, &options,
+                                            s->workspace, &scene, NULL);
+  const cprox_status b = cprox_distance_all(cprox_robot_self(motion, p->c.self_pairs, p->c.n_self_pairs), NULL, 0,
+                                            &options, s->workspace, &self, NULL);
+  *answer = (bench_answer){.lower = scene.lower,
+                           .upper = scene.upper,
+                           .nodes = scene.nodes + self.nodes,
+                           .probes = scene.probes + self.probes,
+                           .failed = a < 0 || b < 0};
+}
+
+/* ---- states by FCL -------------------------------------------------------------------------------------------------------- */
+
+static void add_shape(robot_fcl *fcl, const cprox_body *body, const cprox_body *surface) {
+  const double *size = body->shape.size;
+  if (surface) {
+    const tree *t = surface->tree;
+    double *corners = calloc(9 * (size_t)TREE_LANES * t->n_packs, sizeof *corners), *at = corners;
+    for (uint32_t pack = 0; pack < t->n_packs; pack++) {
+      for (uint32_t lane = 0; lane < TREE_LANES; lane++) {
+        const tree_place place = {pack, lane};
+        if (lane > 0 && tree_element(t, place) == tree_element(t, (tree_place){pack, lane - 1})) break;
+        vec3 v[3];
+        tree_corners(t, place, v);
+        for (int k = 0; k < 3; k++, at += 3)
+          at[0] = v[k].x + surface->centre.x, at[1] = v[k].y + surface->centre.y, at[2] = v[k].z + surface->centre.z;
+      }
+    }
+    robot_fcl_add_mesh(fcl, corners, (size_t)(at - corners) / 9);
+    free(corners);
+  } else if (body->kind == CPROX_BOX) {
+    robot_fcl_add_box(fcl, (cprox_vec3){2.0 * size[0], 2.0 * size[1], 2.0 * size[2]});
+  } else if (body->kind == CPROX_CYLINDER) {
+    robot_fcl_add_cylinder(fcl, size[0], 2.0 * size[1]);
+  } else {
+    robot_fcl_add_sphere(fcl, body->shape.margin);
+  }
+}
+
+static robot_fcl *make_fcl(const robot_case *c) {
+  robot_fcl *fcl = robot_fcl_create();
+  for (size_t i = 0; i < c->n_targets; i++) {
+    add_shape(fcl, c->targets[i].body, NULL);
+    robot_fcl_stand(fcl, c->targets[i].pose);
+  }
+  for (size_t i = 0; i < c->n_geometries; i++) add_shape(fcl, c->bodies[i], c->surfaces[i]);
+  for (size_t i = 0; i < c->n_self_pairs; i++)
+    robot_fcl_add_pair(fcl, (size_t)c->self_pairs[i].geometry, (size_t)c->self_pairs[i].other);
+  robot_fcl_ready(fcl);
+  return fcl;
+}
+
+/* As many states as MoveIt checks on a path of that length. */
+static size_t states_of(const robot_case *c) {
+  double t0, t1, before[CASE_MAX_VARIABLES], after[CASE_MAX_VARIABLES], length = 0.0;
+  cprox_motion_domain(c->motion, &t0, &t1);
+  cprox_motion_evaluate(c->motion, t0, before);
+  for (int k = 1; k <= 1000; k++) {
+    cprox_motion_evaluate(c->motion, t0 + (t1 - t0) * k / 1000, after);
+    for (size_t v = 0; v < c->n_variables; v++) length += fabs(after[v] - before[v]), before[v] = after[v];
+  }
+  return 1 + (size_t)ceil(length / (SEGMENT_FRACTION * PANDA_EXTENT));
+}
+
+/* All states, as an edge check must look at those of a path that is clear. */
+static void states_by_fcl(const void *problems, size_t i, void *state, bench_answer *answer) {
+  (void)state;
+  const problem *p = (const problem *)problems + i;
+  double t0, t1, values[CASE_MAX_VARIABLES];
+  cprox_motion_domain(p->c.motion, &t0, &t1);
+  bool hit = false;
+  for (size_t k = 0; k < p->states; k++) {
+    cprox_motion_evaluate(p->c.motion, t0 + (t1 - t0) * (double)k / (double)(p->states - 1), values);
+    for (size_t g = 0; g < p->c.n_geometries; g++) {
+      cprox_vec3 position;
+      double rotation[9];
+      cprox_robot_link_frame(p->c.robot, values, (size_t)p->c.links[g], &position, rotation);
+      robot_fcl_place(p->fcl, g, position, rotation); /* the Panda's collision elements stand in their links' frames */
+    }
+    hit = robot_fcl_collides(p->fcl) || hit;
+  }
+  *answer = (bench_answer){.lower = NAN, .upper = NAN, .nodes = (uint32_t)p->states};
+  answer->wrong = hit && p->truth > 0.0;
+}
+
+/* ---- the workload --------------------------------------------------------------------------------------------------------- */
+
+static bool read_problem(FILE *f, problem *p) {
+  if (!robot_case_read(f, BENCH_DATA_DIR "/motion", &p->c)) return false;
+  for (size_t k = 0; k < p->c.n_answers; k++)
+    if (!p->c.answers[k].self) p->truth = 0.5 * (p->c.answers[k].lower + p->c.answers[k].upper);
+  return true;
+}
+
+int main(int argc, char **argv) {
+  const bench_size size = bench_arguments(argc, argv);
+  if (!bench_wanted(&size, "planning")) return 0;
+  method_state by_hull = {.workspace = cprox_workspace_create()},
+               by_mesh = {.workspace = by_hull.workspace, .meshes = true};
+  const bench_method hulls[] = {{"curve_proximity", ours, &by_hull}, {robot_fcl_name(), states_by_fcl, NULL}};
+  const bench_method meshes[] = {{"curve_proximity", ours, &by_mesh}, {"by hulls", ours, &by_hull}};
+  FILE *f = fopen(BENCH_DATA_DIR "/motion/cases.txt", "r");
+  size_t n;
+  if (!f || fscanf(f, "%zu", &n) != 1) return 1;
+  for (size_t i = 0; i < n; i++) {
+    static problem p;
+    memset(&p, 0, sizeof p);
+    if (!read_problem(f, &p)) return 1;
+    for (size_t k = 0; k < SCENES; k++) {
+      if (strcmp(p.c.name, MOVEIT[k].scene) != 0) continue;
+      p.states = states_of(&p.c);
+      p.fcl = make_fcl(&p.c);
+      const bench_workload w = {"robots", "planning", p.c.name, &p, 1, &p.truth, 1.1e-6};
+      const bench_workload of_meshes = {"robots", "meshes", p.c.name, &p, 1, &p.truth, 1.1e-6};
+      bench_measure(&w, &size, hulls, robot_fcl_name() ? 2 : 1);
+      bench_measure(&of_meshes, &size, meshes, 2);
+      printf("robots,planning,MoveIt 1.1.16 by itself,%s,%g,%g,%zu,0,,0,0\n", p.c.name, 1e3 * MOVEIT[k].milliseconds,
+             1e3 * MOVEIT[k].milliseconds, p.states);
+      robot_fcl_free(p.fcl);
+    }
+    robot_case_free(&p.c);
+  }
+  fclose(f);
+  cprox_workspace_free(by_hull.workspace);
+  return 0;
+}
