@@ -155,7 +155,7 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
       std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                              std::chrono::duration<double, std::milli>(parameters_.budget_ms));
   const SnapshotPtr snapshot = scene_.snapshot();
-  const ResourceOptions resources = resourceOptions("");
+  const ResourceOptions resources = resourceOptions("", parameters_.max_shape_mb);
   const WorkspacePool::Lease workspace(workspaces_);
   FrameLookup lookup(frames_);
   std::size_t failed = 0;

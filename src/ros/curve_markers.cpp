@@ -15,6 +15,7 @@ using visualization_msgs::Marker;
 
 constexpr double LINE_WIDTH = 0.006; /* [m] */
 constexpr int TUBE_SIDES = 16;
+constexpr double LABEL_ABOVE = 0.1, LABEL_HEIGHT = 0.05; /* [m] */
 
 /** Two unit vectors across each point of a polyline, carried along it without turning about it. */
 std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> framesAlong(const std::vector<Eigen::Vector3d> &points) {
@@ -132,9 +133,10 @@ void addPair(Canvas &canvas, const Answer &answer) {
   char text[64];
   std::snprintf(text, sizeof text, "%.1f mm", 1e3 * result.upper);
   Eigen::Isometry3d middle = Eigen::Isometry3d::Identity();
-  middle.translation() = 0.5 * (toEigen(result.on_mover) + toEigen(result.on_target)) + 0.05 * Eigen::Vector3d::UnitZ();
+  middle.translation() =
+      0.5 * (toEigen(result.on_mover) + toEigen(result.on_target)) + LABEL_ABOVE * Eigen::Vector3d::UnitZ();
   Marker &label = canvas.add("labels", Marker::TEXT_VIEW_FACING, middle);
-  setScale(label, 0.0, 0.0, 0.045);
+  setScale(label, 0.0, 0.0, LABEL_HEIGHT);
   label.color = colour(0.1, 0.1, 0.12, 1.0);
   label.text = text;
 }

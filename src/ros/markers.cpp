@@ -22,14 +22,17 @@ using visualization_msgs::MarkerArray;
 constexpr double PERIOD = 0.1;            /* [s] between two publications at least */
 constexpr std::size_t MAX_SAMPLES = 2000; /* of all curves of a drawing together */
 constexpr std::size_t MAX_CURVE_SAMPLES = 160;
+constexpr double LARGE = 0.4; /* [m] the diagonal from which on an object is drawn translucent */
 
 void addScene(Canvas &canvas, const Snapshot &scene, const ResourceOptions &resources, PlacedBodies &placed) {
-  const std_msgs::ColorRGBA tint = colour(0.62, 0.66, 0.71, 0.6);
   for (const auto &entry : scene.objects()) {
     const SceneObject &object = *entry.second;
     for (std::size_t i = 0; i < object.shapes.size(); ++i) {
       const ShapeDescription &shape = object.description.shapes[i];
       const Eigen::Isometry3d pose = object.description.pose * shape.pose;
+      // What is large, a shelf say, must not hide what it holds.
+      const bool is_large = !(object.shapes[i].placed.box.sizes().norm() < LARGE);
+      const std_msgs::ColorRGBA tint = is_large ? colour(0.72, 0.76, 0.8, 0.35) : colour(0.55, 0.6, 0.66, 1.0);
       canvas.addShape("scene", shape, object.shapes[i].geometry.body, resources, pose, tint);
       placed.push_back({object.shapes[i].geometry.body.get(), pose, object.description.padding});
     }

@@ -10,7 +10,7 @@
 namespace curve_proximity {
 namespace {
 
-constexpr int GHOSTS = 9;              /* poses of the robot on its way */
+constexpr int GHOSTS = 6;              /* poses of the robot on its way */
 constexpr int SWEEP_SAMPLES = 60;      /* of the way of its closest point */
 constexpr double SWEEP_RADIUS = 0.008; /* [m] as it is drawn */
 
@@ -108,7 +108,7 @@ void addMotion(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
     const double t = i + 1 == GHOSTS ? domain[1] : domain[0] + (domain[1] - domain[0]) * i / (GHOSTS - 1);
     for (const auto &link : motion.linkPoses(t))
       addLink(canvas, "swept", partsOf(*drawing.snapshot, link.first), link.second, resources,
-              colour(0.45, 0.55, 0.7, 0.07));
+              colour(0.6, 0.68, 0.78, 0.07));
   }
 
   // At its closest moment.

@@ -22,7 +22,7 @@ class Batches(unittest.TestCase):
         """One goal; its state and its result."""
         self.feedback = []
         self.client.send_goal(QueryGoal(**fields), feedback_cb=self.feedback.append)
-        self.assertTrue(until(lambda: self.client.get_state() in (GoalStatus.SUCCEEDED, GoalStatus.ABORTED), seconds))
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(seconds)))
         return self.client.get_state(), self.client.get_result()
 
     def test_a_batch_is_answered_as_the_service_answers_it(self):
@@ -64,7 +64,8 @@ class Batches(unittest.TestCase):
         time.sleep(0.3)
         begin = time.monotonic()
         self.client.cancel_goal()
-        self.assertTrue(until(lambda: self.client.get_state() == GoalStatus.PREEMPTED, 10))
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(10)))
+        self.assertEqual(self.client.get_state(), GoalStatus.PREEMPTED)
         self.assertLess(time.monotonic() - begin, 5.0)
         result = self.client.get_result()
         self.assertFalse(result.success)

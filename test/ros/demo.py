@@ -6,7 +6,7 @@ import os
 import unittest
 
 import rospy
-from helpers import Server, bezier, box, joints, run, until
+from helpers import Server, bezier, box, bspline, joints, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -45,13 +45,13 @@ class Demo(unittest.TestCase):
         # latched: the last query is shown to whoever comes later
         kinds = until(lambda: received and {m.ns for m in received[-1].markers if m.action == Marker.ADD}, 10)
         subscriber.unregister()
-        self.assertEqual(kinds, {'scene', 'robot', 'curves', 'pairs', 'labels'})
+        self.assertLessEqual({'scene', 'robot', 'curves', 'pairs', 'labels'}, kinds)
         tube = next(m for m in received[-1].markers if m.ns == 'curves' and m.type == Marker.TRIANGLE_LIST)
         self.assertEqual(len(tube.points), len(tube.colors))
         self.assertGreater(len(tube.points), 1000)
         self.assertTrue(all(math.isfinite(c) for p in tube.points for c in (p.x, p.y, p.z)))
         # the links are their mesh files, by a name that RViz finds on any working directory
-        meshes = [m.mesh_resource for m in received[-1].markers if m.type == Marker.MESH_RESOURCE]
+        meshes = [m.mesh_resource for m in received[-1].markers if m.type == Marker.MESH_RESOURCE and m.ns == 'robot']
         self.assertEqual(len(meshes), 11)
         self.assertTrue(all(m.startswith('file:///') and os.path.isfile(m[7:]) for m in meshes))
         self.assertEqual({m.header.frame_id for m in received[-1].markers}, {'world'})
@@ -66,12 +66,14 @@ class Demo(unittest.TestCase):
         return found.markers
 
     def test_a_budget_that_ends_early_leaves_open_hulls(self):
-        near = bezier((0.9, -0.5, 0.3), (0.9, 0.0, 0.5), (0.9, 0.4, 0.9), (0.9, 0.5, 0.3), id='open')
-        row, = self.server.distance(near, max_nodes=1, epsilon=1e-9).results
+        winding = bspline([(0.9 + 0.1 * math.sin(3 * i), 0.04 * i - 0.6, 0.5 + 0.3 * math.cos(2 * i)) for i in range(30)], 3)
+        row, = self.server.distance(winding, max_nodes=1, epsilon=1e-12).results
         self.assertEqual(row.status, 'budget')
         self.assertGreater(len([m for m in self.markers({'open'}) if m.ns == 'open']), 0)
 
     def test_a_trajectory_is_shown_at_its_closest_moment_and_swept(self):
+        self.assertTrue(self.server.apply(sphere('post', 0.05, (0.45, 0.25, 0.5))).success)
+        self.addCleanup(lambda: self.server.replace(box('table', (1, 2, 0.1), (0.9, 0, -0.05))))
         end = dict(READY, panda_joint1=1.0)
         names = [n for n in READY if n.startswith('panda_joint')]
         trajectory = JointTrajectory(joint_names=names, points=[

@@ -8,7 +8,7 @@ import time
 import unittest
 
 import rospy
-from curve_proximity.msg import CollisionObject, Curve, ProximityResults
+from curve_proximity.msg import AttachedCollisionObject, CollisionObject, Curve, ProximityResults
 from geometry_msgs.msg import PoseStamped, Transform, TransformStamped
 from helpers import Server, bezier, box, mesh, run, sphere, until
 from nav_msgs.msg import Path
@@ -71,9 +71,10 @@ class Topics(unittest.TestCase):
         cls.objects = rospy.Publisher('/curve_proximity/collision_object', CollisionObject, queue_size=200)
         rospy.Subscriber('/curve_proximity/proximity', ProximityResults, cls.results.append)
         gate = [rospy.Subscriber('/gate/clear_' + topic, kind, cls.passed.append) for topic, kind in cls.TYPES.items()]
+        cls.carried = rospy.Publisher('/curve_proximity/attached_collision_object', AttachedCollisionObject, queue_size=20)
         cls.transforms = rospy.Publisher('/tf', TFMessage, queue_size=10)
         # the manager listens to each publisher once, for the server and the gate
-        assert until(lambda: all(p.get_num_connections() for p in [*cls.publishers.values(), cls.objects, *gate]), 20)
+        assert until(lambda: all(p.get_num_connections() for p in [*cls.publishers.values(), cls.objects, cls.carried, *gate]), 20)
         time.sleep(0.5)
 
     def setUp(self):
@@ -191,6 +192,15 @@ class Topics(unittest.TestCase):
         self.objects.publish(sphere('lost', 1.0, frame='nowhere'))
         self.objects.publish(CollisionObject(id='ball', operation=CollisionObject.REMOVE))
         self.assertTrue(until(lambda: not self.server.scene().objects, 5))
+
+    def test_what_a_link_carries_comes_by_topic(self):
+        self.carried.publish(AttachedCollisionObject(link_name='arm', object=sphere('tool', 0.1, frame='arm')))
+        held = until(lambda: self.server.scene().attached_collision_objects, 5)
+        self.assertEqual([(o.link_name, o.object.id) for o in held], [('arm', 'tool')])
+        self.carried.publish(AttachedCollisionObject(link_name='none', object=sphere('lost', 0.1, frame='arm')))
+        self.carried.publish(AttachedCollisionObject(object=CollisionObject(operation=CollisionObject.REMOVE)))
+        self.assertTrue(until(lambda: not self.server.scene().attached_collision_objects, 5))
+        self.assertEqual([o.id for o in self.server.scene().objects], ['tool'])
 
     def test_an_empty_frame_is_the_fixed_one_and_a_stamp_in_the_future_is_an_error_only_where_it_matters(self):
         self.server.replace(box('box', (1, 1, 1)))
