@@ -7,7 +7,7 @@ import unittest
 
 import rospy
 import tf2_ros
-from curve_proximity.msg import LinkPadding
+from curve_proximity.msg import AttachedCollisionObject, CollisionObject, LinkPadding, LinkScale
 from geometry_msgs.msg import TransformStamped
 from helpers import Server, bezier, box, joints, run, sphere
 from sensor_msgs.msg import JointState
@@ -138,6 +138,27 @@ class Robot(unittest.TestCase):
         self.assertIn("'cart'", response.results[0].message)
         self.assertIn("'world'", response.results[0].message)
         self.assertEqual(response.results[1].status, 'ok')
+
+    def test_11_what_a_link_carries_moves_with_it_and_is_put_down_where_it_is(self):
+        held = AttachedCollisionObject(link_name='arm', object=sphere('held', 0.1, (1, 0, 0), frame='arm'))
+        self.server.replace(attached_collision_objects=[held])
+        self.assertDistance(self.server.distance(vertical(12, 0), joint_state=joints(turn=0.0)), 0.9, 'held')
+        self.assertDistance(self.server.distance(vertical(10 + 2 * math.cos(0.7), 2 * math.sin(0.7))), 0.9, 'held')
+        self.assertTrue(self.server.apply(link_scale=[LinkScale('arm', 2.0)]).success)
+        self.assertDistance(self.server.distance(vertical(12, 0), joint_state=joints(turn=0.0)), 0.8, 'held')
+        scene = self.server.scene()
+        self.assertEqual([(o.link_name, o.object.id) for o in scene.attached_collision_objects], [('arm', 'held')])
+        self.assertEqual([(s.link_name, s.scale) for s in scene.link_scale], [('arm', 2.0)])
+
+        # put down where tf2 has the arm, at its own size
+        down = AttachedCollisionObject(object=CollisionObject(id='held', operation=CollisionObject.REMOVE))
+        self.assertTrue(self.server.apply(attached_collision_objects=[down]).success)
+        scene = self.server.scene()
+        self.assertEqual(scene.attached_collision_objects, [])
+        self.assertAlmostEqual(scene.objects[0].pose.position.x, 10 + math.cos(0.7), places=9)
+        self.assertDistance(self.server.distance(vertical(10 + 2 * math.cos(0.7), 2 * math.sin(0.7)), objects=['held']), 0.9)
+        self.assertIn("'tail'", self.server.apply(attached_collision_objects=[
+            AttachedCollisionObject(link_name='tail', object=sphere('b', 0.1, (1, 0, 0), frame='tail'))]).message)
 
 
 if __name__ == '__main__':
