@@ -115,7 +115,7 @@ static void verdicts(const problem *problems, size_t n, const bench_size *size, 
 
 /* ---- thin obstacles ------------------------------------------------------------------------------------------------------- */
 
-enum { MAX_THIN = 10000 };
+enum { MAX_THIN = 10000, FULL_RUN = 200 };
 
 typedef struct thin {
   const robot_case *c;
@@ -161,7 +161,9 @@ static void sampled_thin(const void *problems, size_t i, void *state, bench_answ
 
 static void thin_obstacles(const robot_case *cases, size_t n_cases, const bench_size *size, cprox_workspace *ws) {
   rng r = rng_seed(77);
-  const size_t n = size->problems < MAX_THIN ? size->problems : MAX_THIN;
+  /* a quick run looks at a few, any other at all of them, once */
+  const size_t n = size->problems < FULL_RUN ? size->problems : MAX_THIN;
+  const bench_size once = {.problems = n, .rounds = 1};
   thin *problems = calloc(n, sizeof *problems);
   for (size_t i = 0; i < n; i++) {
     const cprox_pose pose = {
@@ -176,7 +178,7 @@ static void thin_obstacles(const robot_case *cases, size_t n_cases, const bench_
                                   {"curve_proximity checked", ours_thin, &checked},
                                   {"sampling .05", sampled_thin, &coarse},
                                   {"sampling .01", sampled_thin, &fine}};
-  bench_measure(&w, size, methods, 4);
+  bench_measure(&w, &once, methods, 4);
   for (size_t i = 0; i < n; i++) cprox_body_free((cprox_body *)problems[i].target.body);
   free(problems);
 }
