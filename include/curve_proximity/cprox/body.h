@@ -129,6 +129,19 @@ CPROX_API cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t
 CPROX_API cprox_status cprox_body_create_points(const cprox_vec3 *points, size_t n, double radius, size_t memory_limit,
                                                 cprox_workspace *workspace, cprox_body **body);
 
+/** The points of `previous`, but that its point changed[i] stands at points[i] now: for maps of which a part changes, thirty times a second,
+ *  while queries run on the body as it was. `previous` stays as it is.
+ *
+ *  changed, points  n of them; numbers as the points were given first, positions finite. Of one named twice the last counts.
+ *  retired          a body made from the same points by updates, of which no query and no snapshot makes use any more, or NULL. Where the
+ *                   call succeeds it is used up, handle and all: with two bodies in turns only what has changed is written.
+ *
+ *  Cost: blocks of 4096 neighbouring points with a change in them are sorted anew; without `retired` the rest is copied. Points that
+ *  wander far make wide boxes and slow queries, never wrong ones: make the body anew then. */
+CPROX_API cprox_status cprox_body_update_points(const cprox_body *previous, const uint32_t *changed,
+                                                const cprox_vec3 *points, size_t n, cprox_body *retired,
+                                                cprox_workspace *workspace, cprox_body **body);
+
 /** Boxes along the axes, from low[i] to high[i], low <= high, as an octree's occupied leaves are. n >= 1, finite. They may overlap.
  *  Each is solid. memory_limit as for meshes. */
 CPROX_API cprox_status cprox_body_create_boxes(const cprox_vec3 *low, const cprox_vec3 *high, size_t n,

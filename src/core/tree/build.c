@@ -102,11 +102,11 @@ size_t tree_bytes_needed(tree_kind kind, size_t n, tree_build build) {
 
 size_t tree_bytes(const tree *t) {
   const size_t pack = tree_pack_size(t->kind) * sizeof(double) + TREE_LANES * sizeof(uint32_t);
-  return sizeof *t + t->n_packs * pack + t->n_nodes * sizeof(tree_node);
+  return sizeof *t + t->n_packs * pack + t->n_nodes * sizeof(tree_node) + (t->blocks ? tree_blocks_bytes(t->n) : 0);
 }
 
 /* The largest |x| of a corner of the root's boxes, rounded up. */
-static double scale_of(const tree *t) {
+void tree_find_scale(tree *t) {
   const tree_node *root = &t->nodes[0];
   double most2 = 0.0;
   for (int l = 0; l < TREE_LANES; l++) {
@@ -117,7 +117,7 @@ static double scale_of(const tree *t) {
     }
     most2 = most(most2, sum);
   }
-  return sqrt(most2) * (1.0 + 1e-15) + 1e-100;
+  t->scale = sqrt(most2) * (1.0 + 1e-15) + 1e-100;
 }
 
 static size_t whole_lines(size_t bytes) {
@@ -139,23 +139,27 @@ static void shrink_all(tree *t) {
   t->ids = shrink(t->ids, t->n_packs * TREE_LANES * sizeof *t->ids);
 }
 
+bool tree_allocate(tree *t, size_t packs, size_t nodes) {
+  t->nodes = aligned_alloc(64, whole_lines(nodes * sizeof *t->nodes));
+  t->packs = aligned_alloc(64, whole_lines(packs * tree_pack_size(t->kind) * sizeof *t->packs));
+  t->ids = aligned_alloc(64, whole_lines(packs * TREE_LANES * sizeof *t->ids));
+  return t->nodes && t->packs && t->ids;
+}
+
 tree *tree_create(const tree_source *source, tree_build build) {
   tree *t = calloc(1, sizeof *t);
   if (!t) return NULL;
   const size_t packs = tree_most_packs(source->n, build), nodes = tree_most_nodes(source->n, build);
   t->kind = source->kind;
   t->n = source->n;
-  t->nodes = aligned_alloc(64, whole_lines(nodes * sizeof *t->nodes));
-  t->packs = aligned_alloc(64, whole_lines(packs * tree_pack_size(t->kind) * sizeof *t->packs));
-  t->ids = aligned_alloc(64, whole_lines(packs * TREE_LANES * sizeof *t->ids));
-  const bool made = t->nodes && t->packs && t->ids &&
+  const bool made = tree_allocate(t, packs, nodes) &&
                     (build == TREE_BY_AREA ? tree_build_by_area(t, source) : tree_build_by_morton(t, source));
   if (!made) {
     tree_free(t);
     return NULL;
   }
   if (build == TREE_BY_AREA) shrink_all(t);
-  t->scale = scale_of(t);
+  tree_find_scale(t);
   t->kernel = tree_kernel_at(tree_kernel_count() - 1);
   return t;
 }
@@ -165,5 +169,6 @@ void tree_free(tree *t) {
   free(t->nodes);
   free(t->packs);
   free(t->ids);
+  tree_blocks_free(t->blocks);
   free(t);
 }

@@ -21,6 +21,21 @@ box tree_append_pack(tree *t, const tree_source *source, const uint32_t *element
 /* Fills lanes 0 … n-1 of a node, and repeats the last. */
 void tree_fill_node(tree_node *node, const box *boxes, const uint32_t *children, size_t n);
 
+box tree_node_box(const tree_node *node);
+
+/* Memory for so many packs and nodes; false where it is out, and what there is then is tree_free()'s. */
+bool tree_allocate(tree *t, size_t packs, size_t nodes);
+
+/* How far the elements reach, by the root's boxes. */
+void tree_find_scale(tree *t);
+
+/* The elements in the order of Morton's curve. memory: room for 2 n. */
+struct tree_keyed {
+  uint64_t key;
+  uint32_t element;
+};
+void tree_morton_order(const tree_source *source, struct tree_keyed *memory, uint32_t *order);
+
 /* Both fill a tree with room for all; false where memory is out. */
 bool tree_build_by_area(tree *t, const tree_source *source);
 bool tree_build_by_morton(tree *t, const tree_source *source);

@@ -8,10 +8,7 @@
 
 enum { KEY_BITS = 21, RADIX_BITS = 11, RADIX = 1 << RADIX_BITS, FIRST_BIT = 3 * KEY_BITS - 4 * RADIX_BITS };
 
-typedef struct keyed {
-  uint64_t key;
-  uint32_t element;
-} keyed;
+typedef struct tree_keyed keyed;
 
 /* Two zero bits behind each of the lowest 21. */
 static uint64_t spread(uint64_t x) {
@@ -24,6 +21,7 @@ static uint64_t spread(uint64_t x) {
 }
 
 static vec3 middle2(const tree_source *source, uint32_t element) {
+  if (source->kind == TREE_POINTS) return vec_scale(2.0, vec_sub(source->points[element], source->centre));
   const box b = element_box(source, element);
   return vec_add(b.low, b.high);
 }
@@ -43,9 +41,9 @@ static void make_keys(const tree_source *source, keyed *list) {
   }
 }
 
-/* By the upper 44 bits of the key, in four passes. Ends in `list`. */
+/* By the upper 44 bits of the key, in four passes; 22 of them, in two, tell the elements of one block apart. Ends in `list`. */
 static void sort_keys(keyed *list, keyed *other, size_t n) {
-  for (int shift = FIRST_BIT; shift < 3 * KEY_BITS; shift += RADIX_BITS) {
+  for (int shift = n > TREE_BLOCK ? FIRST_BIT : FIRST_BIT + 2 * RADIX_BITS; shift < 3 * KEY_BITS; shift += RADIX_BITS) {
     size_t start[RADIX + 1] = {0};
     for (size_t i = 0; i < n; i++) start[((list[i].key >> shift) & (RADIX - 1)) + 1]++;
     for (int i = 0; i < RADIX; i++) start[i + 1] += start[i];
@@ -56,7 +54,13 @@ static void sort_keys(keyed *list, keyed *other, size_t n) {
   }
 }
 
-static box node_box(const tree_node *node) {
+void tree_morton_order(const tree_source *source, keyed *memory, uint32_t *order) {
+  make_keys(source, memory);
+  sort_keys(memory, memory + source->n, source->n);
+  for (size_t i = 0; i < source->n; i++) order[i] = memory[i].element;
+}
+
+box tree_node_box(const tree_node *node) {
   box all = box_empty();
   for (int l = 0; l < TREE_LANES; l++)
     box_add(&all, &(box){vec(node->low[0][l], node->low[1][l], node->low[2][l]),
@@ -72,7 +76,7 @@ static void build_level(tree *t, size_t at, size_t count, size_t first_child, co
     size_t n = 0;
     for (; n < TREE_LANES && i * TREE_LANES + n < count; n++) {
       const size_t child = i * TREE_LANES + n;
-      boxes[n] = packs ? packs[child] : node_box(&t->nodes[first_child + child]);
+      boxes[n] = packs ? packs[child] : tree_node_box(&t->nodes[first_child + child]);
       children[n] = packs ? (uint32_t)child | TREE_LEAF : (uint32_t)(first_child + child);
     }
     tree_fill_node(&t->nodes[at + i], boxes, children, n);

@@ -39,6 +39,7 @@ static inline size_t tree_pack_size(tree_kind kind) {
 }
 
 struct tree_kernel;
+struct tree_blocks;
 
 typedef struct tree {
   tree_kind kind;
@@ -48,6 +49,7 @@ typedef struct tree {
   uint32_t *ids; /* TREE_LANES a pack; a pack that is not full repeats its last element */
   double scale;  /* no element reaches farther from the origin */
   const struct tree_kernel *kernel;
+  struct tree_blocks *blocks; /* of a tree whose points may move, else NULL */
 } tree;
 
 /* ---- building --------------------------------------------------------------------------------------------------------- */
@@ -78,6 +80,22 @@ size_t tree_most_nodes(size_t n, tree_build build);
 
 /* The bytes that this one takes. */
 size_t tree_bytes(const tree *t);
+
+/* ---- points that move --------------------------------------------------------------------------------------------------- */
+
+/* Elements stay in their block, which is rebuilt by itself when one of them moves: whole packs, whole nodes of three levels. */
+enum { TREE_BLOCK = 4096 };
+
+/* Makes ready for updates a tree of points by Morton's curve; false where memory is out. What that takes besides. */
+bool tree_begin_family(tree *t);
+size_t tree_blocks_bytes(size_t n);
+bool tree_is_family(const tree *a, const tree *b);
+void tree_blocks_free(struct tree_blocks *blocks);
+
+/* The same points, but that changed[i] stands at points[i], about the centre. NULL where memory is out. `retired`, of the same family
+ * and otherwise out of use, or NULL: becomes the new tree; what it has in common with the previous one is not even copied. */
+tree *tree_update(const tree *previous, const uint32_t *changed, const vec3 *points, size_t n, vec3 centre,
+                  tree *retired);
 
 /* ---- elements --------------------------------------------------------------------------------------------------------- */
 
