@@ -366,7 +366,6 @@ static void bad_input_is_refused_with_a_sentence(void **state) {
                 "carried");
   expect_reason(cprox_distance(cprox_body_along(boxes, path.curve), target, NULL, ws, &unused), CPROX_INVALID,
                 "carried");
-  expect_reason(cprox_pair(target, target, NULL, ws, &unused), CPROX_INVALID, "convex");
   cprox_body_free(boxes);
   cprox_body_free(ball);
   cprox_curve_free(path.curve);

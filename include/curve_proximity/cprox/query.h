@@ -201,6 +201,7 @@ CPROX_API cprox_status cprox_first_contact_all(cprox_mover mover, const cprox_ta
  *  Overlapping: the same, both bounds negative, minus the penetration depth: the shortest way by which a can leave b, along the
  *  normal; on_mover and on_target are the ends of that way, on either surface. How deep two implicit bodies without a
  *  support function of closed form overlap may stay open: then lower <= minus the depth, upper = 0, CPROX_OVERLAP.
+ *  Meshes, points and boxes are held against convex bodies and each other; how deep they overlap is not measured: CPROX_OVERLAP.
  *  A compound answers with the least over its parts. on_mover is the point on a, on_target that on b; nodes counts
  *  iterations, probes support evaluations.
  *  CPROX_INVALID for two halfspaces (they have no distance), for a curve, and for arguments that are unusable.

@@ -11,6 +11,7 @@
 #include "query/arguments.h"
 #include "query/pair_elements.h"
 #include "query/pair_place.h"
+#include "query/pair_trees.h"
 #include "query/pair_witness.h"
 
 /* What a pair of convex shapes answers, in the world. */
@@ -179,8 +180,12 @@ static cprox_status pair_with_elements(const pair_side *a, const pair_side *b, c
                                        cprox_workspace *workspace, pair_answer *answer) {
   const bool swapped = !a->body->tree;
   const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
-  if (second->body->tree)
-    return workspace_fail(workspace, CPROX_INVALID, "both are meshes, points or boxes: one of a pair must be convex");
+  if (second->body->tree) {
+    if (!pair_trees(a, b, goal, workspace, answer))
+      return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of meshes");
+    pair_answer_to_world(a, answer);
+    return CPROX_OK;
+  }
   if (second->shape->ops->kind == CPROX_HALFSPACE)
     return workspace_fail(workspace, CPROX_INVALID, "a halfspace has no distance to a mesh, points or boxes here");
   pair_elements(first, second, goal, answer);

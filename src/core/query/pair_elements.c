@@ -49,8 +49,7 @@ static void overlap(const search *s, vec3 common, pair_answer *answer) {
 
 /* ---- one element ------------------------------------------------------------------------------------------------------ */
 
-/* The element as a convex shape about a centre of its own. */
-static vec3 element_shape(const tree *t, tree_place at, double vertices[3][TREE_LANES], convex *shape) {
+vec3 pair_element_shape(const tree *t, tree_place at, double vertices[3][TREE_LANES], convex *shape) {
   vec3 v[3], centre;
   const int n = tree_corners(t, at, v);
   *shape = (convex){.ops = &convex_point, .scale = 1e-100};
@@ -78,7 +77,7 @@ static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
   (void)element;
   convex shape;
   double vertices[3][TREE_LANES];
-  const vec3 centre = element_shape(s->elements->body->tree, at, vertices, &shape);
+  const vec3 centre = pair_element_shape(s->elements->body->tree, at, vertices, &shape);
   pair_placement place = *s->place;
   place.t = vec_sub(place.t, centre);
   place.error += ROUND_UP * ROUND_U * (vec_norm(place.t) + 2.0 * vec_norm(centre) + 2.0 * shape.scale);
