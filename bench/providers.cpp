@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a provider's plugin adds to the core's own calls: the same places asked both ways, in turns.
+ *
+ * Rows of the method "curve_proximity" have the difference for their time, beside "core" and "plugin"; "1 us" is what may be added. */
+#include <pluginlib/class_loader.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <curve_proximity/constraint_provider.hpp>
+#include <curve_proximity/query.hpp>
+
+#include "support/measure.h"
+
+using namespace curve_proximity;
+
+namespace {
+
+double now() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+}
+
+double quantile(std::vector<double> values, double q) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+/* One place, asked of the core and through the plugin. */
+using Ask = std::function<void(std::size_t)>;
+
+void printRow(const char *workload, const char *method, const std::vector<double> &times) {
+  std::printf("providers,%s,%s,,%.4f,%.4f,0,0,0,0,0\n", workload, method, quantile(times, 0.5), quantile(times, 0.95));
+}
+
+/* The least of several rounds for each place, of calls that take turns. */
+void measure(const char *workload, std::size_t n, int rounds, const Ask &core, const Ask &plugin) {
+  constexpr int kRepeats = 20;
+  std::vector<double> by_core(n), by_plugin(n), added(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    by_core[i] = by_plugin[i] = INFINITY;
+    for (int round = 0; round < rounds; ++round) {
+      for (const bool through : {false, true}) {
+        const double begin = now();
+        for (int k = 0; k < kRepeats; ++k) (through ? plugin : core)(i);
+        double &best = through ? by_plugin[i] : by_core[i];
+        best = std::min(best, (now() - begin) / kRepeats);
+      }
+    }
+    added[i] = by_plugin[i] - by_core[i];
+  }
+  printRow(workload, "core", by_core);
+  printRow(workload, "plugin", by_plugin);
+  printRow(workload, "curve_proximity", added);
+  printRow(workload, "1 us", std::vector<double>(n, 1.0));
+}
+
+class Random {
+ public:
+  double operator()(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine_);
+  }
+  cprox_pose pose(double half) {
+    Random &r = *this;
+    return {{r(-half, half), r(-half, half), r(-half, half)}, {r(-1, 1), r(-1, 1), r(-1, 1), r(0.1, 1)}};
+  }
+
+ private:
+  std::mt19937 engine_{71};
+};
+
+ConstraintBody sideOf(ShapeType type, std::vector<double> dimensions) {
+  ShapeDescription shape;
+  shape.type = type;
+  shape.dimensions = std::move(dimensions);
+  ConstraintBody side;
+  side.parts.push_back({shape, makeGeometry(shape).body, 0.0});
+  return side;
+}
+
+struct Places {
+  std::vector<ConstraintPlace> places;
+  std::vector<ConstraintCurve> curves;
+};
+
+Places randomPlaces(std::size_t n, bool along, Random &random) {
+  Places out;
+  out.curves.resize(along ? n : 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    ConstraintPlace place;
+    place.b = random.pose(0.3);
+    if (along) {
+      CurveDescription &c = out.curves[i].description;
+      c.points.resize(3, 6);
+      for (Eigen::Index k = 0; k < 6; ++k) c.points.col(k) << random(0.5, 2.5), random(-1, 1), random(-1, 1);
+      out.curves[i].curve = compile(c).curve;
+      place.curve = &out.curves[i];
+    } else {
+      place.a = random.pose(0.3);
+      place.a.position.x += 2.0;
+    }
+    out.places.push_back(place);
+  }
+  return out;
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+  const bench_size size = bench_arguments(argc, argv);
+  pluginlib::ClassLoader<ConstraintProvider> plugins("curve_proximity", "curve_proximity::ConstraintProvider");
+  Random random;
+  Workspace workspace;
+  ConstraintValue value;
+  const std::size_t n = size.problems;
+
+  if (bench_wanted(&size, "CurveDistance")) {
+    const auto provider = plugins.createUniqueInstance("curve_proximity/CurveDistance");
+    provider->initialise({});
+    ConstraintPair pair;
+    pair.along_curve = true;
+    pair.b = sideOf(ShapeType::BOX, {0.5, 0.7, 0.9});
+    const auto constraint = provider->prepare(pair);
+    const Places at = randomPlaces(n, true, random);
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-9;
+    options.signed_distance = true;
+    const Ask core = [&](std::size_t i) {
+      const cprox_mover mover = cprox_point_along(at.curves[i].curve.get());
+      const cprox_target target = cprox_at(pair.b.parts[0].body.get(), at.places[i].b);
+      cprox_result result;
+      cprox_gradient gradient;
+      if (cprox_distance(mover, target, &options, workspace.get(), &result) >= 0)
+        cprox_distance_gradient(mover, target, &options, &result, workspace.get(), &gradient);
+    };
+    measure("CurveDistance", n, size.rounds, core,
+            [&](std::size_t i) { constraint->evaluate(at.places[i], workspace, value); });
+  }
+
+  if (bench_wanted(&size, "SuperquadricDistance")) {
+    const auto provider = plugins.createUniqueInstance("curve_proximity/SuperquadricDistance");
+    provider->initialise({});
+    ConstraintPair pair;
+    pair.a = sideOf(ShapeType::SUPERQUADRIC, {0.4, 0.3, 0.5, 2.5, 3.5, 5.0});
+    pair.b = sideOf(ShapeType::SUPERQUADRIC, {0.5, 0.6, 0.4, 4.0, 2.2, 6.0});
+    const auto constraint = provider->prepare(pair);
+    const Places at = randomPlaces(n, false, random);
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-9;
+    const Ask core = [&](std::size_t i) {
+      cprox_result result;
+      cprox_pair(cprox_at(pair.a.parts[0].body.get(), at.places[i].a),
+                 cprox_at(pair.b.parts[0].body.get(), at.places[i].b), &options, workspace.get(), &result);
+    };
+    measure("SuperquadricDistance", n, size.rounds, core,
+            [&](std::size_t i) { constraint->evaluate(at.places[i], workspace, value); });
+  }
+
+  if (bench_wanted(&size, "FourierGap")) {
+    const auto provider = plugins.createUniqueInstance("curve_proximity/FourierGap");
+    provider->initialise({{"samples", 9}, {"mode", std::string("signal")}});
+    ConstraintPair pair;
+    pair.a = sideOf(ShapeType::ELLIPSOID, {0.5, 0.3, 0.4});
+    pair.b = sideOf(ShapeType::BOX, {0.5, 0.7, 0.6});
+    const auto constraint = provider->prepare(pair);
+    Places at = randomPlaces(n, false, random);
+    for (ConstraintPlace &place : at.places) place.a.position.x -= 1.5;
+    cprox_solid *a = nullptr, *b = nullptr;
+    cprox_gap *gap = nullptr;
+    cprox_gap_options options = cprox_gap_options_default();
+    options.samples = 9;
+    options.mode = CPROX_GAP_SIGNAL;
+    require(cprox_solid_create_ellipsoid(3, {0.5, 0.3, 0.4}, workspace.get(), &a), workspace);
+    require(cprox_solid_create_box(3, {0.5, 0.7, 0.6}, workspace.get(), &b), workspace);
+    require(cprox_gap_create(a, b, &options, workspace.get(), &gap), workspace);
+    const Ask core = [&](std::size_t i) {
+      cprox_gap_result result;
+      cprox_gap_evaluate(gap, &at.places[i].a, &at.places[i].b, workspace.get(), &result);
+    };
+    measure("FourierGap", n, size.rounds, core,
+            [&](std::size_t i) { constraint->evaluate(at.places[i], workspace, value); });
+    cprox_gap_free(gap);
+    cprox_solid_free(a);
+    cprox_solid_free(b);
+  }
+  return 0;
+}
