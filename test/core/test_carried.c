@@ -12,31 +12,11 @@
 
 #include "base/rounding.h"
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/counting.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
-
-static cprox_curve *bezier(const vec3 *points, size_t n) {
-  cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
-  return curve;
-}
 
 static cprox_curve *random_bezier(rng *r, size_t degree, vec3 middle, double size, vec3 *points) {
   for (size_t i = 0; i <= degree; i++) points[i] = vec_add(middle, rng_in_cube(r, size));
@@ -397,5 +377,5 @@ int main(void) {
       cmocka_unit_test(an_unbounded_body_is_not_carried),
       cmocka_unit_test(medians_stay_within_8_nodes_and_14_probes),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

@@ -11,38 +11,12 @@
 #include "curve/curve.h"
 #include "curve_proximity/cprox.h"
 #include "query/curve_curve.h"
+#include "support/builders.h"
 #include "support/csv.h"
 #include "support/random.h"
 #include "support/reference.h"
 
 enum { MAX_POINTS = 64, MAX_DEGREE = 12, MAX_OPEN = 64, STEPS = 20, INTERVALS = 120000 };
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
-
-static cprox_curve *bezier(const vec3 *points, size_t n) {
-  cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
-  return curve;
-}
-
-static cprox_options accurate(double epsilon) {
-  cprox_options options = cprox_options_default();
-  options.epsilon = epsilon;
-  return options;
-}
 
 /* ---- references -------------------------------------------------------------------------------------------------------- */
 
@@ -334,5 +308,5 @@ int main(void) {
       cmocka_unit_test(long_splines_are_searched_by_their_trees),
       cmocka_unit_test(a_target_is_a_body_or_a_curve_and_not_both),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

@@ -11,37 +11,11 @@
 
 #include "base/frame.h"
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/random.h"
 #include "support/reference.h"
 
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
-
 /* ---- builders ---------------------------------------------------------------------------------------------------------- */
-
-static cprox_curve *bezier(const vec3 *points, size_t n) {
-  cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
-  return curve;
-}
-
-static cprox_options accurate(double epsilon) {
-  cprox_options options = cprox_options_default();
-  options.epsilon = epsilon;
-  return options;
-}
 
 static void ask(cprox_mover mover, cprox_target target, double epsilon, cprox_result *r) {
   const cprox_options options = accurate(epsilon);
@@ -352,5 +326,5 @@ int main(void) {
       cmocka_unit_test(resting_contact_ends_within_the_budget),
       cmocka_unit_test(out_of_budget_t_free_is_still_true),
   };
-  return cmocka_run_group_tests_name("first contact", tests, setup, teardown);
+  return cmocka_run_group_tests_name("first contact", tests, workspace_setup, workspace_teardown);
 }

@@ -9,23 +9,10 @@
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 /* ---- problems with parameters ---------------------------------------------------------------------------------------------- */
 
@@ -273,12 +260,6 @@ static void assert_none(cprox_mover mover, cprox_target target, bool is_signed, 
     fail_msg("valid %d: %s", g.valid, cprox_workspace_reason(ws));
 }
 
-static cprox_curve *bezier(const vec3 *points, size_t n) {
-  cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve), CPROX_OK);
-  return curve;
-}
-
 static void where_the_minimiser_is_not_unique_the_flag_says_so(void **state) {
   (void)state;
   const char *elsewhere = "no gradient: the distance is as small elsewhere along the curve";
@@ -375,5 +356,5 @@ int main(void) {
       cmocka_unit_test(depths_have_gradients),
       cmocka_unit_test(where_the_minimiser_is_not_unique_the_flag_says_so),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

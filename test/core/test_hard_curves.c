@@ -9,36 +9,25 @@
 #include <cmocka.h>
 #include <math.h>
 
-#include "base/vec.h"
-#include "curve_proximity/cprox.h"
+#include "support/builders.h"
 
 #define DOUBT 1e-12
 #define TURN 6.283185307179586
 
-static cprox_workspace *ws;
 static cprox_body *box, *point; /* [-1, 1]^3; the origin */
 
 static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return !ws || cprox_body_create_box(vec(2, 2, 2), ws, &box) || cprox_body_create_point(vec(0, 0, 0), ws, &point);
+  return workspace_setup(state) || cprox_body_create_box(vec(2, 2, 2), ws, &box) ||
+         cprox_body_create_point(vec(0, 0, 0), ws, &point);
 }
 
 static int teardown(void **state) {
-  (void)state;
   cprox_body_free(box);
   cprox_body_free(point);
-  cprox_workspace_free(ws);
-  return 0;
+  return workspace_teardown(state);
 }
 
 /* ---- makers ------------------------------------------------------------------------------------------------------------- */
-
-static cprox_curve *bezier(const vec3 *points, size_t n) {
-  cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve)) fail_msg("%s", cprox_workspace_reason(ws));
-  return curve;
-}
 
 #define BEZIER(...) bezier((vec3[]){__VA_ARGS__}, sizeof((vec3[]){__VA_ARGS__}) / sizeof(vec3))
 

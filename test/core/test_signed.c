@@ -11,30 +11,10 @@
 
 #include "base/rounding.h"
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
-
-static cprox_curve *bezier(const vec3 *points, size_t n) {
-  cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
-  return curve;
-}
 
 static cprox_options asked(double epsilon) {
   cprox_options options = cprox_options_default();
@@ -301,5 +281,5 @@ int main(void) {
       cmocka_unit_test(bodies_that_cannot_tell_their_depth_say_so),
       cmocka_unit_test(medians_stay_within_60_nodes),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }
