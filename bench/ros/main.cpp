@@ -9,6 +9,7 @@
 #include <curve_proximity/ProximityResults.h>
 #include <netinet/in.h>
 #include <nodelet/loader.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <signal.h>
 #include <sys/socket.h>
@@ -275,6 +276,8 @@ int main(int argc, char **argv) {
     setenv("ROS_HOSTNAME", "localhost", 1);
     const Program master({"rosmaster", "--core", "-p", port});
     ros::init(argc, argv, "bench_ros", ros::init_options::NoRosout);
+    if (ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Warn))
+      ros::console::notifyLoggerLevelsChanged(); // standard output belongs to the rows
     waitFor("the master", [] { return ros::master::check(); });
     measure(quick, calls);
     ros::shutdown();
