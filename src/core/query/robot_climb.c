@@ -25,6 +25,11 @@ static void give_up(robot_climb *c) {
   c->reach = -INFINITY;
 }
 
+static void fail(robot_climb *c) {
+  c->fault = true;
+  give_up(c);
+}
+
 static void keep(robot_climb *c, const int32_t code[2], const robot_gap *gap) {
   const robot_found found = {.element = {code[0], code[1]}, .gap = *gap};
   if (gap->upper < c->nearest.gap.upper) c->nearest = found;
@@ -44,15 +49,31 @@ static void measure(robot_climb *c, const robot_body *const side[2], const int32
   robot_gap gap;
   robot_scene_measure(side[MOVING], side[STANDING], c->accuracy, &gap);
   c->gaps++;
-  if (gap.fault) {
-    c->fault = true;
-    give_up(c);
-  } else if (gap.lower < c->reach) {
+  if (gap.fault)
+    fail(c);
+  else if (gap.lower < c->reach)
     keep(c, code, &gap);
-  }
 }
 
 static void descend(robot_climb *c, const robot_body *const side[2], const int32_t code[2], int through);
+
+/* One element and the convex shape of the other side: where these are within reach, the other side's tree. Their own plane tells most of
+ * its elements apart. */
+static void descend_under(robot_climb *c, const robot_body *const side[2], const int32_t code[2], int through) {
+  if (robot_scene_apart(side[MOVING], side[STANDING]) >= c->reach) return;
+  robot_gap gap;
+  robot_scene_measure(side[MOVING], side[STANDING], c->accuracy, &gap);
+  c->gaps++;
+  if (gap.fault) {
+    fail(c);
+    return;
+  }
+  if (gap.lower >= c->reach) return;
+  const vec3 normal = c->normal;
+  c->normal = gap.upper > 0.0 ? gap.normal : vec(0, 0, 0);
+  descend(c, side, code, through);
+  c->normal = normal;
+}
 
 /* One element: measured, or what it may be near to in the other side's tree. */
 static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
@@ -64,11 +85,10 @@ static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
   const robot_body *side[2] = {d->side[0], d->side[1]};
   side[d->through] = robot_element_make(side[d->through], code[d->through], &c->scene->element[d->through]);
   const int other = 1 - d->through;
-  if (!side[other]->tree) {
+  if (side[other]->tree)
+    descend_under(c, side, code, other);
+  else
     measure(c, side, code);
-  } else if (robot_scene_apart(side[MOVING], side[STANDING]) < c->reach) {
-    descend(c, side, code, other);
-  }
   seeker->bound = c->reach + d->allowance;
 }
 
