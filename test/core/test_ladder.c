@@ -277,6 +277,29 @@ static void a_distance_climbs_only_where_the_hull_is_nearer_than_the_best(void *
   mesh_free(&torus);
 }
 
+/* Within the bracket's bounding ball and 0.495 off its hull, a box 0.25 away: the ball says bracket first, the hull says that it need not be
+ * looked into. */
+static void a_mesh_waits_until_it_is_the_nearest_by_its_hull(void **state) {
+  (void)state;
+  test_mesh bracket = mesh_bracket();
+  test_ladder l = ladder_make(&bracket);
+  cprox_body *box = NULL;
+  assert_int_equal(cprox_body_create_box(vec(0.1, 0.1, 0.1), ws, &box), CPROX_OK);
+  const vec3 way[2] = {{0.9, 0.9, -0.1}, {0.9, 0.9, 0.1}};
+  cprox_curve *curve = bezier(way, 2);
+  cprox_target targets[2] = {cprox_at(l.body, cprox_pose_identity()), cprox_at(box, cprox_pose_identity())};
+  targets[1].pose.position = vec(1.2, 0.9, 0.0);
+  cprox_result r;
+  assert_int_equal(cprox_distance_all(cprox_point_along(curve), targets, 2, NULL, ws, &r, NULL), CPROX_OK);
+  assert_true(r.lower <= 0.25 && 0.25 <= r.upper);
+  assert_int_equal(r.target_index, 1);
+  assert_int_equal(r.rung, CPROX_RUNG_HULL);
+  cprox_curve_free(curve);
+  cprox_body_free(box);
+  ladder_free(&l);
+  mesh_free(&bracket);
+}
+
 /* A compound of 12 ladders (seed 89) against boxes and balls: cprox_pair is that of the meshes; by hulls alone it is no farther. */
 static void pairs_climb_too(void **state) {
   (void)state;
@@ -368,6 +391,7 @@ int main(void) {
       cmocka_unit_test(verdicts_are_those_of_the_mesh),
       cmocka_unit_test(a_curve_through_the_hull_but_clear_of_the_mesh_is_clear),
       cmocka_unit_test(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best),
+      cmocka_unit_test(a_mesh_waits_until_it_is_the_nearest_by_its_hull),
       cmocka_unit_test(pairs_climb_too),
       cmocka_unit_test(bad_input_is_refused_with_a_sentence),
   };
