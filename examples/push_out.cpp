@@ -18,7 +18,7 @@
 #include <curve_proximity/constraint_provider.hpp>
 #include <curve_proximity/query.hpp>
 
-#include "scene/yaml/scene_change.h"
+#include "../src/scene/yaml/scene_change.h"
 
 using namespace curve_proximity;
 
