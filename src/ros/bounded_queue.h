@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <deque>
 #include <mutex>
-#include <optional>
 #include <utility>
 
 namespace curve_proximity {
@@ -19,7 +18,7 @@ class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t most) : most_(most) {}
 
-  /** Puts a job in. True: the caller now works, and calls next() until it gives nothing. */
+  /** Puts a job in. True: the caller now works, and calls next() until it says false. */
   bool push(Job job) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (jobs_.size() == most_) {
@@ -32,16 +31,14 @@ class BoundedQueue {
     return true;
   }
 
-  /** The oldest job; nothing where there is none left: then the caller's work is over. */
-  std::optional<Job> next() {
+  /** Takes the oldest job out. False where there is none left: then the caller's work is over. */
+  bool next(Job &job) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (jobs_.empty()) {
-      working_ = false;
-      return std::nullopt;
-    }
-    std::optional<Job> job(std::move(jobs_.front()));
+    working_ = !jobs_.empty();
+    if (!working_) return false;
+    job = std::move(jobs_.front());
     jobs_.pop_front();
-    return job;
+    return true;
   }
 
   std::uint64_t dropped() const {

@@ -92,9 +92,10 @@ void Pipeline::listen(const char *topic) {
 }
 
 void Pipeline::work() {
-  while (const std::optional<Job> job = jobs_.next()) {
+  Job job;
+  while (jobs_.next(job)) {
     if (stop_) continue;
-    guarded([&] { handle(*job); },
+    guarded([&] { handle(job); },
             [](const std::string &why) { ROS_ERROR("a message is not answered: %s", why.c_str()); });
   }
 }
