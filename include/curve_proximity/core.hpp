@@ -261,6 +261,16 @@ inline BodyHandle makeMesh(const Eigen::Matrix3Xd &vertices, const Eigen::Matrix
   });
 }
 
+/** A mesh, points or boxes with a convex hull that answers what does not need them; it keeps both alive. excess [m] >= 0: no
+ *  point of the mesh is farther than this from the hull. */
+inline BodyHandle makeLadder(const BodyHandle &hull, double excess, const BodyHandle &mesh) {
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) {
+        return cprox_body_create_ladder(hull.get(), excess, mesh.get(), w, b);
+      },
+      std::make_pair(hull, mesh));
+}
+
 /** A planar convex polygon at z = 0; a column a vertex, in order. */
 inline BodyHandle makePolygon(const Eigen::Matrix2Xd &vertices) {
   std::vector<std::array<double, 2>> points(static_cast<std::size_t>(vertices.cols()));

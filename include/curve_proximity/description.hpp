@@ -28,7 +28,8 @@ using Triangles = Eigen::Matrix<int, 3, Eigen::Dynamic>;
  *    SUPERQUADRIC  [a1, a2, a3, n1, n2, n3]: sum |x_i/a_i|^n_i <= 1, exponents 1 … 1000
  *    IMPLICIT   none; the intersection of `hyperquadrics`, `planes` and `quadrics`, bounded and with an interior
  *    POLYTOPE   none; the convex hull of `vertices`, solid, of any dimension
- *    MESH       none, or a scale [x, y, z]; `vertices` and `triangles`, or `resource`; answered by its convex hull
+ *    MESH       none, or a scale [x, y, z]; `vertices` and `triangles`, or `resource`: a surface, with `solid` also
+ *               its inside
  *    POINTS     none, or [radius] >= 0: a ball of that radius about each of `vertices`, as sensors measure them
  *    OCTREE     none; the occupied cells of `octree`, or of the .bt or .ot file `resource` */
 enum class ShapeType {
@@ -74,7 +75,7 @@ struct ShapeDescription {
   std::vector<std::array<double, 4>> planes;    /**< of an IMPLICIT, each [b1, b2, b3, c]: b·x + c <= 0 */
   std::vector<std::array<double, 10>> quadrics; /**< of an IMPLICIT, each [q11, q12, q13, q22, q23, q33, b1, b2, b3, c]:
                                                      x'Qx + b·x + c <= 0 */
-  bool solid = false;                           /**< of a MESH: its inside belongs to it, if it is closed */
+  bool solid = false;   /**< of a MESH: its inside belongs to it if it is closed; where it is not, answers say so */
   std::string resource; /**< URI or path of the file of a MESH or an OCTREE; then what it stands for is empty */
   OctreeData octree;    /**< of an OCTREE given by its bytes */
   bool unknown_is_occupied =

@@ -33,11 +33,14 @@ std::string resolveResource(const std::string &uri, const ResourceOptions &optio
 
 /** A body made of a description. */
 struct Geometry {
-  BodyHandle body;
-  double excess = 0.0;  /**< [m] of a mesh: no point of it is farther than this from the body (vertices that the hull
-                             computation dropped; at the scale of rounding) */
-  bool by_hull = false; /**< the shape is a mesh, and the body its convex hull: answers are bounds for the mesh, from
-                             the safe side for clearance */
+  BodyHandle body;          /**< of a mesh a ladder: its convex hull, and its triangles where the hull cannot decide */
+  BodyHandle hull;          /**< of a mesh its convex hull alone, else the body */
+  BodyHandle surface;       /**< the body without its inside, where it is a mesh that has one; else the body */
+  double excess = 0.0;      /**< [m] how far points of the shape may be outside the body, as whoever moved it knows */
+  double hull_excess = 0.0; /**< [m] of a mesh: no point of it is farther than this from `hull` (vertices that the hull
+                                  computation dropped; at the scale of rounding). The body knows it */
+  bool is_mesh = false;
+  bool is_open = false; /**< a mesh that was to be solid, but is not closed: its surface alone counts */
 };
 
 /** Checks the description once and makes its body, in the shape's own frame (shape.pose is left to the caller).

@@ -4,6 +4,7 @@
 #define CURVE_PROXIMITY_QUERY_HPP
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct Question {
   std::vector<std::string> objects, links;
 };
 
+/** "sphere", "hull" or "mesh" for options.max_rung; nothing for any other word. */
+std::optional<cprox_rung> rungFromName(const std::string &name);
+
 /** One answer: a row of the results. */
 struct Answer {
   std::string id;             /**< the curve's */
@@ -39,10 +43,12 @@ struct Answer {
    *  nothing. */
   cprox_result result{};
 
-  std::string a;           /**< what moved: the curve's id */
-  std::string b;           /**< the nearest object or link; empty where there is none */
-  bool b_is_link = false;  /**< b names a link of the robot */
-  bool by_hull = false;    /**< the nearest shape is a mesh, answered by its convex hull (result.rung says hull) */
+  std::string a;          /**< what moved: the curve's id */
+  std::string b;          /**< the nearest object or link; empty where there is none */
+  bool b_is_link = false; /**< b names a link of the robot */
+  bool by_hull =
+      false; /**< the nearest shape is a mesh, and its convex hull or bounding ball, which contains it, answered for it: as
+                                options.max_rung asked, or because it is solid and the robot moves */
   double microseconds = 0; /**< steady clock, around the search of this curve (per object: of this object) */
   std::string status;      /**< cprox_status_name(result.status) */
   std::string message;     /**< for a person: why there is no answer, or what is special about it; often empty */
@@ -86,8 +92,8 @@ class Targets {
   std::unique_ptr<const Data> data_;
 };
 
-/** Everything that a question is about, as the core takes it; valid as long as `targets` is. Certificates are about
- *  these: where things stand, in doubles, when rounding before the core is done. */
+/** Everything that a question is about, as the core takes it with max_rung hull; valid as long as `targets` is. Certificates are
+ *  about these: where things stand, in doubles, when rounding before the core is done, meshes by their convex hulls. */
 std::vector<cprox_target> coreTargets(const Targets &targets);
 
 /** Which of them an answer names; -1 for none. */

@@ -69,11 +69,14 @@ struct SceneChange {
 
 /** A body where it stands in the fixed frame. */
 struct PlacedShape {
-  cprox_target target{};   /**< padding included; the body is owned by whoever owns this */
-  Eigen::AlignedBox3d box; /**< [m] contains the padded body, rounding included; infinite for a halfspace */
-  double rounding = 0.0;   /**< [m] how far the rounding of poses and of mesh hulls can have moved a point of it */
-  double turning = 0.0;    /**< of a halfspace: the same for each metre that a point is away from target.pose */
-  bool by_hull = false;    /**< stands for a mesh, as its convex hull */
+  cprox_target target{};    /**< padding included; the body is owned by whoever owns this */
+  cprox_target hull{};      /**< the same; a mesh by its convex hull */
+  double hull_excess = 0.0; /**< [m] how far points of the shape may be outside `hull`, beside rounding */
+  Eigen::AlignedBox3d box;  /**< [m] contains the padded body, rounding included; infinite for a halfspace */
+  double rounding = 0.0;    /**< [m] how far the rounding of poses can have moved a point of it */
+  double turning = 0.0;     /**< of a halfspace: the same for each metre that a point is away from target.pose */
+  bool is_mesh = false;
+  bool is_open = false; /**< a mesh that was to be solid, but is not closed */
 };
 
 /** One shape of an object. */

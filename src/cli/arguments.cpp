@@ -65,10 +65,6 @@ const VerbName kVerbs[] = {
     {"constraints", Action::CONSTRAINTS, Verb::DISTANCE},
 };
 
-[[noreturn]] void notAvailable(const std::string &word) {
-  throw BadUsage(word + " is not available in this version");
-}
-
 const VerbName &findVerb(const std::string &word) {
   for (const VerbName &verb : kVerbs) {
     if (word == verb.word) return verb;
@@ -174,11 +170,11 @@ void readQuestion(const Words &words, const VerbName &verb, Question &question) 
     throw BadUsage("'tolerance' needs --delta D, the clearance that is asked for, in metres");
   }
 
-  /* meshes are answered by their convex hull, everything else is its own hull: the other rungs are not there */
-  const std::string rung = words.text("--max-rung");
-  if (rung == "sphere" || rung == "mesh") notAvailable("--max-rung " + rung);
-  if (words.has("--max-rung") && rung != "hull") {
-    throw BadUsage("--max-rung is '" + rung + "'; it must be hull");
+  /* the finest model that may answer */
+  if (words.has("--max-rung")) {
+    const std::optional<cprox_rung> rung = rungFromName(words.text("--max-rung"));
+    if (!rung) throw BadUsage("--max-rung is '" + words.text("--max-rung") + "'; it must be sphere, hull or mesh");
+    question.options.max_rung = *rung;
   }
 }
 
@@ -205,6 +201,14 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
   out.robot = words.text("--robot");
   out.srdf = words.text("--srdf");
   out.state = words.text("--state");
+}
+
+/* Certificates speak of convex bodies: with them meshes are answered by their hulls. */
+void limitToHulls(const Words &words, Arguments &out) {
+  if (!words.has("--certificate")) return;
+  cprox_rung &finest = out.question.options.max_rung;
+  if (words.has("--max-rung") && finest != CPROX_RUNG_HULL) throw BadUsage("--certificate needs --max-rung hull");
+  finest = CPROX_RUNG_HULL;
 }
 
 /* The files that a verb cannot do without, and words that it does not understand. */
@@ -237,6 +241,7 @@ void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
       out.robot = words.text("--robot");
       out.srdf = words.text("--srdf");
       out.state = words.text("--state");
+      limitToHulls(words, out);
       if (out.robot.empty() && !out.state.empty()) throw BadUsage("--state needs --robot URDF");
       if (out.robot.empty() && !out.srdf.empty()) throw BadUsage("--srdf needs --robot URDF");
       break;
@@ -331,7 +336,8 @@ cprox check     FILE  (the inputs of the question)  what the certificates in FIL
   --max-nodes N     budget of parameter intervals for each target (default 20000)
   --threads N       how many rows are worked on at once (default: the machine's cores); the answers do not depend on it
   --per-object      a row for each curve and object or link, not one for the nearest
-  --max-rung hull   the finest model of a mesh to be used: its convex hull, the only one in this version
+  --max-rung R      the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies by
+                    their bounding balls); a coarser one is never farther away.
   --skipped         tell on standard error what takes no part, and why
   --out FILE        the results, instead of standard output
   --node NAME       the node that 'send' talks to (default )" +

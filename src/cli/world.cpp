@@ -132,6 +132,16 @@ void apply(Scene &scene, const SceneChange &change) {
   throw BadUsage(faults.front() + more);
 }
 
+/* Meshes that were to be solid and are not closed. */
+void warnOfOpenMeshes(const Snapshot &snapshot, Warnings &warnings) {
+  for (const auto &[id, object] : snapshot.objects()) {
+    for (const ObjectShape &shape : object->shapes) {
+      if (shape.geometry.is_open)
+        warnings.add("object '" + id + "': a mesh that is to be solid is not closed: its surface alone counts");
+    }
+  }
+}
+
 /* What takes no part: what the file holds in vain, and links that nothing can come close to. */
 std::vector<std::string> skippedOf(const SceneFile &file, const PlacedRobot &robot) {
   std::vector<std::string> out = file.skipped;
@@ -159,6 +169,7 @@ World readWorld(const Arguments &arguments, Warnings &warnings) {
   } catch (const BadUsage &e) {
     throw BadUsage(arguments.scene + ": " + e.what());
   }
+  warnOfOpenMeshes(*scene.snapshot(), warnings);
   return {scene.snapshot(), robot.links_now, robot.scene_joints, robot.state, robot.srdf, skippedOf(file, robot)};
 }
 

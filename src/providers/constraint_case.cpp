@@ -73,7 +73,7 @@ ConstraintBody toBody(const ObjectDescription &object, const char *name, const R
       if (shape.type == ShapeType::POINTS || shape.type == ShapeType::OCTREE)
         throw Error(std::string(shapeTypeName(shape.type)) + ": constraints are about convex bodies and meshes");
       const Geometry geometry = makeGeometry(shape, resources);
-      side.parts.push_back({shape, geometry.body, geometry.excess});
+      side.parts.push_back({shape, geometry.hull, geometry.hull_excess});
     } catch (const Error &error) {
       throw Error(std::string(name) + ": shape " + std::to_string(i) + ": " + error.what(), error.status());
     }

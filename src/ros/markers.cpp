@@ -33,7 +33,7 @@ void addScene(Canvas &canvas, const Snapshot &scene, const ResourceOptions &reso
       // What is large, a shelf say, must not hide what it holds.
       const bool is_large = !(object.shapes[i].placed.box.sizes().norm() < LARGE);
       const std_msgs::ColorRGBA tint = is_large ? colour(0.72, 0.76, 0.8, 0.35) : colour(0.55, 0.6, 0.66, 1.0);
-      canvas.addShape("scene", shape, object.shapes[i].geometry.body, resources, pose, tint);
+      canvas.addShape("scene", shape, object.shapes[i].geometry.hull, resources, pose, tint);
       placed.push_back({object.shapes[i].geometry.body.get(), pose, object.description.padding});
     }
   }

@@ -40,7 +40,7 @@ double linkClearance(const Parts &parts, const Eigen::Isometry3d &link, const Pl
   options.epsilon = 1e-4;
   double least = std::numeric_limits<double>::infinity();
   for (const Part &part : parts) {
-    const cprox_target a = cprox_at(part.element->geometry.body.get(), toPose(link * part.element->pose));
+    const cprox_target a = cprox_at(part.element->geometry.hull.get(), toPose(link * part.element->pose));
     for (const PlacedBody &object : objects) {
       cprox_result result{};
       if (cprox_pair(a, cprox_at(object.body, toPose(object.pose)), &options, workspace.get(), &result) < 0) continue;
@@ -54,7 +54,7 @@ void addLink(Canvas &canvas, const std::string &space, const Parts &parts, const
              const ResourceOptions &resources, const std_msgs::ColorRGBA &tint) {
   for (const Part &part : parts) {
     const LinkGeometry &element = *part.element;
-    canvas.addShape(space, element.description, element.geometry.body, resources, link * element.pose, tint);
+    canvas.addShape(space, element.description, element.geometry.hull, resources, link * element.pose, tint);
   }
 }
 

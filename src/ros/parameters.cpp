@@ -4,6 +4,7 @@
 #include <ros/console.h>
 
 #include <cmath>
+#include <curve_proximity/query.hpp>
 #include <set>
 #include <sstream>
 #include <vector>
@@ -183,6 +184,7 @@ Parameters readParameters(const ros::NodeHandle &handle) {
     throw ParameterError("parameter ~verb: distance, tolerance or collision is expected, not '" + parameters.verb +
                          "'");
   if (parameters.fixed_frame.empty()) throw ParameterError("parameter ~fixed_frame: the name of a frame is expected");
+  if (!rungFromName(parameters.max_rung)) throw ParameterError("parameter ~max_rung: sphere, hull or mesh is expected");
   if (parameters.cloud_id.empty()) throw ParameterError("parameter ~cloud_id: the name of an object is expected");
   if (parameters.octomap_id.empty() || parameters.octomap_id == parameters.cloud_id)
     throw ParameterError("parameter ~octomap_id: the name of an object is expected, another than ~cloud_id");

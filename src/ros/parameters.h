@@ -31,6 +31,7 @@ struct Parameters {
   std::string scene_file;
   double epsilon = 1e-6;
   int max_nodes = 20000;
+  std::string max_rung = "mesh";
   double budget_ms = 5000.0;
   int threads = 4;
   std::string verb = "tolerance";
@@ -70,6 +71,7 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("scene_file", parameters.scene_file);
   visit("epsilon", parameters.epsilon, Range{0.0, true});
   visit("max_nodes", parameters.max_nodes, Range{1.0, false, count});
+  visit("max_rung", parameters.max_rung);
   visit("budget_ms", parameters.budget_ms, Range{0.0, true, 1e9});
   visit("threads", parameters.threads, Range{1.0, false, 256.0});
   visit("verb", parameters.verb);

@@ -163,6 +163,7 @@ Question Queries::toQuestion(const QueryRequest &request) const {
   question.options.epsilon = request.epsilon != 0.0 ? request.epsilon : tuning_.epsilon.load();
   question.options.max_nodes =
       request.max_nodes != 0 ? request.max_nodes : static_cast<std::uint32_t>(tuning_.max_nodes);
+  question.options.max_rung = *rungFromName(parameters_.max_rung);
   question.per_object = request.per_object;
   question.objects = request.objects;
   question.links = request.links;

@@ -18,6 +18,13 @@ void reviewVerdict(const Question &question, cprox_result &result) {
 
 } // namespace
 
+std::optional<cprox_rung> rungFromName(const std::string &name) {
+  for (const cprox_rung rung : {CPROX_RUNG_SPHERE, CPROX_RUNG_HULL, CPROX_RUNG_MESH}) {
+    if (name == cprox_rung_name(rung)) return rung;
+  }
+  return std::nullopt;
+}
+
 cprox_options withoutRounding(cprox_options options, double rounding) {
   if (options.epsilon > 4.0 * rounding) options.epsilon -= 2.0 * rounding;
   return options;

@@ -88,6 +88,7 @@ void checkVertices(const ShapeDescription &shape) {
   }
   if (!mesh && shape.triangles.cols() > 0) throw Error(name + " takes no triangles");
   if (!mesh && !octree && !shape.resource.empty()) throw Error(name + " takes no file, got '" + shape.resource + "'");
+  if (!mesh && shape.solid) throw Error(name + " is not asked whether it is solid: meshes are");
   if (!octree && !shape.octree.data.empty()) throw Error(name + " takes no octree");
   if (octree && shape.resource.empty() == shape.octree.data.empty()) {
     throw Error(shape.resource.empty()
@@ -109,11 +110,13 @@ void checkConstraints(const ShapeDescription &shape) {
 Geometry makeMesh(const ShapeDescription &shape, const ResourceOptions &options) {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   if (!shape.dimensions.empty()) scale = Eigen::Map<const Eigen::Vector3d>(shape.dimensions.data());
-  if (shape.resource.empty()) return hullOfMesh({shape.vertices, shape.triangles}, scale);
+  if (shape.resource.empty()) {
+    return makeMeshGeometry({shape.vertices, shape.triangles}, scale, shape.solid, options.memory_limit);
+  }
 
   const MeshData data = readMesh(resolveResource(shape.resource, options));
   try {
-    return hullOfMesh(data, scale);
+    return makeMeshGeometry(data, scale, shape.solid, options.memory_limit);
   } catch (const Error &error) {
     throw Error("mesh '" + shape.resource + "': " + error.what(), error.status());
   }
@@ -217,7 +220,7 @@ Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &opti
   checkConstraints(shape);
   if (shape.type == ShapeType::MESH) return makeMesh(shape, options);
   Geometry out;
-  out.body = makeBody(shape, options);
+  out.body = out.hull = out.surface = makeBody(shape, options);
   return out;
 }
 

@@ -20,7 +20,7 @@ struct MovingGeometry {
   const AttachedObject *attached = nullptr; /* NULL: the link's own */
   int part = 0;                             /* its number among the link's or the object's */
   double excess = 0.0;                      /* [m] how far points of the shape may be outside its body */
-  bool by_hull = false;
+  bool is_mesh = false;
 
   const std::string &owner() const {
     return attached ? attached->description.id : *link;

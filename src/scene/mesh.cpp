@@ -130,9 +130,8 @@ MeshData readMesh(const std::string &file) {
   return data;
 }
 
-Geometry hullCovering(const Points &all, Points kept) {
-  Geometry out;
-  out.by_hull = true;
+Hull hullCovering(const Points &all, Points kept) {
+  Hull out;
   out.body = polytopeOf(kept);
 
   // What stands out a little is told, what stands out farther is taken back.
@@ -154,19 +153,31 @@ Geometry hullCovering(const Points &all, Points kept) {
   return out;
 }
 
-Geometry hullOfMesh(const MeshData &mesh, const Eigen::Vector3d &scale) {
-  if (!scale.allFinite() || (scale.array() == 0.0).any()) throw Error("mesh scale must be finite and not 0");
-  checkTriangles(mesh);
-  const Points all = usedVertices(mesh, scale);
-
-  // Extreme points only, where that pays and can be had. Qhull merges facets: what it drops must be covered all the same.
+/* Extreme points only, where that pays and can be had. Qhull merges facets: what it drops must be covered all the same. */
+static Hull hullOf(const Points &all) {
   Points kept;
   if (all.size() > FEW_VERTICES && !isFlat(all)) kept = extremePoints(all);
   if (kept.size() >= 4) return hullCovering(all, std::move(kept));
+  return {polytopeOf(all), 0.0};
+}
+
+Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bool solid, std::size_t memory_limit) {
+  if (!scale.allFinite() || (scale.array() == 0.0).any()) throw Error("mesh scale must be finite and not 0");
+  checkTriangles(mesh);
+  const Hull hull = hullOf(usedVertices(mesh, scale));
+  const Eigen::Matrix3Xd vertices = scale.asDiagonal() * mesh.vertices;
+  const auto ladder = [&](cprox_mesh_fill fill) {
+    return makeLadder(hull.body, hull.excess, makeMesh(vertices, mesh.triangles, fill, memory_limit));
+  };
 
   Geometry out;
-  out.by_hull = true;
-  out.body = polytopeOf(all);
+  out.body = ladder(solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE);
+  const bool has_inside = cprox_body_is_solid(out.body.get());
+  out.surface = has_inside ? ladder(CPROX_MESH_SURFACE) : out.body;
+  out.hull = hull.body;
+  out.hull_excess = hull.excess;
+  out.is_mesh = true;
+  out.is_open = solid && !has_inside;
   return out;
 }
 

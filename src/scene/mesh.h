@@ -18,13 +18,20 @@ struct MeshData {
 /* Reads any format that assimp knows. Throws Error, naming the file, where there is no triangle in it. */
 MeshData readMesh(const std::string &file);
 
-/* The convex hull of the vertices that triangles use, scaled along the axes.
- * Throws Error: no triangle, an index out of range, vertices or scale not finite, a scale of 0. */
-Geometry hullOfMesh(const MeshData &mesh, const Eigen::Vector3d &scale);
+/* The mesh, scaled along the axes, as a ladder of the convex hull of the vertices that triangles use, and the triangles.
+ * Throws Error: no triangle, an index out of range, vertices or scale not finite, a scale of 0; CPROX_MEMORY where the triangles
+ * would take more than memory_limit bytes. */
+Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bool solid, std::size_t memory_limit);
+
+/* A convex hull, and how far what it is the hull of may stand out of it [m]. */
+struct Hull {
+  BodyHandle body;
+  double excess = 0.0;
+};
 
 /* The hull of `kept`, some of the points of `all`, so that all of them are covered: by the body, by the excess where they
  * stand out by no more than rounding, or by taking them back. */
-Geometry hullCovering(const std::vector<Eigen::Vector3d> &all, std::vector<Eigen::Vector3d> kept);
+Hull hullCovering(const std::vector<Eigen::Vector3d> &all, std::vector<Eigen::Vector3d> kept);
 
 } // namespace curve_proximity
 #endif

@@ -35,6 +35,7 @@ struct Asked {
   }
 };
 
+/* Robots are asked about surfaces: solid meshes are answered by their hulls, which contain their inside. */
 Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted) {
   Asked asked{data, false, std::move(wanted), {}, {}, mostExcess(data.kinematics->geometries)};
   const std::vector<Item> &items = data.snapshot->world().items();
@@ -42,8 +43,10 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted)
   double rounding = 0.0;
   for (const std::size_t k : asked.items) {
     number[k] = static_cast<std::int32_t>(asked.targets.size());
-    asked.targets.push_back(items[k].shape->target);
-    rounding = std::max(rounding, items[k].shape->rounding);
+    const PlacedShape &shape = *items[k].shape;
+    const bool by_hull = shape.is_mesh && cprox_body_is_solid(shape.target.body);
+    asked.targets.push_back(by_hull ? shape.hull : shape.target);
+    rounding = std::max(rounding, shape.rounding + (by_hull ? shape.hull_excess : 0.0));
   }
   for (const cprox_robot_pair &pair : data.environment) {
     const std::int32_t k = number[static_cast<std::size_t>(pair.other)];
@@ -85,7 +88,7 @@ void finish(const RobotMotion::Data &data, Answer &answer, Clock::time_point sta
 }
 
 /* Names both sides of an answer that has a witness, and leaves the numbers of their shapes in mover_part and target_index. */
-void nameSides(const Asked &asked, Answer &answer) {
+void nameSides(const Asked &asked, const Question &question, Answer &answer) {
   cprox_result &result = answer.result;
   if (result.status < 0 || result.target_index < 0) return;
   const std::vector<MovingGeometry> &geometries = asked.data.kinematics->geometries;
@@ -93,18 +96,20 @@ void nameSides(const Asked &asked, Answer &answer) {
   const auto other = static_cast<std::size_t>(result.target_index);
   answer.a = moving.owner();
   result.mover_part = moving.part;
-  answer.by_hull = moving.by_hull;
+  const bool coarse = question.options.max_rung != CPROX_RUNG_MESH;
+  answer.by_hull = coarse && moving.is_mesh;
   if (asked.self) {
     const MovingGeometry &standing = geometries[other];
     answer.b = standing.owner();
     answer.b_is_link = !standing.attached;
     result.target_index = standing.part;
-    answer.by_hull = answer.by_hull || standing.by_hull;
+    answer.by_hull = answer.by_hull || (coarse && standing.is_mesh);
   } else {
     const Item &item = asked.data.snapshot->world().items()[asked.items[other]];
     answer.b = *item.owner;
     result.target_index = item.part;
-    answer.by_hull = answer.by_hull || item.shape->by_hull;
+    answer.by_hull =
+        answer.by_hull || (item.shape->is_mesh && (coarse || cprox_body_is_solid(item.shape->target.body)));
   }
   if (answer.by_hull) answer.message = "the nearest shape is a mesh: its convex hull answers for it";
 }
@@ -120,7 +125,7 @@ Answer toAnswer(const Asked &asked, const cprox_result &result, const Question &
     answer.message = workspace.reason();
   } else {
     if (!asked.pairs.empty()) widen(question, asked.rounding, INFINITE, answer.result);
-    nameSides(asked, answer);
+    nameSides(asked, question, answer);
   }
   finish(asked.data, answer, start);
   return answer;
@@ -205,7 +210,7 @@ std::vector<ClearanceStretch> clearanceProfile(const RobotMotion &motion, bool s
     Answer names;
     names.result.target_index = stretch.target_index;
     names.result.mover_part = stretch.mover_part;
-    nameSides(asked, names);
+    nameSides(asked, question, names);
     const double upper = stretch.upper > 0.0 ? stretch.upper + asked.rounding : stretch.upper;
     out.push_back(
         {stretch.t0, stretch.t1, std::max(0.0, stretch.lower - asked.rounding), upper, stretch.t, names.a, names.b});

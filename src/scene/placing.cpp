@@ -53,7 +53,10 @@ PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, cons
   PlacedShape out;
   const BodyHandle &body = geometry.body;
   out.target = at(body, pose, padding);
-  out.by_hull = geometry.by_hull;
+  out.hull = at(geometry.hull, pose, padding);
+  out.hull_excess = geometry.hull_excess;
+  out.is_mesh = geometry.is_mesh;
+  out.is_open = geometry.is_open;
 
   // How far the body extends from its position.
   cprox_vec3 centre;
@@ -70,7 +73,7 @@ PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, cons
   if (rotated && !std::isfinite(reach)) out.turning = COMPOSING;
 
   const Eigen::Vector3d everywhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  out.box = std::isfinite(reach) ? boxOf(body.get(), pose, padding + out.rounding, reach)
+  out.box = std::isfinite(reach) ? boxOf(body.get(), pose, padding + out.rounding + out.hull_excess, reach)
                                  : Eigen::AlignedBox3d(-everywhere, everywhere);
   return out;
 }

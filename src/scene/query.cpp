@@ -164,6 +164,21 @@ cprox_status runCore(const Search &search, const cprox_options &options, cprox_r
                  result);
 }
 
+/* What of a mesh has answered. */
+void sayModel(cprox_rung max_rung, const PlacedShape &shape, Answer &answer) {
+  const bool coarse = max_rung == CPROX_RUNG_SPHERE || max_rung == CPROX_RUNG_HULL;
+  answer.by_hull = coarse;
+  if (coarse) {
+    const std::string model = max_rung == CPROX_RUNG_HULL ? "convex hull" : "bounding ball";
+    answer.message = "the nearest shape is a mesh: its " + model + " answers for it";
+  } else if (shape.is_open) {
+    answer.message = "the nearest shape is a mesh that is not closed: its surface alone counts";
+  } else {
+    answer.message = cprox_body_is_solid(shape.target.body) ? "the nearest shape is a closed mesh: its inside counts"
+                                                            : "the nearest shape is a mesh: its surface alone counts";
+  }
+}
+
 void nameTarget(const Search &search, Answer &answer) {
   const std::int32_t found = answer.result.target_index;
   if (found < 0) return;
@@ -171,8 +186,7 @@ void nameTarget(const Search &search, Answer &answer) {
   answer.result.target_index = item.part;
   answer.b = *item.owner;
   answer.b_is_link = item.is_link;
-  answer.by_hull = item.shape->by_hull;
-  if (answer.by_hull) answer.message = "the nearest shape is a mesh: its convex hull answers for it";
+  if (item.shape->is_mesh) sayModel(search.question.options.max_rung, *item.shape, answer);
 }
 
 Answer answerOf(const Search &search) {

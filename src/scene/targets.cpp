@@ -98,7 +98,7 @@ Targets &Targets::operator=(Targets &&) noexcept = default;
 
 std::vector<cprox_target> coreTargets(const Targets &targets) {
   std::vector<cprox_target> all;
-  for (const Item &item : targets.data().items) all.push_back(item.shape->target);
+  for (const Item &item : targets.data().items) all.push_back(item.shape->hull);
   return all;
 }
 

@@ -177,6 +177,7 @@ ShapeDescription describe(const urdf::Collision &collision, const std::string &w
       const auto &mesh = static_cast<const urdf::Mesh &>(geometry);
       shape.type = ShapeType::MESH;
       shape.resource = mesh.filename;
+      shape.solid = true; // a link is made of something: what is wholly inside it hits it, where its mesh is closed
       shape.dimensions = {mesh.scale.x, mesh.scale.y, mesh.scale.z};
       if (shape.resource.empty()) throw Error(who + "its mesh has no file name");
       break;

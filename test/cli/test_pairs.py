@@ -52,9 +52,25 @@ class Pairs(Case):
                 points = [[float(row[f'{letter}_{axis}']) for axis in 'xyz'] for letter in 'ab']
                 self.assertAlmostEqual(math.dist(*points), float(row['upper']), delta=1e-9)
 
-    def a_mesh_counts_as_its_hull_and_says_so(self):
+    def a_mesh_is_its_surface_unless_it_is_to_be_solid_or_a_hull(self):
+        # a tetrahedron about the origin, its walls 1 away; the point stands inside
+        corners, faces = '[[3, 0, 0], [0, 3, 0], [0, 0, 3], [-1, -1, -1]]', '[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]'
+        mesh = f'{{type: mesh, %smesh: {{vertices: {corners}, triangles: {faces}%s}}}}'
+        row = self.pairs(pair('m', mesh % ('', ''), '{type: point}')).row('m')
+        self.assertEqual(row['rung'], 'mesh')
+        self.assertGreater(float(row['lower']), 0.3)
+        row = self.pairs(pair('m', mesh % ('', ', solid: true'), '{type: point}')).row('m')
+        self.assertLessEqual(float(row['upper']), 0)
+        row = self.pairs(pair('m', mesh % ('', ''), '{type: point}'), '--max-rung', 'hull').row('m')
+        self.assertEqual(row['rung'], 'hull')
+        self.assertLess(float(row['upper']), -0.3)
+
+    def clouds_and_octrees_are_bodies_and_meshes_against_meshes_are_refused(self):
+        cloud = '{type: points, dimensions: [0.5], vertices: [[3, 0, 0], [0, 9, 0]]}'
+        self.assertAnswer(self.pairs(pair('c', cloud, UNIT_BALL)).row('c'), 1.5)
         mesh = '{type: mesh, mesh: {vertices: [[2, 0, 0], [3, 1, 0], [3, 0, 1]], triangles: [[0, 1, 2]]}}'
-        self.assertEqual(self.pairs(pair('m', mesh, UNIT_BALL)).row('m')['rung'], 'hull')
+        self.assertFailedRow(self.pairs(pair('mm', mesh, mesh)), 'mm', 'mesh')
+        self.assertFailedRow(self.pairs(pair('o', '{type: octree, resource: none.bt}', UNIT_BALL)), 'o', 'octree', 'none.bt')
 
     def witness_a_lies_on_a_and_b_on_b(self):
         row = self.pairs(pair('p', f'{{type: sphere, dimensions: [1], {at(-2)}}}', f'{{type: sphere, dimensions: [0.5], {at(3)}}}')).row('p')

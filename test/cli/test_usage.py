@@ -50,10 +50,7 @@ class Usage(Case):
                     self.assertRefused(cprox('tolerance', *files, '--delta', '1', name, value)
                                        if name != '--delta' else cprox('tolerance', *files, name, value), name, value)
 
-    def what_belongs_to_later_versions_is_refused_in_one_sentence(self):
-        for words in (['distance', '--curves', 'c', '--scene', 's', '--max-rung', 'mesh'],):
-            with self.subTest(words=words):
-                self.assertRefused(cprox(*words), 'is not available in this version')
+    def rungs_are_known_by_name(self):
         self.assertRefused(cprox('distance', '--curves', 'c', '--scene', 's', '--max-rung', 'finest'), '--max-rung', 'hull')
 
     def an_option_that_changes_nothing_is_told(self):

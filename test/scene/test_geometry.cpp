@@ -69,7 +69,7 @@ const char *const TRIANGLE_STL =
 } // namespace
 
 TEST(Shapes, names_and_types_are_one_to_one) {
-  for (int i = 0; i <= static_cast<int>(ShapeType::MESH); ++i) {
+  for (int i = 0; i <= static_cast<int>(ShapeType::OCTREE); ++i) {
     const auto type = static_cast<ShapeType>(i);
     EXPECT_EQ(shapeTypeFromName(shapeTypeName(type)), type);
   }
@@ -122,7 +122,7 @@ TEST(Shapes, vertices_belong_to_points_polytopes_and_meshes) {
   expectContains(refusal(s), "vertex 2 is not finite");
   s = shape(ShapeType::SPHERE, {1});
   s.resource = "x.stl";
-  expectContains(refusal(s), "takes no mesh file");
+  expectContains(refusal(s), "takes no file");
 }
 
 TEST(Meshes, bad_meshes_are_told_in_a_sentence) {
@@ -153,7 +153,7 @@ TEST(Meshes, flat_thin_and_single_triangles_are_bodies) {
     vertices(2, 7) = thickness;
     const Geometry flat = makeGeometry(mesh(vertices, anyTriangles(40)));
     EXPECT_NEAR(cprox_body_nearest(flat.body.get(), {0, 0, 1}, nullptr), 1.0, 2e-10);
-    EXPECT_TRUE(flat.by_hull);
+    EXPECT_TRUE(flat.is_mesh);
   }
   // Collinear, and all in one place.
   for (int i = 0; i < 40; ++i) vertices.col(i) << i, 0, 0;
@@ -177,11 +177,11 @@ TEST(Meshes, the_hull_contains_every_vertex) {
       vertices.col(k) = random.vector(1.0).cwiseProduct(half);
       if (random.below(3) == 0) vertices(static_cast<Eigen::Index>(random.below(3)), k) = 0.5 * size; // onto a plane
     }
-    const Geometry hull = makeGeometry(mesh(vertices, anyTriangles(n)));
-    EXPECT_LE(hull.excess, 1e-11 * size);
+    const Geometry geometry = makeGeometry(mesh(vertices, anyTriangles(n)));
+    EXPECT_LE(geometry.hull_excess, 1e-11 * size);
     for (Eigen::Index k = 0; k < n; ++k) {
-      const double out_by = cprox_body_nearest(hull.body.get(), toVec3(vertices.col(k)), nullptr);
-      EXPECT_LE(out_by, hull.excess + 64 * 0x1p-53 * 6.0 * size);
+      const double out_by = cprox_body_nearest(geometry.hull.get(), toVec3(vertices.col(k)), nullptr);
+      EXPECT_LE(out_by, geometry.hull_excess + 64 * 0x1p-53 * 6.0 * size);
     }
   }
 }
@@ -196,7 +196,7 @@ TEST(Meshes, vertices_that_were_dropped_are_covered_or_taken_back) {
       if (kept.size() < 4 || random.below(3) == 0) kept.push_back(p);
     }
     all.push_back(kept[0] * (1.0 + 1e-14)); // stands out by no more than rounding
-    const Geometry hull = hullCovering(all, kept);
+    const Hull hull = hullCovering(all, kept);
     EXPECT_LE(hull.excess, 1e-11);
     for (const Eigen::Vector3d &p : all) {
       EXPECT_LE(cprox_body_nearest(hull.body.get(), toVec3(p), nullptr), hull.excess + 64 * 0x1p-53 * 6.0);
@@ -228,15 +228,15 @@ TEST(Resources, files_are_found_by_every_kind_of_uri) {
   options.find_package = [](const std::string &name) { return name == "panda_description" ? PANDA : std::string(); };
   for (const std::string uri : {"meshes/finger.stl", "package://panda_description/meshes/finger.stl"}) {
     EXPECT_TRUE(std::filesystem::equivalent(resolveResource(uri, options), PANDA + "/meshes/finger.stl")) << uri;
-    EXPECT_TRUE(makeGeometry(meshFile(uri), options).by_hull);
+    EXPECT_TRUE(makeGeometry(meshFile(uri), options).is_mesh);
   }
   for (const std::string start : {"", "file://", "file://localhost"}) {
     EXPECT_EQ(resolveResource(start + PANDA + "/meshes/finger.stl", {}), PANDA + "/meshes/finger.stl");
   }
   const Folder folder;
   folder.write("a b%.stl", TRIANGLE_STL);
-  EXPECT_TRUE(makeGeometry(meshFile("file://" + folder.path() + "/a%20b%25.stl")).by_hull);
-  EXPECT_TRUE(makeGeometry(meshFile(folder.path() + "/a b%.stl")).by_hull);
+  EXPECT_TRUE(makeGeometry(meshFile("file://" + folder.path() + "/a%20b%25.stl")).is_mesh);
+  EXPECT_TRUE(makeGeometry(meshFile(folder.path() + "/a b%.stl")).is_mesh);
 }
 
 TEST(Resources, what_cannot_be_read_is_told_by_name) {

@@ -113,15 +113,76 @@ TEST(Ask, a_link_whose_pose_is_unknown_never_reads_as_free) {
   expectContains(askOne(Scene(), poses, UPRIGHT, Question()).message, "no robot");
 }
 
-TEST(Ask, meshes_say_that_their_hull_answered) {
+TEST(Ask, meshes_say_which_model_answered) {
   Scene scene(dataRobot("panda"));
   const LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
-  const Answer answer = askOne(scene, poses, line({1, 0, 0}, {1, 0, 1}), Question());
-  EXPECT_EQ(answer.status, "ok");
-  EXPECT_TRUE(answer.by_hull);
-  EXPECT_TRUE(answer.b_is_link);
+  const char *words[] = {"bounding ball", "convex hull", "mesh"};
+  double above = 0.0;
+  for (const cprox_rung rung : {CPROX_RUNG_SPHERE, CPROX_RUNG_HULL, CPROX_RUNG_MESH}) {
+    Question question;
+    question.options.max_rung = rung;
+    const Answer answer = askOne(scene, poses, line({1, 0, 0}, {1, 0, 1}), question);
+    EXPECT_EQ(answer.status, "ok");
+    EXPECT_EQ(answer.by_hull, rung != CPROX_RUNG_MESH);
+    EXPECT_TRUE(answer.b_is_link);
+    EXPECT_EQ(answer.result.rung, rung);
+    expectContains(answer.message, words[rung - CPROX_RUNG_SPHERE]);
+    EXPECT_GE(answer.result.upper, above); // a finer model is contained in the coarser ones
+    above = answer.result.lower;
+  }
+}
+
+/* A bracket: three plates of a U that opens upwards, 2 wide and 1 high. A line runs between its arms, 1 from the floor less 0.4. */
+TEST(Ask, a_curve_in_the_hull_of_a_mesh_is_clear_of_the_mesh) {
+  ShapeDescription bracket = shape(ShapeType::MESH, {});
+  bracket.vertices.resize(3, 8);
+  bracket.vertices << -1, -1, 1, 1, -1, -1, 1, 1, /**/ -1, 1, -1, 1, -1, 1, -1, 1, /**/ 1, 1, 1, 1, 0, 0, 0, 0;
+  bracket.triangles.resize(3, 6);
+  bracket.triangles << 0, 1, 2, 3, 4, 5, /**/ 1, 5, 3, 7, 5, 7, /**/ 4, 4, 6, 6, 6, 6;
+  Scene scene;
+  ASSERT_TRUE(scene.apply(change({add("bracket", {bracket})})).empty());
+  const CurveDescription between = line({0, -3, 0.6}, {0, 3, 0.6});
+  Question question;
+  question.verb = Verb::COLLISION;
+  Answer answer = askOne(scene, {}, between, question);
+  EXPECT_EQ(answer.result.verdict, CPROX_NO);
+  EXPECT_EQ(answer.result.rung, CPROX_RUNG_MESH);
+  question.options.max_rung = CPROX_RUNG_HULL;
+  answer = askOne(scene, {}, between, question);
+  EXPECT_EQ(answer.result.verdict, CPROX_YES);
   EXPECT_EQ(answer.result.rung, CPROX_RUNG_HULL);
-  expectContains(answer.message, "hull");
+
+  question = Question();
+  answer = askOne(scene, {}, between, question);
+  EXPECT_LE(answer.result.lower, 0.6);
+  EXPECT_GE(answer.result.upper, 0.6);
+  EXPECT_LE(answer.result.upper - answer.result.lower, 1.01e-6);
+  expectContains(answer.message, "surface alone");
+}
+
+/* A closed box of triangles, one of them taken away or not, and a curve that stays inside it, 0.9 from its walls. */
+TEST(Ask, the_inside_of_a_mesh_counts_where_it_is_asked_for_and_closed) {
+  ShapeDescription cube = shape(ShapeType::MESH, {});
+  cube.vertices.resize(3, 8);
+  for (int i = 0; i < 8; ++i) cube.vertices.col(i) << 2 * (i & 1) - 1, (i & 2) - 1, (i >> 1 & 2) - 1;
+  cube.triangles.resize(3, 12);
+  cube.triangles << 0, 0, 1, 1, 0, 0, 2, 2, 0, 0, 4, 4, /**/ 4, 6, 3, 7, 1, 5, 6, 7, 2, 3, 5, 7, /**/ 6, 2, 7, 5, 5, 4,
+      7, 3, 3, 1, 7, 6;
+  const CurveDescription inside = line({-0.1, 0, 0}, {0.1, 0, 0});
+  const auto ask = [&](bool solid, Eigen::Index triangles) {
+    ShapeDescription shape = cube;
+    shape.solid = solid;
+    shape.triangles.conservativeResize(3, triangles);
+    Scene scene;
+    EXPECT_TRUE(scene.apply(change({add("cube", {shape})})).empty());
+    return askOne(scene, {}, inside, Question());
+  };
+  EXPECT_NEAR(ask(false, 12).result.upper, 0.9, 1e-6);
+  expectContains(ask(false, 12).message, "surface alone");
+  EXPECT_EQ(ask(true, 12).result.upper, 0.0);
+  expectContains(ask(true, 12).message, "closed mesh: its inside counts");
+  EXPECT_NEAR(ask(true, 11).result.upper, 0.9, 1e-6);
+  expectContains(ask(true, 11).message, "not closed");
 }
 
 TEST(Ask, with_nothing_to_measure_everything_is_far) {

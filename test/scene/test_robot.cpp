@@ -55,7 +55,7 @@ TEST(Robots, the_panda_is_there_with_all_its_links) {
   EXPECT_EQ(panda->rootLink(), "panda_link0");
   EXPECT_EQ(elements(*panda), 11u);
   for (const auto &[name, geometries] : panda->links()) {
-    for (const LinkGeometry &g : geometries) EXPECT_TRUE(g.geometry.by_hull) << name;
+    for (const LinkGeometry &g : geometries) EXPECT_TRUE(g.geometry.is_mesh) << name;
   }
   EXPECT_TRUE(panda->links().at("panda_link8").empty());
   EXPECT_TRUE(panda->warnings().empty());
@@ -74,7 +74,7 @@ TEST(Robots, the_husky_is_there_with_both_boxes_of_its_base) {
   ASSERT_EQ(base.size(), 2u);
   EXPECT_EQ(base[0].description.type, ShapeType::BOX);
   EXPECT_EQ(base[1].pose.translation().z(), 0.17562499999999998);
-  EXPECT_FALSE(base[0].geometry.by_hull);
+  EXPECT_FALSE(base[0].geometry.is_mesh);
 }
 
 /* Tolerance: the URDF's quarter turns are written to 5e-12; eight of them over less than 1.5 m. */
