@@ -170,14 +170,27 @@ joint_trajectory:
         self.assertEqual(answer.code, 0)
         self.assertIn("'leg'", answer.err)
 
+    def meshes_are_never_nearer_than_their_hulls(self):
+        with open(DATA + '/reference/expected_hull_model.json') as text:
+            cases = json.load(text)['cases']
+        for case in cases[1::8]:
+            answer = cprox('distance', '--robot', f"{DATA}/{case['robot']}", '--scene', f"{DATA}/{case['scene']}", '--trajectory',
+                           f"{DATA}/trajectories/{os.path.basename(case['trajectory'])}")
+            expected = [result for result in case['results'] if result['kind'] == 'environment'][0]
+            row = answer.rows[0]
+            with self.subTest(trajectory=case['trajectory']):
+                self.assertEqual(row['status'], 'ok', answer.err)
+                self.assertGreaterEqual(float(row['upper']), expected['lower'] - 5e-9)
+
     def reference_answers_overlap(self):
-        """Robots, scenes and splines of test/data against certified answers of another program, at 1e-6; what was sampled is never
+        """Robots, scenes and splines of test/data, meshes by their hulls, against certified answers of another program, at 1e-6; what was sampled is never
         below our lower bound (5e-9: the digits of the file)."""
         with open(DATA + '/reference/expected_hull_model.json') as text:
             cases = json.load(text)['cases']
         self.assertEqual(len(cases), 23)
         for case in cases:
             words = ['distance', '--robot', f"{DATA}/{case['robot']}", '--scene', f"{DATA}/{case['scene']}", '--self', '--epsilon', '1e-6',
+                     '--max-rung', 'hull',
                      '--trajectory', f"{DATA}/trajectories/{os.path.basename(case['trajectory'])}"]
             if case.get('srdf'):
                 words += ['--srdf', f"{DATA}/{case['srdf']}"]
