@@ -276,7 +276,7 @@ int main(int argc, char **argv) {
     setenv("ROS_HOSTNAME", "localhost", 1);
     const Program master({"rosmaster", "--core", "-p", port});
     ros::init(argc, argv, "bench_ros", ros::init_options::NoRosout);
-    if (ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Warn))
+    if (ros::console::set_logger_level(ROSCONSOLE_ROOT_LOGGER_NAME, ros::console::levels::Warn))
       ros::console::notifyLoggerLevelsChanged(); // standard output belongs to the rows
     waitFor("the master", [] { return ros::master::check(); });
     measure(quick, calls);
