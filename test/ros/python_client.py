@@ -52,7 +52,7 @@ class PythonClient(unittest.TestCase):
     def test_what_is_refused_is_an_exception_with_the_nodes_sentence(self):
         for work, word in ((lambda: self.client.distance(bezier([(0, 0, 0)])), 'curve 0'),
                            (lambda: self.client.add(sphere('bad', -1.0)), "object 'bad'"),
-                           (lambda: self.client.constraint('nobody', 'ball', curve=LINE), "'nobody'"),
+                           (lambda: self.client.constraint('nobody', sphere('', 0.1), curve=LINE), "'nobody'"),
                            (lambda: bspline([(0, 0, 0)]), 'needs 4 points'),
                            (lambda: Client('/nowhere', patience=0.3).clear(), '/nowhere/apply_scene')):
             with self.assertRaises(Failure) as caught:
