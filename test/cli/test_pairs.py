@@ -65,11 +65,11 @@ class Pairs(Case):
         self.assertEqual(row['rung'], 'hull')
         self.assertLess(float(row['upper']), -0.3)
 
-    def clouds_and_octrees_are_bodies_and_meshes_against_meshes_are_refused(self):
+    def clouds_octrees_and_meshes_are_bodies_also_against_each_other(self):
         cloud = '{type: points, dimensions: [0.5], vertices: [[3, 0, 0], [0, 9, 0]]}'
         self.assertAnswer(self.pairs(pair('c', cloud, UNIT_BALL)).row('c'), 1.5)
-        mesh = '{type: mesh, mesh: {vertices: [[2, 0, 0], [3, 1, 0], [3, 0, 1]], triangles: [[0, 1, 2]]}}'
-        self.assertFailedRow(self.pairs(pair('mm', mesh, mesh)), 'mm', 'mesh')
+        mesh = 'type: mesh, mesh: {vertices: [[2, 0, 0], [3, 1, 0], [3, 0, 1]], triangles: [[0, 1, 2]]}'
+        self.assertAnswer(self.pairs(pair('mm', f'{{{mesh}}}', f'{{{mesh}, {at(-4)}}}')).row('mm'), 9.5 ** 0.5)  # a corner and the far edge
         self.assertFailedRow(self.pairs(pair('o', '{type: octree, resource: none.bt}', UNIT_BALL)), 'o', 'octree', 'none.bt')
 
     def witness_a_lies_on_a_and_b_on_b(self):
