@@ -25,7 +25,7 @@ def write_all(rows, drawn, out, made):
     """The pages for which all groups were run; their names."""
     figures = Figures(rows)
     groups = {row['group'] for row in rows}
-    pages = {'README.md': lambda: readme.page(figures, drawn, made), 'seeds.md': lambda: seeds.page(figures),
+    pages = {'README.md': lambda: readme.page(figures, drawn, made, out), 'seeds.md': lambda: seeds.page(figures),
              'stability.md': lambda: stability.page(figures),
              'choosing.md': lambda: choosing.page(figures)}
     written = []

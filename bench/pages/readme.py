@@ -13,13 +13,14 @@ CHARTS = [
     ('work_precision_*', 'time against the accuracy asked: a point, a polygon, a polytope, another curve'),
     ('distance_by_order', 'the same questions over orders 5, 15, 45'),
     ('tolerance', 'verdicts over delta, as a fraction of the distance'),
+    ('splines_*', 'long B-splines: time against the number of segments'),
+    ('trigonometric', 'series that are compiled once, distance and tolerance'),
+    ('peers_*', 'curves and paths beside OpenCASCADE, SISL, FCL and Bullet, those that are installed'),
     ('seeds_*', 'figures of the first paper, drawn again'),
     ('batches', 'a thousand quintics against 2, 50 and 100 obstacles, beside sampling by FCL'),
     ('robots_*', 'arms along joint splines, against the scene and themselves, beside the bound by both ends of an interval'),
     ('worlds_*', 'meshes, point clouds, octree leaves, sets of bodies, beside FCL'),
     ('fourier_*', 'over-reach of gap functions by kernel and n, an SE(2) obstacle, convergence, boxes, nesting'),
-    ('providers_*', 'constraint providers beside the core calls that they wrap'),
-    ('ros_*', 'what the service and the nodelet add'),
 ]
 
 
@@ -72,7 +73,27 @@ def loss_lines(rows):
         yield f'- {group}, {workload}: **{method}** takes {short(ratio)} of our time. {reason_for(name, known)}'
 
 
-def page(figures, drawn, made):
+def rungs(out):
+    """What each model of a body settled, from what bench/rungs.py left in the folder."""
+    path = os.path.join(out, 'rungs.csv')
+    if not os.path.exists(path):
+        return ''
+    with open(path, newline='') as text:
+        lines = list(csv.DictReader(text))
+    kinds = ('sphere', 'hull', 'mesh')
+    body = [[line['scene'], line['verb'], *(cell for kind in kinds for cell in
+             (f"{100.0 * float(line[kind + '_share']):.0f} %", f"{line[kind + '_median_us']} µs" if line[kind + '_median_us'] else ''))]
+            for line in lines]
+    return f'''
+## What each model settles
+Curves through scenes, an answer for each object and link (`bench/rungs.py`): the share of the answers that each rung of a body's ladder gave, and the
+median of what they cost. A distance to 1e-6 is the mesh's own wherever the nearest body is one; verdicts seldom need it.
+
+{table(['scene', 'verb', *(word for kind in kinds for word in (kind, 'cost'))], body)}
+'''
+
+
+def page(figures, drawn, made, out):
     chart_lines = [[f'`{pattern}`', text] for pattern, text in CHARTS if any(fnmatch.fnmatchcase(name, pattern) for name in drawn)]
     return f'''# Charts
 
@@ -92,7 +113,7 @@ Trust ratios and counts, not microseconds. `results.csv` has every row. [choosin
 Time against size: the exponent of a power, fitted by least squares to the logarithms.
 
 {table(['group', 'workload', 'method', 'sizes', 'exponent'], list(growth_lines(figures.rows)))}
-
+{rungs(out)}
 ## Where we lose
 {chr(10).join(loss_lines(figures.rows)) or 'Nowhere in this run.'}
 '''
