@@ -405,7 +405,7 @@ static int split(void *self, search_node *node, search_node *child) {
   }
   /* the half that is nearer to the best point comes last: the engine takes the last of equals first */
   const double t = o->found ? curve_side_parameter(&o->side, o->best.piece, o->best.s) : -INFINITY;
-  const double middle = curve_side_start(&o->side, &half[1]);
+  const double middle = curve_side_is_empty(&o->side, &half[1]) ? INFINITY : curve_side_start(&o->side, &half[1]);
   const int first = t < middle ? 1 : 0;
   int children = 0;
   for (int k = 0; k < 2; k++) {
