@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/counting.h"
 #include "support/random.h"
 #include "support/reference.h"
@@ -25,20 +26,6 @@ typedef struct world {
   cprox_target target[MOST_TARGETS];
   cprox_mover mover;
 } world;
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 /* Cubes anywhere about a random curve of degree 1 to 7. */
 static world world_make(rng *r) {
@@ -263,5 +250,5 @@ int main(void) {
       cmocka_unit_test(with_no_targets_everything_is_infinitely_far),
       cmocka_unit_test(nothing_is_allocated_once_the_workspace_has_grown),
   };
-  return cmocka_run_group_tests_name("clearance", tests, setup, teardown);
+  return cmocka_run_group_tests_name("clearance", tests, workspace_setup, workspace_teardown);
 }

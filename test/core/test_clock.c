@@ -11,27 +11,14 @@
 #include "base/rounding.h"
 #include "curve_proximity/cprox.h"
 #include "query/relative.h"
+#include "support/builders.h"
 #include "support/counting.h"
 #include "support/curves.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
 
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
-
-static cprox_curve *bezier(const vec3 *points, size_t n, double t0, double t1) {
+static cprox_curve *bezier_on(const vec3 *points, size_t n, double t0, double t1) {
   cprox_curve *curve = NULL;
   if (cprox_curve_create_bezier(points, n, t0, t1, ws, &curve) != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
   return curve;
@@ -63,7 +50,7 @@ static void points_on_one_clock_are_as_near_as_long_double_says(void **state) {
       near_q[i] = vec_sub(q[i], p[0]);
     }
     const double t0 = rng_index(&r, 2) ? 0.0 : 1e9, t1 = t0 + rng_uniform(&r, 0.5, 20.0);
-    cprox_curve *first = bezier(p, m + 1, t0, t1), *second = bezier(q, n + 1, t0, t1);
+    cprox_curve *first = bezier_on(p, m + 1, t0, t1), *second = bezier_on(q, n + 1, t0, t1);
     cprox_mover mover = cprox_point_along(first), other = cprox_point_along(second);
     mover.radius = rng_index(&r, 2) ? 0.0 : 0.1 * scale;
     other.radius = rng_index(&r, 2) ? 0.0 : 0.1 * scale;
@@ -101,7 +88,7 @@ static void the_relative_curve_is_within_its_error(void **state) {
     vec3 p[16], q[16];
     const size_t m = 1 + rng_index(&r, 15), n = 1 + rng_index(&r, 15);
     for (int i = 0; i < 16; i++) p[i] = rng_in_cube(&r, 1.0), q[i] = rng_in_cube(&r, 1.0);
-    cprox_curve *first = bezier(p, m + 1, 0.0, 1.0), *second = bezier(q, n + 1, 0.0, 1.0);
+    cprox_curve *first = bezier_on(p, m + 1, 0.0, 1.0), *second = bezier_on(q, n + 1, 0.0, 1.0);
     cprox_pose pose = rng_pose(&r, rng_index(&r, 2) ? 0.0 : 1.0);
     if (rng_index(&r, 2)) pose.orientation = (cprox_quat){1, 0, 0, 0};
     const double a = rng_index(&r, 2) ? 0.0 : rng_uniform(&r, 0.0, 0.9);
@@ -199,8 +186,8 @@ static void splines_that_carry_bodies_agree_with_static_pairs(void **state) {
 
 static void two_that_cross_at_different_times_do_not_meet(void **state) {
   (void)state;
-  cprox_curve *first = bezier((vec3[]){{-1, 0, 0}, {1, 0, 0}}, 2, 0.0, 1.0);
-  cprox_curve *second = bezier((vec3[]){{0, -1, 0}, {0, 3, 0}}, 2, 0.0, 1.0);
+  cprox_curve *first = bezier_on((vec3[]){{-1, 0, 0}, {1, 0, 0}}, 2, 0.0, 1.0);
+  cprox_curve *second = bezier_on((vec3[]){{0, -1, 0}, {0, 3, 0}}, 2, 0.0, 1.0);
   cprox_result result;
   assert_int_equal(cprox_distance(cprox_point_along(first), cprox_curve_target(second, 0.0), NULL, ws, &result),
                    CPROX_OK);
@@ -228,8 +215,8 @@ static void one_and_the_same_mover_is_at_distance_0(void **state) {
 
 static void different_domains_are_refused(void **state) {
   (void)state;
-  cprox_curve *first = bezier((vec3[]){{-1, 0, 0}, {1, 0, 0}}, 2, 0.0, 1.0);
-  cprox_curve *second = bezier((vec3[]){{0, -1, 0}, {0, 3, 0}}, 2, 0.0, 1.5);
+  cprox_curve *first = bezier_on((vec3[]){{-1, 0, 0}, {1, 0, 0}}, 2, 0.0, 1.0);
+  cprox_curve *second = bezier_on((vec3[]){{0, -1, 0}, {0, 3, 0}}, 2, 0.0, 1.5);
   cprox_result result = {.lower = -7.0};
   assert_int_equal(
       cprox_distance(cprox_point_along(first), cprox_on_clock(cprox_point_along(second)), NULL, ws, &result),
@@ -281,5 +268,5 @@ int main(void) {
       cmocka_unit_test(different_domains_are_refused),
       cmocka_unit_test(clocks_stand_among_other_targets_and_allocate_once),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

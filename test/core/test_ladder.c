@@ -10,21 +10,8 @@
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/meshes.h"
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 /* ---- builders --------------------------------------------------------------------------------------------------------- */
 
@@ -45,12 +32,6 @@ static void ladder_free(test_ladder *l) {
   cprox_body_free(l->body);
   cprox_body_free(l->mesh);
   cprox_body_free(l->hull);
-}
-
-static cprox_curve *bezier(const vec3 *points, size_t n) {
-  cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve), CPROX_OK);
-  return curve;
 }
 
 static cprox_curve *random_curve(rng *r, double reach) {
@@ -395,5 +376,5 @@ int main(void) {
       cmocka_unit_test(pairs_climb_too),
       cmocka_unit_test(bad_input_is_refused_with_a_sentence),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

@@ -11,22 +11,9 @@
 
 #include "body/body.h"
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/counting.h"
 #include "support/meshes.h"
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 /* ---- builders --------------------------------------------------------------------------------------------------------- */
 
@@ -42,12 +29,6 @@ static test_bezier bezier_make(const vec3 *points, size_t degree) {
   if (cprox_curve_create_bezier(b.points, degree + 1, 0.0, 1.0, ws, &b.curve) != CPROX_OK)
     fail_msg("%s", cprox_workspace_reason(ws));
   return b;
-}
-
-static cprox_options accurate(double epsilon) {
-  cprox_options options = cprox_options_default();
-  options.epsilon = epsilon;
-  return options;
 }
 
 /* Of the curve's point at t from the posed mesh, exactly but for long double. */
@@ -425,5 +406,5 @@ int main(void) {
       cmocka_unit_test(bad_input_is_refused_with_a_sentence),
       cmocka_unit_test(queries_do_not_allocate_once_the_workspace_has_grown),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

@@ -12,28 +12,8 @@
 
 #include "base/frame.h"
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/meshes.h"
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
-
-static cprox_curve *bezier(const vec3 *points, size_t n) {
-  cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
-  return curve;
-}
 
 /* The distance at epsilon, which must hold `truth` (itself within `doubt`) and take at most so many intervals; converged, unless the
  * budget is what is asked about. */
@@ -284,5 +264,5 @@ int main(void) {
       cmocka_unit_test(tiny_epsilons_end_with_the_narrowest_interval),
       cmocka_unit_test(a_budget_is_kept),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

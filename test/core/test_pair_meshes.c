@@ -10,21 +10,8 @@
 
 #include "base/frame.h"
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/meshes.h"
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 /* The least of all pairs of triangles, each by its own pair of polytopes. */
 static double by_triangles(const test_mesh *a, const cprox_pose *at, const test_mesh *b, const cprox_pose *there,
@@ -150,5 +137,5 @@ int main(void) {
       cmocka_unit_test(large_meshes_clouds_and_boxes_too),
       cmocka_unit_test(one_inside_a_solid_overlaps_it),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

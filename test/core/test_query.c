@@ -11,31 +11,11 @@
 
 #include "base/vec.h"
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/counting.h"
 #include "support/random.h"
 
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
-
 /* ---- builders ---------------------------------------------------------------------------------------------------------- */
-
-static cprox_curve *bezier(const vec3 *points, size_t n) {
-  cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
-  return curve;
-}
 
 static cprox_curve *segment(vec3 a, vec3 b) {
   return bezier((vec3[]){a, b}, 2);
@@ -60,12 +40,6 @@ static cprox_body *sphere(double radius) {
 
 static cprox_target at(const cprox_body *body, double x, double y, double z) {
   return cprox_at(body, (cprox_pose){.position = {x, y, z}, .orientation = {1, 0, 0, 0}});
-}
-
-static cprox_options accurate(double epsilon) {
-  cprox_options options = cprox_options_default();
-  options.epsilon = epsilon;
-  return options;
 }
 
 static void assert_contains(const cprox_result *r, double truth, double doubt) {
@@ -562,5 +536,5 @@ int main(void) {
       cmocka_unit_test(a_failed_allocation_is_a_status_and_the_next_query_answers),
       cmocka_unit_test(medians_stay_within_6_nodes_and_10_probes),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

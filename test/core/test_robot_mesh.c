@@ -11,23 +11,10 @@
 #include <time.h>
 
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/meshes.h"
 #include "support/robot_case.h"
 #include "support/robots.h"
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 enum { POINTS = 4, SAMPLES = 40 };
 
@@ -288,5 +275,5 @@ int main(void) {
       cmocka_unit_test(the_highest_rung_may_be_the_hull_or_the_ball),
       cmocka_unit_test(meshes_of_real_robots_are_no_nearer_than_their_hulls),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

@@ -9,22 +9,9 @@
 #include <cmocka.h>
 
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/robot_case.h"
 #include "support/robots.h"
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 enum { CASES = 4, MOST_PAIRS = 700 };
 
@@ -127,5 +114,5 @@ int main(void) {
       cmocka_unit_test(a_range_holds_all_values_and_is_reached),
       cmocka_unit_test(what_is_no_question_about_pairs_gets_a_sentence),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

@@ -13,23 +13,10 @@
 
 #include "body/body.h"
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/counting.h"
 #include "support/robot_case.h"
 #include "support/robots.h"
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 static int ascending(const void *a, const void *b) {
   const double x = *(const double *)a, y = *(const double *)b;
@@ -389,5 +376,5 @@ int main(void) {
       cmocka_unit_test(a_profile_is_true_on_every_stretch),
       cmocka_unit_test(bad_input_gets_a_sentence),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

@@ -10,22 +10,9 @@
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
+#include "support/builders.h"
 #include "support/counting.h"
 #include "support/meshes.h"
-
-static cprox_workspace *ws;
-
-static int setup(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : 1;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 /* ---- scenes ----------------------------------------------------------------------------------------------------------- */
 
@@ -258,5 +245,5 @@ int main(void) {
       cmocka_unit_test(queries_do_not_allocate_once_the_workspace_has_grown),
       cmocka_unit_test(bad_input_is_refused_and_nothing_is_far),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }
