@@ -8,7 +8,7 @@ import rospy
 from curve_proximity.msg import ConstraintQuery
 from curve_proximity.srv import EvaluateConstraints
 from geometry_msgs.msg import Pose
-from helpers import Node, Server, bezier, body, box, mesh, plane, pose, run, sphere, thing
+from helpers import Node, Server, bezier, body, box, mesh, plane, pose, refusal, run, sphere, thing
 
 CURVES = 'curve_proximity/CurveDistance'
 
@@ -173,15 +173,7 @@ class Constraints(unittest.TestCase):
 
 class WrongProviders(unittest.TestCase):
     def stopped(self, providers):
-        node = Node('wrong_providers', constraint_providers=providers)
-        try:
-            code = node.wait(20)
-            output = node.output()
-        finally:
-            node.end()
-        self.assertNotIn(code, (None, 0), output)
-        self.assertGreater(code, 0, 'the node died of a signal: ' + output)
-        return output
+        return refusal(self, 'wrong_providers', constraint_providers=providers)
 
     def test_each_stops_the_node_which_names_the_parameter(self):
         gap = 'curve_proximity/FourierGap'

@@ -234,3 +234,16 @@ class Call(threading.Thread):
         except Exception as failure:
             self.failure = failure
         self.ended = time.monotonic()
+
+
+def refusal(test, name, **parameters):
+    """What a node said that ended by itself, with a failure, since it could not use these parameters."""
+    node = Node(name, **parameters)
+    try:
+        code = node.wait(20)
+        output = node.output()
+    finally:
+        node.end()
+    test.assertNotIn(code, (None, 0), output)
+    test.assertGreater(code, 0, 'the node died of a signal: ' + output)
+    return output

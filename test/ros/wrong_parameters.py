@@ -6,7 +6,7 @@ import tempfile
 import unittest
 
 import rospy
-from helpers import Node, Server, run
+from helpers import Node, Server, refusal, run
 
 ARM = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'data', 'arm.urdf')
 
@@ -17,16 +17,7 @@ class WrongParameters(unittest.TestCase):
             rospy.delete_param('/robot_description')
 
     def stopped(self, **parameters):
-        """What the node said before it ended with a failure."""
-        node = Node('wrong', **parameters)
-        try:
-            code = node.wait(15)
-            output = node.output()
-        finally:
-            node.end()
-        self.assertNotIn(code, (None, 0), output)
-        self.assertGreater(code, 0, 'the node died of a signal: ' + output)
-        return output
+        return refusal(self, 'wrong', **parameters)
 
     def test_each_wrong_type_and_value_is_told_by_name(self):
         cases = [('epsilon', 'small'), ('epsilon', 0.0), ('epsilon', -1e-6), ('epsilon', float('nan')), ('tf_timeout', -1.0),
