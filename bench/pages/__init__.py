@@ -3,7 +3,7 @@
 import os
 import subprocess
 
-from pages import choosing, readme, seeds, stability
+from pages import choosing, hulls, readme, seeds, stability
 from pages.figures import Figures
 
 NEEDS = {'stability.md': {'stability'}, 'seeds.md': {'seeds', 'batches', 'implicit'}, 'choosing.md': {'curves', 'batches', 'robots', 'implicit'}}
@@ -28,6 +28,8 @@ def write_all(rows, drawn, out, made):
     pages = {'README.md': lambda: readme.page(figures, drawn, made, out), 'seeds.md': lambda: seeds.page(figures),
              'stability.md': lambda: stability.page(figures),
              'choosing.md': lambda: choosing.page(figures)}
+    if hulls.read(out):
+        pages['hulls.md'] = lambda: hulls.page(out)
     written = []
     for name, write in pages.items():
         if NEEDS.get(name, set()) <= groups:

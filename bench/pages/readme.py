@@ -100,7 +100,8 @@ def page(figures, drawn, made, out):
 {made}
 
 Trust ratios and counts, not microseconds. `results.csv` has every row. [choosing.md](choosing.md) says what follows from them for a planner,
-[seeds.md](seeds.md) has the papers' own tables, [stability.md](stability.md) hard inputs: right, wrong, given up.
+[seeds.md](seeds.md) has the papers' own tables, [stability.md](stability.md) hard inputs: right, wrong, given up,
+[hulls.md](hulls.md) robots' meshes beside their hulls.
 
 {table(['chart', 'shows'], chart_lines)}
 
