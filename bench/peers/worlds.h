@@ -24,6 +24,9 @@ void world_peer_free(world_peer *w);
 /* The least distance of a Bézier curve's points at n parameters; of one point where n is 1. */
 double world_peer_distance(const world_peer *w, const cprox_vec3 *points, size_t n_points, size_t n);
 
+/* The distance of a ball, asked as a ball: FCL's boxes go round it. */
+double world_peer_ball(const world_peer *w, cprox_vec3 centre, double radius);
+
 /* Whether a ball at one of them touches. */
 bool world_peer_collides(const world_peer *w, const cprox_vec3 *points, size_t n_points, double radius, size_t n);
 

@@ -84,6 +84,14 @@ double world_peer_distance(const world_peer *w, const cprox_vec3 *points, size_t
   return least;
 }
 
+double world_peer_ball(const world_peer *w, cprox_vec3 centre, double radius) {
+  fcl::CollisionObjectd ball(std::make_shared<fcl::Sphered>(radius));
+  ball.setTransform(at(&centre, 1, 0, 1));
+  fcl::DistanceRequestd request;
+  fcl::DistanceResultd result;
+  return fcl::distance(w->object.get(), &ball, request, result);
+}
+
 bool world_peer_collides(const world_peer *w, const cprox_vec3 *points, size_t n_points, double radius, size_t n) {
   fcl::CollisionObjectd ball(std::make_shared<fcl::Sphered>(radius));
   for (size_t i = 0; i < n; i++) {
