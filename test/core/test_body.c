@@ -11,23 +11,10 @@
 #include "base/rounding.h"
 #include "body/body.h"
 #include "curve_proximity/cprox/query.h"
+#include "support/builders.h"
 #include "support/counting.h"
 #include "support/random.h"
 #include "support/reference.h"
-
-static cprox_workspace *ws;
-
-static int open_workspace(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : -1;
-}
-
-static int close_workspace(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 /* The call fails with exactly these words, leaves the handle alone and keeps no memory. */
 #define REFUSED(call, words)                                              \
@@ -362,5 +349,5 @@ int main(void) {
       cmocka_unit_test(the_nearest_point_of_a_compound_is_that_of_its_nearest_part),
       cmocka_unit_test(a_halfspace_has_no_end),
   };
-  return cmocka_run_group_tests(tests, open_workspace, close_workspace);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

@@ -11,22 +11,9 @@
 #include <cmocka.h>
 
 #include "fourier/gap.h"
+#include "support/builders.h"
 #include "support/csv.h"
 #include "support/random.h"
-
-static cprox_workspace *ws;
-
-static int open_workspace(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : -1;
-}
-
-static int close_workspace(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 #define MADE(call) assert_int_equal(call, CPROX_OK)
 
@@ -433,5 +420,5 @@ int main(void) {
       cmocka_unit_test(delta_chooses_no_more_than_is_needed),
       cmocka_unit_test(a_small_body_beside_a_large_one_is_seen_coarsely),
   };
-  return cmocka_run_group_tests(tests, open_workspace, close_workspace);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

@@ -9,22 +9,9 @@
 #include <cmocka.h>
 
 #include "fourier/gap.h"
+#include "support/builders.h"
 #include "support/counting.h"
 #include "support/random.h"
-
-static cprox_workspace *ws;
-
-static int open_workspace(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : -1;
-}
-
-static int close_workspace(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 #define MADE(call) assert_int_equal(call, CPROX_OK)
 
@@ -536,5 +523,5 @@ int main(void) {
       cmocka_unit_test(along_a_curve_the_verdict_holds_at_every_parameter),
       cmocka_unit_test(gaps_survive_every_failed_allocation),
   };
-  return cmocka_run_group_tests(tests, open_workspace, close_workspace);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

@@ -10,21 +10,8 @@
 #include <cmocka.h>
 
 #include "fourier/gap.h"
+#include "support/builders.h"
 #include "support/csv.h"
-
-static cprox_workspace *ws;
-
-static int open_workspace(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : -1;
-}
-
-static int close_workspace(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 static bool is(const csv_row *row, size_t field, const char *text) {
   return field < row->n && strcmp(row->field[field], text) == 0;
@@ -248,5 +235,5 @@ int main(void) {
       cmocka_unit_test(gaps_in_the_plane_agree_with_the_reference_in_either_role),
       cmocka_unit_test(gaps_in_space_agree_with_the_reference_in_either_role),
   };
-  return cmocka_run_group_tests(tests, open_workspace, close_workspace);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

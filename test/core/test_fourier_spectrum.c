@@ -11,22 +11,9 @@
 
 #include "fourier/gap.h"
 #include "fourier/grid.h"
+#include "support/builders.h"
 #include "support/counting.h"
 #include "support/random.h"
-
-static cprox_workspace *ws;
-
-static int open_workspace(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : -1;
-}
-
-static int close_workspace(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 #define MADE(call) assert_int_equal(call, CPROX_OK)
 
@@ -427,5 +414,5 @@ int main(void) {
       cmocka_unit_test(bad_solids_are_refused_in_words),
       cmocka_unit_test(solids_survive_every_failed_allocation),
   };
-  return cmocka_run_group_tests(tests, open_workspace, close_workspace);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

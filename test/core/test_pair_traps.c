@@ -10,24 +10,11 @@
 #include "base/rounding.h"
 #include "body/body.h"
 #include "curve_proximity/cprox/query.h"
+#include "support/builders.h"
 #include "support/counting.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
-
-static cprox_workspace *ws;
-
-static int open_workspace(void **state) {
-  (void)state;
-  ws = cprox_workspace_create();
-  return ws ? 0 : -1;
-}
-
-static int close_workspace(void **state) {
-  (void)state;
-  cprox_workspace_free(ws);
-  return 0;
-}
 
 static cprox_pose at(double x, double y, double z) {
   return (cprox_pose){.position = {x, y, z}, .orientation = {1, 0, 0, 0}};
@@ -372,5 +359,5 @@ int main(void) {
       cmocka_unit_test(a_callback_that_breaks_its_promise_is_caught),
       cmocka_unit_test(unusable_arguments_are_refused_in_words),
   };
-  return cmocka_run_group_tests(tests, open_workspace, close_workspace);
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }
