@@ -5,29 +5,38 @@ import argparse
 import csv
 import glob
 import os
+import shutil
 import subprocess
 import sys
+import time
 
 import charts
 import pages
+import repeat
 import soundness
 import targets
 
+HERE = os.path.dirname(os.path.abspath(__file__))
+
 PREFIX = 'curve_proximity_bench_'
 NOT_GROUPS = {'core'}  # Google benchmark's: no rows of results.csv
+SCRIPTS = {'rungs': 'rungs.py'}  # groups that ask the command line, where there is one
 MADE = 'made.txt'  # how the results came to be
 COLUMNS = ['group', 'workload', 'method', 'parameter', 'median_us', 'p95_us', 'nodes', 'probes', 'error', 'unsound', 'failures']
 
 
 def programs(folders):
-    """The groups that were built: name and program."""
-    found = {os.path.basename(path)[len(PREFIX):]: path for folder in folders for path in glob.glob(os.path.join(folder, PREFIX + '*'))}
-    return {name: path for name, path in sorted(found.items()) if name not in NOT_GROUPS and os.access(path, os.X_OK)}
+    """The groups that can be run: name and command."""
+    found = {os.path.basename(path)[len(PREFIX):]: [path] for folder in folders for path in glob.glob(os.path.join(folder, PREFIX + '*'))}
+    found = {name: command for name, command in found.items() if name not in NOT_GROUPS and os.access(command[0], os.X_OK)}
+    if shutil.which('cprox'):
+        found.update({name: [sys.executable, os.path.join(HERE, script)] for name, script in SCRIPTS.items()})
+    return dict(sorted(found.items()))
 
 
-def run_group(program, quick, out):
+def run_group(command, quick, out):
     """Runs one program; its rows go on to `out` as they come. Returns its exit code."""
-    process = subprocess.Popen([program] + (['--quick'] if quick else []), stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen(command + (['--quick'] if quick else []), stdout=subprocess.PIPE, text=True)
     for line in process.stdout:
         out.write(line)
         out.flush()
@@ -53,8 +62,10 @@ def measure(parser, arguments):
         out.write(','.join(COLUMNS) + '\n')
         for name in arguments.only or groups:
             print(f'{name} ...', file=sys.stderr)
+            begin = time.monotonic()
             if run_group(groups[name], arguments.quick, out) != 0:
                 failed.append(name)
+            print(f'{name}: {time.monotonic() - begin:.0f} s', file=sys.stderr)
     return failed
 
 
@@ -66,19 +77,28 @@ def main():
     parser.add_argument('--only', action='append', metavar='GROUP', help='this group only; may be given more than once')
     parser.add_argument('--pages', action='store_true', help='measure nothing: write the pages of DIR/results.csv again')
     parser.add_argument('--check', action='store_true', help='end with 1 where a target of bench/targets.csv is missed')
+    parser.add_argument('--compare', metavar='OTHER', help="measure nothing: hold DIR's ratios and counts against another run's, in DIR/repeat.md")
     arguments = parser.parse_args()
 
+    # Measure, unless an earlier run is to be looked at again.
     os.makedirs(arguments.out, exist_ok=True)
-    failed = [] if arguments.pages else measure(parser, arguments)
+    earlier = arguments.pages or arguments.compare
+    failed = [] if earlier else measure(parser, arguments)
     rows = read_results(os.path.join(arguments.out, 'results.csv'))
-    drawn = charts.draw_all(rows, arguments.out) if not arguments.pages else charts.present(arguments.out)
+    drawn = charts.present(arguments.out) if earlier else charts.draw_all(rows, arguments.out)
+
+    # Does another run say the same?
+    differing = 0
+    if arguments.compare:
+        differing = repeat.report(rows, read_results(os.path.join(arguments.compare, 'results.csv')), arguments.out)
+
     with open(os.path.join(arguments.out, MADE)) as text:
         written = pages.write_all(rows, drawn, arguments.out, text.read().strip())
     print(f"{len(rows)} rows in {arguments.out}/results.csv, {len(drawn)} charts and {', '.join(written)} beside it")
     for name in failed:
         print(f'FAILED: group {name} ended with an error')
     missed = targets.report(rows, arguments.only) + soundness.report() if arguments.check else 0
-    return 1 if failed or missed else 0
+    return 1 if failed or missed or differing else 0
 
 
 if __name__ == '__main__':

@@ -43,10 +43,14 @@ def geometric_mean(values):
     return math.exp(sum(map(math.log, values)) / len(values))
 
 
+def size_of(row):
+    """The first number in the parameter."""
+    return float(re.search(r'\d+(\.\d+)?', row['parameter']).group())
+
+
 def exponent(rows):
-    """The slope of log time against the log of the first number in the parameter, by least squares."""
-    points = [(math.log(float(re.search(r'\d+(\.\d+)?', row['parameter']).group())), math.log(float(row['median_us'])))
-              for row in rows]
+    """The slope of log time against the log of the size, by least squares."""
+    points = [(math.log(size_of(row)), math.log(float(row['median_us']))) for row in rows]
     mean_x, mean_y = (sum(c) / len(points) for c in zip(*points))
     return sum((x - mean_x) * (y - mean_y) for x, y in points) / sum((x - mean_x) ** 2 for x, _ in points)
 

@@ -295,6 +295,10 @@ def demo():
     return run_one([os.path.join(REPO, 'test/install/demo')], 'demo', count_lines)
 
 
+def bench_pages():
+    return run_one([os.path.join(REPO, 'test/bench/run_tests.py')], 'bench', count_lines)
+
+
 def on_debian_12():
     """The formatter's and the linter's verdict changes with their version: Debian 12's (14) is the one that holds."""
     with open('/etc/os-release') as text:
@@ -303,7 +307,7 @@ def on_debian_12():
 
 
 GROUPS = {
-    'layering': layering, 'headers': headers, 'lint': lint, 'format': formatting,
+    'layering': layering, 'headers': headers, 'lint': lint, 'format': formatting, 'bench': bench_pages,
     'core': core, 'tidy': tidy, 'sanitizers': sanitized, 'threads': threads,
     'scene': lambda: room('scene'), 'providers': lambda: room('providers'), 'cli': lambda: room('cli'), 'ros': lambda: room('ros'),
     'install': install, 'demo': demo,

@@ -4,6 +4,7 @@ import csv
 import fnmatch
 import os
 
+import repeat
 import targets
 from pages.figures import short, table
 
@@ -36,18 +37,34 @@ def reason_for(name, known):
 def target_lines(rows):
     for verdict, target, value in targets.judge_all(rows):
         shown = 'no rows' if value is None else f'{value:.3g}'
-        yield [verdict, target['name'], shown, targets.asked(target), target['kind'] + (f" to {target['baseline']}" if target['baseline'] else '')]
+        yield [verdict, target['name'], shown, repeat.spread_text(target), targets.asked(target), target['kind'] + (f" to {target['baseline']}" if target['baseline'] else '')]
+
+
+# What grows: group and workload (fnmatch), and what is fitted: time, or memory, whose rows count bytes, of all or of each element.
+GROWTH = [('implicit', 'figure 2*', 'time'), ('splines', 'B-spline * distance', 'time'), ('batches', 'boxes *', 'time'),
+          ('worlds', 'mesh distance', 'time'), ('worlds', 'set distance', 'time'), ('worlds', 'build mesh', 'time'),
+          ('worlds', 'build mesh', 'memory each'), ('worlds', 'build points', 'memory each'), ('*', 'growth*', 'time'),
+          ('*', 'memory*', 'memory')]
+
+
+def sized(row, what):
+    """The row with what is to be fitted in the place of its time; None where it has nothing of it."""
+    value = float((row['median_us'] if what == 'time' else row['nodes']) or 'nan')
+    if what == 'memory each':
+        value *= targets.size_of(row)
+    return dict(row, median_us=str(value)) if value > 0.0 else None
 
 
 def growth_lines(rows):
-    """Every workload whose parameters count something, three of them at least: its fitted exponent."""
-    found = {}
-    for row in rows:
-        if row['workload'].startswith(('growth', 'figure 2')):
-            found.setdefault((row['group'], row['workload'], row['method']), []).append(row)
-    for (group, workload, method), of in sorted(found.items()):
-        if len(of) >= 3:
-            yield [group, workload, method, ', '.join(row['parameter'] for row in of), f'{targets.exponent(of):.2f}']
+    """Every workload of the list whose parameters count something, three of them at least: its fitted exponent."""
+    for group, workload, what in GROWTH:
+        found = {}
+        for row in rows:
+            if fnmatch.fnmatchcase(row['group'], group) and fnmatch.fnmatchcase(row['workload'], workload) and sized(row, what):
+                found.setdefault((row['group'], row['workload'], row['method']), []).append(sized(row, what))
+        for (own, name, method), of in sorted(found.items()):
+            if len({targets.size_of(row) for row in of}) >= 3:
+                yield [own, name, method, what.split()[0], ', '.join(row['parameter'] for row in of), f'{targets.exponent(of):.2f}']
 
 
 def losses(rows):
@@ -93,6 +110,10 @@ median of what they cost. A distance to 1e-6 is the mesh's own wherever the near
 '''
 
 
+def second_run(out):
+    return f'[{repeat.PAGE}]({repeat.PAGE}) holds a second run against this one.' if os.path.exists(os.path.join(out, repeat.PAGE)) else ''
+
+
 def page(figures, drawn, made, out):
     chart_lines = [[f'`{pattern}`', text] for pattern, text in CHARTS if any(fnmatch.fnmatchcase(name, pattern) for name in drawn)]
     return f'''# Charts
@@ -106,14 +127,15 @@ Trust ratios and counts, not microseconds. `results.csv` has every row. [choosin
 {table(['chart', 'shows'], chart_lines)}
 
 ## Targets
-`bench/targets.csv`, held against this run; "within slack" is what two runs on the same machine may differ by.
+`bench/targets.csv`, held against this run; the spread is what two runs on the same machine may differ by, and what is missed by no more than that is
+"within slack". {second_run(out)}
 
-{table(['', 'target', 'figure', 'asked', 'kind'], list(target_lines(figures.rows)))}
+{table(['', 'target', 'figure', 'spread', 'asked', 'kind'], list(target_lines(figures.rows)))}
 
 ## Growth
-Time against size: the exponent of a power, fitted by least squares to the logarithms.
+Time or memory against size: the exponent of a power, fitted by least squares to the logarithms. 1 is in proportion, 0 is not at all.
 
-{table(['group', 'workload', 'method', 'sizes', 'exponent'], list(growth_lines(figures.rows)))}
+{table(['group', 'workload', 'method', 'of', 'sizes', 'exponent'], list(growth_lines(figures.rows)))}
 {rungs(out)}
 ## Where we lose
 {chr(10).join(loss_lines(figures.rows)) or 'Nowhere in this run.'}

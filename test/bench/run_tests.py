@@ -1,0 +1,141 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What scripts/bench says of its rows: targets, a second run, the record of soundness, the pages of the committed run."""
+import contextlib
+import csv
+import io
+import os
+import sys
+import tempfile
+import unittest
+
+REPO = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, os.path.join(REPO, 'bench'))
+
+import pages  # noqa: E402
+import repeat  # noqa: E402
+import soundness  # noqa: E402
+import targets  # noqa: E402
+from pages import readme  # noqa: E402
+
+CHARTS = os.path.join(REPO, 'doc', 'charts')
+
+
+def row(**given):
+    """A row of results.csv: ours, a microsecond, no errors."""
+    return {'group': 'g', 'workload': 'w', 'method': targets.OURS, 'parameter': 'p', 'median_us': '1', 'p95_us': '1', 'nodes': '2', 'probes': '3',
+            'error': '0', 'unsound': '0', 'failures': '0', **{key: str(value) for key, value in given.items()}}
+
+
+def target(**given):
+    return {'name': 'a target', 'group': 'g', 'workload': 'w', 'parameter': '*', 'kind': 'ratio', 'baseline': 'peer', 'limit': '2', 'slack': '', **given}
+
+
+def committed():
+    with open(os.path.join(CHARTS, 'results.csv'), newline='') as text:
+        return list(csv.DictReader(text))
+
+
+class Targets(unittest.TestCase):
+    def test_a_ratio_is_the_geometric_mean_of_theirs_over_ours(self):
+        rows = [row(), row(method='peer', median_us=2), row(parameter='q'), row(method='peer', parameter='q', median_us=8)]
+        self.assertAlmostEqual(targets.figure(rows, target()), 4.0)
+
+    def test_each_is_the_least_ratio(self):
+        rows = [row(), row(method='peer', median_us=2), row(parameter='q'), row(method='peer', parameter='q', median_us=8)]
+        self.assertAlmostEqual(targets.figure(rows, target(kind='each')), 2.0)
+
+    def test_an_exponent_is_fitted_to_the_first_number_of_the_parameter(self):
+        rows = [row(parameter=f'{n} links of 9', median_us=n ** 1.5) for n in (10, 100, 1000)]
+        self.assertAlmostEqual(targets.figure(rows, target(kind='exponent', baseline='')), 1.5)
+
+    def test_a_count_is_the_largest_and_a_failure_the_sum(self):
+        rows = [row(nodes=5, failures=1), row(parameter='q', nodes=7, failures=2), row(method='peer', nodes=99, failures=9)]
+        self.assertEqual(targets.figure(rows, target(kind='nodes', baseline='')), 7)
+        self.assertEqual(targets.figure(rows, target(kind='failures', baseline='')), 3)
+
+    def test_beyond_the_slack_is_missed(self):
+        for value, verdict in ((2.0, 'met'), (1.7, 'within slack'), (1.6, 'MISSED')):
+            self.assertEqual(targets.judge(value, target()), verdict)
+        self.assertEqual(targets.judge(1.0, target(kind='failures', limit='0')), 'MISSED')
+
+    def test_a_target_of_a_known_peer_that_is_not_here_is_not_measured_and_any_other_is_missed(self):
+        real = targets.read_targets
+        try:
+            targets.read_targets = lambda: [target(baseline='Bullet'), target(baseline='paper')]
+            self.assertEqual([verdict for verdict, _, _ in targets.judge_all([row()])], ['not measured', 'MISSED'])
+        finally:
+            targets.read_targets = real
+
+
+class Repeat(unittest.TestCase):
+    def test_ratios_agree_within_a_fifth_and_counts_exactly(self):
+        self.assertTrue(repeat.agree(10.0, 11.9, target()))
+        self.assertFalse(repeat.agree(10.0, 12.1, target()))
+        self.assertFalse(repeat.agree(12.1, 10.0, target()))
+        self.assertFalse(repeat.agree(7, 8, target(kind='nodes')))
+        self.assertTrue(repeat.agree(0.2, 0.29, target(kind='exponent')))
+
+    def test_a_run_agrees_with_itself_and_not_with_one_whose_peer_is_twice_as_slow(self):
+        rows = committed()
+        slow = [dict(r, median_us=str(2.0 * float(r['median_us']))) if r['method'] == 'paper' and r['median_us'] else r for r in rows]
+        with tempfile.TemporaryDirectory() as out, contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(repeat.report(rows, rows, out), 0)
+            self.assertGreater(repeat.report(rows, slow, out), 5)
+            with open(os.path.join(out, repeat.PAGE)) as text:
+                self.assertIn('**differs**', text.read())
+
+    def test_differences_are_those_of_the_ratios(self):
+        first = [row(), row(method='peer', median_us=2)]
+        second = [row(median_us=10), row(method='peer', median_us=30)]
+        self.assertAlmostEqual(repeat.differences(first, second)['g'][0], 0.5)
+
+
+class Soundness(unittest.TestCase):
+    def judged(self, **changed):
+        """The record of one campaign, held against what is asked of it."""
+        line = {'campaign': 'rounding: T2', 'seed': '1', 'cases': '100000', 'violations': '0', 'figure': '0.2 of the bound', 'commit': 'c', 'command': 'x',
+                **changed}
+        with tempfile.NamedTemporaryFile('w', suffix='.csv') as text:
+            writer = csv.DictWriter(text, line)
+            writer.writeheader()
+            writer.writerow(line)
+            text.flush()
+            return next(v for v, name, _ in soundness.judge_all(text.name) if name.endswith('rounding: T2'))
+
+    def test_a_violation_too_few_cases_or_a_padded_bound_is_missed(self):
+        self.assertEqual(self.judged(), 'met')
+        for bad in ({'violations': '1'}, {'cases': '99999'}, {'figure': '0.1 of the bound'}):
+            self.assertEqual(self.judged(**bad), 'MISSED')
+
+    def test_the_committed_record_has_every_campaign(self):
+        self.assertEqual([name for _, name, said in soundness.judge_all() if said == 'no record'], [])
+
+
+class Pages(unittest.TestCase):
+    def test_the_committed_run_gives_every_page_and_a_line_for_each_target(self):
+        with tempfile.TemporaryDirectory() as out:
+            written = pages.write_all(committed(), ['tolerance'], out, 'Made.')
+            self.assertEqual(sorted(written), ['README.md', 'choosing.md', 'seeds.md', 'stability.md'])
+            with open(os.path.join(out, 'README.md')) as text:
+                said = text.read()
+            for asked in targets.read_targets():
+                self.assertIn(f"| {asked['name']} |", said)
+
+    def test_growth_takes_what_is_named_so_from_three_sizes_up(self):
+        rows = [row(workload='growth links', parameter=f'links {n}', median_us=n * n) for n in (2, 4, 8)]
+        rows += [row(workload='memory mesh', parameter=f'triangles {n}', median_us='nan', nodes=100 * n) for n in (2, 4, 8)]
+        rows += [row(workload='growth few', parameter='1')]
+        self.assertEqual([(line[1], line[-1]) for line in readme.growth_lines(rows)], [('growth links', '2.00'), ('memory mesh', '1.00')])
+
+    def test_how_made_names_command_and_commit(self):
+        said = pages.how_made('scripts/bench', 'abc')
+        self.assertIn('scripts/bench', said)
+        self.assertIn('abc', said)
+
+
+if __name__ == '__main__':
+    ended = unittest.main(exit=False).result
+    failed = len(ended.failures) + len(ended.errors)
+    print(f'{ended.testsRun - failed} passed, {failed} failed')
+    sys.exit(failed > 0)
