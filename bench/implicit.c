@@ -265,8 +265,10 @@ static void hard(const bench_size *size, bench_state *s) {
       bench_method methods[6] = {
           {"naive", naive, s}, {"curve_proximity", hybrid, s}, {"interior_point", interior_point, s}};
       const size_t all = add_peers(methods, 3, s);
+      char parameter[48];
+      snprintf(parameter, sizeof parameter, "%s %zu cases", tags[k], n);
       const bench_workload w = {
-          .group = "implicit", .name = "hard families", .parameter = tags[k], .problems = problems, .n = n};
+          .group = "implicit", .name = "hard families", .parameter = parameter, .problems = problems, .n = n};
       bench_measure(&w, size, methods, all);
       free(s->memory);
     }

@@ -173,7 +173,9 @@ static void thin_obstacles(const robot_case *cases, size_t n_cases, const bench_
   }
   method_state certified = {.workspace = ws}, coarse = {.workspace = ws, .step = 0.05},
                fine = {.workspace = ws, .step = 0.01}, checked = {.workspace = ws, .step = 0.003};
-  const bench_workload w = {"robots", "thin obstacles", "wires pins plates", problems, n, NULL, 0.0};
+  char parameter[64];
+  snprintf(parameter, sizeof parameter, "wires pins plates %zu cases seed 77", n);
+  const bench_workload w = {"robots", "thin obstacles", parameter, problems, n, NULL, 0.0};
   const bench_method methods[] = {{"curve_proximity", ours_thin, &certified},
                                   {"curve_proximity checked", ours_thin, &checked},
                                   {"sampling .05", sampled_thin, &coarse},

@@ -1,16 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""How much each model of the scene's bodies settles, and what it costs: rungs.py [--curves N] [--cprox PROGRAM]
+"""The group `rungs`: how much each model of the scene's bodies settles, and what it costs: rungs.py [--quick] [--cprox PROGRAM]
 
-N random curves (seed 1) through each scene of test/data with its robot, one answer for each curve and object or link; a line a
-scene and verb: how many answers each rung gave, and the median of their times in microseconds. Kept as DIR/rungs.csv it becomes a table of
-the pages that `scripts/bench --pages --out DIR` writes.
+Random curves (seed 1) through each scene of test/data with its robot, one answer for each curve and object or link. A row a scene, verb and
+rung: `nodes` is the number of answers that the rung gave, `probes` that of all, the times are those of its answers.
 """
 import argparse
 import csv
 import os
 import random
-import statistics
 import subprocess
 import tempfile
 
@@ -30,25 +28,33 @@ def curves(n, source):
         yield ','.join([str(i), 'bezier', '5', '0', '1', '0.02', '6', *points])
 
 
+def answers_of(cprox, verb, rows, scene, robot):
+    """What the command line says of each curve and object or link, and how many of them failed."""
+    words = [cprox, *verb, '--per-object', '--curves', rows, '--scene', f'{DATA}/scenes/{scene}', '--robot', robot]
+    done = subprocess.run(words, stdout=subprocess.PIPE, check=True, text=True)
+    answers = list(csv.DictReader(done.stdout.splitlines()))
+    return answers, sum(row['status'] not in ('ok', 'undecided') for row in answers)
+
+
+def quantile(values, q):
+    return f'{sorted(values)[int(q * (len(values) - 1) + 0.5)]:.4g}' if values else ''
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
-    parser.add_argument('--curves', type=int, default=100)
+    parser.add_argument('--quick', action='store_true', help='fewer curves')
     parser.add_argument('--cprox', default='cprox')
     arguments = parser.parse_args()
-    print('scene,verb,' + ','.join(f'{rung}_answers,{rung}_share,{rung}_median_us' for rung in RUNGS))
     with tempfile.NamedTemporaryFile('w', suffix='.csv') as rows:
-        rows.write('\n'.join(curves(arguments.curves, random.Random(1))) + '\n')
+        rows.write('\n'.join(curves(20 if arguments.quick else 100, random.Random(1))) + '\n')
         rows.flush()
         for name, (scene, robot) in SCENES.items():
             for verb in VERBS:
-                words = [arguments.cprox, *verb, '--per-object', '--curves', rows.name, '--scene', f'{DATA}/scenes/{scene}']
-                done = subprocess.run(words + ['--robot', robot], stdout=subprocess.PIPE, check=True, text=True)
-                answers = list(csv.DictReader(done.stdout.splitlines()))
-                fields = [name, verb[0]]
+                answers, failed = answers_of(arguments.cprox, verb, rows.name, scene, robot)
                 for rung in RUNGS:
                     times = [float(row['microseconds']) for row in answers if row['rung'] == rung]
-                    fields += [str(len(times)), f'{len(times) / len(answers):.3f}', f'{statistics.median(times):.1f}' if times else '']
-                print(','.join(fields), flush=True)
+                    print(f'rungs,{name} {verb[0]},curve_proximity {rung},{rung},{quantile(times, 0.5)},{quantile(times, 0.95)},'
+                          f'{len(times)},{len(answers)},,0,{failed if rung == RUNGS[0] else 0}', flush=True)
 
 
 if __name__ == '__main__':

@@ -6,7 +6,7 @@ import os
 
 import repeat
 import targets
-from pages.figures import short, table
+from pages.figures import microseconds, short, table
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -90,17 +90,17 @@ def loss_lines(rows):
         yield f'- {group}, {workload}: **{method}** takes {short(ratio)} of our time. {reason_for(name, known)}'
 
 
-def rungs(out):
-    """What each model of a body settled, from what bench/rungs.py left in the folder."""
-    path = os.path.join(out, 'rungs.csv')
-    if not os.path.exists(path):
+def rungs(rows):
+    """What each model of a body settled."""
+    found = {}
+    for row in rows:
+        if row['group'] == 'rungs':
+            found.setdefault(row['workload'], {})[row['parameter']] = row
+    if not found:
         return ''
-    with open(path, newline='') as text:
-        lines = list(csv.DictReader(text))
     kinds = ('sphere', 'hull', 'mesh')
-    body = [[line['scene'], line['verb'], *(cell for kind in kinds for cell in
-             (f"{100.0 * float(line[kind + '_share']):.0f} %", f"{line[kind + '_median_us']} µs" if line[kind + '_median_us'] else ''))]
-            for line in lines]
+    body = [[*name.rsplit(' ', 1), *(cell for kind in kinds for cell in (f"{100.0 * float(of[kind]['nodes']) / float(of[kind]['probes']):.0f} %",
+             microseconds(float(of[kind]['median_us'])) if of[kind]['median_us'] else ''))] for name, of in found.items()]
     return f'''
 ## What each model settles
 Curves through scenes, an answer for each object and link (`bench/rungs.py`): the share of the answers that each rung of a body's ladder gave, and the
@@ -136,7 +136,7 @@ Trust ratios and counts, not microseconds. `results.csv` has every row. [choosin
 Time or memory against size: the exponent of a power, fitted by least squares to the logarithms. 1 is in proportion, 0 is not at all.
 
 {table(['group', 'workload', 'method', 'of', 'sizes', 'exponent'], list(growth_lines(figures.rows)))}
-{rungs(out)}
+{rungs(figures.rows)}
 ## Where we lose
 {chr(10).join(loss_lines(figures.rows)) or 'Nowhere in this run.'}
 '''

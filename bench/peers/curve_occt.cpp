@@ -5,10 +5,13 @@
 #include <cmath>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepExtrema_DistShapeShape.hxx>
 #include <Geom_BezierCurve.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <GeomAPI_ProjectPointOnCurve.hxx>
+#include <Standard_Failure.hxx>
 #include <TColgp_Array1OfPnt.hxx>
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
@@ -42,7 +45,7 @@ void *make(const double (*points)[3], size_t n, size_t degree, const double *kno
   return made;
 }
 
-double to_point(const void *curve, const double point[3]) {
+double to_point(const void *curve, const double point[3]) try {
   const auto *c = static_cast<const occt_curve *>(curve);
   const gp_Pnt p(point[0], point[1], point[2]);
   const double first = c->curve->FirstParameter(), last = c->curve->LastParameter();
@@ -50,12 +53,28 @@ double to_point(const void *curve, const double point[3]) {
   const GeomAPI_ProjectPointOnCurve projected(p, c->curve, first, last);
   if (projected.NbPoints() > 0) least = std::min(least, projected.LowerDistance());
   return least;
+} catch (const Standard_Failure &) {
+  return NAN;
 }
 
-double to_curve(const void *a, const void *b) {
+double to_curve(const void *a, const void *b) try {
   const BRepExtrema_DistShapeShape found(static_cast<const occt_curve *>(a)->edge,
                                          static_cast<const occt_curve *>(b)->edge);
   return found.IsDone() ? found.Value() : NAN;
+} catch (const Standard_Failure &) {
+  return NAN;
+}
+
+double to_polygon(const void *curve, const double (*vertices)[3], size_t n) try {
+  BRepBuilderAPI_MakePolygon outline;
+  for (size_t i = 0; i < n; i++) outline.Add(gp_Pnt(vertices[i][0], vertices[i][1], vertices[i][2]));
+  outline.Close();
+  const BRepBuilderAPI_MakeFace face(outline.Wire(), Standard_True);
+  if (!face.IsDone()) return NAN;
+  const BRepExtrema_DistShapeShape found(static_cast<const occt_curve *>(curve)->edge, face.Face());
+  return found.IsDone() ? found.Value() : NAN;
+} catch (const Standard_Failure &) {
+  return NAN; /* what is smaller than its tolerance of 1e-7 it does not build */
 }
 
 void drop(void *curve) {
@@ -64,4 +83,4 @@ void drop(void *curve) {
 
 } // namespace
 
-const curve_peer curve_peer_occt = {"OpenCASCADE", make, to_point, to_curve, drop};
+const curve_peer curve_peer_occt = {"OpenCASCADE", make, to_point, to_curve, to_polygon, drop};

@@ -16,6 +16,8 @@ typedef struct curve_peer {
   void *(*make)(const double (*points)[3], size_t n, size_t degree, const double *knots);
   double (*to_point)(const void *curve, const double point[3]);
   double (*to_curve)(const void *a, const void *b);
+  double (*to_polygon)(const void *curve, const double (*vertices)[3],
+                       size_t n); /* convex, filled; NULL: it has none */
   void (*drop)(void *curve);
 } curve_peer;
 

@@ -53,4 +53,4 @@ static void drop(void *curve) {
   if (curve) freeCurve(curve);
 }
 
-const curve_peer curve_peer_sisl = {"SISL", make, to_point, to_curve, drop};
+const curve_peer curve_peer_sisl = {"SISL", make, to_point, to_curve, NULL, drop};

@@ -13,6 +13,11 @@ enum { MAX_ROUNDS = 64, MAX_METHODS = 16 };
 /* A sample lasts at least this long, so that the clock's own cost does not count [s]. */
 static const double SHORTEST_SAMPLE = 2e-5;
 
+/* A method that takes longer than this [s] is asked in the first few rounds only: its noise is small beside its time, and its time is
+ * most of the run's. */
+static const double SLOW = 2e-3;
+enum { SLOW_ROUNDS = 3 };
+
 static double now(void) {
   struct timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -68,11 +73,19 @@ static double time_of(const bench_workload *w, const bench_method *m, size_t pro
   return (now() - start) / (double)repeats;
 }
 
-static size_t repeats_for(const bench_workload *w, const bench_method *m, size_t problem) {
+/* How often a sample asks, and in how many rounds. */
+typedef struct effort {
+  size_t repeats;
+  int rounds;
+} effort;
+
+static effort effort_for(const bench_workload *w, const bench_size *size, const bench_method *m, size_t problem) {
   bench_answer answer;
-  time_of(w, m, problem, 1, &answer); /* warm */
-  const double once = time_of(w, m, problem, 1, &answer);
-  return once >= SHORTEST_SAMPLE ? 1 : (size_t)fmin(SHORTEST_SAMPLE / fmax(once, 1e-8), 1000.0) + 1;
+  double once = time_of(w, m, problem, 1, &answer); /* warm */
+  if (once > SLOW) return (effort){1, size->rounds < SLOW_ROUNDS ? size->rounds : SLOW_ROUNDS};
+  once = time_of(w, m, problem, 1, &answer);
+  if (once >= SHORTEST_SAMPLE) return (effort){1, size->rounds};
+  return (effort){(size_t)fmin(SHORTEST_SAMPLE / fmax(once, 1e-8), 1000.0) + 1, size->rounds};
 }
 
 static void judge(const bench_workload *w, size_t problem, const bench_answer *answer, record *r) {
@@ -93,17 +106,18 @@ static void judge(const bench_workload *w, size_t problem, const bench_answer *a
 static void measure_problem(const bench_workload *w, const bench_size *size, const bench_method *methods, size_t n,
                             size_t problem, record *records) {
   double sample[MAX_METHODS][MAX_ROUNDS];
-  size_t repeats[MAX_METHODS];
+  effort efforts[MAX_METHODS];
   bench_answer answer[MAX_METHODS];
-  for (size_t m = 0; m < n; m++) repeats[m] = repeats_for(w, &methods[m], problem);
+  for (size_t m = 0; m < n; m++) efforts[m] = effort_for(w, size, &methods[m], problem);
   for (int round = 0; round < size->rounds; round++) {
     for (size_t m = 0; m < n; m++) {
+      if (round >= efforts[m].rounds) continue;
       answer[m] = (bench_answer){.lower = NAN, .upper = NAN};
-      sample[m][round] = time_of(w, &methods[m], problem, repeats[m], &answer[m]);
+      sample[m][round] = time_of(w, &methods[m], problem, efforts[m].repeats, &answer[m]);
     }
   }
   for (size_t m = 0; m < n; m++) {
-    records[m].time[problem] = quantile(sample[m], (size_t)size->rounds, 0.5);
+    records[m].time[problem] = quantile(sample[m], (size_t)efforts[m].rounds, 0.5);
     judge(w, problem, &answer[m], &records[m]);
   }
 }
