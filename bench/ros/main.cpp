@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What ROS adds to the core's time: one curve of 6 points against 30 boxes, by a persistent service connection to a node, and by
- *  topic through the nodelet in this process, as inside a manager. Starts a master and a node of its own.
+ *  topic through the nodelet in this process, as inside a manager. Beside both a server and a relay that do nothing but take the same
+ *  message, keep a processor busy for as long as the core does, and answer: what they cost is roscpp's. Starts a master and the nodes.
  *
  *  usage: curve_proximity_bench_ros [--quick] [--calls N]
  *  Prints rows of results.csv. The memory row's error is what the node's resident set grew by over that many calls [MB]. */
@@ -37,6 +38,7 @@ using namespace curve_proximity;
 using Clock = std::chrono::steady_clock;
 
 constexpr int OBJECTS = 30;
+constexpr const char *PROGRAM = "/proc/self/exe";
 constexpr const char *WORKLOAD = "one curve of 6 points, 30 boxes";
 
 double microseconds(Clock::duration time) {
@@ -142,6 +144,68 @@ void build(const std::string &server) {
     throw std::runtime_error(server + ": " + scene.response.message);
 }
 
+/* ---- what roscpp costs by itself ----------------------------------------------------------------------------------- */
+
+constexpr double WORK_US = 20.0; /* about what the core takes for the question */
+
+/** An answer of the usual size after the usual time. */
+Proximity plainAnswer() {
+  Proximity row;
+  const auto begin = Clock::now();
+  do {
+    row.microseconds = microseconds(Clock::now() - begin);
+  } while (row.microseconds < WORK_US);
+  row.id = row.a = "curve";
+  row.kind = "curve";
+  row.b = "box10";
+  row.status = "ok";
+  row.rung = "hull";
+  return row;
+}
+
+bool answerPlainly(Distance::Request &, Distance::Response &response) {
+  response.success = true;
+  response.frame_id = "world";
+  response.results.push_back(plainAnswer());
+  return true;
+}
+
+/** The plain server, as a process: on a queue and a thread of its own, like ours. */
+int servePlainly(int argc, char **argv) {
+  ros::init(argc, argv, "bench_plain", ros::init_options::NoRosout);
+  ros::NodeHandle handle("~");
+  ros::CallbackQueue queue;
+  handle.setCallbackQueue(&queue);
+  const ros::ServiceServer server = handle.advertiseService("distance", answerPlainly);
+  ros::AsyncSpinner spinner(1, &queue);
+  spinner.start();
+  ros::waitForShutdown();
+  return 0;
+}
+
+/** The plain relay, in this process. */
+class PlainRelay {
+ public:
+  explicit PlainRelay(const std::string &name) : handle_(name), spinner_(1, &queue_) {
+    handle_.setCallbackQueue(&queue_);
+    publisher_ = handle_.advertise<ProximityResults>("proximity", 10);
+    subscriber_ = handle_.subscribe<Curve>("curve", 10, [this](const CurveConstPtr &) {
+      const auto results = boost::make_shared<ProximityResults>();
+      results->success = true;
+      results->results.push_back(plainAnswer());
+      publisher_.publish(ProximityResultsConstPtr(results));
+    });
+    spinner_.start();
+  }
+
+ private:
+  ros::CallbackQueue queue_;
+  ros::NodeHandle handle_;
+  ros::Publisher publisher_;
+  ros::Subscriber subscriber_;
+  ros::AsyncSpinner spinner_;
+};
+
 /* ---- rows ---------------------------------------------------------------------------------------------------------- */
 
 double percentile(std::vector<double> values, double fraction) {
@@ -156,72 +220,109 @@ void print(const char *method, const std::string &parameter, double median, doub
   std::fflush(stdout);
 }
 
-void printAdded(const std::string &way, const std::vector<double> &whole, const std::vector<double> &added) {
-  print("whole call", way, percentile(whole, 0.5), percentile(whole, 0.95));
-  print("curve_proximity", way, percentile(added, 0.5), percentile(added, 0.95));
-  print("curve_proximity", way + " p99", percentile(added, 0.99), percentile(added, 0.99));
+/** The times of one way to ask. */
+struct Times {
+  std::vector<double> whole, added;
+
+  void add(Clock::duration took, const Proximity &row) {
+    whole.push_back(microseconds(took));
+    added.push_back(whole.back() - row.microseconds);
+  }
+};
+
+void printAdded(const std::string &way, const Times &ours, const Times &plain) {
+  const auto row = [](const char *method, const std::string &parameter, const std::vector<double> &times) {
+    print(method, parameter, percentile(times, 0.5), percentile(times, 0.95));
+  };
+  row("whole call", way, ours.whole);
+  row("curve_proximity", way, ours.added);
+  row("plain roscpp", way, plain.added);
+  for (const auto &[method, times] : {std::make_pair("curve_proximity", &ours), std::make_pair("plain roscpp", &plain)})
+    print(method, way + " p99", percentile(times->added, 0.99), percentile(times->added, 0.99));
 }
 
 /* ---- the measurements ---------------------------------------------------------------------------------------------- */
 
-/** One call after the other over one connection. */
-void measureService(ros::NodeHandle &handle, const std::string &server, int calls) {
-  PersistentClient<Distance> client(handle, server + "/distance");
+/** One call after the other over one connection; a hundred to ours, a hundred to the plain one, and again. */
+void measureService(ros::NodeHandle &handle, const std::string &server, const std::string &plain, int calls) {
+  constexpr int BLOCK = 100;
+  PersistentClient<Distance> clients[] = {{handle, server + "/distance"}, {handle, plain + "/distance"}};
+  Times times[2];
   Distance call;
   call.request.curves.push_back(curve());
-  std::vector<double> whole, added;
-  for (int i = 0; i < calls; ++i) {
+  for (int i = 0; i < 2 * calls; ++i) {
+    const int which = i / BLOCK % 2;
     const auto begin = Clock::now();
-    if (!client.call(call, 1.0) || !call.response.success)
+    if (!clients[which].call(call, 10.0) || !call.response.success)
       throw std::runtime_error("a call failed: " + call.response.message);
-    whole.push_back(microseconds(Clock::now() - begin));
-    added.push_back(whole.back() - call.response.results.front().microseconds);
+    times[which].add(Clock::now() - begin, call.response.results.front());
   }
-  printAdded("service", whole, added);
+  printAdded("service", times[0], times[1]);
 }
 
-/** A message each millisecond, by pointer; from its publication to the arrival of its result. */
-void measureNodelet(ros::NodeHandle &handle, const std::string &server, int messages) {
-  std::mutex mutex;
-  std::condition_variable came;
-  Clock::time_point arrived;
-  ProximityResultsConstPtr last;
-  ros::CallbackQueue queue;
-  ros::NodeHandle own(handle);
-  own.setCallbackQueue(&queue);
-  ros::Publisher publisher = own.advertise<Curve>(server + "/curve", 10);
-  const ros::Subscriber subscriber =
-      own.subscribe<ProximityResults>(server + "/proximity", 10, [&](const ProximityResultsConstPtr &results) {
-        const auto now = Clock::now();
-        const std::lock_guard<std::mutex> lock(mutex);
-        arrived = now;
-        last = results;
-        came.notify_one();
-      });
-  ros::AsyncSpinner spinner(1, &queue);
-  spinner.start();
-  waitFor("the nodelet", [&] { return publisher.getNumSubscribers() > 0 && subscriber.getNumPublishers() > 0; });
+/** Publishes curves to a namespace, and waits for each result. */
+class Asker {
+ public:
+  Asker(const ros::NodeHandle &handle, const std::string &server) : own_(handle), spinner_(1, &queue_) {
+    own_.setCallbackQueue(&queue_);
+    publisher_ = own_.advertise<Curve>(server + "/curve", 10);
+    subscriber_ = own_.subscribe<ProximityResults>(server + "/proximity", 10,
+                                                   [this](const ProximityResultsConstPtr &results) { take(results); });
+    spinner_.start();
+    waitFor(server.c_str(), [&] { return publisher_.getNumSubscribers() > 0 && subscriber_.getNumPublishers() > 0; });
+  }
+  ~Asker() {
+    subscriber_.shutdown();
+    spinner_.stop();
+  }
 
-  std::vector<double> whole, added;
-  auto next = Clock::now();
-  for (int i = 0; i < messages; ++i) {
-    next += std::chrono::milliseconds(1);
-    std::this_thread::sleep_until(next);
-    const auto message = boost::make_shared<Curve>(curve());
-    std::unique_lock<std::mutex> lock(mutex);
-    last.reset();
+  void ask(Times &times) {
+    const CurveConstPtr message = boost::make_shared<Curve>(curve());
+    std::unique_lock<std::mutex> lock(mutex_);
+    last_.reset();
     lock.unlock();
     const auto begin = Clock::now();
-    publisher.publish(CurveConstPtr(message));
+    publisher_.publish(message);
     lock.lock();
-    if (!came.wait_for(lock, std::chrono::seconds(5), [&] { return last != nullptr; }))
+    if (!came_.wait_for(lock, std::chrono::seconds(5), [&] { return last_ != nullptr; }))
       throw std::runtime_error("a message was not answered");
-    if (!last->success) throw std::runtime_error("a message failed: " + last->message);
-    whole.push_back(microseconds(arrived - begin));
-    added.push_back(whole.back() - last->results.front().microseconds);
+    if (!last_->success) throw std::runtime_error("a message failed: " + last_->message);
+    times.add(arrived_ - begin, last_->results.front());
   }
-  spinner.stop();
-  printAdded("nodelet 1 kHz", whole, added);
+
+ private:
+  void take(const ProximityResultsConstPtr &results) {
+    const auto now = Clock::now();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    arrived_ = now;
+    last_ = results;
+    came_.notify_one();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable came_;
+  Clock::time_point arrived_;
+  ProximityResultsConstPtr last_;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle own_;
+  ros::Publisher publisher_;
+  ros::Subscriber subscriber_;
+  ros::AsyncSpinner spinner_;
+};
+
+/** A message each millisecond, by pointer, in turn to ours and to the plain relay; from its publication to the arrival of its result. */
+void measureNodelet(ros::NodeHandle &handle, const std::string &server, int messages) {
+  const std::string relay = "/bench_relay";
+  const PlainRelay plain(relay);
+  Asker askers[] = {{handle, server}, {handle, relay}};
+  Times times[2];
+  auto next = Clock::now();
+  for (int i = 0; i < 2 * messages; ++i) {
+    next += std::chrono::milliseconds(1);
+    std::this_thread::sleep_until(next);
+    askers[i % 2].ask(times[i % 2]);
+  }
+  printAdded("nodelet 1 kHz", times[0], times[1]);
 }
 
 /** The resident set of the node before and after many calls. */
@@ -247,7 +348,11 @@ void measure(bool quick, int calls) {
   {
     const Program server({"rosrun", "curve_proximity", "curve_proximity_node", "__name:=bench_node"});
     build(node);
-    measureService(handle, node, quick ? 5000 : 20000);
+    {
+      const Program plain({PROGRAM, "--plain"});
+      waitFor("the plain server", [] { return ros::service::exists("/bench_plain/distance", false); });
+      measureService(handle, node, "/bench_plain", quick ? 5000 : 20000);
+    }
     measureMemory(handle, node, server, calls);
   }
   handle.setParam(nodelet + "/verb", "distance");
@@ -263,6 +368,7 @@ void measure(bool quick, int calls) {
 } // namespace
 
 int main(int argc, char **argv) {
+  if (argc > 1 && std::strcmp(argv[1], "--plain") == 0) return servePlainly(argc, argv);
   bool quick = false;
   int calls = 0;
   for (int i = 1; i < argc; ++i) {
