@@ -60,6 +60,7 @@ static double way_of(search *s, const robot_pair *pair, const axis_state *axes, 
   const int32_t from = s->scene.self ? robot->parts[pair->standing].axis : -1;
   const double standing = s->scene.self ? robot->parts[pair->standing].reach : 0.0;
   const size_t n = motion_chain(s->scene.motion, from, part->axis, chain);
+  robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair); /* the states of their axes */
   double way = 0.0;
   for (size_t i = 0; i < n; i++) {
     const robot_axis *axis = &robot->axes[chain[i].axis];
@@ -76,8 +77,8 @@ static double ball_gap(search *s, const robot_pair *pair) {
 
 static double measured_gap(search *s, const robot_pair *pair) {
   robot_gap gap;
-  robot_scene_measure(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair), 0.02 * s->epsilon,
-                      &gap);
+  robot_scene_measure(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair),
+                      (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);
   s->probes++;
   s->upper = fmin(s->upper, fmax(gap.upper, 0.0));
   return fmax(gap.lower, 0.0);

@@ -132,11 +132,11 @@ typedef struct bound_claim {
 } bound_claim;
 
 static bound_claim claim_of(const test_robot *t, const bound_case *c, vec3 n, vec3 drift) {
-  double values[TEST_MAX_VARIABLES + 1], scratch[MAX_AXES];
+  double rows[MOTION_ROWS * (TEST_MAX_VARIABLES + MOTION_LANES)], scratch[MAX_AXES];
   axis_state axes[MAX_AXES + 1];
   chain_axis chain[MAX_AXES];
   placement frames[MAX_AXES + 1];
-  motion_node(t->motion, c->segment, c->a, c->b, values, axes);
+  motion_node(t->motion, c->segment, c->a, c->b, rows, axes);
   for (size_t i = 0; i < t->robot->n_axes; i++) frames[i] = axes[i].frame;
   const robot_part *part = &t->robot->parts[c->moving];
   const placement at = placement_under(frames, part->axis, &part->at);
@@ -234,9 +234,9 @@ static void balls_turn_no_faster_than_said(void **state) {
     for (size_t axis = 0; axis < t.robot->n_axes; axis++) {
       if (t.robot->axes[axis].kind != AXIS_BALL || t.spline) continue;
       const double a = rng_uniform(&r, 0.1, 0.8), width = 0.05;
-      double values[TEST_MAX_VARIABLES + 1];
+      double rows[MOTION_ROWS * (TEST_MAX_VARIABLES + MOTION_LANES)];
       axis_state axes[MAX_AXES + 1];
-      motion_node(t.motion, 0, a, a + width, values, axes);
+      motion_node(t.motion, 0, a, a + width, rows, axes);
       vec3l omega[4];
       const long double u = a + 0.5L * width;
       for (int k = 0; k < 4; k++) omega[k] = angular_velocity(&t, 0, t.robot->axes[axis].variable, u + (k - 1) * STEP);

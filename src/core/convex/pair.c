@@ -272,7 +272,9 @@ static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) 
 
   for (p->steps++; p->steps < most && !p->fault && !p->nearest.inside; p->steps++) {
     const double gap = p->nearest.distance - p->lower, upper = p->nearest.distance - margins;
-    const double asked = fmax(goal->epsilon, goal->relative_epsilon * fmax(upper, 0.0));
+    const double above = p->lower - margins - p->rounding - goal->floor;
+    const double asked =
+        greater(fmax(goal->epsilon, goal->relative_epsilon * fmax(upper, 0.0)), goal->fraction * above);
     if (gap <= fmax(asked - 2.0 * p->rounding, 0.25 * p->rounding)) return;
 
     /* 0 on a feature of the simplex: they touch, or overlap with 0 there by chance */

@@ -15,6 +15,7 @@ typedef struct pair_placement {
 /* How far to go: the interval, rounding included, may be epsilon wide, or the fraction relative_epsilon of its upper end. */
 typedef struct pair_goal {
   double epsilon, relative_epsilon;
+  double floor, fraction; /* or this fraction of what its lower end is above the floor; 0: none */
   uint32_t max_steps;
   bool wants_feature;
   bool wants_depth; /* how deep the cores overlap, not only that they do */

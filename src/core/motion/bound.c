@@ -34,9 +34,9 @@ static double lever(const axis_state *axis, vec3 centre) {
   return axis->kind == AXIS_BALL ? vec_norm(from) : vec_norm(vec_cross(axis->z, from));
 }
 
-/* r_k in the middle, then the greatest over the node: what is tipside shifts the part under the axis. */
-static void find_levers(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
-                        double *levers, double *travel) {
+/* Returns the travel. r_k in the middle, then the greatest over the node: what is tipside shifts the part under the axis. */
+static double find_levers(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
+                          double *levers) {
   double tipside = 0.0;
   for (size_t i = n; i-- > 0;) {
     const axis_state *axis = &axes[chain[i].axis];
@@ -44,7 +44,7 @@ static void find_levers(const axis_state *axes, const chain_axis *chain, size_t 
     levers[i] = turns(axis) ? at_middle + tipside : 1.0;
     tipside += axis->shift * at_middle;
   }
-  *travel = ROUND_UP * tipside;
+  return ROUND_UP * tipside;
 }
 
 /* Velocity and acceleration of the centre, from the base to the tip. */
@@ -91,9 +91,14 @@ static void find_derivative_bounds(const axis_state *axes, const chain_axis *cha
 
 void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
                     double *scratch, chain_motion *m) {
-  find_levers(axes, chain, n, centre, radius, scratch, &m->travel);
+  m->travel = find_levers(axes, chain, n, centre, radius, scratch);
   find_rates(axes, chain, n, centre, m);
   find_derivative_bounds(axes, chain, n, scratch, m);
+}
+
+double motion_travel(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
+                     double *scratch) {
+  return find_levers(axes, chain, n, centre, radius, scratch);
 }
 
 double bound_height(const bound_side *side, vec3 n) {

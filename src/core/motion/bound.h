@@ -28,6 +28,10 @@ typedef struct chain_motion {
 void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
                     double *scratch, chain_motion *m);
 
+/* The travel alone. */
+double motion_travel(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
+                     double *scratch);
+
 /* The two sides of a pair in the middle of the node. */
 typedef struct bound_side {
   const convex *shape;

@@ -5,28 +5,115 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/lanes.h"
 #include "base/rounding.h"
 
-/* ---- one variable --------------------------------------------------------------------------------------------------------- */
+/* ---- variables ------------------------------------------------------------------------------------------------------------ */
 
-/* What the Bernstein coefficients of a stretch say of a variable: its value and derivatives in the middle, and bounds. */
-typedef struct variable_state {
-  double value, first, second;
-  double w, a, g, shift, variation;
-} variable_state;
+/* The Bernstein coefficients of some variables, one a lane. */
+typedef double lane_row[MOTION_LANES];
+
+/* c = r c + s d in every lane. */
+static inline void blend(double r, double s, const double *d, double *c) {
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) c[l] = r * c[l] + s * d[l];
+}
 
 /* The coefficients of [a, b], by two cuts. Both cuts of neighbours need not be the same point to the last bit: the error of a
  * segment covers that (doc/robot-bounds.md). */
-static void section(const double *root, size_t degree, double a, double b, double *c) {
-  memcpy(c, root, (degree + 1) * sizeof *c);
+static inline void section(size_t degree, double a, double b, lane_row *c) {
   if (a > 0.0)
     for (size_t r = 1; r <= degree; r++)
-      for (size_t i = 0; i + r <= degree; i++) c[i] = (1.0 - a) * c[i] + a * c[i + 1];
+      for (size_t i = 0; i + r <= degree; i++) blend(1.0 - a, a, c[i + 1], c[i]);
   if (b >= 1.0) return;
   const double s = (b - a) / (1.0 - a);
   for (size_t r = 1; r <= degree; r++)
-    for (size_t i = degree; i >= r; i--) c[i] = (1.0 - s) * c[i - 1] + s * c[i];
+    for (size_t i = degree; i >= r; i--) blend(s, 1.0 - s, c[i - 1], c[i]);
 }
+
+static inline void lanes_middle(const lane_row *c, size_t degree, double *middle) {
+  lane_row v[MOTION_MAX_DEGREE + 1];
+  for (size_t i = 0; i <= degree; i++)
+#pragma omp simd
+    for (int l = 0; l < MOTION_LANES; l++) v[i][l] = c[i][l];
+  for (size_t r = 1; r <= degree; r++)
+    for (size_t i = 0; i + r <= degree; i++)
+#pragma omp simd
+      for (int l = 0; l < MOTION_LANES; l++) v[i][l] = 0.5 * (v[i][l] + v[i + 1][l]);
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) middle[l] = v[0][l];
+}
+
+/* The coefficients of the derivative take the place of those of the polynomial; the largest is at most largest + factor * error. */
+static inline void lanes_differentiate(lane_row *c, size_t degree, double factor, const double *error,
+                                       double *largest) {
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) largest[l] = 0.0;
+  for (size_t i = 0; i < degree; i++)
+#pragma omp simd
+    for (int l = 0; l < MOTION_LANES; l++) {
+      c[i][l] = (double)degree * (c[i + 1][l] - c[i][l]);
+      largest[l] = greater(largest[l], fabs(c[i][l]));
+    }
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) largest[l] += factor * error[l];
+}
+
+/* `error` is that of the coefficients; row k begins at out + k * stride. */
+LANES_DISPATCHED
+static void fill_lanes(lane_row *c, size_t degree, double a, double b, const double *error, double *out,
+                       size_t stride) {
+  const double n = (double)degree;
+  double *value = out, *second = out + MOTION_SECOND * stride, *third = out + MOTION_G * stride;
+  double *acceleration = out + MOTION_A * stride, *shift = out + MOTION_SHIFT * stride,
+         *variation = out + MOTION_VARIATION * stride;
+  section(degree, a, b, c);
+  lanes_middle((const lane_row *)c, degree, value);
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) shift[l] = variation[l] = 0.0;
+  for (size_t i = 0; i <= degree; i++)
+#pragma omp simd
+    for (int l = 0; l < MOTION_LANES; l++) shift[l] = greater(shift[l], fabs(c[i][l] - value[l]));
+  for (size_t i = 0; i < degree; i++)
+#pragma omp simd
+    for (int l = 0; l < MOTION_LANES; l++) variation[l] += fabs(c[i + 1][l] - c[i][l]);
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) {
+    shift[l] += 2.0 * error[l], variation[l] += 2.0 * n * error[l];
+    second[l] = acceleration[l] = third[l] = 0.0;
+  }
+
+  lanes_differentiate(c, degree, 2.0 * n, error, out + MOTION_W * stride);
+  lanes_middle((const lane_row *)c, degree - 1, out + MOTION_FIRST * stride);
+  if (degree < 2) return;
+  lanes_differentiate(c, degree - 1, 4.0 * n * (n - 1.0), error, acceleration);
+  lanes_middle((const lane_row *)c, degree - 2, second);
+  if (degree < 3) return;
+  lanes_differentiate(c, degree - 2, 8.0 * n * (n - 1.0) * (n - 2.0), error, third);
+}
+
+static size_t row_stride(const cprox_motion *m) {
+  return (m->n_moving + MOTION_LANES - 1) / MOTION_LANES * MOTION_LANES;
+}
+
+size_t motion_rows_size(const cprox_motion *m) {
+  return MOTION_ROWS * row_stride(m);
+}
+
+void motion_fill_rows(const cprox_motion *m, size_t segment, double a, double b, double *rows) {
+  const size_t degree = m->degree[segment], stride = row_stride(m);
+  for (size_t first = 0; first < m->n_moving; first += MOTION_LANES) {
+    lane_row c[MOTION_MAX_DEGREE + 1], error;
+    for (size_t l = 0; l < MOTION_LANES; l++) {
+      const size_t slot = first + l < m->n_moving ? first + l : m->n_moving - 1, at = segment * m->n_moving + slot;
+      for (size_t i = 0; i <= degree; i++) c[i][l] = m->coefficients[at * m->stride + i];
+      error[l] = m->error[at];
+    }
+    fill_lanes(c, degree, a, b, error, rows + first, stride);
+  }
+}
+
+/* ---- one variable --------------------------------------------------------------------------------------------------------- */
 
 static double at_middle(const double *c, size_t degree) {
   double v[MOTION_MAX_DEGREE + 1] = {0};
@@ -36,49 +123,31 @@ static double at_middle(const double *c, size_t degree) {
   return v[0];
 }
 
-/* The coefficients of the derivative take the place of those of the polynomial; returns the largest. */
-static double differentiate(double *c, size_t degree) {
-  double largest = 0.0;
-  for (size_t i = 0; i < degree; i++) {
-    c[i] = (double)degree * (c[i + 1] - c[i]);
-    largest = fmax(largest, fabs(c[i]));
-  }
-  return largest;
+/* The coefficients of the derivative take the place of those of the polynomial. */
+static void differentiate(double *c, size_t degree) {
+  for (size_t i = 0; i < degree; i++) c[i] = (double)degree * (c[i + 1] - c[i]);
 }
 
-/* `error` is that of the coefficients. */
-static variable_state variable_over(double *c, size_t degree, double error) {
-  variable_state v = {.value = at_middle(c, degree)};
-  for (size_t i = 0; i <= degree; i++) v.shift = fmax(v.shift, fabs(c[i] - v.value));
-  for (size_t i = 0; i < degree; i++) v.variation += fabs(c[i + 1] - c[i]);
-  const double n = (double)degree;
-  v.shift += 2.0 * error, v.variation += 2.0 * n * error;
-
-  v.w = differentiate(c, degree) + 2.0 * n * error;
-  v.first = at_middle(c, degree - 1);
-  if (degree < 2) return v;
-  v.a = differentiate(c, degree - 1) + 4.0 * n * (n - 1.0) * error;
-  v.second = at_middle(c, degree - 2);
-  if (degree < 3) return v;
-  v.g = differentiate(c, degree - 2) + 8.0 * n * (n - 1.0) * (n - 2.0) * error;
-  return v;
+/* The four coordinates of a ball's quaternion over the stretch, one a lane; returns the sum of their errors. */
+static double quaternion_over(const cprox_motion *m, size_t segment, int32_t variable, double a, double b,
+                              double c[4][MOTION_MAX_DEGREE + 1]) {
+  const size_t degree = m->degree[segment];
+  lane_row lanes[MOTION_MAX_DEGREE + 1] = {{0}};
+  double error = 0.0;
+  for (int k = 0; k < 4; k++) {
+    const int32_t slot = m->slot[variable + k];
+    const size_t at = segment * m->n_moving + (size_t)(slot < 0 ? 0 : slot);
+    for (size_t i = 0; i <= degree; i++)
+      lanes[i][k] = slot < 0 ? m->rest[variable + k] : m->coefficients[at * m->stride + i];
+    error += slot < 0 ? 0.0 : m->error[at];
+  }
+  section(degree, a, b, lanes);
+  for (int k = 0; k < 4; k++)
+    for (size_t i = 0; i <= degree; i++) c[k][i] = lanes[i][k];
+  return error;
 }
 
 /* ---- one axis ------------------------------------------------------------------------------------------------------------- */
-
-/* The coefficients of a variable over the stretch: those of a polynomial, or of a constant. */
-static double coefficients_over(const cprox_motion *m, size_t segment, int32_t variable, double a, double b,
-                                double *c) {
-  const size_t degree = m->degree[segment];
-  const int32_t slot = m->slot[variable];
-  if (slot < 0) {
-    for (size_t i = 0; i <= degree; i++) c[i] = m->rest[variable];
-    return 0.0;
-  }
-  const size_t at = segment * m->n_moving + (size_t)slot;
-  section(m->coefficients + at * m->stride, degree, a, b, c);
-  return m->error[at];
-}
 
 static double largest_norm(double c[4][MOTION_MAX_DEGREE + 1], size_t count) {
   double largest = 0.0;
@@ -95,15 +164,13 @@ static vec3 twice_product(const double *p, const double *q) {
 
 /* A quaternion of any norm turns at omega = 2 vec(p' p*) / |p|² and omega' = 2 vec(p'' p*) / |p|² - 2 omega (p·p') / |p|². */
 static void ball_over(const cprox_motion *m, size_t segment, size_t axis_index, double a, double b,
-                      const placement *before, axis_state *state) {
+                      const placement *parent, const placement *before, axis_state *state) {
   const robot_axis *axis = &m->robot->axes[axis_index];
   const size_t degree = m->degree[segment];
   const double n = (double)degree;
-  double c[4][MOTION_MAX_DEGREE + 1] = {{0}}, p[3][4] = {{0}}, bound[4] = {0}, error = 0.0, factor = 2.0 * n;
-  for (int k = 0; k < 4; k++) {
-    error += coefficients_over(m, segment, axis->variable + k, a, b, c[k]);
-    p[0][k] = at_middle(c[k], degree);
-  }
+  double c[4][MOTION_MAX_DEGREE + 1], p[3][4] = {{0}}, bound[4] = {0}, factor = 2.0 * n;
+  const double error = quaternion_over(m, segment, axis->variable, a, b, c);
+  for (int k = 0; k < 4; k++) p[0][k] = at_middle(c[k], degree);
   for (size_t order = 1; order <= 3 && order <= degree; order++) {
     for (int k = 0; k < 4; k++) {
       differentiate(c[k], degree - order + 1);
@@ -128,46 +195,54 @@ static void ball_over(const cprox_motion *m, size_t segment, size_t axis_index, 
   const vec3 alpha = vec_axpy(vec_scale(1.0 / square, twice_product(p[2], p[0])), -2.0 * along / square, omega);
   state->velocity = placement_turn(before, omega);
   state->acceleration = placement_turn(before, alpha);
-  state->frame = axis_move(axis, NULL, 0.0, p[0]);
+  const placement own = axis_move(axis, NULL, 0.0, p[0]);
+  state->frame = parent ? placement_compose(parent, &own) : own;
 }
 
-static void line_over(const cprox_motion *m, size_t segment, const robot_axis *axis, double a, double b, double *values,
-                      axis_state *state) {
-  double c[MOTION_MAX_DEGREE + 1] = {0};
-  variable_state v = {.value = m->rest[axis->variable]};
-  double error = 0.0;
-  if (state->moves) {
-    error = coefficients_over(m, segment, axis->variable, a, b, c);
-    v = variable_over(c, m->degree[segment], error);
-  }
-  values[axis->variable] = v.value;
+static vec3 world_axis(const robot_axis *axis, const placement *before) {
+  if (axis->along < 0) return placement_turn(before, axis->z);
+  const double *column = before->r + axis->along;
+  const double sign = axis->along == 0 ? axis->z.x : axis->along == 1 ? axis->z.y : axis->z.z;
+  return vec(sign * column[0], sign * column[3], sign * column[6]);
+}
 
-  const double factor = fabs(axis->multiplier), value = axis->multiplier * v.value + axis->offset;
-  state->w = factor * v.w, state->a = factor * v.a, state->g = factor * v.g;
-  state->shift = factor * v.shift, state->variation = factor * v.variation;
-  const double n = (double)m->degree[segment];
+static void line_over(const cprox_motion *m, size_t segment, const robot_axis *axis, const double *rows,
+                      const placement *before, axis_state *state) {
+  const size_t stride = row_stride(m), slot = (size_t)m->slot[axis->variable];
+  const double *of = rows + slot;
+  const double error = m->error[segment * m->n_moving + slot], n = (double)m->degree[segment];
+  const double factor = fabs(axis->multiplier), value = axis->multiplier * of[MOTION_VALUE] + axis->offset;
+  state->w = factor * of[MOTION_W * stride], state->a = factor * of[MOTION_A * stride];
+  state->g = factor * of[MOTION_G * stride];
+  state->shift = factor * of[MOTION_SHIFT * stride], state->variation = factor * of[MOTION_VARIATION * stride];
   state->error = factor * error * (n + 0.5 * n * n);
-  state->velocity = vec_scale(axis->multiplier * v.first, state->z);
-  state->acceleration = vec_scale(axis->multiplier * v.second, state->z);
-  state->frame = axis_move(axis, NULL, value, NULL);
+  state->z = world_axis(axis, before);
+  state->velocity = vec_scale(axis->multiplier * of[MOTION_FIRST * stride], state->z);
+  state->acceleration = vec_scale(axis->multiplier * of[MOTION_SECOND * stride], state->z);
+  axis_advance(axis, before, value, &state->frame);
 }
 
-void motion_node(const cprox_motion *m, size_t segment, double a, double b, double *values, axis_state *axes) {
-  static const placement HERE = {.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-  for (size_t i = 0; i < m->robot->n_axes; i++) {
-    const robot_axis *axis = &m->robot->axes[i];
-    axis_state *state = &axes[i];
-    const placement *parent = axis->parent < 0 ? &HERE : &axes[axis->parent].frame;
-    const placement before = placement_compose(parent, &axis->at);
-    state->kind = axis->kind;
-    state->moves = m->axis_moves[i];
-    state->z = placement_turn(&before, axis->z);
-    if (axis->kind == AXIS_BALL)
-      ball_over(m, segment, i, a, b, &before, state);
-    else
-      line_over(m, segment, axis, a, b, values, state);
-    state->frame = placement_compose(parent, &state->frame);
+void motion_find_axis(const cprox_motion *m, size_t segment, double a, double b, const double *rows, size_t i,
+                      axis_state *axes) {
+  const robot_axis *axis = &m->robot->axes[i];
+  axis_state *state = &axes[i];
+  const placement *parent = axis->parent < 0 ? NULL : &axes[axis->parent].frame;
+  if (!m->axis_moves[i]) {
+    *state = (axis_state){.kind = axis->kind};
+    state->frame = parent ? placement_compose(parent, &m->still[i]) : m->still[i];
+    return;
   }
+  state->kind = axis->kind;
+  const placement before = parent ? placement_compose(parent, &axis->at) : axis->at;
+  if (axis->kind == AXIS_BALL)
+    ball_over(m, segment, i, a, b, parent, &before, state);
+  else
+    line_over(m, segment, axis, rows, &before, state);
+}
+
+void motion_node(const cprox_motion *m, size_t segment, double a, double b, double *rows, axis_state *axes) {
+  motion_fill_rows(m, segment, a, b, rows);
+  for (size_t i = 0; i < m->robot->n_axes; i++) motion_find_axis(m, segment, a, b, rows, i, axes);
 }
 
 /* ---- one time ------------------------------------------------------------------------------------------------------------- */

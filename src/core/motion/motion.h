@@ -5,7 +5,8 @@
 
 #include "motion/tree.h"
 
-enum { MOTION_MAX_DEGREE = 9 };
+/* Variables are worked on so many at a time; rows are padded to whole lanes. */
+enum { MOTION_MAX_DEGREE = 9, MOTION_LANES = 8 };
 
 struct cprox_motion {
   const cprox_robot *robot;
@@ -19,6 +20,7 @@ struct cprox_motion {
   int32_t *slot;   /* of a variable among those, or -1 */
   double *rest;    /* the values of the others */
   bool *axis_moves;
+  placement *still;   /* of an axis that does not: as it stands in its parent's frame */
   double *norm;       /* of a ball's quaternion: at least this everywhere */
   double *part_error; /* every point of a part is computed within this of where it is */
 };
@@ -30,7 +32,6 @@ typedef struct axis_state {
   axis_kind kind;
   placement frame; /* moved, at the middle */
   vec3 z;          /* unit, world; not of a ball */
-  bool moves;
   vec3 velocity, acceleration;
   double w, a, g;   /* bounds on the first, second and third derivative */
   double shift;     /* on the way from the middle to anywhere in the node */
@@ -38,10 +39,31 @@ typedef struct axis_state {
   double error;     /* of half the computed velocity and an eighth of the acceleration together */
 } axis_state;
 
-/* The states of all axes over the stretch; `values` has room for all variables and receives those at the middle. */
-void motion_node(const cprox_motion *motion, size_t segment, double a, double b, double *values, axis_state *axes);
+/* What the variables do over the stretch, all at once: rows of numbers, one for each variable that moves. */
+typedef enum motion_row {
+  MOTION_VALUE, /* in the middle, with two derivatives */
+  MOTION_FIRST,
+  MOTION_SECOND,
+  MOTION_W, /* bounds, as those of an axis */
+  MOTION_A,
+  MOTION_G,
+  MOTION_SHIFT,
+  MOTION_VARIATION,
+  MOTION_ROWS
+} motion_row;
 
-/* The moved frames of all axes at u of a segment; `values` as above. */
+/* The numbers in all rows. */
+size_t motion_rows_size(const cprox_motion *motion);
+void motion_fill_rows(const cprox_motion *motion, size_t segment, double a, double b, double *rows);
+
+/* The state of one axis by them; that of its parent must be known. Of an axis that does not move, only the frame. */
+void motion_find_axis(const cprox_motion *motion, size_t segment, double a, double b, const double *rows, size_t axis,
+                      axis_state *axes);
+
+/* The states of all axes over the stretch. */
+void motion_node(const cprox_motion *motion, size_t segment, double a, double b, double *rows, axis_state *axes);
+
+/* The moved frames of all axes at u of a segment; `values` has room for all variables. */
 void motion_place(const cprox_motion *motion, size_t segment, double u, double *values, placement *frames);
 
 /* The time at u of a segment, within the segment. */

@@ -113,10 +113,11 @@ static cprox_motion *allocate(const motion_source *s, size_t n_segments, size_t 
   m->slot = calloc(n_variables, sizeof *m->slot);
   m->rest = calloc(n_variables, sizeof *m->rest);
   m->axis_moves = calloc(s->robot->n_axes + 1, sizeof *m->axis_moves);
+  m->still = calloc(s->robot->n_axes + 1, sizeof *m->still);
   m->norm = calloc(s->robot->n_axes + 1, sizeof *m->norm);
   m->part_error = calloc(s->robot->n_parts + 1, sizeof *m->part_error);
   if (m->times && m->degree && m->coefficients && m->error && m->moving && m->slot && m->rest && m->axis_moves &&
-      m->norm && m->part_error)
+      m->still && m->norm && m->part_error)
     return m;
   cprox_motion_free(m);
   return NULL;
@@ -132,6 +133,7 @@ void cprox_motion_free(cprox_motion *motion) {
   free(motion->slot);
   free(motion->rest);
   free(motion->axis_moves);
+  free(motion->still);
   free(motion->norm);
   free(motion->part_error);
   free(motion);
@@ -229,6 +231,8 @@ static cprox_status finish_axes(cprox_motion *m, const motion_source *s) {
     const robot_axis *axis = &s->robot->axes[i];
     for (int32_t k = 0; k < (axis->kind == AXIS_BALL ? 4 : 1); k++)
       m->axis_moves[i] = m->axis_moves[i] || (m->slot[axis->variable + k] >= 0 && axis->multiplier != 0.0);
+    const double *rest = m->rest + axis->variable;
+    if (!m->axis_moves[i]) m->still[i] = axis_move(axis, NULL, axis->multiplier * rest[0] + axis->offset, rest);
     if (axis->kind != AXIS_BALL) continue;
     m->norm[i] = least_norm_of(m, axis->variable);
     if (!(m->norm[i] > 1e-9))

@@ -112,6 +112,13 @@ static chain_end extend(const chain_end *end, const cprox_pose *pose) {
                      .reach = end->reach + vec_norm(pose->position)};
 }
 
+/* A unit vector. */
+static int8_t coordinate_along(vec3 z) {
+  if (z.y == 0.0 && z.z == 0.0) return 0;
+  if (z.z == 0.0 && z.x == 0.0) return 1;
+  return z.x == 0.0 && z.y == 0.0 ? 2 : -1;
+}
+
 static void add_axis(cprox_robot *robot, chain_end *end, axis_kind kind, vec3 z, int32_t variable, double multiplier,
                      double offset, bool first) {
   end->steps++;
@@ -122,6 +129,7 @@ static void add_axis(cprox_robot *robot, chain_end *end, axis_kind kind, vec3 z,
                                             .offset = offset,
                                             .at = end->at,
                                             .z = z,
+                                            .along = coordinate_along(z),
                                             .first_of_joint = first,
                                             .steps = end->steps,
                                             .reach = end->reach};

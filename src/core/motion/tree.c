@@ -4,22 +4,6 @@
 
 #include <math.h>
 
-vec3 placement_turn(const placement *at, vec3 v) {
-  const double *r = at->r;
-  return vec(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
-             r[6] * v.x + r[7] * v.y + r[8] * v.z);
-}
-
-vec3 placement_turn_back(const placement *at, vec3 v) {
-  const double *r = at->r;
-  return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
-             r[2] * v.x + r[5] * v.y + r[8] * v.z);
-}
-
-vec3 placement_apply(const placement *at, vec3 v) {
-  return vec_add(placement_turn(at, v), at->p);
-}
-
 static void multiply(const double *a, const double *b, double *c) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) c[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
@@ -31,29 +15,47 @@ placement placement_compose(const placement *outer, const placement *inner) {
   return both;
 }
 
-/* Rodrigues: cos q + sin q [z] + (1 - cos q) z z^T, 1 - cos q as 2 sin²(q/2), which is small where q is. */
-static void turn_about(vec3 z, double q, double *r) {
-  const double half = sin(0.5 * q), s = sin(q), c = cos(q), d = 2.0 * half * half;
+/* About one of the frame's own axes only the other two columns change: m' = c m + s n, n' = c n - s m, turned from m to n. */
+static void turn_columns(const double *from, int m, int n, double s, double c, double *to) {
+  for (int i = 0; i < 9; i += 3) {
+    to[i + m] = c * from[i + m] + s * from[i + n];
+    to[i + n] = c * from[i + n] - s * from[i + m];
+    to[i + 3 - m - n] = from[i + 3 - m - n];
+  }
+}
+
+/* Rodrigues: cos q + sin q [z] + (1 - cos q) z z^T, all by half the angle; 1 - cos q = 2 sin²(q/2) is small where q is. */
+static void turn_about(const robot_axis *axis, const double *from, double q, double *to) {
+  const vec3 z = axis->z;
+  const double sine = sin(0.5 * q), s = 2.0 * sine * cos(0.5 * q), d = 2.0 * sine * sine, c = 1.0 - d;
+  switch (axis->along) {
+    case 0: turn_columns(from, 1, 2, z.x * s, c, to); return;
+    case 1: turn_columns(from, 2, 0, z.y * s, c, to); return;
+    case 2: turn_columns(from, 0, 1, z.z * s, c, to); return;
+    default: break;
+  }
   const double xy = d * z.x * z.y, xz = d * z.x * z.z, yz = d * z.y * z.z;
-  r[0] = c + d * z.x * z.x, r[1] = xy - s * z.z, r[2] = xz + s * z.y;
-  r[3] = xy + s * z.z, r[4] = c + d * z.y * z.y, r[5] = yz - s * z.x;
-  r[6] = xz - s * z.y, r[7] = yz + s * z.x, r[8] = c + d * z.z * z.z;
+  const double r[9] = {c + d * z.x * z.x, xy - s * z.z, xz + s * z.y, xy + s * z.z,     c + d * z.y * z.y,
+                       yz - s * z.x,      xz - s * z.y, yz + s * z.x, c + d * z.z * z.z};
+  multiply(from, r, to);
+}
+
+void axis_advance(const robot_axis *axis, const placement *before, double value, placement *moved) {
+  *moved = *before;
+  if (axis->kind == AXIS_PRISMATIC)
+    moved->p = vec_axpy(before->p, value, placement_turn(before, axis->z));
+  else
+    turn_about(axis, before->r, value, moved->r);
 }
 
 placement axis_move(const robot_axis *axis, const placement *parent, double value, const double *quaternion) {
-  placement moved = axis->at, turn = {0};
-  switch (axis->kind) {
-    case AXIS_PRISMATIC: moved.p = vec_axpy(moved.p, value, placement_turn(&axis->at, axis->z)); break;
-    case AXIS_REVOLUTE:
-      turn_about(axis->z, value, turn.r);
-      multiply(axis->at.r, turn.r, moved.r);
-      break;
-    case AXIS_BALL: {
-      const cprox_pose pose = {.orientation = {quaternion[3], quaternion[0], quaternion[1], quaternion[2]}};
-      const frame f = frame_create(&pose, vec(0, 0, 0));
-      multiply(axis->at.r, f.r, moved.r);
-      break;
-    }
+  placement moved = axis->at;
+  if (axis->kind == AXIS_BALL) {
+    const cprox_pose pose = {.orientation = {quaternion[3], quaternion[0], quaternion[1], quaternion[2]}};
+    const frame f = frame_create(&pose, vec(0, 0, 0));
+    multiply(axis->at.r, f.r, moved.r);
+  } else {
+    axis_advance(axis, &axis->at, value, &moved);
   }
   return parent ? placement_compose(parent, &moved) : moved;
 }

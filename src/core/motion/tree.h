@@ -24,6 +24,7 @@ typedef struct robot_axis {
   double multiplier, offset; /* the angle or shift is multiplier * variable + offset */
   placement at;              /* in the parent axis's moved frame */
   vec3 z;                    /* unit, in the axis's own frame */
+  int8_t along;              /* z is this one of the frame's axes, 0 … 2, or the opposite; -1: none of them */
   bool first_of_joint;       /* of the axes that one joint became */
   uint32_t steps;            /* transforms between here and the world */
   double reach;              /* the sum of their lengths, shifts along prismatic axes not counted */
@@ -56,11 +57,27 @@ struct cprox_robot {
 /* The error of one transform of a chain: the rotation's, per unit of length behind it (doc/robot-bounds.md). */
 #define ROUND_JOINT 104.0
 
+static inline vec3 placement_turn(const placement *at, vec3 v) {
+  const double *r = at->r;
+  return vec(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
+             r[6] * v.x + r[7] * v.y + r[8] * v.z);
+}
+
+static inline vec3 placement_turn_back(const placement *at, vec3 v) {
+  const double *r = at->r;
+  return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
+             r[2] * v.x + r[5] * v.y + r[8] * v.z);
+}
+
+static inline vec3 placement_apply(const placement *at, vec3 v) {
+  return vec_add(placement_turn(at, v), at->p);
+}
+
 /* outer then inner: x -> outer.r (inner.r x + inner.p) + outer.p. */
 placement placement_compose(const placement *outer, const placement *inner);
-vec3 placement_turn(const placement *at, vec3 v);
-vec3 placement_turn_back(const placement *at, vec3 v);
-vec3 placement_apply(const placement *at, vec3 v);
+
+/* The axis moved to the value, from where it stands at 0: in the same frame as `before`. Not of a ball. */
+void axis_advance(const robot_axis *axis, const placement *before, double value, placement *moved);
 
 /* The moved frame of an axis at the value, its parent's being given (NULL: the world). `quaternion` is that of a ball: x, y, z, w. */
 placement axis_move(const robot_axis *axis, const placement *parent, double value, const double *quaternion);

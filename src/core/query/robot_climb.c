@@ -47,7 +47,7 @@ static void keep(robot_climb *c, const int32_t code[2], const robot_gap *gap) {
 static void measure(robot_climb *c, const robot_body *const side[2], const int32_t code[2]) {
   if (robot_scene_apart(side[MOVING], side[STANDING]) >= c->reach) return;
   robot_gap gap;
-  robot_scene_measure(side[MOVING], side[STANDING], c->accuracy, &gap);
+  robot_scene_measure(side[MOVING], side[STANDING], (robot_accuracy){.epsilon = c->accuracy}, &gap);
   c->gaps++;
   if (gap.fault)
     fail(c);
@@ -62,7 +62,7 @@ static void descend(robot_climb *c, const robot_body *const side[2], const int32
 static void descend_under(robot_climb *c, const robot_body *const side[2], const int32_t code[2], int through) {
   if (robot_scene_apart(side[MOVING], side[STANDING]) >= c->reach) return;
   robot_gap gap;
-  robot_scene_measure(side[MOVING], side[STANDING], c->accuracy, &gap);
+  robot_scene_measure(side[MOVING], side[STANDING], (robot_accuracy){.epsilon = c->accuracy}, &gap);
   c->gaps++;
   if (gap.fault) {
     fail(c);

@@ -127,16 +127,18 @@ bool robot_scene_begin(robot_scene *s, const question *q, size_t first, size_t l
 
   const size_t n_axes = robot->n_axes + 1;
   const size_t bytes = s->n_obstacles * sizeof *s->obstacles + (robot->n_parts + 1) * sizeof *s->parts +
-                       n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch) +
-                       (robot->n_variables + 1) * sizeof *s->values;
+                       n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch + sizeof *s->axis_placed) +
+                       motion_rows_size(s->motion) * sizeof *s->rows;
   char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
   if (!memory) return false;
   s->parts = (part_state *)(void *)memory;
   s->obstacles = (robot_body *)(void *)(s->parts + robot->n_parts + 1);
   s->axes = (axis_state *)(void *)(s->obstacles + s->n_obstacles);
   s->chain = (chain_axis *)(void *)(s->axes + n_axes);
-  s->values = (double *)(void *)(s->chain + n_axes);
-  s->scratch = s->values + robot->n_variables + 1;
+  s->rows = (double *)(void *)(s->chain + n_axes);
+  s->scratch = s->rows + motion_rows_size(s->motion);
+  s->axis_placed = (uint32_t *)(void *)(s->scratch + n_axes);
+  for (size_t i = 0; i < n_axes; i++) s->axis_placed[i] = 0;
 
   size_t count = 0;
   for (size_t i = first; i < last; i++)
@@ -163,13 +165,27 @@ int32_t robot_scene_add_pair(robot_scene *s, const robot_pair *pair) {
 
 void robot_scene_enter(robot_scene *s, size_t segment, double a, double b) {
   s->node++;
-  motion_node(s->motion, segment, a, b, s->values, s->axes);
+  s->segment = segment, s->a = a, s->b = b;
+  motion_fill_rows(s->motion, segment, a, b, s->rows);
+}
+
+/* An axis and all above it that are not known yet; those are found from the base down. */
+static void place_axis(robot_scene *s, int32_t axis) {
+  const robot_axis *axes = s->motion->robot->axes;
+  size_t n = 0;
+  for (; axis >= 0 && s->axis_placed[axis] != s->node; axis = axes[axis].parent) s->chain[n++].axis = axis;
+  while (n > 0) {
+    const int32_t next = s->chain[--n].axis;
+    motion_find_axis(s->motion, s->segment, s->a, s->b, s->rows, (size_t)next, s->axes);
+    s->axis_placed[next] = s->node;
+  }
 }
 
 static part_state *place(robot_scene *s, int32_t index) {
   part_state *state = &s->parts[index];
   if (state->placed == s->node) return state;
   const robot_part *part = &s->motion->robot->parts[index];
+  place_axis(s, part->axis);
   state->body.side.at = part->axis < 0 ? part->at : placement_compose(&s->axes[part->axis].frame, &part->at);
   state->placed = s->node;
   return state;
@@ -185,21 +201,48 @@ const robot_body *robot_scene_standing(robot_scene *s, const robot_pair *pair) {
   return pair->element[1] < 0 ? body : robot_element_make(body, pair->element[1], &s->element[1]);
 }
 
-static void find_motion(robot_scene *s, int32_t from, const robot_body *body, chain_motion *m) {
-  const robot_part *part = &s->motion->robot->parts[body->part];
-  const size_t n = motion_chain(s->motion, from, part->axis, s->chain);
+/* What the motion of a pair's moving side is seen from. */
+static int32_t seen_from_axis(const robot_scene *s, const robot_pair *pair) {
+  return s->self ? s->motion->robot->parts[pair->standing].axis : -1;
+}
+
+static void find_motion(robot_scene *s, const robot_pair *pair, const robot_body *body, chain_motion *m) {
+  const size_t n =
+      motion_chain(s->motion, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis, s->chain);
   motion_of_part(s->axes, s->chain, n, body->side.at.p, body->radius + body->side.error, s->scratch, m);
+}
+
+/* How far a whole part travels, seen from the world. */
+static double travel_of_part(robot_scene *s, int32_t index) {
+  part_state *state = place(s, index);
+  if (state->travelled == s->node) return state->travel;
+  const size_t n = motion_chain(s->motion, -1, s->motion->robot->parts[index].axis, s->chain);
+  const robot_body *body = &state->body;
+  state->travelled = s->node;
+  state->travel = motion_travel(s->axes, s->chain, n, body->side.at.p, body->radius + body->side.error, s->scratch);
+  return state->travel;
+}
+
+double robot_scene_way(robot_scene *s, const robot_pair *pair) {
+  const double way = travel_of_part(s, pair->moving);
+  return s->self ? way + travel_of_part(s, pair->standing) : way;
+}
+
+double robot_scene_travel(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
+  if (!s->self && pair->element[0] < 0) return travel_of_part(s, pair->moving);
+  const size_t n =
+      motion_chain(s->motion, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis, s->chain);
+  return motion_travel(s->axes, s->chain, n, moving->side.at.p, moving->radius + moving->side.error, s->scratch);
 }
 
 const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, const robot_body *moving,
                                        chain_motion *own) {
-  const int32_t from = s->self ? s->motion->robot->parts[pair->standing].axis : -1;
   if (s->self || pair->element[0] >= 0) {
-    find_motion(s, from, moving, own);
+    find_motion(s, pair, moving, own);
     return own;
   }
-  part_state *state = place(s, pair->moving);
-  if (state->moved != s->node) find_motion(s, -1, moving, &state->motion);
+  part_state *state = &s->parts[pair->moving];
+  if (state->moved != s->node) find_motion(s, pair, moving, &state->motion);
   state->moved = s->node;
   return &state->motion;
 }
@@ -214,16 +257,23 @@ static double from_box(const robot_body *body, vec3 point) {
     return h[0] * y.x + h[1] * y.y + h[2] * y.z + h[3];
   }
   const vec3 z = vec_sub(y, body->middle);
-  const vec3 out = vec(fmax(fabs(z.x) - body->half.x, 0.0), fmax(fabs(z.y) - body->half.y, 0.0),
-                       fmax(fabs(z.z) - body->half.z, 0.0));
+  const vec3 out = vec(greater(fabs(z.x) - body->half.x, 0.0), greater(fabs(z.y) - body->half.y, 0.0),
+                       greater(fabs(z.z) - body->half.z, 0.0));
   return vec_norm(out);
+}
+
+double robot_scene_balls(const robot_body *moving, const robot_body *standing) {
+  if (is_halfspace(standing)) return -INFINITY;
+  const double between = vec_norm(vec_sub(moving->side.at.p, standing->side.at.p));
+  const double radii = moving->radius + standing->radius;
+  return between - radii - ROUND_UP * (moving->side.error + standing->side.error + 8.0 * ROUND_U * (between + radii));
 }
 
 double robot_scene_apart(const robot_body *moving, const robot_body *standing) {
   const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p);
   double most = from_box(standing, moving->side.at.p) - standing->side.margin - moving->radius;
   if (!is_halfspace(standing))
-    most = fmax(most, from_box(moving, standing->side.at.p) - moving->side.margin - standing->radius);
+    most = greater(most, from_box(moving, standing->side.at.p) - moving->side.margin - standing->radius);
   const double sizes = vec_norm(apart) + moving->radius +
                        (is_halfspace(standing) ? fabs(standing->side.shape->size[3]) : standing->radius);
   return most - ROUND_UP * (moving->side.error + standing->side.error + 40.0 * ROUND_U * sizes);
@@ -272,13 +322,18 @@ static pair_placement seen_from(const robot_body *standing, const robot_body *mo
   return seen;
 }
 
-void robot_scene_measure(const robot_body *moving, const robot_body *standing, double epsilon, robot_gap *gap) {
+void robot_scene_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy,
+                         robot_gap *gap) {
   if (is_halfspace(standing)) {
     measure_halfspace(moving, standing, gap);
     return;
   }
   const pair_placement seen = seen_from(standing, moving);
-  const pair_goal goal = {.epsilon = epsilon, .max_steps = GAP_STEPS, .wants_feature = true};
+  const pair_goal goal = {.epsilon = accuracy.epsilon,
+                          .floor = accuracy.floor,
+                          .fraction = accuracy.fraction,
+                          .max_steps = GAP_STEPS,
+                          .wants_feature = true};
   pair_answer answer;
   pair_separate(standing->side.shape, standing->side.margin, moving->side.shape, moving->side.margin, &seen, &goal,
                 &answer);

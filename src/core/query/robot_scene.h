@@ -22,8 +22,9 @@ typedef struct robot_pair {
 
 /* A part over the node at hand. */
 typedef struct part_state {
-  uint32_t placed, moved; /* the node for which `body.side.at` and `motion` were found */
+  uint32_t placed, travelled, moved; /* the node for which `body.side.at`, `travel` and `motion` were found */
   robot_body body;
+  double travel;       /* that of the motion */
   chain_motion motion; /* seen from the world */
 } part_state;
 
@@ -33,33 +34,40 @@ typedef struct robot_scene {
   bool self;
   robot_body *obstacles;
   part_state *parts;
-  axis_state *axes;
-  double *values, *scratch;
+  axis_state *axes;      /* those above the parts that were asked for on the present node, */
+  uint32_t *axis_placed; /* which have its number here */
+  double *rows, *scratch;
   chain_axis *chain;
   robot_pair *pairs;
   size_t n_pairs, n_obstacles;
   robot_element element[2]; /* those of the pair that was placed last: moving, standing */
-  uint32_t node;            /* counts the nodes, so that part states know whether they are of the present one */
+  uint32_t node;            /* counts the nodes, so that states know whether they are of the present one */
+  size_t segment;
+  double a, b;
 } robot_scene;
 
 /* Makes the scene of targets first … last - 1 ready; false where memory is out. */
 bool robot_scene_begin(robot_scene *scene, const question *q, size_t first, size_t last);
 
-/* A new node: all axes at its middle. */
+/* A new node. */
 void robot_scene_enter(robot_scene *scene, size_t segment, double a, double b);
 
 /* One more pair; its number, or -1 where memory is out. It may move all pairs in memory. */
 int32_t robot_scene_add_pair(robot_scene *scene, const robot_pair *pair);
 
-/* The two sides of a pair in the middle of the node, and how the one moves as the other sees it. Of pairs of elements, only those of
- * one pair at a time. */
+/* The two sides of a pair in the middle of the node, how far the one travels as the other sees it, and how it moves. Of pairs of
+ * elements, only those of one pair at a time. */
 const robot_body *robot_scene_moving(robot_scene *scene, const robot_pair *pair);
 const robot_body *robot_scene_standing(robot_scene *scene, const robot_pair *pair);
+/* robot_scene_way(): how far both sides travel at most, as seen from the world: more than one sees of the other, but quicker. */
+double robot_scene_way(robot_scene *scene, const robot_pair *pair);
+double robot_scene_travel(robot_scene *scene, const robot_pair *pair, const robot_body *moving);
 const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, const robot_body *moving,
                                        chain_motion *own);
 
-/* A lower bound on the distance of two parts, by their balls and boxes. */
+/* A lower bound on the distance of two parts by their balls and boxes, and a quicker one by their balls; halfspaces have none. */
 double robot_scene_apart(const robot_body *moving, const robot_body *standing);
+double robot_scene_balls(const robot_body *moving, const robot_body *standing);
 
 /* The distance in the middle of the node. */
 typedef struct robot_gap {
@@ -74,7 +82,12 @@ typedef struct robot_gap {
   bool fault;
 } robot_gap;
 
-void robot_scene_measure(const robot_body *moving, const robot_body *standing, double epsilon, robot_gap *gap);
+/* How exactly: within epsilon, or within `fraction` of what the lower end is above `floor`. */
+typedef struct robot_accuracy {
+  double epsilon, floor, fraction;
+} robot_accuracy;
+
+void robot_scene_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy, robot_gap *gap);
 
 /* How fast the normal turns where what moves does so as `motion` says, by u of the node; orthogonal to it. */
 vec3 robot_scene_drift(const robot_gap *gap, const robot_body *moving, const robot_body *standing,

@@ -6,10 +6,16 @@
 #include "base/rounding.h"
 #include "base/workspace.h"
 
-enum { SEEDS_PER_SEGMENT = 4, MOST_SEED_TESTS = 40000 };
+enum { SEEDS_PER_SEGMENT = 1, MOST_SEED_TESTS = 40000 };
 
 /* A gap is measured to this fraction of the width asked for. */
 static const double GAP_FRACTION = 0.02;
+
+/* Of a pair that is too far to matter in the middle only so much of the excess need be known. */
+static const double EXCESS_FRACTION = 0.05;
+
+/* The first distances of a search need be no more exact than this. */
+static const double SEED_FRACTION = 0.02;
 
 /* Stretches that are shorter are measured even where a part moves farther than its own size. */
 #define SHORT_STRETCH 0x1p-8
@@ -106,10 +112,11 @@ static void keep_normal(robot_pair *pair, const robot_body *standing, size_t seg
 }
 
 /* The distance of the convex sides of a pair; it is that of the pair itself where that has no elements. */
-static cprox_status measure(robot_search *o, int32_t index, size_t segment, double u, robot_gap *gap) {
+static cprox_status measure(robot_search *o, int32_t index, size_t segment, double u, robot_accuracy accuracy,
+                            robot_gap *gap) {
   robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  robot_scene_measure(moving, standing, GAP_FRACTION * o->epsilon, gap);
+  robot_scene_measure(moving, standing, accuracy, gap);
   o->gaps++;
   if (gap->fault) return refuse_callback(o);
   keep_normal(pair, standing, segment, u, gap);
@@ -144,7 +151,9 @@ static cprox_status climb(robot_search *o, robot_climb *c, size_t segment, doubl
 /* The distance of a pair, elements and all, as far as it can be less than the best. */
 static cprox_status measure_whole(robot_search *o, int32_t index, size_t segment, double u) {
   robot_gap gap;
-  const cprox_status status = measure(o, index, segment, u, &gap);
+  const double floor = fmax(o->limit, 0.0);
+  const cprox_status status =
+      measure(o, index, segment, u, (robot_accuracy){GAP_FRACTION * o->epsilon, floor, SEED_FRACTION}, &gap);
   const robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   if (status < 0 || is_convex(moving, standing) || gap.lower >= o->best_bound.upper) return status;
@@ -168,11 +177,13 @@ static cprox_status seed(robot_search *o, const search_node *node) {
     int32_t nearest = -1;
     for (size_t k = 0; k < n; k++) {
       const robot_pair *pair = &o->scene.pairs[entry[k].pair];
-      const double apart =
-          robot_scene_apart(robot_scene_moving(&o->scene, pair), robot_scene_standing(&o->scene, pair));
+      const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+      if (robot_scene_balls(moving, standing) >= least) continue;
+      const double apart = robot_scene_apart(moving, standing);
       if (apart < least) least = apart, nearest = entry[k].pair;
     }
-    if (nearest < 0 || least >= o->best_bound.upper) continue;
+    const double most = o->limit >= 0.0 ? fmin(o->limit, o->best_bound.upper) : o->best_bound.upper;
+    if (nearest < 0 || least > most) continue;
     const cprox_status status = measure_whole(o, nearest, segment, u);
     if (status < 0) return status;
     if (o->limit >= 0.0 && o->best_bound.upper <= o->limit) return CPROX_OK;
@@ -297,20 +308,25 @@ static cprox_status climb_pair(robot_search *o, search_node *node, list_entry *e
 static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *entry, double *slack) {
   robot_pair *pair = &o->scene.pairs[entry->pair];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  chain_motion own;
-  const chain_motion *motion = robot_scene_motion(&o->scene, pair, moving, &own);
-  const double apart = robot_scene_apart(moving, standing);
-  entry->lower = fmax(entry->lower, apart - motion->travel);
+  const bool whole = pair->element[0] < 0 && pair->element[1] < 0;
+  if (whole) {
+    entry->lower = greater(entry->lower, robot_scene_balls(moving, standing) - robot_scene_way(&o->scene, pair));
+    if (is_settled(o, entry->lower)) return CPROX_OK;
+  }
+  const double apart = robot_scene_apart(moving, standing), travel = robot_scene_travel(&o->scene, pair, moving);
+  entry->lower = greater(entry->lower, apart - travel);
   *slack = moving->side.error + standing->side.error;
   if (is_settled(o, entry->lower)) return CPROX_OK;
 
   /* too blurred: halves will tell more */
   const double width = node->side[1].b - node->side[0].a;
   const double size = fmax(moving->radius, BLUR * fmax(apart, 0.0));
-  if (motion->travel > size && width > SHORT_STRETCH) {
-    want_pieces(o, motion->travel / size);
+  if (travel > size && width > SHORT_STRETCH) {
+    want_pieces(o, travel / size);
     return CPROX_OK;
   }
+  chain_motion own;
+  const chain_motion *motion = robot_scene_motion(&o->scene, pair, moving, &own);
 
   if (pair->normal_known) {
     const double bound = bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
@@ -327,16 +343,16 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
 
   robot_gap gap;
   const double u = 0.5 * (node->side[0].a + node->side[1].b);
-  const cprox_status status = measure(o, entry->pair, first_of(node), u, &gap);
+  const robot_accuracy accuracy = {GAP_FRACTION * o->epsilon, settling_bound(o), EXCESS_FRACTION};
+  const cprox_status status = measure(o, entry->pair, first_of(node), u, accuracy, &gap);
   if (status < 0) return status;
-  entry->lower = fmax(entry->lower, gap.lower - motion->travel);
+  entry->lower = fmax(entry->lower, gap.lower - travel);
   if (pair->normal_known && gap.upper > 0.0)
     entry->lower = fmax(entry->lower, bound_by_gap(o, node, pair, moving, standing, motion, &gap, slack));
   if (!is_settled(o, entry->lower)) want_pieces(o, pieces_for(o, gap.lower, entry->lower));
   if (is_convex(moving, standing) || is_settled(o, entry->lower)) return CPROX_OK;
 
   /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
-  const double travel = motion->travel;
   if (o->limit < 0.0 && gap.lower < o->best_bound.upper) {
     robot_climb nearest = climb_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
     const cprox_status climbed = climb(o, &nearest, first_of(node), u);
