@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "curve/curve.h"
+#include "curve/pack.h"
 #include "support/curves.h"
 #include "support/reference.h"
 
@@ -32,24 +32,24 @@ static void check_tree(const cprox_curve *c, const test_spline *s) {
   for (size_t node = 1; node < 2 * c->n_leaves; node++) {
     size_t first, end;
     pieces_below(c, node, &first, &end);
-    const curve_capsule *capsule = &c->capsules[node];
+    const curve_capsule capsule = curve_capsule_at(c, node);
     if (first >= end) {
-      assert_true(capsule->radius < 0.0);
+      assert_true(capsule.radius < 0.0);
       continue;
     }
-    assert_true(capsule->radius >= 0.0);
-    assert_true(vec_equal(capsule->a, curve_piece(c, first)[0]));
-    assert_true(vec_equal(capsule->b, curve_piece(c, end - 1)[n]));
+    assert_true(capsule.radius >= 0.0);
+    assert_true(vec_equal(capsule.a, curve_piece(c, first)[0]));
+    assert_true(vec_equal(capsule.b, curve_piece(c, end - 1)[n]));
     for (size_t i = first; i < end; i++) {
       for (size_t k = 0; k <= n; k++)
-        assert_true(contains(capsule, ref_vec(curve_piece(c, i)[k]), -(long double)c->error[i]));
+        assert_true(contains(&capsule, ref_vec(curve_piece(c, i)[k]), -(long double)c->error[i]));
       if (!s) continue;
       size_t r = s->degree;
       while (!(s->knots[r] <= c->breaks[i] && c->breaks[i + 1] <= s->knots[r + 1])) r++;
       const long double slack = 8.0L * (long double)n * 0x1p-64L * ref_largest(s->points + (r - n), n + 1);
       for (int k = 0; k <= 4; k++) {
         const double t = fmin(c->breaks[i] + 0.25 * k * (c->breaks[i + 1] - c->breaks[i]), c->breaks[i + 1]);
-        assert_true(contains(capsule, ref_bspline(s->points, n, s->knots, r, t, 0), slack));
+        assert_true(contains(&capsule, ref_bspline(s->points, n, s->knots, r, t, 0), slack));
       }
     }
   }
@@ -78,6 +78,46 @@ static void every_capsule_contains_its_part_of_the_curve(void **state) {
       assert_true(low.x - slack <= p.x && low.y - slack <= p.y && low.z - slack <= p.z);
       assert_true(high.x + slack >= p.x && high.y + slack >= p.y && high.z + slack >= p.z);
     }
+    cprox_curve_free(c);
+  }
+}
+
+/* Eight capsules at once reach no farther back along n than any control point below them (long double), and by no more than their
+ * radii give away: a capsule's own ends are attained. 9 u of the sizes: 3 u a product, 2 u the sums, u a difference. */
+static void check_packs(const cprox_curve *c, rng *r) {
+  const vec3 n = rng_unit(r), from = rng_in_cube(r, 2.0);
+  for (size_t pack = 0; pack < curve_packs(c->n_leaves); pack++) {
+    double least[CURVE_PACK];
+    curve_pack_reach(&c->packs[pack], n, from, least);
+    for (size_t lane = 0; lane < CURVE_PACK; lane++) {
+      const size_t node = CURVE_PACK * pack + lane;
+      size_t first, end;
+      if (node == 0 || node >= 2 * c->n_leaves) continue;
+      pieces_below(c, node, &first, &end);
+      if (first >= end) continue;
+      long double exact = INFINITY;
+      for (size_t i = first * (c->degree + 1); i < end * (c->degree + 1); i++) {
+        const vec3l p = ref_sub(ref_vec(c->points[i]), ref_vec(from));
+        exact = fminl(exact, ref_dot(ref_vec(n), p));
+      }
+      const long double slack = 9.0L * 0x1p-53L * (long double)(c->largest + vec_norm(from));
+      const long double radius = (long double)c->packs[pack].radius[lane];
+      assert_true((long double)least[lane] <= exact + slack);
+      assert_true((long double)least[lane] >= exact - 2.0L * radius - slack);
+    }
+  }
+}
+
+/* seed 304, 2000 splines of up to 13 spans, some 1e5 capsules */
+static void packs_reach_no_farther_than_what_they_contain(void **state) {
+  (void)state;
+  rng r = rng_seed(304);
+  for (size_t i = test_cases(2000); i-- > 0;) {
+    const test_spline s = random_spline(&r, 1 + rng_index(&r, 8));
+    cprox_curve *c = NULL;
+    assert_int_equal(
+        cprox_curve_create_bspline(s.points, s.n_points, s.degree, s.knots, s.n_knots, s.t0, s.t1, NULL, &c), CPROX_OK);
+    check_packs(c, &r);
     cprox_curve_free(c);
   }
 }
@@ -113,7 +153,7 @@ static void degenerate_curves_are_contained(void **state) {
       cprox_curve *c = NULL;
       assert_int_equal(cprox_curve_create_bezier(curves[k], 4, 0.0, 1.0, NULL, &c), CPROX_OK);
       check_tree(c, NULL);
-      assert_true(isfinite(c->capsules[1].radius));
+      assert_true(isfinite(curve_capsule_at(c, 1).radius));
       cprox_curve_free(c);
     }
   }
@@ -133,17 +173,18 @@ static void capsules_are_no_wider_than_they_need_be(void **state) {
   for (size_t i = 0; i < 71; i++) knots[i] = (double)i;
   cprox_curve *c = NULL;
   assert_int_equal(cprox_curve_create_bspline(straight, 67, 3, knots, 71, 3.0, 67.0, NULL, &c), CPROX_OK);
-  assert_true(c->capsules[1].radius < 2e-8); /* six levels of 2^-53 · 2e6, and 1e-9 of the leaf's */
+  assert_true(curve_capsule_at(c, 1).radius < 2e-8); /* six levels of 2^-53 · 2e6, and 1e-9 of the leaf's */
   cprox_curve_free(c);
   assert_int_equal(cprox_curve_create_bspline(arc, 67, 3, knots, 71, 3.0, 67.0, NULL, &c), CPROX_OK);
-  assert_true(c->capsules[1].radius >= 0.99 && c->capsules[1].radius < 2.0);
-  assert_true(c->capsules[64].radius < 1e-3);
+  assert_true(curve_capsule_at(c, 1).radius >= 0.99 && curve_capsule_at(c, 1).radius < 2.0);
+  assert_true(curve_capsule_at(c, 64).radius < 1e-3);
   cprox_curve_free(c);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_capsule_contains_its_part_of_the_curve),
+      cmocka_unit_test(packs_reach_no_farther_than_what_they_contain),
       cmocka_unit_test(closed_curves_are_contained),
       cmocka_unit_test(degenerate_curves_are_contained),
       cmocka_unit_test(capsules_are_no_wider_than_they_need_be),

@@ -17,9 +17,9 @@ cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
   c->breaks = calloc(n_pieces + 1, sizeof *c->breaks);
   c->points = calloc(n_pieces * (degree + 1), sizeof *c->points);
   c->error = calloc(n_pieces, sizeof *c->error);
-  c->capsules = calloc(2 * c->n_leaves, sizeof *c->capsules);
+  c->packs = calloc(curve_packs(c->n_leaves), sizeof *c->packs);
   c->tables = calloc(curve_tables_size(degree), sizeof *c->tables);
-  if (!c->breaks || !c->points || !c->error || !c->capsules || !c->tables) {
+  if (!c->breaks || !c->points || !c->error || !c->packs || !c->tables) {
     cprox_curve_free(c);
     return NULL;
   }
@@ -31,7 +31,7 @@ void cprox_curve_free(cprox_curve *curve) {
   free(curve->breaks);
   free(curve->points);
   free(curve->error);
-  free(curve->capsules);
+  free(curve->packs);
   free(curve->arcs);
   free(curve->tables);
   free(curve);
@@ -112,14 +112,40 @@ static curve_capsule piece_capsule(const cprox_curve *c, size_t i) {
   return capsule;
 }
 
-/* Around two capsules: the distance to a segment is convex, so along a child's segment it is largest at an end. */
-static curve_capsule join_capsules(const curve_capsule *left, const curve_capsule *right) {
-  if (right->radius < 0.0) return *left;
-  curve_capsule capsule = {.a = left->a, .b = right->b, .radius = 0.0};
-  const double left_radius = left->radius + distance_bound(left->b, capsule.a, capsule.b);
-  const double right_radius = right->radius + distance_bound(right->a, capsule.a, capsule.b);
-  capsule.radius = ROUND_UP * (left_radius > right_radius ? left_radius : right_radius);
+static void set_capsule(cprox_curve *c, size_t node, curve_capsule capsule) {
+  curve_pack *p = &c->packs[node / CURVE_PACK];
+  const size_t l = node % CURVE_PACK;
+  p->ax[l] = capsule.a.x, p->ay[l] = capsule.a.y, p->az[l] = capsule.a.z;
+  p->bx[l] = capsule.b.x, p->by[l] = capsule.b.y, p->bz[l] = capsule.b.z;
+  p->radius[l] = capsule.radius;
+}
+
+/* Round the nodes so many levels below, of which the first has pieces: the distance to a segment is convex, so along a segment it is
+ * largest at an end. */
+static curve_capsule join_capsules(const cprox_curve *c, size_t node, size_t levels) {
+  const size_t first = node << levels, end = (node + 1) << levels;
+  size_t last = first;
+  while (last + 1 < end && curve_capsule_at(c, last + 1).radius >= 0.0) last++;
+  curve_capsule capsule = {.a = curve_capsule_at(c, first).a, .b = curve_capsule_at(c, last).b, .radius = 0.0};
+  for (size_t k = first; k <= last; k++) {
+    const curve_capsule part = curve_capsule_at(c, k);
+    const double at_a = k > first ? distance_bound(part.a, capsule.a, capsule.b) : 0.0;
+    const double at_b = k < last ? distance_bound(part.b, capsule.a, capsule.b) : 0.0;
+    capsule.radius = greater(ROUND_UP * (part.radius + greater(at_a, at_b)), capsule.radius);
+  }
   return capsule;
+}
+
+/* From three levels below where there are so many: a radius that is made of fewer others is smaller. */
+static void build_tree(cprox_curve *c) {
+  const curve_capsule none = {.radius = -1.0};
+  for (size_t k = 0; k < CURVE_PACK * curve_packs(c->n_leaves); k++) set_capsule(c, k, none);
+  for (size_t i = 0; i < c->n_pieces; i++) set_capsule(c, c->n_leaves + i, piece_capsule(c, i));
+  for (size_t k = c->n_leaves; k-- > 1;) {
+    size_t levels = 1;
+    while (levels < 3 && k << levels < c->n_leaves) levels++;
+    if (curve_capsule_at(c, k << levels).radius >= 0.0) set_capsule(c, k, join_capsules(c, k, levels));
+  }
 }
 
 /* |x| + |y| + |z| is no less than |P|. */
@@ -138,14 +164,7 @@ void curve_finish(cprox_curve *c) {
   curve_fill_tables(c->degree, c->tables);
   c->binomial = c->tables;
   c->square = c->tables + (c->degree < 2 ? 0 : c->degree - 1);
-  for (size_t i = 0; i < c->n_leaves; i++) {
-    curve_capsule *leaf = &c->capsules[c->n_leaves + i];
-    if (i < c->n_pieces)
-      *leaf = piece_capsule(c, i);
-    else
-      leaf->radius = -1.0;
-  }
-  for (size_t k = c->n_leaves; k-- > 1;) c->capsules[k] = join_capsules(&c->capsules[2 * k], &c->capsules[2 * k + 1]);
+  build_tree(c);
 }
 
 /* ---- arithmetic ---- */

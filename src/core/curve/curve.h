@@ -15,6 +15,13 @@ typedef struct curve_capsule {
   double radius;
 } curve_capsule;
 
+/* Eight capsules, one array a number: what lies three levels below a node of the tree is bounded in vector registers. */
+enum { CURVE_PACK = 8 };
+typedef struct curve_pack {
+  double ax[CURVE_PACK], ay[CURVE_PACK], az[CURVE_PACK], bx[CURVE_PACK], by[CURVE_PACK], bz[CURVE_PACK];
+  double radius[CURVE_PACK];
+} curve_pack;
+
 struct cprox_curve {
   size_t degree;
   size_t n_pieces;
@@ -23,8 +30,9 @@ struct cprox_curve {
   double *error;  /* a piece's: each exact point of the curve is within this of the computed piece's (rounding of the
                      conversion; for compiled bases their remainder) */
   /* Heap order: node 1 is the root, node k has children 2k and 2k+1; the n_leaves leaves (a power of two >= n_pieces)
-   * stand at n_leaves + i for piece i; a node without pieces has radius < 0. capsule[0] is unused. */
-  curve_capsule *capsules;
+   * stand at n_leaves + i for piece i; a node without pieces has radius < 0. Node k is lane k % CURVE_PACK of pack
+   * k / CURVE_PACK, of which there are curve_packs(); lanes that are no nodes have radius < 0. */
+  curve_pack *packs;
   size_t n_leaves;
   cprox_rectifiable_curve
       *arcs;              /* NULL, or what a curve is known by that has no control points: then its pieces are chords of
@@ -39,6 +47,17 @@ struct cprox_curve {
 
 static inline const vec3 *curve_piece(const cprox_curve *c, size_t i) {
   return c->points + i * (c->degree + 1);
+}
+
+static inline curve_capsule curve_capsule_at(const cprox_curve *c, size_t node) {
+  const curve_pack *p = &c->packs[node / CURVE_PACK];
+  const size_t l = node % CURVE_PACK;
+  return (curve_capsule){{p->ax[l], p->ay[l], p->az[l]}, {p->bx[l], p->by[l], p->bz[l]}, p->radius[l]};
+}
+
+/* How many packs a tree of so many leaves takes. */
+static inline size_t curve_packs(size_t n_leaves) {
+  return (2 * n_leaves + CURVE_PACK - 1) / CURVE_PACK;
 }
 
 /* A curve with room for the pieces; breaks, points and error are the caller's to fill, then curve_finish(). NULL where

@@ -15,40 +15,51 @@ void question_ask_whole(question *q) {
     return;
   }
   q->part = curve_side_whole();
-  q->reach = q->mover.curve->capsules[1];
+  q->reach = curve_capsule_at(q->mover.curve, 1);
   cprox_curve_domain(q->mover.curve, &q->t0, &q->t1);
 }
 
 /* The model that is searched, and its pose in the frame of the target. */
 typedef struct placed_model {
-  model is;
-  cprox_pose inner;
-  bool moved; /* false: the pose is the identity */
+  const cprox_body *body; /* NULL: none */
+  double excess;
+  cprox_rung rung;
+  bool moved;       /* false: the pose is the identity, */
+  cprox_pose inner; /* and not set */
 } placed_model;
 
-static placed_model model_at(const question *q, const candidate *c) {
+/* Asked for often, and seldom more than the body itself. */
+static inline void place_model(const cprox_body *body, int32_t part, cprox_rung finest, placed_model *m) {
+  m->body = body;
+  m->excess = 0.0;
+  m->moved = false;
+  m->rung = body && body->tree ? CPROX_RUNG_MESH : CPROX_RUNG_HULL;
+  if (!body || model_is_body(body, finest)) return;
+  const model is = model_of_part(body, (size_t)part, finest, &m->inner, &m->moved);
+  m->body = is.body, m->excess = is.excess, m->rung = is.rung;
+}
+
+static inline void model_at(const question *q, const candidate *c, placed_model *m) {
   const cprox_target *target = &q->targets[c->target];
   const cprox_body *body = target->on_clock && !target->body ? &carried_point : target->body;
-  placed_model m = {.is = {.rung = CPROX_RUNG_HULL}, .inner = cprox_pose_identity()};
-  const cprox_rung finest = c->rung != CPROX_RUNG_NONE ? c->rung : q->options.max_rung;
-  if (body) m.is = model_of_part(body, (size_t)c->part, finest, &m.inner, &m.moved);
-  return m;
+  place_model(body, c->part, c->rung != CPROX_RUNG_NONE ? c->rung : q->options.max_rung, m);
 }
 
 const cprox_body *candidate_body(const question *q, const candidate *c) {
-  return model_at(q, c).is.body;
+  placed_model m;
+  model_at(q, c, &m);
+  return m.body;
 }
 
 cprox_rung candidate_rung(const question *q, const candidate *c) {
-  return model_at(q, c).is.rung;
+  placed_model m;
+  model_at(q, c, &m);
+  return m.rung;
 }
 
 /* Of what is carried past it, on the same rung. */
-static placed_model carried_model(const question *q, const candidate *c) {
-  placed_model m = {.inner = cprox_pose_identity()};
-  if (q->mover.body)
-    m.is = model_of_part(q->mover.body, (size_t)c->mover_part, candidate_rung(q, c), &m.inner, &m.moved);
-  return m;
+static inline void carried_model(const question *q, const candidate *c, placed_model *m) {
+  place_model(q->mover.body, c->mover_part, q->mover.body ? candidate_rung(q, c) : CPROX_RUNG_HULL, m);
 }
 
 static cprox_pose clock_pose(const question *q, const candidate *c) {
@@ -58,40 +69,49 @@ static cprox_pose clock_pose(const question *q, const candidate *c) {
 }
 
 cprox_pose candidate_pose(const question *q, const candidate *c) {
-  const placed_model m = model_at(q, c);
+  placed_model m;
+  model_at(q, c, &m);
   const cprox_pose pose = clock_pose(q, c);
   return m.moved ? frame_compose(&pose, &m.inner) : pose;
 }
 
 double candidate_misplaced(const question *q, const candidate *c) {
-  const placed_model m = model_at(q, c), carried = carried_model(q, c);
-  if (!m.moved || !m.is.body) return 0.0;
+  placed_model m, carried;
+  model_at(q, c, &m);
+  if (!m.moved || !m.body) return 0.0;
+  carried_model(q, c, &carried);
   /* a turn of both shapes, and the sum of the positions */
-  const double own = carried.is.body ? carried.is.body->shape.scale : 0.0;
-  const double turned = vec_norm(m.inner.position) + vec_norm(m.is.body->centre) + m.is.body->shape.scale + own;
+  const double own = carried.body ? carried.body->shape.scale : 0.0;
+  const double turned = vec_norm(m.inner.position) + vec_norm(m.body->centre) + m.body->shape.scale + own;
   const cprox_pose pose = candidate_pose(q, c);
   return ROUND_UP * ROUND_U * (2.0 * ROUND_ROTATION * turned + 3.0 * vec_norm(pose.position));
 }
 
 frame candidate_frame(const question *q, const candidate *c) {
-  const placed_model m = model_at(q, c);
+  placed_model m;
+  model_at(q, c, &m);
   const cprox_pose pose = clock_pose(q, c);
-  const vec3 centre = m.is.body ? m.is.body->centre : vec(0, 0, 0);
+  const vec3 centre = m.body ? m.body->centre : vec(0, 0, 0);
   return m.moved ? frame_create_within(&pose, &m.inner, centre) : frame_create(&pose, centre);
 }
 
 double candidate_padding(const question *q, const candidate *c) {
-  return q->targets[c->target].padding + model_at(q, c).is.excess;
+  placed_model m;
+  model_at(q, c, &m);
+  return q->targets[c->target].padding + m.excess;
 }
 
 double candidate_offset(const question *q, const candidate *c) {
-  return q->mover.radius + carried_model(q, c).is.excess + candidate_padding(q, c);
+  placed_model m;
+  carried_model(q, c, &m);
+  return q->mover.radius + m.excess + candidate_padding(q, c);
 }
 
 const cprox_body *candidate_carried(const question *q, const candidate *c, cprox_pose *pose) {
-  const placed_model m = carried_model(q, c);
-  *pose = m.inner;
-  return m.is.body;
+  placed_model m;
+  carried_model(q, c, &m);
+  *pose = m.moved ? m.inner : cprox_pose_identity();
+  return m.body;
 }
 
 static double distance_to_segment(vec3 p, vec3 a, vec3 b) {
@@ -103,9 +123,9 @@ static double distance_to_segment(vec3 p, vec3 a, vec3 b) {
 
 /* Round a whole curve, in its frame. */
 static candidate_ball ball_of_curve(const cprox_curve *curve) {
-  const curve_capsule *capsule = &curve->capsules[1];
-  const double length = vec_norm(vec_sub(capsule->b, capsule->a));
-  return (candidate_ball){.centre = vec_lerp(capsule->a, capsule->b, 0.5), .radius = 0.5 * length + capsule->radius};
+  const curve_capsule capsule = curve_capsule_at(curve, 1);
+  const double length = vec_norm(vec_sub(capsule.b, capsule.a));
+  return (candidate_ball){.centre = vec_lerp(capsule.a, capsule.b, 0.5), .radius = 0.5 * length + capsule.radius};
 }
 
 candidate_ball candidate_bounding_ball(const question *q, const candidate *c, double *sizes) {
@@ -136,7 +156,7 @@ candidate_ball candidate_bounding_ball(const question *q, const candidate *c, do
 /* The ball round what is carried, about the curve's point. */
 static candidate_ball carried_ball(const question *q, const candidate *c) {
   cprox_pose pose;
-  const cprox_body *body = candidate_carried(q, c, &pose);
+  const cprox_body *body = q->mover.body ? candidate_carried(q, c, &pose) : NULL;
   if (!body) return (candidate_ball){0};
   const frame f = frame_create(&pose, vec(0, 0, 0));
   return (candidate_ball){.centre = frame_to_world(&f, body->ball_centre), .radius = body->ball_radius};

@@ -80,9 +80,9 @@ static cprox_status probe_piece(contact_tree *c, search_node *node) {
 
 static cprox_status probe_range(contact_tree *c, search_node *node) {
   curve_tree *o = &c->base;
-  const curve_capsule *capsule = &o->side.curve->capsules[node->side[0].part];
+  const curve_capsule capsule = curve_capsule_at(o->side.curve, node->side[0].part);
   double unused = 0.0, slack, least2;
-  const vec3 x = frame_to_local(&o->side.frame, vec_lerp(capsule->a, capsule->b, 0.5), &unused);
+  const vec3 x = frame_to_local(&o->side.frame, vec_lerp(capsule.a, capsule.b, 0.5), &unused);
   tree_stretch stretch;
   tree_place nearest;
   stretch.stepping = false;

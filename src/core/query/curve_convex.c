@@ -175,13 +175,19 @@ static double first_look(const curve_convex *o) {
   return basis ? lanes_first_look(basis, x, x + degree + 1, x + 2 * (degree + 1), degree) : 0.5;
 }
 
+/* Many pieces are so short that their chords tell as much as points on them. */
+static bool is_long(const curve_convex *o) {
+  return o->side.curve->n_pieces > CHORDS;
+}
+
 /* The first measurement is on the piece that the nearer chords lead to. Then none is needed; where a normal cannot be had without,
  * it is at the point where the two ranges meet, which is a control point. */
 static cprox_status probe_range(curve_convex *o, const search_node *node) {
   if (o->incumbent == 0 && !o->side.curve->arcs) {
-    const size_t nearest = curve_side_nearest_piece(&o->side, &node->side[0]);
+    double s;
+    const size_t nearest = curve_side_nearest_piece(&o->side, &node->side[0], &s);
     curve_side_load(&o->side, nearest);
-    return probe_at(o, nearest, first_look(o), 0.5 / CHORDS);
+    return probe_at(o, nearest, is_long(o) ? s : first_look(o), 0.5 / CHORDS);
   }
   if (o->incumbent > 0 && look_from_origin(o, node)) return CPROX_OK;
   size_t piece;
@@ -263,7 +269,6 @@ static void bound_child(curve_convex *o, search_node *child) {
 
 /* A child that is this part of the node; the number of children then. */
 static int add_child(curve_convex *o, const search_node *node, const search_interval *part, search_node *child, int n) {
-  if (curve_side_is_empty(&o->side, part)) return n;
   child[n] = *node;
   child[n].side[0] = *part;
   child[n].seen_ball = 0;
@@ -271,21 +276,32 @@ static int add_child(curve_convex *o, const search_node *node, const search_inte
   return n + 1;
 }
 
-/* A range of pieces falls into four where it has as many: a bound costs much less than a measurement. */
-static int split_range(curve_convex *o, const search_node *node, search_node *child) {
-  search_interval half[2], quarter[2];
-  int children = 0;
-  curve_side_cut_range(&node->side[0], half);
-  for (int k = 0; k < 2; k++) {
-    if (curve_side_is_piece(&o->side, &half[k])) {
-      children = add_child(o, node, &half[k], child, children);
-      continue;
-    }
-    if (curve_side_is_empty(&o->side, &half[k])) continue;
-    curve_side_cut_range(&half[k], quarter);
-    for (int j = 0; j < 2; j++) children = add_child(o, node, &quarter[j], child, children);
+/* Raises all of them by the normal of a sight. */
+static void bound_fan(const curve_convex *o, search_node *child, size_t n, const curve_sight *sight) {
+  if (!isfinite(sight->support)) return;
+  double least[CURVE_PACK];
+  const curve_reach reach = curve_side_fan_reach(&o->side, &child[0].side[0], sight->normal, least);
+  for (size_t k = 0; k < n; k++) {
+    const double bound = least[k] - sight->support;
+    const double slack = bound_slack(o, reach.error, reach.magnitude, bound);
+    child[k].lower = greater(bound - slack, child[k].lower);
+    child[k].slack = slack;
   }
-  return children;
+}
+
+/* A range of pieces falls into as many as are bounded at once: a bound costs much less than a measurement. */
+static int split_range(curve_convex *o, const search_node *node, search_node *child) {
+  search_interval part[CURVE_PACK];
+  const size_t n = curve_side_fan(&o->side, &node->side[0], part);
+  for (size_t k = 0; k < n; k++) {
+    child[k] = *node;
+    child[k].side[0] = part[k];
+    child[k].seen_ball = 0;
+    child[k].seen = o->incumbent;
+  }
+  bound_fan(o, child, n, &o->best);
+  if (!vec_equal(o->last.normal, o->best.normal)) bound_fan(o, child, n, &o->last);
+  return (int)n;
 }
 
 static int split(void *self, search_node *node, search_node *child) {

@@ -134,8 +134,9 @@ static void consider(curve_curve *o, curve_meeting *m, double error) {
 static void chord_of(const curve_side *side, const search_interval *at, vec3 ends[2]) {
   if (at->slot < 0) {
     double turned = 0.0;
-    ends[0] = frame_to_local(&side->frame, side->curve->capsules[at->part].a, &turned);
-    ends[1] = frame_to_local(&side->frame, side->curve->capsules[at->part].b, &turned);
+    const curve_capsule capsule = curve_capsule_at(side->curve, at->part);
+    ends[0] = frame_to_local(&side->frame, capsule.a, &turned);
+    ends[1] = frame_to_local(&side->frame, capsule.b, &turned);
     return;
   }
   const size_t degree = side->curve->degree;
@@ -236,8 +237,8 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 static double length_of(const curve_side *side, const search_interval *at) {
   vec3 ends[2];
   chord_of(side, at, ends);
-  const curve_capsule *capsule = &side->curve->capsules[at->part];
-  return vec_norm(vec_sub(ends[1], ends[0])) + 2.0 * capsule->radius * (at->b - at->a);
+  const double radius = curve_capsule_at(side->curve, at->part).radius;
+  return vec_norm(vec_sub(ends[1], ends[0])) + 2.0 * radius * (at->b - at->a);
 }
 
 int curve_curve_longer_side(const curve_curve *o, const search_node *node) {

@@ -5,6 +5,7 @@
 
 #include "base/rounding.h"
 #include "curve/control.h"
+#include "curve/pack.h"
 #include "curve/rectifiable.h"
 
 /* ---- memory ----------------------------------------------------------------------------------------------------------- */
@@ -73,10 +74,10 @@ static vec3 local_of(const frame *f, vec3 world) {
  * turned, u to subtract the position, 3u for each product of three, 2u for the sums; of sizes that are at most the curve's reach and
  * the centre's distance from the position. */
 static void measure_ranges(curve_side *side) {
-  const curve_capsule *all = &side->curve->capsules[1];
-  const vec3 a = local_of(&side->frame, all->a), b = local_of(&side->frame, all->b);
+  const curve_capsule all = curve_capsule_at(side->curve, 1);
+  const vec3 a = local_of(&side->frame, all.a), b = local_of(&side->frame, all.b);
   const double computed = greater(vec_norm(a), vec_norm(b));
-  const double most = ROUND_UP * (computed + all->radius + side->turned_slope * computed + side->turned_offset);
+  const double most = ROUND_UP * (computed + all.radius + side->turned_slope * computed + side->turned_offset);
   const double roundings = (side->frame.rotated ? ROUND_ROTATION : 0.0) + 9.0 + side->frame.misturned;
   side->range_magnitude = most;
   side->range_error = ROUND_UP * (ROUND_U * roundings * (most + vec_norm(side->frame.centre)) + side->frame.misplaced);
@@ -111,7 +112,7 @@ size_t curve_side_piece(const curve_side *side, const search_interval *at) {
 }
 
 bool curve_side_is_empty(const curve_side *side, const search_interval *at) {
-  return side->curve->capsules[at->part].radius < 0.0;
+  return curve_capsule_at(side->curve, at->part).radius < 0.0;
 }
 
 double curve_side_parameter(const curve_side *side, size_t piece, double s) {
@@ -127,22 +128,29 @@ double curve_side_start(const curve_side *side, const search_interval *at) {
 }
 
 vec3 curve_side_chord_from_origin(const curve_side *side, const search_interval *range) {
-  const curve_capsule *capsule = &side->curve->capsules[range->part];
-  const vec3 a = local_of(&side->frame, capsule->a), along = vec_sub(local_of(&side->frame, capsule->b), a);
+  const curve_capsule capsule = curve_capsule_at(side->curve, range->part);
+  const vec3 a = local_of(&side->frame, capsule.a), along = vec_sub(local_of(&side->frame, capsule.b), a);
   const double length2 = vec_norm2(along), s = -vec_dot(a, along);
   return vec_axpy(a, s > 0.0 && length2 > 0.0 ? lesser(s / length2, 1.0) : 0.0, along);
 }
 
-size_t curve_side_nearest_piece(const curve_side *side, const search_interval *at) {
-  search_interval half[2], nearer = *at;
-  while (!curve_side_is_piece(side, &nearer)) {
-    curve_side_cut_range(&nearer, half);
-    nearer = half[0];
-    if (!curve_side_is_empty(side, &half[1]) && vec_norm2(curve_side_chord_from_origin(side, &half[1])) <
-                                                    vec_norm2(curve_side_chord_from_origin(side, &half[0])))
-      nearer = half[1];
+/* How many levels at a time a range falls: three, which is a pack, but so that the last step is no small one. */
+static int fan_levels(const cprox_curve *c, size_t node) {
+  const int left = __builtin_clzll(node) - __builtin_clzll(c->n_leaves);
+  return left == 4 ? 2 : left < 3 ? left : 3;
+}
+
+size_t curve_side_nearest_piece(const curve_side *side, const search_interval *range, double *s) {
+  const cprox_curve *c = side->curve;
+  const vec3 origin = frame_to_world(&side->frame, vec(0, 0, 0));
+  size_t node = range->part;
+  while (node < c->n_leaves) {
+    const int levels = fan_levels(c, node);
+    const size_t first = node << levels, lane = first % CURVE_PACK;
+    node =
+        first - lane + curve_pack_nearest(&c->packs[first / CURVE_PACK], lane, lane + ((size_t)1 << levels), origin, s);
   }
-  return curve_side_piece(side, &nearer);
+  return node - c->n_leaves;
 }
 
 void curve_side_load(curve_side *side, size_t piece) {
@@ -296,13 +304,37 @@ static curve_reach arc_reach(const curve_side *side, const search_interval *at, 
 
 /* The pieces lie in a capsule round the chord from the first to the last point. The normal is turned, not the points. */
 static curve_reach range_reach(const curve_side *side, const search_interval *at, vec3 n) {
-  const curve_capsule *capsule = &side->curve->capsules[at->part];
+  const curve_capsule capsule = curve_capsule_at(side->curve, at->part);
   const vec3 turned = frame_turn_to_world(&side->frame, n);
-  const double a = vec_dot(turned, vec_sub(capsule->a, side->frame.position));
-  const double b = vec_dot(turned, vec_sub(capsule->b, side->frame.position));
-  return (curve_reach){.least = lesser(a, b) - vec_dot(n, side->frame.centre) - capsule->radius,
+  const double a = vec_dot(turned, vec_sub(capsule.a, side->frame.position));
+  const double b = vec_dot(turned, vec_sub(capsule.b, side->frame.position));
+  return (curve_reach){.least = lesser(a, b) - capsule.radius - vec_dot(n, side->frame.centre),
                        .error = side->range_error,
                        .magnitude = side->range_magnitude};
+}
+
+size_t curve_side_fan(const curve_side *side, const search_interval *range, search_interval part[CURVE_PACK]) {
+  const cprox_curve *c = side->curve;
+  const int levels = fan_levels(c, range->part);
+  const size_t first = (size_t)range->part << levels, lane = first % CURVE_PACK;
+  const double *radius = c->packs[first / CURVE_PACK].radius + lane;
+  size_t n = 0;
+  for (; n < (size_t)1 << levels && radius[n] >= 0.0; n++) {
+    part[n] = *range;
+    part[n].part = (uint32_t)(first + n);
+  }
+  return n;
+}
+
+curve_reach curve_side_fan_reach(const curve_side *side, const search_interval *first, vec3 n,
+                                 double least[CURVE_PACK]) {
+  const size_t lane = first->part % CURVE_PACK;
+  double all[CURVE_PACK];
+  curve_pack_reach(&side->curve->packs[first->part / CURVE_PACK], frame_turn_to_world(&side->frame, n),
+                   side->frame.position, all);
+  const double centre = vec_dot(n, side->frame.centre);
+  for (size_t k = 0; k + lane < CURVE_PACK; k++) least[k] = all[k + lane] - centre;
+  return (curve_reach){.least = -INFINITY, .error = side->range_error, .magnitude = side->range_magnitude};
 }
 
 double curve_side_distance_from(const curve_side *side, const search_interval *at, vec3 centre, const vec3 *axis,
@@ -336,13 +368,13 @@ curve_hull curve_side_hull(const curve_side *side, const search_interval *at, ve
     const double radius = side->curve->arcs ? ROUND_UP * arc_hull(side, at).radius : 0.0;
     return (curve_hull){.n = degree + 1, .radius = radius, .error = at->error};
   }
-  const curve_capsule *capsule = &side->curve->capsules[at->part];
+  const curve_capsule capsule = curve_capsule_at(side->curve, at->part);
   double turned = 0.0;
-  const vec3 a = vec_sub(frame_to_local(&side->frame, capsule->a, &turned), from),
-             b = vec_sub(frame_to_local(&side->frame, capsule->b, &turned), from);
+  const vec3 a = vec_sub(frame_to_local(&side->frame, capsule.a, &turned), from),
+             b = vec_sub(frame_to_local(&side->frame, capsule.b, &turned), from);
   x[0] = a.x, y[0] = a.y, z[0] = a.z;
   x[1] = b.x, y[1] = b.y, z[1] = b.z;
-  return (curve_hull){.n = 2, .radius = capsule->radius, .error = turned};
+  return (curve_hull){.n = 2, .radius = capsule.radius, .error = turned};
 }
 
 /* ---- points ----------------------------------------------------------------------------------------------------------- */

@@ -53,8 +53,8 @@ size_t curve_side_piece(const curve_side *side, const search_interval *at);
 /* The point of a range's chord that is nearest to the frame's origin, but for rounding. */
 vec3 curve_side_chord_from_origin(const curve_side *side, const search_interval *range);
 
-/* Which piece of an interval may be nearest the frame's origin: the one that the nearer chords lead to. */
-size_t curve_side_nearest_piece(const curve_side *side, const search_interval *at);
+/* Which piece of a range may be nearest the frame's origin: the one that the nearer chords lead to; and s of it, by its own chord. */
+size_t curve_side_nearest_piece(const curve_side *side, const search_interval *range, double *s);
 
 /* Brings a piece's control points into the frame, in the root slot. */
 void curve_side_load(curve_side *side, size_t piece);
@@ -75,6 +75,14 @@ typedef struct curve_reach {
   double error;     /* how far the exact curve can be from the computed hull */
   double magnitude; /* of the points that entered, for the rounding of the products */
 } curve_reach;
+
+/* A range falls into 2, 4 or 8 ranges or pieces that lie in one pack of the tree, fewer where there are no pieces: their number, and
+ * where they are. */
+size_t curve_side_fan(const curve_side *side, const search_interval *range, search_interval part[CURVE_PACK]);
+
+/* What each of them reaches, the first being given: least[k] of part k, the rest of the answer being that of all. */
+curve_reach curve_side_fan_reach(const curve_side *side, const search_interval *first, vec3 n,
+                                 double least[CURVE_PACK]);
 
 /* n: unit within 4 u. A piece with points of its own must be the loaded one. */
 curve_reach curve_side_reach(const curve_side *side, const search_interval *at, vec3 n);

@@ -360,9 +360,9 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     x = curve_side_point(&o->side, s);
     if (curve_side_status(&o->side) < 0) return curve_side_status(&o->side);
   } else {
-    const curve_capsule *capsule = &o->side.curve->capsules[at->part];
+    const curve_capsule capsule = curve_capsule_at(o->side.curve, at->part);
     double unused = 0.0;
-    x = frame_to_local(&o->side.frame, vec_lerp(capsule->a, capsule->b, 0.5), &unused);
+    x = frame_to_local(&o->side.frame, vec_lerp(capsule.a, capsule.b, 0.5), &unused);
   }
   tree_stretch stretch;
   stretch.stepping = false;

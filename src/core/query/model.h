@@ -21,6 +21,11 @@ model model_of(const cprox_body *body, cprox_rung finest);
 /* Whether the body, or a part of it where it is a compound, is made of many elements up to the rung. */
 bool model_has_tree(const cprox_body *body, cprox_rung finest);
 
+/* Most bodies are their own only model. */
+static inline bool model_is_body(const cprox_body *body, cprox_rung finest) {
+  return body->kind != CPROX_COMPOUND && body->kind != CPROX_LADDER && finest != CPROX_RUNG_SPHERE;
+}
+
 /* Of a part of a compound, or of the body where it is none; *inner becomes the pose of the model in the frame of the body. False in
  * *moved: that is the identity. */
 model model_of_part(const cprox_body *body, size_t part, cprox_rung finest, cprox_pose *inner, bool *moved);

@@ -97,13 +97,13 @@ static bool lay_out(size_t degree, size_t n_pieces, cprox_workspace *workspace, 
   size_t leaves = 1;
   while (leaves < n_pieces) leaves *= 2;
   const size_t points = n_pieces * (degree + 1);
-  const size_t bytes = 2 * leaves * sizeof *c->capsules + points * sizeof *c->points +
+  const size_t bytes = curve_packs(leaves) * sizeof *c->packs + points * sizeof *c->points +
                        (n_pieces + 1 + n_pieces + curve_tables_size(degree)) * sizeof(double);
   char *memory = workspace_reserve(workspace, WORKSPACE_RELATIVE, bytes);
   if (!memory) return false;
   *c = (cprox_curve){.degree = degree, .n_pieces = n_pieces, .n_leaves = leaves};
-  c->capsules = (curve_capsule *)(void *)memory;
-  c->points = (vec3 *)(void *)(c->capsules + 2 * leaves);
+  c->packs = (curve_pack *)(void *)memory;
+  c->points = (vec3 *)(void *)(c->packs + curve_packs(leaves));
   c->breaks = (double *)(void *)(c->points + points);
   c->error = c->breaks + n_pieces + 1;
   c->tables = c->error + n_pieces;

@@ -49,12 +49,12 @@ static double capsules_to_box(const cprox_curve *curve, vec3 centre, vec3 low, v
   double least = INFINITY;
   while (count > 0) {
     const size_t k = open[--count];
-    const curve_capsule *c = &curve->capsules[k];
-    if (c->radius < 0.0) continue;
-    const vec3 m = vec_sub(vec_lerp(c->a, c->b, 0.5), centre);
+    const curve_capsule c = curve_capsule_at(curve, k);
+    if (c.radius < 0.0) continue;
+    const vec3 m = vec_sub(vec_lerp(c.a, c.b, 0.5), centre);
     const vec3 n = vec(m.x - fmin(fmax(m.x, low.x), high.x), m.y - fmin(fmax(m.y, low.y), high.y),
                        m.z - fmin(fmax(m.z, low.z), high.z));
-    const double lower = vec_norm(n) - 0.5 * vec_norm(vec_sub(c->b, c->a)) - c->radius;
+    const double lower = vec_norm(n) - 0.5 * vec_norm(vec_sub(c.b, c.a)) - c.radius;
     if (!(lower < least)) continue;
     if (k >= curve->n_leaves)
       least = lower;

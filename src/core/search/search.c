@@ -95,6 +95,15 @@ static node_fate fate_of(const search_goal *goal, const search_best *best, const
   return is_stuck(goal, best, node) ? NODE_STUCK : NODE_OPEN;
 }
 
+/* A child that is settled at birth leaves at once. */
+static bool enter(const search_goal *goal, const search_oracle *oracle, const search_node *child, frontier *open,
+                  search_outcome *outcome) {
+  if (!is_settled(goal, &outcome->best, child)) return frontier_push(open, child);
+  outcome->lower = lesser(child->lower, outcome->lower);
+  oracle->release(oracle->self, child);
+  return true;
+}
+
 /* One node: re-bound, probe, re-bound, split. Sets *fate to why it left the search, or NODE_OPEN if its children entered it. */
 static cprox_status work_on(const search_goal *goal, const search_oracle *oracle, search_node *node, frontier *open,
                             search_outcome *outcome, node_fate *fate) {
@@ -120,8 +129,8 @@ static cprox_status work_on(const search_goal *goal, const search_oracle *oracle
   for (int k = 1; k < children; k++)
     if (child[k].lower <= child[first].lower) first = k;
   for (int k = 0; k < children; k++)
-    if (k != first && !frontier_push(open, &child[k])) return CPROX_MEMORY;
-  return frontier_push(open, &child[first]) ? CPROX_OK : CPROX_MEMORY;
+    if (k != first && !enter(goal, oracle, &child[k], open, outcome)) return CPROX_MEMORY;
+  return enter(goal, oracle, &child[first], open, outcome) ? CPROX_OK : CPROX_MEMORY;
 }
 
 cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root,
@@ -129,7 +138,7 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
   frontier open = {.workspace = workspace, .order = goal->order};
   const bool best_first = goal->order == SEARCH_BEST_FIRST;
   cprox_status status = CPROX_OK;
-  double left = INFINITY; /* least lower bound of the nodes that left the search */
+  /* outcome->lower: the least bound of the nodes that left the search */
   *outcome = (search_outcome){.lower = INFINITY, .free_until = INFINITY, .best = {.upper = INFINITY, .at = INFINITY}};
   if (!frontier_push(&open, &root)) return CPROX_MEMORY;
 
@@ -162,7 +171,7 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
     }
 
     /* the node leaves */
-    left = lesser(node.lower, left);
+    outcome->lower = lesser(node.lower, outcome->lower);
     if (fate != NODE_SETTLED) outcome->free_until = lesser(outcome->free_until, node.start);
     oracle->release(oracle->self, &node);
     if (status != CPROX_OK || settled_all || is_answered(goal, &outcome->best)) break;
@@ -170,14 +179,14 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
 
   /* what is still open counts too */
   for (size_t i = 0; i < open.count; i++) {
-    left = lesser(open.nodes[i].lower, left);
+    outcome->lower = lesser(open.nodes[i].lower, outcome->lower);
     outcome->free_until = lesser(outcome->free_until, open.nodes[i].start);
   }
-  outcome->lower = left;
   if (goal->order == SEARCH_LEFT_TO_RIGHT)
     outcome->free_until = lesser(outcome->free_until, horizon(goal, &outcome->best));
   if (status == CPROX_OK && goal->limit < 0.0) {
     const double upper = known_upper(goal, &outcome->best);
+    const double left = outcome->lower;
     if ((goal->is_signed ? left : greater(left, 0.0)) < upper - search_width(goal, upper)) status = CPROX_PRECISION;
   }
   return status;

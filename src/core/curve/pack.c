@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "curve/pack.h"
+
+#include "base/lanes.h"
+
+LANES_DISPATCHED
+void curve_pack_reach(const curve_pack *pack, vec3 n, vec3 from, double least[CURVE_PACK]) {
+  const double *restrict ax = pack->ax, *restrict ay = pack->ay, *restrict az = pack->az;
+  const double *restrict bx = pack->bx, *restrict by = pack->by, *restrict bz = pack->bz;
+  double *restrict out = least;
+#pragma omp simd
+  for (int k = 0; k < CURVE_PACK; k++) {
+    const double a = n.x * (ax[k] - from.x) + n.y * (ay[k] - from.y) + n.z * (az[k] - from.z);
+    const double b = n.x * (bx[k] - from.x) + n.y * (by[k] - from.y) + n.z * (bz[k] - from.z);
+    out[k] = (a < b ? a : b) - pack->radius[k];
+  }
+}
+
+LANES_DISPATCHED
+size_t curve_pack_nearest(const curve_pack *pack, size_t first, size_t end, vec3 point, double *along) {
+  double square[CURVE_PACK], at[CURVE_PACK];
+#pragma omp simd
+  for (int k = 0; k < CURVE_PACK; k++) {
+    const double x = pack->bx[k] - pack->ax[k], y = pack->by[k] - pack->ay[k], z = pack->bz[k] - pack->az[k];
+    const double px = point.x - pack->ax[k], py = point.y - pack->ay[k], pz = point.z - pack->az[k];
+    const double length2 = x * x + y * y + z * z;
+    double s = (px * x + py * y + pz * z) / (length2 > 0.0 ? length2 : 1.0);
+    s = s < 0.0 ? 0.0 : s;
+    s = s > 1.0 ? 1.0 : s;
+    const double dx = px - s * x, dy = py - s * y, dz = pz - s * z;
+    at[k] = s;
+    square[k] = dx * dx + dy * dy + dz * dz;
+  }
+  size_t nearest = first;
+  for (size_t k = first + 1; k < end && pack->radius[k] >= 0.0; k++)
+    if (square[k] < square[nearest]) nearest = k;
+  *along = at[nearest];
+  return nearest;
+}
