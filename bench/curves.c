@@ -4,8 +4,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "peers/libraries.h"
 #include "support/measure.h"
 #include "support/problems.h"
+#include "support/samples.h"
 
 /* What is asked, for both methods. */
 typedef struct asked {
@@ -109,6 +111,77 @@ static void measure(const bench_size *size, const char *name, int order, bool ac
   }
 }
 
+/* ---- samples, and libraries for curves, on the same problems ------------------------------------------------------------------ */
+
+typedef struct library {
+  const curve_peer *peer;
+  void *(*own)[2][MOST_LIBRARIES];
+  size_t number;
+} library;
+
+static void by_library(const void *questions, size_t i, void *state, bench_answer *a) {
+  const sampled_question *p = (const sampled_question *)questions + i;
+  const library *s = state;
+  const void *first = s->own[i][0][s->number], *second = s->own[i][1][s->number];
+  double point[3] = {0.0, 0.0, 0.0};
+  if (p->obstacle)
+    point[0] = p->obstacle->vertex[0].x, point[1] = p->obstacle->vertex[0].y, point[2] = p->obstacle->vertex[0].z;
+  a->lower = a->upper = p->second ? s->peer->to_curve(first, second) : s->peer->to_point(first, point);
+  a->failed = isnan(a->upper);
+}
+
+/* own: the libraries' copies of the curves, or NULL. */
+static void measure_others(const bench_size *size, const char *name, int order, sampled_question *questions, size_t n,
+                           const double *truth, void *(*own)[2][MOST_LIBRARIES]) {
+  char workload[64], prefix[32], parameter[48];
+  snprintf(workload, sizeof workload, "%s distance", name);
+  snprintf(prefix, sizeof prefix, "order %d ", order);
+  snprintf(parameter, sizeof parameter, "order %d as it is", order);
+  samples_measure(size, "curves", workload, prefix, questions, n, truth);
+  for (size_t k = 0; own && curve_libraries[k]; k++) {
+    library s = {.peer = curve_libraries[k], .own = own, .number = k};
+    const bench_workload w = {"curves", workload, parameter, questions, n, truth, 1e-15};
+    bench_measure(&w, size, &(bench_method){curve_libraries[k]->name, by_library, &s}, 1);
+  }
+  for (size_t i = 0; own && i < n; i++) {
+    libraries_drop(own[i][0]);
+    libraries_drop(own[i][1]);
+  }
+}
+
+static void others_of_obstacles(const bench_size *size, obstacle_kind kind, const char *name,
+                                const curve_problem *problems, const double *truth) {
+  const size_t n = size->problems / 4;
+  sampled_question *questions = calloc(n, sizeof *questions);
+  void *(*own)[2][MOST_LIBRARIES] = calloc(n, sizeof *own);
+  if (!questions || !own) exit(1);
+  for (size_t i = 0; i < n; i++) {
+    questions[i] = (sampled_question){.curve = problems[i].curve, .obstacle = &problems[i].obstacle};
+    if (kind == OBSTACLE_POINT)
+      libraries_make(problems[i].points, problems[i].degree + 1, problems[i].degree, NULL, own[i][0]);
+  }
+  measure_others(size, name, (int)problems[0].degree, questions, n, truth, kind == OBSTACLE_POINT ? own : NULL);
+  free(own);
+  free(questions);
+}
+
+static void others_of_pairs(const bench_size *size, const char *name, const curve_pair *pairs, const double *truth) {
+  const size_t n = size->problems / 4;
+  sampled_question *questions = calloc(n, sizeof *questions);
+  void *(*own)[2][MOST_LIBRARIES] = calloc(n, sizeof *own);
+  if (!questions || !own) exit(1);
+  for (size_t i = 0; i < n; i++) {
+    questions[i] = (sampled_question){.curve = pairs[i].curve[0], .second = pairs[i].curve[1]};
+    for (int k = 0; k < 2; k++)
+      libraries_make(pairs[i].points[k], pairs[i].degree + 1, pairs[i].degree, NULL, own[i][k]);
+  }
+  measure_others(size, name, (int)pairs[0].degree, questions, n, truth, own);
+  free(own);
+  free(questions);
+}
+
+/* ---- all of one kind ------------------------------------------------------------------------------------------------------------ */
+
 static void measure_obstacles(const bench_size *size, obstacle_kind kind, const char *name, asked *q) {
   if (!bench_wanted(size, name)) return;
   static const int orders[] = {5, 15, 45};
@@ -118,6 +191,8 @@ static void measure_obstacles(const bench_size *size, obstacle_kind kind, const 
     bench_method methods[] = {{"curve_proximity", ours, q}, {"paper", paper, q}};
     measure(size, name, orders[k], orders[k] == 15, methods, 2, problems, size->problems, truth,
             kind != OBSTACLE_LARGE_POLYTOPE, q);
+    if (orders[k] == 15 && (kind == OBSTACLE_POINT || kind == OBSTACLE_POLYTOPE))
+      others_of_obstacles(size, kind, name, problems, truth);
     free(truth);
     curve_problems_free(problems, size->problems);
   }
@@ -132,6 +207,7 @@ static void measure_pairs(const bench_size *size, bool planar, const char *name,
     double *truth = curve_pairs_truth(pairs, n);
     bench_method methods[] = {{"curve_proximity", ours_pair, q}, {"paper", paper_pair, q}};
     measure(size, name, orders[k], orders[k] == 5, methods, 2, pairs, n, truth, true, q);
+    if (orders[k] == 5 && !planar) others_of_pairs(size, name, pairs, truth);
     free(truth);
     curve_pairs_free(pairs, n);
   }

@@ -7,6 +7,7 @@
 
 #include "support/measure.h"
 #include "support/problems.h"
+#include "support/samples.h"
 
 enum { MOST_SEGMENTS = 1000, HARMONICS = 3, TERMS = 2 * HARMONICS + 1 };
 
@@ -212,6 +213,28 @@ static void paper(const void *problems, size_t i, void *state, bench_answer *a) 
 
 /* ---- workloads -------------------------------------------------------------------------------------------------------------- */
 
+/* Time against accuracy, and samples, which have no accuracy but an error. */
+static void measure_accuracies(const bench_size *size, const char *name, const problem *problems, size_t n, asked *q) {
+  char workload[64];
+  snprintf(workload, sizeof workload, "%s 3-D accuracy", name);
+  if (!bench_wanted(size, workload)) return;
+  const bench_method methods[] = {{"curve_proximity", ours, q}, {"paper", paper, q}};
+  q->factor = 0.0;
+  for (int digits = 2; digits <= 14; digits += 2) {
+    char parameter[32];
+    snprintf(parameter, sizeof parameter, "eps 1e-%02d", digits);
+    q->epsilon = pow(10.0, -digits);
+    const bench_workload w = {"splines", workload, parameter, problems, n, q->distance, 2e-12};
+    bench_measure(&w, size, methods, 2);
+  }
+  sampled_question *questions = calloc(n, sizeof *questions);
+  if (!questions) exit(1);
+  for (size_t i = 0; i < n; i++)
+    questions[i] = (sampled_question){.curve = problems[i].curve, .obstacle = &problems[i].obstacle};
+  samples_measure(size, "splines", workload, "", questions, n, q->distance);
+  free(questions);
+}
+
 static void measure(const bench_size *size, const char *name, const char *parameter, bool planar, size_t segments,
                     asked *q) {
   const size_t n = size->problems / 4;
@@ -231,6 +254,7 @@ static void measure(const bench_size *size, const char *name, const char *parame
     const bench_workload w = {"splines", workload, parameter, problems, n, k == 0 ? distance : NULL, 2e-12};
     if (bench_wanted(size, workload)) bench_measure(&w, size, methods, 2);
   }
+  if (!planar && (segments == 0 || segments == 100)) measure_accuracies(size, name, problems, n, q);
   for (size_t i = 0; i < n; i++) problem_free(&problems[i]);
   free(distance);
   free(problems);

@@ -24,6 +24,12 @@ void sampling_ready(sampling *s);
 double sampling_collides(const sampling *s, const cprox_vec3 *points, size_t n_points, double radius, size_t samples);
 double sampling_distance(const sampling *s, const cprox_vec3 *points, size_t n_points, double radius, size_t samples);
 
+/* The same of one convex polytope: its name or NULL; the least distance of some points to it. */
+const char *sampling_polytope_name(void);
+void *sampling_polytope(const cprox_vec3 *vertices, size_t n, const int (*triangles)[3], size_t m);
+double sampling_polytope_distance(const void *polytope, const cprox_vec3 *points, size_t n);
+void sampling_polytope_free(void *polytope);
+
 #ifdef __cplusplus
 }
 #endif

@@ -5,10 +5,11 @@
 
 #include "curve_proximity/cprox.h"
 #include "paper/paper.h"
+#include "peers/libraries.h"
 #include "support/measure.h"
 #include "support/random.h"
 
-enum { MAX_POINTS = 46, MAX_VERTICES = 8, MAX_PEERS = 2 };
+enum { MAX_POINTS = 46, MAX_VERTICES = 8 };
 
 /* One question with its answer: a Bézier curve against a convex polygon, a point, or a second curve of the same degree. */
 typedef struct hard {
@@ -21,7 +22,7 @@ typedef struct hard {
   cprox_curve *curve, *second;
   cprox_body *body;
   paper_bezier bezier[2];
-  void *own[MAX_PEERS][2]; /* a peer's curves */
+  void *own[2][MOST_LIBRARIES]; /* the libraries' copies of both curves */
 } hard;
 
 typedef struct family {

@@ -4,19 +4,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "peers/curve_peers.h"
+#include "peers/libraries.h"
 #include "stability/hard.h"
 
 static const double EPSILON = 1e-9;
-
-static const curve_peer *const PEERS[] = {
-#ifdef CPROX_BENCH_OCCT
-    &curve_peer_occt,
-#endif
-#ifdef CPROX_BENCH_SISL
-    &curve_peer_sisl,
-#endif
-    NULL};
 
 /* ---- judging: the same for all ---------------------------------------------------------------------------------------------------- */
 
@@ -96,7 +87,7 @@ typedef struct library {
 static void by_library(const void *problems, size_t i, void *state, bench_answer *a) {
   const hard *h = (const hard *)problems + i;
   const library *s = state;
-  void *const *own = h->own[s->number];
+  const void *own[2] = {h->own[0][s->number], h->own[1][s->number]};
   double vertex[MAX_VERTICES][3], value = NAN;
   for (size_t k = 0; k < h->n; k++)
     vertex[k][0] = h->vertex[k].x, vertex[k][1] = h->vertex[k].y, vertex[k][2] = h->vertex[k].z;
@@ -110,14 +101,6 @@ static void by_library(const void *problems, size_t i, void *state, bench_answer
 
 /* ---- one family --------------------------------------------------------------------------------------------------------------------- */
 
-static void give(hard *h, const vec3 *points, int side) {
-  double plain[MAX_POINTS][3];
-  for (size_t i = 0; i <= h->degree; i++)
-    plain[i][0] = points[i].x, plain[i][1] = points[i].y, plain[i][2] = points[i].z;
-  for (size_t k = 0; PEERS[k]; k++)
-    h->own[k][side] = PEERS[k]->make((const double(*)[3])plain, h->degree + 1, h->degree, NULL);
-}
-
 static void finish(hard *h) {
   cprox_status status = cprox_curve_create_bezier(h->points, h->degree + 1, 0.0, 1.0, NULL, &h->curve);
   if (status >= 0 && h->n > 0) status = cprox_body_create_polytope(h->vertex, h->n, NULL, &h->body);
@@ -125,17 +108,16 @@ static void finish(hard *h) {
   if (status < 0) exit(1);
   paper_bezier_make(h->points, h->degree, &h->bezier[0]);
   if (h->n == 0) paper_bezier_make(h->other, h->degree, &h->bezier[1]);
-  give(h, h->points, 0);
-  if (h->n == 0) give(h, h->other, 1);
+  libraries_make(h->points, h->degree + 1, h->degree, NULL, h->own[0]);
+  if (h->n == 0) libraries_make(h->other, h->degree + 1, h->degree, NULL, h->own[1]);
 }
 
 static void drop(hard *h) {
   cprox_curve_free(h->curve);
   cprox_curve_free(h->second);
   cprox_body_free(h->body);
-  for (size_t k = 0; PEERS[k]; k++)
-    for (int side = 0; side < 2; side++)
-      if (h->own[k][side]) PEERS[k]->drop(h->own[k][side]);
+  libraries_drop(h->own[0]);
+  libraries_drop(h->own[1]);
 }
 
 void stability_family(const bench_size *size, const family *f, uint64_t seed, tools *t) {
@@ -150,14 +132,14 @@ void stability_family(const bench_size *size, const family *f, uint64_t seed, to
   snprintf(parameter, sizeof parameter, "%zu cases seed %llu", size->problems, (unsigned long long)seed);
   const bench_workload w = {
       .group = "stability", .name = f->name, .parameter = parameter, .problems = problems, .n = size->problems};
-  bench_method methods[3 + MAX_PEERS] = {
+  bench_method methods[3 + MOST_LIBRARIES] = {
       {"curve_proximity", ours, t}, {"paper", paper, t}, {"sampling at 1000 points", sampling, t}};
-  library libraries[MAX_PEERS];
+  library libraries[MOST_LIBRARIES];
   size_t n = 3;
-  for (size_t k = 0; PEERS[k]; k++) {
-    if (problems[0].n > 1 && !PEERS[k]->to_polygon) continue;
-    libraries[k] = (library){PEERS[k], k};
-    methods[n++] = (bench_method){PEERS[k]->name, by_library, &libraries[k]};
+  for (size_t k = 0; curve_libraries[k]; k++) {
+    if (problems[0].n > 1 && !curve_libraries[k]->to_polygon) continue;
+    libraries[k] = (library){curve_libraries[k], k};
+    methods[n++] = (bench_method){curve_libraries[k]->name, by_library, &libraries[k]};
   }
   bench_measure(&w, size, methods, n);
   for (size_t i = 0; i < size->problems; i++) drop(&problems[i]);

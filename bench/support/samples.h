@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What is mostly done instead of a query: the least distance of evenly spaced points of a curve, to a polytope by FCL. It says nothing
+ * of how far it may be off; the rows tell (column error). */
+#ifndef CPROX_BENCH_SAMPLES_H
+#define CPROX_BENCH_SAMPLES_H
+
+#include "support/measure.h"
+#include "support/problems.h"
+
+/* One question: a curve against an obstacle, or against a second curve. */
+typedef struct sampled_question {
+  const cprox_curve *curve, *second; /* second: or NULL */
+  const obstacle *obstacle;
+  void *peer; /* of the obstacle; samples_measure() makes and frees it */
+} sampled_question;
+
+/* Rows of n questions with 100, 1000 and 10000 points of each curve (of two curves as many pairs of points), `prefix` before the
+ * parameter's "samples 100". Nothing where a polytope is asked about and FCL is not installed. */
+void samples_measure(const bench_size *size, const char *group, const char *workload, const char *prefix,
+                     sampled_question *questions, size_t n, const double *truth);
+
+#endif
