@@ -13,6 +13,7 @@
 #include "bytes.h"
 #include "near.h"
 #include "pieces.h"
+#include "robot_check.h"
 #include "support.h"
 
 enum { MAX_DEPTH = 256 };
@@ -134,6 +135,12 @@ static const char *check_section(section *c, const problem *p, double delta) {
   return fault;
 }
 
+static const char *check_robot(robot *r, reader *in, uint32_t width, claim claimed, size_t pairs, finding *found) {
+  if (pairs != r->n_pairs) return "it is about another number of pairs";
+  return claimed == CLAIM_APART ? robot_apart(r, in, width, found->delta, &found->leaves)
+                                : robot_near(r, in, found->delta);
+}
+
 static const char *check_apart(const problem *p, reader *in, uint32_t width, finding *found) {
   pieces path = {0};
   const char *fault = read_pieces(in, &p->mover.curve, &path);
@@ -162,7 +169,9 @@ finding check_certificate(const problem *p, const unsigned char *bytes, size_t s
     return found;
   }
 
-  if (claimed == CLAIM_APART)
+  if (p->mover.robot && (claimed == CLAIM_APART || claimed == CLAIM_NEAR))
+    found.fault = check_robot(p->mover.robot, &in, width, (claim)claimed, sections, &found);
+  else if (claimed == CLAIM_APART)
     found.fault = sections == p->n_sets ? check_apart(p, &in, width, &found) : "it is about another number of targets";
   else if (claimed == CLAIM_NEAR)
     found.fault = check_near(p, &in, found.delta);
@@ -176,5 +185,5 @@ finding check_certificate(const problem *p, const unsigned char *bytes, size_t s
 
 finding check(const problem *p, const unsigned char *bytes, size_t size) {
   const finding found = check_certificate(p, bytes, size, 640);
-  return found.fault ? check_certificate(p, bytes, size, 4096) : found;
+  return found.fault && !p->mover.robot ? check_certificate(p, bytes, size, 4096) : found;
 }

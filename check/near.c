@@ -157,8 +157,21 @@ static bool contains(const set *s, const iv *y) {
   return inside;
 }
 
-/* With y = the mover's point in the frame of the set, and `apart` the balls: what the certificate says of it. */
-static const char *check_point(const set *s, iv *y, iv *apart, reader *in, bool left) {
+bool near_read_point(iv x[3], const set *s, reader *in) {
+  for (int k = 0; k < 3; k++) iv_set_d(&x[k], s->kind == POINT ? s->centre[k] : 0.0);
+  if (s->kind == POINT) return true;
+  if (s->kind == POLYTOPE) {
+    iv *v = iv_new(3);
+    const bool found = from_polytope(v, s, x, in);
+    for (int k = 0; k < 3; k++) iv_sub(&x[k], &x[k], &v[k]);
+    iv_free(v, 3);
+    return found;
+  }
+  for (int k = 0; k < 3; k++) iv_set_d(&x[k], reader_number(in));
+  return !in->bad && contains(s, x);
+}
+
+const char *near_check_point(const set *s, iv *y, iv *apart, reader *in, bool left) {
   iv *v = iv_new(3), *w = iv_new(2);
   const char *fault = NULL;
   if (s->kind == CURVE) { /* the point of the other curve */
@@ -203,7 +216,7 @@ static const char *check_limits(const problem *p, reader *in, double delta, int 
       iv_set_d(&w[1], balls[i]);
       iv_add(&w[0], &w[0], &w[1]);
     }
-    fault = check_point(s, own, &w[0], in, (limits & 2) != 0);
+    fault = near_check_point(s, own, &w[0], in, (limits & 2) != 0);
   }
   iv_free(y, 3);
   iv_free(own, 3);

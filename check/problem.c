@@ -6,31 +6,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "robot.h"
+#include "words.h"
+
 enum { MAX_DEGREE = 60 };
 
-/* The words of a line, one after the other; once one is missing or wrong all that follow are. */
-typedef struct words {
-  char *rest;
-  bool wrong;
-} words;
-
-static const char *word(words *w) {
+const char *words_next(words *w) {
   const char *found = w->wrong ? NULL : strtok_r(NULL, " \t\r\n", &w->rest);
   if (!found) w->wrong = true;
   return found ? found : "";
 }
 
-static double number(words *w) {
-  const char *text = word(w);
+double words_number(words *w) {
+  const char *text = words_next(w);
   char *end;
   const double x = strtod(text, &end);
   if (end == text || *end || !isfinite(x)) w->wrong = true;
   return x;
 }
 
-/* A count of things that take at least two characters each. */
-static size_t count(words *w) {
-  const char *text = word(w);
+size_t words_count(words *w) {
+  const char *text = words_next(w);
   char *end;
   const unsigned long n = strtoul(text, &end, 10);
   if (end == text || *end || *text == '-') w->wrong = true;
@@ -38,19 +34,24 @@ static size_t count(words *w) {
   return w->wrong ? 0 : n;
 }
 
-static void numbers(words *w, size_t n, double *x) {
-  for (size_t i = 0; i < n; i++) x[i] = number(w);
+void words_numbers(words *w, size_t n, double *x) {
+  for (size_t i = 0; i < n; i++) x[i] = words_number(w);
 }
 
-/* n things of the size, all 0. */
-static void *room(words *w, size_t n, size_t size) {
+void *words_room(words *w, size_t n, size_t size) {
   void *memory = calloc(n ? n : 1, size);
   if (!memory) w->wrong = true;
   return memory;
 }
 
-static size_t choose(words *w, const char *const *names, size_t n) {
-  const char *name = word(w);
+size_t words_size(words *w) {
+  const double n = words_number(w);
+  if (!(n >= 0.0 && n <= 1e7 && n == floor(n))) w->wrong = true;
+  return w->wrong ? 0 : (size_t)n;
+}
+
+size_t words_choose(words *w, const char *const *names, size_t n) {
+  const char *name = words_next(w);
   for (size_t i = 0; i < n; i++)
     if (strcmp(name, names[i]) == 0) return i;
   w->wrong = true;
@@ -80,16 +81,16 @@ static bool curve_fits(const curve *c) {
 /* BASIS DEGREE T0 T1 N x y z … K knot … */
 static void read_curve(words *w, curve *c) {
   static const char *const names[] = {"bezier", "bspline", "polynomial", "legendre", "lagrange", "trigonometric"};
-  c->basis = (basis)choose(w, names, 6);
-  c->degree = count(w);
-  c->t0 = number(w);
-  c->t1 = number(w);
-  c->n = count(w);
-  c->points = room(w, c->n, sizeof *c->points);
-  for (size_t i = 0; i < c->n && !w->wrong; i++) numbers(w, 3, c->points[i]);
-  c->n_knots = count(w);
-  c->knots = room(w, c->n_knots, sizeof *c->knots);
-  if (!w->wrong) numbers(w, c->n_knots, c->knots);
+  c->basis = (basis)words_choose(w, names, 6);
+  c->degree = words_count(w);
+  c->t0 = words_number(w);
+  c->t1 = words_number(w);
+  c->n = words_count(w);
+  c->points = words_room(w, c->n, sizeof *c->points);
+  for (size_t i = 0; i < c->n && !w->wrong; i++) words_numbers(w, 3, c->points[i]);
+  c->n_knots = words_count(w);
+  c->knots = words_room(w, c->n_knots, sizeof *c->knots);
+  if (!w->wrong) words_numbers(w, c->n_knots, c->knots);
   if (!w->wrong && !curve_fits(c)) w->wrong = true;
 }
 
@@ -99,39 +100,43 @@ static void free_curve(curve *c) {
   *c = (curve){0};
 }
 
+void set_free(set *s) {
+  free(s->vertices);
+  free_curve(&s->curve);
+}
+
 /* ---- targets ------------------------------------------------------------------------------------------------------------ */
 
-static void read_set(words *w, set *s) {
-  static const char *const names[] = {"point", "sphere",    "box",       "capsule",  "cylinder",
-                                      "cone",  "ellipsoid", "halfspace", "polytope", "curve"};
-  static const size_t sizes[] = {0, 1, 3, 2, 2, 2, 3, 4, 0, 0};
-  s->padding = number(w);
-  s->n_poses = count(w);
+void words_set(words *w, set *s) {
+  static const char *const names[] = {"point",     "sphere",    "box",      "capsule", "cylinder", "cone",
+                                      "ellipsoid", "halfspace", "polytope", "hull",    "curve"};
+  static const size_t sizes[] = {0, 1, 3, 2, 2, 2, 3, 4, 0, 1, 0};
+  s->padding = words_number(w);
+  s->n_poses = words_count(w);
   if (!(s->padding >= 0.0) || s->n_poses > 2) w->wrong = true;
   for (size_t i = 0; i < s->n_poses && !w->wrong; i++) {
-    numbers(w, 3, s->poses[i].x);
-    numbers(w, 4, s->poses[i].q);
+    words_numbers(w, 3, s->poses[i].x);
+    words_numbers(w, 4, s->poses[i].q);
     const double *q = s->poses[i].q;
     if (q[0] == 0.0 && q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0) w->wrong = true;
   }
-  s->kind = (kind)choose(w, names, 10);
-  numbers(w, sizes[s->kind], s->size);
+  s->kind = (kind)words_choose(w, names, 11);
+  words_numbers(w, sizes[s->kind], s->size);
   for (size_t i = 0; s->kind != HALFSPACE && i < sizes[s->kind]; i++)
     if (!(s->size[i] >= 0.0)) w->wrong = true;
-  if (s->kind == POINT || s->kind == POLYTOPE) numbers(w, 3, s->centre);
-  if (s->kind == POLYTOPE) {
-    s->n = count(w);
+  if (s->kind == POINT || s->kind == POLYTOPE || s->kind == HULL) words_numbers(w, 3, s->centre);
+  if (s->kind == POLYTOPE || s->kind == HULL) {
+    s->n = words_count(w);
     if (s->n == 0) w->wrong = true;
-    s->vertices = room(w, s->n, sizeof *s->vertices);
-    for (size_t i = 0; i < s->n && !w->wrong; i++) numbers(w, 3, s->vertices[i]);
+    s->vertices = words_room(w, s->n, sizeof *s->vertices);
+    for (size_t i = 0; i < s->n && !w->wrong; i++) words_numbers(w, 3, s->vertices[i]);
   }
   if (s->kind == CURVE) read_curve(w, &s->curve);
 }
 
 /* ---- lines -------------------------------------------------------------------------------------------------------------- */
 
-/* The first word of the next line that is not empty, or NULL. */
-static const char *next_line(problem *p, words *w) {
+const char *words_line(problem *p, words *w) {
   const char *found = NULL;
   w->wrong = false;
   while (!found) {
@@ -142,18 +147,14 @@ static const char *next_line(problem *p, words *w) {
   return found;
 }
 
-/* Nothing was wrong, and nothing is left. */
-static bool line_is_good(problem *p, words *w) {
+bool words_end(problem *p, words *w) {
   if (!w->wrong && strtok_r(NULL, " \t\r\n", &w->rest)) w->wrong = true;
   if (w->wrong) snprintf(p->fault, sizeof p->fault, "line %zu of the problem is not understood", p->number);
   return !w->wrong;
 }
 
 static void free_sets(problem *p) {
-  for (size_t i = 0; i < p->n_sets; i++) {
-    free(p->sets[i].vertices);
-    free_curve(&p->sets[i].curve);
-  }
+  for (size_t i = 0; i < p->n_sets; i++) set_free(&p->sets[i]);
   free(p->sets);
   p->sets = NULL;
   p->n_sets = 0;
@@ -162,50 +163,70 @@ static void free_sets(problem *p) {
 bool problem_open(problem *p, FILE *in) {
   *p = (problem){.in = in};
   words w = {0};
-  const char *first = next_line(p, &w);
-  if (!first || strcmp(first, "cprox-problem") != 0 || number(&w) != 1.0) w.wrong = true;
-  return line_is_good(p, &w);
+  const char *first = words_line(p, &w);
+  if (!first || strcmp(first, "cprox-problem") != 0 || words_number(&w) != 1.0) w.wrong = true;
+  return words_end(p, &w);
+}
+
+bool words_begin(problem *p, words *w, const char *first) {
+  const char *found = words_line(p, w);
+  if (!found || strcmp(found, first) != 0) w->wrong = true;
+  return !w->wrong;
 }
 
 /* The N lines of targets, "targets" being read. */
 static bool read_sets(problem *p, words *w) {
-  const double n = number(w);
-  if (!(n >= 0.0 && n <= 1e7 && n == floor(n))) w->wrong = true;
-  if (!line_is_good(p, w)) return false;
+  const size_t n = words_size(w);
+  if (!words_end(p, w)) return false;
   free_sets(p);
-  p->sets = room(w, (size_t)n, sizeof *p->sets);
-  while (!w->wrong && p->n_sets < (size_t)n) {
-    const char *first = next_line(p, w);
-    if (!first || strcmp(first, "target") != 0) w->wrong = true;
-    read_set(w, &p->sets[p->n_sets++]);
-    if (!line_is_good(p, w)) return false;
+  p->sets = words_room(w, n, sizeof *p->sets);
+  while (!w->wrong && p->n_sets < n) {
+    words_begin(p, w, "target");
+    words_set(w, &p->sets[p->n_sets++]);
+    if (!words_end(p, w)) return false;
   }
   return !w->wrong;
 }
 
+static void free_mover(mover *m) {
+  free_curve(&m->curve);
+  robot_forget(m->robot);
+  m->robot = NULL;
+}
+
+/* The line of a mover, its first word being read. */
+static bool read_mover(problem *p, words *w, const char *first) {
+  mover *m = &p->mover;
+  const bool moves = strcmp(first, "robot") == 0;
+  m->none = strcmp(first, "none") == 0;
+  if (!m->none && !moves && strcmp(first, "mover") != 0) w->wrong = true;
+  snprintf(m->id, sizeof m->id, "%s", words_next(w));
+  if (moves) {
+    m->robot = robot_read(p, w);
+    return m->robot != NULL;
+  }
+  if (!m->none) {
+    m->radius = words_number(w);
+    if (!(m->radius >= 0.0)) w->wrong = true;
+    read_curve(w, &m->curve);
+  }
+  return words_end(p, w);
+}
+
 bool problem_next(problem *p) {
   words w = {0};
-  free_curve(&p->mover.curve);
-  const char *first = next_line(p, &w);
+  free_mover(&p->mover);
+  const char *first = words_line(p, &w);
   while (first && strcmp(first, "targets") == 0) {
     if (!read_sets(p, &w)) return false;
-    first = next_line(p, &w);
+    first = words_line(p, &w);
   }
-  if (!first) return false;
-  p->mover.none = strcmp(first, "none") == 0;
-  if (!p->mover.none && strcmp(first, "mover") != 0) w.wrong = true;
-  snprintf(p->mover.id, sizeof p->mover.id, "%s", word(&w));
-  if (!p->mover.none) {
-    p->mover.radius = number(&w);
-    if (!(p->mover.radius >= 0.0)) w.wrong = true;
-    read_curve(&w, &p->mover.curve);
-  }
-  return line_is_good(p, &w);
+  return first && read_mover(p, &w, first);
 }
 
 void problem_close(problem *p) {
   free_sets(p);
-  free_curve(&p->mover.curve);
+  free_mover(&p->mover);
   free(p->line);
   *p = (problem){0};
 }

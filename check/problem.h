@@ -18,7 +18,7 @@ typedef struct curve {
   double *knots;
 } curve;
 
-typedef enum kind { POINT, SPHERE, BOX, CAPSULE, CYLINDER, CONE, ELLIPSOID, HALFSPACE, POLYTOPE, CURVE } kind;
+typedef enum kind { POINT, SPHERE, BOX, CAPSULE, CYLINDER, CONE, ELLIPSOID, HALFSPACE, POLYTOPE, HULL, CURVE } kind;
 
 /* position x y z, quaternion w x y z of any norm */
 typedef struct pose {
@@ -32,7 +32,7 @@ typedef struct set {
   size_t n_poses;
   pose poses[2];
   double size[4];   /* as the text has them */
-  double centre[3]; /* POINT, POLYTOPE */
+  double centre[3]; /* POINT, POLYTOPE, HULL */
   size_t n;
   double (*vertices)[3]; /* about the centre */
   curve curve;
@@ -43,6 +43,7 @@ typedef struct mover {
   bool none; /* there is no curve of this name to be asked about */
   double radius;
   curve curve;
+  struct robot *robot; /* or NULL: then it is the curve that moves */
 } mover;
 
 typedef struct problem {

@@ -120,6 +120,12 @@ void support_of_body(iv *out, const set *s, const iv n[3]) {
       break;
     case BOX: boxed(out, size, n, false); break;
     case ELLIPSOID: boxed(out, size, n, true); break;
+    case HULL: /* of a mesh that may stick out of it */
+      vertices(out, s, n);
+      iv_norm(&w[0], n);
+      iv_mul_d(&w[0], &w[0], size[0]);
+      iv_add(out, out, &w[0]);
+      break;
     case CAPSULE:
       boxed(out, along, n, false);
       iv_norm(&w[0], n);

@@ -52,7 +52,7 @@ CPROX_API double cprox_certificate_delta(const cprox_certificate *certificate);
  *          CPROX_BUDGET    max_nodes were not enough
  *          CPROX_PRECISION the distance is too close to delta
  *          CPROX_INVALID   an argument is unusable, or of a kind that has no certificates: support callbacks, carried
- *                          bodies, movers on one clock
+ *                          bodies, movers on one clock; of robots, bodies that are neither convex nor have a hull
  *          CPROX_MEMORY    an allocation failed
  *  with the reason in the workspace. Cost: a few times that of the query; memory is allocated for the certificate.
  *  Source: doc/certificates.md.
@@ -67,6 +67,17 @@ CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_target *targ
  *  Returns the length of the whole text without the 0; 0 for a kind that has no certificates, and for curves.
  */
 CPROX_API size_t cprox_target_describe(const cprox_target *target, char *text, size_t size);
+
+/** A robot along a motion as the checker reads it, with the pairs that the question is about: its targets are described before, by
+ *  cprox_target_describe(). Of meshes the hulls stand for them: of those "near" is never claimed.
+ *
+ *  id          one word.
+ *  text, size  as above.
+ *  Returns the length of the whole text without the 0; 0 for a mover that is no robot, for bodies of a kind that has no certificates,
+ *  and where memory is out.
+ */
+CPROX_API size_t cprox_mover_describe(const cprox_mover *mover, const cprox_target *targets, size_t n, const char *id,
+                                      cprox_workspace *workspace, char *text, size_t size);
 
 #ifdef __cplusplus
 }

@@ -86,6 +86,15 @@ void certificate_count(cprox_certificate *c, uint32_t value) {
   put(c, value, 4);
 }
 
+size_t certificate_short(cprox_certificate *c, uint16_t value) {
+  put(c, value, 2);
+  return c->size - 2;
+}
+
+void certificate_restate_short(cprox_certificate *c, size_t place, uint16_t value) {
+  if (!c->failed) store(c->bytes + place, value, 2);
+}
+
 void certificate_number(cprox_certificate *c, double value) {
   uint64_t bits;
   memcpy(&bits, &value, sizeof bits);

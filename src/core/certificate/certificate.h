@@ -31,6 +31,11 @@ void certificate_clear(cprox_certificate *c);
 
 void certificate_byte(cprox_certificate *c, unsigned char value);
 void certificate_count(cprox_certificate *c, uint32_t value);
+
+/* Returns where it stands, so that it can be overwritten. */
+size_t certificate_short(cprox_certificate *c, uint16_t value);
+void certificate_restate_short(cprox_certificate *c, size_t place, uint16_t value);
+
 void certificate_number(cprox_certificate *c, double value);
 void certificate_normal(cprox_certificate *c, vec3 n);
 

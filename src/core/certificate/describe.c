@@ -1,21 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Targets as text, a line a convex part: what the checker takes as given. doc/certificates.md has the grammar. */
+#include "certificate/describe.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 
-#include "body/body.h"
 #include "certificate/reach.h"
 #include "curve_proximity/cprox/certificate.h"
 
-/* Text that grows beyond its room: then only its length is counted. */
-typedef struct text {
-  char *at;
-  size_t size, length;
-} text;
-
-static void say(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void say(text *t, const char *format, ...) {
+void say(text *t, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   const size_t left = t->length < t->size ? t->size - t->length : 0;
@@ -24,18 +17,34 @@ static void say(text *t, const char *format, ...) {
   if (n > 0) t->length += (size_t)n;
 }
 
-static void say_vector(text *t, vec3 v) {
+void say_vector(text *t, vec3 v) {
   say(t, " %a %a %a", v.x, v.y, v.z);
 }
 
-static void say_pose(text *t, const cprox_pose *pose) {
+void say_pose(text *t, const cprox_pose *pose) {
   const cprox_quat q = pose->orientation;
   say_vector(t, pose->position);
   say(t, " %a %a %a %a", q.w, q.x, q.y, q.z);
 }
 
-static void say_body(text *t, const cprox_body *body) {
+static void say_vertices(text *t, const cprox_body *body) {
+  say_vector(t, body->centre);
+  say(t, " %d", (int)body->shape.n);
+  for (int32_t i = 0; i < body->shape.n; i++) say_vector(t, vec(body->shape.x[i], body->shape.y[i], body->shape.z[i]));
+}
+
+bool say_knows(const cprox_body *body) {
+  if (!body->mesh) return reach_is_known(body);
+  return body->hull->kind == CPROX_POLYTOPE || body->hull->kind == CPROX_POLYGON;
+}
+
+void say_body(text *t, const cprox_body *body) {
   const double *size = body->shape.size;
+  if (body->mesh) {
+    say(t, " hull %a", body->excess);
+    say_vertices(t, body->hull);
+    return;
+  }
   switch (body->kind) {
     case CPROX_POINT:
       say(t, " point");
@@ -48,12 +57,7 @@ static void say_body(text *t, const cprox_body *body) {
     case CPROX_CONE: say(t, " cone %a %a", size[1], size[0]); break;
     case CPROX_ELLIPSOID: say(t, " ellipsoid %a %a %a", size[0], size[1], size[2]); break;
     case CPROX_HALFSPACE: say(t, " halfspace %a %a %a %a", size[0], size[1], size[2], size[3]); break;
-    default:
-      say(t, " polytope");
-      say_vector(t, body->centre);
-      say(t, " %d", (int)body->shape.n);
-      for (int32_t i = 0; i < body->shape.n; i++)
-        say_vector(t, vec(body->shape.x[i], body->shape.y[i], body->shape.z[i]));
+    default: say(t, " polytope"); say_vertices(t, body);
   }
 }
 
@@ -70,13 +74,13 @@ size_t cprox_target_describe(const cprox_target *target, char *out, size_t size)
   if (!body) return 0;
   text t = {.at = out, .size = out ? size : 0};
   if (body->kind != CPROX_COMPOUND) {
-    if (!reach_is_known(body)) return 0;
+    if (!say_knows(body)) return 0;
     say_part(&t, target, body, NULL);
     return t.length;
   }
   for (size_t i = 0; i < body->n_parts; i++) {
     const body_part *part = &body->parts[i];
-    if (!reach_is_known(part->body)) return 0;
+    if (!say_knows(part->body)) return 0;
     say_part(&t, target, part->body, &part->pose);
   }
   return t.length;

@@ -3,6 +3,7 @@
 #ifndef CPROX_MOTION_MOTION_H
 #define CPROX_MOTION_MOTION_H
 
+#include "motion/given.h"
 #include "motion/tree.h"
 
 /* Variables are worked on so many at a time; rows are padded to whole lanes. */
@@ -20,8 +21,9 @@ struct cprox_motion {
   int32_t *slot;   /* of a variable among those, or -1 */
   double *rest;    /* the values of the others */
   bool *axis_moves;
-  placement *still;   /* of an axis that does not: as it stands in its parent's frame */
-  double *norm;       /* of a ball's quaternion: at least this everywhere */
+  placement *still; /* of an axis that does not: as it stands in its parent's frame */
+  double *norm;     /* of a ball's quaternion: at least this everywhere */
+  motion_given given;
   double *part_error; /* every point of a part is computed within this of where it is */
 };
 

@@ -136,6 +136,7 @@ void cprox_motion_free(cprox_motion *motion) {
   free(motion->still);
   free(motion->norm);
   free(motion->part_error);
+  motion_given_free(&motion->given);
   free(motion);
 }
 
@@ -327,6 +328,10 @@ cprox_status cprox_motion_create_waypoints(const cprox_robot *robot, const int32
   if (status != CPROX_OK) return status;
 
   cprox_motion *m = allocate(&s, n_points - 1, 5);
+  if (m && !motion_keep_waypoints(&m->given, variables, n, points, n_points, interpolation)) {
+    cprox_motion_free(m);
+    m = NULL;
+  }
   if (!m) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a motion of %zu waypoints", n_points);
   m->times[0] = points[0].time;
   for (size_t i = 0; i + 1 < n_points; i++) {
@@ -370,6 +375,10 @@ cprox_status cprox_motion_create_bspline(const cprox_robot *robot, const int32_t
   size_t n_segments = 0;
   for (size_t r = degree; r < n_control; r++) n_segments += knots[r] < knots[r + 1];
   cprox_motion *m = allocate(&s, n_segments, degree);
+  if (m && !motion_keep_spline(&m->given, variables, n, degree, control, n_control, knots)) {
+    cprox_motion_free(m);
+    m = NULL;
+  }
   if (!m) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a motion of %zu spans", n_segments);
   m->times[0] = knots[degree];
   size_t i = 0;

@@ -2,6 +2,7 @@
 /* Robots from their description: checked, joints taken apart into axes, fixed transforms folded. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/workspace.h"
 #include "motion/tree.h"
@@ -223,12 +224,16 @@ cprox_status cprox_robot_create(const cprox_link *links, size_t n_links, const c
     made->links = calloc(n_links, sizeof *made->links);
     made->axes = calloc(AXES_OF_FLOATING * n_links, sizeof *made->axes);
     made->parts = calloc(n_parts + 1, sizeof *made->parts);
+    made->given_links = calloc(n_links, sizeof *made->given_links);
+    made->given_geometries = calloc(n_geometries + 1, sizeof *made->given_geometries);
   }
-  if (!made || !made->links || !made->axes || !made->parts) {
+  if (!made || !made->links || !made->axes || !made->parts || !made->given_links || !made->given_geometries) {
     cprox_robot_free(made);
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a robot of %zu links", n_links);
   }
 
+  memcpy(made->given_links, links, n_links * sizeof *links);
+  if (n_geometries > 0) memcpy(made->given_geometries, geometries, n_geometries * sizeof *geometries);
   made->n_variables = n_variables;
   made->n_geometries = n_geometries;
   for (size_t i = 0; i < n_links; i++) add_link(made, &links[i]);
@@ -242,5 +247,7 @@ void cprox_robot_free(cprox_robot *robot) {
   free(robot->links);
   free(robot->axes);
   free(robot->parts);
+  free(robot->given_links);
+  free(robot->given_geometries);
   free(robot);
 }

@@ -52,6 +52,8 @@ struct cprox_robot {
   robot_link *links;
   robot_axis *axes; /* parents first */
   robot_part *parts;
+  cprox_link *given_links; /* as they were given: what certificates are about */
+  cprox_link_geometry *given_geometries;
 };
 
 /* The error of one transform of a chain: the rotation's, per unit of length behind it (doc/robot-bounds.md). */

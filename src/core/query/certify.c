@@ -148,8 +148,9 @@ cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size
                   .workspace = workspace,
                   .certificate = certificate};
   certificate_clear(certificate);
-  if (mover->body || mover->motion || !mover->curve)
-    return workspace_fail(workspace, CPROX_INVALID, "bodies and robots that move have no certificates");
+  if (mover->motion) return certify_robot(mover, targets, n, delta, answer, options, workspace, certificate);
+  if (mover->body || !mover->curve)
+    return workspace_fail(workspace, CPROX_INVALID, "bodies that move have no certificates");
   if (mover->curve->arcs)
     return workspace_fail(workspace, CPROX_INVALID, "curves known by their arc length have no certificates");
   for (size_t i = 0; i < n; i++)

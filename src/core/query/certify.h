@@ -4,10 +4,19 @@
 #define CPROX_QUERY_CERTIFY_H
 
 #include "certificate/certificate.h"
+#include "curve_proximity/cprox/robot.h"
 
 /* Proves an answer whose arguments were checked, as cprox_certify() does. */
 cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
                      const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                      cprox_certificate *certificate);
+
+/* The same for a robot along a motion. */
+cprox_status certify_robot(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
+                           const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
+                           cprox_certificate *certificate);
+
+/* Can the bodies on the robot's links be spoken of in a certificate? */
+bool certify_knows_robot(const cprox_robot *robot);
 
 #endif

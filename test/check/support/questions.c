@@ -111,8 +111,7 @@ static void curve_write(const given_curve *g, FILE *out) {
 
 /* ---- bodies ------------------------------------------------------------------------------------------------------------- */
 
-static cprox_body *body_random(asked *q, rng *r, bool polytope_only, cprox_workspace *ws) {
-  const double scale = q->scale;
+cprox_body *question_body(rng *r, double scale, bool polytope_only, cprox_workspace *ws) {
   const vec3 size = vec(rng_log_uniform(r, 0.05, 1.0) * scale, rng_log_uniform(r, 0.05, 1.0) * scale,
                         rng_log_uniform(r, 0.05, 1.0) * scale);
   vec3 vertex[12];
@@ -136,6 +135,11 @@ static cprox_body *body_random(asked *q, rng *r, bool polytope_only, cprox_works
     }
   }
   if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  return body;
+}
+
+static cprox_body *body_random(asked *q, rng *r, bool polytope_only, cprox_workspace *ws) {
+  cprox_body *body = question_body(r, q->scale, polytope_only, ws);
   q->bodies[q->n_bodies++] = body;
   return body;
 }

@@ -39,6 +39,9 @@ typedef struct asked_kinds {
   bool curve_target;
 } asked_kinds;
 
+/* Of any convex kind. */
+cprox_body *question_body(rng *r, double scale, bool polytope_only, cprox_workspace *ws);
+
 /* Fills q, which must stay where it is. Sizes around `scale`, everything `away` from the origin. */
 void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away, cprox_workspace *ws);
 void asked_free(asked *q);

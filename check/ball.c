@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "ball.h"
+
+#include <mpfr.h>
+
+/* R = 1 + s (w [v] + [v]²), s = 2/q·q; [v]² = v vᵀ - v·v */
+rot rot_of_quaternion(const num q[4]) {
+  num square = num_of(0.0), k[9];
+  for (int i = 0; i < 4; i++) square = num_add(square, num_mul(q[i], q[i]));
+  const num s = num_div(num_of(2.0), square), *v = q + 1;
+  for (int i = 0; i < 3; i++) {
+    const int a = (i + 1) % 3, b = (i + 2) % 3;
+    const num others = num_add(num_mul(v[a], v[a]), num_mul(v[b], v[b]));
+    k[4 * i] = num_sub(num_of(1.0), num_mul(s, others));
+    const num across = num_mul(v[a], v[b]), along = num_mul(q[0], v[i]);
+    k[3 * b + a] = num_mul(s, num_add(across, along));
+    k[3 * a + b] = num_mul(s, num_sub(across, along));
+  }
+  return rot_of(k);
+}
+
+/* Sine and cosine by MPFR: both have slopes of at most 1. */
+static num wave(num angle, int (*f)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t)) {
+  mpfr_t x;
+  mpfr_init2(x, 64);
+  mpfr_set_d(x, angle.m, MPFR_RNDN);
+  f(x, x, MPFR_RNDN);
+  const num y = {mpfr_get_d(x, MPFR_RNDN), GROW(angle.e + 4.0 * BALL_U)};
+  mpfr_clear(x);
+  return y;
+}
+
+/* cos + sin [z] + (1 - cos) z zᵀ */
+rot rot_about(const num *z, num angle) {
+  const num s = wave(angle, mpfr_sin), c = wave(angle, mpfr_cos), d = num_sub(num_of(1.0), c);
+  num k[9];
+  for (int i = 0; i < 3; i++) {
+    const int a = (i + 1) % 3, b = (i + 2) % 3;
+    k[4 * i] = num_add(c, num_mul(d, num_mul(z[i], z[i])));
+    const num across = num_mul(d, num_mul(z[a], z[b])), along = num_mul(s, z[i]);
+    k[3 * b + a] = num_add(across, along);
+    k[3 * a + b] = num_sub(across, along);
+  }
+  return rot_of(k);
+}

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Words of a question as the checker reads it; doc/certificates.md has the grammar. */
+#ifndef CPROX_CERTIFICATE_DESCRIBE_H
+#define CPROX_CERTIFICATE_DESCRIBE_H
+
+#include <stdbool.h>
+
+#include "body/body.h"
+
+/* Text that grows beyond its room: then only its length is counted. */
+typedef struct text {
+  char *at;
+  size_t size, length;
+} text;
+
+void say(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void say_vector(text *t, vec3 v);
+void say_pose(text *t, const cprox_pose *pose);
+
+/* A convex body, or of a mesh with its hull the hull. */
+void say_body(text *t, const cprox_body *body);
+bool say_knows(const cprox_body *body);
+
+#endif

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Covers of a robot's motion by stretches, on each of which planes part the pairs that coarser stretches have left open: the
+ * substance of a robot's certificate. Laid after the answer, as those of curves (cover.h). */
+#ifndef CPROX_QUERY_COVER_ROBOT_H
+#define CPROX_QUERY_COVER_ROBOT_H
+
+#include "certificate/certificate.h"
+#include "query/robot_scene.h"
+
+typedef struct robot_cover {
+  robot_scene *scene;
+  double delta;
+  uint32_t budget; /* stretches that may be tried */
+  double shortest; /* stretches shorter than this part of a segment are given up */
+  cprox_certificate *certificate;
+} robot_cover;
+
+/* Writes the trees of all segments: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY. */
+cprox_status cover_robot(robot_cover *c);
+
+#endif

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#define _POSIX_C_SOURCE 200809L
+#include "support/robot_questions.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "support/questions.h"
+
+/* One that ends somewhere: a link's. */
+static cprox_body *bounded_body(rng *r, double scale, cprox_workspace *ws) {
+  cprox_body *body = question_body(r, scale, false, ws);
+  while (cprox_body_get_kind(body) == CPROX_HALFSPACE) {
+    cprox_body_free(body);
+    body = question_body(r, scale, false, ws);
+  }
+  return body;
+}
+
+void robot_question_random(robot_question *q, rng *r, double speed, double apart, cprox_workspace *ws) {
+  *q = (robot_question){.n = 1 + rng_index(r, ROBOT_QUESTION_TARGETS)};
+  robot_make(r, speed, &q->robot);
+  for (size_t i = 0; i < q->robot.n_links; i++) {
+    if (rng_index(r, 2)) continue;
+    cprox_body_free((cprox_body *)q->robot.geometries[i].body);
+    q->robot.geometries[i].body = bounded_body(r, 0.3, ws);
+  }
+  robot_rebuild(&q->robot);
+  for (size_t i = 0; i < q->n; i++) {
+    cprox_pose at = rng_pose(r, 0.3);
+    at.position = vec_axpy(at.position, apart, rng_unit(r));
+    q->targets[i] = cprox_at(question_body(r, 0.5, false, ws), at);
+    q->targets[i].padding = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0.0, 0.1);
+  }
+  const bool self = rng_index(r, 3) == 0;
+  q->mover = self ? cprox_robot_self(q->robot.motion, NULL, 0) : cprox_robot_along(q->robot.motion, NULL, 0);
+  if (!self) return;
+  for (size_t i = 0; i < q->n; i++) cprox_body_free((cprox_body *)q->targets[i].body);
+  q->n = 0;
+}
+
+void robot_question_free(robot_question *q) {
+  for (size_t i = 0; i < q->n; i++) cprox_body_free((cprox_body *)q->targets[i].body);
+  robot_free(&q->robot);
+}
+
+/* ---- text ----------------------------------------------------------------------------------------------------------------- */
+
+void robot_write_targets(const cprox_target *targets, size_t n, FILE *out) {
+  fprintf(out, "cprox-problem 1\ntargets %zu\n", n);
+  for (size_t i = 0; i < n; i++) {
+    const size_t length = cprox_target_describe(&targets[i], NULL, 0);
+    char *text = calloc(length + 1, 1);
+    cprox_target_describe(&targets[i], text, length + 1);
+    fputs(text, out);
+    free(text);
+  }
+}
+
+void robot_write_mover(const cprox_mover *along, const cprox_target *targets, size_t n, const char *id,
+                       cprox_workspace *ws, FILE *out) {
+  const size_t length = cprox_mover_describe(along, targets, n, id, ws, NULL, 0);
+  if (length == 0) fail_msg("a robot is not described: %s", cprox_workspace_reason(ws));
+  char *text = calloc(length + 1, 1);
+  cprox_mover_describe(along, targets, n, id, ws, text, length + 1);
+  fputs(text, out);
+  free(text);
+}
+
+finding robot_question_check(const cprox_mover *along, const cprox_target *targets, size_t n, const void *bytes,
+                             size_t size, cprox_workspace *ws, double *milliseconds) {
+  FILE *file = tmpfile();
+  robot_write_targets(targets, n, file);
+  robot_write_mover(along, targets, n, "one", ws, file);
+  rewind(file);
+  problem p;
+  if (!problem_open(&p, file) || !problem_next(&p)) fail_msg("the checker does not read it: %s", p.fault);
+  struct timespec begin, end;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
+  const finding found = check(&p, bytes, size);
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
+  *milliseconds = 1e3 * (double)(end.tv_sec - begin.tv_sec) + 1e-6 * (double)(end.tv_nsec - begin.tv_nsec);
+  problem_close(&p);
+  fclose(file);
+  return found;
+}

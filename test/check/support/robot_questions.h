@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Questions about robots as text, and random ones with bodies of every kind that certificates know. */
+#ifndef CHECK_TEST_ROBOT_QUESTIONS_H
+#define CHECK_TEST_ROBOT_QUESTIONS_H
+
+#include <stdio.h>
+
+#include "check.h"
+#include "curve_proximity/cprox.h"
+#include "support/robots.h"
+
+enum { ROBOT_QUESTION_TARGETS = 4 };
+
+typedef struct robot_question {
+  test_robot robot;
+  cprox_target targets[ROBOT_QUESTION_TARGETS];
+  size_t n;
+  cprox_mover mover; /* along, or against itself */
+} robot_question;
+
+/* speed: as robot_make(). apart: how far the targets are from the robot's base [m]. */
+void robot_question_random(robot_question *q, rng *r, double speed, double apart, cprox_workspace *ws);
+void robot_question_free(robot_question *q);
+
+/* The head and the targets; then a robot. */
+void robot_write_targets(const cprox_target *targets, size_t n, FILE *out);
+void robot_write_mover(const cprox_mover *along, const cprox_target *targets, size_t n, const char *id,
+                       cprox_workspace *ws, FILE *out);
+
+/* What the checker finds; milliseconds without the reading of the question. */
+finding robot_question_check(const cprox_mover *along, const cprox_target *targets, size_t n, const void *bytes,
+                             size_t size, cprox_workspace *ws, double *milliseconds);
+
+#endif

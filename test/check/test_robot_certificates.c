@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a query about a robot in motion leaves behind is accepted by the checker, which reads the question itself, does its own
+ * kinematics and shares no line with the search. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "support/builders.h"
+#include "support/robot_case.h"
+#include "support/robot_questions.h"
+
+enum { MOST_ANSWERS = 4096 };
+
+/* Figures of a campaign, printed at its end. */
+typedef struct tally {
+  size_t asked, apart, near, none, n;
+  double bytes[MOST_ANSWERS], tries[MOST_ANSWERS], milliseconds[MOST_ANSWERS];
+} tally;
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double median(double *x, size_t n) {
+  qsort(x, n, sizeof *x, ascending);
+  return n ? x[n / 2] : 0.0;
+}
+
+static void print_tally(const char *what, tally *t) {
+  const double bytes = median(t->bytes, t->n), tries = median(t->tries, t->n), time = median(t->milliseconds, t->n);
+  if (t->n)
+    print_message(
+        "%s: %zu asked, %zu apart, %zu near, %zu without; bytes %g (most %g), directions tried %g (%g), ms %.2g "
+        "(%.2g)\n",
+        what, t->asked, t->apart, t->near, t->none, bytes, t->bytes[t->n - 1], tries, t->tries[t->n - 1], time,
+        t->milliseconds[t->n - 1]);
+}
+
+/* One question with the claim that its certificate makes. */
+static void examine(const cprox_mover *along, const cprox_target *targets, size_t n, const cprox_certificate *c,
+                    const cprox_result *r, double delta, const char *name, tally *sum) {
+  sum->asked++;
+  if (cprox_certificate_size(c) == 0) {
+    sum->none++;
+    const bool open = r->lower <= delta + 1e-9;
+    if (!open)
+      fail_msg("%s: no certificate of lower %.17g over %.17g: %s", name, r->lower, delta, cprox_workspace_reason(ws));
+    return;
+  }
+  double milliseconds;
+  const finding found =
+      robot_question_check(along, targets, n, cprox_certificate_bytes(c), cprox_certificate_size(c), ws, &milliseconds);
+  if (found.fault)
+    fail_msg("%s: refused: %s (lower %.17g, delta %.17g)", name, found.fault, r->lower, cprox_certificate_delta(c));
+  assert_int_equal(found.claim, cprox_certificate_claim(c));
+  assert_true(found.delta == cprox_certificate_delta(c));
+  sum->apart += found.claim == CLAIM_APART;
+  sum->near += found.claim == CLAIM_NEAR;
+  if (found.claim != CLAIM_APART || sum->n == MOST_ANSWERS) return;
+  sum->bytes[sum->n] = (double)cprox_certificate_size(c);
+  sum->tries[sum->n] = (double)found.leaves;
+  sum->milliseconds[sum->n++] = milliseconds;
+}
+
+/* The distance, then verdicts about it. */
+static void ask_thrice(const cprox_mover *along, const cprox_target *targets, size_t n, double epsilon,
+                       const char *name, cprox_certificate *c, tally sum[3]) {
+  static const double SHARE[3] = {0.0, 0.9, 1.1};
+  cprox_options options = accurate(epsilon);
+  options.certificate = c;
+  double distance = 0.0;
+  for (int i = 0; i < 3; i++) {
+    cprox_result r;
+    const double delta = SHARE[i] * distance;
+    const cprox_status status = i == 0 ? cprox_distance_all(*along, targets, n, &options, ws, &r, NULL)
+                                       : cprox_tolerance_all(*along, targets, n, delta, &options, ws, &r, NULL);
+    assert_true(status >= 0);
+    if (i == 0) distance = r.lower;
+    if (!isfinite(distance)) return;
+    examine(along, targets, n, c, &r, i == 0 ? r.lower : delta, name, &sum[i]);
+  }
+}
+
+/* The saved trajectories of Panda, Fanuc and Husky: scene and self, links by their hulls. */
+static void real_robots_leave_certificates_that_hold(void **state) {
+  (void)state;
+  static tally sum[3];
+  cprox_certificate *c = cprox_certificate_create();
+  FILE *f = fopen(TEST_DATA_DIR "/motion/cases.txt", "r");
+  size_t n;
+  assert_non_null(f);
+  assert_int_equal(fscanf(f, "%zu", &n), 1);
+  for (size_t i = 0; i < n; i++) {
+    robot_case one;
+    assert_true(robot_case_read(f, TEST_DATA_DIR "/motion", &one));
+    for (size_t k = 0; k < one.n_answers; k++) {
+      const bool self = one.answers[k].self;
+      const cprox_mover whose = self ? cprox_robot_self(one.motion, one.self_pairs, one.n_self_pairs)
+                                     : cprox_robot_along(one.motion, NULL, 0);
+      ask_thrice(&whose, one.targets, self ? 0 : one.n_targets, 1e-4, one.name, c, sum);
+    }
+    robot_case_free(&one);
+  }
+  fclose(f);
+  print_tally("real robots, distance to 1e-4", &sum[0]);
+  print_tally("real robots, .9 of it", &sum[1]);
+  print_tally("real robots, 1.1 of it", &sum[2]);
+  assert_true(sum[0].apart + sum[0].near > 30);
+  cprox_certificate_free(c);
+}
+
+/* Robots of all joint types, splines and waypoints, bodies of every kind: seed 4, 100 robots. */
+static void random_robots_leave_certificates_that_hold(void **state) {
+  (void)state;
+  static tally sum[3];
+  cprox_certificate *c = cprox_certificate_create();
+  rng r = rng_seed(4);
+  for (size_t i = 0; i < test_cases(100); i++) {
+    robot_question q;
+    robot_question_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), ws);
+    char name[40];
+    snprintf(name, sizeof name, "robot %zu", i);
+    ask_thrice(&q.mover, q.targets, q.n, 1e-5, name, c, sum);
+    robot_question_free(&q);
+  }
+  print_tally("random robots, distance to 1e-5", &sum[0]);
+  print_tally("random robots, .9 of it", &sum[1]);
+  print_tally("random robots, 1.1 of it", &sum[2]);
+  assert_true(sum[0].apart > 20);
+  cprox_certificate_free(c);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(real_robots_leave_certificates_that_hold),
+      cmocka_unit_test(random_robots_leave_certificates_that_hold),
+  };
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+}
