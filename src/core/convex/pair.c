@@ -464,9 +464,9 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   p.rounding = ROUND_UP * (PAIR_ROUNDING * ROUND_U * size + placement->error + 2.0 * (a->slack + b->slack));
   p.hair = 4.0 * ROUND_U * size;
 
-  /* from the line of the centres on */
-  vec3 u;
-  feature_unit(vec_neg(p.t), &u);
+  /* from what is known on, or the line of the centres */
+  vec3 u = goal->start;
+  if (!(vec_norm2(u) > 0.0)) feature_unit(vec_neg(p.t), &u);
   pair_search(&p, vec_norm2(u) > 0.0 ? u : vec(1, 0, 0), margins, goal);
   answer->exhausted = p.steps >= goal->max_steps || p.steps >= PAIR_MAX_STEPS;
   answer->overlap = p.nearest.inside && p.nearest.depth + margins > p.rounding;

@@ -17,6 +17,7 @@ typedef struct pair_goal {
   double epsilon, relative_epsilon;
   double floor, fraction; /* or this fraction of what its lower end is above the floor; 0: none */
   uint32_t max_steps;
+  vec3 start; /* a's frame, unit: near the normal of the answer; (0,0,0): nothing is known */
   bool wants_feature;
   bool wants_depth; /* how deep the cores overlap, not only that they do */
 } pair_goal;

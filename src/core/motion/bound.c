@@ -47,6 +47,21 @@ static double find_levers(const axis_state *axes, const chain_axis *chain, size_
   return ROUND_UP * tipside;
 }
 
+/* A sum over the chain in any order: up from both ends, always from the later axis, to the one above both. */
+double motion_travel(const cprox_motion *motion, const axis_state *axes, int32_t from, int32_t to, vec3 centre,
+                     double radius) {
+  const robot_axis *robot = motion->robot->axes;
+  double travel = 0.0;
+  while (from != to) {
+    int32_t *later = from > to ? &from : &to;
+    const axis_state *axis = &axes[*later];
+    if (motion->axis_moves[*later])
+      travel += axis->shift * (turns(axis) ? ROUND_UP * (lever(axis, centre) + radius) : 1.0);
+    *later = robot[*later].parent;
+  }
+  return ROUND_UP * travel;
+}
+
 /* Velocity and acceleration of the centre, from the base to the tip. */
 static void find_rates(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, chain_motion *m) {
   m->v = m->omega = m->a = m->alpha = vec(0, 0, 0);
@@ -94,11 +109,6 @@ void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, v
   m->travel = find_levers(axes, chain, n, centre, radius, scratch);
   find_rates(axes, chain, n, centre, m);
   find_derivative_bounds(axes, chain, n, scratch, m);
-}
-
-double motion_travel(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
-                     double *scratch) {
-  return find_levers(axes, chain, n, centre, radius, scratch);
 }
 
 double bound_height(const bound_side *side, vec3 n) {

@@ -28,9 +28,9 @@ typedef struct chain_motion {
 void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
                     double *scratch, chain_motion *m);
 
-/* The travel alone. */
-double motion_travel(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
-                     double *scratch);
+/* The travel alone, by the chain of motion_chain(). */
+double motion_travel(const cprox_motion *motion, const axis_state *axes, int32_t from, int32_t to, vec3 centre,
+                     double radius);
 
 /* The two sides of a pair in the middle of the node. */
 typedef struct bound_side {

@@ -4,11 +4,14 @@
 #ifndef CPROX_QUERY_ROBOT_LISTS_H
 #define CPROX_QUERY_ROBOT_LISTS_H
 
+#include <stdbool.h>
+
 #include "base/workspace.h"
 
 typedef struct list_entry {
   double lower; /* a bound on the pair's distance over the node, known so far */
   int32_t pair;
+  bool blurred; /* on this node the part moves too far to be measured */
 } list_entry;
 
 enum { LIST_CLASSES = 28 };

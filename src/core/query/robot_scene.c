@@ -181,13 +181,17 @@ static void place_axis(robot_scene *s, int32_t axis) {
   }
 }
 
-static part_state *place(robot_scene *s, int32_t index) {
+static void place_part(robot_scene *s, int32_t index) {
   part_state *state = &s->parts[index];
-  if (state->placed == s->node) return state;
   const robot_part *part = &s->motion->robot->parts[index];
   place_axis(s, part->axis);
   state->body.side.at = part->axis < 0 ? part->at : placement_compose(&s->axes[part->axis].frame, &part->at);
   state->placed = s->node;
+}
+
+static inline part_state *place(robot_scene *s, int32_t index) {
+  part_state *state = &s->parts[index];
+  if (state->placed != s->node) place_part(s, index);
   return state;
 }
 
@@ -216,10 +220,10 @@ static void find_motion(robot_scene *s, const robot_pair *pair, const robot_body
 static double travel_of_part(robot_scene *s, int32_t index) {
   part_state *state = place(s, index);
   if (state->travelled == s->node) return state->travel;
-  const size_t n = motion_chain(s->motion, -1, s->motion->robot->parts[index].axis, s->chain);
   const robot_body *body = &state->body;
   state->travelled = s->node;
-  state->travel = motion_travel(s->axes, s->chain, n, body->side.at.p, body->radius + body->side.error, s->scratch);
+  state->travel = motion_travel(s->motion, s->axes, -1, s->motion->robot->parts[index].axis, body->side.at.p,
+                                body->radius + body->side.error);
   return state->travel;
 }
 
@@ -230,9 +234,8 @@ double robot_scene_way(robot_scene *s, const robot_pair *pair) {
 
 double robot_scene_travel(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
   if (!s->self && pair->element[0] < 0) return travel_of_part(s, pair->moving);
-  const size_t n =
-      motion_chain(s->motion, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis, s->chain);
-  return motion_travel(s->axes, s->chain, n, moving->side.at.p, moving->radius + moving->side.error, s->scratch);
+  return motion_travel(s->motion, s->axes, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis,
+                       moving->side.at.p, moving->radius + moving->side.error);
 }
 
 const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, const robot_body *moving,
@@ -332,6 +335,7 @@ void robot_scene_measure(const robot_body *moving, const robot_body *standing, r
   const pair_goal goal = {.epsilon = accuracy.epsilon,
                           .floor = accuracy.floor,
                           .fraction = accuracy.fraction,
+                          .start = vec_neg(accuracy.start),
                           .max_steps = GAP_STEPS,
                           .wants_feature = true};
   pair_answer answer;

@@ -82,9 +82,10 @@ typedef struct robot_gap {
   bool fault;
 } robot_gap;
 
-/* How exactly: within epsilon, or within `fraction` of what the lower end is above `floor`. */
+/* How exactly: within epsilon, or within `fraction` of what the lower end is above `floor`. And where to begin. */
 typedef struct robot_accuracy {
   double epsilon, floor, fraction;
+  vec3 start; /* standing frame, unit: near the normal; (0,0,0): nothing is known */
 } robot_accuracy;
 
 void robot_scene_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy, robot_gap *gap);

@@ -68,8 +68,8 @@ search_node robot_search_root(robot_search *o, size_t first, double u0, size_t l
 /* The lower bound from which on a pair needs no more work. */
 static double settling_bound(const robot_search *o) {
   if (o->limit >= 0.0) return o->limit;
-  const double upper = fmin(o->best_bound.upper, o->ceiling);
-  return upper - fmax(o->epsilon, o->relative_epsilon * upper);
+  const double upper = lesser(o->best_bound.upper, o->ceiling);
+  return upper - greater(o->epsilon, o->relative_epsilon * upper);
 }
 
 /* Distances: the least one. Left to right: the earliest one within epsilon of contact, and until there is one, the least. */
@@ -153,7 +153,8 @@ static cprox_status measure_whole(robot_search *o, int32_t index, size_t segment
   robot_gap gap;
   const double floor = fmax(o->limit, 0.0);
   const cprox_status status =
-      measure(o, index, segment, u, (robot_accuracy){GAP_FRACTION * o->epsilon, floor, SEED_FRACTION}, &gap);
+      measure(o, index, segment, u,
+              (robot_accuracy){.epsilon = GAP_FRACTION * o->epsilon, .floor = floor, .fraction = SEED_FRACTION}, &gap);
   const robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   if (status < 0 || is_convex(moving, standing) || gap.lower >= o->best_bound.upper) return status;
@@ -193,12 +194,17 @@ static cprox_status seed(robot_search *o, const search_node *node) {
 
 /* ---- bounds --------------------------------------------------------------------------------------------------------------- */
 
-/* The pair's last normal, carried on to the middle of the node as it turned. */
-static vec3 normal_in_middle(const search_node *node, const robot_pair *pair, const robot_body *standing) {
+/* The pair's last normal, carried on to the middle of the node as it turned; in the standing frame. (0,0,0) where there is none. */
+static vec3 known_normal(const search_node *node, const robot_pair *pair) {
+  if (!pair->normal_known) return vec(0, 0, 0);
   const double middle = 0.5 * (node->side[0].a + node->side[1].b);
   const double away = pair->segment == first_of(node) ? middle - pair->u : 0.0;
-  vec3 n = placement_turn(&standing->side.at, vec_axpy(pair->normal, away, pair->drift));
-  n = vec_scale(1.0 / vec_norm(n), n);
+  const vec3 n = vec_axpy(pair->normal, away, pair->drift);
+  return vec_scale(1.0 / vec_norm(n), n);
+}
+
+static vec3 normal_in_middle(const search_node *node, const robot_pair *pair, const robot_body *standing) {
+  const vec3 n = placement_turn(&standing->side.at, known_normal(node, pair));
   return vec_scale(1.0 / vec_norm(n), n);
 }
 
@@ -210,11 +216,15 @@ static double plane_middle(const search_node *node, const robot_pair *pair, cons
   return along - bound_height(&moving->side, vec_neg(n)) - robot_scene_height(standing, n);
 }
 
+static double width_of(const search_node *node) {
+  return node->side[1].b - node->side[0].a;
+}
+
 /* What that normal says of the node. */
 static double bound_by_normal(robot_search *o, const search_node *node, const robot_pair *pair,
                               const robot_body *moving, const robot_body *standing, const chain_motion *motion,
                               double goal, double *slack) {
-  const double width = node->side[1].b - node->side[0].a;
+  const double width = width_of(node);
   const bool same_segment = pair->segment == first_of(node);
   const vec3 n = normal_in_middle(node, pair, standing);
   vec3 drift = placement_turn(&standing->side.at, vec_scale(same_segment ? width : 0.0, pair->drift));
@@ -230,7 +240,7 @@ static double bound_by_normal(robot_search *o, const search_node *node, const ro
 
 /* What a cut into so many pieces would do for one pair counts for the node. */
 static void want_pieces(robot_search *o, double pieces) {
-  o->pieces = fmax(o->pieces, pieces);
+  o->pieces = greater(pieces, o->pieces);
 }
 
 /* A pair that is `middle` apart in the middle, of which the whole node says `bound`: what is lost shrinks as the square of the length
@@ -248,7 +258,7 @@ static bool is_settled(const robot_search *o, double lower) {
 static double bound_by_gap(robot_search *o, const search_node *node, robot_pair *pair, const robot_body *moving,
                            const robot_body *standing, const chain_motion *motion, const robot_gap *gap,
                            double *slack) {
-  const double width = node->side[1].b - node->side[0].a;
+  const double width = width_of(node);
   const vec3 drift = vec_scale(1.0 / width, robot_scene_drift(gap, moving, standing, motion));
   pair->drift = placement_turn_back(&standing->side.at, drift);
   return bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
@@ -304,29 +314,33 @@ static cprox_status climb_pair(robot_search *o, search_node *node, list_entry *e
   return CPROX_OK;
 }
 
-/* Raises the bound of one pair over the node that the scene is at, by the cheapest way that settles it. */
+/* Raises the bound of one pair over the node that the scene is at by balls and boxes. A part that travels too far to be measured wants
+ * the node cut. */
+static void bound_pair_roughly(robot_search *o, const search_node *node, list_entry *entry) {
+  const robot_pair *pair = &o->scene.pairs[entry->pair];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  entry->blurred = false;
+  if (pair->element[0] < 0 && pair->element[1] < 0) {
+    const double balls = robot_scene_balls(moving, standing) - robot_scene_way(&o->scene, pair);
+    entry->lower = greater(balls, entry->lower);
+    if (is_settled(o, entry->lower)) return;
+  }
+  const double apart = robot_scene_apart(moving, standing), travel = robot_scene_travel(&o->scene, pair, moving);
+  entry->lower = greater(apart - travel, entry->lower);
+  const double size = greater(BLUR * apart, moving->radius);
+  if (is_settled(o, entry->lower) || !(travel > size) || !(width_of(node) > SHORT_STRETCH)) return;
+  entry->blurred = true;
+  want_pieces(o, travel / size);
+}
+
+/* The same by planes and distances, the cheapest way that settles it. */
 static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *entry, double *slack) {
   robot_pair *pair = &o->scene.pairs[entry->pair];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  const bool whole = pair->element[0] < 0 && pair->element[1] < 0;
-  if (whole) {
-    entry->lower = greater(entry->lower, robot_scene_balls(moving, standing) - robot_scene_way(&o->scene, pair));
-    if (is_settled(o, entry->lower)) return CPROX_OK;
-  }
-  const double apart = robot_scene_apart(moving, standing), travel = robot_scene_travel(&o->scene, pair, moving);
-  entry->lower = greater(entry->lower, apart - travel);
   *slack = moving->side.error + standing->side.error;
-  if (is_settled(o, entry->lower)) return CPROX_OK;
-
-  /* too blurred: halves will tell more */
-  const double width = node->side[1].b - node->side[0].a;
-  const double size = fmax(moving->radius, BLUR * fmax(apart, 0.0));
-  if (travel > size && width > SHORT_STRETCH) {
-    want_pieces(o, travel / size);
-    return CPROX_OK;
-  }
   chain_motion own;
   const chain_motion *motion = robot_scene_motion(&o->scene, pair, moving, &own);
+  const double travel = motion->travel, width = width_of(node);
 
   if (pair->normal_known) {
     const double bound = bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
@@ -341,9 +355,12 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
     }
   }
 
+  /* another pair wants the node cut: pieces will tell more */
+  if (o->cut) return CPROX_OK;
   robot_gap gap;
   const double u = 0.5 * (node->side[0].a + node->side[1].b);
-  const robot_accuracy accuracy = {GAP_FRACTION * o->epsilon, settling_bound(o), EXCESS_FRACTION};
+  const robot_accuracy accuracy = {GAP_FRACTION * o->epsilon, settling_bound(o), EXCESS_FRACTION,
+                                   known_normal(node, pair)};
   const cprox_status status = measure(o, entry->pair, first_of(node), u, accuracy, &gap);
   if (status < 0) return status;
   entry->lower = fmax(entry->lower, gap.lower - travel);
@@ -362,29 +379,55 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   return climb_pair(o, node, entry, &gap, travel);
 }
 
+/* Balls and boxes of all pairs of a node; those that still matter are kept. */
+static cprox_status bound_roughly(robot_search *o, const search_node *node) {
+  const int32_t list = node->side[0].slot;
+  const size_t n = lists_count(&o->lists, list);
+  list_entry *next = workspace_reserve(o->scene.q->workspace, WORKSPACE_ROBOT_NEXT, (n + 1) * sizeof *next);
+  if (!next) return CPROX_MEMORY;
+  o->next = next;
+  for (size_t i = 0; i < n; i++) {
+    list_entry entry = lists_at(&o->lists, list)[i];
+    if (!is_settled(o, entry.lower)) bound_pair_roughly(o, node, &entry);
+    if (is_settled(o, entry.lower))
+      o->dropped = lesser(entry.lower, o->dropped);
+    else
+      next[o->n_next++] = entry;
+  }
+  return CPROX_OK;
+}
+
 /* Bounds all pairs of a node of one segment; those that still matter become its own list. */
 static cprox_status bound_node(robot_search *o, search_node *node) {
   const int32_t old = node->side[0].slot;
-  const size_t n = lists_count(&o->lists, old);
   const double inherited = node->lower;
   robot_scene_enter(&o->scene, first_of(node), node->side[0].a, node->side[1].b);
   o->n_next = 0;
   o->pieces = 2.0;
+  const cprox_status rough = bound_roughly(o, node);
+  if (rough < 0) return rough;
+
+  /* those that stay move to the front, elements that take the place of a pair come behind the last one */
+  const size_t n = o->n_next;
+  o->cut = o->pieces > 2.0;
+  size_t kept = 0;
   node->lower = INFINITY;
   for (size_t i = 0; i < n; i++) {
-    list_entry entry = lists_at(&o->lists, old)[i];
+    list_entry entry = o->next[i];
     double slack = 0.0;
-    if (!is_settled(o, entry.lower)) {
+    if (!is_settled(o, entry.lower) && !entry.blurred) {
       const cprox_status status = bound_pair(o, node, &entry, &slack);
       if (status < 0) return status;
     }
     if (is_settled(o, entry.lower)) {
-      o->dropped = fmin(o->dropped, entry.lower);
+      o->dropped = lesser(entry.lower, o->dropped);
       continue;
     }
-    if (!keep_entry(o, &entry)) return CPROX_MEMORY;
+    o->next[kept++] = entry;
     if (entry.lower < node->lower) node->lower = entry.lower, node->slack = slack;
   }
+  for (size_t i = n; i < o->n_next; i++) o->next[kept++] = o->next[i];
+  o->n_next = kept;
 
   const int32_t own = lists_take(&o->lists, o->n_next);
   if (own < 0) return CPROX_MEMORY;
@@ -423,9 +466,12 @@ static int split(void *self, search_node *node, search_node *child) {
   const double a = node->side[0].a, b = node->side[1].b;
   int n = 2;
   if (first + 1 < last) {
-    const size_t middle = (first + last) / 2;
-    child[0] = node_of(o, node, first, a, middle, 1.0);
-    child[1] = node_of(o, node, middle, 0.0, last, b);
+    const size_t segments = last - first;
+    n = segments > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (int)segments;
+    for (int k = 0; k < n; k++) {
+      const size_t from = first + segments * (size_t)k / (size_t)n, to = first + segments * (size_t)(k + 1) / (size_t)n;
+      child[k] = node_of(o, node, from, k == 0 ? a : 0.0, to, k + 1 == n ? b : 1.0);
+    }
   } else {
     if (!(b - a > SHORTEST_STRETCH)) return 0;
     n = o->pieces < 2.0 ? 2 : o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (int)ceil(o->pieces);

@@ -35,6 +35,7 @@ typedef struct robot_search {
   double pieces;         /* into so many the node at hand is best cut */
   list_entry *next;      /* what the node at hand keeps, in the workspace */
   size_t n_next;
+  bool cut; /* it will be cut whatever is measured */
 } robot_search;
 
 /* The scene must have begun. */
