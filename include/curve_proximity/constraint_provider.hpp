@@ -8,6 +8,7 @@
 #define CURVE_PROXIMITY_CONSTRAINT_PROVIDER_HPP
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <string>
@@ -97,10 +98,29 @@ class Constraint {
   virtual void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &value) const = 0;
 };
 
-/** The base class of the plugins. */
-class ConstraintProvider {
+/** Raised with every change of what plugin and loader share that no size shows: the order of virtual functions, what a field means. */
+constexpr std::uint64_t PROVIDER_VERSION = 1;
+
+/** What a plugin and whoever loads it must have in common, as one number: the version, the size of all that they hand each other,
+ *  and how Eigen and the standard library were set up (-mavx alone changes how Eigen's memory is given back). */
+constexpr std::uint64_t providerLayout() {
+  std::uint64_t layout = PROVIDER_VERSION;
+  for (const std::size_t part :
+       {sizeof(ConstraintPair), sizeof(ConstraintBody::Part), sizeof(ShapeDescription), sizeof(CurveDescription),
+        sizeof(ConstraintCurve), sizeof(ConstraintPlace), sizeof(ConstraintValue), sizeof(Workspace),
+        sizeof(ParameterMap), sizeof(ParameterValue), sizeof(cprox_options), sizeof(cprox_target), sizeof(cprox_mover),
+        sizeof(cprox_result), sizeof(cprox_gradient), alignof(ConstraintValue), alignof(ConstraintPair),
+        static_cast<std::size_t>(EIGEN_MAX_STATIC_ALIGN_BYTES)})
+    layout = layout * 1000003u + part;
+  return layout;
+}
+
+/** The base class of the plugins, under its name ConstraintProvider. What is shared is part of its type: pluginlib finds no plugin in a
+ *  library that was built against other headers, so that none of its functions is ever called. */
+template <std::uint64_t Layout>
+class LayoutProvider {
  public:
-  virtual ~ConstraintProvider() = default;
+  virtual ~LayoutProvider() = default;
 
   /** Called once, before all else. Throws Error for parameters that are wrong, and names them (ParameterReader does). */
   virtual void initialise(const ParameterMap &parameters) = 0;
@@ -116,6 +136,7 @@ class ConstraintProvider {
     return value;
   }
 };
+using ConstraintProvider = LayoutProvider<providerLayout()>;
 
 /* ---- for plugins ------------------------------------------------------------------------------------------------- */
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <new>
 #include <set>
+#include <stdexcept>
 
 namespace curve_proximity {
 namespace {
@@ -53,7 +54,13 @@ class ProviderSet::Loader {
   }
 
   std::shared_ptr<ConstraintProvider> create(const std::string &type) {
-    return std::shared_ptr<ConstraintProvider>(classes_.createUnmanagedInstance(type));
+    try {
+      return std::shared_ptr<ConstraintProvider>(classes_.createUnmanagedInstance(type));
+    } catch (const pluginlib::CreateClassException &) {
+      throw std::runtime_error(
+          "its library has no class '" + classes_.getClassType(type) +
+          "' that was built against this version of curve_proximity/constraint_provider.hpp: build it again");
+    }
   }
 
  private:
