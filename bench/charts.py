@@ -7,6 +7,7 @@ import matplotlib
 
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib import ticker  # noqa: E402
 
 from fourier import charts as fourier_charts  # noqa: E402
 
@@ -37,19 +38,38 @@ def save(figure, out, name):
     return name
 
 
+def beside(axes):
+    """The legend, where it hides nothing."""
+    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
+
+
+def readable(axis):
+    """A logarithmic axis of few decades has labels between them."""
+    low, high = axis.get_view_interval()
+    if 0.0 < low and high < 300.0 * low:
+        axis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_minor_formatter(ticker.NullFormatter())
+    if 1e-3 < low and high < 1e6:
+        axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f'{value:,.12g}'))
+
+
 def methods_of(rows):
     """Ours first, then in the order of the file."""
     names = list(dict.fromkeys(row['method'] for row in rows))
     return sorted(names, key=lambda name: (not name.startswith(OURS), names.index(name)))
 
 
-def work_precision(rows, out, group, workload, parameter, title, name, x_label='width of the interval asked for [m]', reverse=True):
-    """Time against the accuracy asked, or another number: rows whose parameter matches the pattern, whose one group is that number."""
+def work_precision(rows, out, group, workload, parameter, title, name, x_label='width of the interval asked for [m]', reverse=True, reached=None):
+    """Time against the accuracy asked, or another number: rows whose parameter matches the pattern, whose one group is that number. Rows that
+    match `reached` have no such number: they stand at the error that they made."""
     points = []
     for row in rows:
+        if row['group'] != group or row['workload'] != workload:
+            continue
         match = re.fullmatch(parameter, row['parameter'])
-        if row['group'] == group and row['workload'] == workload and match:
-            points.append((row['method'], float(match.group(1)), float(row['median_us']), float(row['p95_us'])))
+        if match or (reached and re.fullmatch(reached, row['parameter'])):
+            x = float(match.group(1)) if match else max(float(row['error'] or 'nan'), 1e-16)
+            points.append((row['method'], x, float(row['median_us']), float(row['p95_us'])))
     if not points:
         return None
     figure, axes = plt.subplots()
@@ -58,14 +78,19 @@ def work_precision(rows, out, group, workload, parameter, title, name, x_label='
         mine = sorted(p[1:] for p in points if p[0] == method)
         x, median, p95 = zip(*mine)
         colour = colour_of(method, seen)
-        (axes.loglog if reverse else axes.semilogy)(x, median, 'o-', color=colour, label=LABELS.get(method, method))
+        axes.semilogy(x, median, 'o-', color=colour, label=LABELS.get(method, method))
         axes.fill_between(x, median, p95, color=colour, alpha=0.13, linewidth=0)
+    values = [p[1] for p in points]
+    if reverse or max(values) >= 30.0 * min(values):
+        axes.set_xscale('log')
+        readable(axes.xaxis)
     if reverse:
         axes.invert_xaxis()
-    axes.set_xlabel(x_label)
+    readable(axes.yaxis)
+    axes.set_xlabel(x_label + ('; without one: error made [m]' if reached else ''))
     axes.set_ylabel('time a query [µs]; band: to 95 %')
     axes.set_title(title)
-    axes.legend()
+    beside(axes)
     return save(figure, out, name)
 
 
@@ -90,7 +115,8 @@ def bars(rows, out, group, select, title, name, label=lambda row: f"{row['worklo
     axes.set_ylabel(time)
     axes.set_title(title)
     axes.grid(axis='x', visible=False)
-    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
+    beside(axes)
+    readable(axes.yaxis)
     return save(figure, out, name)
 
 
@@ -100,7 +126,8 @@ def curves(rows, out):
                            ('curves 3-D distance', 'curve_curve')):
         order = '5' if name == 'curve_curve' else '15'
         yield work_precision(rows, out, 'curves', workload, pattern.replace(r'\d+ eps', order + ' eps', 1),
-                             f'{workload}, order {order}: time against accuracy', f'work_precision_{name}')
+                             f'{workload}, order {order}: time against accuracy', f'work_precision_{name}',
+                             reached=rf'order {order} (samples \d+|as it is)')
     yield bars(rows, out, 'curves', lambda row: row['workload'].endswith('distance') and row['parameter'].endswith('eps 1e-10'),
                'Distance to 1e-10', 'distance_by_order', lambda row: f"{row['workload'][:-9]}\n{row['parameter'][:8]}")
     yield bars(rows, out, 'curves', lambda row: 'tolerance' in row['workload'] and 'order 15' in row['parameter'],
@@ -112,7 +139,10 @@ def splines(rows, out):
     for space in ('2-D', '3-D'):
         yield work_precision(rows, out, 'splines', f'B-spline {space} distance', r'(\d+) segments', f'Cubic B-splines, {space}: distance to 1e-10',
                              f'splines_{space[0]}', 'segments', reverse=False)
-    yield bars(rows, out, 'splines', lambda row: row['workload'].startswith('trigonometric'), 'Compiled trigonometric series', 'trigonometric',
+    for curve, title in (('B-spline', 'Cubic B-splines of 100 segments'), ('trigonometric', 'Trigonometric series')):
+        yield work_precision(rows, out, 'splines', f'{curve} 3-D accuracy', r'eps (1e-\d+)', f'{title} and a polytope: time against accuracy',
+                             f'work_precision_{curve.lower()}', reached=r'samples \d+')
+    yield bars(rows, out, 'splines', lambda row: row['workload'].startswith('trigonometric') and 'accuracy' not in row['workload'], 'Compiled trigonometric series', 'trigonometric',
                lambda row: row['workload'][14:].replace(' ', '\n'))
 
 
@@ -124,8 +154,49 @@ def peers(rows, out):
 
 
 def batches(rows, out):
-    yield bars(rows, out, 'batches', lambda row: True, 'A thousand quintic Bézier curves', 'batches',
+    yield bars(rows, out, 'batches', lambda row: row['workload'].startswith(('polygons', 'boxes')), 'A thousand quintic Bézier curves', 'batches',
                lambda row: f"{row['workload'].replace(' ', chr(10))}\n{row['parameter'].split()[0]}", 'median time of all curves [µs]')
+    for verb in ('distance', 'tolerance', 'collision'):
+        yield rates(rows, out, f'boxes {verb}', f'Batches of a thousand quintics, {verb}', f'batches_rate_{verb}')
+    yield threads(rows, out)
+
+
+def rates(rows, out, workload, title, name):
+    """Curves a second against the number of obstacles."""
+    rows = [row for row in rows if row['group'] == 'batches' and row['workload'] == workload]
+    if not rows:
+        return None
+    figure, axes = plt.subplots()
+    seen = []
+    for method in methods_of(rows):
+        mine = sorted((float(row['parameter'].split()[0]), 1e9 / float(row['median_us'])) for row in rows if row['method'] == method)
+        axes.loglog(*zip(*mine), 'o-', color=colour_of(method, seen), label=LABELS.get(method, method))
+    readable(axes.xaxis)
+    readable(axes.yaxis)
+    axes.set_xlabel('obstacles')
+    axes.set_ylabel('curves a second, one thread')
+    axes.set_title(title)
+    beside(axes)
+    return save(figure, out, name)
+
+
+def threads(rows, out):
+    """Curves a second against threads."""
+    rows = [row for row in rows if row['group'] == 'threads']
+    if not rows:
+        return None
+    figure, axes = plt.subplots()
+    for k, workload in enumerate(dict.fromkeys(row['workload'] for row in rows)):
+        mine = sorted((int(row['parameter'].split()[0]), 1e9 / float(row['median_us'])) for row in rows if row['workload'] == workload)
+        axes.plot(*zip(*mine), 'o-', color=[COLOURS[OURS], *OTHERS][k], label=workload.split()[-1])
+        axes.plot([n for n, _ in mine], [n * mine[0][1] for n, _ in mine], ':', color='#999999', linewidth=1)
+    axes.set_xticks(sorted({int(row['parameter'].split()[0]) for row in rows}))
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel('threads; dotted: in proportion')
+    axes.set_ylabel('curves a second')
+    axes.set_title('A thousand quintics against a hundred boxes, over threads')
+    beside(axes)
+    return save(figure, out, 'batches_threads')
 
 
 def worlds(rows, out):
@@ -136,8 +207,25 @@ def worlds(rows, out):
 
 def robots(rows, out):
     for workload in ('environment', 'self'):
-        yield work_precision(rows, out, 'robots', workload, r'epsilon ([0-9.e-]+)', f'Robots, {workload}: time against accuracy',
-                             f'robots_{workload}')
+        bounded = [row for row in rows if row['method'] != 'sampling .05']  # which knows no epsilon; "sampling" stands at its error
+        yield work_precision(bounded, out, 'robots', workload, r'epsilon ([0-9.e-]+)', f'Robots, {workload}: time against accuracy',
+                             f'robots_{workload}', reached=r'step .*')
+    yield bars(rows, out, 'robots', lambda row: row['workload'] == 'tolerance', 'Robots: farther than delta?', 'robots_verdicts',
+               lambda row: row['parameter'].replace('delta ', ''))
+    yield bars(rows, out, 'robots', lambda row: row['workload'] == 'planning',
+               'A Panda in seven scenes: certified minimum to 1 mm, and checks of states', 'robots_planning',
+               lambda row: row['parameter'].replace('panda_', '').replace('_0001_rrt', '').replace('_', '\n'))
+    for what in dict.fromkeys(row['workload'] for row in rows if row['group'] == 'robots' and row['workload'].startswith('growth')):
+        yield work_precision(rows, out, 'robots', what, r'\D*(\d+).*', f'Robots: {what}', 'robots_' + what.replace(' ', '_'), what.split()[1], reverse=False)
+
+
+def implicit(rows, out):
+    """Table I of Chakraborty et al. as bars, and its Fig. 2."""
+    yield bars(rows, out, 'implicit', lambda row: row['workload'] == 'table I', 'Pairs of implicit bodies to 1e-8 of their size', 'implicit_pairs',
+               lambda row: row['parameter'])
+    for kind in ('planes', 'quadrics', 'superquadrics'):
+        yield work_precision(rows, out, 'implicit', f'figure 2 {kind}', r'(\d+)', f'Bodies of many {kind}', f'seeds_figure_2_{kind}',
+                             'constraints of both bodies', reverse=False)
 
 
 def fourier(rows, out):
@@ -165,7 +253,7 @@ def narrowing(rows, out):
     axes.set_xlabel('intervals examined')
     axes.set_ylabel('upper - lower [m]')
     axes.set_title('A curve of order 13 and a polygon: how the interval narrows')
-    axes.legend()
+    beside(axes)
     return save(figure, out, 'seeds_figure_7') if found else plt.close(figure)
 
 
@@ -178,6 +266,6 @@ def draw_all(rows, out):
     """All charts for which there are rows; their names."""
     style()
     drawn = []
-    for draw in (curves, splines, peers, seeds, batches, worlds, robots, fourier):
+    for draw in (curves, splines, peers, seeds, batches, worlds, robots, implicit, fourier):
         drawn += [name for name in draw(rows, out) if name]
     return drawn

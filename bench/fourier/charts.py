@@ -7,8 +7,10 @@ import re
 import matplotlib.pyplot as plt
 
 NAMES = {'curve_proximity': 'certified', 'curve_proximity tuned': 'tuned (no guarantee)',
+         'curve_proximity signal': 'signal (for solvers)',
          'paper': "Parks-McClellan kernel, Lysenko 2011, threshold corrected"}
-COLOURS = {'curve_proximity': '#0b6e99', 'curve_proximity tuned': '#6b8e23', 'paper': '#c2571a', 'exact': '#333333'}
+COLOURS = {'curve_proximity': '#0b6e99', 'curve_proximity tuned': '#6b8e23', 'curve_proximity signal': '#7b4ea3', 'paper': '#c2571a',
+           'exact': '#333333'}
 
 
 def over_reach(rows, out, save):
@@ -28,8 +30,49 @@ def over_reach(rows, out, save):
     axes.set_xlabel('samples an axis n')
     axes.set_ylabel('largest clearance called colliding, over the period')
     axes.set_title('Over-reach of Fourier gaps: four pairs of planar shapes')
-    axes.legend()
+    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
     return save(figure, out, 'fourier_over_reach')
+
+
+def cost(rows, out, save):
+    """Over-reach against the time of value and gradient, a point for each n."""
+    found = collections.defaultdict(lambda: collections.defaultdict(list))
+    for row in rows:
+        error, time = float(row['error'] or 'nan'), float(row['median_us'] or 'nan')
+        if row['workload'].startswith('over-reach') and not math.isnan(error + time):
+            found[row['method']][int(row['parameter'].split()[1])].append((1e3 * time, error))
+    if not found:
+        return None
+    figure, axes = plt.subplots()
+    for method, by_n in found.items():
+        means = [[sum(values) / len(values) for values in zip(*by_n[n])] for n in sorted(by_n)]
+        axes.loglog(*zip(*means), 'o-', color=COLOURS[method], label=NAMES[method])
+        for n, (x, y) in zip(sorted(by_n), means):
+            axes.annotate(f'n = {n}', (x, y), textcoords='offset points', xytext=(5, 4), fontsize=7, color=COLOURS[method])
+    axes.set_xlabel('time of value and gradient [ns]')
+    axes.set_ylabel('largest clearance called colliding, over the period')
+    axes.set_title('What accuracy costs: mean of four pairs of planar shapes')
+    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
+    return save(figure, out, 'fourier_cost')
+
+
+def gradients(rows, out, save):
+    """Median cosine to the gradient of the distance, against the clearance."""
+    found = collections.defaultdict(list)
+    for row in rows:
+        match = re.fullmatch(r'clearance ([\d.]+) to ([\d.]+) n (\d+)', row['parameter'])
+        if row['workload'].startswith('gradient') and match:
+            found[row['method']].append((0.5 * (float(match.group(1)) + float(match.group(2))), 1.0 - float(row['error'])))
+    if not found:
+        return None
+    figure, axes = plt.subplots()
+    for method, points in found.items():
+        axes.semilogx(*zip(*sorted(points)), 'o-', color=COLOURS[method], label=NAMES[method])
+    axes.set_xlabel('clearance [m]; the shapes have circumradii of about 1 m')
+    axes.set_ylabel('median cosine to the gradient of the distance')
+    axes.set_title('Gradients of gap functions of an L and a T, n = 33')
+    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
+    return save(figure, out, 'fourier_gradients')
 
 
 def outlines(rows):
@@ -60,7 +103,7 @@ def convergence(rows, out, save):
     axes.plot(*found[0, theta], color=COLOURS['exact'], label='exact', linewidth=1.2)
     axes.set_aspect('equal')
     axes.set_title('Outline of the obstacle of an L and a T, one rotation (certified)')
-    axes.legend()
+    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
     return save(figure, out, 'fourier_convergence')
 
 
@@ -94,11 +137,11 @@ def nesting(rows, out, save):
     axes.set_ylabel('of random starts [%]')
     axes.set_title('Nesting an L in an E by SLSQP')
     axes.grid(axis='x', visible=False)
-    axes.legend()
+    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
     return save(figure, out, 'fourier_nesting')
 
 
 def draw(rows, out, save):
     rows = [row for row in rows if row['group'] == 'fourier']
-    for chart in (over_reach, convergence, obstacle, nesting):
+    for chart in (over_reach, cost, gradients, convergence, obstacle, nesting):
         yield chart(rows, out, save)

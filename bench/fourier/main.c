@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Fourier gap functions: how far bodies apart are still called colliding, over n, ours beside the paper's kernel (its Figs. 3 and 5);
- * outlines of the SE(2) obstacle (Fig. 6); what a query costs beside a distance between convex bodies; a nesting problem. */
+ * outlines of the SE(2) obstacle (Fig. 6); what their gradients are worth; what a query costs beside a distance between convex bodies; a nesting problem. */
 #include "fourier/parts.h"
 
 #include <stdio.h>
@@ -16,6 +16,7 @@ int main(int argc, char **argv) {
   const bench_size size = bench_arguments(argc, argv);
   if (bench_wanted(&size, "over-reach")) fourier_over_reach(&size);
   if (bench_wanted(&size, "obstacle")) fourier_obstacle(&size);
+  if (bench_wanted(&size, "gradient")) fourier_gradients(&size);
   if (bench_wanted(&size, "boxes")) fourier_pairs(&size);
   if (bench_wanted(&size, "nesting")) fourier_nesting(&size);
   return 0;

@@ -11,17 +11,20 @@ from pages.figures import microseconds, short, table
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 CHARTS = [
-    ('work_precision_*', 'time against the accuracy asked: a point, a polygon, a polytope, another curve'),
+    ('work_precision_*', 'time against the accuracy asked: a point, a polygon, a polytope, another curve, long splines, trigonometric series; beside the '
+                         'published method, points of the curve (by FCL where a polytope is asked about), OpenCASCADE and SISL'),
     ('distance_by_order', 'the same questions over orders 5, 15, 45'),
     ('tolerance', 'verdicts over delta, as a fraction of the distance'),
     ('splines_*', 'long B-splines: time against the number of segments'),
     ('trigonometric', 'series that are compiled once, distance and tolerance'),
     ('peers_*', 'curves and paths beside OpenCASCADE, SISL, FCL and Bullet, those that are installed'),
-    ('seeds_*', 'figures of the first paper, drawn again'),
-    ('batches', 'a thousand quintics against 2, 50 and 100 obstacles, beside sampling by FCL'),
-    ('robots_*', 'arms along joint splines, against the scene and themselves, beside the bound by both ends of an interval'),
+    ('seeds_*', 'figures of the first two papers, drawn again'),
+    ('batches*', 'a thousand quintics against 2, 50 and 100 obstacles, beside sampling by FCL, and over threads'),
+    ('robots_*', 'arms along joint splines, against the scene and themselves, beside the bound by both ends of an interval and samples; verdicts; '
+                 "checks of states by FCL, and MoveIt's own figures for reference"),
     ('worlds_*', 'meshes, point clouds, octree leaves, sets of bodies, beside FCL'),
-    ('fourier_*', 'over-reach of gap functions by kernel and n, an SE(2) obstacle, convergence, boxes, nesting'),
+    ('implicit_*', 'pairs of implicit bodies: interior point, support functions, both together, a general solver'),
+    ('fourier_*', 'over-reach of gap functions by kernel and n, and what it costs; gradients; an SE(2) obstacle, convergence, boxes, nesting'),
 ]
 
 
@@ -63,7 +66,7 @@ def growth_lines(rows):
             if fnmatch.fnmatchcase(row['group'], group) and fnmatch.fnmatchcase(row['workload'], workload) and sized(row, what):
                 found.setdefault((row['group'], row['workload'], row['method']), []).append(sized(row, what))
         for (own, name, method), of in sorted(found.items()):
-            if len({targets.size_of(row) for row in of}) >= 3:
+            if len({targets.size_of(row) for row in of}) >= (2 if 'threads' in name else 3):
                 yield [own, name, method, what.split()[0], ', '.join(row['parameter'] for row in of), f'{targets.exponent(of):.2f}']
 
 

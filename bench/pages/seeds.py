@@ -107,7 +107,7 @@ method" is the published method, written again as described (`bench/paper`).
 
 {implicit_motion(figures)}
 
-**Fig. 2**, time against the number of constraints: [growth](README.md#growth).
+**Fig. 2**, time against the number of constraints: `seeds_figure_2_planes`, `_quadrics`, `_superquadrics`; exponents in [growth](README.md#growth).
 
 ## M. Lysenko, "Fourier Collision Detection", 2011
 It prints no figures, only pictures: Fig. 3 is `fourier_over_reach`, Fig. 5 `fourier_convergence`, Fig. 6 `fourier_obstacle`.
