@@ -3,10 +3,16 @@
 
 #include <mpfr.h>
 
-/* R = 1 + s (w [v] + [v]²), s = 2/q·q; [v]² = v vᵀ - v·v */
-rot rot_of_quaternion(const num q[4]) {
-  num square = num_of(0.0), k[9];
-  for (int i = 0; i < 4; i++) square = num_add(square, num_mul(q[i], q[i]));
+/* R = 1 + s (w [v] + [v]²), s = 2/q·q; [v]² = v vᵀ - v·v, of the four middles. Unit quaternions that are d apart make rotations that are
+ * at most 2 d apart. */
+rot rot_of_quaternion(const num given[4]) {
+  num square = num_of(0.0), k[9], q[4];
+  double off = 0.0;
+  for (int i = 0; i < 4; i++) {
+    q[i] = num_of(given[i].m);
+    square = num_add(square, num_mul(q[i], q[i]));
+    off = GROW(off + given[i].e);
+  }
   const num s = num_div(num_of(2.0), square), *v = q + 1;
   for (int i = 0; i < 3; i++) {
     const int a = (i + 1) % 3, b = (i + 2) % 3;
@@ -16,7 +22,10 @@ rot rot_of_quaternion(const num q[4]) {
     k[3 * b + a] = num_mul(s, num_add(across, along));
     k[3 * a + b] = num_mul(s, num_sub(across, along));
   }
-  return rot_of(k);
+  rot r = rot_of(k);
+  const double length = (1.0 - 0x1p-40) * sqrt(square.m);
+  r.e = off < length ? GROW(r.e + 2.0 * off / ((length - off) * (1.0 - 0x1p-40))) : INFINITY;
+  return r;
 }
 
 /* Sine and cosine by MPFR: both have slopes of at most 1. */

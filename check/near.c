@@ -160,12 +160,12 @@ static bool contains(const set *s, const iv *y) {
 bool near_read_point(iv x[3], const set *s, reader *in) {
   for (int k = 0; k < 3; k++) iv_set_d(&x[k], s->kind == POINT ? s->centre[k] : 0.0);
   if (s->kind == POINT) return true;
-  if (s->kind == POLYTOPE) {
+  if (s->kind == POLYTOPE) { /* 0 less the way from the mean to it */
     iv *v = iv_new(3);
     const bool found = from_polytope(v, s, x, in);
     for (int k = 0; k < 3; k++) iv_sub(&x[k], &x[k], &v[k]);
     iv_free(v, 3);
-    return found;
+    return found && !in->bad;
   }
   for (int k = 0; k < 3; k++) iv_set_d(&x[k], reader_number(in));
   return !in->bad && contains(s, x);

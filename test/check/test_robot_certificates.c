@@ -33,21 +33,20 @@ static double median(double *x, size_t n) {
 
 static void print_tally(const char *what, tally *t) {
   const double bytes = median(t->bytes, t->n), tries = median(t->tries, t->n), time = median(t->milliseconds, t->n);
+  print_message("%s: %zu asked, %zu apart, %zu near, %zu without\n", what, t->asked, t->apart, t->near, t->none);
   if (t->n)
-    print_message(
-        "%s: %zu asked, %zu apart, %zu near, %zu without; bytes %g (most %g), directions tried %g (%g), ms %.2g "
-        "(%.2g)\n",
-        what, t->asked, t->apart, t->near, t->none, bytes, t->bytes[t->n - 1], tries, t->tries[t->n - 1], time,
-        t->milliseconds[t->n - 1]);
+    print_message("  apart: bytes %g in the median, %g at most; directions tried %g, %g; milliseconds %.2g, %.2g\n",
+                  bytes, t->bytes[t->n - 1], tries, t->tries[t->n - 1], time, t->milliseconds[t->n - 1]);
 }
 
 /* One question with the claim that its certificate makes. */
 static void examine(const cprox_mover *along, const cprox_target *targets, size_t n, const cprox_certificate *c,
-                    const cprox_result *r, double delta, const char *name, tally *sum) {
+                    const cprox_result *r, double delta, bool verdict, const char *name, tally *sum) {
   sum->asked++;
   if (cprox_certificate_size(c) == 0) {
     sum->none++;
-    const bool open = r->lower <= delta + 1e-9;
+    /* not decided, or in touch: of flat bodies no point lies inside */
+    const bool open = r->upper == 0.0 || (verdict && r->lower <= delta + 1e-9 && r->upper > delta - 1e-9);
     if (!open)
       fail_msg("%s: no certificate of lower %.17g over %.17g: %s", name, r->lower, delta, cprox_workspace_reason(ws));
     return;
@@ -82,7 +81,7 @@ static void ask_thrice(const cprox_mover *along, const cprox_target *targets, si
     assert_true(status >= 0);
     if (i == 0) distance = r.lower;
     if (!isfinite(distance)) return;
-    examine(along, targets, n, c, &r, i == 0 ? r.lower : delta, name, &sum[i]);
+    examine(along, targets, n, c, &r, i == 0 ? r.lower : delta, i > 0, name, &sum[i]);
   }
 }
 

@@ -101,6 +101,12 @@ void certificate_number(cprox_certificate *c, double value) {
   put(c, bits, 8);
 }
 
+void certificate_vector(cprox_certificate *c, vec3 v) {
+  certificate_number(c, v.x);
+  certificate_number(c, v.y);
+  certificate_number(c, v.z);
+}
+
 static void put_float(cprox_certificate *c, float value) {
   uint32_t bits;
   memcpy(&bits, &value, sizeof bits);

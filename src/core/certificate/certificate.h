@@ -37,6 +37,7 @@ size_t certificate_short(cprox_certificate *c, uint16_t value);
 void certificate_restate_short(cprox_certificate *c, size_t place, uint16_t value);
 
 void certificate_number(cprox_certificate *c, double value);
+void certificate_vector(cprox_certificate *c, vec3 v);
 void certificate_normal(cprox_certificate *c, vec3 n);
 
 /* How a curve falls into pieces: their number, and the parameters at which they join. */

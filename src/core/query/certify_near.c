@@ -17,8 +17,7 @@ static vec3 local_point(const cover *c, const frame *f, vec3 world, double *erro
   return y;
 }
 
-/* The radius of a ball about the origin of the shape's frame that lies inside it. */
-static double inner_radius(const convex *shape) {
+double cover_inner_radius(const convex *shape) {
   const double *s = shape->size;
   switch (shape->ops->kind) {
     case CPROX_BOX:
@@ -35,17 +34,16 @@ static void write_vertex(cprox_certificate *c, const simplex *s, int i, bool ins
   certificate_number(c, used && !inside ? s->weight[i] : 0.0);
 }
 
-/* Writes how the target's point is found, and returns how far the mover's point is from it: 0 inside, infinity for none. */
-static double write_point(const cover *c, vec3 y, double error) {
-  const convex *shape = &c->set.body->shape;
-  const cprox_body_kind kind = c->set.body->kind;
+double cover_near_point(const cprox_body *body, cprox_certificate *certificate, vec3 y, double error) {
+  const convex *shape = &body->shape;
+  const cprox_body_kind kind = body->kind;
   convex_hint hint = {0};
   if (kind == CPROX_POINT) return vec_norm(y) + error;
   if (kind == CPROX_POLYTOPE || kind == CPROX_POLYGON) {
     gjk_answer answer;
     gjk_nearest(shape, y, &hint, &answer);
     const bool inside = answer.distance < 0.0;
-    for (int i = 0; i < 4; i++) write_vertex(c->certificate, &answer.feature, i, inside);
+    for (int i = 0; i < 4; i++) write_vertex(certificate, &answer.feature, i, inside);
     return inside ? 0.0 : answer.distance + error;
   }
 
@@ -54,7 +52,7 @@ static double write_point(const cover *c, vec3 y, double error) {
   vec3 v = vec(0, 0, 0);
   if (near.distance > -error) {
     const double drawn = error + ROOM * ROUND_U * (vec_norm(y) + shape->scale);
-    const double inner = inner_radius(shape);
+    const double inner = cover_inner_radius(shape);
     if (kind == CPROX_HALFSPACE)
       v = vec_scale(near.distance + drawn, near.normal);
     else if (drawn < 0.5 * inner)
@@ -62,9 +60,7 @@ static double write_point(const cover *c, vec3 y, double error) {
     else
       return INFINITY;
   }
-  certificate_number(c->certificate, v.x);
-  certificate_number(c->certificate, v.y);
-  certificate_number(c->certificate, v.z);
+  certificate_vector(certificate, v);
   return vec_norm(v);
 }
 
@@ -95,7 +91,7 @@ cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *an
   } else {
     const frame f = frame_create(&c->pose, c->set.body->centre);
     const vec3 y = local_point(c, &f, world, &error);
-    apart = write_point(c, y, error);
+    apart = cover_near_point(c->set.body, c->certificate, y, error);
     size = vec_norm(y) + c->set.body->shape.scale;
   }
 

@@ -51,8 +51,11 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_target *targets
   if (scene.n_pairs > MOST_PAIRS)
     return workspace_fail(workspace, CPROX_INVALID, "%zu pairs are too many for a certificate", scene.n_pairs);
   const double epsilon = answer ? fmax(options->epsilon, options->relative_epsilon * answer->upper) : 0.0;
-  cprox_status status = CPROX_PRECISION;
-  if (!answer || answer->upper > delta)
+  const robot_cover near = {.scene = &scene, .delta = delta, .certificate = certificate};
+  cprox_status status;
+  if (answer && answer->upper <= delta)
+    status = cover_robot_near(&near, answer);
+  else
     status = certify_apart(&scene, delta, answer, epsilon, options->max_nodes, certificate);
   if (status == CPROX_OK) return status;
   certificate_clear(certificate);

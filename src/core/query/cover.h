@@ -34,6 +34,13 @@ double cover_cut(const cover *c, reach_part part, double witness);
 cprox_status cover_convex(cover *c);
 cprox_status cover_curves(cover *c);
 
+/* The radius of a ball about the origin of the shape's frame that lies inside it. */
+double cover_inner_radius(const convex *shape);
+
+/* Writes how a body's point is found that is near y, a point of the frame about its centre that is within error of the exact one;
+ * returns how far y is from it: 0 inside, infinity for none. */
+double cover_near_point(const cprox_body *body, cprox_certificate *certificate, vec3 y, double error);
+
 /* Writes that at the witness of the answer the distance is at most delta. */
 cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *answer);
 
