@@ -6,6 +6,9 @@
 /* Above 0, and no more: what a stretch that is known to be free is known to keep. */
 static const double BARELY = 1e-300;
 
+/* Pieces are cut no shorter than this to where contact is expected: where it does not come, little is lost. */
+static const double SHORTEST_AIM = 1.0 / 32.0;
+
 /* ---- measuring -------------------------------------------------------------------------------------------------------- */
 
 /* The nearer one; once there is contact, the earlier one. */
@@ -25,11 +28,12 @@ static void consider(contact_tree *c, const tree_sight *sight, const search_best
   o->found = true;
 }
 
-static void measure(contact_tree *c, tree_place place, size_t piece, double s, vec3 y, double error) {
+static tree_sight measure(contact_tree *c, tree_place place, size_t piece, double s, vec3 y, double error) {
   tree_sight sight;
   search_best bound = curve_tree_measure(&c->base, place, piece, s, y, error, &sight);
   bound.at = curve_side_parameter(&c->base.side, piece, s);
   consider(c, &sight, &bound);
+  return sight;
 }
 
 /* Where the curve begins: inside of a solid, or somewhere from which a witness is taken. */
@@ -49,6 +53,12 @@ static void begin(contact_tree *c) {
   if (!vec_finite(y)) return;
   const tree_hit hit = tree_nearest(o->tree, y, INFINITY);
   measure(c, hit.at, first, s, y, curve_side_point_error(&o->side));
+}
+
+/* Of a stretch seen from its first point, by its own parameter. */
+static vec3 first_velocity(const tree_stretch *stretch) {
+  if (stretch->n < 2) return vec(0, 0, 0);
+  return vec_scale((double)(stretch->n - 1), vec(stretch->p[0][1], stretch->p[1][1], stretch->p[2][1]));
 }
 
 /* The list is gone through from the middle, and what remains from the left end, which says how far the way is free. */
@@ -71,7 +81,12 @@ static cprox_status probe_piece(contact_tree *c, search_node *node) {
   double share = INFINITY;
   status = curve_tree_filter(o, node, &stretch, slack, &nearest, &least2, stretch.stepping ? &share : NULL);
   if (status < 0) return status;
-  if (isfinite(least2)) measure(c, nearest, curve_side_piece(&o->side, at), at->a, x, at->error);
+  if (isfinite(least2)) {
+    const tree_sight sight = measure(c, nearest, curve_side_piece(&o->side, at), at->a, x, at->error);
+    const double speed = -vec_dot(sight.near.normal, first_velocity(&stretch));
+    const double way = sight.near.distance - o->offset;
+    if (way > 0.0 && speed > 0.0) c->ahead = way / speed;
+  }
   if (!stretch.stepping) return CPROX_OK;
   c->share = share * (1.0 - 1e-12);
   if (c->share >= 1.0) node->lower = fmax(node->lower, BARELY);
@@ -97,6 +112,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   if (!o->seeded) begin(c);
   o->seeded = true;
   c->share = 0.0;
+  c->ahead = INFINITY;
   cprox_status status;
   if (!curve_side_is_piece(&o->side, &node->side[0])) {
     status = probe_range(c, node);
@@ -123,7 +139,9 @@ static int split(void *self, search_node *node, search_node *child) {
   if (!piece) {
     curve_side_cut_range(at, half);
   } else {
-    const double s = stepping ? c->share : 0.5, cut = at->a + s * (at->b - at->a);
+    /* twice as far as contact would be at this speed: over so short a piece the next step comes close to it */
+    const double s = stepping ? c->share : fmax(fmin(0.5, 2.0 * c->ahead), SHORTEST_AIM),
+                 cut = at->a + s * (at->b - at->a);
     if (!(at->a < cut && cut < at->b)) return 0;
     if (!curve_side_cut_piece(&o->side, at, cut, s, half)) return curve_side_trouble(&o->side);
   }

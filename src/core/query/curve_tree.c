@@ -8,7 +8,11 @@
 /* Slots of the pool that nodes never get. */
 enum { SLOT_ROOT, SLOT_SCRATCH, SLOT_SCRATCH_LEFT, SLOTS_RESERVED };
 
-enum { MOST_STEPS = 10, LEAST_SEEDS = 5, MOST_SEEDS = 65, PIECES_A_SEED = 8 };
+enum { MOST_STEPS = 10, MOST_ELEMENTS = 8, LEAST_SEEDS = 5, MOST_SEEDS = 65, PIECES_A_SEED = 8 };
+
+/* Boxes whose diagonal is longer than these fractions of the stretch, squared, are opened at once: verdicts are settled by coarse ones
+ * more often. */
+static const double WIDE_DISTANCE2 = 0.5, WIDE_VERDICT2 = 2.0;
 
 /* An entry of a list: lanes of a node or a pack. */
 typedef struct tree_entry {
@@ -63,9 +67,8 @@ static double newton_step(const tree_sight *sight, vec3 d1, vec3 d2) {
   return fabs(to_zero) < fabs(to_least) ? to_zero : to_least;
 }
 
-/* Newton's method along the loaded piece, with the element held fixed. */
-static void polish(curve_tree *o) {
-  if (o->side.curve->arcs) return;
+/* Newton's method along the loaded piece from the best point, with its element held fixed. */
+static void polish_element(curve_tree *o) {
   const size_t degree = o->side.curve->degree;
   const double *x = points_pool_at(&o->pool, SLOT_ROOT), *y = x + degree + 1, *z = y + degree + 1;
   const double error = curve_side_point_error(&o->side), *binomial = o->side.curve->binomial;
@@ -78,6 +81,21 @@ static void polish(curve_tree *o) {
     curve_bezier_evaluate(x, y, z, 1, degree, binomial, next, &at, &d1, &d2);
     const search_best bound = curve_tree_measure(o, sight.place, sight.piece, next, at, error, &sight);
     if (!adopt_better(o, &sight, &bound) && i > 1) return;
+  }
+}
+
+/* On fine meshes the best point of one element lies over the next one: whose turn it is then. */
+static void polish(curve_tree *o) {
+  if (o->side.curve->arcs) return;
+  const double error = curve_side_point_error(&o->side);
+  for (int i = 0; i < MOST_ELEMENTS; i++) {
+    polish_element(o);
+    const tree_sight *best = &o->best;
+    const tree_hit hit = tree_nearest(o->tree, best->y, best->near.distance);
+    if (!hit.found || (hit.at.pack == best->place.pack && hit.at.lane == best->place.lane)) return;
+    tree_sight sight;
+    const search_best bound = curve_tree_measure(o, hit.at, best->piece, best->s, best->y, error, &sight);
+    if (!adopt_better(o, &sight, &bound)) return;
   }
 }
 
@@ -285,7 +303,8 @@ cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_stretch *s
                                tree_place *nearest, double *least2, double *share) {
   tree_entry open[TREE_LANES * TREE_DEEPEST];
   size_t count = 0, end = node->list_end;
-  const double taken = o->offset + slack, wide2 = 0.25 * width2_of(stretch), goal = goal_of(o);
+  const double taken = o->offset + slack,
+               wide2 = (o->asked.limit >= 0.0 ? WIDE_VERDICT2 : WIDE_DISTANCE2) * width2_of(stretch), goal = goal_of(o);
   const double best = fmax(o->best_bound.upper + o->offset, 0.0), best2 = best < 1e150 ? best * best : INFINITY;
   double kept = INFINITY, rest = node->rest;
   *least2 = INFINITY;

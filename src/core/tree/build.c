@@ -95,14 +95,18 @@ size_t tree_most_nodes(size_t n, tree_build build) {
   return nodes;
 }
 
+static size_t node_bytes(tree_kind kind) {
+  return sizeof(tree_node) + (kind == TREE_TRIANGLES ? sizeof(tree_slabs) : 0);
+}
+
 size_t tree_bytes_needed(tree_kind kind, size_t n, tree_build build) {
   const size_t pack = tree_pack_size(kind) * sizeof(double) + TREE_LANES * sizeof(uint32_t);
-  return sizeof(tree) + tree_most_packs(n, build) * pack + tree_most_nodes(n, build) * sizeof(tree_node);
+  return sizeof(tree) + tree_most_packs(n, build) * pack + tree_most_nodes(n, build) * node_bytes(kind);
 }
 
 size_t tree_bytes(const tree *t) {
   const size_t pack = tree_pack_size(t->kind) * sizeof(double) + TREE_LANES * sizeof(uint32_t);
-  return sizeof *t + t->n_packs * pack + t->n_nodes * sizeof(tree_node) + (t->blocks ? tree_blocks_bytes(t->n) : 0);
+  return sizeof *t + t->n_packs * pack + t->n_nodes * node_bytes(t->kind) + (t->blocks ? tree_blocks_bytes(t->n) : 0);
 }
 
 /* The largest |x| of a corner of the root's boxes, rounded up. */
@@ -160,6 +164,10 @@ tree *tree_create(const tree_source *source, tree_build build) {
   }
   if (build == TREE_BY_AREA) shrink_all(t);
   tree_find_scale(t);
+  if (t->kind == TREE_TRIANGLES && !tree_lay_slabs(t)) {
+    tree_free(t);
+    return NULL;
+  }
   t->kernel = tree_kernel_at(tree_kernel_count() - 1);
   return t;
 }
@@ -167,6 +175,7 @@ tree *tree_create(const tree_source *source, tree_build build) {
 void tree_free(tree *t) {
   if (!t) return;
   free(t->nodes);
+  free(t->slabs);
   free(t->packs);
   free(t->ids);
   tree_blocks_free(t->blocks);

@@ -29,6 +29,9 @@ bool tree_allocate(tree *t, size_t packs, size_t nodes);
 /* How far the elements reach, by the root's boxes. */
 void tree_find_scale(tree *t);
 
+/* The slabs of a tree of triangles that is built, its scale known; false where memory is out. */
+bool tree_lay_slabs(tree *t);
+
 /* The elements in the order of Morton's curve. memory: room for 2 n. */
 struct tree_keyed {
   uint64_t key;

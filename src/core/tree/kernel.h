@@ -3,6 +3,7 @@
  * functions, and TREE_KERNEL, the name of its table. Loops of eight with no branch inside are what compilers make vectors of. */
 #include <math.h>
 
+#include "base/rounding.h"
 #include "tree/kernels.h"
 
 /* Calls would keep the loops over lanes from becoming vectors. */
@@ -142,6 +143,47 @@ TREE_TARGET static inline void near_pack(const tree *t, const double *pack, vec3
     near_boxes((const double(*)[TREE_LANES])pack, (const double(*)[TREE_LANES])(pack + 3 * TREE_LANES), x, out);
 }
 
+/* What rounding can add to a support by slabs, for each unit of |n| (doc/non-convex.md). */
+TREE_INLINE double slab_rounding(const tree *t, vec3 x) {
+  return 32.0 * ROUND_U * (fabs(x.x) + fabs(x.y) + fabs(x.z) + t->scale);
+}
+
+/* How far what is in a lane reaches along n, less n·x: the slab along its part of n, the box along the rest. */
+TREE_INLINE double support_in_slab(const tree_node *node, const tree_slabs *slabs, int l, vec3 x, double nx, double ny,
+                                   double nz) {
+  const double sx = slabs->s[0][l], sy = slabs->s[1][l], sz = slabs->s[2][l];
+  const double part = nx * sx + ny * sy + nz * sz, middle = x.x * sx + x.y * sy + x.z * sz;
+  const double rx = nx - part * sx, ry = ny - part * sy, rz = nz - part * sz;
+  const double plane = part > 0.0 ? slabs->high[l] : slabs->low[l];
+  const double bx = rx > 0.0 ? node->high[0][l] : node->low[0][l];
+  const double by = ry > 0.0 ? node->high[1][l] : node->low[1][l];
+  const double bz = rz > 0.0 ? node->high[2][l] : node->low[2][l];
+  return part * (plane - middle) + (rx * (bx - x.x) + ry * (by - x.y) + rz * (bz - x.z));
+}
+
+TREE_TARGET static inline void narrow_by_slabs(const tree *t, uint32_t at, vec3 x, normals *near) {
+  const tree_node *node = &t->nodes[at];
+  const tree_slabs *slabs = &t->slabs[at];
+  const double rounding = slab_rounding(t, x);
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) {
+    const double nx = near->n[0][l], ny = near->n[1][l], nz = near->n[2][l];
+    const double support = support_in_slab(node, slabs, l, x, nx, ny, nz) + rounding * (fabs(nx) + fabs(ny) + fabs(nz));
+    near->support[l] = support < near->support[l] ? support : near->support[l];
+  }
+}
+
+/* Raises the squared distances: what is in the lane is behind the plane across n that the support stands for. */
+TREE_TARGET static inline void raise_by_slabs(const tree *t, uint32_t at, vec3 x, normals *near) {
+  narrow_by_slabs(t, at, x, near);
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) {
+    const double d2 = near->d2[l], h = near->support[l];
+    const double square = h * h / (d2 > LEAST_LENGTH2 ? d2 : LEAST_LENGTH2);
+    near->d2[l] = h < 0.0 && square > d2 ? square : d2;
+  }
+}
+
 /* (min n·p - support)/|n| for each lane's own n; 0 where n has no direction. */
 TREE_TARGET static inline void bound_by_own(const normals *near, const tree_stretch *stretch, tree_lanes *lanes) {
   _Alignas(64) double least[TREE_LANES];
@@ -203,6 +245,18 @@ TREE_TARGET static inline void bound_boxes_by_known(const double low[3][TREE_LAN
   raise(lanes, bound);
 }
 
+TREE_TARGET static inline void bound_slabs_by_known(const tree *t, uint32_t at, const tree_stretch *stretch,
+                                                    tree_lanes *lanes) {
+  _Alignas(64) double bound[TREE_LANES];
+  const tree_node *node = &t->nodes[at];
+  const tree_slabs *slabs = &t->slabs[at];
+  const vec3 n = stretch->normal, x = stretch->x;
+  const double along = stretch->along - 2.0 * slab_rounding(t, x); /* |n| is 1: its parts add up to less than 2 */
+#pragma omp simd
+  for (int l = 0; l < TREE_LANES; l++) bound[l] = along - support_in_slab(node, slabs, l, x, n.x, n.y, n.z);
+  raise(lanes, bound);
+}
+
 TREE_TARGET static inline void bound_corners_by_known(const double *pack, int corners, const tree_stretch *stretch,
                                                       tree_lanes *lanes) {
   _Alignas(64) double bound[TREE_LANES];
@@ -261,10 +315,12 @@ TREE_TARGET static void measure(const tree *t, uint32_t at, uint32_t wanted, con
     near_pack(t, pack, stretch->x, &near);
   else
     near_boxes(node->low, node->high, stretch->x, &near);
+  if (!leaf && t->slabs) narrow_by_slabs(t, at, stretch->x, &near);
   bound_by_own(&near, stretch, lanes);
   if (stretch->stepping) find_slopes(&near, stretch, lanes);
 
   if (stretch->known) {
+    if (!leaf && t->slabs) bound_slabs_by_known(t, at, stretch, lanes);
     if (!leaf)
       bound_boxes_by_known(node->low, node->high, stretch, lanes);
     else if (t->kind == TREE_BOXES)
@@ -337,6 +393,7 @@ TREE_TARGET static tree_hit nearest(const tree *t, vec3 x, double bound) {
       normals near;
       const tree_node *node = &t->nodes[at];
       near_boxes(node->low, node->high, x, &near);
+      if (t->slabs) raise_by_slabs(t, at, x, &near);
       uint32_t live = 0;
 #pragma omp simd reduction(| : live)
       for (uint32_t l = 0; l < TREE_LANES; l++) live |= near.d2[l] < best2 ? 1u << l : 0u;

@@ -33,6 +33,12 @@ typedef struct tree_node {
   uint32_t lanes; /* one bit for each lane in use */
 } tree_node;
 
+/* What is in a lane of a node lies between two planes, too: low <= s·x <= high, s of length 1 or so. Boxes of pieces of a slanted
+ * surface stick out of it by their own size, these by its square. */
+typedef struct tree_slabs {
+  _Alignas(64) double s[3][TREE_LANES], low[TREE_LANES], high[TREE_LANES];
+} tree_slabs;
+
 /* Numbers a pack: three corners, one, or two; a coordinate is TREE_LANES numbers. */
 static inline size_t tree_pack_size(tree_kind kind) {
   return (size_t)TREE_LANES * (kind == TREE_TRIANGLES ? 9 : kind == TREE_BOXES ? 6 : 3);
@@ -44,7 +50,8 @@ struct tree_blocks;
 typedef struct tree {
   tree_kind kind;
   size_t n, n_nodes, n_packs;
-  tree_node *nodes; /* the first one is the root */
+  tree_node *nodes;  /* the first one is the root */
+  tree_slabs *slabs; /* of each node where there are triangles, else NULL */
   double *packs;
   uint32_t *ids; /* TREE_LANES a pack; a pack that is not full repeats its last element */
   double scale;  /* no element reaches farther from the origin */
