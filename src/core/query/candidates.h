@@ -22,6 +22,8 @@ typedef struct question {
   search_interval part; /* of the mover's curve: the whole of it, or some of one piece */
   curve_capsule reach;  /* contains that part */
   double t0, t1;        /* that part by the curve's parameter */
+  const struct cprox_set
+      *set; /* a robot's question: the set that the targets are, by whose boxes they are found; or NULL */
 } question;
 
 /* Asks about the whole curve; the arguments must have been checked. */

@@ -63,7 +63,7 @@ static search_node root_of(const question *q, robot_search *o) {
 static cprox_status run(const question *q, const search_goal *goal, robot_search *o, search_outcome *found) {
   robot_search_begin(o, goal);
   *found = (search_outcome){.lower = INFINITY, .free_until = INFINITY, .best = {.upper = INFINITY, .at = INFINITY}};
-  if (o->scene.n_pairs == 0) return CPROX_OK;
+  if (o->scene.n_pairs == 0 && !q->set) return CPROX_OK;
   const search_node root = root_of(q, o);
   if (root.side[0].slot < 0) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the lists of pairs");
   const search_oracle oracle = robot_search_oracle(o);

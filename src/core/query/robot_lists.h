@@ -10,7 +10,9 @@
 
 typedef struct list_entry {
   double lower; /* a bound on the pair's distance over the node, known so far */
-  int32_t pair;
+  int32_t pair; /* or -1: all that is under a node of the set's tree, for one part of the robot */
+  int32_t part;
+  uint32_t under;
   bool blurred; /* on this node the part moves too far to be measured */
 } list_entry;
 

@@ -5,6 +5,7 @@
 
 #include "base/rounding.h"
 #include "convex/pair.h"
+#include "query/set_walk.h"
 
 enum { GAP_STEPS = 128 };
 
@@ -55,8 +56,19 @@ static robot_body obstacle_of(const question *q, size_t index, size_t part) {
   return placed;
 }
 
-static size_t parts_of(const cprox_target *target) {
+size_t robot_scene_parts_of(const cprox_target *target) {
   return target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
+}
+
+int32_t robot_scene_add_obstacles(robot_scene *s, size_t target) {
+  const size_t parts = robot_scene_parts_of(&s->q->targets[target]), n = s->n_obstacles + parts;
+  if (n > INT32_MAX) return -1;
+  robot_body *all = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_OBSTACLES, (n + 1) * sizeof *all);
+  if (!all) return -1;
+  s->obstacles = all;
+  for (size_t i = 0; i < parts; i++) all[s->n_obstacles + i] = obstacle_of(s->q, target, i);
+  s->n_obstacles = n;
+  return (int32_t)(n - parts);
 }
 
 static robot_body part_body(const question *q, size_t i) {
@@ -90,13 +102,17 @@ static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, rob
   }
 }
 
+bool robot_scene_asks(const robot_scene *s, size_t part) {
+  return s->self || cprox_motion_moves_link(s->motion, (size_t)s->motion->robot->parts[part].link);
+}
+
 /* All pairs that are worth asking for. */
 static void add_all_pairs(const robot_scene *s, robot_pair *pairs, size_t *n) {
   const cprox_robot *robot = s->motion->robot;
   const size_t others = s->self ? robot->n_parts : s->n_obstacles;
   for (size_t i = 0; i < robot->n_parts; i++) {
     const robot_part *part = &robot->parts[i];
-    if (!s->self && !cprox_motion_moves_link(s->motion, (size_t)part->link)) continue;
+    if (!robot_scene_asks(s, i)) continue;
     for (size_t k = 0; k < others; k++) {
       const robot_part *other = &robot->parts[k];
       if (s->self && (other->geometry >= part->geometry ||
@@ -123,26 +139,23 @@ static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
 bool robot_scene_begin(robot_scene *s, const question *q, size_t first, size_t last) {
   *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = q->mover.self};
   const cprox_robot *robot = s->motion->robot;
-  for (size_t i = first; i < last; i++) s->n_obstacles += parts_of(&q->targets[i]);
-
   const size_t n_axes = robot->n_axes + 1;
-  const size_t bytes = s->n_obstacles * sizeof *s->obstacles + (robot->n_parts + 1) * sizeof *s->parts +
+  const size_t bytes = (robot->n_parts + 1) * sizeof *s->parts +
                        n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch + sizeof *s->axis_placed) +
                        motion_rows_size(s->motion) * sizeof *s->rows;
   char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
   if (!memory) return false;
   s->parts = (part_state *)(void *)memory;
-  s->obstacles = (robot_body *)(void *)(s->parts + robot->n_parts + 1);
-  s->axes = (axis_state *)(void *)(s->obstacles + s->n_obstacles);
+  s->axes = (axis_state *)(void *)(s->parts + robot->n_parts + 1);
   s->chain = (chain_axis *)(void *)(s->axes + n_axes);
   s->rows = (double *)(void *)(s->chain + n_axes);
   s->scratch = s->rows + motion_rows_size(s->motion);
   s->axis_placed = (uint32_t *)(void *)(s->scratch + n_axes);
   for (size_t i = 0; i < n_axes; i++) s->axis_placed[i] = 0;
 
-  size_t count = 0;
-  for (size_t i = first; i < last; i++)
-    for (size_t part = 0; part < parts_of(&q->targets[i]); part++) s->obstacles[count++] = obstacle_of(q, i, part);
+  const size_t listed = q->set ? q->set->n_unbounded : last - first;
+  for (size_t i = 0; i < listed; i++)
+    if (robot_scene_add_obstacles(s, q->set ? q->set->unbounded[i] : first + i) < 0) return false;
   for (size_t i = 0; i < robot->n_parts; i++) s->parts[i] = (part_state){.body = part_body(q, i)};
 
   s->n_pairs = list_pairs(s, NULL);

@@ -40,14 +40,25 @@ typedef struct robot_scene {
   chain_axis *chain;
   robot_pair *pairs;
   size_t n_pairs, n_obstacles;
+  struct crowd_slot *crowd_table; /* which targets of the set have obstacles and pairs (query/robot_crowd.c) */
+  size_t crowd_room, crowd_count;
   robot_element element[2]; /* those of the pair that was placed last: moving, standing */
   uint32_t node;            /* counts the nodes, so that states know whether they are of the present one */
   size_t segment;
   double a, b;
 } robot_scene;
 
-/* Makes the scene of targets first … last - 1 ready; false where memory is out. */
+/* Makes the scene of targets first … last - 1 ready; false where memory is out. Of a set, only those without a box; the rest come as
+ * they are needed. */
 bool robot_scene_begin(robot_scene *scene, const question *q, size_t first, size_t last);
+
+/* Whether the robot's part is asked about at all. */
+bool robot_scene_asks(const robot_scene *scene, size_t part);
+
+/* The parts of a target are obstacles; adds them: the number of the first one, or -1 where memory is out. It may move all obstacles in
+ * memory. */
+size_t robot_scene_parts_of(const cprox_target *target);
+int32_t robot_scene_add_obstacles(robot_scene *scene, size_t target);
 
 /* A new node. */
 void robot_scene_enter(robot_scene *scene, size_t segment, double a, double b);

@@ -5,6 +5,8 @@
 
 #include "base/rounding.h"
 #include "base/workspace.h"
+#include "query/robot_crowd.h"
+#include "query/set_walk.h"
 
 enum { SEEDS_PER_SEGMENT = 1, MOST_SEED_TESTS = 40000 };
 
@@ -53,12 +55,16 @@ static search_node node_of(const robot_search *o, const search_node *parent, siz
 
 search_node robot_search_root(robot_search *o, size_t first, double u0, size_t last, double u1) {
   search_node root = {.lower = -INFINITY};
-  const size_t n = o->scene.n_pairs;
-  const int32_t slot = lists_take(&o->lists, n);
+  const cprox_set *set = o->scene.q->set;
+  const size_t n_pairs = o->scene.n_pairs, n_parts = set && set->boxes ? o->scene.motion->robot->n_parts : 0;
+  const int32_t slot = lists_take(&o->lists, n_pairs + n_parts);
   root.side[0].slot = slot;
   if (slot < 0) return root;
   list_entry *entry = lists_at(&o->lists, slot);
-  for (size_t i = 0; i < n; i++) entry[i] = (list_entry){.lower = -INFINITY, .pair = (int32_t)i};
+  for (size_t i = 0; i < n_pairs; i++) entry[i] = (list_entry){.lower = -INFINITY, .pair = (int32_t)i};
+  size_t n = n_pairs;
+  for (size_t i = 0; i < n_parts; i++)
+    if (robot_scene_asks(&o->scene, i)) entry[n++] = (list_entry){.lower = -INFINITY, .pair = -1, .part = (int32_t)i};
   lists_set_count(&o->lists, slot, n);
   return node_of(o, &root, first, u0, last, u1);
 }
@@ -162,10 +168,66 @@ static cprox_status measure_whole(robot_search *o, int32_t index, size_t segment
   return climb(o, &c, segment, u);
 }
 
+/* The pair that comes closest by balls and boxes. */
+typedef struct nearest_pair {
+  double apart;
+  int32_t pair; /* -1: none is nearer */
+} nearest_pair;
+
+static void try_pair(robot_search *o, int32_t index, nearest_pair *nearest) {
+  const robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  if (robot_scene_balls(moving, standing) >= nearest->apart) return;
+  const double apart = robot_scene_apart(moving, standing);
+  if (apart < nearest->apart) *nearest = (nearest_pair){.apart = apart, .pair = index};
+}
+
+/* What is to be opened, the nearest on top. */
+typedef struct crowd_stack {
+  uint32_t at[TREE_LANES * TREE_DEEPEST];
+  double apart[TREE_LANES * TREE_DEEPEST];
+  size_t count;
+} crowd_stack;
+
+static void push_nearest_last(crowd_stack *stack, const crowd_lanes *lanes, double most) {
+  const size_t first = stack->count;
+  for (uint32_t l = 0; l < TREE_LANES; l++) {
+    if (!(lanes->live >> l & 1u) || !(lanes->apart[l] < most)) continue;
+    size_t i = stack->count++;
+    for (; i > first && stack->apart[i - 1] < lanes->apart[l]; i--)
+      stack->apart[i] = stack->apart[i - 1], stack->at[i] = stack->at[i - 1];
+    stack->apart[i] = lanes->apart[l], stack->at[i] = lanes->under[l];
+  }
+}
+
+static cprox_status no_memory_for_pairs(const robot_search *o) {
+  return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
+}
+
+/* The same of all that is under a node of the set's tree. */
+static cprox_status try_crowd(robot_search *o, const list_entry *entry, nearest_pair *nearest) {
+  crowd_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
+  while (stack.count > 0) {
+    const uint32_t at = stack.at[--stack.count];
+    if (stack.apart[stack.count] >= nearest->apart) continue;
+    crowd_lanes lanes;
+    crowd_measure(&o->scene, entry->part, at, 0.0, &lanes);
+    if (!(at & TREE_LEAF)) push_nearest_last(&stack, &lanes, nearest->apart);
+    for (uint32_t l = 0; (at & TREE_LEAF) && l < TREE_LANES; l++) {
+      if (!(lanes.live >> l & 1u) || !(lanes.apart[l] < nearest->apart)) continue;
+      size_t count;
+      const int32_t pairs = crowd_pairs(&o->scene, entry->part, lanes.under[l], &count);
+      if (pairs < 0) return no_memory_for_pairs(o);
+      for (size_t k = 0; k < count; k++) try_pair(o, pairs + (int32_t)k, nearest);
+    }
+  }
+  return CPROX_OK;
+}
+
 /* Measures the pair whose balls and boxes come closest in a few places, so that the search begins with a distance. */
 static cprox_status seed(robot_search *o, const search_node *node) {
-  const list_entry *entry = lists_at(&o->lists, node->side[0].slot);
-  const size_t n = lists_count(&o->lists, node->side[0].slot), first = first_of(node), last = last_of(node);
+  const int32_t list = node->side[0].slot;
+  const size_t n = lists_count(&o->lists, list), first = first_of(node), last = last_of(node);
   size_t places = (last - first) * SEEDS_PER_SEGMENT + 2;
   while (places > 1 && places * n > MOST_SEED_TESTS) places /= 2;
   for (size_t i = 0; i < places; i++) {
@@ -174,18 +236,16 @@ static cprox_status seed(robot_search *o, const search_node *node) {
     if (i == places - 2) segment = first, u = node->side[0].a;
     if (i == places - 1) segment = last - 1, u = node->side[1].b;
     robot_scene_enter(&o->scene, segment, u, u);
-    double least = INFINITY;
-    int32_t nearest = -1;
+    const double most = o->limit >= 0.0 ? lesser(o->best_bound.upper, o->limit) : o->best_bound.upper;
+    nearest_pair nearest = {.apart = most, .pair = -1};
     for (size_t k = 0; k < n; k++) {
-      const robot_pair *pair = &o->scene.pairs[entry[k].pair];
-      const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-      if (robot_scene_balls(moving, standing) >= least) continue;
-      const double apart = robot_scene_apart(moving, standing);
-      if (apart < least) least = apart, nearest = entry[k].pair;
+      const list_entry entry = lists_at(&o->lists, list)[k];
+      const cprox_status status = entry.pair < 0 ? try_crowd(o, &entry, &nearest) : CPROX_OK;
+      if (status < 0) return status;
+      if (entry.pair >= 0) try_pair(o, entry.pair, &nearest);
     }
-    const double most = o->limit >= 0.0 ? fmin(o->limit, o->best_bound.upper) : o->best_bound.upper;
-    if (nearest < 0 || least > most) continue;
-    const cprox_status status = measure_whole(o, nearest, segment, u);
+    if (nearest.pair < 0) continue;
+    const cprox_status status = measure_whole(o, nearest.pair, segment, u);
     if (status < 0) return status;
     if (o->limit >= 0.0 && o->best_bound.upper <= o->limit) return CPROX_OK;
   }
@@ -379,22 +439,75 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   return climb_pair(o, node, entry, &gap, travel);
 }
 
+static cprox_status keep_open(robot_search *o, const list_entry *entry) {
+  if (!is_settled(o, entry->lower)) return keep_entry(o, entry) ? CPROX_OK : no_memory_for_pairs(o);
+  o->dropped = lesser(entry->lower, o->dropped);
+  return CPROX_OK;
+}
+
+/* The pairs of a part and the target in a box of the set's tree. */
+static cprox_status open_box(robot_search *o, const search_node *node, const list_entry *entry) {
+  size_t count;
+  const int32_t pairs = crowd_pairs(&o->scene, entry->part, entry->under, &count);
+  if (pairs < 0) return no_memory_for_pairs(o);
+  cprox_status status = CPROX_OK;
+  for (size_t k = 0; k < count && status == CPROX_OK; k++) {
+    list_entry one = {.lower = entry->lower, .pair = pairs + (int32_t)k};
+    bound_pair_roughly(o, node, &one);
+    status = keep_open(o, &one);
+  }
+  return status;
+}
+
+/* What is under a node of the set's tree and within reach of a part: pairs, or, where the part travels too far for these to be measured,
+ * nodes that hold them. */
+static cprox_status open_crowd(robot_search *o, const search_node *node, const list_entry *entry) {
+  const robot_pair any = {.moving = entry->part, .element = {-1, -1}};
+  const double radius = robot_scene_moving(&o->scene, &any)->radius, travel = robot_scene_way(&o->scene, &any);
+  const bool is_short = !(width_of(node) > SHORT_STRETCH);
+  uint32_t stack[TREE_LANES * TREE_DEEPEST] = {entry->under};
+  size_t n = 1;
+  cprox_status status = CPROX_OK;
+  while (n > 0 && status == CPROX_OK) {
+    const uint32_t at = stack[--n];
+    crowd_lanes lanes;
+    crowd_measure(&o->scene, entry->part, at, travel, &lanes);
+    for (uint32_t l = 0; l < TREE_LANES && status == CPROX_OK; l++) {
+      if (!(lanes.live >> l & 1u)) continue;
+      list_entry lane = *entry;
+      lane.lower = greater(lanes.lower[l], entry->lower), lane.under = lanes.under[l];
+      const double size = greater(BLUR * lanes.apart[l], radius);
+      lane.blurred = travel > size && !is_short;
+      if (is_settled(o, lane.lower)) {
+        o->dropped = lesser(lane.lower, o->dropped);
+      } else if (at & TREE_LEAF) {
+        status = open_box(o, node, &lane);
+      } else if (lane.blurred) {
+        want_pieces(o, travel / size);
+        status = keep_open(o, &lane);
+      } else {
+        stack[n++] = lane.under;
+      }
+    }
+  }
+  return status;
+}
+
 /* Balls and boxes of all pairs of a node; those that still matter are kept. */
 static cprox_status bound_roughly(robot_search *o, const search_node *node) {
   const int32_t list = node->side[0].slot;
   const size_t n = lists_count(&o->lists, list);
-  list_entry *next = workspace_reserve(o->scene.q->workspace, WORKSPACE_ROBOT_NEXT, (n + 1) * sizeof *next);
-  if (!next) return CPROX_MEMORY;
-  o->next = next;
-  for (size_t i = 0; i < n; i++) {
+  cprox_status status = CPROX_OK;
+  for (size_t i = 0; i < n && status == CPROX_OK; i++) {
     list_entry entry = lists_at(&o->lists, list)[i];
-    if (!is_settled(o, entry.lower)) bound_pair_roughly(o, node, &entry);
-    if (is_settled(o, entry.lower))
-      o->dropped = lesser(entry.lower, o->dropped);
-    else
-      next[o->n_next++] = entry;
+    if (!is_settled(o, entry.lower) && entry.pair < 0) {
+      status = open_crowd(o, node, &entry);
+    } else {
+      if (!is_settled(o, entry.lower)) bound_pair_roughly(o, node, &entry);
+      status = keep_open(o, &entry);
+    }
   }
-  return CPROX_OK;
+  return status;
 }
 
 /* Bounds all pairs of a node of one segment; those that still matter become its own list. */

@@ -9,10 +9,12 @@
 #include "base/workspace.h"
 #include "body/body.h"
 #include "curve_proximity/cprox/clearance.h"
+#include "motion/part_model.h"
 #include "query/answer.h"
 #include "query/arguments.h"
 #include "query/first_contact.h"
 #include "query/model.h"
+#include "query/robot_answer.h"
 #include "query/set_walk.h"
 
 /* ---- making ----------------------------------------------------------------------------------------------------------- */
@@ -57,6 +59,8 @@ static void sort_targets(cprox_set *set) {
     const cprox_target *target = &set->targets[i];
     set->has_clock = set->has_clock || target->on_clock;
     set->has_elements = set->has_elements || has_elements(target);
+    set->has_curves = set->has_curves || !target->body;
+    set->has_solids = set->has_solids || (target->body && part_model_is_solid(target->body));
     vec3 *a = &set->low[set->n_boxes], *b = &set->high[set->n_boxes];
     if (!box_of(target, a, b)) {
       set->unbounded[set->n_unbounded++] = (uint32_t)i;
@@ -134,13 +138,19 @@ size_t cprox_set_bytes(const cprox_set *set) {
 
 /* ---- asking ----------------------------------------------------------------------------------------------------------- */
 
+/* The coarser a model, the farther it may reach out of the boxes. */
+static bool boxes_hold(const question *q) {
+  return q->options.max_rung == CPROX_RUNG_MESH;
+}
+
 static cprox_status begin(const cprox_set *set, question *q) {
   cprox_workspace *workspace = q->workspace;
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
   if (!set) return workspace_fail(workspace, CPROX_INVALID, "set is NULL");
   /* the targets were checked when the set was made, but for what the mover must go with */
-  const bool all = set->has_clock || (q->mover.body && set->has_elements) || q->mover.motion;
+  const bool robot = q->mover.motion && (set->has_curves || set->has_solids || q->mover.self || q->mover.pairs);
+  const bool all = set->has_clock || (q->mover.body && set->has_elements) || robot;
   const cprox_status checked =
       arguments_check_query(&q->mover, all ? set->targets : NULL, all ? set->n : 0, &q->options, workspace);
   if (checked != CPROX_OK) return checked;
@@ -148,6 +158,7 @@ static cprox_status begin(const cprox_set *set, question *q) {
     return workspace_fail(workspace, CPROX_INVALID, "a set leaves no certificates: ask about its targets for that");
   q->targets = set->targets;
   q->n = set->n;
+  if (q->mover.motion && !q->mover.pairs && boxes_hold(q)) q->set = set;
   question_ask_whole(q);
   return CPROX_OK;
 }
@@ -156,15 +167,10 @@ static cprox_status out_of_memory(const question *q) {
   return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
 }
 
-/* The coarser a model, the farther it may reach out of the boxes. */
-static bool boxes_hold(const question *q) {
-  return !q->mover.motion && q->options.max_rung == CPROX_RUNG_MESH;
-}
-
 static cprox_status answer(const cprox_set *set, question *q, cprox_result *result) {
   const cprox_status begun = begin(set, q);
   if (begun != CPROX_OK) return begun;
-  if (!boxes_hold(q)) return question_answer(q, 0, q->n, INFINITY, result);
+  if (q->mover.motion || !boxes_hold(q)) return question_answer(q, 0, q->n, INFINITY, result);
   set_walk walk;
   if (!set_walk_begin(&walk, set, q)) return out_of_memory(q);
   cprox_result all = question_nothing();
@@ -215,7 +221,9 @@ cprox_status cprox_set_first_contact(const cprox_set *set, cprox_mover mover, co
   question q = question_create(mover, NULL, 0, 0.0, false, options, workspace);
   const cprox_status begun = begin(set, &q);
   if (begun != CPROX_OK) return begun;
-  if (!boxes_hold(&q)) return cprox_first_contact_all(mover, set->targets, set->n, &q.options, workspace, result);
+  if (q.set) return robot_first_contact(&q, result);
+  if (q.mover.motion || !boxes_hold(&q))
+    return cprox_first_contact_all(mover, set->targets, set->n, &q.options, workspace, result);
   set_walk walk;
   if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
   first_contact met = first_contact_begin();
@@ -237,7 +245,8 @@ cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k
   const cprox_status begun = begin(set, &q);
   if (begun != CPROX_OK) return begun;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
-  if (!boxes_hold(&q)) return cprox_nearest(mover, set->targets, set->n, k, &q.options, workspace, nearest, count);
+  if (q.mover.motion || !boxes_hold(&q))
+    return cprox_nearest(mover, set->targets, set->n, k, &q.options, workspace, nearest, count);
   set_walk walk;
   if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
   *count = 0;

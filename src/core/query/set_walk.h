@@ -16,7 +16,7 @@ struct cprox_set {
   uint32_t *unbounded; /* targets without a box */
   size_t n_boxes, n_unbounded;
   vec3 centre;
-  bool has_clock, has_elements; /* what not every mover goes with */
+  bool has_clock, has_elements, has_solids, has_curves; /* what not every mover goes with */
 };
 
 /* A node, a pack, or a target. */

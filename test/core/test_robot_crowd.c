@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Robots among many targets that form a set: whatever the tree of their boxes leaves out, the answers are those of single targets,
+ * one question each. Targets are boxes, balls, cylinders, compounds, surfaces, and among some a halfspace. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "curve_proximity/cprox.h"
+#include "support/builders.h"
+#include "support/robots.h"
+
+enum { MOST_TARGETS = 300, KINDS = 6, ROBOTS = 24 };
+
+typedef struct crowd {
+  cprox_body *bodies[KINDS];
+  cprox_target targets[MOST_TARGETS];
+  size_t n;
+  cprox_set *set;
+} crowd;
+
+static cprox_body *surface(rng *r) {
+  cprox_vec3 v[12];
+  uint32_t triangles[4][3];
+  for (uint32_t i = 0; i < 12; i++) {
+    v[i] = rng_in_cube(r, 0.1);
+    triangles[i / 3][i % 3] = i;
+  }
+  cprox_body *mesh = NULL;
+  assert_int_equal(
+      cprox_body_create_mesh(v, 12, (const uint32_t(*)[3])triangles, 4, CPROX_MESH_SURFACE, SIZE_MAX, ws, &mesh),
+      CPROX_OK);
+  return mesh;
+}
+
+/* Nearer than `clear` to the robot's base stands nothing, but for the ground. */
+static void make_crowd(rng *r, size_t n, double clear, double half, crowd *c) {
+  *c = (crowd){.n = n};
+  assert_int_equal(cprox_body_create_box((cprox_vec3){0.2, 0.1, 0.05}, ws, &c->bodies[0]), CPROX_OK);
+  assert_int_equal(cprox_body_create_sphere(0.08, ws, &c->bodies[1]), CPROX_OK);
+  assert_int_equal(cprox_body_create_cylinder(0.3, 0.02, ws, &c->bodies[2]), CPROX_OK);
+  const cprox_body *const parts[2] = {c->bodies[0], c->bodies[1]};
+  const cprox_pose poses[2] = {rng_pose(r, 0.1), rng_pose(r, 0.2)};
+  assert_int_equal(cprox_body_create_compound(parts, poses, 2, ws, &c->bodies[3]), CPROX_OK);
+  c->bodies[4] = surface(r);
+  assert_int_equal(cprox_body_create_halfspace((cprox_vec3){0, 0, 1}, -half, ws, &c->bodies[5]), CPROX_OK);
+  for (size_t i = 0; i < n; i++) {
+    cprox_pose pose = rng_pose(r, half);
+    while (vec_norm(pose.position) < clear) pose = rng_pose(r, half);
+    c->targets[i] = cprox_at(c->bodies[rng_index(r, 5)], pose);
+    c->targets[i].padding = rng_index(r, 3) ? 0.0 : 0.03;
+  }
+  if (rng_index(r, 2)) c->targets[rng_index(r, n)] = cprox_at(c->bodies[5], (cprox_pose){.orientation = {.w = 1}});
+  assert_int_equal(cprox_set_create(c->targets, n, ws, &c->set), CPROX_OK);
+}
+
+static void free_crowd(crowd *c) {
+  cprox_set_free(c->set);
+  cprox_body_free(c->bodies[3]); /* first what is made of others */
+  for (int i = 0; i < KINDS; i++)
+    if (i != 3) cprox_body_free(c->bodies[i]);
+}
+
+/* The least of what single questions say. */
+static cprox_result least_of(const crowd *c, cprox_mover mover, const cprox_options *o) {
+  cprox_result least = {.lower = INFINITY, .upper = INFINITY};
+  for (size_t i = 0; i < c->n; i++) {
+    cprox_result one;
+    if (cprox_distance(mover, c->targets[i], o, ws, &one) < 0)
+      fail_msg("target %zu: %s", i, cprox_workspace_reason(ws));
+    least.lower = fmin(least.lower, one.lower), least.upper = fmin(least.upper, one.upper);
+  }
+  return least;
+}
+
+/* Both intervals hold the truth and are within epsilon of each other's ends; verdicts hold on both sides of it. */
+static void a_set_is_answered_as_its_targets_one_by_one(void **state) {
+  (void)state;
+  rng r = rng_seed(6601);
+  size_t touching = 0, apart = 0;
+  for (size_t i = 0; i < test_cases(ROBOTS); i++) {
+    test_robot t;
+    crowd c;
+    robot_make(&r, rng_uniform(&r, 0.3, 2.5), &t);
+    make_crowd(&r, 20 + rng_index(&r, MOST_TARGETS - 20), i % 2 ? 4.0 : 0.0, 6.0, &c);
+    const cprox_options o = accurate(1e-5);
+    const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
+    const cprox_result one = least_of(&c, mover, &o);
+    cprox_result all, listed;
+    assert_int_equal(cprox_set_distance(c.set, mover, &o, ws, &all), CPROX_OK);
+    if (isinf(one.lower)) assert_true(isinf(all.lower)); /* nothing of it moves */
+    if (isfinite(one.lower) &&
+        !(all.lower <= one.upper && all.upper >= one.lower && all.upper - all.lower <= o.epsilon))
+      fail_msg("robot %zu: [%.9g, %.9g], one by one [%.9g, %.9g]", i, all.lower, all.upper, one.lower, one.upper);
+    if (isinf(one.lower)) {
+      free_crowd(&c);
+      robot_free(&t);
+      continue;
+    }
+    assert_int_equal(cprox_distance_all(mover, c.targets, c.n, &o, ws, &listed, NULL), CPROX_OK);
+    assert_true(all.lower <= listed.upper && listed.lower <= all.upper);
+
+    /* the target that is named is as near as is said */
+    assert_in_range(all.target_index, 0, c.n - 1);
+    cprox_result named;
+    cprox_distance(mover, c.targets[all.target_index], &o, ws, &named);
+    assert_true(named.lower <= all.upper && named.upper >= all.lower);
+
+    cprox_result verdict;
+    cprox_set_collision(c.set, mover, NULL, ws, &verdict);
+    assert_int_equal(verdict.verdict, one.upper <= 0.0 ? CPROX_YES : CPROX_NO);
+    touching += one.upper <= 0.0, apart += one.lower > 0.0;
+    if (one.lower > 0.0) {
+      cprox_set_tolerance(c.set, mover, 0.99 * one.lower, NULL, ws, &verdict);
+      assert_int_equal(verdict.verdict, CPROX_YES);
+      cprox_set_tolerance(c.set, mover, 1.01 * one.upper, NULL, ws, &verdict);
+      assert_int_equal(verdict.verdict, CPROX_NO);
+    }
+    free_crowd(&c);
+    robot_free(&t);
+  }
+  assert_true(touching >= 3 && apart >= 3);
+}
+
+/* Never later than the earliest contact with a single target, and no earlier than epsilon away from one. */
+static void first_contact_with_a_set_is_the_earliest_of_its_targets(void **state) {
+  (void)state;
+  rng r = rng_seed(6602);
+  for (size_t i = 0; i < test_cases(6); i++) {
+    test_robot t;
+    crowd c;
+    robot_make(&r, 1.0, &t);
+    make_crowd(&r, 60, 0.5, 3.0, &c);
+    const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
+    const cprox_options o = accurate(1e-5);
+    double contact = INFINITY, free = INFINITY;
+    bool clear = true;
+    for (size_t k = 0; k < c.n; k++) {
+      cprox_result one;
+      cprox_first_contact(mover, c.targets[k], &o, ws, &one);
+      if (one.verdict == CPROX_YES) contact = fmin(contact, one.t);
+      free = fmin(free, one.t_free);
+      clear = clear && one.verdict == CPROX_NO;
+    }
+    cprox_result all;
+    cprox_set_first_contact(c.set, mover, &o, ws, &all);
+    assert_true(all.t_free <= contact);
+    if (all.verdict == CPROX_YES) assert_true(all.t >= free);
+    assert_int_equal(all.verdict == CPROX_NO, clear);
+    free_crowd(&c);
+    robot_free(&t);
+  }
+}
+
+/* A robot that moves among targets ten times as many looks at few more of them. */
+static void the_work_hardly_grows_with_the_number_of_targets(void **state) {
+  (void)state;
+  enum { MANY = 4000 };
+  static cprox_target targets[MANY];
+  rng r = rng_seed(6603);
+  test_robot t;
+  robot_make(&r, 0.5, &t);
+  cprox_body *ball = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.02, ws, &ball), CPROX_OK);
+  uint32_t probes[2];
+  for (int k = 0; k < 2; k++) {
+    const size_t n = k ? MANY : MANY / 10;
+    const double half = 3.0 * cbrt((double)n); /* as many in a place */
+    for (size_t i = 0; i < n; i++) targets[i] = cprox_at(ball, rng_pose(&r, half));
+    cprox_set *set = NULL;
+    assert_int_equal(cprox_set_create(targets, n, ws, &set), CPROX_OK);
+    cprox_result all;
+    assert_int_equal(cprox_set_distance(set, cprox_robot_along(t.motion, NULL, 0), NULL, ws, &all), CPROX_OK);
+    probes[k] = all.probes + all.nodes;
+    cprox_set_free(set);
+  }
+  print_message("distances and nodes among %d targets: %u, among %d: %u\n", MANY / 10, probes[0], MANY, probes[1]);
+  assert_true(probes[1] <= 3 * probes[0]);
+  cprox_body_free(ball);
+  robot_free(&t);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_set_is_answered_as_its_targets_one_by_one),
+      cmocka_unit_test(first_contact_with_a_set_is_the_earliest_of_its_targets),
+      cmocka_unit_test(the_work_hardly_grows_with_the_number_of_targets),
+  };
+  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+}
