@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a query about a robot in motion leaves behind is accepted by the checker, which reads the question itself, does its own
  * kinematics and shares no line with the search. */
+#define _POSIX_C_SOURCE 200809L
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include <cmocka.h>
 
@@ -39,6 +41,12 @@ static void print_tally(const char *what, tally *t) {
                   bytes, t->bytes[t->n - 1], tries, t->tries[t->n - 1], time, t->milliseconds[t->n - 1]);
 }
 
+static double cpu_milliseconds(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
 /* One question with the claim that its certificate makes. */
 static void examine(const cprox_mover *along, const cprox_target *targets, size_t n, const cprox_certificate *c,
                     const cprox_result *r, double delta, bool verdict, const char *name, tally *sum) {
@@ -51,9 +59,11 @@ static void examine(const cprox_mover *along, const cprox_target *targets, size_
       fail_msg("%s: no certificate of lower %.17g over %.17g: %s", name, r->lower, delta, cprox_workspace_reason(ws));
     return;
   }
-  double milliseconds;
-  const finding found =
-      robot_question_check(along, targets, n, cprox_certificate_bytes(c), cprox_certificate_size(c), ws, &milliseconds);
+  robot_text text = robot_text_of(along, targets, n, ws);
+  const double begin = cpu_milliseconds();
+  const finding found = robot_text_check(&text, cprox_certificate_bytes(c), cprox_certificate_size(c));
+  const double milliseconds = cpu_milliseconds() - begin;
+  robot_text_free(&text);
   if (found.fault)
     fail_msg("%s: refused: %s (lower %.17g, delta %.17g)", name, found.fault, r->lower, cprox_certificate_delta(c));
   assert_int_equal(found.claim, cprox_certificate_claim(c));

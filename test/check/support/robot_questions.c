@@ -7,7 +7,6 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include <cmocka.h>
 
@@ -73,20 +72,21 @@ void robot_write_mover(const cprox_mover *along, const cprox_target *targets, si
   free(text);
 }
 
-finding robot_question_check(const cprox_mover *along, const cprox_target *targets, size_t n, const void *bytes,
-                             size_t size, cprox_workspace *ws, double *milliseconds) {
-  FILE *file = tmpfile();
-  robot_write_targets(targets, n, file);
-  robot_write_mover(along, targets, n, "one", ws, file);
-  rewind(file);
-  problem p;
-  if (!problem_open(&p, file) || !problem_next(&p)) fail_msg("the checker does not read it: %s", p.fault);
-  struct timespec begin, end;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
-  const finding found = check(&p, bytes, size);
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
-  *milliseconds = 1e3 * (double)(end.tv_sec - begin.tv_sec) + 1e-6 * (double)(end.tv_nsec - begin.tv_nsec);
-  problem_close(&p);
-  fclose(file);
-  return found;
+robot_text robot_text_of(const cprox_mover *along, const cprox_target *targets, size_t n, cprox_workspace *ws) {
+  robot_text text = {.file = tmpfile()};
+  robot_write_targets(targets, n, text.file);
+  robot_write_mover(along, targets, n, "one", ws, text.file);
+  rewind(text.file);
+  if (!problem_open(&text.read, text.file) || !problem_next(&text.read))
+    fail_msg("the checker does not read it: %s", text.read.fault);
+  return text;
+}
+
+finding robot_text_check(const robot_text *text, const void *bytes, size_t size) {
+  return check(&text->read, bytes, size);
+}
+
+void robot_text_free(robot_text *text) {
+  problem_close(&text->read);
+  fclose(text->file);
 }

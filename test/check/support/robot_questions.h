@@ -27,8 +27,14 @@ void robot_write_targets(const cprox_target *targets, size_t n, FILE *out);
 void robot_write_mover(const cprox_mover *along, const cprox_target *targets, size_t n, const char *id,
                        cprox_workspace *ws, FILE *out);
 
-/* What the checker finds; milliseconds without the reading of the question. */
-finding robot_question_check(const cprox_mover *along, const cprox_target *targets, size_t n, const void *bytes,
-                             size_t size, cprox_workspace *ws, double *milliseconds);
+/* A question that the checker has read. */
+typedef struct robot_text {
+  problem read;
+  FILE *file;
+} robot_text;
+
+robot_text robot_text_of(const cprox_mover *along, const cprox_target *targets, size_t n, cprox_workspace *ws);
+finding robot_text_check(const robot_text *text, const void *bytes, size_t size);
+void robot_text_free(robot_text *text);
 
 #endif

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* robot_mutants QUESTIONS MUTANTS SEED: random robots in motion with genuine certificates and tampered ones, and with genuine ones held
+ * against a question that was changed: a target nearer, a motion that goes farther. Genuine ones must be accepted, and of all that is
+ * accepted the claim must be true: the distance, known within 1e-9 m, must not contradict it. */
+#include <inttypes.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/robot_questions.h"
+#include "support/tampering.h"
+
+typedef struct tally {
+  size_t genuine, tampered, accepted, failed;
+} tally;
+
+/* The distance of a question, and a certificate of it or of a verdict about it; false where there is none. */
+static bool ask(const robot_question *q, rng *r, cprox_workspace *ws, cprox_certificate *c, double interval[2],
+                bytes *genuine) {
+  cprox_options options = cprox_options_default();
+  options.epsilon = 1e-9;
+  cprox_result result;
+  if (cprox_distance_all(q->mover, q->targets, q->n, &options, ws, &result, NULL) < 0) return false;
+  interval[0] = result.lower, interval[1] = result.upper;
+  if (!genuine || !isfinite(result.upper)) return isfinite(result.upper);
+  const double delta = rng_index(r, 3) ? result.upper * rng_uniform(r, 0.3, 1.2) : fmax(result.lower - 1e-6, 0.0);
+  if (cprox_tolerance_all(q->mover, q->targets, q->n, delta, &options, ws, &result, NULL) < 0) return false;
+  if (cprox_certify(q->mover, q->targets, q->n, delta, &result, &options, ws, c) != CPROX_OK) return false;
+  genuine->n = cprox_certificate_size(c);
+  if (genuine->n == 0 || genuine->n + 16 > MOST_BYTES) return false;
+  memset(genuine->at, 0, sizeof genuine->at);
+  memcpy(genuine->at, cprox_certificate_bytes(c), genuine->n);
+  return true;
+}
+
+/* Is what was found true of a question whose distance lies in the interval? */
+static bool is_true(const finding *found, const double interval[2]) {
+  if (found->claim == CLAIM_APART) return found->delta < interval[1];
+  return found->claim == CLAIM_NONE || found->delta >= interval[0];
+}
+
+static void judge(const finding *found, const double interval[2], const char *done, size_t question, tally *sum) {
+  const bool genuine = strcmp(done, "genuine") == 0, proven = found->claim != CLAIM_NONE;
+  sum->genuine += genuine;
+  sum->tampered += !genuine;
+  sum->accepted += !genuine && proven;
+  if (genuine && !proven) {
+    printf("FAILED question %zu: a genuine certificate was refused: %s\n", question, found->fault);
+    sum->failed++;
+  } else if (!is_true(found, interval)) {
+    printf("FAILED question %zu (%s): %s %.17g was accepted, but the distance is in [%.17g, %.17g]\n", question, done,
+           found->claim == CLAIM_APART ? "apart" : "near", found->delta, interval[0], interval[1]);
+    sum->failed++;
+  }
+}
+
+/* Targets come nearer by up to a tenth, or the motion goes farther by up to a third. */
+static void change(robot_question *q, rng *r) {
+  if (q->n > 0 && rng_index(r, 2)) {
+    for (size_t i = 0; i < q->n; i++)
+      q->targets[i].pose.position = vec_scale(1.0 - rng_log_uniform(r, 1e-6, 0.1), q->targets[i].pose.position);
+    return;
+  }
+  test_robot *t = &q->robot;
+  const double more = 1.0 + rng_log_uniform(r, 1e-6, 0.3);
+  for (size_t i = 1; i < t->n_points; i++)
+    for (size_t k = 0; k < t->n_variables; k++)
+      t->positions[i][k] = t->positions[0][k] + more * (t->positions[i][k] - t->positions[0][k]);
+  robot_rebuild(t);
+  q->mover.motion = t->motion;
+}
+
+static void try_question(robot_question *q, size_t number, size_t mutants, rng *r, cprox_workspace *ws,
+                         const bytes *genuine, const bytes *other, const double interval[2], tally *sum) {
+  static bytes mutant;
+  robot_text text = robot_text_of(&q->mover, q->targets, q->n, ws);
+  for (size_t k = 0; k <= mutants; k++) {
+    mutant = *genuine;
+    const char *done = k == 0 ? "genuine" : tamper(&mutant, r, other);
+    const finding found = robot_text_check(&text, mutant.at, mutant.n);
+    judge(&found, interval, done, number, sum);
+  }
+  robot_text_free(&text);
+  for (size_t k = 0; k < mutants / 4; k++) {
+    double changed[2];
+    change(q, r);
+    if (!ask(q, r, ws, NULL, changed, NULL)) continue;
+    text = robot_text_of(&q->mover, q->targets, q->n, ws);
+    const finding found = robot_text_check(&text, genuine->at, genuine->n);
+    judge(&found, changed, "changed question", number, sum);
+    robot_text_free(&text);
+  }
+}
+
+int main(int argc, char **argv) {
+  if (argc != 4) {
+    fputs("usage: robot_mutants QUESTIONS MUTANTS SEED\n", stderr);
+    return 2;
+  }
+  const size_t questions = strtoul(argv[1], NULL, 10), mutants = strtoul(argv[2], NULL, 10);
+  rng r = rng_seed(strtoumax(argv[3], NULL, 10));
+  cprox_workspace *ws = cprox_workspace_create();
+  cprox_certificate *c = cprox_certificate_create();
+  static bytes genuine, other;
+  tally sum = {0};
+  for (size_t i = 0; i < questions;) {
+    robot_question q;
+    robot_question_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), ws);
+    double interval[2];
+    if (ask(&q, &r, ws, c, interval, &genuine)) {
+      try_question(&q, i++, mutants, &r, ws, &genuine, other.n ? &other : &genuine, interval, &sum);
+      other = genuine;
+    }
+    robot_question_free(&q);
+  }
+  cprox_certificate_free(c);
+  cprox_workspace_free(ws);
+  printf("robots: %zu genuine certificates, %zu mutants, of which %zu prove something true\n", sum.genuine,
+         sum.tampered, sum.accepted - (sum.failed < sum.accepted ? sum.failed : sum.accepted));
+  printf("%zu passed, %zu failed\n", sum.genuine + sum.tampered - sum.failed, sum.failed);
+  return sum.failed > 0 || sum.genuine == 0;
+}
