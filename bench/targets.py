@@ -9,11 +9,11 @@ import re
 OURS = 'curve_proximity'
 HERE = os.path.dirname(os.path.abspath(__file__))
 
-AT_LEAST = ('ratio', 'each')
+AT_LEAST = ('ratio', 'each', 'fewer')
 # How far a figure may be beyond its limit: two runs on a shared machine differ by so much. Counts do not.
-SLACK = {'ratio': 0.2, 'each': 0.2, 'growth': 0.2, 'exponent': 0.1}
+SLACK = {'ratio': 0.2, 'each': 0.2, 'growth': 0.2, 'tail': 0.5, 'exponent': 0.1}
 # Peers that a machine may lack.
-PEERS = ('FCL', 'octomap', 'Ipopt', 'ipopt', 'OpenCASCADE', 'SISL', 'Bullet', 'NLopt', 'OMPL', 'KDL')
+PEERS = ('coal', 'FCL', 'octomap', 'Ipopt', 'ipopt', 'OpenCASCADE', 'SISL', 'Bullet', 'NLopt', 'OMPL', 'KDL')
 
 
 def read_targets():
@@ -30,11 +30,11 @@ def matching(rows, target):
     return [row for row in rows if all(fnmatch.fnmatchcase(row[key], target[key]) for key in ('group', 'workload', 'parameter'))]
 
 
-def ratios(rows, baseline):
-    """baseline's time over ours for each workload and parameter that has both."""
+def ratios(rows, baseline, column='median_us'):
+    """baseline's time, or its count, over ours for each workload and parameter that has both."""
     def times(method):
-        return {(r['workload'], r['parameter']): float(r['median_us']) for r in rows
-                if r['method'] == method and r['median_us'] not in ('', 'nan')}
+        return {(r['workload'], r['parameter']): float(r[column]) for r in rows
+                if r['method'] == method and r[column] not in ('', 'nan', '0')}
     theirs, ours = times(baseline), times(OURS)
     return [theirs[key] / ours[key] for key in ours if key in theirs]
 
@@ -60,16 +60,18 @@ def figure(rows, target):
     kind = target['kind']
     found = matching(rows, target)
     if kind in AT_LEAST:
-        values = ratios(found, target['baseline'])
+        values = ratios(found, target['baseline'], 'nodes' if kind == 'fewer' else 'median_us')
         if not values:
             return None
         return min(values) if kind == 'each' else geometric_mean(values)
     ours = [row for row in found if (row['method'] == target['baseline'] if target['baseline'] else is_ours(row))]
     if not ours:
         return None
-    if kind == 'growth':
-        by_accuracy = sorted(ours, key=lambda row: row['parameter'])
-        return float(by_accuracy[-1]['median_us']) / float(by_accuracy[0]['median_us'])
+    if kind in ('growth', 'node growth'):
+        by_accuracy, column = sorted(ours, key=lambda row: row['parameter']), 'median_us' if kind == 'growth' else 'nodes'
+        return float(by_accuracy[-1][column]) / float(by_accuracy[0][column])
+    if kind == 'tail':
+        return max(float(row['p95_us']) / float(row['median_us']) for row in ours)
     if kind == 'exponent':
         return max(exponent([row for row in ours if row['workload'] == name]) for name in {row['workload'] for row in ours})
     if kind == 'microseconds':

@@ -67,7 +67,7 @@ def growth_lines(rows):
                 found.setdefault((row['group'], row['workload'], row['method']), []).append(sized(row, what))
         for (own, name, method), of in sorted(found.items()):
             if len({targets.size_of(row) for row in of}) >= (2 if 'threads' in name else 3):
-                yield [own, name, method, what.split()[0], ', '.join(row['parameter'] for row in of), f'{targets.exponent(of):.2f}']
+                yield [own, name, method, what.split()[0], ', '.join(f'{targets.size_of(row):g}' for row in of), f'{targets.exponent(of):.2f}']
 
 
 def losses(rows):

@@ -44,7 +44,7 @@ static void make_polygon(rng *r, vec3 centre, double radius, obstacle *o) {
 }
 
 /* All triples with every other vertex on one side: for a few dozen vertices. */
-static void find_faces(obstacle *o) {
+void obstacle_find_faces(obstacle *o) {
   o->triangle = memory(4 * o->n, sizeof *o->triangle);
   const int n = (int)o->n;
   for (int i = 0; i < n; i++) {
@@ -81,7 +81,7 @@ void obstacle_make(rng *r, obstacle_kind kind, obstacle *o) {
     default:
       o->n = kind == OBSTACLE_POLYTOPE ? 8 + rng_index(r, 57) : 500;
       for (size_t i = 0; i < o->n; i++) o->vertex[i] = vec_axpy(centre, radius, rng_unit(r));
-      if (kind == OBSTACLE_POLYTOPE) find_faces(o);
+      if (kind == OBSTACLE_POLYTOPE) obstacle_find_faces(o);
   }
   check(cprox_body_create_polytope(o->vertex, o->n, NULL, &o->body));
 }

@@ -28,6 +28,9 @@ typedef struct obstacle {
 void obstacle_make(rng *r, obstacle_kind kind, obstacle *o);
 void obstacle_free(obstacle *o);
 
+/* The triangles of the hull of the vertices, which are in general position. */
+void obstacle_find_faces(obstacle *o);
+
 /* A Bézier curve and an obstacle that it does not touch, for us and for the paper's method. */
 typedef struct curve_problem {
   size_t degree;

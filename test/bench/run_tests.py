@@ -45,6 +45,11 @@ class Targets(unittest.TestCase):
         rows = [row(), row(method='peer', median_us=2), row(parameter='q'), row(method='peer', parameter='q', median_us=8)]
         self.assertAlmostEqual(targets.figure(rows, target(kind='each')), 2.0)
 
+    def test_fewer_compares_nodes_and_a_tail_is_that_of_the_95_percent(self):
+        rows = [row(nodes=5, median_us=2, p95_us=6), row(method='peer', nodes=100)]
+        self.assertAlmostEqual(targets.figure(rows, target(kind='fewer')), 20.0)
+        self.assertAlmostEqual(targets.figure(rows, target(kind='tail', baseline='')), 3.0)
+
     def test_an_exponent_is_fitted_to_the_first_number_of_the_parameter(self):
         rows = [row(parameter=f'{n} links of 9', median_us=n ** 1.5) for n in (10, 100, 1000)]
         self.assertAlmostEqual(targets.figure(rows, target(kind='exponent', baseline='')), 1.5)
