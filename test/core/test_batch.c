@@ -403,7 +403,8 @@ static void chords_are_those_of_the_piece(void **state) {
     random_points(&r, degree + 1, points);
     const double *basis = lanes_basis(degree, workspace);
     lanes_chords chords;
-    lanes_points(basis, points, degree, false, &chords);
+    lanes_points(basis, points, degree, false, 0, &chords);
+    lanes_points(basis, points, degree, false, LANES, &chords);
     lanes_join(&chords);
     const double size = ref_largest(points, degree + 1);
     const double allowed = (10.0 * (double)degree + 16) * 0x1p-53 * size;

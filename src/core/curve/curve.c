@@ -165,6 +165,7 @@ void curve_finish(cprox_curve *c) {
   c->binomial = c->tables;
   c->square = c->tables + (c->degree < 2 ? 0 : c->degree - 1);
   build_tree(c);
+  c->whole = curve_capsule_at(c, 1);
 }
 
 /* ---- arithmetic ---- */

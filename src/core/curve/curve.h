@@ -34,6 +34,7 @@ struct cprox_curve {
    * k / CURVE_PACK, of which there are curve_packs(); lanes that are no nodes have radius < 0. */
   curve_pack *packs;
   size_t n_leaves;
+  curve_capsule whole; /* node 1 once more: it is asked for by every query, and often nothing else is */
   cprox_rectifiable_curve
       *arcs;              /* NULL, or what a curve is known by that has no control points: then its pieces are chords of
                                     degree 1, their errors how far the curve is from them, and intervals are those of

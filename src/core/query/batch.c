@@ -17,26 +17,28 @@
 static cprox_status report_hit(const batch_run *run, const batch_look *look, cprox_result *r) {
   const batch_hit *hit = &look->hit;
   const candidate *part = &run->batch->parts[hit->part];
-  const double *breaks = run->q.mover.curve->breaks, radius = run->q.mover.radius;
+  const batch_core *core = &run->batch->cores[hit->part];
+  const lanes_chords *chords = &run->chords[hit->piece];
+  const double *breaks = run->q.mover.curve->breaks + hit->piece, radius = run->q.mover.radius;
+  const vec3 point = vec(chords->x[hit->k], chords->y[hit->k], chords->z[hit->k]);
   *r = (cprox_result){.lower = look->beyond < 0.0 ? 0.0 : look->beyond,
                       .upper = hit->upper,
-                      .t = breaks[hit->piece] + hit->s * (breaks[hit->piece + 1] - breaks[hit->piece]),
+                      .t = breaks[0] + (double)(int)hit->k / CHORDS * (breaks[1] - breaks[0]),
                       .t_target = NAN,
-                      .on_mover = hit->point,
-                      .on_target = hit->point,
+                      .on_mover = point,
+                      .on_target = point,
                       .target_index = part->target,
                       .target_part = part->part,
                       .rung = CPROX_RUNG_SPHERE};
 
   /* the nearest points of that ball and the mover's, or one of both */
-  const vec3 from = vec_sub(hit->point, hit->centre);
-  const double distance = vec_norm(from);
-  if (distance > hit->within) {
-    const vec3 normal = vec_scale(1.0 / distance, from);
-    r->on_mover = r->on_target = vec_axpy(hit->centre, hit->within, normal);
-    if (distance > hit->within + radius) {
+  const double within = core->inner + core->padding;
+  if (hit->distance > within) {
+    const vec3 normal = vec_scale(1.0 / hit->distance, vec_sub(point, core->centre));
+    r->on_mover = r->on_target = vec_axpy(core->centre, within, normal);
+    if (hit->distance > within + radius) {
       r->normal = normal;
-      r->on_mover = vec_axpy(hit->point, -radius, normal);
+      r->on_mover = vec_axpy(point, -radius, normal);
     }
   }
   r->verdict = question_verdict(&run->q, r);
@@ -68,10 +70,12 @@ static cprox_status search_near(const batch_run *run, const batch_look *look, cp
 }
 
 static cprox_status answer_fast(batch_run *run, cprox_result *r) {
-  question_ask_whole(&run->q);
   batch_look look;
   batch_look_around(run, &look);
-  return look.is_hit ? report_hit(run, &look, r) : search_near(run, &look, r);
+  if (look.is_hit) return report_hit(run, &look, r);
+  question_ask_whole(&run->q);
+  run->degree = SIZE_MAX; /* a search has bases of its own */
+  return search_near(run, &look, r);
 }
 
 /* ---- the call ----------------------------------------------------------------------------------------------------------- */
@@ -120,7 +124,7 @@ static bool reserve(batch_run *run) {
 
 static cprox_status answer_range(question q, const cprox_batch *batch, const cprox_mover *movers, size_t first,
                                  size_t last, cprox_result *results) {
-  batch_run run = {.batch = batch, .q = q};
+  batch_run run = {.batch = batch, .q = q, .degree = SIZE_MAX};
   const cprox_status checked = check_call(&run, movers, first, last, results);
   if (checked != CPROX_OK) return checked;
   run.q.targets = batch->targets;

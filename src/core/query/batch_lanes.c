@@ -17,7 +17,8 @@ void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, d
   /* a chord whose square would underflow is a point and a little more */
   const double length2 = vec_norm2(ab), per_length2 = length2 > LEAST_SQUARE ? 1.0 / length2 : 0.0;
   const double own = capsule->radius + radius + (length2 > LEAST_SQUARE ? 0.0 : 1e-140);
-  const double own_sizes = vec_norm(a) + vec_norm(capsule->b) + own;
+  const vec3 b = capsule->b; /* sums of coordinates are no less than lengths */
+  const double own_sizes = fabs(a.x) + fabs(a.y) + fabs(a.z) + fabs(b.x) + fabs(b.y) + fabs(b.z) + own;
 #pragma omp simd
   for (size_t k = 0; k < balls->padded; k++) {
     /* the nearest point of the chord; any other would only lie farther away, by no more than the rounding of s */
@@ -58,38 +59,37 @@ const double *lanes_basis(size_t degree, cprox_workspace *workspace) {
 }
 
 LANES_DISPATCHED
-void lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, lanes_chords *chords) {
-  /* half of the lanes at a time, begun by their first terms: so many sums stay in registers */
-  for (size_t first = 0; first < CHORDS; first += LANES) {
-    double x[LANES], y[LANES], z[LANES];
-    const double *restrict b = basis + first;
+void lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, size_t first,
+                  lanes_chords *chords) {
+  /* begun by their first terms: so many sums stay in registers */
+  double x[LANES], y[LANES], z[LANES];
+  const double *restrict b = basis + first;
+#pragma omp simd
+  for (int k = 0; k < LANES; k++) {
+    x[k] = b[k] * points[0].x;
+    y[k] = b[k] * points[0].y;
+  }
+  for (size_t j = 1; j <= degree; j++) {
+    const double *restrict next = b + j * CHORDS;
+    const vec3 p = points[j];
 #pragma omp simd
     for (int k = 0; k < LANES; k++) {
-      x[k] = b[k] * points[0].x;
-      y[k] = b[k] * points[0].y;
+      x[k] += next[k] * p.x;
+      y[k] += next[k] * p.y;
     }
-    for (size_t j = 1; j <= degree; j++) {
-      const double *restrict next = b + j * CHORDS;
-      const vec3 p = points[j];
+  }
 #pragma omp simd
-      for (int k = 0; k < LANES; k++) {
-        x[k] += next[k] * p.x;
-        y[k] += next[k] * p.y;
-      }
-    }
+  for (int k = 0; k < LANES; k++) z[k] = flat ? points[0].z : b[k] * points[0].z;
+  for (size_t j = 1; j <= degree && !flat; j++) {
+    const double *restrict next = b + j * CHORDS;
+    const double pz = points[j].z;
 #pragma omp simd
-    for (int k = 0; k < LANES; k++) z[k] = flat ? points[0].z : b[k] * points[0].z;
-    for (size_t j = 1; j <= degree && !flat; j++) {
-      const double *restrict next = b + j * CHORDS;
-      const double pz = points[j].z;
-#pragma omp simd
-      for (int k = 0; k < LANES; k++) z[k] += next[k] * pz;
-    }
-    for (size_t k = 0; k < LANES; k++) {
-      chords->x[first + k] = x[k];
-      chords->y[first + k] = y[k];
-      chords->z[first + k] = z[k];
-    }
+    for (int k = 0; k < LANES; k++) z[k] += next[k] * pz;
+  }
+  for (size_t k = 0; k < LANES; k++) {
+    chords->x[first + k] = x[k];
+    chords->y[first + k] = y[k];
+    chords->z[first + k] = z[k];
   }
   chords->x[CHORDS] = points[degree].x;
   chords->y[CHORDS] = points[degree].y;
@@ -110,21 +110,23 @@ void lanes_join(lanes_chords *chords) {
 }
 
 LANES_DISPATCHED
-double lanes_nearest_point(const lanes_chords *c, vec3 point, double most, size_t *nearest) {
-  double square[CHORDS];
+double lanes_nearest_point(const lanes_chords *c, size_t from, vec3 point, double most, size_t *nearest) {
+  double square[LANES], best[LANES];
+  const double *restrict x = c->x + from, *restrict y = c->y + from, *restrict z = c->z + from;
 #pragma omp simd
-  for (int k = 0; k < CHORDS; k++) {
-    const double dx = point.x - c->x[k], dy = point.y - c->y[k], dz = point.z - c->z[k];
+  for (int k = 0; k < LANES; k++) {
+    const double dx = point.x - x[k], dy = point.y - y[k], dz = point.z - z[k];
     square[k] = dx * dx + dy * dy + dz * dz;
+    best[k] = square[k];
   }
-  double least = INFINITY;
-#pragma omp simd reduction(min : least)
-  for (int k = 0; k < CHORDS; k++) least = square[k] < least ? square[k] : least;
-  if (least > most) return least;
-  size_t first = 0;
-  while (first + 1 < CHORDS && square[first] != least) first++;
-  *nearest = first;
-  return least;
+  for (int half = LANES / 2; half > 0; half /= 2)
+    for (int k = 0; k < half; k++) best[k] = best[k] < best[k + half] ? best[k] : best[k + half];
+  if (best[0] > most) return best[0];
+  /* without branches: which of them it is nobody can foretell */
+  size_t first = LANES - 1;
+  for (size_t k = LANES - 1; k-- > 0;) first = square[k] == best[0] ? k : first;
+  *nearest = from + first;
+  return best[0];
 }
 
 LANES_DISPATCHED

@@ -33,14 +33,16 @@ typedef struct lanes_chords {
   double per_length2[CHORDS]; /* 1/|d|², 0 where that would overflow */
 } lanes_chords;
 
-/* The points where the chords begin, and the end. Where the piece is flat z is that of its control points, exactly. */
-void lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, lanes_chords *chords);
+/* The points where LANES of the chords begin, from the first on, and the end of the piece. Where the piece is flat z is that of its
+ * control points, exactly. */
+void lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, size_t first,
+                  lanes_chords *chords);
 
 /* How each point goes on to the next. */
 void lanes_join(lanes_chords *chords);
 
-/* The square distance of a point from those where the chords begin; the first that has it, if it is within `most`. */
-double lanes_nearest_point(const lanes_chords *chords, vec3 point, double most, size_t *k);
+/* The square distance of a point from those where LANES of the chords begin; the first that has it, if it is within `most`. */
+double lanes_nearest_point(const lanes_chords *chords, size_t first, vec3 point, double most, size_t *k);
 
 /* The square distance of a point from the chords, and where it is attained: the first chord that has it, and s in [0, 1] of it. */
 double lanes_closest(const lanes_chords *chords, vec3 point, size_t *chord, double *s);

@@ -7,20 +7,30 @@
 
 /* ---- the curve ---------------------------------------------------------------------------------------------------------- */
 
-/* Points at equal steps of the parameter, and what rounding may do to them, to chords between them and to lengths along these. */
-static bool cut_curve(batch_run *run) {
+/* What rounding may do to points at equal steps of the parameter, to chords between them and to lengths along these. */
+static bool measure(batch_run *run) {
   const cprox_curve *curve = run->q.mover.curve;
-  const double *basis = lanes_basis(curve->degree, run->q.workspace);
-  if (!basis) return false;
-  double error = 0.0;
-  for (size_t i = 0; i < curve->n_pieces; i++) {
-    lanes_points(basis, curve_piece(curve, i), curve->degree, curve->flat, &run->chords[i]);
-    error = greater(error, curve->error[i]);
+  if (run->degree != curve->degree) {
+    run->basis = lanes_basis(curve->degree, run->q.workspace);
+    run->degree = run->basis ? curve->degree : SIZE_MAX;
   }
+  if (!run->basis) return false;
+  double error = 0.0;
+  for (size_t i = 0; i < curve->n_pieces; i++) error = greater(error, curve->error[i]);
   const double n = (double)curve->degree;
-  run->slack = ROUND_UP * (error + (10.0 * n + 40.0 + n * n / (CHORDS * CHORDS)) * ROUND_U * curve->largest);
-  run->cut = true;
+  run->slack = ROUND_UP * (error + (10.0 * n + 40.0 + n * n * (1.0 / (CHORDS * CHORDS))) * ROUND_U * curve->largest);
+  run->measured = true;
   return true;
+}
+
+/* The points of half a piece. */
+static void cut_half(batch_run *run, size_t half) {
+  const cprox_curve *curve = run->q.mover.curve;
+  const size_t piece = half / 2;
+  if (run->cut >> half & 1) return;
+  run->cut |= 1u << half;
+  lanes_points(run->basis, curve_piece(curve, piece), curve->degree, curve->flat, half % 2 * LANES,
+               &run->chords[piece]);
 }
 
 /* Chords of parameter length h are within h²/8 max|psi''| of the curve, |psi''| <= n (n-1) max|second difference|. */
@@ -28,6 +38,8 @@ static void join_points(batch_run *run) {
   const cprox_curve *curve = run->q.mover.curve;
   double bend2 = 0.0;
   for (size_t i = 0; i < curve->n_pieces; i++) {
+    cut_half(run, 2 * i);
+    cut_half(run, 2 * i + 1);
     lanes_join(&run->chords[i]);
     bend2 = greater(bend2, lanes_bend2(curve_piece(curve, i), curve->degree));
   }
@@ -37,7 +49,7 @@ static void join_points(batch_run *run) {
 }
 
 static double margin_of(const batch_run *run, size_t part) {
-  return run->batch->targets[run->batch->parts[part].target].padding + run->q.mover.radius;
+  return run->batch->cores[part].padding + run->q.mover.radius;
 }
 
 /* Placing the centre of a compound's part costs (26 + 16) u of its lengths, all of which are in the part's sizes, the rest 18 u. */
@@ -50,42 +62,49 @@ static double slack_at(const batch_run *run, size_t part, double distance, doubl
 /* All points of the inner ball are of the part; of a disc it counts only from its own plane. */
 static bool has_inner_ball(const batch_run *run, size_t part) {
   const batch_core *core = &run->batch->cores[part];
-  if (core->inner < 0.0) return false;
-  return !core->flat ||
-         (run->q.mover.curve->flat &&
-          run->q.mover.curve->points[0].z == run->batch->targets[run->batch->parts[part].target].pose.position.z);
+  const cprox_curve *curve = run->q.mover.curve;
+  return core->inner >= 0.0 && (!core->flat || (curve->flat && curve->points[0].z == core->plane));
 }
 
-/* A point of the curve that is within the limit of the part's inner ball. */
-static bool hits(const batch_run *run, size_t part, double limit, batch_hit *hit) {
-  if (!has_inner_ball(run, part)) return false;
+/* A point of half a piece that is within the limit of the part's inner ball. */
+static bool hits(batch_run *run, size_t part, size_t half, double limit, batch_hit *hit) {
   const batch_core *core = &run->batch->cores[part];
   const double margin = margin_of(run, part), reach = core->inner + margin + limit;
-  for (size_t i = 0; i < run->q.mover.curve->n_pieces; i++) {
-    size_t k;
-    const double square = lanes_nearest_point(&run->chords[i], core->centre, reach * reach, &k);
-    if (square > reach * reach) continue;
-    const double distance = sqrt(square);
-    const double upper = distance - core->inner - margin + slack_at(run, part, distance, margin);
-    if (upper > limit) continue;
-    *hit = (batch_hit){.upper = greater(upper, 0.0),
-                       .part = part,
-                       .centre = core->centre,
-                       .within = core->inner + margin - run->q.mover.radius,
-                       .point = vec(run->chords[i].x[k], run->chords[i].y[k], run->chords[i].z[k]),
-                       .piece = i,
-                       .s = (double)k / CHORDS};
-    return true;
-  }
-  return false;
+  const lanes_chords *chords = &run->chords[half / 2];
+  size_t k;
+  cut_half(run, half);
+  const double square = lanes_nearest_point(chords, half % 2 * LANES, core->centre, reach * reach, &k);
+  if (square > reach * reach) return false;
+  const double distance = sqrt(square);
+  const double upper = distance - core->inner - margin + slack_at(run, part, distance, margin);
+  if (upper > limit) return false;
+  *hit = (batch_hit){.upper = greater(upper, 0.0), .distance = distance, .part = part, .piece = half / 2, .k = k};
+  return true;
 }
 
+/* The half piece that a part may be nearest to, as the curve's chord tells. */
+static uint32_t promising_half(const curve_capsule *whole, vec3 per_chord, vec3 centre, uint32_t halves) {
+  const double along = vec_dot(vec_sub(centre, whole->a), per_chord) * (double)halves;
+  return along > 0.0 ? (uint32_t)lesser(along, (double)(halves - 1)) : 0;
+}
+
+/* The halves that are promising first, then the others. */
 static bool find_hit(batch_run *run, double limit, batch_hit *hit) {
   const cprox_batch *batch = run->batch;
-  for (size_t k = 0; k < batch->balls.n; k++) {
-    if (run->lower[k] > limit) continue;
-    if (!run->cut && !cut_curve(run)) return false;
-    if (hits(run, k, limit, hit)) return true;
+  const curve_capsule *whole = &run->q.mover.curve->whole;
+  const vec3 chord = vec_sub(whole->b, whole->a);
+  const double length2 = vec_norm2(chord);
+  const vec3 per_chord = vec_scale(length2 > 0.0 ? 1.0 / length2 : 0.0, chord);
+  const uint32_t halves = 2 * (uint32_t)run->q.mover.curve->n_pieces;
+  for (int others = 0; others < 2; others++) {
+    for (size_t k = 0; k < batch->balls.n; k++) {
+      if (run->lower[k] > limit || !has_inner_ball(run, k)) continue;
+      if (!run->measured && !measure(run)) return false;
+      const uint32_t first = promising_half(whole, per_chord, batch->cores[k].centre, halves);
+      if (!others && hits(run, k, first, limit, hit)) return true;
+      for (uint32_t half = 0; others && half < halves; half++)
+        if (half != first && hits(run, k, half, limit, hit)) return true;
+    }
   }
   return false;
 }
@@ -134,8 +153,9 @@ void batch_look_around(batch_run *run, batch_look *look) {
   const question *q = &run->q;
   look->n = 0;
   look->beyond = INFINITY;
-  run->cut = run->joined = false;
-  lanes_ball_bounds(&batch->balls, &q->reach, q->mover.radius, run->lower);
+  run->measured = run->joined = false;
+  run->cut = 0;
+  lanes_ball_bounds(&batch->balls, &q->mover.curve->whole, q->mover.radius, run->lower);
 
   const bool short_enough = q->mover.curve->n_pieces <= BATCH_MOST_PIECES;
   look->is_hit = short_enough && find_hit(run, greater(q->limit, 0.0), &look->hit);
@@ -158,7 +178,7 @@ void batch_look_around(batch_run *run, batch_look *look) {
     c->lower = run->lower[k];
     double upper = INFINITY;
     if (short_enough && batch->targets[c->target].body) {
-      if (!run->joined && (run->cut || cut_curve(run))) join_points(run);
+      if (!run->joined && (run->measured || measure(run))) join_points(run);
       if (run->joined) upper = look_at(run, c, k);
     }
     if (c->lower > lesser(most, least_upper)) {

@@ -13,9 +13,13 @@ enum {
 typedef struct batch_run {
   const cprox_batch *batch;
   question q;
-  double *lower;    /* of each part's ball, padded */
-  candidate *near;  /* what may matter to the mover */
-  bool cut, joined; /* the mover's curve has points at equal parameters below, and the chords between them are known */
+  double *lower;       /* of each part's ball, padded */
+  candidate *near;     /* what may matter to the mover */
+  const double *basis; /* of the degree, */
+  size_t degree;       /* this one; SIZE_MAX: of none */
+  bool measured;       /* `slack` is known */
+  uint32_t cut;        /* which halves of the pieces have points at equal parameters below: */
+  bool joined;         /* and the chords between all of them are known */
   lanes_chords chords[BATCH_MOST_PIECES];
   double beside; /* how far the curve may be from the chords' points of the same parameter */
   double slack;  /* how much rounding may add to that */
@@ -23,13 +27,10 @@ typedef struct batch_run {
 
 /* Where the curve comes within the limit of a ball inside a part. */
 typedef struct batch_hit {
-  double upper;  /* of the distance, rounding included */
-  size_t part;   /* number in the batch */
-  vec3 centre;   /* of the ball, which with the padding has the radius */
-  double within; /* this */
-  vec3 point;    /* the curve's, at s of the piece */
-  size_t piece;
-  double s;
+  double upper;    /* of the distance, rounding included */
+  double distance; /* of the point from the ball's centre */
+  size_t part;     /* number in the batch */
+  size_t piece, k; /* the point: where chord k of the piece begins */
 } batch_hit;
 
 typedef struct batch_look {

@@ -128,6 +128,8 @@ static void describe(cprox_batch *batch, const question *q, size_t k) {
   batch->balls.reach[k] = round.radius + target->padding;
   batch->balls.sizes[k] = vec_norm(round.centre) + placing + batch->balls.reach[k];
   batch->cores[k] = core_of(q, c, round);
+  batch->cores[k].plane = target->pose.position.z;
+  batch->cores[k].padding = target->padding;
 }
 
 cprox_status cprox_batch_create(const cprox_target *targets, size_t n, cprox_workspace *workspace,

@@ -12,7 +12,9 @@ typedef struct batch_core {
   vec3 centre;
   double inner; /* rounding included; < 0: there is no such ball */
   double outer;
-  bool flat; /* the inner ball is a disc in the plane of constant z: it tells of curves in that plane only */
+  bool flat;      /* the inner ball is a disc in the plane of constant z: it tells of curves in that plane only */
+  double plane;   /* this */
+  double padding; /* of the target, which the radii leave out */
 } batch_core;
 
 struct cprox_batch {

@@ -15,7 +15,7 @@ void question_ask_whole(question *q) {
     return;
   }
   q->part = curve_side_whole();
-  q->reach = curve_capsule_at(q->mover.curve, 1);
+  q->reach = q->mover.curve->whole;
   cprox_curve_domain(q->mover.curve, &q->t0, &q->t1);
 }
 
@@ -123,9 +123,9 @@ static double distance_to_segment(vec3 p, vec3 a, vec3 b) {
 
 /* Round a whole curve, in its frame. */
 static candidate_ball ball_of_curve(const cprox_curve *curve) {
-  const curve_capsule capsule = curve_capsule_at(curve, 1);
-  const double length = vec_norm(vec_sub(capsule.b, capsule.a));
-  return (candidate_ball){.centre = vec_lerp(capsule.a, capsule.b, 0.5), .radius = 0.5 * length + capsule.radius};
+  const curve_capsule *capsule = &curve->whole;
+  const double length = vec_norm(vec_sub(capsule->b, capsule->a));
+  return (candidate_ball){.centre = vec_lerp(capsule->a, capsule->b, 0.5), .radius = 0.5 * length + capsule->radius};
 }
 
 candidate_ball candidate_bounding_ball(const question *q, const candidate *c, double *sizes) {

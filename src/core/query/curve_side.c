@@ -74,10 +74,10 @@ static vec3 local_of(const frame *f, vec3 world) {
  * turned, u to subtract the position, 3u for each product of three, 2u for the sums; of sizes that are at most the curve's reach and
  * the centre's distance from the position. */
 static void measure_ranges(curve_side *side) {
-  const curve_capsule all = curve_capsule_at(side->curve, 1);
-  const vec3 a = local_of(&side->frame, all.a), b = local_of(&side->frame, all.b);
+  const curve_capsule *all = &side->curve->whole;
+  const vec3 a = local_of(&side->frame, all->a), b = local_of(&side->frame, all->b);
   const double computed = greater(vec_norm(a), vec_norm(b));
-  const double most = ROUND_UP * (computed + all.radius + side->turned_slope * computed + side->turned_offset);
+  const double most = ROUND_UP * (computed + all->radius + side->turned_slope * computed + side->turned_offset);
   const double roundings = (side->frame.rotated ? ROUND_ROTATION : 0.0) + 9.0 + side->frame.misturned;
   side->range_magnitude = most;
   side->range_error = ROUND_UP * (ROUND_U * roundings * (most + vec_norm(side->frame.centre)) + side->frame.misplaced);

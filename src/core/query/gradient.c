@@ -329,8 +329,8 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, con
   /* the whole curve is searched as narrowly as other minimisers are to be told apart */
   q.is_signed = q.options.signed_distance;
   q.options.certificate = NULL;
-  const curve_capsule all = curve_capsule_at(mover.curve, 1);
-  const double length = vec_norm(vec_sub(all.b, all.a)) + 2.0 * all.radius;
+  const curve_capsule *all = &mover.curve->whole;
+  const double length = vec_norm(vec_sub(all->b, all->a)) + 2.0 * all->radius;
   q.options.epsilon = fmin(q.options.epsilon, APART * length);
   q.options.relative_epsilon = 0.0;
   cprox_gradient g = {.t = result->t, .t_target = NAN};
