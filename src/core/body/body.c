@@ -293,11 +293,8 @@ cprox_status cprox_body_create_polygon(const double (*vertices)[2], size_t n, cp
     const size_t kept = polygon_clean(vertices, n, area2 < 0.0, clean);
     status = polygon_check_turns(clean, kept, workspace);
     if (!status) {
-      made->shape.edge = malloc(3 * kept * sizeof *made->shape.edge);
-      if (!made->shape.edge || body_store_vertices(made, clean, kept))
+      if (body_store_vertices(made, clean, kept) || !convex_polygon_measure_edges(&made->shape))
         status = body_out_of_memory(workspace);
-      else
-        convex_polygon_measure_edges(&made->shape);
     }
   } else {
     status = body_out_of_memory(workspace);

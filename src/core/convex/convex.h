@@ -88,8 +88,9 @@ struct convex {
    * one */
   int32_t n, padded;
   double *x, *y, *z;
-  double
-      *edge; /* polygons: of each edge from vertex i on, its unit direction's x and y, its length; three arrays of n */
+  double *
+      edge; /* polygons: of each edge from vertex i on, its unit direction's x and y, its length, its other end's x and y; five
+                arrays, padded likewise */
   /* support callbacks */
   cprox_support_fn callback;
   const void *user;
@@ -103,8 +104,8 @@ struct convex {
 extern const convex_ops convex_point, convex_sphere, convex_box, convex_capsule, convex_cylinder, convex_cone,
     convex_ellipsoid, convex_halfspace, convex_polytope, convex_polygon, convex_support_callback, convex_difference;
 
-/* Fills a polygon's edges, whose vertices are known. */
-void convex_polygon_measure_edges(convex *shape);
+/* Makes a polygon's edges, whose vertices are known; false where memory is out. */
+bool convex_polygon_measure_edges(convex *shape);
 
 /* Signed distance inside the plane z = 0 of a polygon to a point of that plane: negative inside. Same accuracy as
  * nearest. */

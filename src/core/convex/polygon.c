@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A planar convex polygon in z = 0, vertices counter-clockwise: x, y; z is 0. */
+#include <stdlib.h>
+
+#include "base/lanes.h"
 #include "convex/feature.h"
 #include "convex/vertices.h"
+
+enum { LANES = 8 }; /* the arrays are padded to a multiple of this */
 
 /* What the edges say of a point p of the plane. */
 typedef struct polygon_place {
@@ -16,27 +21,69 @@ typedef struct polygon_place {
 /* Signed distance of p from the line of edge i, measured from the nearer end so that it is exact to u about either. */
 static double polygon_height(const convex *shape, int32_t i, double px, double py, double *ex, double *ey,
                              double *along, double *length) {
-  *ex = shape->edge[i];
-  *ey = shape->edge[shape->n + i];
-  *length = shape->edge[2 * shape->n + i];
+  const double *edge = shape->edge + i;
+  const int32_t stride = shape->padded;
+  *ex = edge[0];
+  *ey = edge[stride];
+  *length = edge[2 * stride];
   const double ax = px - shape->x[i], ay = py - shape->y[i];
   *along = ax * *ex + ay * *ey;
   if (*along < 0.5 * *length) return ax * *ey - ay * *ex;
-  const int32_t j = i + 1 < shape->n ? i + 1 : 0;
-  return (px - shape->x[j]) * *ey - (py - shape->y[j]) * *ex;
+  return (px - edge[3 * stride]) * *ey - (py - edge[4 * stride]) * *ex;
 }
 
-void convex_polygon_measure_edges(convex *shape) {
-  for (int32_t i = 0; i < shape->n; i++) {
-    const int32_t j = i + 1 < shape->n ? i + 1 : 0;
+bool convex_polygon_measure_edges(convex *shape) {
+  const int32_t stride = shape->padded;
+  shape->edge = malloc(5 * (size_t)stride * sizeof *shape->edge);
+  if (!shape->edge) return false;
+  for (int32_t k = 0; k < stride; k++) {
+    const int32_t i = k < shape->n ? k : shape->n - 1, j = i + 1 < shape->n ? i + 1 : 0;
     const double ex = shape->x[j] - shape->x[i], ey = shape->y[j] - shape->y[i], length = feature_hypot(ex, ey);
-    shape->edge[i] = ex / length;
-    shape->edge[shape->n + i] = ey / length;
-    shape->edge[2 * shape->n + i] = length;
+    const double edge[5] = {ex / length, ey / length, length, shape->x[j], shape->y[j]};
+    for (int m = 0; m < 5; m++) shape->edge[m * stride + k] = edge[m];
   }
+  return true;
 }
 
-static polygon_place polygon_locate(const convex *shape, double px, double py) {
+/* The greatest height over an edge's line, and the least square distance from an edge, of each lane, and which edges those are; indices
+ * are kept as doubles so that a lane is as wide as its value. */
+typedef struct polygon_lanes {
+  double height[LANES], line[LANES], square[LANES], edge[LANES];
+} polygon_lanes;
+
+LANES_DISPATCHED
+static void polygon_look(const convex *shape, double px, double py, polygon_lanes *best) {
+  const int32_t stride = shape->padded;
+  polygon_lanes b;
+  for (int l = 0; l < LANES; l++) {
+    b.height[l] = -INFINITY, b.square[l] = INFINITY;
+    b.line[l] = b.edge[l] = 0.0;
+  }
+  for (int32_t i = 0; i < stride; i += LANES) {
+    const double *restrict x = shape->x + i, *restrict y = shape->y + i, *restrict edge = shape->edge + i;
+    const double base = i;
+#pragma omp simd
+    for (int l = 0; l < LANES; l++) {
+      const double ex = edge[l], ey = edge[stride + l], length = edge[2 * stride + l];
+      const double ax = px - x[l], ay = py - y[l];
+      const double bx = px - edge[3 * stride + l], by = py - edge[4 * stride + l];
+      const double along = ax * ex + ay * ey;
+      const double from_a = ax * ey - ay * ex, from_b = bx * ey - by * ex;
+      const double height = along < 0.5 * length ? from_a : from_b;
+      /* each vertex is looked at once, as the first of its edge */
+      const double between = along >= length ? INFINITY : height * height;
+      const double square = along <= 0.0 ? ax * ax + ay * ay : between;
+      b.line[l] = height > b.height[l] ? base : b.line[l];
+      b.height[l] = height > b.height[l] ? height : b.height[l];
+      b.edge[l] = square < b.square[l] ? base : b.edge[l];
+      b.square[l] = square < b.square[l] ? square : b.square[l];
+    }
+  }
+  *best = b;
+}
+
+/* The same, an edge at a time and at every magnitude. */
+static polygon_place polygon_locate_any(const convex *shape, double px, double py) {
   polygon_place place = {.inside = -INFINITY, .boundary = INFINITY};
   for (int32_t i = 0; i < shape->n; i++) {
     double ex, ey, along, length;
@@ -45,7 +92,6 @@ static polygon_place polygon_locate(const convex *shape, double px, double py) {
       place.inside = height;
       place.line = i;
     }
-    /* each vertex is looked at once, as the first of its edge */
     const bool vertex = along <= 0.0;
     if (!vertex && along >= length) continue;
     const double d = vertex ? feature_hypot(px - shape->x[i], py - shape->y[i]) : fabs(height);
@@ -55,6 +101,27 @@ static polygon_place polygon_locate(const convex *shape, double px, double py) {
     place.vertex = vertex;
     place.height = height;
   }
+  return place;
+}
+
+static polygon_place polygon_locate(const convex *shape, double px, double py) {
+  polygon_lanes lanes;
+  polygon_look(shape, px, py, &lanes);
+  int line = 0, edge = 0;
+  for (int l = 1; l < LANES; l++) {
+    line = lanes.height[l] > lanes.height[line] ? l : line;
+    edge = lanes.square[l] < lanes.square[edge] ? l : edge;
+  }
+  const double square = lanes.square[edge];
+  if (!(square > FEATURE_LEAST_SQUARE && square < FEATURE_MOST_SQUARE)) return polygon_locate_any(shape, px, py);
+  /* the padding repeats the last edge */
+  const int32_t last = shape->n - 1;
+  const int32_t on = (int32_t)lanes.line[line] + line, at = (int32_t)lanes.edge[edge] + edge;
+  polygon_place place = {.inside = lanes.height[line], .line = on < last ? on : last, .edge = at < last ? at : last};
+  double ex, ey, along, length;
+  place.height = polygon_height(shape, place.edge, px, py, &ex, &ey, &along, &length);
+  place.vertex = along <= 0.0;
+  place.boundary = sqrt(square);
   return place;
 }
 
