@@ -14,7 +14,8 @@
 #include "support/random.h"
 #include "support/reference.h"
 
-enum { MAX_DEGREE = 20, MAX_OPEN = 32, STEPS = 30, INTERVALS = 120000 };
+enum { MAX_DEGREE = 20, MAX_PIECES = 70, LOW_DEGREE = 4, MAX_POINTS = MAX_PIECES * LOW_DEGREE + 1 };
+enum { MAX_OPEN = 64, STEPS = 30, INTERVALS = 120000 };
 
 typedef enum shape_kind {
   SHAPE_POINT,
@@ -26,11 +27,11 @@ typedef enum shape_kind {
   SHAPES
 } shape_kind;
 
-/* One random problem: a curve, a posed body, an offset. Sizes of the order `scale`, everything `away` from the origin, on a grid
+/* One random problem: a curve of one Bézier piece or of many end to end, a posed body, an offset. Sizes of the order `scale`, everything `away` from the origin, on a grid
  * on which points - position is exact: so the reference starts from `nearby`, where long double has digits to spare. */
 typedef struct problem {
-  size_t degree;
-  vec3 points[MAX_DEGREE + 1], nearby[MAX_DEGREE + 1];
+  size_t degree, pieces;
+  vec3 points[MAX_POINTS], nearby[MAX_POINTS];
   shape_kind kind;
   vec3 size;
   vec3 vertex[6];
@@ -44,18 +45,43 @@ static vec3 on_grid(vec3 p, double step) {
   return vec(step * nearbyint(p.x / step), step * nearbyint(p.y / step), step * nearbyint(p.z / step));
 }
 
+/* A spline whose knots have the multiplicity of the degree: its de Boor points are those of its pieces. */
+static cprox_status make_curve(problem *p, cprox_workspace *ws) {
+  const size_t n = p->pieces * p->degree + 1;
+  if (p->pieces == 1) return cprox_curve_create_bezier(p->points, n, 0.0, 1.0, ws, &p->curve);
+  double knots[MAX_POINTS + LOW_DEGREE + 1];
+  for (size_t i = 0; i < n + p->degree + 1; i++)
+    knots[i] = i == 0 ? 0.0 : fmin((double)((i - 1) / p->degree), (double)p->pieces);
+  return cprox_curve_create_bspline(p->points, n, p->degree, knots, n + p->degree + 1, 0.0, (double)p->pieces, ws,
+                                    &p->curve);
+}
+
+/* A walk, or points all over the place. */
+static void make_points(problem *p, rng *r, double scale, vec3 away) {
+  const size_t n = p->pieces * p->degree + 1;
+  const bool walk = p->pieces > 1 && rng_index(r, 2);
+  vec3 at = rng_in_cube(r, 2.0 * scale);
+  for (size_t i = 0; i < n; i++) {
+    at = walk ? vec_add(at, rng_in_cube(r, 0.3 * scale)) : rng_in_cube(r, 2.0 * scale);
+    p->points[i] = vec_add(away, at);
+  }
+  if (rng_index(r, 8) == 0) p->points[n - 1] = p->points[0];
+}
+
 static problem problem_random(rng *r, cprox_workspace *ws) {
   problem p = {0};
   const double scale = rng_log_uniform(r, 1e-6, 1e6);
   const vec3 away = rng_in_cube(r, rng_index(r, 2) ? 0.0 : scale * rng_log_uniform(r, 1.0, 1e6));
   p.degree = 1 + rng_index(r, rng_index(r, 4) ? 6 : MAX_DEGREE);
-  for (size_t i = 0; i <= p.degree; i++) p.points[i] = vec_add(away, rng_in_cube(r, 2.0 * scale));
-  if (rng_index(r, 8) == 0) p.points[p.degree] = p.points[0];
+  p.pieces = rng_index(r, 2) ? 1 : 2 + rng_index(r, MAX_PIECES - 1);
+  if (p.pieces > 1) p.degree = 1 + rng_index(r, LOW_DEGREE);
+  const size_t n = p.pieces * p.degree + 1;
+  make_points(&p, r, scale, away);
   p.pose = rng_pose(r, scale);
   p.pose.position = vec_add(p.pose.position, away);
   const double step = ldexp(1.0, ilogb(fmax(scale, vec_norm(away))) - 50);
   p.pose.position = on_grid(p.pose.position, step);
-  for (size_t i = 0; i <= p.degree; i++) {
+  for (size_t i = 0; i < n; i++) {
     p.points[i] = on_grid(p.points[i], step);
     p.nearby[i] = vec_sub(p.points[i], p.pose.position);
   }
@@ -85,7 +111,7 @@ static problem problem_random(rng *r, cprox_workspace *ws) {
       status = cprox_body_create_polytope(p.vertex, 6, ws, &p.body);
   }
   if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
-  status = cprox_curve_create_bezier(p.points, p.degree + 1, 0.0, 1.0, ws, &p.curve);
+  status = make_curve(&p, ws);
   if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
   return p;
 }
@@ -95,10 +121,10 @@ static void problem_free(problem *p) {
   cprox_curve_free(p->curve);
 }
 
-/* The distance at the curve's parameter s, less the offset; 0 inside the body, so at least -offset. */
-static long double true_distance(const problem *p, double s) {
+/* The distance at s of a piece, less the offset; 0 inside the body, so at least -offset. */
+static long double true_distance(const problem *p, size_t piece, double s) {
   const cprox_pose turn = {.orientation = p->pose.orientation};
-  const vec3l y = ref_to_local(&turn, ref_bezier(p->nearby, p->degree, s, 0));
+  const vec3l y = ref_to_local(&turn, ref_bezier(p->nearby + piece * p->degree, p->degree, s, 0));
   long double d = 0;
   switch (p->kind) {
     case SHAPE_POINT:
@@ -113,17 +139,35 @@ static long double true_distance(const problem *p, double s) {
   return (d > 0 ? d : 0) - (long double)p->offset;
 }
 
+/* The pieces that a node has a share in. */
+static void pieces_of(const curve_convex *o, const search_node *node, size_t *first, size_t *end) {
+  const cprox_curve *c = o->side.curve;
+  size_t low = node->side[0].part, high = low + 1;
+  while (low < c->n_leaves) low *= 2, high *= 2;
+  *first = low - c->n_leaves;
+  *end = high - c->n_leaves < c->n_pieces ? high - c->n_leaves : c->n_pieces;
+}
+
+static bool touches_best(const curve_convex *o, const search_node *node) {
+  size_t first, end;
+  pieces_of(o, node, &first, &end);
+  return first <= o->best.piece && o->best.piece < end && node->side[0].a <= o->best.s && o->best.s <= node->side[0].b;
+}
+
 /* Two points well inside the interval: its ends are labels in double, the pieces themselves are cut exactly. */
 static size_t check_node(const problem *p, rng *r, const search_node *node, const curve_convex *o) {
   if (node->side[0].b - node->side[0].a < 1e-9) return 0;
   for (int k = 0; k < 2; k++) {
+    size_t first, end;
+    pieces_of(o, node, &first, &end);
+    const size_t piece = first + rng_index(r, end - first);
     const double s = node->side[0].a + rng_uniform(r, 1e-3, 1.0 - 1e-3) * (node->side[0].b - node->side[0].a);
-    const long double d = true_distance(p, s);
+    const long double d = true_distance(p, piece, s);
     if ((long double)node->lower > d && (long double)node->lower > -(long double)p->offset)
       fail_msg("kind %d degree %zu: bound %.17g above the distance %.17Lg at s = %.17g of [%g, %g]", p->kind, p->degree,
                node->lower, d, s, node->side[0].a, node->side[0].b);
   }
-  const long double best = true_distance(p, o->best.s);
+  const long double best = true_distance(p, o->best.piece, o->best.s);
   if (o->incumbent > 0 && (long double)o->best_bound.upper < best && best > -(long double)p->offset)
     fail_msg("kind %d degree %zu: upper bound %.17g below the distance %.17Lg at s = %.17g", p->kind, p->degree,
              o->best_bound.upper, best, o->best.s);
@@ -139,14 +183,14 @@ static size_t attack(const problem *p, rng *r, cprox_workspace *ws) {
   o.good_enough = rng_index(r, 2) ? -INFINITY : INFINITY;
   const search_oracle oracle = curve_convex_oracle(&o);
   const bool chase = rng_index(r, 2);
-  search_node open[MAX_OPEN + 1];
+  search_node open[MAX_OPEN + SEARCH_MAX_CHILDREN];
   search_best best = {.upper = INFINITY};
   size_t n = 1, checked = 0;
   open[0] = curve_convex_root(&o);
   for (int step = 0; step < STEPS && n > 0 && n < MAX_OPEN; step++) {
     size_t i = rng_index(r, n);
     for (size_t k = 0; chase && o.incumbent > 0 && k < n; k++)
-      if (open[k].side[0].a <= o.best.s && o.best.s <= open[k].side[0].b) i = k;
+      if (touches_best(&o, &open[k])) i = k;
     search_node *node = &open[i];
     oracle.filter(oracle.self, node, INFINITY);
     checked += check_node(p, r, node, &o);
@@ -154,10 +198,11 @@ static size_t attack(const problem *p, rng *r, cprox_workspace *ws) {
     oracle.filter(oracle.self, node, INFINITY);
     checked += check_node(p, r, node, &o);
     search_node child[SEARCH_MAX_CHILDREN];
-    if (oracle.split(oracle.self, node, child) != 2) break;
+    const int children = oracle.split(oracle.self, node, child);
+    if (children < 1) break;
     open[i] = child[0];
-    open[n++] = child[1];
-    for (int k = 0; k < 2; k++) checked += check_node(p, r, &child[k], &o);
+    for (int k = 1; k < children; k++) open[n++] = child[k];
+    for (int k = 0; k < children; k++) checked += check_node(p, r, &child[k], &o);
   }
   return checked;
 }

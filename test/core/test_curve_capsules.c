@@ -87,7 +87,8 @@ static void every_capsule_contains_its_part_of_the_curve(void **state) {
 static void check_packs(const cprox_curve *c, rng *r) {
   const vec3 n = rng_unit(r), from = rng_in_cube(r, 2.0);
   for (size_t pack = 0; pack < curve_packs(c->n_leaves); pack++) {
-    double least[CURVE_PACK];
+    double least[CURVE_PACK], distance[CURVE_PACK], s[CURVE_PACK];
+    curve_pack_distance(&c->packs[pack], from, n, distance, s);
     curve_pack_reach(&c->packs[pack], n, from, least);
     for (size_t lane = 0; lane < CURVE_PACK; lane++) {
       const size_t node = CURVE_PACK * pack + lane;
@@ -104,6 +105,14 @@ static void check_packs(const cprox_curve *c, rng *r) {
       const long double radius = (long double)c->packs[pack].radius[lane];
       assert_true((long double)least[lane] <= exact + slack);
       assert_true((long double)least[lane] >= exact - 2.0L * radius - slack);
+
+      /* the distance from a point; 64 u of the sizes, doc/curve-bound.md */
+      const curve_capsule capsule = curve_capsule_at(c, node);
+      const vec3l point = ref_add(ref_vec(from), ref_vec(n));
+      const long double d = ref_point_segment(point, ref_vec(capsule.a), ref_vec(capsule.b));
+      const long double room = 64.0L * 0x1p-53L * (long double)(c->largest + vec_norm(from) + 1.0);
+      assert_true((long double)distance[lane] <= d + room && (long double)distance[lane] >= d - room);
+      assert_true(s[lane] >= 0.0 && s[lane] <= 1.0);
     }
   }
 }

@@ -19,6 +19,7 @@ struct implicit;
 typedef struct convex_hint {
   int32_t n;
   int32_t vertex[4];
+  double near_enough; /* a point of the core that is as near as this will do, though another is nearer */
 } convex_hint;
 
 /* The answer of a nearest-point query for a point y: the surface point, and how the distance behaves near y.

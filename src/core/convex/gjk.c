@@ -52,7 +52,8 @@ static vec3 gjk_point(const simplex *s) {
 typedef struct gjk {
   const convex *shape;
   vec3 y;
-  double hair; /* distances closer than this are the same */
+  double hair;        /* distances closer than this are the same */
+  double near_enough; /* the hint's */
   simplex s;
   simplex_nearest nearest;
   double least; /* the shortest distance so far */
@@ -128,7 +129,8 @@ static void gjk_search(gjk *g) {
       restarted = true;
       before = *g;
       gjk_restart(g);
-    } else if (!(g->nearest.distance - g->lower > 2.0 * g->hair) || !gjk_step(g)) {
+    } else if ((i > 0 && g->nearest.distance <= g->near_enough) || !(g->nearest.distance - g->lower > 2.0 * g->hair) ||
+               !gjk_step(g)) {
       break;
     }
   }
@@ -140,6 +142,7 @@ void gjk_nearest(const convex *shape, vec3 y, convex_hint *hint, gjk_answer *ans
   g.hair = 4.0 * ROUND_U * (vec_norm(y) + shape->scale);
   simplex start;
   gjk_start(shape, y, hint, &start);
+  g.near_enough = hint ? hint->near_enough : 0.0;
   simplex_reduce(&start, &g.nearest);
   g.s = start;
   g.least = g.nearest.distance;

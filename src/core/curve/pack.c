@@ -17,23 +17,21 @@ void curve_pack_reach(const curve_pack *pack, vec3 n, vec3 from, double least[CU
 }
 
 LANES_DISPATCHED
-size_t curve_pack_nearest(const curve_pack *pack, size_t first, size_t end, vec3 point, double *along) {
-  double square[CURVE_PACK], at[CURVE_PACK];
+void curve_pack_distance(const curve_pack *pack, vec3 from, vec3 to, double distance[CURVE_PACK],
+                         double along[CURVE_PACK]) {
+  const double *restrict ax = pack->ax, *restrict ay = pack->ay, *restrict az = pack->az;
+  const double *restrict bx = pack->bx, *restrict by = pack->by, *restrict bz = pack->bz;
+  double *restrict d = distance, *restrict at = along;
 #pragma omp simd
   for (int k = 0; k < CURVE_PACK; k++) {
-    const double x = pack->bx[k] - pack->ax[k], y = pack->by[k] - pack->ay[k], z = pack->bz[k] - pack->az[k];
-    const double px = point.x - pack->ax[k], py = point.y - pack->ay[k], pz = point.z - pack->az[k];
+    const double x = bx[k] - ax[k], y = by[k] - ay[k], z = bz[k] - az[k];
+    const double px = (ax[k] - from.x) - to.x, py = (ay[k] - from.y) - to.y, pz = (az[k] - from.z) - to.z;
     const double length2 = x * x + y * y + z * z;
-    double s = (px * x + py * y + pz * z) / (length2 > 0.0 ? length2 : 1.0);
+    double s = -(px * x + py * y + pz * z) / (length2 > 0.0 ? length2 : 1.0);
     s = s < 0.0 ? 0.0 : s;
     s = s > 1.0 ? 1.0 : s;
-    const double dx = px - s * x, dy = py - s * y, dz = pz - s * z;
+    const double dx = px + s * x, dy = py + s * y, dz = pz + s * z;
     at[k] = s;
-    square[k] = dx * dx + dy * dy + dz * dz;
+    d[k] = sqrt(dx * dx + dy * dy + dz * dz);
   }
-  size_t nearest = first;
-  for (size_t k = first + 1; k < end && pack->radius[k] >= 0.0; k++)
-    if (square[k] < square[nearest]) nearest = k;
-  *along = at[nearest];
-  return nearest;
 }

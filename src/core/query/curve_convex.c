@@ -85,6 +85,7 @@ static double best_inside(const curve_convex *o, const search_node *node) {
 
 static double filter(void *self, search_node *node, double goal) {
   curve_convex *o = self;
+  o->goal = goal;
   if (o->incumbent == 0) return node->lower;
   if (node->side[0].slot >= 0) curve_side_load(&o->side, curve_side_piece(&o->side, &node->side[0]));
   if (node->seen != o->incumbent) {
@@ -101,12 +102,21 @@ static double filter(void *self, search_node *node, double goal) {
 
 /* ---- probes ----------------------------------------------------------------------------------------------------------- */
 
+/* A distance from the core whose upper bound ends the search: its last digits are of no interest. */
+static double near_enough(const curve_convex *o, double rounding) {
+  const double d = o->good_enough + o->offset;
+  return d > 0.0 ? d + o->shape->margin - 2.0 * (rounding + 4.0 * ROUND_U * (d + o->shape->margin)) : 0.0;
+}
+
 cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sight *sight,
                                   search_best *bound) {
   const cprox_status usable = curve_side_status(&o->side);
   if (usable < 0) return usable;
   o->probes++;
   sight->piece = piece, sight->s = s, sight->y = y;
+  const double sizes = vec_norm(y) + o->shape->scale + o->shape->margin;
+  const double rounding = error + o->shape->ops->near_rounding * ROUND_U * sizes + o->shape->slack;
+  o->hint.near_enough = near_enough(o, rounding);
   if (piece_is_planar(o))
     convex_polygon_nearest_in_plane(o->shape, y, &sight->near);
   else
@@ -118,9 +128,7 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
     return workspace_fail(o->workspace, CPROX_INVALID, "the support callback did not return a point of its body");
 
   /* the surface point is attained, so the distance to it is an upper bound but for rounding */
-  const double sizes = vec_norm(y) + o->shape->scale + o->shape->margin;
-  bound->slack = ROUND_UP * (error + o->shape->ops->near_rounding * ROUND_U * sizes + o->shape->slack +
-                             2.0 * ROUND_U * (fabs(d) + o->offset));
+  bound->slack = ROUND_UP * (rounding + 2.0 * ROUND_U * (fabs(d) + o->offset));
   bound->upper = d - o->offset + bound->slack;
 
   /* any direction near the normal will do for the lower bounds, as long as its length is 1 */
@@ -180,8 +188,8 @@ static bool is_long(const curve_convex *o) {
   return o->side.curve->n_pieces > CHORDS;
 }
 
-/* The first measurement is on the piece that the nearer chords lead to. Then none is needed; where a normal cannot be had without,
- * it is at the point where the two ranges meet, which is a control point. */
+/* The first measurement is on the piece that the nearer chords lead to. Of what a range falls into bounds are had without any; a curve
+ * that has no chords is measured at the point where two ranges meet, which is a control point. */
 static cprox_status probe_range(curve_convex *o, const search_node *node) {
   if (o->incumbent == 0 && !o->side.curve->arcs) {
     double s;
@@ -189,7 +197,10 @@ static cprox_status probe_range(curve_convex *o, const search_node *node) {
     curve_side_load(&o->side, nearest);
     return probe_at(o, nearest, is_long(o) ? s : first_look(o), 0.5 / CHORDS);
   }
-  if (o->incumbent > 0 && look_from_origin(o, node)) return CPROX_OK;
+  if (o->incumbent > 0) {
+    o->last = o->best;
+    return CPROX_OK;
+  }
   size_t piece;
   double s, error;
   const vec3 y = curve_side_junction(&o->side, &node->side[0], &piece, &s, &error);
@@ -247,13 +258,16 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
       return CPROX_OK;
     }
   }
+  const uint32_t before = o->incumbent;
   const cprox_status status = piece ? probe_piece(o, node) : probe_range(o, node);
   if (status < 0) return status;
   *best = o->best_bound;
 
-  /* the probe's own normal, and the best one if it is another */
+  /* the probe's own normal, and the best one if it is another: one step further is the best of a probe that was not polished */
   curve_convex_bound(o, node, &o->last);
-  if (node->seen != o->incumbent) curve_convex_bound(o, node, &o->best);
+  if (node->seen != o->incumbent &&
+      !(o->incumbent == before + 1 && o->last.s == o->best.s && o->last.piece == o->best.piece))
+    curve_convex_bound(o, node, &o->best);
   node->seen = o->incumbent;
   return CPROX_OK;
 }
@@ -289,7 +303,27 @@ static void bound_fan(const curve_convex *o, search_node *child, size_t n, const
   }
 }
 
-/* A range of pieces falls into as many as are bounded at once: a bound costs much less than a measurement. */
+/* And by the ball about the frame's origin that the body lies in: each from its own side, as no one plane sees them. */
+static void bound_fan_by_ball(const curve_convex *o, search_node *child, size_t n) {
+  const convex *shape = o->shape;
+  if (shape->ops->kind == CPROX_HALFSPACE) return;
+  double least[CURVE_PACK];
+  const curve_reach reach = curve_side_fan_distance(&o->side, &child[0].side[0], least);
+  const double radius = shape->scale + o->offset;
+  const double slack = ROUND_UP * (reach.error + 64.0 * ROUND_U * (reach.magnitude + radius) + shape->slack);
+  for (size_t k = 0; k < n; k++) child[k].lower = greater(least[k] - radius - slack, child[k].lower);
+}
+
+/* Whether something is left that bounds have not settled. */
+static bool is_open(const curve_convex *o, const search_node *child, size_t n) {
+  const double goal = lesser(o->goal, o->best_bound.upper);
+  for (size_t k = 0; k < n; k++)
+    if (child[k].lower <= goal) return true;
+  return false;
+}
+
+/* A range of pieces falls into as many as are bounded at once: a bound costs much less than a measurement. What the ball leaves open the
+ * best normal may settle, and what that leaves the one from the body's middle. */
 static int split_range(curve_convex *o, const search_node *node, search_node *child) {
   search_interval part[CURVE_PACK];
   const size_t n = curve_side_fan(&o->side, &node->side[0], part);
@@ -299,8 +333,9 @@ static int split_range(curve_convex *o, const search_node *node, search_node *ch
     child[k].seen_ball = 0;
     child[k].seen = o->incumbent;
   }
-  bound_fan(o, child, n, &o->best);
-  if (!vec_equal(o->last.normal, o->best.normal)) bound_fan(o, child, n, &o->last);
+  bound_fan_by_ball(o, child, n);
+  if (is_open(o, child, n)) bound_fan(o, child, n, &o->best);
+  if (is_open(o, child, n) && look_from_origin(o, node)) bound_fan(o, child, n, &o->last);
   return (int)n;
 }
 

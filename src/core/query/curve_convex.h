@@ -35,6 +35,7 @@ typedef struct curve_convex {
   bool cover_known, cover_usable;
   convex_cover cover;
   convex_hint hint, support_hint;
+  double goal; /* what settles a node, as of the last one that was looked at */
   uint32_t probes, nodes;
 
   /* memory */

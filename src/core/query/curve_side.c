@@ -140,15 +140,26 @@ static int fan_levels(const cprox_curve *c, size_t node) {
   return left == 4 ? 2 : left < 3 ? left : 3;
 }
 
+/* Of the pack that a node lies in, from the frame's origin. */
+static void distances_of_pack(const curve_side *side, size_t node, double distance[CURVE_PACK], double s[CURVE_PACK]) {
+  curve_pack_distance(&side->curve->packs[node / CURVE_PACK], side->frame.position,
+                      frame_turn_to_world(&side->frame, side->frame.centre), distance, s);
+}
+
 size_t curve_side_nearest_piece(const curve_side *side, const search_interval *range, double *s) {
   const cprox_curve *c = side->curve;
-  const vec3 origin = frame_to_world(&side->frame, vec(0, 0, 0));
   size_t node = range->part;
   while (node < c->n_leaves) {
+    double distance[CURVE_PACK], along[CURVE_PACK];
     const int levels = fan_levels(c, node);
-    const size_t first = node << levels, lane = first % CURVE_PACK;
-    node =
-        first - lane + curve_pack_nearest(&c->packs[first / CURVE_PACK], lane, lane + ((size_t)1 << levels), origin, s);
+    node <<= levels;
+    distances_of_pack(side, node, distance, along);
+    size_t nearest = node % CURVE_PACK;
+    const size_t end = nearest + ((size_t)1 << levels);
+    for (size_t k = nearest + 1; k < end && c->packs[node / CURVE_PACK].radius[k] >= 0.0; k++)
+      nearest = distance[k] < distance[nearest] ? k : nearest;
+    node += nearest - node % CURVE_PACK;
+    *s = along[nearest];
   }
   return node - c->n_leaves;
 }
@@ -353,6 +364,16 @@ curve_reach curve_side_reach(const curve_side *side, const search_interval *at, 
                          .error = at->error,
                          .magnitude = side->root_magnitude};
   return range_reach(side, at, n);
+}
+
+curve_reach curve_side_fan_distance(const curve_side *side, const search_interval *first, double least[CURVE_PACK]) {
+  const size_t lane = first->part % CURVE_PACK;
+  const double *radius = side->curve->packs[first->part / CURVE_PACK].radius;
+  double distance[CURVE_PACK], unused[CURVE_PACK];
+  distances_of_pack(side, first->part, distance, unused);
+  for (size_t k = 0; k + lane < CURVE_PACK; k++) least[k] = distance[k + lane] - radius[k + lane];
+  return (curve_reach){
+      .least = -INFINITY, .error = side->range_error + CURVE_LEAST, .magnitude = side->range_magnitude};
 }
 
 curve_hull curve_side_hull(const curve_side *side, const search_interval *at, vec3 from, double *x, double *y,

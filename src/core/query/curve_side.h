@@ -84,6 +84,9 @@ size_t curve_side_fan(const curve_side *side, const search_interval *range, sear
 curve_reach curve_side_fan_reach(const curve_side *side, const search_interval *first, vec3 n,
                                  double least[CURVE_PACK]);
 
+/* How far each of them is from the frame's origin, likewise; the products lose 64 u of the magnitude. */
+curve_reach curve_side_fan_distance(const curve_side *side, const search_interval *first, double least[CURVE_PACK]);
+
 /* n: unit within 4 u. A piece with points of its own must be the loaded one. */
 curve_reach curve_side_reach(const curve_side *side, const search_interval *at, vec3 n);
 
