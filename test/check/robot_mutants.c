@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* robot_mutants QUESTIONS MUTANTS SEED: random robots in motion with genuine certificates and tampered ones, and with genuine ones held
+/* robot_mutants QUESTIONS MUTANTS SEED [FOLDER]: random robots in motion with genuine certificates and tampered ones, and with genuine ones held
  * against a question that was changed: a target nearer, a motion that goes farther. Genuine ones must be accepted, and of all that is
- * accepted the claim must be true: the distance, known within 1e-9 m, must not contradict it. */
+ * accepted the claim must be true: the distance, known within 1e-9 m, must not contradict it. Where a folder is
+ * given, question i becomes i.problem and i.certificates there, for other checkers to be tried on: the genuine one and the tampered ones. */
 #include <inttypes.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -75,8 +76,36 @@ static void change(robot_question *q, rng *r) {
   q->mover.motion = t->motion;
 }
 
+/* The files of a question, NULL where none are wanted. */
+typedef struct files {
+  FILE *problem, *certificates;
+} files;
+
+static files open_files(const char *folder, size_t i, const robot_question *q) {
+  files f = {NULL, NULL};
+  if (!folder) return f;
+  char path[512];
+  snprintf(path, sizeof path, "%s/%zu.problem", folder, i);
+  f.problem = fopen(path, "w");
+  snprintf(path, sizeof path, "%s/%zu.certificates", folder, i);
+  f.certificates = fopen(path, "wb");
+  if (!f.problem || !f.certificates) {
+    fprintf(stderr, "robot_mutants: %s cannot be written\n", path);
+    exit(2);
+  }
+  robot_write_targets(q->targets, q->n, f.problem);
+  return f;
+}
+
+static void write_record(const files *f, const robot_question *q, const bytes *b, cprox_workspace *ws) {
+  if (!f->problem) return;
+  robot_write_mover(&q->mover, q->targets, q->n, "robot", ws, f->problem);
+  tampering_write(f->certificates, b);
+}
+
 static void try_question(robot_question *q, size_t number, size_t mutants, rng *r, cprox_workspace *ws,
-                         const bytes *genuine, const bytes *other, const double interval[2], tally *sum) {
+                         const bytes *genuine, const bytes *other, const double interval[2], const files *f,
+                         tally *sum) {
   static bytes mutant;
   robot_text text = robot_text_of(&q->mover, q->targets, q->n, ws);
   for (size_t k = 0; k <= mutants; k++) {
@@ -84,6 +113,7 @@ static void try_question(robot_question *q, size_t number, size_t mutants, rng *
     const char *done = k == 0 ? "genuine" : tamper(&mutant, r, other);
     const finding found = robot_text_check(&text, mutant.at, mutant.n);
     judge(&found, interval, done, number, sum);
+    write_record(f, q, &mutant, ws);
   }
   robot_text_free(&text);
   for (size_t k = 0; k < mutants / 4; k++) {
@@ -98,8 +128,8 @@ static void try_question(robot_question *q, size_t number, size_t mutants, rng *
 }
 
 int main(int argc, char **argv) {
-  if (argc != 4) {
-    fputs("usage: robot_mutants QUESTIONS MUTANTS SEED\n", stderr);
+  if (argc != 4 && argc != 5) {
+    fputs("usage: robot_mutants QUESTIONS MUTANTS SEED [FOLDER]\n", stderr);
     return 2;
   }
   const size_t questions = strtoul(argv[1], NULL, 10), mutants = strtoul(argv[2], NULL, 10);
@@ -113,7 +143,9 @@ int main(int argc, char **argv) {
     robot_question_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), ws);
     double interval[2];
     if (ask(&q, &r, ws, c, interval, &genuine)) {
-      try_question(&q, i++, mutants, &r, ws, &genuine, other.n ? &other : &genuine, interval, &sum);
+      const files f = open_files(argc == 5 ? argv[4] : NULL, i, &q);
+      try_question(&q, i++, mutants, &r, ws, &genuine, other.n ? &other : &genuine, interval, &f, &sum);
+      if (f.problem) fclose(f.problem), fclose(f.certificates);
       other = genuine;
     }
     robot_question_free(&q);

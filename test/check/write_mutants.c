@@ -15,14 +15,6 @@
 #include "support/questions.h"
 #include "support/tampering.h"
 
-static void write_record(FILE *out, const bytes *b) {
-  const uint32_t n = (uint32_t)b->n;
-  const unsigned char length[4] = {(unsigned char)(n & 255), (unsigned char)(n >> 8 & 255),
-                                   (unsigned char)(n >> 16 & 255), (unsigned char)(n >> 24)};
-  fwrite(length, 1, 4, out);
-  fwrite(b->at, 1, b->n, out);
-}
-
 static FILE *open_file(const char *folder, size_t i, const char *what) {
   char path[512];
   snprintf(path, sizeof path, "%s/%zu.%s", folder, i, what);
@@ -68,7 +60,7 @@ static void write_question(const asked *q, const char *folder, size_t i, size_t 
     mutant = *genuine;
     const char *done = k == 0 ? "genuine" : tamper(&mutant, r, other);
     fprintf(truth, "%a %a %s\n", interval[0], interval[1], done);
-    write_record(file, &mutant);
+    tampering_write(file, &mutant);
   }
   fclose(text);
   fclose(file);

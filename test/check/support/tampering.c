@@ -39,3 +39,11 @@ const char *tamper(bytes *b, rng *r, const bytes *other) {
     default: *b = *other; return "of another question";
   }
 }
+
+void tampering_write(FILE *out, const bytes *b) {
+  const uint32_t n = (uint32_t)b->n;
+  const unsigned char length[4] = {(unsigned char)(n & 255), (unsigned char)(n >> 8 & 255),
+                                   (unsigned char)(n >> 16 & 255), (unsigned char)(n >> 24)};
+  fwrite(length, 1, 4, out);
+  fwrite(b->at, 1, b->n, out);
+}
