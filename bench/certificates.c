@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What proofs cost: a verdict alone, the verdict with its certificate (nodes: bytes), and the checker's time with that (nodes: leaves),
+ * for Bézier curves beside polytopes and for robots along joint splines (test/data/motion), at nine tenths of the distance. */
+#define _POSIX_C_SOURCE 200809L
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "check.h"
+#include "curve_proximity/cprox.h"
+#include "support/measure.h"
+#include "support/problems.h"
+#include "support/robot_case.h"
+
+enum { MAX_CASES = 32, DEGREE = 5 };
+
+/* One question, and what the checker is given. */
+typedef struct question {
+  cprox_mover mover;
+  const cprox_target *targets;
+  size_t n;
+  double delta;
+  problem read;
+  char *text;
+  cprox_certificate *proof;
+} question;
+
+static cprox_status ask(const question *q, cprox_certificate *proof, cprox_workspace *ws, bench_answer *a) {
+  cprox_options options = cprox_options_default();
+  options.certificate = proof;
+  cprox_result r = {.status = CPROX_INVALID};
+  const cprox_status status = cprox_tolerance_all(q->mover, q->targets, q->n, q->delta, &options, ws, &r, NULL);
+  *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.nodes, .probes = r.probes, .failed = status < 0};
+  a->wrong = r.verdict == CPROX_NO;
+  return status;
+}
+
+static void verdict(const void *questions, size_t i, void *state, bench_answer *a) {
+  ask((const question *)questions + i, NULL, state, a);
+}
+
+static void with_certificate(const void *questions, size_t i, void *state, bench_answer *a) {
+  const question *q = (const question *)questions + i;
+  ask(q, q->proof, state, a);
+  a->nodes = (uint32_t)cprox_certificate_size(q->proof);
+  a->failed = a->failed || a->nodes == 0;
+}
+
+static void by_checker(const void *questions, size_t i, void *state, bench_answer *a) {
+  const question *q = (const question *)questions + i;
+  (void)state;
+  const finding f = check(&q->read, cprox_certificate_bytes(q->proof), cprox_certificate_size(q->proof));
+  *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = (uint32_t)f.leaves, .failed = f.claim != CLAIM_APART};
+}
+
+/* Reads the question back as the checker does: targets, then the line of the mover, which is freed. */
+static void give_to_checker(question *q, char *line) {
+  size_t length = 0;
+  FILE *out = open_memstream(&q->text, &length);
+  if (!out || !line) exit(1);
+  fprintf(out, "cprox-problem 1\ntargets %zu\n", q->n);
+  for (size_t i = 0; i < q->n; i++) {
+    const size_t size = cprox_target_describe(&q->targets[i], NULL, 0) + 1;
+    char *text = calloc(size, 1);
+    if (!text) exit(1);
+    cprox_target_describe(&q->targets[i], text, size);
+    fputs(text, out);
+    free(text);
+  }
+  fputs(line, out);
+  fclose(out);
+  free(line);
+  FILE *in = fmemopen(q->text, length, "r");
+  if (!in || !problem_open(&q->read, in) || !problem_next(&q->read)) {
+    fprintf(stderr, "certificates: %s\n", q->read.fault);
+    exit(1);
+  }
+  fclose(in);
+  q->proof = cprox_certificate_create();
+}
+
+static void measure(const bench_size *size, const char *workload, question *questions, size_t n, cprox_workspace *ws) {
+  const bench_workload w = {"certificates", workload, "delta 0.9 d", questions, n, NULL, 0.0};
+  const bench_method methods[] = {{"curve_proximity", verdict, ws},
+                                  {"curve_proximity with certificate", with_certificate, ws},
+                                  {"cprox_check", by_checker, ws}};
+  bench_measure(&w, size, methods, 3);
+  for (size_t i = 0; i < n; i++) {
+    problem_close(&questions[i].read);
+    cprox_certificate_free(questions[i].proof);
+    free(questions[i].text);
+  }
+  free(questions);
+}
+
+static void curves(const bench_size *size, cprox_workspace *ws) {
+  const size_t n = size->problems;
+  curve_problem *problems = curve_problems_make(OBSTACLE_POLYTOPE, DEGREE, n);
+  double *truth = curve_problems_truth(problems, n, OBSTACLE_POLYTOPE);
+  question *questions = calloc(n, sizeof *questions);
+  if (!questions) exit(1);
+  for (size_t i = 0; i < n; i++) {
+    questions[i] = (question){.mover = cprox_point_along(problems[i].curve), .targets = &problems[i].target, .n = 1};
+    questions[i].delta = 0.9 * truth[i];
+    char *line = NULL;
+    size_t length = 0;
+    FILE *out = open_memstream(&line, &length);
+    if (!out) exit(1);
+    fprintf(out, "mover m 0 bezier %d 0 1 %d", DEGREE, DEGREE + 1);
+    for (int k = 0; k <= DEGREE; k++) {
+      const vec3 p = problems[i].points[k];
+      fprintf(out, " %a %a %a", p.x, p.y, p.z);
+    }
+    fputs(" 0\n", out);
+    fclose(out);
+    give_to_checker(&questions[i], line);
+  }
+  measure(size, "Bezier and polytope", questions, n, ws);
+  free(truth);
+  curve_problems_free(problems, n);
+}
+
+static void robots(const bench_size *size, cprox_workspace *ws) {
+  static robot_case cases[MAX_CASES];
+  size_t n_cases = 0, n = 0;
+  FILE *f = fopen(BENCH_DATA_DIR "/motion/cases.txt", "r");
+  if (!f || fscanf(f, "%zu", &n_cases) != 1 || n_cases > MAX_CASES) exit(1);
+  question *questions = calloc(n_cases, sizeof *questions);
+  if (!questions) exit(1);
+  for (size_t i = 0; i < n_cases; i++) {
+    robot_case *c = &cases[i];
+    if (!robot_case_read(f, BENCH_DATA_DIR "/motion", c)) exit(1);
+    for (size_t k = 0; k < c->n_answers; k++) {
+      if (c->answers[k].self || c->answers[k].lower <= 1e-3) continue;
+      question *q = &questions[n++];
+      *q = (question){.mover = cprox_robot_along(c->motion, NULL, 0), .targets = c->targets, .n = c->n_targets};
+      q->delta = 0.9 * c->answers[k].lower;
+      const size_t most = cprox_mover_describe(&q->mover, q->targets, q->n, "m", ws, NULL, 0) + 1;
+      char *text = calloc(most, 1);
+      if (!text) exit(1);
+      cprox_mover_describe(&q->mover, q->targets, q->n, "m", ws, text, most);
+      give_to_checker(q, text);
+      break;
+    }
+  }
+  fclose(f);
+  measure(size, "robot trajectory", questions, n, ws);
+  for (size_t i = 0; i < n_cases; i++) robot_case_free(&cases[i]);
+}
+
+int main(int argc, char **argv) {
+  const bench_size size = bench_arguments(argc, argv);
+  cprox_workspace *ws = cprox_workspace_create();
+  if (!ws) return 1;
+  if (bench_wanted(&size, "Bezier and polytope")) curves(&size, ws);
+  if (bench_wanted(&size, "robot trajectory")) robots(&size, ws);
+  cprox_workspace_free(ws);
+  return 0;
+}
