@@ -8,7 +8,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { MAX_ROUNDS = 64, MAX_METHODS = 16 };
+enum { MAX_ROUNDS = 64, MAX_METHODS = 16, BLOCK = 10 };
 
 /* A sample lasts at least this long, so that the clock's own cost does not count [s]. */
 static const double SHORTEST_SAMPLE = 2e-5;
@@ -103,22 +103,34 @@ static void judge(const bench_workload *w, size_t problem, const bench_answer *a
     r->unsound++;
 }
 
-static void measure_problem(const bench_workload *w, const bench_size *size, const bench_method *methods, size_t n,
-                            size_t problem, record *records) {
-  double sample[MAX_METHODS][MAX_ROUNDS];
-  effort efforts[MAX_METHODS];
+/* What is measured of one problem. */
+typedef struct samples {
+  double time[MAX_METHODS][MAX_ROUNDS];
+  effort effort[MAX_METHODS];
   bench_answer answer[MAX_METHODS];
-  for (size_t m = 0; m < n; m++) efforts[m] = effort_for(w, size, &methods[m], problem);
+} samples;
+
+/* A method answers some problems in a row before the next one's turn: in use, too, questions come in rows, and what a method finds in the
+ * caches is what it left there itself. */
+static void measure_block(const bench_workload *w, const bench_size *size, const bench_method *methods, size_t n,
+                          size_t first, size_t count, samples *block, record *records) {
+  for (size_t m = 0; m < n; m++)
+    for (size_t i = 0; i < count; i++) block[i].effort[m] = effort_for(w, size, &methods[m], first + i);
   for (int round = 0; round < size->rounds; round++) {
     for (size_t m = 0; m < n; m++) {
-      if (round >= efforts[m].rounds) continue;
-      answer[m] = (bench_answer){.lower = NAN, .upper = NAN};
-      sample[m][round] = time_of(w, &methods[m], problem, efforts[m].repeats, &answer[m]);
+      for (size_t i = 0; i < count; i++) {
+        const effort *often = &block[i].effort[m];
+        if (round >= often->rounds) continue;
+        block[i].answer[m] = (bench_answer){.lower = NAN, .upper = NAN};
+        block[i].time[m][round] = time_of(w, &methods[m], first + i, often->repeats, &block[i].answer[m]);
+      }
     }
   }
   for (size_t m = 0; m < n; m++) {
-    records[m].time[problem] = quantile(sample[m], (size_t)efforts[m].rounds, 0.5);
-    judge(w, problem, &answer[m], &records[m]);
+    for (size_t i = 0; i < count; i++) {
+      records[m].time[first + i] = quantile(block[i].time[m], (size_t)block[i].effort[m].rounds, 0.5);
+      judge(w, first + i, &block[i].answer[m], &records[m]);
+    }
   }
 }
 
@@ -133,10 +145,13 @@ void bench_measure(const bench_workload *w, const bench_size *size, const bench_
     records[m].probes = records[m].nodes + w->n;
   }
 
-  for (size_t i = 0; i < w->n; i++) {
-    if (i % 10 == 0) fprintf(stderr, "\r%s: %s %s, %zu of %zu        ", w->group, w->name, w->parameter, i, w->n);
-    measure_problem(w, size, methods, n, i, records);
+  samples *block = calloc(BLOCK, sizeof *block);
+  if (!block) abort();
+  for (size_t i = 0; i < w->n; i += BLOCK) {
+    fprintf(stderr, "\r%s: %s %s, %zu of %zu        ", w->group, w->name, w->parameter, i, w->n);
+    measure_block(w, size, methods, n, i, w->n - i < BLOCK ? w->n - i : BLOCK, block, records);
   }
+  free(block);
   fprintf(stderr, "\r%s: %s %s, done                    \n", w->group, w->name, w->parameter);
 
   for (size_t m = 0; m < n; m++) {
