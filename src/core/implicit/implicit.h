@@ -173,8 +173,9 @@ typedef struct implicit_answer {
 bool implicit_closed_nearest(const implicit *body, vec3 y, double width, implicit_answer *answer);
 
 /* Two closed bodies that stand apart, by their support functions; false where that stalls or there is no gap to be seen: then
- * implicit_solve() answers. What it found is true all the same, rounding included. */
-bool implicit_separate(const implicit_question *question, const implicit_goal *goal, implicit_answer *answer);
+ * implicit_solve() answers, from `warm`. What it found is true all the same, rounding included. */
+bool implicit_separate(const implicit_question *question, const implicit_goal *goal, implicit_warm *warm,
+                       implicit_answer *answer);
 
 /* Two unit vectors across the unit vector n. */
 void implicit_across(vec3 n, vec3 *e, vec3 *f);

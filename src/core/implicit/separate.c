@@ -1,17 +1,22 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Two closed bodies by the dual alone: phi(u) = min of u·(x - y) over both, a lower bound for any unit u, climbed by Newton's
- * method on the sphere. Where the surfaces are round it needs half the work of the interior point method; where they are flat
- * it stalls, and says so soon. */
+/* Two closed bodies by their support functions: phi(u) = min of u·(x - y) over both, a lower bound for any unit u, climbed by Newton's
+ * method on the sphere. Where that overshoots, as it does on flats, the next direction is that of the nearest point of the hull of
+ * what was seen (Gilbert, Johnson, Keerthi 1988). A third of the work of the interior point method where it converges; where it stalls
+ * it says so soon, and the interior point method goes on from there. */
 #include "base/rounding.h"
+#include "convex/simplex.h"
 #include "implicit/implicit.h"
 
-enum { SEPARATE_STEPS = 10 };
-
-/* With a flat on both sides the climb stalls more often than not. */
-static const double SEPARATE_FLAT = 8.0;
+enum { SEPARATE_STEPS = 20 };
 
 /* A climb whose gap shrinks less in two steps has stalled. */
-static const double SEPARATE_GAIN = 0.3;
+static const double SEPARATE_GAIN = 0.4;
+
+/* Between two bodies that are nearly polyhedra the climb stalls: it is not tried. */
+static const double SEPARATE_FLAT = 30.0;
+
+/* How much of the gap the points are expected to move. */
+static const double SEPARATE_CHANGE = 0.1;
 
 typedef struct climb {
   const implicit_question *q;
@@ -74,49 +79,72 @@ static bool has_flat(const implicit *body) {
   return fmax(body->term[0].p, fmax(body->term[1].p, body->term[2].p)) > SEPARATE_FLAT;
 }
 
-bool implicit_separate(const implicit_question *question, const implicit_goal *goal, implicit_answer *answer) {
+/* The point of a, or of b, that the nearest point of the hull is made of. */
+static vec3 of_hull(const simplex *hull, bool second) {
+  vec3 p = vec(0, 0, 0);
+  for (int i = 0; i < hull->n; i++) p = vec_axpy(p, hull->weight[i], second ? hull->vertex[i].b : hull->vertex[i].a);
+  return p;
+}
+
+/* Where a stalled search leaves the interior point method to go on: its gap is what may still change. */
+static implicit_warm leave_off(const implicit_question *q, const implicit_answer *answer) {
+  if (!(answer->lower > 0.0) || !isfinite(answer->upper)) return (implicit_warm){.usable = false};
+  const vec3 apart = vec_sub(answer->x, vec_add(turn(q->m, answer->y), q->t));
+  const double change = SEPARATE_CHANGE * (answer->upper - answer->lower);
+  return (implicit_warm){
+      .usable = true, .x = answer->x, .y = answer->y, .apart = vec_axpy(apart, change, answer->normal)};
+}
+
+bool implicit_separate(const implicit_question *question, const implicit_goal *goal, implicit_warm *warm,
+                       implicit_answer *answer) {
   const implicit_question *q = question;
   *answer = (implicit_answer){.lower = -INFINITY, .upper = INFINITY};
+  *warm = (implicit_warm){.usable = false};
   const double far = vec_norm(q->t), reach = q->a->radius + q->b->radius;
   if (!(far > 0.0) || (has_flat(q->a) && has_flat(q->b))) return false;
   /* the supports' own error, twice for the two ends, and that of turning and adding */
   const double rounding = q->a->give + q->b->give + ROUND_UP * 64.0 * ROUND_U * (reach + far);
 
   climb c = {.q = q};
-  vec3 from = vec(0, 0, 0), e = from, f = from, next = vec_scale(-1.0 / far, q->t);
-  double step[2] = {0, 0}, before[2] = {INFINITY, INFINITY}, damp = 1.0;
+  simplex hull = {.n = 0};
+  vec3 next = vec_scale(-1.0 / far, q->t);
+  double before[2] = {INFINITY, INFINITY};
   for (int i = 0; i < SEPARATE_STEPS; i++) {
     look(&c, next);
     answer->steps++;
-    const double distance = vec_norm(c.apart);
-    if (distance + rounding < answer->upper) {
-      answer->upper = distance + rounding;
-      answer->x = c.x;
-      answer->y = c.y;
-    }
     const bool higher = c.phi - rounding > answer->lower;
     if (higher) {
       answer->lower = c.phi - rounding;
       answer->normal = c.u;
+    }
+    simplex_nearest nearest;
+    if (!simplex_has(&hull, c.apart) && hull.n < 4)
+      hull.vertex[hull.n++] = (simplex_vertex){.w = c.apart, .a = c.x, .b = c.y};
+    simplex_reduce(&hull, &nearest);
+    if (nearest.inside) break;
+    if (nearest.distance + rounding < answer->upper) {
+      answer->upper = nearest.distance + rounding;
+      answer->x = of_hull(&hull, false);
+      answer->y = of_hull(&hull, true);
     }
     const double gap = answer->upper - answer->lower;
     if (gap <= fmax(goal->epsilon, goal->relative_epsilon * answer->upper)) {
       answer->certified = true;
       break;
     }
-    if (i > 4 && gap > SEPARATE_GAIN * before[0]) break;
+    if (i > 3 && gap > SEPARATE_GAIN * before[0]) break;
     before[0] = before[1];
     before[1] = gap;
 
-    /* lower than before: back towards the best direction */
-    if (!higher) {
-      damp *= 0.35;
-    } else {
-      if ((c.phi < 0.0 && i > 2) || !newton(&c, answer->upper, step)) break;
-      from = c.u, e = c.e, f = c.f;
-      damp = 1.0;
-    }
-    next = unit(vec_axpy(vec_axpy(from, damp * step[0], e), damp * step[1], f));
+    /* higher than before: on by Newton's step; else from the hull of what was seen */
+    double step[2];
+    if (higher && newton(&c, answer->upper, step))
+      next = unit(vec_axpy(vec_axpy(c.u, step[0], c.e), step[1], c.f));
+    else if (nearest.distance > 0.0)
+      next = unit(nearest.v);
+    else
+      break;
   }
+  *warm = leave_off(q, answer);
   return answer->certified;
 }

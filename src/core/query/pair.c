@@ -132,7 +132,7 @@ static void pair_take(const implicit_answer *found, const pair_side *a, const pa
   answer->rounding = rounding;
 }
 
-/* Two implicit bodies: the climb of the dual where it does not stall, else the interior point method. How deep they overlap
+/* Two implicit bodies: their support functions where that does not stall, else the interior point method. How deep they overlap
  * the search by supports says. False where memory is out. */
 static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_placement *place, const pair_goal *goal,
                           cprox_workspace *workspace, pair_answer *answer) {
@@ -147,9 +147,10 @@ static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_pla
                                .max_steps = goal->max_steps};
   implicit_answer found;
   uint32_t steps = 0;
-  if (!x->closed || !y->closed || !implicit_separate(&question, &inner, &found)) {
+  implicit_warm warm = {.usable = false};
+  if (!x->closed || !y->closed || !implicit_separate(&question, &inner, &warm, &found)) {
     if (x->closed && y->closed) steps = found.steps;
-    implicit_solve(&question, &inner, NULL, memory, &found);
+    implicit_solve(&question, &inner, &warm, memory, &found);
   }
   if (found.overlap) {
     pair_separate(a->shape, a->margin, b->shape, b->margin, place, goal, answer);
