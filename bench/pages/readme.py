@@ -118,7 +118,8 @@ def second_run(out):
 
 
 def page(figures, drawn, made, out):
-    chart_lines = [[f'`{pattern}`', text] for pattern, text in CHARTS if any(fnmatch.fnmatchcase(name, pattern) for name in drawn)]
+    chart_lines = [[', '.join(f'[{name}]({name}.png)' for name in drawn if fnmatch.fnmatchcase(name, pattern)), text]
+                   for pattern, text in CHARTS if any(fnmatch.fnmatchcase(name, pattern) for name in drawn)]
     return f'''# Charts
 
 {made}
