@@ -403,8 +403,14 @@ static void chords_are_those_of_the_piece(void **state) {
     random_points(&r, degree + 1, points);
     const double *basis = lanes_basis(degree, workspace);
     lanes_chords chords;
-    lanes_points(basis, points, degree, false, 0, &chords);
-    lanes_points(basis, points, degree, false, LANES, &chords);
+    for (uint32_t first = 0; first < CHORDS; first += LANES) {
+      const vec3 from = rng_in_cube(&r, 1.0);
+      uint32_t nearest, again;
+      const double square = lanes_points(basis, points, degree, false, first, from, &chords, &nearest);
+      assert_true(square == lanes_nearest_point(&chords, first, from, &again) && nearest == again);
+      for (uint32_t k = first; k < first + LANES; k++)
+        assert_true(square <= vec_norm2(vec_sub(from, vec(chords.x[k], chords.y[k], chords.z[k]))));
+    }
     lanes_join(&chords);
     const double size = ref_largest(points, degree + 1);
     const double allowed = (10.0 * (double)degree + 16) * 0x1p-53 * size;

@@ -166,6 +166,8 @@ void curve_finish(cprox_curve *c) {
   c->square = c->tables + (c->degree < 2 ? 0 : c->degree - 1);
   build_tree(c);
   c->whole = curve_capsule_at(c, 1);
+  c->worst = 0.0;
+  for (size_t i = 0; i < c->n_pieces; i++) c->worst = greater(c->error[i], c->worst);
 }
 
 /* ---- arithmetic ---- */

@@ -39,6 +39,7 @@ struct cprox_curve {
       *arcs;              /* NULL, or what a curve is known by that has no control points: then its pieces are chords of
                                     degree 1, their errors how far the curve is from them, and intervals are those of
                                     rectifiable.h */
+  double worst;           /* the largest of the pieces' errors */
   double largest;         /* at least |P| of every control point, */
   bool flat;              /* all have the z of the first, exactly */
   double *tables;         /* numbers of the degree, curve_tables_size() of them, which curve_finish() fills: */

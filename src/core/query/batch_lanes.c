@@ -5,6 +5,8 @@
 #include "base/rounding.h"
 #include "base/workspace.h"
 
+enum { BALLS = 4 }; /* their arrays are padded to a multiple of this */
+
 /* Below this the square of a length may have lost its digits, and its reciprocal overflows. */
 static const double LEAST_SQUARE = 1e-280;
 
@@ -19,16 +21,19 @@ void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, d
   const double own = capsule->radius + radius + (length2 > LEAST_SQUARE ? 0.0 : 1e-140);
   const vec3 b = capsule->b; /* sums of coordinates are no less than lengths */
   const double own_sizes = fabs(a.x) + fabs(a.y) + fabs(a.z) + fabs(b.x) + fabs(b.y) + fabs(b.z) + own;
+  for (size_t i = 0; i < balls->padded; i += BALLS) {
 #pragma omp simd
-  for (size_t k = 0; k < balls->padded; k++) {
-    /* the nearest point of the chord; any other would only lie farther away, by no more than the rounding of s */
-    const double px = x[k] - a.x, py = y[k] - a.y, pz = z[k] - a.z;
-    double s = (px * ab.x + py * ab.y + pz * ab.z) * per_length2;
-    s = s < 0.0 ? 0.0 : s;
-    s = s > 1.0 ? 1.0 : s;
-    const double dx = px - s * ab.x, dy = py - s * ab.y, dz = pz - s * ab.z;
-    const double distance = sqrt(dx * dx + dy * dy + dz * dz);
-    out[k] = distance - (own + reach[k]) - 64.0 * ROUND_U * (own_sizes + sizes[k]);
+    for (size_t l = 0; l < BALLS; l++) {
+      /* the nearest point of the chord; any other would only lie farther away, by no more than the rounding of s */
+      const size_t k = i + l;
+      const double px = x[k] - a.x, py = y[k] - a.y, pz = z[k] - a.z;
+      double s = (px * ab.x + py * ab.y + pz * ab.z) * per_length2;
+      s = s < 0.0 ? 0.0 : s;
+      s = s > 1.0 ? 1.0 : s;
+      const double dx = px - s * ab.x, dy = py - s * ab.y, dz = pz - s * ab.z;
+      const double distance = sqrt(dx * dx + dy * dy + dz * dz);
+      out[k] = distance - (own + reach[k]) - 64.0 * ROUND_U * (own_sizes + sizes[k]);
+    }
   }
 }
 
@@ -58,11 +63,24 @@ const double *lanes_basis(size_t degree, cprox_workspace *workspace) {
   return buffer + 1;
 }
 
+/* Of LANES squares the least; which one has it, the first of several, without branches: nobody can foretell it. */
+static inline double least_of(const double square[LANES], uint32_t *which) {
+  double best[LANES];
+#pragma omp simd
+  for (int k = 0; k < LANES; k++) best[k] = square[k];
+  for (int half = LANES / 2; half > 0; half /= 2)
+    for (int k = 0; k < half; k++) best[k] = best[k] < best[k + half] ? best[k] : best[k + half];
+  uint32_t first = LANES - 1;
+  for (uint32_t k = LANES - 1; k-- > 0;) first = square[k] == best[0] ? k : first;
+  *which = first;
+  return best[0];
+}
+
 LANES_DISPATCHED
-void lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, size_t first,
-                  lanes_chords *chords) {
+double lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, uint32_t first, vec3 from,
+                    lanes_chords *chords, uint32_t *nearest) {
   /* begun by their first terms: so many sums stay in registers */
-  double x[LANES], y[LANES], z[LANES];
+  double x[LANES], y[LANES], z[LANES], square[LANES];
   const double *restrict b = basis + first;
 #pragma omp simd
   for (int k = 0; k < LANES; k++) {
@@ -86,6 +104,11 @@ void lanes_points(const double *basis, const vec3 *points, size_t degree, bool f
 #pragma omp simd
     for (int k = 0; k < LANES; k++) z[k] += next[k] * pz;
   }
+#pragma omp simd
+  for (int k = 0; k < LANES; k++) {
+    const double dx = from.x - x[k], dy = from.y - y[k], dz = from.z - z[k];
+    square[k] = dx * dx + dy * dy + dz * dz;
+  }
   for (size_t k = 0; k < LANES; k++) {
     chords->x[first + k] = x[k];
     chords->y[first + k] = y[k];
@@ -94,6 +117,7 @@ void lanes_points(const double *basis, const vec3 *points, size_t degree, bool f
   chords->x[CHORDS] = points[degree].x;
   chords->y[CHORDS] = points[degree].y;
   chords->z[CHORDS] = points[degree].z;
+  return least_of(square, nearest);
 }
 
 LANES_DISPATCHED
@@ -110,23 +134,15 @@ void lanes_join(lanes_chords *chords) {
 }
 
 LANES_DISPATCHED
-double lanes_nearest_point(const lanes_chords *c, size_t from, vec3 point, double most, size_t *nearest) {
-  double square[LANES], best[LANES];
-  const double *restrict x = c->x + from, *restrict y = c->y + from, *restrict z = c->z + from;
+double lanes_nearest_point(const lanes_chords *c, uint32_t first, vec3 from, uint32_t *nearest) {
+  double square[LANES];
+  const double *restrict x = c->x + first, *restrict y = c->y + first, *restrict z = c->z + first;
 #pragma omp simd
   for (int k = 0; k < LANES; k++) {
-    const double dx = point.x - x[k], dy = point.y - y[k], dz = point.z - z[k];
+    const double dx = from.x - x[k], dy = from.y - y[k], dz = from.z - z[k];
     square[k] = dx * dx + dy * dy + dz * dz;
-    best[k] = square[k];
   }
-  for (int half = LANES / 2; half > 0; half /= 2)
-    for (int k = 0; k < half; k++) best[k] = best[k] < best[k + half] ? best[k] : best[k + half];
-  if (best[0] > most) return best[0];
-  /* without branches: which of them it is nobody can foretell */
-  size_t first = LANES - 1;
-  for (size_t k = LANES - 1; k-- > 0;) first = square[k] == best[0] ? k : first;
-  *nearest = from + first;
-  return best[0];
+  return least_of(square, nearest);
 }
 
 LANES_DISPATCHED

@@ -34,15 +34,15 @@ typedef struct lanes_chords {
 } lanes_chords;
 
 /* The points where LANES of the chords begin, from the first on, and the end of the piece. Where the piece is flat z is that of its
- * control points, exactly. */
-void lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, size_t first,
-                  lanes_chords *chords);
+ * control points, exactly. The least square distance of these LANES from a point; first + *nearest is the first that has it. */
+double lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, uint32_t first, vec3 from,
+                    lanes_chords *chords, uint32_t *nearest);
+
+/* The same of points that are there. */
+double lanes_nearest_point(const lanes_chords *chords, uint32_t first, vec3 from, uint32_t *nearest);
 
 /* How each point goes on to the next. */
 void lanes_join(lanes_chords *chords);
-
-/* The square distance of a point from those where LANES of the chords begin; the first that has it, if it is within `most`. */
-double lanes_nearest_point(const lanes_chords *chords, size_t first, vec3 point, double most, size_t *k);
 
 /* The square distance of a point from the chords, and where it is attained: the first chord that has it, and s in [0, 1] of it. */
 double lanes_closest(const lanes_chords *chords, vec3 point, size_t *chord, double *s);

@@ -15,31 +15,37 @@ static bool measure(batch_run *run) {
     run->degree = run->basis ? curve->degree : SIZE_MAX;
   }
   if (!run->basis) return false;
-  double error = 0.0;
-  for (size_t i = 0; i < curve->n_pieces; i++) error = greater(error, curve->error[i]);
   const double n = (double)curve->degree;
-  run->slack = ROUND_UP * (error + (10.0 * n + 40.0 + n * n * (1.0 / (CHORDS * CHORDS))) * ROUND_U * curve->largest);
+  run->slack =
+      ROUND_UP * (curve->worst + (10.0 * n + 40.0 + n * n * (1.0 / (CHORDS * CHORDS))) * ROUND_U * curve->largest);
   run->measured = true;
   return true;
 }
 
-/* The points of half a piece. */
-static void cut_half(batch_run *run, size_t half) {
+/* The least square distance of the points of half a piece from a point, and which one has it. */
+static double look_along(batch_run *run, uint32_t half, vec3 from, uint32_t *nearest) {
   const cprox_curve *curve = run->q.mover.curve;
-  const size_t piece = half / 2;
-  if (run->cut >> half & 1) return;
+  const uint32_t piece = half / 2, first = half % 2 * LANES;
+  lanes_chords *chords = &run->chords[piece];
+  double square;
+  if (run->cut >> half & 1)
+    square = lanes_nearest_point(chords, first, from, nearest);
+  else
+    square =
+        lanes_points(run->basis, curve_piece(curve, piece), curve->degree, curve->flat, first, from, chords, nearest);
   run->cut |= 1u << half;
-  lanes_points(run->basis, curve_piece(curve, piece), curve->degree, curve->flat, half % 2 * LANES,
-               &run->chords[piece]);
+  *nearest += first;
+  return square;
 }
 
 /* Chords of parameter length h are within h²/8 max|psi''| of the curve, |psi''| <= n (n-1) max|second difference|. */
 static void join_points(batch_run *run) {
   const cprox_curve *curve = run->q.mover.curve;
   double bend2 = 0.0;
-  for (size_t i = 0; i < curve->n_pieces; i++) {
-    cut_half(run, 2 * i);
-    cut_half(run, 2 * i + 1);
+  for (uint32_t i = 0; i < curve->n_pieces; i++) {
+    uint32_t unused;
+    for (uint32_t half = 2 * i; half < 2 * i + 2; half++)
+      if (!(run->cut >> half & 1)) look_along(run, half, vec(0, 0, 0), &unused);
     lanes_join(&run->chords[i]);
     bend2 = greater(bend2, lanes_bend2(curve_piece(curve, i), curve->degree));
   }
@@ -67,13 +73,11 @@ static bool has_inner_ball(const batch_run *run, size_t part) {
 }
 
 /* A point of half a piece that is within the limit of the part's inner ball. */
-static bool hits(batch_run *run, size_t part, size_t half, double limit, batch_hit *hit) {
+static bool hits(batch_run *run, size_t part, uint32_t half, double limit, batch_hit *hit) {
   const batch_core *core = &run->batch->cores[part];
   const double margin = margin_of(run, part), reach = core->inner + margin + limit;
-  const lanes_chords *chords = &run->chords[half / 2];
-  size_t k;
-  cut_half(run, half);
-  const double square = lanes_nearest_point(chords, half % 2 * LANES, core->centre, reach * reach, &k);
+  uint32_t k;
+  const double square = look_along(run, half, core->centre, &k);
   if (square > reach * reach) return false;
   const double distance = sqrt(square);
   const double upper = distance - core->inner - margin + slack_at(run, part, distance, margin);
@@ -96,15 +100,16 @@ static bool find_hit(batch_run *run, double limit, batch_hit *hit) {
   const double length2 = vec_norm2(chord);
   const vec3 per_chord = vec_scale(length2 > 0.0 ? 1.0 / length2 : 0.0, chord);
   const uint32_t halves = 2 * (uint32_t)run->q.mover.curve->n_pieces;
-  for (int others = 0; others < 2; others++) {
-    for (size_t k = 0; k < batch->balls.n; k++) {
-      if (run->lower[k] > limit || !has_inner_ball(run, k)) continue;
-      if (!run->measured && !measure(run)) return false;
-      const uint32_t first = promising_half(whole, per_chord, batch->cores[k].centre, halves);
-      if (!others && hits(run, k, first, limit, hit)) return true;
-      for (uint32_t half = 0; others && half < halves; half++)
-        if (half != first && hits(run, k, half, limit, hit)) return true;
-    }
+  for (size_t k = 0; k < batch->balls.n; k++) {
+    if (run->lower[k] > limit || !has_inner_ball(run, k)) continue;
+    if (!run->measured && !measure(run)) return false;
+    if (hits(run, k, promising_half(whole, per_chord, batch->cores[k].centre, halves), limit, hit)) return true;
+  }
+  for (size_t k = 0; k < batch->balls.n && run->measured; k++) {
+    if (run->lower[k] > limit || !has_inner_ball(run, k)) continue;
+    const uint32_t first = promising_half(whole, per_chord, batch->cores[k].centre, halves);
+    for (uint32_t half = 0; half < halves; half++)
+      if (half != first && hits(run, k, half, limit, hit)) return true;
   }
   return false;
 }

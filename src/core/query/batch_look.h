@@ -27,10 +27,10 @@ typedef struct batch_run {
 
 /* Where the curve comes within the limit of a ball inside a part. */
 typedef struct batch_hit {
-  double upper;    /* of the distance, rounding included */
-  double distance; /* of the point from the ball's centre */
-  size_t part;     /* number in the batch */
-  size_t piece, k; /* the point: where chord k of the piece begins */
+  double upper;      /* of the distance, rounding included */
+  double distance;   /* of the point from the ball's centre */
+  size_t part;       /* number in the batch */
+  uint32_t piece, k; /* the point: where chord k of the piece begins */
 } batch_hit;
 
 typedef struct batch_look {
