@@ -17,9 +17,10 @@ cprox_curve *curve_allocate(size_t degree, size_t n_pieces) {
   c->breaks = calloc(n_pieces + 1, sizeof *c->breaks);
   c->points = calloc(n_pieces * (degree + 1), sizeof *c->points);
   c->error = calloc(n_pieces, sizeof *c->error);
-  c->packs = calloc(curve_packs(c->n_leaves), sizeof *c->packs);
+  const size_t packs = curve_packs(c->n_leaves);
+  c->packs = packs > 0 ? calloc(packs, sizeof *c->packs) : NULL;
   c->tables = calloc(curve_tables_size(degree), sizeof *c->tables);
-  if (!c->breaks || !c->points || !c->error || !c->packs || !c->tables) {
+  if (!c->breaks || !c->points || !c->error || (packs > 0 && !c->packs) || !c->tables) {
     cprox_curve_free(c);
     return NULL;
   }
@@ -113,6 +114,8 @@ static curve_capsule piece_capsule(const cprox_curve *c, size_t i) {
 }
 
 static void set_capsule(cprox_curve *c, size_t node, curve_capsule capsule) {
+  if (node == 1) c->whole = capsule;
+  if (c->n_leaves == 1) return;
   curve_pack *p = &c->packs[node / CURVE_PACK];
   const size_t l = node % CURVE_PACK;
   p->ax[l] = capsule.a.x, p->ay[l] = capsule.a.y, p->az[l] = capsule.a.z;
@@ -165,7 +168,6 @@ void curve_finish(cprox_curve *c) {
   c->binomial = c->tables;
   c->square = c->tables + (c->degree < 2 ? 0 : c->degree - 1);
   build_tree(c);
-  c->whole = curve_capsule_at(c, 1);
   c->worst = 0.0;
   for (size_t i = 0; i < c->n_pieces; i++) c->worst = greater(c->error[i], c->worst);
 }

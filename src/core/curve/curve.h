@@ -34,7 +34,7 @@ struct cprox_curve {
    * k / CURVE_PACK, of which there are curve_packs(); lanes that are no nodes have radius < 0. */
   curve_pack *packs;
   size_t n_leaves;
-  curve_capsule whole; /* node 1 once more: it is asked for by every query, and often nothing else is */
+  curve_capsule whole; /* node 1: it is asked for by every query, and often nothing else is */
   cprox_rectifiable_curve
       *arcs;              /* NULL, or what a curve is known by that has no control points: then its pieces are chords of
                                     degree 1, their errors how far the curve is from them, and intervals are those of
@@ -52,14 +52,15 @@ static inline const vec3 *curve_piece(const cprox_curve *c, size_t i) {
 }
 
 static inline curve_capsule curve_capsule_at(const cprox_curve *c, size_t node) {
+  if (node == 1) return c->whole;
   const curve_pack *p = &c->packs[node / CURVE_PACK];
   const size_t l = node % CURVE_PACK;
   return (curve_capsule){{p->ax[l], p->ay[l], p->az[l]}, {p->bx[l], p->by[l], p->bz[l]}, p->radius[l]};
 }
 
-/* How many packs a tree of so many leaves takes. */
+/* How many packs a tree of so many leaves takes: none where there is nothing below node 1. */
 static inline size_t curve_packs(size_t n_leaves) {
-  return (2 * n_leaves + CURVE_PACK - 1) / CURVE_PACK;
+  return n_leaves > 1 ? (2 * n_leaves + CURVE_PACK - 1) / CURVE_PACK : 0;
 }
 
 /* A curve with room for the pieces; breaks, points and error are the caller's to fill, then curve_finish(). NULL where
