@@ -31,14 +31,14 @@ static cprox_curve *random_curve(rng *r) {
 
 /* ---- the same answers ------------------------------------------------------------------------------------------------- */
 
-/* Moves some points, near their places or far; *n of them, some twice. */
+/* Moves some points, near their places, so that boxes follow, or some of them far, so that blocks are sorted anew; *n of them, some twice. */
 static void move_some(rng *r, vec3 *points, size_t all, uint32_t *changed, vec3 *places, size_t *n) {
   const vec3 centre = rng_in_cube(r, 1.0);
-  const double reach = rng_uniform(r, 0.0, 0.6);
+  const double reach = rng_uniform(r, 0.0, 0.6), rarely = rng_index(r, 2) ? 0.5 : 0.002;
   *n = 0;
   for (size_t i = 0; i < all; i++) {
     if (vec_norm(vec_sub(points[i], centre)) > reach) continue;
-    const double step = rng_index(r, 10) == 0 ? 0.5 : 0.01;
+    const double step = rng_index(r, 10) == 0 ? rarely : 0.02 * rarely;
     changed[*n] = (uint32_t)i;
     places[(*n)++] = rng_in_cube(r, 3.0); /* this one is taken back at once: */
     changed[*n] = (uint32_t)i;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Points that move: of a tree along Morton's curve the blocks that they are in are sorted anew, the others copied, or, where an older tree
- * of the family gives its memory, left as they are. */
+/* Points that move: of a tree along Morton's curve the blocks that they are in are boxed anew, or sorted anew where that is no longer good
+ * enough, the others copied, or, where an older tree of the family gives its memory, left as they are. */
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +8,9 @@
 #include "tree/build.h"
 
 enum { BLOCK_PACKS = TREE_BLOCK / TREE_LANES, BLOCK_LEVELS = 3, MOST_LEVELS = 12 };
+
+/* A block is sorted when the areas of its packs' boxes have grown by so much since it was sorted last. */
+static const double WORN_OUT = 1.5;
 
 /* What trees that came from each other share: numbers for the states of blocks, each given once. */
 struct tree_family {
@@ -19,6 +22,7 @@ struct tree_blocks {
   struct tree_family *family;
   uint32_t *block_of; /* an element's, for good */
   uint64_t *state;    /* a block's */
+  double *area;       /* of a block's packs when they were sorted; 0 where nobody has asked yet */
   size_t n;
 };
 
@@ -33,6 +37,7 @@ void tree_blocks_free(struct tree_blocks *blocks) {
   if (blocks->family && atomic_fetch_sub(&blocks->family->members, 1) == 1) free(blocks->family);
   free(blocks->block_of);
   free(blocks->state);
+  free(blocks->area);
   free(blocks);
 }
 
@@ -42,7 +47,8 @@ static struct tree_blocks *blocks_allocate(size_t n) {
   made->n = blocks_for(n);
   made->block_of = malloc(n * sizeof *made->block_of);
   made->state = calloc(made->n, sizeof *made->state);
-  if (made->block_of && made->state) return made;
+  made->area = calloc(made->n, sizeof *made->area);
+  if (made->block_of && made->state && made->area) return made;
   tree_blocks_free(made);
   return NULL;
 }
@@ -59,7 +65,7 @@ bool tree_begin_family(tree *t) {
 }
 
 size_t tree_blocks_bytes(size_t n) {
-  return sizeof(struct tree_blocks) + n * sizeof(uint32_t) + blocks_for(n) * sizeof(uint64_t);
+  return sizeof(struct tree_blocks) + n * sizeof(uint32_t) + blocks_for(n) * (sizeof(uint64_t) + sizeof(double));
 }
 
 bool tree_is_family(const tree *a, const tree *b) {
@@ -126,6 +132,38 @@ static void copy_block(tree *t, const tree *from, const levels *l, size_t block)
     each /= TREE_LANES;
   }
   t->blocks->state[block] = from->blocks->state[block];
+  t->blocks->area[block] = from->blocks->area[block];
+}
+
+/* Of the boxes round a block's packs, which the lowest nodes have. */
+static double area_of(const tree *t, const levels *l, size_t block) {
+  const span s = span_of(block, BLOCK_PACKS / TREE_LANES, l->count[0]);
+  double sum = 0.0;
+  for (size_t i = s.first; i < s.last; i++) {
+    const tree_node *node = &t->nodes[l->at[0] + i];
+    for (int k = 0; k < TREE_LANES; k++) {
+      const double x = node->high[0][k] - node->low[0][k], y = node->high[1][k] - node->low[1][k],
+                   z = node->high[2][k] - node->low[2][k];
+      sum += x * y + y * z + z * x;
+    }
+  }
+  return sum;
+}
+
+/* The nodes of a block, from the boxes of its packs. */
+static void raise_block(tree *t, const levels *l, size_t block, const box *boxes) {
+  const span p = span_of(block, BLOCK_PACKS, t->n_packs), s = span_of(block, BLOCK_PACKS / TREE_LANES, l->count[0]);
+  for (size_t i = s.first; i < s.last; i++) {
+    uint32_t children[TREE_LANES];
+    size_t k = 0;
+    for (; k < TREE_LANES && i * TREE_LANES + k < p.last; k++) children[k] = (uint32_t)(i * TREE_LANES + k) | TREE_LEAF;
+    tree_fill_node(&t->nodes[l->at[0] + i], boxes + (i - s.first) * TREE_LANES, children, k);
+  }
+  for (size_t level = 1, each = BLOCK_PACKS / TREE_LANES / TREE_LANES; level < BLOCK_LEVELS && level < l->n; level++) {
+    const span above = span_of(block, each, l->count[level]);
+    refresh(t, l, level, above.first, above.last);
+    each /= TREE_LANES;
+  }
 }
 
 /* One block's elements and where they stand now. */
@@ -150,18 +188,8 @@ static void rebuild_block(tree *t, const levels *l, size_t block, gathered *g, s
   t->n_packs = packs;
   for (size_t i = p.first * TREE_LANES; i < p.last * TREE_LANES; i++) t->ids[i] = g->id[t->ids[i]];
 
-  const span s = span_of(block, BLOCK_PACKS / TREE_LANES, l->count[0]);
-  for (size_t i = s.first; i < s.last; i++) {
-    uint32_t children[TREE_LANES];
-    size_t k = 0;
-    for (; k < TREE_LANES && i * TREE_LANES + k < p.last; k++) children[k] = (uint32_t)(i * TREE_LANES + k) | TREE_LEAF;
-    tree_fill_node(&t->nodes[l->at[0] + i], boxes + (i - s.first) * TREE_LANES, children, k);
-  }
-  for (size_t level = 1, each = BLOCK_PACKS / TREE_LANES / TREE_LANES; level < BLOCK_LEVELS && level < l->n; level++) {
-    const span above = span_of(block, each, l->count[level]);
-    refresh(t, l, level, above.first, above.last);
-    each /= TREE_LANES;
-  }
+  raise_block(t, l, block, boxes);
+  t->blocks->area[block] = area_of(t, l, block);
 }
 
 /* ---- updates ---------------------------------------------------------------------------------------------------------- */
@@ -216,6 +244,39 @@ static size_t gather(const tree *previous, size_t block, const change *list, siz
   return e.last - e.first;
 }
 
+/* Moves a block's points where they are in its packs, whose boxes follow. `local` finds an element by its number. */
+static void refit_block(tree *t, const levels *l, size_t block, const change *list, size_t n_changes,
+                        const uint32_t *changed, const vec3 *points, vec3 centre, uint32_t *local) {
+  const size_t size = tree_pack_size(t->kind);
+  const span e = span_of(block, TREE_BLOCK, t->n), p = span_of(block, BLOCK_PACKS, t->n_packs);
+  for (size_t i = e.first; i < e.last; i++) local[t->ids[i]] = (uint32_t)i;
+  for (size_t i = 0; i < n_changes; i++) {
+    const size_t at = local[changed[list[i].which]];
+    double *to = t->packs + at / TREE_LANES * size + at % TREE_LANES;
+    const vec3 x = vec_sub(points[list[i].which], centre);
+    to[0] = x.x, to[TREE_LANES] = x.y, to[2 * TREE_LANES] = x.z;
+  }
+  /* a pack that is not full repeats its last element */
+  for (size_t i = e.last; i < p.last * TREE_LANES; i++) {
+    double *to = t->packs + i / TREE_LANES * size + i % TREE_LANES;
+    for (int k = 0; k < 3; k++, to += TREE_LANES) to[0] = to[-1];
+  }
+  box boxes[BLOCK_PACKS];
+  for (size_t i = p.first; i < p.last; i++) {
+    double low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+      const double *x = t->packs + i * size + TREE_LANES * k;
+      low[k] = high[k] = x[0];
+      for (int j = 1; j < TREE_LANES; j++) {
+        low[k] = x[j] < low[k] ? x[j] : low[k];
+        high[k] = x[j] > high[k] ? x[j] : high[k];
+      }
+    }
+    boxes[i - p.first] = (box){vec(low[0], low[1], low[2]), vec(high[0], high[1], high[2])};
+  }
+  raise_block(t, l, block, boxes);
+}
+
 tree *tree_update(const tree *previous, const uint32_t *changed, const vec3 *points, size_t n, vec3 centre,
                   tree *retired) {
   change *list = malloc((n + 1) * sizeof *list);
@@ -229,9 +290,15 @@ tree *tree_update(const tree *previous, const uint32_t *changed, const vec3 *poi
     deal(previous, changed, n, list, start);
     for (size_t b = 0; b < t->blocks->n; b++) {
       if (start[b + 1] > start[b]) {
-        const size_t count =
-            gather(previous, b, list + start[b], start[b + 1] - start[b], changed, points, centre, local, g);
-        rebuild_block(t, &l, b, g, count);
+        const change *block = list + start[b];
+        const size_t changes = start[b + 1] - start[b];
+        if (t->blocks->state[b] != previous->blocks->state[b]) copy_block(t, previous, &l, b);
+        if (!(t->blocks->area[b] > 0.0)) t->blocks->area[b] = area_of(previous, &l, b);
+        refit_block(t, &l, b, block, changes, changed, points, centre, local);
+        if (!(area_of(t, &l, b) <= WORN_OUT * t->blocks->area[b])) {
+          const size_t count = gather(previous, b, block, changes, changed, points, centre, local, g);
+          rebuild_block(t, &l, b, g, count);
+        }
         t->blocks->state[b] = now;
       } else if (t->blocks->state[b] != previous->blocks->state[b]) {
         copy_block(t, previous, &l, b);
