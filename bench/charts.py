@@ -120,6 +120,10 @@ def bars(rows, out, group, select, title, name, label=lambda row: f"{row['worklo
     return save(figure, out, name)
 
 
+def stacked(words):
+    return words.replace(' ', '\n')
+
+
 def curves(rows, out):
     pattern = r'order \d+ eps (1e-\d+)'
     for workload, name in (('polytope 3-D distance', 'polytope'), ('polygon 2-D distance', 'polygon'), ('point 2-D distance', 'point'),
@@ -129,10 +133,10 @@ def curves(rows, out):
                              f'{workload}, order {order}: time against accuracy', f'work_precision_{name}',
                              reached=rf'order {order} (samples \d+|as it is)')
     yield bars(rows, out, 'curves', lambda row: row['workload'].endswith('distance') and row['parameter'].endswith('eps 1e-10'),
-               'Distance to 1e-10', 'distance_by_order', lambda row: f"{row['workload'][:-9]}\n{row['parameter'][:8]}")
+               'Distance to 1e-10', 'distance_by_order', lambda row: f"{stacked(row['workload'][:-9])}\n{row['parameter'][:8]}")
     yield bars(rows, out, 'curves', lambda row: 'tolerance' in row['workload'] and 'order 15' in row['parameter'],
                'Farther than delta? Order 15, delta as a fraction of the distance', 'tolerance',
-               lambda row: f"{row['workload'].split(' tolerance')[0]}\n{row['parameter'][14:]}")
+               lambda row: f"{stacked(row['workload'].split(' tolerance')[0])}\n{row['parameter'][14:]}")
 
 
 def splines(rows, out):
