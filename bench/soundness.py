@@ -8,6 +8,8 @@ RECORD = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'doc', '
 # is never approached is padded).
 ASKED = [(f'{build}: {theorem}', 100000, least) for build in ('rounding', 'rounding_fused')
          for theorem, least in (('T1', .15), ('T2', .15), ('T3', .15), ('T4', .15), ('T6', .15))]
+ASKED += [(f'{build}: T5', 100000, .1) for build in ('rounding_chain', 'rounding_chain_fused')]
+ASKED += [('certificates of robots and mutants', 10000, None)]
 ASKED += [('intervals of queries', 1000000, None), ('certificates and mutants', 10000, None)]
 
 

@@ -90,8 +90,9 @@ static inline vec vec_of(const double x[3]) {
   return (vec){{x[0], x[1], x[2]}, 0.0};
 }
 
+/* From above but for roundings: squares that underflow lose less than what is added. */
 static inline double length_of(const double x[3]) {
-  return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+  return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) + 0x1p-500;
 }
 
 /* At least the length. */
@@ -153,7 +154,7 @@ static inline rot rot_of(const num k[9]) {
     r.m[i] = k[i].m;
     square += k[i].e * k[i].e;
   }
-  r.e = GROW(sqrt(square));
+  r.e = GROW(sqrt(square) + 0x1p-500);
   return r;
 }
 

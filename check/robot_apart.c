@@ -15,6 +15,10 @@
 
 enum { MAX_DEPTH = 64 };
 
+/* Of a direction: far from where squares underflow or overflow. */
+#define SHORTEST 0x1p-100
+#define LONGEST 0x1p100
+
 typedef struct walk {
   robot *r;
   reader *in;
@@ -60,7 +64,7 @@ static bool settles(const walk *w, const view *v, const double own[3]) {
   const num start = num_sub(vec_dot(&n, &v->apart), span_along(v->standing->shape, v->standing->radius, &n_own));
   const double limit = GROW((w->delta + standing_pad) * size);
   ++*w->tries;
-  if (!(size > 0.0)) return false;
+  if (!(size > SHORTEST && size < LONGEST)) return false;
 
   /* in the middle, and the way from there */
   const double padded = GROW(limit + moving_pad * size);

@@ -66,6 +66,11 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &qu
  *  collision element of b. */
 Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &workspace);
 
+/** The question as the program cprox_check reads it (doc/certificates.md): where things stand, the robot along its motion, the pairs that
+ *  askEnvironment() or with `self` askSelf() asks about; meshes by their convex hulls. A certificate of these (options.certificate, with
+ *  max_rung hull) is about this text. Empty where there is no pair, or a body of a kind that has no certificates. */
+std::string describeQuestion(const RobotMotion &motion, bool self, const Question &question);
+
 /** How many pairs are asked about at most, and how close they must come. */
 struct PairLimits {
   std::size_t count = 10;

@@ -26,8 +26,8 @@ const std::map<std::string, Option> &options() {
   static const std::map<std::string, Option> table = {
       {"--curves", {true, {Action::CURVES, Action::CHECK}}},
       {"--against", {true, {Action::CURVES, Action::CHECK}}},
-      {"--trajectory", {true, {Action::CURVES}}},
-      {"--self", {false, {Action::CURVES}}},
+      {"--trajectory", {true, {Action::CURVES, Action::CHECK}}},
+      {"--self", {false, {Action::CURVES, Action::CHECK}}},
       {"--signed", {false, {Action::CURVES}}},
       {"--scene", {true, {Action::CURVES, Action::CONSTRAINTS, Action::CHECK}}},
       {"--robot", {true, {Action::CURVES, Action::CHECK}}},
@@ -190,11 +190,11 @@ void readAgainst(const Words &words, Arguments &out) {
 
 /* The robot along a trajectory, instead of curves. */
 void readTrajectoryWords(const Words &words, Arguments &out) {
-  for (const char *name : {"--curves", "--against", "--certificate", "--signed"}) {
+  for (const char *name : {"--curves", "--against", "--signed"}) {
     if (words.has(name)) throw BadUsage("--trajectory takes no " + std::string(name));
   }
   if (!words.has("--robot")) throw BadUsage("--trajectory needs --robot URDF");
-  out.action = Action::TRAJECTORY;
+  if (out.action == Action::CURVES) out.action = Action::TRAJECTORY;
   out.trajectory = words.text("--trajectory");
   out.self = words.has("--self");
   out.scene = words.text("--scene");
@@ -228,6 +228,7 @@ void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
     case Action::CURVES:
       if (words.has("--trajectory")) {
         readTrajectoryWords(words, out);
+        limitToHulls(words, out);
         break;
       }
       if (words.has("--self")) throw BadUsage("--self needs --trajectory T.yaml");

@@ -19,9 +19,9 @@ struct Arguments {
 
   std::string curves, scene; /**< files; curves: of CURVES, AGAINST and CHECK, scene: of CURVES, CHECK and SEND */
   std::string against;       /**< file of AGAINST; of CHECK where it was given */
-  std::string trajectory;    /**< file of TRAJECTORY */
-  bool self = false;         /**< TRAJECTORY: ask about the robot itself, too */
-  std::string certificate;   /**< file: written by CURVES and AGAINST, empty: none; read by CHECK */
+  std::string trajectory;    /**< file of TRAJECTORY; of CHECK where it was given */
+  bool self = false;         /**< with a trajectory: ask about the robot itself, too */
+  std::string certificate;   /**< file: written by CURVES, AGAINST and TRAJECTORY, empty: none; read by CHECK */
   std::string robot, srdf;   /**< files of the robot; empty: none */
   std::string state;         /**< "joint: value, …" */
   std::string pairs;         /**< file of PAIRS */

@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <new>
 
 #include "failure.h"
 
 namespace curve_proximity::cli {
 namespace {
-
-using CertificateHandle = std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)>;
 
 std::string recordOf(const void *bytes, std::size_t size) {
   std::string record;
@@ -62,15 +60,24 @@ std::string emptyRecord() {
   return recordOf("", 0);
 }
 
+CertificateHandle makeCertificate() {
+  CertificateHandle made(cprox_certificate_create(), cprox_certificate_free);
+  if (!made) throw std::bad_alloc();
+  return made;
+}
+
+std::string recordOf(const CertificateHandle &certificate) {
+  return recordOf(cprox_certificate_bytes(certificate.get()), cprox_certificate_size(certificate.get()));
+}
+
 std::string certificateRecord(const CompiledCurve &curve, const std::vector<cprox_target> &targets,
                               const cprox_result &result, const Question &question, Workspace &workspace) {
   const double delta = claimOf(question, result);
   if (result.status < 0 || targets.empty() || !std::isfinite(delta)) return emptyRecord();
-  const CertificateHandle certificate(cprox_certificate_create(), cprox_certificate_free);
-  if (!certificate) return emptyRecord();
+  const CertificateHandle certificate = makeCertificate();
   cprox_certify(along(curve.curve, curve.radius), targets.data(), targets.size(), delta, &result, &question.options,
                 workspace.get(), certificate.get());
-  return recordOf(cprox_certificate_bytes(certificate.get()), cprox_certificate_size(certificate.get()));
+  return recordOf(certificate);
 }
 
 std::string problemHead() {

@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_CLI_CERTIFICATES_H
 #define CURVE_PROXIMITY_CLI_CERTIFICATES_H
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,11 @@ namespace curve_proximity::cli {
 
 /** The record of one row: a certificate behind its length. Of length 0 where there is no answer or none can be proven. */
 std::string emptyRecord();
+
+/** A certificate that a query may leave, and its record. */
+using CertificateHandle = std::unique_ptr<cprox_certificate, decltype(&cprox_certificate_free)>;
+CertificateHandle makeCertificate();
+std::string recordOf(const CertificateHandle &certificate);
 
 /** The record of an answer. result.target_index is that among the targets. */
 std::string certificateRecord(const CompiledCurve &curve, const std::vector<cprox_target> &targets,

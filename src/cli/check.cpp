@@ -13,6 +13,7 @@
 #include "certificates.h"
 #include "csv.h"
 #include "failure.h"
+#include "trajectory.h"
 #include "verbs.h"
 #include "world.h"
 
@@ -121,6 +122,19 @@ void tellCurves(const Arguments &arguments, Console &console, Checker &checker) 
   }
 }
 
+void tellTrajectory(const Arguments &arguments, Console &console, Checker &checker) {
+  Warnings warnings;
+  const World world = readWorld(arguments, warnings);
+  const RobotMotion motion = readMotion(arguments, world, warnings);
+  console.warn(warnings);
+  bool listening = checker.tell(problemHead());
+  for (const bool self : {false, true}) {
+    if (!listening || (self && !arguments.self)) return;
+    const std::string question = describeQuestion(motion, self, arguments.question);
+    listening = checker.tell(question.empty() ? noMoverLine(self ? "self" : "environment") : question);
+  }
+}
+
 void tellPairs(const Arguments &arguments, Checker &checker) {
   CsvFile first(arguments.curves), second(arguments.against);
   bool listening = checker.tell(problemHead() + "targets 0\n");
@@ -137,7 +151,9 @@ int checkCertificates(const Arguments &arguments, Console &console) {
   if (!std::filesystem::exists(arguments.certificate))
     throw BadUsage(arguments.certificate + ": there is no such file");
   Checker checker(arguments.certificate);
-  if (arguments.against.empty())
+  if (!arguments.trajectory.empty())
+    tellTrajectory(arguments, console, checker);
+  else if (arguments.against.empty())
     tellCurves(arguments, console, checker);
   else
     tellPairs(arguments, checker);

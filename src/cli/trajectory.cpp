@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The robot along a joint trajectory. */
-#include <curve_proximity/motion.hpp>
+#include "trajectory.h"
 
+#include "certificates.h"
 #include "failure.h"
 #include "finish.h"
 #include "results.h"
@@ -21,16 +22,6 @@ JointPositions restOf(const TrajectoryDescription &trajectory, const World &worl
   return out;
 }
 
-RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings &warnings) {
-  TrajectoryDescription trajectory = readTrajectory(arguments.trajectory, warnings);
-  adoptBase(world.srdf.virtual_joints, trajectory); /* where the file does not name it itself */
-  try {
-    return RobotMotion(world.snapshot, trajectory, restOf(trajectory, world), world.srdf.disabled);
-  } catch (const Error &e) {
-    throw BadUsage(arguments.trajectory + ": " + e.what());
-  }
-}
-
 Outcome toOutcome(const std::vector<Answer> &answers, Verb verb, const std::string &file) {
   Outcome out;
   for (const Answer &answer : answers) {
@@ -41,7 +32,30 @@ Outcome toOutcome(const std::vector<Answer> &answers, Verb verb, const std::stri
   return out;
 }
 
+/* One of the two questions; with the record of its certificate, where one is wanted. */
+Outcome askOne(const RobotMotion &motion, bool self, const Question &question, const Arguments &arguments,
+               Workspace &workspace) {
+  const CertificateHandle proof = makeCertificate();
+  Question asked = question;
+  if (!arguments.certificate.empty()) asked.options.certificate = proof.get();
+  const std::vector<Answer> answers =
+      self ? std::vector<Answer>{askSelf(motion, asked, workspace)} : askEnvironment(motion, asked, workspace);
+  Outcome out = toOutcome(answers, question.verb, arguments.trajectory);
+  if (!arguments.certificate.empty()) out.certificate = recordOf(proof);
+  return out;
+}
+
 } // namespace
+
+RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings &warnings) {
+  TrajectoryDescription trajectory = readTrajectory(arguments.trajectory, warnings);
+  adoptBase(world.srdf.virtual_joints, trajectory); /* where the file does not name it itself */
+  try {
+    return RobotMotion(world.snapshot, trajectory, restOf(trajectory, world), world.srdf.disabled);
+  } catch (const Error &e) {
+    throw BadUsage(arguments.trajectory + ": " + e.what());
+  }
+}
 
 int answerTrajectory(const Arguments &arguments, Console &console) {
   Warnings warnings;
@@ -52,7 +66,10 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   Question question = arguments.question;
   question.options.stop = interrupted;
 
-  ResultsFile results(arguments.out, {arguments.trajectory, arguments.scene, arguments.robot, arguments.srdf});
+  const std::vector<std::string> inputs{arguments.trajectory, arguments.scene, arguments.robot, arguments.srdf};
+  ResultsFile results(arguments.out, inputs);
+  std::optional<ResultsFile> certificates;
+  if (!arguments.certificate.empty()) certificates.emplace(arguments.certificate, inputs, "--certificate");
   console.warn(warnings);
   if (arguments.skipped) {
     tellSkipped(world.skipped, console);
@@ -63,20 +80,16 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   catchInterrupts();
   results.write(resultsHeader());
   std::vector<Task> tasks;
-  tasks.push_back([&](Workspace &workspace) {
-    return toOutcome(askEnvironment(motion, question, workspace), question.verb, arguments.trajectory);
-  });
-  if (arguments.self) {
-    tasks.push_back([&](Workspace &workspace) {
-      return toOutcome({askSelf(motion, question, workspace)}, question.verb, arguments.trajectory);
-    });
-  }
+  tasks.push_back([&](Workspace &workspace) { return askOne(motion, false, question, arguments, workspace); });
+  if (arguments.self)
+    tasks.push_back([&](Workspace &workspace) { return askOne(motion, true, question, arguments, workspace); });
   Rows rows;
   std::size_t next = 0;
   rows.next = [&]() -> std::optional<Task> {
     return next < tasks.size() ? std::optional<Task>(tasks[next++]) : std::nullopt;
   };
   rows.write = [&](const std::string &text) { results.write(text); };
+  if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };
   rows.portion = [] { return std::optional<double>(); };
   return finish(runRows(arguments.threads, rows, console), console);
 }

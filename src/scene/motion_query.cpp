@@ -173,6 +173,32 @@ Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &w
   return answerOf(askedSelf(motion.data()), question, workspace);
 }
 
+std::string describeQuestion(const RobotMotion &motion, bool self, const Question &question) {
+  const Asked asked = askedOf(motion, self, question);
+  if (asked.pairs.empty()) return {};
+  std::string bodies;
+  for (const cprox_target &target : asked.targets) {
+    std::string lines(cprox_target_describe(&target, nullptr, 0) + 1, '\0');
+    if (cprox_target_describe(&target, lines.data(), lines.size()) == 0) return {};
+    bodies.append(lines, 0, lines.size() - 1);
+  }
+
+  /* an id is one word there */
+  std::string id = motion.data().id + (self ? ".self" : ".environment");
+  std::replace_if(
+      id.begin(), id.end(), [](unsigned char c) { return c <= ' '; }, '_');
+  Workspace workspace;
+  const cprox_mover mover = asked.mover();
+  const auto describe = [&](char *text, std::size_t size) {
+    return cprox_mover_describe(&mover, asked.targets.data(), asked.targets.size(), id.c_str(), workspace.get(), text,
+                                size);
+  };
+  std::string robot(describe(nullptr, 0) + 1, '\0');
+  if (describe(robot.data(), robot.size()) == 0) return {};
+  robot.pop_back();
+  return "targets " + std::to_string(std::count(bodies.begin(), bodies.end(), '\n')) + "\n" + bodies + robot;
+}
+
 std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits,
                                  const Question &question, Workspace &workspace) {
   const Clock::time_point start = Clock::now();

@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include <cmocka.h>
@@ -144,10 +145,75 @@ static void random_robots_leave_certificates_that_hold(void **state) {
   cprox_certificate_free(c);
 }
 
+/* ---- directions whose squares underflow ------------------------------------------------------------------------------------ */
+
+static size_t put(unsigned char *to, uint64_t bits, size_t n) {
+  for (size_t i = 0; i < n; i++) to[i] = (unsigned char)(bits >> (8 * i) & 255);
+  return n;
+}
+
+static size_t put_number(unsigned char *to, double x) {
+  uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return put(to, bits, 8);
+}
+
+/* A ball slides towards another one; they come within .5 of each other. One stretch, the one direction that parts them, of any length. */
+static finding check_slide(double delta, double length) {
+  cprox_body *ball;
+  assert_int_equal(cprox_body_create_sphere(0.25, ws, &ball), CPROX_OK);
+  const cprox_link link = {.parent = -1,
+                           .type = CPROX_JOINT_PRISMATIC,
+                           .origin = cprox_pose_identity(),
+                           .axis = {1, 0, 0},
+                           .multiplier = 1.0};
+  const cprox_link_geometry geometry = {.body = ball, .pose = cprox_pose_identity()};
+  const double at[2] = {0.0, 1.0};
+  const cprox_waypoint points[2] = {{.time = 0.0, .positions = &at[0]}, {.time = 1.0, .positions = &at[1]}};
+  const int32_t variable = 0;
+  cprox_robot *robot;
+  cprox_motion *motion;
+  assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robot), CPROX_OK);
+  assert_int_equal(cprox_motion_create_waypoints(robot, &variable, 1, points, 2, CPROX_LINEAR, NULL, ws, &motion),
+                   CPROX_OK);
+  cprox_pose there = cprox_pose_identity();
+  there.position.x = 2.0;
+  const cprox_target target = cprox_at(ball, there);
+  const cprox_mover along = cprox_robot_along(motion, NULL, 0);
+
+  unsigned char bytes[64];
+  size_t n = put(bytes, 0x31435043, 4); /* "CPC1" */
+  n += put(bytes + n, 8, 4);
+  n += put_number(bytes + n, delta);
+  n += put(bytes + n, CLAIM_APART, 4);
+  n += put(bytes + n, 1, 4);
+  n += put(bytes + n, 2, 2);
+  n += put(bytes + n, 0, 2);
+  for (int k = 0; k < 3; k++) n += put_number(bytes + n, k == 0 ? -length : 0.0);
+  robot_text text = robot_text_of(&along, &target, 1, ws);
+  const finding found = robot_text_check(&text, bytes, n);
+  robot_text_free(&text);
+  cprox_motion_free(motion);
+  cprox_robot_free(robot);
+  cprox_body_free(ball);
+  return found;
+}
+
+static void a_direction_of_any_length_proves_what_is_so_and_nothing_else(void **state) {
+  (void)state;
+  static const double LENGTH[] = {1.0, 1e-3, 1e20, 1e-29, 1e-160, 1e-200, 1e-300, 5e-324, 1e160, 1e300};
+  for (size_t i = 0; i < sizeof LENGTH / sizeof *LENGTH; i++) {
+    assert_int_equal(check_slide(0.51, LENGTH[i]).claim, CLAIM_NONE);
+    assert_int_equal(check_slide(100.0, LENGTH[i]).claim, CLAIM_NONE);
+    if (i < 4) assert_int_equal(check_slide(0.49, LENGTH[i]).claim, CLAIM_APART);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(real_robots_leave_certificates_that_hold),
       cmocka_unit_test(random_robots_leave_certificates_that_hold),
+      cmocka_unit_test(a_direction_of_any_length_proves_what_is_so_and_nothing_else),
   };
   return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
 }

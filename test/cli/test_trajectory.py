@@ -57,6 +57,30 @@ class Trajectory(Case):
         self.assertEqual(self.robot('collision', SLIDE).row('go')['verdict'], 'no')
         self.assertEqual(self.robot('collision', SLIDE.replace('[2]', '[3]')).row('go')['verdict'], 'yes')
 
+    def certificates_are_proven_by_the_checker_and_by_no_other_question(self):
+        file = os.path.join(self.folder, 'proof.cpc')
+        swing = SLIDE.replace('[slide]', '[slide, swing]').replace('[0]', '[0, 0]').replace('[2]', '[2, 0.5]')
+        for verb, more, said in (('distance', [], 'proven: farther than'), ('tolerance', ['--delta', '0.1'], 'proven: farther than 0.1'),
+                                 ('tolerance', ['--delta', '3'], 'proven: not farther than 3 m'), ('collision', [], 'proven: farther than 0 m')):
+            asked = self.robot(verb, swing, '--self', '--certificate', file, *more)
+            self.assertEqual((asked.code, asked.err), (0, ''))
+            checked = self.robot('check', swing, file, '--self')
+            self.assertEqual(checked.code, 0, checked.out + checked.err)
+            lines = checked.out.splitlines()
+            self.assertEqual([line.split(':')[0] for line in lines], ['go.environment', 'go.self'])
+            for line, row in zip(lines, asked.rows):
+                self.assertIn(said, line)
+                if verb == 'distance':
+                    self.assertAlmostEqual(float(line.split('farther than ')[1].split(' m')[0]), float(row['lower']), delta=1.001e-6)
+
+        # it goes farther than the question that was proven
+        self.robot('tolerance', swing, '--certificate', file, '--delta', '0.3')
+        for trajectory, code in ((swing, 0), (swing.replace('[2, 0.5]', '[2.5, 0.5]'), 1)):
+            checked = self.robot('check', trajectory, file)
+            self.assertEqual(checked.code, code, checked.out + checked.err)
+        self.assertIn('go.environment: refused: a pair is not settled', checked.out)
+        self.assertRefused(self.robot('distance', SLIDE, '--certificate', file, '--max-rung', 'mesh'), '--certificate needs --max-rung hull')
+
     def each_object_has_a_row_of_its_own_when_asked(self):
         answer = self.robot('distance', SLIDE, '--per-object')
         self.assertEqual([row['b'] for row in answer.rows], ['post', 'wall'])
@@ -181,6 +205,27 @@ joint_trajectory:
             with self.subTest(trajectory=case['trajectory']):
                 self.assertEqual(row['status'], 'ok', answer.err)
                 self.assertGreaterEqual(float(row['upper']), expected['lower'] - 5e-9)
+
+    def certificates_of_real_robots_are_proven(self):
+        with open(DATA + '/reference/expected_hull_model.json') as text:
+            cases = json.load(text)['cases']
+        file = os.path.join(self.folder, 'proof.cpc')
+        robots = set()
+        for case in cases:
+            if case['robot'] in robots or min(result['lower'] for result in case['results']) == 0.0:
+                continue
+            robots.add(case['robot'])
+            question = ['--robot', f"{DATA}/{case['robot']}", '--scene', f"{DATA}/{case['scene']}",
+                        '--trajectory', f"{DATA}/trajectories/{os.path.basename(case['trajectory'])}"]
+            question += ['--srdf', f"{DATA}/{case['srdf']}"] if case.get('srdf') else []
+            question += ['--self'] if len(case['results']) == 2 else []
+            with self.subTest(trajectory=case['trajectory']):
+                asked = cprox('distance', *question, '--certificate', file)
+                self.assertEqual(asked.code, 0, asked.err)
+                checked = cprox('check', file, *question)
+                self.assertEqual(checked.code, 0, checked.out + checked.err)
+                self.assertEqual(checked.out.count('proven: farther than'), len(case['results']), checked.out)
+        self.assertEqual(len(robots), 3)
 
     def reference_answers_overlap(self):
         """Robots, scenes and splines of test/data, meshes by their hulls, against certified answers of another program, at 1e-6; what was sampled is never

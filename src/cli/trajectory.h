@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The robot of a command line along its trajectory. */
+#ifndef CURVE_PROXIMITY_CLI_TRAJECTORY_H
+#define CURVE_PROXIMITY_CLI_TRAJECTORY_H
+
+#include <curve_proximity/motion.hpp>
+
+#include "world.h"
+
+namespace curve_proximity::cli {
+
+/** Reads --trajectory. Throws BadUsage with one line. */
+RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings &warnings);
+
+} // namespace curve_proximity::cli
+#endif
