@@ -7,12 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "body/body.h"
 #include "curve_proximity/cprox.h"
-#include "peers/robot_fcl.h"
+#include "peers/robot_states.h"
 #include "support/measure.h"
-#include "support/robot_case.h"
-#include "tree/tree.h"
 
 /* MoveIt's longest valid segment: this fraction of the joint space's extent, which is the sum of the Panda's seven ranges [rad]. */
 static const double SEGMENT_FRACTION = 0.01, PANDA_EXTENT = 33.476;
@@ -63,46 +60,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *answ
                            .failed = a < 0 || b < 0};
 }
 
-/* ---- states by FCL -------------------------------------------------------------------------------------------------------- */
-
-static void add_shape(robot_fcl *fcl, const cprox_body *body, const cprox_body *surface) {
-  const double *size = body->shape.size;
-  if (surface) {
-    const tree *t = surface->tree;
-    double *corners = calloc(9 * (size_t)TREE_LANES * t->n_packs, sizeof *corners), *at = corners;
-    for (uint32_t pack = 0; pack < t->n_packs; pack++) {
-      for (uint32_t lane = 0; lane < TREE_LANES; lane++) {
-        const tree_place place = {pack, lane};
-        if (lane > 0 && tree_element(t, place) == tree_element(t, (tree_place){pack, lane - 1})) break;
-        vec3 v[3];
-        tree_corners(t, place, v);
-        for (int k = 0; k < 3; k++, at += 3)
-          at[0] = v[k].x + surface->centre.x, at[1] = v[k].y + surface->centre.y, at[2] = v[k].z + surface->centre.z;
-      }
-    }
-    robot_fcl_add_mesh(fcl, corners, (size_t)(at - corners) / 9);
-    free(corners);
-  } else if (body->kind == CPROX_BOX) {
-    robot_fcl_add_box(fcl, (cprox_vec3){2.0 * size[0], 2.0 * size[1], 2.0 * size[2]});
-  } else if (body->kind == CPROX_CYLINDER) {
-    robot_fcl_add_cylinder(fcl, size[0], 2.0 * size[1]);
-  } else {
-    robot_fcl_add_sphere(fcl, body->shape.margin);
-  }
-}
-
-static robot_fcl *make_fcl(const robot_case *c) {
-  robot_fcl *fcl = robot_fcl_create();
-  for (size_t i = 0; i < c->n_targets; i++) {
-    add_shape(fcl, c->targets[i].body, NULL);
-    robot_fcl_stand(fcl, c->targets[i].pose);
-  }
-  for (size_t i = 0; i < c->n_geometries; i++) add_shape(fcl, c->bodies[i], c->surfaces[i]);
-  for (size_t i = 0; i < c->n_self_pairs; i++)
-    robot_fcl_add_pair(fcl, (size_t)c->self_pairs[i].geometry, (size_t)c->self_pairs[i].other);
-  robot_fcl_ready(fcl);
-  return fcl;
-}
+/* ---- states by FCL ------------------------------------------------------------------------------------------------------- */
 
 /* As many states as MoveIt checks on a path of that length. */
 static size_t states_of(const robot_case *c) {
@@ -125,12 +83,7 @@ static void states_by_fcl(const void *problems, size_t i, void *state, bench_ans
   bool hit = false;
   for (size_t k = 0; k < p->states; k++) {
     cprox_motion_evaluate(p->c.motion, t0 + (t1 - t0) * (double)k / (double)(p->states - 1), values);
-    for (size_t g = 0; g < p->c.n_geometries; g++) {
-      cprox_vec3 position;
-      double rotation[9];
-      cprox_robot_link_frame(p->c.robot, values, (size_t)p->c.links[g], &position, rotation);
-      robot_fcl_place(p->fcl, g, position, rotation); /* the Panda's collision elements stand in their links' frames */
-    }
+    robot_states_place(p->fcl, &p->c, values);
     hit = robot_fcl_collides(p->fcl) || hit;
   }
   *answer = (bench_answer){.lower = NAN, .upper = NAN, .nodes = (uint32_t)p->states};
@@ -163,7 +116,7 @@ int main(int argc, char **argv) {
     for (size_t k = 0; k < SCENES; k++) {
       if (strcmp(p.c.name, MOVEIT[k].scene) != 0) continue;
       p.states = states_of(&p.c);
-      p.fcl = make_fcl(&p.c);
+      p.fcl = robot_states_fcl(&p.c);
       const bench_workload w = {"robots", "planning", p.c.name, &p, 1, &p.truth, 1.1e-6};
       const bench_workload of_meshes = {"robots", "meshes", p.c.name, &p, 1, &p.truth, 1.1e-6};
       bench_measure(&w, &size, hulls, robot_fcl_name() ? 2 : 1);

@@ -6,22 +6,26 @@
 #include <stdlib.h>
 
 #include "curve_proximity/cprox.h"
+#include "peers/robot_states.h"
 #include "peers/two_ended.h"
+#include "robots.h"
 #include "support/measure.h"
 #include "support/random.h"
 #include "support/robot_case.h"
 
-enum { MAX_CASES = 32, MAX_PROBLEMS = 64, TWO_ENDED_NODES = 60000 };
+enum { MAX_CASES = 32, MAX_PROBLEMS = 64, PEER_NODES = 60000 };
 
 typedef struct problem {
   const robot_case *c;
   bool self;
   double truth;
+  robot_fcl *fcl;
 } problem;
 
 typedef struct method_state {
   cprox_workspace *workspace;
   double epsilon, factor, step; /* factor: verdicts at that much of the true distance, below 0: none */
+  int order;                    /* of a bound */
 } method_state;
 
 static cprox_mover mover_of(const problem *p) {
@@ -52,14 +56,21 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *answ
   answer->nodes = r.nodes, answer->probes = r.probes, answer->failed = status != CPROX_OK;
 }
 
-static void two_ended(const void *problems, size_t i, void *state, bench_answer *answer) {
+static void by_bound(const void *problems, size_t i, void *state, bench_answer *answer) {
   const problem *p = (const problem *)problems + i;
   method_state *s = state;
   const cprox_mover mover = mover_of(p);
   peer_answer r;
-  two_ended_distance(&mover, p->c->targets, targets_of(p), s->epsilon, TWO_ENDED_NODES, s->workspace, &r);
+  central_distance(&mover, p->c->targets, targets_of(p), s->order, s->epsilon, PEER_NODES, s->workspace, &r);
   *answer =
       (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes, .failed = !r.complete};
+}
+
+static void by_fcl(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  const method_state *s = state;
+  *answer = (bench_answer){0};
+  answer->lower = answer->upper = robot_states_distance(p->fcl, p->c, s->step, p->self, &answer->nodes);
 }
 
 static void sampled(const void *problems, size_t i, void *state, bench_answer *answer) {
@@ -83,12 +94,17 @@ static void distances(const problem *problems, size_t n, bool self, const bench_
     if (problems[i].self == self) some[count] = problems[i], truth[count++] = problems[i].truth;
   for (int k = 0; k < 3; k++) {
     method_state state = {.workspace = ws, .epsilon = EPSILON[k], .factor = -1.0, .step = 0.05};
+    method_state bound[3] = {state, state, state};
+    for (int order = 0; order < 3; order++) bound[order].order = order > 0 ? order + 1 : 0;
     char parameter[40];
     snprintf(parameter, sizeof parameter, "epsilon %g", EPSILON[k]);
     const bench_workload w = {"robots", self ? "self" : "environment", parameter, some, count, truth, 1.1e-6};
-    const bench_method methods[] = {
-        {"curve_proximity", ours, &state}, {"two-ended bound", two_ended, &state}, {"sampling .05", sampled, &state}};
-    bench_measure(&w, size, methods, 3);
+    const bench_method methods[] = {{"curve_proximity", ours, &state},
+                                    {"two-ended bound", by_bound, &bound[0]},
+                                    {"bound M2", by_bound, &bound[1]},
+                                    {"bound M3", by_bound, &bound[2]},
+                                    {"sampling .05", sampled, &state}};
+    bench_measure(&w, size, methods, 5);
   }
   static const double STEP[] = {0.05, 0.01};
   for (int k = 0; k < 2; k++) {
@@ -96,9 +112,22 @@ static void distances(const problem *problems, size_t n, bool self, const bench_
     char parameter[40];
     snprintf(parameter, sizeof parameter, "step %g", STEP[k]);
     const bench_workload w = {"robots", self ? "self" : "environment", parameter, some, count, truth, 1.1e-6};
-    const bench_method methods[] = {{"sampling", sampled, &state}};
-    bench_measure(&w, size, methods, 1);
+    const bench_method methods[] = {
+        {"curve_proximity", ours, &state}, {"sampling", sampled, &state}, {"FCL distance", by_fcl, &state}};
+    bench_measure(&w, size, methods, k == 0 && robot_fcl_name() ? 3 : 2); /* FCL takes seconds for the finer step */
   }
+}
+
+/* Verdicts by a least distance, at an epsilon that tells it from delta: what they cost without a search of their own. */
+static void verdict_by_distance(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  method_state s = *(const method_state *)state;
+  s.epsilon = 0.5 * fabs(s.factor - 1.0) * p->truth, s.factor = -1.0;
+  if (s.order < 0)
+    ours(problems, i, &s, answer);
+  else
+    by_bound(problems, i, &s, answer);
+  answer->lower = answer->upper = p->truth;
 }
 
 static void verdicts(const problem *problems, size_t n, const bench_size *size, cprox_workspace *ws) {
@@ -108,8 +137,14 @@ static void verdicts(const problem *problems, size_t n, const bench_size *size, 
     char parameter[40];
     snprintf(parameter, sizeof parameter, "delta %g D", FACTOR[k]);
     const bench_workload w = {"robots", "tolerance", parameter, problems, n, NULL, 0.0};
-    const bench_method methods[] = {{"curve_proximity", ours, &state}, {"sampling .05", sampled, &state}};
-    bench_measure(&w, size, methods, 2);
+    method_state best_first = state, two_ended = state, fourth = state;
+    best_first.order = -1, two_ended.order = 0, fourth.order = 4;
+    const bench_method methods[] = {{"curve_proximity", ours, &state},
+                                    {"sampling .05", sampled, &state},
+                                    {"by distance", verdict_by_distance, &best_first},
+                                    {"bound M4", verdict_by_distance, &fourth},
+                                    {"two-ended bound", verdict_by_distance, &two_ended}};
+    bench_measure(&w, size, methods, 5);
   }
 }
 
@@ -198,14 +233,21 @@ int main(int argc, char **argv) {
     if (!robot_case_read(f, BENCH_DATA_DIR "/motion", c)) return 1;
     for (size_t k = 0; k < c->n_answers; k++)
       if (c->answers[k].lower > 0.0)
-        problems[n++] = (problem){c, c->answers[k].self, 0.5 * (c->answers[k].lower + c->answers[k].upper)};
+        problems[n++] = (problem){c, c->answers[k].self, 0.5 * (c->answers[k].lower + c->answers[k].upper), NULL};
   }
   fclose(f);
+  robot_fcl *fcl[MAX_CASES] = {NULL};
+  for (size_t i = 0; i < n_cases; i++) fcl[i] = robot_states_fcl(&cases[i]);
+  for (size_t i = 0; i < n; i++) problems[i].fcl = fcl[problems[i].c - cases];
   if (bench_wanted(&size, "environment")) distances(problems, n, false, &size, ws);
   if (bench_wanted(&size, "self")) distances(problems, n, true, &size, ws);
   if (bench_wanted(&size, "tolerance")) verdicts(problems, n, &size, ws);
   if (bench_wanted(&size, "thin obstacles")) thin_obstacles(cases, n_cases, &size, ws);
-  for (size_t i = 0; i < n_cases; i++) robot_case_free(&cases[i]);
+  bench_robot_scale(&cases[0], &size, ws);
+  for (size_t i = 0; i < n_cases; i++) {
+    robot_fcl_free(fcl[i]);
+    robot_case_free(&cases[i]);
+  }
   cprox_workspace_free(ws);
   return 0;
 }

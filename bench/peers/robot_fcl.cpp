@@ -8,7 +8,10 @@
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -96,4 +99,21 @@ bool robot_fcl_collides(robot_fcl *r) {
     if (fcl::collide(r->parts[a].get(), r->parts[b].get(), fcl::CollisionRequestd(), result) > 0) return true;
   }
   return false;
+}
+
+double robot_fcl_distance(robot_fcl *r, bool of_pairs) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto &part : r->parts) {
+    if (of_pairs) break;
+    fcl::DefaultDistanceData<double> data;
+    r->tree.distance(part.get(), &data, fcl::DefaultDistanceFunction<double>);
+    least = std::min(least, data.result.min_distance);
+  }
+  for (const auto &[a, b] : r->pairs) {
+    if (!of_pairs) break;
+    fcl::DistanceResultd result;
+    fcl::distance(r->parts[a].get(), r->parts[b].get(), fcl::DistanceRequestd(), result);
+    least = std::min(least, result.min_distance);
+  }
+  return std::max(least, 0.0);
 }

@@ -38,6 +38,9 @@ void robot_fcl_ready(robot_fcl *r);
 void robot_fcl_place(robot_fcl *r, size_t part, cprox_vec3 position, const double rotation[9]);
 bool robot_fcl_collides(robot_fcl *r);
 
+/* The least distance of the parts to the world, or of the pairs. */
+double robot_fcl_distance(robot_fcl *r, bool of_pairs);
+
 #ifdef __cplusplus
 }
 #endif

@@ -29,6 +29,7 @@ typedef struct search {
   size_t count, room;
   double upper, dropped, epsilon;
   uint32_t nodes, probes;
+  int order; /* 0: by both ends */
 } search;
 
 static void push(search *s, stretch node) {
@@ -128,6 +129,43 @@ static void bound(search *s, stretch *node) {
   free(ways), free(chain), free(balls[0]), free(balls[1]);
 }
 
+/* Bounds all pairs of a stretch by what is measured in its middle. */
+static void bound_centrally(search *s, stretch *node, int order) {
+  size_t kept = 0;
+  s->nodes++;
+  robot_scene_enter(&s->scene, node->segment, node->a, node->b);
+  node->lower = INFINITY;
+  for (size_t i = 0; i < node->n; i++) {
+    ends e = node->list[i];
+    const robot_pair *pair = &s->scene.pairs[e.pair];
+    const robot_body *moving = robot_scene_moving(&s->scene, pair), *standing = robot_scene_standing(&s->scene, pair);
+    chain_motion own;
+    const chain_motion *motion = robot_scene_motion(&s->scene, pair, moving, &own);
+    e.lower = fmax(e.lower, robot_scene_apart(moving, standing) - motion->travel);
+    if (!(e.lower > s->upper - s->epsilon)) {
+      robot_gap gap;
+      robot_scene_measure(moving, standing, (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);
+      s->probes++;
+      s->upper = fmin(s->upper, fmax(gap.upper, 0.0));
+      e.lower = fmax(e.lower, gap.lower - motion->travel);
+      if (order > 2 && gap.lower > 0.0) {
+        const double height = robot_scene_height(standing, gap.normal), heights[2] = {height, height};
+        double slack;
+        e.lower = fmax(e.lower,
+                       motion_plane_bound(motion, &moving->side, &standing->side, gap.normal, vec(0, 0, 0), heights,
+                                          moving->steps + standing->steps, order == 3 ? -INFINITY : INFINITY, &slack));
+      }
+    }
+    if (e.lower > s->upper - s->epsilon) {
+      s->dropped = fmin(s->dropped, e.lower);
+      continue;
+    }
+    node->lower = fmin(node->lower, e.lower);
+    node->list[kept++] = e;
+  }
+  node->n = kept;
+}
+
 static void add(search *s, size_t segment, double a, double b, const stretch *parent, int side) {
   stretch node = {.segment = segment, .a = a, .b = b, .n = parent ? parent->n : s->scene.n_pairs};
   node.list = malloc((node.n + 1) * sizeof *node.list);
@@ -135,7 +173,10 @@ static void add(search *s, size_t segment, double a, double b, const stretch *pa
     node.list[i] = parent ? parent->list[i] : (ends){.lower = -INFINITY, .pair = (int32_t)i};
     if (parent) node.list[i].known[1 - side] = false;
   }
-  bound(s, &node);
+  if (s->order > 0)
+    bound_centrally(s, &node, s->order);
+  else
+    bound(s, &node);
   if (node.n > 0)
     push(s, node);
   else
@@ -150,12 +191,13 @@ static bool begin(search *s, question *q, const cprox_mover *mover, const cprox_
   return robot_scene_begin(&s->scene, q, 0, n);
 }
 
-void two_ended_distance(const cprox_mover *mover, const cprox_target *targets, size_t n, double epsilon,
-                        uint32_t max_nodes, cprox_workspace *workspace, peer_answer *answer) {
+void central_distance(const cprox_mover *mover, const cprox_target *targets, size_t n, int order, double epsilon,
+                      uint32_t max_nodes, cprox_workspace *workspace, peer_answer *answer) {
   search s;
   question q;
   *answer = (peer_answer){0};
   if (!begin(&s, &q, mover, targets, n, epsilon, workspace)) return;
+  s.order = order;
   for (size_t i = 0; i < s.scene.motion->n_segments; i++) add(&s, i, 0.0, 1.0, NULL, 0);
   double lower = INFINITY;
   bool complete = true;
@@ -181,6 +223,11 @@ void two_ended_distance(const cprox_mover *mover, const cprox_target *targets, s
                           .complete = complete};
 }
 
+void two_ended_distance(const cprox_mover *mover, const cprox_target *targets, size_t n, double epsilon,
+                        uint32_t max_nodes, cprox_workspace *workspace, peer_answer *answer) {
+  central_distance(mover, targets, n, 0, epsilon, max_nodes, workspace, answer);
+}
+
 /* How far the fastest variable moves over a segment. */
 static double swing(const cprox_motion *m, size_t segment) {
   double most = 0.0;
@@ -193,6 +240,10 @@ static double swing(const cprox_motion *m, size_t segment) {
   return most;
 }
 
+int sampled_steps(const cprox_motion *motion, size_t segment, double step) {
+  return 1 + (int)(swing(motion, segment) / step);
+}
+
 void sampled_distance(const cprox_mover *mover, const cprox_target *targets, size_t n, double step, bool first_hit,
                       cprox_workspace *workspace, peer_answer *answer) {
   search s;
@@ -200,7 +251,7 @@ void sampled_distance(const cprox_mover *mover, const cprox_target *targets, siz
   *answer = (peer_answer){0};
   if (!begin(&s, &q, mover, targets, n, 1e-9, workspace)) return;
   for (size_t segment = 0; segment < s.scene.motion->n_segments; segment++) {
-    const int count = 1 + (int)(swing(s.scene.motion, segment) / step);
+    const int count = sampled_steps(s.scene.motion, segment, step);
     for (int i = segment == 0 ? 0 : 1; i <= count; i++) {
       const double u = (double)i / count;
       robot_scene_enter(&s.scene, segment, u, u);

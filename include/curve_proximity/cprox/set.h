@@ -28,7 +28,7 @@ CPROX_API size_t cprox_set_size(const cprox_set *set);
 CPROX_API size_t cprox_set_bytes(const cprox_set *set);
 
 /** As cprox_distance_all(), cprox_tolerance_all(), cprox_collision_all() and cprox_first_contact_all() with the targets of the set:
- *  the answer against their union, result->target_index counting as they were given. No certificates: CPROX_INVALID where one is asked for. */
+ *  the answer against their union, result->target_index counting as they were given; robots, too. No certificates: CPROX_INVALID where one is asked for. */
 CPROX_API cprox_status cprox_set_distance(const cprox_set *set, cprox_mover mover, const cprox_options *options,
                                           cprox_workspace *workspace, cprox_result *result);
 CPROX_API cprox_status cprox_set_tolerance(const cprox_set *set, cprox_mover mover, double delta,

@@ -62,6 +62,19 @@ double motion_travel(const cprox_motion *motion, const axis_state *axes, int32_t
   return ROUND_UP * travel;
 }
 
+double motion_ways(const cprox_motion *motion, const axis_state *axes, int32_t axis, size_t depth, vec3 centre,
+                   double radius, double *ways) {
+  double way = 0.0;
+  if (ways) ways[depth] = 0.0;
+  for (; axis >= 0; axis = motion->robot->axes[axis].parent) {
+    const axis_state *state = &axes[axis];
+    if (motion->axis_moves[axis])
+      way += state->shift * (turns(state) ? ROUND_UP * (lever(state, centre) + radius) : 1.0);
+    if (ways) ways[--depth] = ROUND_UP * way;
+  }
+  return ROUND_UP * way;
+}
+
 /* Velocity and acceleration of the centre, from the base to the tip. */
 static void find_rates(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, chain_motion *m) {
   m->v = m->omega = m->a = m->alpha = vec(0, 0, 0);

@@ -32,6 +32,11 @@ void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, v
 double motion_travel(const cprox_motion *motion, const axis_state *axes, int32_t from, int32_t to, vec3 centre,
                      double radius);
 
+/* How far a part on the axis travels as each axis above it sees it, and the world: ways[k] of the k-th from the world, which is 0, up to
+ * `depth`, its own. Returns the first; ways may be NULL. */
+double motion_ways(const cprox_motion *motion, const axis_state *axes, int32_t axis, size_t depth, vec3 centre,
+                   double radius, double *ways);
+
 /* The two sides of a pair in the middle of the node. */
 typedef struct bound_side {
   const convex *shape;

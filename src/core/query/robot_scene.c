@@ -7,7 +7,7 @@
 #include "convex/pair.h"
 #include "query/set_walk.h"
 
-enum { GAP_STEPS = 128 };
+enum { GAP_STEPS = 128, MOST_WAYS = 1 << 18 };
 
 static bool is_halfspace(const robot_body *body) {
   return body->side.shape->ops->kind == CPROX_HALFSPACE;
@@ -84,8 +84,20 @@ static robot_body part_body(const question *q, size_t i) {
 
 /* ---- pairs ---------------------------------------------------------------------------------------------------------------- */
 
-static robot_pair pair_of(size_t moving, size_t standing) {
-  return (robot_pair){.moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}};
+/* The axes from one up to the base. */
+static size_t depth_of(const cprox_robot *robot, int32_t axis) {
+  size_t depth = 0;
+  for (; axis >= 0; axis = robot->axes[axis].parent) depth++;
+  return depth;
+}
+
+static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing) {
+  robot_pair pair = {.moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}};
+  if (!s->ways) return pair;
+  const cprox_robot *robot = s->motion->robot;
+  const int32_t common = robot_common_axis(robot, robot->parts[moving].axis, robot->parts[standing].axis);
+  pair.shared = (uint32_t)depth_of(robot, common);
+  return pair;
 }
 
 /* Adds the pairs of convex parts of a geometry and a target, or of two geometries; only counts them where there is no room. */
@@ -96,7 +108,7 @@ static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, rob
     if (robot->parts[i].geometry != geometry) continue;
     for (size_t k = 0; k < others; k++) {
       if ((s->self ? robot->parts[k].geometry : s->obstacles[k].index) != other) continue;
-      if (pairs) pairs[*n] = pair_of(i, k);
+      if (pairs) pairs[*n] = pair_of(s, i, k);
       (*n)++;
     }
   }
@@ -118,7 +130,7 @@ static void add_all_pairs(const robot_scene *s, robot_pair *pairs, size_t *n) {
       if (s->self && (other->geometry >= part->geometry ||
                       !cprox_motion_relates_links(s->motion, (size_t)part->link, (size_t)other->link)))
         continue;
-      if (pairs) pairs[*n] = pair_of(i, k);
+      if (pairs) pairs[*n] = pair_of(s, i, k);
       (*n)++;
     }
   }
@@ -140,9 +152,16 @@ bool robot_scene_begin(robot_scene *s, const question *q, size_t first, size_t l
   *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = q->mover.self};
   const cprox_robot *robot = s->motion->robot;
   const size_t n_axes = robot->n_axes + 1;
+  size_t deepest = 0;
+  for (size_t i = 0; s->self && i < robot->n_parts; i++) {
+    const size_t depth = depth_of(robot, robot->parts[i].axis);
+    deepest = depth > deepest ? depth : deepest;
+  }
+  s->n_ways = deepest + 1;
+  const size_t all_ways = s->self && s->n_ways * robot->n_parts <= MOST_WAYS ? s->n_ways * robot->n_parts : 0;
   const size_t bytes = (robot->n_parts + 1) * sizeof *s->parts +
                        n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch + sizeof *s->axis_placed) +
-                       motion_rows_size(s->motion) * sizeof *s->rows;
+                       (motion_rows_size(s->motion) + all_ways) * sizeof *s->rows;
   char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
   if (!memory) return false;
   s->parts = (part_state *)(void *)memory;
@@ -150,7 +169,8 @@ bool robot_scene_begin(robot_scene *s, const question *q, size_t first, size_t l
   s->chain = (chain_axis *)(void *)(s->axes + n_axes);
   s->rows = (double *)(void *)(s->chain + n_axes);
   s->scratch = s->rows + motion_rows_size(s->motion);
-  s->axis_placed = (uint32_t *)(void *)(s->scratch + n_axes);
+  s->ways = all_ways ? s->scratch + n_axes : NULL;
+  s->axis_placed = (uint32_t *)(void *)(s->scratch + n_axes + all_ways);
   for (size_t i = 0; i < n_axes; i++) s->axis_placed[i] = 0;
 
   const size_t listed = q->set ? q->set->n_unbounded : last - first;
@@ -229,20 +249,26 @@ static void find_motion(robot_scene *s, const robot_pair *pair, const robot_body
   motion_of_part(s->axes, s->chain, n, body->side.at.p, body->radius + body->side.error, s->scratch, m);
 }
 
-/* How far a whole part travels, seen from the world. */
+/* How far a whole part travels, seen from the world; its ways are known then. */
 static double travel_of_part(robot_scene *s, int32_t index) {
   part_state *state = place(s, index);
   if (state->travelled == s->node) return state->travel;
   const robot_body *body = &state->body;
+  const int32_t axis = s->motion->robot->parts[index].axis;
+  double *ways = s->ways ? s->ways + (size_t)index * s->n_ways : NULL;
   state->travelled = s->node;
-  state->travel = motion_travel(s->motion, s->axes, -1, s->motion->robot->parts[index].axis, body->side.at.p,
-                                body->radius + body->side.error);
+  state->travel = motion_ways(s->motion, s->axes, axis, ways ? depth_of(s->motion->robot, axis) : 0, body->side.at.p,
+                              body->radius + body->side.error, ways);
   return state->travel;
 }
 
 double robot_scene_way(robot_scene *s, const robot_pair *pair) {
   const double way = travel_of_part(s, pair->moving);
-  return s->self ? way + travel_of_part(s, pair->standing) : way;
+  if (!s->self) return way;
+  const double other = travel_of_part(s, pair->standing);
+  if (!s->ways) return way + other;
+  return s->ways[(size_t)pair->moving * s->n_ways + pair->shared] +
+         s->ways[(size_t)pair->standing * s->n_ways + pair->shared];
 }
 
 double robot_scene_travel(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
@@ -293,6 +319,16 @@ double robot_scene_apart(const robot_body *moving, const robot_body *standing) {
   const double sizes = vec_norm(apart) + moving->radius +
                        (is_halfspace(standing) ? fabs(standing->side.shape->size[3]) : standing->radius);
   return most - ROUND_UP * (moving->side.error + standing->side.error + 40.0 * ROUND_U * sizes);
+}
+
+vec3 robot_scene_guess(const robot_body *moving, const robot_body *standing) {
+  if (is_halfspace(standing)) return vec(0, 0, 0);
+  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p), half = standing->half;
+  const vec3 y = vec_sub(placement_turn_back(&standing->side.at, apart), standing->middle);
+  const vec3 out = vec(copysign(greater(fabs(y.x) - half.x, 0.0), y.x), copysign(greater(fabs(y.y) - half.y, 0.0), y.y),
+                       copysign(greater(fabs(y.z) - half.z, 0.0), y.z));
+  const double length = vec_norm(out);
+  return length > 0.0 ? vec_scale(1.0 / length, out) : vec(0, 0, 0);
 }
 
 double robot_scene_height(const robot_body *standing, vec3 normal) {

@@ -11,6 +11,7 @@
 typedef struct robot_pair {
   int32_t moving;     /* which part of the robot */
   int32_t standing;   /* which obstacle, or in a question about the robot itself which part */
+  uint32_t shared;    /* of the robot itself: so many axes are above both sides */
   int32_t element[2]; /* of what the moving and the standing side are made of: -1: all of it, by its convex shape */
   /* the last separating direction, from what stands to what moves, in the frame of what stands, where it was found, and how fast
    * it turned there, by u of the segment */
@@ -37,6 +38,9 @@ typedef struct robot_scene {
   axis_state *axes;      /* those above the parts that were asked for on the present node, */
   uint32_t *axis_placed; /* which have its number here */
   double *rows, *scratch;
+  double *
+      ways; /* of each part over the node at hand, as motion_ways() has them, so many a part; NULL where those would be too many */
+  size_t n_ways;
   chain_axis *chain;
   robot_pair *pairs;
   size_t n_pairs, n_obstacles;
@@ -70,7 +74,7 @@ int32_t robot_scene_add_pair(robot_scene *scene, const robot_pair *pair);
  * elements, only those of one pair at a time. */
 const robot_body *robot_scene_moving(robot_scene *scene, const robot_pair *pair);
 const robot_body *robot_scene_standing(robot_scene *scene, const robot_pair *pair);
-/* robot_scene_way(): how far both sides travel at most, as seen from the world: more than one sees of the other, but quicker. */
+/* robot_scene_way(): how far both sides travel together, as the axis above both sees it: quicker. */
 double robot_scene_way(robot_scene *scene, const robot_pair *pair);
 double robot_scene_travel(robot_scene *scene, const robot_pair *pair, const robot_body *moving);
 const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, const robot_body *moving,
@@ -100,6 +104,10 @@ typedef struct robot_accuracy {
 } robot_accuracy;
 
 void robot_scene_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy, robot_gap *gap);
+
+/* From the box round what stands to the centre of what moves: a direction that parts most pairs, for nothing. Standing frame, unit;
+ * (0,0,0) where the centre is in the box. */
+vec3 robot_scene_guess(const robot_body *moving, const robot_body *standing);
 
 /* How fast the normal turns where what moves does so as `motion` says, by u of the node; orthogonal to it. */
 vec3 robot_scene_drift(const robot_gap *gap, const robot_body *moving, const robot_body *standing,

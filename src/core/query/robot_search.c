@@ -23,7 +23,7 @@ static const double SEED_FRACTION = 0.02;
 #define SHORT_STRETCH 0x1p-8
 
 /* Parts that move farther than their own size, and than this fraction of their distance, are too blurred to be measured. */
-static const double BLUR = 0.25;
+static const double BLUR = 0.5;
 
 /* Normals that turn faster than this over a node are taken to stand still. */
 static const double FASTEST_DRIFT = 0.5;
@@ -268,6 +268,16 @@ static vec3 normal_in_middle(const search_node *node, const robot_pair *pair, co
   return vec_scale(1.0 / vec_norm(n), n);
 }
 
+/* In the place of a normal that is not known yet. */
+static void keep_guess(const search_node *node, robot_pair *pair, const robot_body *moving,
+                       const robot_body *standing) {
+  const vec3 guess = robot_scene_guess(moving, standing);
+  if (!(vec_norm2(guess) > 0.0)) return;
+  pair->normal = guess, pair->drift = vec(0, 0, 0);
+  pair->segment = first_of(node), pair->u = 0.5 * (node->side[0].a + node->side[1].b);
+  pair->normal_known = true;
+}
+
 /* How far the two are apart along it: only to choose by, its rounding is not counted. */
 static double plane_middle(const search_node *node, const robot_pair *pair, const robot_body *moving,
                            const robot_body *standing) {
@@ -380,12 +390,16 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   const robot_pair *pair = &o->scene.pairs[entry->pair];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   entry->blurred = false;
+  double way = INFINITY;
   if (pair->element[0] < 0 && pair->element[1] < 0) {
-    const double balls = robot_scene_balls(moving, standing) - robot_scene_way(&o->scene, pair);
-    entry->lower = greater(balls, entry->lower);
+    way = robot_scene_way(&o->scene, pair);
+    entry->lower = greater(robot_scene_balls(moving, standing) - way, entry->lower);
     if (is_settled(o, entry->lower)) return;
   }
-  const double apart = robot_scene_apart(moving, standing), travel = robot_scene_travel(&o->scene, pair, moving);
+  const double apart = robot_scene_apart(moving, standing);
+  entry->lower = greater(apart - way, entry->lower);
+  if (is_settled(o, entry->lower)) return;
+  const double travel = robot_scene_travel(&o->scene, pair, moving);
   entry->lower = greater(apart - travel, entry->lower);
   const double size = greater(BLUR * apart, moving->radius);
   if (is_settled(o, entry->lower) || !(travel > size) || !(width_of(node) > SHORT_STRETCH)) return;
@@ -402,6 +416,7 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   const chain_motion *motion = robot_scene_motion(&o->scene, pair, moving, &own);
   const double travel = motion->travel, width = width_of(node);
 
+  if (!pair->normal_known) keep_guess(node, pair, moving, standing);
   if (pair->normal_known) {
     const double bound = bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
     entry->lower = fmax(entry->lower, bound);

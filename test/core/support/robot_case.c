@@ -57,7 +57,7 @@ static bool read_geometry(FILE *f, robot_case *c, size_t i, cprox_link_geometry 
   *by_hull = (cprox_link_geometry){0};
   if (fscanf(f, "%d", &by_hull->link) != 1 || !read_pose(f, &by_hull->pose)) return false;
   by_hull->body = c->bodies[i] = read_body(f, &c->surfaces[i]);
-  c->links[i] = by_hull->link;
+  c->links[i] = by_hull->link, c->poses[i] = by_hull->pose;
   *finer = *by_hull;
   if (!c->surfaces[i] || !c->bodies[i]) return c->bodies[i] != NULL;
   cprox_body *ladder = NULL;
@@ -83,6 +83,8 @@ static bool read_robot(FILE *f, robot_case *c, size_t *n_variables, bool disable
     links[i].parent = parent, links[i].type = (cprox_joint_type)type, links[i].variable = variable;
     links[i].axis = (cprox_vec3){x[0], x[1], x[2]}, links[i].multiplier = y[0], links[i].offset = y[1];
   }
+  memcpy(c->tree, links, n_links * sizeof *links);
+  c->n_links = n_links;
   for (size_t i = 0; i < c->n_geometries; i++)
     if (!read_geometry(f, c, i, &geometries[i], &finer[i])) return false;
   if (fscanf(f, "%zu", &n_disabled) != 1) return false;

@@ -31,8 +31,10 @@ typedef struct robot_case {
   const cprox_body *bodies[CASE_MAX_GEOMETRIES];   /* hulls */
   const cprox_body *surfaces[CASE_MAX_GEOMETRIES]; /* NULL where there is no mesh; */
   const cprox_body *ladders[CASE_MAX_GEOMETRIES];  /* likewise */
-  int32_t links[CASE_MAX_GEOMETRIES];              /* of the geometries */
-  size_t n_geometries, n_variables;
+  int32_t links[CASE_MAX_GEOMETRIES];              /* of the geometries, and where they stand there */
+  cprox_pose poses[CASE_MAX_GEOMETRIES];
+  cprox_link tree[CASE_MAX_LINKS];
+  size_t n_links, n_geometries, n_variables;
   cprox_target targets[CASE_MAX_OBJECTS];
   size_t n_targets;
   cprox_robot_pair self_pairs[CASE_MAX_PAIRS];

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The group of robots: its files. */
+#ifndef CPROX_BENCH_ROBOTS_H
+#define CPROX_BENCH_ROBOTS_H
+
+#include "support/measure.h"
+#include "support/robot_case.h"
+
+/* Among 10 to 10,000 obstacles, against 6 to 96 links of its own, two arms beside each other. */
+void bench_robot_scale(const robot_case *arm, const bench_size *size, cprox_workspace *workspace);
+
+#endif

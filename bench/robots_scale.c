@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* How the cost grows: an arm among more and more obstacles, a chain of more and more links against itself, two arms. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/vec.h"
+#include "curve_proximity/cprox.h"
+#include "peers/two_ended.h"
+#include "robots.h"
+#include "support/random.h"
+
+static const double EPSILON = 1e-4, STEP = 0.05;
+
+typedef struct problem {
+  cprox_mover mover;
+  const cprox_target *targets;
+  size_t n;
+  const cprox_set *set;
+  double delta; /* verdicts; below 0: a distance */
+} problem;
+
+static void answer_with(cprox_status status, const cprox_result *r, bench_answer *answer) {
+  *answer = (bench_answer){.lower = r->lower, .upper = r->upper, .nodes = r->nodes, .probes = r->probes};
+  answer->failed = status != CPROX_OK;
+}
+
+static void by_set(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  cprox_options options = cprox_options_default();
+  options.epsilon = EPSILON;
+  cprox_result r;
+  answer_with(cprox_set_distance(p->set, p->mover, &options, state, &r), &r, answer);
+}
+
+static void by_list(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  cprox_options options = cprox_options_default();
+  options.epsilon = EPSILON;
+  cprox_result r;
+  if (p->delta < 0.0) {
+    answer_with(cprox_distance_all(p->mover, p->targets, p->n, &options, state, &r, NULL), &r, answer);
+    return;
+  }
+  answer_with(cprox_tolerance_all(p->mover, p->targets, p->n, p->delta, &options, state, &r, NULL), &r, answer);
+  answer->lower = answer->upper = NAN;
+  answer->wrong = r.verdict != CPROX_YES;
+}
+
+static void sampled(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  peer_answer r;
+  sampled_distance(&p->mover, p->targets, p->n, STEP, false, state, &r);
+  *answer = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes};
+}
+
+static void two_ended(const void *problems, size_t i, void *state, bench_answer *answer) {
+  const problem *p = (const problem *)problems + i;
+  peer_answer r;
+  two_ended_distance(&p->mover, p->targets, p->n, EPSILON, 60000, state, &r);
+  *answer =
+      (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes, .failed = !r.complete};
+}
+
+/* The distance by list, which is what all others are held against. */
+static double truth_of(const problem *p, cprox_workspace *ws) {
+  cprox_options options = cprox_options_default();
+  options.epsilon = 1e-7;
+  cprox_result r;
+  cprox_distance_all(p->mover, p->targets, p->n, &options, ws, &r, NULL);
+  return 0.5 * (r.lower + r.upper);
+}
+
+static void measure(const char *name, const char *parameter, const problem *p, const bench_size *size,
+                    const bench_method *methods, size_t n, cprox_workspace *ws) {
+  const double truth = truth_of(p, ws);
+  const bench_workload w = {"robots", name, parameter, p, 1, p->delta < 0.0 ? &truth : NULL, 1.1e-7};
+  bench_measure(&w, size, methods, n);
+}
+
+/* ---- obstacles ------------------------------------------------------------------------------------------------------------ */
+
+/* Boxes of up to a decimetre, crowded round the arm, none nearer to its path than 2 centimetres. */
+static void obstacles(const robot_case *arm, const bench_size *size, cprox_workspace *ws) {
+  enum { MOST = 10000 };
+  static const double CLEAR = 0.02, HALF = 1.2;
+  static const size_t COUNTS[] = {10, 30, 100, 300, 1000, 3000, MOST};
+  rng r = rng_seed(90);
+  cprox_target *targets = calloc(MOST, sizeof *targets);
+  cprox_body *boxes[8];
+  for (int i = 0; i < 8; i++) {
+    const cprox_vec3 edges = {rng_uniform(&r, 0.01, 0.1), rng_uniform(&r, 0.01, 0.1), rng_uniform(&r, 0.01, 0.1)};
+    cprox_body_create_box(edges, NULL, &boxes[i]);
+  }
+  const cprox_mover mover = cprox_robot_along(arm->motion, NULL, 0);
+  size_t n = 0;
+  for (size_t k = 0; k < sizeof COUNTS / sizeof *COUNTS; k++) {
+    while (n < COUNTS[k]) {
+      targets[n] = cprox_at(boxes[rng_index(&r, 8)], rng_pose(&r, HALF));
+      cprox_result clear;
+      cprox_tolerance(mover, targets[n], CLEAR, NULL, ws, &clear);
+      n += clear.verdict == CPROX_YES;
+    }
+    cprox_set *set = NULL;
+    cprox_set_create(targets, n, ws, &set);
+    const problem p = {.mover = mover, .targets = targets, .n = n, .set = set, .delta = -1.0};
+    char parameter[40];
+    snprintf(parameter, sizeof parameter, "obstacles %zu", n);
+    const bench_method methods[] = {
+        {"curve_proximity", by_set, ws}, {"curve_proximity listed", by_list, ws}, {"sampling .05", sampled, ws}};
+    measure("growth obstacles", parameter, &p, size, methods, 3, ws);
+    cprox_set_free(set);
+  }
+  for (int i = 0; i < 8; i++) cprox_body_free(boxes[i]);
+  free(targets);
+}
+
+/* ---- links ---------------------------------------------------------------------------------------------------------------- */
+
+/* A chain of capsules, its axes in turns across and up, that bends from one gentle curve to another. */
+static void links(const bench_size *size, cprox_workspace *ws) {
+  enum { MOST = 96 };
+  static const size_t COUNTS[] = {6, 12, 24, 48, MOST};
+  static cprox_link tree[MOST];
+  static cprox_link_geometry bodies[MOST];
+  double values[3][MOST] = {{0}};
+  int32_t variables[MOST];
+  rng r = rng_seed(91);
+  cprox_body *capsule = NULL;
+  cprox_body_create_capsule(0.12, 0.03, NULL, &capsule);
+  for (int32_t i = 0; i < MOST; i++) {
+    const double up = i % 2;
+    tree[i] = (cprox_link){.parent = i - 1,
+                           .origin = {.position = {0, 0, i > 0 ? 0.15 : 0.0}, .orientation = {.w = 1.0}},
+                           .type = CPROX_JOINT_REVOLUTE,
+                           .axis = {up, 1.0 - up, 0},
+                           .variable = i,
+                           .multiplier = 1.0};
+    bodies[i] = (cprox_link_geometry){
+        .link = i, .body = capsule, .pose = {.position = {0, 0, 0.075}, .orientation = {.w = 1.0}}};
+    for (int k = 0; k < 3; k++) values[k][i] = rng_uniform(&r, -0.3, 0.3);
+    variables[i] = i;
+  }
+  const cprox_waypoint points[3] = {
+      {.time = 0, .positions = values[0]}, {.time = 1, .positions = values[1]}, {.time = 2, .positions = values[2]}};
+  for (size_t k = 0; k < sizeof COUNTS / sizeof *COUNTS; k++) {
+    cprox_robot *robot = NULL;
+    cprox_motion *motion = NULL;
+    cprox_robot_create(tree, COUNTS[k], bodies, COUNTS[k], COUNTS[k], NULL, &robot);
+    cprox_motion_create_waypoints(robot, variables, COUNTS[k], points, 3, CPROX_LINEAR, NULL, NULL, &motion);
+    const problem p = {.mover = cprox_robot_self(motion, NULL, 0), .delta = -1.0};
+    char parameter[40];
+    snprintf(parameter, sizeof parameter, "links %zu", COUNTS[k]);
+    const bench_method methods[] = {{"curve_proximity", by_list, ws}, {"sampling .05", sampled, ws}};
+    measure("growth links", parameter, &p, size, methods, 2, ws);
+    cprox_motion_free(motion);
+    cprox_robot_free(robot);
+  }
+  cprox_body_free(capsule);
+}
+
+/* ---- two arms ------------------------------------------------------------------------------------------------------------- */
+
+/* The arm and its like face to face, each with balls (tools, cables) at its links besides; as many pairs as an SRDF of such a cell leaves. */
+static void two_arms(const robot_case *arm, const bench_size *size, cprox_workspace *ws) {
+  enum { PAIRS = 560, MOST_LINKS = 2 * CASE_MAX_LINKS, MOST_BODIES = 4 * CASE_MAX_GEOMETRIES };
+  cprox_link tree[MOST_LINKS];
+  cprox_link_geometry bodies[MOST_BODIES];
+  cprox_robot_pair pairs[PAIRS];
+  int32_t hulls[2][CASE_MAX_GEOMETRIES];
+  size_t n_bodies = 0, n_pairs = 0;
+  cprox_body *ball = NULL;
+  cprox_body_create_sphere(0.07, NULL, &ball);
+  for (size_t side = 0; side < 2; side++) {
+    for (size_t i = 0; i < arm->n_links; i++) {
+      cprox_link *link = &tree[side * arm->n_links + i];
+      *link = arm->tree[i];
+      if (link->parent >= 0) link->parent += (int32_t)(side * arm->n_links);
+      if (link->variable >= 0) link->variable += (int32_t)(side * arm->n_variables);
+      if (link->parent < 0 && side) /* opposite, turned round */
+        link->origin = (cprox_pose){.position = {1.3, 0.25, 0.0}, .orientation = {.z = 1.0}};
+    }
+    for (size_t i = 0; i < arm->n_geometries; i++) {
+      const int32_t link = arm->links[i] + (int32_t)(side * arm->n_links);
+      hulls[side][i] = (int32_t)n_bodies;
+      bodies[n_bodies++] = (cprox_link_geometry){.link = link, .body = arm->bodies[i], .pose = arm->poses[i]};
+      for (int k = 0; k < (i == 0 ? 2 : 1); k++)
+        bodies[n_bodies++] = (cprox_link_geometry){.link = link, .body = ball, .pose = arm->poses[i]};
+    }
+  }
+
+  double start[2 * CASE_MAX_VARIABLES], middle[2 * CASE_MAX_VARIABLES], end[2 * CASE_MAX_VARIABLES], t0, t1;
+  int32_t variables[2 * CASE_MAX_VARIABLES];
+  cprox_motion_domain(arm->motion, &t0, &t1);
+  for (size_t side = 0; side < 2; side++) { /* the other one the other way */
+    cprox_motion_evaluate(arm->motion, side ? t1 : t0, start + side * arm->n_variables);
+    cprox_motion_evaluate(arm->motion, 0.5 * (t0 + t1), middle + side * arm->n_variables);
+    cprox_motion_evaluate(arm->motion, side ? t0 : t1, end + side * arm->n_variables);
+  }
+  for (size_t i = 0; i < 2 * arm->n_variables; i++) variables[i] = (int32_t)i;
+  const cprox_waypoint points[3] = {
+      {.time = 0, .positions = start}, {.time = 1, .positions = middle}, {.time = 2, .positions = end}};
+  cprox_robot *robot = NULL;
+  cprox_motion *motion = NULL;
+  const bool made =
+      cprox_robot_create(tree, 2 * arm->n_links, bodies, n_bodies, 2 * arm->n_variables, ws, &robot) == CPROX_OK &&
+      cprox_motion_create_waypoints(robot, variables, 2 * arm->n_variables, points, 3, CPROX_LINEAR, NULL, ws,
+                                    &motion) == CPROX_OK;
+  /* all of one arm against all of the other, and of each arm what its SRDF leaves */
+  const size_t half = n_bodies / 2;
+  for (size_t i = half; i < n_bodies; i++)
+    for (size_t k = 0; k < half && n_pairs < PAIRS; k++) pairs[n_pairs++] = (cprox_robot_pair){(int32_t)i, (int32_t)k};
+  for (size_t i = 0; i < 2 * arm->n_self_pairs && n_pairs < PAIRS; i++) {
+    const cprox_robot_pair *own = &arm->self_pairs[i / 2];
+    pairs[n_pairs++] = (cprox_robot_pair){hulls[i % 2][own->geometry], hulls[i % 2][own->other]};
+  }
+  problem p = {.mover = cprox_robot_self(motion, pairs, n_pairs), .delta = -1.0};
+  char parameter[40];
+  snprintf(parameter, sizeof parameter, "pairs %zu", n_pairs);
+  const bench_method distance[] = {
+      {"curve_proximity", by_list, ws}, {"two-ended bound", two_ended, ws}, {"sampling .05", sampled, ws}};
+  if (made) {
+    measure("two arms distance", parameter, &p, size, distance, 3, ws);
+    p.delta = 0.9 * truth_of(&p, ws);
+    measure("two arms tolerance", parameter, &p, size, distance, 1, ws);
+  } else {
+    fprintf(stderr, "two arms: %s\n", cprox_workspace_reason(ws));
+  }
+  cprox_motion_free(motion);
+  cprox_robot_free(robot);
+  cprox_body_free(ball);
+}
+
+void bench_robot_scale(const robot_case *arm, const bench_size *size, cprox_workspace *ws) {
+  if (bench_wanted(size, "growth obstacles")) obstacles(arm, size, ws);
+  if (bench_wanted(size, "growth links")) links(size, ws);
+  if (bench_wanted(size, "two arms")) two_arms(arm, size, ws);
+}
