@@ -51,7 +51,6 @@ box tree_append_pack(tree *t, const tree_source *source, const uint32_t *element
   double *pack = t->packs + t->n_packs * tree_pack_size(t->kind);
   uint32_t *ids = t->ids + t->n_packs * TREE_LANES;
   t->n_packs++;
-  box all = box_empty();
   for (size_t l = 0; l < TREE_LANES; l++) {
     const uint32_t element = elements[l < n ? l : n - 1];
     vec3 corner[3];
@@ -59,11 +58,28 @@ box tree_append_pack(tree *t, const tree_source *source, const uint32_t *element
     for (int k = 0; k < corners; k++) {
       double *at = pack + 3 * TREE_LANES * k + l;
       at[0] = corner[k].x, at[TREE_LANES] = corner[k].y, at[2 * TREE_LANES] = corner[k].z;
-      box_add(&all, &(box){corner[k], corner[k]});
     }
     ids[l] = element;
   }
-  return all;
+  return tree_pack_box(t->kind, pack);
+}
+
+box tree_pack_box(tree_kind kind, const double *pack) {
+  const size_t corners = tree_pack_size(kind) / (3 * (size_t)TREE_LANES);
+  double low[3], high[3];
+  for (size_t k = 0; k < 3; k++) {
+    double below = INFINITY, above = -INFINITY;
+    for (size_t j = 0; j < corners; j++) {
+      const double *x = pack + TREE_LANES * (3 * j + k);
+#pragma omp simd reduction(min : below) reduction(max : above)
+      for (int l = 0; l < TREE_LANES; l++) {
+        below = x[l] < below ? x[l] : below;
+        above = x[l] > above ? x[l] : above;
+      }
+    }
+    low[k] = below, high[k] = above;
+  }
+  return (box){vec(low[0], low[1], low[2]), vec(high[0], high[1], high[2])};
 }
 
 void tree_fill_node(tree_node *node, const box *boxes, const uint32_t *children, size_t n) {

@@ -18,6 +18,9 @@ box element_box(const tree_source *source, uint32_t element);
 /* Writes elements into the next pack, the last one repeated; returns the pack's box. The tree has room for it. */
 box tree_append_pack(tree *t, const tree_source *source, const uint32_t *elements, size_t n);
 
+/* The box round a pack's elements. */
+box tree_pack_box(tree_kind kind, const double *pack);
+
 /* Fills lanes 0 … n-1 of a node, and repeats the last. */
 void tree_fill_node(tree_node *node, const box *boxes, const uint32_t *children, size_t n);
 

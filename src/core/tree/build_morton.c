@@ -8,6 +8,9 @@
 
 enum { KEY_BITS = 21, RADIX_BITS = 11, RADIX = 1 << RADIX_BITS, FIRST_BIT = 3 * KEY_BITS - 4 * RADIX_BITS };
 
+/* How many packs ahead the elements are fetched. */
+enum { AHEAD = 4 };
+
 typedef struct tree_keyed keyed;
 
 /* Two zero bits behind each of the lowest 21. */
@@ -43,11 +46,18 @@ static void make_keys(const tree_source *source, keyed *list) {
 
 /* By the upper 44 bits of the key, in four passes; 22 of them, in two, tell the elements of one block apart. Ends in `list`. */
 static void sort_keys(keyed *list, keyed *other, size_t n) {
-  for (int shift = n > TREE_BLOCK ? FIRST_BIT : FIRST_BIT + 2 * RADIX_BITS; shift < 3 * KEY_BITS; shift += RADIX_BITS) {
-    size_t start[RADIX + 1] = {0};
-    for (size_t i = 0; i < n; i++) start[((list[i].key >> shift) & (RADIX - 1)) + 1]++;
-    for (int i = 0; i < RADIX; i++) start[i + 1] += start[i];
-    for (size_t i = 0; i < n; i++) other[start[(list[i].key >> shift) & (RADIX - 1)]++] = list[i];
+  enum { PASSES = 4 };
+  size_t start[PASSES][RADIX + 1] = {{0}};
+  const int first = n > TREE_BLOCK ? 0 : PASSES / 2;
+  for (size_t i = 0; i < n; i++) {
+    uint64_t digits = list[i].key >> (FIRST_BIT + first * RADIX_BITS);
+    for (int pass = first; pass < PASSES; pass++, digits >>= RADIX_BITS) start[pass][(digits & (RADIX - 1)) + 1]++;
+  }
+  for (int pass = first; pass < PASSES; pass++) {
+    const int shift = FIRST_BIT + pass * RADIX_BITS;
+    size_t *to = start[pass];
+    for (int i = 0; i < RADIX; i++) to[i + 1] += to[i];
+    for (size_t i = 0; i < n; i++) other[to[(list[i].key >> shift) & (RADIX - 1)]++] = list[i];
     keyed *swap = list;
     list = other;
     other = swap;
@@ -94,6 +104,12 @@ static void build_levels(tree *t, const box *packs) {
   } while (count > 1);
 }
 
+static void prefetch(const tree_source *source, uint32_t element) {
+  if (source->kind == TREE_TRIANGLES) return;
+  __builtin_prefetch(&source->points[element]);
+  if (source->kind == TREE_BOXES) __builtin_prefetch(&source->high[element]);
+}
+
 bool tree_build_by_morton(tree *t, const tree_source *source) {
   const size_t n = source->n, packs = tree_most_packs(n, TREE_BY_MORTON);
   keyed *list = malloc(2 * n * sizeof *list);
@@ -103,6 +119,9 @@ bool tree_build_by_morton(tree *t, const tree_source *source) {
     make_keys(source, list);
     sort_keys(list, list + n, n);
     for (size_t p = 0; p < packs; p++) {
+      /* elements that are near in space may be anywhere in memory */
+      for (size_t i = (p + AHEAD) * TREE_LANES; i < (p + AHEAD + 1) * TREE_LANES && i < n; i++)
+        prefetch(source, list[i].element);
       uint32_t elements[TREE_LANES];
       size_t count = 0;
       for (; count < TREE_LANES && p * TREE_LANES + count < n; count++)

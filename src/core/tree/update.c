@@ -262,18 +262,7 @@ static void refit_block(tree *t, const levels *l, size_t block, const change *li
     for (int k = 0; k < 3; k++, to += TREE_LANES) to[0] = to[-1];
   }
   box boxes[BLOCK_PACKS];
-  for (size_t i = p.first; i < p.last; i++) {
-    double low[3], high[3];
-    for (int k = 0; k < 3; k++) {
-      const double *x = t->packs + i * size + TREE_LANES * k;
-      low[k] = high[k] = x[0];
-      for (int j = 1; j < TREE_LANES; j++) {
-        low[k] = x[j] < low[k] ? x[j] : low[k];
-        high[k] = x[j] > high[k] ? x[j] : high[k];
-      }
-    }
-    boxes[i - p.first] = (box){vec(low[0], low[1], low[2]), vec(high[0], high[1], high[2])};
-  }
+  for (size_t i = p.first; i < p.last; i++) boxes[i - p.first] = tree_pack_box(t->kind, t->packs + i * size);
   raise_block(t, l, block, boxes);
 }
 
