@@ -28,21 +28,22 @@ rot rot_of_quaternion(const num given[4]) {
   return r;
 }
 
-/* Sine and cosine by MPFR: both have slopes of at most 1. */
-static num wave(num angle, int (*f)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t)) {
-  mpfr_t x;
-  mpfr_init2(x, 64);
+/* By MPFR; both have slopes of at most 1. */
+static void sine_and_cosine(num angle, num *sine, num *cosine) {
+  MPFR_DECL_INIT(x, 64);
+  MPFR_DECL_INIT(s, 64);
+  MPFR_DECL_INIT(c, 64);
   mpfr_set_d(x, angle.m, MPFR_RNDN);
-  f(x, x, MPFR_RNDN);
-  const num y = {mpfr_get_d(x, MPFR_RNDN), GROW(angle.e + 4.0 * BALL_U)};
-  mpfr_clear(x);
-  return y;
+  mpfr_sin_cos(s, c, x, MPFR_RNDN);
+  *sine = (num){mpfr_get_d(s, MPFR_RNDN), GROW(angle.e + 4.0 * BALL_U)};
+  *cosine = (num){mpfr_get_d(c, MPFR_RNDN), GROW(angle.e + 4.0 * BALL_U)};
 }
 
 /* cos + sin [z] + (1 - cos) z zᵀ */
 rot rot_about(const num *z, num angle) {
-  const num s = wave(angle, mpfr_sin), c = wave(angle, mpfr_cos), d = num_sub(num_of(1.0), c);
-  num k[9];
+  num s, c, k[9];
+  sine_and_cosine(angle, &s, &c);
+  const num d = num_sub(num_of(1.0), c);
   for (int i = 0; i < 3; i++) {
     const int a = (i + 1) % 3, b = (i + 2) % 3;
     k[4 * i] = num_add(c, num_mul(d, num_mul(z[i], z[i])));

@@ -13,6 +13,9 @@
 static const double ERRORS = 64.0;
 #define ROOM 160.0
 
+/* By so many errors a claim may be lifted: a point that is drawn into a thin body moves by more than the error. */
+static const double LIFTED = 1024.0;
+
 /* ---- who and when --------------------------------------------------------------------------------------------------------- */
 
 /* The convex body that a part of the robot is, NULL of a mesh. */
@@ -115,7 +118,7 @@ cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) 
   const double paddings = moving->side.margin - part->shape.margin + standing->side.margin - other->shape.margin;
   const double needed = apart > 0.0 ? apart + error - paddings : 0.0;
   if (apart > 0.0 && needed > c->delta - error) {
-    if (!(needed <= c->delta + 16.0 * error)) return CPROX_PRECISION;
+    if (!(needed <= c->delta + LIFTED * error)) return CPROX_PRECISION;
     certificate_restate(to, fmax(c->delta, needed + error));
   }
   return isfinite(apart) && !to->failed ? CPROX_OK : to->failed ? CPROX_MEMORY : CPROX_PRECISION;
