@@ -108,16 +108,18 @@ static polygon_place polygon_locate(const convex *shape, double px, double py) {
   polygon_lanes lanes;
   polygon_look(shape, px, py, &lanes);
   int line = 0, edge = 0;
+  double height = lanes.height[0], square = lanes.square[0];
   for (int l = 1; l < LANES; l++) {
-    line = lanes.height[l] > lanes.height[line] ? l : line;
-    edge = lanes.square[l] < lanes.square[edge] ? l : edge;
+    line = lanes.height[l] > height ? l : line;
+    height = lanes.height[l] > height ? lanes.height[l] : height;
+    edge = lanes.square[l] < square ? l : edge;
+    square = lanes.square[l] < square ? lanes.square[l] : square;
   }
-  const double square = lanes.square[edge];
   if (!(square > FEATURE_LEAST_SQUARE && square < FEATURE_MOST_SQUARE)) return polygon_locate_any(shape, px, py);
   /* the padding repeats the last edge */
   const int32_t last = shape->n - 1;
   const int32_t on = (int32_t)lanes.line[line] + line, at = (int32_t)lanes.edge[edge] + edge;
-  polygon_place place = {.inside = lanes.height[line], .line = on < last ? on : last, .edge = at < last ? at : last};
+  polygon_place place = {.inside = height, .line = on < last ? on : last, .edge = at < last ? at : last};
   double ex, ey, along, length;
   place.height = polygon_height(shape, place.edge, px, py, &ex, &ey, &along, &length);
   place.vertex = along <= 0.0;

@@ -27,9 +27,12 @@ int32_t vertices_extreme(const convex *shape, vec3 d, double *most) {
   }
   /* the first of the best: the padding repeats the last vertex in later lanes and never comes before it */
   int lane = 0;
-  for (int l = 1; l < LANES; l++)
-    if (best[l] > best[lane]) lane = l;
-  if (most) *most = best[lane];
+  double farthest = best[0];
+  for (int l = 1; l < LANES; l++) {
+    lane = best[l] > farthest ? l : lane;
+    farthest = best[l] > farthest ? best[l] : farthest;
+  }
+  if (most) *most = farthest;
   return (int32_t)where[lane] + lane;
 }
 

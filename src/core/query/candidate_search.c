@@ -66,10 +66,25 @@ static cprox_status report_pair(const question *q, const candidate *c, vec3 cent
   return CPROX_OK;
 }
 
+/* A carried body and what stands make one shape. */
+static bool begin_carried(const question *q, const candidate *c, const cprox_body *body, const cprox_curve *curve,
+                          curve_convex *o) {
+  const cprox_pose pose = candidate_pose(q, c);
+  carried_shape joined = {.placed = candidate_frame(q, c)};
+  cprox_pose carried_pose;
+  const cprox_body *carried = candidate_carried(q, c, &carried_pose);
+  if (!carried_join(body, &pose, carried, &carried_pose, &joined)) return false;
+  joined.shape.slack += candidate_misplaced(q, c);
+  const double offset = candidate_offset(q, c) + joined.offset;
+  if (!curve_convex_begin(o, curve, &body->shape, joined.placed, offset, q->workspace)) return false;
+  o->joined = joined.shape;
+  o->shape = &o->joined;
+  return true;
+}
+
 bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o) {
   const cprox_target *target = &q->targets[c->target];
   const cprox_body *body = candidate_body(q, c);
-  const cprox_pose pose = candidate_pose(q, c);
 
   /* on one clock the curve is where the mover is, seen from the other */
   const cprox_curve *curve = q->mover.curve;
@@ -79,24 +94,16 @@ bool candidate_begin_convex(const question *q, const candidate *c, curve_convex 
     curve = &relative;
   }
 
-  /* a carried body and what stands make one shape */
-  carried_shape joined = {.placed = candidate_frame(q, c)};
-  cprox_pose carried_pose;
-  const cprox_body *carried = candidate_carried(q, c, &carried_pose);
-  if (carried && !carried_join(body, &pose, carried, &carried_pose, &joined)) return false;
-  if (carried) joined.shape.slack += candidate_misplaced(q, c);
-
-  const double offset = candidate_offset(q, c) + joined.offset;
-  if (!curve_convex_begin(o, curve, &body->shape, joined.placed, offset, q->workspace)) return false;
+  if (q->mover.body) {
+    if (!begin_carried(q, c, body, curve, o)) return false;
+  } else if (!curve_convex_begin(o, curve, &body->shape, candidate_frame(q, c), candidate_offset(q, c), q->workspace)) {
+    return false;
+  }
   o->side.part = q->part;
   if (target->on_clock) {
     o->relative = relative;
     o->side.curve = &o->relative;
     o->side.part = curve_side_whole();
-  }
-  if (carried) {
-    o->joined = joined.shape;
-    o->shape = &o->joined;
   }
   return true;
 }

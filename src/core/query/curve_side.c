@@ -156,8 +156,12 @@ size_t curve_side_nearest_piece(const curve_side *side, const search_interval *r
     distances_of_pack(side, node, distance, along);
     size_t nearest = node % CURVE_PACK;
     const size_t end = nearest + ((size_t)1 << levels);
-    for (size_t k = nearest + 1; k < end && c->packs[node / CURVE_PACK].radius[k] >= 0.0; k++)
-      nearest = distance[k] < distance[nearest] ? k : nearest;
+    const double *radius = c->packs[node / CURVE_PACK].radius;
+    double least = distance[nearest];
+    for (size_t k = nearest + 1; k < end && radius[k] >= 0.0; k++) {
+      nearest = distance[k] < least ? k : nearest;
+      least = lesser(distance[k], least);
+    }
     node += nearest - node % CURVE_PACK;
     *s = along[nearest];
   }
