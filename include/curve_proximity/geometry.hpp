@@ -54,6 +54,14 @@ struct Geometry {
  *  Thread safety: any number of threads. */
 Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options = {});
 
+/** Boxes along the axes, a column each [m]. */
+struct Boxes {
+  Eigen::Matrix3Xd low, high;
+};
+
+/** The boxes that the body of an OCTREE is made of, in the shape's own frame. Throws as makeGeometry() does. */
+Boxes octreeBoxes(const ShapeDescription &shape, const ResourceOptions &options = {});
+
 /** Whether nothing of an octree can be held against, which makeGeometry() refuses. Throws as that does. */
 bool isEmpty(const OctreeData &octree, bool unknown_is_occupied);
 

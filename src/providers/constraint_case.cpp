@@ -114,10 +114,9 @@ ConstraintPair toPair(const ConstraintCase &described, const ResourceOptions &re
 void askProvider(ProviderSet &providers, const LoadedProvider &loaded, const ConstraintCase &described,
                  const ResourceOptions &resources, const Asked &asked, Workspace &workspace, ConstraintRow &row) {
   if (!loaded.provider) throw Error("provider '" + loaded.spec.name + "' failed to load: " + loaded.failure);
-  const std::shared_ptr<const Constraint> constraint =
-      providers.prepared(loaded, asked.key, [&] { return toPair(described, resources); });
+  row.constraint = providers.prepared(loaded, asked.key, [&] { return toPair(described, resources); });
   const auto begin = std::chrono::steady_clock::now();
-  constraint->evaluate(asked.place, workspace, row.value);
+  row.constraint->evaluate(asked.place, workspace, row.value);
   row.microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
 }
 

@@ -5,6 +5,7 @@
 
 #include <curve_proximity/constraint_provider.hpp>
 #include <curve_proximity/geometry.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,8 @@ struct ConstraintRow {
   cprox_status status = CPROX_INVALID; /**< negative: no answer, and message says why */
   std::string message;
   ConstraintValue value;
-  double microseconds = 0.0; /**< of the evaluation */
+  double microseconds = 0.0;                    /**< of the evaluation */
+  std::shared_ptr<const Constraint> constraint; /**< the pair made ready; null where it could not be */
 };
 
 /** A row for each provider that the case names, in that order. Never throws but for memory. */

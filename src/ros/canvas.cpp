@@ -2,7 +2,9 @@
 #include "canvas.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "conversions.h"
@@ -14,7 +16,7 @@ using visualization_msgs::Marker;
 
 constexpr double GREEN_CLEARANCE = 0.3; /* [m] from here on there is room to spare */
 constexpr double HALFSPACE_SIZE = 4.0;  /* [m] of the slab that stands for a halfspace */
-constexpr Eigen::Index MOST_TRIANGLES = 20000, MOST_POINTS = 20000;
+constexpr Eigen::Index MOST_TRIANGLES = 20000, MOST_POINTS = 20000, MOST_CELLS = 50000;
 constexpr double POINT_SIZE = 0.005; /* [m] at least */
 
 using Profile = std::vector<std::pair<double, double>>;
@@ -173,6 +175,36 @@ void Canvas::addPoints(const std::string &space, const ShapeDescription &shape, 
     marker.points.push_back(toPointMessage(toVec3(shape.vertices.col(i))));
 }
 
+/** Its cells, a marker for all of a size; higher ones are lighter, so that they can be told apart. Nothing where its file has gone. */
+void Canvas::addOctree(const std::string &space, const ShapeDescription &shape, const ResourceOptions &resources,
+                       const Eigen::Isometry3d &pose, const std_msgs::ColorRGBA &tint) {
+  Boxes cells;
+  try {
+    cells = octreeBoxes(shape, resources);
+  } catch (const Error &) {
+    return;
+  }
+  const double bottom = cells.low.row(2).minCoeff(), height = cells.high.row(2).maxCoeff() - bottom;
+  std::map<std::array<double, 3>, std::size_t> of_size; // to single precision: where its marker is
+  const Eigen::Index step = 1 + cells.low.cols() / MOST_CELLS;
+  for (Eigen::Index i = 0; i < cells.low.cols(); i += step) {
+    const Eigen::Vector3d size = cells.high.col(i) - cells.low.col(i);
+    const Eigen::Vector3d middle = 0.5 * (cells.low.col(i) + cells.high.col(i));
+    const auto round = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+    const auto [found, added] = of_size.emplace(
+        std::array<double, 3>{round(size.x()), round(size.y()), round(size.z())}, array_.markers.size());
+    if (added) {
+      Marker &marker = add(space, Marker::CUBE_LIST, pose);
+      marker.color = tint;
+      setScale(marker, size.x(), size.y(), size.z());
+    }
+    Marker &marker = array_.markers[found->second];
+    marker.points.push_back(toPointMessage(toVec3(middle)));
+    const double share = 0.55 + 0.45 * (middle.z() - bottom) / height;
+    marker.colors.push_back(colour(share * tint.r, share * tint.g, share * tint.b, tint.a));
+  }
+}
+
 /** As it is: by its file, which RViz reads itself, or by its triangles. False where that is not to be had. */
 bool Canvas::addMesh(const std::string &space, const ShapeDescription &shape, const ResourceOptions &resources,
                      const Eigen::Isometry3d &pose, const std_msgs::ColorRGBA &tint) {
@@ -223,7 +255,7 @@ void Canvas::addShape(const std::string &space, const ShapeDescription &shape, c
       if (!addMesh(space, shape, resources, pose, tint)) addConvex(space, body.get(), pose, tint);
       break;
     case ShapeType::POINTS: addPoints(space, shape, pose, tint); break;
-    case ShapeType::OCTREE: break; // octomap's own plugin draws its message
+    case ShapeType::OCTREE: addOctree(space, shape, resources, pose, tint); break;
     default: addConvex(space, body.get(), pose, tint); break;
   }
 }

@@ -47,6 +47,8 @@ class Canvas {
                     const std_msgs::ColorRGBA &tint);
   void addPoints(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
                  const std_msgs::ColorRGBA &tint);
+  void addOctree(const std::string &space, const ShapeDescription &shape, const ResourceOptions &resources,
+                 const Eigen::Isometry3d &pose, const std_msgs::ColorRGBA &tint);
   bool addMesh(const std::string &space, const ShapeDescription &shape, const ResourceOptions &resources,
                const Eigen::Isometry3d &pose, const std_msgs::ColorRGBA &tint);
 

@@ -13,6 +13,9 @@
 namespace curve_proximity {
 namespace {
 
+/** The provider whose values are a field over places, and not a distance. */
+constexpr const char *GAP = "curve_proximity/FourierGap";
+
 constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
 
 /* ---- from messages ------------------------------------------------------------------------------------------------ */
@@ -148,7 +151,8 @@ void Constraints::checkLimits(const EvaluateConstraints::Request &request) const
   limit("max_results", parameters_.max_results, results, "results");
 }
 
-void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response) {
+void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
+                         std::shared_ptr<const LevelDrawing> &drawing) {
   if (providers_->all().empty()) throw Error("~constraint_providers names none");
   checkLimits(request);
   const auto deadline =
@@ -162,23 +166,28 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
   for (std::size_t i = 0; i < request.cases.size(); ++i) {
     const ConstraintQuery &asked = request.cases[i];
     std::vector<ConstraintRow> rows;
+    ConstraintCase described;
     cprox_status fault = CPROX_OK;
     const std::string why = sentenceOf(
         [&] {
           if (stop_) throw Error("the server is shutting down");
           if (std::chrono::steady_clock::now() >= deadline) throw Error("~budget_ms are over");
-          rows = answerCase(*providers_, toCase(asked, *snapshot, lookup), resources, *workspace);
+          described = toCase(asked, *snapshot, lookup);
+          rows = answerCase(*providers_, described, resources, *workspace);
         },
         &fault);
     if (fault < 0) rows = {failedRow(asked.id, why, fault)};
 
     // The first row that failed is told.
+    std::shared_ptr<const Constraint> gap;
     for (const ConstraintRow &row : rows) {
       if (row.status < 0 && failed++ == 0)
         response.message = "case " + std::to_string(i) + " ('" + row.id + "')" +
                            (row.provider.empty() ? "" : ", provider '" + row.provider + "'") + ": " + row.message;
       response.results.push_back(toMessage(row));
+      if (row.status >= 0 && providers_->find(row.provider)->spec.type == GAP) gap = row.constraint;
     }
+    if (gap) drawing = std::make_shared<const LevelDrawing>(LevelDrawing{std::move(gap), std::move(described)});
   }
   response.success = failed == 0;
   if (failed)

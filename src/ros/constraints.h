@@ -15,6 +15,7 @@
 #include "../providers/constraint_case.h"
 #include "../providers/provider_set.h"
 #include "frames.h"
+#include "level_markers.h"
 #include "parameters.h"
 #include "workspaces.h"
 
@@ -28,8 +29,10 @@ class Constraints {
    *  every answer; the others go on. All is kept by reference. */
   Constraints(const Parameters &parameters, const Scene &scene, const Frames &frames, const std::atomic<bool> &stop);
 
-  /** Throws Error where nothing can be answered at all; what is wrong with one case or provider becomes its row. */
-  void answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response);
+  /** Throws Error where nothing can be answered at all; what is wrong with one case or provider becomes its row. drawing: the last
+   *  case that a Fourier gap has answered, if any. */
+  void answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
+              std::shared_ptr<const LevelDrawing> &drawing);
 
   /** A sentence for each provider that failed to load. */
   std::vector<std::string> failures() const;

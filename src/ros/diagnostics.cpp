@@ -21,9 +21,10 @@ constexpr double QUIET_WARNING = 10.0; /* [s] between two log lines about the sa
 } // namespace
 
 Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, const Pipeline &pipeline,
-                         const Frames &frames, const Scene &scene)
+                         const Sensors &sensors, const Frames &frames, const Scene &scene)
     : statistics_(statistics),
       pipeline_(pipeline),
+      sensors_(sensors),
       frames_(frames),
       scene_(scene),
       master_(handle.getNamespace() + "/distance"),
@@ -32,6 +33,7 @@ Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, 
   updater_.setHardwareID("none");
   updater_.add("queries", this, &Diagnostics::queries);
   updater_.add("topics", this, &Diagnostics::topics);
+  updater_.add("sensors", this, &Diagnostics::sensors);
   updater_.add("transforms", this, &Diagnostics::transforms);
   updater_.add("master", this, &Diagnostics::master);
 
@@ -71,6 +73,35 @@ void Diagnostics::topics(Status &status) {
   status.add("dropped", dropped);
   status.add("dropped lately", dropped - dropped_);
   dropped_ = dropped;
+}
+
+void Diagnostics::sensors(Status &status) {
+  const auto now = Statistics::Clock::now();
+  const double seconds = std::max(std::chrono::duration<double>(now - told_).count(), 1e-3);
+  told_ = now;
+  bool any = false, refused = false, dropped = false;
+  const auto tell = [&](const std::string &topic, const SensorCounts &counts, SensorCounts &before) {
+    if (counts.taken + counts.refused == 0) return;
+    any = true;
+    refused = refused || counts.refused != before.refused;
+    dropped = dropped || counts.dropped != before.dropped;
+    status.addf(topic + ": messages per second", "%.1f", static_cast<double>(counts.taken - before.taken) / seconds);
+    if (counts.taken > 0)
+      status.addf(topic + ": age of the last one used [s]", "%.3f",
+                  std::chrono::duration<double>(now - counts.last).count());
+    status.add(topic + ": dropped", counts.dropped);
+    status.add(topic + ": refused", counts.refused);
+    before = counts;
+  };
+  tell("cloud", sensors_.cloud(), cloud_);
+  tell("octomap", sensors_.octomap(), octomap_);
+  if (refused) {
+    status.summary(DiagnosticStatus::WARN, "messages that are of no use: the log says why");
+  } else if (dropped) {
+    status.summary(DiagnosticStatus::WARN, "messages are dropped: they come faster than they are built");
+  } else {
+    status.summary(DiagnosticStatus::OK, any ? "listening" : "nothing came");
+  }
 }
 
 void Diagnostics::transforms(Status &status) {

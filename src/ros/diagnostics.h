@@ -13,32 +13,37 @@
 #include "frames.h"
 #include "master_watch.h"
 #include "pipeline.h"
+#include "sensors.h"
 #include "statistics.h"
 
 namespace curve_proximity {
 
-/** Four statuses: `queries` (rate, 50th and 99th percentile of the time of a request, undecided and failed rows), `topics` (messages
- *  dropped), `transforms` (how old the robot's link poses in the fixed frame are), `master` (whether it still knows the server). */
+/** Five statuses: `queries` (rate, 50th and 99th percentile of the time of a request, undecided and failed rows), `topics` (messages
+ *  dropped), `sensors` (of ~cloud and ~octomap the rate, the age of the last message used, drops and refusals), `transforms` (how old the robot's link poses in the fixed frame are), `master` (whether it still knows the server). */
 class Diagnostics {
  public:
   /** handle: private; its callback queue runs the timer. The others are kept by reference. */
-  Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, const Pipeline &pipeline, const Frames &frames,
-              const Scene &scene);
+  Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, const Pipeline &pipeline, const Sensors &sensors,
+              const Frames &frames, const Scene &scene);
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
   void queries(Status &status);
   void topics(Status &status);
+  void sensors(Status &status);
   void transforms(Status &status);
   void master(Status &status);
 
   Statistics &statistics_;
   const Pipeline &pipeline_;
+  const Sensors &sensors_;
   const Frames &frames_;
   const Scene &scene_;
   MasterWatch master_;
-  std::uint64_t dropped_ = 0; /* when last told */
+  std::uint64_t dropped_ = 0;                                     /* when last told */
+  SensorCounts cloud_, octomap_;                                  /* likewise */
+  Statistics::Clock::time_point told_ = Statistics::Clock::now(); /* then */
   ros::NodeHandle handle_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;

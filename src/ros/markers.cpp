@@ -31,7 +31,9 @@ void addScene(Canvas &canvas, const Snapshot &scene, const ResourceOptions &reso
       const ShapeDescription &shape = object.description.shapes[i];
       const Eigen::Isometry3d pose = object.description.pose * shape.pose;
       // What is large, a shelf say, must not hide what it holds.
-      const bool is_large = !(object.shapes[i].placed.box.sizes().norm() < LARGE);
+      const bool is_seen =
+          shape.type == ShapeType::OCTREE || shape.type == ShapeType::POINTS; // as a sensor sees it: from outside
+      const bool is_large = !is_seen && !(object.shapes[i].placed.box.sizes().norm() < LARGE);
       const std_msgs::ColorRGBA tint = is_large ? colour(0.72, 0.76, 0.8, 0.35) : colour(0.55, 0.6, 0.66, 1.0);
       canvas.addShape("scene", shape, object.shapes[i].geometry.hull, resources, pose, tint);
       placed.push_back({object.shapes[i].geometry.body.get(), pose, object.description.padding});
@@ -55,8 +57,8 @@ void addCurves(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
 
 } // namespace
 
-MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion, const std::string &frame,
-                      const MarkerResources &resources) {
+MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion, const LevelDrawing *levels,
+                      const std::string &frame, const MarkerResources &resources) {
   Canvas canvas(frame);
   PlacedBodies objects;
   addScene(canvas, scene, resources.objects, objects);
@@ -69,6 +71,7 @@ MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawin
     addRobot(canvas, *curves->snapshot, curves->links, resources.robot, everything);
   }
   if (curves) addCurves(canvas, scene, *curves, everything);
+  if (levels) addLevels(canvas, *levels, resources.objects);
   return canvas.take();
 }
 
@@ -88,10 +91,17 @@ void MarkerPublisher::show(std::shared_ptr<const Drawing> drawing) {
   changed_ = true;
 }
 
+void MarkerPublisher::show(std::shared_ptr<const LevelDrawing> levels) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  levels_ = std::move(levels);
+  changed_ = true;
+}
+
 void MarkerPublisher::publishIfNew() {
   if (publisher_.getNumSubscribers() == 0) return;
   const SnapshotPtr scene = scene_.snapshot();
   std::shared_ptr<const Drawing> curves, motion;
+  std::shared_ptr<const LevelDrawing> levels;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!changed_ && shown_scene_ == scene->version()) return;
@@ -99,8 +109,9 @@ void MarkerPublisher::publishIfNew() {
     shown_scene_ = scene->version();
     curves = curves_;
     motion = motion_;
+    levels = levels_;
   }
-  publisher_.publish(toMarkers(*scene, curves.get(), motion.get(), frame_, resources_));
+  publisher_.publish(toMarkers(*scene, curves.get(), motion.get(), levels.get(), frame_, resources_));
 }
 
 } // namespace curve_proximity

@@ -13,6 +13,7 @@
 #include <mutex>
 #include <string>
 
+#include "level_markers.h"
 #include "queries.h"
 
 namespace curve_proximity {
@@ -29,13 +30,16 @@ struct MarkerResources {
  *    robot    the robot: along a trajectory at its closest moment, each link coloured by its clearance from the objects
  *    swept    the robot on its way
  *    sweep    the way of the point of the robot that comes closest
+ *    sides    the two bodies that a Fourier gap was last asked about, and
+ *    levels   the level sets of the gap over the places of the first
  *    pairs    the closest pairs, each a line with its ends; labels: how long they are
  *  Drawings may be null. Pairs are shown only as long as the scene is the one they were measured in.
  *
  *  Colours come from plain distances at sampled parameters: they are for the eye. The certified answers are the pairs with their
  *  labels, and the open hulls. */
 visualization_msgs::MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion,
-                                          const std::string &frame, const MarkerResources &resources);
+                                          const LevelDrawing *levels, const std::string &frame,
+                                          const MarkerResources &resources);
 
 /** Publishes ~markers, latched, a few times a second at most and only where somebody listens. */
 class MarkerPublisher {
@@ -46,6 +50,7 @@ class MarkerPublisher {
   /** What is to be shown next: its curves in the place of the last ones, its motion in that of the last one. Never waits for what is
    *  being published. */
   void show(std::shared_ptr<const Drawing> drawing);
+  void show(std::shared_ptr<const LevelDrawing> levels);
 
  private:
   void publishIfNew();
@@ -55,6 +60,7 @@ class MarkerPublisher {
   const MarkerResources resources_;
   std::mutex mutex_;
   std::shared_ptr<const Drawing> curves_, motion_;
+  std::shared_ptr<const LevelDrawing> levels_;
   bool changed_ = true;
   std::uint64_t shown_scene_ = 0;
   ros::Publisher publisher_;

@@ -35,39 +35,61 @@ Sensors::~Sensors() {
   queue_.clear();
 }
 
+SensorCounts Sensors::cloud() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return cloud_;
+}
+
+SensorCounts Sensors::octomap() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return octomap_;
+}
+
+/** Does the work of a message, and counts it. */
+template <class Work>
+void Sensors::take(const char *topic, const std_msgs::Header &header, SensorCounts &counts, std::uint32_t &seq,
+                   Work &&work) {
+  bool used = true;
+  guarded(work, [&](const std::string &why) {
+    used = false;
+    complain(topic, why);
+  });
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (counts.taken + counts.refused > 0 && header.seq > seq) counts.dropped += header.seq - seq - 1;
+  seq = header.seq;
+  ++(used ? counts.taken : counts.refused);
+  if (used) counts.last = std::chrono::steady_clock::now();
+}
+
 void Sensors::takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message) {
-  guarded(
-      [&] {
-        Cloud cloud = toCloud(*message);
-        if (cloud.points.cols() == 0) {
-          remove(parameters_.cloud_id);
-          return;
-        }
-        ShapeDescription shape;
-        shape.type = ShapeType::POINTS;
-        shape.dimensions = {parameters_.cloud_radius};
-        shape.vertices = std::move(cloud.points);
-        replace(parameters_.cloud_id, message->header, std::move(shape));
-      },
-      [&](const std::string &why) { complain("~cloud", why); });
+  take("~cloud", message->header, cloud_, cloud_seq_, [&] {
+    Cloud cloud = toCloud(*message);
+    if (cloud.points.cols() == 0) {
+      remove(parameters_.cloud_id);
+      return;
+    }
+    ShapeDescription shape;
+    shape.type = ShapeType::POINTS;
+    shape.dimensions = {parameters_.cloud_radius};
+    shape.vertices = std::move(cloud.points);
+    replace(parameters_.cloud_id, message->header, std::move(shape));
+  });
 }
 
 void Sensors::takeOctomap(const OctomapMessage::ConstPtr &message) {
-  guarded(
-      [&] {
-        ShapeDescription shape;
-        shape.type = ShapeType::OCTREE;
-        shape.unknown_is_occupied = parameters_.unknown_is_occupied;
-        shape.octree = {message->id, message->resolution, message->binary != 0,
-                        std::string(message->data.begin(), message->data.end())};
-        try {
-          replace(parameters_.octomap_id, message->header, shape);
-        } catch (const Error &) {
-          if (!isEmpty(shape.octree, shape.unknown_is_occupied)) throw;
-          remove(parameters_.octomap_id);
-        }
-      },
-      [&](const std::string &why) { complain("~octomap", why); });
+  take("~octomap", message->header, octomap_, octomap_seq_, [&] {
+    ShapeDescription shape;
+    shape.type = ShapeType::OCTREE;
+    shape.unknown_is_occupied = parameters_.unknown_is_occupied;
+    shape.octree = {message->id, message->resolution, message->binary != 0,
+                    std::string(message->data.begin(), message->data.end())};
+    try {
+      replace(parameters_.octomap_id, message->header, shape);
+    } catch (const Error &) {
+      if (!isEmpty(shape.octree, shape.unknown_is_occupied)) throw;
+      remove(parameters_.octomap_id);
+    }
+  });
 }
 
 void Sensors::replace(const std::string &id, const std_msgs::Header &header, ShapeDescription shape) {

@@ -70,7 +70,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
               handle_.subscribe("attached_collision_object", OBJECTS_KEPT, &ProximityServer::takeAttached, this)};
   pipeline_ = std::make_unique<Pipeline>(handle, parameters_, tuning_, scene_, srdf_, queries_, *markers_, stop_);
   batches_ = std::make_unique<BatchAction>(control_handle_, parameters_.fixed_frame, queries_, stop_);
-  diagnostics_ = std::make_unique<Diagnostics>(control_handle_, statistics_, *pipeline_, frames_, scene_);
+  diagnostics_ = std::make_unique<Diagnostics>(control_handle_, statistics_, *pipeline_, *sensors_, frames_, scene_);
   reconfigure_ = std::make_unique<Reconfigure>(control_handle_, tuning_, [this](int threads) { setThreads(threads); });
   setThreads(parameters_.threads);
   control_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &control_queue_);
@@ -241,7 +241,9 @@ bool ProximityServer::evaluateConstraints(EvaluateConstraints::Request &request,
                                           EvaluateConstraints::Response &response) {
   return handle(response, [&] {
     response.frame_id = frames_.fixedFrame();
-    constraints_.answer(request, response);
+    std::shared_ptr<const LevelDrawing> drawing;
+    constraints_.answer(request, response, drawing);
+    if (drawing) markers_->show(std::move(drawing));
   });
 }
 

@@ -122,15 +122,20 @@ Geometry makeMesh(const ShapeDescription &shape, const ResourceOptions &options)
   }
 }
 
-BodyHandle makeCells(const ShapeDescription &shape, const ResourceOptions &options) {
-  const OctreeData octree =
-      shape.resource.empty() ? shape.octree : readOctree(resolveResource(shape.resource, options, "octree"));
+/* Says of which file it speaks, where there is one. */
+template <class Work>
+auto ofOctree(const ShapeDescription &shape, Work work) -> decltype(work()) {
   try {
-    return makeOctree(octree, shape.unknown_is_occupied, options.memory_limit);
+    return work();
   } catch (const Error &error) {
     if (shape.resource.empty()) throw;
     throw Error("octree '" + shape.resource + "': " + error.what(), error.status());
   }
+}
+
+BodyHandle makeCells(const ShapeDescription &shape, const ResourceOptions &options) {
+  const Boxes cells = octreeBoxes(shape, options);
+  return ofOctree(shape, [&] { return makeBoxes(cells.low, cells.high, options.memory_limit); });
 }
 
 BodyHandle makeBody(const ShapeDescription &shape, const ResourceOptions &options) {
@@ -212,6 +217,12 @@ std::string resolveResource(const std::string &uri, const ResourceOptions &optio
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error || size == 0) throw Error(who + path + "' is empty");
   return path;
+}
+
+Boxes octreeBoxes(const ShapeDescription &shape, const ResourceOptions &options) {
+  const OctreeData octree =
+      shape.resource.empty() ? shape.octree : readOctree(resolveResource(shape.resource, options, "octree"));
+  return ofOctree(shape, [&] { return cellBoxes(octree, shape.unknown_is_occupied, options.memory_limit); });
 }
 
 Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options) {

@@ -167,7 +167,7 @@ OctreeData readOctree(const std::string &file) {
   }
 }
 
-BodyHandle makeOctree(const OctreeData &octree, bool unknown_is_occupied, std::size_t memory_limit) {
+Boxes cellBoxes(const OctreeData &octree, bool unknown_is_occupied, std::size_t memory_limit) {
   if (octree.data.empty()) throw Error("octree is empty");
   const std::size_t nodes = countNodes(octree);
   if (nodes > memory_limit / NODE_BYTES) {
@@ -180,15 +180,15 @@ BodyHandle makeOctree(const OctreeData &octree, bool unknown_is_occupied, std::s
 
   // Faces are products of whole numbers with the resolution, so that neighbours share theirs to the last bit.
   const auto n = static_cast<Eigen::Index>(cells.boxes.size());
-  Eigen::Matrix3Xd low(3, n), high(3, n);
+  Boxes out{Eigen::Matrix3Xd(3, n), Eigen::Matrix3Xd(3, n)};
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::array<int, 6> &box = cells.boxes[static_cast<std::size_t>(i)];
     for (int axis = 0; axis < 3; ++axis) {
-      low(axis, i) = (box[static_cast<std::size_t>(axis)] - CELLS / 2) * octree.resolution;
-      high(axis, i) = (box[static_cast<std::size_t>(axis) + 3] - CELLS / 2) * octree.resolution;
+      out.low(axis, i) = (box[static_cast<std::size_t>(axis)] - CELLS / 2) * octree.resolution;
+      out.high(axis, i) = (box[static_cast<std::size_t>(axis) + 3] - CELLS / 2) * octree.resolution;
     }
   }
-  return makeBoxes(low, high, memory_limit);
+  return out;
 }
 
 } // namespace curve_proximity

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """What the server tells of itself on /diagnostics, and what may be changed while it runs."""
+import struct
 import unittest
 
 import rospy
@@ -9,6 +10,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamic_reconfigure.client import Client
 from geometry_msgs.msg import TransformStamped
 from helpers import Server, bezier, ring_and_shells, run, sphere, until
+from sensor_msgs.msg import PointCloud2, PointField
 from tf2_msgs.msg import TFMessage
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
@@ -69,6 +71,29 @@ class Diagnostics(unittest.TestCase):
             publisher.publish(LINE)  # each waits ~tf_timeout for the arm, which nobody publishes
         status, values = self.status('topics', lambda s, v: int(v['dropped']) > 50)
         self.assertEqual(status.level, DiagnosticStatus.WARN)
+
+    def test_what_sensors_send_is_counted(self):
+        publisher = rospy.Publisher('/curve_proximity/cloud', PointCloud2, queue_size=100)
+        self.assertTrue(until(publisher.get_num_connections, 10))
+        self.addCleanup(self.server.replace)
+        fields = [PointField(name, 4 * i, PointField.FLOAT32, 1) for i, name in enumerate('xyz')]
+
+        def cloud(frame=''):
+            out = PointCloud2(height=1, width=1, point_step=12, row_step=12, fields=fields, data=struct.pack('<fff', 0, 0, 1))
+            out.header.frame_id = frame
+            return out
+        status, values = self.status(
+            'sensors', lambda s, v: publisher.publish(cloud()) or float(v.get('cloud: messages per second', 0)) > 2)
+        self.assertLess(float(values['cloud: age of the last one used [s]']), 1.0)
+        self.assertEqual(values['cloud: refused'], '0')
+        before = int(values['cloud: dropped'])
+        for _ in range(20):
+            publisher.publish(cloud('nowhere'))  # the first waits ~tf_timeout for that frame; the last one takes the others' place
+        status, values = self.status('sensors', lambda s, v: int(v['cloud: dropped']) >= before + 15)
+        self.assertEqual(status.level, DiagnosticStatus.WARN)
+        self.assertGreater(int(values['cloud: refused']), 0)
+        status, values = self.status('sensors', lambda s, v: s.level == DiagnosticStatus.OK)
+        self.assertEqual(status.message, 'listening')
 
     def test_the_age_of_transforms_is_told(self):
         status, _ = self.status('transforms', lambda s, v: True)

@@ -109,6 +109,8 @@ class Topics(unittest.TestCase):
         self.server.replace(sphere('ball', 0.25))
         clear = [bezier(*LINE, id='clear%d' % i) for i in range(5)]
         hits = [bezier((-1, 0, 0.1 * i), (1, 0, 0.1 * i), id='hit%d' % i) for i in range(3)]  # 0.05 and less away
+        even = bezier((-1, 0, 0.3), (1, 0, 0.3), id='even')  # just as far away as is asked: within epsilon of either verdict
+        self.assertEqual(self.ask('curve', even).results[0].verdict, 'undecided')
         wrong = [bezier((0, 0, 5), id='wrong'), bezier(*LINE, id='lost', frame='nowhere')]
         for curve in clear[:2] + hits + wrong + clear[2:]:
             self.ask('curve', curve)  # all of them with the same stamp, 0

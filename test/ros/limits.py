@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a request may make the node hold, every way to name a mesh file, and that tests leave no parameters behind."""
+import os
+import socket
+import struct
+import unittest
+
+import rosgraph
+import rospy
+from curve_proximity.srv import Distance
+from helpers import Node, Server, bezier, joints, refusal, run, sphere
+
+DATA = os.path.dirname(os.path.abspath(__file__)) + '/../data'
+LINE = bezier((-1, 0, 1), (1, 0, 1))
+ROBOT = '''<robot name="one"><link name="base"/>
+  <link name="finger"><collision><geometry><mesh filename="%s"/></geometry></collision></link>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="finger"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+</robot>'''
+
+
+class Limits(unittest.TestCase):
+    def begin(self, name, **parameters):
+        node = Node(name, **parameters)
+        self.addCleanup(node.end)
+        return node
+
+    def test_a_request_beyond_the_memory_limit_is_an_error_of_that_call(self):
+        """Thirty bytes that claim 2^28 curves: some 60 GB as vectors."""
+        node = self.begin('limited', memory_limit_mb=256)
+        server = Server('/limited')
+        server.replace(sphere('ball', 0.25))
+        before = node.resident_mb()
+        address = rosgraph.Master('/test').lookupService('/limited/distance').split('//')[1].split(':')
+        with socket.create_connection((address[0], int(address[1])), 10) as connection:
+            entries = b''.join(struct.pack('<I', len(e)) + e for e in (
+                b'callerid=/test', b'service=/limited/distance', b'md5sum=' + Distance._md5sum.encode(), b'persistent=1'))
+            connection.sendall(struct.pack('<I', len(entries)) + entries)
+            size, = struct.unpack('<I', connection.recv(4, socket.MSG_WAITALL))
+            connection.recv(size, socket.MSG_WAITALL)
+            connection.sendall(struct.pack('<II', 30, 1 << 28) + b'\0' * 26)
+            connection.settimeout(10)
+            self.assertEqual(connection.recv(1, socket.MSG_WAITALL), b'\0')  # roscpp's mark of a call that failed
+        self.assertLess(node.resident_mb() - before, 50)
+        self.assertTrue(server.distance(LINE).success)
+
+    def test_every_form_of_a_mesh_uri_is_the_same_mesh_and_http_is_none(self):
+        folder = os.path.realpath(DATA + '/robots/panda')
+        self.addCleanup(rospy.delete_param, '/robot_description')
+        distances = []
+        for uri in ('meshes/finger.stl', 'file://' + folder + '/meshes/finger.stl',
+                    'package://curve_proximity/test/data/robots/panda/meshes/finger.stl'):
+            rospy.set_param('/robot_description', ROBOT % uri)
+            name = 'meshes%d' % len(distances)
+            self.begin(name, urdf_dir=folder, fixed_frame='base')
+            row, = Server('/' + name).distance(LINE, links=['finger'], joint_state=joints(slide=0.0)).results
+            self.assertEqual(row.status, 'ok', row.message)
+            distances.append((row.lower, row.upper))
+        self.assertEqual(len(set(distances)), 1)
+        self.assertLess(distances[0][1], 1.0)
+        for uri, word in (('http://localhost/finger.stl', 'http'), ('meshes/none.stl', 'none.stl'), ('', "'finger'")):
+            rospy.set_param('/robot_description', ROBOT % uri)
+            self.assertIn(word, refusal(self, 'refused', urdf_dir=folder))
+        rospy.set_param('/robot_description', ROBOT % 'meshes/finger.stl')
+        self.assertIn('finger.stl', refusal(self, 'refused'))  # relative to nothing
+
+    def test_the_parameters_of_one_run_are_gone_in_the_next(self):
+        node = Node('passing', epsilon=0.5)
+        self.assertTrue(Server('/passing').scene().success)
+        self.assertTrue(rospy.has_param('/passing/epsilon'))
+        node.end()
+        self.assertFalse(rospy.has_param('/passing'))
+
+
+if __name__ == '__main__':
+    run('limits')

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the markers hold: where their points are is computed here anew. What robots look like: demo.py."""
+import math
+import struct
+import unittest
+
+import rospy
+from curve_proximity.msg import Body, ConstraintQuery, Octree
+from curve_proximity.srv import EvaluateConstraints
+from helpers import Server, bezier, body, run, sphere, thing, until
+from visualization_msgs.msg import Marker, MarkerArray
+
+LINE = bezier((-1, 0, 1), (1, 0, 1), id='line', radius=0.05)
+
+
+def coordinates(points):
+    return [(p.x, p.y, p.z) for p in points]
+
+
+class Markers(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server()
+        cls.arrays = []
+        rospy.Subscriber('/curve_proximity/markers', MarkerArray, cls.arrays.append)
+
+    def shown(self, condition, *spaces):
+        """The markers of the first array from now on in which those of these namespaces meet the condition, by namespace."""
+        def look():
+            for array in self.arrays[-3:]:
+                found = {space: [m for m in array.markers if m.ns == space] for space in spaces}
+                if all(found.values()) and condition(found):
+                    return found
+        found = until(look, 10)
+        self.assertTrue(found, [(m.ns, m.type) for a in self.arrays[-1:] for m in a.markers])
+        return found
+
+    def scene_of(self, object_, kind):
+        self.server.replace(object_)
+        shown = self.shown(lambda s: len(s['scene']) >= 1 and s['scene'][0].type == kind, 'scene')['scene']
+        self.assertEqual({m.header.frame_id for m in shown}, {'world'})
+        return shown
+
+    def test_an_octree_is_its_occupied_cells(self):
+        # two cells of 0.5 m beside each other at the origin's corner, and a block of 1 m: all eight children of its parent
+        one = b'\x00\xc0' + b'\x03\x00' * 14
+        for leaf, sizes in ((b'\x0a\x00', {0.5: [(0.25, 0.25, 0.25), (0.75, 0.25, 0.25)]}), (b'\xaa\xaa', {1.0: [(0.5, 0.5, 0.5)]})):
+            data = list(struct.unpack('%db' % len(one + leaf), one + leaf))
+            map_ = thing('map', bodies=[Body(type='octree', octree=Octree(binary=True, id='OcTree', resolution=0.5, data=data))])
+            self.server.replace(map_)
+            shown = self.shown(lambda s: {m.scale.x for m in s['scene']} == set(sizes), 'scene')['scene']
+            for marker in shown:
+                self.assertEqual(marker.type, Marker.CUBE_LIST)
+                self.assertEqual(sorted(coordinates(marker.points)), sizes[marker.scale.x])
+                self.assertEqual(marker.scale.x, marker.scale.z)
+                self.assertEqual(len(marker.colors), len(marker.points))
+
+    def test_a_superquadric_is_its_surface(self):
+        axes, exponents = (0.2, 0.3, 0.5), (2.0, 4.0, 6.0)
+        marker, = self.scene_of(body('can', 'superquadric', (*axes, *exponents)), Marker.TRIANGLE_LIST)
+        self.assertGreater(len(marker.points), 1000)
+        for p in coordinates(marker.points):
+            value = sum(abs(x / a)**n for x, a, n in zip(p, axes, exponents))
+            self.assertAlmostEqual(value, 1.0, delta=1e-9)
+
+    def test_the_pair_is_the_answers_and_the_curve_has_the_colour_of_its_clearance(self):
+        self.server.replace(sphere('ball', 0.25, (0.2, 0, 0.6)))
+        row, = self.server.distance(LINE).results
+        shown = self.shown(lambda s: True, 'pairs', 'labels', 'curves')
+        line = next(m for m in shown['pairs'] if m.type == Marker.LINE_LIST)
+        self.assertEqual(line.points, [row.point_a, row.point_b])
+        self.assertEqual([m.text for m in shown['labels']], ['100.0 mm'])
+        tube = next(m for m in shown['curves'] if m.type == Marker.TRIANGLE_LIST)
+        for p in coordinates(tube.points):
+            self.assertAlmostEqual(math.hypot(p[1], p[2] - 1), 0.05, delta=1e-9)  # as thick as it is
+        # redder where it is nearer: the side that is lit alike, at the nearest point and at both ends
+        side = [(p.x, c.r / (c.r + c.g + c.b)) for p, c in zip(tube.points, tube.colors) if p.z > 1.049]
+        redness = dict(side)
+        nearest, first, last = (redness[min(redness, key=lambda x: abs(x - at))] for at in (0.2, -1.0, 1.0))
+        self.assertGreater(nearest, first + 0.1)
+        self.assertGreater(nearest, last + 0.1)
+
+    def test_open_hulls_hold_the_place_that_matters(self):
+        self.server.replace(sphere('ball', 0.25, (0.2, 0.1, 0.6)))
+        wave = bezier((-1, 0, 1), (-0.3, 2, 1.5), (0.3, -2, 0.2), (1, 0, 1), id='wave')
+        exact, = self.server.distance(wave, epsilon=1e-9).results
+        rough, = self.server.distance(wave, max_nodes=1, epsilon=1e-12).results
+        self.assertEqual(rough.status, 'budget')
+        hulls = self.shown(lambda s: True, 'open')['open']
+
+        def holds(marker):
+            points = coordinates(marker.points)
+            return all(min(p[i] for p in points) <= x <= max(p[i] for p in points) for i, x in enumerate(
+                (exact.point_a.x, exact.point_a.y, exact.point_a.z)))
+        self.assertTrue(any(holds(marker) for marker in hulls))
+        self.assertLess(len(hulls), 48)  # and not all of the curve
+
+    def test_the_zero_level_of_a_gap_is_where_the_bodies_come_apart(self):
+        """A gap that is certified is 0 at most its over-reach away from where two balls touch, and never before: the distance of the
+        centres, at the height of a, is above 0.7 but for the grid's interpolation, 0.01 of a value whose slope is 1/0.1 m."""
+        rospy.wait_for_service('/curve_proximity/evaluate_constraints', 20)
+        evaluate = rospy.ServiceProxy('/curve_proximity/evaluate_constraints', EvaluateConstraints)
+        at, height = (0.5, -0.25, 1.0), 0.2
+        case = ConstraintQuery(a=sphere('', 0.3, (2, 0, at[2] + height)), b=sphere('', 0.4, at))
+        response = evaluate([case])
+        self.assertTrue(response.success, response.message)
+        shown = self.shown(lambda s: len(s['levels']) == 3, 'levels', 'sides')
+        self.assertEqual([m.type for m in shown['sides']], [Marker.SPHERE] * 2)
+        rings = []
+        for marker in shown['levels']:
+            self.assertEqual(marker.type, Marker.LINE_LIST)
+            points = coordinates(marker.points)
+            self.assertGreater(len(points), 40)
+            self.assertEqual({round(p[2], 12) for p in points}, {at[2] + height})
+            rings.append([math.hypot(p[0] - at[0], p[1] - at[1], height) for p in points])
+        zero, half, tenth = rings
+        self.assertGreater(min(zero), 0.7 - 0.01)
+        self.assertLess(max(zero), 1.0)
+        self.assertLess(max(zero), min(half))
+        self.assertLess(max(half), min(tenth))
+
+
+if __name__ == '__main__':
+    run('markers')
