@@ -108,7 +108,7 @@ static void obstacles(const robot_case *arm, const bench_size *size, cprox_works
     char parameter[40];
     snprintf(parameter, sizeof parameter, "obstacles %zu", n);
     const bench_method methods[] = {
-        {"curve_proximity", by_set, ws}, {"curve_proximity listed", by_list, ws}, {"sampling .05", sampled, ws}};
+        {"curve_proximity", by_set, ws}, {"as a list", by_list, ws}, {"sampling .05", sampled, ws}};
     measure("growth obstacles", parameter, &p, size, methods, 3, ws);
     cprox_set_free(set);
   }
