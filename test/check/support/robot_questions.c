@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -22,19 +23,31 @@ static cprox_body *bounded_body(rng *r, double scale, cprox_workspace *ws) {
   return body;
 }
 
+/* One body, or a union of two. */
+static cprox_body *one_or_two(robot_question *q, rng *r, bool bounded, double scale, cprox_workspace *ws) {
+  cprox_body *one = bounded ? bounded_body(r, scale, ws) : question_body(r, scale, false, ws), *both = NULL;
+  if (rng_index(r, 5)) return one;
+  cprox_body *parts[2] = {one, bounded_body(r, scale, ws)};
+  const cprox_pose poses[2] = {rng_pose(r, scale), rng_pose(r, scale)};
+  for (int i = 0; i < 2; i++) q->loose[q->n_loose++] = parts[i];
+  if (cprox_body_create_compound((const cprox_body *const *)parts, poses, 2, ws, &both) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_reason(ws));
+  return both;
+}
+
 void robot_question_random(robot_question *q, rng *r, double speed, double apart, cprox_workspace *ws) {
   *q = (robot_question){.n = 1 + rng_index(r, ROBOT_QUESTION_TARGETS)};
   robot_make(r, speed, &q->robot);
   for (size_t i = 0; i < q->robot.n_links; i++) {
     if (rng_index(r, 2)) continue;
     cprox_body_free((cprox_body *)q->robot.geometries[i].body);
-    q->robot.geometries[i].body = bounded_body(r, 0.3, ws);
+    q->robot.geometries[i].body = one_or_two(q, r, true, 0.3, ws);
   }
   robot_rebuild(&q->robot);
   for (size_t i = 0; i < q->n; i++) {
     cprox_pose at = rng_pose(r, 0.3);
     at.position = vec_axpy(at.position, apart, rng_unit(r));
-    q->targets[i] = cprox_at(question_body(r, 0.5, false, ws), at);
+    q->targets[i] = cprox_at(one_or_two(q, r, false, 0.5, ws), at);
     q->targets[i].padding = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0.0, 0.1);
   }
   const bool self = rng_index(r, 3) == 0;
@@ -47,18 +60,31 @@ void robot_question_random(robot_question *q, rng *r, double speed, double apart
 void robot_question_free(robot_question *q) {
   for (size_t i = 0; i < q->n; i++) cprox_body_free((cprox_body *)q->targets[i].body);
   robot_free(&q->robot);
+  for (size_t i = 0; i < q->n_loose; i++) cprox_body_free(q->loose[i]);
 }
 
 /* ---- text ----------------------------------------------------------------------------------------------------------------- */
 
+/* A line a convex part, to be freed. */
+static char *lines_of(const cprox_target *target) {
+  const size_t length = cprox_target_describe(target, NULL, 0);
+  char *text = calloc(length + 1, 1);
+  cprox_target_describe(target, text, length + 1);
+  return text;
+}
+
 void robot_write_targets(const cprox_target *targets, size_t n, FILE *out) {
-  fprintf(out, "cprox-problem 1\ntargets %zu\n", n);
+  char *lines[ROBOT_QUESTION_MOST];
+  size_t count = 0;
+  assert_true(n <= ROBOT_QUESTION_MOST);
   for (size_t i = 0; i < n; i++) {
-    const size_t length = cprox_target_describe(&targets[i], NULL, 0);
-    char *text = calloc(length + 1, 1);
-    cprox_target_describe(&targets[i], text, length + 1);
-    fputs(text, out);
-    free(text);
+    lines[i] = lines_of(&targets[i]);
+    for (const char *at = lines[i]; (at = strchr(at, '\n')); at++) count++;
+  }
+  fprintf(out, "cprox-problem 1\ntargets %zu\n", count);
+  for (size_t i = 0; i < n; i++) {
+    fputs(lines[i], out);
+    free(lines[i]);
   }
 }
 

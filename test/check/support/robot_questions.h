@@ -9,12 +9,18 @@
 #include "curve_proximity/cprox.h"
 #include "support/robots.h"
 
-enum { ROBOT_QUESTION_TARGETS = 4 };
+enum {
+  ROBOT_QUESTION_MOST = 64,
+  ROBOT_QUESTION_TARGETS = 4,
+  ROBOT_QUESTION_LOOSE = 2 * (TEST_MAX_LINKS + ROBOT_QUESTION_TARGETS)
+};
 
 typedef struct robot_question {
   test_robot robot;
   cprox_target targets[ROBOT_QUESTION_TARGETS];
   size_t n;
+  cprox_body *loose[ROBOT_QUESTION_LOOSE]; /* what unions are made of */
+  size_t n_loose;
   cprox_mover mover; /* along, or against itself */
 } robot_question;
 
