@@ -82,6 +82,14 @@ class Markers(unittest.TestCase):
         self.assertGreater(nearest, first + 0.1)
         self.assertGreater(nearest, last + 0.1)
 
+    def test_a_pair_of_another_scene_is_not_shown(self):
+        self.server.replace(sphere('ball', 0.25, (0.2, 0, 0.6)))
+        self.server.distance(LINE)
+        self.shown(lambda s: len(s['scene']) == 1, 'pairs', 'scene', 'curves')
+        self.assertTrue(self.server.apply(sphere('other', 0.1, (0.2, 0, 1.4))).success)
+        self.shown(lambda s: len(s['scene']) == 2, 'scene', 'curves')
+        self.assertFalse([m for m in self.arrays[-1].markers if m.ns in ('pairs', 'labels')])
+
     def test_open_hulls_hold_the_place_that_matters(self):
         self.server.replace(sphere('ball', 0.25, (0.2, 0.1, 0.6)))
         wave = bspline([(0.1 * math.sin(3 * i), 0.04 * i - 0.6, 1 + 0.3 * math.cos(2 * i)) for i in range(30)], 3, id='wave')
