@@ -132,6 +132,10 @@ class Robot(unittest.TestCase):
         for stamp, x in ((earlier, 3.0), (now, 5.0), (earlier + rospy.Duration(1), 4.0), (rospy.Time(), 5.0)):
             line = bezier((0, -1, 0), (0, 1, 0), frame='cart', stamp=stamp)
             self.assertDistance(self.server.distance(line, objects=['ball']), x - 0.25)
+        # two stamps of one frame in one request
+        both = [bezier((0, -1, 0), (0, 1, 0), frame='cart', stamp=stamp) for stamp in (earlier, now)]
+        rows = self.server.distance(both, objects=['ball']).results
+        self.assertEqual([round(row.upper, 4) for row in rows], [2.75, 4.75])
         late = bezier((0, -1, 0), (0, 1, 0), frame='cart', stamp=now + rospy.Duration(100))
         response = self.server.distance([late, vertical(1, 0)], objects=['ball'])
         self.assertFalse(response.success)
