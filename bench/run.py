@@ -21,6 +21,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 PREFIX = 'curve_proximity_bench_'
 NOT_GROUPS = {'core'}  # Google benchmark's: no rows of results.csv
 SCRIPTS = {'rungs': 'rungs.py'}  # groups that ask the command line, where there is one
+TABLES = {'hulls.csv': 'hulls.py'}  # tables beside results.csv, of the command line too
 MADE = 'made.txt'  # how the results came to be
 COLUMNS = ['group', 'workload', 'method', 'parameter', 'median_us', 'p95_us', 'nodes', 'probes', 'error', 'unsound', 'failures']
 
@@ -32,6 +33,17 @@ def programs(folders):
     if shutil.which('cprox'):
         found.update({name: [sys.executable, os.path.join(HERE, script)] for name, script in SCRIPTS.items()})
     return dict(sorted(found.items()))
+
+
+def run_tables(quick, out):
+    """Each table into a file of its own. The names of the scripts that failed."""
+    failed = []
+    for name, script in TABLES.items():
+        with open(os.path.join(out, name), 'w') as text:
+            command = [sys.executable, os.path.join(HERE, script)] + (['--quick'] if quick else [])
+            if subprocess.run(command, stdout=text).returncode != 0:
+                failed.append(script)
+    return failed
 
 
 def run_group(command, quick, out):
@@ -66,6 +78,8 @@ def measure(parser, arguments):
             if run_group(groups[name], arguments.quick, out) != 0:
                 failed.append(name)
             print(f'{name}: {time.monotonic() - begin:.0f} s', file=sys.stderr)
+    if not arguments.only and shutil.which('cprox'):
+        failed += run_tables(arguments.quick, arguments.out)
     return failed
 
 
@@ -96,7 +110,7 @@ def main():
         written = pages.write_all(rows, drawn, arguments.out, text.read().strip())
     print(f"{len(rows)} rows in {arguments.out}/results.csv, {len(drawn)} charts and {', '.join(written)} beside it")
     for name in failed:
-        print(f'FAILED: group {name} ended with an error')
+        print(f'FAILED: {name} ended with an error')
     missed = targets.report(rows, arguments.only) + soundness.report() if arguments.check else 0
     return 1 if failed or missed or differing else 0
 
