@@ -434,6 +434,64 @@ static void chords_are_those_of_the_piece(void **state) {
   cprox_workspace_free(workspace);
 }
 
+/* The square distance of a point from a box. */
+static long double square_from_box(const lanes_box *box, vec3 p) {
+  const long double beyond[3] = {
+      fmaxl(fmaxl((long double)box->low.x - (long double)p.x, (long double)p.x - (long double)box->high.x), 0.0L),
+      fmaxl(fmaxl((long double)box->low.y - (long double)p.y, (long double)p.y - (long double)box->high.y), 0.0L),
+      fmaxl(fmaxl((long double)box->low.z - (long double)p.z, (long double)p.z - (long double)box->high.z), 0.0L)};
+  return beyond[0] * beyond[0] + beyond[1] * beyond[1] + beyond[2] * beyond[2];
+}
+
+/* Seed 19, 3000 pieces of all degrees, 8 balls each, at offsets up to 1e6: the bound by boxes is never above the distance of the chords in them,
+ * lies within 160 u of the sizes below that of the boxes, and lowers nothing. */
+static void boxes_bound_the_chords_in_them(void **state) {
+  (void)state;
+  enum { BALLS = 8 };
+  rng r = rng_seed(19);
+  cprox_workspace *workspace = cprox_workspace_create();
+  for (size_t round = 0; round < test_cases(3000); round++) {
+    const vec3 offset = vec_scale(round % 3 == 0 ? 0.0 : pow(10.0, rng_uniform(&r, 0, 6)), rng_unit(&r));
+    const size_t degree = random_degree(&r);
+    vec3 points[CPROX_MAX_DEGREE + 1];
+    random_points(&r, degree + 1, points);
+    for (size_t i = 0; i <= degree; i++) points[i] = vec_add(points[i], offset);
+    lanes_chords chords;
+    uint32_t unused;
+    for (uint32_t first = 0; first < CHORDS; first += LANES)
+      lanes_points(lanes_basis(degree, workspace), points, degree, false, first, offset, &chords, &unused);
+    lanes_box boxes[STRETCHES];
+    lanes_boxes(&chords, boxes);
+
+    double x[BALLS], y[BALLS], z[BALLS], reach[BALLS], sizes[BALLS], lower[BALLS];
+    for (int k = 0; k < BALLS; k++) {
+      const vec3 c = vec_axpy(offset, rng_uniform(&r, 0, 4), rng_unit(&r));
+      x[k] = c.x, y[k] = c.y, z[k] = c.z, reach[k] = rng_uniform(&r, 0, 0.5);
+      sizes[k] = vec_norm(c) + reach[k];
+      lower[k] = k == 0 ? 1e300 : -INFINITY;
+    }
+    const lanes_balls balls = {.n = BALLS, .padded = BALLS, .x = x, .y = y, .z = z, .reach = reach, .sizes = sizes};
+    const double radius = rng_uniform(&r, 0, 0.5);
+    lanes_box_bounds(&balls, boxes, STRETCHES, radius, 0.0, lower);
+    assert_true(lower[0] == 1e300);
+    for (int k = 1; k < BALLS; k++) {
+      const vec3 c = vec(x[k], y[k], z[k]);
+      const long double margin = (long double)radius + (long double)reach[k];
+      long double to_chords = INFINITY, to_boxes = INFINITY;
+      for (size_t i = 0; i < CHORDS; i++) {
+        const vec3 a = vec(chords.x[i], chords.y[i], chords.z[i]);
+        const vec3 b = vec(chords.x[i + 1], chords.y[i + 1], chords.z[i + 1]);
+        to_chords = fminl(to_chords, ref_point_segment(ref_vec(c), ref_vec(a), ref_vec(b)));
+      }
+      for (size_t i = 0; i < STRETCHES; i++) to_boxes = fminl(to_boxes, sqrtl(square_from_box(&boxes[i], c)));
+      assert_true((long double)lower[k] <= to_chords - margin);
+      assert_true((double)(to_boxes - margin - (long double)lower[k]) <=
+                  160 * 0x1p-53 * ((double)(to_boxes + margin) + sizes[k]));
+    }
+  }
+  cprox_workspace_free(workspace);
+}
+
 /* ---- input -------------------------------------------------------------------------------------------------------------- */
 
 static void a_mover_that_is_unusable_fails_alone(void **state) {
@@ -547,6 +605,7 @@ int main(void) {
       cmocka_unit_test(results_are_the_same_for_every_split_and_number_of_threads),
       cmocka_unit_test(ball_bounds_are_never_above_the_true_distance),
       cmocka_unit_test(chords_are_those_of_the_piece),
+      cmocka_unit_test(boxes_bound_the_chords_in_them),
       cmocka_unit_test(a_mover_that_is_unusable_fails_alone),
       cmocka_unit_test(unusable_calls_are_refused_with_a_sentence),
       cmocka_unit_test(a_warm_workspace_allocates_nothing_and_no_memory_is_reported),

@@ -119,7 +119,8 @@ static bool reserve(batch_run *run) {
   const lanes_balls *balls = &run->batch->balls;
   run->lower = workspace_reserve(run->q.workspace, WORKSPACE_BATCH, (balls->padded + 1) * sizeof(double));
   run->near = workspace_reserve(run->q.workspace, WORKSPACE_BATCH_NEAR, (balls->n + 1) * sizeof *run->near);
-  return run->lower && run->near;
+  run->open = workspace_reserve(run->q.workspace, WORKSPACE_BATCH_OPEN, (balls->n + 1) * sizeof *run->open);
+  return run->lower && run->near && run->open;
 }
 
 static cprox_status answer_range(question q, const cprox_batch *batch, const cprox_mover *movers, size_t first,

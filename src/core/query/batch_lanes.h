@@ -47,6 +47,18 @@ void lanes_join(lanes_chords *chords);
 /* The square distance of a point from the chords, and where it is attained: the first chord that has it, and s in [0, 1] of it. */
 double lanes_closest(const lanes_chords *chords, vec3 point, size_t *chord, double *s);
 
+/* The boxes round stretches of the chords. */
+enum { STRETCHES = 4, STRETCH = CHORDS / STRETCHES };
+typedef struct lanes_box {
+  vec3 low, high;
+} lanes_box;
+void lanes_boxes(const lanes_chords *chords, lanes_box boxes[STRETCHES]);
+
+/* Raises lower[k] to the distance of ball k, grown by `radius`, from the nearest of n boxes, where that is more; the points in the boxes are
+ * known to `slack`, the rest of the rounding is included. */
+void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n, double radius, double slack,
+                      double *lower);
+
 /* max|P_(i+2) - 2 P_(i+1) + P_i|² over the control points. */
 double lanes_bend2(const vec3 *points, size_t degree);
 

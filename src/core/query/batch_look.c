@@ -63,6 +63,36 @@ static double slack_at(const batch_run *run, size_t part, double distance, doubl
   return ROUND_UP * (run->slack + 64.0 * ROUND_U * (distance + margin + run->batch->balls.sizes[part]));
 }
 
+/* ---- boxes against all balls ------------------------------------------------------------------------------------------------ */
+
+/* The parts that come within `most` as far as `lower` can tell; the least bound of the others. */
+static double list_open(batch_run *run, double most) {
+  double beyond = INFINITY;
+  size_t n = 0;
+  for (size_t k = 0; k < run->batch->balls.n; k++) {
+    const double lower = run->lower[k];
+    const bool is_open = !(lower > most);
+    run->open[n] = (uint32_t)k;
+    n += is_open;
+    beyond = lesser(beyond, is_open ? INFINITY : lower);
+  }
+  run->n_open = n;
+  return beyond;
+}
+
+/* Where many parts come within `most` of the curve's capsule, boxes round stretches of its pieces rule out most of them at once. */
+static double bound_by_boxes(batch_run *run, double most, double beyond) {
+  enum { PAYS_FROM = 8 };
+  if (run->n_open < PAYS_FROM || !measure(run)) return beyond;
+  join_points(run);
+  const size_t pieces = run->q.mover.curve->n_pieces;
+  lanes_box boxes[BATCH_MOST_PIECES * STRETCHES];
+  for (size_t i = 0; i < pieces; i++) lanes_boxes(&run->chords[i], boxes + i * STRETCHES);
+  const double radius = run->q.mover.radius + run->beside;
+  lanes_box_bounds(&run->batch->balls, boxes, pieces * STRETCHES, radius, run->slack, run->lower);
+  return list_open(run, most);
+}
+
 /* ---- points against inner balls ------------------------------------------------------------------------------------------- */
 
 /* All points of the inner ball are of the part; of a disc it counts only from its own plane. */
@@ -94,20 +124,21 @@ static uint32_t promising_half(const curve_capsule *whole, vec3 per_chord, vec3 
 
 /* The halves that are promising first, then the others. */
 static bool find_hit(batch_run *run, double limit, batch_hit *hit) {
-  const cprox_batch *batch = run->batch;
   const curve_capsule *whole = &run->q.mover.curve->whole;
   const vec3 chord = vec_sub(whole->b, whole->a);
   const double length2 = vec_norm2(chord);
   const vec3 per_chord = vec_scale(length2 > 0.0 ? 1.0 / length2 : 0.0, chord);
   const uint32_t halves = 2 * (uint32_t)run->q.mover.curve->n_pieces;
-  for (size_t k = 0; k < batch->balls.n; k++) {
+  for (size_t i = 0; i < run->n_open; i++) {
+    const uint32_t k = run->open[i];
     if (run->lower[k] > limit || !has_inner_ball(run, k)) continue;
     if (!run->measured && !measure(run)) return false;
-    if (hits(run, k, promising_half(whole, per_chord, batch->cores[k].centre, halves), limit, hit)) return true;
+    if (hits(run, k, promising_half(whole, per_chord, run->batch->cores[k].centre, halves), limit, hit)) return true;
   }
-  for (size_t k = 0; k < batch->balls.n && run->measured; k++) {
+  for (size_t i = 0; i < run->n_open && run->measured; i++) {
+    const uint32_t k = run->open[i];
     if (run->lower[k] > limit || !has_inner_ball(run, k)) continue;
-    const uint32_t first = promising_half(whole, per_chord, batch->cores[k].centre, halves);
+    const uint32_t first = promising_half(whole, per_chord, run->batch->cores[k].centre, halves);
     for (uint32_t half = 0; half < halves; half++)
       if (half != first && hits(run, k, half, limit, hit)) return true;
   }
@@ -156,25 +187,27 @@ static void put_in_order(batch_run *run, size_t promising, double upper, batch_l
 void batch_look_around(batch_run *run, batch_look *look) {
   const cprox_batch *batch = run->batch;
   const question *q = &run->q;
+  const double most = question_wants_verdict(q) ? q->limit : INFINITY;
+  const bool short_enough = q->mover.curve->n_pieces <= BATCH_MOST_PIECES;
   look->n = 0;
-  look->beyond = INFINITY;
   run->measured = run->joined = false;
   run->cut = 0;
   lanes_ball_bounds(&batch->balls, &q->mover.curve->whole, q->mover.radius, run->lower);
+  look->beyond = list_open(run, most);
+  if (short_enough) look->beyond = bound_by_boxes(run, most, look->beyond);
 
-  const bool short_enough = q->mover.curve->n_pieces <= BATCH_MOST_PIECES;
   look->is_hit = short_enough && find_hit(run, greater(q->limit, 0.0), &look->hit);
   if (look->is_hit) {
-    for (size_t k = 0; k < batch->balls.n; k++) look->beyond = lesser(look->beyond, run->lower[k]);
+    for (size_t i = 0; i < run->n_open; i++) look->beyond = lesser(look->beyond, run->lower[run->open[i]]);
     return;
   }
 
-  /* what comes within `most` as far as balls and chords can tell */
-  const double most = question_wants_verdict(q) ? q->limit : INFINITY;
+  /* what comes within `most` as far as chords can tell */
   double least_upper = INFINITY;
   size_t promising = 0;
-  for (size_t k = 0; k < batch->balls.n; k++) {
-    if (run->lower[k] > lesser(most, least_upper)) {
+  for (size_t i = 0; i < run->n_open; i++) {
+    const size_t k = run->open[i];
+    if (run->lower[k] > least_upper) {
       look->beyond = lesser(look->beyond, run->lower[k]);
       continue;
     }

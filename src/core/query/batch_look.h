@@ -13,7 +13,9 @@ enum {
 typedef struct batch_run {
   const cprox_batch *batch;
   question q;
-  double *lower;       /* of each part's ball, padded */
+  double *lower;  /* of each part's ball, padded */
+  uint32_t *open; /* the n_open parts whose bound does not settle them */
+  size_t n_open;
   candidate *near;     /* what may matter to the mover */
   const double *basis; /* of the degree, */
   size_t degree;       /* this one; SIZE_MAX: of none */
