@@ -10,6 +10,9 @@
 #include <cmocka.h>
 
 #include "curve_proximity/cprox.h"
+#include "query/answer.h"
+#include "query/robot_crowd.h"
+#include "query/set_walk.h"
 #include "support/builders.h"
 #include "support/robots.h"
 
@@ -155,6 +158,80 @@ static void first_contact_with_a_set_is_the_earliest_of_its_targets(void **state
   }
 }
 
+/* Beneath a node of the tree nothing is nearer than the node's lane says. A ball that slides straight at balls: its travel is half of the
+ * way and not less, boxes touch the balls where it comes from, so that a bound with any of the terms missing is too high. 1e-12 is the
+ * rounding of the truth, which is told by hand; boxes are widened by 1e-9 of what they are made of. */
+static double lanes_below(robot_scene *scene, uint32_t at, double travel, const double *truth, size_t *seen) {
+  crowd_lanes lanes;
+  crowd_measure(scene, 0, at, travel, &lanes);
+  double least = INFINITY;
+  for (uint32_t l = 0; l < TREE_LANES; l++) {
+    if (!(lanes.live >> l & 1u)) continue;
+    const bool leaf = (at & TREE_LEAF) != 0;
+    const double below =
+        leaf ? truth[scene->q->set->of_box[lanes.under[l]]] : lanes_below(scene, lanes.under[l], travel, truth, seen);
+    *seen += leaf;
+    assert_true(lanes.lower[l] <= below + 1e-12);
+    if (leaf) assert_true(lanes.lower[l] >= below - 1e-7);
+    least = fmin(least, below);
+  }
+  return least;
+}
+
+static void lanes_bound_what_is_under_them_over_the_whole_node(void **state) {
+  (void)state;
+  enum { BALLS = 60 };
+  rng r = rng_seed(6604);
+  for (size_t round = 0; round < test_cases(200); round++) {
+    const double own = rng_uniform(&r, 0.05, 0.2), other = rng_uniform(&r, 0.05, 0.2), way = rng_uniform(&r, 0.1, 2);
+    const double padding = round % 2 ? 0.03 : 0.0;
+    const vec3 axis = vec(round % 3 == 0, round % 3 == 1, round % 3 == 2);
+    cprox_body *moving = NULL, *ball = NULL;
+    assert_int_equal(cprox_body_create_sphere(own, ws, &moving), CPROX_OK);
+    assert_int_equal(cprox_body_create_sphere(other, ws, &ball), CPROX_OK);
+    const cprox_pose origin = cprox_pose_identity();
+    const cprox_link link = {
+        .parent = -1, .type = CPROX_JOINT_PRISMATIC, .origin = origin, .axis = axis, .multiplier = 1.0};
+    const cprox_link_geometry geometry = {.body = moving, .pose = origin, .padding = padding};
+    cprox_robot *robot = NULL;
+    assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robot), CPROX_OK);
+    const double begin = 0.0;
+    const int32_t variable = 0;
+    const cprox_waypoint points[2] = {{.time = 0, .positions = &begin}, {.time = 1, .positions = &way}};
+    cprox_motion *motion = NULL;
+    assert_int_equal(cprox_motion_create_waypoints(robot, &variable, 1, points, 2, CPROX_LINEAR, NULL, ws, &motion),
+                     CPROX_OK);
+
+    /* ahead of where the ball ends */
+    cprox_target targets[BALLS];
+    double truth[BALLS];
+    for (size_t i = 0; i < BALLS; i++) {
+      cprox_pose pose = origin;
+      const double at = way + 1.0 + 0.5 * (double)i;
+      pose.position = vec_scale(at, axis);
+      targets[i] = cprox_at(ball, pose);
+      truth[i] = at - way - own - padding - other;
+    }
+    cprox_set *set = NULL;
+    assert_int_equal(cprox_set_create(targets, BALLS, ws, &set), CPROX_OK);
+    question q = question_create(cprox_robot_along(motion, NULL, 0), targets, BALLS, -1.0, false, NULL, ws);
+    q.set = set;
+    robot_scene scene;
+    assert_true(robot_scene_begin(&scene, &q, 0, BALLS));
+    robot_scene_enter(&scene, 0, 0.0, 1.0);
+    const robot_pair any = {.moving = 0, .element = {-1, -1}};
+    size_t seen = 0;
+    robot_scene_moving(&scene, &any);
+    lanes_below(&scene, 0, robot_scene_way(&scene, &any), truth, &seen);
+    assert_int_equal(seen, BALLS);
+    cprox_set_free(set);
+    cprox_motion_free(motion);
+    cprox_robot_free(robot);
+    cprox_body_free(moving);
+    cprox_body_free(ball);
+  }
+}
+
 /* A robot that moves among targets ten times as many looks at few more of them. */
 static void the_work_hardly_grows_with_the_number_of_targets(void **state) {
   (void)state;
@@ -187,6 +264,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_set_is_answered_as_its_targets_one_by_one),
       cmocka_unit_test(first_contact_with_a_set_is_the_earliest_of_its_targets),
+      cmocka_unit_test(lanes_bound_what_is_under_them_over_the_whole_node),
       cmocka_unit_test(the_work_hardly_grows_with_the_number_of_targets),
   };
   return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);

@@ -135,6 +135,18 @@ static cprox_status certify_near(const task *t) {
   return cover_near(&c, (uint32_t)section, r);
 }
 
+static cprox_status certify_curve(const task *t) {
+  const cprox_mover *mover = t->mover;
+  if (mover->body || !mover->curve)
+    return workspace_fail(t->workspace, CPROX_INVALID, "bodies that move have no certificates");
+  if (mover->curve->arcs)
+    return workspace_fail(t->workspace, CPROX_INVALID, "curves known by their arc length have no certificates");
+  for (size_t i = 0; i < t->n; i++)
+    if (!is_known(&t->targets[i]))
+      return workspace_fail(t->workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates", i);
+  return t->answer && t->answer->upper <= t->delta ? certify_near(t) : certify_apart(t);
+}
+
 cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
                      const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                      cprox_certificate *certificate) {
@@ -148,17 +160,12 @@ cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size
                   .workspace = workspace,
                   .certificate = certificate};
   certificate_clear(certificate);
-  if (mover->motion) return certify_robot(mover, targets, n, delta, answer, options, workspace, certificate);
-  if (mover->body || !mover->curve)
-    return workspace_fail(workspace, CPROX_INVALID, "bodies that move have no certificates");
-  if (mover->curve->arcs)
-    return workspace_fail(workspace, CPROX_INVALID, "curves known by their arc length have no certificates");
-  for (size_t i = 0; i < n; i++)
-    if (!is_known(&targets[i]))
-      return workspace_fail(workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates", i);
-  const cprox_status status = answer && answer->upper <= delta ? certify_near(&t) : certify_apart(&t);
+  const cprox_status status = mover->motion
+                                  ? certify_robot(mover, targets, n, delta, answer, options, workspace, certificate)
+                                  : certify_curve(&t);
   if (status == CPROX_OK) return status;
   certificate_clear(certificate);
+  if (status == CPROX_INVALID) return status; /* its reason is told */
   if (status == CPROX_MEMORY) return workspace_fail(workspace, status, "no memory for a certificate");
   return workspace_fail(
       workspace, status,

@@ -46,21 +46,11 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_target *targets
   if (!certify_knows_robot(mover->motion->robot) || !knows_targets(targets, n))
     return workspace_fail(workspace, CPROX_INVALID, "a body of the question is of a kind that has no certificates");
   robot_scene scene;
-  if (!robot_scene_begin(&scene, &q, 0, n))
-    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a certificate");
+  if (!robot_scene_begin(&scene, &q, 0, n)) return CPROX_MEMORY;
   if (scene.n_pairs > MOST_PAIRS)
     return workspace_fail(workspace, CPROX_INVALID, "%zu pairs are too many for a certificate", scene.n_pairs);
   const double epsilon = answer ? fmax(options->epsilon, options->relative_epsilon * answer->upper) : 0.0;
   const robot_cover near = {.scene = &scene, .delta = delta, .certificate = certificate};
-  cprox_status status;
-  if (answer && answer->upper <= delta)
-    status = cover_robot_near(&near, answer);
-  else
-    status = certify_apart(&scene, delta, answer, epsilon, options->max_nodes, certificate);
-  if (status == CPROX_OK) return status;
-  certificate_clear(certificate);
-  if (status == CPROX_MEMORY) return workspace_fail(workspace, status, "no memory for a certificate");
-  return workspace_fail(
-      workspace, status,
-      status == CPROX_BUDGET ? "max_nodes were not enough for a certificate" : "too close to delta for a certificate");
+  if (answer && answer->upper <= delta) return cover_robot_near(&near, answer);
+  return certify_apart(&scene, delta, answer, epsilon, options->max_nodes, certificate);
 }
