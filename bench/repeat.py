@@ -74,14 +74,18 @@ def percent(values, quantile):
     return f'{100.0 * values[int(quantile * (len(values) - 1) + 0.5)]:.0f} %'
 
 
-def page(compared, by_group):
+def page(compared, by_group, made):
     lines = [['same' if same else '**differs**', target['name'], short(first), short(second), spread_text(target)]
              for target, first, second, same in compared]
     groups = [[group, str(len(values)), percent(values, 0.5), percent(values, 0.9), percent(values, 1.0)]
               for group, values in by_group.items()]
     return f'''# A second run
 
-The command was run twice on the same machine. A target's ratio is the same where both figures are within its spread, which `bench/targets.csv` states
+This run: {made[0]}
+
+The other: {made[1]}
+
+A target's ratio is the same where both figures are within its spread, which `bench/targets.csv` states
 (20 % where it says nothing; exponents 0.1); counts must be equal.
 
 {table(['', 'target', 'this run', 'the other', 'spread'], lines)}
@@ -93,11 +97,11 @@ Another method's time over ours, one for each workload and parameter: by how muc
 '''
 
 
-def report(rows, others, out):
-    """Writes the page, prints a line for each target that differs and a summary; the number of those that differ."""
+def report(rows, others, out, made):
+    """made: how both runs came to be. Writes the page, prints a line for each target that differs and a summary; the number of those that differ."""
     compared = list(compare_targets(rows, others))
     with open(os.path.join(out, PAGE), 'w') as text:
-        text.write(page(compared, differences(rows, others)))
+        text.write(page(compared, differences(rows, others), made))
     differing = [line for line in compared if not line[-1]]
     for target, first, second, _ in differing:
         print(f"DIFFERS      {target['name']}: {first:.3g} and {second:.3g} ({target['kind']})")

@@ -60,6 +60,11 @@ def read_results(path):
         return list(csv.DictReader(text))
 
 
+def how_made(folder):
+    with open(os.path.join(folder, MADE)) as text:
+        return text.read().strip()
+
+
 def measure(parser, arguments):
     """Runs the groups into results.csv, and notes how. The names of those that failed."""
     groups = programs(arguments.programs)
@@ -99,15 +104,16 @@ def main():
     earlier = arguments.pages or arguments.compare
     failed = [] if earlier else measure(parser, arguments)
     rows = read_results(os.path.join(arguments.out, 'results.csv'))
+    made = how_made(arguments.out)
     drawn = charts.present(arguments.out) if earlier else charts.draw_all(rows, arguments.out)
 
     # Does another run say the same?
     differing = 0
     if arguments.compare:
-        differing = repeat.report(rows, read_results(os.path.join(arguments.compare, 'results.csv')), arguments.out)
+        other = read_results(os.path.join(arguments.compare, 'results.csv'))
+        differing = repeat.report(rows, other, arguments.out, (made, how_made(arguments.compare)))
 
-    with open(os.path.join(arguments.out, MADE)) as text:
-        written = pages.write_all(rows, drawn, arguments.out, text.read().strip())
+    written = pages.write_all(rows, drawn, arguments.out, made)
     print(f"{len(rows)} rows in {arguments.out}/results.csv, {len(drawn)} charts and {', '.join(written)} beside it")
     for name in failed:
         print(f'FAILED: {name} ended with an error')

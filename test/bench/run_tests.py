@@ -85,8 +85,8 @@ class Repeat(unittest.TestCase):
         rows = committed()
         slow = [dict(r, median_us=str(2.0 * float(r['median_us']))) if r['method'] == 'paper' and r['median_us'] else r for r in rows]
         with tempfile.TemporaryDirectory() as out, contextlib.redirect_stdout(io.StringIO()):
-            self.assertEqual(repeat.report(rows, rows, out), 0)
-            self.assertGreater(repeat.report(rows, slow, out), 5)
+            self.assertEqual(repeat.report(rows, rows, out, ('here', 'there')), 0)
+            self.assertGreater(repeat.report(rows, slow, out, ('here', 'there')), 5)
             with open(os.path.join(out, repeat.PAGE)) as text:
                 self.assertIn('**differs**', text.read())
 
