@@ -236,7 +236,7 @@ static void sampled(const void *problems, size_t i, void *state, bench_answer *a
 static void measure_scenes(const bench_size *size, const char *name, bool planar, size_t n, asked *q) {
   if (!bench_wanted(size, name)) return;
   static const char *const verbs[] = {"distance", "tolerance", "collision"};
-  const size_t scenes = size->rounds > 3 ? SCENES : 1;
+  const size_t scenes = size->quick ? 1 : SCENES;
   scene *s[SCENES];
   for (size_t i = 0; i < scenes; i++) s[i] = scene_make(100 + i, planar, n, q);
   judged own[3] = {{.asked = q}, {.asked = q}, {.asked = q}};

@@ -3,45 +3,36 @@
 import math
 import os
 
+import passes
 import targets
 from pages.figures import short, table
 
-COUNTS = ('nodes', 'probes', 'unsound', 'failures', 'fewer', 'node growth')
 UNTIMED = ('stability',)  # one round a problem: its counts are what is asked of it
 PAGE = 'repeat.md'
 
 
-def spread_of(target):
-    """How far two runs of the command may be apart: a factor of 1 + spread for ratios, the spread itself for exponents, nothing
-    for counts; None where figures say as much about the machine as about us."""
-    if target['kind'] in ('microseconds', 'error'):
-        return None
-    return 0.0 if target['kind'] in COUNTS else float(target['slack'] or targets.SLACK[target['kind']])
-
-
-def spread_text(target):
-    """The same for people."""
-    spread = spread_of(target)
+def spread_text(target, spread):
+    """The spread of passes.spread_of() for people."""
     if spread is None:
         return 'not held'
-    return 'exact' if target['kind'] in COUNTS else f'± {spread:g}' if target['kind'] == 'exponent' else f'{100.0 * spread:.0f} %'
+    return 'exact' if spread == 0.0 else f'± {spread:.2g}' if target['kind'] == 'exponent' else f'{100.0 * spread:.0f} %'
 
 
-def agree(first, second, target):
-    spread = spread_of(target)
-    if target['kind'] in COUNTS:
+def agree(first, second, target, spread):
+    if spread == 0.0:
         return first == second
     if target['kind'] == 'exponent':
         return abs(first - second) <= spread
     return abs(math.log(first / second)) <= math.log1p(spread)
 
 
-def compare_targets(rows, others):
-    """For each target that both runs measured and that has a spread: target, both figures, whether they agree."""
+def compare_targets(rows, others, of_passes):
+    """For each target that both runs measured and that has a spread: target, both figures, the spread, whether they agree."""
     for target in targets.read_targets():
         first, second = targets.figure(rows, target), targets.figure(others, target)
-        if first is not None and second is not None and spread_of(target) is not None:
-            yield target, first, second, agree(first, second, target)
+        spread = passes.spread_of(target, of_passes)
+        if first is not None and second is not None and spread is not None:
+            yield target, first, second, spread, agree(first, second, target, spread)
 
 
 def all_ratios(rows):
@@ -75,8 +66,8 @@ def percent(values, quantile):
 
 
 def page(compared, by_group, made):
-    lines = [['same' if same else '**differs**', target['name'], short(first), short(second), spread_text(target)]
-             for target, first, second, same in compared]
+    lines = [['same' if same else '**differs**', target['name'], short(first), short(second), spread_text(target, spread)]
+             for target, first, second, spread, same in compared]
     groups = [[group, str(len(values)), percent(values, 0.5), percent(values, 0.9), percent(values, 1.0)]
               for group, values in by_group.items()]
     return f'''# A second run
@@ -85,8 +76,8 @@ This run: {made[0]}
 
 The other: {made[1]}
 
-A target's ratio is the same where both figures are within its spread, which `bench/targets.csv` states
-(20 % where it says nothing; exponents 0.1); counts must be equal.
+A target's ratio is the same where both figures are within its spread: what the passes of this run differ by (`spread.csv`), at least 20 %
+(exponents 0.1, tails 50 %). Counts must be equal.
 
 {table(['', 'target', 'this run', 'the other', 'spread'], lines)}
 
@@ -99,11 +90,11 @@ Another method's time over ours, one for each workload and parameter: by how muc
 
 def report(rows, others, out, made):
     """made: how both runs came to be. Writes the page, prints a line for each target that differs and a summary; the number of those that differ."""
-    compared = list(compare_targets(rows, others))
+    compared = list(compare_targets(rows, others, passes.read_spread(out)))
     with open(os.path.join(out, PAGE), 'w') as text:
         text.write(page(compared, differences(rows, others), made))
     differing = [line for line in compared if not line[-1]]
-    for target, first, second, _ in differing:
+    for target, first, second, *_ in differing:
         print(f"DIFFERS      {target['name']}: {first:.3g} and {second:.3g} ({target['kind']})")
     print(f'{len(compared) - len(differing)} of {len(compared)} targets are the same in both runs')
     return len(differing)

@@ -12,6 +12,7 @@ import time
 
 import charts
 import pages
+import passes
 import repeat
 import soundness
 import targets
@@ -23,6 +24,8 @@ NOT_GROUPS = {'core'}  # Google benchmark's: no rows of results.csv
 SCRIPTS = {'rungs': 'rungs.py'}  # groups that ask the command line, where there is one
 TABLES = {'hulls.csv': 'hulls.py'}  # tables beside results.csv, of the command line too
 MADE = 'made.txt'  # how the results came to be
+PASSES, ROUNDS = 3, '3'  # of a full run; a quick one has one pass
+ONCE = {'fourier', 'ros', 'rungs', 'stability'}  # asked for errors and counts, or too long: in the first pass only
 COLUMNS = ['group', 'workload', 'method', 'parameter', 'median_us', 'p95_us', 'nodes', 'probes', 'error', 'unsound', 'failures']
 
 
@@ -46,9 +49,9 @@ def run_tables(quick, out):
     return failed
 
 
-def run_group(command, quick, out):
+def run_group(command, flags, out):
     """Runs one program; its rows go on to `out` as they come. Returns its exit code."""
-    process = subprocess.Popen(command + (['--quick'] if quick else []), stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen(command + flags, stdout=subprocess.PIPE, text=True)
     for line in process.stdout:
         out.write(line)
         out.flush()
@@ -74,18 +77,40 @@ def measure(parser, arguments):
     flags = ['--quick'] * arguments.quick + [f'--only {name}' for name in arguments.only or []] + ['--check'] * arguments.check
     with open(os.path.join(arguments.out, MADE), 'w') as text:
         text.write(pages.how_made(' '.join(['scripts/bench', *flags]), pages.commit_of(os.path.dirname(__file__))) + '\n')
-    failed = []
-    with open(os.path.join(arguments.out, 'results.csv'), 'w') as out:
-        out.write(','.join(COLUMNS) + '\n')
-        for name in arguments.only or groups:
-            print(f'{name} ...', file=sys.stderr)
-            begin = time.monotonic()
-            if run_group(groups[name], arguments.quick, out) != 0:
-                failed.append(name)
-            print(f'{name}: {time.monotonic() - begin:.0f} s', file=sys.stderr)
+    failed, files = [], []
+    for number in range(1 if arguments.quick else PASSES):
+        files.append(os.path.join(arguments.out, f'pass-{number + 1}.csv'))
+        with open(files[-1], 'w') as out:
+            out.write(','.join(COLUMNS) + '\n')
+            for name in arguments.only or groups:
+                if number == 0 or name not in ONCE:
+                    failed += [name] * (not timed_group(name, number, groups[name], arguments.quick, out))
+    keep(files, arguments.out)
     if not arguments.only and shutil.which('cprox'):
         failed += run_tables(arguments.quick, arguments.out)
     return failed
+
+
+def timed_group(name, number, command, quick, out):
+    """One group of a pass, and how long it took. Whether it ended well."""
+    print(f'pass {number + 1}, {name} ...', file=sys.stderr)
+    begin = time.monotonic()
+    flags = ['--quick'] if quick else [] if name in ONCE else ['--rounds', ROUNDS]
+    code = run_group(command, flags, out)
+    print(f'pass {number + 1}, {name}: {time.monotonic() - begin:.0f} s', file=sys.stderr)
+    return code == 0
+
+
+def keep(files, out):
+    """The passes become one run; their own files have done their work."""
+    measured = [read_results(path) for path in files]
+    with open(os.path.join(out, 'results.csv'), 'w', newline='') as text:
+        writer = csv.DictWriter(text, COLUMNS, lineterminator='\n')
+        writer.writeheader()
+        writer.writerows(passes.merge(measured))
+    passes.write_spread(measured, out)
+    for path in files:
+        os.remove(path)
 
 
 def main():

@@ -4,6 +4,7 @@ import csv
 import fnmatch
 import os
 
+import passes
 import repeat
 import targets
 from pages.figures import microseconds, short, table
@@ -37,10 +38,11 @@ def reason_for(name, known):
     return next((line['why'] for line in known if fnmatch.fnmatchcase(name, line['pattern'])), 'Not explained yet.')
 
 
-def target_lines(rows):
+def target_lines(rows, of_passes):
     for verdict, target, value in targets.judge_all(rows):
         shown = 'no rows' if value is None else f'{value:.3g}'
-        yield [verdict, target['name'], shown, repeat.spread_text(target), targets.asked(target), target['kind'] + (f" to {target['baseline']}" if target['baseline'] else '')]
+        yield [verdict, target['name'], shown, repeat.spread_text(target, passes.spread_of(target, of_passes)), targets.asked(target),
+               target['kind'] + (f" to {target['baseline']}" if target['baseline'] else '')]
 
 
 # What grows: group and workload (fnmatch), and what is fitted: time, or memory, whose rows count bytes, of all or of each element.
@@ -120,6 +122,7 @@ def second_run(out):
 def page(figures, drawn, made, out):
     chart_lines = [[', '.join(f'[{name}]({name}.png)' for name in drawn if fnmatch.fnmatchcase(name, pattern)), text]
                    for pattern, text in CHARTS if any(fnmatch.fnmatchcase(name, pattern) for name in drawn)]
+    of_passes = passes.read_spread(out)
     return f'''# Charts
 
 {made}
@@ -131,10 +134,11 @@ Trust ratios and counts, not microseconds. `results.csv` has every row. [choosin
 {table(['chart', 'shows'], chart_lines)}
 
 ## Targets
-`bench/targets.csv`, held against this run; the spread is what two runs on the same machine may differ by, and what is missed by no more than that is
-"within slack". {second_run(out)}
+`bench/targets.csv`, held against this run, whose figures are the medians of {len(next(iter(of_passes.values()), [0]))} passes in fresh processes. The spread is what two runs
+on the same machine may differ by: what the passes differ by (`spread.csv`), at least 20 % (exponents 0.1, tails 50 %). What is missed by no
+more than that least is "within slack". {second_run(out)}
 
-{table(['', 'target', 'figure', 'spread', 'asked', 'kind'], list(target_lines(figures.rows)))}
+{table(['', 'target', 'figure', 'spread', 'asked', 'kind'], list(target_lines(figures.rows, of_passes)))}
 
 ## Growth
 Time or memory against size: the exponent of a power, fitted by least squares to the logarithms. 1 is in proportion, 0 is not at all.

@@ -13,10 +13,9 @@ enum { MAX_ROUNDS = 64, MAX_METHODS = 16, BLOCK = 10 };
 /* A sample lasts at least this long, so that the clock's own cost does not count [s]. */
 static const double SHORTEST_SAMPLE = 2e-5;
 
-/* A method that takes longer than this [s] is asked in the first few rounds only: its noise is small beside its time, and its time is
+/* A method that takes longer than this [s] is asked in a third of the rounds only: its noise is small beside its time, and its time is
  * most of the run's. */
 static const double SLOW = 2e-3;
-enum { SLOW_ROUNDS = 3 };
 
 static double now(void) {
   struct timespec t;
@@ -40,12 +39,15 @@ bench_size bench_arguments(int argc, char **argv) {
   bench_size size = {.problems = 200, .rounds = 7};
   for (int i = 1; i < argc; i++) {
     if (strcmp(argv[i], "--quick") == 0) {
+      size.quick = true;
       size.problems = 40;
       size.rounds = 3;
+    } else if (strcmp(argv[i], "--rounds") == 0 && i + 1 < argc && atoi(argv[i + 1]) > 0) {
+      size.rounds = atoi(argv[++i]);
     } else if (strcmp(argv[i], "--only") == 0 && i + 1 < argc) {
       size.only = argv[++i];
     } else {
-      fprintf(stderr, "usage: %s [--quick] [--only WORKLOAD]\n", argv[0]);
+      fprintf(stderr, "usage: %s [--quick] [--rounds N] [--only WORKLOAD]\n", argv[0]);
       exit(2);
     }
   }
@@ -82,7 +84,7 @@ typedef struct effort {
 static effort effort_for(const bench_workload *w, const bench_size *size, const bench_method *m, size_t problem) {
   bench_answer answer;
   double once = time_of(w, m, problem, 1, &answer); /* warm */
-  if (once > SLOW) return (effort){1, size->rounds < SLOW_ROUNDS ? size->rounds : SLOW_ROUNDS};
+  if (once > SLOW) return (effort){1, (size->rounds + 2) / 3};
   once = time_of(w, m, problem, 1, &answer);
   if (once >= SHORTEST_SAMPLE) return (effort){1, size->rounds};
   return (effort){(size_t)fmin(SHORTEST_SAMPLE / fmax(once, 1e-8), 1000.0) + 1, size->rounds};

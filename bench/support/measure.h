@@ -38,10 +38,11 @@ typedef struct bench_workload {
   double doubt;        /* how far the truth itself may be off */
 } bench_workload;
 
-/* How much is done: from the command line (--quick, --only WORKLOAD). */
+/* How much is done: from the command line (--quick, --rounds N, --only WORKLOAD). */
 typedef struct bench_size {
   size_t problems; /* of a workload, at most */
   int rounds;
+  bool quick;       /* smaller problems */
   const char *only; /* workloads whose names contain this, or NULL */
 } bench_size;
 

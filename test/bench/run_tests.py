@@ -8,11 +8,13 @@ import os
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 REPO = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(REPO, 'bench'))
 
 import pages  # noqa: E402
+import passes  # noqa: E402
 import repeat  # noqa: E402
 import soundness  # noqa: E402
 import targets  # noqa: E402
@@ -65,21 +67,28 @@ class Targets(unittest.TestCase):
         self.assertEqual(targets.judge(1.0, target(kind='failures', limit='0')), 'MISSED')
 
     def test_a_target_of_a_known_peer_that_is_not_here_is_not_measured_and_any_other_is_missed(self):
-        real = targets.read_targets
-        try:
-            targets.read_targets = lambda: [target(baseline='Bullet'), target(baseline='paper')]
+        with mock.patch.object(targets, 'read_targets', lambda: [target(baseline='Bullet'), target(baseline='paper')]):
             self.assertEqual([verdict for verdict, _, _ in targets.judge_all([row()])], ['not measured', 'MISSED'])
-        finally:
-            targets.read_targets = real
 
 
 class Repeat(unittest.TestCase):
+    def agree(self, first, second, of_passes=(), **of_target):
+        asked = target(**of_target)
+        return repeat.agree(first, second, asked, passes.spread_of(asked, {asked['name']: list(of_passes)} if of_passes else {}))
+
     def test_ratios_agree_within_a_fifth_and_counts_exactly(self):
-        self.assertTrue(repeat.agree(10.0, 11.9, target()))
-        self.assertFalse(repeat.agree(10.0, 12.1, target()))
-        self.assertFalse(repeat.agree(12.1, 10.0, target()))
-        self.assertFalse(repeat.agree(7, 8, target(kind='nodes')))
-        self.assertTrue(repeat.agree(0.2, 0.29, target(kind='exponent')))
+        self.assertTrue(self.agree(10.0, 11.9))
+        self.assertFalse(self.agree(10.0, 12.1))
+        self.assertFalse(self.agree(12.1, 10.0))
+        self.assertFalse(self.agree(7, 8, kind='nodes'))
+        self.assertTrue(self.agree(0.2, 0.29, kind='exponent'))
+
+    def test_what_the_passes_differ_by_two_runs_may(self):
+        self.assertTrue(self.agree(10.0, 12.1, of_passes=(8.0, 9.0, 10.4)))
+        self.assertFalse(self.agree(10.0, 13.1, of_passes=(8.0, 9.0, 10.4)))
+        self.assertFalse(self.agree(10.0, 12.1, of_passes=(10.0, 10.1, 10.2)))
+        self.assertTrue(self.agree(0.2, 0.39, of_passes=(0.1, 0.2, 0.3), kind='exponent'))
+        self.assertFalse(self.agree(7, 8, of_passes=(7, 9), kind='nodes'))
 
     def test_a_run_agrees_with_itself_and_not_with_one_whose_peer_is_twice_as_slow(self):
         rows = committed()
@@ -94,6 +103,25 @@ class Repeat(unittest.TestCase):
         first = [row(), row(method='peer', median_us=2)]
         second = [row(median_us=10), row(method='peer', median_us=30)]
         self.assertAlmostEqual(repeat.differences(first, second)['g'][0], 0.5)
+
+
+class Passes(unittest.TestCase):
+    def test_a_merged_row_has_the_median_of_the_times_and_the_largest_of_the_counts(self):
+        one = passes.merge([[row(median_us=us, p95_us=2 * us, nodes=nodes, failures=failures, error='')]
+                            for us, nodes, failures in ((3, 7, 0), (1, 5, 2), (2, 6, 1))])
+        self.assertEqual(len(one), 1)
+        self.assertEqual([one[0][key] for key in ('median_us', 'p95_us', 'nodes', 'failures', 'error')], ['2', '4', '7', '2', ''])
+
+    def test_rows_that_one_pass_has_are_kept_and_so_is_the_order(self):
+        merged = passes.merge([[row(workload='b'), row(workload='a', median_us='nan')], [row(workload='b')]])
+        self.assertEqual([(r['workload'], r['median_us']) for r in merged], [('b', '1'), ('a', 'nan')])
+
+    def test_the_spread_is_read_as_it_was_written(self):
+        with tempfile.TemporaryDirectory() as out, mock.patch.object(targets, 'read_targets', lambda: [target()]):
+            passes.write_spread([[row(), row(method='peer', median_us=us)] for us in (4, 5, 6)], out)
+            self.assertEqual(passes.read_spread(out), {'a target': [4.0, 5.0, 6.0]})
+            self.assertAlmostEqual(passes.spread_of(target(), passes.read_spread(out)), 0.5)
+        self.assertEqual(passes.read_spread(out), {})
 
 
 class Soundness(unittest.TestCase):
