@@ -75,6 +75,27 @@ def gradients(rows, out, save):
     return save(figure, out, 'fourier_gradients')
 
 
+def tables(rows, out, save):
+    """A box's gap: the error of value against the time, by the closed form and by tables of its spectrum."""
+    found = collections.defaultdict(list)
+    for row in rows:
+        if row['workload'] == 'box value and gradient' and row['method'] != 'no rotation':
+            found[row['method']].append((float(row['median_us']), max(float(row['error']), 1e-16), row['parameter']))
+    if not found:
+        return None
+    figure, axes = plt.subplots()
+    for k, (method, points) in enumerate(found.items()):
+        colour = list(COLOURS.values())[k]
+        axes.loglog(*zip(*(point[:2] for point in points)), 'o', color=colour, label=method)
+        for x, y, parameter in points:
+            axes.annotate(parameter, (x, y), textcoords='offset points', xytext=(5, 4), fontsize=7, color=colour)
+    axes.set_xlabel('time of value and gradient [µs]')
+    axes.set_ylabel('largest error of V/t')
+    axes.set_title('Two boxes: closed-form spectrum, and tables with tricubic interpolation')
+    axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0))
+    return save(figure, out, 'fourier_tables')
+
+
 def outlines(rows):
     """n, theta -> closed lists of x, y."""
     found = collections.defaultdict(lambda: ([], []))
@@ -143,5 +164,5 @@ def nesting(rows, out, save):
 
 def draw(rows, out, save):
     rows = [row for row in rows if row['group'] == 'fourier']
-    for chart in (over_reach, cost, gradients, convergence, obstacle, nesting):
+    for chart in (over_reach, cost, gradients, tables, convergence, obstacle, nesting):
         yield chart(rows, out, save)

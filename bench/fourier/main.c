@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Fourier gap functions: how far bodies apart are still called colliding, over n, ours beside the paper's kernel (its Figs. 3 and 5);
- * outlines of the SE(2) obstacle (Fig. 6); what their gradients are worth; what a query costs beside a distance between convex bodies; a nesting problem. */
+ * outlines of the SE(2) obstacle (Fig. 6); what their gradients are worth; what a query costs beside a distance between convex bodies
+ * and beside tables of the spectrum; a nesting problem. */
 #include "fourier/parts.h"
 
 #include <stdio.h>
@@ -18,6 +19,7 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "obstacle")) fourier_obstacle(&size);
   if (bench_wanted(&size, "gradient")) fourier_gradients(&size);
   if (bench_wanted(&size, "boxes")) fourier_pairs(&size);
+  if (bench_wanted(&size, "box value and gradient")) fourier_tables(&size);
   if (bench_wanted(&size, "nesting")) fourier_nesting(&size);
   return 0;
 }

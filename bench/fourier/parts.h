@@ -13,6 +13,7 @@ void fourier_over_reach(const bench_size *size);
 void fourier_obstacle(const bench_size *size);
 void fourier_gradients(const bench_size *size);
 void fourier_pairs(const bench_size *size);
+void fourier_tables(const bench_size *size);
 void fourier_nesting(const bench_size *size);
 
 #endif
