@@ -61,6 +61,25 @@ static bool box_cover(const convex *shape, const convex_near *near, convex_cover
   return feature_cover(near, 8, x, y, z, shape->scale, cover);
 }
 
+/* Free along the axes on which y is not cut off. */
+static void box_project(const convex *shape, vec3 y, convex_foot *foot) {
+  const double *h = shape->size;
+  const bool free[3] = {fabs(y.x) < h[0], fabs(y.y) < h[1], fabs(y.z) < h[2]};
+  foot->point = vec(free[0] ? y.x : copysign(h[0], y.x), free[1] ? y.y : copysign(h[1], y.y),
+                    free[2] ? y.z : copysign(h[2], y.z));
+  foot->tangents = 0;
+  for (int i = 0; i < 3; i++) {
+    if (!free[i]) continue;
+    if (foot->tangents < 2) foot->e[foot->tangents] = AXES[i];
+    foot->tangents++;
+  }
+  foot->along[0] = foot->along[1] = 1.0;
+}
+
 /* near_rounding: three differences (u of each) under a norm (3u). */
-const convex_ops convex_box = {
-    .kind = CPROX_BOX, .near_rounding = 4.0, .nearest = box_nearest, .support = box_support, .cover = box_cover};
+const convex_ops convex_box = {.kind = CPROX_BOX,
+                               .near_rounding = 4.0,
+                               .nearest = box_nearest,
+                               .support = box_support,
+                               .project = box_project,
+                               .cover = box_cover};

@@ -39,9 +39,18 @@ static bool capsule_cover(const convex *shape, const convex_near *near, convex_c
   return true;
 }
 
+static void capsule_project(const convex *shape, vec3 y, convex_foot *foot) {
+  const double half = shape->size[1];
+  foot->tangents = fabs(y.z) < half ? 1 : 0;
+  foot->point = vec(0, 0, foot->tangents ? y.z : copysign(half, y.z));
+  foot->e[0] = vec(0, 0, 1);
+  foot->along[0] = 1.0;
+}
+
 /* near_rounding: a difference (u), a norm (3u), a difference (u). */
 const convex_ops convex_capsule = {.kind = CPROX_CAPSULE,
                                    .near_rounding = 6.0,
                                    .nearest = capsule_nearest,
                                    .support = capsule_support,
+                                   .project = capsule_project,
                                    .cover = capsule_cover};

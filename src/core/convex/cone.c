@@ -70,6 +70,44 @@ static void cone_curvature(const convex *shape, vec3 d, vec3 x, double hessian[6
   hessian[3] = k * ty * ty;
 }
 
+/* Onto the slant: as far from the apex as the foot of the perpendicular, which stays on it whatever rounding does to that. */
+static void cone_project_on_slant(const convex *shape, vec3 y, double rho, convex_foot *foot) {
+  const double radius = shape->size[0], half = shape->size[1], height = 2.0 * half;
+  const double slant = feature_hypot(radius, height), nr = height / slant, nz = radius / slant;
+  const double from_apex = (rho * radius - (y.z - half) * height) / slant, f = fmin(fmax(from_apex, 0.0), slant);
+  const double cx = y.x / rho, cy = y.y / rho;
+  foot->point = vec(cx * (f * nz), cy * (f * nz), half - f * nr);
+  foot->tangents = f > 0.0 ? 2 : 0;
+  foot->e[0] = vec(-cy, cx, 0), foot->e[1] = vec(cx * nz, cy * nz, -nr);
+  foot->along[0] = f * nz / rho, foot->along[1] = 1.0;
+}
+
+static void cone_project(const convex *shape, vec3 y, convex_foot *foot) {
+  const double radius = shape->size[0], half = shape->size[1], height = 2.0 * half;
+  const double rho = feature_hypot(y.x, y.y), a = rho - radius, b = y.z + half, c = y.z - half;
+  foot->along[0] = foot->along[1] = 1.0;
+  if (a <= 0.0 && b <= 0.0) { /* the base */
+    foot->point = vec(y.x, y.y, -half);
+    foot->tangents = 2;
+    foot->e[0] = vec(1, 0, 0), foot->e[1] = vec(0, 1, 0);
+  } else if (b > 0.0 && rho * height + c * radius <= 0.0) {
+    foot->point = y;
+    foot->tangents = 3;
+    foot->e[0] = vec(1, 0, 0), foot->e[1] = vec(0, 1, 0);
+  } else if (b * height <= a * radius) { /* the rim */
+    const double cx = y.x / rho, cy = y.y / rho;
+    foot->point = vec(cx * radius, cy * radius, -half);
+    foot->tangents = 1;
+    foot->e[0] = vec(-cy, cx, 0);
+    foot->along[0] = radius / rho;
+  } else if (c * height >= rho * radius) {
+    foot->point = vec(0, 0, half);
+    foot->tangents = 0;
+  } else {
+    cone_project_on_slant(shape, y, rho, foot);
+  }
+}
+
 /* near_rounding: rho (2u) times height (u), plus c (u) times radius (u), a sum (u), over slant (2u), a quotient (u): 7u of
  * rho and 6u of |c|, at most 10u of |y| + scale. A region mistaken by rounding changes the distance by as little, since
  * each test compares coordinates that are exact to u about the feature it decides for. */
@@ -77,5 +115,6 @@ const convex_ops convex_cone = {.kind = CPROX_CONE,
                                 .near_rounding = 12.0,
                                 .nearest = cone_nearest,
                                 .support = cone_support,
+                                .project = cone_project,
                                 .curvature = cone_curvature,
                                 .follow = cone_follow};

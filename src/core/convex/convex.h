@@ -52,6 +52,14 @@ typedef struct convex_cover {
   double radius;
 } convex_cover;
 
+/* Where a point of the space is carried by the projection onto a core, and how that place moves with it. */
+typedef struct convex_foot {
+  vec3 point;      /* of the core: the nearest to y; y itself inside */
+  int tangents;    /* the dimension of the piece of the surface that the point lies on; 3 inside */
+  vec3 e[2];       /* orthonormal, tangent to it */
+  double along[2]; /* in (0, 1]: how far the point moves along e for each unit that y does; 1: the piece is straight */
+} convex_foot;
+
 /* What a kind can do. Queries get shapes that their constructor has checked. */
 typedef struct convex_ops {
   cprox_body_kind kind;
@@ -73,6 +81,10 @@ typedef struct convex_ops {
   /* The extreme point in direction d of the smooth piece of the core that x lies on (a rim, the whole ellipsoid), whether
    * or not another piece reaches farther: always a point of the core. NULL for polyhedra: x itself. */
   vec3 (*follow)(const convex *shape, vec3 d, vec3 x);
+
+  /* The point of the core nearest to y: a point of the core but for 5 u of its scale, however far y is. NULL: there is no quick closed
+   * form. */
+  void (*project)(const convex *shape, vec3 y, convex_foot *foot);
 
   /* A tight cover that touches the shape at near->point; false where there is none (a face, a flat side). NULL: never.
    */

@@ -63,11 +63,30 @@ static bool cylinder_cover(const convex *shape, const convex_near *near, convex_
   return true;
 }
 
+static void cylinder_project(const convex *shape, vec3 y, convex_foot *foot) {
+  const double radius = shape->size[0], half = shape->size[1], rho = feature_hypot(y.x, y.y);
+  const bool beside = rho > radius, between = fabs(y.z) < half;
+  const double z = between ? y.z : copysign(half, y.z);
+  if (!beside) { /* a cap, from outside or from inside */
+    foot->point = vec(y.x, y.y, z);
+    foot->tangents = between ? 3 : 2;
+    foot->e[0] = vec(1, 0, 0), foot->e[1] = vec(0, 1, 0);
+    foot->along[0] = foot->along[1] = 1.0;
+    return;
+  }
+  const double cx = y.x / rho, cy = y.y / rho;
+  foot->point = vec(cx * radius, cy * radius, z);
+  foot->tangents = between ? 2 : 1;
+  foot->e[0] = vec(-cy, cx, 0), foot->e[1] = vec(0, 0, 1);
+  foot->along[0] = radius / rho, foot->along[1] = 1.0;
+}
+
 /* near_rounding: rho (2u), two differences (u), a norm (2u), each of at most |y| + scale. */
 const convex_ops convex_cylinder = {.kind = CPROX_CYLINDER,
                                     .near_rounding = 8.0,
                                     .nearest = cylinder_nearest,
                                     .support = cylinder_support,
+                                    .project = cylinder_project,
                                     .curvature = cylinder_curvature,
                                     .follow = cylinder_follow,
                                     .cover = cylinder_cover};

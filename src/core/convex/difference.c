@@ -5,21 +5,12 @@
 #include "convex/depth.h"
 #include "convex/feature.h"
 #include "convex/pair.h"
+#include "convex/turn.h"
 
 enum { MOST_STEPS = 256 };
 
 /* A nearest point is wanted as exactly as the arithmetic allows: what it costs beyond 1e-6 is a Newton step or two. */
 static const double RELATIVE_WIDTH = 1e-13;
-
-static vec3 turn(const double *r, vec3 v) {
-  return vec(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
-             r[6] * v.x + r[7] * v.y + r[8] * v.z);
-}
-
-static vec3 turn_back(const double *r, vec3 v) {
-  return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
-             r[2] * v.x + r[5] * v.y + r[8] * v.z);
-}
 
 /* ---- support ---- */
 

@@ -5,9 +5,11 @@
 #include "convex/pair.h"
 
 #include "base/rounding.h"
+#include "convex/approach.h"
 #include "convex/expand.h"
 #include "convex/feature.h"
 #include "convex/simplex.h"
+#include "convex/turn.h"
 
 enum {
   PAIR_MAX_STEPS = 256,
@@ -42,16 +44,6 @@ typedef struct pair {
   vec3 u;
   double lower;
 } pair;
-
-static vec3 turn(const double *r, vec3 v) {
-  return vec(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
-             r[6] * v.x + r[7] * v.y + r[8] * v.z);
-}
-
-static vec3 turn_back(const double *r, vec3 v) {
-  return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
-             r[2] * v.x + r[5] * v.y + r[8] * v.z);
-}
 
 /* b is kept in its own frame. */
 static vec3 pair_difference(const pair *p, vec3 a, vec3 b) {
@@ -206,6 +198,13 @@ static bool pair_newton(const pair *p, vec3 *next) {
 
 /* ---- the search ---- */
 
+bool pair_is_reached(const pair_goal *goal, double margins, double rounding, double lower, double upper) {
+  const double above = lower - margins - rounding - goal->floor;
+  const double relative = goal->relative_epsilon * greater(upper - margins, 0.0);
+  const double asked = greater(greater(goal->epsilon, relative), goal->fraction * above);
+  return upper - lower <= greater(asked - 2.0 * rounding, 0.25 * rounding);
+}
+
 /* Looks along u: a lower bound, and a vertex that may bring the simplex nearer; on curved shapes its other vertices are moved
  * along their pieces as well, since the old ones would hold it back. True where one of the bounds got better. */
 static bool pair_look(pair *p, vec3 u, bool follow) {
@@ -271,11 +270,8 @@ static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) 
   p->least = p->nearest.distance;
 
   for (p->steps++; p->steps < most && !p->fault && !p->nearest.inside; p->steps++) {
-    const double gap = p->nearest.distance - p->lower, upper = p->nearest.distance - margins;
-    const double above = p->lower - margins - p->rounding - goal->floor;
-    const double asked =
-        greater(fmax(goal->epsilon, goal->relative_epsilon * fmax(upper, 0.0)), goal->fraction * above);
-    if (gap <= fmax(asked - 2.0 * p->rounding, 0.25 * p->rounding)) return;
+    const double gap = p->nearest.distance - p->lower;
+    if (pair_is_reached(goal, margins, p->rounding, p->lower, p->nearest.distance)) return;
 
     /* 0 on a feature of the simplex: they touch, or overlap with 0 there by chance */
     if (p->nearest.distance <= p->hair) {
@@ -454,6 +450,24 @@ static void pair_measure_depth(pair *p, double margin_a, double margin_b, const 
   pair_describe(p, &answer->feature);
 }
 
+/* By projections, where both cores know theirs; one step is left to the search. What the goal asks of the feature is read from a
+ * simplex. False, and perhaps a better start, where the bounds are not close enough yet. */
+static bool pair_approach(pair *p, const pair_placement *place, double margins, const pair_goal *goal, vec3 *start) {
+  if (!p->a->ops->project || !p->b->ops->project || goal->wants_feature) return false;
+  const approach_task task = {p->a, p->b, place, goal, margins, p->rounding, p->hair};
+  approach_answer found;
+  approach_search(&task, &found);
+  p->steps += found.looks;
+  p->supports += found.looks;
+  if (found.looks > 0) *start = found.u;
+  if (!found.reached) return false;
+  p->u = found.u;
+  p->lower = found.lower;
+  p->s = (simplex){.n = 1, .vertex = {found.pair}, .weight = {1.0}};
+  p->nearest = (simplex_nearest){.v = found.pair.w, .distance = found.distance, .normal = found.u};
+  return true;
+}
+
 void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *placement,
                    const pair_goal *goal, pair_answer *answer) {
   *answer = (pair_answer){0};
@@ -467,7 +481,8 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   /* from what is known on, or the line of the centres */
   vec3 u = goal->start;
   if (!(vec_norm2(u) > 0.0)) feature_unit(vec_neg(p.t), &u);
-  pair_search(&p, vec_norm2(u) > 0.0 ? u : vec(1, 0, 0), margins, goal);
+  if (!(vec_norm2(u) > 0.0)) u = vec(1, 0, 0);
+  if (!pair_approach(&p, placement, margins, goal, &u)) pair_search(&p, u, margins, goal);
   answer->exhausted = p.steps >= goal->max_steps || p.steps >= PAIR_MAX_STEPS;
   answer->overlap = p.nearest.inside && p.nearest.depth + margins > p.rounding;
   pair_points(&p, margin_a, margin_b, answer);

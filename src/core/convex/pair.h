@@ -50,4 +50,7 @@ typedef struct pair_answer {
 void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *placement,
                    const pair_goal *goal, pair_answer *answer);
 
+/* Whether bounds on the cores' distance, without margins and rounding (each end's), are as close as the goal asks. */
+bool pair_is_reached(const pair_goal *goal, double margins, double rounding, double lower, double upper);
+
 #endif

@@ -21,9 +21,16 @@ static bool point_cover(const convex *shape, const convex_near *near, convex_cov
   return true;
 }
 
+static void point_project(const convex *shape, vec3 y, convex_foot *foot) {
+  (void)shape, (void)y;
+  foot->tangents = 0;
+  foot->point = vec(0, 0, 0);
+}
+
 /* near_rounding: a norm, 3u of |y|. */
 const convex_ops convex_point = {.kind = CPROX_POINT,
                                  .near_rounding = 4.0,
                                  .nearest = point_nearest,
                                  .support = point_support,
+                                 .project = point_project,
                                  .cover = point_cover};

@@ -26,9 +26,16 @@ static bool sphere_cover(const convex *shape, const convex_near *near, convex_co
   return true;
 }
 
+static void sphere_project(const convex *shape, vec3 y, convex_foot *foot) {
+  (void)shape, (void)y;
+  foot->tangents = 0;
+  foot->point = vec(0, 0, 0);
+}
+
 /* near_rounding: a norm, 3u of |y|, and a difference, u of at most |y| + radius. */
 const convex_ops convex_sphere = {.kind = CPROX_SPHERE,
                                   .near_rounding = 4.0,
                                   .nearest = sphere_nearest,
                                   .support = sphere_support,
+                                  .project = sphere_project,
                                   .cover = sphere_cover};

@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Letters as in doc/convex-pairs.md: v = a - b between two points of the cores, the columns m of the pieces' tangents (of b's
+ * with the sign turned), x how far to go along each. All in a's frame but where it says otherwise. */
+#include "convex/approach.h"
+
+#include "convex/feature.h"
+#include "convex/turn.h"
+
+enum { APPROACH_ROUNDS = 10, APPROACH_MOST = 4 };
+
+/* Tangents less than this apart, in radians, are parallel: their product would be no direction to trust. */
+static const double APPROACH_PARALLEL = 1e-3;
+
+/* Of a pivot: what is left of a unit vector that depends on the others. */
+static const double APPROACH_DEPENDENT = 1e-12;
+
+typedef struct approach_pair {
+  convex_foot a, b; /* b's in its own frame */
+  vec3 v;
+  double distance;
+  int n; /* tangents of both pieces together, and those that are a's */
+  int of_a;
+  vec3 m[APPROACH_MOST];
+  double bent[APPROACH_MOST]; /* curvature of the piece times the distance: 1/along - 1 */
+} approach_pair;
+
+static void approach_add_tangents(const convex_foot *foot, const double *r, approach_pair *p) {
+  for (int i = 0; i < foot->tangents && i < 2; i++) {
+    p->m[p->n] = r ? vec_neg(turn(r, foot->e[i])) : foot->e[i];
+    p->bent[p->n++] = 1.0 / foot->along[i] - 1.0;
+  }
+}
+
+/* y onto a, and what it becomes there onto b. */
+static void approach_project(const approach_task *task, vec3 y, approach_pair *p) {
+  const double *r = task->place->r;
+  const vec3 t = task->place->t;
+  task->a->ops->project(task->a, y, &p->a);
+  task->b->ops->project(task->b, turn_back(r, vec_sub(p->a.point, t)), &p->b);
+  p->v = vec_sub(p->a.point, vec_add(turn(r, p->b.point), t));
+  p->distance = vec_norm(p->v);
+  p->n = 0;
+  approach_add_tangents(&p->a, NULL, p);
+  p->of_a = p->n;
+  approach_add_tangents(&p->b, r, p);
+}
+
+/* Where the two pieces, continued, are nearest to each other: min over x of |v + sum x_k m_k|²/2 + sum bent_k x_k²/2, by
+ * Cholesky's method; of tangents that depend on those before them none is gone along. */
+static void approach_newton(const approach_pair *p, double x[APPROACH_MOST]) {
+  double l[APPROACH_MOST][APPROACH_MOST], z[APPROACH_MOST];
+  for (int i = 0; i < p->n; i++) {
+    z[i] = -vec_dot(p->m[i], p->v);
+    double pivot = 1.0 + p->bent[i];
+    for (int k = 0; k < i; k++) {
+      double g = vec_dot(p->m[i], p->m[k]);
+      for (int j = 0; j < k; j++) g -= l[i][j] * l[k][j];
+      l[i][k] = l[k][k] > 0.0 ? g / l[k][k] : 0.0;
+      pivot -= l[i][k] * l[i][k];
+      z[i] -= l[i][k] * z[k];
+    }
+    l[i][i] = pivot > APPROACH_DEPENDENT ? sqrt(pivot) : 0.0;
+    z[i] = l[i][i] > 0.0 ? z[i] / l[i][i] : 0.0;
+  }
+  for (int i = p->n - 1; i >= 0; i--) {
+    x[i] = z[i];
+    for (int k = i + 1; k < p->n; k++) x[i] -= l[k][i] * x[k];
+    x[i] = l[i][i] > 0.0 ? x[i] / l[i][i] : 0.0;
+  }
+}
+
+/* The direction from b to a across both pieces. Near contact v itself is all rounding, and along an edge or a face a direction that is
+ * off by a little costs its length: so what is along a tangent is taken out of it. */
+static vec3 approach_direction(const approach_pair *p) {
+  vec3 along, u;
+  feature_unit(p->v, &along);
+  if (p->n == 0) return along;
+  int other = 1;
+  vec3 normal = vec(0, 0, 0);
+  while (other < p->n && vec_norm2(normal) < APPROACH_PARALLEL * APPROACH_PARALLEL)
+    normal = vec_cross(p->m[0], p->m[other++]);
+  if (vec_norm2(normal) < APPROACH_PARALLEL * APPROACH_PARALLEL) {
+    const vec3 once = vec_axpy(p->v, -vec_dot(p->v, p->m[0]), p->m[0]);
+    feature_unit(once, &u);
+    feature_unit(vec_axpy(u, -vec_dot(u, p->m[0]), p->m[0]), &u);
+    return u;
+  }
+  feature_unit(normal, &u);
+  return vec_dot(u, along) < 0.0 ? vec_neg(u) : u;
+}
+
+/* phi(u), and u if it is the best. */
+static void approach_look(const approach_task *task, vec3 u, approach_answer *answer) {
+  vec3 a, b;
+  task->a->ops->support(task->a, vec_neg(u), NULL, &a);
+  task->b->ops->support(task->b, turn_back(task->place->r, u), NULL, &b);
+  const double phi = vec_dot(u, vec_sub(a, vec_add(turn(task->place->r, b), task->place->t)));
+  answer->looks++;
+  if (!(phi > answer->lower)) return;
+  answer->lower = phi;
+  answer->u = u;
+}
+
+void approach_search(const approach_task *task, approach_answer *answer) {
+  *answer = (approach_answer){.pair = {.id = -1}, .distance = INFINITY, .lower = -INFINITY};
+  vec3 y = task->place->t;
+  bool newton = false;
+  vec3 back = y; /* the last place on b, for when Newton's step was too long */
+  for (int round = 0; round < APPROACH_ROUNDS && answer->looks + 1 < task->goal->max_steps; round++) {
+    approach_pair p;
+    approach_project(task, y, &p);
+    if (p.distance <= task->hair) return;
+    if (!(p.distance < answer->distance)) {
+      if (!newton) return;
+      newton = false;
+      y = back;
+      continue;
+    }
+    answer->distance = p.distance;
+    answer->pair.w = p.v;
+    answer->pair.a = p.a.point;
+    answer->pair.b = p.b.point;
+
+    const vec3 u = approach_direction(&p);
+    if (vec_norm2(u) > 0.0) approach_look(task, u, answer);
+    answer->reached = pair_is_reached(task->goal, task->margins, task->rounding, answer->lower, answer->distance);
+    if (answer->reached) return;
+
+    double x[APPROACH_MOST];
+    approach_newton(&p, x);
+    y = back = vec_sub(p.a.point, p.v);
+    newton = true;
+    for (int i = p.of_a; i < p.n; i++) y = vec_axpy(y, -x[i], p.m[i]);
+  }
+}

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Two cores that know their projections: alternating projections, sped up by Newton's method on the pieces of the surfaces
+ * that they land on (doc/convex-pairs.md). */
+#ifndef CPROX_CONVEX_APPROACH_H
+#define CPROX_CONVEX_APPROACH_H
+
+#include "convex/pair.h"
+#include "convex/simplex.h"
+
+typedef struct approach_task {
+  const convex *a, *b; /* both have ops->project */
+  const pair_placement *place;
+  const pair_goal *goal;
+  double margins, rounding;
+  double hair; /* cores nearer than this are left to others */
+} approach_task;
+
+typedef struct approach_answer {
+  bool reached;        /* the bounds are as close as the goal asks */
+  simplex_vertex pair; /* w = a - b the shortest so far, of a point of each core */
+  double distance;     /* |w| */
+  vec3 u;              /* the best direction, and its phi; (0,0,0) and -infinity where none was tried */
+  double lower;
+  uint32_t looks; /* directions that were tried */
+} approach_answer;
+
+void approach_search(const approach_task *task, approach_answer *answer);
+
+#endif

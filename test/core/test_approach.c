@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Projections onto cores, and what is found by them of pairs: held against closed forms, differences and known distances. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/rounding.h"
+#include "body/body.h"
+#include "curve_proximity/cprox/query.h"
+#include "support/random.h"
+#include "support/reference.h"
+#include "support/shapes.h"
+
+static const cprox_body_kind PROJECTED[] = {CPROX_POINT,   CPROX_SPHERE,   CPROX_BOX,
+                                            CPROX_CAPSULE, CPROX_CYLINDER, CPROX_CONE};
+enum { N_PROJECTED = 6, FIRST_SOLID = 2 };
+
+/* ---- feet ---- */
+
+/* Seed 801, 1e5 points, from inside to 10 sizes away, on both sides of every limit between pieces. The distance of the foot is that of
+ * the closed form, margin put back, to 32 roundings of the sizes; the foot is a point of the core and, inside, the point itself. */
+static void a_foot_is_the_nearest_point_of_the_core(void **state) {
+  (void)state;
+  rng r = rng_seed(801);
+  static test_shape s;
+  for (size_t i = 0; i < 100000; i++) {
+    shape_make(&r, PROJECTED[rng_index(&r, N_PROJECTED)], 1.0, 1e3, &s);
+    const convex *c = &s.body->shape;
+    const vec3 y = vec_scale(rng_log_uniform(&r, 1e-3, 10.0), rng_unit(&r));
+    convex_foot foot;
+    c->ops->project(c, y, &foot);
+    convex_near near;
+    c->ops->nearest(c, y, NULL, &near);
+    const double distance = vec_norm(vec_sub(y, foot.point));
+    const double expected = fmax(near.distance + c->margin, 0.0), doubt = 32.0 * ROUND_U * (vec_norm(y) + c->scale);
+    if (!(fabs(distance - expected) <= doubt))
+      fail_msg("%s: the foot is %.17g away, the core %.17g", shape_name(&s), distance, expected);
+    const vec3 d = rng_unit(&r);
+    if (!(vec_dot(d, foot.point) <= c->ops->support(c, d, NULL, NULL) + 16.0 * ROUND_U * c->scale))
+      fail_msg("%s: the foot lies beyond the support plane", shape_name(&s));
+    if (foot.tangents == 3) assert_true(distance == 0.0);
+    cprox_body_free(s.body);
+  }
+}
+
+/* Seed 802, 5e4 points outside: the foot moves along its tangents as `along` says and nowhere else, by central differences of
+ * 1e-6; where the two ends fall on pieces of other dimensions nothing is said. Tolerance 1e-6: second derivatives of bodies of
+ * size .25 to 1 and rounding over the step. */
+static void a_foot_moves_along_its_tangents(void **state) {
+  (void)state;
+  rng r = rng_seed(802);
+  const double h = 1e-6;
+  static test_shape s;
+  size_t checked = 0;
+  for (size_t i = 0; i < 50000; i++) {
+    shape_make(&r, PROJECTED[rng_index(&r, N_PROJECTED)], 1.0, 4.0, &s);
+    const convex *c = &s.body->shape;
+    const vec3 y = vec_scale(rng_uniform(&r, 0.5, 4.0), rng_unit(&r)), d = rng_unit(&r);
+    convex_foot foot, ahead, behind;
+    c->ops->project(c, y, &foot);
+    c->ops->project(c, vec_axpy(y, h, d), &ahead);
+    c->ops->project(c, vec_axpy(y, -h, d), &behind);
+    if (foot.tangents < 3 && ahead.tangents == foot.tangents && behind.tangents == foot.tangents) {
+      vec3 moved = vec_scale(0.5 / h, vec_sub(ahead.point, behind.point));
+      for (int k = 0; k < foot.tangents; k++)
+        moved = vec_axpy(moved, -foot.along[k] * vec_dot(d, foot.e[k]), foot.e[k]);
+      if (!(vec_norm(moved) < 1e-6))
+        fail_msg("%s, piece of dimension %d: %g is left", shape_name(&s), foot.tangents, vec_norm(moved));
+      checked++;
+    }
+    cprox_body_free(s.body);
+  }
+  assert_true(checked > 40000);
+}
+
+/* ---- pairs ---- */
+
+/* Turned by a multiple of 45 degrees about an axis, and from there by as little as `tilt`. */
+static cprox_quat near_symmetric(rng *r, cprox_quat q, double tilt) {
+  static const double half[4][2] = {
+      {1.0, 0.0}, {0.92387953251128674, 0.38268343236508977}, {0.70710678118654757, 0.70710678118654757}, {0.0, 1.0}};
+  const size_t k = rng_index(r, 4), axis = rng_index(r, 3);
+  const vec3 small = vec_scale(tilt, rng_unit(r));
+  const cprox_pose turn = {.orientation = {half[k][0], axis == 0 ? half[k][1] : 0.0, axis == 1 ? half[k][1] : 0.0,
+                                           axis == 2 ? half[k][1] : 0.0}};
+  const cprox_pose lean = {.orientation = {1.0, small.x, small.y, small.z}}, first = {.orientation = q};
+  const cprox_pose turned = frame_compose(&first, &turn);
+  return frame_compose(&turned, &lean).orientation;
+}
+
+/* Along an axis of the shape or between two of them, and from there by as little as `tilt`. */
+static vec3 near_axis(rng *r, const cprox_pose *pose, double tilt) {
+  vec3 n = vec(0, 0, 0);
+  while (vec_norm2(n) == 0.0)
+    n = vec((double)rng_index(r, 3) - 1.0, (double)rng_index(r, 3) - 1.0, (double)rng_index(r, 3) - 1.0);
+  const vec3l turned = pose_turn(pose, ref_vec(n));
+  return vec_axpy(vec((double)turned.x, (double)turned.y, (double)turned.z), tilt, rng_unit(r));
+}
+
+/* Seed 803, 2e5 pairs of boxes, capsules, cylinders and cones: half of them in the attitudes where faces, edges, rims and axes are
+ * parallel or nearly so (tilts of 1e-16 to 1e-2), aspects up to 1e6, size ratios up to 1e12, gaps of 1e-15 to 10 sizes. Distances by
+ * construction; tolerance: what the rounding of b's position moved. */
+static void grazing_rims_and_parallel_edges_lie_in_the_interval(void **state) {
+  (void)state;
+  rng r = rng_seed(803);
+  static test_shape a, b;
+  size_t open = 0;
+  const size_t cases = test_cases(200000);
+  for (size_t i = 0; i < cases; i++) {
+    const double aspect = rng_index(&r, 3) ? 4.0 : 1e6, ratio = rng_index(&r, 3) ? 4.0 : 1e12;
+    const double scale = rng_log_uniform(&r, 1.0 / ratio, 1.0);
+    shape_make(&r, PROJECTED[FIRST_SOLID + rng_index(&r, N_PROJECTED - FIRST_SOLID)], 1.0, aspect, &a);
+    shape_make(&r, PROJECTED[FIRST_SOLID + rng_index(&r, N_PROJECTED - FIRST_SOLID)], scale, aspect, &b);
+    const cprox_pose pa = rng_pose(&r, 0.0);
+    cprox_pose pb = rng_pose(&r, 0.0);
+    const bool symmetric = rng_index(&r, 2);
+    const double tilt = rng_index(&r, 4) ? rng_log_uniform(&r, 1e-16, 1e-2) : 0.0;
+    if (symmetric) pb.orientation = near_symmetric(&r, pa.orientation, tilt);
+    const vec3 n = symmetric ? near_axis(&r, rng_index(&r, 2) ? &pa : &pb, tilt) : shape_telling_direction(&r, &b, &pb);
+    const double gap = rng_log_uniform(&r, 1e-15, 10.0), tolerance = shape_place(&a, &pa, &b, &pb, n, gap);
+
+    cprox_options options = cprox_options_default();
+    const double sizes = a.body->ball_radius + b.body->ball_radius + vec_norm(vec_sub(pa.position, pb.position));
+    options.epsilon = 400.0 * ROUND_U * (sizes + vec_norm(a.body->ball_centre) + vec_norm(b.body->ball_centre));
+    options.relative_epsilon = 1e-9;
+    cprox_result result;
+    assert_true(cprox_pair(cprox_at(a.body, pa), cprox_at(b.body, pb), &options, NULL, &result) >= CPROX_OK);
+    if (!(result.upper >= gap - tolerance && result.lower <= gap + tolerance && result.lower <= result.upper))
+      fail_msg("%s and %s at gap %.17g, tilt %g: [%.17g, %.17g], status %s", shape_name(&a), shape_name(&b), gap, tilt,
+               result.lower, result.upper, cprox_status_name(result.status));
+    if (result.status == CPROX_OK && gap > 1e-6) {
+      const vec3 apart = vec_sub(result.on_mover, result.on_target);
+      assert_true(fabs(vec_norm(apart) - result.upper) <= 1e-9 * result.upper + 2.0 * options.epsilon);
+      assert_true(vec_dot(apart, result.normal) >= (1.0 - 1e-7) * result.upper - 2.0 * options.epsilon);
+    }
+    open += result.status != CPROX_OK;
+    cprox_body_free(a.body);
+    cprox_body_free(b.body);
+  }
+  print_message("open: %zu of %zu\n", open, cases);
+  assert_true((double)open <= 2.0 + 0.01 * (double)cases);
+}
+
+/* Seed 804, 1e4 pairs of a box and a cylinder, gaps of 1e-6 to 1 sizes, to a relative 1e-9: where both cores know their projections,
+ * three or four directions in the mean are enough to prove the distance. */
+static void a_box_and_a_cylinder_take_few_looks(void **state) {
+  (void)state;
+  rng r = rng_seed(804);
+  static test_shape a, b;
+  double looks = 0.0;
+  const size_t cases = test_cases(10000);
+  for (size_t i = 0; i < cases; i++) {
+    shape_make(&r, CPROX_BOX, 1.0, 4.0, &a);
+    shape_make(&r, CPROX_CYLINDER, 1.0, 4.0, &b);
+    const cprox_pose pa = rng_pose(&r, 0.0);
+    cprox_pose pb = rng_pose(&r, 0.0);
+    shape_place(&a, &pa, &b, &pb, shape_telling_direction(&r, &b, &pb), rng_log_uniform(&r, 1e-6, 1.0));
+    cprox_options options = cprox_options_default();
+    options.epsilon = 0.0;
+    options.relative_epsilon = 1e-9;
+    cprox_result result;
+    cprox_pair(cprox_at(a.body, pa), cprox_at(b.body, pb), &options, NULL, &result);
+    looks += result.probes;
+    cprox_body_free(a.body);
+    cprox_body_free(b.body);
+  }
+  print_message("%.2f looks in the mean\n", looks / (double)cases);
+  assert_true(looks <= 4.0 * (double)cases);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_foot_is_the_nearest_point_of_the_core),
+      cmocka_unit_test(a_foot_moves_along_its_tangents),
+      cmocka_unit_test(grazing_rims_and_parallel_edges_lie_in_the_interval),
+      cmocka_unit_test(a_box_and_a_cylinder_take_few_looks),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
