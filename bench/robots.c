@@ -253,6 +253,7 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "self")) distances(problems, n, true, &size, ws);
   if (bench_wanted(&size, "tolerance")) verdicts(problems, n, &size, ws);
   if (bench_wanted(&size, "thin obstacles")) thin_obstacles(cases, n_cases, &size, ws);
+  if (bench_wanted(&size, "pairs measured")) bench_robot_pairs(cases, n_cases, ws);
   bench_robot_scale(&cases[0], &size, ws);
   for (size_t i = 0; i < n_cases; i++) {
     robot_fcl_free(fcl[i]);

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* How many of the pairs that a node looks at have their distance measured: the same search as a query's, its oracle watched from outside.
+ * `nodes` are looks at a pair on a stretch of the motion, `probes` distances measured, those that the search begins with and those of
+ * elements of meshes included, `error` their share. */
+#include <math.h>
+#include <stdio.h>
+
+#include "query/answer.h"
+#include "query/robot_search.h"
+#include "robots.h"
+
+typedef struct watched {
+  robot_search search;
+  search_oracle oracle;
+  uint64_t looks;
+} watched;
+
+/* What a pair must be beyond to be left alone: the search's own rule. */
+static bool needs_no_work(const robot_search *o, double lower) {
+  if (o->limit >= 0.0) return lower > o->limit;
+  const double upper = fmin(o->best_bound.upper, o->ceiling);
+  return lower >= upper - fmax(o->epsilon, o->relative_epsilon * upper);
+}
+
+static double filter(void *self, search_node *node, double goal) {
+  watched *w = self;
+  return w->oracle.filter(w->oracle.self, node, goal);
+}
+
+/* Only stretches of one segment look at pairs. */
+static cprox_status probe(void *self, search_node *node, search_best *best) {
+  watched *w = self;
+  const robot_search *o = &w->search;
+  if (node->side[0].part + 1 == node->side[1].part) {
+    const list_entry *entry = lists_at(&o->lists, node->side[0].slot);
+    const size_t n = lists_count(&o->lists, node->side[0].slot);
+    for (size_t i = 0; i < n; i++) w->looks += !needs_no_work(o, entry[i].lower);
+  }
+  return w->oracle.probe(w->oracle.self, node, best);
+}
+
+static int split(void *self, search_node *node, search_node *child) {
+  watched *w = self;
+  return w->oracle.split(w->oracle.self, node, child);
+}
+
+static void release(void *self, const search_node *node) {
+  watched *w = self;
+  w->oracle.release(w->oracle.self, node);
+}
+
+/* The search of one question; false where it is not the one that the query makes. */
+static bool watch(const robot_case *c, bool self, double delta, double epsilon, cprox_workspace *ws, uint64_t *looks,
+                  uint64_t *measured) {
+  const cprox_mover mover =
+      self ? cprox_robot_self(c->motion, c->self_pairs, c->n_self_pairs) : cprox_robot_along(c->motion, NULL, 0);
+  const size_t n = self ? 0 : c->n_targets;
+  cprox_options options = cprox_options_default();
+  options.epsilon = epsilon;
+  cprox_result r;
+  if (delta < 0.0)
+    cprox_distance_all(mover, c->targets, n, &options, ws, &r, NULL);
+  else
+    cprox_tolerance_all(mover, c->targets, n, delta, &options, ws, &r, NULL);
+
+  question q = question_create(mover, c->targets, n, delta, true, &options, ws);
+  question_ask_whole(&q);
+  watched w = {.looks = 0};
+  const search_goal goal = {.order = delta < 0.0 ? SEARCH_BEST_FIRST : SEARCH_DEPTH_FIRST,
+                            .limit = delta,
+                            .ceiling = INFINITY,
+                            .horizon = INFINITY,
+                            .epsilon = epsilon,
+                            .relative_epsilon = options.relative_epsilon,
+                            .max_nodes = options.max_nodes};
+  if (!robot_scene_begin(&w.search.scene, &q, 0, n)) return false;
+  robot_search_begin(&w.search, &goal);
+  w.oracle = robot_search_oracle(&w.search);
+  const search_oracle outer = {.self = &w, .filter = filter, .probe = probe, .split = split, .release = release};
+  search_outcome found;
+  const search_node root = robot_search_root(&w.search, 0, 0.0, c->motion->n_segments, 1.0);
+  if (root.side[0].slot < 0 || search_run(&goal, &outer, root, ws, &found) != CPROX_OK) return false;
+  *looks += w.looks, *measured += w.search.gaps;
+  return found.nodes == r.nodes && w.search.gaps == r.probes;
+}
+
+static void row(const char *parameter, const robot_case *cases, size_t n, bool self, double factor, double epsilon,
+                cprox_workspace *ws) {
+  uint64_t looks = 0, measured = 0;
+  unsigned long failures = 0;
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k < cases[i].n_answers; k++) {
+      const case_answer *a = &cases[i].answers[k];
+      if (a->self != self || !(a->lower > 0.0)) continue;
+      const double delta = factor < 0.0 ? -1.0 : factor * 0.5 * (a->lower + a->upper);
+      failures += !watch(&cases[i], self, delta, epsilon, ws, &looks, &measured);
+    }
+  printf("robots,pairs measured,curve_proximity,%s,nan,nan,%llu,%llu,%.4g,0,%lu\n", parameter,
+         (unsigned long long)looks, (unsigned long long)measured, (double)measured / (double)looks, failures);
+  fflush(stdout);
+}
+
+void bench_robot_pairs(const robot_case *cases, size_t n, cprox_workspace *ws) {
+  row("environment epsilon 1e-06", cases, n, false, -1.0, 1e-6, ws);
+  row("environment epsilon 0.0001", cases, n, false, -1.0, 1e-4, ws);
+  row("self epsilon 1e-06", cases, n, true, -1.0, 1e-6, ws);
+  row("self epsilon 0.0001", cases, n, true, -1.0, 1e-4, ws);
+  row("environment delta 0.9 D", cases, n, false, 0.9, 1e-6, ws);
+  row("self delta 0.9 D", cases, n, true, 0.9, 1e-6, ws);
+}
