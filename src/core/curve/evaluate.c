@@ -3,7 +3,7 @@
 #include "base/lanes.h"
 #include "curve/curve.h"
 
-enum { LANES = 4 };
+enum { LANES = 4, FEW = 5 };
 
 size_t curve_tables_size(size_t degree) {
   return (degree < 2 ? 0 : degree - 1) + (degree + 1) + (2 * degree + 1);
@@ -80,6 +80,25 @@ static void last_three(const double *x, const double *y, const double *z, size_t
   }
 }
 
+/* The same of low degrees, where the sums are so short that registers of four would stay half empty. */
+static inline void last_three_of_few(const double *x, const double *y, const double *z, size_t stride, size_t m,
+                                     const double *binomial, double s, vec3 q[3]) {
+  const double r = 1.0 - s;
+  double falling[FEW], rising = 1.0;
+  falling[m] = 1.0;
+  for (size_t k = m; k > 0; k--) falling[k - 1] = falling[k] * r;
+  vec3 a = vec(0, 0, 0), b = a, c = a;
+  for (size_t k = 0; k <= m; k++) {
+    const double w = binomial[k] * falling[k] * rising;
+    const double *px = x + k * stride, *py = y + k * stride, *pz = z + k * stride;
+    a = vec_add(a, vec_scale(w, vec(px[0], py[0], pz[0])));
+    b = vec_add(b, vec_scale(w, vec(px[stride], py[stride], pz[stride])));
+    c = vec_add(c, vec_scale(w, vec(px[2 * stride], py[2 * stride], pz[2 * stride])));
+    rising *= s;
+  }
+  q[0] = a, q[1] = b, q[2] = c;
+}
+
 /*   value = (1-s)² Q_0 + 2 s(1-s) Q_1 + s² Q_2,   first = n ((1-s)(Q_1 - Q_0) + s (Q_2 - Q_1)),
  *   second = n(n-1)((Q_2 - Q_1) - (Q_1 - Q_0)).
  *
@@ -102,7 +121,9 @@ void curve_bezier_evaluate(const double *x, const double *y, const double *z, si
   }
 
   vec3 q[3];
-  if (stride == 1) {
+  if (degree - 2 < FEW) {
+    last_three_of_few(x, y, z, stride, degree - 2, binomial, s, q);
+  } else if (stride == 1) {
     last_three(x, y, z, degree - 2, binomial, s, q);
   } else {
     double apart[3][CPROX_MAX_DEGREE + 1];

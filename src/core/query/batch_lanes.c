@@ -6,6 +6,7 @@
 #include "base/workspace.h"
 
 enum { BALLS = 4 }; /* their arrays are padded to a multiple of this */
+enum { SAMPLES = CHORDS + LANES };
 
 /* Below this the square of a length may have lost its digits, and its reciprocal overflows. */
 static const double LEAST_SQUARE = 1e-280;
@@ -52,15 +53,25 @@ static void fill_basis(size_t degree, double *basis) {
 }
 
 /* The buffer begins with the degree that its table is of. */
-const double *lanes_basis(size_t degree, cprox_workspace *workspace) {
-  const bool fresh = !workspace_reserve(workspace, WORKSPACE_BASIS, 0);
-  double *buffer = workspace_reserve(workspace, WORKSPACE_BASIS, (1 + CHORDS * (degree + 1)) * sizeof(double));
+static const double *basis_in(workspace_buffer which, size_t degree, cprox_workspace *workspace) {
+  const bool fresh = !workspace_reserve(workspace, which, 0);
+  double *buffer = workspace_reserve(workspace, which, (1 + CHORDS * (degree + 1)) * sizeof(double));
   if (!buffer) return NULL;
   if (fresh || buffer[0] != (double)degree) {
     fill_basis(degree, buffer + 1);
     buffer[0] = (double)degree;
   }
   return buffer + 1;
+}
+
+const double *lanes_basis(size_t degree, cprox_workspace *workspace) {
+  return basis_in(WORKSPACE_BASIS, degree, workspace);
+}
+
+bool lanes_bases(const size_t degree[2], cprox_workspace *workspace, const double *basis[2]) {
+  basis[0] = basis_in(WORKSPACE_BASIS, degree[0], workspace);
+  basis[1] = degree[1] == degree[0] ? basis[0] : basis_in(WORKSPACE_BASIS_OF_SECOND, degree[1], workspace);
+  return basis[0] && basis[1];
 }
 
 /* Of LANES squares the least; which one has it, the first of several, without branches: nobody can foretell it. */
@@ -217,6 +228,54 @@ double lanes_first_look(const double *basis, const double *x, const double *y, c
   const double left = square[nearest - 1] - square[nearest], right = square[nearest + 1] - square[nearest];
   const double shift = left + right > 0.0 ? 0.5 * (left - right) / (left + right) : 0.0;
   return ((double)nearest + shift) / CHORDS;
+}
+
+/* CHORDS + 1 points of a piece, and copies of the last to fill LANES. */
+static inline void sample(const double *basis, const double *points, size_t degree, double at[3][SAMPLES]) {
+  for (size_t first = 0; first < CHORDS; first += LANES) {
+    double sum[3][LANES] = {{0}};
+    for (size_t j = 0; j <= degree; j++) {
+      const double *restrict b = basis + j * CHORDS + first;
+      const double px = points[j], py = points[degree + 1 + j], pz = points[2 * (degree + 1) + j];
+#pragma omp simd
+      for (int k = 0; k < LANES; k++) {
+        sum[0][k] += b[k] * px;
+        sum[1][k] += b[k] * py;
+        sum[2][k] += b[k] * pz;
+      }
+    }
+    for (int c = 0; c < 3; c++)
+      for (size_t k = 0; k < LANES; k++) at[c][first + k] = sum[c][k];
+  }
+  for (size_t c = 0; c < 3; c++)
+    for (size_t k = CHORDS; k < SAMPLES; k++) at[c][k] = points[c * (degree + 1) + degree];
+}
+
+LANES_DISPATCHED
+void lanes_first_pair(const lanes_piece *first, const lanes_piece *second, double s[2]) {
+  double p[3][SAMPLES], q[3][SAMPLES], least[LANES], which[LANES];
+  sample(first->basis, first->points, first->degree, p);
+  sample(second->basis, second->points, second->degree, q);
+  for (int k = 0; k < LANES; k++) least[k] = INFINITY, which[k] = 0.0;
+  for (size_t i = 0; i <= CHORDS; i++) {
+    const double x = p[0][i], y = p[1][i], z = p[2][i];
+    for (size_t j = 0; j < SAMPLES; j += LANES) {
+      const double number = (double)(i * SAMPLES + j);
+      const double *restrict qx = q[0] + j, *restrict qy = q[1] + j, *restrict qz = q[2] + j;
+#pragma omp simd
+      for (int k = 0; k < LANES; k++) {
+        const double dx = x - qx[k], dy = y - qy[k], dz = z - qz[k], square = dx * dx + dy * dy + dz * dz;
+        which[k] = square < least[k] ? number : which[k];
+        least[k] = square < least[k] ? square : least[k];
+      }
+    }
+  }
+  int nearest = 0;
+  for (int k = 1; k < LANES; k++)
+    if (least[k] < least[nearest]) nearest = k;
+  const size_t number = (size_t)which[nearest] + (size_t)nearest, j = number % SAMPLES;
+  s[0] = (double)(number / SAMPLES) / CHORDS;
+  s[1] = j < CHORDS ? (double)j / CHORDS : 1.0;
 }
 
 LANES_DISPATCHED

@@ -26,6 +26,17 @@ const double *lanes_basis(size_t degree, cprox_workspace *workspace);
 /* Where on a piece (control points one array a coordinate) it comes nearest to the origin, as far as CHORDS + 1 points tell: s. */
 double lanes_first_look(const double *basis, const double *x, const double *y, const double *z, size_t degree);
 
+/* The tables of two degrees at once. False where memory is out. */
+bool lanes_bases(const size_t degree[2], cprox_workspace *workspace, const double *basis[2]);
+
+/* Where two pieces come nearest to each other, as far as CHORDS + 1 points of each tell: s of both. */
+typedef struct lanes_piece {
+  const double *basis;
+  const double *points; /* control points, one array a coordinate */
+  size_t degree;
+} lanes_piece;
+void lanes_first_pair(const lanes_piece *first, const lanes_piece *second, double s[2]);
+
 /* The chords of a Bézier piece: chord k begins at the point of s = k/CHORDS, and how it goes on to the next. */
 typedef struct lanes_chords {
   double x[CHORDS + 1], y[CHORDS + 1], z[CHORDS + 1]; /* the last is the end of the piece */

@@ -3,6 +3,7 @@
 
 #include "base/rounding.h"
 #include "convex/depth.h"
+#include "query/batch_lanes.h"
 #include "query/carried.h"
 #include "query/meeting.h"
 
@@ -47,6 +48,13 @@ static void bound_children(const curve_curve *o, search_node *child, search_inte
     for (int j = 0; j < n_parts[1]; j++) bound_by_reaches(o, child++, n, &reach[0][i], &reach[1][j]);
 }
 
+/* Whether something is left that bounds have not settled. */
+static bool is_open(const curve_curve *o, const search_node *child, int n) {
+  for (int k = 0; k < n; k++)
+    if (child[k].lower <= o->goal) return true;
+  return false;
+}
+
 /* Pieces with points of their own are bounded with their whole piece loaded. */
 static void load_pieces(curve_curve *o, const search_node *node) {
   for (int k = 0; k < 2; k++)
@@ -54,8 +62,8 @@ static void load_pieces(curve_curve *o, const search_node *node) {
 }
 
 static double filter(void *self, search_node *node, double goal) {
-  (void)goal;
   curve_curve *o = self;
+  o->goal = goal;
   if (o->incumbent == 0 || node->seen == o->incumbent) return node->lower;
   load_pieces(o, node);
   curve_curve_bound(o, node, o->best.normal);
@@ -193,6 +201,49 @@ curve_meeting curve_curve_meeting_near(curve_curve *o, const search_node *node, 
   return m;
 }
 
+/* Where the two pieces that the search begins with come nearest, as far as a few points of each tell. */
+static bool first_look(const curve_curve *o, const search_node *node, double fraction[2]) {
+  lanes_piece piece[2];
+  const double *basis[2];
+  const size_t degree[2] = {o->side[0].curve->degree, o->side[1].curve->degree};
+  for (int k = 0; k < 2; k++)
+    if (o->side[k].curve->arcs || node->side[k].a > 0.0 || node->side[k].b < 1.0) return false;
+  if (o->carries || !lanes_bases(degree, o->workspace, basis)) return false;
+  for (size_t k = 0; k < 2; k++)
+    piece[k] = (lanes_piece){basis[k], points_pool_at(&o->pool, (size_t)node->side[k].slot), degree[k]};
+  lanes_first_pair(&piece[0], &piece[1], fraction);
+  return true;
+}
+
+/* Distances are to be had exactly; verdicts are, where the best meeting is so near the limit that they may hang on the last digits, or
+ * where they do not come easily. */
+static bool is_worth_polishing(const curve_curve *o) {
+  static const double NEAR = 1.05;
+  const double upper = o->best_bound.upper;
+  return upper > o->good_enough && (o->nodes > o->polish_after || upper < NEAR * o->good_enough);
+}
+
+/* Measures near those fractions of the node's intervals, and goes on from there. The normal seen there is the one to go by where there
+ * are no chords, or where it is worth more than theirs. */
+static cprox_status measure_node(curve_curve *o, search_node *node, const double fraction[2], bool pieces,
+                                 bool looked) {
+  double error;
+  curve_meeting m = curve_curve_meeting_near(o, node, fraction, &error);
+  const uint32_t before = o->incumbent;
+  consider(o, &m, error);
+  if (curve_side_status(&o->side[0]) < 0) return curve_side_status(&o->side[0]); /* both sides keep it in one place */
+  if (o->fault)
+    return workspace_fail(o->workspace, CPROX_INVALID, "the support callback did not return a point of its body");
+  if (o->carries || looked) {
+    load_pieces(o, node);
+    o->last_normal = m.normal;
+  }
+  if (o->carries) curve_curve_bound(o, node, m.normal);
+  const double step = 0.25 * fmax(node->side[0].b - node->side[0].a, node->side[1].b - node->side[1].a);
+  if (pieces && o->incumbent != before && is_worth_polishing(o)) polish(o, step);
+  return CPROX_OK;
+}
+
 static cprox_status probe(void *self, search_node *node, search_best *best) {
   curve_curve *o = self;
   o->nodes++;
@@ -200,27 +251,18 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   const cprox_status ready = curve_curve_materialise(o, node, &pieces);
   if (ready < 0) return ready;
 
-  /* the chords suggest a normal, and where to measure */
+  /* points of both suggest where to measure, or the chords do, and a normal */
   double fraction[2];
-  o->last_normal = curve_curve_suggest(o, node, fraction);
-  curve_curve_bound(o, node, o->last_normal);
+  const bool looked = pieces && o->incumbent == 0 && first_look(o, node, fraction);
+  if (!looked) {
+    o->last_normal = curve_curve_suggest(o, node, fraction);
+    curve_curve_bound(o, node, o->last_normal);
+    if (o->incumbent > 0 && node->lower > o->goal) return CPROX_OK; /* settled: nothing to measure */
+  }
 
   if (!holds_best(o, node)) {
-    double error;
-    curve_meeting m = curve_curve_meeting_near(o, node, fraction, &error);
-    const uint32_t before = o->incumbent;
-    consider(o, &m, error);
-    if (curve_side_status(&o->side[0]) < 0) return curve_side_status(&o->side[0]); /* both sides keep it in one place */
-    if (o->fault)
-      return workspace_fail(o->workspace, CPROX_INVALID, "the support callback did not return a point of its body");
-    if (o->carries) { /* its own normal is worth more than that of the chords */
-      load_pieces(o, node);
-      o->last_normal = m.normal;
-      curve_curve_bound(o, node, m.normal);
-    }
-    const bool worthwhile = o->best_bound.upper > o->good_enough && o->nodes > o->polish_after;
-    const double step = 0.25 * fmax(node->side[0].b - node->side[0].a, node->side[1].b - node->side[1].a);
-    if (pieces && o->incumbent != before && worthwhile) polish(o, step);
+    const cprox_status measured = measure_node(o, node, fraction, pieces, looked);
+    if (measured < 0) return measured;
     *best = o->best_bound;
   }
 
@@ -312,8 +354,9 @@ int curve_curve_cut(curve_curve *o, search_node *node, const curve_curve_cuts *c
       made->seen = o->incumbent;
     }
   }
-  bound_children(o, child, part, n, o->best.normal);
-  if (!vec_equal(o->last_normal, o->best.normal)) bound_children(o, child, part, n, o->last_normal);
+  bound_children(o, child, part, n, o->last_normal);
+  if (!vec_equal(o->last_normal, o->best.normal) && is_open(o, child, children))
+    bound_children(o, child, part, n, o->best.normal);
   return children;
 }
 

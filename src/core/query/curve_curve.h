@@ -35,6 +35,7 @@ typedef struct curve_curve {
   uint32_t incumbent; /* counts the best meetings; 0: none */
   vec3 last_normal;   /* of the last pair of chords, or of the last probe of a carried body */
   bool fault;         /* a support callback misbehaved */
+  double goal;        /* what settles a node, as of the last one that was looked at */
   uint32_t probes, nodes;
 
   /* memory */
