@@ -14,9 +14,10 @@
 #include "support/reference.h"
 #include "support/shapes.h"
 
-static const cprox_body_kind PROJECTED[] = {CPROX_POINT,   CPROX_SPHERE,   CPROX_BOX,
-                                            CPROX_CAPSULE, CPROX_CYLINDER, CPROX_CONE};
-enum { N_PROJECTED = 6, FIRST_SOLID = 2 };
+/* The last is smooth and has no foot. */
+static const cprox_body_kind PROJECTED[] = {CPROX_POINT,    CPROX_SPHERE, CPROX_BOX,      CPROX_CAPSULE,
+                                            CPROX_CYLINDER, CPROX_CONE,   CPROX_ELLIPSOID};
+enum { N_PROJECTED = 6, FIRST_SOLID = 2, N_SOLID = 5 };
 
 /* ---- feet ---- */
 
@@ -100,7 +101,7 @@ static vec3 near_axis(rng *r, const cprox_pose *pose, double tilt) {
   return vec_axpy(vec((double)turned.x, (double)turned.y, (double)turned.z), tilt, rng_unit(r));
 }
 
-/* Seed 803, 2e5 pairs of boxes, capsules, cylinders and cones: half of them in the attitudes where faces, edges, rims and axes are
+/* Seed 803, 2e5 pairs of boxes, capsules, cylinders, cones and ellipsoids: half of them in the attitudes where faces, edges, rims and axes are
  * parallel or nearly so (tilts of 1e-16 to 1e-2), aspects up to 1e6, size ratios up to 1e12, gaps of 1e-15 to 10 sizes. Distances by
  * construction; tolerance: what the rounding of b's position moved. */
 static void grazing_rims_and_parallel_edges_lie_in_the_interval(void **state) {
@@ -112,8 +113,8 @@ static void grazing_rims_and_parallel_edges_lie_in_the_interval(void **state) {
   for (size_t i = 0; i < cases; i++) {
     const double aspect = rng_index(&r, 3) ? 4.0 : 1e6, ratio = rng_index(&r, 3) ? 4.0 : 1e12;
     const double scale = rng_log_uniform(&r, 1.0 / ratio, 1.0);
-    shape_make(&r, PROJECTED[FIRST_SOLID + rng_index(&r, N_PROJECTED - FIRST_SOLID)], 1.0, aspect, &a);
-    shape_make(&r, PROJECTED[FIRST_SOLID + rng_index(&r, N_PROJECTED - FIRST_SOLID)], scale, aspect, &b);
+    shape_make(&r, PROJECTED[FIRST_SOLID + rng_index(&r, N_SOLID)], 1.0, aspect, &a);
+    shape_make(&r, PROJECTED[FIRST_SOLID + rng_index(&r, N_SOLID)], scale, aspect, &b);
     const cprox_pose pa = rng_pose(&r, 0.0);
     cprox_pose pb = rng_pose(&r, 0.0);
     const bool symmetric = rng_index(&r, 2);
@@ -144,17 +145,15 @@ static void grazing_rims_and_parallel_edges_lie_in_the_interval(void **state) {
   assert_true((double)open <= 2.0 + 0.01 * (double)cases);
 }
 
-/* Seed 804, 1e4 pairs of a box and a cylinder, gaps of 1e-6 to 1 sizes, to a relative 1e-9: where both cores know their projections,
- * three or four directions in the mean are enough to prove the distance. */
-static void a_box_and_a_cylinder_take_few_looks(void **state) {
-  (void)state;
-  rng r = rng_seed(804);
+/* The mean of looks over 1e4 pairs, gaps of 1e-6 to 1 sizes, to a relative 1e-9. */
+static double looks_of(uint64_t seed, cprox_body_kind kind_a, cprox_body_kind kind_b) {
+  rng r = rng_seed(seed);
   static test_shape a, b;
   double looks = 0.0;
   const size_t cases = test_cases(10000);
   for (size_t i = 0; i < cases; i++) {
-    shape_make(&r, CPROX_BOX, 1.0, 4.0, &a);
-    shape_make(&r, CPROX_CYLINDER, 1.0, 4.0, &b);
+    shape_make(&r, kind_a, 1.0, 4.0, &a);
+    shape_make(&r, kind_b, 1.0, 4.0, &b);
     const cprox_pose pa = rng_pose(&r, 0.0);
     cprox_pose pb = rng_pose(&r, 0.0);
     shape_place(&a, &pa, &b, &pb, shape_telling_direction(&r, &b, &pb), rng_log_uniform(&r, 1e-6, 1.0));
@@ -168,7 +167,14 @@ static void a_box_and_a_cylinder_take_few_looks(void **state) {
     cprox_body_free(b.body);
   }
   print_message("%.2f looks in the mean\n", looks / (double)cases);
-  assert_true(looks <= 4.0 * (double)cases);
+  return looks / (double)cases;
+}
+
+/* Seeds 804 and 805: the simplex search takes 10 looks for the one, 6 for the other. */
+static void projections_and_smoothness_save_looks(void **state) {
+  (void)state;
+  assert_true(looks_of(804, CPROX_BOX, CPROX_CYLINDER) <= 4.0);
+  assert_true(looks_of(805, CPROX_ELLIPSOID, CPROX_ELLIPSOID) <= 5.0);
 }
 
 int main(void) {
@@ -176,7 +182,7 @@ int main(void) {
       cmocka_unit_test(a_foot_is_the_nearest_point_of_the_core),
       cmocka_unit_test(a_foot_moves_along_its_tangents),
       cmocka_unit_test(grazing_rims_and_parallel_edges_lie_in_the_interval),
-      cmocka_unit_test(a_box_and_a_cylinder_take_few_looks),
+      cmocka_unit_test(projections_and_smoothness_save_looks),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,6 +14,9 @@ static const double APPROACH_PARALLEL = 1e-3;
 /* Of a pivot: what is left of a unit vector that depends on the others. */
 static const double APPROACH_DEPENDENT = 1e-12;
 
+/* Of a step of the direction, in radians or nearly so. */
+static const double SMOOTH_FARTHEST = 0.5;
+
 typedef struct approach_pair {
   convex_foot a, b; /* b's in its own frame */
   vec3 v;
@@ -89,16 +92,19 @@ static vec3 approach_direction(const approach_pair *p) {
   return vec_dot(u, along) < 0.0 ? vec_neg(u) : u;
 }
 
-/* phi(u), and u if it is the best. */
-static void approach_look(const approach_task *task, vec3 u, approach_answer *answer) {
-  vec3 a, b;
-  task->a->ops->support(task->a, vec_neg(u), NULL, &a);
-  task->b->ops->support(task->b, turn_back(task->place->r, u), NULL, &b);
-  const double phi = vec_dot(u, vec_sub(a, vec_add(turn(task->place->r, b), task->place->t)));
+/* The points of the cores that are nearest to each other along u, phi(u), and u if it is the best. */
+static simplex_vertex approach_look(const approach_task *task, vec3 u, approach_answer *answer) {
+  simplex_vertex x = {.id = -1};
+  task->a->ops->support(task->a, vec_neg(u), NULL, &x.a);
+  task->b->ops->support(task->b, turn_back(task->place->r, u), NULL, &x.b);
+  x.w = vec_sub(x.a, vec_add(turn(task->place->r, x.b), task->place->t));
+  const double phi = vec_dot(u, x.w);
   answer->looks++;
-  if (!(phi > answer->lower)) return;
-  answer->lower = phi;
-  answer->u = u;
+  if (phi > answer->lower) {
+    answer->lower = phi;
+    answer->u = u;
+  }
+  return x;
 }
 
 void approach_search(const approach_task *task, approach_answer *answer) {
@@ -131,5 +137,46 @@ void approach_search(const approach_task *task, approach_answer *answer) {
     y = back = vec_sub(p.a.point, p.v);
     newton = true;
     for (int i = p.of_a; i < p.n; i++) y = vec_axpy(y, -x[i], p.m[i]);
+  }
+}
+
+/* ---- smooth cores ---- */
+
+/* Newton's step for phi at u, whose point is x: (K + d) delta = x_tangential. False where the surfaces are flatter than doubles tell. */
+static bool smooth_step(const approach_task *task, const simplex_vertex *x, vec3 u, double d, double delta[2], vec3 *e,
+                        vec3 *f) {
+  const double *r = task->place->r;
+  double ha[6], hb[6];
+  feature_tangents(u, e, f);
+  const vec3 eb = turn_back(r, *e), fb = turn_back(r, *f);
+  task->a->ops->curvature(task->a, vec_neg(u), x->a, ha);
+  task->b->ops->curvature(task->b, turn_back(r, u), x->b, hb);
+  const double ee = feature_quadratic(ha, *e, *e) + feature_quadratic(hb, eb, eb) + d;
+  const double ef = feature_quadratic(ha, *e, *f) + feature_quadratic(hb, eb, fb);
+  const double ff = feature_quadratic(ha, *f, *f) + feature_quadratic(hb, fb, fb) + d, det = ee * ff - ef * ef;
+  const double ge = vec_dot(x->w, *e), gf = vec_dot(x->w, *f);
+  delta[0] = (ff * ge - ef * gf) / det;
+  delta[1] = (ee * gf - ef * ge) / det;
+  return det > 0.0;
+}
+
+void approach_smooth(const approach_task *task, vec3 u, approach_answer *answer) {
+  *answer = (approach_answer){.pair = {.id = -1}, .distance = INFINITY, .lower = -INFINITY};
+  for (int round = 0; round < APPROACH_ROUNDS && answer->looks + 1 < task->goal->max_steps; round++) {
+    const simplex_vertex x = approach_look(task, u, answer);
+    const double distance = vec_norm(x.w), phi = vec_dot(u, x.w);
+    if (distance < answer->distance) {
+      answer->distance = distance;
+      answer->pair = x;
+    }
+    if (distance <= task->hair) return;
+    answer->reached = pair_is_reached(task->goal, task->margins, task->rounding, answer->lower, answer->distance);
+    if (answer->reached) return;
+    double delta[2];
+    vec3 e, f;
+    if (!smooth_step(task, &x, u, 0.5 * (greater(phi, 0.0) + distance), delta, &e, &f)) return;
+    const double length = feature_hypot(delta[0], delta[1]);
+    const double scale = length > SMOOTH_FARTHEST ? SMOOTH_FARTHEST / length : 1.0;
+    feature_unit(vec_axpy(vec_axpy(u, scale * delta[0], e), scale * delta[1], f), &u);
   }
 }

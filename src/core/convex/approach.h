@@ -8,7 +8,7 @@
 #include "convex/simplex.h"
 
 typedef struct approach_task {
-  const convex *a, *b; /* both have ops->project */
+  const convex *a, *b;
   const pair_placement *place;
   const pair_goal *goal;
   double margins, rounding;
@@ -24,6 +24,10 @@ typedef struct approach_answer {
   uint32_t looks; /* directions that were tried */
 } approach_answer;
 
+/* By projections: both cores have ops->project. */
 void approach_search(const approach_task *task, approach_answer *answer);
+
+/* By Newton's method on phi alone, from u on: both cores are smooth. */
+void approach_smooth(const approach_task *task, vec3 u, approach_answer *answer);
 
 #endif

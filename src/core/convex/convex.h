@@ -78,6 +78,9 @@ typedef struct convex_ops {
    * polyhedra. */
   void (*curvature)(const convex *shape, vec3 d, vec3 x, double hessian[6]);
 
+  /* The maximiser is a smooth function of the direction: the core's surface is one piece. */
+  bool smooth;
+
   /* The extreme point in direction d of the smooth piece of the core that x lies on (a rim, the whole ellipsoid), whether
    * or not another piece reaches farther: always a point of the core. NULL for polyhedra: x itself. */
   vec3 (*follow)(const convex *shape, vec3 d, vec3 x);

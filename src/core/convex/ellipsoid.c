@@ -131,27 +131,24 @@ static void ellipsoid_nearest(const convex *shape, vec3 y, convex_hint *hint, co
   ellipsoid_hessian(shape->size, near->point, near->normal, near->distance, near->hessian);
 }
 
-/* The extreme point D²d/|Dd| - m d/|d| of the core. */
-static vec3 ellipsoid_extreme(const convex *shape, vec3 d) {
-  const double *a = shape->size;
+/* |Dd| - m |d|, and the extreme point D²d/|Dd| - m d/|d| of the core. */
+static inline double ellipsoid_reach(const convex *shape, vec3 d, vec3 *at) {
+  const double *a = shape->size, m = shape->margin;
   vec3 scaled, unit;
-  feature_unit(vec(a[0] * d.x, a[1] * d.y, a[2] * d.z), &scaled);
-  feature_unit(d, &unit);
-  const double m = shape->margin;
-  return vec(a[0] * scaled.x - m * unit.x, a[1] * scaled.y - m * unit.y, a[2] * scaled.z - m * unit.z);
+  const double eta = feature_unit(vec(a[0] * d.x, a[1] * d.y, a[2] * d.z), &scaled), length = feature_unit(d, &unit);
+  *at = vec(a[0] * scaled.x - m * unit.x, a[1] * scaled.y - m * unit.y, a[2] * scaled.z - m * unit.z);
+  return eta - m * length;
 }
 
 static double ellipsoid_support(const convex *shape, vec3 d, convex_hint *hint, vec3 *at) {
   (void)hint;
-  const double *a = shape->size;
   vec3 unused;
-  if (at) *at = ellipsoid_extreme(shape, d);
-  return feature_unit(vec(a[0] * d.x, a[1] * d.y, a[2] * d.z), &unused) - shape->margin * feature_unit(d, &unused);
+  return ellipsoid_reach(shape, d, at ? at : &unused);
 }
 
 static vec3 ellipsoid_follow(const convex *shape, vec3 d, vec3 x) {
-  (void)x;
-  return ellipsoid_extreme(shape, d);
+  ellipsoid_reach(shape, d, &x);
+  return x;
 }
 
 static void ellipsoid_curvature(const convex *shape, vec3 d, vec3 x, double hessian[6]) {
@@ -186,5 +183,6 @@ const convex_ops convex_ellipsoid = {.kind = CPROX_ELLIPSOID,
                                      .nearest = ellipsoid_nearest,
                                      .support = ellipsoid_support,
                                      .curvature = ellipsoid_curvature,
+                                     .smooth = true,
                                      .follow = ellipsoid_follow,
                                      .cover = ellipsoid_cover};

@@ -36,6 +36,12 @@ static inline double feature_unit(vec3 v, vec3 *unit) {
   return most * norm;
 }
 
+/* x·(h y) for a symmetric matrix h: xx, xy, xz, yy, yz, zz. */
+static inline double feature_quadratic(const double h[6], vec3 x, vec3 y) {
+  return x.x * (h[0] * y.x + h[1] * y.y + h[2] * y.z) + x.y * (h[1] * y.x + h[3] * y.y + h[4] * y.z) +
+         x.z * (h[2] * y.x + h[4] * y.y + h[5] * y.z);
+}
+
 /* Two unit vectors that make a right-handed orthonormal basis with the unit vector n. */
 void feature_tangents(vec3 n, vec3 *e, vec3 *f);
 

@@ -102,15 +102,10 @@ static bool piece_follow(const convex *shape, vec3 d, vec3 *x) {
   return true;
 }
 
-static double quadratic(const double h[6], vec3 x, vec3 y) {
-  return x.x * (h[0] * y.x + h[1] * y.y + h[2] * y.z) + x.y * (h[1] * y.x + h[3] * y.y + h[4] * y.z) +
-         x.z * (h[2] * y.x + h[4] * y.y + h[5] * y.z);
-}
-
 static void pieces_add_curvature(pair_pieces *pieces, double weight, const double h[6], vec3 e, vec3 f) {
-  pieces->kee += weight * quadratic(h, e, e);
-  pieces->kef += weight * quadratic(h, e, f);
-  pieces->kff += weight * quadratic(h, f, f);
+  pieces->kee += weight * feature_quadratic(h, e, e);
+  pieces->kef += weight * feature_quadratic(h, e, f);
+  pieces->kff += weight * feature_quadratic(h, f, f);
 }
 
 /* The simplex's vertices moved to where u finds them on their pieces; those that fall together are one. e and f NULL: their
@@ -453,10 +448,14 @@ static void pair_measure_depth(pair *p, double margin_a, double margin_b, const 
 /* By projections, where both cores know theirs; one step is left to the search. What the goal asks of the feature is read from a
  * simplex. False, and perhaps a better start, where the bounds are not close enough yet. */
 static bool pair_approach(pair *p, const pair_placement *place, double margins, const pair_goal *goal, vec3 *start) {
-  if (!p->a->ops->project || !p->b->ops->project || goal->wants_feature) return false;
+  const bool smooth = p->a->ops->smooth && p->b->ops->smooth;
+  if (!smooth && (!p->a->ops->project || !p->b->ops->project || goal->wants_feature)) return false;
   const approach_task task = {p->a, p->b, place, goal, margins, p->rounding, p->hair};
   approach_answer found;
-  approach_search(&task, &found);
+  if (smooth)
+    approach_smooth(&task, *start, &found);
+  else
+    approach_search(&task, &found);
   p->steps += found.looks;
   p->supports += found.looks;
   if (found.looks > 0) *start = found.u;
