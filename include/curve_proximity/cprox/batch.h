@@ -16,7 +16,7 @@ extern "C" {
 /** Targets made ready for batches; immutable. */
 typedef struct cprox_batch cprox_batch;
 
-/** Makes n targets ready: a bounding ball and an inscribed ball of each.
+/** Makes n targets ready: a bounding ball, an inscribed ball and a box round each part.
  *
  *  targets   copied; what they name is kept by reference and must outlive the batch. n = 0: nothing to meet.
  *  batch     receives the handle, owned by the caller: cprox_batch_free(). Untouched on failure.
@@ -34,7 +34,7 @@ CPROX_API void cprox_batch_free(cprox_batch *batch);
  *  movers    at least `last` of them; first <= last.
  *  options   NULL: the default. A certificate is refused: ask the query of one mover for it.
  *  results   results[i] receives what cprox_distance_all() answers for movers[i]: the same guarantees, not the same digits.
- *            The others are untouched. nodes and probes are 0 where balls settled it.
+ *            The others are untouched. nodes and probes are 0 where balls and boxes round the parts settled it.
  *
  *  A mover that is unusable fails alone: its result has the negative status and the interval [0, infinity], all others are
  *  answered. Returns the first negative status, else the largest; the reason names the first mover that it belongs to.

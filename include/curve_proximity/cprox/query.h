@@ -108,10 +108,11 @@ typedef struct cprox_result {
   cprox_status status;   /**< the same that the call returned */
   cprox_verdict verdict; /**< tolerance: yes = farther than delta everywhere; collision: yes = they touch or overlap;
                               undecided counts as unsafe. distance: undecided, always */
-  double lower, upper;   /**< [m] certified: lower <= true value <= upper. upper = infinity where bounding balls alone
-                              decided a verdict: then there is no witness, and target_index is -1 */
-  double t;              /**< where on the mover's curve upper was attained */
-  double t_target;       /**< where on a target that is a curve; NaN for bodies */
+  double lower,
+      upper;       /**< [m] certified: lower <= true value <= upper. upper = infinity where bounding balls (in batches
+                              also boxes) alone decided a verdict: then there is no witness, and target_index is -1 */
+  double t;        /**< where on the mover's curve upper was attained */
+  double t_target; /**< where on a target that is a curve; NaN for bodies */
   cprox_vec3 on_mover, on_target; /**< [m] world frame, the two points that attain upper (surfaces, radius and padding
                                        included); equal where they overlap, and either end of
                                        the way out for signed distances */

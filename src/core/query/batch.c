@@ -13,32 +13,31 @@
 
 /* ---- one mover ---------------------------------------------------------------------------------------------------------- */
 
-/* A point of the curve is so near to a ball inside a part that the limit is violated, whatever else there is. */
+/* A point of the curve is so near to a part that the limit is violated, whatever else there is. */
 static cprox_status report_hit(const batch_run *run, const batch_look *look, cprox_result *r) {
   const batch_hit *hit = &look->hit;
   const candidate *part = &run->batch->parts[hit->part];
-  const batch_core *core = &run->batch->cores[hit->part];
-  const lanes_chords *chords = &run->chords[hit->piece];
   const double *breaks = run->q.mover.curve->breaks + hit->piece, radius = run->q.mover.radius;
-  const vec3 point = vec(chords->x[hit->k], chords->y[hit->k], chords->z[hit->k]);
+  const double padding = run->batch->cores[hit->part].padding;
   *r = (cprox_result){.lower = look->beyond < 0.0 ? 0.0 : look->beyond,
                       .upper = hit->upper,
-                      .t = breaks[0] + (double)(int)hit->k / CHORDS * (breaks[1] - breaks[0]),
+                      .t = breaks[0] + hit->s * (breaks[1] - breaks[0]),
                       .t_target = NAN,
-                      .on_mover = point,
-                      .on_target = point,
+                      .on_mover = hit->point,
+                      .on_target = hit->point,
                       .target_index = part->target,
                       .target_part = part->part,
-                      .rung = CPROX_RUNG_SPHERE};
+                      .rung = look->rung};
 
-  /* the nearest points of that ball and the mover's, or one of both */
-  const double within = core->inner + core->padding;
-  if (hit->distance > within) {
-    const vec3 normal = vec_scale(1.0 / hit->distance, vec_sub(point, core->centre));
-    r->on_mover = r->on_target = vec_axpy(core->centre, within, normal);
-    if (hit->distance > within + radius) {
+  /* the nearest points of the padded part and the mover, or one of both */
+  if (hit->distance > padding) {
+    const vec3 between = vec_sub(hit->point, hit->surface);
+    const double length = vec_norm(between);
+    const vec3 normal = length > 0.0 ? vec_scale(1.0 / length, between) : vec(0, 0, 0);
+    r->on_mover = r->on_target = vec_axpy(hit->surface, padding, normal);
+    if (hit->distance > padding + radius) {
       r->normal = normal;
-      r->on_mover = vec_axpy(point, -radius, normal);
+      r->on_mover = vec_axpy(hit->point, -radius, normal);
     }
   }
   r->verdict = question_verdict(&run->q, r);
@@ -64,7 +63,7 @@ static cprox_status search_near(const batch_run *run, const batch_look *look, cp
     if (status != CPROX_OK) trouble = status;
     question_join(all, &one);
   }
-  if (look->n == 0 && run->batch->n > 0) all->rung = CPROX_RUNG_SPHERE;
+  if (look->n == 0 && run->batch->n > 0) all->rung = look->rung;
   all->lower = fmin(all->lower, fmax(rest, 0.0));
   return question_conclude(q, INFINITY, trouble, all);
 }

@@ -38,9 +38,10 @@ void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, d
   }
 }
 
-static void fill_basis(size_t degree, double *basis) {
+/* At s = from + k step; both are multiples of 1/CHORDS^2, so that s and 1 - s are exact. */
+static void fill_basis(size_t degree, double from, double step, double *basis) {
   for (size_t k = 0; k < CHORDS; k++) {
-    const double s = (double)k / CHORDS, r = 1.0 - s;
+    const double s = from + (double)k * step, r = 1.0 - s;
     basis[k] = 1.0;
     for (size_t n = 1; n <= degree; n++) {
       /* B(n, j) = r B(n-1, j) + s B(n-1, j-1), from above so that one row is enough */
@@ -58,7 +59,7 @@ static const double *basis_in(workspace_buffer which, size_t degree, cprox_works
   double *buffer = workspace_reserve(workspace, which, (1 + CHORDS * (degree + 1)) * sizeof(double));
   if (!buffer) return NULL;
   if (fresh || buffer[0] != (double)degree) {
-    fill_basis(degree, buffer + 1);
+    fill_basis(degree, 0.0, 1.0 / CHORDS, buffer + 1);
     buffer[0] = (double)degree;
   }
   return buffer + 1;
@@ -72,6 +73,23 @@ bool lanes_bases(const size_t degree[2], cprox_workspace *workspace, const doubl
   basis[0] = basis_in(WORKSPACE_BASIS, degree[0], workspace);
   basis[1] = degree[1] == degree[0] ? basis[0] : basis_in(WORKSPACE_BASIS_OF_SECOND, degree[1], workspace);
   return basis[0] && basis[1];
+}
+
+/* This one begins with the degree and with which chords' tables are there, a bit each: most are never asked for. */
+const double *lanes_fine_basis(size_t degree, size_t chord, cprox_workspace *workspace) {
+  enum { HEAD = 2 };
+  const size_t each = CHORDS * (degree + 1);
+  const bool fresh = !workspace_reserve(workspace, WORKSPACE_FINE_BASIS, 0);
+  double *buffer = workspace_reserve(workspace, WORKSPACE_FINE_BASIS, (HEAD + CHORDS * each) * sizeof(double));
+  if (!buffer) return NULL;
+  if (fresh || buffer[0] != (double)degree) buffer[0] = (double)degree, buffer[1] = 0.0;
+  const uint32_t there = (uint32_t)buffer[1], own = 1u << chord;
+  double *basis = buffer + HEAD + chord * each;
+  if (!(there & own)) {
+    fill_basis(degree, (double)chord / CHORDS, 1.0 / (CHORDS * CHORDS), basis);
+    buffer[1] = (double)(there | own);
+  }
+  return basis;
 }
 
 /* Of LANES squares the least; which one has it, the first of several, without branches: nobody can foretell it. */

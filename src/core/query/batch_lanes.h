@@ -23,6 +23,9 @@ void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, d
  * NULL where memory is out. */
 const double *lanes_basis(size_t degree, cprox_workspace *workspace);
 
+/* The same within chord `chord`: at (chord + k/CHORDS) / CHORDS. Valid until another degree is asked for. */
+const double *lanes_fine_basis(size_t degree, size_t chord, cprox_workspace *workspace);
+
 /* Where on a piece (control points one array a coordinate) it comes nearest to the origin, as far as CHORDS + 1 points tell: s. */
 double lanes_first_look(const double *basis, const double *x, const double *y, const double *z, size_t degree);
 
@@ -69,6 +72,23 @@ void lanes_boxes(const lanes_chords *chords, lanes_box boxes[STRETCHES]);
  * known to `slack`, the rest of the rounding is included. */
 void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n, double radius, double slack,
                       double *lower);
+
+/* A box that stands anywhere: the points x with |r^T (x - position) - centre| <= half, each coordinate by itself; r is row-major. */
+typedef struct lanes_brick {
+  double r[9];
+  vec3 position, centre, half;
+} lanes_brick;
+
+/* What a brick is to each chord, but for rounding: */
+typedef struct lanes_sight {
+  double lower[CHORDS];  /* the chord is at least so far away, */
+  double square[CHORDS]; /* and the square distance of one point of it */
+  double s[CHORDS];      /* is this: that of s in [0, 1] */
+} lanes_sight;
+/* The least of CHORDS numbers, and the first that is it. */
+double lanes_least(const double *values, uint32_t *which);
+
+void lanes_see_brick(const lanes_chords *chords, const lanes_brick *brick, lanes_sight *sight);
 
 /* max|P_(i+2) - 2 P_(i+1) + P_i|² over the control points. */
 double lanes_bend2(const vec3 *points, size_t degree);

@@ -112,7 +112,16 @@ static bool hits(batch_run *run, size_t part, uint32_t half, double limit, batch
   const double distance = sqrt(square);
   const double upper = distance - core->inner - margin + slack_at(run, part, distance, margin);
   if (upper > limit) return false;
-  *hit = (batch_hit){.upper = greater(upper, 0.0), .distance = distance, .part = part, .piece = half / 2, .k = k};
+  const lanes_chords *chords = &run->chords[half / 2];
+  const vec3 point = vec(chords->x[k], chords->y[k], chords->z[k]);
+  const vec3 outwards = distance > 0.0 ? vec_scale(1.0 / distance, vec_sub(point, core->centre)) : vec(0, 0, 0);
+  *hit = (batch_hit){.upper = greater(upper, 0.0),
+                     .part = part,
+                     .piece = half / 2,
+                     .s = (double)k / CHORDS,
+                     .point = point,
+                     .distance = distance - core->inner,
+                     .surface = vec_axpy(core->centre, core->inner, outwards)};
   return true;
 }
 
@@ -148,7 +157,7 @@ static bool find_hit(batch_run *run, double limit, batch_hit *hit) {
 /* ---- chords against all balls --------------------------------------------------------------------------------------------- */
 
 /* Bounds on the distance, and where the search should begin. Raises c->lower; returns the upper bound. */
-static double look_at(const batch_run *run, candidate *c, size_t part) {
+static double look_at_balls(const batch_run *run, candidate *c, size_t part) {
   const batch_core *core = &run->batch->cores[part];
   double least = INFINITY, along = 0.0;
   size_t chord = 0, piece = 0;
@@ -166,6 +175,17 @@ static double look_at(const batch_run *run, candidate *c, size_t part) {
   c->seed_piece = (uint32_t)piece;
   c->seed_s = lesser(greater(((double)chord + along) / CHORDS, 1e-3), 1.0 - 1e-3);
   return distance + (has_inner_ball(run, part) ? -core->inner : core->outer) - margin + slack;
+}
+
+/* What balls leave open the brick may settle. */
+static double look_at(batch_run *run, candidate *c, size_t part, double most, batch_look *look) {
+  double upper = look_at_balls(run, c, part), by_brick = INFINITY;
+  if (run->batch->cores[part].has_brick && !(c->lower > most)) {
+    look->is_hit = batch_look_at_brick(run, part, most, c, &by_brick, &look->hit);
+    look->hit.part = part;
+    look->rung = CPROX_RUNG_HULL;
+  }
+  return lesser(upper, by_brick);
 }
 
 /* The promising candidate first, the others nearest first. Those that a later one has ruled out leave: farther than the first one is,
@@ -190,6 +210,7 @@ void batch_look_around(batch_run *run, batch_look *look) {
   const double most = question_wants_verdict(q) ? q->limit : INFINITY;
   const bool short_enough = q->mover.curve->n_pieces <= BATCH_MOST_PIECES;
   look->n = 0;
+  look->rung = CPROX_RUNG_SPHERE;
   run->measured = run->joined = false;
   run->cut = 0;
   lanes_ball_bounds(&batch->balls, &q->mover.curve->whole, q->mover.radius, run->lower);
@@ -197,15 +218,11 @@ void batch_look_around(batch_run *run, batch_look *look) {
   if (short_enough) look->beyond = bound_by_boxes(run, most, look->beyond);
 
   look->is_hit = short_enough && find_hit(run, greater(q->limit, 0.0), &look->hit);
-  if (look->is_hit) {
-    for (size_t i = 0; i < run->n_open; i++) look->beyond = lesser(look->beyond, run->lower[run->open[i]]);
-    return;
-  }
 
   /* what comes within `most` as far as chords can tell */
   double least_upper = INFINITY;
   size_t promising = 0;
-  for (size_t i = 0; i < run->n_open; i++) {
+  for (size_t i = 0; i < run->n_open && !look->is_hit; i++) {
     const size_t k = run->open[i];
     if (run->lower[k] > least_upper) {
       look->beyond = lesser(look->beyond, run->lower[k]);
@@ -217,7 +234,7 @@ void batch_look_around(batch_run *run, batch_look *look) {
     double upper = INFINITY;
     if (short_enough && batch->targets[c->target].body) {
       if (!run->joined && (run->measured || measure(run))) join_points(run);
-      if (run->joined) upper = look_at(run, c, k);
+      if (run->joined) upper = look_at(run, c, k, lesser(most, least_upper), look);
     }
     if (c->lower > lesser(most, least_upper)) {
       look->beyond = lesser(look->beyond, c->lower);
@@ -226,5 +243,8 @@ void batch_look_around(batch_run *run, batch_look *look) {
     if (upper < least_upper) least_upper = upper, promising = look->n;
     look->n++;
   }
-  put_in_order(run, promising, least_upper, look);
+  if (look->is_hit)
+    for (size_t i = 0; i < run->n_open; i++) look->beyond = lesser(look->beyond, run->lower[run->open[i]]);
+  else
+    put_in_order(run, promising, least_upper, look);
 }

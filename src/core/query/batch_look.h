@@ -27,22 +27,30 @@ typedef struct batch_run {
   double slack;  /* how much rounding may add to that */
 } batch_run;
 
-/* Where the curve comes within the limit of a ball inside a part. */
+/* Where the curve comes within the limit of a part. */
 typedef struct batch_hit {
-  double upper;      /* of the distance, rounding included */
-  double distance;   /* of the point from the ball's centre */
-  size_t part;       /* number in the batch */
-  uint32_t piece, k; /* the point: where chord k of the piece begins */
+  double upper;   /* of the distance, rounding included */
+  size_t part;    /* number in the batch */
+  uint32_t piece; /* the curve's point: at s of this, */
+  double s;
+  vec3 point;      /* here, */
+  double distance; /* so far from the part without its padding, 0 or less inside, */
+  vec3 surface;    /* of which this point is that near */
 } batch_hit;
 
 typedef struct batch_look {
-  bool is_hit; /* that settles it: nothing below is known but `beyond` */
+  bool is_hit; /* that settles it: of what is below `beyond` and `rung` are known */
   batch_hit hit;
-  size_t n;      /* candidates in `near`: the one of the least upper bound first, the others nearest first */
-  double beyond; /* the least lower bound of all others */
+  size_t n;        /* candidates in `near`: the one of the least upper bound first, the others nearest first */
+  double beyond;   /* the least lower bound of all others */
+  cprox_rung rung; /* what that took */
 } batch_look;
 
 /* Looks at all parts from the curve of run->q.mover, a point or a ball with control points. Fills *look. */
 void batch_look_around(batch_run *run, batch_look *look);
+
+/* What the box round a part says of the curve, whose chords are joined. Raises c->lower, to more than `most` where that can be shown, says
+ * where a search should begin, and sets *upper to an upper bound or infinity. For verdicts: true where it finds a hit. */
+bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit);
 
 #endif

@@ -87,6 +87,36 @@ static batch_core core_of(const question *q, const candidate *c, candidate_ball 
   return core;
 }
 
+/* ---- bricks ------------------------------------------------------------------------------------------------------------- */
+
+/* How far the shape reaches both ways along an axis of its frame, which stands in its middle; rounding included. */
+static double half_along(const convex *shape, vec3 axis) {
+  const double core =
+      greater(shape->ops->support(shape, axis, NULL, NULL), shape->ops->support(shape, vec_neg(axis), NULL, NULL));
+  return core + shape->margin + ROUND_UP * (ROUND_SUPPORT * ROUND_U * (shape->scale + shape->margin) + shape->slack);
+}
+
+/* A ball says more of a sphere than any box. */
+static void lay_brick(const question *q, const candidate *c, batch_core *core) {
+  const cprox_body *body = candidate_body(q, c);
+  if (!body || !has_depth(body) || body->kind == CPROX_SPHERE) return;
+  const convex *shape = &body->shape;
+  const frame f = candidate_frame(q, c);
+  lanes_brick *brick = &core->brick;
+  memcpy(brick->r, f.r, sizeof brick->r);
+  brick->position = f.position;
+  brick->centre = f.centre;
+  core->has_brick = true;
+  core->is_brick = body->kind == CPROX_BOX;
+  brick->half = vec(shape->size[0], shape->size[1], shape->size[2]);
+  if (!core->is_brick)
+    brick->half =
+        vec(half_along(shape, vec(1, 0, 0)), half_along(shape, vec(0, 1, 0)), half_along(shape, vec(0, 0, 1)));
+  core->brick_sizes = vec_norm(f.position) + vec_norm(f.centre) + vec_norm(brick->half);
+  core->brick_turned = f.misturned;
+  core->brick_misplaced = f.misplaced;
+}
+
 /* ---- the batch ---------------------------------------------------------------------------------------------------------- */
 
 static size_t parts_of(const cprox_target *target) {
@@ -130,6 +160,7 @@ static void describe(cprox_batch *batch, const question *q, size_t k) {
   batch->cores[k] = core_of(q, c, round);
   batch->cores[k].plane = target->pose.position.z;
   batch->cores[k].padding = target->padding;
+  lay_brick(q, c, &batch->cores[k]);
 }
 
 cprox_status cprox_batch_create(const cprox_target *targets, size_t n, cprox_workspace *workspace,

@@ -15,6 +15,12 @@ typedef struct batch_core {
   bool flat;      /* the inner ball is a disc in the plane of constant z: it tells of curves in that plane only */
   double plane;   /* this */
   double padding; /* of the target, which the radii leave out */
+
+  /* a box round the part, in the frame of its shape */
+  bool has_brick, is_brick; /* there is one; the part is that box */
+  lanes_brick brick;
+  double brick_sizes; /* the sum of the lengths that entered, for rounding: this times brick_turned u, */
+  double brick_turned, brick_misplaced; /* and this [m] are what placing it may be off */
 } batch_core;
 
 struct cprox_batch {
