@@ -630,6 +630,85 @@ static void bricks_hold_their_parts(void **state) {
   cprox_workspace_free(workspace);
 }
 
+/* Seed 24: 75 boxes, compounds of two, and two halfspaces, which have no balls. Each part is in one block; the bound of a block is above the distance of none
+ * of its balls from 4 boxes, in long double, and no more than 160 u of the sizes below that of the box round its balls. */
+static void blocks_hold_each_part_once_and_bound_it(void **state) {
+  (void)state;
+  enum { N = 75, BOXES = 4 };
+  rng r = rng_seed(24);
+  cprox_workspace *workspace = cprox_workspace_create();
+  for (size_t round = 0; round < test_cases(100); round++) {
+    const size_t n = 1 + rng_index(&r, N);
+    cprox_body *box = NULL, *pair = NULL, *half = NULL;
+    cprox_target targets[N];
+    assert_int_equal(cprox_body_create_box(vec(0.1, 0.2, 0.3), workspace, &box), CPROX_OK);
+    assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 0.0, workspace, &half), CPROX_OK);
+    const cprox_pose poses[2] = {rng_pose(&r, 0.5), rng_pose(&r, 0.5)};
+    assert_int_equal(cprox_body_create_compound((const cprox_body *[]){box, box}, poses, 2, workspace, &pair),
+                     CPROX_OK);
+    const double far = round % 2 ? rng_log_uniform(&r, 1.0, 1e5) : 0.0;
+    const vec3 offset = vec_scale(far, rng_unit(&r));
+    for (size_t i = 0; i < n; i++) {
+      cprox_pose pose = rng_pose(&r, 2.0);
+      pose.position = vec_add(pose.position, offset);
+      targets[i] = cprox_at(i % 40 == 20 ? half : i % 4 == 1 ? pair : box, pose);
+      targets[i].padding = i % 3 == 0 ? 0.1 : 0.0;
+    }
+    cprox_batch *batch = NULL;
+    assert_int_equal(cprox_batch_create(targets, n, workspace, &batch), CPROX_OK);
+    int met[N][2] = {{0}};
+    for (size_t k = 0; k < batch->balls.n; k++) met[batch->parts[k].target][batch->parts[k].part]++;
+    for (size_t i = 0; i < n; i++) assert_true(met[i][0] == 1 && met[i][1] == (targets[i].body == pair));
+
+    lanes_box boxes[BOXES];
+    for (int i = 0; i < BOXES; i++) {
+      const vec3 at = vec_add(offset, rng_in_cube(&r, 4.0)),
+                 size = vec(rng_uniform(&r, 0, 1), rng_uniform(&r, 0, 1), 0);
+      boxes[i] = (lanes_box){at, vec_add(at, size)};
+    }
+    double lower[N];
+    const double radius = rng_uniform(&r, 0, 0.2);
+    const lanes_blocks *blocks = &batch->blocks;
+    assert_true(blocks->padded <= N && blocks->n == (batch->balls.n + BLOCK - 1) / BLOCK);
+    lanes_block_bounds(blocks, boxes, BOXES, radius, 0.0, lower);
+    for (size_t k = 0; k < batch->balls.n; k++) {
+      const lanes_balls *balls = &batch->balls;
+      if (isinf(balls->reach[k])) {
+        assert_true(lower[k / BLOCK] == -INFINITY);
+        continue;
+      }
+      const vec3 c = vec(balls->x[k], balls->y[k], balls->z[k]);
+      long double least = INFINITY;
+      for (int i = 0; i < BOXES; i++) least = fminl(least, square_from_box(&boxes[i], c));
+      const long double truth = fmaxl(sqrtl(least) - (long double)balls->reach[k], 0.0L) - (long double)radius;
+      assert_true((long double)lower[k / BLOCK] <= truth);
+    }
+    for (size_t b = 0; b < blocks->n; b++) {
+      if (lower[b] == -INFINITY) continue;
+      long double least = INFINITY;
+      for (int i = 0; i < BOXES; i++) {
+        const double low[3] = {boxes[i].low.x, boxes[i].low.y, boxes[i].low.z};
+        const double high[3] = {boxes[i].high.x, boxes[i].high.y, boxes[i].high.z};
+        long double square = 0.0L;
+        for (int j = 0; j < 3; j++) {
+          const long double over = (long double)low[j] - (long double)blocks->high[j][b];
+          const long double under = (long double)blocks->low[j][b] - (long double)high[j];
+          const long double gap = fmaxl(fmaxl(over, under), 0.0L);
+          square += gap * gap;
+        }
+        least = fminl(least, square);
+      }
+      const long double below = sqrtl(least) - (long double)radius - (long double)lower[b];
+      assert_true(below >= 0.0L && below <= 160 * 0x1p-53L * (sqrtl(least) + 1.0L + (long double)blocks->sizes[b]));
+    }
+    cprox_batch_free(batch);
+    cprox_body_free(pair);
+    cprox_body_free(box);
+    cprox_body_free(half);
+  }
+  cprox_workspace_free(workspace);
+}
+
 /* ---- crowds -------------------------------------------------------------------------------------------------------------- */
 
 /* Seed 22: 300 quintics, some of them tubes, through 80 small boxes: the verdicts of the queries of one mover, in intervals that share a point with
@@ -809,6 +888,7 @@ int main(void) {
       cmocka_unit_test(chords_are_cut_again_where_the_piece_goes),
       cmocka_unit_test(bricks_bound_chords_from_below),
       cmocka_unit_test(bricks_hold_their_parts),
+      cmocka_unit_test(blocks_hold_each_part_once_and_bound_it),
       cmocka_unit_test(small_boxes_are_met_or_passed_without_a_search),
       cmocka_unit_test(a_mover_that_is_unusable_fails_alone),
       cmocka_unit_test(unusable_calls_are_refused_with_a_sentence),

@@ -100,24 +100,23 @@ bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c,
 
   /* all chords */
   lanes_sight sight[BATCH_MOST_PIECES];
-  double lower = INFINITY, square = INFINITY;
-  uint32_t piece = 0, chord = 0;
+  double lower = INFINITY, square = INFINITY, s = 0.0;
+  uint32_t piece = 0;
   for (uint32_t i = 0; i < pieces; i++) {
     lanes_see_brick(&run->chords[i], &core->brick, &sight[i]);
     uint32_t k, unused;
     const double least = lanes_least(sight[i].square, &k);
-    if (least < square) square = least, piece = i, chord = k;
+    if (least < square) square = least, piece = i, s = ((double)k + sight[i].s[k]) / CHORDS;
     lower = lesser(lower, lanes_least(sight[i].lower, &unused));
   }
   const double off = run->beside + l.margin + l.slack, distance = sqrt(square);
   c->lower = greater(c->lower, lower - off);
   c->seed_piece = piece;
-  c->seed_s = lesser(greater(((double)chord + sight[piece].s[chord]) / CHORDS, 1e-3), 1.0 - 1e-3);
+  c->seed_s = lesser(greater(s, 1e-3), 1.0 - 1e-3);
   *upper = core->is_brick ? distance + run->beside - l.margin + l.slack : INFINITY;
   if (c->lower > most || !question_wants_verdict(&run->q)) return false;
 
   /* the nearest chord's point, then each chord that is not too far */
-  const double s = ((double)chord + sight[piece].s[chord]) / CHORDS;
   if (distance - run->beside - l.margin <= l.limit && hits_at(&l, piece, s, hit)) return true;
   int cut = 0;
   lower = INFINITY;

@@ -5,9 +5,7 @@
 #include "base/rounding.h"
 #include "base/workspace.h"
 
-enum { BALLS = 4 }; /* their arrays are padded to a multiple of this */
 enum { SAMPLES = CHORDS + LANES };
-
 /* Below this the square of a length may have lost its digits, and its reciprocal overflows. */
 static const double LEAST_SQUARE = 1e-280;
 
@@ -22,9 +20,9 @@ void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, d
   const double own = capsule->radius + radius + (length2 > LEAST_SQUARE ? 0.0 : 1e-140);
   const vec3 b = capsule->b; /* sums of coordinates are no less than lengths */
   const double own_sizes = fabs(a.x) + fabs(a.y) + fabs(a.z) + fabs(b.x) + fabs(b.y) + fabs(b.z) + own;
-  for (size_t i = 0; i < balls->padded; i += BALLS) {
+  for (size_t i = 0; i < balls->padded; i += BLOCK) {
 #pragma omp simd
-    for (size_t l = 0; l < BALLS; l++) {
+    for (size_t l = 0; l < BLOCK; l++) {
       /* the nearest point of the chord; any other would only lie farther away, by no more than the rounding of s */
       const size_t k = i + l;
       const double px = x[k] - a.x, py = y[k] - a.y, pz = z[k] - a.z;
@@ -180,12 +178,12 @@ void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n
   const double *restrict x = balls->x, *restrict y = balls->y, *restrict z = balls->z;
   const double *restrict reach = balls->reach, *restrict sizes = balls->sizes;
   double *restrict out = lower;
-  for (size_t i = 0; i < balls->padded; i += BALLS) {
-    double least[BALLS] = {INFINITY, INFINITY, INFINITY, INFINITY};
+  for (size_t i = 0; i < balls->padded; i += BLOCK) {
+    double least[BLOCK] = {INFINITY, INFINITY, INFINITY, INFINITY};
     for (size_t b = 0; b < n; b++) {
       const vec3 low = boxes[b].low, high = boxes[b].high;
 #pragma omp simd
-      for (size_t l = 0; l < BALLS; l++) {
+      for (size_t l = 0; l < BLOCK; l++) {
         const size_t k = i + l;
         double dx = low.x - x[k] > x[k] - high.x ? low.x - x[k] : x[k] - high.x;
         double dy = low.y - y[k] > y[k] - high.y ? low.y - y[k] : y[k] - high.y;
@@ -198,7 +196,7 @@ void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n
       }
     }
 #pragma omp simd
-    for (size_t l = 0; l < BALLS; l++) {
+    for (size_t l = 0; l < BLOCK; l++) {
       const size_t k = i + l;
       const double distance = sqrt(least[l]), margin = radius + reach[k];
       const double bound = distance - margin - ROUND_UP * (slack + 64.0 * ROUND_U * (distance + margin + sizes[k]));

@@ -8,7 +8,10 @@
 /* A piece is cut into CHORDS of equal parameter length, of which LANES at a time are worked on. */
 enum { LANES = 8, CHORDS = 16 };
 
-/* Balls, one array a number, `padded` of each: n up to a multiple of 4. */
+/* Parts are looked at in blocks. */
+enum { BLOCK = 4 };
+
+/* Balls, one array a number, `padded` of each: n up to a multiple of BLOCK. */
 typedef struct lanes_balls {
   size_t n, padded;
   double *x, *y, *z;
@@ -89,6 +92,17 @@ typedef struct lanes_sight {
 double lanes_least(const double *values, uint32_t *which);
 
 void lanes_see_brick(const lanes_chords *chords, const lanes_brick *brick, lanes_sight *sight);
+
+/* Boxes round the balls of blocks, one array a number, padded likewise. */
+typedef struct lanes_blocks {
+  size_t n, padded;
+  double *low[3], *high[3];
+  double *sizes; /* the largest of the balls' */
+} lanes_blocks;
+
+/* lower[b]: the distance of block b from the nearest of n boxes, likewise. */
+void lanes_block_bounds(const lanes_blocks *blocks, const lanes_box *boxes, size_t n, double radius, double slack,
+                        double *lower);
 
 /* max|P_(i+2) - 2 P_(i+1) + P_i|² over the control points. */
 double lanes_bend2(const vec3 *points, size_t degree);

@@ -13,15 +13,19 @@ enum {
 typedef struct batch_run {
   const cprox_batch *batch;
   question q;
-  double *lower;  /* of each part's ball, padded */
-  uint32_t *open; /* the n_open parts whose bound does not settle them */
+  double *block_lower; /* of each block of parts, */
+  double *lower;       /* of each part's ball, padded; not known in blocks that are beyond what matters */
+  uint32_t *open;      /* the n_open parts whose bound does not settle them */
   size_t n_open;
-  candidate *near;     /* what may matter to the mover */
-  const double *basis; /* of the degree, */
-  size_t degree;       /* this one; SIZE_MAX: of none */
-  bool measured;       /* `slack` is known */
-  uint32_t cut;        /* which halves of the pieces have points at equal parameters below: */
-  bool joined;         /* and the chords between all of them are known */
+  bool short_enough;                              /* for points and chords */
+  lanes_box boxes[BATCH_MOST_PIECES * STRETCHES]; /* round stretches of the curve's chords: n_boxes, */
+  size_t n_boxes;                                 /* or 0, where the curve's capsule has to do */
+  candidate *near;                                /* what may matter to the mover */
+  const double *basis;                            /* of the degree, */
+  size_t degree;                                  /* this one; SIZE_MAX: of none */
+  bool measured;                                  /* `slack` is known */
+  uint32_t cut; /* which halves of the pieces have points at equal parameters below: */
+  bool joined;  /* and the chords between all of them are known */
   lanes_chords chords[BATCH_MOST_PIECES];
   double beside; /* how far the curve may be from the chords' points of the same parameter */
   double slack;  /* how much rounding may add to that */
@@ -48,6 +52,18 @@ typedef struct batch_look {
 
 /* Looks at all parts from the curve of run->q.mover, a point or a ball with control points. Fills *look. */
 void batch_look_around(batch_run *run, batch_look *look);
+
+/* Which parts may matter: bounds the blocks of them, by boxes round the curve's chords where there are many; the part that may be nearest, or SIZE_MAX
+ * where there is none; lists in run->open what is not farther than `most`, and returns the least bound of the others. */
+void batch_open_begin(batch_run *run);
+size_t batch_open_nearest(batch_run *run);
+double batch_open_list(batch_run *run, double most);
+
+/* The basis and run->slack; false where memory is out. The least square distance of the points of half a piece from a point, and which one of the
+ * piece has it. The chords between all points, and run->beside. */
+bool batch_points_ready(batch_run *run);
+double batch_points_nearest(batch_run *run, uint32_t half, vec3 from, uint32_t *nearest);
+void batch_points_join(batch_run *run);
 
 /* What the box round a part says of the curve, whose chords are joined. Raises c->lower, to more than `most` where that can be shown, says
  * where a search should begin, and sets *upper to an upper bound or infinity. For verdicts: true where it finds a hit. */

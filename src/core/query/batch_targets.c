@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "query/batch_targets.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -126,14 +127,17 @@ static size_t parts_of(const cprox_target *target) {
 static cprox_batch *allocate(size_t n_targets, size_t n_parts) {
   cprox_batch *batch = calloc(1, sizeof *batch);
   if (!batch) return NULL;
-  const size_t padded = (n_parts + 3) / 4 * 4;
+  const size_t n_blocks = (n_parts + BLOCK - 1) / BLOCK, padded = n_blocks * BLOCK;
+  const size_t padded_blocks = (n_blocks + BLOCK - 1) / BLOCK * BLOCK;
   batch->n = n_targets;
   batch->balls.n = n_parts;
   batch->balls.padded = padded;
+  batch->blocks.n = n_blocks;
+  batch->blocks.padded = padded_blocks;
   batch->targets = calloc(n_targets + 1, sizeof *batch->targets);
   batch->parts = calloc(n_parts + 1, sizeof *batch->parts);
   batch->cores = calloc(n_parts + 1, sizeof *batch->cores);
-  batch->balls.x = calloc(5 * padded + 1, sizeof(double));
+  batch->balls.x = calloc(5 * padded + 7 * padded_blocks + 1, sizeof(double));
   if (!batch->targets || !batch->parts || !batch->cores || !batch->balls.x) {
     cprox_batch_free(batch);
     return NULL;
@@ -142,6 +146,13 @@ static cprox_batch *allocate(size_t n_targets, size_t n_parts) {
   batch->balls.z = batch->balls.y + padded;
   batch->balls.reach = batch->balls.z + padded;
   batch->balls.sizes = batch->balls.reach + padded;
+  double *next = batch->balls.sizes + padded;
+  for (int axis = 0; axis < 3; axis++) {
+    batch->blocks.low[axis] = next;
+    batch->blocks.high[axis] = next + padded_blocks;
+    next += 2 * padded_blocks;
+  }
+  batch->blocks.sizes = next;
   return batch;
 }
 
@@ -163,6 +174,29 @@ static void describe(cprox_batch *batch, const question *q, size_t k) {
   lay_brick(q, c, &batch->cores[k]);
 }
 
+/* All parts, those that stand together one after the other; what is everywhere comes last. False where memory is out. */
+static bool list_parts(cprox_batch *batch, const question *q) {
+  batch_place *places = calloc(batch->balls.n + 1, sizeof *places);
+  if (!places) return false;
+  size_t bounded = 0, n = 0;
+  for (size_t i = 0; i < batch->n; i++) {
+    for (size_t part = 0; part < parts_of(&batch->targets[i]); part++) {
+      batch_place place = {.part = {.target = (int32_t)i, .part = (int32_t)part}};
+      double unused;
+      const candidate_ball round = candidate_bounding_ball(q, &place.part, &unused);
+      place.at = round.centre;
+      places[n++] = place;
+      if (!isfinite(round.radius)) continue;
+      places[n - 1] = places[bounded];
+      places[bounded++] = place;
+    }
+  }
+  batch_blocks_gather(places, bounded);
+  for (size_t k = 0; k < n; k++) batch->parts[k] = places[k].part;
+  free(places);
+  return true;
+}
+
 cprox_status cprox_batch_create(const cprox_target *targets, size_t n, cprox_workspace *workspace,
                                 cprox_batch **batch) {
   if (!workspace) return CPROX_INVALID;
@@ -176,14 +210,14 @@ cprox_status cprox_batch_create(const cprox_target *targets, size_t n, cprox_wor
   cprox_batch *made = allocate(n, n_parts);
   if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", n);
   if (n > 0) memcpy(made->targets, targets, n * sizeof *targets);
-  size_t k = 0;
-  for (size_t i = 0; i < n; i++) {
-    made->on_clock = made->on_clock || targets[i].on_clock;
-    for (size_t part = 0; part < parts_of(&targets[i]); part++)
-      made->parts[k++] = (candidate){.target = (int32_t)i, .part = (int32_t)part};
-  }
+  for (size_t i = 0; i < n; i++) made->on_clock = made->on_clock || targets[i].on_clock;
   const question q = {.targets = made->targets, .n = n};
-  for (k = 0; k < n_parts; k++) describe(made, &q, k);
+  if (!list_parts(made, &q)) {
+    cprox_batch_free(made);
+    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", n);
+  }
+  for (size_t k = 0; k < n_parts; k++) describe(made, &q, k);
+  batch_blocks_surround(made);
   *batch = made;
   return CPROX_OK;
 }

@@ -31,6 +31,17 @@ struct cprox_batch {
   candidate *parts;
   batch_core *cores;
   lanes_balls balls;
+  lanes_blocks blocks; /* of BLOCK parts each, that stand together */
 };
+
+/* Where a part stands, as far as its place in a block is concerned. */
+typedef struct batch_place {
+  candidate part;
+  vec3 at;
+} batch_place;
+
+/* Puts n places in the order of blocks; and boxes round the blocks of the batch's balls. */
+void batch_blocks_gather(batch_place *places, size_t n);
+void batch_blocks_surround(cprox_batch *batch);
 
 #endif
