@@ -36,16 +36,17 @@ double implicit_closed_radius(const implicit *body) {
   return up * most * pow(sum, 0.5 / q);
 }
 
-/* The derivative of u by w: diag(c) - v v'/(mu K), v_i = u_i/(p_i - 1), c_i = v_i/w_i, K = sum p_i u_i^p_i/(p_i - 1). */
+/* The derivative of u by w: diag(c) - v v'/(mu K), v_i = u_i/(p_i - 1), c_i = v_i/w_i, mu K = mu sum p_i u_i^p_i/(p_i - 1) = sum w_i v_i,
+ * since w_i = mu p_i u_i^(p_i-1). */
 static void reach_derivative(const implicit_term *term, const double w[3], const double u[3], double mu,
                              const double *inv, const double sign[3], double hessian[6]) {
-  double v[3], c[3], k = 0.0;
+  double v[3], c[3], whole = 0.0;
   const double most = 1e12; /* where w_i is 0 the surface is flat */
   for (int i = 0; i < 3; i++) {
     const bool moves = term[i].p > 1.0 && w[i] > 0.0;
     v[i] = moves ? u[i] * term[i].slope : 0.0;
     c[i] = moves ? fmin(v[i] / w[i], most * u[i] / mu + most) : 0.0;
-    k += moves ? term[i].p * term[i].slope * implicit_raise(&term[i], u[i]) : 0.0;
+    whole += w[i] * v[i];
     v[i] *= sign[i];
   }
   vec3 s = vec(0, 0, 0);
@@ -60,7 +61,7 @@ static void reach_derivative(const implicit_term *term, const double w[3], const
     hessian[4] += c[i] * column.y * column.z;
     hessian[5] += c[i] * column.z * column.z;
   }
-  const double less = mu > 0.0 && k > 0.0 ? 1.0 / (mu * k) : 0.0;
+  const double less = whole > 0.0 ? 1.0 / whole : 0.0;
   hessian[0] -= less * s.x * s.x;
   hessian[1] -= less * s.x * s.y;
   hessian[2] -= less * s.x * s.z;

@@ -21,17 +21,22 @@ static double reach_at(const implicit_term *term, int32_t n, const double *w, do
   return bound;
 }
 
+/* Newton's last step, times the largest k: its square is below rounding. */
+static const double LAST_STEP = 1e-9;
+
 /* The multiplier where sum u^p = 1, by Newton's method in z = log mu on log sum exp(k_i (log(w_i/p_i) - z)), k = p/(p-1):
- * convex and falling in z, so that from the left every step stays left of the root. Warm, it may start right of it. */
+ * convex and falling in z, so that from the left every step stays left of the root. Warm, it may start right of it. After a step d what
+ * is left is at most max k d²/2: a last step to see that it is nothing need not be made. */
 static double reach_multiplier(const implicit_term *term, int32_t n, const double *w, double start, double least,
                                int steps) {
   enum { MOST = IMPLICIT_MOST_TERMS };
-  double k[MOST], c[MOST]; /* the exponents are c - k z */
+  double k[MOST], c[MOST], steepest = 0.0; /* the exponents are c - k z */
   int32_t live = 0;
   for (int32_t i = 0; i < n; i++) {
     if (!(w[i] > 0.0) || term[i].p == 1.0) continue;
     k[live] = term[i].p * term[i].slope;
     c[live] = k[live] * log(w[i] * term[i].root);
+    steepest = fmax(steepest, k[live]);
     live++;
   }
   double z = log(start);
@@ -50,8 +55,9 @@ static double reach_multiplier(const implicit_term *term, int32_t n, const doubl
       continue;
     }
     const double next = z + log(sum) * sum / slope;
-    if (fabs(next - z) <= 4.0 * ROUND_U * (1.0 + fabs(z))) break;
+    const double moved = fabs(next - z);
     z = next;
+    if (moved * steepest <= LAST_STEP || moved <= 4.0 * ROUND_U * (1.0 + fabs(z))) break;
   }
   return live > 0 ? fmax(exp(z), least) : least;
 }

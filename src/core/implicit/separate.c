@@ -10,7 +10,7 @@
 enum { SEPARATE_STEPS = 20 };
 
 /* A climb whose gap shrinks less in two steps has stalled. */
-static const double SEPARATE_GAIN = 0.4;
+static const double SEPARATE_GAIN = 0.25;
 
 /* Between two bodies that are nearly polyhedra the climb stalls: it is not tried. */
 static const double SEPARATE_FLAT = 30.0;
