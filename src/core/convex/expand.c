@@ -21,7 +21,6 @@ typedef struct facet {
   vec3 normal;
   double offset; /* min of normal·w over the vertices */
   bool alive;
-  int32_t place; /* in the heap */
 } facet;
 
 typedef struct surface {
@@ -30,51 +29,15 @@ typedef struct surface {
   facet facet[MOST_FACETS];
   int32_t n_facets;
   int32_t free[MOST_FACETS], n_free;
-  int32_t heap[MOST_FACETS], n_heap; /* facets by offset, the least first */
+  double offset
+      [MOST_FACETS]; /* of each facet, beside the others so that the least is found quickly; infinity where it is free */
 } surface;
-
-/* ---- the heap --------------------------------------------------------------------------------------------------------- */
-
-static void heap_put(surface *s, int32_t place, int32_t f) {
-  s->heap[place] = f;
-  s->facet[f].place = place;
-}
-
-static void heap_rise(surface *s, int32_t place) {
-  const int32_t f = s->heap[place];
-  while (place > 0) {
-    const int32_t parent = (place - 1) / 2;
-    if (s->facet[s->heap[parent]].offset <= s->facet[f].offset) break;
-    heap_put(s, place, s->heap[parent]);
-    place = parent;
-  }
-  heap_put(s, place, f);
-}
-
-static void heap_sink(surface *s, int32_t place) {
-  const int32_t f = s->heap[place];
-  for (int32_t child = 2 * place + 1; child < s->n_heap; child = 2 * place + 1) {
-    if (child + 1 < s->n_heap && s->facet[s->heap[child + 1]].offset < s->facet[s->heap[child]].offset) child++;
-    if (s->facet[s->heap[child]].offset >= s->facet[f].offset) break;
-    heap_put(s, place, s->heap[child]);
-    place = child;
-  }
-  heap_put(s, place, f);
-}
-
-static void heap_remove(surface *s, int32_t f) {
-  const int32_t place = s->facet[f].place, last = s->heap[--s->n_heap];
-  if (last == f) return;
-  heap_put(s, place, last);
-  heap_rise(s, place);
-  heap_sink(s, s->facet[last].place);
-}
 
 /* ---- facets ----------------------------------------------------------------------------------------------------------- */
 
 static double offset_along(const surface *s, const facet *f, vec3 n) {
-  return fmin(vec_dot(n, s->vertex[f->vertex[0]].w),
-              fmin(vec_dot(n, s->vertex[f->vertex[1]].w), vec_dot(n, s->vertex[f->vertex[2]].w)));
+  return lesser(vec_dot(n, s->vertex[f->vertex[0]].w),
+                lesser(vec_dot(n, s->vertex[f->vertex[1]].w), vec_dot(n, s->vertex[f->vertex[2]].w)));
 }
 
 /* Takes a normal if it proves more. */
@@ -111,21 +74,33 @@ static void facet_find_normal(const surface *s, facet *f) {
   if (!(vec_norm2(cross) > 1e-6 * vec_norm2(ab) * vec_norm2(ac))) facet_try_sliver(s, f);
 }
 
-/* Adds a facet: there is room. */
+/* Adds a facet: there is room. Its neighbours are set by who joins it to them. */
 static int32_t surface_add(surface *s, int32_t a, int32_t b, int32_t c) {
   const int32_t at = s->n_free > 0 ? s->free[--s->n_free] : s->n_facets++;
   facet *f = &s->facet[at];
-  *f = (facet){.vertex = {a, b, c}, .neighbour = {-1, -1, -1}, .offset = -INFINITY, .alive = true};
+  f->vertex[0] = a, f->vertex[1] = b, f->vertex[2] = c;
+  f->normal = vec(0, 0, 0);
+  f->offset = -INFINITY;
+  f->alive = true;
   facet_find_normal(s, f);
-  heap_put(s, s->n_heap++, at);
-  heap_rise(s, s->n_heap - 1);
+  s->offset[at] = f->offset;
   return at;
 }
 
 static void surface_drop(surface *s, int32_t at) {
-  heap_remove(s, at);
   s->facet[at].alive = false;
+  s->offset[at] = INFINITY;
   s->free[s->n_free++] = at;
+}
+
+/* The facet that is nearest to 0. There are few, and a scan has no branches to guess: a heap takes longer. */
+static int32_t surface_nearest(const surface *s) {
+  double least = INFINITY;
+#pragma omp simd reduction(min : least)
+  for (int32_t i = 0; i < s->n_facets; i++) least = s->offset[i] < least ? s->offset[i] : least;
+  int32_t at = 0;
+  while (at + 1 < s->n_facets && s->offset[at] != least) at++;
+  return at;
 }
 
 /* ---- expanding -------------------------------------------------------------------------------------------------------- */
@@ -246,7 +221,7 @@ static const shell BIPYRAMID = {5,
  * solid angles that they span at 0 are positive, and their sum is a multiple of the whole. */
 static bool surface_begin(surface *s, const simplex_vertex *vertex, const shell *form, double rounding) {
   s->n_vertices = form->n_vertices;
-  s->n_facets = s->n_free = s->n_heap = 0;
+  s->n_facets = s->n_free = 0;
   for (int i = 0; i < form->n_vertices; i++) s->vertex[i] = vertex[i];
   for (int i = 0; i < form->n_facets; i++) {
     const int *corner = form->corner[i];
@@ -259,7 +234,7 @@ static bool surface_begin(surface *s, const simplex_vertex *vertex, const shell 
     const int32_t f = surface_add(s, corner[0], corner[1], corner[2]);
     for (int k = 0; k < 3; k++) s->facet[f].neighbour[k] = form->beyond[i][k];
   }
-  return s->facet[s->heap[0]].offset > rounding;
+  return s->facet[surface_nearest(s)].offset > rounding;
 }
 
 /* From a simplex that has 0 inside. */
@@ -305,9 +280,22 @@ static bool begin_line(surface *s, const expand_set *set, vec3 n, double roundin
   return false;
 }
 
+/* Of a tetrahedron with 0 all but on one of its faces, that face. */
+static simplex face_nearest(const simplex *start) {
+  int least = 0;
+  for (int i = 1; i < 4; i++)
+    if (start->weight[i] < start->weight[least]) least = i;
+  simplex face = *start;
+  face.vertex[least] = start->vertex[3];
+  face.weight[least] = start->weight[3];
+  face.n = 3;
+  return face;
+}
+
 static bool begin_from(surface *s, const expand_set *set, const simplex *start, double rounding) {
   if (start->n == 4 && begin_tetrahedron(s, start, rounding)) return true;
-  if (start->n == 3 && begin_triangle(s, set, start, rounding)) return true;
+  const simplex face = start->n == 4 ? face_nearest(start) : *start;
+  if (face.n == 3 && begin_triangle(s, set, &face, rounding)) return true;
   for (int i = 0; i < start->n; i++) {
     vec3 n;
     feature_unit(start->vertex[i].w, &n);
@@ -316,19 +304,18 @@ static bool begin_from(surface *s, const expand_set *set, const simplex *start, 
   return false;
 }
 
-/* Of the facets on the nearest plane, the one that has its foot: coplanar ones share the offset. */
-static void find_touch(const surface *s, double room, expand_depth *depth) {
+/* Of the facets on the nearest plane, the one that has its foot: coplanar ones share the offset. They are used up. */
+static void find_touch(surface *s, double room, double rounding, expand_depth *depth) {
   enum { MOST_TRIED = 16 };
   double nearest = INFINITY;
-  int tried = 0;
-  for (int32_t i = 0; i < s->n_heap && tried < MOST_TRIED; i++) {
-    const facet *f = &s->facet[s->heap[i]];
-    if (f->offset > depth->least + room) continue;
+  for (int tried = 0; tried < MOST_TRIED && nearest > depth->least + rounding; tried++) {
+    const int32_t at = surface_nearest(s);
+    if (!(s->offset[at] <= depth->least + room)) return;
     simplex triangle = {.n = 3};
-    for (int k = 0; k < 3; k++) triangle.vertex[k] = s->vertex[f->vertex[k]];
+    for (int k = 0; k < 3; k++) triangle.vertex[k] = s->vertex[s->facet[at].vertex[k]];
+    s->offset[at] = INFINITY;
     simplex_nearest found;
     simplex_reduce(&triangle, &found);
-    tried++;
     if (found.distance >= nearest) continue;
     nearest = found.distance;
     depth->touch = triangle;
@@ -342,9 +329,9 @@ bool expand_from(const expand_set *set, const simplex *start, const expand_goal 
   *depth = (expand_depth){.least = -INFINITY, .most = INFINITY, .exhausted = true};
   const uint32_t most = goal->max_steps < MOST_STEPS ? goal->max_steps : MOST_STEPS;
   while (depth->steps < most) {
-    const int32_t best = s.heap[0];
+    const int32_t best = surface_nearest(&s);
     const facet *f = &s.facet[best];
-    depth->least = fmax(depth->least, f->offset);
+    depth->least = greater(depth->least, f->offset);
     if (depth->most - depth->least <= goal->width) {
       depth->exhausted = false;
       break;
@@ -367,6 +354,6 @@ bool expand_from(const expand_set *set, const simplex *start, const expand_goal 
     if (!view_from(&s, best, x.w, goal->rounding, &v) || !view_close(&v)) view_alone(&s, best, &v);
     if (!surface_grow(&s, &x, &v)) break;
   }
-  find_touch(&s, fmax(goal->width, goal->rounding), depth);
+  find_touch(&s, greater(goal->width, goal->rounding), goal->rounding, depth);
   return true;
 }

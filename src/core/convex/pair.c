@@ -458,7 +458,7 @@ static bool pair_approach(pair *p, const pair_placement *place, double margins, 
     approach_search(&task, &found);
   p->steps += found.looks;
   p->supports += found.looks;
-  if (found.looks > 0) *start = found.u;
+  if (found.lower > 0.0) *start = found.u; /* apart */
   if (!found.reached) return false;
   p->u = found.u;
   p->lower = found.lower;

@@ -4,36 +4,48 @@
 #include "base/lanes.h"
 #include "convex/feature.h"
 
-enum { LANES = 8 }; /* the arrays are padded to a multiple of this */
+/* Four lanes, selected by masks and never by branches, which a processor would guess wrong: loops over arrays are made into branches by
+ * some compilers. */
+typedef double lanes __attribute__((vector_size(32), aligned(8), may_alias));
+typedef int64_t choice __attribute__((vector_size(32)));
+
+enum { WIDTH = 4, LANES = 8 }; /* the arrays are padded to a multiple of LANES */
 
 LANES_DISPATCHED
 int32_t vertices_extreme(const convex *shape, vec3 d, double *most) {
-  /* the best of each lane; indices are kept as doubles so that a lane is as wide as its value */
-  double best[LANES], where[LANES];
-  for (int l = 0; l < LANES; l++) {
-    best[l] = -INFINITY;
-    where[l] = 0.0;
+  const lanes dx = {d.x, d.x, d.x, d.x}, dy = {d.y, d.y, d.y, d.y}, dz = {d.z, d.z, d.z, d.z};
+  const double *x = shape->x, *y = shape->y, *z = shape->z;
+
+  /* the best of each lane, and its index */
+  lanes best[2];
+  choice where[2], index[2] = {{0, 1, 2, 3}, {4, 5, 6, 7}};
+  for (int k = 0; k < 2; k++) {
+    best[k] = (lanes){-INFINITY, -INFINITY, -INFINITY, -INFINITY};
+    where[k] = index[k];
   }
-  const double *restrict x = shape->x, *restrict y = shape->y, *restrict z = shape->z;
   for (int32_t i = 0; i < shape->padded; i += LANES) {
-    const double base = i;
-#pragma omp simd
-    for (int l = 0; l < LANES; l++) {
-      const double h = d.x * x[i + l] + d.y * y[i + l] + d.z * z[i + l];
-      const bool more = h > best[l];
-      best[l] = more ? h : best[l];
-      where[l] = more ? base : where[l];
+    for (int k = 0; k < 2; k++) {
+      const int32_t j = i + WIDTH * k;
+      const lanes h = dx * *(const lanes *)(x + j) + dy * *(const lanes *)(y + j) + dz * *(const lanes *)(z + j);
+      const choice more = h > best[k];
+      best[k] = (lanes)((more & (choice)h) | (~more & (choice)best[k]));
+      where[k] = (more & index[k]) | (~more & where[k]);
+      index[k] += LANES;
     }
   }
-  /* the first of the best: the padding repeats the last vertex in later lanes and never comes before it */
-  int lane = 0;
-  double farthest = best[0];
-  for (int l = 1; l < LANES; l++) {
-    lane = best[l] > farthest ? l : lane;
-    farthest = best[l] > farthest ? best[l] : farthest;
+
+  /* the first of the best, which is never the padding: that repeats the last vertex */
+  const double half[2] = {greater(greater(best[0][0], best[0][1]), greater(best[0][2], best[0][3])),
+                          greater(greater(best[1][0], best[1][1]), greater(best[1][2], best[1][3]))};
+  const double farthest = greater(half[0], half[1]);
+  int64_t first = shape->n - 1;
+  for (int k = 0; k < 2; k++) {
+    const choice is_best = best[k] == (lanes){farthest, farthest, farthest, farthest};
+    const choice at = (is_best & where[k]) | (~is_best & INT32_MAX);
+    for (int l = 0; l < WIDTH; l++) first = at[l] < first ? at[l] : first;
   }
   if (most) *most = farthest;
-  return (int32_t)where[lane] + lane;
+  return (int32_t)first;
 }
 
 double vertices_support(const convex *shape, vec3 d, convex_hint *hint, vec3 *at) {
