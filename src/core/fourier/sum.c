@@ -61,26 +61,35 @@ INLINE void phase_lanes(const phase *p, const block *b, bool plane, double c[LAN
   }
 }
 
-/* sin(y)/y and its derivative from y, sin y and cos y; by series below 1/2, where the difference cancels. */
-INLINE double lane_sinc(double y, double sine) {
-  const double t = y * y, big = fabs(y) < 0.5 ? 1.0 : y;
+/* sin(y)/y and its derivative from y, sin y and cos y; by series below 1/2, where the difference cancels. inverse: 1/y there, anything
+ * else below. */
+INLINE bool lane_is_small(double y) {
+  return fabs(y) < 0.5;
+}
+
+INLINE double lane_inverse(double y) {
+  return 1.0 / (lane_is_small(y) ? 1.0 : y);
+}
+
+INLINE double lane_sinc(double y, double inverse, double sine) {
+  const double t = y * y;
   const double series =
       1.0 -
       t * (1.0 / 6.0) *
           (1.0 - t * (1.0 / 20.0) *
                      (1.0 - t * (1.0 / 42.0) *
                                 (1.0 - t * (1.0 / 72.0) * (1.0 - t * (1.0 / 110.0) * (1.0 - t * (1.0 / 156.0))))));
-  return fabs(y) < 0.5 ? series : sine / big;
+  return lane_is_small(y) ? series : sine * inverse;
 }
 
-INLINE double lane_sinc_slope(double y, double sinc, double cosine) {
-  const double t = y * y, big = fabs(y) < 0.5 ? 1.0 : y;
+INLINE double lane_sinc_slope(double y, double inverse, double sinc, double cosine) {
+  const double t = y * y;
   const double series =
       -y * (1.0 / 3.0) *
       (1.0 -
        t * (1.0 / 10.0) *
            (1.0 - t * (1.0 / 28.0) * (1.0 - t * (1.0 / 54.0) * (1.0 - t * (1.0 / 88.0) * (1.0 - t * (1.0 / 130.0))))));
-  return fabs(y) < 0.5 ? series : (cosine - sinc) / big;
+  return lane_is_small(y) ? series : (cosine - sinc) * inverse;
 }
 
 /* A turned piece made ready for a pose: vectors in the fixed solid's frame. */
@@ -88,6 +97,7 @@ typedef struct turned_piece {
   const piece *p;
   vec3 axis[3]; /* its own */
   vec3 centre;
+  bool centred;    /* the centre is the solid's own: its phase is 1 */
   phase phases[4]; /* of box and ellipsoid: about the axes, the centre */
   phase *edges;    /* of a polygon: middle and half of each edge */
   vec3 *ends;      /* the same as vectors */
@@ -124,27 +134,80 @@ INLINE void add_symmetric(lanes *o, bool gradient, bool plane, vec3 centre, cons
   }
 }
 
-INLINE void box_lanes(const turned_piece *t, const block *b, bool gradient, bool plane, lanes *o) {
-  double c[3][LANES], s[3][LANES], cc[LANES], cs[LANES], f[LANES], m[3][LANES];
-  const double *h = t->p->size, hz = plane ? 0.0 : h[2], measure = t->measure;
-  const vec3 u = t->axis[0], v = t->axis[1], w = t->axis[2];
-  for (int j = 0; j < (plane ? 2 : 3); j++) phase_lanes(&t->phases[j], b, plane, c[j], s[j]);
-  phase_lanes(&t->phases[3], b, plane, cc, cs);
+/* The same of a piece about the solid's own centre. */
+INLINE void add_centred(lanes *o, bool gradient, bool plane, const double f[LANES], double m[3][LANES]) {
 #pragma omp simd
   for (int l = 0; l < LANES; l++) {
-    const double p0 = u.x * o->qx[l] + u.y * o->qy + u.z * o->qz, p1 = v.x * o->qx[l] + v.y * o->qy + v.z * o->qz;
-    const double p2 = w.x * o->qx[l] + w.y * o->qy + w.z * o->qz;
-    const double s0 = lane_sinc(p0 * h[0], s[0][l]), s1 = lane_sinc(p1 * h[1], s[1][l]);
-    const double s2 = plane ? 1.0 : lane_sinc(p2 * hz, s[2][l]);
+    o->re[l] += f[l];
+    if (gradient) {
+      o->kre[2][l] += m[2][l];
+      if (!plane) o->kre[0][l] += m[0][l], o->kre[1][l] += m[1][l];
+    }
+  }
+}
+
+INLINE void add_piece(const turned_piece *t, const block *b, lanes *o, bool gradient, bool plane, const double f[LANES],
+                      double m[3][LANES]) {
+  if (t->centred) {
+    add_centred(o, gradient, plane, f, m);
+    return;
+  }
+  double c[LANES], s[LANES];
+  phase_lanes(&t->phases[3], b, plane, c, s);
+  add_symmetric(o, gradient, plane, t->centre, c, s, f, m);
+}
+
+/* What one axis of a box gives: p = q·axis, sinc(h p) and its slope. */
+typedef struct box_axis {
+  double p[LANES], sinc[LANES], slope[LANES];
+} box_axis;
+
+/* Most blocks have no lane near 0: they need no series. */
+INLINE void axis_lanes(const phase *table, const block *b, vec3 axis, double h, bool gradient, bool plane,
+                       const lanes *o, box_axis *out) {
+  double c[LANES], s[LANES], y[LANES];
+  phase_lanes(table, b, plane, c, s);
+#pragma omp simd
+  for (int l = 0; l < LANES; l++) {
+    out->p[l] = axis.x * o->qx[l] + axis.y * o->qy + axis.z * o->qz;
+    y[l] = out->p[l] * h;
+  }
+  const double first = y[0], last = y[LANES - 1]; /* in order, as q is */
+  if (lane_is_small(first) || lane_is_small(last) || (first < 0.0) != (last < 0.0)) {
+#pragma omp simd
+    for (int l = 0; l < LANES; l++) {
+      const double inverse = lane_inverse(y[l]);
+      out->sinc[l] = lane_sinc(y[l], inverse, s[l]);
+      if (gradient) out->slope[l] = lane_sinc_slope(y[l], inverse, out->sinc[l], c[l]);
+    }
+  } else {
+#pragma omp simd
+    for (int l = 0; l < LANES; l++) {
+      const double inverse = 1.0 / y[l];
+      out->sinc[l] = s[l] * inverse;
+      if (gradient) out->slope[l] = (c[l] - out->sinc[l]) * inverse;
+    }
+  }
+}
+
+INLINE void box_lanes(const turned_piece *t, const block *b, bool gradient, bool plane, lanes *o) {
+  double f[LANES], m[3][LANES];
+  box_axis a[3];
+  const double *h = t->p->size, measure = t->measure;
+  const vec3 u = t->axis[0], v = t->axis[1], w = t->axis[2];
+  for (int j = 0; j < (plane ? 2 : 3); j++) axis_lanes(&t->phases[j], b, t->axis[j], h[j], gradient, plane, o, &a[j]);
+#pragma omp simd
+  for (int l = 0; l < LANES; l++) {
+    const double s0 = a[0].sinc[l], s1 = a[1].sinc[l], s2 = plane ? 1.0 : a[2].sinc[l];
     f[l] = measure * s0 * s1 * s2;
     if (gradient) {
-      const double g0 = measure * h[0] * lane_sinc_slope(p0 * h[0], s0, c[0][l]) * s1 * s2;
-      const double g1 = measure * h[1] * lane_sinc_slope(p1 * h[1], s1, c[1][l]) * s0 * s2;
+      const double p0 = a[0].p[l], p1 = a[1].p[l];
+      const double g0 = measure * h[0] * a[0].slope[l] * s1 * s2, g1 = measure * h[1] * a[1].slope[l] * s0 * s2;
       const double n2 = g0 * p1 - g1 * p0;
       if (plane) {
         m[2][l] = n2;
       } else {
-        const double g2 = measure * hz * lane_sinc_slope(p2 * hz, s2, c[2][l]) * s0 * s1;
+        const double p2 = a[2].p[l], g2 = measure * h[2] * a[2].slope[l] * s0 * s1;
         const double n0 = g1 * p2 - g2 * p1, n1 = g2 * p0 - g0 * p2;
         m[0][l] = u.x * n0 + v.x * n1 + w.x * n2;
         m[1][l] = u.y * n0 + v.y * n1 + w.y * n2;
@@ -152,7 +215,7 @@ INLINE void box_lanes(const turned_piece *t, const block *b, bool gradient, bool
       }
     }
   }
-  add_symmetric(o, gradient, plane, t->centre, cc, cs, f, m);
+  add_piece(t, b, o, gradient, plane, f, m);
 }
 
 /* sin and cos of 0 <= y < 1e5, without branches: reduction by pi/2 in three parts, then series on [-pi/4, pi/4]. Within 2u of
@@ -188,10 +251,9 @@ INLINE void lane_sincos(double y, double *sine, double *cosine) {
 }
 
 INLINE void ellipsoid_lanes(const turned_piece *t, const block *b, bool gradient, lanes *o) {
-  double cc[LANES], cs[LANES], f[LANES], m[3][LANES];
+  double f[LANES], m[3][LANES];
   const double *a = t->p->size, measure = t->measure;
   const vec3 u = t->axis[0], v = t->axis[1], w = t->axis[2];
-  phase_lanes(&t->phases[3], b, false, cc, cs);
 #pragma omp simd
   for (int l = 0; l < LANES; l++) {
     const double p0 = u.x * o->qx[l] + u.y * o->qy + u.z * o->qz, p1 = v.x * o->qx[l] + v.y * o->qy + v.z * o->qz;
@@ -226,7 +288,7 @@ INLINE void ellipsoid_lanes(const turned_piece *t, const block *b, bool gradient
       m[2][l] = u.z * n0 + v.z * n1 + w.z * n2;
     }
   }
-  add_symmetric(o, gradient, false, t->centre, cc, cs, f, m);
+  add_piece(t, b, o, gradient, false, f, m);
 }
 
 /* (i/|q|²) sum over the edges of (q×d) e^{-iq·m} sinc(q·d/2), d = 2h; the term of the gradient along q turns nothing. */
@@ -241,13 +303,13 @@ INLINE void polygon_lanes(const turned_piece *t, const block *b, bool gradient, 
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
       const double y = o->qx[l] * h.x + qy * h.y, cross = 2.0 * (o->qx[l] * h.y - qy * h.x);
-      const double s = lane_sinc(y, sh[l]), w = cross * s;
+      const double inverse = lane_inverse(y), s = lane_sinc(y, inverse, sh[l]), w = cross * s;
       are[l] += w * cm[l];
       aim[l] -= w * sm[l];
       if (gradient) {
         /* (∇A)×q: from e^{-iq·m}: -i w m×q; from the sinc: cross h×q, h×q = -cross/2; what q×d gives, 2y s e^{-iq·m}, is the
          * difference of the phases at the edge's ends and adds up to 0 around the loop */
-        const double turn = -0.5 * cross * cross * lane_sinc_slope(y, s, ch[l]);
+        const double turn = -0.5 * cross * cross * lane_sinc_slope(y, inverse, s, ch[l]);
         const double swing = w * (m.x * qy - m.y * o->qx[l]);
         mre[l] += turn * cm[l] - swing * sm[l];
         mim[l] -= turn * sm[l] + swing * cm[l];
@@ -285,24 +347,24 @@ typedef struct totals {
   double v[LANES], x[3][LANES], m[3][LANES], energy[LANES];
 } totals;
 
-/* z = C conj(T) e^{iq·x}: adds Re z, -q Im z, Re(C e^{iq·x} conj(H×q)), |T|². */
+/* z = C conj(T) e^{iq·x}: adds Re z, -q Im z, Re(C e^{iq·x} conj(H×q)), |T|². real: T is, with its derivatives. */
 INLINE void add_block(const double *coefficients, const double c[LANES], const double s[LANES], bool gradient,
-                      bool plane, const lanes *o, totals *sum) {
+                      bool plane, bool real, const lanes *o, totals *sum) {
 #pragma omp simd
   for (int l = 0; l < LANES; l++) {
     const double are = coefficients[l] * c[l] - coefficients[LANES + l] * s[l];
     const double aim = coefficients[l] * s[l] + coefficients[LANES + l] * c[l];
-    sum->v[l] += are * o->re[l] + aim * o->im[l];
-    sum->energy[l] += o->re[l] * o->re[l] + o->im[l] * o->im[l];
+    sum->v[l] += real ? are * o->re[l] : are * o->re[l] + aim * o->im[l];
+    if (!gradient) sum->energy[l] += real ? o->re[l] * o->re[l] : o->re[l] * o->re[l] + o->im[l] * o->im[l];
     if (gradient) {
-      const double zi = aim * o->re[l] - are * o->im[l];
+      const double zi = real ? aim * o->re[l] : aim * o->re[l] - are * o->im[l];
       sum->x[0][l] -= o->qx[l] * zi;
       sum->x[1][l] -= o->qy * zi;
-      sum->m[2][l] += are * o->kre[2][l] + aim * o->kim[2][l];
+      sum->m[2][l] += real ? are * o->kre[2][l] : are * o->kre[2][l] + aim * o->kim[2][l];
       if (!plane) {
         sum->x[2][l] -= o->qz * zi;
-        sum->m[0][l] += are * o->kre[0][l] + aim * o->kim[0][l];
-        sum->m[1][l] += are * o->kre[1][l] + aim * o->kim[1][l];
+        sum->m[0][l] += real ? are * o->kre[0][l] : are * o->kre[0][l] + aim * o->kim[0][l];
+        sum->m[1][l] += real ? are * o->kre[1][l] : are * o->kre[1][l] + aim * o->kim[1][l];
       }
     }
   }
@@ -313,6 +375,7 @@ typedef struct ready {
   phase at;
   turned_piece *pieces;
   size_t n;
+  bool real; /* every piece is symmetric about the solid's centre */
 } ready;
 
 INLINE void sum_block(const gap_job *job, const ready *r, const block *b, const double *coefficients, bool gradient,
@@ -339,7 +402,10 @@ INLINE void sum_block(const gap_job *job, const ready *r, const block *b, const 
       plain_lanes(job, t, &o);
   }
   phase_lanes(&r->at, b, plane, c, s);
-  add_block(coefficients, c, s, gradient, plane, &o, sum);
+  if (r->real)
+    add_block(coefficients, c, s, gradient, plane, true, &o, sum);
+  else
+    add_block(coefficients, c, s, gradient, plane, false, &o, sum);
 }
 
 static double add_up(const double x[LANES]) {
@@ -398,11 +464,12 @@ static void prepare_piece(const gap_job *job, const piece *p, turned_piece *t, d
   t->p = p;
   t->measure = piece_measure(p, dimension);
   t->centre = turn_apply(job->turn, p->centre);
+  const bool symmetric = p->kind == PIECE_BOX || (p->kind == PIECE_ELLIPSOID && dimension == 3);
+  t->centred = symmetric && vec_norm2(p->centre) == 0.0;
   for (int j = 0; j < 3; j++) t->axis[j] = vec(own[j], own[3 + j], own[6 + j]);
   if (p->kind == PIECE_BOX)
     for (int j = 0; j < 3; j++) t->phases[j] = make_phase(job, tables, vec_scale(p->size[j], t->axis[j]));
-  if (p->kind == PIECE_BOX || (p->kind == PIECE_ELLIPSOID && dimension == 3))
-    t->phases[3] = make_phase(job, tables, t->centre);
+  if (symmetric) t->phases[3] = make_phase(job, tables, t->centre);
   for (size_t e = 0; p->kind == PIECE_POLYGON && e < p->n_corners; e++) {
     const vec3 a = turn_apply(job->turn, p->corner[e]), b = turn_apply(job->turn, p->corner[(e + 1) % p->n_corners]);
     t->ends[2 * e] = vec_scale(0.5, vec_add(a, b));
@@ -430,7 +497,7 @@ size_t gap_scratch_size(const cprox_gap *gap) {
 /* Carves the scratch memory: pieces, phases and vectors of edges, tables. */
 static ready prepare(const gap_job *job) {
   const cprox_solid *turned = job->gap->turned;
-  ready r = {.pieces = job->scratch, .n = turned ? turned->n : 0};
+  ready r = {.pieces = job->scratch, .n = turned ? turned->n : 0, .real = true};
   phase *edges = (phase *)(r.pieces + r.n);
   vec3 *ends = (vec3 *)(edges + 2 * edges_of(turned));
   double *tables = (double *)(ends + 2 * edges_of(turned));
@@ -439,6 +506,7 @@ static ready prepare(const gap_job *job) {
     const piece *p = &turned->pieces[i];
     r.pieces[i].edges = edges, r.pieces[i].ends = ends;
     prepare_piece(job, p, &r.pieces[i], &tables);
+    r.real = r.real && r.pieces[i].centred;
     if (p->kind == PIECE_POLYGON) edges += 2 * p->n_corners, ends += 2 * p->n_corners;
   }
   return r;
