@@ -36,8 +36,8 @@ static void approach_add_tangents(const convex_foot *foot, const double *r, appr
 
 /* y onto a, and what it becomes there onto b. */
 static void approach_project(const approach_task *task, vec3 y, approach_pair *p) {
-  const double *r = task->place->r;
-  const vec3 t = task->place->t;
+  const double *r = task->r;
+  const vec3 t = task->t;
   task->a->ops->project(task->a, y, &p->a);
   task->b->ops->project(task->b, turn_back(r, vec_sub(p->a.point, t)), &p->b);
   p->v = vec_sub(p->a.point, vec_add(turn(r, p->b.point), t));
@@ -96,8 +96,8 @@ static vec3 approach_direction(const approach_pair *p) {
 static simplex_vertex approach_look(const approach_task *task, vec3 u, approach_answer *answer) {
   simplex_vertex x = {.id = -1};
   task->a->ops->support(task->a, vec_neg(u), NULL, &x.a);
-  task->b->ops->support(task->b, turn_back(task->place->r, u), NULL, &x.b);
-  x.w = vec_sub(x.a, vec_add(turn(task->place->r, x.b), task->place->t));
+  task->b->ops->support(task->b, turn_back(task->r, u), NULL, &x.b);
+  x.w = vec_sub(x.a, vec_add(turn(task->r, x.b), task->t));
   const double phi = vec_dot(u, x.w);
   answer->looks++;
   if (phi > answer->lower) {
@@ -109,13 +109,14 @@ static simplex_vertex approach_look(const approach_task *task, vec3 u, approach_
 
 void approach_search(const approach_task *task, approach_answer *answer) {
   *answer = (approach_answer){.pair = {.id = -1}, .distance = INFINITY, .lower = -INFINITY};
-  vec3 y = task->place->t;
+  vec3 y = task->t;
   bool newton = false;
   vec3 back = y; /* the last place on b, for when Newton's step was too long */
   for (int round = 0; round < APPROACH_ROUNDS && answer->looks + 1 < task->goal->max_steps; round++) {
     approach_pair p;
     approach_project(task, y, &p);
-    if (p.distance <= task->hair) return;
+    answer->met = p.distance <= task->hair;
+    if (answer->met) return;
     if (!(p.distance < answer->distance)) {
       if (!newton) return;
       newton = false;
@@ -145,7 +146,7 @@ void approach_search(const approach_task *task, approach_answer *answer) {
 /* Newton's step for phi at u, whose point is x: (K + d) delta = x_tangential. False where the surfaces are flatter than doubles tell. */
 static bool smooth_step(const approach_task *task, const simplex_vertex *x, vec3 u, double d, double delta[2], vec3 *e,
                         vec3 *f) {
-  const double *r = task->place->r;
+  const double *r = task->r;
   double ha[6], hb[6];
   feature_tangents(u, e, f);
   const vec3 eb = turn_back(r, *e), fb = turn_back(r, *f);

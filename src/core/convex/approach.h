@@ -9,7 +9,8 @@
 
 typedef struct approach_task {
   const convex *a, *b;
-  const pair_placement *place;
+  const double *r; /* b stands at r x_b + t in a's frame */
+  vec3 t;
   const pair_goal *goal;
   double margins, rounding;
   double hair; /* cores nearer than this are left to others */
@@ -17,6 +18,7 @@ typedef struct approach_task {
 
 typedef struct approach_answer {
   bool reached;        /* the bounds are as close as the goal asks */
+  bool met;            /* the projections found a point of both cores but for a hair */
   simplex_vertex pair; /* w = a - b the shortest so far, of a point of each core */
   double distance;     /* |w| */
   vec3 u;              /* the best direction, and its phi; (0,0,0) and -infinity where none was tried */

@@ -13,7 +13,9 @@
 
 enum {
   PAIR_MAX_STEPS = 256,
-  PAIR_NEWTON_FROM = 2,      /* plain steps first: far away the curvature is not that of the answer */
+  PAIR_NEWTON_FROM = 2, /* plain steps first: far away the curvature is not that of the answer */
+  PAIR_NEWTON_FROM_MET =
+      12, /* where they overlap: vertices moved along their pieces lie close, a worse beginning for a depth */
   PAIR_PATIENCE_CURVED = 24, /* steps without a gain */
   PAIR_PATIENCE_FLAT = 6,
   PAIR_MAX_IDLE = 8,
@@ -31,6 +33,7 @@ typedef struct pair {
   const double *r;
   vec3 t;
   bool curved, fault;
+  bool met;        /* the cores have a point in common but for a hair */
   double rounding; /* of either bound */
   double hair;     /* distances closer than this are the same */
   uint32_t steps, supports;
@@ -253,7 +256,7 @@ static void pair_restart(pair *p) {
 static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) {
   const uint32_t most = goal->max_steps < PAIR_MAX_STEPS ? goal->max_steps : PAIR_MAX_STEPS;
   const int patience = p->curved ? PAIR_PATIENCE_CURVED : PAIR_PATIENCE_FLAT;
-  int stalled = 0, failures = 0, plain = PAIR_NEWTON_FROM;
+  int stalled = 0, failures = 0, plain = p->met ? PAIR_NEWTON_FROM_MET : PAIR_NEWTON_FROM;
   bool restarted = false;
 
   p->s.n = 1;
@@ -301,6 +304,7 @@ static void pair_draw_apart(pair *p, double size, const pair_goal *goal) {
   for (int round = 0; round < PAIR_ROUNDS && p->lower < -p->rounding && !p->fault; round++, clear *= 1e-2) {
     pair q = *p;
     q.t = vec_axpy(p->t, p->lower - clear, p->u);
+    q.met = false;
     const pair_goal enough = {.relative_epsilon = 1e-6, .max_steps = goal->max_steps};
     pair_search(&q, p->u, 0.0, &enough);
     p->supports = q.supports;
@@ -445,26 +449,33 @@ static void pair_measure_depth(pair *p, double margin_a, double margin_b, const 
   pair_describe(p, &answer->feature);
 }
 
-/* By projections, where both cores know theirs; one step is left to the search. What the goal asks of the feature is read from a
- * simplex. False, and perhaps a better start, where the bounds are not close enough yet. */
-static bool pair_approach(pair *p, const pair_placement *place, double margins, const pair_goal *goal, vec3 *start) {
+/* By projections or by Newton's method alone, where both cores allow it; one step is left to the search. What the goal asks of the
+ * feature is read from a simplex. */
+static bool pair_approach(pair *p, double margins, const pair_goal *goal, vec3 start, approach_answer *found) {
   const bool smooth = p->a->ops->smooth && p->b->ops->smooth;
+  *found = (approach_answer){.reached = false};
   if (!smooth && (!p->a->ops->project || !p->b->ops->project || goal->wants_feature)) return false;
-  const approach_task task = {p->a, p->b, place, goal, margins, p->rounding, p->hair};
-  approach_answer found;
+  const approach_task task = {p->a, p->b, p->r, p->t, goal, margins, p->rounding, p->hair};
   if (smooth)
-    approach_smooth(&task, *start, &found);
+    approach_smooth(&task, start, found);
   else
-    approach_search(&task, &found);
-  p->steps += found.looks;
-  p->supports += found.looks;
-  if (found.lower > 0.0) *start = found.u; /* apart */
-  if (!found.reached) return false;
-  p->u = found.u;
-  p->lower = found.lower;
-  p->s = (simplex){.n = 1, .vertex = {found.pair}, .weight = {1.0}};
-  p->nearest = (simplex_nearest){.v = found.pair.w, .distance = found.distance, .normal = found.u};
+    approach_search(&task, found);
+  p->steps += found->looks;
+  p->supports += found->looks;
+  if (!found->reached) return false;
+  p->u = found->u;
+  p->lower = found->lower;
+  p->s = (simplex){.n = 1, .vertex = {found->pair}, .weight = {1.0}};
+  p->nearest = (simplex_nearest){.v = found->pair.w, .distance = found->distance, .normal = found->u};
   return true;
+}
+
+/* Whatever is quickest, from the direction u on. */
+static void pair_find(pair *p, vec3 u, double margins, const pair_goal *goal) {
+  approach_answer found;
+  if (pair_approach(p, margins, goal, u, &found)) return;
+  p->met = found.met;
+  pair_search(p, found.lower > 0.0 ? found.u : u, margins, goal);
 }
 
 void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *placement,
@@ -481,7 +492,7 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   vec3 u = goal->start;
   if (!(vec_norm2(u) > 0.0)) feature_unit(vec_neg(p.t), &u);
   if (!(vec_norm2(u) > 0.0)) u = vec(1, 0, 0);
-  if (!pair_approach(&p, placement, margins, goal, &u)) pair_search(&p, u, margins, goal);
+  pair_find(&p, u, margins, goal);
   answer->exhausted = p.steps >= goal->max_steps || p.steps >= PAIR_MAX_STEPS;
   answer->overlap = p.nearest.inside && p.nearest.depth + margins > p.rounding;
   pair_points(&p, margin_a, margin_b, answer);
