@@ -282,6 +282,25 @@ static void a_stop_function_ends_the_search_with_a_true_interval(void **state) {
 
 /* Seed 5, 300 scenes of 30 targets, among them padded ones and compounds: the union's answer is the least of the answers one by
  * one, and verdicts agree with it. */
+static bool stop_at_once(void *user) {
+  (void)user;
+  return true;
+}
+
+/* The segment lies at x = 0, the box within half the root of 3 of (10, 0, 0). */
+static void what_is_stopped_before_it_began_knows_what_the_balls_say(void **state) {
+  (void)state;
+  cprox_curve *curve = segment(vec(0, -1, 0), vec(0, 1, 0));
+  cprox_body *body = box(1, 1, 1);
+  cprox_options options = accurate(1e-9);
+  options.stop = stop_at_once;
+  cprox_result r;
+  assert_int_equal(cprox_distance(cprox_point_along(curve), at(body, 10, 0, 0), &options, ws, &r), CPROX_STOPPED);
+  assert_true(r.lower > 9.0 && r.lower <= 9.5 && r.nodes == 0);
+  cprox_body_free(body);
+  cprox_curve_free(curve);
+}
+
 static void many_targets_are_answered_like_the_nearest_of_them(void **state) {
   (void)state;
   rng r = rng_seed(5);
@@ -528,6 +547,7 @@ int main(void) {
       cmocka_unit_test(epsilon_of_any_size_ends_with_a_true_interval),
       cmocka_unit_test(a_spent_budget_leaves_a_true_interval),
       cmocka_unit_test(a_stop_function_ends_the_search_with_a_true_interval),
+      cmocka_unit_test(what_is_stopped_before_it_began_knows_what_the_balls_say),
       cmocka_unit_test(many_targets_are_answered_like_the_nearest_of_them),
       cmocka_unit_test(nothing_to_measure_is_infinitely_far),
       cmocka_unit_test(unusable_arguments_are_refused_by_name),

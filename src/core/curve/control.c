@@ -5,8 +5,30 @@
 #include "base/rounding.h"
 #include "curve/curve.h"
 
+/* Of the usual low degrees, whose loops the compiler unrolls: registers of four would stay half empty. */
+static inline double least_of_few(const double *points, size_t degree, vec3 n) {
+  const double *x = points, *y = points + degree + 1, *z = y + degree + 1;
+  double least = INFINITY;
+  for (size_t i = 0; i <= degree; i++) least = lesser(n.x * x[i] + n.y * y[i] + n.z * z[i], least);
+  return least;
+}
+
+static inline void split_few(double *left, double *right, size_t degree, double s) {
+  const double r = 1.0 - s;
+  for (size_t k = 0; k < 3; k++) {
+    double w[6], *at = right + k * (degree + 1), *l = left + k * (degree + 1);
+    for (size_t i = 0; i <= degree; i++) w[i] = at[i];
+    l[0] = w[0];
+    for (size_t level = 1; level <= degree; level++) {
+      for (size_t i = 0; i <= degree - level; i++) w[i] = r * w[i] + s * w[i + 1];
+      l[level] = w[0];
+    }
+    for (size_t i = 0; i <= degree; i++) at[i] = w[i];
+  }
+}
+
 LANES_DISPATCHED
-double control_least(const double *points, size_t degree, vec3 n) {
+static double least_of_many(const double *points, size_t degree, vec3 n) {
   const double *x = points, *y = points + degree + 1, *z = y + degree + 1;
   double least = INFINITY;
 #pragma omp simd reduction(min : least)
@@ -15,6 +37,12 @@ double control_least(const double *points, size_t degree, vec3 n) {
     least = g < least ? g : least;
   }
   return least;
+}
+
+double control_least(const double *points, size_t degree, vec3 n) {
+  if (degree == 3) return least_of_few(points, 3, n);
+  if (degree == 5) return least_of_few(points, 5, n);
+  return least_of_many(points, degree, n);
 }
 
 size_t control_lowest(const double *points, size_t degree, vec3 n) {
@@ -41,7 +69,7 @@ double control_magnitude(const double *points, size_t degree) {
 }
 
 LANES_DISPATCHED
-double control_split(double *left, double *right, size_t degree, double s, double magnitude) {
+static void split_many(double *left, double *right, size_t degree, double s) {
   const double r = 1.0 - s;
   for (int k = 0; k < 3; k++) {
     double *w = right + (size_t)k * (degree + 1), *l = left + (size_t)k * (degree + 1);
@@ -51,6 +79,14 @@ double control_split(double *left, double *right, size_t degree, double s, doubl
       for (size_t i = 0; i <= degree - level; i++) w[i] = r * w[i] + s * w[i + 1];
       l[level] = w[0];
     }
+  }
+}
+
+double control_split(double *left, double *right, size_t degree, double s, double magnitude) {
+  switch (degree) {
+    case 3: split_few(left, right, 3, s); break;
+    case 5: split_few(left, right, 5, s); break;
+    default: split_many(left, right, degree, s);
   }
   /* doc/rounding.md, T1: a level costs u |M| at s = 1/2, where both products are exact, and 3 u |M| elsewhere. The sum over
    * the three coordinates is at most sqrt(3) times the largest vector. */

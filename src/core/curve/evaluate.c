@@ -121,7 +121,11 @@ void curve_bezier_evaluate(const double *x, const double *y, const double *z, si
   }
 
   vec3 q[3];
-  if (degree - 2 < FEW) {
+  if (stride == 1 && degree == 3) { /* the usual ones, whose loops are unrolled */
+    last_three_of_few(x, y, z, 1, 1, binomial, s, q);
+  } else if (stride == 1 && degree == 5) {
+    last_three_of_few(x, y, z, 1, 3, binomial, s, q);
+  } else if (degree - 2 < FEW) {
     last_three_of_few(x, y, z, stride, degree - 2, binomial, s, q);
   } else if (stride == 1) {
     last_three(x, y, z, degree - 2, binomial, s, q);

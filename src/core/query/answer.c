@@ -88,7 +88,8 @@ cprox_status question_answer(const question *q, size_t first, size_t last, doubl
   size_t n = 0;
   candidate *list = NULL;
   if (last > first) {
-    list = candidates_list(q, first, last, &n);
+    /* a distance from one thing alone is searched whatever its ball says */
+    list = candidates_list(q, first, last, question_wants_verdict(q) || isfinite(ceiling), &n);
     if (!list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
   }
 

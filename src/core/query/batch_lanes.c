@@ -219,25 +219,31 @@ double lanes_nearest_point(const lanes_chords *c, uint32_t first, vec3 from, uin
 
 LANES_DISPATCHED
 double lanes_first_look(const double *basis, const double *x, const double *y, const double *z, size_t degree) {
-  double square[CHORDS + 1];
-  for (size_t first = 0; first < CHORDS; first += LANES) {
-    double px[LANES] = {0}, py[LANES] = {0}, pz[LANES] = {0};
-    for (size_t j = 0; j <= degree; j++) {
-      const double *restrict b = basis + j * CHORDS + first;
+  /* begun by their first terms: so many sums stay in registers */
+  double px[CHORDS], py[CHORDS], pz[CHORDS], square[CHORDS + 1];
 #pragma omp simd
-      for (int k = 0; k < LANES; k++) {
-        px[k] += b[k] * x[j];
-        py[k] += b[k] * y[j];
-        pz[k] += b[k] * z[j];
-      }
-    }
-#pragma omp simd
-    for (int k = 0; k < LANES; k++) square[first + (size_t)k] = px[k] * px[k] + py[k] * py[k] + pz[k] * pz[k];
+  for (int k = 0; k < CHORDS; k++) {
+    px[k] = basis[k] * x[0];
+    py[k] = basis[k] * y[0];
+    pz[k] = basis[k] * z[0];
   }
+  for (size_t j = 1; j <= degree; j++) {
+    const double *restrict b = basis + j * CHORDS;
+    const double qx = x[j], qy = y[j], qz = z[j];
+#pragma omp simd
+    for (int k = 0; k < CHORDS; k++) {
+      px[k] += b[k] * qx;
+      py[k] += b[k] * qy;
+      pz[k] += b[k] * qz;
+    }
+  }
+#pragma omp simd
+  for (int k = 0; k < CHORDS; k++) square[k] = px[k] * px[k] + py[k] * py[k] + pz[k] * pz[k];
   square[CHORDS] = x[degree] * x[degree] + y[degree] * y[degree] + z[degree] * z[degree];
-  size_t nearest = 0;
-  for (size_t k = 1; k <= CHORDS; k++)
-    if (square[k] < square[nearest]) nearest = k;
+  uint32_t low, high;
+  const double left_half = least_of(square, &low), right_half = least_of(square + LANES, &high);
+  uint32_t nearest = right_half < left_half ? LANES + high : low;
+  if (square[CHORDS] < lesser(left_half, right_half)) nearest = CHORDS;
   if (nearest == 0 || nearest == CHORDS) return (double)nearest / CHORDS;
 
   /* the lowest point of the parabola through three of them */

@@ -283,14 +283,16 @@ static cprox_status search_model(const question *q, const candidate *c, double c
   if (r.status == CPROX_MEMORY) return workspace_fail(q->workspace, r.status, "no memory for the open intervals");
   if (r.status < 0) return r.status;
 
-  /* distances are not negative, unless asked for; the ball knew a lower bound too */
+  /* distances are not negative, unless asked for; where the search fell short the ball may know a better lower bound */
   const double least = q->is_signed ? -INFINITY : 0.0;
+  double by_ball = c->lower;
+  if (isinf(by_ball) && (r.status != CPROX_OK || depth_unknown)) by_ball = candidate_ball_bound(q, c);
   r.nodes = found.nodes;
   r.upper = fmax(found.best.upper, least);
-  r.lower = fmin(fmax(fmax(found.lower, c->lower), least), r.upper);
+  r.lower = fmin(fmax(fmax(found.lower, by_ball), least), r.upper);
   if (depth_unknown &&
       !(found.lower > 0.0)) { /* how deep cells and clouds go is not known: only the ball round all bounds it */
-    r.lower = fmin(c->lower, r.upper);
+    r.lower = fmin(by_ball, r.upper);
     if (r.upper <= 2.0 * found.best.slack) r.status = CPROX_OVERLAP; /* 0 but for rounding */
   }
   *result = r;

@@ -162,8 +162,8 @@ static candidate_ball carried_ball(const question *q, const candidate *c) {
   return (candidate_ball){.centre = frame_to_world(&f, body->ball_centre), .radius = body->ball_radius};
 }
 
-/* The mover's capsule against the candidate's ball: never above the true distance. */
-static double ball_bound(const question *q, const candidate *c) {
+/* The mover's capsule against the candidate's ball. */
+double candidate_ball_bound(const question *q, const candidate *c) {
   double placing;
   const candidate_ball round = candidate_bounding_ball(q, c, &placing);
   if (!isfinite(round.radius)) return -INFINITY;
@@ -193,7 +193,7 @@ static size_t parts_of(const cprox_body *body) {
   return body && body->kind == CPROX_COMPOUND ? body->n_parts : 1;
 }
 
-candidate *candidates_list(const question *q, size_t first, size_t last, size_t *count) {
+candidate *candidates_list(const question *q, size_t first, size_t last, bool ranked, size_t *count) {
   const size_t carried = parts_of(q->mover.body);
   size_t n = 0;
   for (size_t i = first; i < last; i++) n += parts_of(q->targets[i].body) * carried;
@@ -204,7 +204,7 @@ candidate *candidates_list(const question *q, size_t first, size_t last, size_t 
     for (size_t pair = 0; pair < parts_of(q->targets[i].body) * carried; pair++) {
       list[k] =
           (candidate){.target = (int32_t)i, .part = (int32_t)(pair / carried), .mover_part = (int32_t)(pair % carried)};
-      list[k].lower = ball_bound(q, &list[k]);
+      list[k].lower = ranked || n > 1 ? candidate_ball_bound(q, &list[k]) : -INFINITY;
       k++;
     }
   }

@@ -42,8 +42,12 @@ typedef struct candidate {
   cprox_rung rung;     /* the model that is searched; CPROX_RUNG_NONE: the finest that the question allows */
 } candidate;
 
-/* The candidates of targets first … last - 1, nearest ball first, in the workspace. NULL where memory is out. */
-candidate *candidates_list(const question *q, size_t first, size_t last, size_t *count);
+/* The candidates of targets first … last - 1, nearest ball first, in the workspace. NULL where memory is out. `ranked` false: of a
+ * single candidate nothing is asked, its bound is minus infinity. */
+candidate *candidates_list(const question *q, size_t first, size_t last, bool ranked, size_t *count);
+
+/* What the balls of mover and candidate say: never above the true distance; minus infinity where there is no ball. */
+double candidate_ball_bound(const question *q, const candidate *c);
 
 /* Round a candidate, in the world, without padding and but for rounding; *sizes becomes the sum of the lengths that entered. */
 typedef struct candidate_ball {

@@ -21,7 +21,7 @@ static candidate *rank_targets(const question *q) {
       rank[i] = (candidate){.target = (int32_t)i};
       continue;
     }
-    const candidate *parts = candidates_list(q, i, i + 1, &n);
+    const candidate *parts = candidates_list(q, i, i + 1, true, &n);
     if (!parts) return NULL;
     rank[i] = parts[0];
   }

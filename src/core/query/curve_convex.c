@@ -45,6 +45,11 @@ void curve_convex_bound(const curve_convex *o, search_node *node, const curve_si
   node->slack = slack;
 }
 
+/* Whether bounds need not rise any more: the question is settled, or the best point is as near as the answer needs. */
+static bool is_enough(const curve_convex *o, double lower) {
+  return lower > o->goal || lower >= o->best_bound.upper - o->epsilon;
+}
+
 /* The ball or cylinder that touches the body at the best sight; found when it is first wanted. */
 static bool know_cover(curve_convex *o) {
   if (!o->cover_known) {
@@ -155,13 +160,19 @@ void curve_convex_adopt(curve_convex *o, const curve_sight *sight, search_best b
 
 /* Measures at s of the loaded piece, and goes on from there by Newton's steps, the first no longer than `step`. */
 static cprox_status probe_at(curve_convex *o, size_t piece, double s, double step) {
+  const double *points = points_pool_at(&o->pool, SLOT_ROOT);
+  curve_jet jet;
+  if (o->side.curve->arcs)
+    jet.x = curve_side_point(&o->side, s); /* it has no derivatives */
+  else
+    jet = polish_jet(o, points, s);
   search_best bound = {.upper = INFINITY};
-  const cprox_status status = curve_convex_measure(o, piece, s, curve_side_point(&o->side, s),
-                                                   curve_side_point_error(&o->side), &o->last, &bound);
+  const cprox_status status =
+      curve_convex_measure(o, piece, s, jet.x, curve_side_point_error(&o->side), &o->last, &bound);
   if (status < 0 || bound.upper >= o->best_bound.upper) return status;
   curve_convex_adopt(o, &o->last, bound);
   const bool worthwhile = bound.upper > o->good_enough && o->nodes > o->polish_after;
-  return worthwhile ? polish(o, points_pool_at(&o->pool, SLOT_ROOT), step) : CPROX_OK;
+  return worthwhile ? polish(o, points, &jet, step) : CPROX_OK;
 }
 
 /* From the frame's origin, about which the body stands, towards the chord of a range: a normal that is had without a measurement.
@@ -262,6 +273,9 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   const cprox_status status = piece ? probe_piece(o, node) : probe_range(o, node);
   if (status < 0) return status;
   *best = o->best_bound;
+  /* a plane never rises above the best point's distance: the halves will need no less */
+  const bool decisive = o->goal < o->best_bound.upper - 2.0 * o->epsilon;
+  if (piece && !decisive && best_inside(o, node) >= 0.0) return CPROX_OK;
 
   /* the probe's own normal, and the best one if it is another: one step further is the best of a probe that was not polished */
   curve_convex_bound(o, node, &o->last);
@@ -274,10 +288,10 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
 /* ---- splits ----------------------------------------------------------------------------------------------------------- */
 
-/* Children know both normals from birth. */
+/* Children know the best normal from birth, and the last where that leaves something open. */
 static void bound_child(curve_convex *o, search_node *child) {
   curve_convex_bound(o, child, &o->best);
-  if (!vec_equal(o->last.normal, o->best.normal)) curve_convex_bound(o, child, &o->last);
+  if (!is_enough(o, child->lower) && !vec_equal(o->last.normal, o->best.normal)) curve_convex_bound(o, child, &o->last);
   child->seen = o->incumbent;
 }
 
@@ -316,9 +330,8 @@ static void bound_fan_by_ball(const curve_convex *o, search_node *child, size_t 
 
 /* Whether something is left that bounds have not settled. */
 static bool is_open(const curve_convex *o, const search_node *child, size_t n) {
-  const double goal = lesser(o->goal, o->best_bound.upper);
   for (size_t k = 0; k < n; k++)
-    if (child[k].lower <= goal) return true;
+    if (!is_enough(o, child[k].lower)) return true;
   return false;
 }
 

@@ -48,10 +48,10 @@ static void bound_children(const curve_curve *o, search_node *child, search_inte
     for (int j = 0; j < n_parts[1]; j++) bound_by_reaches(o, child++, n, &reach[0][i], &reach[1][j]);
 }
 
-/* Whether something is left that bounds have not settled. */
+/* Whether something is left that bounds have not settled, or brought as near to the best meeting as the answer needs. */
 static bool is_open(const curve_curve *o, const search_node *child, int n) {
   for (int k = 0; k < n; k++)
-    if (child[k].lower <= o->goal) return true;
+    if (!(child[k].lower > o->goal || child[k].lower >= o->best_bound.upper - o->epsilon)) return true;
   return false;
 }
 

@@ -76,7 +76,7 @@ static vec3 local_of(const frame *f, vec3 world) {
 static void measure_ranges(curve_side *side) {
   const curve_capsule *all = &side->curve->whole;
   const vec3 a = local_of(&side->frame, all->a), b = local_of(&side->frame, all->b);
-  const double computed = greater(vec_norm(a), vec_norm(b));
+  const double computed = sqrt(greater(vec_norm2(a), vec_norm2(b)));
   const double most = ROUND_UP * (computed + all->radius + side->turned_slope * computed + side->turned_offset);
   const double roundings = (side->frame.rotated ? ROUND_ROTATION : 0.0) + 9.0 + side->frame.misturned;
   side->range_magnitude = most;

@@ -201,7 +201,7 @@ first_contact first_contact_begin(void) {
 
 cprox_status first_contact_with(first_contact *all, const question *q, size_t first, size_t last) {
   size_t count = 0;
-  const candidate *list = last > first ? candidates_list(q, first, last, &count) : NULL;
+  const candidate *list = last > first ? candidates_list(q, first, last, true, &count) : NULL;
   if (last > first && !list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
   size_t i = 0;
   for (; i < count && list[i].lower <= 0.0 && all->status != CPROX_STOPPED; i++) {

@@ -5,8 +5,16 @@
 
 #include "query/curve_convex.h"
 
+/* A point of the piece and its derivatives by s. */
+typedef struct curve_jet {
+  vec3 x, d1, d2;
+} curve_jet;
+
+/* At s of the loaded root piece `points`. */
+curve_jet polish_jet(const curve_convex *o, const double *points, double s);
+
 /* Improves o->best, which must lie on the loaded root piece `points`, in steps of at most `step` of the piece's parameter.
- * It only ever replaces the best point by a measured better one: where Newton fails, nothing is lost. */
-cprox_status polish(curve_convex *o, const double *points, double step);
+ * It only ever replaces the best point by a measured better one: where Newton fails, nothing is lost. *jet is the one there. */
+cprox_status polish(curve_convex *o, const double *points, curve_jet *jet, double step);
 
 #endif
