@@ -22,6 +22,7 @@ typedef struct candidate {
   double weight[3];
   vec3 v;
   double square;
+  const struct face *face; /* the triangle's, where n is 3 */
 } candidate;
 
 static void candidate_offer(candidate *best, const simplex *s, int n, const int index[3], const double weight[3]) {
@@ -99,76 +100,76 @@ static vec3 nearest_of(const simplex *s, const int index[3]) {
   return nearest;
 }
 
-static void try_triangle(candidate *best, const simplex *s, int i, int j, int k) {
+/* f: the face of i, j and k. */
+static void try_triangle(candidate *best, const simplex *s, int i, int j, int k, const face *f) {
   const int index[3] = {i, j, k};
-  const face f = face_of(s, index);
-  const double area2 = vec_norm2(f.normal);
-  if (face_is_degenerate(&f)) {
+  const double area2 = vec_norm2(f->normal);
+  if (face_is_degenerate(f)) {
     for (int m = 0; m < 3; m++) try_segment(best, s, index[(m + 1) % 3], index[(m + 2) % 3]);
     return;
   }
 
   /* areas of the triangles that the foot of 0 makes with the edges, each opposite a vertex; the foot is measured from the
    * nearest vertex, so that beside a vertex it is exact to what it is away from it */
-  const vec3 foot = vec_scale(vec_dot(f.normal, nearest_of(s, index)) / area2, f.normal);
+  const vec3 foot = vec_scale(vec_dot(f->normal, nearest_of(s, index)) / area2, f->normal);
   vec3 to[3];
   for (int m = 0; m < 3; m++) to[m] = vec_sub(s->vertex[index[m]].w, foot);
   double area[3];
   bool outside = false;
   for (int m = 0; m < 3; m++) {
-    area[m] = vec_dot(f.normal, vec_cross(to[(m + 1) % 3], to[(m + 2) % 3])) / area2;
+    area[m] = vec_dot(f->normal, vec_cross(to[(m + 1) % 3], to[(m + 2) % 3])) / area2;
     if (area[m] <= 0.0) outside = true;
-    if (area[m] > 0.0 && !f.sliver) continue; /* a sliver's areas are not to be trusted alone */
+    if (area[m] > 0.0 && !f->sliver) continue; /* a sliver's areas are not to be trusted alone */
     try_segment(best, s, index[(m + 1) % 3], index[(m + 2) % 3]);
   }
   if (outside) return;
 
   /* inside: the weight of the corner first, then the place along the longest edge, opposite, measured so that it takes up
    * the first one's rounding: in a needle the areas alone would put the point far along it */
-  const int a = f.corner == i ? 0 : f.corner == j ? 1 : 2, b = (a + 1) % 3, c = (a + 2) % 3;
+  const int a = f->corner == i ? 0 : f->corner == j ? 1 : 2, b = (a + 1) % 3, c = (a + 2) % 3;
   const vec3 base = vec_sub(to[c], to[b]);
   double weight[3];
-  weight[a] = fmin(area[a], 1.0);
+  weight[a] = lesser(area[a], 1.0);
   const vec3 rest = vec_axpy(vec_neg(to[b]), -weight[a], vec_sub(to[a], to[b]));
-  weight[c] = fmin(fmax(vec_dot(rest, base) / vec_norm2(base), 0.0), 1.0 - weight[a]);
-  weight[b] = fmax(1.0 - weight[a] - weight[c], 0.0);
+  weight[c] = lesser(greater(vec_dot(rest, base) / vec_norm2(base), 0.0), 1.0 - weight[a]);
+  weight[b] = greater(1.0 - weight[a] - weight[c], 0.0);
   candidate_offer(best, s, 3, index, weight);
+  if (best->n == 3 && best->index[0] == i && best->index[1] == j && best->index[2] == k) best->face = f;
 }
 
 /* On which side of the face opposite vertex i does 0 lie, how far, and how far compared with the vertex? */
 typedef enum face_side { FACE_INNER, FACE_OUTER, FACE_UNCLEAR } face_side;
 
-static face_side tetrahedron_side(const simplex *s, int i, double *depth, double *weight) {
-  const int index[3] = {(i + 1) % 4, (i + 2) % 4, (i + 3) % 4};
-  const face f = face_of(s, index);
-  const vec3 corner = s->vertex[f.corner].w, apex = vec_sub(s->vertex[i].w, corner);
-  const double side = vec_dot(f.normal, apex), origin = -vec_dot(f.normal, corner);
+static face_side tetrahedron_side(const simplex *s, int i, const face *f, double *depth, double *weight) {
+  const vec3 corner = s->vertex[f->corner].w, apex = vec_sub(s->vertex[i].w, corner);
+  const double side = vec_dot(f->normal, apex), origin = -vec_dot(f->normal, corner);
 
   /* of a product with the normal, per unit of the vector */
-  const double doubt = 2.0 * f.noise + 4.0 * ROUND_U * f.length;
-  if (face_is_degenerate(&f) || !(fabs(side) > doubt * vec_norm(apex))) return FACE_UNCLEAR;
+  const double doubt = 2.0 * f->noise + 4.0 * ROUND_U * f->length;
+  if (face_is_degenerate(f) || !(fabs(side) > doubt * vec_norm(apex))) return FACE_UNCLEAR;
   *weight = origin / side;
   const double inner = side > 0.0 ? origin : -origin, noise = doubt * vec_norm(corner);
-  *depth = (inner - noise) / f.length;
+  *depth = (inner - noise) / f->length;
   return inner > noise ? FACE_INNER : inner < -noise ? FACE_OUTER : FACE_UNCLEAR;
 }
 
-/* True where 0 is proven inside; else the faces that it may be beyond are tried. */
-static bool try_tetrahedron(candidate *best, simplex *s, double *depth) {
+/* True where 0 is proven inside; else the faces that it may be beyond are tried. Face i is opposite vertex i. */
+static bool try_tetrahedron(candidate *best, simplex *s, face f[4], double *depth) {
   face_side side[4];
   bool unclear = false, inside = true;
   *depth = INFINITY;
   for (int i = 0; i < 4; i++) {
     double d = 0.0;
-    side[i] = tetrahedron_side(s, i, &d, &s->weight[i]);
+    f[i] = face_of(s, (const int[3]){(i + 1) % 4, (i + 2) % 4, (i + 3) % 4});
+    side[i] = tetrahedron_side(s, i, &f[i], &d, &s->weight[i]);
     unclear |= side[i] == FACE_UNCLEAR;
     inside &= side[i] == FACE_INNER;
-    *depth = fmin(*depth, d);
+    *depth = lesser(d, *depth);
   }
 
   /* each w is within u|w| of the exact difference: moving all vertices by so much shrinks the ball by no more */
   double reach = 0.0;
-  for (int i = 0; i < 4; i++) reach = fmax(reach, vec_norm(s->vertex[i].w));
+  for (int i = 0; i < 4; i++) reach = greater(vec_norm(s->vertex[i].w), reach);
   *depth = *depth * (1.0 - 8.0 * ROUND_U) - 4.0 * ROUND_U * reach;
   if (inside && *depth > 0.0) {
     const double sum = s->weight[0] + s->weight[1] + s->weight[2] + s->weight[3];
@@ -179,7 +180,7 @@ static bool try_tetrahedron(candidate *best, simplex *s, double *depth) {
   /* a flat tetrahedron says nothing: all of its faces are tried */
   const bool all = unclear || inside;
   for (int i = 0; i < 4; i++)
-    if (all || side[i] == FACE_OUTER) try_triangle(best, s, (i + 1) % 4, (i + 2) % 4, (i + 3) % 4);
+    if (all || side[i] == FACE_OUTER) try_triangle(best, s, (i + 1) % 4, (i + 2) % 4, (i + 3) % 4, &f[i]);
   return false;
 }
 
@@ -191,41 +192,49 @@ static vec3 across_edge(vec3 v, vec3 e) {
   return vec_axpy(unit, -(vec_dot(unit, e) / square), e);
 }
 
-/* The direction of the feature's distance from 0. */
-static vec3 feature_normal(const simplex *s, vec3 v) {
+/* The direction of the feature's distance from 0; f: the face of three vertices. */
+static vec3 feature_normal(const simplex *s, vec3 v, const face *f) {
   vec3 unit;
   if (s->n == 2) {
     const vec3 a = s->vertex[0].w, b = s->vertex[1].w;
     v = across_edge(vec_norm2(a) < vec_norm2(b) ? a : b, vec_sub(b, a));
   } else if (s->n == 3) {
-    const int index[3] = {0, 1, 2};
-    const face f = face_of(s, index);
-    const double along = vec_dot(f.normal, nearest_of(s, index));
-    v = along > 0.0 ? f.normal : along < 0.0 ? vec_neg(f.normal) : vec(0, 0, 0);
+    const double along = vec_dot(f->normal, nearest_of(s, (const int[3]){0, 1, 2}));
+    v = along > 0.0 ? f->normal : along < 0.0 ? vec_neg(f->normal) : vec(0, 0, 0);
   }
   feature_unit(v, &unit);
   return unit;
 }
 
+/* Keeps the vertices that the nearest point needs. */
+static void simplex_keep(simplex *s, const candidate *best) {
+  simplex_vertex vertex[3];
+  int n = 0;
+  for (int i = 0; i < best->n; i++) {
+    if (best->weight[i] == 0.0) continue;
+    vertex[n] = s->vertex[best->index[i]];
+    s->weight[n++] = best->weight[i];
+  }
+  for (int i = 0; i < n; i++) s->vertex[i] = vertex[i];
+  s->n = n;
+}
+
 void simplex_reduce(simplex *s, simplex_nearest *nearest) {
   candidate best = {0};
+  face f[4];
   *nearest = (simplex_nearest){0};
   if (s->n == 1) try_vertex(&best, s, 0);
   if (s->n == 2) try_segment(&best, s, 0, 1);
-  if (s->n == 3) try_triangle(&best, s, 0, 1, 2);
-  if (s->n == 4 && try_tetrahedron(&best, s, &nearest->depth)) {
+  if (s->n == 3) {
+    f[0] = face_of(s, (const int[3]){0, 1, 2});
+    try_triangle(&best, s, 0, 1, 2, &f[0]);
+  }
+  if (s->n == 4 && try_tetrahedron(&best, s, f, &nearest->depth)) {
     nearest->inside = true;
     return;
   }
-
-  simplex kept = {0};
-  for (int i = 0; i < best.n; i++) {
-    if (best.weight[i] == 0.0) continue;
-    kept.vertex[kept.n] = s->vertex[best.index[i]];
-    kept.weight[kept.n++] = best.weight[i];
-  }
-  *s = kept;
+  simplex_keep(s, &best);
   nearest->v = best.v;
   nearest->distance = vec_norm(best.v);
-  nearest->normal = feature_normal(s, best.v);
+  nearest->normal = feature_normal(s, best.v, best.face);
 }
