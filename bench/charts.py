@@ -186,7 +186,7 @@ def rates(rows, out, workload, title, name):
 
 def threads(rows, out):
     """Curves a second against threads."""
-    rows = [row for row in rows if row['group'] == 'threads']
+    rows = [row for row in rows if row['group'] == 'threads' and row['workload'].startswith('growth threads')]
     if not rows:
         return None
     figure, axes = plt.subplots()

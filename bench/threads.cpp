@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A thousand quintics against a hundred boxes over 1, 2, … threads, as many as the machine runs at once. Times are of the wall; all
- * numbers of threads take turns. What is wrong is what differs from one thread's answers. */
+/* A thousand quintics against a hundred boxes over 1, 2, … threads, as many as the machine runs at once. Times are of the wall. All numbers of threads
+ * take turns, round by round, forwards and backwards; the time of several is the median of what each round took over what one thread took in the same
+ * round, times one thread's median: what slows a machine for longer than a round slows both. Beside them a loop of plain arithmetic over the
+ * same pools: where that gains nothing from a second thread, the machine's second core was not free. What is wrong is what differs from one
+ * thread's answers. */
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <random>
@@ -64,10 +68,66 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
+/* A sample lasts at least this long [us] on one thread: less is the time that a sleeping thread takes to wake up. */
+constexpr double kShortestSample = 5000.0;
+
+double wallTime(const std::function<void()> &ask) {
+  const auto begin = std::chrono::steady_clock::now();
+  ask();
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+}
+
+struct Times {
+  double median, p95;
+};
+
+/* One for each pool, by turns; the first is of one thread. */
+std::vector<Times> measure(const std::vector<std::unique_ptr<Pool>> &pools, int rounds,
+                           const std::function<void(std::size_t)> &ask) {
+  double once = 0.0;
+  for (std::size_t k = pools.size(); k-- > 0;) once = wallTime([&] { ask(k); }); // all are warm; one thread is the last
+  const int repeats = 1 + static_cast<int>(kShortestSample / std::max(once, 1.0));
+  std::vector<std::vector<double>> times(pools.size()), ratios(pools.size());
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t turn = 0; turn < pools.size(); ++turn) {
+      const std::size_t k = round % 2 == 0 ? turn : pools.size() - 1 - turn;
+      times[k].push_back(wallTime([&] {
+                           for (int i = 0; i < repeats; ++i) ask(k);
+                         }) /
+                         repeats);
+    }
+    for (std::size_t k = 0; k < pools.size(); ++k) ratios[k].push_back(times[k].back() / times[0].back());
+  }
+  std::vector<Times> result;
+  for (std::size_t k = 0; k < pools.size(); ++k)
+    result.push_back({quantile(times[0], 0.5) * quantile(ratios[k], 0.5), quantile(times[k], 0.95)});
+  return result;
+}
+
+/* As many ranges as a batch has, of additions and multiplications that need no memory. */
+void plainLoop(Pool &pool) {
+  constexpr std::size_t kRanges = 32;
+  constexpr int kSteps = 40000;
+  std::vector<double> sums(kRanges);
+  pool.run(kRanges, 1, [&](std::size_t first, std::size_t, Workspace &) {
+    double x = 0.5 + 1e-3 * static_cast<double>(first);
+    for (int i = 0; i < kSteps; ++i) x = 3.7 * x * (1.0 - x);
+    sums[first] = x;
+  });
+  if (std::any_of(sums.begin(), sums.end(), [](double x) { return !(x >= 0.0 && x <= 1.0); })) std::abort();
+}
+
+void print(const std::string &workload, const char *method, unsigned threads, const Times &times, std::size_t nodes,
+           std::size_t wrong, std::size_t failed) {
+  std::printf("threads,%s,%s,%u threads,%.4g,%.4g,%zu,0,,%zu,%zu\n", workload.c_str(), method, threads, times.median,
+              times.p95, nodes, wrong, failed);
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
   const bench_size size = bench_arguments(argc, argv);
+  const int rounds = 15 * size.rounds;
   const unsigned most = std::max(2u, std::thread::hardware_concurrency());
   std::vector<std::unique_ptr<Pool>> pools;
   for (unsigned threads = 1; threads <= most; threads *= 2) pools.push_back(std::make_unique<Pool>(threads));
@@ -81,16 +141,8 @@ int main(int argc, char **argv) {
   for (const auto &[verb, ask] : verbs) {
     const std::string workload = std::string("growth threads ") + verb;
     if (!bench_wanted(&size, workload.c_str())) continue;
-    std::vector<std::vector<double>> times(pools.size());
     std::vector<Batch::Answers> answers(pools.size());
-    for (int round = 0; round <= 3 * size.rounds; ++round) { // the first warms up
-      for (std::size_t k = 0; k < pools.size(); ++k) {
-        const auto begin = std::chrono::steady_clock::now();
-        answers[k] = ask(*pools[k]);
-        const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
-        if (round > 0) times[k].push_back(took.count());
-      }
-    }
+    const std::vector<Times> times = measure(pools, rounds, [&](std::size_t k) { answers[k] = ask(*pools[k]); });
     for (std::size_t k = 0; k < pools.size(); ++k) {
       std::size_t nodes = 0, wrong = 0, failed = 0;
       for (std::size_t i = 0; i < kCurves; ++i) {
@@ -99,9 +151,13 @@ int main(int argc, char **argv) {
         wrong += own.lower != alone.lower || own.upper != alone.upper || own.verdict != alone.verdict;
         failed += own.status < 0;
       }
-      std::printf("threads,%s,curve_proximity,%u threads,%.4g,%.4g,%zu,0,,%zu,%zu\n", workload.c_str(),
-                  pools[k]->threads(), quantile(times[k], 0.5), quantile(times[k], 0.95), nodes, wrong, failed);
+      print(workload, "curve_proximity", pools[k]->threads(), times[k], nodes, wrong, failed);
     }
+  }
+  const std::string loop = "growth plain loop over threads";
+  if (bench_wanted(&size, loop.c_str())) {
+    const std::vector<Times> times = measure(pools, rounds, [&](std::size_t k) { plainLoop(*pools[k]); });
+    for (std::size_t k = 0; k < pools.size(); ++k) print(loop, "arithmetic", pools[k]->threads(), times[k], 0, 0, 0);
   }
   return 0;
 }
