@@ -18,7 +18,8 @@ typedef struct problem {
   const cprox_target *targets;
   size_t n;
   const cprox_set *set;
-  double delta; /* verdicts; below 0: a distance */
+  double delta;   /* verdicts; below 0: a distance */
+  double epsilon; /* 0: EPSILON */
 } problem;
 
 static void answer_with(cprox_status status, const cprox_result *r, bench_answer *answer) {
@@ -34,10 +35,14 @@ static void by_set(const void *problems, size_t i, void *state, bench_answer *an
   answer_with(cprox_set_distance(p->set, p->mover, &options, state, &r), &r, answer);
 }
 
+static double epsilon_of(const problem *p) {
+  return p->epsilon > 0.0 ? p->epsilon : EPSILON;
+}
+
 static void by_list(const void *problems, size_t i, void *state, bench_answer *answer) {
   const problem *p = (const problem *)problems + i;
   cprox_options options = cprox_options_default();
-  options.epsilon = EPSILON;
+  options.epsilon = epsilon_of(p);
   cprox_result r;
   if (p->delta < 0.0) {
     answer_with(cprox_distance_all(p->mover, p->targets, p->n, &options, state, &r, NULL), &r, answer);
@@ -58,7 +63,7 @@ static void sampled(const void *problems, size_t i, void *state, bench_answer *a
 static void two_ended(const void *problems, size_t i, void *state, bench_answer *answer) {
   const problem *p = (const problem *)problems + i;
   peer_answer r;
-  two_ended_distance(&p->mover, p->targets, p->n, EPSILON, 60000, state, &r);
+  two_ended_distance(&p->mover, p->targets, p->n, epsilon_of(p), 60000, state, &r);
   *answer =
       (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes, .failed = !r.complete};
 }
@@ -232,8 +237,59 @@ static void two_arms(const robot_case *arm, const bench_size *size, cprox_worksp
   cprox_body_free(ball);
 }
 
+/* ---- a flat minimum -------------------------------------------------------------------------------------------------------- */
+
+/* A base that slides along a wall from rest to rest, turning a little on the way and back: it is as near as it gets all the way. */
+static void slide(const bench_size *size, cprox_workspace *ws) {
+  static const double EPSILONS[] = {1e-3, 1e-6};
+  const cprox_link tree[2] = {{.parent = -1,
+                               .origin = cprox_pose_identity(),
+                               .type = CPROX_JOINT_PRISMATIC,
+                               .axis = {1, 0, 0},
+                               .multiplier = 1.0},
+                              {.parent = 0,
+                               .origin = cprox_pose_identity(),
+                               .type = CPROX_JOINT_REVOLUTE,
+                               .axis = {0, 0, 1},
+                               .variable = 1,
+                               .multiplier = 1.0}};
+  cprox_body *base = NULL, *wall = NULL;
+  cprox_robot *robot = NULL;
+  cprox_motion *motion = NULL;
+  cprox_body_create_cylinder(0.4, 0.3, ws, &base);
+  cprox_body_create_box((cprox_vec3){6.0, 0.1, 2.0}, ws, &wall);
+  const cprox_link_geometry body = {.link = 1, .body = base, .pose = cprox_pose_identity()};
+  const double still[2] = {0, 0}, from[2] = {-1.5, 0}, middle[2] = {0, 0.1}, to[2] = {1.5, 0};
+  const int32_t variables[2] = {0, 1};
+  const cprox_waypoint points[3] = {{.time = 0, .positions = from, .velocities = still, .accelerations = still},
+                                    {.time = 2, .positions = middle, .velocities = still, .accelerations = still},
+                                    {.time = 4, .positions = to, .velocities = still, .accelerations = still}};
+  if (cprox_robot_create(tree, 2, &body, 1, 2, ws, &robot) == CPROX_OK &&
+      cprox_motion_create_waypoints(robot, variables, 2, points, 3, CPROX_QUINTIC, NULL, ws, &motion) == CPROX_OK) {
+    const cprox_target target = cprox_at(wall, (cprox_pose){.position = {0, 0.5, 0}, .orientation = {.w = 1.0}});
+    for (int k = 0; k < 2; k++) {
+      const problem p = {.mover = cprox_robot_along(motion, NULL, 0),
+                         .targets = &target,
+                         .n = 1,
+                         .delta = -1.0,
+                         .epsilon = EPSILONS[k]};
+      char parameter[40];
+      snprintf(parameter, sizeof parameter, "epsilon %g", EPSILONS[k]);
+      const bench_method methods[] = {{"curve_proximity", by_list, ws}, {"two-ended bound", two_ended, ws}};
+      measure("flat slide", parameter, &p, size, methods, 2, ws);
+    }
+  } else {
+    fprintf(stderr, "flat slide: %s\n", cprox_workspace_reason(ws));
+  }
+  cprox_motion_free(motion);
+  cprox_robot_free(robot);
+  cprox_body_free(base);
+  cprox_body_free(wall);
+}
+
 void bench_robot_scale(const robot_case *arm, const bench_size *size, cprox_workspace *ws) {
   if (bench_wanted(size, "growth obstacles")) obstacles(arm, size, ws);
   if (bench_wanted(size, "growth links")) links(size, ws);
+  if (bench_wanted(size, "flat slide")) slide(size, ws);
   if (bench_wanted(size, "two arms")) two_arms(arm, size, ws);
 }
