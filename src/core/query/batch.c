@@ -19,7 +19,7 @@ static cprox_status report_hit(const batch_run *run, const batch_look *look, cpr
   const candidate *part = &run->batch->parts[hit->part];
   const double *breaks = run->q.mover.curve->breaks + hit->piece, radius = run->q.mover.radius;
   const double padding = run->batch->cores[hit->part].padding;
-  *r = (cprox_result){.lower = look->beyond < 0.0 ? 0.0 : look->beyond,
+  *r = (cprox_result){.lower = lesser(greater(look->beyond, 0.0), hit->upper),
                       .upper = hit->upper,
                       .t = breaks[0] + hit->s * (breaks[1] - breaks[0]),
                       .t_target = NAN,

@@ -96,7 +96,7 @@ bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c,
   const uint32_t pieces = (uint32_t)run->q.mover.curve->n_pieces;
   look l = {.run = run, .core = core, .margin = core->padding + run->q.mover.radius, .limit = -1.0};
   l.slack = slack_of(run, core, l.margin);
-  if (core->is_brick && question_wants_verdict(&run->q)) l.limit = run->q.limit;
+  if (core->is_brick) l.limit = greater(run->q.limit, 0.0);
 
   /* all chords */
   lanes_sight sight[BATCH_MOST_PIECES];
@@ -114,7 +114,8 @@ bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c,
   c->seed_piece = piece;
   c->seed_s = lesser(greater(s, 1e-3), 1.0 - 1e-3);
   *upper = core->is_brick ? distance + run->beside - l.margin + l.slack : INFINITY;
-  if (c->lower > most || !question_wants_verdict(&run->q)) return false;
+  const double settles = question_wants_verdict(&run->q) ? most : 0.0; /* of distances only contact is */
+  if (c->lower > lesser(most, settles)) return false;
 
   /* the nearest chord's point, then each chord that is not too far */
   if (distance - run->beside - l.margin <= l.limit && hits_at(&l, piece, s, hit)) return true;
@@ -123,7 +124,7 @@ bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c,
   for (uint32_t i = 0; i < pieces; i++) {
     for (uint32_t k = 0; k < CHORDS; k++) {
       double bound = sight[i].lower[k] - off;
-      if (bound <= most && cut++ < MOST_CUT && look_closer(&l, i, k, &bound, hit)) return true;
+      if (bound <= settles && cut++ < MOST_CUT && look_closer(&l, i, k, &bound, hit)) return true;
       lower = lesser(lower, bound);
     }
   }

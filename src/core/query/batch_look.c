@@ -165,9 +165,13 @@ void batch_look_around(batch_run *run, batch_look *look) {
   /* a distance begins with the part that may be nearest: what is farther than that one's upper bound need not be listed */
   const size_t first = decides ? SIZE_MAX : batch_open_nearest(run);
   look->beyond = INFINITY;
+  look->is_hit = false;
+  run->n_open = 0;
   if (first != SIZE_MAX) consider(run, first, most, &least_upper, &promising, look);
-  look->beyond = lesser(look->beyond, batch_open_list(run, lesser(most, least_upper)));
-  look->is_hit = run->short_enough && find_hit(run, greater(q->limit, 0.0), &look->hit);
+  if (!look->is_hit) {
+    look->beyond = lesser(look->beyond, batch_open_list(run, lesser(most, least_upper)));
+    look->is_hit = run->short_enough && find_hit(run, greater(q->limit, 0.0), &look->hit);
+  }
   for (size_t i = 0; i < run->n_open && !look->is_hit; i++)
     if (run->open[i] != first) consider(run, run->open[i], most, &least_upper, &promising, look);
   if (look->is_hit)

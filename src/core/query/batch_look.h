@@ -66,7 +66,7 @@ double batch_points_nearest(batch_run *run, uint32_t half, vec3 from, uint32_t *
 void batch_points_join(batch_run *run);
 
 /* What the box round a part says of the curve, whose chords are joined. Raises c->lower, to more than `most` where that can be shown, says
- * where a search should begin, and sets *upper to an upper bound or infinity. For verdicts: true where it finds a hit. */
+ * where a search should begin, and sets *upper to an upper bound or infinity. True where it finds a hit: contact, or what violates the limit. */
 bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit);
 
 #endif
