@@ -274,7 +274,7 @@ static void slide(const bench_size *size, cprox_workspace *ws) {
                          .delta = -1.0,
                          .epsilon = EPSILONS[k]};
       char parameter[40];
-      snprintf(parameter, sizeof parameter, "epsilon %g", EPSILONS[k]);
+      snprintf(parameter, sizeof parameter, "to %g", EPSILONS[k]);
       const bench_method methods[] = {{"curve_proximity", by_list, ws}, {"two-ended bound", two_ended, ws}};
       measure("flat slide", parameter, &p, size, methods, 2, ws);
     }
