@@ -9,6 +9,8 @@
 
 #include "base/rounding.h"
 #include "body/body.h"
+#include "convex/feature.h"
+#include "convex/pair.h"
 #include "curve_proximity/cprox/query.h"
 #include "support/random.h"
 #include "support/reference.h"
@@ -145,6 +147,69 @@ static void grazing_rims_and_parallel_edges_lie_in_the_interval(void **state) {
   assert_true((double)open <= 2.0 + 0.01 * (double)cases);
 }
 
+static double distance_at(const test_shape *a, const test_shape *b, const pair_placement *place, vec3 shift,
+                          pair_feature *feature) {
+  pair_placement moved = *place;
+  moved.t = vec_add(place->t, shift);
+  const pair_goal goal = {.relative_epsilon = 1e-13, .max_steps = 256, .wants_feature = true};
+  pair_answer answer;
+  pair_separate(&a->body->shape, 0.0, &b->body->shape, 0.0, &moved, &goal, &answer);
+  if (feature) *feature = answer.feature;
+  return answer.upper - answer.rounding;
+}
+
+/* The second derivative along d that the feature says: of a flat one, what is across its directions, over the distance. */
+static double curvature_along(const pair_feature *feature, vec3 d, double distance) {
+  if (!feature->flat) return feature_quadratic(feature->hessian, d, d);
+  vec3 e, f, rest = d, foot = feature->w[0];
+  if (feature->n > 1) {
+    feature_unit(vec_sub(feature->w[1], feature->w[0]), &e);
+    rest = vec_axpy(rest, -vec_dot(rest, e), e);
+    foot = vec_axpy(foot, -vec_dot(foot, e), e);
+  }
+  if (feature->n > 2) {
+    const vec3 second = vec_sub(feature->w[2], feature->w[0]);
+    feature_unit(vec_axpy(second, -vec_dot(second, e), e), &f);
+    rest = vec_axpy(rest, -vec_dot(rest, f), f);
+    foot = vec_axpy(foot, -vec_dot(foot, f), f);
+  }
+  feature_unit(foot, &foot);
+  rest = vec_axpy(rest, -vec_dot(rest, foot), foot);
+  return vec_norm2(rest) / distance;
+}
+
+/* Seed 806, 2e4 pairs, somewhere and apart by their sizes: the feature tells the second derivative of the distance of the cores, by central differences of
+ * 1e-4. Tolerance 1e-4: rounding of 1e-15 over 1e-8, and fourth derivatives up to 1e3 times 1e-8; in one pair of five hundred the step may cross to
+ * another feature. */
+static void the_feature_tells_how_the_distance_bends(void **state) {
+  (void)state;
+  rng r = rng_seed(806);
+  const double h = 1e-4;
+  static test_shape a, b;
+  size_t wrong = 0;
+  const size_t cases = test_cases(20000);
+  for (size_t i = 0; i < cases; i++) {
+    shape_make(&r, PROJECTED[rng_index(&r, N_PROJECTED)], 1.0, 3.0, &a);
+    shape_make(&r, PROJECTED[rng_index(&r, N_PROJECTED)], 1.0, 3.0, &b);
+    cprox_pose pb = rng_pose(&r, 0.0);
+    pb.position = vec_scale(rng_uniform(&r, 1.1, 4.0) * (a.body->ball_radius + b.body->ball_radius), rng_unit(&r));
+    const frame f = frame_create(&pb, b.body->centre);
+    pair_placement place = {.t = vec_sub(frame_to_world(&f, vec(0, 0, 0)), a.body->centre)};
+    for (int k = 0; k < 9; k++) place.r[k] = f.r[k];
+    pair_feature feature;
+    const vec3 d = rng_unit(&r);
+    const double here = distance_at(&a, &b, &place, vec(0, 0, 0), &feature);
+    const double ahead = distance_at(&a, &b, &place, vec_scale(h, d), NULL);
+    const double behind = distance_at(&a, &b, &place, vec_scale(-h, d), NULL);
+    const double bend = (ahead + behind - 2.0 * here) / (h * h), told = curvature_along(&feature, d, here);
+    wrong += !(fabs(bend - told) <= 1e-4 * fmax(1.0, told));
+    cprox_body_free(a.body);
+    cprox_body_free(b.body);
+  }
+  print_message("%zu of %zu cross to another feature\n", wrong, cases);
+  assert_true((double)wrong <= 2.0 + 0.002 * (double)cases);
+}
+
 /* The mean of looks over 1e4 pairs, gaps of 1e-6 to 1 sizes, to a relative 1e-9. */
 static double looks_of(uint64_t seed, cprox_body_kind kind_a, cprox_body_kind kind_b) {
   rng r = rng_seed(seed);
@@ -182,6 +247,7 @@ int main(void) {
       cmocka_unit_test(a_foot_is_the_nearest_point_of_the_core),
       cmocka_unit_test(a_foot_moves_along_its_tangents),
       cmocka_unit_test(grazing_rims_and_parallel_edges_lie_in_the_interval),
+      cmocka_unit_test(the_feature_tells_how_the_distance_bends),
       cmocka_unit_test(projections_and_smoothness_save_looks),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -48,12 +48,12 @@ static void approach_project(const approach_task *task, vec3 y, approach_pair *p
   approach_add_tangents(&p->b, r, p);
 }
 
-/* Where the two pieces, continued, are nearest to each other: min over x of |v + sum x_k m_k|²/2 + sum bent_k x_k²/2, by
+/* Where the two pieces, continued and v apart, are nearest to each other: min over x of |v + sum x_k m_k|²/2 + sum bent_k x_k²/2, by
  * Cholesky's method; of tangents that depend on those before them none is gone along. */
-static void approach_newton(const approach_pair *p, double x[APPROACH_MOST]) {
+static void approach_newton(const approach_pair *p, vec3 v, double x[APPROACH_MOST]) {
   double l[APPROACH_MOST][APPROACH_MOST], z[APPROACH_MOST];
   for (int i = 0; i < p->n; i++) {
-    z[i] = -vec_dot(p->m[i], p->v);
+    z[i] = -vec_dot(p->m[i], v);
     double pivot = 1.0 + p->bent[i];
     for (int k = 0; k < i; k++) {
       double g = vec_dot(p->m[i], p->m[k]);
@@ -90,6 +90,53 @@ static vec3 approach_direction(const approach_pair *p) {
   }
   feature_unit(normal, &u);
   return vec_dot(u, along) < 0.0 ? vec_neg(u) : u;
+}
+
+/* The part of t that no step along the pieces takes up. */
+static vec3 approach_rest(const approach_pair *p, vec3 t) {
+  double x[APPROACH_MOST];
+  approach_newton(p, t, x);
+  for (int k = 0; k < p->n; k++) t = vec_axpy(t, x[k], p->m[k]);
+  return t;
+}
+
+/* The distance is that of the pieces: it has no second derivative along what they take up, and 1/distance across. */
+static void approach_describe_curved(const approach_pair *p, vec3 u, pair_feature *feature) {
+  vec3 e, f;
+  feature_tangents(u, &e, &f);
+  const vec3 re = approach_rest(p, e), rf = approach_rest(p, f);
+  const double ee = vec_dot(e, re) / p->distance, ef = vec_dot(e, rf) / p->distance, ff = vec_dot(f, rf) / p->distance;
+  const double x[3] = {e.x, e.y, e.z}, y[3] = {f.x, f.y, f.z};
+  for (int i = 0, k = 0; i < 3; i++)
+    for (int j = i; j < 3; j++)
+      feature->hessian[k++] = ee * x[i] * x[j] + ef * (x[i] * y[j] + y[i] * x[j]) + ff * y[i] * y[j];
+}
+
+/* Points of the pieces continued, as far along tangents that are not parallel as the shapes are large, take the place of vertices. */
+static void approach_describe_flat(const approach_task *task, const approach_pair *p, pair_feature *feature) {
+  feature->n = 1;
+  feature->w[0] = p->v, feature->b[0] = p->b.point;
+  for (int k = 0; k < p->n && feature->n < 3; k++) {
+    const bool of_b = k >= p->of_a;
+    const double far = of_b ? task->b->scale : task->a->scale;
+    const vec3 w = vec_axpy(p->v, far, p->m[k]);
+    if (feature->n == 2) {
+      vec3 first;
+      feature_unit(vec_sub(feature->w[1], p->v), &first);
+      if (vec_norm2(vec_cross(first, p->m[k])) < APPROACH_PARALLEL * APPROACH_PARALLEL) continue;
+    }
+    feature->w[feature->n] = w;
+    feature->b[feature->n++] = of_b ? vec_axpy(p->b.point, far, p->b.e[k - p->of_a]) : p->b.point;
+  }
+}
+
+static void approach_describe(const approach_task *task, const approach_pair *p, approach_answer *answer) {
+  answer->described = true;
+  task->feature->flat = !task->a->ops->curvature && !task->b->ops->curvature;
+  if (task->feature->flat)
+    approach_describe_flat(task, p, task->feature);
+  else
+    approach_describe_curved(p, answer->u, task->feature);
 }
 
 /* The points of the cores that are nearest to each other along u, phi(u), and u if it is the best. */
@@ -131,10 +178,13 @@ void approach_search(const approach_task *task, approach_answer *answer) {
     const vec3 u = approach_direction(&p);
     if (vec_norm2(u) > 0.0) approach_look(task, u, answer);
     answer->reached = pair_is_reached(task->goal, task->margins, task->rounding, answer->lower, answer->distance);
-    if (answer->reached) return;
+    if (answer->reached) {
+      if (task->feature) approach_describe(task, &p, answer);
+      return;
+    }
 
     double x[APPROACH_MOST];
-    approach_newton(&p, x);
+    approach_newton(&p, p.v, x);
     y = back = vec_sub(p.a.point, p.v);
     newton = true;
     for (int i = p.of_a; i < p.n; i++) y = vec_axpy(y, -x[i], p.m[i]);

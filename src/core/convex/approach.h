@@ -13,7 +13,8 @@ typedef struct approach_task {
   vec3 t;
   const pair_goal *goal;
   double margins, rounding;
-  double hair; /* cores nearer than this are left to others */
+  double hair;           /* cores nearer than this are left to others */
+  pair_feature *feature; /* set where the projections get as close as the goal asks; NULL: not wanted */
 } approach_task;
 
 typedef struct approach_answer {
@@ -24,6 +25,7 @@ typedef struct approach_answer {
   vec3 u;              /* the best direction, and its phi; (0,0,0) and -infinity where none was tried */
   double lower;
   uint32_t looks; /* directions that were tried */
+  bool described; /* the feature is set */
 } approach_answer;
 
 /* By projections: both cores have ops->project. */

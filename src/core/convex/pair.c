@@ -449,13 +449,14 @@ static void pair_measure_depth(pair *p, double margin_a, double margin_b, const 
   pair_describe(p, &answer->feature);
 }
 
-/* By projections or by Newton's method alone, where both cores allow it; one step is left to the search. What the goal asks of the
- * feature is read from a simplex. */
-static bool pair_approach(pair *p, double margins, const pair_goal *goal, vec3 start, approach_answer *found) {
+/* By projections or by Newton's method alone, where both cores allow it; one step is left to the search. */
+static bool pair_approach(pair *p, double margins, const pair_goal *goal, vec3 start, pair_feature *feature,
+                          approach_answer *found) {
   const bool smooth = p->a->ops->smooth && p->b->ops->smooth;
   *found = (approach_answer){.reached = false};
-  if (!smooth && (!p->a->ops->project || !p->b->ops->project || goal->wants_feature)) return false;
-  const approach_task task = {p->a, p->b, p->r, p->t, goal, margins, p->rounding, p->hair};
+  if (!smooth && (!p->a->ops->project || !p->b->ops->project)) return false;
+  const approach_task task = {
+      p->a, p->b, p->r, p->t, goal, margins, p->rounding, p->hair, goal->wants_feature ? feature : NULL};
   if (smooth)
     approach_smooth(&task, start, found);
   else
@@ -470,12 +471,14 @@ static bool pair_approach(pair *p, double margins, const pair_goal *goal, vec3 s
   return true;
 }
 
-/* Whatever is quickest, from the direction u on. */
-static void pair_find(pair *p, vec3 u, double margins, const pair_goal *goal) {
+/* Whatever is quickest, from the direction u on; and the feature, if the goal asks for it and the cores are apart. */
+static void pair_find(pair *p, vec3 u, double margins, const pair_goal *goal, pair_feature *feature) {
   approach_answer found;
-  if (pair_approach(p, margins, goal, u, &found)) return;
-  p->met = found.met;
-  pair_search(p, found.lower > 0.0 ? found.u : u, margins, goal);
+  if (!pair_approach(p, margins, goal, u, feature, &found)) {
+    p->met = found.met;
+    pair_search(p, found.lower > 0.0 ? found.u : u, margins, goal);
+  }
+  if (goal->wants_feature && !found.described && !p->nearest.inside && !p->fault) pair_describe(p, feature);
 }
 
 void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *placement,
@@ -492,11 +495,10 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   vec3 u = goal->start;
   if (!(vec_norm2(u) > 0.0)) feature_unit(vec_neg(p.t), &u);
   if (!(vec_norm2(u) > 0.0)) u = vec(1, 0, 0);
-  pair_find(&p, u, margins, goal);
+  pair_find(&p, u, margins, goal, &answer->feature);
   answer->exhausted = p.steps >= goal->max_steps || p.steps >= PAIR_MAX_STEPS;
   answer->overlap = p.nearest.inside && p.nearest.depth + margins > p.rounding;
   pair_points(&p, margin_a, margin_b, answer);
-  if (goal->wants_feature && !p.nearest.inside && !p.fault) pair_describe(&p, &answer->feature);
   if (goal->wants_depth && (answer->overlap || p.nearest.distance <= p.hair))
     pair_measure_depth(&p, margin_a, margin_b, goal, answer);
   if (!answer->measured && (p.nearest.inside || p.nearest.distance <= p.hair)) {
