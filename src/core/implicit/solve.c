@@ -180,14 +180,15 @@ static void solve_assemble(solve *s, double target) {
   s->rhs[6] = vec_dot(v, s->e) + target / t->s[0] - target / t->s[1];
 }
 
+/* Cholesky's factor, with the inverses of its diagonal in the diagonal's place. */
 static void solve_factor(solve *s) {
   for (int j = 0; j < s->n; j++) {
     double *row = s->matrix[j], pivot = row[j];
     const double least = 1e-15 * pivot;
     for (int k = 0; k < j; k++) pivot -= row[k] * row[k];
     if (!(pivot > least)) pivot = least > 0.0 ? 11.0 * least : 1e-300;
-    row[j] = sqrt(pivot);
-    const double inverse = 1.0 / row[j];
+    const double inverse = 1.0 / sqrt(pivot);
+    row[j] = inverse;
     for (int i = j + 1; i < s->n; i++) {
       double v = s->matrix[i][j];
       for (int k = 0; k < j; k++) v -= s->matrix[i][k] * row[k];
@@ -200,12 +201,12 @@ static void solve_substitute(const solve *s, double *b) {
   for (int i = 0; i < s->n; i++) {
     double v = b[i];
     for (int k = 0; k < i; k++) v -= s->matrix[i][k] * b[k];
-    b[i] = v / s->matrix[i][i];
+    b[i] = v * s->matrix[i][i];
   }
   for (int i = s->n - 1; i >= 0; i--) {
     double v = b[i];
     for (int k = i + 1; k < s->n; k++) v -= s->matrix[k][i] * b[k];
-    b[i] = v / s->matrix[i][i];
+    b[i] = v * s->matrix[i][i];
   }
 }
 
