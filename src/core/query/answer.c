@@ -29,8 +29,8 @@ cprox_verdict question_verdict(const question *q, const cprox_result *r) {
 /* Whether the interval is what was asked for, whatever happened on the way. */
 static bool is_satisfied(const question *q, double ceiling, const cprox_result *r) {
   if (question_wants_verdict(q) && question_verdict(q, r) != CPROX_UNDECIDED) return true;
-  const double upper = fmin(r->upper, ceiling);
-  return !(upper - r->lower > fmax(q->options.epsilon, q->options.relative_epsilon * fabs(upper)));
+  const double upper = lesser(r->upper, ceiling);
+  return !(upper - r->lower > greater(q->options.relative_epsilon * fabs(upper), q->options.epsilon));
 }
 
 const char *question_shortfall(cprox_status status) {
@@ -48,7 +48,7 @@ cprox_result question_nothing(void) {
 }
 
 void question_join(cprox_result *all, const cprox_result *one) {
-  const double lower = fmin(all->lower, one->lower);
+  const double lower = lesser(all->lower, one->lower);
   const uint32_t nodes = all->nodes + one->nodes, probes = all->probes + one->probes;
   const cprox_rung rung = all->rung > one->rung ? all->rung : one->rung;
   if (one->upper < all->upper || all->target_index < 0) *all = *one;
@@ -69,7 +69,7 @@ void question_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_r
 }
 
 cprox_status question_conclude(const question *q, double ceiling, cprox_status trouble, cprox_result *all) {
-  all->lower = fmin(all->lower, all->upper);
+  all->lower = lesser(all->lower, all->upper);
   all->status = is_satisfied(q, ceiling, all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
   all->verdict = question_verdict(q, all);
   if (all->status != CPROX_OK) workspace_fail(q->workspace, all->status, "%s", question_shortfall(all->status));
@@ -99,20 +99,20 @@ cprox_status question_answer(const question *q, size_t first, size_t last, doubl
   while (i < n) {
     /* sorted: when one ball is too far to matter, so are the rest */
     const bool too_far =
-        question_wants_verdict(q) ? list[i].lower > q->limit : list[i].lower > fmin(all.upper, ceiling);
-    const bool answered = !q->is_signed && all.upper <= fmax(q->limit, 0.0);
+        question_wants_verdict(q) ? list[i].lower > q->limit : list[i].lower > lesser(all.upper, ceiling);
+    const bool answered = !q->is_signed && all.upper <= greater(q->limit, 0.0);
     if (too_far || answered || trouble == CPROX_STOPPED) break;
 
     /* with nothing to compare with, a mesh waits until it is the nearest by its hull */
-    const bool unknown = !question_wants_verdict(q) && isinf(fmin(all.upper, ceiling));
+    const bool unknown = !question_wants_verdict(q) && isinf(lesser(all.upper, ceiling));
     if (unknown && i + 1 < n && candidate_may_climb(q, &list[i])) {
       const cprox_status ranked = candidate_rank(q, &list[i], &all.nodes, &all.probes);
       if (ranked < 0) return ranked;
       sort_again(list, i, n);
       continue;
     }
-    cprox_result one = {0};
-    const cprox_status status = candidate_search(q, &list[i++], fmin(all.upper, ceiling), &one);
+    cprox_result one;
+    const cprox_status status = candidate_search(q, &list[i++], lesser(all.upper, ceiling), &one);
     if (status < 0) return status;
     if (status != CPROX_OK) trouble = status;
     question_join(&all, &one);

@@ -221,7 +221,7 @@ static cprox_status search_convex(const question *q, const candidate *c, const s
   if (c->seed_s > 0.0) {
     const cprox_status seeded = curve_convex_seed(&o, c->seed_piece, c->seed_s, &root);
     if (seeded < 0) return seeded;
-    rest.ceiling = fmin(rest.ceiling, o.best_bound.upper);
+    rest.ceiling = lesser(rest.ceiling, o.best_bound.upper);
   }
   cprox_status status = CPROX_OK;
   if (question_wants_verdict(q) && o.best_bound.upper <= q->limit)
@@ -288,8 +288,8 @@ static cprox_status search_model(const question *q, const candidate *c, double c
   double by_ball = c->lower;
   if (isinf(by_ball) && (r.status != CPROX_OK || depth_unknown)) by_ball = candidate_ball_bound(q, c);
   r.nodes = found.nodes;
-  r.upper = fmax(found.best.upper, least);
-  r.lower = fmin(fmax(fmax(found.lower, by_ball), least), r.upper);
+  r.upper = greater(found.best.upper, least);
+  r.lower = lesser(greater(greater(found.lower, by_ball), least), r.upper);
   if (depth_unknown &&
       !(found.lower > 0.0)) { /* how deep cells and clouds go is not known: only the ball round all bounds it */
     r.lower = fmin(by_ball, r.upper);

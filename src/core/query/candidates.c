@@ -114,10 +114,15 @@ const cprox_body *candidate_carried(const question *q, const candidate *c, cprox
   return m.body;
 }
 
+/* No less than the length, and had without a root: for sums of sizes that rounding is measured by. */
+static double size_of(vec3 v) {
+  return fabs(v.x) + fabs(v.y) + fabs(v.z);
+}
+
 static double distance_to_segment(vec3 p, vec3 a, vec3 b) {
   const vec3 ab = vec_sub(b, a), ap = vec_sub(p, a);
   const double length2 = vec_norm2(ab), along = vec_dot(ap, ab);
-  const double s = length2 > 0.0 ? fmin(fmax(along / length2, 0.0), 1.0) : 0.0;
+  const double s = length2 > 0.0 ? lesser(greater(along / length2, 0.0), 1.0) : 0.0;
   return vec_norm(vec_sub(p, vec_lerp(a, b, s)));
 }
 
@@ -138,17 +143,17 @@ candidate_ball candidate_bounding_ball(const question *q, const candidate *c, do
     const frame f = frame_create(&pose, vec(0, 0, 0));
     round.centre = frame_to_world(&f, body->ball_centre);
     round.radius = body->ball_radius;
-    *sizes += vec_norm(body->ball_centre) + vec_norm(pose.position);
+    *sizes += size_of(body->ball_centre) + size_of(pose.position);
     /* a compound's part: what the two positions lose may be more than their sum, which is small where they cancel */
     if (target->body && target->body->kind == CPROX_COMPOUND)
-      *sizes += vec_norm(target->body->parts[c->part].pose.position);
+      *sizes += size_of(target->body->parts[c->part].pose.position);
   }
   if (target->curve) {
     const candidate_ball run = ball_of_curve(target->curve);
     const frame f = frame_create(&target->pose, vec(0, 0, 0));
     round.centre = vec_add(round.centre, frame_to_world(&f, run.centre));
     round.radius += run.radius;
-    *sizes += vec_norm(run.centre) + vec_norm(f.position) + round.radius;
+    *sizes += size_of(run.centre) + size_of(f.position) + round.radius;
   }
   return round;
 }
@@ -173,7 +178,7 @@ double candidate_ball_bound(const question *q, const candidate *c) {
   const double reach = capsule->radius + round.radius + own.radius + candidate_offset(q, c);
   /* rounding: the pose of the centre, the projection on the chord, the sums; doc/rounding.md */
   const double sizes =
-      vec_norm(capsule->a) + vec_norm(capsule->b) + vec_norm(centre) + placing + 2.0 * vec_norm(own.centre) + reach;
+      size_of(capsule->a) + size_of(capsule->b) + size_of(centre) + placing + 2.0 * size_of(own.centre) + reach;
   return distance_to_segment(centre, capsule->a, capsule->b) - reach - 64.0 * ROUND_U * sizes;
 }
 

@@ -379,7 +379,7 @@ bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex 
   *o = (curve_convex){.shape = shape, .offset = offset, .workspace = workspace, .planar_piece = SIZE_MAX};
   o->best_bound.upper = INFINITY;
   o->good_enough = -INFINITY;
-  o->side = curve_side_create(curve, placed, &o->pool, SLOT_ROOT);
+  curve_side_begin(&o->side, curve, &placed, &o->pool, SLOT_ROOT);
   return points_pool_begin(&o->pool, curve->degree, SLOTS_RESERVED, workspace);
 }
 

@@ -381,8 +381,9 @@ bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_cur
   /* about the second curve's first point, sizes and not positions enter the rounding */
   const vec3 centre = second->points[0];
   const cprox_pose unmoved = cprox_pose_identity();
-  o->side[0] = curve_side_create(first, frame_create(placed, centre), &o->pool, SLOT_FIRST);
-  o->side[1] = curve_side_create(second, frame_create(&unmoved, centre), &o->pool, SLOT_SECOND);
+  const frame from_second = frame_create(placed, centre), own = frame_create(&unmoved, centre);
+  curve_side_begin(&o->side[0], first, &from_second, &o->pool, SLOT_FIRST);
+  curve_side_begin(&o->side[1], second, &own, &o->pool, SLOT_SECOND);
   const size_t degree = first->degree > second->degree ? first->degree : second->degree;
   return points_pool_begin(&o->pool, degree, SLOTS_RESERVED, workspace);
 }

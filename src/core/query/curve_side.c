@@ -83,16 +83,17 @@ static void measure_ranges(curve_side *side) {
   side->range_error = ROUND_UP * (ROUND_U * roundings * (most + vec_norm(side->frame.centre)) + side->frame.misplaced);
 }
 
-curve_side curve_side_create(const cprox_curve *curve, frame placed, points_pool *pool, size_t root_slot) {
-  curve_side side = {.curve = curve,
-                     .frame = placed,
-                     .part = curve_side_whole(),
-                     .pool = pool,
-                     .root_slot = root_slot,
-                     .root_piece = SIZE_MAX};
-  measure_frame(&side);
-  measure_ranges(&side);
-  return side;
+void curve_side_begin(curve_side *side, const cprox_curve *curve, const frame *placed, points_pool *pool,
+                      size_t root_slot) {
+  side->curve = curve;
+  side->frame = *placed;
+  side->part = curve_side_whole();
+  side->pool = pool;
+  side->root_slot = root_slot;
+  side->root_piece = SIZE_MAX;
+  side->root_error = side->root_magnitude = 0.0;
+  measure_frame(side);
+  measure_ranges(side);
 }
 
 search_interval curve_side_whole(void) {

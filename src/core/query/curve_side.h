@@ -36,7 +36,8 @@ typedef struct curve_side {
   double range_error, range_magnitude; /* what curve_side_reach() says of ranges of pieces, all of them */
 } curve_side;
 
-curve_side curve_side_create(const cprox_curve *curve, frame placed, points_pool *pool, size_t root_slot);
+void curve_side_begin(curve_side *side, const cprox_curve *curve, const frame *placed, points_pool *pool,
+                      size_t root_slot);
 
 /* The status of a call below that returned false: CPROX_MEMORY with its reason, or what a curve's own functions did wrong. And the
  * latter alone, CPROX_OK where they did nothing wrong: to be asked where points were taken. */

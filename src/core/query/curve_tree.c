@@ -452,7 +452,7 @@ bool curve_tree_begin(curve_tree *o, const cprox_curve *curve, const cprox_body 
                     .good_enough = -INFINITY,
                     .workspace = workspace};
   o->best_bound.upper = INFINITY;
-  o->side = curve_side_create(curve, placed, &o->pool, SLOT_ROOT);
+  curve_side_begin(&o->side, curve, &placed, &o->pool, SLOT_ROOT);
   return points_pool_begin(&o->pool, curve->degree, SLOTS_RESERVED, workspace);
 }
 
