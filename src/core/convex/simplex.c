@@ -30,7 +30,7 @@ static void candidate_offer(candidate *best, const simplex *s, int n, const int 
   for (int i = 0; i < n; i++) v = vec_axpy(v, weight[i], s->vertex[index[i]].w);
   const double square = vec_norm2(v);
   if (best->n > 0 && square >= best->square) return;
-  *best = (candidate){.n = n, .v = v, .square = square};
+  *best = (candidate){.n = n, .v = v, .square = square, .face = best->face};
   for (int i = 0; i < n; i++) {
     best->index[i] = index[i];
     best->weight[i] = weight[i];
@@ -56,10 +56,10 @@ static void try_segment(candidate *best, const simplex *s, int i, int j) {
 
 /* The normal of a triangle from its two shorter edges, which meet at `corner`. */
 typedef struct face {
-  vec3 normal; /* not a unit vector: twice the area long */
-  int corner;
+  vec3 normal;   /* not a unit vector: twice the area long */
   double length; /* of the normal */
   double noise;  /* the normal's rounding error */
+  int corner;
   bool sliver;
 } face;
 
@@ -220,8 +220,8 @@ static void simplex_keep(simplex *s, const candidate *best) {
 }
 
 void simplex_reduce(simplex *s, simplex_nearest *nearest) {
-  candidate best = {0};
   face f[4];
+  candidate best = {.face = f};
   *nearest = (simplex_nearest){0};
   if (s->n == 1) try_vertex(&best, s, 0);
   if (s->n == 2) try_segment(&best, s, 0, 1);
