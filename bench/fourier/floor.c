@@ -38,7 +38,7 @@ void table_floor_free(table_floor *f) {
   free(f);
 }
 
-WIDTHS static table_answer sum_floor(const table_floor *f) {
+static inline __attribute__((always_inline)) table_answer sum_blocks(const table_floor *f) {
   const cprox_gap *gap = f->gap;
   const int N = gap->N;
   const size_t width = 2 * (size_t)N + 2 * LANES;
@@ -61,6 +61,22 @@ WIDTHS static table_answer sum_floor(const table_floor *f) {
   table_answer a = {0};
   for (int l = 0; l < LANES; l++) a.value += v[l], a.position = vec_add(a.position, vec(x[l], y[l], z[l]));
   return a;
+}
+
+WIDTH_512 static table_answer sum_512(const table_floor *f) {
+  return sum_blocks(f);
+}
+
+WIDTH_256 static table_answer sum_256(const table_floor *f) {
+  return sum_blocks(f);
+}
+
+static table_answer sum_floor(const table_floor *f) {
+  switch (f->gap->lanes) {
+    case GAP_LANES_512: return sum_512(f);
+    case GAP_LANES_256: return sum_256(f);
+    default: return sum_blocks(f);
+  }
 }
 
 table_answer table_floor_sum(table_floor *f, vec3 x) {

@@ -204,16 +204,28 @@ INLINE table_answer sum_terms(const table *t, const double turn[9], vec3 x, int 
                         vec_scale(scale, rotation)};
 }
 
-WIDTHS static table_answer sum_real(const table *t, const double turn[9], vec3 x) {
-  return sum_terms(t, turn, x, REAL);
+INLINE table_answer sum_kinds(const table *t, const double turn[9], vec3 x) {
+  return t->value[1] ? sum_terms(t, turn, x, COMPLEX) : sum_terms(t, turn, x, REAL);
 }
 
-WIDTHS static table_answer sum_complex(const table *t, const double turn[9], vec3 x) {
-  return sum_terms(t, turn, x, COMPLEX);
+WIDTH_512 static table_answer sum_512(const table *t, const double turn[9], vec3 x) {
+  return sum_kinds(t, turn, x);
+}
+
+WIDTH_256 static table_answer sum_256(const table *t, const double turn[9], vec3 x) {
+  return sum_kinds(t, turn, x);
+}
+
+static table_answer sum_128(const table *t, const double turn[9], vec3 x) {
+  return sum_kinds(t, turn, x);
 }
 
 table_answer table_look_up(const table *t, const double turn[9], vec3 x) {
-  return t->value[1] ? sum_complex(t, turn, x) : sum_real(t, turn, x);
+  switch (gap_lanes_of_machine()) {
+    case GAP_LANES_512: return sum_512(t, turn, x);
+    case GAP_LANES_256: return sum_256(t, turn, x);
+    default: return sum_128(t, turn, x);
+  }
 }
 
 table_answer table_exact(const table *t, const double turn[9], vec3 x) {
