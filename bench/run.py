@@ -25,7 +25,7 @@ SCRIPTS = {'rungs': 'rungs.py'}  # groups that ask the command line, where there
 TABLES = {'hulls.csv': 'hulls.py'}  # tables beside results.csv, of the command line too
 MADE = 'made.txt'  # how the results came to be
 PASSES, ROUNDS = 3, '3'  # of a full run; a quick one has one pass
-ONCE = {'fourier', 'ros', 'rungs', 'stability'}  # asked for errors and counts, or too long: in the first pass only
+ONCE = {'ros', 'rungs', 'stability'}  # asked for counts, or too long: in the first pass only
 COLUMNS = ['group', 'workload', 'method', 'parameter', 'median_us', 'p95_us', 'nodes', 'probes', 'error', 'unsound', 'failures']
 
 
