@@ -250,8 +250,8 @@ void lanes_first_pair(const lanes_piece *first, const lanes_piece *second, doubl
   int nearest = 0;
   for (int k = 1; k < LANES; k++)
     if (least[k] < least[nearest]) nearest = k;
-  const size_t number = (size_t)which[nearest] + (size_t)nearest, j = number % SAMPLES;
-  s[0] = (double)(number / SAMPLES) / CHORDS;
+  const size_t number = (size_t)which[nearest] + (size_t)nearest, i = number / SAMPLES, j = number % SAMPLES;
+  s[0] = (double)i / CHORDS;
   s[1] = j < CHORDS ? (double)j / CHORDS : 1.0;
 }
 
