@@ -56,9 +56,9 @@ static void try_segment(candidate *best, const simplex *s, int i, int j) {
 
 /* The normal of a triangle from its two shorter edges, which meet at `corner`. */
 typedef struct face {
-  vec3 normal;   /* not a unit vector: twice the area long */
   double length; /* of the normal */
   double noise;  /* the normal's rounding error */
+  vec3 normal;   /* not a unit vector: twice the area long */
   int corner;
   bool sliver;
 } face;

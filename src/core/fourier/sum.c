@@ -162,7 +162,28 @@ typedef struct box_axis {
   double p[LANES], sinc[LANES], slope[LANES];
 } box_axis;
 
-/* Most blocks have no lane near 0: they need no series. */
+/* sinc y, and its slope, from the cosines c and sines s of y. */
+INLINE void axis_series(const double y[LANES], const double c[LANES], const double s[LANES], bool gradient,
+                        box_axis *out) {
+#pragma omp simd
+  for (int l = 0; l < LANES; l++) {
+    const double inverse = lane_inverse(y[l]);
+    out->sinc[l] = lane_sinc(y[l], inverse, s[l]);
+    if (gradient) out->slope[l] = lane_sinc_slope(y[l], inverse, out->sinc[l], c[l]);
+  }
+}
+
+/* The same where no lane is near 0: most blocks need no series. */
+INLINE void axis_quotients(const double y[LANES], const double c[LANES], const double s[LANES], bool gradient,
+                           box_axis *out) {
+#pragma omp simd
+  for (int l = 0; l < LANES; l++) {
+    const double inverse = 1.0 / y[l];
+    out->sinc[l] = s[l] * inverse;
+    if (gradient) out->slope[l] = (c[l] - out->sinc[l]) * inverse;
+  }
+}
+
 INLINE void axis_lanes(const phase *table, const block *b, vec3 axis, double h, bool gradient, bool plane,
                        const lanes *o, box_axis *out) {
   double c[LANES], s[LANES], y[LANES];
@@ -173,21 +194,10 @@ INLINE void axis_lanes(const phase *table, const block *b, vec3 axis, double h, 
     y[l] = out->p[l] * h;
   }
   const double first = y[0], last = y[LANES - 1]; /* in order, as q is */
-  if (lane_is_small(first) || lane_is_small(last) || (first < 0.0) != (last < 0.0)) {
-#pragma omp simd
-    for (int l = 0; l < LANES; l++) {
-      const double inverse = lane_inverse(y[l]);
-      out->sinc[l] = lane_sinc(y[l], inverse, s[l]);
-      if (gradient) out->slope[l] = lane_sinc_slope(y[l], inverse, out->sinc[l], c[l]);
-    }
-  } else {
-#pragma omp simd
-    for (int l = 0; l < LANES; l++) {
-      const double inverse = 1.0 / y[l];
-      out->sinc[l] = s[l] * inverse;
-      if (gradient) out->slope[l] = (c[l] - out->sinc[l]) * inverse;
-    }
-  }
+  if (lane_is_small(first) || lane_is_small(last) || (first < 0.0) != (last < 0.0))
+    axis_series(y, c, s, gradient, out);
+  else
+    axis_quotients(y, c, s, gradient, out);
 }
 
 INLINE void box_lanes(const turned_piece *t, const block *b, bool gradient, bool plane, lanes *o) {
