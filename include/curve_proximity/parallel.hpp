@@ -6,8 +6,7 @@
 #define CURVE_PROXIMITY_PARALLEL_HPP
 
 #include <algorithm>
-#include <chrono>
-#include <condition_variable>
+#include <cerrno>
 #include <cstddef>
 #include <exception>
 #include <functional>
@@ -17,6 +16,8 @@
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include <semaphore.h>
 
 #include <curve_proximity/core.hpp>
 
@@ -65,29 +66,58 @@ class Pool {
       grain_ = std::max<std::size_t>(grain, 1);
       failure_ = nullptr;
     }
-    wake_.notify_all();
+    wakeAll();
     takeRanges(own_);
     std::unique_lock<std::mutex> lock(mutex_);
-    while (!idle_.wait_for(lock, PATIENCE, [this] { return busy_ == 0; })) {
+    if (busy_ > 0) {
+      awaited_ = true;
+      lock.unlock();
+      idle_.wait(); // until the last one is done; work_ has no ranges left by then
+      lock.lock();
     }
     work_ = nullptr;
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   }
 
  private:
-  /** Before 2.41 glibc may lose a wake-up (its bug 25847): nobody waits for one longer than this. */
-  static constexpr std::chrono::seconds PATIENCE{1};
+  /** POSIX's. Before 2.41 glibc's condition variables may lose a wake-up (its bug 25847), and one was seen to wait for ever where
+   *  it should end, with all threads joined. */
+  class Semaphore {
+   public:
+    Semaphore() {
+      sem_init(&semaphore_, 0, 0);
+    }
+    ~Semaphore() {
+      sem_destroy(&semaphore_);
+    }
+    Semaphore(const Semaphore &) = delete;
+    Semaphore &operator=(const Semaphore &) = delete;
+    void post() {
+      sem_post(&semaphore_);
+    }
+    void wait() {
+      while (sem_wait(&semaphore_) != 0 && errno == EINTR) {
+      }
+    }
 
+   private:
+    sem_t semaphore_;
+  };
+
+  /** Whoever wakes for a run that is over already finds no ranges. */
   void serve(Workspace &workspace) {
     for (;;) {
+      wake_.wait();
       {
-        std::unique_lock<std::mutex> lock(mutex_);
-        while (!wake_.wait_for(lock, PATIENCE, [this] { return stopping_ || (work_ && next_ < end_); })) {
-        }
+        const std::lock_guard<std::mutex> lock(mutex_);
         if (stopping_) return;
       }
       takeRanges(workspace);
     }
+  }
+
+  void wakeAll() {
+    for (std::size_t i = 0; i < threads_.size(); ++i) wake_.post();
   }
 
   void takeRanges(Workspace &workspace) {
@@ -109,7 +139,7 @@ class Pool {
         next_ = end_;
         if (!failure_) failure_ = failure;
       }
-      if (--busy_ == 0) idle_.notify_all();
+      if (--busy_ == 0 && std::exchange(awaited_, false)) idle_.post();
     }
   }
 
@@ -118,16 +148,18 @@ class Pool {
       const std::lock_guard<std::mutex> lock(mutex_);
       stopping_ = true;
     }
-    wake_.notify_all();
+    wakeAll();
     for (std::thread &thread : threads_) thread.join();
   }
 
   std::mutex runs_;  // held by the run
-  std::mutex mutex_; // of all that follows
-  std::condition_variable wake_, idle_;
+  std::mutex mutex_; // of all that follows but the semaphores
+  Semaphore wake_;   // a thread of the pool
+  Semaphore idle_;   // the run, when nobody works on it any more
   const Work *work_ = nullptr;
   std::size_t next_ = 0, end_ = 0, grain_ = 1, busy_ = 0;
   std::exception_ptr failure_;
+  bool awaited_ = false; // the run waits for idle_
   bool stopping_ = false;
   Workspace own_; // of the thread that runs
   std::vector<std::thread> threads_;
