@@ -34,8 +34,11 @@ def reasons():
         return list(csv.DictReader(line for line in text if not line.startswith('#')))
 
 
+UNKNOWN = 'Not explained yet.'
+
+
 def reason_for(name, known):
-    return next((line['why'] for line in known if fnmatch.fnmatchcase(name, line['pattern'])), 'Not explained yet.')
+    return next((line['why'] for line in known if fnmatch.fnmatchcase(name, line['pattern'])), UNKNOWN)
 
 
 def target_lines(rows, of_passes):
@@ -88,8 +91,9 @@ def losses(rows):
 def loss_lines(rows):
     known = reasons()
     for verdict, target, _ in targets.judge_all(rows):
-        if verdict == 'MISSED':
-            yield f"- **{target['name']}** (missed). {reason_for(target['name'], known)}"
+        why = reason_for(target['name'], known)
+        if verdict == 'MISSED' or verdict in ('within slack', 'above') and why != UNKNOWN:
+            yield f"- **{target['name']}** ({verdict.lower()}). {why}"
     for group, workload, method, ratio in losses(rows):
         name = f'{group}/{workload}/{method}'
         yield f'- {group}, {workload}: **{method}** takes {short(ratio)} of our time. {reason_for(name, known)}'

@@ -155,6 +155,13 @@ class Pages(unittest.TestCase):
             for asked in targets.read_targets():
                 self.assertIn(f"| {asked['name']} |", said)
 
+    def test_what_is_missed_is_listed_and_what_is_nearly_so_where_a_reason_is_known(self):
+        rows = [row(), row(method='peer', median_us=10)]
+        asked = [target(name='missed', limit='20'), target(name='known', limit='11'), target(name='unknown', limit='11'), target(name='met', limit='10')]
+        known = [{'pattern': name, 'why': 'Because.'} for name in ('known', 'met')]
+        with mock.patch.object(targets, 'read_targets', lambda: asked), mock.patch.object(readme, 'reasons', lambda: known):
+            self.assertEqual(list(readme.loss_lines(rows)), ['- **missed** (missed). Not explained yet.', '- **known** (within slack). Because.'])
+
     def test_growth_takes_what_is_named_so_from_three_sizes_up(self):
         rows = [row(workload='growth links', parameter=f'links {n}', median_us=n * n) for n in (2, 4, 8)]
         rows += [row(workload='memory mesh', parameter=f'triangles {n}', median_us='nan', nodes=100 * n) for n in (2, 4, 8)]
