@@ -68,14 +68,19 @@ def read_spread(folder):
         return {row['target']: [float(value) for value in row['figures of the passes'].split()] for row in csv.DictReader(text)}
 
 
-def spread_of(target, of_passes):
-    """By how much two runs of the command may differ: what the passes of this one did, and never less than a target's slack, even where
-    three passes happen to agree. A factor of 1 + spread for ratios, the spread itself for exponents, nothing for counts; None where figures say as much about the machine
-    as about us."""
+def seen_by(target, of_passes):
+    """By how much the passes of a run differ: a factor, or for an exponent a difference."""
+    values = of_passes.get(target['name'], [1.0])
+    return max(values) - min(values) if target['kind'] == 'exponent' else max(values) / min(values)
+
+
+def spread_of(target, *runs):
+    """How far a figure may be off, or those of two runs apart: what the passes of each run differ by, together, and never
+    less than the target's slack, even where three passes happen to agree. A factor of 1 + spread for ratios, the spread itself for
+    exponents, nothing for counts; None where figures say as much about the machine as about us."""
     if target['kind'] in ('microseconds', 'error'):
         return None
     if target['kind'] not in targets.SLACK:
         return 0.0
-    values = of_passes.get(target['name'], [1.0])
-    seen = max(values) - min(values) if target['kind'] == 'exponent' else max(values) / min(values) - 1.0
-    return max(seen, float(target['slack'] or targets.SLACK[target['kind']]))
+    seen = [seen_by(target, of_passes) for of_passes in runs]
+    return max(sum(seen) if target['kind'] == 'exponent' else math.prod(seen) - 1.0, float(target['slack'] or targets.SLACK[target['kind']]))

@@ -26,11 +26,11 @@ def agree(first, second, target, spread):
     return abs(math.log(first / second)) <= math.log1p(spread)
 
 
-def compare_targets(rows, others, of_passes):
+def compare_targets(rows, others, *of_passes):
     """For each target that both runs measured and that has a spread: target, both figures, the spread, whether they agree."""
     for target in targets.read_targets():
         first, second = targets.figure(rows, target), targets.figure(others, target)
-        spread = passes.spread_of(target, of_passes)
+        spread = passes.spread_of(target, *of_passes)
         if first is not None and second is not None and spread is not None:
             yield target, first, second, spread, agree(first, second, target, spread)
 
@@ -76,8 +76,8 @@ This run: {made[0]}
 
 The other: {made[1]}
 
-A target's ratio is the same where both figures are within its spread: what the passes of this run differ by (`spread.csv`), at least 20 %
-(exponents 0.1, tails 50 %). Counts must be equal.
+A target's ratio is the same where the two figures differ by no more than the spread: what the passes of the one run and those of the other
+differ by, together (`spread.csv` of each), at least 20 % (exponents 0.1, tails 50 %). Counts must be equal.
 
 {table(['', 'target', 'this run', 'the other', 'spread'], lines)}
 
@@ -88,10 +88,10 @@ Another method's time over ours, one for each workload and parameter: by how muc
 '''
 
 
-def report(rows, others, out, made):
-    """made: how both runs came to be. Writes the page, prints a line for each target that differs and a summary; the number of those that differ."""
-    compared = list(compare_targets(rows, others, passes.read_spread(out)))
-    with open(os.path.join(out, PAGE), 'w') as text:
+def report(rows, others, folders, made):
+    """folders: of both runs, the page goes into the first. made: how they came to be. Writes the page, prints a line for each target that differs and a summary; the number of those that differ."""
+    compared = list(compare_targets(rows, others, *map(passes.read_spread, folders)))
+    with open(os.path.join(folders[0], PAGE), 'w') as text:
         text.write(page(compared, differences(rows, others), made))
     differing = [line for line in compared if not line[-1]]
     for target, first, second, *_ in differing:

@@ -136,7 +136,7 @@ def main():
     differing = 0
     if arguments.compare:
         other = read_results(os.path.join(arguments.compare, 'results.csv'))
-        differing = repeat.report(rows, other, arguments.out, (made, how_made(arguments.compare)))
+        differing = repeat.report(rows, other, (arguments.out, arguments.compare), (made, how_made(arguments.compare)))
 
     written = pages.write_all(rows, drawn, arguments.out, made)
     print(f"{len(rows)} rows in {arguments.out}/results.csv, {len(drawn)} charts and {', '.join(written)} beside it")

@@ -72,9 +72,9 @@ class Targets(unittest.TestCase):
 
 
 class Repeat(unittest.TestCase):
-    def agree(self, first, second, of_passes=(), **of_target):
+    def agree(self, first, second, *runs, **of_target):
         asked = target(**of_target)
-        return repeat.agree(first, second, asked, passes.spread_of(asked, {asked['name']: list(of_passes)} if of_passes else {}))
+        return repeat.agree(first, second, asked, passes.spread_of(asked, *({asked['name']: list(of_passes)} for of_passes in runs or [(1,)])))
 
     def test_ratios_agree_within_a_fifth_and_counts_exactly(self):
         self.assertTrue(self.agree(10.0, 11.9))
@@ -84,18 +84,20 @@ class Repeat(unittest.TestCase):
         self.assertTrue(self.agree(0.2, 0.29, kind='exponent'))
 
     def test_what_the_passes_differ_by_two_runs_may(self):
-        self.assertTrue(self.agree(10.0, 12.1, of_passes=(8.0, 9.0, 10.4)))
-        self.assertFalse(self.agree(10.0, 13.1, of_passes=(8.0, 9.0, 10.4)))
-        self.assertFalse(self.agree(10.0, 12.1, of_passes=(10.0, 10.1, 10.2)))
-        self.assertTrue(self.agree(0.2, 0.39, of_passes=(0.1, 0.2, 0.3), kind='exponent'))
-        self.assertFalse(self.agree(7, 8, of_passes=(7, 9), kind='nodes'))
+        self.assertTrue(self.agree(10.0, 12.9, (8.0, 9.0, 10.4)))
+        self.assertFalse(self.agree(10.0, 13.1, (8.0, 9.0, 10.4)))
+        self.assertTrue(self.agree(10.0, 14.2, (8.0, 9.0, 10.4), (10.0, 10.5, 11.0)))
+        self.assertFalse(self.agree(10.0, 14.4, (8.0, 9.0, 10.4), (10.0, 10.5, 11.0)))
+        self.assertFalse(self.agree(10.0, 12.1, (10.0, 10.1, 10.2)))
+        self.assertTrue(self.agree(0.2, 0.39, (0.1, 0.2, 0.3), kind='exponent'))
+        self.assertFalse(self.agree(7, 8, (7, 9), kind='nodes'))
 
     def test_a_run_agrees_with_itself_and_not_with_one_whose_peer_is_twice_as_slow(self):
         rows = committed()
         slow = [dict(r, median_us=str(2.0 * float(r['median_us']))) if r['method'] == 'paper' and r['median_us'] else r for r in rows]
         with tempfile.TemporaryDirectory() as out, contextlib.redirect_stdout(io.StringIO()):
-            self.assertEqual(repeat.report(rows, rows, out, ('here', 'there')), 0)
-            self.assertGreater(repeat.report(rows, slow, out, ('here', 'there')), 5)
+            self.assertEqual(repeat.report(rows, rows, (out, out), ('here', 'there')), 0)
+            self.assertGreater(repeat.report(rows, slow, (out, out), ('here', 'there')), 5)
             with open(os.path.join(out, repeat.PAGE)) as text:
                 self.assertIn('**differs**', text.read())
 
