@@ -236,9 +236,8 @@ static void sampled(const void *problems, size_t i, void *state, bench_answer *a
 static void measure_scenes(const bench_size *size, const char *name, bool planar, size_t n, asked *q) {
   if (!bench_wanted(size, name)) return;
   static const char *const verbs[] = {"distance", "tolerance", "collision"};
-  const size_t scenes = size->quick ? 1 : SCENES;
   scene *s[SCENES];
-  for (size_t i = 0; i < scenes; i++) s[i] = scene_make(100 + i, planar, n, q);
+  for (size_t i = 0; i < SCENES; i++) s[i] = scene_make(100 + i, planar, n, q);
   judged own[3] = {{.asked = q}, {.asked = q}, {.asked = q}};
   bench_method methods[3] = {{"curve_proximity", batch, &own[0]}, {"one by one", one_by_one, &own[1]}};
   size_t n_methods = 2;
@@ -249,11 +248,11 @@ static void measure_scenes(const bench_size *size, const char *name, bool planar
     char workload[64], parameter[32];
     snprintf(workload, sizeof workload, "%s %s", name, verbs[v]);
     snprintf(parameter, sizeof parameter, "%zu obstacles", n);
-    const bench_workload w = {"batches", workload, parameter, s, scenes, none, 0.0};
+    const bench_workload w = {"batches", workload, parameter, s, SCENES, none, 0.0};
     q->verb = (verb)v;
     bench_measure(&w, size, methods, n_methods);
   }
-  for (size_t i = 0; i < scenes; i++) scene_free(s[i]);
+  for (size_t i = 0; i < SCENES; i++) scene_free(s[i]);
 }
 
 int main(int argc, char **argv) {

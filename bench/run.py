@@ -24,8 +24,9 @@ NOT_GROUPS = {'core'}  # Google benchmark's: no rows of results.csv
 SCRIPTS = {'rungs': 'rungs.py'}  # groups that ask the command line, where there is one
 TABLES = {'hulls.csv': 'hulls.py'}  # tables beside results.csv, of the command line too
 MADE = 'made.txt'  # how the results came to be
-PASSES, ROUNDS = 3, '3'  # of a full run; a quick one has one pass
+PASSES, ROUNDS = 3, '3'
 ONCE = {'ros', 'rungs', 'stability'}  # asked for counts, or too long: in the first pass only
+LONG = {'fourier', 'implicit', 'robots', 'worlds'}  # these, too, where the run is to be quick
 COLUMNS = ['group', 'workload', 'method', 'parameter', 'median_us', 'p95_us', 'nodes', 'probes', 'error', 'unsound', 'failures']
 
 
@@ -78,12 +79,13 @@ def measure(parser, arguments):
     with open(os.path.join(arguments.out, MADE), 'w') as text:
         text.write(pages.how_made(' '.join(['scripts/bench', *flags]), pages.commit_of(os.path.dirname(__file__))) + '\n')
     failed, files = [], []
-    for number in range(1 if arguments.quick else PASSES):
+    once = ONCE | LONG if arguments.quick else ONCE
+    for number in range(PASSES):
         files.append(os.path.join(arguments.out, f'pass-{number + 1}.csv'))
         with open(files[-1], 'w') as out:
             out.write(','.join(COLUMNS) + '\n')
             for name in arguments.only or groups:
-                if number == 0 or name not in ONCE:
+                if number == 0 or name not in once:
                     failed += [name] * (not timed_group(name, number, groups[name], arguments.quick, out))
     keep(files, arguments.out)
     if not arguments.only and shutil.which('cprox'):

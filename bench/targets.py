@@ -90,7 +90,7 @@ def judge(value, target):
         return 'met' if value >= limit else 'within slack' if value * (1.0 + slack) >= limit else 'MISSED'
     if target['kind'] == 'microseconds':
         return 'met' if value <= limit else 'above'
-    return 'met' if value <= limit else 'within slack' if value <= limit * (1.0 + slack) else 'MISSED'
+    return 'met' if value <= limit else 'within slack' if value <= limit + abs(limit) * slack else 'MISSED'
 
 
 def judge_all(rows, only=None):

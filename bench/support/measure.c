@@ -39,7 +39,6 @@ bench_size bench_arguments(int argc, char **argv) {
   bench_size size = {.problems = 200, .rounds = 7};
   for (int i = 1; i < argc; i++) {
     if (strcmp(argv[i], "--quick") == 0) {
-      size.quick = true;
       size.problems = 40;
       size.rounds = 3;
     } else if (strcmp(argv[i], "--rounds") == 0 && i + 1 < argc && atoi(argv[i + 1]) > 0) {

@@ -42,7 +42,6 @@ typedef struct bench_workload {
 typedef struct bench_size {
   size_t problems; /* of a workload, at most */
   int rounds;
-  bool quick;       /* smaller problems */
   const char *only; /* workloads whose names contain this, or NULL */
 } bench_size;
 

@@ -65,6 +65,8 @@ class Targets(unittest.TestCase):
         for value, verdict in ((2.0, 'met'), (1.7, 'within slack'), (1.6, 'MISSED')):
             self.assertEqual(targets.judge(value, target()), verdict)
         self.assertEqual(targets.judge(1.0, target(kind='failures', limit='0')), 'MISSED')
+        for value, verdict in ((-0.5, 'met'), (-0.46, 'within slack'), (-0.44, 'MISSED')):
+            self.assertEqual(targets.judge(value, target(kind='exponent', limit='-0.5')), verdict)
 
     def test_a_target_of_a_known_peer_that_is_not_here_is_not_measured_and_any_other_is_missed(self):
         with mock.patch.object(targets, 'read_targets', lambda: [target(baseline='Bullet'), target(baseline='paper')]):
