@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "body/body.h"
+#include "shape/body.h"
 #include "convex/pair.h"
 #include "curve_proximity/cprox/translation.h"
 #include "peers/naive.h"

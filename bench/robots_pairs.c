@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "query/answer.h"
-#include "query/robot_search.h"
+#include "solve/solve.h"
+#include "robot_query/oracle.h"
 #include "robots.h"
 
 typedef struct watched {

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 
 #include "base/frame.h"
-#include "body/body.h"
-#include "motion/motion.h"
+#include "shape/body.h"
+#include "kinematics/motion.h"
 #include "peers/two_ended.h"
-#include "tree/tree.h"
+#include "bvh/bvh.h"
 
 static void add_shape(robot_fcl *fcl, const cprox_body *body, const cprox_body *surface) {
   const double *size = body->shape.size;

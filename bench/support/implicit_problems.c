@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/frame.h"
-#include "body/body.h"
+#include "shape/body.h"
 
 static cprox_body *make(const cprox_implicit_description *description) {
   cprox_workspace *workspace = cprox_workspace_create();

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "base/rounding.h"
-#include "body/body.h"
+#include "shape/body.h"
 #include "convex/feature.h"
 #include "convex/pair.h"
 #include "curve_proximity/cprox/query.h"

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "base/rounding.h"
-#include "body/body.h"
+#include "shape/body.h"
 #include "curve_proximity/cprox/query.h"
 #include "support/builders.h"
 #include "support/counting.h"

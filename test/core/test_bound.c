@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "curve/curve.h"
-#include "query/curve_convex.h"
+#include "curve_query/curve_convex.h"
 #include "support/random.h"
 #include "support/reference.h"
 

@@ -10,7 +10,7 @@
 
 #include "base/rounding.h"
 #include "curve_proximity/cprox.h"
-#include "query/relative.h"
+#include "curve/relative_curve.h"
 #include "support/builders.h"
 #include "support/counting.h"
 #include "support/curves.h"

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "base/rounding.h"
-#include "body/body.h"
+#include "shape/body.h"
 #include "support/random.h"
 #include "support/reference.h"
 

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "base/rounding.h"
-#include "body/body.h"
+#include "shape/body.h"
 #include "curve_proximity/cprox.h"
 #include "implicit/implicit.h"
 #include "support/implicits.h"

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "body/body.h"
+#include "shape/body.h"
 #include "curve_proximity/cprox.h"
 #include "support/implicits.h"
 #include "support/random.h"

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "body/body.h"
+#include "shape/body.h"
 #include "curve_proximity/cprox/query.h"
 #include "support/csv.h"
 #include "support/implicits.h"

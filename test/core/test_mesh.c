@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "body/body.h"
+#include "shape/body.h"
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
 #include "support/counting.h"

@@ -8,7 +8,7 @@
 #include <ccd/ccd.h>
 #include <cmocka.h>
 
-#include "body/body.h"
+#include "shape/body.h"
 #include "curve_proximity/cprox/query.h"
 #include "support/random.h"
 #include "support/reference.h"

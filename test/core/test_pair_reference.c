@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "base/rounding.h"
-#include "body/body.h"
+#include "shape/body.h"
 #include "curve_proximity/cprox/query.h"
 #include "support/csv.h"
 #include "support/reference.h"

@@ -10,9 +10,9 @@
 #include <cmocka.h>
 
 #include "curve_proximity/cprox.h"
-#include "query/answer.h"
-#include "query/robot_crowd.h"
-#include "query/set_walk.h"
+#include "solve/solve.h"
+#include "robot_query/cull.h"
+#include "broadphase/obstacle_set.h"
 #include "support/builders.h"
 #include "support/robots.h"
 

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "motion/bound.h"
+#include "kinematics/bound.h"
 #include "support/robots.h"
 
 enum { MAX_AXES = 4 * TEST_MAX_LINKS, SAMPLES = 8 };

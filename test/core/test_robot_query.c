@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "body/body.h"
+#include "shape/body.h"
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
 #include "support/counting.h"

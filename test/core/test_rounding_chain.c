@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "base/rounding.h"
-#include "motion/motion.h"
+#include "kinematics/motion.h"
 #include "support/exact.h"
 #include "support/random.h"
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "support/meshes.h"
-#include "tree/kernels.h"
+#include "bvh/kernels.h"
 
 enum { MOST = 3000 };
 

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "body/body.h"
+#include "shape/body.h"
 
 /* Text that grows beyond its room: then only its length is counted. */
 typedef struct text {

@@ -6,8 +6,8 @@
 #define CPROX_CERTIFICATE_REACH_H
 
 #include "base/double_double.h"
-#include "body/body.h"
 #include "curve/curve.h"
+#include "shape/body.h"
 
 /* A direction that turns without rounding to a double. */
 typedef struct reach_direction {

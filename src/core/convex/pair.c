@@ -5,8 +5,8 @@
 #include "convex/pair.h"
 
 #include "base/rounding.h"
-#include "convex/approach.h"
-#include "convex/expand.h"
+#include "convex/alternating_projections.h"
+#include "convex/epa.h"
 #include "convex/feature.h"
 #include "convex/simplex.h"
 #include "convex/turn.h"

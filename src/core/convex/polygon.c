@@ -2,9 +2,9 @@
 /* A planar convex polygon in z = 0, vertices counter-clockwise: x, y; z is 0. */
 #include <stdlib.h>
 
-#include "base/lanes.h"
 #include "convex/feature.h"
 #include "convex/vertices.h"
+#include "simd/dispatch.h"
 
 enum { LANES = 8 }; /* the arrays are padded to a multiple of this */
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "convex/vertices.h"
 
-#include "base/lanes.h"
 #include "convex/feature.h"
+#include "simd/dispatch.h"
 
 /* Four lanes, selected by masks and never by branches, which a processor would guess wrong: loops over arrays are made into branches by
  * some compilers. */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "curve/control.h"
 
-#include "base/lanes.h"
 #include "base/rounding.h"
 #include "curve/curve.h"
+#include "simd/dispatch.h"
 
 /* Of the usual low degrees, whose loops the compiler unrolls: registers of four would stay half empty. */
 static inline double least_of_few(const double *points, size_t degree, vec3 n) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Points and derivatives of a Bézier piece, and the tables of its degree. */
-#include "base/lanes.h"
 #include "curve/curve.h"
+#include "simd/dispatch.h"
 
 enum { LANES = 4, FEW = 5 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "curve/pack.h"
 
-#include "base/lanes.h"
+#include "simd/dispatch.h"
 
 LANES_DISPATCHED
 void curve_pack_reach(const curve_pack *pack, vec3 n, vec3 from, double least[CURVE_PACK]) {

@@ -3,7 +3,7 @@
 #ifndef CPROX_TEST_SHAPES_H
 #define CPROX_TEST_SHAPES_H
 
-#include "body/body.h"
+#include "shape/body.h"
 #include "support/random.h"
 #include "support/reference.h"
 

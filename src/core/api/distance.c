@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Distance, tolerance, collision: of one mover against one target or against many. All six are one search. */
+#include <math.h>
+
+#include "base/workspace.h"
+#include "certificate/write.h"
+#include "problem/validate.h"
+#include "solve/solve.h"
+
+/* The proof that was asked for. That there is none changes nothing in the answer. */
+static void leave_certificate(const question *q, const cprox_result *answer) {
+  if (!q->options.certificate) return;
+  const double delta = question_wants_verdict(q) ? q->limit
+                       : answer->lower > 0.0     ? answer->lower
+                                                 : fmax(answer->upper, 0.0);
+  certify(&q->mover, q->targets, q->n, delta, answer, &q->options, q->workspace, q->options.certificate);
+}
+
+static cprox_status ask_all(question *q, cprox_result *nearest, cprox_result *each) {
+  workspace_clear(q->workspace);
+  const cprox_status checked = arguments_check_query(&q->mover, q->targets, q->n, &q->options, q->workspace);
+  if (checked != CPROX_OK) return checked;
+  question_ask_whole(q);
+  if (!each) return question_answer(q, 0, q->n, INFINITY, nearest);
+
+  /* each target by itself; the union is the least of them */
+  cprox_result all = {.lower = INFINITY, .upper = INFINITY, .t_target = NAN, .target_index = -1};
+  all.verdict = question_verdict(q, &all);
+  for (size_t i = 0; i < q->n; i++) {
+    cprox_result one;
+    const cprox_status status = question_answer(q, i, i + 1, INFINITY, &one);
+    if (status < 0) return status;
+    if (one.target_index < 0) one.target_index = (int32_t)i;
+    each[i] = one;
+    const double lower = fmin(all.lower, one.lower);
+    const uint32_t nodes = all.nodes + one.nodes, probes = all.probes + one.probes;
+    const cprox_status worst = one.status > all.status ? one.status : all.status;
+    if (one.upper < all.upper || i == 0) all = one;
+    all.lower = lower, all.nodes = nodes, all.probes = probes, all.status = worst;
+  }
+  all.verdict = question_verdict(q, &all);
+  *nearest = all;
+  return all.status;
+}
+
+static cprox_status ask(question *q, cprox_result *nearest, cprox_result *each) {
+  const cprox_status status = ask_all(q, nearest, each);
+  if (status >= 0) leave_certificate(q, nearest);
+  return status;
+}
+
+/* ---- the verbs ---------------------------------------------------------------------------------------------------------- */
+
+cprox_status cprox_distance_all(cprox_mover mover, const cprox_target *targets, size_t n, const cprox_options *options,
+                                cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {
+  question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  q.is_signed = q.options.signed_distance;
+  return ask(&q, nearest, each);
+}
+
+cprox_status cprox_tolerance_all(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
+                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
+                                 cprox_result *each) {
+  const cprox_status checked = arguments_check_delta(delta, workspace);
+  if (checked != CPROX_OK) return checked;
+  question q = question_create(mover, targets, n, delta, true, options, workspace);
+  return ask(&q, nearest, each);
+}
+
+cprox_status cprox_collision_all(cprox_mover mover, const cprox_target *targets, size_t n, const cprox_options *options,
+                                 cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {
+  question q = question_create(mover, targets, n, 0.0, false, options, workspace);
+  return ask(&q, nearest, each);
+}
+
+cprox_status cprox_distance(cprox_mover mover, cprox_target target, const cprox_options *options,
+                            cprox_workspace *workspace, cprox_result *result) {
+  return cprox_distance_all(mover, &target, 1, options, workspace, result, NULL);
+}
+
+cprox_status cprox_tolerance(cprox_mover mover, cprox_target target, double delta, const cprox_options *options,
+                             cprox_workspace *workspace, cprox_result *result) {
+  return cprox_tolerance_all(mover, &target, 1, delta, options, workspace, result, NULL);
+}
+
+cprox_status cprox_collision(cprox_mover mover, cprox_target target, const cprox_options *options,
+                             cprox_workspace *workspace, cprox_result *result) {
+  return cprox_collision_all(mover, &target, 1, options, workspace, result, NULL);
+}

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The k closest targets, and all targets within a distance: distance searches that end where a target is out of question. */
+#include "curve_proximity/cprox/clearance.h"
+
+#include <math.h>
+
+#include "problem/validate.h"
+#include "solve/solve.h"
+
+static cprox_status worse(cprox_status a, cprox_status b) {
+  return a != CPROX_OK ? a : b;
+}
+
+/* The targets by their nearest ball; part is not used. NULL where memory is out. */
+static candidate *rank_targets(const question *q) {
+  candidate *rank = workspace_reserve(q->workspace, WORKSPACE_RANKING, (q->n + 1) * sizeof *rank);
+  if (!rank) return NULL;
+  for (size_t i = 0; i < q->n; i++) {
+    size_t n;
+    if (q->mover.motion) { /* its search ranks by itself */
+      rank[i] = (candidate){.target = (int32_t)i};
+      continue;
+    }
+    const candidate *parts = candidates_list(q, i, i + 1, true, &n);
+    if (!parts) return NULL;
+    rank[i] = parts[0];
+  }
+  candidates_sort(rank, q->n);
+  return rank;
+}
+
+cprox_status cprox_nearest(cprox_mover mover, const cprox_target *targets, size_t n, size_t k,
+                           const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
+                           size_t *count) {
+  question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  workspace_clear(workspace);
+  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, workspace);
+  if (checked != CPROX_OK) return checked;
+  if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
+  question_ask_whole(&q);
+  const candidate *rank = rank_targets(&q);
+  if (!rank) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of targets");
+
+  *count = 0;
+  cprox_status trouble = CPROX_OK;
+  for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
+    const double ceiling = *count == k ? nearest[k - 1].upper : INFINITY;
+    if (rank[i].lower > ceiling) break;
+    cprox_result r;
+    const size_t target = (size_t)rank[i].target;
+    const cprox_status status = question_answer(&q, target, target + 1, ceiling, &r);
+    if (status < 0) return status;
+    trouble = worse(trouble, status);
+    question_rank(nearest, count, k, &r);
+  }
+  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
+  return trouble;
+}
+
+cprox_status cprox_within(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
+                          const cprox_options *options, cprox_workspace *workspace, cprox_result *near, size_t *count) {
+  const cprox_status usable = arguments_check_delta(delta, workspace);
+  if (usable != CPROX_OK) return usable;
+  question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  workspace_clear(workspace);
+  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, workspace);
+  if (checked != CPROX_OK) return checked;
+  question_ask_whole(&q);
+
+  /* a search that ends at the ceiling has a lower bound of at least ceiling - width: above delta */
+  const double width = fmax(q.options.epsilon, q.options.relative_epsilon * delta);
+  const double ceiling = (delta + 2.0 * width) * (1.0 + 4.0 * (q.options.relative_epsilon + 1e-15));
+  *count = 0;
+  cprox_status trouble = CPROX_OK;
+  for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
+    cprox_result r;
+    const cprox_status status = question_answer(&q, i, i + 1, ceiling, &r);
+    if (status < 0) return status;
+    if (r.lower > delta) continue;
+    trouble = worse(trouble, status);
+    if (r.target_index < 0) r.target_index = (int32_t)i;
+    r.verdict = r.upper <= delta ? CPROX_YES : CPROX_UNDECIDED;
+    near[(*count)++] = r;
+  }
+  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
+  return trouble;
+}

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The pairs of a robot that come closest: a search for each, which ends where the pair is out of question. */
+#include <math.h>
+
+#include "base/workspace.h"
+#include "curve_proximity/cprox/clearance.h"
+#include "kinematics/motion.h"
+#include "problem/validate.h"
+#include "robot_query/answer.h"
+#include "solve/solve.h"
+
+/* Lists the pairs of geometries, or of geometries and targets, that are asked about where none are given; counts them where there is
+ * no room. The parts of a geometry stand together. */
+static size_t list_pairs(const question *q, cprox_robot_pair *pairs) {
+  const cprox_motion *motion = q->mover.motion;
+  const cprox_robot *robot = motion->robot;
+  size_t n = 0;
+  for (size_t i = 0; i < robot->n_parts; i++) {
+    const robot_part *a = &robot->parts[i];
+    if (i > 0 && robot->parts[i - 1].geometry == a->geometry) continue;
+    if (!q->mover.self && !cprox_motion_moves_link(motion, (size_t)a->link)) continue;
+    for (size_t k = 0; !q->mover.self && k < q->n; k++, n++)
+      if (pairs) pairs[n] = (cprox_robot_pair){.geometry = a->geometry, .other = (int32_t)k};
+    for (size_t k = 0; q->mover.self && k < i; k++) {
+      const robot_part *b = &robot->parts[k];
+      if (k > 0 && robot->parts[k - 1].geometry == b->geometry) continue;
+      if (!cprox_motion_relates_links(motion, (size_t)a->link, (size_t)b->link)) continue;
+      if (pairs) pairs[n] = (cprox_robot_pair){.geometry = a->geometry, .other = b->geometry};
+      n++;
+    }
+  }
+  return n;
+}
+
+/* Puts a result where it belongs among the best so far, of which the last is dropped when there are k already. */
+static void insert(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r) {
+  size_t i = *count < k ? (*count)++ : k - 1;
+  for (; i > 0 && nearest[i - 1].upper > r->upper; i--) nearest[i] = nearest[i - 1];
+  nearest[i] = *r;
+}
+
+static cprox_status ask_pairs(question *q, const cprox_robot_pair *pairs, size_t n, size_t k, double delta,
+                              cprox_result *nearest, size_t *count) {
+  /* a search that ends at the ceiling has a lower bound of at least ceiling - width: above delta */
+  const double width = fmax(q->options.epsilon, q->options.relative_epsilon * delta);
+  const double within = (delta + 2.0 * width) * (1.0 + 4.0 * (q->options.relative_epsilon + 1e-15));
+  cprox_status trouble = CPROX_OK;
+  for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
+    const double ceiling = *count == k ? fmin(nearest[k - 1].upper, within) : within;
+    q->mover.pairs = &pairs[i], q->mover.n_pairs = 1;
+    const size_t first = q->mover.self ? 0 : (size_t)pairs[i].other, last = q->mover.self ? 0 : first + 1;
+    cprox_result r;
+    const cprox_status status = robot_answer(q, first, last, ceiling, &r);
+    if (status < 0) return status;
+    if (r.lower > delta || (*count == k && r.upper >= nearest[k - 1].upper)) continue;
+    if (status != CPROX_OK) trouble = status;
+    r.mover_part = pairs[i].geometry, r.target_index = pairs[i].other;
+    insert(nearest, count, k, &r);
+  }
+  return trouble;
+}
+
+cprox_status cprox_nearest_pairs(cprox_mover mover, const cprox_target *targets, size_t n, size_t k, double delta,
+                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
+                                 size_t *count) {
+  question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  workspace_clear(workspace);
+  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, workspace);
+  if (checked != CPROX_OK) return checked;
+  if (!mover.motion)
+    return workspace_fail(workspace, CPROX_INVALID, "pairs are those of a robot's motion, and the mover is none");
+  if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one pair");
+  if (!(delta >= 0.0))
+    return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be 0 or more, or infinity", delta);
+  question_ask_whole(&q);
+
+  const cprox_robot_pair *pairs = mover.pairs;
+  size_t n_pairs = mover.n_pairs;
+  if (!pairs) {
+    n_pairs = list_pairs(&q, NULL);
+    cprox_robot_pair *listed = workspace_reserve(workspace, WORKSPACE_RANKING, (n_pairs + 1) * sizeof *listed);
+    if (!listed) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of pairs");
+    list_pairs(&q, listed);
+    pairs = listed;
+  }
+  *count = 0;
+  const cprox_status trouble = ask_pairs(&q, pairs, n_pairs, k, delta, nearest, count);
+  if (trouble > CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
+  return trouble;
+}

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The queries of an obstacle set. */
+#include <math.h>
+
+#include "base/workspace.h"
+#include "broadphase/obstacle_set.h"
+#include "curve_proximity/cprox/clearance.h"
+#include "problem/validate.h"
+#include "robot_query/answer.h"
+#include "solve/solve.h"
+#include "solve/time_of_contact.h"
+
+/* The coarser a model, the farther it may reach out of the boxes. */
+static bool boxes_hold(const question *q) {
+  return q->options.max_rung == CPROX_RUNG_MESH;
+}
+
+static cprox_status begin(const cprox_set *set, question *q) {
+  cprox_workspace *workspace = q->workspace;
+  if (!workspace) return CPROX_INVALID;
+  workspace_clear(workspace);
+  if (!set) return workspace_fail(workspace, CPROX_INVALID, "set is NULL");
+  /* the targets were checked when the set was made, but for what the mover must go with */
+  const bool robot = q->mover.motion && (set->has_curves || set->has_solids || q->mover.self || q->mover.pairs);
+  const bool all = set->has_clock || (q->mover.body && set->has_elements) || robot;
+  const cprox_status checked =
+      arguments_check_query(&q->mover, all ? set->targets : NULL, all ? set->n : 0, &q->options, workspace);
+  if (checked != CPROX_OK) return checked;
+  if (q->options.certificate)
+    return workspace_fail(workspace, CPROX_INVALID, "a set leaves no certificates: ask about its targets for that");
+  q->targets = set->targets;
+  q->n = set->n;
+  if (q->mover.motion && !q->mover.pairs && boxes_hold(q)) q->set = set;
+  question_ask_whole(q);
+  return CPROX_OK;
+}
+
+static cprox_status out_of_memory(const question *q) {
+  return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
+}
+
+static cprox_status answer(const cprox_set *set, question *q, cprox_result *result) {
+  const cprox_status begun = begin(set, q);
+  if (begun != CPROX_OK) return begun;
+  if (q->mover.motion || !boxes_hold(q)) return question_answer(q, 0, q->n, INFINITY, result);
+  set_walk walk;
+  if (!set_walk_begin(&walk, set, q)) return out_of_memory(q);
+  cprox_result all = question_nothing();
+  cprox_status trouble = CPROX_OK;
+  double rest = INFINITY;
+  for (;;) {
+    const bool answered = (!q->is_signed && all.upper <= fmax(q->limit, 0.0)) || trouble == CPROX_STOPPED;
+    const double most = answered ? -INFINITY : question_wants_verdict(q) ? q->limit : all.upper;
+    uint32_t target;
+    if (!set_walk_next(&walk, most, &target, &rest)) return out_of_memory(q);
+    if (target == UINT32_MAX || answered) break;
+    cprox_result one = {0};
+    const cprox_status status = question_answer(q, target, (size_t)target + 1, all.upper, &one);
+    if (status < 0) return status;
+    if (status != CPROX_OK) trouble = status;
+    question_join(&all, &one);
+  }
+  all.lower = fmin(all.lower, q->is_signed ? rest : fmax(rest, 0.0));
+  if (all.rung == CPROX_RUNG_NONE && q->n > 0) all.rung = CPROX_RUNG_SPHERE;
+  question_conclude(q, INFINITY, trouble, &all);
+  *result = all;
+  return all.status;
+}
+
+cprox_status cprox_set_distance(const cprox_set *set, cprox_mover mover, const cprox_options *options,
+                                cprox_workspace *workspace, cprox_result *result) {
+  question q = question_create(mover, NULL, 0, -1.0, false, options, workspace);
+  q.is_signed = q.options.signed_distance;
+  return answer(set, &q, result);
+}
+
+cprox_status cprox_set_tolerance(const cprox_set *set, cprox_mover mover, double delta, const cprox_options *options,
+                                 cprox_workspace *workspace, cprox_result *result) {
+  const cprox_status checked = arguments_check_delta(delta, workspace);
+  if (checked != CPROX_OK) return checked;
+  question q = question_create(mover, NULL, 0, delta, true, options, workspace);
+  return answer(set, &q, result);
+}
+
+cprox_status cprox_set_collision(const cprox_set *set, cprox_mover mover, const cprox_options *options,
+                                 cprox_workspace *workspace, cprox_result *result) {
+  question q = question_create(mover, NULL, 0, 0.0, false, options, workspace);
+  return answer(set, &q, result);
+}
+
+cprox_status cprox_set_first_contact(const cprox_set *set, cprox_mover mover, const cprox_options *options,
+                                     cprox_workspace *workspace, cprox_result *result) {
+  question q = question_create(mover, NULL, 0, 0.0, false, options, workspace);
+  const cprox_status begun = begin(set, &q);
+  if (begun != CPROX_OK) return begun;
+  if (q.set) return robot_first_contact(&q, result);
+  if (q.mover.motion || !boxes_hold(&q))
+    return cprox_first_contact_all(mover, set->targets, set->n, &q.options, workspace, result);
+  set_walk walk;
+  if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
+  first_contact met = first_contact_begin();
+  double rest;
+  for (;;) {
+    uint32_t target;
+    if (!set_walk_next(&walk, 0.0, &target, &rest)) return out_of_memory(&q);
+    if (target == UINT32_MAX) break;
+    const cprox_status status = first_contact_with(&met, &q, target, (size_t)target + 1);
+    if (status < 0) return status;
+  }
+  met.lower = fmin(met.lower, rest);
+  return first_contact_conclude(&met, &q, result);
+}
+
+cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k, const cprox_options *options,
+                               cprox_workspace *workspace, cprox_result *nearest, size_t *count) {
+  question q = question_create(mover, NULL, 0, -1.0, false, options, workspace);
+  const cprox_status begun = begin(set, &q);
+  if (begun != CPROX_OK) return begun;
+  if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
+  if (q.mover.motion || !boxes_hold(&q))
+    return cprox_nearest(mover, set->targets, set->n, k, &q.options, workspace, nearest, count);
+  set_walk walk;
+  if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
+  *count = 0;
+  cprox_status trouble = CPROX_OK;
+  while (trouble != CPROX_STOPPED) {
+    const double ceiling = *count == k ? nearest[k - 1].upper : INFINITY;
+    uint32_t target;
+    double lower;
+    if (!set_walk_next(&walk, ceiling, &target, &lower)) return out_of_memory(&q);
+    if (target == UINT32_MAX) break;
+    cprox_result r;
+    const cprox_status status = question_answer(&q, target, (size_t)target + 1, ceiling, &r);
+    if (status < 0) return status;
+    if (trouble == CPROX_OK) trouble = status;
+    question_rank(nearest, count, k, &r);
+  }
+  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
+  return trouble;
+}

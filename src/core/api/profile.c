@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The clearance profile: the same question about one stretch of the curve after the other. */
+#include <math.h>
+
+#include "base/rounding.h"
+#include "curve/subcurve.h"
+#include "curve_proximity/cprox/clearance.h"
+#include "problem/validate.h"
+#include "solve/solve.h"
+
+static cprox_status check_breaks(const question *q, const double *breaks, size_t n, cprox_workspace *workspace) {
+  const double t0 = q->t0, t1 = q->t1;
+  for (size_t i = 0; i <= n; i++) {
+    if (!(breaks[i] >= t0 && breaks[i] <= t1))
+      return workspace_fail(workspace, CPROX_INVALID, "break %zu is %g, outside the mover's range [%g, %g]", i,
+                            breaks[i], t0, t1);
+    if (i > 0 && !(breaks[i] > breaks[i - 1]))
+      return workspace_fail(workspace, CPROX_INVALID, "break %zu is %g, not above break %zu at %g", i, breaks[i], i - 1,
+                            breaks[i - 1]);
+  }
+  return CPROX_OK;
+}
+
+/* The capsule round the control points of [t0, t1] of one piece, or of the whole piece where there are none. */
+static curve_capsule reach_of(const cprox_curve *curve, size_t piece, double t0, double t1,
+                              cprox_workspace *workspace) {
+  vec3 p[CPROX_MAX_DEGREE + 1];
+  if (cprox_curve_control_points(curve, t0, t1, workspace, p) != CPROX_OK)
+    return curve_capsule_at(curve, curve->n_leaves + piece);
+  curve_capsule c = {.a = p[0], .b = p[curve->degree]};
+  double largest = 0.0;
+  for (size_t i = 0; i <= curve->degree; i++) {
+    /* the capsule round a chord contains the hull of points that are near the chord */
+    const vec3 ab = vec_sub(c.b, c.a), ap = vec_sub(p[i], c.a);
+    const double length2 = vec_norm2(ab), along = vec_dot(ap, ab);
+    const double s = length2 > 0.0 ? fmin(fmax(along / length2, 0.0), 1.0) : 0.0;
+    c.radius = fmax(c.radius, vec_norm(vec_sub(p[i], vec_lerp(c.a, c.b, s))));
+    largest = fmax(largest, vec_norm(curve_piece(curve, piece)[i]));
+  }
+  const double degree = (double)curve->degree;
+  c.radius = ROUND_UP * (c.radius + curve->error[piece] + (12.0 * degree + 40.0) * ROUND_U * largest);
+  return c;
+}
+
+/* Where t lies in a piece, as a fraction of it. */
+static double fraction_of(const cprox_curve *curve, size_t piece, double t) {
+  const double a = curve->breaks[piece], b = curve->breaks[piece + 1];
+  return fmin(fmax((t - a) / (b - a), 0.0), 1.0);
+}
+
+/* The least clearance over [t0, t1], a piece at a time. */
+static cprox_status measure(question *q, double t0, double t1, size_t *piece, cprox_stretch *stretch) {
+  const cprox_curve *curve = q->mover.curve;
+  *stretch = (cprox_stretch){
+      .t0 = t0, .t1 = t1, .lower = INFINITY, .upper = INFINITY, .t = t0, .target_index = -1, .mover_part = -1};
+  cprox_status trouble = CPROX_OK;
+  while (*piece + 1 < curve->n_pieces && curve->breaks[*piece + 1] <= t0) (*piece)++;
+  for (size_t i = *piece; i < curve->n_pieces && curve->breaks[i] < t1; i++) {
+    const double from = fmax(t0, curve->breaks[i]), to = fmin(t1, curve->breaks[i + 1]);
+    if (!(from < to)) continue;
+    const double a = fmin(fraction_of(curve, i, from), 1.0 - 0x1p-52); /* at least one double before the end, and */
+    const double b = fmax(fraction_of(curve, i, to), a + 0x1p-52);     /* one after the beginning */
+    q->part = curve_side_section(curve, i, a, b);
+    q->t0 = from, q->t1 = to;
+    q->reach = reach_of(curve, i, from, to, q->workspace);
+    cprox_result r;
+    const cprox_status status = question_answer(q, 0, q->n, stretch->upper, &r);
+    if (status < 0) return status;
+    if (status != CPROX_OK) trouble = status;
+    stretch->lower = fmin(stretch->lower, r.lower);
+    if (r.upper < stretch->upper) {
+      stretch->upper = r.upper;
+      stretch->t = fmin(fmax(r.t, t0), t1);
+      stretch->target_index = r.target_index;
+      stretch->mover_part = r.mover_part;
+    }
+  }
+  stretch->lower = fmin(stretch->lower, stretch->upper);
+  return trouble;
+}
+
+/* The same of a robot, whose search knows of segments itself. */
+static cprox_status measure_motion(question *q, double t0, double t1, cprox_stretch *stretch) {
+  q->t0 = t0, q->t1 = t1;
+  cprox_result r;
+  const cprox_status status = question_answer(q, 0, q->n, INFINITY, &r);
+  if (status < 0) return status;
+  *stretch = (cprox_stretch){.t0 = t0,
+                             .t1 = t1,
+                             .lower = r.lower,
+                             .upper = r.upper,
+                             .t = r.target_index < 0 ? t0 : fmin(fmax(r.t, t0), t1),
+                             .target_index = r.target_index,
+                             .mover_part = r.mover_part};
+  return status;
+}
+
+cprox_status cprox_profile(cprox_mover mover, const cprox_target *targets, size_t n, const double *breaks,
+                           size_t n_stretches, const cprox_options *options, cprox_workspace *workspace,
+                           cprox_stretch *stretches) {
+  question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  q.is_signed = q.options.signed_distance;
+  workspace_clear(workspace);
+  cprox_status status = arguments_check_query(&mover, targets, n, &q.options, workspace);
+  if (status != CPROX_OK) return status;
+  question_ask_whole(&q);
+  status = check_breaks(&q, breaks, n_stretches, workspace);
+  if (status != CPROX_OK) return status;
+
+  size_t piece = 0;
+  cprox_status trouble = CPROX_OK;
+  for (size_t i = 0; i < n_stretches; i++) {
+    status = mover.motion ? measure_motion(&q, breaks[i], breaks[i + 1], &stretches[i])
+                          : measure(&q, breaks[i], breaks[i + 1], &piece, &stretches[i]);
+    if (status < 0) return status;
+    if (status != CPROX_OK) trouble = status;
+  }
+  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
+  return trouble;
+}

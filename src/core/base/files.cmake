@@ -1,0 +1,6 @@
+# The files of this room. A new file is one line here.
+target_sources(cprox_objects PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/frame.c
+  ${CMAKE_CURRENT_LIST_DIR}/status.c
+  ${CMAKE_CURRENT_LIST_DIR}/workspace.c
+)

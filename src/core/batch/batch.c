@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Many movers against the same targets. doc/batches.md says what is done for each. */
+#include "curve_proximity/cprox/batch.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "base/workspace.h"
+#include "batch/prefilter.h"
+#include "curve_query/search_pair.h"
+#include "problem/validate.h"
+#include "solve/solve.h"
+
+/* ---- one mover ---------------------------------------------------------------------------------------------------------- */
+
+/* A point of the curve is so near to a part that the limit is violated, whatever else there is. */
+static cprox_status report_hit(const batch_run *run, const batch_look *look, cprox_result *r) {
+  const batch_hit *hit = &look->hit;
+  const candidate *part = &run->batch->parts[hit->part];
+  const double *breaks = run->q.mover.curve->breaks + hit->piece, radius = run->q.mover.radius;
+  const double padding = run->batch->cores[hit->part].padding;
+  *r = (cprox_result){.lower = lesser(greater(look->beyond, 0.0), hit->upper),
+                      .upper = hit->upper,
+                      .t = breaks[0] + hit->s * (breaks[1] - breaks[0]),
+                      .t_target = NAN,
+                      .on_mover = hit->point,
+                      .on_target = hit->point,
+                      .target_index = part->target,
+                      .target_part = part->part,
+                      .rung = look->rung};
+
+  /* the nearest points of the padded part and the mover, or one of both */
+  if (hit->distance > padding) {
+    const vec3 between = vec_sub(hit->point, hit->surface);
+    const double length = vec_norm(between);
+    const vec3 normal = length > 0.0 ? vec_scale(1.0 / length, between) : vec(0, 0, 0);
+    r->on_mover = r->on_target = vec_axpy(hit->surface, padding, normal);
+    if (hit->distance > padding + radius) {
+      r->normal = normal;
+      r->on_mover = vec_axpy(hit->point, -radius, normal);
+    }
+  }
+  r->verdict = question_verdict(&run->q, r);
+  return CPROX_OK;
+}
+
+/* The union of what is near. */
+static cprox_status search_near(const batch_run *run, const batch_look *look, cprox_result *all) {
+  const question *q = &run->q;
+  cprox_status trouble = CPROX_OK;
+  *all = question_nothing();
+  double rest = look->beyond; /* the least bound of what was not searched */
+  for (size_t i = 0; i < look->n; i++) {
+    const candidate *c = &run->near[i];
+    const bool too_far = !question_wants_verdict(q) && c->lower > all->upper;
+    if (too_far || all->upper <= fmax(q->limit, 0.0) || trouble == CPROX_STOPPED) {
+      rest = fmin(rest, c->lower);
+      continue;
+    }
+    cprox_result one = {0};
+    const cprox_status status = candidate_search(q, c, all->upper, &one);
+    if (status < 0) return status;
+    if (status != CPROX_OK) trouble = status;
+    question_join(all, &one);
+  }
+  if (look->n == 0 && run->batch->n > 0) all->rung = look->rung;
+  all->lower = fmin(all->lower, fmax(rest, 0.0));
+  return question_conclude(q, INFINITY, trouble, all);
+}
+
+static cprox_status answer_fast(batch_run *run, cprox_result *r) {
+  batch_look look;
+  batch_look_around(run, &look);
+  if (look.is_hit) return report_hit(run, &look, r);
+  question_ask_whole(&run->q);
+  run->degree = SIZE_MAX; /* a search has bases of its own */
+  return search_near(run, &look, r);
+}
+
+/* ---- the call ----------------------------------------------------------------------------------------------------------- */
+
+/* The short way is for points and balls along curves with control points. */
+static bool may_be_fast(const batch_run *run, const cprox_mover *mover) {
+  return mover->curve && !mover->curve->arcs && !mover->body && !mover->motion && mover->radius >= 0.0 &&
+         isfinite(mover->radius) && !run->batch->on_clock && run->q.options.max_rung == CPROX_RUNG_MESH;
+}
+
+static cprox_status answer_one(batch_run *run, const cprox_mover *mover, cprox_result *r) {
+  const question *q = &run->q;
+  const cprox_target *targets = run->batch->targets;
+  const size_t n = run->batch->n;
+  workspace_clear(q->workspace);
+  if (may_be_fast(run, mover)) {
+    run->q.mover = *mover;
+    return answer_fast(run, r);
+  }
+  if (!question_wants_verdict(q)) return cprox_distance_all(*mover, targets, n, &q->options, q->workspace, r, NULL);
+  if (!q->farther_is_yes) return cprox_collision_all(*mover, targets, n, &q->options, q->workspace, r, NULL);
+  return cprox_tolerance_all(*mover, targets, n, q->limit, &q->options, q->workspace, r, NULL);
+}
+
+static cprox_status check_call(const batch_run *run, const cprox_mover *movers, size_t first, size_t last,
+                               const cprox_result *results) {
+  cprox_workspace *workspace = run->q.workspace;
+  if (!workspace) return CPROX_INVALID;
+  workspace_clear(workspace);
+  if (!run->batch) return workspace_fail(workspace, CPROX_INVALID, "batch is NULL");
+  if (first > last)
+    return workspace_fail(workspace, CPROX_INVALID, "the range begins at mover %zu and ends at %zu", first, last);
+  if (first < last && !movers) return workspace_fail(workspace, CPROX_INVALID, "movers is NULL");
+  if (first < last && !results) return workspace_fail(workspace, CPROX_INVALID, "results is NULL");
+  if (run->q.options.certificate)
+    return workspace_fail(workspace, CPROX_INVALID, "a batch leaves no certificates: ask about one mover for that");
+  return arguments_check_options(&run->q.options, workspace);
+}
+
+static bool reserve(batch_run *run) {
+  const lanes_balls *balls = &run->batch->balls;
+  const size_t numbers = balls->padded + run->batch->blocks.padded + 1;
+  run->lower = workspace_reserve(run->q.workspace, WORKSPACE_BATCH, numbers * sizeof(double));
+  run->block_lower = run->lower ? run->lower + balls->padded : NULL;
+  run->near = workspace_reserve(run->q.workspace, WORKSPACE_BATCH_NEAR, (balls->n + 1) * sizeof *run->near);
+  run->open = workspace_reserve(run->q.workspace, WORKSPACE_BATCH_OPEN, (balls->n + 1) * sizeof *run->open);
+  return run->lower && run->near && run->open;
+}
+
+static cprox_status answer_range(question q, const cprox_batch *batch, const cprox_mover *movers, size_t first,
+                                 size_t last, cprox_result *results) {
+  batch_run run = {.batch = batch, .q = q, .degree = SIZE_MAX};
+  const cprox_status checked = check_call(&run, movers, first, last, results);
+  if (checked != CPROX_OK) return checked;
+  run.q.targets = batch->targets;
+  run.q.n = batch->n;
+  if (!reserve(&run))
+    return workspace_fail(q.workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", batch->n);
+
+  cprox_status worst = CPROX_OK;
+  char reason[320] = "";
+  for (size_t i = first; i < last; i++) {
+    cprox_result *r = &results[i];
+    const cprox_status status = answer_one(&run, &movers[i], r);
+    if (status < 0) {
+      *r = question_nothing();
+      r->status = status, r->lower = 0.0, r->verdict = CPROX_UNDECIDED;
+    }
+    if (worst >= 0 && (status < 0 || status > worst)) {
+      worst = status;
+      snprintf(reason, sizeof reason, "mover %zu: %s", i, cprox_workspace_reason(q.workspace));
+    }
+  }
+  workspace_clear(q.workspace);
+  return worst == CPROX_OK ? CPROX_OK : workspace_fail(q.workspace, worst, "%s", reason);
+}
+
+cprox_status cprox_batch_distance(const cprox_batch *batch, const cprox_mover *movers, size_t first, size_t last,
+                                  const cprox_options *options, cprox_workspace *workspace, cprox_result *results) {
+  const question q = question_create((cprox_mover){0}, NULL, 0, -1.0, false, options, workspace);
+  return answer_range(q, batch, movers, first, last, results);
+}
+
+cprox_status cprox_batch_tolerance(const cprox_batch *batch, const cprox_mover *movers, size_t first, size_t last,
+                                   double delta, const cprox_options *options, cprox_workspace *workspace,
+                                   cprox_result *results) {
+  if (!workspace) return CPROX_INVALID;
+  const cprox_status checked = arguments_check_delta(delta, workspace);
+  if (checked != CPROX_OK) return checked;
+  const question q = question_create((cprox_mover){0}, NULL, 0, delta, true, options, workspace);
+  return answer_range(q, batch, movers, first, last, results);
+}
+
+cprox_status cprox_batch_collision(const cprox_batch *batch, const cprox_mover *movers, size_t first, size_t last,
+                                   const cprox_options *options, cprox_workspace *workspace, cprox_result *results) {
+  const question q = question_create((cprox_mover){0}, NULL, 0, 0.0, false, options, workspace);
+  return answer_range(q, batch, movers, first, last, results);
+}

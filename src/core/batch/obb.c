@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "batch/prefilter.h"
+
+#include <math.h>
+
+#include "base/rounding.h"
+
+/* One look at a brick: what a bound of chords is worth for the mover. */
+typedef struct look {
+  batch_run *run;
+  const batch_core *core;
+  double margin; /* padding and the mover's radius */
+  double slack;  /* rounding */
+  double limit;  /* points that are no farther are hits; < 0: none are looked for */
+} look;
+
+/* 28 (|p| + |c|) u to bring a point into the frame, p its place from the frame's, c its centre; 56 |p| u for the chord's direction, and
+ * 10 u of all sizes for the bound and the margin. */
+static double slack_of(const batch_run *run, const batch_core *core, double margin) {
+  const double sizes = run->q.mover.curve->largest + core->brick_sizes + margin;
+  return ROUND_UP * (run->slack + (128.0 + core->brick_turned) * ROUND_U * sizes + core->brick_misplaced);
+}
+
+/* ---- points ------------------------------------------------------------------------------------------------------------- */
+
+/* The part is a brick: how far a point is from it, and which point of it is nearest. */
+static double from_brick(const lanes_brick *b, vec3 x, vec3 *surface) {
+  const double *r = b->r;
+  const vec3 v = vec_sub(x, b->position);
+  const vec3 y = vec_sub(vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
+                             r[2] * v.x + r[5] * v.y + r[8] * v.z),
+                         b->centre);
+  const vec3 h = b->half;
+  const vec3 on =
+      vec(lesser(greater(y.x, -h.x), h.x), lesser(greater(y.y, -h.y), h.y), lesser(greater(y.z, -h.z), h.z));
+  const vec3 local = vec_add(on, b->centre);
+  *surface =
+      vec_add(vec(r[0] * local.x + r[1] * local.y + r[2] * local.z, r[3] * local.x + r[4] * local.y + r[5] * local.z,
+                  r[6] * local.x + r[7] * local.y + r[8] * local.z),
+              b->position);
+  return vec_norm(vec_sub(y, on));
+}
+
+/* The point of the curve at s of a piece is within the limit. */
+static bool hits_at(const look *l, uint32_t piece, double s, batch_hit *hit) {
+  const cprox_curve *curve = l->run->q.mover.curve;
+  const vec3 *points = curve_piece(curve, piece);
+  vec3 at;
+  curve_bezier_evaluate(&points->x, &points->y, &points->z, 3, curve->degree, curve->binomial, s, &at, NULL, NULL);
+  vec3 surface;
+  const double distance = from_brick(&l->core->brick, at, &surface);
+  const double upper = distance - l->margin + l->slack;
+  if (upper > l->limit) return false;
+  hit->upper = greater(upper, 0.0);
+  hit->distance = distance;
+  hit->piece = piece, hit->s = s;
+  hit->point = at, hit->surface = surface;
+  return true;
+}
+
+/* ---- chords ------------------------------------------------------------------------------------------------------------- */
+
+/* Chord k of a piece, cut into CHORDS itself. */
+static bool cut_chord(batch_run *run, uint32_t piece, uint32_t k, lanes_chords *fine) {
+  const cprox_curve *curve = run->q.mover.curve;
+  const vec3 *points = curve_piece(curve, piece);
+  const lanes_chords *chords = &run->chords[piece];
+  const double *basis = lanes_fine_basis(curve->degree, k, run->q.workspace);
+  if (!basis) return false;
+  uint32_t unused;
+  for (uint32_t first = 0; first < CHORDS; first += LANES)
+    lanes_points(basis, points, curve->degree, curve->flat, first, vec(0, 0, 0), fine, &unused);
+  fine->x[CHORDS] = chords->x[k + 1], fine->y[CHORDS] = chords->y[k + 1], fine->z[CHORDS] = chords->z[k + 1];
+  lanes_join(fine);
+  return true;
+}
+
+/* A chord that may come too near is cut again: raises *lower, its bound. True for a hit. */
+static bool look_closer(look *l, uint32_t piece, uint32_t k, double *lower, batch_hit *hit) {
+  lanes_chords fine;
+  if (!cut_chord(l->run, piece, k, &fine)) return false;
+  lanes_sight sight;
+  lanes_see_brick(&fine, &l->core->brick, &sight);
+  const double beside = l->run->beside * (1.0 / (CHORDS * CHORDS));
+  uint32_t nearest, unused;
+  *lower = greater(*lower, lanes_least(sight.lower, &unused) - beside - l->margin - l->slack);
+  if (!(l->limit >= 0.0)) return false;
+  const double square = lanes_least(sight.square, &nearest);
+  const double s = ((double)k + ((double)nearest + sight.s[nearest]) / CHORDS) / CHORDS;
+  return sqrt(square) - beside - l->margin <= l->limit && hits_at(l, piece, s, hit);
+}
+
+bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit) {
+  enum { MOST_CUT = 6 }; /* a search is faster than more of these */
+  const batch_core *core = &run->batch->cores[part];
+  const uint32_t pieces = (uint32_t)run->q.mover.curve->n_pieces;
+  look l = {.run = run, .core = core, .margin = core->padding + run->q.mover.radius, .limit = -1.0};
+  l.slack = slack_of(run, core, l.margin);
+  if (core->is_brick) l.limit = greater(run->q.limit, 0.0);
+
+  /* all chords */
+  lanes_sight sight[BATCH_MOST_PIECES];
+  double lower = INFINITY, square = INFINITY, s = 0.0;
+  uint32_t piece = 0;
+  for (uint32_t i = 0; i < pieces; i++) {
+    lanes_see_brick(&run->chords[i], &core->brick, &sight[i]);
+    uint32_t k, unused;
+    const double least = lanes_least(sight[i].square, &k);
+    if (least < square) square = least, piece = i, s = ((double)k + sight[i].s[k]) / CHORDS;
+    lower = lesser(lower, lanes_least(sight[i].lower, &unused));
+  }
+  const double off = run->beside + l.margin + l.slack, distance = sqrt(square);
+  c->lower = greater(c->lower, lower - off);
+  c->seed_piece = piece;
+  c->seed_s = lesser(greater(s, 1e-3), 1.0 - 1e-3);
+  *upper = core->is_brick ? distance + run->beside - l.margin + l.slack : INFINITY;
+  const double settles = question_wants_verdict(&run->q) ? most : 0.0; /* of distances only contact is */
+  if (c->lower > lesser(most, settles)) return false;
+
+  /* the nearest chord's point, then each chord that is not too far */
+  if (distance - run->beside - l.margin <= l.limit && hits_at(&l, piece, s, hit)) return true;
+  int cut = 0;
+  lower = INFINITY;
+  for (uint32_t i = 0; i < pieces; i++) {
+    for (uint32_t k = 0; k < CHORDS; k++) {
+      double bound = sight[i].lower[k] - off;
+      if (bound <= settles && cut++ < MOST_CUT && look_closer(&l, i, k, &bound, hit)) return true;
+      lower = lesser(lower, bound);
+    }
+  }
+  c->lower = greater(c->lower, lower);
+  return false;
+}

@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "batch/obstacles.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/frame.h"
+#include "base/rounding.h"
+#include "problem/validate.h"
+#include "shape/body.h"
+
+/* ---- inscribed balls ---------------------------------------------------------------------------------------------------- */
+
+/* How deep a point of the shape's frame lies inside, at least; 0 or less: not known to be inside. */
+static double depth_at(const convex *shape, vec3 y) {
+  convex_near near;
+  if (shape->ops->kind == CPROX_POLYGON)
+    convex_polygon_nearest_in_plane(shape, y, &near);
+  else
+    shape->ops->nearest(shape, y, NULL, &near);
+  const double sizes = vec_norm(y) + shape->scale + shape->margin;
+  return -near.distance - ROUND_UP * (shape->ops->near_rounding * ROUND_U * sizes + shape->slack);
+}
+
+/* Climbs from the origin of the shape's frame, by steps along the axes that shrink. A deep point makes fast answers, none is needed. */
+static double deepest(const convex *shape, vec3 *centre) {
+  enum { HALVINGS = 8 };
+  const int axes = shape->ops->kind == CPROX_POLYGON ? 2 : 3;
+  double best = depth_at(shape, vec(0, 0, 0));
+  *centre = vec(0, 0, 0);
+  double step = 0.25 * shape->scale;
+  for (int round = 0; round < HALVINGS; round++, step *= 0.5) {
+    for (int k = 0; k < 2 * axes; k++) {
+      const double by = k % 2 ? -step : step;
+      const vec3 moved = vec_add(*centre, vec(k / 2 == 0 ? by : 0, k / 2 == 1 ? by : 0, k / 2 == 2 ? by : 0));
+      const double depth = depth_at(shape, moved);
+      if (!(depth > best)) continue;
+      best = depth;
+      *centre = moved;
+    }
+  }
+  return best;
+}
+
+/* Shapes whose nearest point is cheap, certain and tells a depth. */
+static bool has_depth(const cprox_body *body) {
+  switch (body->kind) {
+    case CPROX_SPHERE:
+    case CPROX_BOX:
+    case CPROX_CAPSULE:
+    case CPROX_CYLINDER:
+    case CPROX_CONE:
+    case CPROX_ELLIPSOID:
+    case CPROX_POLYTOPE:
+    case CPROX_POLYGON: return true;
+    default: return false;
+  }
+}
+
+/* About a centre of the shape's frame: the ball round the core where its vertices are known, else the one through the other ball. */
+static double outer_radius(const cprox_body *body, vec3 centre) {
+  const convex *shape = &body->shape;
+  const vec3 ball = vec_sub(body->ball_centre, body->centre);
+  double most = vec_norm(vec_sub(centre, ball)) + body->ball_radius;
+  if (shape->n > 0) {
+    most = 0.0;
+    for (int32_t i = 0; i < shape->n; i++)
+      most = fmax(most, vec_norm(vec_sub(vec(shape->x[i], shape->y[i], shape->z[i]), centre)));
+  }
+  return most;
+}
+
+static batch_core core_of(const question *q, const candidate *c, candidate_ball round) {
+  const cprox_body *body = candidate_body(q, c);
+  batch_core core = {.centre = round.centre, .inner = -1.0, .outer = round.radius};
+  if (!body || !has_depth(body)) return core;
+  const cprox_pose pose = candidate_pose(q, c);
+  const frame f = frame_create(&pose, body->centre);
+  core.flat = body->kind == CPROX_POLYGON;
+  if (core.flat && !f.about_z) return core;
+  vec3 centre;
+  const double depth = deepest(&body->shape, &centre);
+  if (!(depth > 0.0)) return core;
+  core.centre = frame_to_world(&f, centre);
+  core.inner = depth * (1.0 - 2.0 * ROUND_U);
+  core.outer = outer_radius(body, centre);
+  return core;
+}
+
+/* ---- bricks ------------------------------------------------------------------------------------------------------------- */
+
+/* How far the shape reaches both ways along an axis of its frame, which stands in its middle; rounding included. */
+static double half_along(const convex *shape, vec3 axis) {
+  const double core =
+      greater(shape->ops->support(shape, axis, NULL, NULL), shape->ops->support(shape, vec_neg(axis), NULL, NULL));
+  return core + shape->margin + ROUND_UP * (ROUND_SUPPORT * ROUND_U * (shape->scale + shape->margin) + shape->slack);
+}
+
+/* A ball says more of a sphere than any box. */
+static void lay_brick(const question *q, const candidate *c, batch_core *core) {
+  const cprox_body *body = candidate_body(q, c);
+  if (!body || !has_depth(body) || body->kind == CPROX_SPHERE) return;
+  const convex *shape = &body->shape;
+  const frame f = candidate_frame(q, c);
+  lanes_brick *brick = &core->brick;
+  memcpy(brick->r, f.r, sizeof brick->r);
+  brick->position = f.position;
+  brick->centre = f.centre;
+  core->has_brick = true;
+  core->is_brick = body->kind == CPROX_BOX;
+  brick->half = vec(shape->size[0], shape->size[1], shape->size[2]);
+  if (!core->is_brick)
+    brick->half =
+        vec(half_along(shape, vec(1, 0, 0)), half_along(shape, vec(0, 1, 0)), half_along(shape, vec(0, 0, 1)));
+  core->brick_sizes = vec_norm(f.position) + vec_norm(f.centre) + vec_norm(brick->half);
+  core->brick_turned = f.misturned;
+  core->brick_misplaced = f.misplaced;
+}
+
+/* ---- the batch ---------------------------------------------------------------------------------------------------------- */
+
+static size_t parts_of(const cprox_target *target) {
+  return target->body && target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
+}
+
+static cprox_batch *allocate(size_t n_targets, size_t n_parts) {
+  cprox_batch *batch = calloc(1, sizeof *batch);
+  if (!batch) return NULL;
+  const size_t n_blocks = (n_parts + BLOCK - 1) / BLOCK, padded = n_blocks * BLOCK;
+  const size_t padded_blocks = (n_blocks + BLOCK - 1) / BLOCK * BLOCK;
+  batch->n = n_targets;
+  batch->balls.n = n_parts;
+  batch->balls.padded = padded;
+  batch->blocks.n = n_blocks;
+  batch->blocks.padded = padded_blocks;
+  batch->targets = calloc(n_targets + 1, sizeof *batch->targets);
+  batch->parts = calloc(n_parts + 1, sizeof *batch->parts);
+  batch->cores = calloc(n_parts + 1, sizeof *batch->cores);
+  batch->balls.x = calloc(5 * padded + 7 * padded_blocks + 1, sizeof(double));
+  if (!batch->targets || !batch->parts || !batch->cores || !batch->balls.x) {
+    cprox_batch_free(batch);
+    return NULL;
+  }
+  batch->balls.y = batch->balls.x + padded;
+  batch->balls.z = batch->balls.y + padded;
+  batch->balls.reach = batch->balls.z + padded;
+  batch->balls.sizes = batch->balls.reach + padded;
+  double *next = batch->balls.sizes + padded;
+  for (int axis = 0; axis < 3; axis++) {
+    batch->blocks.low[axis] = next;
+    batch->blocks.high[axis] = next + padded_blocks;
+    next += 2 * padded_blocks;
+  }
+  batch->blocks.sizes = next;
+  return batch;
+}
+
+/* The balls of one part. What is on the mover's clock has none that would hold for every mover. */
+static void describe(cprox_batch *batch, const question *q, size_t k) {
+  const candidate *c = &batch->parts[k];
+  const cprox_target *target = &batch->targets[c->target];
+  if (target->on_clock) return;
+  double placing;
+  const candidate_ball round = candidate_bounding_ball(q, c, &placing);
+  batch->balls.x[k] = round.centre.x;
+  batch->balls.y[k] = round.centre.y;
+  batch->balls.z[k] = round.centre.z;
+  batch->balls.reach[k] = round.radius + target->padding;
+  batch->balls.sizes[k] = vec_norm(round.centre) + placing + batch->balls.reach[k];
+  batch->cores[k] = core_of(q, c, round);
+  batch->cores[k].plane = target->pose.position.z;
+  batch->cores[k].padding = target->padding;
+  lay_brick(q, c, &batch->cores[k]);
+}
+
+/* All parts, those that stand together one after the other; what is everywhere comes last. False where memory is out. */
+static bool list_parts(cprox_batch *batch, const question *q) {
+  batch_place *places = calloc(batch->balls.n + 1, sizeof *places);
+  if (!places) return false;
+  size_t bounded = 0, n = 0;
+  for (size_t i = 0; i < batch->n; i++) {
+    for (size_t part = 0; part < parts_of(&batch->targets[i]); part++) {
+      batch_place place = {.part = {.target = (int32_t)i, .part = (int32_t)part}};
+      double unused;
+      const candidate_ball round = candidate_bounding_ball(q, &place.part, &unused);
+      place.at = round.centre;
+      places[n++] = place;
+      if (!isfinite(round.radius)) continue;
+      places[n - 1] = places[bounded];
+      places[bounded++] = place;
+    }
+  }
+  batch_blocks_gather(places, bounded);
+  for (size_t k = 0; k < n; k++) batch->parts[k] = places[k].part;
+  free(places);
+  return true;
+}
+
+cprox_status cprox_batch_create(const cprox_target *targets, size_t n, cprox_workspace *workspace,
+                                cprox_batch **batch) {
+  if (!workspace) return CPROX_INVALID;
+  workspace_clear(workspace);
+  if (!batch) return workspace_fail(workspace, CPROX_INVALID, "batch is NULL");
+  const cprox_status checked = arguments_check_targets(targets, n, workspace);
+  if (checked != CPROX_OK) return checked;
+
+  size_t n_parts = 0;
+  for (size_t i = 0; i < n; i++) n_parts += parts_of(&targets[i]);
+  cprox_batch *made = allocate(n, n_parts);
+  if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", n);
+  if (n > 0) memcpy(made->targets, targets, n * sizeof *targets);
+  for (size_t i = 0; i < n; i++) made->on_clock = made->on_clock || targets[i].on_clock;
+  const question q = {.targets = made->targets, .n = n};
+  if (!list_parts(made, &q)) {
+    cprox_batch_free(made);
+    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", n);
+  }
+  for (size_t k = 0; k < n_parts; k++) describe(made, &q, k);
+  batch_blocks_surround(made);
+  *batch = made;
+  return CPROX_OK;
+}
+
+void cprox_batch_free(cprox_batch *batch) {
+  if (!batch) return;
+  free(batch->targets);
+  free(batch->parts);
+  free(batch->cores);
+  free(batch->balls.x); /* all arrays of the balls are in one block */
+  free(batch);
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a batch knows of its targets. */
+#ifndef CPROX_BATCH_OBSTACLES_H
+#define CPROX_BATCH_OBSTACLES_H
+
+#include "curve/packets.h"
+#include "curve_proximity/cprox/batch.h"
+#include "problem/candidates.h"
+
+/* A point in a target or near it, in the world, and balls about it: one inside the target, one round it. Padding is left out. */
+typedef struct batch_core {
+  vec3 centre;
+  double inner; /* rounding included; < 0: there is no such ball */
+  double outer;
+  bool flat;      /* the inner ball is a disc in the plane of constant z: it tells of curves in that plane only */
+  double plane;   /* this */
+  double padding; /* of the target, which the radii leave out */
+
+  /* a box round the part, in the frame of its shape */
+  bool has_brick, is_brick; /* there is one; the part is that box */
+  lanes_brick brick;
+  double brick_sizes; /* the sum of the lengths that entered, for rounding: this times brick_turned u, */
+  double brick_turned, brick_misplaced; /* and this [m] are what placing it may be off */
+} batch_core;
+
+struct cprox_batch {
+  cprox_target *targets;
+  size_t n;
+  bool on_clock; /* some of them are: where they are depends on the mover */
+  /* one for each target that is a curve, one for each convex part of a body */
+  candidate *parts;
+  batch_core *cores;
+  lanes_balls balls;
+  lanes_blocks blocks; /* of BLOCK parts each, that stand together */
+};
+
+/* Where a part stands, as far as its place in a block is concerned. */
+typedef struct batch_place {
+  candidate part;
+  vec3 at;
+} batch_place;
+
+/* Puts n places in the order of blocks; and boxes round the blocks of the batch's balls. */
+void batch_blocks_gather(batch_place *places, size_t n);
+void batch_blocks_surround(cprox_batch *batch);
+
+#endif

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "branch_and_bound/search.h"
+
+#include "base/vec.h"
+#include "base/workspace.h"
+
+enum { STOP_POLL_INTERVAL = 16 };
+
+/* Open nodes: a binary heap on `lower` (best first) or `start` (left to right), or a stack (depth first), in the workspace. */
+typedef struct frontier {
+  cprox_workspace *workspace;
+  search_node *nodes;
+  size_t count;
+  search_order order;
+} frontier;
+
+static double key_of(const frontier *f, const search_node *node) {
+  return f->order == SEARCH_BEST_FIRST ? node->lower : node->start;
+}
+
+static bool frontier_push(frontier *f, const search_node *node) {
+  f->nodes = workspace_reserve(f->workspace, WORKSPACE_NODES, (f->count + 1) * sizeof *f->nodes);
+  if (!f->nodes) return false;
+  size_t i = f->count++;
+  while (f->order != SEARCH_DEPTH_FIRST && i > 0) {
+    const size_t parent = (i - 1) / 2;
+    if (key_of(f, &f->nodes[parent]) <= key_of(f, node)) break;
+    f->nodes[i] = f->nodes[parent];
+    i = parent;
+  }
+  f->nodes[i] = *node;
+  return true;
+}
+
+static search_node frontier_pop(frontier *f) {
+  const bool stack = f->order == SEARCH_DEPTH_FIRST;
+  const search_node top = stack ? f->nodes[f->count - 1] : f->nodes[0];
+  f->count--;
+  if (stack || f->count == 0) return top;
+  const search_node moved = f->nodes[f->count];
+  size_t i = 0;
+  for (size_t child = 1; child < f->count; child = 2 * i + 1) {
+    if (child + 1 < f->count && key_of(f, &f->nodes[child + 1]) < key_of(f, &f->nodes[child])) child++;
+    if (key_of(f, &f->nodes[child]) >= key_of(f, &moved)) break;
+    f->nodes[i] = f->nodes[child];
+    i = child;
+  }
+  f->nodes[i] = moved;
+  return top;
+}
+
+double search_width(const search_goal *goal, double upper) {
+  return greater(goal->epsilon, goal->relative_epsilon * fabs(upper));
+}
+
+static double known_upper(const search_goal *goal, const search_best *best) {
+  return lesser(best->upper, goal->ceiling);
+}
+
+/* The lower bound from which on a node needs no more work. */
+static double settling_bound(const search_goal *goal, const search_best *best) {
+  if (goal->limit >= 0.0) return goal->limit;
+  const double upper = known_upper(goal, best);
+  return upper - search_width(goal, upper);
+}
+
+static bool is_settled(const search_goal *goal, const search_best *best, const search_node *node) {
+  const double bound = settling_bound(goal, best);
+  return goal->limit >= 0.0 ? node->lower > bound : node->lower >= bound;
+}
+
+/* Neither above the limit nor able to say more: closer to the best point than epsilon (verdicts) or than rounding. */
+static bool is_stuck(const search_goal *goal, const search_best *best, const search_node *node) {
+  const double gap = known_upper(goal, best) - node->lower;
+  const double floor = 2.0 * (node->slack + best->slack);
+  return gap <= floor || (goal->limit >= 0.0 && gap <= goal->epsilon);
+}
+
+/* The best point alone ends the search: it violates the limit, or it is as close to 0 as was asked. */
+static bool is_answered(const search_goal *goal, const search_best *best) {
+  if (goal->order == SEARCH_LEFT_TO_RIGHT || goal->is_signed) return false;
+  return goal->limit >= 0.0 ? best->upper <= goal->limit : best->upper <= search_width(goal, best->upper);
+}
+
+/* Left to right: from here on nothing is asked any more, since contact came before. */
+static double horizon(const search_goal *goal, const search_best *best) {
+  return best->upper <= goal->limit + goal->epsilon ? lesser(best->at, goal->horizon) : goal->horizon;
+}
+
+typedef enum node_fate { NODE_OPEN, NODE_SETTLED, NODE_STUCK, NODE_BEYOND } node_fate;
+
+static node_fate fate_of(const search_goal *goal, const search_best *best, const search_node *node) {
+  if (is_settled(goal, best, node)) return NODE_SETTLED;
+  if (goal->order == SEARCH_LEFT_TO_RIGHT) return node->start >= horizon(goal, best) ? NODE_BEYOND : NODE_OPEN;
+  return is_stuck(goal, best, node) ? NODE_STUCK : NODE_OPEN;
+}
+
+/* A child that is settled at birth leaves at once. */
+static bool enter(const search_goal *goal, const search_oracle *oracle, const search_node *child, frontier *open,
+                  search_outcome *outcome) {
+  if (!is_settled(goal, &outcome->best, child)) return frontier_push(open, child);
+  outcome->lower = lesser(child->lower, outcome->lower);
+  oracle->release(oracle->self, child);
+  return true;
+}
+
+/* One node: re-bound, probe, re-bound, split. Sets *fate to why it left the search, or NODE_OPEN if its children entered it. */
+static cprox_status work_on(const search_goal *goal, const search_oracle *oracle, search_node *node, frontier *open,
+                            search_outcome *outcome, node_fate *fate) {
+  outcome->nodes++;
+
+  /* measure, unless the best point lies inside */
+  const cprox_status probed = oracle->probe(oracle->self, node, &outcome->best);
+  if (probed < 0) return probed;
+  *fate = fate_of(goal, &outcome->best, node);
+  if (*fate != NODE_OPEN || is_answered(goal, &outcome->best)) return CPROX_OK;
+
+  /* cut at the best point where it lies inside, else in the middle */
+  search_node child[SEARCH_MAX_CHILDREN];
+  const int children = oracle->split(oracle->self, node, child);
+  if (children < 0) return (cprox_status)children;
+  if (children == 0) {
+    *fate = NODE_STUCK;
+    return CPROX_OK;
+  }
+
+  /* the most promising child is looked at first */
+  int first = 0;
+  for (int k = 1; k < children; k++)
+    if (child[k].lower <= child[first].lower) first = k;
+  for (int k = 0; k < children; k++)
+    if (k != first && !enter(goal, oracle, &child[k], open, outcome)) return CPROX_MEMORY;
+  return enter(goal, oracle, &child[first], open, outcome) ? CPROX_OK : CPROX_MEMORY;
+}
+
+cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root,
+                        cprox_workspace *workspace, search_outcome *outcome) {
+  frontier open = {.workspace = workspace, .order = goal->order};
+  const bool best_first = goal->order == SEARCH_BEST_FIRST;
+  cprox_status status = CPROX_OK;
+  /* outcome->lower: the least bound of the nodes that left the search */
+  *outcome = (search_outcome){.lower = INFINITY, .free_until = INFINITY, .best = {.upper = INFINITY, .at = INFINITY}};
+  if (!frontier_push(&open, &root)) return CPROX_MEMORY;
+
+  while (open.count > 0) {
+    search_node node = frontier_pop(&open);
+
+    /* what is known already may settle it, or make another node the more promising one */
+    const bool settled_all = best_first && is_settled(goal, &outcome->best, &node); /* the others lie higher still */
+    if (fate_of(goal, &outcome->best, &node) == NODE_OPEN) {
+      const double bound = oracle->filter(oracle->self, &node, settling_bound(goal, &outcome->best));
+      if (bound > node.lower) node.lower = bound;
+    }
+    node_fate fate = fate_of(goal, &outcome->best, &node);
+    if (fate == NODE_OPEN && best_first && open.count > 0 && node.lower > open.nodes[0].lower) {
+      if (!frontier_push(&open, &node)) return CPROX_MEMORY;
+      continue;
+    }
+
+    if (fate == NODE_OPEN) {
+      const bool poll = goal->stop && outcome->nodes % STOP_POLL_INTERVAL == 0;
+      if (poll && goal->stop(goal->stop_user)) {
+        status = CPROX_STOPPED;
+      } else if (outcome->nodes >= goal->max_nodes) {
+        status = CPROX_BUDGET;
+      } else {
+        const cprox_status worked = work_on(goal, oracle, &node, &open, outcome, &fate);
+        if (worked < 0) return worked;
+        if (fate == NODE_OPEN && !is_answered(goal, &outcome->best)) continue;
+      }
+    }
+
+    /* the node leaves */
+    outcome->lower = lesser(node.lower, outcome->lower);
+    if (fate != NODE_SETTLED) outcome->free_until = lesser(outcome->free_until, node.start);
+    oracle->release(oracle->self, &node);
+    if (status != CPROX_OK || settled_all || is_answered(goal, &outcome->best)) break;
+  }
+
+  /* what is still open counts too */
+  for (size_t i = 0; i < open.count; i++) {
+    outcome->lower = lesser(open.nodes[i].lower, outcome->lower);
+    outcome->free_until = lesser(outcome->free_until, open.nodes[i].start);
+  }
+  if (goal->order == SEARCH_LEFT_TO_RIGHT)
+    outcome->free_until = lesser(outcome->free_until, horizon(goal, &outcome->best));
+  if (status == CPROX_OK && goal->limit < 0.0) {
+    const double upper = known_upper(goal, &outcome->best);
+    const double left = outcome->lower;
+    if ((goal->is_signed ? left : greater(left, 0.0)) < upper - search_width(goal, upper)) status = CPROX_PRECISION;
+  }
+  return status;
+}

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The one branch-and-bound engine. It knows intervals and bounds; what they are bounds of is its oracle's affair.
+ *
+ * Every interval that leaves the search leaves its lower bound in a running minimum, so that the interval returned is true
+ * whenever the search ends: converged, decided, out of budget or stopped. */
+#ifndef CPROX_BRANCH_AND_BOUND_SEARCH_H
+#define CPROX_BRANCH_AND_BOUND_SEARCH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "curve_proximity/cprox/base.h"
+
+/* Where a node is on one moving side: a sub-interval of one of its parts. */
+typedef struct search_interval {
+  double a, b;   /* in [0, 1] */
+  double error;  /* of the stored points */
+  uint32_t part; /* which part of the side */
+  int32_t slot;  /* where its points are stored, -1 for nowhere */
+} search_interval;
+
+/* A piece of the parameter range, or of two ranges at once. `lower` and `slack` are the engine's and the oracle's, the rest the
+ * oracle's alone. */
+typedef struct search_node {
+  double lower; /* the distance over the node is at least this, rounding included */
+  double slack; /* how much of that was given away to rounding: no bound on this node gets nearer than this */
+  double start; /* left to right: the parameter at which the node begins */
+  search_interval side[2];
+  uint32_t seen, seen_ball; /* the incumbents that its bound knows already */
+  uint32_t list, list_end;  /* against trees: the lanes that still matter to it, */
+  double rest;              /* and the least bound of those that do not */
+} search_node;
+
+enum { SEARCH_MAX_CHILDREN = 8 };
+
+/* The best point found so far. */
+typedef struct search_best {
+  double upper; /* the distance is at most this, rounding included */
+  double slack; /* how much of it is rounding */
+  double at;    /* left to right: the parameter where it was measured */
+} search_best;
+
+typedef struct search_oracle {
+  void *self;
+
+  /* A lower bound over the node from normals already known; never computes a new distance. `goal` is what would settle it. */
+  double (*filter)(void *self, search_node *node, double goal);
+
+  /* Measures the distance somewhere in the node, unless the best point lies inside already; improves *best and node->lower.
+   * CPROX_OK, or a negative status. */
+  cprox_status (*probe)(void *self, search_node *node, search_best *best);
+
+  /* Cuts a node into 2 to SEARCH_MAX_CHILDREN that inherit its bound; the node's storage passes on to them. Their number, or 0
+   * where the interval is as short as double allows (then the node is still the caller's to release), or a negative status. */
+  int (*split)(void *self, search_node *node, search_node *child);
+
+  /* Gives back a node's storage. */
+  void (*release)(void *self, const search_node *node);
+} search_oracle;
+
+/* Left to right finds the first parameter at which the distance comes within epsilon of the limit. Its oracle keeps node->start,
+ * and its best point is the leftmost one within epsilon of the limit; while there is none, any. */
+typedef enum search_order { SEARCH_BEST_FIRST, SEARCH_DEPTH_FIRST, SEARCH_LEFT_TO_RIGHT } search_order;
+
+/* When a node needs no more work. A distance search works on nodes that could hold less than the best point by more than the
+ * width; a verdict search (limit >= 0) on nodes that could come as close as the limit. */
+typedef struct search_goal {
+  search_order order;
+  double limit;   /* verdicts: delta; distance: -1 */
+  bool is_signed; /* distance: bounds below 0 are not as good as 0 */
+  double ceiling; /* distance: an upper bound known from elsewhere, or infinity */
+  double horizon; /* left to right: parameters from here on are of no interest; infinity: all are */
+  double epsilon, relative_epsilon;
+  uint32_t max_nodes;
+  bool (*stop)(void *user);
+  void *stop_user;
+} search_goal;
+
+typedef struct search_outcome {
+  double lower;
+  double free_until; /* left to right: the distance is above the limit at every smaller parameter; infinity: at all */
+  search_best best;
+  uint32_t nodes;
+} search_outcome;
+
+/* The width that the goal allows at this upper bound. */
+double search_width(const search_goal *goal, double upper);
+
+/* Searches from the root on; *outcome is always filled, and true, when the status is not negative. */
+cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root,
+                        cprox_workspace *workspace, search_outcome *outcome);
+
+#endif

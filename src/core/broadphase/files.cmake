@@ -1,0 +1,5 @@
+# The files of this room. A new file is one line here.
+target_sources(cprox_objects PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/obstacle_set.c
+  ${CMAKE_CURRENT_LIST_DIR}/traversal.c
+)

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The targets of a set, nearest box to the mover's curve first. */
+#ifndef CPROX_BROADPHASE_OBSTACLE_SET_H
+#define CPROX_BROADPHASE_OBSTACLE_SET_H
+
+#include "bvh/bvh.h"
+#include "curve_proximity/cprox/set.h"
+#include "problem/candidates.h"
+
+struct cprox_set {
+  cprox_target *targets;
+  size_t n;
+  tree *boxes;         /* round the targets, padding included; NULL where none has bounds */
+  vec3 *low, *high;    /* of the elements of the tree, about the centre */
+  uint32_t *of_box;    /* whose box that is */
+  uint32_t *unbounded; /* targets without a box */
+  size_t n_boxes, n_unbounded;
+  vec3 centre;
+  bool has_clock, has_elements, has_solids, has_curves; /* what not every mover goes with */
+};
+
+/* A node, a pack, or a target. */
+typedef struct set_entry {
+  double lower;
+  uint32_t at;
+  enum { SET_NODE, SET_BOX, SET_TARGET } is;
+} set_entry;
+
+typedef struct set_walk {
+  const cprox_set *set;
+  const question *q;
+  tree_stretch stretch;
+  double offset, slack;
+  size_t unbounded; /* how many of those were given out */
+  size_t count;     /* of the heap in the workspace */
+} set_walk;
+
+/* False where memory is out, here as there. q has been asked about its whole curve. */
+bool set_walk_begin(set_walk *w, const cprox_set *set, const question *q);
+
+/* The next target, if its lower bound is at most `most`; else *target is UINT32_MAX and *lower a bound of all that are left. */
+bool set_walk_next(set_walk *w, double most, uint32_t *target, double *lower);
+
+#endif

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Top down by the surface area heuristic (Wald 2007, binned): a range of elements is cut, the largest part again, until a node
+ * has its eight children. */
+#include <stdlib.h>
+
+#include "bvh/build.h"
+
+enum { BINS = 16, DEEPEST_BY_AREA = 24 };
+
+typedef struct builder {
+  tree *t;
+  const tree_source *source;
+  uint32_t *order; /* the elements, a range for each subtree */
+  box *boxes;      /* of the elements */
+} builder;
+
+static double axis_of(vec3 v, int axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+/* Twice the middle of an element's box. */
+static vec3 middle2(const builder *b, uint32_t element) {
+  return vec_add(b->boxes[element].low, b->boxes[element].high);
+}
+
+static double area_of(const box *b) {
+  const vec3 d = vec_sub(b->high, b->low);
+  return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+/* ---- where to cut ----------------------------------------------------------------------------------------------------- */
+
+/* A bin boundary across an axis. */
+typedef struct cut {
+  int axis, bin;
+  double low, scale;
+  double cost;
+} cut;
+
+static int bin_of(const builder *b, uint32_t element, const cut *c) {
+  const int bin = (int)((axis_of(middle2(b, element), c->axis) - c->low) * c->scale);
+  return bin < BINS ? bin : BINS - 1;
+}
+
+static double packs_for(size_t n) {
+  const size_t packs = (n + TREE_LANES - 1) / TREE_LANES;
+  return (double)packs;
+}
+
+/* The cheapest boundary across one axis. */
+static void try_axis(const builder *b, size_t first, size_t last, int axis, double low, double high, cut *best) {
+  cut c = {.axis = axis, .low = low, .scale = (double)BINS / (high - low)};
+  if (!isfinite(c.scale)) return;
+  box boxes[BINS], right[BINS];
+  size_t count[BINS] = {0}, behind[BINS];
+  for (int i = 0; i < BINS; i++) boxes[i] = box_empty();
+  for (size_t i = first; i < last; i++) {
+    const int bin = bin_of(b, b->order[i], &c);
+    box_add(&boxes[bin], &b->boxes[b->order[i]]);
+    count[bin]++;
+  }
+  right[BINS - 1] = boxes[BINS - 1];
+  behind[BINS - 1] = count[BINS - 1];
+  for (int i = BINS - 1; i-- > 0;) {
+    right[i] = right[i + 1];
+    box_add(&right[i], &boxes[i]);
+    behind[i] = behind[i + 1] + count[i];
+  }
+  box left = box_empty();
+  size_t before = 0;
+  for (int i = 0; i + 1 < BINS; i++) {
+    before += count[i];
+    box_add(&left, &boxes[i]);
+    /* a side with less than half a pack would waste memory, more than was reserved */
+    if (before < TREE_LANES / 2 || behind[i + 1] < TREE_LANES / 2) continue;
+    c.bin = i;
+    c.cost = area_of(&left) * packs_for(before) + area_of(&right[i + 1]) * packs_for(behind[i + 1]);
+    if (c.cost < best->cost) *best = c;
+  }
+}
+
+/* Moves the elements on the left of the cut to the front. */
+static size_t partition(builder *b, size_t first, size_t last, const cut *c) {
+  size_t m = first;
+  for (size_t i = first; i < last; i++) {
+    const uint32_t element = b->order[i];
+    if (bin_of(b, element, c) > c->bin) continue;
+    b->order[i] = b->order[m];
+    b->order[m++] = element;
+  }
+  return m;
+}
+
+/* Brings the m-th element of a range, by its middle along the axis, to place m, the lesser before it (Hoare's FIND). */
+static void select_middle(builder *b, size_t first, size_t last, size_t m, int axis) {
+  ptrdiff_t low = (ptrdiff_t)first, high = (ptrdiff_t)last - 1;
+  const ptrdiff_t wanted = (ptrdiff_t)m;
+  while (low < high) {
+    const double pivot = axis_of(middle2(b, b->order[wanted]), axis);
+    ptrdiff_t i = low, j = high;
+    while (i <= j) {
+      while (axis_of(middle2(b, b->order[i]), axis) < pivot) i++;
+      while (pivot < axis_of(middle2(b, b->order[j]), axis)) j--;
+      if (i > j) break;
+      const uint32_t moved = b->order[i];
+      b->order[i++] = b->order[j];
+      b->order[j--] = moved;
+    }
+    if (j < wanted) low = i;
+    if (wanted < i) high = j;
+  }
+}
+
+/* Cuts a range of more than a pack in two, neither empty; returns where. */
+static size_t cut_range(builder *b, size_t first, size_t last, int depth) {
+  box middles = box_empty();
+  for (size_t i = first; i < last; i++) {
+    const vec3 m = middle2(b, b->order[i]);
+    box_add(&middles, &(box){m, m});
+  }
+  const vec3 extent = vec_sub(middles.high, middles.low);
+  if (last - first > 2 * TREE_LANES && depth < DEEPEST_BY_AREA) {
+    cut best = {.cost = INFINITY};
+    for (int axis = 0; axis < 3; axis++)
+      if (axis_of(extent, axis) > 0.0)
+        try_axis(b, first, last, axis, axis_of(middles.low, axis), axis_of(middles.high, axis), &best);
+    if (isfinite(best.cost)) return partition(b, first, last, &best);
+  }
+  /* near the middle of the longest axis: at a whole pack, where that leaves at least half a one */
+  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  const size_t n = last - first, whole = (n / 2 + TREE_LANES - 1) / TREE_LANES * TREE_LANES;
+  const size_t m = first + (whole + TREE_LANES / 2 <= n ? whole : n / 2);
+  select_middle(b, first, last, m, axis);
+  return m;
+}
+
+/* ---- nodes ------------------------------------------------------------------------------------------------------------ */
+
+static uint32_t build_range(builder *b, size_t first, size_t last, int depth, box *all) {
+  if (last - first <= TREE_LANES) {
+    const uint32_t pack = (uint32_t)b->t->n_packs;
+    *all = tree_append_pack(b->t, b->source, b->order + first, last - first);
+    return pack | TREE_LEAF;
+  }
+  size_t at[TREE_LANES + 1] = {first, last}, n = 1;
+  while (n < TREE_LANES) {
+    size_t widest = 0;
+    for (size_t i = 1; i < n; i++)
+      if (at[i + 1] - at[i] > at[widest + 1] - at[widest]) widest = i;
+    if (at[widest + 1] - at[widest] <= TREE_LANES) break;
+    const size_t m = cut_range(b, at[widest], at[widest + 1], depth);
+    for (size_t i = ++n; i > widest + 1; i--) at[i] = at[i - 1];
+    at[widest + 1] = m;
+  }
+  const uint32_t node = (uint32_t)b->t->n_nodes++;
+  box boxes[TREE_LANES];
+  uint32_t children[TREE_LANES];
+  *all = box_empty();
+  for (size_t i = 0; i < n; i++) {
+    children[i] = build_range(b, at[i], at[i + 1], depth + 1, &boxes[i]);
+    box_add(all, &boxes[i]);
+  }
+  tree_fill_node(&b->t->nodes[node], boxes, children, n);
+  return node;
+}
+
+bool tree_build_by_area(tree *t, const tree_source *source) {
+  builder b = {.t = t, .source = source};
+  b.order = malloc(source->n * sizeof *b.order);
+  b.boxes = malloc(source->n * sizeof *b.boxes);
+  const bool made = b.order && b.boxes;
+  if (made) {
+    for (size_t i = 0; i < source->n; i++) {
+      b.order[i] = (uint32_t)i;
+      b.boxes[i] = element_box(source, (uint32_t)i);
+    }
+    box all;
+    const uint32_t root = build_range(&b, 0, source->n, 0, &all);
+    /* a single pack hangs from a node of its own */
+    if (root & TREE_LEAF) tree_fill_node(&t->nodes[t->n_nodes++], &all, &root, 1);
+  }
+  free(b.order);
+  free(b.boxes);
+  return made;
+}

@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "bvh/winding.h"
+
+#include <stdlib.h>
+
+/* The dipole of a lane's triangles. */
+typedef struct dipole {
+  vec3 normal; /* sum of the area vectors */
+  vec3 centre; /* weighted by area */
+  double area;
+  double radius; /* about the centre, of the lane's box */
+} dipole;
+
+struct winding {
+  size_t n;
+  dipole *dipoles; /* TREE_LANES a node */
+};
+
+/* Whole multiples of 4 pi are wanted: an error of this much of one is harmless. */
+static const double HARMLESS = 0.25;
+
+static const double FULL_ANGLE = 12.566370614359172;
+
+/* ---- building --------------------------------------------------------------------------------------------------------- */
+
+static void add_triangle(dipole *d, const vec3 v[3]) {
+  const vec3 normal = vec_scale(0.5, vec_cross(vec_sub(v[1], v[0]), vec_sub(v[2], v[0])));
+  const double area = vec_norm(normal);
+  d->normal = vec_add(d->normal, normal);
+  d->centre = vec_axpy(d->centre, area / 3.0, vec_add(v[0], vec_add(v[1], v[2])));
+  d->area += area;
+}
+
+static bool is_repeated(const tree *t, uint32_t pack, uint32_t lane) {
+  const uint32_t *ids = t->ids + (size_t)pack * TREE_LANES;
+  return lane > 0 && ids[lane] == ids[lane - 1];
+}
+
+static void add_pack(const tree *t, uint32_t pack, dipole *d) {
+  for (uint32_t lane = 0; lane < TREE_LANES && !is_repeated(t, pack, lane); lane++) {
+    vec3 v[3];
+    tree_corners(t, (tree_place){pack, lane}, v);
+    add_triangle(d, v);
+  }
+}
+
+/* Centres are sums here, until a lane is done. */
+static dipole sum_of_child(const winding *w, const tree *t, uint32_t child) {
+  dipole sum = {.area = 0.0};
+  if (child & TREE_LEAF) {
+    add_pack(t, child & ~TREE_LEAF, &sum);
+    return sum;
+  }
+  const tree_node *node = &t->nodes[child];
+  for (uint32_t l = 0; l < TREE_LANES; l++) {
+    if (!(node->lanes >> l & 1u)) continue;
+    const dipole *d = &w->dipoles[(size_t)child * TREE_LANES + l];
+    sum.normal = vec_add(sum.normal, d->normal);
+    sum.centre = vec_axpy(sum.centre, d->area, d->centre);
+    sum.area += d->area;
+  }
+  return sum;
+}
+
+static double farther(double centre, double low, double high) {
+  return fmax(fabs(centre - low), fabs(high - centre));
+}
+
+winding *winding_create(const tree *t) {
+  winding *w = calloc(1, sizeof *w);
+  if (!w) return NULL;
+  w->n = t->n_nodes;
+  w->dipoles = calloc(t->n_nodes * TREE_LANES, sizeof *w->dipoles);
+  if (!w->dipoles) {
+    winding_free(w);
+    return NULL;
+  }
+  /* children stand behind their parents */
+  for (size_t i = t->n_nodes; i-- > 0;) {
+    const tree_node *node = &t->nodes[i];
+    for (uint32_t l = 0; l < TREE_LANES; l++) {
+      if (!(node->lanes >> l & 1u)) continue;
+      dipole d = sum_of_child(w, t, node->child[l]);
+      const vec3 low = vec(node->low[0][l], node->low[1][l], node->low[2][l]);
+      const vec3 high = vec(node->high[0][l], node->high[1][l], node->high[2][l]);
+      d.centre = d.area > 0.0 ? vec_scale(1.0 / d.area, d.centre) : low;
+      d.radius = vec_norm(vec(farther(d.centre.x, low.x, high.x), farther(d.centre.y, low.y, high.y),
+                              farther(d.centre.z, low.z, high.z)));
+      w->dipoles[i * TREE_LANES + l] = d;
+    }
+  }
+  return w;
+}
+
+void winding_free(winding *w) {
+  if (!w) return;
+  free(w->dipoles);
+  free(w);
+}
+
+size_t winding_bytes_needed(size_t n_nodes) {
+  return sizeof(winding) + n_nodes * TREE_LANES * sizeof(dipole);
+}
+
+size_t winding_bytes(const winding *w) {
+  return w ? winding_bytes_needed(w->n) : 0;
+}
+
+/* ---- asking ----------------------------------------------------------------------------------------------------------- */
+
+/* The solid angle of a triangle seen from x (van Oosterom and Strackee 1983). */
+static double solid_angle(vec3 x, const vec3 v[3]) {
+  const vec3 a = vec_sub(v[0], x), b = vec_sub(v[1], x), c = vec_sub(v[2], x);
+  const double la = vec_norm(a), lb = vec_norm(b), lc = vec_norm(c);
+  const double volume = vec_dot(a, vec_cross(b, c));
+  return 2.0 * atan2(volume, la * lb * lc + vec_dot(a, b) * lc + vec_dot(b, c) * la + vec_dot(c, a) * lb);
+}
+
+static double pack_angle(const tree *t, uint32_t pack, vec3 x) {
+  double sum = 0.0;
+  for (uint32_t lane = 0; lane < TREE_LANES && !is_repeated(t, pack, lane); lane++) {
+    vec3 v[3];
+    tree_corners(t, (tree_place){pack, lane}, v);
+    sum += solid_angle(x, v);
+  }
+  return sum;
+}
+
+/* The winding number, dipoles standing for lanes that are beyond `far` radii; *error bounds what that costs. */
+static double winding_number(const winding *w, const tree *t, vec3 x, double far, double *error) {
+  uint32_t open[TREE_LANES * TREE_DEEPEST];
+  size_t count = 0;
+  double sum = 0.0;
+  *error = 0.0;
+  open[count++] = 0;
+  while (count > 0) {
+    const uint32_t at = open[--count];
+    if (at & TREE_LEAF) {
+      sum += pack_angle(t, at & ~TREE_LEAF, x);
+      continue;
+    }
+    const tree_node *node = &t->nodes[at];
+    for (uint32_t l = 0; l < TREE_LANES; l++) {
+      if (!(node->lanes >> l & 1u)) continue;
+      const dipole *d = &w->dipoles[(size_t)at * TREE_LANES + l];
+      const vec3 r = vec_sub(d->centre, x);
+      const double length = vec_norm(r), clear = length - d->radius;
+      if (!(length > far * d->radius && clear > 0.0)) {
+        open[count++] = node->child[l];
+        continue;
+      }
+      /* n·y/|y|^3 about the centre: its derivative by y is at most 2/|y|^3 */
+      sum += vec_dot(d->normal, r) / (length * length * length);
+      *error += 2.0 * d->area * d->radius / (clear * clear * clear);
+    }
+  }
+  *error /= FULL_ANGLE;
+  return sum / FULL_ANGLE;
+}
+
+bool winding_is_inside(const winding *w, const tree *t, vec3 x) {
+  double error = INFINITY, number = 0.0;
+  for (double far = 2.0; far < 100.0 && !(error < HARMLESS); far *= 3.0) number = winding_number(w, t, x, far, &error);
+  if (!(error < HARMLESS)) number = winding_number(w, t, x, INFINITY, &error);
+  return fabs(number) > 0.5;
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Covers of a curve by parts, each with a normal that separates it from a set by more than delta: the substance of a certificate. A
+ * cover is laid after the answer, at the answer's limit, and not collected from the search: the search settles nodes by tangent
+ * balls, bounding balls and other targets' distances, which no checker should have to know, and in an order of its own. */
+#ifndef CPROX_CERTIFICATE_PARTITION_H
+#define CPROX_CERTIFICATE_PARTITION_H
+
+#include "base/frame.h"
+#include "base/workspace.h"
+#include "certificate/certificate.h"
+#include "certificate/reach.h"
+
+/* What is to be proven, and what may help. */
+typedef struct cover {
+  const cprox_curve *curve;
+  reach_set set;   /* the radius of the mover belongs to its offset */
+  cprox_pose pose; /* of the set, composed */
+  double delta;
+  double witness, witness_on_set; /* counting parameters where mover and curve targets are nearest, -1: not known */
+  vec3 normal;                    /* unit, from the set to the mover there; (0,0,0): not known */
+  uint32_t budget;                /* parts that may be tried */
+  double shortest;                /* parts shorter than this are given up, relative to one piece */
+  cprox_workspace *workspace;
+  cprox_certificate *certificate;
+} cover;
+
+/* The world point of a curve at its counting parameter. */
+vec3 cover_point(const cprox_curve *curve, double sigma);
+
+/* Where to cut a part: at the witness where it lies inside, at a joint of pieces, or in the middle. NaN where it is too short. */
+double cover_cut(const cover *c, reach_part part, double witness);
+
+/* Writes the section: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY. */
+cprox_status cover_convex(cover *c);
+cprox_status cover_curves(cover *c);
+
+/* The radius of a ball about the origin of the shape's frame that lies inside it. */
+double cover_inner_radius(const convex *shape);
+
+/* Writes how a body's point is found that is near y, a point of the frame about its centre that is within error of the exact one;
+ * returns how far y is from it: 0 inside, infinity for none. */
+double cover_near_point(const cprox_body *body, cprox_certificate *certificate, vec3 y, double error);
+
+/* Writes that at the witness of the answer the distance is at most delta. */
+cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *answer);
+
+#endif

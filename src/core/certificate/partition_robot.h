@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Covers of a robot's motion by stretches, on each of which planes part the pairs that coarser stretches have left open: the
+ * substance of a robot's certificate. Laid after the answer, as those of curves (cover.h). */
+#ifndef CPROX_CERTIFICATE_PARTITION_ROBOT_H
+#define CPROX_CERTIFICATE_PARTITION_ROBOT_H
+
+#include "certificate/certificate.h"
+#include "robot_query/pair_state.h"
+
+typedef struct robot_cover {
+  robot_scene *scene;
+  double delta;
+  uint32_t budget; /* stretches that may be tried */
+  double shortest; /* stretches shorter than this part of a segment are given up */
+  cprox_certificate *certificate;
+} robot_cover;
+
+/* Writes the trees of all segments: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY. */
+cprox_status cover_robot(robot_cover *c);
+
+/* Writes that at the witness of the answer the distance is at most delta. */
+cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer);
+
+#endif

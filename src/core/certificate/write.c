@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A certificate for an answer: which sets there are, how precisely normals are written, how tight a claim can be proven. */
+#include "certificate/write.h"
+#include "base/rounding.h"
+#include "certificate/partition.h"
+#include "problem/validate.h"
+
+/* Parts shorter than this, relative to a piece, are given up: normals in single precision are for claims with room. */
+#define SHORTEST_SINGLE 0x1p-12
+#define SHORTEST_DOUBLE 0x1p-50
+
+/* By how much a claim that is too tight is lowered, in roundings of the sizes. */
+#define LOWERED 64.0
+
+typedef struct task {
+  const cprox_mover *mover;
+  const cprox_target *targets;
+  size_t n;
+  double delta;
+  const cprox_result *answer;
+  uint32_t budget;
+  double epsilon; /* what a distance may give away */
+  cprox_workspace *workspace;
+  cprox_certificate *certificate;
+} task;
+
+static size_t parts_of(const cprox_target *target) {
+  return target->body && target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
+}
+
+static bool is_known(const cprox_target *target) {
+  if (target->on_clock) return false;
+  if (!target->body) return !target->curve->arcs;
+  if (target->body->kind != CPROX_COMPOUND) return reach_is_known(target->body);
+  for (size_t i = 0; i < target->body->n_parts; i++)
+    if (!reach_is_known(target->body->parts[i].body)) return false;
+  return true;
+}
+
+/* The counting parameter at t. */
+static double count_at(const cprox_curve *curve, double t) {
+  size_t piece = 0;
+  while (piece + 1 < curve->n_pieces && curve->breaks[piece + 1] <= t) piece++;
+  const double t0 = curve->breaks[piece], t1 = curve->breaks[piece + 1];
+  return (double)piece + fmin(fmax((t - t0) / (t1 - t0), 0.0), 1.0);
+}
+
+/* The set that part of a target is, with the mover's ball, and what the answer knows of it. */
+static cover cover_of(const task *t, size_t target, size_t part, uint32_t width) {
+  const cprox_target *at = &t->targets[target];
+  cover c = {.curve = t->mover->curve,
+             .set = {.body = at->body, .curve = at->curve, .pose = {&at->pose}, .poses = 1},
+             .pose = at->pose,
+             .witness = -1.0,
+             .witness_on_set = -1.0,
+             .budget = t->budget,
+             .shortest = width == 4 ? SHORTEST_SINGLE : SHORTEST_DOUBLE,
+             .workspace = t->workspace,
+             .certificate = t->certificate};
+  c.set.offset = t->mover->radius + at->padding;
+  if (at->body && at->body->kind == CPROX_COMPOUND) {
+    const body_part *inner = &at->body->parts[part];
+    c.set.body = inner->body;
+    c.set.pose[1] = &inner->pose;
+    c.set.poses = 2;
+    c.pose = frame_compose(&at->pose, &inner->pose);
+  }
+  const cprox_result *r = t->answer;
+  if (r && r->target_index == (int32_t)target && r->target_part == (int32_t)part && isfinite(r->t)) {
+    c.witness = count_at(c.curve, r->t);
+    if (at->curve && isfinite(r->t_target)) c.witness_on_set = count_at(at->curve, r->t_target);
+    c.normal = r->normal;
+  }
+  return c;
+}
+
+static double size_of(const cprox_curve *curve, vec3 centre) {
+  double size = 0.0;
+  for (size_t i = 0; i < curve->n_pieces * (curve->degree + 1); i++)
+    size = fmax(size, vec_norm2(vec_sub(curve->points[i], centre)));
+  return sqrt(size);
+}
+
+/* What the rounding of the search is relative to, for the nearest target. */
+static double size_of_problem(const task *t, const cover *c) {
+  const double of_set = c->set.curve ? size_of(c->set.curve, c->set.curve->points[0]) : c->set.body->shape.scale;
+  return size_of(c->curve, c->pose.position) + of_set + c->set.offset + t->delta;
+}
+
+/* One attempt: the whole certificate, with normals of the width. */
+static cprox_status attempt(const task *t, uint32_t width, double delta) {
+  size_t sections = 0;
+  for (size_t i = 0; i < t->n; i++) sections += parts_of(&t->targets[i]);
+  certificate_begin(t->certificate, width, CPROX_CLAIM_APART, delta, (uint32_t)sections);
+  certificate_breaks(t->certificate, t->mover->curve->breaks, t->mover->curve->n_pieces);
+  for (size_t i = 0; i < t->n; i++) {
+    for (size_t part = 0; part < parts_of(&t->targets[i]); part++) {
+      cover c = cover_of(t, i, part, width);
+      c.delta = delta;
+      const cprox_status status = c.set.curve ? cover_curves(&c) : cover_convex(&c);
+      if (status != CPROX_OK) return status;
+    }
+  }
+  return t->certificate->failed ? CPROX_MEMORY : CPROX_OK;
+}
+
+/* Is the claim the lower bound of a distance? A verdict's limit may not be lowered but for rounding. */
+static bool is_of_distance(const task *t) {
+  return t->answer && t->answer->verdict == CPROX_UNDECIDED && t->delta == t->answer->lower;
+}
+
+static cprox_status certify_apart(const task *t) {
+  cprox_status status = attempt(t, 4, t->delta);
+  if (status > 0) status = attempt(t, 8, t->delta);
+  if (status <= 0 || !t->answer || t->answer->target_index < 0) return status;
+
+  /* the search's own bounds, which know tangent balls, may be tighter than planes can be */
+  const cover c = cover_of(t, (size_t)t->answer->target_index, (size_t)t->answer->target_part, 8);
+  const double rounding = LOWERED * ROUND_U * size_of_problem(t, &c);
+  if (t->delta > rounding) status = attempt(t, 8, t->delta - rounding);
+  const double given = fmax(t->epsilon, LOWERED * rounding);
+  if (status > 0 && is_of_distance(t) && t->delta > given) status = attempt(t, 8, t->delta - given);
+  return status;
+}
+
+/* The witness of the answer, or none. */
+static cprox_status certify_near(const task *t) {
+  const cprox_result *r = t->answer;
+  if (r->target_index < 0 || (size_t)r->target_index >= t->n || !isfinite(r->t)) return CPROX_PRECISION;
+  size_t section = (size_t)r->target_part;
+  for (size_t i = 0; i < (size_t)r->target_index; i++) section += parts_of(&t->targets[i]);
+  cover c = cover_of(t, (size_t)r->target_index, (size_t)r->target_part, 8);
+  c.delta = t->delta;
+  certificate_begin(t->certificate, 8, CPROX_CLAIM_NEAR, t->delta, 1);
+  return cover_near(&c, (uint32_t)section, r);
+}
+
+static cprox_status certify_curve(const task *t) {
+  const cprox_mover *mover = t->mover;
+  if (mover->body || !mover->curve)
+    return workspace_fail(t->workspace, CPROX_INVALID, "bodies that move have no certificates");
+  if (mover->curve->arcs)
+    return workspace_fail(t->workspace, CPROX_INVALID, "curves known by their arc length have no certificates");
+  for (size_t i = 0; i < t->n; i++)
+    if (!is_known(&t->targets[i]))
+      return workspace_fail(t->workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates", i);
+  return t->answer && t->answer->upper <= t->delta ? certify_near(t) : certify_apart(t);
+}
+
+cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
+                     const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
+                     cprox_certificate *certificate) {
+  const task t = {.mover = mover,
+                  .targets = targets,
+                  .n = n,
+                  .delta = delta,
+                  .answer = answer,
+                  .budget = options->max_nodes,
+                  .epsilon = answer ? fmax(options->epsilon, options->relative_epsilon * answer->upper) : 0.0,
+                  .workspace = workspace,
+                  .certificate = certificate};
+  certificate_clear(certificate);
+  const cprox_status status = mover->motion
+                                  ? certify_robot(mover, targets, n, delta, answer, options, workspace, certificate)
+                                  : certify_curve(&t);
+  if (status == CPROX_OK) return status;
+  certificate_clear(certificate);
+  if (status == CPROX_INVALID) return status; /* its reason is told */
+  if (status == CPROX_MEMORY) return workspace_fail(workspace, status, "no memory for a certificate");
+  return workspace_fail(
+      workspace, status,
+      status == CPROX_BUDGET ? "max_nodes were not enough for a certificate" : "too close to delta for a certificate");
+}
+
+cprox_status cprox_certify(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
+                           const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
+                           cprox_certificate *certificate) {
+  const cprox_options chosen = options ? *options : cprox_options_default();
+  workspace_clear(workspace);
+  cprox_status status = arguments_check_query(&mover, targets, n, &chosen, workspace);
+  if (status == CPROX_OK) status = arguments_check_delta(delta, workspace);
+  if (status != CPROX_OK) return status;
+  if (!certificate) return workspace_fail(workspace, CPROX_INVALID, "certificate is NULL: nowhere to put the proof");
+  return certify(&mover, targets, n, delta, answer, &chosen, workspace, certificate);
+}

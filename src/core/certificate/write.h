@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The end of a query that was asked for a certificate. */
+#ifndef CPROX_CERTIFICATE_WRITE_H
+#define CPROX_CERTIFICATE_WRITE_H
+
+#include "certificate/certificate.h"
+#include "curve_proximity/cprox/robot.h"
+
+/* Proves an answer whose arguments were checked, as cprox_certify() does. */
+cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
+                     const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
+                     cprox_certificate *certificate);
+
+/* The same for a robot along a motion; the reason is told of CPROX_INVALID alone, and what failed may have left something in the
+ * certificate. */
+cprox_status certify_robot(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
+                           const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
+                           cprox_certificate *certificate);
+
+/* Can the bodies on the robot's links be spoken of in a certificate? */
+bool certify_knows_robot(const cprox_robot *robot);
+
+#endif

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The claim that somewhere the distance is at most delta: the parameter, and a point of the target that is near enough. The checker
+ * looks at the exact points, so the one named here is drawn in by more than the rounding of both. */
+#include "base/rounding.h"
+#include "certificate/partition.h"
+#include "convex/gjk.h"
+
+/* Room for the rounding of points, of their turns, and of nearest points: near_rounding is at most 64. */
+#define ROOM 160.0
+
+/* The mover's point in the frame of the set, and how far the exact one may be from it. */
+static vec3 local_point(const cover *c, const frame *f, vec3 world, double *error) {
+  double turned = 0.0;
+  const vec3 y = frame_to_local(f, world, &turned);
+  const double n = (double)c->curve->degree;
+  *error = turned + cprox_curve_error(c->curve) + (6.0 * n + 20.0) * ROUND_U * vec_norm(world);
+  return y;
+}
+
+double cover_inner_radius(const convex *shape) {
+  const double *s = shape->size;
+  switch (shape->ops->kind) {
+    case CPROX_BOX:
+    case CPROX_ELLIPSOID: return fmin(s[0], fmin(s[1], s[2]));
+    case CPROX_CYLINDER: return fmin(s[0], s[1]);
+    case CPROX_CONE: return fmin(s[1], 0.999 * s[0] * s[1] / sqrt(s[0] * s[0] + 4.0 * s[1] * s[1]));
+    default: return s[0]; /* a sphere, a capsule */
+  }
+}
+
+static void write_vertex(cprox_certificate *c, const simplex *s, int i, bool inside) {
+  const bool used = i < s->n;
+  certificate_count(c, used ? (uint32_t)s->vertex[i].id : (uint32_t)s->vertex[0].id);
+  certificate_number(c, used && !inside ? s->weight[i] : 0.0);
+}
+
+double cover_near_point(const cprox_body *body, cprox_certificate *certificate, vec3 y, double error) {
+  const convex *shape = &body->shape;
+  const cprox_body_kind kind = body->kind;
+  convex_hint hint = {0};
+  if (kind == CPROX_POINT) return vec_norm(y) + error;
+  if (kind == CPROX_POLYTOPE || kind == CPROX_POLYGON) {
+    gjk_answer answer;
+    gjk_nearest(shape, y, &hint, &answer);
+    const bool inside = answer.distance < 0.0;
+    for (int i = 0; i < 4; i++) write_vertex(certificate, &answer.feature, i, inside);
+    return inside ? 0.0 : answer.distance + error;
+  }
+
+  convex_near near;
+  shape->ops->nearest(shape, y, &hint, &near);
+  vec3 v = vec(0, 0, 0);
+  if (near.distance > -error) {
+    const double drawn = error + ROOM * ROUND_U * (vec_norm(y) + shape->scale);
+    const double inner = cover_inner_radius(shape);
+    if (kind == CPROX_HALFSPACE)
+      v = vec_scale(near.distance + drawn, near.normal);
+    else if (drawn < 0.5 * inner)
+      v = vec_sub(y, vec_scale(1.0 - drawn / inner, near.point));
+    else
+      return INFINITY;
+  }
+  certificate_vector(certificate, v);
+  return vec_norm(v);
+}
+
+/* The point of a curve at its counting parameter; where two pieces meet that do not join, the one that is nearer to `by`. */
+static vec3 point_by(const cprox_curve *curve, double sigma, vec3 by) {
+  const vec3 right = cover_point(curve, sigma);
+  if (sigma != floor(sigma) || sigma < 1.0) return right;
+  const vec3 left = curve_piece(curve, (size_t)sigma - 1)[curve->degree];
+  return vec_norm2(vec_sub(left, by)) < vec_norm2(vec_sub(right, by)) ? left : right;
+}
+
+cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *answer) {
+  const vec3 world = point_by(c->curve, c->witness, answer->on_mover);
+  certificate_count(c->certificate, section);
+  certificate_number(c->certificate, answer->t);
+
+  double apart, error, size;
+  if (c->set.curve) {
+    const frame f = frame_create(&c->pose, vec(0, 0, 0));
+    const vec3 y = local_point(c, &f, world, &error);
+    const vec3 seen = frame_to_local(&f, answer->on_target, &error);
+    const vec3 z = point_by(c->set.curve, c->witness_on_set, seen);
+    const double n = (double)c->set.curve->degree;
+    error += cprox_curve_error(c->set.curve) + (6.0 * n + 20.0) * ROUND_U * vec_norm(z);
+    certificate_number(c->certificate, answer->t_target);
+    apart = vec_norm(vec_sub(y, z)) + error;
+    size = vec_norm(y);
+  } else {
+    const frame f = frame_create(&c->pose, c->set.body->centre);
+    const vec3 y = local_point(c, &f, world, &error);
+    apart = cover_near_point(c->set.body, c->certificate, y, error);
+    size = vec_norm(y) + c->set.body->shape.scale;
+  }
+
+  /* a claim that is too tight is lifted by what rounding may have cost */
+  const double room = error + ROOM * ROUND_U * (size + c->set.offset + c->delta);
+  const double needed = apart > 0.0 ? apart * (1.0 + 16.0 * ROUND_U) - c->set.offset : 0.0;
+  if (needed > c->delta - room && apart > 0.0) {
+    if (!(needed <= c->delta + 16.0 * room)) return CPROX_PRECISION;
+    certificate_restate(c->certificate, fmax(c->delta, needed + room));
+  }
+  return c->certificate->failed ? CPROX_MEMORY : CPROX_OK;
+}

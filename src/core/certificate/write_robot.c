@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A certificate for an answer about a robot along a motion. It is about hulls where there are meshes. */
+#include "base/rounding.h"
+#include "certificate/describe.h"
+#include "certificate/partition_robot.h"
+#include "certificate/write.h"
+#include "problem/problem.h"
+
+#define SHORTEST_SINGLE 0x1p-16
+#define SHORTEST_DOUBLE 0x1p-40
+enum { MOST_PAIRS = 0xffff };
+
+static bool knows_targets(const cprox_target *targets, size_t n) {
+  for (size_t i = 0; i < n; i++) {
+    const cprox_body *body = targets[i].body;
+    if (body->kind != CPROX_COMPOUND && !say_knows(body)) return false;
+    for (size_t k = 0; body->kind == CPROX_COMPOUND && k < body->n_parts; k++)
+      if (!say_knows(body->parts[k].body)) return false;
+  }
+  return true;
+}
+
+static cprox_status attempt(robot_scene *scene, uint32_t width, double delta, uint32_t budget, cprox_certificate *c) {
+  robot_cover cover = {.scene = scene, .delta = delta, .budget = budget, .certificate = c};
+  cover.shortest = width == 4 ? SHORTEST_SINGLE : SHORTEST_DOUBLE;
+  certificate_begin(c, width, CPROX_CLAIM_APART, delta, (uint32_t)scene->n_pairs);
+  const cprox_status status = cover_robot(&cover);
+  return status == CPROX_OK && c->failed ? CPROX_MEMORY : status;
+}
+
+/* What the search's bounds prove with planes that turn, planes that stand may not: the claim about a distance gives away epsilon. */
+static cprox_status certify_apart(robot_scene *scene, double delta, const cprox_result *answer, double epsilon,
+                                  uint32_t budget, cprox_certificate *c) {
+  cprox_status status = attempt(scene, 4, delta, budget, c);
+  if (status > 0) status = attempt(scene, 8, delta, budget, c);
+  const bool distance = answer && answer->verdict == CPROX_UNDECIDED && delta == answer->lower;
+  if (status > 0 && distance && delta > epsilon) status = attempt(scene, 4, delta - epsilon, budget, c);
+  return status;
+}
+
+cprox_status certify_robot(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
+                           const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
+                           cprox_certificate *certificate) {
+  question q = question_create(*mover, targets, n, delta, false, options, workspace);
+  q.options.max_rung = CPROX_RUNG_HULL;
+  if (!certify_knows_robot(mover->motion->robot) || !knows_targets(targets, n))
+    return workspace_fail(workspace, CPROX_INVALID, "a body of the question is of a kind that has no certificates");
+  robot_scene scene;
+  if (!robot_scene_begin(&scene, &q, 0, n)) return CPROX_MEMORY;
+  if (scene.n_pairs > MOST_PAIRS)
+    return workspace_fail(workspace, CPROX_INVALID, "%zu pairs are too many for a certificate", scene.n_pairs);
+  const double epsilon = answer ? fmax(options->epsilon, options->relative_epsilon * answer->upper) : 0.0;
+  const robot_cover near = {.scene = &scene, .delta = delta, .certificate = certificate};
+  if (answer && answer->upper <= delta) return cover_robot_near(&near, answer);
+  return certify_apart(&scene, delta, answer, epsilon, options->max_nodes, certificate);
+}

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The claim that somewhere along a motion two bodies are within delta: the place of the motion, a point of the robot's part, and how the
+ * other body's nearest point is found. Both are drawn in by more than the rounding of both programs. */
+#include <math.h>
+
+#include "base/rounding.h"
+#include "certificate/partition.h"
+#include "certificate/partition_robot.h"
+#include "certificate/write.h"
+#include "convex/gjk.h"
+
+/* Of the errors of places here: the checker's own are up to ten times as large. */
+static const double ERRORS = 64.0;
+#define ROOM 160.0
+
+/* By so many errors a claim may be lifted: a point that is drawn into a thin body moves by more than the error. */
+static const double LIFTED = 1024.0;
+
+/* ---- who and when --------------------------------------------------------------------------------------------------------- */
+
+/* The convex body that a part of the robot is, NULL of a mesh. */
+static const cprox_body *body_of_part(const cprox_robot *robot, int32_t part) {
+  size_t first = (size_t)part;
+  while (first > 0 && robot->parts[first - 1].geometry == robot->parts[part].geometry) first--;
+  const cprox_body *body = robot->given_geometries[robot->parts[part].geometry].body;
+  if (body->kind == CPROX_COMPOUND) body = body->parts[(size_t)part - first].body;
+  return body->mesh ? NULL : body;
+}
+
+static const cprox_body *body_of_obstacle(const robot_scene *s, int32_t obstacle) {
+  const robot_body *o = &s->obstacles[obstacle];
+  const cprox_body *body = s->q->targets[o->index].body;
+  if (body->kind == CPROX_COMPOUND) body = body->parts[o->part].body;
+  return body->mesh ? NULL : body;
+}
+
+/* The nearest pair of the two that the answer names, -1: there is none. The scene is at the place. */
+static int32_t nearest_pair(robot_scene *s, const cprox_result *answer, robot_gap *nearest) {
+  int32_t found = -1;
+  for (size_t i = 0; i < s->n_pairs; i++) {
+    const robot_pair *pair = &s->pairs[i];
+    const int32_t other = s->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
+    if (s->parts[pair->moving].body.index != answer->mover_part || other != answer->target_index) continue;
+    robot_gap gap;
+    robot_scene_measure(robot_scene_moving(s, pair), robot_scene_standing(s, pair), (robot_accuracy){0}, &gap);
+    if (gap.fault || (found >= 0 && gap.upper >= nearest->upper)) continue;
+    *nearest = gap;
+    found = (int32_t)i;
+  }
+  return found;
+}
+
+/* ---- points --------------------------------------------------------------------------------------------------------------- */
+
+/* Writes the point of a body that is nearest to y, drawn in; both are seen from the body's centre. NaN where there is none. */
+static vec3 write_point_of(const cprox_body *body, cprox_certificate *c, vec3 y) {
+  const convex *shape = &body->shape;
+  convex_hint hint = {0};
+  if (body->kind == CPROX_POINT) return vec(0, 0, 0);
+  if (body->kind == CPROX_POLYTOPE || body->kind == CPROX_POLYGON) {
+    gjk_answer answer;
+    gjk_nearest(shape, y, &hint, &answer);
+    vec3 mean = vec(0, 0, 0);
+    double sum = 0.0;
+    for (int i = 0; i < 4; i++) {
+      const bool used = i < answer.feature.n;
+      const int32_t id = answer.feature.vertex[used ? i : 0].id;
+      const double weight = used ? answer.feature.weight[i] : 0.0;
+      certificate_count(c, (uint32_t)id);
+      certificate_number(c, weight);
+      mean = vec_axpy(mean, weight, vec(shape->x[id], shape->y[id], shape->z[id]));
+      sum += weight;
+    }
+    return vec_scale(1.0 / sum, mean);
+  }
+  convex_near near;
+  shape->ops->nearest(shape, y, &hint, &near);
+  const double drawn = ROOM * ROUND_U * (vec_norm(y) + shape->scale), inner = cover_inner_radius(shape);
+  const vec3 x = near.distance < -drawn ? y : vec_scale(1.0 - drawn / inner, near.point);
+  certificate_vector(c, x);
+  return drawn < 0.5 * inner ? x : vec(NAN, NAN, NAN);
+}
+
+/* ---- the claim ------------------------------------------------------------------------------------------------------------ */
+
+cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) {
+  robot_scene *s = c->scene;
+  const cprox_motion *m = s->motion;
+  if (answer->target_index < 0 || !isfinite(answer->t)) return CPROX_PRECISION;
+  size_t segment = 0;
+  while (segment + 1 < m->n_segments && m->times[segment + 1] <= answer->t) segment++;
+  const double u = (answer->t - m->times[segment]) / (m->times[segment + 1] - m->times[segment]);
+  const double at = fmin(fmax(u, 0.0), 1.0);
+  robot_scene_enter(s, segment, at, at);
+  robot_gap gap;
+  const int32_t index = nearest_pair(s, answer, &gap);
+  if (index < 0) return CPROX_PRECISION;
+  const robot_pair *pair = &s->pairs[index];
+  const robot_body *moving = robot_scene_moving(s, pair), *standing = robot_scene_standing(s, pair);
+  const cprox_body *part = body_of_part(m->robot, pair->moving);
+  const cprox_body *other = s->self ? body_of_part(m->robot, pair->standing) : body_of_obstacle(s, pair->standing);
+  if (!part || !other) return CPROX_PRECISION;
+
+  cprox_certificate *to = c->certificate;
+  certificate_begin(to, 8, CPROX_CLAIM_NEAR, c->delta, (uint32_t)s->n_pairs);
+  certificate_count(to, (uint32_t)index);
+  certificate_count(to, (uint32_t)segment);
+  certificate_number(to, at);
+  const vec3 x =
+      write_point_of(part, to, placement_turn_back(&moving->side.at, vec_sub(gap.on_moving, moving->side.at.p)));
+  const vec3 world = placement_apply(&moving->side.at, x);
+  const double sizes = vec_norm(vec_sub(world, standing->side.at.p)) + moving->radius + standing->side.shape->scale;
+  const double error = ERRORS * (moving->side.error + standing->side.error) + ROOM * ROUND_U * sizes;
+  const double apart =
+      cover_near_point(other, to, placement_turn_back(&standing->side.at, vec_sub(world, standing->side.at.p)), error);
+
+  /* a claim that is too tight is lifted by what rounding may have cost */
+  const double paddings = moving->side.margin - part->shape.margin + standing->side.margin - other->shape.margin;
+  const double needed = apart > 0.0 ? apart + error - paddings : 0.0;
+  if (apart > 0.0 && needed > c->delta - error) {
+    if (!(needed <= c->delta + LIFTED * error)) return CPROX_PRECISION;
+    certificate_restate(to, fmax(c->delta, needed + error));
+  }
+  return isfinite(apart) && !to->failed ? CPROX_OK : to->failed ? CPROX_MEMORY : CPROX_PRECISION;
+}

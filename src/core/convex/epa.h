@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* How deep 0 lies inside a convex set that is known by its support function: a polytope that expands from within, and the planes
+ * that support the set from without (doc/convex-pairs.md). */
+#ifndef CPROX_CONVEX_EPA_H
+#define CPROX_CONVEX_EPA_H
+
+#include "convex/simplex.h"
+
+/* The set: its point farthest along the unit vector n; NaN in w ends the search. */
+typedef struct expand_set {
+  void *self;
+  simplex_vertex (*farthest)(void *self, vec3 n);
+} expand_set;
+
+typedef struct expand_goal {
+  double rounding; /* every w is within this of a point of the set, and every n·w of the set's maximum */
+  double width;    /* how wide [least, most] may be, rounding not counted */
+  uint32_t max_steps;
+} expand_goal;
+
+/* least <= depth <= most, but for rounding. */
+typedef struct expand_depth {
+  double least, most;
+  vec3 normal;   /* unit, outwards: the set reaches no farther than `most` along it */
+  simplex touch; /* the facet that `least` was measured to, and the weights of its point nearest to 0 */
+  bool exhausted;
+  uint32_t steps;
+} expand_depth;
+
+/* From a tetrahedron that encloses 0, or a triangle or an edge that 0 lies on. False where rounding hides that 0 is enclosed: then
+ * nothing is set. */
+bool expand_from(const expand_set *set, const simplex *start, const expand_goal *goal, expand_depth *depth);
+
+/* For a set of revolution about z, made of two shapes of revolution about their own z: from scratch. */
+bool expand_ring(const expand_set *set, const expand_goal *goal, expand_depth *depth);
+
+#endif

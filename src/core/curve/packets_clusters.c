@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Balls and blocks of them against boxes round stretches of a curve. */
+#include "base/rounding.h"
+#include "curve/packets.h"
+#include "simd/dispatch.h"
+
+void lanes_boxes(const lanes_chords *c, lanes_box boxes[STRETCHES]) {
+  for (size_t q = 0; q < STRETCHES; q++) {
+    const size_t first = q * STRETCH;
+    vec3 low = vec(c->x[first], c->y[first], c->z[first]), high = low;
+    for (size_t k = first + 1; k <= first + STRETCH; k++) {
+      low = vec(lesser(low.x, c->x[k]), lesser(low.y, c->y[k]), lesser(low.z, c->z[k]));
+      high = vec(greater(high.x, c->x[k]), greater(high.y, c->y[k]), greater(high.z, c->z[k]));
+    }
+    boxes[q] = (lanes_box){low, high};
+  }
+}
+
+LANES_DISPATCHED
+void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n, double radius, double slack,
+                      double *lower) {
+  const double *restrict x = balls->x, *restrict y = balls->y, *restrict z = balls->z;
+  const double *restrict reach = balls->reach, *restrict sizes = balls->sizes;
+  double *restrict out = lower;
+  for (size_t i = 0; i < balls->padded; i += BLOCK) {
+    double least[BLOCK] = {INFINITY, INFINITY, INFINITY, INFINITY};
+    for (size_t b = 0; b < n; b++) {
+      const vec3 low = boxes[b].low, high = boxes[b].high;
+#pragma omp simd
+      for (size_t l = 0; l < BLOCK; l++) {
+        const size_t k = i + l;
+        double dx = low.x - x[k] > x[k] - high.x ? low.x - x[k] : x[k] - high.x;
+        double dy = low.y - y[k] > y[k] - high.y ? low.y - y[k] : y[k] - high.y;
+        double dz = low.z - z[k] > z[k] - high.z ? low.z - z[k] : z[k] - high.z;
+        dx = dx > 0.0 ? dx : 0.0;
+        dy = dy > 0.0 ? dy : 0.0;
+        dz = dz > 0.0 ? dz : 0.0;
+        const double square = dx * dx + dy * dy + dz * dz;
+        least[l] = square < least[l] ? square : least[l];
+      }
+    }
+#pragma omp simd
+    for (size_t l = 0; l < BLOCK; l++) {
+      const size_t k = i + l;
+      const double distance = sqrt(least[l]), margin = radius + reach[k];
+      const double bound = distance - margin - ROUND_UP * (slack + 64.0 * ROUND_U * (distance + margin + sizes[k]));
+      out[k] = bound > out[k] ? bound : out[k];
+    }
+  }
+}
+
+LANES_DISPATCHED
+void lanes_block_bounds(const lanes_blocks *blocks, const lanes_box *boxes, size_t n, double radius, double slack,
+                        double *lower) {
+  const double *restrict low_x = blocks->low[0], *restrict low_y = blocks->low[1], *restrict low_z = blocks->low[2];
+  const double *restrict high_x = blocks->high[0], *restrict high_y = blocks->high[1];
+  const double *restrict high_z = blocks->high[2], *restrict sizes = blocks->sizes;
+  double *restrict out = lower;
+  for (size_t i = 0; i < blocks->padded; i += BLOCK) {
+    double least[BLOCK] = {INFINITY, INFINITY, INFINITY, INFINITY};
+    for (size_t b = 0; b < n; b++) {
+      const vec3 low = boxes[b].low, high = boxes[b].high;
+#pragma omp simd
+      for (size_t l = 0; l < BLOCK; l++) {
+        const size_t k = i + l;
+        double dx = low.x - high_x[k] > low_x[k] - high.x ? low.x - high_x[k] : low_x[k] - high.x;
+        double dy = low.y - high_y[k] > low_y[k] - high.y ? low.y - high_y[k] : low_y[k] - high.y;
+        double dz = low.z - high_z[k] > low_z[k] - high.z ? low.z - high_z[k] : low_z[k] - high.z;
+        dx = dx > 0.0 ? dx : 0.0;
+        dy = dy > 0.0 ? dy : 0.0;
+        dz = dz > 0.0 ? dz : 0.0;
+        const double square = dx * dx + dy * dy + dz * dz;
+        least[l] = square < least[l] ? square : least[l];
+      }
+    }
+#pragma omp simd
+    for (size_t l = 0; l < BLOCK; l++) {
+      const size_t k = i + l;
+      const double distance = sqrt(least[l]);
+      out[k] = distance - radius - ROUND_UP * (slack + 64.0 * ROUND_U * (distance + radius + sizes[k]));
+    }
+  }
+}

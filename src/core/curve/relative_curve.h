@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Two movers on one clock: where the first is, seen from the second, is a curve of the same parameter. */
+#ifndef CPROX_CURVE_RELATIVE_CURVE_H
+#define CPROX_CURVE_RELATIVE_CURVE_H
+
+#include "curve/curve.h"
+
+/* psi(t) - (R phi(t) + x) for t in [t0, t1], the pose being (R, x): pieces between the joints of both, of the higher degree, the
+ * rounding of the conversion in their errors. It lives in the workspace until the next one is made there. False where memory is
+ * out. Both curves have the same domain. */
+bool relative_create(const cprox_curve *first, const cprox_curve *second, const cprox_pose *pose, double t0, double t1,
+                     cprox_workspace *workspace, cprox_curve *relative);
+
+/* The point of a curve at t; at a joint, where it may jump, the end of the piece before if from_left is set. */
+vec3 relative_point(const cprox_curve *curve, double t, bool from_left, cprox_workspace *workspace);
+
+#endif

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "curve_query/contact_bvh.h"
+
+#include "base/rounding.h"
+
+/* Above 0, and no more: what a stretch that is known to be free is known to keep. */
+static const double BARELY = 1e-300;
+
+/* Pieces are cut no shorter than this to where contact is expected: where it does not come, little is lost. */
+static const double SHORTEST_AIM = 1.0 / 32.0;
+
+/* ---- measuring -------------------------------------------------------------------------------------------------------- */
+
+/* The nearer one; once there is contact, the earlier one. */
+static void consider(contact_tree *c, const tree_sight *sight, const search_best *bound) {
+  curve_tree *o = &c->base;
+  const search_best *best = &o->best_bound;
+  if (bound->upper <= 0.0 && bound->at < c->proven_bound.at) {
+    c->proven = *sight;
+    c->proven_bound = *bound;
+  }
+  const double contact = o->asked.epsilon;
+  const bool better =
+      best->upper > contact ? bound->upper < best->upper : bound->upper <= contact && bound->at < best->at;
+  if (!better) return;
+  o->best = *sight;
+  o->best_bound = *bound;
+  o->found = true;
+}
+
+static tree_sight measure(contact_tree *c, tree_place place, size_t piece, double s, vec3 y, double error) {
+  tree_sight sight;
+  search_best bound = curve_tree_measure(&c->base, place, piece, s, y, error, &sight);
+  bound.at = curve_side_parameter(&c->base.side, piece, s);
+  consider(c, &sight, &bound);
+  return sight;
+}
+
+/* Where the curve begins: inside of a solid, or somewhere from which a witness is taken. */
+static void begin(contact_tree *c) {
+  curve_tree *o = &c->base;
+  tree_sight sight;
+  const search_interval *part = &o->side.part;
+  const bool piece = curve_side_is_piece(&o->side, part);
+  const size_t first = piece ? curve_side_piece(&o->side, part) : 0;
+  const double s = piece ? part->a : 0.0;
+  if (curve_tree_begins_inside(o, &sight)) {
+    consider(c, &sight, &(search_best){.upper = -o->offset, .at = curve_side_parameter(&o->side, first, s)});
+    return;
+  }
+  curve_side_load(&o->side, first);
+  const vec3 y = curve_side_point(&o->side, s);
+  if (!vec_finite(y)) return;
+  const tree_hit hit = tree_nearest(o->tree, y, INFINITY);
+  measure(c, hit.at, first, s, y, curve_side_point_error(&o->side));
+}
+
+/* Of a stretch seen from its first point, by its own parameter. */
+static vec3 first_velocity(const tree_stretch *stretch) {
+  if (stretch->n < 2) return vec(0, 0, 0);
+  return vec_scale((double)(stretch->n - 1), vec(stretch->p[0][1], stretch->p[1][1], stretch->p[2][1]));
+}
+
+/* The list is gone through from the middle, and what remains from the left end, which says how far the way is free. */
+static cprox_status probe_piece(contact_tree *c, search_node *node) {
+  curve_tree *o = &c->base;
+  const search_interval *at = &node->side[0];
+  tree_stretch stretch;
+  double slack, least2;
+  tree_place nearest = {0, 0};
+  stretch.stepping = false;
+  curve_tree_stretch(o, node, curve_side_point(&o->side, 0.5 * (at->a + at->b)), &stretch, &slack);
+  cprox_status status = curve_tree_filter(o, node, &stretch, slack, &nearest, &least2, NULL);
+  if (status < 0 || node->list == node->list_end) return status;
+
+  const size_t stride = o->side.curve->degree + 1;
+  const double *points = points_pool_at(&o->pool, (size_t)at->slot);
+  const vec3 x = vec(points[0], points[stride], points[2 * stride]);
+  curve_tree_stretch(o, node, x, &stretch, &slack);
+  stretch.stepping = !o->side.curve->arcs;
+  double share = INFINITY;
+  status = curve_tree_filter(o, node, &stretch, slack, &nearest, &least2, stretch.stepping ? &share : NULL);
+  if (status < 0) return status;
+  if (isfinite(least2)) {
+    const tree_sight sight = measure(c, nearest, curve_side_piece(&o->side, at), at->a, x, at->error);
+    const double speed = -vec_dot(sight.near.normal, first_velocity(&stretch));
+    const double way = sight.near.distance - o->offset;
+    if (way > 0.0 && speed > 0.0) c->ahead = way / speed;
+  }
+  if (!stretch.stepping) return CPROX_OK;
+  c->share = share * (1.0 - 1e-12);
+  if (c->share >= 1.0) node->lower = fmax(node->lower, BARELY);
+  return CPROX_OK;
+}
+
+static cprox_status probe_range(contact_tree *c, search_node *node) {
+  curve_tree *o = &c->base;
+  const curve_capsule capsule = curve_capsule_at(o->side.curve, node->side[0].part);
+  double unused = 0.0, slack, least2;
+  const vec3 x = frame_to_local(&o->side.frame, vec_lerp(capsule.a, capsule.b, 0.5), &unused);
+  tree_stretch stretch;
+  tree_place nearest;
+  stretch.stepping = false;
+  curve_tree_stretch(o, node, x, &stretch, &slack);
+  return curve_tree_filter(o, node, &stretch, slack, &nearest, &least2, NULL);
+}
+
+static cprox_status probe(void *self, search_node *node, search_best *best) {
+  contact_tree *c = self;
+  curve_tree *o = &c->base;
+  o->nodes++;
+  if (!o->seeded) begin(c);
+  o->seeded = true;
+  c->share = 0.0;
+  c->ahead = INFINITY;
+  cprox_status status;
+  if (!curve_side_is_piece(&o->side, &node->side[0])) {
+    status = probe_range(c, node);
+  } else {
+    if (!curve_side_materialise(&o->side, &node->side[0])) return curve_side_trouble(&o->side);
+    status = probe_piece(c, node);
+  }
+  if (status < 0) return status;
+  if (curve_side_status(&o->side) < 0) return curve_side_status(&o->side);
+  *best = o->best_bound;
+  return CPROX_OK;
+}
+
+/* ---- cutting ---------------------------------------------------------------------------------------------------------- */
+
+static int split(void *self, search_node *node, search_node *child) {
+  enum { SHORTEST_STEP = 4 }; /* free stretches below 1/4 are not worth a cut of their own */
+  contact_tree *c = self;
+  curve_tree *o = &c->base;
+  search_interval *at = &node->side[0], half[2];
+  const bool piece = curve_side_is_piece(&o->side, at);
+  const bool stepping = piece && c->share * SHORTEST_STEP > 1.0 && c->share < 1.0;
+  if (node->list == node->list_end) return 0;
+  if (!piece) {
+    curve_side_cut_range(at, half);
+  } else {
+    /* twice as far as contact would be at this speed: over so short a piece the next step comes close to it */
+    const double s = stepping ? c->share : fmax(fmin(0.5, 2.0 * c->ahead), SHORTEST_AIM),
+                 cut = at->a + s * (at->b - at->a);
+    if (!(at->a < cut && cut < at->b)) return 0;
+    if (!curve_side_cut_piece(&o->side, at, cut, s, half)) return curve_side_trouble(&o->side);
+  }
+  int children = 0;
+  for (int k = 0; k < 2; k++) {
+    if (curve_side_is_empty(&o->side, &half[k])) continue;
+    child[children] = *node;
+    child[children].side[0] = half[k];
+    child[children].start = curve_side_start(&o->side, &half[k]);
+    /* the left part is free by the lines that lie below its bounds */
+    if (stepping && k == 0) child[children].lower = fmax(node->lower, BARELY);
+    children++;
+  }
+  return children;
+}
+
+/* ---- the oracle ------------------------------------------------------------------------------------------------------- */
+
+bool contact_tree_begin(contact_tree *c, search_node *root) {
+  c->base.best_bound.at = INFINITY;
+  c->proven_bound = (search_best){.upper = INFINITY, .at = INFINITY};
+  if (!curve_tree_root(&c->base, root)) return false;
+  root->start = curve_side_start(&c->base.side, &root->side[0]);
+  return true;
+}
+
+search_oracle contact_tree_oracle(contact_tree *c) {
+  search_oracle oracle = curve_tree_oracle(&c->base); /* filter and release see the base, which is the first member */
+  oracle.self = c;
+  oracle.probe = probe;
+  oracle.split = split;
+  return oracle;
+}
+
+/* How fast the curve approaches the element of a sight, by the piece's own parameter; <= 0: it does not. */
+static double approach(curve_tree *o, const tree_sight *sight) {
+  curve_side_load(&o->side, sight->piece);
+  const size_t degree = o->side.curve->degree;
+  const double *x = points_pool_at(&o->pool, o->side.root_slot), *y = x + degree + 1, *z = y + degree + 1;
+  vec3 velocity;
+  curve_bezier_evaluate(x, y, z, 1, degree, o->side.curve->binomial, sight->s, NULL, &velocity, NULL);
+  return -vec_dot(sight->near.normal, velocity);
+}
+
+void contact_tree_prove(contact_tree *c) {
+  enum { MOST_STEPS = 12 };
+  curve_tree *o = &c->base;
+  if (!(o->best_bound.upper <= o->asked.epsilon) || c->proven_bound.at <= o->best_bound.at || o->side.curve->arcs)
+    return;
+
+  /* into the ball round the nearest element, as deep as rounding could hide it */
+  const double found_at = c->proven_bound.at;
+  tree_sight sight = o->best;
+  search_best bound = o->best_bound;
+  for (int i = 0; i < MOST_STEPS && c->proven_bound.at == found_at; i++) {
+    const double speed = approach(o, &sight);
+    if (!(speed > 0.0)) break;
+    double next = sight.s + (bound.upper + 2.0 * bound.slack) / speed;
+    size_t piece = sight.piece;
+    if (next >= 1.0 && piece + 1 < o->side.curve->n_pieces) piece++, next = 0.0;
+    if (piece == sight.piece && !(next > sight.s)) break;
+    curve_side_load(&o->side, piece);
+    next = fmin(next, 1.0);
+    const vec3 y = curve_side_point(&o->side, next);
+    bound = curve_tree_measure(o, sight.place, piece, next, y, curve_side_point_error(&o->side), &sight);
+    bound.at = curve_side_parameter(&o->side, piece, next);
+    consider(c, &sight, &bound);
+  }
+  if (c->proven_bound.at < found_at || o->offset > 0.0) return;
+
+  /* without a radius: through the surface */
+  double until;
+  sight = o->best;
+  if (!curve_tree_meets(o, &sight, &until)) return;
+  bound = (search_best){.upper = 0.0, .at = curve_side_parameter(&o->side, sight.piece, until)};
+  consider(c, &sight, &bound);
+}

@@ -1,0 +1,469 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "curve_query/curve_bvh.h"
+
+#include "base/rounding.h"
+#include "bvh/winding.h"
+#include "curve/control.h"
+
+/* Slots of the pool that nodes never get. */
+enum { SLOT_ROOT, SLOT_SCRATCH, SLOT_SCRATCH_LEFT, SLOTS_RESERVED };
+
+enum { MOST_STEPS = 10, MOST_ELEMENTS = 8, LEAST_SEEDS = 5, MOST_SEEDS = 65, PIECES_A_SEED = 8 };
+
+/* Boxes whose diagonal is longer than these fractions of the stretch, squared, are opened at once: verdicts are settled by coarse ones
+ * more often. */
+static const double WIDE_DISTANCE2 = 0.5, WIDE_VERDICT2 = 2.0;
+
+/* An entry of a list: lanes of a node or a pack. */
+typedef struct tree_entry {
+  uint32_t at, lanes;
+} tree_entry;
+
+static bool is_piece(const curve_tree *o, const search_node *node) {
+  return curve_side_is_piece(&o->side, &node->side[0]);
+}
+
+/* ---- measuring -------------------------------------------------------------------------------------------------------- */
+
+static double measure_slack(const curve_tree *o, double error, double distance, vec3 y) {
+  const double sizes = vec_norm(y) + o->tree->scale + o->offset + distance;
+  return ROUND_UP * (error + TREE_ROUND * ROUND_U * sizes);
+}
+
+search_best curve_tree_measure(curve_tree *o, tree_place place, size_t piece, double s, vec3 y, double error,
+                               tree_sight *sight) {
+  o->probes++;
+  *sight = (tree_sight){.place = place, .y = y, .piece = piece, .s = s};
+  tree_element_near(o->tree, place, y, &sight->near);
+  const double slack = measure_slack(o, error, sight->near.distance, y);
+  return (search_best){.upper = sight->near.distance - o->offset + slack, .slack = slack};
+}
+
+static bool adopt_better(curve_tree *o, const tree_sight *sight, const search_best *bound) {
+  if (!(bound->upper < o->best_bound.upper)) return false;
+  o->best = *sight;
+  o->best_bound = *bound;
+  o->found = true;
+  return true;
+}
+
+/* ---- better points ---------------------------------------------------------------------------------------------------- */
+
+/* One step of Newton's method on the distance to the feature that is nearest at a sight. */
+static double newton_step(const tree_sight *sight, vec3 d1, vec3 d2) {
+  const tree_near *near = &sight->near;
+  const double slope = vec_dot(near->normal, d1);
+  double across2 = vec_norm2(d1) - slope * slope;
+  for (int k = 0; k < near->tangents; k++) {
+    const double along = vec_dot(near->e[k], d1);
+    across2 -= along * along;
+  }
+  const double bend = vec_dot(near->normal, d2);
+  /* a face has no bend of its own; there the height itself is aimed at where it falls to 0 */
+  const double curvature = bend + (near->tangents < 2 ? fmax(across2, 0.0) / near->distance : 0.0);
+  const double to_zero = slope != 0.0 ? -near->distance / slope : 0.0;
+  if (!(curvature > 0.0)) return to_zero;
+  const double to_least = -slope / curvature;
+  return fabs(to_zero) < fabs(to_least) ? to_zero : to_least;
+}
+
+/* Newton's method along the loaded piece from the best point, with its element held fixed. */
+static void polish_element(curve_tree *o) {
+  const size_t degree = o->side.curve->degree;
+  const double *x = points_pool_at(&o->pool, SLOT_ROOT), *y = x + degree + 1, *z = y + degree + 1;
+  const double error = curve_side_point_error(&o->side), *binomial = o->side.curve->binomial;
+  tree_sight sight = o->best;
+  vec3 at, d1, d2;
+  curve_bezier_evaluate(x, y, z, 1, degree, binomial, sight.s, &at, &d1, &d2);
+  for (int i = 0; i < MOST_STEPS && sight.near.distance > 0.0; i++) {
+    const double next = fmin(fmax(sight.s + newton_step(&sight, d1, d2), o->side.part.a), o->side.part.b);
+    if (!(fabs(next - sight.s) > 1e-16)) return;
+    curve_bezier_evaluate(x, y, z, 1, degree, binomial, next, &at, &d1, &d2);
+    const search_best bound = curve_tree_measure(o, sight.place, sight.piece, next, at, error, &sight);
+    if (!adopt_better(o, &sight, &bound) && i > 1) return;
+  }
+}
+
+/* On fine meshes the best point of one element lies over the next one: whose turn it is then. */
+static void polish(curve_tree *o) {
+  if (o->side.curve->arcs) return;
+  const double error = curve_side_point_error(&o->side);
+  for (int i = 0; i < MOST_ELEMENTS; i++) {
+    polish_element(o);
+    const tree_sight *best = &o->best;
+    const tree_hit hit = tree_nearest(o->tree, best->y, best->near.distance);
+    if (!hit.found || (hit.at.pack == best->place.pack && hit.at.lane == best->place.lane)) return;
+    tree_sight sight;
+    const search_best bound = curve_tree_measure(o, hit.at, best->piece, best->s, best->y, error, &sight);
+    if (!adopt_better(o, &sight, &bound)) return;
+  }
+}
+
+/* ---- proof of contact ------------------------------------------------------------------------------------------------- */
+
+/* The plane of the triangle has the curve's ends on its two sides, and the curve stays between the planes through the edges. */
+static bool goes_through(curve_tree *o, const tree_sight *sight, double from, double to) {
+  const size_t degree = o->side.curve->degree;
+  double *rest = points_pool_at(&o->pool, SLOT_SCRATCH), *left = points_pool_at(&o->pool, SLOT_SCRATCH_LEFT);
+  const double *whole = points_pool_at(&o->pool, SLOT_ROOT);
+  for (size_t i = 0; i < control_size(degree); i++) rest[i] = whole[i];
+  double error = o->side.root_error;
+  error += control_split(left, rest, degree, to, o->side.root_magnitude);
+  for (size_t i = 0; i < control_size(degree); i++) rest[i] = left[i];
+  error += control_split(left, rest, degree, from / to, o->side.root_magnitude);
+  /* from/to is rounded: what stands in `rest` is [from (1 + u), to] */
+
+  vec3 v[3];
+  tree_corners(o->tree, sight->place, v);
+  const vec3 m = vec_cross(vec_sub(v[1], v[0]), vec_sub(v[2], v[1]));
+  const double length = vec_norm(m);
+  if (!(length > 0.0)) return false;
+  const vec3 n = vec_scale(1.0 / length, m);
+  const double *x = rest, *y = x + degree + 1, *z = y + degree + 1;
+  const double size = o->side.root_magnitude + o->tree->scale;
+  /* n is off by the rounding of the cross product, which slivers magnify */
+  const double longest =
+      fmax(vec_norm(vec_sub(v[1], v[0])), fmax(vec_norm(vec_sub(v[2], v[1])), vec_norm(vec_sub(v[0], v[2]))));
+  const double room = 4.0 * error + 64.0 * ROUND_U * size * (1.0 + longest * longest / length);
+  const double first = vec_dot(n, vec_sub(vec(x[0], y[0], z[0]), v[0]));
+  const double last = vec_dot(n, vec_sub(vec(x[degree], y[degree], z[degree]), v[0]));
+  if (!((first > room && last < -room) || (first < -room && last > room))) return false;
+  for (int k = 0; k < 3; k++) {
+    const vec3 e = vec_sub(v[(k + 1) % 3], v[k]), inward = vec_cross(n, e);
+    const double norm = vec_norm(inward);
+    if (!(norm > 0.0)) return false;
+    if (!(control_least(rest, degree, vec_scale(1.0 / norm, inward)) - vec_dot(inward, v[k]) / norm > room))
+      return false;
+  }
+  return true;
+}
+
+/* Inside of the solid, and farther from its surface than rounding. */
+static bool is_inside(const curve_tree *o, vec3 y, double error) {
+  if (!o->body->winding || !winding_is_inside(o->body->winding, o->tree, y)) return false;
+  const tree_hit hit = tree_nearest(o->tree, y, INFINITY);
+  return hit.lower > measure_slack(o, error, hit.upper, y);
+}
+
+bool curve_tree_meets(curve_tree *o, tree_sight *sight, double *until) {
+  if (o->tree->kind != TREE_TRIANGLES || o->side.curve->arcs) return false;
+  curve_side_load(&o->side, sight->piece);
+  const double error = curve_side_point_error(&o->side);
+  enum { MOST_WIDTHS = 12 };
+  double step = 1e-12;
+  for (int i = 0; i < MOST_WIDTHS && step < 0.1; i++, step *= 10.0) {
+    const double from = fmax(sight->s - step, o->side.part.a), to = fmin(sight->s + step, o->side.part.b);
+    *until = to;
+    if (goes_through(o, sight, from, to)) return true;
+    if (!o->body->winding) continue;
+    for (int k = 0; k < 2; k++) {
+      const double s = k == 0 ? from : to;
+      const vec3 y = curve_side_point(&o->side, s);
+      if (!is_inside(o, y, error)) continue;
+      curve_tree_measure(o, sight->place, sight->piece, s, y, error, sight);
+      sight->inside = true;
+      *until = s;
+      return true;
+    }
+  }
+  return false;
+}
+
+bool curve_tree_begins_inside(curve_tree *o, tree_sight *sight) {
+  if (!o->body->winding) return false;
+  const search_interval *part = &o->side.part;
+  const bool piece = curve_side_is_piece(&o->side, part);
+  curve_side_load(&o->side, piece ? curve_side_piece(&o->side, part) : 0);
+  const double s = piece ? part->a : 0.0;
+  const vec3 y = curve_side_point(&o->side, s);
+  if (!vec_finite(y) || !is_inside(o, y, curve_side_point_error(&o->side))) return false;
+  *sight = (tree_sight){.y = y, .piece = o->side.root_piece, .s = s, .inside = true, .near = {.point = y}};
+  return true;
+}
+
+/* Nothing to subtract, and nearer than asked: only a proof of contact is better. */
+static void prove_contact(curve_tree *o) {
+  if (o->asked.limit != 0.0 || !(o->best_bound.upper > 0.0)) return;
+  tree_sight sight = o->best;
+  double until;
+  if (!curve_tree_meets(o, &sight, &until)) return;
+  const search_best met = {.upper = 0.0, .slack = o->best_bound.slack};
+  adopt_better(o, &sight, &met);
+}
+
+/* ---- seeds ------------------------------------------------------------------------------------------------------------ */
+
+static void seed_at(curve_tree *o, size_t piece, double s) {
+  curve_side_load(&o->side, piece);
+  const vec3 y = curve_side_point(&o->side, s);
+  const double error = curve_side_point_error(&o->side);
+  if (!vec_finite(y)) return;
+  const double bound = fmin(o->best_bound.upper, o->asked.ceiling) + o->offset;
+  const tree_hit hit = tree_nearest(o->tree, y, bound);
+  o->probes++;
+  if (!hit.found) return;
+  tree_sight sight;
+  const search_best at = curve_tree_measure(o, hit.at, piece, s, y, error, &sight);
+  adopt_better(o, &sight, &at);
+}
+
+void curve_tree_look(curve_tree *o, double t) {
+  const double *breaks = o->side.curve->breaks;
+  size_t piece = 0;
+  while (piece + 1 < o->side.curve->n_pieces && breaks[piece + 1] <= t) piece++;
+  seed_at(o, piece, fmin(fmax((t - breaks[piece]) / (breaks[piece + 1] - breaks[piece]), 0.0), 1.0));
+}
+
+/* Distances begin with a few points along the curve, verdicts with its ends. */
+static void seed(curve_tree *o) {
+  tree_sight sight;
+  if (curve_tree_begins_inside(o, &sight)) {
+    adopt_better(o, &sight, &(search_best){.upper = -o->offset, .slack = 0.0});
+    return;
+  }
+  const search_interval *part = &o->side.part;
+  const bool piece = curve_side_is_piece(&o->side, part), verdict = o->asked.limit >= 0.0;
+  const size_t first = piece ? curve_side_piece(&o->side, part) : 0, pieces = piece ? 1 : o->side.curve->n_pieces;
+  const size_t wanted = verdict ? 2 : LEAST_SEEDS + pieces / PIECES_A_SEED;
+  const size_t seeds = wanted < MOST_SEEDS ? wanted : MOST_SEEDS;
+  for (size_t i = 0; i < seeds && !(o->best_bound.upper <= o->good_enough); i++) {
+    const double at = part->a + (part->b - part->a) * (double)i / (double)(seeds - 1) * (double)pieces;
+    const size_t k = (size_t)fmin(at, (double)(pieces - 1));
+    seed_at(o, first + k, fmin(at - (double)k, part->b));
+  }
+  if (!o->found || verdict) return;
+  curve_side_load(&o->side, o->best.piece);
+  polish(o);
+}
+
+/* ---- lists ------------------------------------------------------------------------------------------------------------ */
+
+static tree_entry *list_reserve(const curve_tree *o, size_t n) {
+  return workspace_reserve(o->workspace, WORKSPACE_LISTS, n * sizeof(tree_entry));
+}
+
+void curve_tree_stretch(const curve_tree *o, const search_node *node, vec3 x, tree_stretch *stretch, double *slack) {
+  stretch->x = x;
+  const curve_hull hull = curve_side_hull(&o->side, &node->side[0], x, stretch->p[0], stretch->p[1], stretch->p[2]);
+  stretch->n = hull.n;
+  stretch->radius = hull.radius;
+  stretch->known = o->found && vec_norm2(o->best.near.normal) > 0.5;
+  stretch->normal = o->best.near.normal;
+  double reach2 = 0.0, along = INFINITY;
+  const vec3 n = stretch->normal;
+  for (size_t k = 0; k < hull.n; k++) {
+    const vec3 p = vec(stretch->p[0][k], stretch->p[1][k], stretch->p[2][k]);
+    const double square = vec_norm2(p), g = vec_dot(n, p);
+    reach2 = square > reach2 ? square : reach2;
+    along = g < along ? g : along;
+  }
+  stretch->along = along - hull.radius;
+  const double sizes = vec_norm(x) + o->tree->scale + sqrt(reach2) + hull.radius + o->offset;
+  *slack = ROUND_UP * (hull.error + TREE_ROUND * ROUND_U * sizes);
+}
+
+/* How wide the stretch is, squared. */
+static double width2_of(const tree_stretch *stretch) {
+  double sum = 0.0;
+  for (int k = 0; k < 3; k++) {
+    double low = stretch->p[k][0], high = low;
+    for (size_t i = 1; i < stretch->n; i++) {
+      low = fmin(low, stretch->p[k][i]);
+      high = fmax(high, stretch->p[k][i]);
+    }
+    const double extent = high - low + 2.0 * stretch->radius;
+    sum += extent * extent;
+  }
+  return sum;
+}
+
+/* What settles a node: as in branch_and_bound/search.c, with the best point of this very moment. */
+static double goal_of(const curve_tree *o) {
+  if (o->asked.limit >= 0.0) return o->asked.limit;
+  const double upper = fmin(o->best_bound.upper, o->asked.ceiling);
+  return upper - search_width(&o->asked, upper);
+}
+
+/* How much of the stretch a lane leaves free, by the line through its first bound. */
+static double free_share(const tree_lanes *lanes, uint32_t l, double offset, double slack) {
+  const double above = lanes->first[l] - offset - 4.0 * slack;
+  if (!(above > 0.0)) return 0.0;
+  return lanes->slope[l] < 0.0 ? above / -lanes->slope[l] : INFINITY;
+}
+
+/* Boxes that are wide against the stretch say little. Small ones serve as well as what is in them, but for the distances that only
+ * elements attain: a box of one point would stay closed for ever. */
+static bool is_worth_opening(const tree_node *node, const tree_lanes *lanes, uint32_t l, double wide2, double best2) {
+  if (lanes->width2[l] > wide2) return true;
+  const bool last = (node->child[l] & TREE_LEAF) != 0 || 64.0 * lanes->width2[l] < wide2;
+  return last && lanes->distance2[l] < best2;
+}
+
+cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_stretch *stretch, double slack,
+                               tree_place *nearest, double *least2, double *share) {
+  tree_entry open[TREE_LANES * TREE_DEEPEST];
+  size_t count = 0, end = node->list_end;
+  const double taken = o->offset + slack,
+               wide2 = (o->asked.limit >= 0.0 ? WIDE_VERDICT2 : WIDE_DISTANCE2) * width2_of(stretch), goal = goal_of(o);
+  const double best = fmax(o->best_bound.upper + o->offset, 0.0), best2 = best < 1e150 ? best * best : INFINITY;
+  double kept = INFINITY, rest = node->rest;
+  *least2 = INFINITY;
+  /* so much farther that what is left of it, less what was taken, is still above the goal */
+  stretch->beyond = goal + taken + 4.0 * ROUND_U * (fabs(goal) + taken);
+  tree_entry *list = list_reserve(o, end);
+  for (size_t i = node->list; count > 0 || i < node->list_end;) {
+    const tree_entry entry = count > 0 ? open[--count] : list[i++];
+    const bool leaf = (entry.at & TREE_LEAF) != 0;
+    tree_lanes lanes;
+    tree_measure(o->tree, entry.at, entry.lanes, stretch, &lanes);
+
+    /* drop what cannot matter, look into what is wide, keep the rest */
+    uint32_t kept_lanes = 0;
+    const double dropped = lanes.rest - taken;
+    rest = dropped < rest ? dropped : rest;
+    for (uint32_t left = lanes.live; left; left &= left - 1) {
+      const uint32_t l = (uint32_t)__builtin_ctz(left);
+      const double bound = lanes.bound[l] - taken;
+      if (leaf && lanes.distance2[l] < *least2) {
+        *least2 = lanes.distance2[l];
+        *nearest = (tree_place){entry.at & ~TREE_LEAF, l};
+      }
+      if (!leaf && is_worth_opening(&o->tree->nodes[entry.at], &lanes, l, wide2, best2)) {
+        const uint32_t child = o->tree->nodes[entry.at].child[l];
+        open[count++] = (tree_entry){child, child & TREE_LEAF ? TREE_ALL_LANES : o->tree->nodes[child].lanes};
+      } else {
+        kept = bound < kept ? bound : kept;
+        kept_lanes |= 1u << l;
+        if (share) *share = fmin(*share, free_share(&lanes, l, o->offset, slack));
+      }
+    }
+    if (!kept_lanes) continue;
+    list = list_reserve(o, end + 1);
+    if (!list || end >= UINT32_MAX)
+      return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for a list of elements");
+    list[end++] = (tree_entry){entry.at, kept_lanes};
+  }
+  node->list = node->list_end;
+  node->list_end = (uint32_t)end;
+  node->rest = rest;
+  node->slack = slack;
+  node->lower = fmax(node->lower, fmin(kept, rest));
+  return CPROX_OK;
+}
+
+/* ---- the contract ----------------------------------------------------------------------------------------------------- */
+
+static double filter(void *self, search_node *node, double goal) {
+  (void)self, (void)goal; /* a list is gone through once, in the probe */
+  return node->lower;
+}
+
+static cprox_status probe(void *self, search_node *node, search_best *best) {
+  curve_tree *o = self;
+  search_interval *at = &node->side[0];
+  o->nodes++;
+  if (!o->seeded) {
+    o->seeded = true;
+    seed(o);
+    if (curve_side_status(&o->side) < 0) return curve_side_status(&o->side);
+    *best = o->best_bound;
+    if (o->best_bound.upper <= o->good_enough) return CPROX_OK;
+  }
+
+  /* from the middle */
+  const bool piece = is_piece(o, node);
+  const double s = 0.5 * (at->a + at->b);
+  vec3 x;
+  if (piece) {
+    if (!curve_side_materialise(&o->side, at)) return curve_side_trouble(&o->side);
+    x = curve_side_point(&o->side, s);
+    if (curve_side_status(&o->side) < 0) return curve_side_status(&o->side);
+  } else {
+    const curve_capsule capsule = curve_capsule_at(o->side.curve, at->part);
+    double unused = 0.0;
+    x = frame_to_local(&o->side.frame, vec_lerp(capsule.a, capsule.b, 0.5), &unused);
+  }
+  tree_stretch stretch;
+  stretch.stepping = false;
+  double slack, least2;
+  tree_place nearest = {0, 0};
+  curve_tree_stretch(o, node, x, &stretch, &slack);
+  const cprox_status status = curve_tree_filter(o, node, &stretch, slack, &nearest, &least2, NULL);
+  if (status < 0) return status;
+
+  /* the distance in the middle */
+  if (piece && sqrt(least2) - o->offset < o->best_bound.upper) {
+    tree_sight sight;
+    const search_best bound =
+        curve_tree_measure(o, nearest, curve_side_piece(&o->side, at), s, x, curve_side_point_error(&o->side), &sight);
+    if (adopt_better(o, &sight, &bound) && bound.upper > o->good_enough && o->nodes > o->polish_after) polish(o);
+    if (o->best_bound.upper <= o->asked.epsilon) prove_contact(o);
+  }
+  *best = o->best_bound;
+  return CPROX_OK;
+}
+
+/* Where the best point cuts the node's own parameter, or a half where it does not lie well inside. */
+static double cut_of(const curve_tree *o, const search_node *node) {
+  const search_interval *at = &node->side[0];
+  if (!o->found || curve_side_piece(&o->side, at) != o->best.piece) return 0.5;
+  const double s = (o->best.s - at->a) / (at->b - at->a);
+  return s > 1e-9 && s < 1.0 - 1e-9 ? s : 0.5;
+}
+
+static int split(void *self, search_node *node, search_node *child) {
+  curve_tree *o = self;
+  search_interval *at = &node->side[0], half[2];
+  if (node->list == node->list_end) return 0;
+  if (!is_piece(o, node)) {
+    curve_side_cut_range(at, half);
+  } else {
+    const double s = cut_of(o, node), cut = s == 0.5 ? 0.5 * (at->a + at->b) : o->best.s;
+    if (!(at->a < cut && cut < at->b)) return 0;
+    if (!curve_side_cut_piece(&o->side, at, cut, s, half)) return curve_side_trouble(&o->side);
+  }
+  /* the half that is nearer to the best point comes last: the engine takes the last of equals first */
+  const double t = o->found ? curve_side_parameter(&o->side, o->best.piece, o->best.s) : -INFINITY;
+  const double middle = curve_side_is_empty(&o->side, &half[1]) ? INFINITY : curve_side_start(&o->side, &half[1]);
+  const int first = t < middle ? 1 : 0;
+  int children = 0;
+  for (int k = 0; k < 2; k++) {
+    const search_interval *part = &half[k == 0 ? first : 1 - first];
+    if (curve_side_is_empty(&o->side, part)) continue;
+    child[children] = *node;
+    child[children++].side[0] = *part;
+  }
+  return children;
+}
+
+static void release(void *self, const search_node *node) {
+  curve_tree *o = self;
+  points_pool_give(&o->pool, node->side[0].slot);
+}
+
+/* ---- the oracle ------------------------------------------------------------------------------------------------------- */
+
+bool curve_tree_begin(curve_tree *o, const cprox_curve *curve, const cprox_body *body, frame placed, double offset,
+                      cprox_workspace *workspace) {
+  *o = (curve_tree){.body = body,
+                    .tree = body->tree,
+                    .offset = offset + body->shape.margin,
+                    .asked = {.limit = -1.0, .ceiling = INFINITY},
+                    .good_enough = -INFINITY,
+                    .workspace = workspace};
+  o->best_bound.upper = INFINITY;
+  curve_side_begin(&o->side, curve, &placed, &o->pool, SLOT_ROOT);
+  return points_pool_begin(&o->pool, curve->degree, SLOTS_RESERVED, workspace);
+}
+
+bool curve_tree_root(curve_tree *o, search_node *root) {
+  tree_entry *list = list_reserve(o, 1);
+  if (!list) return false;
+  list[0] = (tree_entry){0, o->tree->nodes[0].lanes};
+  *root = (search_node){.lower = -INFINITY, .side[0] = o->side.part, .list_end = 1, .rest = INFINITY};
+  return true;
+}
+
+search_oracle curve_tree_oracle(curve_tree *o) {
+  return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
+}

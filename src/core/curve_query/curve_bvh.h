@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The oracle of a ball that rides a curve against a mesh, points or boxes: many elements in a tree, of which each interval keeps
+ * those that still matter to it. For searches that are depth first or left to right. doc/non-convex.md derives it. */
+#ifndef CPROX_CURVE_QUERY_CURVE_BVH_H
+#define CPROX_CURVE_QUERY_CURVE_BVH_H
+
+#include "bvh/bvh.h"
+#include "curve/subcurve.h"
+#include "shape/body.h"
+
+/* The nearest point of one element, and where on the curve it was seen. */
+typedef struct tree_sight {
+  tree_place place;
+  tree_near near;
+  vec3 y; /* the curve's point, local */
+  size_t piece;
+  double s;
+  bool inside; /* the curve's point lies inside a solid */
+} tree_sight;
+
+typedef struct curve_tree {
+  /* the problem */
+  curve_side side; /* seen from the body's frame */
+  const cprox_body *body;
+  const tree *tree;
+  cprox_curve relative; /* where the other is on the mover's clock: the mover's curve, seen from there */
+  double offset;        /* padding, the ball's radius, and that of points */
+  search_goal asked;
+  uint32_t polish_after; /* nodes before Newton is allowed to look for better points */
+  double good_enough;    /* an upper bound at or below this needs no better one */
+
+  /* what is known */
+  tree_sight best;
+  search_best best_bound;
+  bool found, seeded;
+  uint32_t probes, nodes;
+
+  /* memory */
+  cprox_workspace *workspace;
+  points_pool pool;
+} curve_tree;
+
+/* Makes the oracle ready; false where memory is out. `asked`, polish_after and good_enough are the caller's to set. */
+bool curve_tree_begin(curve_tree *o, const cprox_curve *curve, const cprox_body *body, frame placed, double offset,
+                      cprox_workspace *workspace);
+
+/* The node that is all that is asked about. False where memory is out. */
+bool curve_tree_root(curve_tree *o, search_node *root);
+
+/* Measures where the curve's parameter is t, into o->best and o->best_bound. */
+void curve_tree_look(curve_tree *o, double t);
+
+/* The functions of the contract in branch_and_bound/search.h, self being the curve_tree. */
+search_oracle curve_tree_oracle(curve_tree *o);
+
+/* ---- for curve_query/contact_bvh.c ---- */
+
+/* Goes through a node's list, measured as the stretch says: keeps the lanes that may come below the goal, raises node->lower. The
+ * nearest element that was met stands in *nearest, squared distance *least2, infinity for none. `share`, where not NULL, becomes
+ * the least fraction of the stretch that every lane leaves free. */
+cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_stretch *stretch, double slack,
+                               tree_place *nearest, double *least2, double *share);
+
+/* The stretch that a node is, seen from x; its rounding in *slack. */
+void curve_tree_stretch(const curve_tree *o, const search_node *node, vec3 x, tree_stretch *stretch, double *slack);
+
+/* Measures an element at a curve point y = psi(s) of the piece, which is within `error` of the exact one. */
+search_best curve_tree_measure(curve_tree *o, tree_place place, size_t piece, double s, vec3 y, double error,
+                               tree_sight *sight);
+
+/* Whether the curve certainly meets the body near a sight: it goes through the triangle before *until, or is inside of a solid there,
+ * to where the sight moves. */
+bool curve_tree_meets(curve_tree *o, tree_sight *sight, double *until);
+
+/* Whether it begins inside of a solid, for a search that has not begun; the sight is filled then. */
+bool curve_tree_begins_inside(curve_tree *o, tree_sight *sight);
+
+#endif

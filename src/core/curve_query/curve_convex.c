@@ -1,0 +1,392 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "curve_query/curve_convex.h"
+
+#include "base/rounding.h"
+#include "convex/depth.h"
+#include "curve/control.h"
+#include "curve/packets.h"
+#include "curve_query/newton_convex.h"
+
+/* Slots of the pool that nodes never get. */
+enum { SLOT_ROOT, SLOT_SCRATCH, SLOTS_RESERVED };
+
+/* The loaded piece lies in the plane z = 0 of a polygon's frame, exactly: then so does the true curve. */
+static bool piece_is_planar(curve_convex *o) {
+  if (o->planar_piece != o->side.root_piece) {
+    const size_t degree = o->side.curve->degree;
+    const double *z = points_pool_at(&o->pool, SLOT_ROOT) + 2 * (degree + 1);
+    o->planar_piece = o->side.root_piece;
+    o->planar = o->shape->ops->kind == CPROX_POLYGON && o->side.frame.about_z && !o->side.curve->arcs;
+    for (size_t i = 0; i <= degree && o->planar; i++) o->planar = z[i] == 0.0;
+  }
+  return o->planar;
+}
+
+static bool is_piece(const curve_convex *o, const search_node *node) {
+  return curve_side_is_piece(&o->side, &node->side[0]);
+}
+
+/* ---- bounds ----------------------------------------------------------------------------------------------------------- */
+
+/* What rounding can take from n·P - h(n): dot products, the support value, |n| not quite 1, the subtractions. */
+static double bound_slack(const curve_convex *o, double error, double magnitude, double bound) {
+  const convex *shape = o->shape;
+  const double sizes = magnitude + shape->scale + shape->margin + o->offset + fabs(bound);
+  return ROUND_UP * (error + ROUND_SUPPORT * ROUND_U * sizes + shape->slack);
+}
+
+/* Weak duality: along any unit n the body reaches no farther than h(n), so min n·P - h(n) is a lower bound. */
+void curve_convex_bound(const curve_convex *o, search_node *node, const curve_sight *sight) {
+  if (!isfinite(sight->support)) return;
+  const curve_reach reach = curve_side_reach(&o->side, &node->side[0], sight->normal);
+  const double bound = reach.least - sight->support;
+  const double slack = bound_slack(o, reach.error, reach.magnitude, bound);
+  node->lower = greater(bound - slack, node->lower);
+  node->slack = slack;
+}
+
+/* Whether bounds need not rise any more: the question is settled, or the best point is as near as the answer needs. */
+static bool is_enough(const curve_convex *o, double lower) {
+  return lower > o->goal || lower >= o->best_bound.upper - o->epsilon;
+}
+
+/* The ball or cylinder that touches the body at the best sight; found when it is first wanted. */
+static bool know_cover(curve_convex *o) {
+  if (!o->cover_known) {
+    const convex_ops *ops = o->shape->ops;
+    o->cover_usable = ops->cover && ops->cover(o->shape, &o->best.near, &o->cover);
+    o->cover_known = true;
+  }
+  return o->cover_usable;
+}
+
+/* A point or a ball is its own cover, from wherever it is seen. */
+static bool cover_is_the_body(const curve_convex *o) {
+  return !o->cover.cylinder && o->cover.radius == o->shape->margin;
+}
+
+/* Where the curve bends round a vertex or an edge, a plane is too weak; the distance from the cover's centre is not. */
+static void bound_by_cover(curve_convex *o, search_node *node) {
+  const double from_centre =
+      curve_side_distance_from(&o->side, &node->side[0], o->cover.centre, o->cover.cylinder ? &o->cover.axis : NULL,
+                               points_pool_at(&o->pool, SLOT_SCRATCH));
+  const double bound = from_centre - o->cover.radius - o->offset;
+  const double slack = ROUND_UP * (node->side[0].error + 4.0 * ROUND_U * (from_centre + o->cover.radius + o->offset));
+  node->lower = greater(bound - slack, node->lower);
+}
+
+/* Nodes touch at their ends, so the best point may belong to two of them. */
+static bool holds_best(const curve_convex *o, const search_node *node) {
+  return curve_side_piece(&o->side, &node->side[0]) == o->best.piece && node->side[0].a <= o->best.s &&
+         o->best.s <= node->side[0].b;
+}
+
+/* Where the best point cuts the node's own parameter, or -1 where it does not lie well inside. */
+static double best_inside(const curve_convex *o, const search_node *node) {
+  if (o->incumbent == 0 || !holds_best(o, node)) return -1.0;
+  const double s = (o->best.s - node->side[0].a) / (node->side[0].b - node->side[0].a);
+  return s > 1e-12 && s < 1.0 - 1e-12 ? s : -1.0;
+}
+
+static double filter(void *self, search_node *node, double goal) {
+  curve_convex *o = self;
+  o->goal = goal;
+  if (o->incumbent == 0) return node->lower;
+  if (node->side[0].slot >= 0) curve_side_load(&o->side, curve_side_piece(&o->side, &node->side[0]));
+  if (node->seen != o->incumbent) {
+    curve_convex_bound(o, node, &o->best);
+    node->seen = o->incumbent;
+  }
+  if (node->side[0].slot >= 0 && node->lower < goal && node->seen_ball != o->incumbent && o->nodes >= o->polish_after &&
+      know_cover(o) && (cover_is_the_body(o) || holds_best(o, node))) {
+    bound_by_cover(o, node);
+    node->seen_ball = o->incumbent;
+  }
+  return node->lower;
+}
+
+/* ---- probes ----------------------------------------------------------------------------------------------------------- */
+
+/* A distance from the core whose upper bound ends the search: its last digits are of no interest. */
+static double near_enough(const curve_convex *o, double rounding) {
+  const double d = o->good_enough + o->offset;
+  return d > 0.0 ? d + o->shape->margin - 2.0 * (rounding + 4.0 * ROUND_U * (d + o->shape->margin)) : 0.0;
+}
+
+cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sight *sight,
+                                  search_best *bound) {
+  const cprox_status usable = curve_side_status(&o->side);
+  if (usable < 0) return usable;
+  o->probes++;
+  sight->piece = piece, sight->s = s, sight->y = y;
+  const double sizes = vec_norm(y) + o->shape->scale + o->shape->margin;
+  const double rounding = error + o->shape->ops->near_rounding * ROUND_U * sizes + o->shape->slack;
+  o->hint.near_enough = near_enough(o, rounding);
+  if (piece_is_planar(o))
+    convex_polygon_nearest_in_plane(o->shape, y, &sight->near);
+  else
+    o->shape->ops->nearest(o->shape, y, &o->hint, &sight->near);
+  if (o->is_signed && sight->near.distance <= 0.0 && vec_norm2(sight->near.normal) == 0.0)
+    depth_of_point(o->shape, y, 0.1 * o->epsilon, &sight->near);
+  const double d = sight->near.distance;
+  if (isnan(d))
+    return workspace_fail(o->workspace, CPROX_INVALID, "the support callback did not return a point of its body");
+
+  /* the surface point is attained, so the distance to it is an upper bound but for rounding */
+  bound->slack = ROUND_UP * (rounding + 2.0 * ROUND_U * (fabs(d) + o->offset));
+  bound->upper = d - o->offset + bound->slack;
+
+  /* any direction near the normal will do for the lower bounds, as long as its length is 1 */
+  sight->normal = sight->near.normal;
+  const double length2 = vec_norm2(sight->normal);
+  if (fabs(length2 - 1.0) > 4.0 * ROUND_U && length2 > 0.0)
+    sight->normal = vec_scale(1.0 / sqrt(length2), sight->normal);
+  sight->support = INFINITY;
+  if (length2 > 0.0) {
+    const double height = sight->near.height_known
+                              ? sight->near.height
+                              : o->shape->ops->support(o->shape, sight->normal, &o->support_hint, NULL);
+    sight->support = height + o->shape->margin + o->offset;
+  }
+  return CPROX_OK;
+}
+
+void curve_convex_adopt(curve_convex *o, const curve_sight *sight, search_best bound) {
+  o->best = *sight;
+  o->best_bound = bound;
+  o->incumbent++;
+  o->cover_known = false;
+}
+
+/* Measures at s of the loaded piece, and goes on from there by Newton's steps, the first no longer than `step`. */
+static cprox_status probe_at(curve_convex *o, size_t piece, double s, double step) {
+  const double *points = points_pool_at(&o->pool, SLOT_ROOT);
+  curve_jet jet;
+  if (o->side.curve->arcs)
+    jet.x = curve_side_point(&o->side, s); /* it has no derivatives */
+  else
+    jet = polish_jet(o, points, s);
+  search_best bound = {.upper = INFINITY};
+  const cprox_status status =
+      curve_convex_measure(o, piece, s, jet.x, curve_side_point_error(&o->side), &o->last, &bound);
+  if (status < 0 || bound.upper >= o->best_bound.upper) return status;
+  curve_convex_adopt(o, &o->last, bound);
+  const bool worthwhile = bound.upper > o->good_enough && o->nodes > o->polish_after;
+  return worthwhile ? polish(o, points, &jet, step) : CPROX_OK;
+}
+
+/* From the frame's origin, about which the body stands, towards the chord of a range: a normal that is had without a measurement.
+ * False where the chord meets the origin. */
+static bool look_from_origin(curve_convex *o, const search_node *node) {
+  const vec3 y = curve_side_chord_from_origin(&o->side, &node->side[0]);
+  const double length2 = vec_norm2(y);
+  if (!(length2 > 0.0 && isfinite(length2))) return false;
+  o->last.normal = vec_scale(1.0 / sqrt(length2), y);
+  o->last.support =
+      o->shape->ops->support(o->shape, o->last.normal, &o->support_hint, NULL) + o->shape->margin + o->offset;
+  return true;
+}
+
+/* Where the loaded piece comes nearest to the frame's origin, about which the body stands, as far as a few points tell. */
+static double first_look(const curve_convex *o) {
+  const size_t degree = o->side.curve->degree;
+  const double *basis = lanes_basis(degree, o->workspace), *x = points_pool_at(&o->pool, SLOT_ROOT);
+  return basis ? lanes_first_look(basis, x, x + degree + 1, x + 2 * (degree + 1), degree) : 0.5;
+}
+
+/* Many pieces are so short that their chords tell as much as points on them. */
+static bool is_long(const curve_convex *o) {
+  return o->side.curve->n_pieces > CHORDS;
+}
+
+/* The first measurement is on the piece that the nearer chords lead to. Of what a range falls into bounds are had without any; a curve
+ * that has no chords is measured at the point where two ranges meet, which is a control point. */
+static cprox_status probe_range(curve_convex *o, const search_node *node) {
+  if (o->incumbent == 0 && !o->side.curve->arcs) {
+    double s;
+    const size_t nearest = curve_side_nearest_piece(&o->side, &node->side[0], &s);
+    curve_side_load(&o->side, nearest);
+    return probe_at(o, nearest, is_long(o) ? s : first_look(o), 0.5 / CHORDS);
+  }
+  if (o->incumbent > 0) {
+    o->last = o->best;
+    return CPROX_OK;
+  }
+  size_t piece;
+  double s, error;
+  const vec3 y = curve_side_junction(&o->side, &node->side[0], &piece, &s, &error);
+  search_best bound = {.upper = INFINITY};
+  const cprox_status status = curve_convex_measure(o, piece, s, y, error, &o->last, &bound);
+  if (status == CPROX_OK && bound.upper < o->best_bound.upper) curve_convex_adopt(o, &o->last, bound);
+  return status;
+}
+
+/* Where the interval's lowest control point along the best normal pulls most, but well inside. Without a normal, where the piece comes
+ * nearest to the frame's origin, about which the body stands, as far as a few points tell, or the middle. */
+static double promising(const curve_convex *o, const search_interval *at, double *step) {
+  double fraction = 0.5;
+  *step = 0.25 * (at->b - at->a);
+  if (o->incumbent == 0 && !o->side.curve->arcs && at->a == 0.0 && at->b == 1.0) {
+    *step = 0.5 / CHORDS;
+    return first_look(o);
+  }
+  if (o->incumbent > 0 && vec_norm2(o->best.normal) > 0.0) {
+    const size_t degree = o->side.curve->degree;
+    const size_t lowest = control_lowest(points_pool_at(&o->pool, (size_t)at->slot), degree, o->best.normal);
+    fraction = lesser(greater((double)lowest / (double)degree, 0.125), 0.875);
+  }
+  return at->a + fraction * (at->b - at->a);
+}
+
+static cprox_status probe_piece(curve_convex *o, const search_node *node) {
+  const search_interval *at = &node->side[0];
+  double step;
+  const double s = promising(o, at, &step);
+  return probe_at(o, curve_side_piece(&o->side, at), s, step);
+}
+
+cprox_status curve_convex_seed(curve_convex *o, size_t piece, double s, search_node *root) {
+  o->nodes++;
+  curve_side_load(&o->side, piece);
+  const cprox_status status = probe_at(o, piece, s, 1.0 / 16);
+  if (status < 0 || o->incumbent == 0 || o->best_bound.upper <= o->good_enough) return status;
+  if (is_piece(o, root) && !curve_side_materialise(&o->side, &root->side[0])) return curve_side_trouble(&o->side);
+  curve_convex_bound(o, root, &o->best);
+  root->seen = o->incumbent;
+  return CPROX_OK;
+}
+
+static cprox_status probe(void *self, search_node *node, search_best *best) {
+  curve_convex *o = self;
+  o->nodes++;
+  const bool piece = is_piece(o, node);
+  if (piece) {
+    if (!curve_side_materialise(&o->side, &node->side[0])) return curve_side_trouble(&o->side);
+    if (best_inside(o, node) >= 0.0) {
+      if (node->seen != o->incumbent) curve_convex_bound(o, node, &o->best);
+      node->seen = o->incumbent;
+      o->last = o->best;
+      return CPROX_OK;
+    }
+  }
+  const uint32_t before = o->incumbent;
+  const cprox_status status = piece ? probe_piece(o, node) : probe_range(o, node);
+  if (status < 0) return status;
+  *best = o->best_bound;
+  /* a plane never rises above the best point's distance: the halves will need no less */
+  const bool decisive = o->goal < o->best_bound.upper - 2.0 * o->epsilon;
+  if (piece && !decisive && best_inside(o, node) >= 0.0) return CPROX_OK;
+
+  /* the probe's own normal, and the best one if it is another: one step further is the best of a probe that was not polished */
+  curve_convex_bound(o, node, &o->last);
+  if (node->seen != o->incumbent &&
+      !(o->incumbent == before + 1 && o->last.s == o->best.s && o->last.piece == o->best.piece))
+    curve_convex_bound(o, node, &o->best);
+  node->seen = o->incumbent;
+  return CPROX_OK;
+}
+
+/* ---- splits ----------------------------------------------------------------------------------------------------------- */
+
+/* Children know the best normal from birth, and the last where that leaves something open. */
+static void bound_child(curve_convex *o, search_node *child) {
+  curve_convex_bound(o, child, &o->best);
+  if (!is_enough(o, child->lower) && !vec_equal(o->last.normal, o->best.normal)) curve_convex_bound(o, child, &o->last);
+  child->seen = o->incumbent;
+}
+
+/* A child that is this part of the node; the number of children then. */
+static int add_child(curve_convex *o, const search_node *node, const search_interval *part, search_node *child, int n) {
+  child[n] = *node;
+  child[n].side[0] = *part;
+  child[n].seen_ball = 0;
+  bound_child(o, &child[n]);
+  return n + 1;
+}
+
+/* Raises all of them by the normal of a sight. */
+static void bound_fan(const curve_convex *o, search_node *child, size_t n, const curve_sight *sight) {
+  if (!isfinite(sight->support)) return;
+  double least[CURVE_PACK];
+  const curve_reach reach = curve_side_fan_reach(&o->side, &child[0].side[0], sight->normal, least);
+  for (size_t k = 0; k < n; k++) {
+    const double bound = least[k] - sight->support;
+    const double slack = bound_slack(o, reach.error, reach.magnitude, bound);
+    child[k].lower = greater(bound - slack, child[k].lower);
+    child[k].slack = slack;
+  }
+}
+
+/* And by the ball about the frame's origin that the body lies in: each from its own side, as no one plane sees them. */
+static void bound_fan_by_ball(const curve_convex *o, search_node *child, size_t n) {
+  const convex *shape = o->shape;
+  if (shape->ops->kind == CPROX_HALFSPACE) return;
+  double least[CURVE_PACK];
+  const curve_reach reach = curve_side_fan_distance(&o->side, &child[0].side[0], least);
+  const double radius = shape->scale + o->offset;
+  const double slack = ROUND_UP * (reach.error + 64.0 * ROUND_U * (reach.magnitude + radius) + shape->slack);
+  for (size_t k = 0; k < n; k++) child[k].lower = greater(least[k] - radius - slack, child[k].lower);
+}
+
+/* Whether something is left that bounds have not settled. */
+static bool is_open(const curve_convex *o, const search_node *child, size_t n) {
+  for (size_t k = 0; k < n; k++)
+    if (!is_enough(o, child[k].lower)) return true;
+  return false;
+}
+
+/* A range of pieces falls into as many as are bounded at once: a bound costs much less than a measurement. What the ball leaves open the
+ * best normal may settle, and what that leaves the one from the body's middle. */
+static int split_range(curve_convex *o, const search_node *node, search_node *child) {
+  search_interval part[CURVE_PACK];
+  const size_t n = curve_side_fan(&o->side, &node->side[0], part);
+  for (size_t k = 0; k < n; k++) {
+    child[k] = *node;
+    child[k].side[0] = part[k];
+    child[k].seen_ball = 0;
+    child[k].seen = o->incumbent;
+  }
+  bound_fan_by_ball(o, child, n);
+  if (is_open(o, child, n)) bound_fan(o, child, n, &o->best);
+  if (is_open(o, child, n) && look_from_origin(o, node)) bound_fan(o, child, n, &o->last);
+  return (int)n;
+}
+
+static int split(void *self, search_node *node, search_node *child) {
+  curve_convex *o = self;
+  if (!is_piece(o, node)) return split_range(o, node, child);
+
+  /* at the witness point, or in the middle */
+  search_interval *at = &node->side[0], half[2];
+  const double inside = best_inside(o, node);
+  const double cut = inside < 0.0 ? 0.5 * (at->a + at->b) : o->best.s;
+  if (!(at->a < cut && cut < at->b)) return 0;
+  if (!curve_side_cut_piece(&o->side, at, cut, inside < 0.0 ? 0.5 : inside, half)) return curve_side_trouble(&o->side);
+  int children = 0;
+  for (int k = 0; k < 2; k++) children = add_child(o, node, &half[k], child, children);
+  return children;
+}
+
+static void release(void *self, const search_node *node) {
+  curve_convex *o = self;
+  points_pool_give(&o->pool, node->side[0].slot);
+}
+
+/* ---- the oracle ------------------------------------------------------------------------------------------------------- */
+
+bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex *shape, frame placed, double offset,
+                        cprox_workspace *workspace) {
+  *o = (curve_convex){.shape = shape, .offset = offset, .workspace = workspace, .planar_piece = SIZE_MAX};
+  o->best_bound.upper = INFINITY;
+  o->good_enough = -INFINITY;
+  curve_side_begin(&o->side, curve, &placed, &o->pool, SLOT_ROOT);
+  return points_pool_begin(&o->pool, curve->degree, SLOTS_RESERVED, workspace);
+}
+
+search_node curve_convex_root(const curve_convex *o) {
+  return (search_node){.lower = -INFINITY, .side[0] = o->side.part};
+}
+
+search_oracle curve_convex_oracle(curve_convex *o) {
+  return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
+}

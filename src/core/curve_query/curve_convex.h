@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The oracle of a ball that rides a curve against one convex body that stands. doc/curve-bound.md derives it. */
+#ifndef CPROX_CURVE_QUERY_CURVE_CONVEX_H
+#define CPROX_CURVE_QUERY_CURVE_CONVEX_H
+
+#include "curve/subcurve.h"
+#include "shape/body.h"
+
+/* A surface point of the body, the direction away from it, and where on the curve it was seen. */
+typedef struct curve_sight {
+  convex_near near;
+  vec3 y;         /* the curve's point, local */
+  vec3 normal;    /* unit within 4 u */
+  double support; /* h(normal) of body, margin and offset */
+  size_t piece;
+  double s;
+} curve_sight;
+
+typedef struct curve_convex {
+  /* the problem */
+  curve_side side; /* seen from the body's frame */
+  const convex *shape;
+  convex joined;         /* where a body is carried: the shape that stands for both */
+  cprox_curve relative;  /* where the other is on the mover's clock: the mover's curve, seen from there */
+  double offset;         /* padding of the body + radius of the ball */
+  uint32_t polish_after; /* nodes before Newton is allowed to look for better points */
+  double good_enough;    /* an upper bound at or below this needs no polish */
+  double epsilon;
+  bool is_signed; /* depths are measured */
+
+  /* what is known */
+  curve_sight best, last; /* of the least upper bound; of the last probe */
+  search_best best_bound;
+  uint32_t incumbent; /* counts the best sights; 0: none */
+  bool cover_known, cover_usable;
+  convex_cover cover;
+  convex_hint hint, support_hint;
+  double goal; /* what settles a node, as of the last one that was looked at */
+  uint32_t probes, nodes;
+
+  /* memory */
+  cprox_workspace *workspace;
+  points_pool pool;
+  size_t planar_piece; /* the piece that `planar` speaks of */
+  bool planar;
+} curve_convex;
+
+/* Makes the oracle ready; false where memory is out. The shape stands in the frame; offset >= 0. */
+bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex *shape, frame placed, double offset,
+                        cprox_workspace *workspace);
+
+/* The node that is all that is asked about: side.part. */
+search_node curve_convex_root(const curve_convex *o);
+
+/* Measures at s of a piece before the search begins, as a probe would, and bounds the root by what it learned. CPROX_OK or a negative
+ * status. The search then starts with o->best_bound. */
+cprox_status curve_convex_seed(curve_convex *o, size_t piece, double s, search_node *root);
+
+/* The functions of the contract in branch_and_bound/search.h, self being the curve_convex. */
+search_oracle curve_convex_oracle(curve_convex *o);
+
+/* Raises node->lower by the normal of a sight. */
+void curve_convex_bound(const curve_convex *o, search_node *node, const curve_sight *sight);
+
+/* For curve_query/newton_convex.c: measures at a curve point y = psi(s) of the piece, which is within `error` of the exact one; */
+cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sight *sight,
+                                  search_best *bound);
+
+/* makes a sight the best one. */
+void curve_convex_adopt(curve_convex *o, const curve_sight *sight, search_best bound);
+
+#endif

@@ -1,0 +1,12 @@
+# The files of this room. A new file is one line here.
+target_sources(cprox_objects PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/contact_bvh.c
+  ${CMAKE_CURRENT_LIST_DIR}/contact_convex.c
+  ${CMAKE_CURRENT_LIST_DIR}/contact_curve.c
+  ${CMAKE_CURRENT_LIST_DIR}/curve_bvh.c
+  ${CMAKE_CURRENT_LIST_DIR}/curve_convex.c
+  ${CMAKE_CURRENT_LIST_DIR}/curve_curve.c
+  ${CMAKE_CURRENT_LIST_DIR}/newton_convex.c
+  ${CMAKE_CURRENT_LIST_DIR}/newton_curves.c
+  ${CMAKE_CURRENT_LIST_DIR}/search_pair.c
+)

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "curve_query/newton_convex.h"
+
+enum { MAX_ROUNDS = 6, MAX_STEPS = 8 };
+
+curve_jet polish_jet(const curve_convex *o, const double *points, double s) {
+  const size_t degree = o->side.curve->degree;
+  curve_jet j;
+  curve_bezier_evaluate(points, points + degree + 1, points + 2 * (degree + 1), 1, degree, o->side.curve->binomial, s,
+                        &j.x, &j.d1, &j.d2);
+  return j;
+}
+
+/* From the feature that was nearest at the sight, across its tangents. */
+static vec3 across(const convex_near *near, vec3 x) {
+  vec3 w = vec_sub(x, near->origin);
+  for (int k = 0; k < near->tangents; k++) w = vec_axpy(w, -vec_dot(near->e[k], w), near->e[k]);
+  return w;
+}
+
+static vec3 symmetric_times(const double h[6], vec3 v) {
+  return vec(h[0] * v.x + h[1] * v.y + h[2] * v.z, h[1] * v.x + h[3] * v.y + h[4] * v.z,
+             h[2] * v.x + h[4] * v.y + h[5] * v.z);
+}
+
+/* The distance to that feature: of a plane the signed height over it, so that the deepest point is found where the curve goes through;
+ * of a curved one d + n·w + w·H w/2, w = psi - y, its second order about the sight. */
+static double distance_at(const curve_sight *sight, vec3 x) {
+  const convex_near *near = &sight->near;
+  if (near->flat && near->tangents == 2) return vec_dot(near->normal, vec_sub(x, near->origin)) - near->offset;
+  if (near->flat) return vec_norm(across(near, x)) - near->offset;
+  const vec3 w = vec_sub(x, sight->y);
+  return near->distance + vec_dot(near->normal, w) + 0.5 * vec_dot(w, symmetric_times(near->hessian, w));
+}
+
+/* First and second derivative by s of what is least where that is: of a vertex or an edge half the square, |w|²/2, whose derivatives
+ * w·psi' and |w'|² + w·psi'' take no root and divide by nothing. */
+static void slopes_at(const curve_sight *sight, const curve_jet *j, double *slope, double *bend) {
+  const convex_near *near = &sight->near;
+  if (near->flat && near->tangents < 2) {
+    const vec3 w = across(near, j->x);
+    double across2 = vec_norm2(j->d1);
+    for (int k = 0; k < near->tangents; k++) {
+      const double along = vec_dot(near->e[k], j->d1);
+      across2 -= along * along;
+    }
+    *slope = vec_dot(w, j->d1);
+    *bend = vec_dot(w, j->d2) + greater(across2, 0.0);
+    return;
+  }
+  vec3 gradient = near->normal;
+  *bend = 0.0;
+  if (!near->flat) {
+    gradient = vec_add(gradient, symmetric_times(near->hessian, vec_sub(j->x, sight->y)));
+    *bend = vec_dot(j->d1, symmetric_times(near->hessian, j->d1));
+  }
+  *slope = vec_dot(gradient, j->d1);
+  *bend += vec_dot(gradient, j->d2);
+}
+
+static double clamp(double x, double least, double most) {
+  return x < least ? least : x > most ? most : x;
+}
+
+/* Newton's method from the sight's s, where *j is the jet; it becomes that at the point returned. */
+static double descend(const curve_convex *o, const double *points, const curve_sight *sight, double step,
+                      curve_jet *j) {
+  double s = sight->s;
+  for (int i = 0; i < MAX_STEPS; i++) {
+    double slope, bend;
+    slopes_at(sight, j, &slope, &bend);
+    if (!(isfinite(slope) && isfinite(bend))) break;
+    const double wanted = bend > 0.0 ? -slope / bend : (slope > 0.0 ? -step : step);
+    const double next = clamp(clamp(s + wanted, s - step, s + step), o->side.part.a, o->side.part.b);
+    const double moved = fabs(next - s);
+    if (moved < 1e-15) break;
+    s = next;
+    *j = polish_jet(o, points, s);
+    /* quadratic convergence: what such a step leaves is below rounding */
+    if (moved < 1e-9) break;
+  }
+  return s;
+}
+
+cprox_status polish(curve_convex *o, const double *points, curve_jet *j, double step) {
+  if (o->side.curve->arcs) return CPROX_OK; /* no derivatives to go by */
+  const double error = curve_side_point_error(&o->side);
+  curve_sight sights[2];
+  const curve_sight *from = &o->best;
+  for (int round = 0; round < MAX_ROUNDS; round++) {
+    const double s = descend(o, points, from, step, j);
+    if (s == from->s) return CPROX_OK;
+    const double predicted = distance_at(from, j->x);
+
+    /* only a measured distance counts */
+    curve_sight *sight = &sights[round % 2];
+    search_best bound = {.upper = INFINITY};
+    const cprox_status status = curve_convex_measure(o, from->piece, s, j->x, error, sight, &bound);
+    if (status < 0) return status;
+    const bool better = bound.upper < o->best_bound.upper;
+    if (better) curve_convex_adopt(o, sight, bound);
+    if (o->best_bound.upper <= o->good_enough) return CPROX_OK;
+
+    /* the feature held on to is the nearest one here too: nothing more to find */
+    const bool same_feature = fabs(sight->near.distance - predicted) <= bound.slack + 1e-3 * o->epsilon;
+    if (same_feature || (!better && round > 0)) return CPROX_OK;
+    step *= 0.5;
+    from = sight;
+  }
+  return CPROX_OK;
+}

@@ -1,0 +1,375 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One search: the engine with the oracle that the candidate asks for, and what it found in the terms of the caller. */
+#include "curve_query/search_pair.h"
+#include "base/rounding.h"
+#include "curve/relative_curve.h"
+#include "narrowphase/witness.h"
+#include "problem/minkowski.h"
+#include "shape/body.h"
+
+enum { VERDICT_NODES_BEFORE_NEWTON = 4 };
+
+/* Easy verdicts are answered before Newton has paid for itself. */
+static uint32_t nodes_before_newton(const question *q) {
+  return question_wants_verdict(q) ? VERDICT_NODES_BEFORE_NEWTON : 0;
+}
+
+/* An upper bound that needs no improvement. */
+static double good_enough(const question *q) {
+  if (q->is_signed) return -INFINITY;
+  return question_wants_verdict(q) ? q->limit : q->options.epsilon;
+}
+
+static search_goal goal_of(const question *q, double ceiling) {
+  return (search_goal){.order = question_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST,
+                       .limit = q->limit,
+                       .is_signed = q->is_signed,
+                       .ceiling = ceiling,
+                       .horizon = INFINITY,
+                       .epsilon = q->options.epsilon,
+                       .relative_epsilon = q->options.relative_epsilon,
+                       .max_nodes = q->options.max_nodes,
+                       .stop = q->options.stop,
+                       .stop_user = q->options.stop_user};
+}
+
+/* The two surface points and their normal: where the ball of the mover and the padded target come closest, or one point of both
+ * where they overlap; signed, the two ends of the way out. */
+static void report_points(const question *q, const candidate *c, vec3 centre, vec3 surface, vec3 normal, double apart,
+                          cprox_result *r) {
+  const double padding = candidate_padding(q, c);
+  r->normal = normal;
+  r->target_index = c->target, r->target_part = c->part;
+  if (q->is_signed || apart > padding + q->mover.radius) {
+    r->on_target = vec_axpy(surface, padding, normal);
+    r->on_mover = vec_axpy(centre, -q->mover.radius, normal);
+  } else {
+    /* the padded target's nearest point to the ball's centre */
+    r->on_mover = r->on_target = apart > padding ? vec_axpy(surface, padding, normal) : centre;
+  }
+}
+
+/* The same where a body is carried, its curve at `centre`, or what stands is on the clock: asked of the pair that both make there. */
+static cprox_status report_pair(const question *q, const candidate *c, vec3 centre, const cprox_target *standing,
+                                int32_t part, vec3 normal, cprox_result *r) {
+  const cprox_target moved = {.body = q->mover.body ? q->mover.body : &carried_point,
+                              .pose = {.position = centre, .orientation = {1, 0, 0, 0}},
+                              .padding = q->mover.radius};
+  pair_witness witness;
+  const cprox_status status = pair_witness_of(&moved, (size_t)c->mover_part, standing, (size_t)part,
+                                              candidate_rung(q, c), q->is_signed, q->workspace, &witness);
+  if (status < 0) return status;
+  const bool normal_known = vec_norm2(normal) > 0.0;
+  r->normal = normal_known ? normal : witness.normal;
+  r->target_index = c->target, r->target_part = c->part, r->mover_part = c->mover_part;
+  r->on_mover = witness.on_a, r->on_target = witness.on_b;
+  return CPROX_OK;
+}
+
+/* A carried body and what stands make one shape. */
+static bool begin_carried(const question *q, const candidate *c, const cprox_body *body, const cprox_curve *curve,
+                          curve_convex *o) {
+  const cprox_pose pose = candidate_pose(q, c);
+  carried_shape joined = {.placed = candidate_frame(q, c)};
+  cprox_pose carried_pose;
+  const cprox_body *carried = candidate_carried(q, c, &carried_pose);
+  if (!carried_join(body, &pose, carried, &carried_pose, &joined)) return false;
+  joined.shape.slack += candidate_misplaced(q, c);
+  const double offset = candidate_offset(q, c) + joined.offset;
+  if (!curve_convex_begin(o, curve, &body->shape, joined.placed, offset, q->workspace)) return false;
+  o->joined = joined.shape;
+  o->shape = &o->joined;
+  return true;
+}
+
+bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o) {
+  const cprox_target *target = &q->targets[c->target];
+  const cprox_body *body = candidate_body(q, c);
+
+  /* on one clock the curve is where the mover is, seen from the other */
+  const cprox_curve *curve = q->mover.curve;
+  cprox_curve relative;
+  if (target->on_clock) {
+    if (!relative_create(curve, target->curve, &target->pose, q->t0, q->t1, q->workspace, &relative)) return false;
+    curve = &relative;
+  }
+
+  if (q->mover.body) {
+    if (!begin_carried(q, c, body, curve, o)) return false;
+  } else if (!curve_convex_begin(o, curve, &body->shape, candidate_frame(q, c), candidate_offset(q, c), q->workspace)) {
+    return false;
+  }
+  o->side.part = q->part;
+  if (target->on_clock) {
+    o->relative = relative;
+    o->side.curve = &o->relative;
+    o->side.part = curve_side_whole();
+  }
+  return true;
+}
+
+/* Where the other mover is at the parameter of the best sight, and this one from there. */
+static cprox_status report_clock(const question *q, const candidate *c, const curve_convex *o, vec3 apart,
+                                 cprox_result *r) {
+  cprox_target standing = q->targets[c->target];
+  const vec3 at = relative_point(standing.curve, r->t, o->best.s == 1.0, q->workspace);
+  const frame f = frame_create(&standing.pose, vec(0, 0, 0));
+  standing.pose.position = frame_to_world(&f, at);
+  if (!standing.body) standing.body = &carried_point;
+  r->t_target = r->t;
+  const vec3 centre = vec_add(standing.pose.position, apart);
+  return report_pair(q, c, centre, &standing, c->part, frame_turn_to_world(&o->side.frame, o->best.normal), r);
+}
+
+cprox_status candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r) {
+  if (o->incumbent == 0) return CPROX_OK;
+  const frame *f = &o->side.frame;
+  const curve_sight *best = &o->best;
+  r->t = curve_side_parameter(&o->side, best->piece, best->s);
+  const cprox_target *target = &q->targets[c->target];
+  if (target->on_clock) return report_clock(q, c, o, frame_to_world(f, best->y), r);
+  if (q->mover.body)
+    return report_pair(q, c, frame_to_world(f, best->y), target, c->part, frame_turn_to_world(f, best->normal), r);
+  report_points(q, c, frame_to_world(f, best->y), frame_to_world(f, best->near.point),
+                frame_turn_to_world(f, best->normal), best->near.distance, r);
+  return CPROX_OK;
+}
+
+bool candidate_is_tree(const question *q, const candidate *c) {
+  const cprox_body *body = candidate_body(q, c);
+  return body && body->tree;
+}
+
+bool candidate_begin_tree(const question *q, const candidate *c, curve_tree *o) {
+  const cprox_target *target = &q->targets[c->target];
+  const cprox_body *body = candidate_body(q, c);
+  const cprox_curve *curve = q->mover.curve;
+  cprox_curve relative;
+  if (target->on_clock) {
+    if (!relative_create(curve, target->curve, &target->pose, q->t0, q->t1, q->workspace, &relative)) return false;
+    curve = &relative;
+  }
+  const frame placed = candidate_frame(q, c);
+  if (!curve_tree_begin(o, curve, body, placed, candidate_offset(q, c), q->workspace)) return false;
+  o->side.part = q->part;
+  if (target->on_clock) {
+    o->relative = relative;
+    o->side.curve = &o->relative;
+    o->side.part = curve_side_whole();
+  }
+  return true;
+}
+
+void candidate_report_tree(const question *q, const candidate *c, const curve_tree *o, cprox_result *r) {
+  if (!o->found) return;
+  const frame *f = &o->side.frame;
+  const tree_sight *best = &o->best;
+  const double margin = o->body->shape.margin;
+  const cprox_target *target = &q->targets[c->target];
+  r->t = curve_side_parameter(&o->side, best->piece, best->s);
+  vec3 shift = vec(0, 0, 0);
+  if (target->on_clock) {
+    const frame other = frame_create(&target->pose, vec(0, 0, 0));
+    shift = frame_to_world(&other, relative_point(target->curve, r->t, best->s == 1.0, q->workspace));
+    r->t_target = r->t;
+  }
+  const vec3 centre = frame_to_world(f, best->y);
+  const vec3 surface = frame_to_world(f, vec_axpy(best->near.point, margin, best->near.normal));
+  report_points(q, c, vec_add(centre, shift), vec_add(surface, shift), frame_turn_to_world(f, best->near.normal),
+                best->near.distance - margin, r);
+}
+
+bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o) {
+  const cprox_target *target = &q->targets[c->target];
+  const double offset = candidate_offset(q, c);
+  if (!curve_curve_begin(o, q->mover.curve, target->curve, &target->pose, offset, q->workspace)) return false;
+  o->side[0].part = q->part;
+  cprox_pose carried_pose;
+  const cprox_body *carried = candidate_carried(q, c, &carried_pose);
+  return !carried || curve_curve_carry(o, &target->pose, carried, &carried_pose);
+}
+
+cprox_status candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r) {
+  if (o->incumbent == 0) return CPROX_OK;
+  const frame *f = &o->side[0].frame;
+  const curve_meeting *best = &o->best;
+  r->t = curve_side_parameter(&o->side[0], best->piece[0], best->s[0]);
+  r->t_target = curve_side_parameter(&o->side[1], best->piece[1], best->s[1]);
+  if (q->mover.body) {
+    const vec3 at = frame_to_world(f, best->point[1]);
+    const cprox_target standing = {.body = &carried_point,
+                                   .pose = {.position = at, .orientation = {1, 0, 0, 0}},
+                                   .padding = q->targets[c->target].padding};
+    return report_pair(q, c, frame_to_world(f, best->point[0]), &standing, 0, frame_turn_to_world(f, best->normal), r);
+  }
+  report_points(q, c, frame_to_world(f, best->point[0]), frame_to_world(f, best->point[1]),
+                frame_turn_to_world(f, best->normal), best->distance, r);
+  return CPROX_OK;
+}
+
+static cprox_status search_convex(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                                  cprox_result *r) {
+  curve_convex o;
+  if (!candidate_begin_convex(q, c, &o)) return CPROX_MEMORY;
+  o.polish_after = nodes_before_newton(q);
+  o.good_enough = good_enough(q);
+  o.epsilon = q->options.epsilon;
+  o.is_signed = q->is_signed;
+  const search_oracle oracle = curve_convex_oracle(&o);
+  search_node root = curve_convex_root(&o);
+  search_goal rest = *goal;
+  if (c->seed_s > 0.0) {
+    const cprox_status seeded = curve_convex_seed(&o, c->seed_piece, c->seed_s, &root);
+    if (seeded < 0) return seeded;
+    rest.ceiling = lesser(rest.ceiling, o.best_bound.upper);
+  }
+  cprox_status status = CPROX_OK;
+  if (question_wants_verdict(q) && o.best_bound.upper <= q->limit)
+    found->lower = root.lower;
+  else
+    status = search_run(&rest, &oracle, root, q->workspace, found);
+  found->best = o.best_bound;
+  r->probes = o.probes;
+  const cprox_status reported = status >= 0 ? candidate_report_convex(q, c, &o, r) : status;
+  return reported < 0 ? reported : status;
+}
+
+static cprox_status search_curve(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                                 cprox_result *r) {
+  curve_curve o;
+  if (!candidate_begin_curve(q, c, &o)) return CPROX_MEMORY;
+  o.polish_after = nodes_before_newton(q);
+  o.good_enough = good_enough(q);
+  o.epsilon = q->options.epsilon;
+  o.is_signed = q->is_signed;
+  const search_oracle oracle = curve_curve_oracle(&o);
+  const cprox_status status = search_run(goal, &oracle, curve_curve_root(&o), q->workspace, found);
+  r->probes = o.probes;
+  const cprox_status reported = status >= 0 ? candidate_report_curve(q, c, &o, r) : status;
+  return reported < 0 ? reported : status;
+}
+
+static cprox_status search_tree(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                                cprox_result *r) {
+  curve_tree o;
+  search_node root;
+  if (!candidate_begin_tree(q, c, &o) || !curve_tree_root(&o, &root)) return CPROX_MEMORY;
+  o.asked = *goal;
+  o.asked.order = SEARCH_DEPTH_FIRST; /* lists of elements are kept on a stack */
+  o.polish_after = nodes_before_newton(q);
+  o.good_enough = good_enough(q);
+  const search_oracle oracle = curve_tree_oracle(&o);
+  const cprox_status status = search_run(&o.asked, &oracle, root, q->workspace, found);
+  r->probes = o.probes;
+  if (status >= 0) candidate_report_tree(q, c, &o, r);
+  return status;
+}
+
+/* The one place that says which kernel answers. */
+static cprox_status search_any(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                               cprox_result *r) {
+  if (candidate_is_tree(q, c)) return search_tree(q, c, goal, found, r);
+  return candidate_body(q, c) ? search_convex(q, c, goal, found, r) : search_curve(q, c, goal, found, r);
+}
+
+/* By the one model that the candidate names. */
+static cprox_status search_model(const question *q, const candidate *c, double ceiling, cprox_result *result) {
+  cprox_result r = {.target_index = -1, .t_target = NAN, .rung = candidate_rung(q, c)};
+  search_goal goal = goal_of(q, ceiling);
+  const bool depth_unknown = q->is_signed && candidate_is_tree(q, c);
+  if (depth_unknown) goal.is_signed = false;
+  search_outcome found = {0};
+  r.status = search_any(q, c, &goal, &found, &r);
+  if (r.status == CPROX_MEMORY) return workspace_fail(q->workspace, r.status, "no memory for the open intervals");
+  if (r.status < 0) return r.status;
+
+  /* distances are not negative, unless asked for; where the search fell short the ball may know a better lower bound */
+  const double least = q->is_signed ? -INFINITY : 0.0;
+  double by_ball = c->lower;
+  if (isinf(by_ball) && (r.status != CPROX_OK || depth_unknown)) by_ball = candidate_ball_bound(q, c);
+  r.nodes = found.nodes;
+  r.upper = greater(found.best.upper, least);
+  r.lower = lesser(greater(greater(found.lower, by_ball), least), r.upper);
+  if (depth_unknown &&
+      !(found.lower > 0.0)) { /* how deep cells and clouds go is not known: only the ball round all bounds it */
+    r.lower = fmin(by_ball, r.upper);
+    if (r.upper <= 2.0 * found.best.slack) r.status = CPROX_OVERLAP; /* 0 but for rounding */
+  }
+  *result = r;
+  return r.status;
+}
+
+/* ---- ladders ---------------------------------------------------------------------------------------------------------- */
+
+bool candidate_may_climb(const question *q, const candidate *c) {
+  const cprox_body *body = q->targets[c->target].body;
+  if (!body || c->rung != CPROX_RUNG_NONE || q->options.max_rung != CPROX_RUNG_MESH) return false;
+  if (body->kind == CPROX_COMPOUND) body = body->parts[c->part].body;
+  return body->kind == CPROX_LADDER;
+}
+
+cprox_status candidate_measure_mesh(const question *q, const candidate *c, cprox_result *result) {
+  curve_tree o;
+  if (!candidate_begin_tree(q, c, &o)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a curve");
+  curve_tree_look(&o, result->t);
+  if (curve_side_status(&o.side) < 0) return curve_side_status(&o.side);
+  result->probes += o.probes;
+  result->upper = fmax(o.best_bound.upper, 0.0);
+  candidate_report_tree(q, c, &o, result);
+  return CPROX_OK;
+}
+
+/* Whether the hull alone settles the question: it stays beyond the limit, or beyond what would be of interest. */
+static cprox_status search_hull(const question *q, const candidate *c, double ceiling, cprox_result *r, bool *settled) {
+  question of_hull = *q;
+  of_hull.is_signed = false;
+  if (!question_wants_verdict(q))
+    of_hull.limit = ceiling - fmax(q->options.epsilon, q->options.relative_epsilon * fabs(ceiling));
+  *settled = false;
+  *r = (cprox_result){.upper = INFINITY};
+  if (!(of_hull.limit >= 0.0 && of_hull.limit < INFINITY)) return CPROX_OK;
+  candidate hull = *c;
+  hull.rung = CPROX_RUNG_HULL;
+  const cprox_status status = search_model(&of_hull, &hull, INFINITY, r);
+  if (status < 0) return status;
+  *settled = r->lower > of_hull.limit;
+  r->status = CPROX_OK;
+  if (!*settled || !question_wants_verdict(q) || r->target_index < 0) {
+    /* what the hull attains the mesh need not attain */
+    r->upper = INFINITY, r->target_index = -1;
+    return CPROX_OK;
+  }
+  return candidate_measure_mesh(q, c, r);
+}
+
+cprox_status candidate_rank(const question *q, candidate *c, uint32_t *nodes, uint32_t *probes) {
+  static const double CLOSE_ENOUGH = 0.01;
+  question of_hull = *q;
+  of_hull.is_signed = false;
+  of_hull.options.relative_epsilon = fmax(q->options.relative_epsilon, CLOSE_ENOUGH);
+  c->rung = CPROX_RUNG_HULL;
+  cprox_result r = {0};
+  const cprox_status status = search_model(&of_hull, c, INFINITY, &r);
+  if (status < 0) return status;
+  c->rung = CPROX_RUNG_MESH;
+  if (r.lower > 0.0) c->lower = fmax(c->lower, r.lower);
+  *nodes += r.nodes, *probes += r.probes;
+  return CPROX_OK;
+}
+
+cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result) {
+  if (!candidate_may_climb(q, c)) return search_model(q, c, ceiling, result);
+  bool settled;
+  cprox_result by_hull = {0};
+  const cprox_status looked = search_hull(q, c, ceiling, &by_hull, &settled);
+  if (looked < 0) return looked;
+  if (settled) {
+    *result = by_hull;
+    return CPROX_OK;
+  }
+  const cprox_status status = search_model(q, c, ceiling, result);
+  if (status < 0) return status;
+  if (by_hull.lower > 0.0) result->lower = fmin(fmax(result->lower, by_hull.lower), result->upper);
+  result->nodes += by_hull.nodes, result->probes += by_hull.probes;
+  return status;
+}

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One search against one candidate: the oracle that it asks for, and what that found in the terms of the caller. */
+#ifndef CPROX_CURVE_QUERY_SEARCH_PAIR_H
+#define CPROX_CURVE_QUERY_SEARCH_PAIR_H
+
+#include "curve_query/curve_bvh.h"
+#include "curve_query/curve_convex.h"
+#include "curve_query/curve_curve.h"
+#include "problem/candidates.h"
+
+/* Searches one candidate; *result holds its own interval and the witness. `ceiling`: an upper bound known from others. A ladder is
+ * searched by its hull first where that may do, unless the candidate says which rung. */
+cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result);
+
+/* Whether it has a hull that could spare the search of its mesh. */
+bool candidate_may_climb(const question *q, const candidate *c);
+
+/* Where nothing is known yet, the hull says how far a ladder is at least, to one part in a hundred: raises c->lower, and from then on it
+ * is the mesh that is searched. */
+cprox_status candidate_rank(const question *q, candidate *c, uint32_t *nodes, uint32_t *probes);
+
+/* The hull of a ladder is out of the question. Where it came closest, at result->t, the mesh is measured: *result gets a witness of
+ * its own, and an upper bound. */
+cprox_status candidate_measure_mesh(const question *q, const candidate *c, cprox_result *result);
+
+/* The oracle of a candidate with a convex body, ready to search; false where memory is out. */
+bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o);
+
+/* Parameter, points and normal of its best sight, if it has one. CPROX_OK, or a negative status. */
+cprox_status candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r);
+
+/* The same of a candidate made of many elements: a mesh, points, boxes. */
+bool candidate_is_tree(const question *q, const candidate *c);
+bool candidate_begin_tree(const question *q, const candidate *c, curve_tree *o);
+void candidate_report_tree(const question *q, const candidate *c, const curve_tree *o, cprox_result *r);
+
+/* The same of a candidate that is a curve. */
+bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o);
+cprox_status candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r);
+
+#endif

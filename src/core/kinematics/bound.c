@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The letters are those of doc/robot-bounds.md. */
+#include "kinematics/bound.h"
+
+#include <math.h>
+
+#include "base/rounding.h"
+
+size_t motion_chain(const cprox_motion *motion, int32_t from, int32_t to, chain_axis *chain) {
+  const robot_axis *axes = motion->robot->axes;
+  const int32_t common = robot_common_axis(motion->robot, from, to);
+  size_t n = 0;
+  for (int32_t i = from; i != common; i = axes[i].parent)
+    if (motion->axis_moves[i]) chain[n++] = (chain_axis){.axis = i, .sign = -1.0};
+
+  /* down to the tip: found from the tip up, then turned round */
+  const size_t first = n;
+  for (int32_t i = to; i != common; i = axes[i].parent)
+    if (motion->axis_moves[i]) chain[n++] = (chain_axis){.axis = i, .sign = 1.0};
+  for (size_t i = first, k = n; i + 1 < k; i++) {
+    const chain_axis swapped = chain[i];
+    chain[i] = chain[--k];
+    chain[k] = swapped;
+  }
+  return n;
+}
+
+static bool turns(const axis_state *axis) {
+  return axis->kind != AXIS_PRISMATIC;
+}
+
+static double lever(const axis_state *axis, vec3 centre) {
+  const vec3 from = vec_sub(centre, axis->frame.p);
+  return axis->kind == AXIS_BALL ? vec_norm(from) : vec_norm(vec_cross(axis->z, from));
+}
+
+/* Returns the travel. r_k in the middle, then the greatest over the node: what is tipside shifts the part under the axis. */
+static double find_levers(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
+                          double *levers) {
+  double tipside = 0.0;
+  for (size_t i = n; i-- > 0;) {
+    const axis_state *axis = &axes[chain[i].axis];
+    const double at_middle = turns(axis) ? ROUND_UP * (lever(axis, centre) + radius) : 1.0;
+    levers[i] = turns(axis) ? at_middle + tipside : 1.0;
+    tipside += axis->shift * at_middle;
+  }
+  return ROUND_UP * tipside;
+}
+
+/* A sum over the chain in any order: up from both ends, always from the later axis, to the one above both. */
+double motion_travel(const cprox_motion *motion, const axis_state *axes, int32_t from, int32_t to, vec3 centre,
+                     double radius) {
+  const robot_axis *robot = motion->robot->axes;
+  double travel = 0.0;
+  while (from != to) {
+    int32_t *later = from > to ? &from : &to;
+    const axis_state *axis = &axes[*later];
+    if (motion->axis_moves[*later])
+      travel += axis->shift * (turns(axis) ? ROUND_UP * (lever(axis, centre) + radius) : 1.0);
+    *later = robot[*later].parent;
+  }
+  return ROUND_UP * travel;
+}
+
+double motion_ways(const cprox_motion *motion, const axis_state *axes, int32_t axis, size_t depth, vec3 centre,
+                   double radius, double *ways) {
+  double way = 0.0;
+  if (ways) ways[depth] = 0.0;
+  for (; axis >= 0; axis = motion->robot->axes[axis].parent) {
+    const axis_state *state = &axes[axis];
+    if (motion->axis_moves[axis])
+      way += state->shift * (turns(state) ? ROUND_UP * (lever(state, centre) + radius) : 1.0);
+    if (ways) ways[--depth] = ROUND_UP * way;
+  }
+  return ROUND_UP * way;
+}
+
+/* Velocity and acceleration of the centre, from the base to the tip. */
+static void find_rates(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, chain_motion *m) {
+  m->v = m->omega = m->a = m->alpha = vec(0, 0, 0);
+  for (size_t i = 0; i < n; i++) {
+    const axis_state *axis = &axes[chain[i].axis];
+    const vec3 w = vec_scale(chain[i].sign, axis->velocity), dw = vec_scale(chain[i].sign, axis->acceleration);
+    if (!turns(axis)) {
+      m->a = vec_add(m->a, vec_axpy(dw, 2.0, vec_cross(m->omega, w)));
+      m->v = vec_add(m->v, w);
+      continue;
+    }
+    const vec3 from = vec_sub(centre, axis->frame.p), along = vec_cross(w, from);
+    m->a = vec_add(m->a, vec_add(vec_cross(dw, from), vec_cross(w, along)));
+    m->a = vec_axpy(m->a, 2.0, vec_cross(m->omega, along));
+    m->v = vec_add(m->v, along);
+    m->alpha = vec_add(m->alpha, vec_add(dw, vec_cross(m->omega, w)));
+    m->omega = vec_add(m->omega, w);
+  }
+}
+
+/* A1 = sum r w, A2, A3. */
+static void find_derivative_bounds(const axis_state *axes, const chain_axis *chain, size_t n, const double *levers,
+                                   chain_motion *m) {
+  double s = 0.0, a = 0.0; /* of the turning axes so far */
+  m->rate = m->second = m->third = m->error = 0.0;
+  for (size_t i = 0; i < n; i++) {
+    const axis_state *axis = &axes[chain[i].axis];
+    const double r = levers[i], w = axis->w;
+    m->rate += r * w;
+    m->error += r * axis->error;
+    if (turns(axis)) {
+      const double s1 = s + w, a1 = a + axis->a;
+      m->second += r * (w * (s1 + s) + axis->a);
+      m->third += r * (w * (s1 * s1 + s1 * s + s * s) + 3.0 * (s1 * axis->a + a * w) + axis->g);
+      s = s1, a = a1;
+    } else {
+      m->second += axis->a + 2.0 * w * s;
+      m->third += axis->g + 3.0 * w * s * s + 3.0 * (s * axis->a + a * w);
+    }
+  }
+}
+
+void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
+                    double *scratch, chain_motion *m) {
+  m->travel = find_levers(axes, chain, n, centre, radius, scratch);
+  find_rates(axes, chain, n, centre, m);
+  find_derivative_bounds(axes, chain, n, scratch, m);
+}
+
+double bound_height(const bound_side *side, vec3 n) {
+  return side->shape->ops->support(side->shape, placement_turn_back(&side->at, n), NULL, NULL) +
+         vec_norm(n) * side->margin;
+}
+
+/* min over the moving side of d·(x - c). */
+static double lowest(const bound_side *side, vec3 d) {
+  const vec3 down = placement_turn_back(&side->at, vec_neg(d));
+  return -side->shape->ops->support(side->shape, down, NULL, NULL) - vec_norm(d) * side->margin;
+}
+
+/* The support functions do not take 0. */
+static bool usable(vec3 d) {
+  return vec_norm2(d) > 1e-200;
+}
+
+/* What rounding can take from a plane bound, without the size of the bound itself. */
+static double plane_slack(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 apart,
+                          double drift, uint32_t steps) {
+  const double joints = ROUND_JOINT * (double)steps + 32.0;
+  const double sizes =
+      vec_norm(apart) + moving->shape->scale + moving->margin + standing->shape->scale + standing->margin;
+  const double turned = (1.0 + drift) * (1.0 + 0.5 * m->rate + 0.125 * m->second);
+  const double rounding =
+      12.0 * sizes * turned + (1.0 + drift) * joints * (0.5 * m->rate + 0.25 * m->second + m->third / 24.0);
+  return ROUND_UP * ((1.0 + drift) * (moving->error + standing->error + m->error) + ROUND_U * rounding +
+                     (moving->shape->slack + standing->shape->slack) * turned);
+}
+
+/* The least of (a + b theta) / sqrt(1 + k theta) for theta in [0, 1], k >= 0. */
+static double least_quotient(double a, double b, double k) {
+  if (a <= 0.0 || a + b <= 0.0) return fmin(a, a + b);
+  const double end = (a + b) / sqrt(1.0 + k), slope = b - 0.5 * k * a;
+  if (slope >= 0.0) return a;
+  const double theta = b > 0.0 ? -2.0 * slope / (b * k) : 1.0;
+  return theta < 1.0 ? (a + b * theta) / sqrt(1.0 + k * theta) : end;
+}
+
+double motion_plane_bound(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 n,
+                          vec3 drift, const double heights[2], uint32_t steps, double goal, double *slack) {
+  const vec3 apart = vec_sub(moving->at.p, standing->at.p);
+  const double speed = vec_norm(drift), k = 0.25 * speed * speed;
+  *slack = plane_slack(m, moving, standing, apart, speed, steps);
+
+  /* second order: the ends of tau, the node's half-width being 1/2 */
+  const vec3 turn = vec_add(vec_cross(n, m->omega), drift);
+  const double along = vec_dot(n, m->v) + vec_dot(drift, apart), start = vec_dot(n, apart);
+  double first[2], least = INFINITY;
+  for (int end = 0; end < 2; end++) {
+    const double tau = end == 0 ? -0.5 : 0.5;
+    const vec3 d = vec_axpy(n, tau, turn);
+    if (!usable(d)) return -INFINITY;
+    first[end] = start + tau * along + lowest(moving, d) - heights[end];
+    least = fmin(least, first[end]);
+  }
+  const double rounding = *slack + 16.0 * ROUND_U * fabs(least);
+  const double second = least_quotient(least - 0.125 * m->second - 0.25 * speed * m->rate - rounding, 0.0, k);
+  *slack = rounding;
+  if (second > goal) return second;
+
+  /* third order: the corners of (tau, sigma), sigma standing for tau² */
+  const double speed_squared = vec_norm2(m->omega);
+  const vec3 bend =
+      vec_add(vec_cross(n, m->alpha), vec_axpy(vec_scale(vec_dot(n, m->omega), m->omega), -speed_squared, n));
+  const vec3 bent = vec_axpy(vec_scale(0.125, bend), 0.25, vec_cross(drift, m->omega));
+  const double curve = 0.125 * vec_dot(n, m->a) + 0.25 * vec_dot(drift, m->v);
+  const double rest = m->third / 48.0 + speed * m->second / 16.0 + rounding;
+  double third = INFINITY;
+  for (int end = 0; end < 2; end++) {
+    const double tau = end == 0 ? -0.5 : 0.5;
+    const vec3 d = vec_add(vec_axpy(n, tau, turn), bent);
+    if (!usable(d)) return second;
+    const double far = start + tau * along + curve + lowest(moving, d) - heights[end];
+    third = fmin(third, least_quotient(first[end] - rest, far - first[end], k));
+  }
+  return fmax(second, third);
+}

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Lower bounds on the distance of a part of a robot over a stretch of its motion; doc/robot-bounds.md proves them. */
+#ifndef CPROX_KINEMATICS_BOUND_H
+#define CPROX_KINEMATICS_BOUND_H
+
+#include "kinematics/motion.h"
+
+/* One axis of a chain; sign -1 where it is passed from its tip to its base. */
+typedef struct chain_axis {
+  int32_t axis;
+  double sign;
+} chain_axis;
+
+/* The axes that move on the way from what `from` carries (-1: the world) to what `to` carries, in that order. Room for all axes. */
+size_t motion_chain(const cprox_motion *motion, int32_t from, int32_t to, chain_axis *chain);
+
+/* How a part moves over a node, seen from where its chain begins; directions are those of the world in the middle of the node. */
+typedef struct chain_motion {
+  vec3 v, omega, a, alpha; /* velocity of the part's centre, angular velocity, their derivatives, in the middle */
+  double travel;           /* no point of the part comes farther than this from where it is in the middle */
+  double rate;             /* bounds on the first, second and third derivative of any point's position */
+  double second, third;
+  double error; /* of what is computed with v, omega, a and alpha over the node */
+} chain_motion;
+
+/* centre: of a ball that contains the part, in the middle of the node, world; radius: with the error of the part's place. scratch:
+ * a number for each axis of the chain. */
+void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
+                    double *scratch, chain_motion *m);
+
+/* The travel alone, by the chain of motion_chain(). */
+double motion_travel(const cprox_motion *motion, const axis_state *axes, int32_t from, int32_t to, vec3 centre,
+                     double radius);
+
+/* How far a part on the axis travels as each axis above it sees it, and the world: ways[k] of the k-th from the world, which is 0, up to
+ * `depth`, its own. Returns the first; ways may be NULL. */
+double motion_ways(const cprox_motion *motion, const axis_state *axes, int32_t axis, size_t depth, vec3 centre,
+                   double radius, double *ways);
+
+/* The two sides of a pair in the middle of the node. */
+typedef struct bound_side {
+  const convex *shape;
+  placement at;  /* of the shape's frame, world */
+  double margin; /* of the shape, and padding */
+  double error;  /* every point is within this of where it is exactly */
+} bound_side;
+
+/* The support of a side along n, seen from its own origin, its margin included. */
+double bound_height(const bound_side *side, vec3 n);
+
+/* The best of the bounds of second and third order by a plane that turns: at tau in [-1/2, 1/2] of the node its normal is
+ * n + tau drift, n unit within 4 u, drift orthogonal to it within 8 u |drift|, from the standing side to the moving one. heights are
+ * those of the standing side along n - drift/2 and n + drift/2. `goal`: what would be enough. steps: transforms in the chain. */
+double motion_plane_bound(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 n,
+                          vec3 drift, const double heights[2], uint32_t steps, double goal, double *slack);
+
+#endif

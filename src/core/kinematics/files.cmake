@@ -1,0 +1,10 @@
+# The files of this room. A new file is one line here.
+target_sources(cprox_objects PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/bound.c
+  ${CMAKE_CURRENT_LIST_DIR}/given.c
+  ${CMAKE_CURRENT_LIST_DIR}/joint_tree.c
+  ${CMAKE_CURRENT_LIST_DIR}/link_model.c
+  ${CMAKE_CURRENT_LIST_DIR}/motion.c
+  ${CMAKE_CURRENT_LIST_DIR}/motion_create.c
+  ${CMAKE_CURRENT_LIST_DIR}/robot.c
+)

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "kinematics/given.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Room for all, and the variables in it. */
+static bool make_room(motion_given *g, const int32_t *variables, size_t per_point) {
+  g->variables = calloc(g->n + 1, sizeof *g->variables);
+  g->times = calloc(g->n_times + 1, sizeof *g->times);
+  g->orders = calloc(g->n_points + 1, sizeof *g->orders);
+  g->values = calloc(g->n_points * per_point + 1, sizeof *g->values);
+  if (!g->variables || !g->times || !g->orders || !g->values) {
+    motion_given_free(g);
+    return false;
+  }
+  if (g->n > 0) memcpy(g->variables, variables, g->n * sizeof *variables);
+  return true;
+}
+
+bool motion_keep_waypoints(motion_given *g, const int32_t *variables, size_t n, const cprox_waypoint *points,
+                           size_t n_points, cprox_interpolation interpolation) {
+  *g = (motion_given){.interpolation = interpolation, .n = n, .n_points = n_points, .n_times = n_points};
+  if (!make_room(g, variables, 3 * n)) return false;
+  for (size_t i = 0; i < n_points; i++) {
+    const double *rows[3] = {points[i].positions, points[i].velocities, points[i].accelerations};
+    g->times[i] = points[i].time;
+    for (size_t k = 0; k < 3 && rows[k]; k++) {
+      if (n > 0) memcpy(g->values + (3 * i + k) * n, rows[k], n * sizeof(double));
+      g->orders[i] = (uint8_t)(k + 1);
+    }
+  }
+  return true;
+}
+
+bool motion_keep_spline(motion_given *g, const int32_t *variables, size_t n, size_t degree, const double *control,
+                        size_t n_control, const double *knots) {
+  *g = (motion_given){.degree = degree, .n = n, .n_points = n_control, .n_times = n_control + degree + 1};
+  if (!make_room(g, variables, n)) return false;
+  memcpy(g->times, knots, g->n_times * sizeof *knots);
+  if (n > 0) memcpy(g->values, control, n_control * n * sizeof *control);
+  return true;
+}
+
+void motion_given_free(motion_given *g) {
+  free(g->variables);
+  free(g->times);
+  free(g->orders);
+  free(g->values);
+  *g = (motion_given){0};
+}

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Motions as they were given, before any conversion: what a certificate is about. */
+#ifndef CPROX_KINEMATICS_GIVEN_H
+#define CPROX_KINEMATICS_GIVEN_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "curve_proximity/cprox/robot.h"
+
+typedef struct motion_given {
+  size_t degree; /* of a B-spline; 0: waypoints */
+  cprox_interpolation interpolation;
+  size_t n, n_points, n_times; /* variables; waypoints or control points; times or knots */
+  int32_t *variables;
+  double *times;
+  uint8_t *orders; /* waypoints: 1 positions, 2 velocities too, 3 accelerations too */
+  double *values;  /* waypoints: [point][order][variable], room for three orders; B-splines: [point][variable] */
+} motion_given;
+
+/* Keep a copy; false where memory is out, then nothing is kept. */
+bool motion_keep_waypoints(motion_given *given, const int32_t *variables, size_t n, const cprox_waypoint *points,
+                           size_t n_points, cprox_interpolation interpolation);
+bool motion_keep_spline(motion_given *given, const int32_t *variables, size_t n, size_t degree, const double *control,
+                        size_t n_control, const double *knots);
+
+void motion_given_free(motion_given *given);
+
+#endif

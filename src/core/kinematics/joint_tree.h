@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A robot as the searches see it: single axes, each a rotation about a line, a shift along a line or a rotation about a point,
+ * and convex parts that hang on them. Planar and floating joints are several axes, fixed ones none: their transforms are folded
+ * into what follows. doc/robot-bounds.md derives what is computed with them. */
+#ifndef CPROX_KINEMATICS_JOINT_TREE_H
+#define CPROX_KINEMATICS_JOINT_TREE_H
+
+#include "curve_proximity/cprox/robot.h"
+#include "kinematics/link_model.h"
+#include "shape/body.h"
+
+typedef enum axis_kind { AXIS_REVOLUTE, AXIS_PRISMATIC, AXIS_BALL } axis_kind;
+
+/* Where something is: x_world = r x + p. */
+typedef struct placement {
+  double r[9]; /* row-major */
+  vec3 p;
+} placement;
+
+typedef struct robot_axis {
+  axis_kind kind;
+  int32_t parent;            /* axis, or -1 */
+  int32_t variable;          /* ball: the first of four, the quaternion's x, y, z, w */
+  double multiplier, offset; /* the angle or shift is multiplier * variable + offset */
+  placement at;              /* in the parent axis's moved frame */
+  vec3 z;                    /* unit, in the axis's own frame */
+  int8_t along;              /* z is this one of the frame's axes, 0 … 2, or the opposite; -1: none of them */
+  bool first_of_joint;       /* of the axes that one joint became */
+  uint32_t steps;            /* transforms between here and the world */
+  double reach;              /* the sum of their lengths, shifts along prismatic axes not counted */
+} robot_axis;
+
+typedef struct robot_link {
+  int32_t parent; /* link, or -1 */
+  int32_t axis;   /* the last one above, or -1 */
+  placement at;   /* in that axis's moved frame */
+  uint32_t steps;
+  double reach;
+} robot_link;
+
+/* A part of a geometry. */
+typedef struct robot_part {
+  part_model model; /* with the padding in its margins and its radius */
+  int32_t geometry, link, axis;
+  placement at;   /* of the model's frame, in the axis's moved frame */
+  uint32_t steps; /* transforms between the shape and the world */
+  double reach;   /* the sum of their lengths and the radius, shifts along prismatic axes not counted */
+} robot_part;
+
+struct cprox_robot {
+  size_t n_links, n_axes, n_parts, n_geometries, n_variables;
+  robot_link *links;
+  robot_axis *axes; /* parents first */
+  robot_part *parts;
+  cprox_link *given_links; /* as they were given: what certificates are about */
+  cprox_link_geometry *given_geometries;
+};
+
+/* The error of one transform of a chain: the rotation's, per unit of length behind it (doc/robot-bounds.md). */
+#define ROUND_JOINT 104.0
+
+static inline vec3 placement_turn(const placement *at, vec3 v) {
+  const double *r = at->r;
+  return vec(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
+             r[6] * v.x + r[7] * v.y + r[8] * v.z);
+}
+
+static inline vec3 placement_turn_back(const placement *at, vec3 v) {
+  const double *r = at->r;
+  return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
+             r[2] * v.x + r[5] * v.y + r[8] * v.z);
+}
+
+static inline vec3 placement_apply(const placement *at, vec3 v) {
+  return vec_add(placement_turn(at, v), at->p);
+}
+
+/* outer then inner: x -> outer.r (inner.r x + inner.p) + outer.p. */
+placement placement_compose(const placement *outer, const placement *inner);
+
+/* The axis moved to the value, from where it stands at 0: in the same frame as `before`. Not of a ball. */
+void axis_advance(const robot_axis *axis, const placement *before, double value, placement *moved);
+
+/* The moved frame of an axis at the value, its parent's being given (NULL: the world). `quaternion` is that of a ball: x, y, z, w. */
+placement axis_move(const robot_axis *axis, const placement *parent, double value, const double *quaternion);
+
+/* The moved frames of all axes, for values of all variables. */
+void robot_place_axes(const cprox_robot *robot, const double *variables, placement *frames);
+
+static inline placement placement_under(const placement *frames, int32_t axis, const placement *at) {
+  return axis < 0 ? *at : placement_compose(&frames[axis], at);
+}
+
+/* The nearest axis that is above both, or -1. */
+int32_t robot_common_axis(const cprox_robot *robot, int32_t a, int32_t b);
+
+#endif

@@ -1,0 +1,377 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A motion over a stretch of one of its segments: values, derivatives and their bounds, from Bernstein coefficients. */
+#include "kinematics/motion.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/rounding.h"
+#include "simd/dispatch.h"
+
+/* ---- variables ------------------------------------------------------------------------------------------------------------ */
+
+/* The Bernstein coefficients of some variables, one a lane. */
+typedef double lane_row[MOTION_LANES];
+
+/* c = r c + s d in every lane. */
+static inline void blend(double r, double s, const double *d, double *c) {
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) c[l] = r * c[l] + s * d[l];
+}
+
+/* The coefficients of [a, b], by two cuts. Both cuts of neighbours need not be the same point to the last bit: the error of a
+ * segment covers that (doc/robot-bounds.md). */
+static inline void section(size_t degree, double a, double b, lane_row *c) {
+  if (a > 0.0)
+    for (size_t r = 1; r <= degree; r++)
+      for (size_t i = 0; i + r <= degree; i++) blend(1.0 - a, a, c[i + 1], c[i]);
+  if (b >= 1.0) return;
+  const double s = (b - a) / (1.0 - a);
+  for (size_t r = 1; r <= degree; r++)
+    for (size_t i = degree; i >= r; i--) blend(s, 1.0 - s, c[i - 1], c[i]);
+}
+
+static inline void lanes_middle(const lane_row *c, size_t degree, double *middle) {
+  lane_row v[MOTION_MAX_DEGREE + 1];
+  for (size_t i = 0; i <= degree; i++)
+#pragma omp simd
+    for (int l = 0; l < MOTION_LANES; l++) v[i][l] = c[i][l];
+  for (size_t r = 1; r <= degree; r++)
+    for (size_t i = 0; i + r <= degree; i++)
+#pragma omp simd
+      for (int l = 0; l < MOTION_LANES; l++) v[i][l] = 0.5 * (v[i][l] + v[i + 1][l]);
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) middle[l] = v[0][l];
+}
+
+/* The coefficients of the derivative take the place of those of the polynomial; the largest is at most largest + factor * error. */
+static inline void lanes_differentiate(lane_row *c, size_t degree, double factor, const double *error,
+                                       double *largest) {
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) largest[l] = 0.0;
+  for (size_t i = 0; i < degree; i++)
+#pragma omp simd
+    for (int l = 0; l < MOTION_LANES; l++) {
+      c[i][l] = (double)degree * (c[i + 1][l] - c[i][l]);
+      largest[l] = greater(largest[l], fabs(c[i][l]));
+    }
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) largest[l] += factor * error[l];
+}
+
+/* `error` is that of the coefficients; row k begins at out + k * stride. */
+LANES_DISPATCHED
+static void fill_lanes(lane_row *c, size_t degree, double a, double b, const double *error, double *out,
+                       size_t stride) {
+  const double n = (double)degree;
+  double *value = out, *second = out + MOTION_SECOND * stride, *third = out + MOTION_G * stride;
+  double *acceleration = out + MOTION_A * stride, *shift = out + MOTION_SHIFT * stride,
+         *variation = out + MOTION_VARIATION * stride;
+  section(degree, a, b, c);
+  lanes_middle((const lane_row *)c, degree, value);
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) shift[l] = variation[l] = 0.0;
+  for (size_t i = 0; i <= degree; i++)
+#pragma omp simd
+    for (int l = 0; l < MOTION_LANES; l++) shift[l] = greater(shift[l], fabs(c[i][l] - value[l]));
+  for (size_t i = 0; i < degree; i++)
+#pragma omp simd
+    for (int l = 0; l < MOTION_LANES; l++) variation[l] += fabs(c[i + 1][l] - c[i][l]);
+#pragma omp simd
+  for (int l = 0; l < MOTION_LANES; l++) {
+    shift[l] += 2.0 * error[l], variation[l] += 2.0 * n * error[l];
+    second[l] = acceleration[l] = third[l] = 0.0;
+  }
+
+  lanes_differentiate(c, degree, 2.0 * n, error, out + MOTION_W * stride);
+  lanes_middle((const lane_row *)c, degree - 1, out + MOTION_FIRST * stride);
+  if (degree < 2) return;
+  lanes_differentiate(c, degree - 1, 4.0 * n * (n - 1.0), error, acceleration);
+  lanes_middle((const lane_row *)c, degree - 2, second);
+  if (degree < 3) return;
+  lanes_differentiate(c, degree - 2, 8.0 * n * (n - 1.0) * (n - 2.0), error, third);
+}
+
+static size_t row_stride(const cprox_motion *m) {
+  return (m->n_moving + MOTION_LANES - 1) / MOTION_LANES * MOTION_LANES;
+}
+
+size_t motion_rows_size(const cprox_motion *m) {
+  return MOTION_ROWS * row_stride(m);
+}
+
+void motion_fill_rows(const cprox_motion *m, size_t segment, double a, double b, double *rows) {
+  const size_t degree = m->degree[segment], stride = row_stride(m);
+  for (size_t first = 0; first < m->n_moving; first += MOTION_LANES) {
+    lane_row c[MOTION_MAX_DEGREE + 1], error;
+    for (size_t l = 0; l < MOTION_LANES; l++) {
+      const size_t slot = first + l < m->n_moving ? first + l : m->n_moving - 1, at = segment * m->n_moving + slot;
+      for (size_t i = 0; i <= degree; i++) c[i][l] = m->coefficients[at * m->stride + i];
+      error[l] = m->error[at];
+    }
+    fill_lanes(c, degree, a, b, error, rows + first, stride);
+  }
+}
+
+/* ---- one variable --------------------------------------------------------------------------------------------------------- */
+
+static double at_middle(const double *c, size_t degree) {
+  double v[MOTION_MAX_DEGREE + 1] = {0};
+  memcpy(v, c, (degree + 1) * sizeof *v);
+  for (size_t r = 1; r <= degree; r++)
+    for (size_t i = 0; i + r <= degree; i++) v[i] = 0.5 * (v[i] + v[i + 1]);
+  return v[0];
+}
+
+/* The coefficients of the derivative take the place of those of the polynomial. */
+static void differentiate(double *c, size_t degree) {
+  for (size_t i = 0; i < degree; i++) c[i] = (double)degree * (c[i + 1] - c[i]);
+}
+
+/* The four coordinates of a ball's quaternion over the stretch, one a lane; returns the sum of their errors. */
+static double quaternion_over(const cprox_motion *m, size_t segment, int32_t variable, double a, double b,
+                              double c[4][MOTION_MAX_DEGREE + 1]) {
+  const size_t degree = m->degree[segment];
+  lane_row lanes[MOTION_MAX_DEGREE + 1] = {{0}};
+  double error = 0.0;
+  for (int k = 0; k < 4; k++) {
+    const int32_t slot = m->slot[variable + k];
+    const size_t at = segment * m->n_moving + (size_t)(slot < 0 ? 0 : slot);
+    for (size_t i = 0; i <= degree; i++)
+      lanes[i][k] = slot < 0 ? m->rest[variable + k] : m->coefficients[at * m->stride + i];
+    error += slot < 0 ? 0.0 : m->error[at];
+  }
+  section(degree, a, b, lanes);
+  for (int k = 0; k < 4; k++)
+    for (size_t i = 0; i <= degree; i++) c[k][i] = lanes[i][k];
+  return error;
+}
+
+/* ---- one axis ------------------------------------------------------------------------------------------------------------- */
+
+static double largest_norm(double c[4][MOTION_MAX_DEGREE + 1], size_t count) {
+  double largest = 0.0;
+  for (size_t i = 0; i < count; i++)
+    largest = fmax(largest, c[0][i] * c[0][i] + c[1][i] * c[1][i] + c[2][i] * c[2][i] + c[3][i] * c[3][i]);
+  return sqrt(largest);
+}
+
+/* Twice the vector part of p q*, quaternions as x, y, z, w. */
+static vec3 twice_product(const double *p, const double *q) {
+  const vec3 u = vec(p[0], p[1], p[2]), v = vec(q[0], q[1], q[2]);
+  return vec_scale(2.0, vec_sub(vec_sub(vec_scale(q[3], u), vec_scale(p[3], v)), vec_cross(u, v)));
+}
+
+/* A quaternion of any norm turns at omega = 2 vec(p' p*) / |p|² and omega' = 2 vec(p'' p*) / |p|² - 2 omega (p·p') / |p|². */
+static void ball_over(const cprox_motion *m, size_t segment, size_t axis_index, double a, double b,
+                      const placement *parent, const placement *before, axis_state *state) {
+  const robot_axis *axis = &m->robot->axes[axis_index];
+  const size_t degree = m->degree[segment];
+  const double n = (double)degree;
+  double c[4][MOTION_MAX_DEGREE + 1], p[3][4] = {{0}}, bound[4] = {0}, factor = 2.0 * n;
+  const double error = quaternion_over(m, segment, axis->variable, a, b, c);
+  for (int k = 0; k < 4; k++) p[0][k] = at_middle(c[k], degree);
+  for (size_t order = 1; order <= 3 && order <= degree; order++) {
+    for (int k = 0; k < 4; k++) {
+      differentiate(c[k], degree - order + 1);
+      if (order < 3) p[order][k] = at_middle(c[k], degree - order);
+    }
+    bound[order] = ROUND_UP * largest_norm(c, degree - order + 1) + factor * error;
+    factor *= 2.0 * (n - (double)order);
+  }
+
+  /* all rates are in units of the least norm */
+  const double norm = m->norm[axis_index], r1 = bound[1] / norm, r2 = bound[2] / norm, r3 = bound[3] / norm;
+  state->w = 2.0 * r1;
+  state->a = 2.0 * r2 + 4.0 * r1 * r1;
+  state->g = 2.0 * r3 + 14.0 * r1 * r2 + 20.0 * r1 * r1 * r1;
+  state->shift = 0.5 * state->w;
+  state->variation = state->w;
+  state->error = 2.0 * (2.0 * n + 1.0) * (2.0 * n + 1.0) * (1.0 + state->w) * (1.0 + state->w) * error / norm;
+
+  double square = 0.0, along = 0.0;
+  for (int k = 0; k < 4; k++) square += p[0][k] * p[0][k], along += p[0][k] * p[1][k];
+  const vec3 omega = vec_scale(1.0 / square, twice_product(p[1], p[0]));
+  const vec3 alpha = vec_axpy(vec_scale(1.0 / square, twice_product(p[2], p[0])), -2.0 * along / square, omega);
+  state->velocity = placement_turn(before, omega);
+  state->acceleration = placement_turn(before, alpha);
+  const placement own = axis_move(axis, NULL, 0.0, p[0]);
+  state->frame = parent ? placement_compose(parent, &own) : own;
+}
+
+static vec3 world_axis(const robot_axis *axis, const placement *before) {
+  if (axis->along < 0) return placement_turn(before, axis->z);
+  const double *column = before->r + axis->along;
+  const double sign = axis->along == 0 ? axis->z.x : axis->along == 1 ? axis->z.y : axis->z.z;
+  return vec(sign * column[0], sign * column[3], sign * column[6]);
+}
+
+static void line_over(const cprox_motion *m, size_t segment, const robot_axis *axis, const double *rows,
+                      const placement *before, axis_state *state) {
+  const size_t stride = row_stride(m), slot = (size_t)m->slot[axis->variable];
+  const double *of = rows + slot;
+  const double error = m->error[segment * m->n_moving + slot], n = (double)m->degree[segment];
+  const double factor = fabs(axis->multiplier), value = axis->multiplier * of[MOTION_VALUE] + axis->offset;
+  state->w = factor * of[MOTION_W * stride], state->a = factor * of[MOTION_A * stride];
+  state->g = factor * of[MOTION_G * stride];
+  state->shift = factor * of[MOTION_SHIFT * stride], state->variation = factor * of[MOTION_VARIATION * stride];
+  state->error = factor * error * (n + 0.5 * n * n);
+  state->z = world_axis(axis, before);
+  state->velocity = vec_scale(axis->multiplier * of[MOTION_FIRST * stride], state->z);
+  state->acceleration = vec_scale(axis->multiplier * of[MOTION_SECOND * stride], state->z);
+  axis_advance(axis, before, value, &state->frame);
+}
+
+void motion_find_axis(const cprox_motion *m, size_t segment, double a, double b, const double *rows, size_t i,
+                      axis_state *axes) {
+  const robot_axis *axis = &m->robot->axes[i];
+  axis_state *state = &axes[i];
+  const placement *parent = axis->parent < 0 ? NULL : &axes[axis->parent].frame;
+  if (!m->axis_moves[i]) {
+    *state = (axis_state){.kind = axis->kind};
+    state->frame = parent ? placement_compose(parent, &m->still[i]) : m->still[i];
+    return;
+  }
+  state->kind = axis->kind;
+  const placement before = parent ? placement_compose(parent, &axis->at) : axis->at;
+  if (axis->kind == AXIS_BALL)
+    ball_over(m, segment, i, a, b, parent, &before, state);
+  else
+    line_over(m, segment, axis, rows, &before, state);
+}
+
+void motion_node(const cprox_motion *m, size_t segment, double a, double b, double *rows, axis_state *axes) {
+  motion_fill_rows(m, segment, a, b, rows);
+  for (size_t i = 0; i < m->robot->n_axes; i++) motion_find_axis(m, segment, a, b, rows, i, axes);
+}
+
+/* ---- one time ------------------------------------------------------------------------------------------------------------- */
+
+static double value_at(const double *root, size_t degree, double u) {
+  double c[MOTION_MAX_DEGREE + 1];
+  memcpy(c, root, (degree + 1) * sizeof *c);
+  for (size_t r = 1; r <= degree; r++)
+    for (size_t i = 0; i + r <= degree; i++) c[i] = (1.0 - u) * c[i] + u * c[i + 1];
+  return c[0];
+}
+
+static void values_at(const cprox_motion *m, size_t segment, double u, double *values) {
+  memcpy(values, m->rest, m->robot->n_variables * sizeof *values);
+  for (size_t k = 0; k < m->n_moving; k++)
+    values[m->moving[k]] = value_at(m->coefficients + (segment * m->n_moving + k) * m->stride, m->degree[segment], u);
+}
+
+void motion_place(const cprox_motion *m, size_t segment, double u, double *values, placement *frames) {
+  values_at(m, segment, u, values);
+  robot_place_axes(m->robot, values, frames);
+}
+
+double motion_time(const cprox_motion *m, size_t segment, double u) {
+  return (1.0 - u) * m->times[segment] + u * m->times[segment + 1];
+}
+
+void cprox_motion_domain(const cprox_motion *motion, double *t0, double *t1) {
+  *t0 = motion->times[0];
+  *t1 = motion->times[motion->n_segments];
+}
+
+void cprox_motion_evaluate(const cprox_motion *motion, double t, double *variables) {
+  size_t segment = 0;
+  while (segment + 1 < motion->n_segments && t >= motion->times[segment + 1]) segment++;
+  const double t0 = motion->times[segment], t1 = motion->times[segment + 1];
+  values_at(motion, segment, fmin(fmax((t - t0) / (t1 - t0), 0.0), 1.0), variables);
+}
+
+/* ---- ranges --------------------------------------------------------------------------------------------------------------- */
+
+enum { RANGE_HALVINGS = 40 };
+
+typedef struct value_range {
+  double low, high; /* values that are taken */
+  double room;      /* what is beyond them by less is not looked for */
+} value_range;
+
+/* Takes in the values of a polynomial. Stretches whose coefficients promise more than is known are cut in halves, from left to right. */
+static void take_in(const double *root, size_t degree, value_range *range) {
+  double stack[RANGE_HALVINGS + 1][MOTION_MAX_DEGREE + 1];
+  int depths[RANGE_HALVINGS + 1], n = 1;
+  memcpy(stack[0], root, (degree + 1) * sizeof *root);
+  depths[0] = 0;
+  while (n > 0) {
+    double *c = stack[n - 1], right[MOTION_MAX_DEGREE + 1];
+    double low = c[0], high = c[0];
+    for (size_t i = 1; i <= degree; i++) low = fmin(low, c[i]), high = fmax(high, c[i]);
+    range->low = fmin(range->low, fmin(c[0], c[degree]));
+    range->high = fmax(range->high, fmax(c[0], c[degree]));
+    const bool known = low >= range->low - range->room && high <= range->high + range->room;
+    if (known || depths[n - 1] >= RANGE_HALVINGS) {
+      range->low = fmin(range->low, low), range->high = fmax(range->high, high);
+      n--;
+      continue;
+    }
+
+    /* the right half takes the place of the whole, the left one is looked at next */
+    memcpy(right, c, (degree + 1) * sizeof *c);
+    double left[MOTION_MAX_DEGREE + 1] = {c[0]};
+    for (size_t r = 1; r <= degree; r++) {
+      for (size_t i = 0; i + r <= degree; i++) right[i] = 0.5 * (right[i] + right[i + 1]);
+      left[r] = right[0];
+    }
+    const int depth = ++depths[n - 1];
+    memcpy(stack[n - 1], right, (degree + 1) * sizeof *right);
+    memcpy(stack[n], left, (degree + 1) * sizeof *left);
+    depths[n++] = depth;
+  }
+}
+
+void cprox_motion_range(const cprox_motion *motion, size_t variable, double *low, double *high) {
+  const int32_t slot = motion->slot[variable];
+  *low = *high = motion->rest[variable];
+  if (slot < 0) return;
+  value_range range = {.low = INFINITY, .high = -INFINITY};
+  for (int pass = 0; pass < 2; pass++) {
+    for (size_t segment = 0; segment < motion->n_segments; segment++) {
+      const double *c = motion->coefficients + (segment * motion->n_moving + (size_t)slot) * motion->stride;
+      for (size_t i = 0; pass == 0 && i <= motion->degree[segment]; i++)
+        range.room = fmax(range.room, 1e-9 * fabs(c[i]));
+      if (pass == 1) take_in(c, motion->degree[segment], &range);
+    }
+  }
+  *low = range.low, *high = range.high;
+}
+
+/* ---- what moves ----------------------------------------------------------------------------------------------------------- */
+
+/* Counts the joints from an axis up to, not including, another one, and those of them that the motion moves. */
+static void count_joints(const cprox_motion *m, int32_t from, int32_t to, size_t *joints, size_t *moved) {
+  for (int32_t i = from; i != to; i = m->robot->axes[i].parent) {
+    *joints += m->robot->axes[i].first_of_joint;
+    *moved += m->axis_moves[i];
+  }
+}
+
+bool cprox_motion_moves_link(const cprox_motion *motion, size_t link) {
+  size_t joints = 0, moved = 0;
+  count_joints(motion, motion->robot->links[link].axis, -1, &joints, &moved);
+  return moved > 0;
+}
+
+/* The same between two links. */
+static void count_between(const cprox_motion *motion, size_t link_a, size_t link_b, size_t *joints, size_t *moved) {
+  const int32_t a = motion->robot->links[link_a].axis, b = motion->robot->links[link_b].axis;
+  const int32_t common = robot_common_axis(motion->robot, a, b);
+  count_joints(motion, a, common, joints, moved);
+  count_joints(motion, b, common, joints, moved);
+}
+
+bool cprox_motion_moves_between(const cprox_motion *motion, size_t link_a, size_t link_b) {
+  size_t joints = 0, moved = 0;
+  count_between(motion, link_a, link_b, &joints, &moved);
+  return moved >= 1;
+}
+
+bool cprox_motion_relates_links(const cprox_motion *motion, size_t link_a, size_t link_b) {
+  size_t joints = 0, moved = 0;
+  count_between(motion, link_a, link_b, &joints, &moved);
+  return joints >= 2 && moved >= 1;
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Joint splines: one Bézier polynomial a segment and variable that moves, and what a stretch of them says of every axis. */
+#ifndef CPROX_KINEMATICS_MOTION_H
+#define CPROX_KINEMATICS_MOTION_H
+
+#include "kinematics/given.h"
+#include "kinematics/joint_tree.h"
+
+/* Variables are worked on so many at a time; rows are padded to whole lanes. */
+enum { MOTION_MAX_DEGREE = 9, MOTION_LANES = 8 };
+
+struct cprox_motion {
+  const cprox_robot *robot;
+  size_t n_segments, n_moving;
+  size_t stride;        /* room for the coefficients of one polynomial */
+  double *times;        /* n_segments + 1, ascending */
+  uint8_t *degree;      /* of a segment */
+  double *coefficients; /* [segment][moving variable][stride] */
+  double *error;   /* [segment][moving variable]: of what is computed from the coefficients anywhere, 1e-15 of them */
+  int32_t *moving; /* the variables that do not stand still */
+  int32_t *slot;   /* of a variable among those, or -1 */
+  double *rest;    /* the values of the others */
+  bool *axis_moves;
+  placement *still; /* of an axis that does not: as it stands in its parent's frame */
+  double *norm;     /* of a ball's quaternion: at least this everywhere */
+  motion_given given;
+  double *part_error; /* every point of a part is computed within this of where it is */
+};
+
+/* What a node, a stretch [a, b] of a segment, says of one axis. Derivatives are by the node's own u in [0, 1]; all bounds hold for
+ * the exact motion, rounding included. `velocity` and `acceleration` are those at the middle, in world axes: angular for
+ * revolute axes and balls, linear for prismatic ones. */
+typedef struct axis_state {
+  axis_kind kind;
+  placement frame; /* moved, at the middle */
+  vec3 z;          /* unit, world; not of a ball */
+  vec3 velocity, acceleration;
+  double w, a, g;   /* bounds on the first, second and third derivative */
+  double shift;     /* on the way from the middle to anywhere in the node */
+  double variation; /* the length of the whole way */
+  double error;     /* of half the computed velocity and an eighth of the acceleration together */
+} axis_state;
+
+/* What the variables do over the stretch, all at once: rows of numbers, one for each variable that moves. */
+typedef enum motion_row {
+  MOTION_VALUE, /* in the middle, with two derivatives */
+  MOTION_FIRST,
+  MOTION_SECOND,
+  MOTION_W, /* bounds, as those of an axis */
+  MOTION_A,
+  MOTION_G,
+  MOTION_SHIFT,
+  MOTION_VARIATION,
+  MOTION_ROWS
+} motion_row;
+
+/* The numbers in all rows. */
+size_t motion_rows_size(const cprox_motion *motion);
+void motion_fill_rows(const cprox_motion *motion, size_t segment, double a, double b, double *rows);
+
+/* The state of one axis by them; that of its parent must be known. Of an axis that does not move, only the frame. */
+void motion_find_axis(const cprox_motion *motion, size_t segment, double a, double b, const double *rows, size_t axis,
+                      axis_state *axes);
+
+/* The states of all axes over the stretch. */
+void motion_node(const cprox_motion *motion, size_t segment, double a, double b, double *rows, axis_state *axes);
+
+/* The moved frames of all axes at u of a segment; `values` has room for all variables. */
+void motion_place(const cprox_motion *motion, size_t segment, double u, double *values, placement *frames);
+
+/* The time at u of a segment, within the segment. */
+double motion_time(const cprox_motion *motion, size_t segment, double u);
+
+#endif

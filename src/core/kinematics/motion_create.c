@@ -1,0 +1,397 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Motions from waypoints and from B-splines: checked, and turned into Bernstein coefficients. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/rounding.h"
+#include "base/workspace.h"
+#include "curve/curve.h"
+#include "kinematics/motion.h"
+
+/* The largest value, velocity times duration, and so on. */
+#define MOTION_LARGEST 1e100
+
+/* What both constructors are given. */
+typedef struct motion_source {
+  const cprox_robot *robot;
+  const int32_t *variables;
+  size_t n;
+  const double *rest;
+  cprox_workspace *workspace;
+} motion_source;
+
+/* ---- checks --------------------------------------------------------------------------------------------------------------- */
+
+static cprox_status check_source(const motion_source *s, cprox_motion **motion) {
+  if (!motion) return workspace_fail(s->workspace, CPROX_INVALID, "motion is NULL: nowhere to put the handle");
+  if (!s->robot) return workspace_fail(s->workspace, CPROX_INVALID, "robot is NULL");
+  if (s->n > 0 && !s->variables) return workspace_fail(s->workspace, CPROX_INVALID, "variables is NULL");
+  for (size_t i = 0; i < s->n; i++) {
+    if (s->variables[i] < 0 || (size_t)s->variables[i] >= s->robot->n_variables)
+      return workspace_fail(s->workspace, CPROX_INVALID, "there is no variable %d: the robot has %zu",
+                            (int)s->variables[i], s->robot->n_variables);
+    for (size_t k = 0; k < i; k++)
+      if (s->variables[k] == s->variables[i])
+        return workspace_fail(s->workspace, CPROX_INVALID, "variable %d is named twice", (int)s->variables[i]);
+  }
+  for (size_t i = 0; s->rest && i < s->robot->n_variables; i++)
+    if (!(fabs(s->rest[i]) <= MOTION_LARGEST))
+      return workspace_fail(s->workspace, CPROX_INVALID, "the rest value of variable %zu is %g", i, s->rest[i]);
+  return CPROX_OK;
+}
+
+static cprox_status check_row(const double *row, size_t n, const char *what, size_t point, cprox_workspace *workspace) {
+  for (size_t i = 0; row && i < n; i++)
+    if (!(fabs(row[i]) <= MOTION_LARGEST))
+      return workspace_fail(workspace, CPROX_INVALID, "waypoint %zu: %s %zu is %g", point, what, i, row[i]);
+  return CPROX_OK;
+}
+
+static cprox_status check_waypoint(const cprox_waypoint *p, size_t i, size_t n, cprox_interpolation interpolation,
+                                   cprox_workspace *workspace) {
+  if (!p->positions) return workspace_fail(workspace, CPROX_INVALID, "waypoint %zu has no positions", i);
+  if (!(fabs(p->time) <= MOTION_LARGEST))
+    return workspace_fail(workspace, CPROX_INVALID, "waypoint %zu: its time is %g", i, p->time);
+  if (i > 0 && !(p[-1].time < p->time))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "waypoint %zu is at %.15g s, waypoint %zu at %.15g s: times must ascend", i - 1, p[-1].time,
+                          i, p->time);
+  const bool wants_velocity = interpolation == CPROX_CUBIC || interpolation == CPROX_QUINTIC;
+  if (wants_velocity && !p->velocities)
+    return workspace_fail(workspace, CPROX_INVALID, "waypoint %zu has no velocities, which the interpolation needs", i);
+  if (interpolation == CPROX_QUINTIC && !p->accelerations)
+    return workspace_fail(workspace, CPROX_INVALID, "waypoint %zu has no accelerations, which quintics need", i);
+  cprox_status status = check_row(p->positions, n, "position", i, workspace);
+  if (status == CPROX_OK) status = check_row(p->velocities, n, "velocity", i, workspace);
+  if (status == CPROX_OK) status = check_row(p->accelerations, n, "acceleration", i, workspace);
+  return status;
+}
+
+static cprox_status check_spline(size_t degree, const double *control, size_t n_control, const double *knots, size_t n,
+                                 cprox_workspace *workspace) {
+  if (degree < 1 || degree > MOTION_MAX_DEGREE)
+    return workspace_fail(workspace, CPROX_INVALID, "the degree is %zu, must be 1 … %d", degree, MOTION_MAX_DEGREE);
+  if (n_control < degree + 1)
+    return workspace_fail(workspace, CPROX_INVALID, "degree %zu needs at least %zu control points, got %zu", degree,
+                          degree + 1, n_control);
+  if (!control || !knots) return workspace_fail(workspace, CPROX_INVALID, "the control points or the knots are NULL");
+  for (size_t i = 0; i < n_control * n; i++)
+    if (!(fabs(control[i]) <= MOTION_LARGEST))
+      return workspace_fail(workspace, CPROX_INVALID, "control point %zu, value %zu is %g", i / n, i % n, control[i]);
+  for (size_t i = 0; i < n_control + degree + 1; i++) {
+    if (!(fabs(knots[i]) <= MOTION_LARGEST))
+      return workspace_fail(workspace, CPROX_INVALID, "knot %zu is %g", i, knots[i]);
+    if (i > 0 && knots[i] < knots[i - 1])
+      return workspace_fail(workspace, CPROX_INVALID, "knot %zu is %.15g, below knot %zu at %.15g", i, knots[i], i - 1,
+                            knots[i - 1]);
+    if (i > degree && i < n_control && knots[i] == knots[i - degree])
+      return workspace_fail(workspace, CPROX_INVALID,
+                            "knots %zu to %zu are all %.15g: so many inside would let the motion jump", i - degree, i,
+                            knots[i]);
+  }
+  if (knots[degree] < knots[n_control]) return CPROX_OK;
+  return workspace_fail(workspace, CPROX_INVALID, "the motion takes no time: knots %zu to %zu are all %.15g", degree,
+                        n_control, knots[degree]);
+}
+
+/* ---- memory --------------------------------------------------------------------------------------------------------------- */
+
+static cprox_motion *allocate(const motion_source *s, size_t n_segments, size_t degree) {
+  cprox_motion *m = calloc(1, sizeof *m);
+  if (!m) return NULL;
+  const size_t n = s->n + 1, n_variables = s->robot->n_variables + 1, room = n_segments + 1;
+  m->robot = s->robot;
+  m->n_segments = n_segments;
+  m->n_moving = s->n;
+  m->stride = degree + 1;
+  m->times = calloc(room, sizeof *m->times);
+  m->degree = calloc(room, sizeof *m->degree);
+  m->coefficients = calloc(room * n * m->stride, sizeof *m->coefficients);
+  m->error = calloc(room * n, sizeof *m->error);
+  m->moving = calloc(n, sizeof *m->moving);
+  m->slot = calloc(n_variables, sizeof *m->slot);
+  m->rest = calloc(n_variables, sizeof *m->rest);
+  m->axis_moves = calloc(s->robot->n_axes + 1, sizeof *m->axis_moves);
+  m->still = calloc(s->robot->n_axes + 1, sizeof *m->still);
+  m->norm = calloc(s->robot->n_axes + 1, sizeof *m->norm);
+  m->part_error = calloc(s->robot->n_parts + 1, sizeof *m->part_error);
+  if (m->times && m->degree && m->coefficients && m->error && m->moving && m->slot && m->rest && m->axis_moves &&
+      m->still && m->norm && m->part_error)
+    return m;
+  cprox_motion_free(m);
+  return NULL;
+}
+
+void cprox_motion_free(cprox_motion *motion) {
+  if (!motion) return;
+  free(motion->times);
+  free(motion->degree);
+  free(motion->coefficients);
+  free(motion->error);
+  free(motion->moving);
+  free(motion->slot);
+  free(motion->rest);
+  free(motion->axis_moves);
+  free(motion->still);
+  free(motion->norm);
+  free(motion->part_error);
+  motion_given_free(&motion->given);
+  free(motion);
+}
+
+/* ---- finishing ------------------------------------------------------------------------------------------------------------ */
+
+/* The largest coefficient of a variable over the whole motion, and the largest error. */
+static double largest_value(const cprox_motion *m, int32_t variable, double *error) {
+  *error = 0.0;
+  const int32_t slot = m->slot[variable];
+  if (slot < 0) return fabs(m->rest[variable]);
+  double largest = 0.0;
+  for (size_t s = 0; s < m->n_segments; s++) {
+    const size_t at = s * m->n_moving + (size_t)slot;
+    for (size_t i = 0; i <= m->degree[s]; i++) largest = fmax(largest, fabs(m->coefficients[at * m->stride + i]));
+    *error = fmax(*error, m->error[at]);
+  }
+  return largest;
+}
+
+/* Variables that stand still are taken out of the list. */
+static void find_moving(cprox_motion *m, const motion_source *s) {
+  const size_t n = s->n;
+  size_t kept = 0;
+  for (size_t v = 0; v < s->robot->n_variables; v++) {
+    m->slot[v] = -1;
+    m->rest[v] = s->rest ? s->rest[v] : 0.0;
+  }
+  for (size_t k = 0; k < n; k++) {
+    const double first = m->coefficients[k * m->stride];
+    bool moves = false;
+    for (size_t segment = 0; segment < m->n_segments; segment++)
+      for (size_t i = 0; i <= m->degree[segment]; i++)
+        moves = moves || m->coefficients[(segment * n + k) * m->stride + i] != first;
+    m->rest[s->variables[k]] = first;
+    if (!moves) continue;
+    m->slot[s->variables[k]] = (int32_t)kept;
+    m->moving[kept++] = (int32_t)k;
+  }
+  /* rows move towards the front only */
+  for (size_t segment = 0; segment < m->n_segments; segment++)
+    for (size_t k = 0; k < kept; k++) {
+      const size_t from = segment * n + (size_t)m->moving[k], to = segment * kept + k;
+      memmove(m->coefficients + to * m->stride, m->coefficients + from * m->stride, m->stride * sizeof(double));
+      m->error[to] = m->error[from];
+    }
+  for (size_t k = 0; k < kept; k++) m->moving[k] = s->variables[m->moving[k]];
+  m->n_moving = kept;
+}
+
+/* The least norm of a quaternion over the stretch, from below; 0 where it cannot be told from 0. */
+static double least_norm(double c[4][MOTION_MAX_DEGREE + 1], size_t degree, double error, int depth) {
+  double middle[4] = {0}, left[4][MOTION_MAX_DEGREE + 1], right[4][MOTION_MAX_DEGREE + 1];
+  for (int k = 0; k < 4; k++) {
+    memcpy(right[k], c[k], sizeof right[k]);
+    for (size_t r = 0; r <= degree; r++) {
+      left[k][r] = right[k][0];
+      for (size_t i = 0; i + r < degree; i++) right[k][i] = 0.5 * (right[k][i] + right[k][i + 1]);
+    }
+    middle[k] = left[k][degree];
+  }
+  double norm = 0.0, spread = 0.0;
+  for (int k = 0; k < 4; k++) norm += middle[k] * middle[k];
+  for (size_t i = 0; i <= degree; i++) {
+    double d = 0.0;
+    for (int k = 0; k < 4; k++) d += (c[k][i] - middle[k]) * (c[k][i] - middle[k]);
+    spread = fmax(spread, d);
+  }
+  const double bound = (1.0 - 16.0 * ROUND_U) * (sqrt(norm) - sqrt(spread)) - error;
+  if (bound >= 0.5 * sqrt(norm) && norm > 0.0) return bound;
+  if (depth == 0) return 0.0;
+  return fmin(least_norm(left, degree, error, depth - 1), least_norm(right, degree, error, depth - 1));
+}
+
+static double least_norm_of(const cprox_motion *m, int32_t variable) {
+  double least = INFINITY;
+  for (size_t s = 0; s < m->n_segments; s++) {
+    double c[4][MOTION_MAX_DEGREE + 1] = {{0}}, error = 0.0;
+    for (int k = 0; k < 4; k++) {
+      const int32_t slot = m->slot[variable + k];
+      const size_t at = s * m->n_moving + (size_t)(slot < 0 ? 0 : slot);
+      for (size_t i = 0; i <= m->degree[s]; i++)
+        c[k][i] = slot < 0 ? m->rest[variable + k] : m->coefficients[at * m->stride + i];
+      error += slot < 0 ? 0.0 : m->error[at];
+    }
+    least = fmin(least, least_norm(c, m->degree[s], error, 12));
+  }
+  return least;
+}
+
+/* What is known of each axis and part once the coefficients are there. */
+static cprox_status finish_axes(cprox_motion *m, const motion_source *s) {
+  for (size_t i = 0; i < s->robot->n_axes; i++) {
+    const robot_axis *axis = &s->robot->axes[i];
+    for (int32_t k = 0; k < (axis->kind == AXIS_BALL ? 4 : 1); k++)
+      m->axis_moves[i] = m->axis_moves[i] || (m->slot[axis->variable + k] >= 0 && axis->multiplier != 0.0);
+    const double *rest = m->rest + axis->variable;
+    if (!m->axis_moves[i]) m->still[i] = axis_move(axis, NULL, axis->multiplier * rest[0] + axis->offset, rest);
+    if (axis->kind != AXIS_BALL) continue;
+    m->norm[i] = least_norm_of(m, axis->variable);
+    if (!(m->norm[i] > 1e-9))
+      return workspace_fail(s->workspace, CPROX_INVALID,
+                            "the quaternion of variables %d to %d comes too near 0 to be a rotation",
+                            (int)axis->variable, (int)axis->variable + 3);
+  }
+  return CPROX_OK;
+}
+
+/* Transforms that are off by ROUND_JOINT a joint, and values that are off by theirs, about levers of at most the reach. */
+static void finish_parts(cprox_motion *m) {
+  for (size_t p = 0; p < m->robot->n_parts; p++) {
+    const robot_part *part = &m->robot->parts[p];
+    double reach = part->reach, angles = 0.0, shifts = 0.0;
+    for (int32_t i = part->axis; i >= 0; i = m->robot->axes[i].parent) {
+      const robot_axis *axis = &m->robot->axes[i];
+      double error, sum = 0.0;
+      const int32_t count = axis->kind == AXIS_BALL ? 4 : 1;
+      double largest = 0.0;
+      for (int32_t k = 0; k < count; k++) largest = largest_value(m, axis->variable + k, &error), sum += error;
+      const double value = fabs(axis->multiplier) * largest + fabs(axis->offset);
+      const double off = fabs(axis->multiplier) * sum + 2.0 * ROUND_U * (value + fabs(axis->offset));
+      if (axis->kind == AXIS_PRISMATIC) reach += value, shifts += off;
+      if (axis->kind == AXIS_REVOLUTE) angles += off;
+      if (axis->kind == AXIS_BALL) angles += 2.0 * sum / m->norm[i];
+    }
+    m->part_error[p] = ROUND_UP * (ROUND_JOINT * (double)part->steps * ROUND_U * reach + angles * reach + shifts);
+  }
+}
+
+static cprox_status finish(cprox_motion *m, const motion_source *s, cprox_motion **motion) {
+  find_moving(m, s);
+  const cprox_status status = finish_axes(m, s);
+  if (status != CPROX_OK) {
+    cprox_motion_free(m);
+    return status;
+  }
+  finish_parts(m);
+  *motion = m;
+  return CPROX_OK;
+}
+
+/* What cutting and evaluating adds to the error of coefficients of this size; doc/robot-bounds.md. */
+static double cutting_error(size_t degree, double largest) {
+  return ROUND_UP * ROUND_U * (16.0 * (double)degree + 8.0) * largest;
+}
+
+/* ---- waypoints ------------------------------------------------------------------------------------------------------------ */
+
+static size_t degree_between(const cprox_waypoint *a, const cprox_waypoint *b, cprox_interpolation interpolation) {
+  switch (interpolation) {
+    case CPROX_LINEAR: return 1;
+    case CPROX_CUBIC: return 3;
+    case CPROX_QUINTIC: return 5;
+    case CPROX_BY_WAYPOINTS: break;
+  }
+  if (!a->velocities || !b->velocities) return 1;
+  return a->accelerations && b->accelerations ? 5 : 3;
+}
+
+/* The Hermite polynomial of one variable over h seconds; returns the size of what was added up. */
+static double hermite(const cprox_waypoint *p, const cprox_waypoint *q, size_t k, size_t degree, double h, double *c) {
+  const double n = (double)degree;
+  c[0] = p->positions[k], c[degree] = q->positions[k];
+  double size = fmax(fabs(c[0]), fabs(c[degree]));
+  if (degree == 1) return size;
+  const double v0 = h * p->velocities[k] / n, v1 = h * q->velocities[k] / n;
+  c[1] = c[0] + v0, c[degree - 1] = c[degree] - v1;
+  size += 2.0 * fmax(fabs(v0), fabs(v1));
+  if (degree == 3) return size;
+  const double a0 = h * h * p->accelerations[k] / 20.0, a1 = h * h * q->accelerations[k] / 20.0;
+  c[2] = c[0] + 2.0 * v0 + a0, c[3] = c[5] - 2.0 * v1 + a1;
+  return size + fmax(fabs(a0), fabs(a1));
+}
+
+cprox_status cprox_motion_create_waypoints(const cprox_robot *robot, const int32_t *variables, size_t n,
+                                           const cprox_waypoint *points, size_t n_points,
+                                           cprox_interpolation interpolation, const double *rest,
+                                           cprox_workspace *workspace, cprox_motion **motion) {
+  const motion_source s = {robot, variables, n, rest, workspace};
+  workspace_clear(workspace);
+  cprox_status status = check_source(&s, motion);
+  if (status != CPROX_OK) return status;
+  if (!points || n_points < 2)
+    return workspace_fail(workspace, CPROX_INVALID, "a motion needs at least 2 waypoints, got %zu",
+                          points ? n_points : (size_t)0);
+  if ((unsigned)interpolation > CPROX_QUINTIC)
+    return workspace_fail(workspace, CPROX_INVALID, "%d is no interpolation", (int)interpolation);
+  for (size_t i = 0; i < n_points && status == CPROX_OK; i++)
+    status = check_waypoint(&points[i], i, n, interpolation, workspace);
+  if (status != CPROX_OK) return status;
+
+  cprox_motion *m = allocate(&s, n_points - 1, 5);
+  if (m && !motion_keep_waypoints(&m->given, variables, n, points, n_points, interpolation)) {
+    cprox_motion_free(m);
+    m = NULL;
+  }
+  if (!m) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a motion of %zu waypoints", n_points);
+  m->times[0] = points[0].time;
+  for (size_t i = 0; i + 1 < n_points; i++) {
+    const cprox_waypoint *p = &points[i];
+    m->times[i + 1] = p[1].time;
+    m->degree[i] = (uint8_t)degree_between(&p[0], &p[1], interpolation);
+    for (size_t k = 0; k < n; k++) {
+      const size_t at = i * n + k;
+      const double size =
+          hermite(&p[0], &p[1], k, m->degree[i], p[1].time - p[0].time, m->coefficients + at * m->stride);
+      m->error[at] = cutting_error(m->degree[i], size); /* the sums of hermite() are off by 8 u of their size at most */
+    }
+  }
+  return finish(m, &s, motion);
+}
+
+/* ---- B-splines ------------------------------------------------------------------------------------------------------------ */
+
+/* One span of one variable; returns the size of its de Boor points. */
+static double convert_span(const double *control, size_t n, const double *knots, size_t degree, size_t r, double *c) {
+  vec3 points[MOTION_MAX_DEGREE + 1], bezier[MOTION_MAX_DEGREE + 1];
+  double size = 0.0;
+  for (size_t i = 0; i <= degree; i++) {
+    points[i] = vec(control[(r - degree + i) * n], 0, 0);
+    size = fmax(size, fabs(points[i].x));
+  }
+  curve_blossom(points, knots + r - degree + 1, degree, knots[r], knots[r + 1], bezier);
+  for (size_t i = 0; i <= degree; i++) c[i] = bezier[i].x;
+  return size;
+}
+
+cprox_status cprox_motion_create_bspline(const cprox_robot *robot, const int32_t *variables, size_t n, size_t degree,
+                                         const double *control, size_t n_control, const double *knots,
+                                         const double *rest, cprox_workspace *workspace, cprox_motion **motion) {
+  const motion_source s = {robot, variables, n, rest, workspace};
+  workspace_clear(workspace);
+  cprox_status status = check_source(&s, motion);
+  if (status == CPROX_OK) status = check_spline(degree, control, n_control, knots, n, workspace);
+  if (status != CPROX_OK) return status;
+
+  size_t n_segments = 0;
+  for (size_t r = degree; r < n_control; r++) n_segments += knots[r] < knots[r + 1];
+  cprox_motion *m = allocate(&s, n_segments, degree);
+  if (m && !motion_keep_spline(&m->given, variables, n, degree, control, n_control, knots)) {
+    cprox_motion_free(m);
+    m = NULL;
+  }
+  if (!m) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a motion of %zu spans", n_segments);
+  m->times[0] = knots[degree];
+  size_t i = 0;
+  for (size_t r = degree; r < n_control; r++) {
+    if (!(knots[r] < knots[r + 1])) continue;
+    m->times[i + 1] = knots[r + 1];
+    m->degree[i] = (uint8_t)degree;
+    for (size_t k = 0; k < n; k++) {
+      const size_t at = i * n + k;
+      const double size = convert_span(control + k, n, knots, degree, r, m->coefficients + at * m->stride);
+      m->error[at] = cutting_error(degree, size) + ROUND_UP * ROUND_U * 5.0 * (double)degree * size;
+    }
+    i++;
+  }
+  return finish(m, &s, motion);
+}

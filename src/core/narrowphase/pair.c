@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Static pairs: every pair of convex parts by the cheapest way that knows it exactly, the nearest wins. */
+#include "convex/pair.h"
+
+#include "base/rounding.h"
+#include "base/workspace.h"
+#include "convex/feature.h"
+#include "curve_proximity/cprox/query.h"
+#include "implicit/implicit.h"
+#include "narrowphase/convex_mesh.h"
+#include "narrowphase/mesh_mesh.h"
+#include "narrowphase/relative_pose.h"
+#include "narrowphase/witness.h"
+#include "problem/validate.h"
+#include "shape/body.h"
+
+/* What a pair of convex shapes answers, in the world. */
+typedef struct pair_reply {
+  pair_answer answer; /* points and normal in the world */
+  int32_t part;       /* of b */
+  cprox_rung rung;
+} pair_reply;
+
+/* ---- arguments ---- */
+
+static cprox_status pair_check_target(const char *name, const cprox_target *target, cprox_workspace *workspace) {
+  if (target->curve) return workspace_fail(workspace, CPROX_INVALID, "%s is a curve: a pair is of two bodies", name);
+  if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "%s: the body is NULL", name);
+  const char *fault = frame_pose_fault(&target->pose);
+  if (fault) return workspace_fail(workspace, CPROX_INVALID, "%s: %s", name, fault);
+  if (!(target->padding >= 0.0) || !isfinite(target->padding))
+    return workspace_fail(workspace, CPROX_INVALID, "%s: padding is %g, must be >= 0 and finite", name,
+                          target->padding);
+  return CPROX_OK;
+}
+
+/* ---- placing ---- */
+
+static size_t pair_count_parts(const cprox_body *body) {
+  return body->kind == CPROX_COMPOUND ? body->n_parts : 1;
+}
+
+static vec3 pair_to_world(const pair_side *a, vec3 p) {
+  return frame_to_world(&a->f, p);
+}
+
+/* ---- ways to know ---- */
+
+/* A halfspace (a) knows the exact signed distance of everything by one support value. */
+static void pair_halfspace(const pair_side *a, const pair_side *b, const pair_placement *place, pair_answer *answer) {
+  const convex *h = a->shape;
+  const vec3 n = vec(h->size[0], h->size[1], h->size[2]);
+  const vec3 down = vec(-(place->r[0] * n.x + place->r[3] * n.y + place->r[6] * n.z),
+                        -(place->r[1] * n.x + place->r[4] * n.y + place->r[7] * n.z),
+                        -(place->r[2] * n.x + place->r[5] * n.y + place->r[8] * n.z));
+  vec3 at;
+  *answer = (pair_answer){.steps = 1, .supports = 1};
+  const double lowest = -b->shape->ops->support(b->shape, down, NULL, &at);
+  answer->fault = isnan(lowest);
+
+  const double height = vec_dot(n, place->t) + h->size[3];
+  const double distance = height + lowest - a->margin - b->margin;
+  answer->rounding =
+      ROUND_UP * (32.0 * ROUND_U * (vec_norm(place->t) + fabs(h->size[3]) + b->shape->scale + a->margin + b->margin) +
+                  place->error + 2.0 * b->shape->slack);
+  answer->lower = distance - answer->rounding;
+  answer->upper = distance + answer->rounding;
+
+  const double *r = place->r;
+  const vec3 turned = vec(r[0] * at.x + r[1] * at.y + r[2] * at.z, r[3] * at.x + r[4] * at.y + r[5] * at.z,
+                          r[6] * at.x + r[7] * at.y + r[8] * at.z);
+  answer->on_b = answer->common = vec_axpy(vec_add(turned, place->t), -b->margin, n);
+  answer->on_a = vec_axpy(answer->on_b, -distance, n);
+  answer->normal = vec_neg(n);
+}
+
+static bool has_closed_form(const convex *shape) {
+  switch (shape->ops->kind) {
+    case CPROX_POLYTOPE:
+    case CPROX_SUPPORT:
+    case CPROX_SUPERQUADRIC:
+    case CPROX_IMPLICIT:
+    case CPROX_COMPOUND: return false;
+    default: return true;
+  }
+}
+
+static bool is_ball(const convex *shape) {
+  return shape->ops->kind == CPROX_POINT || shape->ops->kind == CPROX_SPHERE;
+}
+
+/* A ball (b) against a shape with a closed form: exact on both sides of the surface. */
+static void pair_ball(const pair_side *a, const pair_side *b, const pair_placement *place, pair_answer *answer) {
+  convex_near near;
+  a->shape->ops->nearest(a->shape, place->t, NULL, &near);
+  *answer = (pair_answer){.steps = 1, .supports = 1};
+  const double padding = a->margin - a->shape->margin; /* near has the shape's own in it */
+  const double distance = near.distance - padding - b->margin;
+  answer->rounding = ROUND_UP * (ROUND_U * (a->shape->ops->near_rounding * (vec_norm(place->t) + a->shape->scale) +
+                                            4.0 * (a->margin + b->margin)) +
+                                 place->error);
+  answer->lower = distance - answer->rounding;
+  answer->upper = distance + answer->rounding;
+  answer->on_a = vec_axpy(near.point, padding, near.normal);
+  answer->on_b = vec_axpy(place->t, -b->margin, near.normal);
+  answer->common = near.distance > padding ? answer->on_a : place->t;
+  answer->normal = vec_neg(near.normal);
+}
+
+static void pair_swap(pair_answer *answer) {
+  const vec3 on_a = answer->on_a;
+  answer->on_a = answer->on_b;
+  answer->on_b = on_a;
+  answer->normal = vec_neg(answer->normal);
+}
+
+static bool is_implicit(const convex *shape) {
+  return shape->implicit != NULL;
+}
+
+/* Takes over what a search of two implicit cores found: their margins and the pose's error on top. */
+static void pair_take(const implicit_answer *found, const pair_side *a, const pair_side *b, double rounding,
+                      pair_answer *answer) {
+  const double margins = a->margin + b->margin;
+  answer->overlap = found->overlap;
+  answer->lower = found->lower - margins - rounding;
+  answer->upper = found->upper - margins + (found->overlap ? 0.0 : rounding);
+  answer->normal = found->overlap ? vec(0, 0, 0) : found->normal;
+  answer->common = found->x;
+  answer->on_a = vec_axpy(found->x, -a->margin, answer->normal);
+  answer->on_b = answer->on_a;
+  answer->rounding = rounding;
+}
+
+/* Two implicit bodies: their support functions where that does not stall, else the interior point method. How deep they overlap
+ * the search by supports says. False where memory is out. */
+static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_placement *place, const pair_goal *goal,
+                          cprox_workspace *workspace, pair_answer *answer) {
+  const implicit *x = a->shape->implicit, *y = b->shape->implicit;
+  void *memory = workspace_reserve(workspace, WORKSPACE_INTERIOR, implicit_memory(x, y));
+  if (!memory) return false;
+  implicit_question question = {.a = x, .b = y, .t = place->t};
+  for (int i = 0; i < 9; i++) question.m[i] = place->r[i];
+  const double rounding = ROUND_UP * place->error, margins = a->margin + b->margin;
+  const implicit_goal inner = {.epsilon = fmax(goal->epsilon - 2.0 * rounding, 0.0),
+                               .relative_epsilon = margins > 0.0 ? 0.0 : goal->relative_epsilon,
+                               .max_steps = goal->max_steps};
+  implicit_answer found;
+  uint32_t steps = 0;
+  implicit_warm warm = {.usable = false};
+  if (!x->closed || !y->closed || !implicit_separate(&question, &inner, &warm, &found)) {
+    if (x->closed && y->closed) steps = found.steps;
+    implicit_solve(&question, &inner, &warm, memory, &found);
+  }
+  if (found.overlap) {
+    pair_separate(a->shape, a->margin, b->shape, b->margin, place, goal, answer);
+    if (answer->overlap) return true;
+  }
+  *answer = (pair_answer){.steps = steps + found.steps, .exhausted = found.steps >= goal->max_steps};
+  pair_take(&found, a, b, rounding, answer);
+  if (!found.overlap) {
+    /* y in a's frame, its margin towards a */
+    const double *r = place->r;
+    const vec3 turned = vec(r[0] * found.y.x + r[1] * found.y.y + r[2] * found.y.z,
+                            r[3] * found.y.x + r[4] * found.y.y + r[5] * found.y.z,
+                            r[6] * found.y.x + r[7] * found.y.y + r[8] * found.y.z);
+    answer->on_b = vec_axpy(vec_add(turned, place->t), b->margin, answer->normal);
+  }
+  return true;
+}
+
+static void pair_answer_to_world(const pair_side *a, pair_answer *answer) {
+  answer->on_a = pair_to_world(a, answer->on_a);
+  answer->on_b = pair_to_world(a, answer->on_b);
+  answer->common = pair_to_world(a, answer->common);
+  answer->normal = frame_turn_to_world(&a->f, answer->normal);
+}
+
+/* One of the two is made of many elements. */
+static cprox_status pair_with_elements(const pair_side *a, const pair_side *b, const pair_goal *goal,
+                                       cprox_workspace *workspace, pair_answer *answer) {
+  const bool swapped = !a->body->tree;
+  const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
+  if (second->body->tree) {
+    if (!pair_trees(a, b, goal, workspace, answer))
+      return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of meshes");
+    pair_answer_to_world(a, answer);
+    return CPROX_OK;
+  }
+  if (second->shape->ops->kind == CPROX_HALFSPACE)
+    return workspace_fail(workspace, CPROX_INVALID, "a halfspace has no distance to a mesh, points or boxes here");
+  pair_elements(first, second, goal, answer);
+  if (swapped) pair_swap(answer);
+  pair_answer_to_world(first, answer);
+  return CPROX_OK;
+}
+
+/* One pair of convex shapes. The special ways want their shape first: the frame of the answer is the first one's. */
+static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pair_goal *goal,
+                               cprox_workspace *workspace, pair_answer *answer) {
+  if (a->body->tree || b->body->tree) return pair_with_elements(a, b, goal, workspace, answer);
+  const bool halfspace = b->shape->ops->kind == CPROX_HALFSPACE;
+  const bool ball = is_ball(a->shape) && has_closed_form(b->shape) && !is_ball(b->shape);
+  const bool swapped = halfspace || (ball && a->shape->ops->kind != CPROX_HALFSPACE);
+  const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
+  const pair_placement place = pair_place(first, second);
+
+  if (first->shape->ops->kind == CPROX_HALFSPACE)
+    pair_halfspace(first, second, &place, answer);
+  else if (is_ball(second->shape) && has_closed_form(first->shape))
+    pair_ball(first, second, &place, answer);
+  else if (!workspace || !is_implicit(first->shape) || !is_implicit(second->shape))
+    pair_separate(first->shape, first->margin, second->shape, second->margin, &place, goal, answer);
+  else if (!pair_implicit(first, second, &place, goal, workspace, answer))
+    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of implicit bodies");
+
+  /* pair_separate's normal is from b to a, the special ways' as well */
+  if (swapped) pair_swap(answer);
+  pair_answer_to_world(first, answer);
+  return CPROX_OK;
+}
+
+cprox_status pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b,
+                             cprox_rung finest, bool depth, cprox_workspace *workspace, pair_witness *witness) {
+  const pair_side side_a = pair_place_model(a, part_a, finest), side_b = pair_place_model(b, part_b, finest);
+  const pair_goal goal = {.relative_epsilon = depth ? 1e-10 : 1e-13, .max_steps = 400, .wants_depth = depth};
+  pair_answer answer = {.upper = INFINITY};
+  const cprox_status status = pair_solve(&side_a, &side_b, &goal, workspace, &answer);
+  if (status < 0) return status;
+  *witness = (pair_witness){.on_a = answer.on_a, .on_b = answer.on_b, .normal = answer.normal};
+  if (!depth && answer.upper <= answer.rounding) witness->on_a = witness->on_b = answer.common;
+  return CPROX_OK;
+}
+
+/* ---- the verb ---- */
+
+/* What is asked of each pair of parts. */
+typedef struct pair_task {
+  const cprox_target *a, *b;
+  const pair_goal *goal;
+  cprox_rung finest;
+  cprox_workspace *workspace;
+} pair_task;
+
+/* Parts i of a and j of b, by their finest models up to the rung. */
+static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cprox_rung finest, pair_reply *reply) {
+  const pair_side a = pair_place_model(task->a, i, finest), b = pair_place_model(task->b, j, finest);
+  if (!a.body->tree && !b.body->tree && a.shape->ops->kind == CPROX_HALFSPACE && b.shape->ops->kind == CPROX_HALFSPACE)
+    return workspace_fail(task->workspace, CPROX_INVALID, "two halfspaces have no distance");
+  *reply = (pair_reply){.answer = {.upper = INFINITY}, .part = (int32_t)j};
+  reply->rung = a.rung > b.rung ? a.rung : b.rung;
+  const cprox_status status = pair_solve(&a, &b, task->goal, task->workspace, &reply->answer);
+  if (status) return status;
+  if (!reply->answer.fault) return CPROX_OK;
+  return workspace_fail(task->workspace, CPROX_INVALID,
+                        "a support callback answered with a point that is not finite or outside its radius");
+}
+
+static bool pair_has_ladder(const pair_task *task, size_t i, size_t j) {
+  const cprox_body *a = task->a->body, *b = task->b->body;
+  if (a->kind == CPROX_COMPOUND) a = a->parts[i].body;
+  if (b->kind == CPROX_COMPOUND) b = b->parts[j].body;
+  return a->kind == CPROX_LADDER || b->kind == CPROX_LADDER;
+}
+
+static void pair_join(pair_reply *all, const pair_reply *one) {
+  const double lower = fmin(all->answer.lower, one->answer.lower);
+  const uint32_t steps = all->answer.steps + one->answer.steps, supports = all->answer.supports + one->answer.supports;
+  const cprox_rung rung = all->rung > one->rung ? all->rung : one->rung;
+  if (one->answer.upper < all->answer.upper) *all = *one;
+  all->answer.lower = lower, all->answer.steps = steps, all->answer.supports = supports, all->rung = rung;
+}
+
+/* Whether the hulls of two parts are farther apart than the best so far: then they need not be looked into. */
+static cprox_status pair_ends_at_hulls(const pair_task *task, size_t i, size_t j, pair_reply *best, bool *ends) {
+  *ends = false;
+  if (!pair_has_ladder(task, i, j) || !isfinite(best->answer.upper) || task->finest < CPROX_RUNG_MESH) return CPROX_OK;
+  pair_reply one = {.part = 0};
+  const cprox_status status = pair_of_models(task, i, j, CPROX_RUNG_HULL, &one);
+  if (status) return status;
+  *ends = one.answer.lower > best->answer.upper;
+  one.answer.upper = INFINITY;
+  if (!*ends) one.answer.lower = INFINITY;
+  pair_join(best, &one);
+  return CPROX_OK;
+}
+
+/* The nearest of all pairs of parts; its lower is the least of all their lower bounds. */
+static cprox_status pair_over_parts(const pair_task *task, pair_reply *best) {
+  *best = (pair_reply){.answer = {.lower = INFINITY, .upper = INFINITY}};
+  for (size_t i = 0; i < pair_count_parts(task->a->body); i++) {
+    for (size_t j = 0; j < pair_count_parts(task->b->body); j++) {
+      bool ends;
+      cprox_status status = pair_ends_at_hulls(task, i, j, best, &ends);
+      if (status) return status;
+      if (ends) continue;
+      pair_reply one = {.part = 0};
+      if ((status = pair_of_models(task, i, j, task->finest, &one))) return status;
+      pair_join(best, &one);
+    }
+  }
+  return CPROX_OK;
+}
+
+static cprox_status pair_status(const pair_answer *answer, const cprox_options *options) {
+  const double width = answer->upper - answer->lower;
+  if (answer->overlap && !answer->measured) return CPROX_OVERLAP;
+  if (width <= fmax(options->epsilon, options->relative_epsilon * fabs(answer->upper))) return CPROX_OK;
+  return answer->exhausted ? CPROX_BUDGET : CPROX_PRECISION;
+}
+
+cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *options, cprox_workspace *workspace,
+                        cprox_result *result) {
+  workspace_clear(workspace);
+  const cprox_options asked = options ? *options : cprox_options_default();
+  cprox_status status;
+  if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
+  if ((status = arguments_check_options(&asked, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
+      (status = pair_check_target("b", &b, workspace)))
+    return status;
+
+  const pair_goal goal = {.epsilon = asked.epsilon,
+                          .relative_epsilon = asked.relative_epsilon,
+                          .max_steps = asked.max_nodes,
+                          .wants_depth = true};
+  pair_reply best;
+  const cprox_rung finest = asked.max_rung == CPROX_RUNG_NONE ? CPROX_RUNG_MESH : asked.max_rung;
+  const pair_task task = {.a = &a, .b = &b, .goal = &goal, .finest = finest, .workspace = workspace};
+  if ((status = pair_over_parts(&task, &best))) return status;
+
+  const pair_answer *answer = &best.answer;
+  status = pair_status(answer, &asked);
+  *result = (cprox_result){.status = status,
+                           .verdict = CPROX_UNDECIDED,
+                           .lower = answer->lower,
+                           .upper = answer->upper,
+                           .t_target = NAN,
+                           .on_mover = answer->on_a,
+                           .on_target = answer->on_b,
+                           .normal = answer->normal,
+                           .target_part = best.part,
+                           .rung = best.rung,
+                           .nodes = answer->steps,
+                           .probes = answer->supports};
+  if (status != CPROX_OK) workspace_fail(workspace, status, "%s", cprox_status_text(status));
+  return status;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Where two standing convex shapes are, seen from the first. */
+#ifndef CPROX_NARROWPHASE_RELATIVE_POSE_H
+#define CPROX_NARROWPHASE_RELATIVE_POSE_H
+
+#include "convex/pair.h"
+#include "curve_proximity/cprox/query.h"
+#include "problem/level_of_detail.h"
+#include "shape/body.h"
+
+/* A convex shape somewhere in the world. */
+typedef struct pair_side {
+  const convex *shape;
+  frame f;
+  double margin; /* the shape's own and the padding */
+  double error;  /* of the pose, where it had to be composed */
+  const cprox_body *body;
+  cprox_rung rung;
+} pair_side;
+
+/* Part of a target, by the finest model up to the rung; of its finest one. */
+pair_side pair_place_model(const cprox_target *target, size_t part, cprox_rung finest);
+pair_side pair_place_side(const cprox_target *target, size_t part);
+
+/* b in a's frame. Positions are subtracted first: what they share does not enter the rounding. */
+pair_placement pair_place(const pair_side *a, const pair_side *b);
+
+#endif

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Bodies that translate. Their distance is a convex function of time, so the plane that separates them at one time bounds it
+ * at all others: stepping as far as that bound allows never passes contact (doc/implicit.md). */
+#include "curve_proximity/cprox/translation.h"
+
+#include <math.h>
+
+#include "base/rounding.h"
+#include "base/workspace.h"
+#include "implicit/implicit.h"
+#include "narrowphase/relative_pose.h"
+#include "problem/validate.h"
+
+enum { TRANSLATION_STEPS = 200 };
+
+/* ---- arguments ---- */
+
+static cprox_status check_body(const char *name, const cprox_target *target, bool implicit_only,
+                               cprox_workspace *workspace) {
+  if (target->curve || !target->body) return workspace_fail(workspace, CPROX_INVALID, "%s is not a body", name);
+  const cprox_body_kind kind = target->body->kind;
+  const bool is_implicit = kind == CPROX_SUPERQUADRIC || kind == CPROX_IMPLICIT;
+  if (implicit_only && !is_implicit)
+    return workspace_fail(workspace, CPROX_INVALID, "%s is a %s, must be a superquadric or an implicit body", name,
+                          cprox_body_kind_name(kind));
+  if (!target->body->shape.ops)
+    return workspace_fail(workspace, CPROX_INVALID, "%s is a %s, must be convex", name, cprox_body_kind_name(kind));
+  return CPROX_OK;
+}
+
+static cprox_status check_motion(const cprox_translating *a, const cprox_translating *b, double duration,
+                                 bool implicit_only, const cprox_options *options, cprox_workspace *workspace) {
+  cprox_status status;
+  if (!workspace) return CPROX_INVALID;
+  if ((status = arguments_check_options(options, workspace)) ||
+      (status = arguments_check_target(&a->from, 0, workspace)) ||
+      (status = arguments_check_target(&b->from, 1, workspace)) ||
+      (status = check_body("a", &a->from, implicit_only, workspace)) ||
+      (status = check_body("b", &b->from, implicit_only, workspace)))
+    return status;
+  if (!vec_finite(a->velocity) || !vec_finite(b->velocity))
+    return workspace_fail(workspace, CPROX_INVALID, "a velocity is not finite");
+  if (!(duration > 0.0) || !isfinite(duration))
+    return workspace_fail(workspace, CPROX_INVALID, "duration is %g, must be > 0 and finite", duration);
+  return CPROX_OK;
+}
+
+static cprox_status finish(cprox_status status, cprox_workspace *workspace) {
+  if (status != CPROX_OK) workspace_fail(workspace, status, "%s", cprox_status_text(status));
+  return status;
+}
+
+/* ---- the least distance ---- */
+
+cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b, double duration,
+                                        const cprox_options *options, cprox_workspace *workspace,
+                                        cprox_result *result) {
+  workspace_clear(workspace);
+  const cprox_options asked = options ? *options : cprox_options_default();
+  cprox_status status = check_motion(&a, &b, duration, true, &asked, workspace);
+  if (status) return status;
+  if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
+
+  const pair_side x = pair_place_side(&a.from, 0), y = pair_place_side(&b.from, 0);
+  const pair_placement place = pair_place(&x, &y);
+  implicit_question question = {
+      .a = x.shape->implicit, .b = y.shape->implicit, .moving = true, .t = place.t, .duration = duration};
+  for (int i = 0; i < 9; i++) question.m[i] = place.r[i];
+  const vec3 relative = vec_sub(b.velocity, a.velocity);
+  question.velocity = frame_turn_to_local(&x.f, relative);
+  void *memory = workspace_reserve(workspace, WORKSPACE_INTERIOR, implicit_memory(question.a, question.b));
+  if (!memory) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of implicit bodies");
+
+  const double way = vec_norm(relative) * duration, margins = x.margin + y.margin;
+  const double rounding = ROUND_UP * (place.error + (ROUND_ROTATION + 4.0) * ROUND_U * way);
+  const implicit_goal goal = {.epsilon = fmax(asked.epsilon - 2.0 * rounding, 0.0),
+                              .relative_epsilon = margins > 0.0 ? 0.0 : asked.relative_epsilon,
+                              .max_steps = asked.max_nodes};
+  implicit_answer found;
+  implicit_solve(&question, &goal, NULL, memory, &found);
+
+  /* the points, where the bodies are then: a has moved on as well */
+  const vec3 moved = vec_scale(found.time, a.velocity);
+  const vec3 on_a = vec_axpy(found.x, -x.margin, found.normal);
+  vec3 on_b = vec_axpy(found.x, y.margin - found.upper, found.normal);
+  if (found.overlap) on_b = on_a;
+  *result = (cprox_result){.verdict = CPROX_UNDECIDED,
+                           .lower = fmax(found.lower - margins - rounding, 0.0),
+                           .upper = found.overlap ? 0.0 : fmax(found.upper - margins + rounding, 0.0),
+                           .t = found.time,
+                           .t_target = NAN,
+                           .on_mover = vec_add(frame_to_world(&x.f, on_a), moved),
+                           .on_target = vec_add(frame_to_world(&x.f, on_b), moved),
+                           .normal = frame_turn_to_world(&x.f, found.overlap ? vec(0, 0, 0) : found.normal),
+                           .rung = CPROX_RUNG_HULL,
+                           .nodes = found.steps};
+  if (result->lower > 0.0) result->verdict = CPROX_NO;
+  if (found.overlap || found.upper - margins + rounding <= 0.0) result->verdict = CPROX_YES;
+  const double width = result->upper - result->lower;
+  status = width <= fmax(asked.epsilon, asked.relative_epsilon * result->upper) ? CPROX_OK
+           : found.steps >= asked.max_nodes                                     ? CPROX_BUDGET
+                                                                                : CPROX_PRECISION;
+  result->status = status;
+  return finish(status, workspace);
+}
+
+/* ---- first contact ---- */
+
+/* An approach of b to a: where it is, how far it is proven to be free. */
+typedef struct approach {
+  cprox_target a, b; /* b at time 0 */
+  vec3 velocity;     /* of b, seen from a */
+  double duration;
+  double free_until;
+  bool never;        /* they part from here on */
+  cprox_result last; /* the pair at free_until */
+  uint32_t pairs;
+} approach;
+
+static cprox_target approach_at(const approach *p, double t) {
+  cprox_target b = p->b;
+  b.pose.position = vec_axpy(b.pose.position, t, p->velocity);
+  return b;
+}
+
+/* Steps until the distance is at most epsilon, the end, or no further step can be proven. */
+static cprox_status approach_run(approach *p, const cprox_options *options, cprox_workspace *workspace) {
+  cprox_options asked = *options;
+  for (; p->pairs < TRANSLATION_STEPS; p->pairs++) {
+    /* far away a rough answer steps as far as a fine one */
+    asked.epsilon = 0.25 * options->epsilon;
+    asked.relative_epsilon = 1e-3;
+    const cprox_status status = cprox_pair(p->a, approach_at(p, p->free_until), &asked, workspace, &p->last);
+    if (status < 0) return status;
+    const cprox_result *r = &p->last;
+    if (r->upper <= options->epsilon || r->status == CPROX_OVERLAP) return CPROX_OK;
+    if (!(r->lower > 0.0)) return CPROX_PRECISION;
+
+    /* what is between them along the normal shrinks by their speed along it; positions are rounded */
+    const double towards = vec_dot(r->normal, p->velocity), speed = vec_norm(p->velocity);
+    if (towards <= -8.0 * ROUND_U * speed || speed == 0.0) {
+      p->never = true;
+      return CPROX_OK;
+    }
+    const double rounded = 8.0 * ROUND_U * (vec_norm(p->b.pose.position) + speed * p->duration);
+    const double step = (r->lower - rounded) / (towards + 8.0 * ROUND_U * speed) * (1.0 - 1e-12);
+    if (!(step > 0.0) || p->free_until + step == p->free_until) return CPROX_PRECISION;
+    p->free_until += step;
+    if (p->free_until >= p->duration) {
+      p->free_until = p->duration;
+      p->never = true;
+      return CPROX_OK;
+    }
+  }
+  return CPROX_BUDGET;
+}
+
+cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b, double duration,
+                                       const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
+  workspace_clear(workspace);
+  const cprox_options asked = options ? *options : cprox_options_default();
+  cprox_status status = check_motion(&a, &b, duration, false, &asked, workspace);
+  if (status) return status;
+  if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
+
+  approach p = {.a = a.from, .b = b.from, .velocity = vec_sub(b.velocity, a.velocity), .duration = duration};
+  status = approach_run(&p, &asked, workspace);
+  if (status < 0) return status;
+  const vec3 moved = vec_scale(p.free_until, a.velocity);
+  *result = p.last;
+  result->t = result->t_free = p.free_until;
+  result->verdict = p.never ? CPROX_NO : status == CPROX_OK ? CPROX_YES : CPROX_UNDECIDED;
+  result->on_mover = vec_add(result->on_mover, moved);
+  result->on_target = vec_add(result->on_target, moved);
+  result->probes = p.pairs + 1;
+  result->status = status;
+  if (p.never) result->t_free = duration;
+  return finish(status, workspace);
+}
+
+/* ---- growth ---- */
+
+/* Both scaled by g about their centres touch where, unscaled, they would touch with the centres 1/g times as far apart: b
+ * approaches along the line of the centres from where it is free for certain. */
+cprox_status cprox_growth_distance(cprox_target a, cprox_target b, const cprox_options *options,
+                                   cprox_workspace *workspace, cprox_growth *growth) {
+  workspace_clear(workspace);
+  const cprox_options asked = options ? *options : cprox_options_default();
+  const cprox_translating still_a = {.from = a}, still_b = {.from = b};
+  cprox_status status = check_motion(&still_a, &still_b, 1.0, true, &asked, workspace);
+  if (status) return status;
+  if (!growth) return workspace_fail(workspace, CPROX_INVALID, "growth is NULL: nowhere to put the answer");
+  if (a.padding > 0.0 || b.padding > 0.0)
+    return workspace_fail(workspace, CPROX_INVALID, "padding is not scaled: it must be 0");
+
+  const frame fa = frame_create(&a.pose, a.body->centre), fb = frame_create(&b.pose, b.body->centre);
+  const vec3 apart = vec_sub(frame_to_world(&fb, vec(0, 0, 0)), frame_to_world(&fa, vec(0, 0, 0)));
+  const double reach = a.body->ball_radius + b.body->ball_radius, far = vec_norm(apart);
+  *growth = (cprox_growth){.status = CPROX_OK};
+  if (far <= 1e-12 * reach) {
+    growth->upper = far / fmin(a.body->shape.implicit->inner, b.body->shape.implicit->inner);
+    return CPROX_OK;
+  }
+
+  /* time runs from `most` centre distances down to 0; an error of the distance costs its part of the time */
+  const double most = 1.01 * reach / far + 1e-6, inner = a.body->shape.implicit->inner + b.body->shape.implicit->inner;
+  approach p = {.a = a, .b = b, .velocity = vec_neg(apart), .duration = most};
+  p.b.pose.position = vec_axpy(b.pose.position, most - 1.0, apart);
+  cprox_options fine = asked;
+  fine.epsilon = fmax(0.1 * fmin(asked.epsilon, 0.1) * inner, 1e-13 * (reach + far));
+  status = approach_run(&p, &fine, workspace);
+  if (status < 0) return status;
+  const double rounding = 16.0 * ROUND_U * most;
+  growth->lower = 1.0 / (most - p.free_until + rounding);
+  growth->normal = p.last.normal;
+  growth->upper = INFINITY;
+
+  /* from above by a place where they are proven to overlap: a little further on, and further until it is */
+  double beyond = 2.0 * fine.epsilon / far;
+  for (int i = 0; i < 60 && isinf(growth->upper); i++, beyond *= 4.0) {
+    const double s = most - p.free_until - beyond;
+    cprox_result r;
+    if (s <= 0.0) break;
+    const cprox_status found = cprox_pair(a, approach_at(&p, p.free_until + beyond), &fine, workspace, &r);
+    if (found < 0) return found;
+    p.pairs++;
+    if (r.upper <= 0.0) growth->upper = 1.0 / (s - rounding);
+  }
+  growth->pairs = p.pairs + 1;
+  growth->status =
+      growth->upper - growth->lower <= asked.epsilon * fmax(growth->upper, 1e-300) ? CPROX_OK : CPROX_PRECISION;
+  return finish(growth->status, workspace);
+}

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "problem/level_of_detail.h"
+
+#include "base/rounding.h"
+#include "problem/minkowski.h"
+
+static bool has_ball(const cprox_body *body) {
+  switch (body->kind) {
+    case CPROX_POINT:
+    case CPROX_SPHERE: /* are their own */
+    case CPROX_POINTS:
+    case CPROX_OCTREE: return false;
+    default: return isfinite(body->ball_radius);
+  }
+}
+
+model model_of(const cprox_body *body, cprox_rung finest) {
+  if (finest == CPROX_RUNG_SPHERE && has_ball(body)) {
+    /* the point that stands for the ball is placed by one more composition of poses */
+    const double moved = ROUND_UP * ROUND_U * 2.0 * ROUND_ROTATION * (vec_norm(body->ball_centre) + body->ball_radius);
+    return (model){.body = &carried_point,
+                   .excess = body->ball_radius + moved,
+                   .shift = body->ball_centre,
+                   .rung = CPROX_RUNG_SPHERE};
+  }
+  model m = {.body = body};
+  if (body->kind == CPROX_LADDER) {
+    const bool by_hull = finest == CPROX_RUNG_SPHERE || finest == CPROX_RUNG_HULL;
+    m.body = by_hull ? body->hull : body->mesh;
+    m.excess = by_hull ? body->excess : 0.0;
+  }
+  m.rung = m.body->tree ? CPROX_RUNG_MESH : CPROX_RUNG_HULL;
+  return m;
+}
+
+bool model_has_tree(const cprox_body *body, cprox_rung finest) {
+  if (!body) return false;
+  if (body->kind != CPROX_COMPOUND) return model_of(body, finest).body->tree != NULL;
+  for (size_t i = 0; i < body->n_parts; i++)
+    if (model_of(body->parts[i].body, finest).body->tree) return true;
+  return false;
+}
+
+model model_of_part(const cprox_body *body, size_t part, cprox_rung finest, cprox_pose *inner, bool *moved) {
+  const bool compound = body->kind == CPROX_COMPOUND;
+  const model m = model_of(compound ? body->parts[part].body : body, finest);
+  const bool shifted = vec_norm2(m.shift) > 0.0;
+  *inner = compound ? body->parts[part].pose : cprox_pose_identity();
+  *moved = compound || shifted;
+  if (shifted) {
+    const frame f = frame_create(inner, vec(0, 0, 0));
+    inner->position = frame_to_world(&f, m.shift);
+  }
+  return m;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The model of a body that a rung of its ladder means. doc/non-convex.md */
+#ifndef CPROX_PROBLEM_LEVEL_OF_DETAIL_H
+#define CPROX_PROBLEM_LEVEL_OF_DETAIL_H
+
+#include "curve_proximity/cprox/query.h"
+#include "shape/body.h"
+
+/* The body itself lies within `excess` of `body`, which stands at `shift` in its frame. */
+typedef struct model {
+  const cprox_body *body;
+  double excess;
+  vec3 shift; /* (0, 0, 0) but for balls */
+  cprox_rung rung;
+} model;
+
+/* The finest model up to the rung; CPROX_RUNG_NONE: the finest of all. Bodies that are no ladders are their own models from the hull
+ * on; so are points and boxes always, and what has no bounding ball. `body` is no compound. */
+model model_of(const cprox_body *body, cprox_rung finest);
+
+/* Whether the body, or a part of it where it is a compound, is made of many elements up to the rung. */
+bool model_has_tree(const cprox_body *body, cprox_rung finest);
+
+/* Most bodies are their own only model. */
+static inline bool model_is_body(const cprox_body *body, cprox_rung finest) {
+  return body->kind != CPROX_COMPOUND && body->kind != CPROX_LADDER && finest != CPROX_RUNG_SPHERE;
+}
+
+/* Of a part of a compound, or of the body where it is none; *inner becomes the pose of the model in the frame of the body. False in
+ * *moved: that is the identity. */
+model model_of_part(const cprox_body *body, size_t part, cprox_rung finest, cprox_pose *inner, bool *moved);
+
+#endif

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The problem, stated once: what moves, what stands, which query, which options; and what an interval means for it. */
+#ifndef CPROX_PROBLEM_PROBLEM_H
+#define CPROX_PROBLEM_PROBLEM_H
+
+#include "base/workspace.h"
+#include "branch_and_bound/search.h"
+#include "curve/curve.h"
+#include "curve_proximity/cprox/query.h"
+
+/* What every verb asks. */
+typedef struct question {
+  cprox_mover mover;
+  const cprox_target *targets;
+  size_t n;
+  double limit;        /* verdicts: delta, 0 for collision; distance: -1 */
+  bool is_signed;      /* distance: overlaps are measured, too */
+  bool farther_is_yes; /* tolerance's yes is collision's no */
+  cprox_options options;
+  cprox_workspace *workspace;
+  search_interval part; /* of the mover's curve: the whole of it, or some of one piece */
+  curve_capsule reach;  /* contains that part */
+  double t0, t1;        /* that part by the curve's parameter */
+  const struct cprox_set
+      *set; /* a robot's question: the set that the targets are, by whose boxes they are found; or NULL */
+} question;
+
+/* Asks about the whole curve; the arguments must have been checked. */
+void question_ask_whole(question *q);
+
+static inline bool question_wants_verdict(const question *q) {
+  return q->limit >= 0.0;
+}
+
+/* options NULL: the default. Nothing is checked. */
+question question_create(cprox_mover mover, const cprox_target *targets, size_t n, double limit, bool farther_is_yes,
+                         const cprox_options *options, cprox_workspace *workspace);
+
+/* What a status above CPROX_OK means to the caller. */
+const char *question_shortfall(cprox_status status);
+
+/* The verdict that the result's interval gives; undecided for distances. */
+cprox_verdict question_verdict(const question *q, const cprox_result *r);
+
+/* Whether the interval is what was asked for, whatever happened on the way. */
+bool question_is_satisfied(const question *q, double ceiling, const cprox_result *r);
+
+/* Against nothing: infinitely far. */
+cprox_result question_nothing(void);
+
+/* Adds the answer against another set to the union's: the least of both ends, with the witness of the upper one. */
+void question_join(cprox_result *all, const cprox_result *one);
+
+/* Puts a result where it belongs among the k nearest so far, ascending by upper. */
+void question_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r);
+
+/* The union is complete: its status (`trouble` is the last that a search had), verdict and reason. */
+cprox_status question_conclude(const question *q, double ceiling, cprox_status trouble, cprox_result *all);
+
+#endif

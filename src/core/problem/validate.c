@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "problem/validate.h"
+
+#include <math.h>
+
+#include "base/frame.h"
+#include "base/workspace.h"
+#include "curve/curve.h"
+#include "kinematics/link_model.h"
+#include "kinematics/motion.h"
+#include "problem/level_of_detail.h"
+#include "shape/body.h"
+
+cprox_status arguments_check_options(const cprox_options *options, cprox_workspace *workspace) {
+  if (!(options->epsilon >= 0.0))
+    return workspace_fail(workspace, CPROX_INVALID, "epsilon is %g, must be 0 or more", options->epsilon);
+  if (!(options->relative_epsilon >= 0.0))
+    return workspace_fail(workspace, CPROX_INVALID, "relative_epsilon is %g, must be 0 or more",
+                          options->relative_epsilon);
+  if (options->max_nodes == 0)
+    return workspace_fail(workspace, CPROX_INVALID, "max_nodes is 0: a query needs a budget of at least 1 node");
+  if ((int)options->max_rung < CPROX_RUNG_NONE || options->max_rung > CPROX_RUNG_MESH)
+    return workspace_fail(workspace, CPROX_INVALID, "max_rung is %d, must be sphere, hull or mesh",
+                          (int)options->max_rung);
+  return CPROX_OK;
+}
+
+cprox_status arguments_check_delta(double delta, cprox_workspace *workspace) {
+  if (delta >= 0.0 && isfinite(delta)) return CPROX_OK;
+  return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be finite and 0 or more", delta);
+}
+
+cprox_status arguments_check_target(const cprox_target *target, size_t index, cprox_workspace *workspace) {
+  if (!target->body && !target->curve)
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu has neither a body nor a curve", index);
+  if (target->on_clock && !target->curve)
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu is on the mover's clock, but has no curve", index);
+  if (target->body && target->curve && !target->on_clock)
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu has both a body and a curve", index);
+  const char *fault = frame_pose_fault(&target->pose);
+  if (fault) return workspace_fail(workspace, CPROX_INVALID, "target %zu: %s", index, fault);
+  if (target->padding >= 0.0 && isfinite(target->padding)) return CPROX_OK;
+  return workspace_fail(workspace, CPROX_INVALID, "target %zu: padding is %g, must be finite and 0 or more", index,
+                        target->padding);
+}
+
+cprox_status arguments_check_targets(const cprox_target *targets, size_t n, cprox_workspace *workspace) {
+  if (n > 0 && !targets) return workspace_fail(workspace, CPROX_INVALID, "targets is NULL, but %zu are announced", n);
+  if (n > INT32_MAX) return workspace_fail(workspace, CPROX_INVALID, "%zu targets are more than 2147483647", n);
+  for (size_t i = 0; i < n; i++) {
+    const cprox_status target = arguments_check_target(&targets[i], i, workspace);
+    if (target != CPROX_OK) return target;
+  }
+  return CPROX_OK;
+}
+
+/* What is on one clock must run over the same time. */
+static cprox_status check_clock(const cprox_curve *curve, const cprox_target *target, size_t index,
+                                cprox_workspace *workspace) {
+  if (!target->on_clock) return CPROX_OK;
+  if (curve->arcs || target->curve->arcs)
+    return workspace_fail(
+        workspace, CPROX_INVALID,
+        "target %zu is on the mover's clock, but of one of the two curves only the arc length is known", index);
+  double t0, t1, u0, u1;
+  cprox_curve_domain(curve, &t0, &t1);
+  cprox_curve_domain(target->curve, &u0, &u1);
+  if (t0 == u0 && t1 == u1) return CPROX_OK;
+  return workspace_fail(
+      workspace, CPROX_INVALID,
+      "target %zu is on the mover's clock, but its curve runs over [%.17g, %.17g] and the mover's over "
+      "[%.17g, %.17g]",
+      index, u0, u1, t0, t1);
+}
+
+/* Convex parts without end have no Minkowski difference that a search could use. */
+static cprox_status check_carried(const cprox_body *body, cprox_rung finest, cprox_workspace *workspace) {
+  if (!body) return CPROX_OK;
+  if (!isfinite(body->ball_radius))
+    return workspace_fail(workspace, CPROX_INVALID, "the mover's body is a halfspace or has one: it must be bounded");
+  /* past some targets it goes by its hull even where balls are asked for */
+  if (model_has_tree(body, finest == CPROX_RUNG_SPHERE ? CPROX_RUNG_HULL : finest))
+    return workspace_fail(
+        workspace, CPROX_INVALID,
+        "the mover's body is a mesh, points or boxes, or has such a part: only convex parts are carried");
+  return CPROX_OK;
+}
+
+static cprox_status check_pairs(const cprox_mover *mover, size_t n, cprox_workspace *workspace) {
+  const size_t geometries = mover->motion->robot->n_geometries, others = mover->self ? geometries : n;
+  for (size_t i = 0; mover->pairs && i < mover->n_pairs; i++) {
+    const cprox_robot_pair *pair = &mover->pairs[i];
+    if (pair->geometry < 0 || (size_t)pair->geometry >= geometries)
+      return workspace_fail(workspace, CPROX_INVALID, "pair %zu: there is no geometry %d, the robot has %zu", i,
+                            (int)pair->geometry, geometries);
+    if (pair->other < 0 || (size_t)pair->other >= others)
+      return workspace_fail(workspace, CPROX_INVALID, "pair %zu: there is no %s %d", i,
+                            mover->self ? "geometry" : "target", (int)pair->other);
+    if (mover->self && pair->geometry == pair->other)
+      return workspace_fail(workspace, CPROX_INVALID, "pair %zu: geometry %d against itself", i, (int)pair->geometry);
+  }
+  return CPROX_OK;
+}
+
+static cprox_status check_robot(const cprox_mover *mover, const cprox_target *targets, size_t n,
+                                cprox_workspace *workspace) {
+  if (mover->curve || mover->body || mover->radius != 0.0)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "a mover is a robot's motion, or a curve and what rides it: not both; pad the robot's links");
+  if (mover->self && n > 0)
+    return workspace_fail(workspace, CPROX_INVALID, "a robot against itself has no targets, got %zu", n);
+  for (size_t i = 0; i < n; i++) {
+    const cprox_body *body = targets[i].body;
+    if (!body || targets[i].curve)
+      return workspace_fail(workspace, CPROX_INVALID, "target %zu is a curve: a robot is asked about bodies", i);
+    if (part_model_is_solid(body))
+      return workspace_fail(workspace, CPROX_INVALID,
+                            "target %zu is a solid mesh: a robot is asked about surfaces; fill it with convex parts",
+                            i);
+  }
+  return check_pairs(mover, n, workspace);
+}
+
+cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target *targets, size_t n,
+                                   const cprox_options *options, cprox_workspace *workspace) {
+  if (!workspace) return CPROX_INVALID;
+  if (!mover->curve && !mover->motion) return workspace_fail(workspace, CPROX_INVALID, "the mover has no curve");
+  if (!(mover->radius >= 0.0 && isfinite(mover->radius)))
+    return workspace_fail(workspace, CPROX_INVALID, "radius is %g, must be finite and 0 or more", mover->radius);
+  const cprox_status checked = arguments_check_options(options, workspace);
+  if (checked != CPROX_OK) return checked;
+  const cprox_status carried = check_carried(mover->body, options->max_rung, workspace);
+  if (carried != CPROX_OK) return carried;
+  const cprox_status standing = arguments_check_targets(targets, n, workspace);
+  if (standing != CPROX_OK) return standing;
+  if (mover->motion) return check_robot(mover, targets, n, workspace);
+  for (size_t i = 0; i < n; i++) {
+    const cprox_status clock = check_clock(mover->curve, &targets[i], i, workspace);
+    if (clock != CPROX_OK) return clock;
+    if (mover->body && model_has_tree(targets[i].body, options->max_rung))
+      return workspace_fail(workspace, CPROX_INVALID,
+                            "target %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
+                            "it, balls are (radius)",
+                            i);
+  }
+  return CPROX_OK;
+}

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Movers, obstacles and options as values, and the names of enumerators. */
+#include "curve_proximity/cprox/robot.h"
+
+cprox_target cprox_at(const cprox_body *body, cprox_pose pose) {
+  return (cprox_target){.body = body, .pose = pose, .padding = 0.0};
+}
+
+cprox_target cprox_padded(cprox_target target, double padding) {
+  target.padding = padding;
+  return target;
+}
+
+cprox_target cprox_curve_target(const cprox_curve *curve, double radius) {
+  return (cprox_target){.curve = curve, .pose = cprox_pose_identity(), .padding = radius};
+}
+
+cprox_options cprox_options_default(void) {
+  return (cprox_options){.epsilon = 1e-6, .relative_epsilon = 0.0, .max_nodes = 20000, .max_rung = CPROX_RUNG_MESH};
+}
+
+const char *cprox_verdict_name(cprox_verdict verdict) {
+  switch (verdict) {
+    case CPROX_NO: return "no";
+    case CPROX_YES: return "yes";
+    case CPROX_UNDECIDED: return "undecided";
+  }
+  return "unknown";
+}
+
+const char *cprox_rung_name(cprox_rung rung) {
+  switch (rung) {
+    case CPROX_RUNG_NONE: return "none";
+    case CPROX_RUNG_SPHERE: return "sphere";
+    case CPROX_RUNG_HULL: return "hull";
+    case CPROX_RUNG_MESH: return "mesh";
+  }
+  return "unknown";
+}
+
+cprox_mover cprox_point_along(const cprox_curve *curve) {
+  return (cprox_mover){.curve = curve, .radius = 0.0};
+}
+
+cprox_mover cprox_tube_along(const cprox_curve *curve, double radius) {
+  return (cprox_mover){.curve = curve, .radius = radius};
+}
+
+cprox_target cprox_on_clock(cprox_mover other) {
+  return (cprox_target){.body = other.body,
+                        .pose = cprox_pose_identity(),
+                        .padding = other.radius,
+                        .curve = other.curve,
+                        .on_clock = true};
+}
+
+cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve) {
+  return (cprox_mover){.curve = curve, .body = body};
+}
+
+cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs) {
+  return (cprox_mover){.motion = motion, .pairs = pairs, .n_pairs = n_pairs};
+}
+
+cprox_mover cprox_robot_self(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs) {
+  return (cprox_mover){.motion = motion, .pairs = pairs, .n_pairs = n_pairs, .self = true};
+}

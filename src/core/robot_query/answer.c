@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "robot_query/answer.h"
+
+#include <math.h>
+
+#include "problem/problem.h"
+#include "robot_query/oracle.h"
+
+/* ---- arguments ------------------------------------------------------------------------------------------------------------ */
+
+/* ---- the search ----------------------------------------------------------------------------------------------------------- */
+
+/* Fractions are rounded outwards by a little more than a division can be off. */
+static search_node root_of(const question *q, robot_search *o) {
+  const cprox_motion *m = q->mover.motion;
+  size_t first = 0, last = m->n_segments;
+  while (first + 1 < last && m->times[first + 1] <= q->t0) first++;
+  while (last > first + 1 && m->times[last - 1] >= q->t1) last--;
+  const double u0 = (q->t0 - m->times[first]) / (m->times[first + 1] - m->times[first]);
+  const double u1 = (q->t1 - m->times[last - 1]) / (m->times[last] - m->times[last - 1]);
+  return robot_search_root(o, first, q->t0 <= m->times[first] ? 0.0 : fmax(u0 - 0x1p-50, 0.0), last,
+                           q->t1 >= m->times[last] ? 1.0 : fmin(u1 + 0x1p-50, 1.0));
+}
+
+static cprox_status run(const question *q, const search_goal *goal, robot_search *o, search_outcome *found) {
+  robot_search_begin(o, goal);
+  *found = (search_outcome){.lower = INFINITY, .free_until = INFINITY, .best = {.upper = INFINITY, .at = INFINITY}};
+  if (o->scene.n_pairs == 0 && !q->set) return CPROX_OK;
+  const search_node root = root_of(q, o);
+  if (root.side[0].slot < 0) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the lists of pairs");
+  const search_oracle oracle = robot_search_oracle(o);
+  const cprox_status status = search_run(goal, &oracle, root, q->workspace, found);
+  if (status == CPROX_MEMORY) return workspace_fail(q->workspace, status, "no memory for the open intervals");
+  return status;
+}
+
+static search_goal goal_of(const question *q, search_order order, double ceiling) {
+  return (search_goal){.order = order,
+                       .limit = q->limit,
+                       .ceiling = ceiling,
+                       .horizon = INFINITY,
+                       .epsilon = q->options.epsilon,
+                       .relative_epsilon = q->options.relative_epsilon,
+                       .max_nodes = q->options.max_nodes,
+                       .stop = q->options.stop,
+                       .stop_user = q->options.stop_user};
+}
+
+/* ---- what was found ------------------------------------------------------------------------------------------------------- */
+
+static void report(const robot_search *o, const robot_sight *sight, cprox_result *r) {
+  if (sight->pair < 0) return;
+  const robot_scene *s = &o->scene;
+  const robot_pair *pair = &s->pairs[sight->pair];
+  r->t = motion_time(s->motion, sight->segment, sight->u);
+  r->on_mover = sight->gap.on_moving, r->on_target = sight->gap.on_standing, r->normal = sight->gap.normal;
+  r->mover_part = s->parts[pair->moving].body.index;
+  r->target_index = s->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
+  r->target_part = s->self ? 0 : s->obstacles[pair->standing].part;
+}
+
+static cprox_rung rung_of(const robot_search *o) {
+  if (o->scene.n_pairs == 0) return CPROX_RUNG_NONE;
+  if (o->climbed) return CPROX_RUNG_MESH;
+  const bool by_balls = o->gaps + o->planes == 0 || o->scene.q->options.max_rung == CPROX_RUNG_SPHERE;
+  return by_balls ? CPROX_RUNG_SPHERE : CPROX_RUNG_HULL;
+}
+
+cprox_status robot_answer(const question *q, size_t first, size_t last, double ceiling, cprox_result *result) {
+  robot_search o;
+  if (!robot_scene_begin(&o.scene, q, first, last))
+    return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
+  const search_goal goal = goal_of(q, question_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST, ceiling);
+  search_outcome found;
+  const cprox_status status = run(q, &goal, &o, &found);
+  if (status < 0) return status;
+
+  cprox_result r = {.t_target = NAN, .target_index = -1, .mover_part = -1, .upper = o.best_bound.upper};
+  report(&o, &o.best, &r);
+  r.lower = fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
+  r.nodes = found.nodes, r.probes = o.gaps;
+  r.rung = rung_of(&o);
+  r.status = question_is_satisfied(q, ceiling, &r) ? CPROX_OK : status != CPROX_OK ? status : CPROX_PRECISION;
+  r.verdict = question_verdict(q, &r);
+  if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", question_shortfall(r.status));
+  *result = r;
+  return r.status;
+}
+
+/* ---- first contact -------------------------------------------------------------------------------------------------------- */
+
+cprox_status robot_first_contact(const question *q, cprox_result *result) {
+  robot_search o;
+  if (!robot_scene_begin(&o.scene, q, 0, q->n))
+    return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
+  const search_goal goal = goal_of(q, SEARCH_LEFT_TO_RIGHT, INFINITY);
+  search_outcome found;
+  const cprox_status status = run(q, &goal, &o, &found);
+  if (status < 0) return status;
+
+  const bool touch = o.touch.pair >= 0, near = o.best_bound.upper <= q->options.epsilon;
+  const robot_sight *sight = touch ? &o.touch : &o.best;
+  cprox_result r = {.t_target = NAN, .target_index = -1, .mover_part = -1};
+  report(&o, sight, &r);
+  r.upper = sight->pair < 0 ? INFINITY : fmax(sight->gap.upper, 0.0);
+  r.lower = touch ? 0.0 : fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
+  r.t_free = fmin(found.free_until, q->t1);
+  r.verdict = touch ? CPROX_YES : isinf(found.free_until) ? CPROX_NO : CPROX_UNDECIDED;
+  if (sight->pair < 0) r.t = NAN;
+  r.nodes = found.nodes, r.probes = o.gaps;
+  r.rung = rung_of(&o);
+  r.status = status;
+  if (status == CPROX_OK && near && found.free_until < o.best_bound.at) r.status = CPROX_PRECISION;
+  if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", question_shortfall(r.status));
+  *result = r;
+  return r.status;
+}

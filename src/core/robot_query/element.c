@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "robot_query/element.h"
+
+#include <math.h>
+
+#include "base/rounding.h"
+
+static vec3 middle_of(const vec3 v[3], int n) {
+  if (n == 1) return v[0];
+  if (n == 2) return vec_axpy(vec_scale(0.5, v[0]), 0.5, v[1]);
+  return vec_scale(1.0 / 3.0, vec_add(vec_add(v[0], v[1]), v[2]));
+}
+
+/* The smallest box round the corners; of a box itself, whose middle may be off by half a rounding, one that contains both. */
+static void find_box(robot_element *e, int n) {
+  double low[3] = {e->x[0], e->y[0], e->z[0]}, high[3] = {e->x[0], e->y[0], e->z[0]};
+  for (int i = 1; i < n; i++) {
+    const double at[3] = {e->x[i], e->y[i], e->z[i]};
+    for (int k = 0; k < 3; k++) low[k] = fmin(low[k], at[k]), high[k] = fmax(high[k], at[k]);
+  }
+  robot_body *body = &e->body;
+  const double grow = ROUND_U * e->shape.scale;
+  body->middle = vec(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2]));
+  body->half = vec(0.5 * (high[0] - low[0]) + grow, 0.5 * (high[1] - low[1]) + grow, 0.5 * (high[2] - low[2]) + grow);
+  if (n != 2) return;
+  body->middle = vec(0, 0, 0);
+  for (int k = 0; k < 3; k++) e->shape.size[k] = fmax(fabs(low[k]), fabs(high[k]));
+  body->half = vec(e->shape.size[0] + grow, e->shape.size[1] + grow, e->shape.size[2] + grow);
+}
+
+const robot_body *robot_element_make(const robot_body *owner, int32_t code, robot_element *e) {
+  const tree *t = owner->tree;
+  vec3 v[3];
+  const int n = tree_corners(t, robot_element_place(code), v);
+  const vec3 middle = middle_of(v, n);
+  double reach = 0.0;
+  for (int i = 0; i < 8; i++) {
+    const vec3 corner = vec_sub(v[i < n ? i : n - 1], middle);
+    e->x[i] = corner.x, e->y[i] = corner.y, e->z[i] = corner.z;
+    reach = fmax(reach, vec_norm(corner));
+  }
+  reach *= 1.0 + 8.0 * ROUND_U;
+  e->shape = (convex){.ops = n == 3 ? &convex_polytope : n == 2 ? &convex_box : &convex_point, .scale = reach};
+  if (n == 3) e->shape.n = 3, e->shape.padded = 8, e->shape.x = e->x, e->shape.y = e->y, e->shape.z = e->z;
+
+  /* where it stands: sums of lengths that the owner's tree reaches, turned once */
+  e->body = *owner;
+  robot_body *body = &e->body;
+  const vec3 at = vec_add(owner->tree_at, middle);
+  body->tree = NULL;
+  body->side.shape = &e->shape;
+  body->side.margin = owner->tree_margin;
+  body->side.at.p = placement_apply(&owner->side.at, at);
+  const double sizes = vec_norm(owner->tree_at) + 2.0 * t->scale + reach;
+  body->side.error += ROUND_UP * ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(body->side.at.p));
+  body->radius = reach + owner->tree_margin;
+  find_box(e, n);
+  return body;
+}

@@ -1,0 +1,634 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "robot_query/oracle.h"
+
+#include <math.h>
+
+#include "base/rounding.h"
+#include "base/workspace.h"
+#include "broadphase/obstacle_set.h"
+#include "robot_query/cull.h"
+
+enum { SEEDS_PER_SEGMENT = 1, MOST_SEED_TESTS = 40000 };
+
+/* A gap is measured to this fraction of the width asked for. */
+static const double GAP_FRACTION = 0.02;
+
+/* Of a pair that is too far to matter in the middle only so much of the excess need be known. */
+static const double EXCESS_FRACTION = 0.05;
+
+/* The first distances of a search need be no more exact than this. */
+static const double SEED_FRACTION = 0.02;
+
+/* Stretches that are shorter are measured even where a part moves farther than its own size. */
+#define SHORT_STRETCH 0x1p-8
+
+/* Parts that move farther than their own size, and than this fraction of their distance, are too blurred to be measured. */
+static const double BLUR = 0.5;
+
+/* Normals that turn faster than this over a node are taken to stand still. */
+static const double FASTEST_DRIFT = 0.5;
+
+/* Where a plane in the middle asks for more pieces than this, no distance is measured. */
+static const double ENOUGH_PIECES = 3.0;
+
+#define SHORTEST_STRETCH 0x1p-46
+
+/* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
+
+/* From u = a of segment first(n) to u = b of segment last(n). */
+static size_t first_of(const search_node *node) {
+  return node->side[0].part;
+}
+
+static size_t last_of(const search_node *node) {
+  return node->side[1].part;
+}
+
+static search_node node_of(const robot_search *o, const search_node *parent, size_t first, double a, size_t last,
+                           double b) {
+  search_node node = *parent;
+  node.side[0].part = (uint32_t)first, node.side[0].a = a;
+  node.side[1].part = (uint32_t)last, node.side[1].b = b;
+  node.start = motion_time(o->scene.motion, first, a);
+  return node;
+}
+
+search_node robot_search_root(robot_search *o, size_t first, double u0, size_t last, double u1) {
+  search_node root = {.lower = -INFINITY};
+  const cprox_set *set = o->scene.q->set;
+  const size_t n_pairs = o->scene.n_pairs, n_parts = set && set->boxes ? o->scene.motion->robot->n_parts : 0;
+  const int32_t slot = lists_take(&o->lists, n_pairs + n_parts);
+  root.side[0].slot = slot;
+  if (slot < 0) return root;
+  list_entry *entry = lists_at(&o->lists, slot);
+  for (size_t i = 0; i < n_pairs; i++) entry[i] = (list_entry){.lower = -INFINITY, .pair = (int32_t)i};
+  size_t n = n_pairs;
+  for (size_t i = 0; i < n_parts; i++)
+    if (robot_scene_asks(&o->scene, i)) entry[n++] = (list_entry){.lower = -INFINITY, .pair = -1, .part = (int32_t)i};
+  lists_set_count(&o->lists, slot, n);
+  return node_of(o, &root, first, u0, last, u1);
+}
+
+/* ---- measuring ------------------------------------------------------------------------------------------------------------ */
+
+/* The lower bound from which on a pair needs no more work. */
+static double settling_bound(const robot_search *o) {
+  if (o->limit >= 0.0) return o->limit;
+  const double upper = lesser(o->best_bound.upper, o->ceiling);
+  return upper - greater(o->epsilon, o->relative_epsilon * upper);
+}
+
+/* Distances: the least one. Left to right: the earliest one within epsilon of contact, and until there is one, the least. */
+static bool is_better(const robot_search *o, double upper, double at) {
+  if (o->order != SEARCH_LEFT_TO_RIGHT) return upper < o->best_bound.upper;
+  const double near = o->limit + o->epsilon;
+  if (o->best_bound.upper <= near) return upper <= near && at < o->best_bound.at;
+  return upper < o->best_bound.upper;
+}
+
+static bool is_convex(const robot_body *moving, const robot_body *standing) {
+  return !moving->tree && !standing->tree;
+}
+
+static cprox_status refuse_callback(const robot_search *o) {
+  return workspace_fail(o->scene.q->workspace, CPROX_INVALID,
+                        "a support callback answered with a point that is not finite or outside its radius");
+}
+
+/* What was measured may be the least so far, or a contact. */
+static void keep_sight(robot_search *o, int32_t index, size_t segment, double u, const robot_gap *gap) {
+  const double upper = fmax(gap->upper, 0.0), at = motion_time(o->scene.motion, segment, u);
+  const robot_sight sight = {.gap = *gap, .pair = index, .segment = segment, .u = u};
+  if (is_better(o, upper, at)) {
+    o->best = sight;
+    o->best_bound = (search_best){.upper = upper, .slack = gap->slack, .at = at};
+  }
+  if (upper <= o->limit && at < o->touch_at) {
+    o->touch = sight;
+    o->touch_at = at;
+  }
+}
+
+static void keep_normal(robot_pair *pair, const robot_body *standing, size_t segment, double u, const robot_gap *gap) {
+  if (!(vec_norm2(gap->normal) > 0.0)) return;
+  pair->normal = placement_turn_back(&standing->side.at, gap->normal);
+  pair->drift = vec(0, 0, 0);
+  pair->segment = segment, pair->u = u;
+  pair->normal_known = true;
+}
+
+/* The distance of the convex sides of a pair; it is that of the pair itself where that has no elements. */
+static cprox_status measure(robot_search *o, int32_t index, size_t segment, double u, robot_accuracy accuracy,
+                            robot_gap *gap) {
+  robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  robot_scene_measure(moving, standing, accuracy, gap);
+  o->gaps++;
+  if (gap->fault) return refuse_callback(o);
+  keep_normal(pair, standing, segment, u, gap);
+  if (is_convex(moving, standing)) keep_sight(o, index, segment, u, gap);
+  return CPROX_OK;
+}
+
+/* Sets out from what is known of the hulls. No element is farther from the other side than the hulls' distance and their sizes. */
+static robot_climb climb_from(robot_search *o, int32_t index, const robot_gap *hulls, double reach, double room) {
+  const robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  const double most = fmax(hulls->upper, 0.0) + (moving->tree ? 4.0 * moving->radius : 0.0) +
+                      (standing->tree ? 4.0 * standing->radius : 0.0);
+  return (robot_climb){.scene = &o->scene,
+                       .pair = index,
+                       .reach = fmin(reach, most + room),
+                       .room = room,
+                       .accuracy = GAP_FRACTION * o->epsilon,
+                       .normal = hulls->upper > 0.0 ? hulls->normal : vec(0, 0, 0)};
+}
+
+static cprox_status climb(robot_search *o, robot_climb *c, size_t segment, double u) {
+  robot_climb_run(c);
+  o->gaps += c->gaps;
+  o->climbed = true;
+  if (c->fault) return refuse_callback(o);
+  if (c->no_memory) return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
+  if (c->nearest.gap.upper < INFINITY) keep_sight(o, c->pair, segment, u, &c->nearest.gap);
+  return CPROX_OK;
+}
+
+/* The distance of a pair, elements and all, as far as it can be less than the best. */
+static cprox_status measure_whole(robot_search *o, int32_t index, size_t segment, double u) {
+  robot_gap gap;
+  const double floor = fmax(o->limit, 0.0);
+  const cprox_status status =
+      measure(o, index, segment, u,
+              (robot_accuracy){.epsilon = GAP_FRACTION * o->epsilon, .floor = floor, .fraction = SEED_FRACTION}, &gap);
+  const robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  if (status < 0 || is_convex(moving, standing) || gap.lower >= o->best_bound.upper) return status;
+  robot_climb c = climb_from(o, index, &gap, o->best_bound.upper, 0.0);
+  return climb(o, &c, segment, u);
+}
+
+/* The pair that comes closest by balls and boxes. */
+typedef struct nearest_pair {
+  double apart;
+  int32_t pair; /* -1: none is nearer */
+} nearest_pair;
+
+static void try_pair(robot_search *o, int32_t index, nearest_pair *nearest) {
+  const robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  if (robot_scene_balls(moving, standing) >= nearest->apart) return;
+  const double apart = robot_scene_apart(moving, standing);
+  if (apart < nearest->apart) *nearest = (nearest_pair){.apart = apart, .pair = index};
+}
+
+/* What is to be opened, the nearest on top. */
+typedef struct crowd_stack {
+  uint32_t at[TREE_LANES * TREE_DEEPEST];
+  double apart[TREE_LANES * TREE_DEEPEST];
+  size_t count;
+} crowd_stack;
+
+static void push_nearest_last(crowd_stack *stack, const crowd_lanes *lanes, double most) {
+  const size_t first = stack->count;
+  for (uint32_t l = 0; l < TREE_LANES; l++) {
+    if (!(lanes->live >> l & 1u) || !(lanes->apart[l] < most)) continue;
+    size_t i = stack->count++;
+    for (; i > first && stack->apart[i - 1] < lanes->apart[l]; i--)
+      stack->apart[i] = stack->apart[i - 1], stack->at[i] = stack->at[i - 1];
+    stack->apart[i] = lanes->apart[l], stack->at[i] = lanes->under[l];
+  }
+}
+
+static cprox_status no_memory_for_pairs(const robot_search *o) {
+  return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
+}
+
+/* The same of all that is under a node of the set's tree. */
+static cprox_status try_crowd(robot_search *o, const list_entry *entry, nearest_pair *nearest) {
+  crowd_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
+  while (stack.count > 0) {
+    const uint32_t at = stack.at[--stack.count];
+    if (stack.apart[stack.count] >= nearest->apart) continue;
+    crowd_lanes lanes;
+    crowd_measure(&o->scene, entry->part, at, 0.0, &lanes);
+    if (!(at & TREE_LEAF)) push_nearest_last(&stack, &lanes, nearest->apart);
+    for (uint32_t l = 0; (at & TREE_LEAF) && l < TREE_LANES; l++) {
+      if (!(lanes.live >> l & 1u) || !(lanes.apart[l] < nearest->apart)) continue;
+      size_t count;
+      const int32_t pairs = crowd_pairs(&o->scene, entry->part, lanes.under[l], &count);
+      if (pairs < 0) return no_memory_for_pairs(o);
+      for (size_t k = 0; k < count; k++) try_pair(o, pairs + (int32_t)k, nearest);
+    }
+  }
+  return CPROX_OK;
+}
+
+/* Measures the pair whose balls and boxes come closest in a few places, so that the search begins with a distance. */
+static cprox_status seed(robot_search *o, const search_node *node) {
+  const int32_t list = node->side[0].slot;
+  const size_t n = lists_count(&o->lists, list), first = first_of(node), last = last_of(node);
+  size_t places = (last - first) * SEEDS_PER_SEGMENT + 2;
+  while (places > 1 && places * n > MOST_SEED_TESTS) places /= 2;
+  for (size_t i = 0; i < places; i++) {
+    size_t segment = first + i / SEEDS_PER_SEGMENT;
+    double u = ((double)(i % SEEDS_PER_SEGMENT) + 0.5) / SEEDS_PER_SEGMENT;
+    if (i == places - 2) segment = first, u = node->side[0].a;
+    if (i == places - 1) segment = last - 1, u = node->side[1].b;
+    robot_scene_enter(&o->scene, segment, u, u);
+    const double most = o->limit >= 0.0 ? lesser(o->best_bound.upper, o->limit) : o->best_bound.upper;
+    nearest_pair nearest = {.apart = most, .pair = -1};
+    for (size_t k = 0; k < n; k++) {
+      const list_entry entry = lists_at(&o->lists, list)[k];
+      const cprox_status status = entry.pair < 0 ? try_crowd(o, &entry, &nearest) : CPROX_OK;
+      if (status < 0) return status;
+      if (entry.pair >= 0) try_pair(o, entry.pair, &nearest);
+    }
+    if (nearest.pair < 0) continue;
+    const cprox_status status = measure_whole(o, nearest.pair, segment, u);
+    if (status < 0) return status;
+    if (o->limit >= 0.0 && o->best_bound.upper <= o->limit) return CPROX_OK;
+  }
+  return CPROX_OK;
+}
+
+/* ---- bounds --------------------------------------------------------------------------------------------------------------- */
+
+/* The pair's last normal, carried on to the middle of the node as it turned; in the standing frame. (0,0,0) where there is none. */
+static vec3 known_normal(const search_node *node, const robot_pair *pair) {
+  if (!pair->normal_known) return vec(0, 0, 0);
+  const double middle = 0.5 * (node->side[0].a + node->side[1].b);
+  const double away = pair->segment == first_of(node) ? middle - pair->u : 0.0;
+  const vec3 n = vec_axpy(pair->normal, away, pair->drift);
+  return vec_scale(1.0 / vec_norm(n), n);
+}
+
+static vec3 normal_in_middle(const search_node *node, const robot_pair *pair, const robot_body *standing) {
+  const vec3 n = placement_turn(&standing->side.at, known_normal(node, pair));
+  return vec_scale(1.0 / vec_norm(n), n);
+}
+
+/* In the place of a normal that is not known yet. */
+static void keep_guess(const search_node *node, robot_pair *pair, const robot_body *moving,
+                       const robot_body *standing) {
+  const vec3 guess = robot_scene_guess(moving, standing);
+  if (!(vec_norm2(guess) > 0.0)) return;
+  pair->normal = guess, pair->drift = vec(0, 0, 0);
+  pair->segment = first_of(node), pair->u = 0.5 * (node->side[0].a + node->side[1].b);
+  pair->normal_known = true;
+}
+
+/* How far the two are apart along it: only to choose by, its rounding is not counted. */
+static double plane_middle(const search_node *node, const robot_pair *pair, const robot_body *moving,
+                           const robot_body *standing) {
+  const vec3 n = normal_in_middle(node, pair, standing);
+  const double along = vec_dot(n, vec_sub(moving->side.at.p, standing->side.at.p));
+  return along - bound_height(&moving->side, vec_neg(n)) - robot_scene_height(standing, n);
+}
+
+static double width_of(const search_node *node) {
+  return node->side[1].b - node->side[0].a;
+}
+
+/* What that normal says of the node. */
+static double bound_by_normal(robot_search *o, const search_node *node, const robot_pair *pair,
+                              const robot_body *moving, const robot_body *standing, const chain_motion *motion,
+                              double goal, double *slack) {
+  const double width = width_of(node);
+  const bool same_segment = pair->segment == first_of(node);
+  const vec3 n = normal_in_middle(node, pair, standing);
+  vec3 drift = placement_turn(&standing->side.at, vec_scale(same_segment ? width : 0.0, pair->drift));
+  drift = vec_axpy(drift, -vec_dot(drift, n), n);
+  if (!(vec_norm2(drift) < FASTEST_DRIFT * FASTEST_DRIFT)) drift = vec(0, 0, 0);
+  double heights[2];
+  heights[0] = robot_scene_height(standing, vec_axpy(n, -0.5, drift));
+  heights[1] = vec_norm2(drift) > 0.0 ? robot_scene_height(standing, vec_axpy(n, 0.5, drift)) : heights[0];
+  o->planes++;
+  return motion_plane_bound(motion, &moving->side, &standing->side, n, drift, heights, moving->steps + standing->steps,
+                            goal, slack);
+}
+
+/* What a cut into so many pieces would do for one pair counts for the node. */
+static void want_pieces(robot_search *o, double pieces) {
+  o->pieces = greater(pieces, o->pieces);
+}
+
+/* A pair that is `middle` apart in the middle, of which the whole node says `bound`: what is lost shrinks as the square of the length
+ * on the piece that is nearest; on others it may shrink slower, but there is more to lose. */
+static double pieces_for(const robot_search *o, double middle, double bound) {
+  const double goal = settling_bound(o);
+  return middle > goal ? sqrt(1.05 * (middle - bound) / (middle - goal)) : 2.0;
+}
+
+static bool is_settled(const robot_search *o, double lower) {
+  return o->limit >= 0.0 ? lower > o->limit : lower >= settling_bound(o);
+}
+
+/* The plane of the distance just measured, turning as its feature does. */
+static double bound_by_gap(robot_search *o, const search_node *node, robot_pair *pair, const robot_body *moving,
+                           const robot_body *standing, const chain_motion *motion, const robot_gap *gap,
+                           double *slack) {
+  const double width = width_of(node);
+  const vec3 drift = vec_scale(1.0 / width, robot_scene_drift(gap, moving, standing, motion));
+  pair->drift = placement_turn_back(&standing->side.at, drift);
+  return bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
+}
+
+static bool keep_entry(robot_search *o, const list_entry *entry) {
+  list_entry *next = workspace_reserve(o->scene.q->workspace, WORKSPACE_ROBOT_NEXT, (o->n_next + 1) * sizeof *next);
+  if (!next) return false;
+  o->next = next;
+  next[o->n_next++] = *entry;
+  return true;
+}
+
+/* One of the pairs of elements that take the place of a pair: kept where its own plane does not settle it. */
+static cprox_status enlist(robot_search *o, search_node *node, const robot_pair *whole, const robot_found *found) {
+  const double u = 0.5 * (node->side[0].a + node->side[1].b);
+  robot_pair pair = {
+      .moving = whole->moving, .standing = whole->standing, .element = {found->element[0], found->element[1]}};
+  const robot_body *moving = robot_scene_moving(&o->scene, &pair), *standing = robot_scene_standing(&o->scene, &pair);
+  chain_motion own;
+  const chain_motion *motion = robot_scene_motion(&o->scene, &pair, moving, &own);
+  keep_normal(&pair, standing, first_of(node), u, &found->gap);
+  list_entry entry = {.lower = found->gap.lower - motion->travel};
+  double slack = moving->side.error + standing->side.error;
+  if (!is_settled(o, entry.lower) && pair.normal_known && found->gap.upper > 0.0)
+    entry.lower = fmax(entry.lower, bound_by_gap(o, node, &pair, moving, standing, motion, &found->gap, &slack));
+  if (is_settled(o, entry.lower)) {
+    o->dropped = fmin(o->dropped, entry.lower);
+    return CPROX_OK;
+  }
+  entry.pair = robot_scene_add_pair(&o->scene, &pair);
+  if (entry.pair < 0 || !keep_entry(o, &entry))
+    return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
+  if (entry.lower < node->lower) node->lower = entry.lower, node->slack = slack;
+  return CPROX_OK;
+}
+
+/* The hulls do not settle it: what of their elements comes near enough takes the place of the pair. */
+static cprox_status climb_pair(robot_search *o, search_node *node, list_entry *entry, const robot_gap *hulls,
+                               double travel) {
+  const double u = 0.5 * (node->side[0].a + node->side[1].b);
+  const double spare = 4.0 * hulls->slack;
+  robot_climb c = climb_from(o, entry->pair, hulls, settling_bound(o) + travel + spare, travel + spare);
+  c.listing = true;
+  const cprox_status status = climb(o, &c, first_of(node), u);
+  if (status < 0 || c.too_many) return status;
+  entry->lower = fmax(entry->lower, c.rest - travel - hulls->slack);
+  const robot_pair whole = o->scene.pairs[entry->pair];
+  for (size_t i = 0; i < c.n_found; i++) {
+    const cprox_status listed = enlist(o, node, &whole, &c.found[i]);
+    if (listed < 0) return listed;
+  }
+  return CPROX_OK;
+}
+
+/* Raises the bound of one pair over the node that the scene is at by balls and boxes. A part that travels too far to be measured wants
+ * the node cut. */
+static void bound_pair_roughly(robot_search *o, const search_node *node, list_entry *entry) {
+  const robot_pair *pair = &o->scene.pairs[entry->pair];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  entry->blurred = false;
+  double way = INFINITY;
+  if (pair->element[0] < 0 && pair->element[1] < 0) {
+    way = robot_scene_way(&o->scene, pair);
+    entry->lower = greater(robot_scene_balls(moving, standing) - way, entry->lower);
+    if (is_settled(o, entry->lower)) return;
+  }
+  const double apart = robot_scene_apart(moving, standing);
+  entry->lower = greater(apart - way, entry->lower);
+  if (is_settled(o, entry->lower)) return;
+  const double travel = robot_scene_travel(&o->scene, pair, moving);
+  entry->lower = greater(apart - travel, entry->lower);
+  const double size = greater(BLUR * apart, moving->radius);
+  if (is_settled(o, entry->lower) || !(travel > size) || !(width_of(node) > SHORT_STRETCH)) return;
+  entry->blurred = true;
+  want_pieces(o, travel / size);
+}
+
+/* The same by planes and distances, the cheapest way that settles it. */
+static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *entry, double *slack) {
+  robot_pair *pair = &o->scene.pairs[entry->pair];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  *slack = moving->side.error + standing->side.error;
+  chain_motion own;
+  const chain_motion *motion = robot_scene_motion(&o->scene, pair, moving, &own);
+  const double travel = motion->travel, width = width_of(node);
+
+  if (!pair->normal_known) keep_guess(node, pair, moving, standing);
+  if (pair->normal_known) {
+    const double bound = bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
+    entry->lower = fmax(entry->lower, bound);
+    if (is_settled(o, entry->lower)) return CPROX_OK;
+
+    /* verdicts: a plane that parts the two in the middle says how short the pieces must be; no distance could say much more */
+    const double pieces = o->limit >= 0.0 ? pieces_for(o, plane_middle(node, pair, moving, standing), bound) : 2.0;
+    if (pieces > ENOUGH_PIECES && width > SHORT_STRETCH) {
+      want_pieces(o, pieces);
+      return CPROX_OK;
+    }
+  }
+
+  /* another pair wants the node cut: pieces will tell more */
+  if (o->cut) return CPROX_OK;
+  robot_gap gap;
+  const double u = 0.5 * (node->side[0].a + node->side[1].b);
+  const robot_accuracy accuracy = {GAP_FRACTION * o->epsilon, settling_bound(o), EXCESS_FRACTION,
+                                   known_normal(node, pair)};
+  const cprox_status status = measure(o, entry->pair, first_of(node), u, accuracy, &gap);
+  if (status < 0) return status;
+  entry->lower = fmax(entry->lower, gap.lower - travel);
+  if (pair->normal_known && gap.upper > 0.0)
+    entry->lower = fmax(entry->lower, bound_by_gap(o, node, pair, moving, standing, motion, &gap, slack));
+  if (!is_settled(o, entry->lower)) want_pieces(o, pieces_for(o, gap.lower, entry->lower));
+  if (is_convex(moving, standing) || is_settled(o, entry->lower)) return CPROX_OK;
+
+  /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
+  if (o->limit < 0.0 && gap.lower < o->best_bound.upper) {
+    robot_climb nearest = climb_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
+    const cprox_status climbed = climb(o, &nearest, first_of(node), u);
+    if (climbed < 0) return climbed;
+  }
+  if (is_settled(o, gap.lower) && width > SHORT_STRETCH) return CPROX_OK;
+  return climb_pair(o, node, entry, &gap, travel);
+}
+
+static cprox_status keep_open(robot_search *o, const list_entry *entry) {
+  if (!is_settled(o, entry->lower)) return keep_entry(o, entry) ? CPROX_OK : no_memory_for_pairs(o);
+  o->dropped = lesser(entry->lower, o->dropped);
+  return CPROX_OK;
+}
+
+/* The pairs of a part and the target in a box of the set's tree. */
+static cprox_status open_box(robot_search *o, const search_node *node, const list_entry *entry) {
+  size_t count;
+  const int32_t pairs = crowd_pairs(&o->scene, entry->part, entry->under, &count);
+  if (pairs < 0) return no_memory_for_pairs(o);
+  cprox_status status = CPROX_OK;
+  for (size_t k = 0; k < count && status == CPROX_OK; k++) {
+    list_entry one = {.lower = entry->lower, .pair = pairs + (int32_t)k};
+    bound_pair_roughly(o, node, &one);
+    status = keep_open(o, &one);
+  }
+  return status;
+}
+
+/* What is under a node of the set's tree and within reach of a part: pairs, or, where the part travels too far for these to be measured,
+ * nodes that hold them. */
+static cprox_status open_crowd(robot_search *o, const search_node *node, const list_entry *entry) {
+  const robot_pair any = {.moving = entry->part, .element = {-1, -1}};
+  const double radius = robot_scene_moving(&o->scene, &any)->radius, travel = robot_scene_way(&o->scene, &any);
+  const bool is_short = !(width_of(node) > SHORT_STRETCH);
+  uint32_t stack[TREE_LANES * TREE_DEEPEST] = {entry->under};
+  size_t n = 1;
+  cprox_status status = CPROX_OK;
+  while (n > 0 && status == CPROX_OK) {
+    const uint32_t at = stack[--n];
+    crowd_lanes lanes;
+    crowd_measure(&o->scene, entry->part, at, travel, &lanes);
+    for (uint32_t l = 0; l < TREE_LANES && status == CPROX_OK; l++) {
+      if (!(lanes.live >> l & 1u)) continue;
+      list_entry lane = *entry;
+      lane.lower = greater(lanes.lower[l], entry->lower), lane.under = lanes.under[l];
+      const double size = greater(BLUR * lanes.apart[l], radius);
+      lane.blurred = travel > size && !is_short;
+      if (is_settled(o, lane.lower)) {
+        o->dropped = lesser(lane.lower, o->dropped);
+      } else if (at & TREE_LEAF) {
+        status = open_box(o, node, &lane);
+      } else if (lane.blurred) {
+        want_pieces(o, travel / size);
+        status = keep_open(o, &lane);
+      } else {
+        stack[n++] = lane.under;
+      }
+    }
+  }
+  return status;
+}
+
+/* Balls and boxes of all pairs of a node; those that still matter are kept. */
+static cprox_status bound_roughly(robot_search *o, const search_node *node) {
+  const int32_t list = node->side[0].slot;
+  const size_t n = lists_count(&o->lists, list);
+  cprox_status status = CPROX_OK;
+  for (size_t i = 0; i < n && status == CPROX_OK; i++) {
+    list_entry entry = lists_at(&o->lists, list)[i];
+    if (!is_settled(o, entry.lower) && entry.pair < 0) {
+      status = open_crowd(o, node, &entry);
+    } else {
+      if (!is_settled(o, entry.lower)) bound_pair_roughly(o, node, &entry);
+      status = keep_open(o, &entry);
+    }
+  }
+  return status;
+}
+
+/* Bounds all pairs of a node of one segment; those that still matter become its own list. */
+static cprox_status bound_node(robot_search *o, search_node *node) {
+  const int32_t old = node->side[0].slot;
+  const double inherited = node->lower;
+  robot_scene_enter(&o->scene, first_of(node), node->side[0].a, node->side[1].b);
+  o->n_next = 0;
+  o->pieces = 2.0;
+  const cprox_status rough = bound_roughly(o, node);
+  if (rough < 0) return rough;
+
+  /* those that stay move to the front, elements that take the place of a pair come behind the last one */
+  const size_t n = o->n_next;
+  o->cut = o->pieces > 2.0;
+  size_t kept = 0;
+  node->lower = INFINITY;
+  for (size_t i = 0; i < n; i++) {
+    list_entry entry = o->next[i];
+    double slack = 0.0;
+    if (!is_settled(o, entry.lower) && !entry.blurred) {
+      const cprox_status status = bound_pair(o, node, &entry, &slack);
+      if (status < 0) return status;
+    }
+    if (is_settled(o, entry.lower)) {
+      o->dropped = lesser(entry.lower, o->dropped);
+      continue;
+    }
+    o->next[kept++] = entry;
+    if (entry.lower < node->lower) node->lower = entry.lower, node->slack = slack;
+  }
+  for (size_t i = n; i < o->n_next; i++) o->next[kept++] = o->next[i];
+  o->n_next = kept;
+
+  const int32_t own = lists_take(&o->lists, o->n_next);
+  if (own < 0) return CPROX_MEMORY;
+  list_entry *to = lists_at(&o->lists, own);
+  for (size_t i = 0; i < o->n_next; i++) to[i] = o->next[i];
+  lists_set_count(&o->lists, own, o->n_next);
+  lists_give(&o->lists, old);
+  node->side[0].slot = own;
+  node->lower = fmax(node->lower, inherited);
+  return CPROX_OK;
+}
+
+/* ---- the oracle ----------------------------------------------------------------------------------------------------------- */
+
+static double filter(void *self, search_node *node, double goal) {
+  (void)self, (void)goal;
+  return node->lower;
+}
+
+static cprox_status probe(void *self, search_node *node, search_best *best) {
+  robot_search *o = self;
+  cprox_status status = CPROX_OK;
+  if (!o->seeded) {
+    o->seeded = true;
+    status = seed(o, node);
+  }
+  const bool answered = o->order != SEARCH_LEFT_TO_RIGHT && o->best_bound.upper <= fmax(o->limit, 0.0);
+  if (status == CPROX_OK && !answered && first_of(node) + 1 == last_of(node)) status = bound_node(o, node);
+  *best = o->best_bound;
+  return status;
+}
+
+static int split(void *self, search_node *node, search_node *child) {
+  robot_search *o = self;
+  const size_t first = first_of(node), last = last_of(node);
+  const double a = node->side[0].a, b = node->side[1].b;
+  int n = 2;
+  if (first + 1 < last) {
+    const size_t segments = last - first;
+    n = segments > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (int)segments;
+    for (int k = 0; k < n; k++) {
+      const size_t from = first + segments * (size_t)k / (size_t)n, to = first + segments * (size_t)(k + 1) / (size_t)n;
+      child[k] = node_of(o, node, from, k == 0 ? a : 0.0, to, k + 1 == n ? b : 1.0);
+    }
+  } else {
+    if (!(b - a > SHORTEST_STRETCH)) return 0;
+    n = o->pieces < 2.0 ? 2 : o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (int)ceil(o->pieces);
+    for (int k = 0; k < n; k++) {
+      const double from = k == 0 ? a : child[k - 1].side[1].b, to = k + 1 == n ? b : a + (b - a) * (k + 1) / n;
+      child[k] = node_of(o, node, first, from, last, to);
+    }
+  }
+  for (int k = 1; k < n; k++) lists_share(&o->lists, node->side[0].slot);
+  return n;
+}
+
+static void release(void *self, const search_node *node) {
+  robot_search *o = self;
+  lists_give(&o->lists, node->side[0].slot);
+}
+
+void robot_search_begin(robot_search *o, const search_goal *goal) {
+  o->order = goal->order;
+  o->limit = goal->limit, o->epsilon = goal->epsilon, o->relative_epsilon = goal->relative_epsilon;
+  o->ceiling = goal->ceiling;
+  o->best = o->touch = (robot_sight){.pair = -1};
+  o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
+  o->dropped = o->touch_at = INFINITY;
+  o->seeded = o->climbed = false;
+  o->gaps = o->planes = 0;
+  lists_begin(&o->lists, o->scene.q->workspace);
+}
+
+search_oracle robot_search_oracle(robot_search *o) {
+  return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
+}

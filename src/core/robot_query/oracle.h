@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The oracle of a robot along a motion: nodes are stretches of the motion, each with the list of pairs that could still matter.
+ * doc/robot-bounds.md derives its bounds. */
+#ifndef CPROX_ROBOT_QUERY_ORACLE_H
+#define CPROX_ROBOT_QUERY_ORACLE_H
+
+#include "branch_and_bound/search.h"
+#include "robot_query/pair_lists.h"
+#include "robot_query/pair_state.h"
+#include "robot_query/refine.h"
+
+/* Where the least distance was measured. */
+typedef struct robot_sight {
+  robot_gap gap;
+  int32_t pair; /* -1: nothing was measured */
+  size_t segment;
+  double u;
+} robot_sight;
+
+typedef struct robot_search {
+  robot_scene scene;
+  robot_lists lists;
+  search_order order;
+  double limit, epsilon, relative_epsilon, ceiling;
+
+  /* what is known */
+  robot_sight best;
+  search_best best_bound;
+  double dropped;    /* the least lower bound of pairs that were dropped from a list */
+  robot_sight touch; /* left to right: the earliest place where contact is proven */
+  double touch_at;
+  bool seeded;
+  uint32_t gaps, planes; /* distances measured, plane bounds asked for */
+  bool climbed;          /* elements of meshes were looked at */
+  double pieces;         /* into so many the node at hand is best cut */
+  list_entry *next;      /* what the node at hand keeps, in the workspace */
+  size_t n_next;
+  bool cut; /* it will be cut whatever is measured */
+} robot_search;
+
+/* The scene must have begun. */
+void robot_search_begin(robot_search *o, const search_goal *goal);
+
+/* The node of all that is asked about: from u0 of the first segment to u1 of the last one. slot < 0 where memory is out. */
+search_node robot_search_root(robot_search *o, size_t first, double u0, size_t last, double u1);
+
+search_oracle robot_search_oracle(robot_search *o);
+
+#endif

@@ -1,0 +1,456 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "robot_query/pair_state.h"
+
+#include <math.h>
+
+#include "base/rounding.h"
+#include "broadphase/obstacle_set.h"
+#include "convex/pair.h"
+
+enum { GAP_STEPS = 128, MOST_WAYS = 1 << 18 };
+
+static bool is_halfspace(const robot_body *body) {
+  return body->side.shape->ops->kind == CPROX_HALFSPACE;
+}
+
+/* ---- bodies --------------------------------------------------------------------------------------------------------------- */
+
+/* The finest model that the question allows. Clouds and octrees stay what they are, and so do halfspaces. */
+static part_model model_for(const question *q, part_model model) {
+  const bool many = model.tree && model.tree->kind != TREE_TRIANGLES && model.by_ball;
+  if (q->options.max_rung == CPROX_RUNG_MESH || many) return model;
+  if (model.tree && model.by_ball && q->options.max_rung == CPROX_RUNG_HULL) return model; /* it has no hull */
+  model.tree = NULL;
+  const bool endless = model.shape->ops->kind == CPROX_HALFSPACE;
+  return q->options.max_rung == CPROX_RUNG_SPHERE && !endless ? part_model_ball(&model) : model;
+}
+
+/* ---- obstacles ------------------------------------------------------------------------------------------------------------ */
+
+/* A part of a target; the frames of parts of unions are composed. */
+static robot_body obstacle_of(const question *q, size_t index, size_t part) {
+  const cprox_target *target = &q->targets[index];
+  const cprox_body *body = target->body;
+  cprox_pose pose = target->pose;
+  double error = 0.0;
+  if (body->kind == CPROX_COMPOUND) {
+    const body_part *p = &body->parts[part];
+    body = p->body;
+    pose = frame_compose(&target->pose, &p->pose);
+    const double turned = vec_norm(p->pose.position) + vec_norm(body->ball_centre) + 2.0 * body->ball_radius;
+    error = isfinite(turned) ? turned : vec_norm(p->pose.position) + vec_norm(body->centre) + body->shape.scale;
+    error = ROUND_U * (ROUND_ROTATION * error + 3.0 * vec_norm(pose.position));
+  }
+  part_model m = model_for(q, part_model_of(body));
+  if (m.shape->ops->kind != CPROX_HALFSPACE) part_model_find_box(&m);
+  const frame f = frame_create(&pose, m.centre);
+  robot_body placed = {.radius = m.radius + target->padding, .index = (int32_t)index, .part = (int32_t)part};
+  placed.side = (bound_side){.shape = m.shape, .margin = m.margin + target->padding};
+  for (int i = 0; i < 9; i++) placed.side.at.r[i] = f.r[i];
+  placed.side.at.p = frame_to_world(&f, vec(0, 0, 0));
+  placed.tree = m.tree, placed.tree_at = m.tree_at, placed.tree_margin = m.tree_margin + target->padding;
+  if (is_halfspace(&placed)) placed.radius = m.shape->scale + placed.side.margin;
+  const double sizes = vec_norm(m.centre) + placed.radius;
+  placed.side.error = ROUND_UP * (error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(placed.side.at.p)));
+  placed.middle = m.middle, placed.half = m.half;
+  return placed;
+}
+
+size_t robot_scene_parts_of(const cprox_target *target) {
+  return target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
+}
+
+int32_t robot_scene_add_obstacles(robot_scene *s, size_t target) {
+  const size_t parts = robot_scene_parts_of(&s->q->targets[target]), n = s->n_obstacles + parts;
+  if (n > INT32_MAX) return -1;
+  robot_body *all = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_OBSTACLES, (n + 1) * sizeof *all);
+  if (!all) return -1;
+  s->obstacles = all;
+  for (size_t i = 0; i < parts; i++) all[s->n_obstacles + i] = obstacle_of(s->q, target, i);
+  s->n_obstacles = n;
+  return (int32_t)(n - parts);
+}
+
+static robot_body part_body(const question *q, size_t i) {
+  const cprox_motion *motion = q->mover.motion;
+  const robot_part *part = &motion->robot->parts[i];
+  const part_model m = model_for(q, part->model);
+  robot_body body = {.radius = m.radius, .steps = part->steps, .index = part->geometry, .part = (int32_t)i};
+  body.side = (bound_side){.shape = m.shape, .margin = m.margin, .error = motion->part_error[i]};
+  body.tree = m.tree, body.tree_at = m.tree_at, body.tree_margin = m.tree_margin;
+  body.middle = m.middle, body.half = m.half;
+  return body;
+}
+
+/* ---- pairs ---------------------------------------------------------------------------------------------------------------- */
+
+/* The axes from one up to the base. */
+static size_t depth_of(const cprox_robot *robot, int32_t axis) {
+  size_t depth = 0;
+  for (; axis >= 0; axis = robot->axes[axis].parent) depth++;
+  return depth;
+}
+
+static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing) {
+  robot_pair pair = {.moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}};
+  if (!s->ways) return pair;
+  const cprox_robot *robot = s->motion->robot;
+  const int32_t common = robot_common_axis(robot, robot->parts[moving].axis, robot->parts[standing].axis);
+  pair.shared = (uint32_t)depth_of(robot, common);
+  return pair;
+}
+
+/* Adds the pairs of convex parts of a geometry and a target, or of two geometries; only counts them where there is no room. */
+static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, robot_pair *pairs, size_t *n) {
+  const cprox_robot *robot = s->motion->robot;
+  const size_t others = s->self ? robot->n_parts : s->n_obstacles;
+  for (size_t i = 0; i < robot->n_parts; i++) {
+    if (robot->parts[i].geometry != geometry) continue;
+    for (size_t k = 0; k < others; k++) {
+      if ((s->self ? robot->parts[k].geometry : s->obstacles[k].index) != other) continue;
+      if (pairs) pairs[*n] = pair_of(s, i, k);
+      (*n)++;
+    }
+  }
+}
+
+bool robot_scene_asks(const robot_scene *s, size_t part) {
+  return s->self || cprox_motion_moves_link(s->motion, (size_t)s->motion->robot->parts[part].link);
+}
+
+/* All pairs that are worth asking for. */
+static void add_all_pairs(const robot_scene *s, robot_pair *pairs, size_t *n) {
+  const cprox_robot *robot = s->motion->robot;
+  const size_t others = s->self ? robot->n_parts : s->n_obstacles;
+  for (size_t i = 0; i < robot->n_parts; i++) {
+    const robot_part *part = &robot->parts[i];
+    if (!robot_scene_asks(s, i)) continue;
+    for (size_t k = 0; k < others; k++) {
+      const robot_part *other = &robot->parts[k];
+      if (s->self && (other->geometry >= part->geometry ||
+                      !cprox_motion_relates_links(s->motion, (size_t)part->link, (size_t)other->link)))
+        continue;
+      if (pairs) pairs[*n] = pair_of(s, i, k);
+      (*n)++;
+    }
+  }
+}
+
+/* Lists the pairs, or counts them where there is no room given. */
+static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
+  const cprox_mover *mover = &s->q->mover;
+  size_t n = 0;
+  if (!mover->pairs) add_all_pairs(s, pairs, &n);
+  for (size_t i = 0; mover->pairs && i < mover->n_pairs; i++)
+    add_pairs(s, mover->pairs[i].geometry, mover->pairs[i].other, pairs, &n);
+  return n;
+}
+
+/* ---- beginning ------------------------------------------------------------------------------------------------------------ */
+
+bool robot_scene_begin(robot_scene *s, const question *q, size_t first, size_t last) {
+  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = q->mover.self};
+  const cprox_robot *robot = s->motion->robot;
+  const size_t n_axes = robot->n_axes + 1;
+  size_t deepest = 0;
+  for (size_t i = 0; s->self && i < robot->n_parts; i++) {
+    const size_t depth = depth_of(robot, robot->parts[i].axis);
+    deepest = depth > deepest ? depth : deepest;
+  }
+  s->n_ways = deepest + 1;
+  const size_t all_ways = s->self && s->n_ways * robot->n_parts <= MOST_WAYS ? s->n_ways * robot->n_parts : 0;
+  const size_t bytes = (robot->n_parts + 1) * sizeof *s->parts +
+                       n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch + sizeof *s->axis_placed) +
+                       (motion_rows_size(s->motion) + all_ways) * sizeof *s->rows;
+  char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
+  if (!memory) return false;
+  s->parts = (part_state *)(void *)memory;
+  s->axes = (axis_state *)(void *)(s->parts + robot->n_parts + 1);
+  s->chain = (chain_axis *)(void *)(s->axes + n_axes);
+  s->rows = (double *)(void *)(s->chain + n_axes);
+  s->scratch = s->rows + motion_rows_size(s->motion);
+  s->ways = all_ways ? s->scratch + n_axes : NULL;
+  s->axis_placed = (uint32_t *)(void *)(s->scratch + n_axes + all_ways);
+  for (size_t i = 0; i < n_axes; i++) s->axis_placed[i] = 0;
+
+  const size_t listed = q->set ? q->set->n_unbounded : last - first;
+  for (size_t i = 0; i < listed; i++)
+    if (robot_scene_add_obstacles(s, q->set ? q->set->unbounded[i] : first + i) < 0) return false;
+  for (size_t i = 0; i < robot->n_parts; i++) s->parts[i] = (part_state){.body = part_body(q, i)};
+
+  s->n_pairs = list_pairs(s, NULL);
+  s->pairs = workspace_reserve(q->workspace, WORKSPACE_ROBOT_PAIRS, (s->n_pairs + 1) * sizeof *s->pairs);
+  if (!s->pairs) return false;
+  list_pairs(s, s->pairs);
+  return true;
+}
+
+int32_t robot_scene_add_pair(robot_scene *s, const robot_pair *pair) {
+  if (s->n_pairs >= INT32_MAX / sizeof *pair) return -1;
+  robot_pair *pairs = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_PAIRS, (s->n_pairs + 1) * sizeof *pairs);
+  if (!pairs) return -1;
+  s->pairs = pairs;
+  pairs[s->n_pairs] = *pair;
+  return (int32_t)s->n_pairs++;
+}
+
+/* ---- over a node ---------------------------------------------------------------------------------------------------------- */
+
+void robot_scene_enter(robot_scene *s, size_t segment, double a, double b) {
+  s->node++;
+  s->segment = segment, s->a = a, s->b = b;
+  motion_fill_rows(s->motion, segment, a, b, s->rows);
+}
+
+/* An axis and all above it that are not known yet; those are found from the base down. */
+static void place_axis(robot_scene *s, int32_t axis) {
+  const robot_axis *axes = s->motion->robot->axes;
+  size_t n = 0;
+  for (; axis >= 0 && s->axis_placed[axis] != s->node; axis = axes[axis].parent) s->chain[n++].axis = axis;
+  while (n > 0) {
+    const int32_t next = s->chain[--n].axis;
+    motion_find_axis(s->motion, s->segment, s->a, s->b, s->rows, (size_t)next, s->axes);
+    s->axis_placed[next] = s->node;
+  }
+}
+
+static void place_part(robot_scene *s, int32_t index) {
+  part_state *state = &s->parts[index];
+  const robot_part *part = &s->motion->robot->parts[index];
+  place_axis(s, part->axis);
+  state->body.side.at = part->axis < 0 ? part->at : placement_compose(&s->axes[part->axis].frame, &part->at);
+  state->placed = s->node;
+}
+
+static inline part_state *place(robot_scene *s, int32_t index) {
+  part_state *state = &s->parts[index];
+  if (state->placed != s->node) place_part(s, index);
+  return state;
+}
+
+const robot_body *robot_scene_moving(robot_scene *s, const robot_pair *pair) {
+  const robot_body *body = &place(s, pair->moving)->body;
+  return pair->element[0] < 0 ? body : robot_element_make(body, pair->element[0], &s->element[0]);
+}
+
+const robot_body *robot_scene_standing(robot_scene *s, const robot_pair *pair) {
+  const robot_body *body = s->self ? &place(s, pair->standing)->body : &s->obstacles[pair->standing];
+  return pair->element[1] < 0 ? body : robot_element_make(body, pair->element[1], &s->element[1]);
+}
+
+/* What the motion of a pair's moving side is seen from. */
+static int32_t seen_from_axis(const robot_scene *s, const robot_pair *pair) {
+  return s->self ? s->motion->robot->parts[pair->standing].axis : -1;
+}
+
+static void find_motion(robot_scene *s, const robot_pair *pair, const robot_body *body, chain_motion *m) {
+  const size_t n =
+      motion_chain(s->motion, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis, s->chain);
+  motion_of_part(s->axes, s->chain, n, body->side.at.p, body->radius + body->side.error, s->scratch, m);
+}
+
+/* How far a whole part travels, seen from the world; its ways are known then. */
+static double travel_of_part(robot_scene *s, int32_t index) {
+  part_state *state = place(s, index);
+  if (state->travelled == s->node) return state->travel;
+  const robot_body *body = &state->body;
+  const int32_t axis = s->motion->robot->parts[index].axis;
+  double *ways = s->ways ? s->ways + (size_t)index * s->n_ways : NULL;
+  state->travelled = s->node;
+  state->travel = motion_ways(s->motion, s->axes, axis, ways ? depth_of(s->motion->robot, axis) : 0, body->side.at.p,
+                              body->radius + body->side.error, ways);
+  return state->travel;
+}
+
+double robot_scene_way(robot_scene *s, const robot_pair *pair) {
+  const double way = travel_of_part(s, pair->moving);
+  if (!s->self) return way;
+  const double other = travel_of_part(s, pair->standing);
+  if (!s->ways) return way + other;
+  return s->ways[(size_t)pair->moving * s->n_ways + pair->shared] +
+         s->ways[(size_t)pair->standing * s->n_ways + pair->shared];
+}
+
+double robot_scene_travel(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
+  if (!s->self && pair->element[0] < 0) return travel_of_part(s, pair->moving);
+  return motion_travel(s->motion, s->axes, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis,
+                       moving->side.at.p, moving->radius + moving->side.error);
+}
+
+const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, const robot_body *moving,
+                                       chain_motion *own) {
+  if (s->self || pair->element[0] >= 0) {
+    find_motion(s, pair, moving, own);
+    return own;
+  }
+  part_state *state = &s->parts[pair->moving];
+  if (state->moved != s->node) find_motion(s, pair, moving, &state->motion);
+  state->moved = s->node;
+  return &state->motion;
+}
+
+/* ---- cheap distances ------------------------------------------------------------------------------------------------------ */
+
+/* Of a point from the box round a body, or from its halfspace. */
+static double from_box(const robot_body *body, vec3 point) {
+  const vec3 y = placement_turn_back(&body->side.at, vec_sub(point, body->side.at.p));
+  if (is_halfspace(body)) {
+    const double *h = body->side.shape->size;
+    return h[0] * y.x + h[1] * y.y + h[2] * y.z + h[3];
+  }
+  const vec3 z = vec_sub(y, body->middle);
+  const vec3 out = vec(greater(fabs(z.x) - body->half.x, 0.0), greater(fabs(z.y) - body->half.y, 0.0),
+                       greater(fabs(z.z) - body->half.z, 0.0));
+  return vec_norm(out);
+}
+
+double robot_scene_balls(const robot_body *moving, const robot_body *standing) {
+  if (is_halfspace(standing)) return -INFINITY;
+  const double between = vec_norm(vec_sub(moving->side.at.p, standing->side.at.p));
+  const double radii = moving->radius + standing->radius;
+  return between - radii - ROUND_UP * (moving->side.error + standing->side.error + 8.0 * ROUND_U * (between + radii));
+}
+
+double robot_scene_apart(const robot_body *moving, const robot_body *standing) {
+  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p);
+  double most = from_box(standing, moving->side.at.p) - standing->side.margin - moving->radius;
+  if (!is_halfspace(standing))
+    most = greater(most, from_box(moving, standing->side.at.p) - moving->side.margin - standing->radius);
+  const double sizes = vec_norm(apart) + moving->radius +
+                       (is_halfspace(standing) ? fabs(standing->side.shape->size[3]) : standing->radius);
+  return most - ROUND_UP * (moving->side.error + standing->side.error + 40.0 * ROUND_U * sizes);
+}
+
+vec3 robot_scene_guess(const robot_body *moving, const robot_body *standing) {
+  if (is_halfspace(standing)) return vec(0, 0, 0);
+  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p), half = standing->half;
+  const vec3 y = vec_sub(placement_turn_back(&standing->side.at, apart), standing->middle);
+  const vec3 out = vec(copysign(greater(fabs(y.x) - half.x, 0.0), y.x), copysign(greater(fabs(y.y) - half.y, 0.0), y.y),
+                       copysign(greater(fabs(y.z) - half.z, 0.0), y.z));
+  const double length = vec_norm(out);
+  return length > 0.0 ? vec_scale(1.0 / length, out) : vec(0, 0, 0);
+}
+
+double robot_scene_height(const robot_body *standing, vec3 normal) {
+  if (!is_halfspace(standing)) return bound_height(&standing->side, normal);
+  return standing->side.margin - standing->side.shape->size[3];
+}
+
+/* ---- the distance --------------------------------------------------------------------------------------------------------- */
+
+static void measure_halfspace(const robot_body *moving, const robot_body *standing, robot_gap *gap) {
+  const double *h = standing->side.shape->size;
+  const vec3 n = placement_turn(&standing->side.at, vec(h[0], h[1], h[2]));
+  vec3 at;
+  const convex *shape = moving->side.shape;
+  const double low = -shape->ops->support(shape, placement_turn_back(&moving->side.at, vec_neg(n)), NULL, &at);
+  const double along = vec_dot(n, vec_sub(moving->side.at.p, standing->side.at.p));
+  const double distance = along + h[3] + low - moving->side.margin - standing->side.margin;
+  const double sizes =
+      vec_norm(vec_sub(moving->side.at.p, standing->side.at.p)) + fabs(h[3]) + moving->radius + standing->side.margin;
+  const double rounding =
+      ROUND_UP * (moving->side.error + standing->side.error + 40.0 * ROUND_U * sizes + 2.0 * shape->slack);
+  const vec3 lowest = vec_axpy(placement_apply(&moving->side.at, at), -moving->side.margin, n);
+  *gap = (robot_gap){.lower = distance - rounding,
+                     .upper = distance + rounding,
+                     .slack = rounding,
+                     .on_moving = lowest,
+                     .on_standing = distance > 0.0 ? vec_axpy(lowest, -distance, n) : lowest,
+                     .normal = n,
+                     .fault = isnan(distance)};
+}
+
+/* What moves, in the frame of what stands. */
+static pair_placement seen_from(const robot_body *standing, const robot_body *moving) {
+  pair_placement seen = {.error = moving->side.error + standing->side.error};
+  for (int i = 0; i < 3; i++) {
+    const double *r = moving->side.at.r;
+    const vec3 column = placement_turn_back(&standing->side.at, vec(r[i], r[3 + i], r[6 + i]));
+    seen.r[i] = column.x, seen.r[3 + i] = column.y, seen.r[6 + i] = column.z;
+  }
+  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p);
+  seen.t = placement_turn_back(&standing->side.at, apart);
+  seen.error += ROUND_UP * ROUND_U * ROUND_ROTATION * (vec_norm(apart) + moving->radius);
+  return seen;
+}
+
+void robot_scene_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy,
+                         robot_gap *gap) {
+  if (is_halfspace(standing)) {
+    measure_halfspace(moving, standing, gap);
+    return;
+  }
+  const pair_placement seen = seen_from(standing, moving);
+  const pair_goal goal = {.epsilon = accuracy.epsilon,
+                          .floor = accuracy.floor,
+                          .fraction = accuracy.fraction,
+                          .start = vec_neg(accuracy.start),
+                          .max_steps = GAP_STEPS,
+                          .wants_feature = true};
+  pair_answer answer;
+  pair_separate(standing->side.shape, standing->side.margin, moving->side.shape, moving->side.margin, &seen, &goal,
+                &answer);
+  *gap = (robot_gap){.fault = answer.fault, .lower = answer.lower, .upper = answer.upper, .slack = answer.rounding};
+  if (answer.fault) return;
+  const bool apart = answer.upper > 0.0;
+  gap->on_standing = placement_apply(&standing->side.at, apart ? answer.on_a : answer.common);
+  gap->on_moving = placement_apply(&standing->side.at, apart ? answer.on_b : answer.common);
+  gap->normal = vec_neg(placement_turn(&standing->side.at, answer.normal));
+  if (!apart) return;
+  if (!answer.feature.flat) {
+    for (int i = 0; i < 6; i++) gap->hessian[i] = answer.feature.hessian[i];
+    return;
+  }
+  gap->n = answer.feature.n;
+  for (int i = 0; i < gap->n && i < 3; i++) {
+    gap->on_edge[i] = placement_apply(&moving->side.at, answer.feature.b[i]);
+    gap->across[i] = vec_neg(placement_turn(&standing->side.at, answer.feature.w[i]));
+  }
+}
+
+/* The direction from 0 to the flat through the points, towards `like`; (0,0,0) where there is none. */
+static vec3 direction_of(const vec3 *w, int n, vec3 like) {
+  vec3 v = w[0];
+  if (n == 2) {
+    const vec3 e = vec_sub(w[1], w[0]);
+    v = vec_axpy(v, -vec_dot(v, e) / vec_norm2(e), e);
+  } else if (n == 3) {
+    v = vec_cross(vec_sub(w[1], w[0]), vec_sub(w[2], w[0]));
+  }
+  const double length = vec_norm(v);
+  if (!(length > 0.0)) return vec(0, 0, 0);
+  return vec_scale((vec_dot(v, like) < 0.0 ? -1.0 : 1.0) / length, v);
+}
+
+static vec3 orthogonal_part(vec3 drift, vec3 normal) {
+  return vec_finite(drift) ? vec_axpy(drift, -vec_dot(drift, normal), normal) : vec(0, 0, 0);
+}
+
+/* As if what moves were only shifted, as fast as its nearest point moves. */
+static vec3 drift_of_curved(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
+                            const chain_motion *motion) {
+  const vec3 from = vec_sub(gap->on_moving, moving->side.at.p);
+  const vec3 v = placement_turn_back(&standing->side.at, vec_add(motion->v, vec_cross(motion->omega, from)));
+  const double *h = gap->hessian;
+  const vec3 turned = vec(h[0] * v.x + h[1] * v.y + h[2] * v.z, h[1] * v.x + h[3] * v.y + h[4] * v.z,
+                          h[2] * v.x + h[4] * v.y + h[5] * v.z);
+  return orthogonal_part(placement_turn(&standing->side.at, turned), gap->normal);
+}
+
+/* By a difference quotient: any drift is allowed, this one is near the best. */
+vec3 robot_scene_drift(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
+                       const chain_motion *motion) {
+  static const double STEP = 1e-5;
+  vec3 n[2];
+  if (gap->n < 1) return drift_of_curved(gap, moving, standing, motion);
+  for (int k = 0; k < 2; k++) {
+    vec3 w[3];
+    for (int i = 0; i < gap->n; i++) {
+      const vec3 from = vec_sub(gap->on_edge[i], moving->side.at.p);
+      const vec3 velocity = vec_add(motion->v, vec_cross(motion->omega, from));
+      w[i] = vec_axpy(gap->across[i], k == 0 ? -STEP : STEP, velocity);
+    }
+    n[k] = direction_of(w, gap->n, gap->normal);
+  }
+  return orthogonal_part(vec_scale(0.5 / STEP, vec_sub(n[1], n[0])), gap->normal);
+}

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A question about a robot, made ready: what stands, the pairs, and where everything is over a node. */
+#ifndef CPROX_ROBOT_QUERY_PAIR_STATE_H
+#define CPROX_ROBOT_QUERY_PAIR_STATE_H
+
+#include "kinematics/bound.h"
+#include "problem/candidates.h"
+#include "robot_query/element.h"
+
+/* A pair of a part of the robot that moves and what it is held against. */
+typedef struct robot_pair {
+  int32_t moving;     /* which part of the robot */
+  int32_t standing;   /* which obstacle, or in a question about the robot itself which part */
+  uint32_t shared;    /* of the robot itself: so many axes are above both sides */
+  int32_t element[2]; /* of what the moving and the standing side are made of: -1: all of it, by its convex shape */
+  /* the last separating direction, from what stands to what moves, in the frame of what stands, where it was found, and how fast
+   * it turned there, by u of the segment */
+  vec3 normal, drift;
+  size_t segment;
+  double u;
+  bool normal_known;
+} robot_pair;
+
+/* A part over the node at hand. */
+typedef struct part_state {
+  uint32_t placed, travelled, moved; /* the node for which `body.side.at`, `travel` and `motion` were found */
+  robot_body body;
+  double travel;       /* that of the motion */
+  chain_motion motion; /* seen from the world */
+} part_state;
+
+typedef struct robot_scene {
+  const question *q;
+  const cprox_motion *motion;
+  bool self;
+  robot_body *obstacles;
+  part_state *parts;
+  axis_state *axes;      /* those above the parts that were asked for on the present node, */
+  uint32_t *axis_placed; /* which have its number here */
+  double *rows, *scratch;
+  double *
+      ways; /* of each part over the node at hand, as motion_ways() has them, so many a part; NULL where those would be too many */
+  size_t n_ways;
+  chain_axis *chain;
+  robot_pair *pairs;
+  size_t n_pairs, n_obstacles;
+  struct crowd_slot *crowd_table; /* which targets of the set have obstacles and pairs (robot_query/cull.c) */
+  size_t crowd_room, crowd_count;
+  robot_element element[2]; /* those of the pair that was placed last: moving, standing */
+  uint32_t node;            /* counts the nodes, so that states know whether they are of the present one */
+  size_t segment;
+  double a, b;
+} robot_scene;
+
+/* Makes the scene of targets first … last - 1 ready; false where memory is out. Of a set, only those without a box; the rest come as
+ * they are needed. */
+bool robot_scene_begin(robot_scene *scene, const question *q, size_t first, size_t last);
+
+/* Whether the robot's part is asked about at all. */
+bool robot_scene_asks(const robot_scene *scene, size_t part);
+
+/* The parts of a target are obstacles; adds them: the number of the first one, or -1 where memory is out. It may move all obstacles in
+ * memory. */
+size_t robot_scene_parts_of(const cprox_target *target);
+int32_t robot_scene_add_obstacles(robot_scene *scene, size_t target);
+
+/* A new node. */
+void robot_scene_enter(robot_scene *scene, size_t segment, double a, double b);
+
+/* One more pair; its number, or -1 where memory is out. It may move all pairs in memory. */
+int32_t robot_scene_add_pair(robot_scene *scene, const robot_pair *pair);
+
+/* The two sides of a pair in the middle of the node, how far the one travels as the other sees it, and how it moves. Of pairs of
+ * elements, only those of one pair at a time. */
+const robot_body *robot_scene_moving(robot_scene *scene, const robot_pair *pair);
+const robot_body *robot_scene_standing(robot_scene *scene, const robot_pair *pair);
+/* robot_scene_way(): how far both sides travel together, as the axis above both sees it: quicker. */
+double robot_scene_way(robot_scene *scene, const robot_pair *pair);
+double robot_scene_travel(robot_scene *scene, const robot_pair *pair, const robot_body *moving);
+const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, const robot_body *moving,
+                                       chain_motion *own);
+
+/* A lower bound on the distance of two parts by their balls and boxes, and a quicker one by their balls; halfspaces have none. */
+double robot_scene_apart(const robot_body *moving, const robot_body *standing);
+double robot_scene_balls(const robot_body *moving, const robot_body *standing);
+
+/* The distance in the middle of the node. */
+typedef struct robot_gap {
+  double lower, upper, slack;
+  vec3 on_moving, on_standing; /* world */
+  vec3 normal;                 /* world, unit, from standing to moving; (0,0,0) where there is none */
+  /* Polyhedra, world: points of the moving side, and the ways to them from points of the standing one, n of them: the feature that
+   * the normal stands on. Curved shapes, n = 0: the derivative of the normal by a shift of the moving side, in the standing frame. */
+  vec3 on_edge[3], across[3];
+  int n;
+  double hessian[6];
+  bool fault;
+} robot_gap;
+
+/* How exactly: within epsilon, or within `fraction` of what the lower end is above `floor`. And where to begin. */
+typedef struct robot_accuracy {
+  double epsilon, floor, fraction;
+  vec3 start; /* standing frame, unit: near the normal; (0,0,0): nothing is known */
+} robot_accuracy;
+
+void robot_scene_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy, robot_gap *gap);
+
+/* From the box round what stands to the centre of what moves: a direction that parts most pairs, for nothing. Standing frame, unit;
+ * (0,0,0) where the centre is in the box. */
+vec3 robot_scene_guess(const robot_body *moving, const robot_body *standing);
+
+/* How fast the normal turns where what moves does so as `motion` says, by u of the node; orthogonal to it. */
+vec3 robot_scene_drift(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
+                       const chain_motion *motion);
+
+/* Along a normal of the world: the height of what stands, as bound_height(), exact for halfspaces. */
+double robot_scene_height(const robot_body *standing, vec3 normal);
+
+#endif

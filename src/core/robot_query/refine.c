@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "robot_query/refine.h"
+
+#include <math.h>
+
+#include "base/rounding.h"
+#include "base/workspace.h"
+
+/* More than so many elements near each other: the node is too long, halves will tell more. */
+enum { MOST_FOUND = 256 };
+
+enum { MOVING, STANDING };
+
+/* Through one side's tree, with the other side as what its elements are near to. */
+typedef struct descent {
+  tree_seeker seeker; /* first: the seeker that a visitor gets is the descent */
+  robot_climb *climb;
+  const robot_body *side[2];
+  int32_t code[2];
+  int through;      /* whose tree it is */
+  double allowance; /* what the tree's own bounds may be off by, and the elements' margin */
+} descent;
+
+static void give_up(robot_climb *c) {
+  c->reach = -INFINITY;
+}
+
+static void fail(robot_climb *c) {
+  c->fault = true;
+  give_up(c);
+}
+
+static void keep(robot_climb *c, const int32_t code[2], const robot_gap *gap) {
+  const robot_found found = {.element = {code[0], code[1]}, .gap = *gap};
+  if (gap->upper < c->nearest.gap.upper) c->nearest = found;
+  c->reach = fmin(c->reach, fmax(gap->upper, 0.0) + c->room);
+  if (!c->listing) return;
+  if (c->n_found == MOST_FOUND) {
+    c->too_many = true;
+    give_up(c);
+    return;
+  }
+  c->found[c->n_found++] = found;
+}
+
+/* Two convex sides: elements, or what has none. */
+static void measure(robot_climb *c, const robot_body *const side[2], const int32_t code[2]) {
+  if (robot_scene_apart(side[MOVING], side[STANDING]) >= c->reach) return;
+  robot_gap gap;
+  robot_scene_measure(side[MOVING], side[STANDING], (robot_accuracy){.epsilon = c->accuracy}, &gap);
+  c->gaps++;
+  if (gap.fault)
+    fail(c);
+  else if (gap.lower < c->reach)
+    keep(c, code, &gap);
+}
+
+static void descend(robot_climb *c, const robot_body *const side[2], const int32_t code[2], int through);
+
+/* One element and the convex shape of the other side: where these are within reach, the other side's tree. Their own plane tells most of
+ * its elements apart. */
+static void descend_under(robot_climb *c, const robot_body *const side[2], const int32_t code[2], int through) {
+  if (robot_scene_apart(side[MOVING], side[STANDING]) >= c->reach) return;
+  robot_gap gap;
+  robot_scene_measure(side[MOVING], side[STANDING], (robot_accuracy){.epsilon = c->accuracy}, &gap);
+  c->gaps++;
+  if (gap.fault) {
+    fail(c);
+    return;
+  }
+  if (gap.lower >= c->reach) return;
+  const vec3 normal = c->normal;
+  c->normal = gap.upper > 0.0 ? gap.normal : vec(0, 0, 0);
+  descend(c, side, code, through);
+  c->normal = normal;
+}
+
+/* One element: measured, or what it may be near to in the other side's tree. */
+static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
+  (void)element;
+  descent *d = (descent *)(void *)seeker;
+  robot_climb *c = d->climb;
+  int32_t code[2] = {d->code[0], d->code[1]};
+  code[d->through] = robot_element_code(at);
+  const robot_body *side[2] = {d->side[0], d->side[1]};
+  side[d->through] = robot_element_make(side[d->through], code[d->through], &c->scene->element[d->through]);
+  const int other = 1 - d->through;
+  if (side[other]->tree)
+    descend_under(c, side, code, other);
+  else
+    measure(c, side, code);
+  seeker->bound = c->reach + d->allowance;
+}
+
+/* The other side, seen from the tree: its ball, and behind which plane it lies. */
+static void descend(robot_climb *c, const robot_body *const side[2], const int32_t code[2], int through) {
+  const robot_body *own = side[through], *shape = side[1 - through];
+  descent d = {.climb = c, .side = {side[0], side[1]}, .code = {code[0], code[1]}, .through = through};
+  const vec3 apart = vec_sub(shape->side.at.p, own->side.at.p);
+  d.seeker.visit = visit;
+  d.seeker.centre = vec_sub(placement_turn_back(&own->side.at, apart), own->tree_at);
+  d.seeker.radius = shape->radius;
+
+  /* of a halfspace, what is within reach of the part; its plane says the rest */
+  const bool endless = shape->side.shape->ops->kind == CPROX_HALFSPACE;
+  if (endless) d.seeker.centre = vec_neg(own->tree_at), d.seeker.radius = own->radius + c->reach;
+  if (vec_norm2(c->normal) > 0.0) {
+    const vec3 n = through == MOVING ? c->normal : vec_neg(c->normal); /* from the other side to the tree */
+    const double high = vec_dot(n, apart) + (endless ? robot_scene_height(shape, n) : bound_height(&shape->side, n));
+    d.seeker.known = true;
+    d.seeker.normal = vec_neg(placement_turn_back(&own->side.at, n));
+    d.seeker.least = -high - vec_dot(d.seeker.normal, own->tree_at);
+  }
+
+  /* lengths that enter: where the sides are, how large they are */
+  const double sizes = vec_norm(apart) + vec_norm(own->tree_at) + own->tree->scale + own->radius + d.seeker.radius +
+                       shape->side.shape->scale + fabs(c->reach);
+  d.allowance = own->tree_margin + own->side.error + shape->side.error + shape->side.shape->slack +
+                ROUND_UP * ROUND_U * (TREE_ROUND + 64.0) * sizes;
+  d.seeker.bound = c->reach + d.allowance;
+  tree_seek(own->tree, &d.seeker);
+}
+
+/* The standing side's elements first, where both have some: each of them is small. */
+void robot_climb_run(robot_climb *c) {
+  robot_scene *s = c->scene;
+  c->n_found = 0, c->gaps = 0;
+  c->too_many = c->fault = c->no_memory = false;
+  c->nearest.gap.upper = INFINITY;
+  if (c->listing) {
+    c->found = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_FOUND, MOST_FOUND * sizeof *c->found);
+    c->no_memory = c->found == NULL;
+    if (c->no_memory) return;
+  }
+  const robot_pair *pair = &s->pairs[c->pair];
+  const robot_body *const side[2] = {robot_scene_moving(s, pair), robot_scene_standing(s, pair)};
+  const int32_t whole[2] = {-1, -1};
+  descend(c, side, whole, side[STANDING]->tree ? STANDING : MOVING);
+  c->rest = c->reach;
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* From the hulls of a pair down to the elements that they are made of, in the middle of the node. doc/robot-bounds.md, Meshes */
+#ifndef CPROX_ROBOT_QUERY_REFINE_H
+#define CPROX_ROBOT_QUERY_REFINE_H
+
+#include "robot_query/pair_state.h"
+
+/* Two elements (-1: the side is convex) that are near each other. */
+typedef struct robot_found {
+  int32_t element[2];
+  robot_gap gap;
+} robot_found;
+
+typedef struct robot_climb {
+  robot_scene *scene;
+  int32_t pair; /* of whole sides, of which one at least is made of elements */
+  double
+      reach; /* pairs of elements that are farther are of no interest; finite. It falls to the nearest one's distance, */
+  double room;     /* and this more */
+  double accuracy; /* distances are measured so well */
+  vec3 normal;     /* world, from the standing hull to the moving one; (0,0,0) where they are not apart */
+  bool listing;    /* what is found is wanted, not the nearest alone */
+
+  /* what was found */
+  robot_found *found; /* in the workspace */
+  size_t n_found;
+  robot_found nearest; /* its gap's upper is infinite where there is none */
+  double rest; /* in the middle of the node every pair of elements that was not found is at least so far apart */
+  bool too_many, fault, no_memory;
+  uint32_t gaps;
+} robot_climb;
+
+void robot_climb_run(robot_climb *climb);
+
+#endif

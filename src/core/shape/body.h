@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The one handle over every set, and the parts it is made of. */
+#ifndef CPROX_SHAPE_BODY_H
+#define CPROX_SHAPE_BODY_H
+
+#include "base/frame.h"
+#include "convex/convex.h"
+#include "curve_proximity/cprox/body.h"
+
+typedef struct body_part {
+  const cprox_body *body; /* convex */
+  cprox_pose pose;        /* in the frame of the union */
+} body_part;
+
+struct cprox_body {
+  cprox_body_kind kind;
+  convex shape; /* convex kinds: about `centre` */
+  vec3 centre;  /* where the shape's origin stands in the body's frame */
+  vec3 ball_centre;
+  double ball_radius;
+  body_part *parts; /* compounds */
+  size_t n_parts;
+  struct tree
+      *tree; /* meshes, points, boxes: the elements, about `centre`; the shape has the margin and the scale alone */
+  struct winding *winding;       /* solid meshes: what tells inside from outside */
+  const cprox_body *hull, *mesh; /* ladders: the two models, */
+  double excess;                 /* and how far the mesh may stick out of the hull */
+};
+
+#endif

@@ -1,0 +1,11 @@
+# The files of this room. A new file is one line here.
+target_sources(cprox_objects PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/body.c
+  ${CMAKE_CURRENT_LIST_DIR}/boxes.c
+  ${CMAKE_CURRENT_LIST_DIR}/compound.c
+  ${CMAKE_CURRENT_LIST_DIR}/elements.c
+  ${CMAKE_CURRENT_LIST_DIR}/implicit_body.c
+  ${CMAKE_CURRENT_LIST_DIR}/level_of_detail.c
+  ${CMAKE_CURRENT_LIST_DIR}/mesh.c
+  ${CMAKE_CURRENT_LIST_DIR}/points.c
+)

@@ -1,0 +1,346 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Danskin: where the minimiser is one alone, the derivatives of the minimum are those of the distance there. */
+#include "curve_proximity/cprox/gradient.h"
+
+#include "base/workspace.h"
+#include "curve_proximity/cprox/clearance.h"
+#include "curve_query/search_pair.h"
+#include "problem/level_of_detail.h"
+#include "problem/minkowski.h"
+#include "problem/validate.h"
+#include "shape/body.h"
+#include "solve/solve.h"
+
+/* How near another minimiser must not come, in lengths of the curve, unless epsilon is less still. */
+static const double APART = 1e-9;
+
+/* The neighbourhoods of the minimiser that are tried, as fractions of the range, until everything beyond is farther. */
+static const double NEIGHBOURHOOD[] = {1e-4, 1e-3, 1e-2, 3e-2};
+
+static cprox_status invalid(cprox_workspace *workspace, cprox_gradient *g, const char *why) {
+  g->valid = false;
+  workspace_fail(workspace, CPROX_OK, "no gradient: %s", why);
+  return CPROX_OK;
+}
+
+/* ---- the minimiser along the curve ----------------------------------------------------------------------------------------- */
+
+/* The distance at t, and how fast it changes along the curve. */
+typedef struct look {
+  curve_sight sight;
+  double slope;
+} look;
+
+static cprox_status look_at(curve_convex *o, double t, bool from_left, look *seen) {
+  const cprox_curve *c = o->side.curve;
+  size_t piece = 0;
+  while (piece + 1 < c->n_pieces && (from_left ? c->breaks[piece + 1] < t : c->breaks[piece + 1] <= t)) piece++;
+  const double length = c->breaks[piece + 1] - c->breaks[piece];
+  const double s = fmin(fmax((t - c->breaks[piece]) / length, 0.0), 1.0);
+  curve_side_load(&o->side, piece);
+  const double *x = points_pool_at(&o->pool, o->side.root_slot), *y = x + c->degree + 1, *z = y + c->degree + 1;
+  vec3 at, velocity;
+  curve_bezier_evaluate(x, y, z, 1, c->degree, c->binomial, s, &at, &velocity, NULL);
+  search_best bound;
+  const cprox_status status =
+      curve_convex_measure(o, piece, s, at, curve_side_point_error(&o->side), &seen->sight, &bound);
+  seen->slope = vec_dot(seen->sight.normal, velocity) / length;
+  return status;
+}
+
+/* Between left, where the distance falls, and right, where it grows: where it does neither (Illinois). */
+static cprox_status find_root(curve_convex *o, double left, double right, look *a, look *b, double *t) {
+  enum { MOST_STEPS = 100 };
+  double fa = a->slope, fb = b->slope;
+  int side = 0;
+  *t = left;
+  for (int i = 0; i < MOST_STEPS; i++) {
+    double next = i % 4 == 3 ? 0.5 * (left + right) : (left * fb - right * fa) / (fb - fa);
+    if (!(next > left && next < right)) next = 0.5 * (left + right);
+    if (!(next > left && next < right)) return CPROX_OK;
+    *t = next;
+    look seen;
+    const cprox_status status = look_at(o, next, false, &seen);
+    if (status < 0) return status;
+    if (seen.slope == 0.0) return CPROX_OK;
+    if (seen.slope < 0.0) {
+      left = next, fa = seen.slope;
+      if (side < 0) fb *= 0.5;
+      side = -1;
+    } else {
+      right = next, fb = seen.slope;
+      if (side > 0) fa *= 0.5;
+      side = 1;
+    }
+  }
+  return CPROX_OK;
+}
+
+/* The minimiser near t, to the last digits; *end: -1 or 1 where it is an end of the range. */
+static cprox_status refine(curve_convex *o, double t0, double t1, double *t, int *end) {
+  enum { MOST_STEPS = 8 };
+  const double range = t1 - t0;
+  *end = 0;
+  double step = 1e-8 * range;
+  for (int i = 0; i < MOST_STEPS && step < 0.05 * range; i++, step *= 8.0) {
+    const double left = fmax(*t - step, t0), right = fmin(*t + step, t1);
+    look a = {.slope = 0.0}, b = {.slope = 0.0};
+    cprox_status status = look_at(o, left, true, &a);
+    if (status == CPROX_OK) status = look_at(o, right, false, &b);
+    if (status < 0) return status;
+    if (left == t0 && a.slope > 0.0) {
+      *t = t0, *end = -1;
+      return CPROX_OK;
+    }
+    if (right == t1 && b.slope < 0.0) {
+      *t = t1, *end = 1;
+      return CPROX_OK;
+    }
+    if (a.slope < 0.0 && b.slope > 0.0) return find_root(o, left, right, &a, &b, t);
+  }
+  return CPROX_OK; /* as it was: the checks that follow will find it flat */
+}
+
+/* ---- the minimiser on two curves ------------------------------------------------------------------------------------------- */
+
+typedef struct curve_jet {
+  vec3 x, d1, d2;
+} curve_jet;
+
+static void jet_of(const cprox_curve *curve, const frame *f, double t, cprox_workspace *workspace, curve_jet *j) {
+  cprox_curve_evaluate(curve, t, workspace, &j->x, &j->d1, &j->d2);
+  if (!f) return;
+  j->x = frame_to_world(f, j->x);
+  j->d1 = frame_turn_to_world(f, j->d1), j->d2 = frame_turn_to_world(f, j->d2);
+}
+
+static double clamp(double x, double least, double most) {
+  return x < least ? least : x > most ? most : x;
+}
+
+/* Newton on |psi(t) - phi(u)|²/2 from a minimiser that is nearly one; parameters at an end stay there. */
+static void refine_pair(const cprox_mover *mover, const cprox_target *target, cprox_workspace *workspace, double *t,
+                        double *u) {
+  enum { MOST_STEPS = 12 };
+  const frame f = frame_create(&target->pose, vec(0, 0, 0));
+  double t0, t1, u0, u1;
+  cprox_curve_domain(mover->curve, &t0, &t1);
+  cprox_curve_domain(target->curve, &u0, &u1);
+  for (int i = 0; i < MOST_STEPS; i++) {
+    curve_jet x, y;
+    jet_of(mover->curve, NULL, *t, workspace, &x);
+    jet_of(target->curve, &f, *u, workspace, &y);
+    const vec3 w = vec_sub(x.x, y.x);
+    const double gt = vec_dot(w, x.d1), gu = -vec_dot(w, y.d1), cross = -vec_dot(x.d1, y.d1);
+    double htt = vec_norm2(x.d1) + vec_dot(w, x.d2), huu = vec_norm2(y.d1) - vec_dot(w, y.d2);
+    const bool hold_t = (*t <= t0 && gt > 0.0) || (*t >= t1 && gt < 0.0);
+    const bool hold_u = (*u <= u0 && gu > 0.0) || (*u >= u1 && gu < 0.0);
+    const double det = htt * huu - cross * cross;
+    double dt = 0.0, du = 0.0;
+    if (!hold_t && !hold_u && det > 0.0)
+      dt = (cross * gu - huu * gt) / det, du = (cross * gt - htt * gu) / det;
+    else if (!hold_t && hold_u && htt > 0.0)
+      dt = -gt / htt;
+    else if (!hold_u && hold_t && huu > 0.0)
+      du = -gu / huu;
+    const double next_t = clamp(*t + dt, t0, t1), next_u = clamp(*u + du, u0, u1);
+    const bool still = next_t == *t && next_u == *u;
+    *t = next_t, *u = next_u;
+    if (still) return;
+  }
+}
+
+/* ---- is it the only one? ------------------------------------------------------------------------------------------------------ */
+
+/* Whether the mover is farther than `distance` wherever it is not near t. */
+static cprox_status is_alone(cprox_mover mover, const cprox_target *target, const cprox_options *options, double t,
+                             double distance, cprox_workspace *workspace, bool *alone) {
+  double t0, t1;
+  cprox_curve_domain(mover.curve, &t0, &t1);
+  *alone = false;
+  for (size_t k = 0; k < sizeof NEIGHBOURHOOD / sizeof *NEIGHBOURHOOD && !*alone; k++) {
+    const double near = NEIGHBOURHOOD[k] * (t1 - t0);
+    const double breaks[4] = {t0, t - near, t + near, t1};
+    *alone = true;
+    for (int i = 0; i < 4 && *alone; i += 2) {
+      if (!(breaks[i] < breaks[i + 1])) continue;
+      cprox_stretch stretch;
+      const cprox_status status = cprox_profile(mover, target, 1, &breaks[i], 1, options, workspace, &stretch);
+      if (status < 0) return status;
+      *alone = stretch.lower > distance + options->epsilon;
+    }
+  }
+  return CPROX_OK;
+}
+
+/* What stands when the mover is stopped where psi is `at`, seen by a target curve that moves instead. */
+static cprox_target stopped(const cprox_mover *mover, const cprox_target *target, vec3 at) {
+  const frame f = frame_create(&target->pose, vec(0, 0, 0));
+  const cprox_quat q = target->pose.orientation;
+  double unused = 0.0;
+  return (cprox_target){.body = mover->body ? mover->body : &carried_point,
+                        .pose = {.position = frame_to_local(&f, at, &unused), .orientation = {q.w, -q.x, -q.y, -q.z}},
+                        .padding = mover->radius};
+}
+
+/* Whether no other pair of parts is as near at the minimiser. */
+static cprox_status part_is_alone(const question *q, const candidate *best, double t, double distance, bool *alone) {
+  const cprox_body *standing = q->targets[0].body, *carried = q->mover.body;
+  const size_t parts = standing && standing->kind == CPROX_COMPOUND ? standing->n_parts : 1;
+  const size_t own = carried && carried->kind == CPROX_COMPOUND ? carried->n_parts : 1;
+  *alone = true;
+  for (size_t i = 0; i < parts * own && *alone; i++) {
+    const candidate c = {.part = (int32_t)(i / own), .mover_part = (int32_t)(i % own)};
+    if (c.part == best->part && c.mover_part == best->mover_part) continue;
+    curve_convex o;
+    if (!candidate_begin_convex(q, &c, &o)) return CPROX_MEMORY;
+    o.is_signed = q->is_signed;
+    o.epsilon = q->options.epsilon;
+    look seen;
+    const cprox_status status = look_at(&o, t, false, &seen);
+    if (status < 0) return status;
+    *alone = seen.sight.near.distance - o.offset > distance + 2.0 * q->options.epsilon;
+  }
+  return CPROX_OK;
+}
+
+/* Inside, the way out may change from one face to another: then the normal jumps nearby. */
+static cprox_status way_out_is_alone(curve_convex *o, const look *here, bool *alone) {
+  *alone = true;
+  if (here->sight.near.distance > 0.0) return CPROX_OK;
+  const double step = 1e-6 * (o->shape->scale + o->shape->margin), jump = 0.05;
+  for (int i = 0; i < 6 && *alone; i++) {
+    const double d = i % 2 ? step : -step;
+    const vec3 y = vec_add(here->sight.y, vec(i / 2 == 0 ? d : 0.0, i / 2 == 1 ? d : 0.0, i / 2 == 2 ? d : 0.0));
+    curve_sight sight;
+    search_best bound;
+    const cprox_status status = curve_convex_measure(o, here->sight.piece, here->sight.s, y, 0.0, &sight, &bound);
+    if (status < 0) return status;
+    *alone = vec_norm(vec_sub(sight.normal, here->sight.normal)) < jump;
+  }
+  return CPROX_OK;
+}
+
+/* ---- the gradient ------------------------------------------------------------------------------------------------------------- */
+
+static void fill(const cprox_target *target, vec3 n, vec3 on_target, cprox_gradient *g) {
+  const frame f = frame_create(&target->pose, vec(0, 0, 0));
+  g->mover = n;
+  g->position = vec_neg(n);
+  g->rotation = vec_cross(n, vec_sub(on_target, target->pose.position));
+  g->target_point = target->curve ? frame_turn_to_local(&f, vec_neg(n)) : vec(0, 0, 0);
+  g->radius = g->padding = -1.0;
+}
+
+static cprox_status gradient_of_body(const question *q, const candidate *c, cprox_gradient *g) {
+  curve_convex o;
+  if (!candidate_begin_convex(q, c, &o)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a gradient");
+  o.is_signed = q->is_signed;
+  o.epsilon = 1e-3 * q->options.epsilon;
+  int end;
+  cprox_status status = refine(&o, q->t0, q->t1, &g->t, &end);
+  look here = {.slope = 0.0};
+  if (status == CPROX_OK) status = look_at(&o, g->t, end > 0, &here);
+  if (status < 0) return status;
+  const double distance = here.sight.near.distance - o.offset;
+  if (end < 0) g->t0 = here.slope;
+  if (end > 0) g->t1 = here.slope;
+
+  /* the points, as the search would report them */
+  curve_convex_adopt(&o, &here.sight, (search_best){.upper = distance});
+  cprox_result r = {.t_target = NAN};
+  status = candidate_report_convex(q, c, &o, &r);
+  if (status < 0) return status;
+  fill(&q->targets[0], r.normal, r.on_target, g);
+  if (q->targets[0].on_clock) g->t_target = g->t;
+  if (vec_norm2(r.normal) == 0.0) return invalid(q->workspace, g, "there is no normal");
+  if (!q->is_signed && !(distance > 0.0)) return invalid(q->workspace, g, "the distance is 0");
+
+  bool alone = true;
+  status = way_out_is_alone(&o, &here, &alone);
+  if (status < 0) return status;
+  if (!alone) return invalid(q->workspace, g, "there is more than one way out");
+  status = part_is_alone(q, c, g->t, distance, &alone);
+  if (status < 0) return status;
+  if (!alone) return invalid(q->workspace, g, "two parts are equally near");
+  status = is_alone(q->mover, q->targets, &q->options, g->t, distance, q->workspace, &alone);
+  if (status < 0) return status;
+  if (!alone) return invalid(q->workspace, g, "the distance is as small elsewhere along the curve");
+  g->valid = true;
+  return CPROX_OK;
+}
+
+static cprox_status gradient_of_curve(const question *q, const cprox_result *result, cprox_gradient *g) {
+  const cprox_target *target = &q->targets[0];
+  if (!q->mover.body) refine_pair(&q->mover, target, q->workspace, &g->t, &g->t_target);
+  const frame f = frame_create(&target->pose, vec(0, 0, 0));
+  curve_jet x, y;
+  jet_of(q->mover.curve, NULL, g->t, q->workspace, &x);
+  jet_of(target->curve, &f, g->t_target, q->workspace, &y);
+  vec3 n = vec_sub(x.x, y.x);
+  double distance = vec_norm(n) - q->mover.radius - target->padding;
+  n = vec_norm(n) > 0.0 ? vec_scale(1.0 / vec_norm(n), n) : n;
+  if (q->mover.body) n = result->normal, distance = result->upper;
+  fill(target, n, y.x, g);
+  double t0, t1;
+  cprox_curve_domain(q->mover.curve, &t0, &t1);
+  if (g->t == t0) g->t0 = fmax(vec_dot(n, x.d1), 0.0);
+  if (g->t == t1) g->t1 = fmin(vec_dot(n, x.d1), 0.0);
+  if (vec_norm2(n) == 0.0) return invalid(q->workspace, g, "there is no normal");
+  if (!q->is_signed && !(distance > 0.0)) return invalid(q->workspace, g, "the distance is 0");
+
+  bool alone = true;
+  cprox_status status = is_alone(q->mover, target, &q->options, g->t, distance, q->workspace, &alone);
+  if (status < 0) return status;
+  if (!alone) return invalid(q->workspace, g, "the distance is as small elsewhere along the curve");
+  const cprox_target other = stopped(&q->mover, target, x.x);
+  const cprox_mover moved = cprox_tube_along(target->curve, target->padding);
+  status = is_alone(moved, &other, &q->options, g->t_target, distance, q->workspace, &alone);
+  if (status < 0) return status;
+  if (!alone) return invalid(q->workspace, g, "another point of the target's curve is as near");
+  g->valid = true;
+  return CPROX_OK;
+}
+
+cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, const cprox_options *options,
+                                     const cprox_result *result, cprox_workspace *workspace, cprox_gradient *gradient) {
+  question q = question_create(mover, &target, 1, -1.0, false, options, workspace);
+  workspace_clear(workspace);
+  if (mover.motion) return workspace_fail(workspace, CPROX_INVALID, "no gradient is known along a robot's motion");
+  const cprox_status checked = arguments_check_query(&mover, &target, 1, &q.options, workspace);
+  if (checked != CPROX_OK) return checked;
+  if (!result || !gradient)
+    return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", result ? "gradient" : "result");
+  const candidate c = {.part = result->target_part, .mover_part = result->mover_part};
+  if (result->target_index < 0 || !isfinite(result->upper))
+    return workspace_fail(workspace, CPROX_INVALID, "the result has no witness: ask for a distance");
+  const bool many = model_has_tree(target.body, q.options.max_rung);
+  if (mover.curve->arcs || (target.curve && target.curve->arcs) || many)
+    return workspace_fail(workspace, CPROX_INVALID, "no gradient is known for %s",
+                          many ? "meshes, points and boxes" : "a curve without derivatives");
+  question_ask_whole(&q);
+  if (!(q.t0 <= result->t && result->t <= q.t1))
+    return workspace_fail(workspace, CPROX_INVALID, "the result's t = %.17g is not on the mover's curve", result->t);
+  if (target.body && target.body->kind == CPROX_COMPOUND &&
+      !(result->target_part >= 0 && (size_t)result->target_part < target.body->n_parts))
+    return workspace_fail(workspace, CPROX_INVALID, "the result's target_part %d is no part of the target",
+                          result->target_part);
+
+  /* the whole curve is searched as narrowly as other minimisers are to be told apart */
+  q.is_signed = q.options.signed_distance;
+  q.options.certificate = NULL;
+  const curve_capsule *all = &mover.curve->whole;
+  const double length = vec_norm(vec_sub(all->b, all->a)) + 2.0 * all->radius;
+  q.options.epsilon = fmin(q.options.epsilon, APART * length);
+  q.options.relative_epsilon = 0.0;
+  cprox_gradient g = {.t = result->t, .t_target = NAN};
+  cprox_status status;
+  if (candidate_body(&q, &c)) {
+    status = gradient_of_body(&q, &c, &g);
+  } else {
+    g.t_target = result->t_target;
+    status = gradient_of_curve(&q, result, &g);
+  }
+  if (status == CPROX_OK) *gradient = g;
+  return status;
+}

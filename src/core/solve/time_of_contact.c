@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* First contact along the mover's parameter: never late. doc/first-contact.md derives it. */
+#include <math.h>
+
+#include "curve_query/contact_bvh.h"
+#include "curve_query/contact_convex.h"
+#include "curve_query/contact_curve.h"
+#include "curve_query/search_pair.h"
+#include "shape/body.h"
+#include "solve/solve.h"
+#include "solve/time_of_contact.h"
+
+static cprox_result nothing(void) {
+  return (cprox_result){.lower = INFINITY, .upper = INFINITY, .t = INFINITY, .t_target = NAN, .target_index = -1};
+}
+
+static search_goal goal_of(const question *q, double horizon) {
+  return (search_goal){.order = SEARCH_LEFT_TO_RIGHT,
+                       .limit = 0.0,
+                       .ceiling = INFINITY,
+                       .horizon = horizon,
+                       .epsilon = q->options.epsilon,
+                       .max_nodes = q->options.max_nodes,
+                       .stop = q->options.stop,
+                       .stop_user = q->options.stop_user};
+}
+
+/* ---- one candidate ---------------------------------------------------------------------------------------------------- */
+
+static cprox_status meet_convex(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                                first_contact *met) {
+  contact_convex state;
+  curve_convex *o = &state.base;
+  if (!candidate_begin_convex(q, c, o)) return CPROX_MEMORY;
+  contact_convex_begin(&state, q->options.epsilon);
+  const search_oracle oracle = contact_convex_oracle(&state);
+  cprox_status status = search_run(goal, &oracle, contact_convex_root(&state), q->workspace, found);
+  if (status < 0) return status;
+  cprox_status reported = candidate_report_convex(q, c, o, &met->near);
+  if (reported < 0) return reported;
+  met->near.upper = o->best_bound.upper;
+  const cprox_status proved = contact_convex_prove(&state);
+  if (proved < 0) return proved;
+  if (state.proven_bound.at < goal->horizon) {
+    o->best = state.proven;
+    reported = candidate_report_convex(q, c, o, &met->touch);
+    if (reported < 0) return reported;
+    met->touch.upper = state.proven_bound.upper;
+  }
+  met->probes = o->probes;
+  return status;
+}
+
+static cprox_status meet_curve(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                               first_contact *met) {
+  contact_curve state;
+  curve_curve *o = &state.base;
+  if (!candidate_begin_curve(q, c, o)) return CPROX_MEMORY;
+  contact_curve_begin(&state, q->options.epsilon);
+  const search_oracle oracle = contact_curve_oracle(&state);
+  const cprox_status status = search_run(goal, &oracle, contact_curve_root(&state), q->workspace, found);
+  if (status < 0) return status;
+  cprox_status reported = candidate_report_curve(q, c, o, &met->near);
+  if (reported < 0) return reported;
+  met->near.upper = o->best_bound.upper;
+  contact_curve_prove(&state);
+  if (state.proven_bound.at < goal->horizon) {
+    o->best = state.proven;
+    reported = candidate_report_curve(q, c, o, &met->touch);
+    if (reported < 0) return reported;
+    met->touch.upper = state.proven_bound.upper;
+  }
+  met->probes = o->probes;
+  return status;
+}
+
+static cprox_status meet_tree(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                              first_contact *met) {
+  contact_tree state;
+  curve_tree *o = &state.base;
+  search_node root;
+  if (!candidate_begin_tree(q, c, o)) return CPROX_MEMORY;
+  o->asked = *goal;
+  if (!contact_tree_begin(&state, &root)) return CPROX_MEMORY;
+  const search_oracle oracle = contact_tree_oracle(&state);
+  const cprox_status status = search_run(goal, &oracle, root, q->workspace, found);
+  if (status < 0) return status;
+  candidate_report_tree(q, c, o, &met->near);
+  met->near.upper = o->best_bound.upper;
+  contact_tree_prove(&state);
+  if (state.proven_bound.at < goal->horizon) {
+    o->best = state.proven;
+    candidate_report_tree(q, c, o, &met->touch);
+    met->touch.upper = state.proven_bound.upper;
+    met->touch.t = state.proven_bound.at;
+  }
+  met->probes = o->probes;
+  return status;
+}
+
+static cprox_status meet_any(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+                             first_contact *met) {
+  if (candidate_is_tree(q, c)) return meet_tree(q, c, goal, found, met);
+  return candidate_body(q, c) ? meet_convex(q, c, goal, found, met) : meet_curve(q, c, goal, found, met);
+}
+
+/* Contact is proven nowhere near the first place within epsilon; perhaps farther along. */
+static cprox_status prove_farther(const question *q, const candidate *c, first_contact *met) {
+  cprox_result r;
+  const cprox_status status = candidate_search(q, c, INFINITY, &r);
+  if (status < 0) return status;
+  met->nodes += r.nodes, met->probes += r.probes;
+  if (r.upper <= 0.0 && r.t >= met->free_until) met->touch = r;
+  return CPROX_OK;
+}
+
+static cprox_status meet_model(const question *q, const candidate *c, double horizon, first_contact *met) {
+  *met = (first_contact){.touch = nothing(), .near = nothing(), .rung = candidate_rung(q, c)};
+  const search_goal goal = goal_of(q, horizon);
+  search_outcome found = {0};
+  met->status = meet_any(q, c, &goal, &found, met);
+  if (met->status == CPROX_MEMORY)
+    return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the open intervals");
+  if (met->status < 0) return met->status;
+  met->nodes = found.nodes;
+  met->free_until = found.free_until;
+  met->lower = fmax(found.lower, c->lower);
+  const bool near = met->near.upper <= q->options.epsilon;
+  const double end = near ? fmin(met->near.t, horizon) : horizon;
+  if (met->status == CPROX_OK && met->free_until < end) met->status = CPROX_PRECISION;
+  return near && !isfinite(met->touch.t) && !isfinite(horizon) ? prove_farther(q, c, met) : CPROX_OK;
+}
+
+/* By the hull of a ladder first: what does not touch that before the horizon does not touch the mesh. */
+static cprox_status meet(const question *q, const candidate *c, double horizon, first_contact *met) {
+  if (!candidate_may_climb(q, c)) return meet_model(q, c, horizon, met);
+  candidate model = *c;
+  model.rung = CPROX_RUNG_HULL;
+  first_contact by_hull;
+  cprox_status status = meet_model(q, &model, horizon, &by_hull);
+  if (status < 0) return status;
+  if (by_hull.free_until >= horizon) {
+    /* what is near the hull need not be near the mesh */
+    const double t = by_hull.near.t;
+    *met = by_hull;
+    met->near = met->touch = nothing();
+    met->status = CPROX_OK;
+    if (!isfinite(t)) return CPROX_OK;
+    met->near.t = t;
+    status = candidate_measure_mesh(q, c, &met->near);
+    return status;
+  }
+  model.rung = CPROX_RUNG_MESH;
+  status = meet_model(q, &model, horizon, met);
+  if (status < 0) return status;
+  met->nodes += by_hull.nodes, met->probes += by_hull.probes;
+  return status;
+}
+
+/* ---- all candidates --------------------------------------------------------------------------------------------------- */
+
+/* The earlier of two places, or the nearer where neither is contact. */
+static void merge_place(cprox_result *all, const cprox_result *one, double epsilon) {
+  const bool had = all->upper <= epsilon, has = one->upper <= epsilon;
+  if (has ? (!had || one->t < all->t) : (!had && one->upper < all->upper)) *all = *one;
+}
+
+static void merge(first_contact *all, const first_contact *one, double epsilon) {
+  all->free_until = fmin(all->free_until, one->free_until);
+  all->lower = fmin(all->lower, one->lower);
+  if (one->touch.t < all->touch.t) all->touch = one->touch;
+  merge_place(&all->near, &one->near, epsilon);
+  all->nodes += one->nodes, all->probes += one->probes;
+  if (one->rung > all->rung) all->rung = one->rung;
+  if (one->status != CPROX_OK) all->status = one->status;
+}
+
+cprox_status first_contact_conclude(const first_contact *all, const question *q, cprox_result *result) {
+  double t0, t1;
+  cprox_curve_domain(q->mover.curve, &t0, &t1);
+  const bool touch = isfinite(all->touch.t), near = all->near.upper <= q->options.epsilon;
+  cprox_result r = touch ? all->touch : all->near;
+  r.t_free = fmin(all->free_until, t1);
+  r.lower = touch ? 0.0 : fmax(fmin(all->lower, r.upper), 0.0);
+  r.upper = fmax(r.upper, 0.0);
+  r.verdict = touch ? CPROX_YES : isinf(all->free_until) ? CPROX_NO : CPROX_UNDECIDED;
+  if (!touch && !near) r.t = r.target_index < 0 ? NAN : r.t;
+  r.rung = all->rung != CPROX_RUNG_NONE ? all->rung : q->n > 0 ? CPROX_RUNG_SPHERE : CPROX_RUNG_NONE;
+  r.nodes = all->nodes, r.probes = all->probes;
+  r.status = all->status;
+  if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", question_shortfall(r.status));
+  *result = r;
+  return r.status;
+}
+
+first_contact first_contact_begin(void) {
+  return (first_contact){.free_until = INFINITY, .lower = INFINITY, .touch = nothing(), .near = nothing()};
+}
+
+cprox_status first_contact_with(first_contact *all, const question *q, size_t first, size_t last) {
+  size_t count = 0;
+  const candidate *list = last > first ? candidates_list(q, first, last, true, &count) : NULL;
+  if (last > first && !list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
+  size_t i = 0;
+  for (; i < count && list[i].lower <= 0.0 && all->status != CPROX_STOPPED; i++) {
+    first_contact one;
+    const cprox_status status = meet(q, &list[i], all->touch.t, &one);
+    if (status < 0) return status;
+    merge(all, &one, q->options.epsilon);
+  }
+  /* the rest is too far to touch, unless the caller stopped */
+  if (i < count) all->lower = fmin(all->lower, list[i].lower);
+  if (i < count && list[i].lower <= 0.0) cprox_curve_domain(q->mover.curve, &all->free_until, &(double){0.0});
+  return CPROX_OK;
+}
