@@ -6,12 +6,14 @@ Called by scripts/test, which has set up and built. A runner that ends without a
 so does a case that was skipped: a missing thing is a failure.
 """
 import argparse
+import concurrent.futures
 import glob
 import json
 import os
 import re
 import subprocess
 import sys
+import threading
 import time
 import xml.etree.ElementTree as ElementTree
 
@@ -19,6 +21,8 @@ REPO = os.environ.get('REPO', os.path.dirname(os.path.dirname(os.path.abspath(__
 WORKSPACE = os.environ.get('WORKSPACE', '')
 LOGS = os.environ.get('LOGS', '')
 RUNNER_LIMIT = 600  # seconds for one runner; a test that hangs is a failed one
+RUNNERS = max(1, min(os.cpu_count() or 1, 4))  # how many runners work at the same time
+PRINTING = threading.Lock()
 
 
 class Count:
@@ -107,8 +111,9 @@ def show_failure(log, lines=40):
     """Prints the end of a log, so that a CI that keeps no files still tells what went wrong."""
     with open(log, errors='replace') as text:
         tail = text.read().splitlines()[-lines:]
-    print(f'---- the end of {log}')
-    print('\n'.join(tail), flush=True)
+    with PRINTING:
+        print(f'---- the end of {log}')
+        print('\n'.join(tail), flush=True)
 
 
 def run_one(command, name, counter, **how):
@@ -119,6 +124,12 @@ def run_one(command, name, counter, **how):
     if count.failed:
         show_failure(log)
     return count
+
+
+def run_together(jobs):
+    """Runs jobs, functions that return a Count, RUNNERS at a time; the sum, in the jobs' order."""
+    with concurrent.futures.ThreadPoolExecutor(RUNNERS) as pool:
+        return sum(pool.map(lambda job: job(), jobs), Count())
 
 
 def count_core(output, code, name):
@@ -144,8 +155,8 @@ def count_exit(_, code, name):
     return Count(1) if code == 0 else Count(0, 1, [name])
 
 
-def ctest_entries(build, folder=''):
-    """The tests that CMake knows in a build folder: name, command, working directory and the room that defined it."""
+def ctest_entries(build, *folders):
+    """The tests that CMake knows in a build folder, or of these folders of test/: name, command, working directory."""
     listed = subprocess.run(['ctest', '--show-only=json-v1'], cwd=build, stdout=subprocess.PIPE, check=True)
     document = json.loads(listed.stdout)
     graph = document['backtraceGraph']
@@ -161,12 +172,20 @@ def ctest_entries(build, folder=''):
         command = test.get('command')
         if command and os.path.basename(command[0]) == 'env_cached.sh':
             command = command[1:]
-        if any(f'/test/{folder}' in os.path.realpath(os.path.join(build, f)) for f in files):
+        places = [os.path.realpath(os.path.join(build, f)) for f in files]
+        if not folders or any(f'/test/{folder}/CMakeLists.txt' in place for folder in folders for place in places):
             entries.append((test['name'], command, properties.get('WORKING_DIRECTORY', build)))
     return entries
 
 
 # ---------------------------------------------------------------------------------------------------------- the groups
+CORE_FOLDERS = ('core', 'check', 'attack')
+
+
+def workspace_build():
+    return os.path.join(WORKSPACE, 'build')
+
+
 def sources(*folders):
     """The C and C++ files of the checkout."""
     return sorted(path for folder in folders for pattern in ('*.c', '*.h', '*.cpp', '*.hpp')
@@ -210,59 +229,58 @@ def build_apart(flavour, options, targets=lambda build: ['all']):
     return build if step_apart(flavour, 'build', command) else None
 
 
-def build_core(flavour, *options, only=''):
-    """The core alone, as one who has no ROS builds it, with its tests, or with those alone that `only` matches."""
-    def targets(build):
-        return [name.split('.', 1)[1] for name, _, _ in ctest_entries(build) if re.search(only, name)] if only else ['all']
-    return build_apart(flavour, ['-DCPROX_ROS=OFF', '-DCPROX_TESTS=ON', '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON', *options], targets)
-
-
-def core_tests(flavour, *options, env=None, only=''):
-    build = build_core(flavour, *options, only=only)
-    if build is None:
-        return Count(0, 1, [f'core-{flavour}: the build failed'])
-    count = Count()
-    for name, command, folder in ctest_entries(build):
-        if re.search(only, name):
-            title = f'{name} ({flavour})'
-            how = count_core if command else (lambda output, code, title: Count(0, 1, [f'{title}: not built']))
-            count += run_one(command or ['false'], title, how, cwd=folder, env=env)
-    return count if count.passed + count.failed else Count(0, 1, [f'core-{flavour}: no test matches'])
+def run_core_tests(build, flavour, env=None, only='', folders=CORE_FOLDERS):
+    """Runs the core's tests that stand in a build folder, or those alone that `only` matches."""
+    jobs = []
+    for name, command, folder in ctest_entries(build, *folders):
+        if not re.search(only, name):
+            continue
+        title = f'{name} ({flavour})'
+        counter = count_core if command else (lambda output, code, title: Count(0, 1, [f'{title}: not built']))
+        jobs.append(lambda c=command or ['false'], t=title, k=counter, f=folder: run_one(c, t, k, cwd=f, env=env))
+    return run_together(jobs) if jobs else Count(0, 1, [f'core-{flavour}: no test matches'])
 
 
 def core():
-    return core_tests('release')
+    """The tests of the core, of the checker, and the random cases, in the workspace's own build."""
+    return run_core_tests(workspace_build(), 'release')
 
 
 def sanitized():
-    return core_tests('sanitized', '-DCPROX_SANITIZE=address,undefined', '-DCMAKE_BUILD_TYPE=RelWithDebInfo',
-                      env={'ASAN_OPTIONS': 'detect_leaks=1:abort_on_error=0', 'UBSAN_OPTIONS': 'print_stacktrace=1'})
+    options = ['-DCPROX_ROS=OFF', '-DCPROX_TESTS=ON', '-DCPROX_SANITIZE=address,undefined', '-DCMAKE_BUILD_TYPE=RelWithDebInfo']
+    build = build_apart('sanitized', options)
+    if build is None:
+        return Count(0, 1, ['core-sanitized: the build failed'])
+    return run_core_tests(build, 'sanitized', folders=(),
+                          env={'ASAN_OPTIONS': 'detect_leaks=1:abort_on_error=0', 'UBSAN_OPTIONS': 'print_stacktrace=1'})
 
 
 def threads():
-    """The tests with threads, of the core and of the scene, under ThreadSanitizer."""
-    sanitizer = ['-DCPROX_SANITIZE=thread', '-DCMAKE_BUILD_TYPE=RelWithDebInfo']
-    count = core_tests('threads', *sanitizer, only='thread|batch|parallel')
-    flavour = 'threads-scene'
-    devel = os.path.join(WORKSPACE, 'core', flavour, 'devel')
-    options = [*sanitizer, '-DPYTHON_EXECUTABLE=/usr/bin/python3', f'-DCATKIN_DEVEL_PREFIX={devel}']
-    if build_apart(flavour, options, lambda build: ['scene_test_threads']) is None:
-        return count + Count(0, 1, [f'{flavour}: the build failed'])
-    results = log_path(flavour) + '.xml'
+    """The tests with threads, of the core and of the scene, under ThreadSanitizer, in one build."""
+    wanted = re.compile(r'^core\..*(thread|batch|parallel)')
+    devel = os.path.join(WORKSPACE, 'core', 'threads', 'devel')
+    options = ['-DCPROX_SANITIZE=thread', '-DCMAKE_BUILD_TYPE=RelWithDebInfo', '-DCPROX_TESTS=ON',
+               '-DPYTHON_EXECUTABLE=/usr/bin/python3', f'-DCATKIN_DEVEL_PREFIX={devel}']
+
+    def targets(build):
+        core_targets = [name.split('.', 1)[1] for name, _, _ in ctest_entries(build, *CORE_FOLDERS) if wanted.search(name)]
+        return ['scene_test_threads', *core_targets]
+    build = build_apart('threads', options, targets)
+    if build is None:
+        return Count(0, 1, ['threads: the build failed'])
+    count = run_core_tests(build, 'threads', only=wanted.pattern)
+    results = log_path('threads-scene') + '.xml'
     if os.path.exists(results):
         os.remove(results)
     command = [os.path.join(devel, 'lib/curve_proximity/scene_test_threads'), f'--gtest_output=xml:{results}']
     # the libraries of this build: the workspace's own, which its setup puts first, are not instrumented and would look racy
     libraries = {'LD_LIBRARY_PATH': os.pathsep.join(filter(None, [f'{devel}/lib', os.environ.get('LD_LIBRARY_PATH')]))}
-    return count + run_one(command, flavour, lambda _, code, name: count_junit(results, code, name), env=libraries)
+    return count + run_one(command, 'threads-scene', lambda _, code, name: count_junit(results, code, name), env=libraries)
 
 
 def tidy():
-    build = build_core('release')
-    if build is None:
-        return Count(0, 1, ['clang-tidy: the core does not build'])
     files = [path for path in sources('src/core') if path.endswith('.c')]
-    command = ['xargs', '-a', write_list(files), '-P2', '-n4', 'clang-tidy', '--quiet', '-p', build]
+    command = ['xargs', '-a', write_list(files), f'-P{RUNNERS}', '-n4', 'clang-tidy', '--quiet', '-p', workspace_build()]
     return run_one(command, 'clang-tidy', count_exit, limit=1800)
 
 
@@ -273,18 +291,33 @@ def write_list(files):
     return path
 
 
-def room(name):
-    """The gtests and rostests that test/NAME/CMakeLists.txt declares, run as catkin runs them."""
-    count = Count()
-    for title, command, folder in ctest_entries(os.path.join(WORKSPACE, 'build'), f'{name}/CMakeLists.txt'):
-        results = next((word for word in command if word.endswith('.xml')), None)
-        for stale in glob.glob(os.path.join(os.path.dirname(results), 'rosunit-*.xml')) + [results] if results else ():
-            if os.path.exists(stale):
-                os.remove(stale)
-        read = count_rostest if '_rostest_' in title else count_junit
-        counter = (lambda _, code, title: read(results, code, title)) if results else count_lines
-        count += run_one(command, re.sub('^_ctest_curve_proximity_', '', title), counter, cwd=folder)
-    return count if count.passed + count.failed else Count(0, 1, [f'test/{name}: no test was found'])
+def run_catkin_test(title, command, folder):
+    """One gtest, rostest or script, run as catkin runs it."""
+    results = next((word for word in command if word.endswith('.xml')), None)
+    for stale in glob.glob(os.path.join(os.path.dirname(results), 'rosunit-*.xml')) + [results] if results else ():
+        if os.path.exists(stale):
+            os.remove(stale)
+    read = count_rostest if '_rostest_' in title else count_junit
+    counter = (lambda _, code, name: read(results, code, name)) if results else count_lines
+    return run_one(command, re.sub('^_ctest_curve_proximity_', '', title), counter, cwd=folder)
+
+
+def room(name, together=True):
+    """The gtests and rostests that test/NAME/CMakeLists.txt declares."""
+    jobs = [lambda e=entry: run_catkin_test(*e) for entry in ctest_entries(workspace_build(), name)]
+    if not jobs:
+        return Count(0, 1, [f'test/{name}: no test was found'])
+    return run_together(jobs) if together else sum((job() for job in jobs), Count())
+
+
+def run_named(name):
+    """One test, GROUP.NAME: of the core as ctest names it, of the other rooms by a part of its name."""
+    folder, _, part = name.partition('.')
+    if folder in CORE_FOLDERS:
+        return run_core_tests(workspace_build(), 'release', only=f'^{re.escape(name)}$', folders=(folder,))
+    jobs = [lambda e=entry: run_catkin_test(*e) for entry in ctest_entries(workspace_build(), folder)
+            if re.search(rf'(^|[_/]){re.escape(part)}(\.test)?$', entry[0])]
+    return run_together(jobs) if jobs else Count(0, 1, [f'{name}: no such test'])
 
 
 def install():
@@ -309,20 +342,22 @@ def on_debian_12():
 GROUPS = {
     'layering': layering, 'headers': headers, 'lint': lint, 'format': formatting, 'bench': bench_pages,
     'core': core, 'tidy': tidy, 'sanitizers': sanitized, 'threads': threads,
-    'scene': lambda: room('scene'), 'providers': lambda: room('providers'), 'cli': lambda: room('cli'), 'ros': lambda: room('ros'),
+    'scene': lambda: room('scene'), 'providers': lambda: room('providers'), 'cli': lambda: room('cli'), 'ros': lambda: room('ros', together=False),
     'install': install, 'demo': demo,
 }
+
+NAMED = (*CORE_FOLDERS, 'scene', 'providers', 'cli', 'ros')  # rooms whose tests have names: scripts/test core.test_pair
 
 
 def main():
     parser = argparse.ArgumentParser(prog='scripts/test')
-    parser.add_argument('groups', nargs='*', help='only these groups')
+    parser.add_argument('groups', nargs='*', help='only these groups, or single tests, such as core.test_pair')
     parser.add_argument('--list', action='store_true', help='name the groups')
     arguments = parser.parse_args()
     if arguments.list:
         print('\n'.join(GROUPS))
         return 0
-    unknown = [name for name in arguments.groups if name not in GROUPS]
+    unknown = [name for name in arguments.groups if name not in GROUPS and name.partition('.')[0] not in NAMED]
     if unknown:
         parser.error(f"no group {', '.join(unknown)}: there are {', '.join(GROUPS)}")
 
@@ -341,7 +376,7 @@ def main():
     for name in groups:
         begin = time.monotonic()
         try:
-            count = GROUPS[name]()
+            count = GROUPS[name]() if name in GROUPS else run_named(name)
         except (OSError, subprocess.SubprocessError, KeyError, ValueError) as error:
             count = Count(0, 1, [f'{name}: {error}'])
         print(f'{name:<12}{count.passed:>8}{count.failed:>8}{time.monotonic() - begin:>9.0f}', flush=True)
