@@ -10,7 +10,9 @@ else()
 endif()
 
 # The core: library, C headers, a CMake package and a pkg-config file, both relocatable.
-set_target_properties(cprox PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+# Before 1.0 a new minor version may break the ABI, so that the SONAME carries it.
+set_target_properties(cprox PROPERTIES
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 install(TARGETS cprox EXPORT cproxTargets LIBRARY DESTINATION ${CPROX_LIB_DIR} ARCHIVE DESTINATION ${CPROX_LIB_DIR}
         RUNTIME DESTINATION bin)
 install(EXPORT cproxTargets NAMESPACE cprox:: DESTINATION ${CPROX_LIB_DIR}/cmake/cprox)
@@ -26,6 +28,8 @@ configure_file(cmake/cprox.pc.in ${PROJECT_BINARY_DIR}/cprox.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/cprox.pc DESTINATION ${CPROX_LIB_DIR}/pkgconfig)
 
 install(DIRECTORY include/curve_proximity/ DESTINATION include/curve_proximity FILES_MATCHING PATTERN "*.h")
+# The C++ classes over the core alone need Eigen, and parallel.hpp threads; they are headers.
+install(FILES include/curve_proximity/core.hpp include/curve_proximity/parallel.hpp DESTINATION include/curve_proximity)
 
 # The ROS side.
 if(CPROX_ROS)

@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -34,6 +35,21 @@ static void every_status_has_its_own_name_and_a_sentence(void **state) {
     for (size_t k = 0; k < i; k++) assert_string_not_equal(names[i], names[k]);
   assert_string_equal(cprox_status_name((cprox_status)99), "unknown");
   assert_string_equal(cprox_status_text((cprox_status)-99), "unknown status");
+}
+
+/* ---- version ---- */
+
+/* PROJECT_VERSION is CMake's; package.xml has its own. */
+static void the_version_is_that_of_the_project(void **state) {
+  (void)state;
+  assert_string_equal(cprox_version(), PROJECT_VERSION);
+  FILE *package = fopen(PACKAGE_XML, "r");
+  assert_non_null(package);
+  char line[256];
+  bool same = false;
+  while (fgets(line, sizeof line, package)) same = same || strstr(line, "<version>" PROJECT_VERSION "</version>");
+  fclose(package);
+  assert_true(same);
 }
 
 /* ---- workspace ---- */
@@ -269,6 +285,7 @@ static void composition_applies_the_inner_pose_first(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_status_has_its_own_name_and_a_sentence),
+      cmocka_unit_test(the_version_is_that_of_the_project),
       cmocka_unit_test(a_workspace_grows_and_keeps_what_it_holds),
       cmocka_unit_test(a_workspace_survives_memory_that_is_out),
       cmocka_unit_test(the_reason_is_kept_until_the_next_call),

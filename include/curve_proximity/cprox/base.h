@@ -12,9 +12,17 @@
 #define CPROX_API __attribute__((visibility("default")))
 #endif
 
+/** The version of these headers. Before 1.0 a new minor version may break the ABI: the SONAME carries both numbers. */
+#define CPROX_VERSION_MAJOR 0
+#define CPROX_VERSION_MINOR 1
+#define CPROX_VERSION_PATCH 0
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/** The version of the library that is loaded, as "MAJOR.MINOR.PATCH". Never NULL. */
+CPROX_API const char *cprox_version(void);
 
 /** Every status: code, value, short name, sentence. Zero and above: an answer that is true. Below: none, and nothing
  * was changed. */
