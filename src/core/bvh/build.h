@@ -29,6 +29,9 @@ box tree_node_box(const tree_node *node);
 /* Memory for so many packs and nodes; false where it is out, and what there is then is tree_free()'s. */
 bool tree_allocate(tree *t, size_t packs, size_t nodes);
 
+/* A size in whole cache lines, which aligned memory comes in. */
+size_t tree_whole_lines(size_t bytes);
+
 /* How far the elements reach, by the root's boxes. */
 void tree_find_scale(tree *t);
 

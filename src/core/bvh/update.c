@@ -6,71 +6,12 @@
 #include <string.h>
 
 #include "bvh/build.h"
+#include "bvh/family.h"
 
 enum { BLOCK_PACKS = TREE_BLOCK / TREE_LANES, BLOCK_LEVELS = 3, MOST_LEVELS = 12 };
 
 /* A block is sorted when the areas of its packs' boxes have grown by so much since it was sorted last. */
 static const double WORN_OUT = 1.5;
-
-/* What trees that came from each other share: numbers for the states of blocks, each given once. */
-struct tree_family {
-  atomic_uint_fast64_t next;
-  atomic_uint_fast32_t members;
-};
-
-struct tree_blocks {
-  struct tree_family *family;
-  uint32_t *block_of; /* an element's, for good */
-  uint64_t *state;    /* a block's */
-  double *area;       /* of a block's packs when they were sorted; 0 where nobody has asked yet */
-  size_t n;
-};
-
-static size_t blocks_for(size_t n) {
-  return (n + TREE_BLOCK - 1) / TREE_BLOCK;
-}
-
-/* ---- families --------------------------------------------------------------------------------------------------------- */
-
-void tree_blocks_free(struct tree_blocks *blocks) {
-  if (!blocks) return;
-  if (blocks->family && atomic_fetch_sub(&blocks->family->members, 1) == 1) free(blocks->family);
-  free(blocks->block_of);
-  free(blocks->state);
-  free(blocks->area);
-  free(blocks);
-}
-
-static struct tree_blocks *blocks_allocate(size_t n) {
-  struct tree_blocks *made = calloc(1, sizeof *made);
-  if (!made) return NULL;
-  made->n = blocks_for(n);
-  made->block_of = malloc(n * sizeof *made->block_of);
-  made->state = calloc(made->n, sizeof *made->state);
-  made->area = calloc(made->n, sizeof *made->area);
-  if (made->block_of && made->state && made->area) return made;
-  tree_blocks_free(made);
-  return NULL;
-}
-
-bool tree_begin_family(tree *t) {
-  t->blocks = blocks_allocate(t->n);
-  if (!t->blocks) return false;
-  t->blocks->family = calloc(1, sizeof *t->blocks->family);
-  if (!t->blocks->family) return false;
-  atomic_init(&t->blocks->family->next, 1);
-  atomic_init(&t->blocks->family->members, 1);
-  for (size_t i = 0; i < t->n; i++) t->blocks->block_of[t->ids[i]] = (uint32_t)(i / TREE_BLOCK);
-  return true;
-}
-
-size_t tree_blocks_bytes(size_t n) {
-  return sizeof(struct tree_blocks) + n * sizeof(uint32_t) + blocks_for(n) * (sizeof(uint64_t) + sizeof(double));
-}
-
-bool tree_is_family(const tree *a, const tree *b) {
-  return a->blocks && b->blocks && a->blocks->family == b->blocks->family;
-}
 
 /* ---- levels ----------------------------------------------------------------------------------------------------------- */
 
@@ -199,7 +140,7 @@ static tree *allocate_like(const tree *previous) {
   if (!t) return NULL;
   *t = *previous;
   t->nodes = NULL, t->packs = NULL, t->ids = NULL;
-  t->blocks = blocks_allocate(t->n);
+  t->blocks = tree_blocks_allocate(t->n);
   if (tree_allocate(t, t->n_packs, t->n_nodes) && t->blocks) {
     t->blocks->family = previous->blocks->family;
     atomic_fetch_add(&t->blocks->family->members, 1);

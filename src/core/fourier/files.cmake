@@ -4,6 +4,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/cascade.c
   ${CMAKE_CURRENT_LIST_DIR}/chain.c
   ${CMAKE_CURRENT_LIST_DIR}/clip.c
+  ${CMAKE_CURRENT_LIST_DIR}/clipped.c
   ${CMAKE_CURRENT_LIST_DIR}/divided.c
   ${CMAKE_CURRENT_LIST_DIR}/energy.c
   ${CMAKE_CURRENT_LIST_DIR}/gap.c
