@@ -55,7 +55,11 @@ class RobotMotion {
   std::unique_ptr<const Data> data_;
 };
 
-/** How close the moving links and what they carry come to the objects (question.objects: only these; per_object: an answer for each object, in the order
+/** Questions about a robot in motion take no question.links and no signed_distance: such a question is refused. askSelf(), nearestPairs() and
+ *  clearanceProfile() take no per_object, none about the robot itself takes question.objects, and the last two take no other verb than
+ *  DISTANCE and no certificate.
+ *
+ *  How close the moving links and what they carry come to the objects (question.objects: only these; per_object: an answer for each object, in the order
  *  of their names). kind "environment", a the link or the carried object, b the object, result.t the time [s], result.mover_part the number of the
  *  collision element of a. As ask() of query.hpp in everything else. */
 std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &question, Workspace &workspace);

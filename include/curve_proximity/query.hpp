@@ -17,9 +17,11 @@ namespace curve_proximity {
 
 enum class Verb { DISTANCE, TOLERANCE, COLLISION };
 
+/** What is asked. What does not apply is refused, never ignored: delta but to TOLERANCE; per_object together with a certificate; and of
+ *  options what the table at cprox_options says. */
 struct Question {
   Verb verb = Verb::DISTANCE;
-  double delta = 0.0;                              /**< [m] >= 0: of TOLERANCE */
+  double delta = 0.0;                              /**< [m] >= 0: of TOLERANCE, else 0 */
   cprox_options options = cprox_options_default(); /**< epsilon, budget, stop function */
   bool per_object = false; /**< one answer for each object and each link (for its nearest shape), else one in all */
 

@@ -88,7 +88,6 @@ int answerAgainst(const Arguments &arguments, Console &console) {
   std::optional<ResultsFile> certificates;
   if (!arguments.certificate.empty()) certificates.emplace(arguments.certificate, inputs, "--certificate");
   Warnings warnings;
-  for (const std::string &sentence : arguments.warnings) warnings.add(sentence);
   console.warn(warnings);
 
   catchInterrupts();

@@ -39,10 +39,10 @@ const std::map<std::string, Option> &options() {
       {"--parameters", {true, {Action::CONSTRAINTS}}},
       {"--node", {true, {Action::SEND}}},
       {"--epsilon", {true, {Action::CURVES, Action::PAIRS}}},
-      {"--delta", {true, {Action::CURVES, Action::PAIRS}}},
+      {"--delta", {true, {Action::CURVES}}},
       {"--max-nodes", {true, {Action::CURVES, Action::PAIRS}}},
       {"--threads", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS}}},
-      {"--per-object", {false, {Action::CURVES, Action::PAIRS}}},
+      {"--per-object", {false, {Action::CURVES}}},
       {"--max-rung", {true, {Action::CURVES, Action::PAIRS}}},
       {"--skipped", {false, {Action::CURVES, Action::PAIRS}}},
       {"--out", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS}}},
@@ -165,6 +165,8 @@ void readQuestion(const Words &words, const VerbName &verb, Question &question) 
   }
 
   /* the limit of `tolerance` has no default: a clearance that nobody asked for means nothing */
+  if (words.has("--delta") && verb.verb != Verb::TOLERANCE)
+    throw BadUsage("--delta is for 'tolerance': it is the clearance that is asked for");
   if (words.has("--delta")) question.delta = readNumber(words, "--delta", 0.0, true, "of at least 0 (metres)");
   if (verb.action == Action::CURVES && verb.verb == Verb::TOLERANCE && !words.has("--delta")) {
     throw BadUsage("'tolerance' needs --delta D, the clearance that is asked for, in metres");
@@ -293,9 +295,6 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   }
   out.skipped = split.has("--skipped");
   out.threads = std::max(1u, std::thread::hardware_concurrency());
-  if (split.has("--delta") && out.question.verb != Verb::TOLERANCE) {
-    out.warnings.push_back("--delta changes nothing: it is the clearance that 'tolerance' asks about");
-  }
   if (split.has("--threads")) out.threads = static_cast<std::size_t>(readCount(split, "--threads", kMostThreads));
   return out;
 }

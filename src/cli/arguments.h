@@ -31,8 +31,7 @@ struct Arguments {
   std::string node;          /**< SEND: the node's name */
   std::string out;           /**< file of the results; empty: standard output */
   std::size_t threads = 1;
-  std::vector<std::string> warnings; /**< options that are understood and change nothing here, a sentence each */
-  bool skipped = false;              /**< tell on standard error what takes no part, and why */
+  bool skipped = false; /**< tell on standard error what takes no part, and why */
 };
 
 /** Reads the words after the program's name. Throws BadUsage with one line for words, options and values that are not

@@ -109,7 +109,6 @@ Outcome answerOne(ProviderSet &providers, ConstraintCase described, const std::s
 
 int answerConstraints(const Arguments &arguments, Console &console) {
   Warnings warnings;
-  for (const std::string &sentence : arguments.warnings) warnings.add(sentence);
   const std::vector<YamlValue> entries = readCases(arguments.cases, warnings);
   ResourceOptions resources;
   resources.base_dir = folderOf(arguments.cases);

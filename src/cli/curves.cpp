@@ -61,7 +61,6 @@ Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &t
 int answerCurves(const Arguments &arguments, Console &console) {
   /* what curves are measured against */
   Warnings warnings;
-  for (const std::string &sentence : arguments.warnings) warnings.add(sentence);
   const World world = readWorld(arguments, warnings);
   Question question = arguments.question;
   question.options.stop = interrupted;

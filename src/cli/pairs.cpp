@@ -100,7 +100,6 @@ int answerPairs(const Arguments &arguments, Console &console) {
   catchInterrupts();
   results.write(resultsHeader());
   Warnings warnings;
-  for (const std::string &sentence : arguments.warnings) warnings.add(sentence);
   std::size_t given = 0, warned = 0;
   Rows rows;
   rows.next = [&]() -> std::optional<Task> {

@@ -38,6 +38,7 @@ Outcome askOne(const RobotMotion &motion, bool self, const Question &question, c
   const CertificateHandle proof = makeCertificate();
   Question asked = question;
   if (!arguments.certificate.empty()) asked.options.certificate = proof.get();
+  if (self) asked.per_object = false; /* the robot itself is one row */
   const std::vector<Answer> answers =
       self ? std::vector<Answer>{askSelf(motion, asked, workspace)} : askEnvironment(motion, asked, workspace);
   Outcome out = toOutcome(answers, question.verb, arguments.trajectory);
@@ -59,7 +60,6 @@ RobotMotion readMotion(const Arguments &arguments, const World &world, Warnings 
 
 int answerTrajectory(const Arguments &arguments, Console &console) {
   Warnings warnings;
-  for (const std::string &sentence : arguments.warnings) warnings.add(sentence);
   const World world = readWorld(arguments, warnings);
   const RobotMotion motion = readMotion(arguments, world, warnings);
   for (const std::string &sentence : motion.warnings()) warnings.add(arguments.trajectory + ": " + sentence);

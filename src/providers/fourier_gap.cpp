@@ -102,6 +102,8 @@ class FourierGap : public ConstraintProvider {
     if (parameters_.options.samples != 0 && parameters_.options.samples % 2 == 0)
       throw Error("parameter samples: an odd number is expected");
     if (parameters_.options.samples == 1) throw Error("parameter samples: 1 is not at least 3");
+    if (parameters_.options.samples != 0 && parameters_.options.delta != 0.0)
+      throw Error("parameters samples and delta: give one of the two, delta chooses the samples");
     if (parameters_.options.samples == 0 && parameters_.options.delta == 0.0)
       parameters_.options.samples = parameters_.dimension == 2 ? 33 : 17;
     if (parameters_.level != 0.0 && parameters_.options.mode != CPROX_GAP_SIGNAL)

@@ -119,7 +119,7 @@ void Pipeline::handle(const Job &job) {
       job);
   results->header.frame_id = parameters_.fixed_frame;
   results->verb = parameters_.verb;
-  results->delta = tuning_.delta;
+  results->delta = verb_ == Verb::TOLERANCE ? tuning_.delta.load() : 0.0;
   results->epsilon = tuning_.epsilon;
 
   const auto drawing = std::make_shared<Drawing>();
@@ -138,8 +138,9 @@ void Pipeline::handle(const Job &job) {
           }
         }
         const std::vector<std::string> everything;
-        QueryRequest request{verb_,      results->delta, asked.curves, asked.trajectories, parameters_.self_collision,
-                             everything, everything,     state};
+        const bool self = parameters_.self_collision && asked.trajectories.size() > 0;
+        QueryRequest request{verb_, results->delta, asked.curves, asked.trajectories,
+                             self,  everything,     everything,   state};
         QueryResponse answer;
         queries_.answer(request, answer, *drawing);
         results->success = answer.success;

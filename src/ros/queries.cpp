@@ -157,6 +157,12 @@ Question Queries::toQuestion(const QueryRequest &request) const {
     throw Error("budget_ms is " + std::to_string(request.budget_ms) + ": it must be at least 0");
   if (!(request.delta >= 0.0 && std::isfinite(request.delta)))
     throw Error("delta is " + std::to_string(request.delta) + ": it must be at least 0 and finite");
+
+  // What no row would heed is an error, too.
+  if (request.delta != 0.0 && request.verb != Verb::TOLERANCE)
+    throw Error("delta is " + std::to_string(request.delta) + ": it is the clearance that tolerance asks for");
+  if (request.self_collision && request.trajectories.size() == 0)
+    throw Error("self_collision is about the robot along a trajectory, and there is none");
   Question question;
   question.verb = request.verb;
   question.delta = request.delta;
@@ -205,6 +211,8 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
   question.options.stop_user = &budget;
   const SnapshotPtr snapshot = scene_.snapshot();
   checkLimits(request, *snapshot);
+  if (!snapshot->robot() && !request.joint_state.name.empty())
+    throw Error("joint_state names '" + request.joint_state.name.front() + "', and this server has no robot");
 
   answerCurves(request, question, snapshot, response, drawing);
   answerTrajectories(request, question, snapshot, response, drawing);
@@ -282,7 +290,10 @@ void Queries::answerTrajectory(const trajectory_msgs::JointTrajectory &message, 
 
     const WorkspacePool::Lease workspace(workspaces_);
     std::vector<Answer> answers = askEnvironment(*motion, question, *workspace);
-    if (request.self_collision) answers.push_back(askSelf(*motion, question, *workspace));
+    Question self = question; // one row, of no objects
+    self.per_object = false;
+    self.objects.clear();
+    if (request.self_collision) answers.push_back(askSelf(*motion, self, *workspace));
     for (const Answer &answer : answers) response.results.push_back(toMessage(answer, request.verb));
     drawing.motion = std::move(motion);
     drawing.motion_answers = std::move(answers);

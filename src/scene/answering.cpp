@@ -25,6 +25,38 @@ std::optional<cprox_rung> rungFromName(const std::string &name) {
   return std::nullopt;
 }
 
+std::string faultOf(const Question &question) {
+  if (question.verb != Verb::TOLERANCE && question.delta != 0.0)
+    return "delta is " + std::to_string(question.delta) +
+           ": it is the clearance that tolerance asks for, and must be 0";
+  if (question.verb != Verb::DISTANCE && question.options.signed_distance)
+    return "signed_distance does not apply to tolerance and collision: it is an option of distance queries";
+  if (question.per_object && question.options.certificate)
+    return "a certificate is about all objects at once: ask without per_object";
+  return "";
+}
+
+std::string faultOfMotion(const Question &question, bool in_all) {
+  if (question.options.signed_distance)
+    return "signed_distance does not apply to robots: how deep they overlap is not measured";
+  if (!question.links.empty())
+    return "links do not apply to a robot in motion, '" + question.links.front() +
+           "' among them: all that it moves are asked about";
+  if (in_all && question.per_object) return "per_object does not apply: there is no answer for each object here";
+  return faultOf(question);
+}
+
+Answer refusal(const std::string &id, const std::string &kind, const std::string &why) {
+  Answer answer;
+  answer.id = id;
+  answer.kind = kind;
+  answer.result.status = CPROX_INVALID;
+  answer.result.target_index = -1;
+  answer.status = cprox_status_name(CPROX_INVALID);
+  answer.message = why;
+  return answer;
+}
+
 cprox_options withoutRounding(cprox_options options, double rounding) {
   if (options.epsilon > 4.0 * rounding) options.epsilon -= 2.0 * rounding;
   return options;

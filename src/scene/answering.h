@@ -3,11 +3,20 @@
 #ifndef CURVE_PROXIMITY_SCENE_ANSWERING_H
 #define CURVE_PROXIMITY_SCENE_ANSWERING_H
 
+#include <string>
 #include <vector>
 
 #include <curve_proximity/query.hpp>
 
 namespace curve_proximity {
+
+/* What the question asks for and its answer would not heed, as a sentence; "" where there is nothing. Of a robot in motion, of which
+ * `in_all` has one answer for all objects or pairs. */
+std::string faultOf(const Question &question);
+std::string faultOfMotion(const Question &question, bool in_all);
+
+/* The answer to such a question. */
+Answer refusal(const std::string &id, const std::string &kind, const std::string &why);
 
 /* The part of epsilon that rounding takes is not the core's to use. */
 cprox_options withoutRounding(cprox_options options, double rounding);

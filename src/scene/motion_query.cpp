@@ -144,6 +144,18 @@ Answer answerOf(const Asked &asked, const Question &question, Workspace &workspa
   return toAnswer(asked, result, question, workspace, start);
 }
 
+/* What is asked about is a distance, and of all objects. */
+void checkDistances(bool self, const Question &question) {
+  if (question.verb != Verb::DISTANCE)
+    throw Error("pairs and stretches are answered by their distances: ask for those");
+  const std::string fault = faultOfMotion(question, true);
+  if (!fault.empty()) throw Error(fault);
+  if (self && !question.objects.empty())
+    throw Error("objects do not apply to a robot against itself, '" + question.objects.front() + "' among them");
+  if (question.options.certificate)
+    throw Error("a certificate does not apply: ask askEnvironment() or askSelf() for it");
+}
+
 Asked askedOf(const RobotMotion &motion, bool self, const Question &question) {
   return self ? askedSelf(motion.data()) : askedItems(motion.data(), namedItems(motion.data(), question.objects));
 }
@@ -152,6 +164,8 @@ Asked askedOf(const RobotMotion &motion, bool self, const Question &question) {
 
 std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &question, Workspace &workspace) {
   const RobotMotion::Data &data = motion.data();
+  const std::string fault = faultOfMotion(question, false);
+  if (!fault.empty()) return {refusal(data.id, "environment", fault)};
   const std::vector<std::size_t> named = namedItems(data, question.objects);
   if (!question.per_object || named.empty()) return {answerOf(askedItems(data, named), question, workspace)};
 
@@ -170,6 +184,10 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &qu
 }
 
 Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &workspace) {
+  std::string fault = faultOfMotion(question, true);
+  if (fault.empty() && !question.objects.empty())
+    fault = "objects do not apply to a robot against itself, '" + question.objects.front() + "' among them";
+  if (!fault.empty()) return refusal(motion.data().id, "self", fault);
   return answerOf(askedSelf(motion.data()), question, workspace);
 }
 
@@ -202,10 +220,9 @@ std::string describeQuestion(const RobotMotion &motion, bool self, const Questio
 std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits,
                                  const Question &question, Workspace &workspace) {
   const Clock::time_point start = Clock::now();
+  checkDistances(self, question);
   const Asked asked = askedOf(motion, self, question);
   if (asked.pairs.empty()) return {};
-  Question distance = question;
-  distance.verb = Verb::DISTANCE;
   const cprox_options options = withoutRounding(question.options, asked.rounding);
   std::vector<cprox_result> results(std::min(limits.count, asked.pairs.size()));
   std::size_t count = 0;
@@ -214,13 +231,14 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
                           &options, workspace.get(), results.data(), &count);
   if (status < 0) throw Error(workspace.reason(), status);
   std::vector<Answer> answers;
-  for (std::size_t i = 0; i < count; ++i) answers.push_back(toAnswer(asked, results[i], distance, workspace, start));
+  for (std::size_t i = 0; i < count; ++i) answers.push_back(toAnswer(asked, results[i], question, workspace, start));
   return answers;
 }
 
 std::vector<ClearanceStretch> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
                                                const Question &question, Workspace &workspace) {
   if (breaks.size() < 2) throw Error("a clearance profile needs at least two breaks");
+  checkDistances(self, question);
   const Asked asked = askedOf(motion, self, question);
   std::vector<cprox_stretch> stretches(breaks.size() - 1);
   for (std::size_t i = 0; i < stretches.size(); ++i)

@@ -220,6 +220,12 @@ double microsecondsSince(Clock::time_point start) {
 
 std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Question &question,
                         Workspace &workspace) {
+  const std::string fault = faultOf(question);
+  if (!fault.empty()) {
+    Answer answer = refusal(curve.id, "curve", fault);
+    answer.a = curve.id;
+    return {answer};
+  }
   const Targets::Data &data = targets.data();
   const std::vector<Item> &items = data.items;
   std::vector<Answer> answers;

@@ -53,47 +53,29 @@ class Usage(Case):
     def rungs_are_known_by_name(self):
         self.assertRefused(cprox('distance', '--curves', 'c', '--scene', 's', '--max-rung', 'finest'), '--max-rung', 'hull')
 
-    def an_option_that_changes_nothing_is_told(self):
-        answer = self.ask('distance', [PASSING], BOX_SCENE, '--delta', '1')
-        self.assertEqual(answer.code, 0)
-        self.assertRegex(answer.err, '^warning: --delta')
-
-    def complaints_stay_one_line_whatever_a_name_holds(self):
-        scene = 'world: {collision_objects: [{id: "a\\nb\\e[2J", primitives: [{type: 9, dimensions: [1]}]}]}'
-        answer = self.ask('distance', [PASSING], scene)
-        self.assertRefused(answer, 'a b')
-        self.assertNotIn('\x1b', answer.err)
-
-    def files_that_cannot_be_read_are_named(self):
-        scene, curves = self.file('scene.yaml', BOX_SCENE), self.file('curves.csv', PASSING)
-        self.assertRefused(cprox('distance', '--curves', '/none.csv', '--scene', scene), '/none.csv')
-        self.assertRefused(cprox('distance', '--curves', self.folder, '--scene', scene), self.folder, 'folder')
-        self.assertRefused(cprox('distance', '--curves', curves, '--scene', '/none.yaml'), '/none.yaml')
-        self.assertRefused(cprox('distance', '--curves', curves, '--scene', self.folder), self.folder, 'folder')
-        self.assertRefused(cprox('distance', '--curves', curves, '--scene', scene, '--robot', '/none.urdf'), '/none.urdf')
-        self.assertRefused(cprox('pairs', '--in', '/none.yaml'), '/none.yaml')
-        self.assertRefused(cprox('send', '/none.yaml'), '/none.yaml')
-
-    def an_output_that_cannot_be_written_is_named(self):
-        self.assertRefused(self.ask('distance', [PASSING], BOX_SCENE, '--out', '/none/r.csv'), '/none/r.csv')
-
-    def an_input_is_never_overwritten(self):
-        curves = self.file('curves.csv', PASSING)
-        scene = self.file('scene.yaml', BOX_SCENE)
-        for path in (curves, scene):
-            self.assertRefused(cprox('distance', '--curves', curves, '--scene', scene, '--out', path), path, 'input')
-        with open(curves) as text:
-            self.assertEqual(text.read(), PASSING)
-
-    def a_disk_that_is_full_is_told(self):
-        answer = self.ask('distance', [PASSING] * 1000, BOX_SCENE, '--out', '/dev/full')
-        self.assertEqual(answer.code, 1)
-        self.assertEqual(answer.err.count('\n'), 1, answer.err)
-        self.assertIn('/dev/full', answer.err)
-
-    def out_receives_what_standard_output_would(self):
-        path = self.folder + '/r.csv'
-        answer = self.ask('distance', [PASSING], BOX_SCENE, '--out', path)
-        self.assertEqual((answer.code, answer.out), (0, ''))
-        with open(path) as text:
-            self.assertTrue(text.read().startswith(HEADER + '\npassing,curve,ok,,'))
+    def an_option_that_does_not_apply_is_refused(self):
+        """Every verb with every input and every option: what the verb has is read, the rest is refused by name."""
+        values = {'--curves': 'c', '--against': 'd', '--trajectory': 't', '--scene': 's', '--robot': 'r', '--srdf': 'q', '--state': 'j: 1',
+                  '--certificate': 'f', '--in': 'i', '--provider': 'p', '--parameters': 'k: 1', '--node': '/n', '--epsilon': '1e-3',
+                  '--delta': '1', '--max-nodes': '9', '--threads': '2', '--max-rung': 'hull', '--out': 'o', '--self': None,
+                  '--signed': None, '--per-object': None, '--skipped': None}
+        run = {'--epsilon', '--max-nodes', '--threads', '--out'}
+        rows = [('pairs', ['--in', 'i'], run | {'--max-rung', '--skipped'}),
+                ('constraints', ['--in', 'i', '--provider', 'p'], {'--parameters', '--scene', '--threads', '--out'}),
+                ('send', ['s'], {'--node'})]
+        for verb, own in (('distance', {'--signed'}), ('tolerance', {'--delta'}), ('collision', set())):
+            start = ['--delta', '1'] if verb == 'tolerance' else []
+            rows += [(verb, start + ['--curves', 'c', '--robot', 'r'],
+                      run | own | {'--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-rung', '--skipped', '--against'}),
+                     (verb, start + ['--curves', 'c', '--against', 'd'], run | own | {'--certificate', '--scene', '--robot'}),
+                     (verb, start + ['--trajectory', 't', '--robot', 'r'], run | own - {'--signed'} | {
+                         '--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-rung', '--skipped', '--self'})]
+        for verb, inputs, has in rows:
+            for name, value in values.items():
+                if name in inputs or name in ('--against', '--scene', '--robot') and '--curves' in inputs:
+                    continue
+                with self.subTest(verb=verb, inputs=inputs, option=name):
+                    answer = cprox(verb, *inputs, name, *([] if value is None else [value]))
+                    self.assertEqual(answer.code, 2)
+                    refused = name in answer.err and ('takes no' in answer.err or 'is for' in answer.err or 'needs' in answer.err)
+                    self.assertEqual(refused, name not in has, answer.err)

@@ -72,6 +72,31 @@ TEST_F(Slider, what_a_link_carries_rides_along_and_is_padded_with_it) {
   expectNearest("held", 0.45);
 }
 
+TEST_F(Slider, options_that_do_not_apply_to_a_robot_are_refused_and_named) {
+  const RobotMotion motion = slide(0, 2);
+  const auto expect = [&](const char *word, bool environment, bool self, bool distances, const auto &set) {
+    Question question;
+    set(question);
+    Answer answer = askEnvironment(motion, question, workspace).front();
+    EXPECT_EQ(answer.result.status >= 0, environment) << word << ": " << answer.message;
+    if (!environment) expectContains(answer.message, word);
+    answer = askSelf(motion, question, workspace);
+    EXPECT_EQ(answer.result.status >= 0, self) << word << ": " << answer.message;
+    if (!self) expectContains(answer.message, word);
+    const std::string pairs = test::reasonOf([&] { nearestPairs(motion, false, {}, question, workspace); });
+    const std::string profile = test::reasonOf([&] { clearanceProfile(motion, false, {0, 1}, question, workspace); });
+    EXPECT_EQ(pairs.empty(), distances) << word << ": " << pairs;
+    EXPECT_EQ(profile.empty(), distances) << word << ": " << profile;
+  };
+  expect("nothing", true, true, true, [](Question &) {});
+  expect("signed_distance", false, false, false, [](Question &q) { q.options.signed_distance = true; });
+  expect("links", false, false, false, [](Question &q) { q.links = {"cart"}; });
+  expect("delta", false, false, false, [](Question &q) { q.delta = 0.1; });
+  expect("per_object", true, false, false, [](Question &q) { q.per_object = true; });
+  expect("objects", true, false, true, [](Question &q) { q.objects = {"wall"}; });
+  expect("verb", true, true, false, [](Question &q) { q.verb = Verb::COLLISION; });
+}
+
 TEST_F(Slider, a_curve_meets_what_a_link_carries_where_the_link_is) {
   ASSERT_TRUE(attach(attachment("held", "cart", {shape(ShapeType::SPHERE, {0.1})}, translation(0.4, 0, 0))).empty());
   LinkPoses poses = scene.snapshot()->robot()->linkPoses({{"slide", 1.0}});

@@ -2,7 +2,9 @@
 /* Questions and answers: what is asked about, what comes back, what is refused. */
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
 
 #include "support.h"
 
@@ -470,4 +472,44 @@ TEST(Compile, a_spline_of_100000_points_is_compiled_and_answered) {
   const Answer answer = askOne(scene, {}, d, Question());
   EXPECT_EQ(answer.status, "ok");
   EXPECT_EQ(answer.b, "ball");
+}
+
+/* ---- what does not apply --------------------------------------------------------------------------------------------- */
+
+TEST(Options, what_does_not_apply_to_a_question_is_refused_and_named) {
+  Scene scene;
+  fill(scene);
+  const CurveDescription curve = line({-3, 0, 3}, {3, 0.2, 3});
+  const std::unique_ptr<cprox_certificate, void (*)(cprox_certificate *)> proof(cprox_certificate_create(),
+                                                                                cprox_certificate_free);
+  for (const Verb verb : {Verb::DISTANCE, Verb::TOLERANCE, Verb::COLLISION}) {
+    const auto expect = [&](const char *word, const std::function<void(Question &)> &set, bool applies) {
+      Question question;
+      question.verb = verb;
+      set(question);
+      Workspace workspace;
+      const Answer answer = ask(scene.snapshot(), {}, curve, question, workspace).front();
+      EXPECT_EQ(answer.result.status >= 0, applies) << word << ": " << answer.message;
+      if (!applies) EXPECT_NE(answer.message.find(word), std::string::npos) << answer.message;
+    };
+    expect(
+        "delta", [](Question &q) { q.delta = 0.1; }, verb == Verb::TOLERANCE);
+    expect(
+        "signed_distance", [](Question &q) { q.options.signed_distance = true; }, verb == Verb::DISTANCE);
+    expect(
+        "certificate", [&](Question &q) { q.options.certificate = proof.get(); }, true);
+    expect(
+        "certificate",
+        [&](Question &q) {
+          q.options.certificate = proof.get();
+          q.per_object = true;
+        },
+        false);
+    expect(
+        "relative_epsilon", [](Question &q) { q.options.relative_epsilon = 0.1; }, true);
+    expect(
+        "max_rung", [](Question &q) { q.options.max_rung = CPROX_RUNG_SPHERE; }, true);
+    expect(
+        "per_object", [](Question &q) { q.per_object = true; }, true);
+  }
 }

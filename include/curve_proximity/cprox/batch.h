@@ -34,6 +34,7 @@ CPROX_API void cprox_batch_free(cprox_batch *batch);
  *  movers    at least `last` of them; first <= last.
  *  options   NULL: the default. A certificate is refused: ask the query of one mover for it.
  *  results   results[i] receives what cprox_distance_all() answers for movers[i]: the same guarantees, not the same digits.
+ *            Signed distances are searched one mover at a time.
  *            The others are untouched. nodes and probes are 0 where balls and boxes round the parts settled it.
  *
  *  A mover that is unusable fails alone: its result has the negative status and the interval [0, infinity], all others are

@@ -11,7 +11,8 @@ extern "C" {
 
 /** The k targets that come closest.
  *
- *  nearest   receives min(k, n) results, ascending by upper; target_index says which. Each is as cprox_distance() gives it.
+ *  nearest   receives min(k, n) results, ascending by upper; target_index says which. Each is as cprox_distance() gives it,
+ *            signed where options say so.
  *            Every target that is not among them is at least nearest[last].upper - w away, w = max(epsilon,
  *            relative_epsilon * nearest[last].upper).
  *  count     receives their number.

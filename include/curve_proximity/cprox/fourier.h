@@ -130,7 +130,7 @@ typedef enum cprox_gap_mode {
 typedef struct cprox_gap_options {
   cprox_gap_mode mode;
   double delta;        /**< [m] > 0: the largest clearance that may still be called a collision; chooses the samples.
-                            Default 0: samples must be given */
+                            Default 0: samples must be given. Refused together with samples */
   uint32_t samples;    /**< n, odd, 3 … 1025: samples an axis; 0: the fewest for delta. Default 0 */
   double period;       /**< [m] L, or 0 for the least that keeps images apart (default); a smaller one is refused */
   size_t memory_limit; /**< bytes a gap may hold; beyond it CPROX_INVALID and a sentence with n and the bytes it needs.

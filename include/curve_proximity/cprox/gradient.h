@@ -27,6 +27,7 @@ typedef struct cprox_gradient {
 
 /** The gradient of cprox_distance(mover, target, options), given its result.
  *
+ *  options   of that very call, less its certificate, which is refused here.
  *  result    of that very call; of a call with many targets, `target` is the one that result->target_index names.
  *
  *  By Danskin's theorem the derivatives are those of the distance at the minimiser alone, if there is only one. So the whole

@@ -80,7 +80,22 @@ typedef enum cprox_rung {
 /** "none", "sphere", "hull", "mesh". Convex bodies are their own hull. */
 CPROX_API const char *cprox_rung_name(cprox_rung rung);
 
-/** How a query is to be answered. Start from cprox_options_default(). */
+/** How a query is to be answered. Start from cprox_options_default().
+ *
+ *  Every query has epsilon and max_nodes. An option that is set and does not apply to the query is refused: CPROX_INVALID, and the
+ *  reason names the option. What applies:
+ *
+ *    query                                     relative_epsilon  stop  max_rung  certificate  signed_distance
+ *    distance                                  yes               yes   yes       yes          yes, not for robots
+ *    tolerance, collision                      yes               yes   yes       yes          no
+ *    first contact                             no                yes   yes       no           no
+ *    nearest, within, profile, gradient        yes               yes   yes       no           yes, not for robots
+ *    nearest pairs of a robot                  yes               yes   yes       no           no
+ *    sets and batches                          as above, but no certificate
+ *    pair                                      yes               yes   yes       no           yes: always signed
+ *    translating distance                      yes               no    no        no           no
+ *    translating contact, growth distance      no                yes   no        no           no
+ *    certificate for an answer                 yes               no    yes       no           no */
 typedef struct cprox_options {
   double epsilon;           /**< [m] width of the interval asked for, >= 0; 0 asks for the narrowest one that double
                                 arithmetic allows, and the status says precision. Default 1e-6 */
@@ -94,7 +109,8 @@ typedef struct cprox_options {
       signed_distance; /**< distance: where they overlap, the answer is minus the depth of the deepest overlap along the curve:
                              the shortest way by which the mover, there, could leave the target (a part of it, for compounds).
                              Curves have no inside beyond their radius. Meshes, points and octrees cannot tell: CPROX_OVERLAP,
-                             and lower only bounds it. Default false: distances are 0 at least */
+                             and lower only bounds it. Refused for robots: how deep they overlap is not measured.
+                             Default false: distances are 0 at least */
   cprox_rung
       max_rung; /**< the finest model of targets that may answer, CPROX_RUNG_MESH (or NONE): any. HULL: ladders by their hulls.
                           SPHERE: all bodies by their bounding balls, but for points, octrees and halfspaces, which stay what they
@@ -187,7 +203,7 @@ CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_target
  *
  *  A ball round the target that is not to be entered is its padding. Returns as cprox_distance(); after CPROX_BUDGET,
  *  CPROX_STOPPED and CPROX_PRECISION t_free is true, but may lie before the place where the distance is epsilon.
- *  relative_epsilon is not used. Source: doc/first-contact.md. */
+ *  relative_epsilon is refused. Source: doc/first-contact.md. */
 CPROX_API cprox_status cprox_first_contact(cprox_mover mover, cprox_target target, const cprox_options *options,
                                            cprox_workspace *workspace, cprox_result *result);
 

@@ -16,9 +16,16 @@ static void leave_certificate(const question *q, const cprox_result *answer) {
   certify(&q->mover, q->targets, q->n, delta, answer, &q->options, q->workspace, q->options.certificate);
 }
 
+static arguments_query query_of(const question *q) {
+  const unsigned has = ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE;
+  if (!question_wants_verdict(q)) return (arguments_query){"distance", has | ARGUMENTS_SIGNED};
+  return (arguments_query){q->farther_is_yes ? "tolerance" : "collision", has};
+}
+
 static cprox_status ask_all(question *q, cprox_result *nearest, cprox_result *each) {
   workspace_clear(q->workspace);
-  const cprox_status checked = arguments_check_query(&q->mover, q->targets, q->n, &q->options, q->workspace);
+  const cprox_status checked =
+      arguments_check_query(&q->mover, q->targets, q->n, &q->options, query_of(q), q->workspace);
   if (checked != CPROX_OK) return checked;
   question_ask_whole(q);
   if (!each) return question_answer(q, 0, q->n, INFINITY, nearest);

@@ -33,8 +33,10 @@ cprox_status cprox_nearest(cprox_mover mover, const cprox_target *targets, size_
                            const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                            size_t *count) {
   question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  q.is_signed = q.options.signed_distance;
   workspace_clear(workspace);
-  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, workspace);
+  const arguments_query asked = {"the nearest targets", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
+  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
   question_ask_whole(&q);
@@ -62,8 +64,10 @@ cprox_status cprox_within(cprox_mover mover, const cprox_target *targets, size_t
   const cprox_status usable = arguments_check_delta(delta, workspace);
   if (usable != CPROX_OK) return usable;
   question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  q.is_signed = q.options.signed_distance;
   workspace_clear(workspace);
-  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, workspace);
+  const arguments_query asked = {"the targets within a distance", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
+  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   question_ask_whole(&q);
 

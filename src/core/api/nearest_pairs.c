@@ -65,7 +65,8 @@ cprox_status cprox_nearest_pairs(cprox_mover mover, const cprox_target *targets,
                                  size_t *count) {
   question q = question_create(mover, targets, n, -1.0, false, options, workspace);
   workspace_clear(workspace);
-  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, workspace);
+  const arguments_query asked = {"the nearest pairs", ARGUMENTS_SEARCH};
+  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   if (!mover.motion)
     return workspace_fail(workspace, CPROX_INVALID, "pairs are those of a robot's motion, and the mover is none");

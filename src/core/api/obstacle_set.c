@@ -15,7 +15,7 @@ static bool boxes_hold(const question *q) {
   return q->options.max_rung == CPROX_RUNG_MESH;
 }
 
-static cprox_status begin(const cprox_set *set, question *q) {
+static cprox_status begin(const cprox_set *set, question *q, arguments_query asked) {
   cprox_workspace *workspace = q->workspace;
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
@@ -24,10 +24,8 @@ static cprox_status begin(const cprox_set *set, question *q) {
   const bool robot = q->mover.motion && (set->has_curves || set->has_solids || q->mover.self || q->mover.pairs);
   const bool all = set->has_clock || (q->mover.body && set->has_elements) || robot;
   const cprox_status checked =
-      arguments_check_query(&q->mover, all ? set->targets : NULL, all ? set->n : 0, &q->options, workspace);
+      arguments_check_query(&q->mover, all ? set->targets : NULL, all ? set->n : 0, &q->options, asked, workspace);
   if (checked != CPROX_OK) return checked;
-  if (q->options.certificate)
-    return workspace_fail(workspace, CPROX_INVALID, "a set leaves no certificates: ask about its targets for that");
   q->targets = set->targets;
   q->n = set->n;
   if (q->mover.motion && !q->mover.pairs && boxes_hold(q)) q->set = set;
@@ -39,8 +37,9 @@ static cprox_status out_of_memory(const question *q) {
   return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
 }
 
-static cprox_status answer(const cprox_set *set, question *q, cprox_result *result) {
-  const cprox_status begun = begin(set, q);
+static cprox_status answer(const cprox_set *set, question *q, const char *name, cprox_result *result) {
+  const unsigned depths = question_wants_verdict(q) ? 0 : ARGUMENTS_SIGNED;
+  const cprox_status begun = begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | depths});
   if (begun != CPROX_OK) return begun;
   if (q->mover.motion || !boxes_hold(q)) return question_answer(q, 0, q->n, INFINITY, result);
   set_walk walk;
@@ -71,7 +70,7 @@ cprox_status cprox_set_distance(const cprox_set *set, cprox_mover mover, const c
                                 cprox_workspace *workspace, cprox_result *result) {
   question q = question_create(mover, NULL, 0, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
-  return answer(set, &q, result);
+  return answer(set, &q, "the distance to a set", result);
 }
 
 cprox_status cprox_set_tolerance(const cprox_set *set, cprox_mover mover, double delta, const cprox_options *options,
@@ -79,19 +78,20 @@ cprox_status cprox_set_tolerance(const cprox_set *set, cprox_mover mover, double
   const cprox_status checked = arguments_check_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
   question q = question_create(mover, NULL, 0, delta, true, options, workspace);
-  return answer(set, &q, result);
+  return answer(set, &q, "tolerance of a set", result);
 }
 
 cprox_status cprox_set_collision(const cprox_set *set, cprox_mover mover, const cprox_options *options,
                                  cprox_workspace *workspace, cprox_result *result) {
   question q = question_create(mover, NULL, 0, 0.0, false, options, workspace);
-  return answer(set, &q, result);
+  return answer(set, &q, "collision with a set", result);
 }
 
 cprox_status cprox_set_first_contact(const cprox_set *set, cprox_mover mover, const cprox_options *options,
                                      cprox_workspace *workspace, cprox_result *result) {
   question q = question_create(mover, NULL, 0, 0.0, false, options, workspace);
-  const cprox_status begun = begin(set, &q);
+  const cprox_status begun =
+      begin(set, &q, (arguments_query){"first contact with a set", ARGUMENTS_STOP | ARGUMENTS_RUNG});
   if (begun != CPROX_OK) return begun;
   if (q.set) return robot_first_contact(&q, result);
   if (q.mover.motion || !boxes_hold(&q))
@@ -114,7 +114,9 @@ cprox_status cprox_set_first_contact(const cprox_set *set, cprox_mover mover, co
 cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k, const cprox_options *options,
                                cprox_workspace *workspace, cprox_result *nearest, size_t *count) {
   question q = question_create(mover, NULL, 0, -1.0, false, options, workspace);
-  const cprox_status begun = begin(set, &q);
+  q.is_signed = q.options.signed_distance;
+  const arguments_query asked = {"the nearest targets of a set", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
+  const cprox_status begun = begin(set, &q, asked);
   if (begun != CPROX_OK) return begun;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
   if (q.mover.motion || !boxes_hold(&q))

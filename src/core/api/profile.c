@@ -101,7 +101,8 @@ cprox_status cprox_profile(cprox_mover mover, const cprox_target *targets, size_
   question q = question_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   workspace_clear(workspace);
-  cprox_status status = arguments_check_query(&mover, targets, n, &q.options, workspace);
+  const arguments_query asked = {"a clearance profile", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
+  cprox_status status = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
   if (status != CPROX_OK) return status;
   question_ask_whole(&q);
   status = check_breaks(&q, breaks, n_stretches, workspace);

@@ -9,7 +9,8 @@ cprox_status cprox_first_contact_all(cprox_mover mover, const cprox_target *targ
                                      const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   question q = question_create(mover, targets, n, 0.0, false, options, workspace);
   workspace_clear(workspace);
-  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, workspace);
+  const arguments_query asked = {"first contact", ARGUMENTS_STOP | ARGUMENTS_RUNG};
+  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   question_ask_whole(&q);
   if (mover.motion) return robot_first_contact(&q, result);

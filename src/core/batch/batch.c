@@ -82,7 +82,8 @@ static cprox_status answer_fast(batch_run *run, cprox_result *r) {
 /* The short way is for points and balls along curves with control points. */
 static bool may_be_fast(const batch_run *run, const cprox_mover *mover) {
   return mover->curve && !mover->curve->arcs && !mover->body && !mover->motion && mover->radius >= 0.0 &&
-         isfinite(mover->radius) && !run->batch->on_clock && run->q.options.max_rung == CPROX_RUNG_MESH;
+         isfinite(mover->radius) && !run->batch->on_clock && run->q.options.max_rung == CPROX_RUNG_MESH &&
+         !run->q.options.signed_distance && !mover->pairs && mover->n_pairs == 0 && !mover->self;
 }
 
 static cprox_status answer_one(batch_run *run, const cprox_mover *mover, cprox_result *r) {
@@ -109,9 +110,8 @@ static cprox_status check_call(const batch_run *run, const cprox_mover *movers, 
     return workspace_fail(workspace, CPROX_INVALID, "the range begins at mover %zu and ends at %zu", first, last);
   if (first < last && !movers) return workspace_fail(workspace, CPROX_INVALID, "movers is NULL");
   if (first < last && !results) return workspace_fail(workspace, CPROX_INVALID, "results is NULL");
-  if (run->q.options.certificate)
-    return workspace_fail(workspace, CPROX_INVALID, "a batch leaves no certificates: ask about one mover for that");
-  return arguments_check_options(&run->q.options, workspace);
+  const unsigned depths = question_wants_verdict(&run->q) ? 0 : ARGUMENTS_SIGNED;
+  return arguments_check_options(&run->q.options, (arguments_query){"a batch", ARGUMENTS_SEARCH | depths}, workspace);
 }
 
 static bool reserve(batch_run *run) {

@@ -87,7 +87,8 @@ size_t cprox_mover_describe(const cprox_mover *mover, const cprox_target *target
                             cprox_workspace *workspace, char *out, size_t size) {
   question q = question_create(*mover, targets, n, -1.0, false, NULL, workspace);
   if (!mover->motion || !certify_knows_robot(mover->motion->robot) ||
-      arguments_check_query(mover, targets, n, &q.options, workspace) != CPROX_OK)
+      arguments_check_query(mover, targets, n, &q.options, (arguments_query){"a description", 0}, workspace) !=
+          CPROX_OK)
     return 0;
   robot_scene scene;
   if (!robot_scene_begin(&scene, &q, 0, n)) return 0;

@@ -34,6 +34,7 @@ typedef struct pair_feature {
 typedef struct pair_answer {
   bool fault;           /* a support callback misbehaved: nothing else is set */
   bool exhausted;       /* max_steps were not enough */
+  bool stopped;         /* the caller's stop function ended a search through elements or parts */
   bool overlap;         /* the cores overlap, proven */
   bool measured;        /* then: lower and upper are those of minus the depth; else upper is 0 */
   double lower, upper;  /* of the signed distance, margins and rounding included */

@@ -33,7 +33,8 @@ cprox_status cprox_gap_cascade_create(const cprox_solid *a, const cprox_solid *b
   cprox_gap_cascade *made = calloc(1, sizeof *made);
   if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a cascade");
   const uint32_t finest = 2 * (uint32_t)plan.N + 1;
-  used.period = 0.0; /* each level has its own */
+  used.period = 0.0; /* each level has its own, */
+  used.delta = 0.0;  /* and is told its samples */
   for (uint32_t n = 9; status == CPROX_OK && n < finest; n = 2 * n - 1) {
     used.samples = n;
     status = cprox_gap_create(a, b, &used, workspace, &made->level[made->n]);

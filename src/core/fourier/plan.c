@@ -150,6 +150,9 @@ static cprox_status check_options(const cprox_solid *a, const cprox_solid *b, co
                           2 * KERNEL_MOST_N + 1);
   if (!(o->period >= 0.0) || o->period > SOLID_LARGEST)
     return workspace_fail(workspace, CPROX_INVALID, "period is %g, must be > 0, or 0 for the least", o->period);
+  if (o->samples != 0 && o->delta != 0.0)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "delta is %g and samples is %u: give one of the two, delta chooses n", o->delta, o->samples);
   if (o->samples != 0) return CPROX_OK;
   if (!(o->delta > 0.0))
     return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be > 0 (or give samples)", o->delta);

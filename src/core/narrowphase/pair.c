@@ -239,6 +239,7 @@ typedef struct pair_task {
   const cprox_target *a, *b;
   const pair_goal *goal;
   cprox_rung finest;
+  const cprox_options *options;
   cprox_workspace *workspace;
 } pair_task;
 
@@ -267,8 +268,11 @@ static void pair_join(pair_reply *all, const pair_reply *one) {
   const double lower = fmin(all->answer.lower, one->answer.lower);
   const uint32_t steps = all->answer.steps + one->answer.steps, supports = all->answer.supports + one->answer.supports;
   const cprox_rung rung = all->rung > one->rung ? all->rung : one->rung;
+  const bool exhausted = all->answer.exhausted || one->answer.exhausted;
+  const bool stopped = all->answer.stopped || one->answer.stopped;
   if (one->answer.upper < all->answer.upper) *all = *one;
   all->answer.lower = lower, all->answer.steps = steps, all->answer.supports = supports, all->rung = rung;
+  all->answer.exhausted = exhausted, all->answer.stopped = stopped;
 }
 
 /* Whether the hulls of two parts are farther apart than the best so far: then they need not be looked into. */
@@ -285,12 +289,28 @@ static cprox_status pair_ends_at_hulls(const pair_task *task, size_t i, size_t j
   return CPROX_OK;
 }
 
-/* The nearest of all pairs of parts; its lower is the least of all their lower bounds. */
+/* No two parts overlap deeper than the balls round both bodies could. */
+static double pair_deepest(const pair_task *task) {
+  const double balls = task->a->body->ball_radius + task->b->body->ball_radius;
+  return ROUND_UP * (balls + task->a->padding + task->b->padding);
+}
+
+static bool pair_is_stopped(const pair_task *task) {
+  return task->options->stop && task->options->stop(task->options->stop_user);
+}
+
+/* The nearest of all pairs of parts; its lower is the least of all their lower bounds. Stopped: the nearest of those that were
+ * looked at. */
 static cprox_status pair_over_parts(const pair_task *task, pair_reply *best) {
   *best = (pair_reply){.answer = {.lower = INFINITY, .upper = INFINITY}};
   for (size_t i = 0; i < pair_count_parts(task->a->body); i++) {
     for (size_t j = 0; j < pair_count_parts(task->b->body); j++) {
       bool ends;
+      if (i + j > 0 && (best->answer.stopped || pair_is_stopped(task))) {
+        best->answer.stopped = true;
+        best->answer.lower = fmin(best->answer.lower, -pair_deepest(task));
+        return CPROX_OK;
+      }
       cprox_status status = pair_ends_at_hulls(task, i, j, best, &ends);
       if (status) return status;
       if (ends) continue;
@@ -306,6 +326,7 @@ static cprox_status pair_status(const pair_answer *answer, const cprox_options *
   const double width = answer->upper - answer->lower;
   if (answer->overlap && !answer->measured) return CPROX_OVERLAP;
   if (width <= fmax(options->epsilon, options->relative_epsilon * fabs(answer->upper))) return CPROX_OK;
+  if (answer->stopped) return CPROX_STOPPED;
   return answer->exhausted ? CPROX_BUDGET : CPROX_PRECISION;
 }
 
@@ -315,8 +336,9 @@ cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *opt
   const cprox_options asked = options ? *options : cprox_options_default();
   cprox_status status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
-  if ((status = arguments_check_options(&asked, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
-      (status = pair_check_target("b", &b, workspace)))
+  const arguments_query query = {"a pair", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED}; /* depths are always measured */
+  if ((status = arguments_check_options(&asked, query, workspace)) ||
+      (status = pair_check_target("a", &a, workspace)) || (status = pair_check_target("b", &b, workspace)))
     return status;
 
   const pair_goal goal = {.epsilon = asked.epsilon,
@@ -325,7 +347,7 @@ cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *opt
                           .wants_depth = true};
   pair_reply best;
   const cprox_rung finest = asked.max_rung == CPROX_RUNG_NONE ? CPROX_RUNG_MESH : asked.max_rung;
-  const pair_task task = {.a = &a, .b = &b, .goal = &goal, .finest = finest, .workspace = workspace};
+  const pair_task task = {.a = &a, .b = &b, .goal = &goal, .finest = finest, .options = &asked, .workspace = workspace};
   if ((status = pair_over_parts(&task, &best))) return status;
 
   const pair_answer *answer = &best.answer;

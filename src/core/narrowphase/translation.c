@@ -29,10 +29,11 @@ static cprox_status check_body(const char *name, const cprox_target *target, boo
 }
 
 static cprox_status check_motion(const cprox_translating *a, const cprox_translating *b, double duration,
-                                 bool implicit_only, const cprox_options *options, cprox_workspace *workspace) {
+                                 bool implicit_only, const cprox_options *options, arguments_query asked,
+                                 cprox_workspace *workspace) {
   cprox_status status;
   if (!workspace) return CPROX_INVALID;
-  if ((status = arguments_check_options(options, workspace)) ||
+  if ((status = arguments_check_options(options, asked, workspace)) ||
       (status = arguments_check_target(&a->from, 0, workspace)) ||
       (status = arguments_check_target(&b->from, 1, workspace)) ||
       (status = check_body("a", &a->from, implicit_only, workspace)) ||
@@ -57,7 +58,8 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
                                         cprox_result *result) {
   workspace_clear(workspace);
   const cprox_options asked = options ? *options : cprox_options_default();
-  cprox_status status = check_motion(&a, &b, duration, true, &asked, workspace);
+  const arguments_query query = {"the distance of bodies that translate", ARGUMENTS_RELATIVE};
+  cprox_status status = check_motion(&a, &b, duration, true, &asked, query, workspace);
   if (status) return status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
 
@@ -127,6 +129,7 @@ static cprox_target approach_at(const approach *p, double t) {
 static cprox_status approach_run(approach *p, const cprox_options *options, cprox_workspace *workspace) {
   cprox_options asked = *options;
   for (; p->pairs < TRANSLATION_STEPS; p->pairs++) {
+    if (options->stop && p->pairs > 0 && options->stop(options->stop_user)) return CPROX_STOPPED;
     /* far away a rough answer steps as far as a fine one */
     asked.epsilon = 0.25 * options->epsilon;
     asked.relative_epsilon = 1e-3;
@@ -159,7 +162,8 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   workspace_clear(workspace);
   const cprox_options asked = options ? *options : cprox_options_default();
-  cprox_status status = check_motion(&a, &b, duration, false, &asked, workspace);
+  const arguments_query query = {"contact of bodies that translate", ARGUMENTS_STOP};
+  cprox_status status = check_motion(&a, &b, duration, false, &asked, query, workspace);
   if (status) return status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
 
@@ -187,7 +191,8 @@ cprox_status cprox_growth_distance(cprox_target a, cprox_target b, const cprox_o
   workspace_clear(workspace);
   const cprox_options asked = options ? *options : cprox_options_default();
   const cprox_translating still_a = {.from = a}, still_b = {.from = b};
-  cprox_status status = check_motion(&still_a, &still_b, 1.0, true, &asked, workspace);
+  const arguments_query query = {"the growth distance", ARGUMENTS_STOP};
+  cprox_status status = check_motion(&still_a, &still_b, 1.0, true, &asked, query, workspace);
   if (status) return status;
   if (!growth) return workspace_fail(workspace, CPROX_INVALID, "growth is NULL: nowhere to put the answer");
   if (a.padding > 0.0 || b.padding > 0.0)
@@ -227,7 +232,7 @@ cprox_status cprox_growth_distance(cprox_target a, cprox_target b, const cprox_o
     if (r.upper <= 0.0) growth->upper = 1.0 / (s - rounding);
   }
   growth->pairs = p.pairs + 1;
-  growth->status =
-      growth->upper - growth->lower <= asked.epsilon * fmax(growth->upper, 1e-300) ? CPROX_OK : CPROX_PRECISION;
+  const bool narrow = growth->upper - growth->lower <= asked.epsilon * fmax(growth->upper, 1e-300);
+  growth->status = narrow ? CPROX_OK : status == CPROX_STOPPED ? CPROX_STOPPED : CPROX_PRECISION;
   return finish(growth->status, workspace);
 }

@@ -11,7 +11,30 @@
 #include "problem/level_of_detail.h"
 #include "shape/body.h"
 
-cprox_status arguments_check_options(const cprox_options *options, cprox_workspace *workspace) {
+/* An option that is set and that the query does not have is refused: the answer would not be what was asked for. */
+static cprox_status check_applies(const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
+  const struct {
+    arguments_option option;
+    bool set;
+    const char *name, *hint;
+  } all[] = {
+      {ARGUMENTS_SIGNED, options->signed_distance, "signed_distance", "it is an option of distance queries"},
+      {ARGUMENTS_CERTIFICATE, options->certificate != NULL, "certificate",
+       "ask about one mover by distance, tolerance or collision for that"},
+      {ARGUMENTS_STOP, options->stop != NULL, "stop", "it is short and does not poll"},
+      {ARGUMENTS_RELATIVE, options->relative_epsilon != 0.0, "relative_epsilon", "set epsilon alone"},
+      {ARGUMENTS_RUNG, options->max_rung != CPROX_RUNG_NONE && options->max_rung != CPROX_RUNG_MESH, "max_rung",
+       "bodies answer as they are"},
+  };
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    if (all[i].set && !(asked.has & all[i].option))
+      return workspace_fail(workspace, CPROX_INVALID, "%s does not apply to %s: %s", all[i].name, asked.name,
+                            all[i].hint);
+  }
+  return CPROX_OK;
+}
+
+cprox_status arguments_check_options(const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   if (!(options->epsilon >= 0.0))
     return workspace_fail(workspace, CPROX_INVALID, "epsilon is %g, must be 0 or more", options->epsilon);
   if (!(options->relative_epsilon >= 0.0))
@@ -22,7 +45,7 @@ cprox_status arguments_check_options(const cprox_options *options, cprox_workspa
   if ((int)options->max_rung < CPROX_RUNG_NONE || options->max_rung > CPROX_RUNG_MESH)
     return workspace_fail(workspace, CPROX_INVALID, "max_rung is %d, must be sphere, hull or mesh",
                           (int)options->max_rung);
-  return CPROX_OK;
+  return check_applies(options, asked, workspace);
 }
 
 cprox_status arguments_check_delta(double delta, cprox_workspace *workspace) {
@@ -122,13 +145,20 @@ static cprox_status check_robot(const cprox_mover *mover, const cprox_target *ta
 }
 
 cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target *targets, size_t n,
-                                   const cprox_options *options, cprox_workspace *workspace) {
+                                   const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   if (!workspace) return CPROX_INVALID;
   if (!mover->curve && !mover->motion) return workspace_fail(workspace, CPROX_INVALID, "the mover has no curve");
   if (!(mover->radius >= 0.0 && isfinite(mover->radius)))
     return workspace_fail(workspace, CPROX_INVALID, "radius is %g, must be finite and 0 or more", mover->radius);
-  const cprox_status checked = arguments_check_options(options, workspace);
+  const cprox_status checked = arguments_check_options(options, asked, workspace);
   if (checked != CPROX_OK) return checked;
+  if (!mover->motion && (mover->pairs || mover->n_pairs > 0 || mover->self))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "the mover has %s, but no motion: that is for robots (cprox_robot_along, cprox_robot_self)",
+                          mover->self ? "self" : "pairs");
+  if (mover->motion && options->signed_distance)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "signed_distance does not apply to robots: how deep they overlap is not measured");
   const cprox_status carried = check_carried(mover->body, options->max_rung, workspace);
   if (carried != CPROX_OK) return carried;
   const cprox_status standing = arguments_check_targets(targets, n, workspace);

@@ -5,12 +5,28 @@
 
 #include "curve_proximity/cprox/query.h"
 
+/* The options that not every query has. epsilon and max_nodes go with all of them. */
+typedef enum arguments_option {
+  ARGUMENTS_SIGNED = 1,      /* signed_distance */
+  ARGUMENTS_CERTIFICATE = 2, /* certificate */
+  ARGUMENTS_STOP = 4,        /* stop */
+  ARGUMENTS_RELATIVE = 8,    /* relative_epsilon */
+  ARGUMENTS_RUNG = 16,       /* max_rung */
+  ARGUMENTS_SEARCH = ARGUMENTS_STOP | ARGUMENTS_RELATIVE | ARGUMENTS_RUNG
+} arguments_option;
+
+/* A query as its messages call it, and those of the options that it has: the others are refused where they are set. */
+typedef struct arguments_query {
+  const char *name;
+  unsigned has;
+} arguments_query;
+
 /* CPROX_OK, or CPROX_INVALID with a sentence that names the argument. */
-cprox_status arguments_check_options(const cprox_options *options, cprox_workspace *workspace);
+cprox_status arguments_check_options(const cprox_options *options, arguments_query asked, cprox_workspace *workspace);
 cprox_status arguments_check_delta(double delta, cprox_workspace *workspace);
 cprox_status arguments_check_target(const cprox_target *target, size_t index, cprox_workspace *workspace);
 cprox_status arguments_check_targets(const cprox_target *targets, size_t n, cprox_workspace *workspace);
 cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target *targets, size_t n,
-                                   const cprox_options *options, cprox_workspace *workspace);
+                                   const cprox_options *options, arguments_query asked, cprox_workspace *workspace);
 
 #endif

@@ -307,7 +307,8 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, con
   question q = question_create(mover, &target, 1, -1.0, false, options, workspace);
   workspace_clear(workspace);
   if (mover.motion) return workspace_fail(workspace, CPROX_INVALID, "no gradient is known along a robot's motion");
-  const cprox_status checked = arguments_check_query(&mover, &target, 1, &q.options, workspace);
+  const arguments_query asked = {"a gradient", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
+  const cprox_status checked = arguments_check_query(&mover, &target, 1, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   if (!result || !gradient)
     return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", result ? "gradient" : "result");
@@ -328,7 +329,6 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, con
 
   /* the whole curve is searched as narrowly as other minimisers are to be told apart */
   q.is_signed = q.options.signed_distance;
-  q.options.certificate = NULL;
   const curve_capsule *all = &mover.curve->whole;
   const double length = vec_norm(vec_sub(all->b, all->a)) + 2.0 * all->radius;
   q.options.epsilon = fmin(q.options.epsilon, APART * length);

@@ -1,0 +1,554 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Every option of every query with every kind of mover and target: it has its effect, or the call is refused and says so. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "curve_proximity/cprox.h"
+#include "support/builders.h"
+#include "support/meshes.h"
+
+/* ---- the options -------------------------------------------------------------------------------------------------------- */
+
+typedef enum option { NOTHING, SIGNED, CERTIFICATE, STOP, RELATIVE, RUNG, N_OPTIONS } option;
+
+static const char *const OPTION_NAMES[N_OPTIONS] = {"nothing", "signed_distance",  "certificate",
+                                                    "stop",    "relative_epsilon", "max_rung"};
+
+static size_t stop_calls;
+
+static bool count_and_go_on(void *user) {
+  (void)user;
+  stop_calls++;
+  return false;
+}
+
+static cprox_certificate *proof;
+
+static cprox_options with(option o) {
+  cprox_options options = cprox_options_default();
+  if (o == SIGNED) options.signed_distance = true;
+  if (o == CERTIFICATE) options.certificate = proof;
+  if (o == STOP) options.stop = count_and_go_on;
+  if (o == RELATIVE) options.relative_epsilon = 0.5;
+  if (o == RUNG) options.max_rung = CPROX_RUNG_SPHERE;
+  return options;
+}
+
+/* ---- the movers and targets --------------------------------------------------------------------------------------------- */
+
+typedef enum mover_kind { POINT, TUBE, BODY, ROBOT, ROBOT_SELF, N_MOVERS } mover_kind;
+typedef enum target_kind { BALL, BOX, PLANE, QUADRIC, MESH, CLOUD, LINE, CLOCK, CLOCK_BODY, N_TARGETS } target_kind;
+
+static const char *const MOVER_NAMES[N_MOVERS] = {"point", "tube", "body", "robot", "robot itself"};
+static const char *const TARGET_NAMES[N_TARGETS] = {"ball",  "box",  "halfspace", "superquadric", "mesh",
+                                                    "cloud", "line", "on clock",  "body on clock"};
+
+typedef struct world {
+  cprox_curve *way, *line;
+  cprox_body *ball, *box, *plane, *quadric, *mesh, *cloud;
+  cprox_robot *robot;
+  cprox_motion *motion;
+} world;
+
+static cprox_robot *make_robot(const cprox_body *body) {
+  /* two sliding links side by side on a third, so that pairs of its own are asked about */
+  const cprox_link links[] = {
+      {.parent = -1,
+       .type = CPROX_JOINT_PRISMATIC,
+       .origin = cprox_pose_identity(),
+       .axis = {1, 0, 0},
+       .variable = 0,
+       .multiplier = 1},
+      {.parent = 0,
+       .type = CPROX_JOINT_PRISMATIC,
+       .origin = cprox_pose_identity(),
+       .axis = {0, 1, 0},
+       .variable = 1,
+       .multiplier = 1},
+      {.parent = 1,
+       .type = CPROX_JOINT_PRISMATIC,
+       .origin = cprox_pose_identity(),
+       .axis = {0, 0, 1},
+       .variable = 1,
+       .multiplier = 1},
+  };
+  const cprox_link_geometry geometries[] = {{.body = body, .pose = cprox_pose_identity(), .link = 0},
+                                            {.body = body, .pose = cprox_pose_identity(), .link = 2}};
+  cprox_robot *robot = NULL;
+  assert_int_equal(cprox_robot_create(links, 3, geometries, 2, 2, ws, &robot), CPROX_OK);
+  return robot;
+}
+
+static world make_world(void) {
+  world w = {.way = bezier((vec3[]){{-1.1, 0.02, 0.01}, {0.1, -0.1, 0.03}, {1.2, 0.05, -0.02}}, 3),
+             .line = bezier((vec3[]){{0.05, -1, 0.3}, {0.02, 1, 0.2}}, 2)};
+  test_mesh torus = mesh_torus(12, 9, 0.5, 0.2, 0.0);
+  w.mesh = mesh_body(&torus, CPROX_MESH_SURFACE, ws);
+  assert_int_equal(cprox_body_create_points(torus.vertices, torus.n, 0.01, SIZE_MAX, ws, &w.cloud), CPROX_OK);
+  mesh_free(&torus);
+  assert_int_equal(cprox_body_create_sphere(0.5, ws, &w.ball), CPROX_OK);
+  assert_int_equal(cprox_body_create_box((vec3){0.5, 0.4, 0.3}, ws, &w.box), CPROX_OK);
+  assert_int_equal(cprox_body_create_halfspace((vec3){0, 0, 1}, -0.3, ws, &w.plane), CPROX_OK);
+  assert_int_equal(cprox_body_create_superquadric((vec3){0.5, 0.4, 0.3}, (cprox_vec3){4, 2, 3}, ws, &w.quadric),
+                   CPROX_OK);
+  w.robot = make_robot(w.box);
+  const cprox_waypoint points[] = {{.time = 0, .positions = (double[]){-1, 0.1}},
+                                   {.time = 2, .positions = (double[]){1, 2}}};
+  assert_int_equal(
+      cprox_motion_create_waypoints(w.robot, (int32_t[]){0, 1}, 2, points, 2, CPROX_LINEAR, NULL, ws, &w.motion),
+      CPROX_OK);
+  return w;
+}
+
+static void free_world(world *w) {
+  cprox_motion_free(w->motion);
+  cprox_robot_free(w->robot);
+  cprox_body *const bodies[] = {w->ball, w->box, w->plane, w->quadric, w->mesh, w->cloud};
+  for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) cprox_body_free(bodies[i]);
+  cprox_curve_free(w->way);
+  cprox_curve_free(w->line);
+}
+
+static cprox_mover mover_of(const world *w, mover_kind kind) {
+  switch (kind) {
+    case TUBE: return cprox_tube_along(w->way, 0.05);
+    case BODY: return cprox_body_along(w->box, w->way);
+    case ROBOT: return cprox_robot_along(w->motion, NULL, 0);
+    case ROBOT_SELF: return cprox_robot_self(w->motion, NULL, 0);
+    default: return cprox_point_along(w->way);
+  }
+}
+
+static cprox_target target_of(const world *w, target_kind kind, double height) {
+  const cprox_body *const bodies[] = {w->ball, w->box, w->plane, w->quadric, w->mesh, w->cloud};
+  cprox_target t = kind < LINE ? cprox_at(bodies[kind], cprox_pose_identity()) : cprox_curve_target(w->line, 0.05);
+  if (kind == CLOCK) t = cprox_on_clock(cprox_tube_along(w->line, 0.05));
+  if (kind == CLOCK_BODY) t = cprox_on_clock(cprox_body_along(w->box, w->line));
+  t.pose.position.z = -height;
+  return t;
+}
+
+/* ---- the queries -------------------------------------------------------------------------------------------------------- */
+
+/* What a query leaves behind: all that it writes, and the interval in it. */
+typedef struct reply {
+  cprox_result result[4];
+  cprox_stretch stretch;
+  cprox_gradient gradient;
+  cprox_growth growth;
+  size_t count;
+  double lower, upper; /* set by hand */
+  cprox_rung rung;
+} reply;
+
+typedef cprox_status (*query)(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r);
+
+static size_t targets_of(const cprox_mover *m) {
+  return m->self ? 0 : 1;
+}
+
+static cprox_status distance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return cprox_distance_all(m, &t, targets_of(&m), o, ws, r->result, NULL);
+}
+
+static cprox_status tolerance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return cprox_tolerance_all(m, &t, targets_of(&m), 0.1, o, ws, r->result, NULL);
+}
+
+static cprox_status collision(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return cprox_collision_all(m, &t, targets_of(&m), o, ws, r->result, NULL);
+}
+
+static cprox_status first_contact(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return cprox_first_contact_all(m, &t, targets_of(&m), o, ws, r->result);
+}
+
+static cprox_status nearest(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return cprox_nearest(m, &t, targets_of(&m), 1, o, ws, r->result, &r->count);
+}
+
+static cprox_status within(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return cprox_within(m, &t, targets_of(&m), 9.0, o, ws, r->result, &r->count);
+}
+
+static cprox_status nearest_pairs(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return cprox_nearest_pairs(m, &t, targets_of(&m), 1, 9.0, o, ws, r->result, &r->count);
+}
+
+static cprox_status profile(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  const double breaks[] = {0.0, 1.0};
+  const cprox_status status = cprox_profile(m, &t, targets_of(&m), breaks, 1, o, ws, &r->stretch);
+  if (status >= 0) r->result->lower = r->stretch.lower, r->result->upper = r->stretch.upper;
+  return status;
+}
+
+/* Of the distance that was asked for with the same options, less the certificate. */
+static cprox_status gradient(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  cprox_options before = *o;
+  before.certificate = NULL;
+  cprox_result found;
+  const cprox_status status = cprox_distance(m, t, &before, ws, &found);
+  if (status < 0) return status;
+  const cprox_status told = cprox_distance_gradient(m, t, o, &found, ws, &r->gradient);
+  if (told >= 0) *r->result = found;
+  return told;
+}
+
+static cprox_status certify(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  cprox_result found;
+  cprox_status status = cprox_tolerance(m, t, 0.01, NULL, ws, &found);
+  if (status < 0) return status;
+  cprox_certificate *own = cprox_certificate_create();
+  status = cprox_certify(m, &t, 1, 0.01, &found, o, ws, own);
+  cprox_certificate_free(own);
+  if (status >= 0) *r->result = found;
+  return status;
+}
+
+static cprox_status of_set(const cprox_target *t, cprox_mover m, const cprox_options *o, int which, reply *r) {
+  cprox_set *set = NULL;
+  assert_int_equal(cprox_set_create(t, 1, ws, &set), CPROX_OK);
+  const cprox_status status = which == 0   ? cprox_set_distance(set, m, o, ws, r->result)
+                              : which == 1 ? cprox_set_tolerance(set, m, 0.1, o, ws, r->result)
+                              : which == 2 ? cprox_set_collision(set, m, o, ws, r->result)
+                              : which == 3 ? cprox_set_first_contact(set, m, o, ws, r->result)
+                                           : cprox_set_nearest(set, m, 1, o, ws, r->result, &r->count);
+  cprox_set_free(set);
+  return status;
+}
+
+static cprox_status set_distance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return of_set(&t, m, o, 0, r);
+}
+
+static cprox_status set_tolerance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return of_set(&t, m, o, 1, r);
+}
+
+static cprox_status set_collision(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return of_set(&t, m, o, 2, r);
+}
+
+static cprox_status set_first_contact(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return of_set(&t, m, o, 3, r);
+}
+
+static cprox_status set_nearest(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return of_set(&t, m, o, 4, r);
+}
+
+/* A mover that fails alone has a result: that counts as untouched. */
+static cprox_status of_batch(const cprox_target *t, const cprox_mover *m, const cprox_options *o, int which, reply *r) {
+  cprox_batch *batch = NULL;
+  assert_int_equal(cprox_batch_create(t, 1, ws, &batch), CPROX_OK);
+  const cprox_result before = *r->result;
+  const cprox_status status = which == 0   ? cprox_batch_distance(batch, m, 0, 1, o, ws, r->result)
+                              : which == 1 ? cprox_batch_tolerance(batch, m, 0, 1, 0.1, o, ws, r->result)
+                                           : cprox_batch_collision(batch, m, 0, 1, o, ws, r->result);
+  cprox_batch_free(batch);
+  if (status < 0) memcpy(r->result, &before, sizeof before);
+  return status;
+}
+
+static cprox_status batch_distance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return of_batch(&t, &m, o, 0, r);
+}
+
+static cprox_status batch_tolerance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return of_batch(&t, &m, o, 1, r);
+}
+
+static cprox_status batch_collision(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)w;
+  return of_batch(&t, &m, o, 2, r);
+}
+
+/* Standing and translating bodies: the mover's place is taken by a body. */
+static cprox_target own_body(const world *w) {
+  return cprox_at(w->quadric, cprox_pose_identity());
+}
+
+static cprox_status pair(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)m;
+  return cprox_pair(own_body(w), t, o, ws, r->result);
+}
+
+static cprox_status pair_of_parts(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)m;
+  const cprox_body *const parts[2] = {w->quadric, w->ball};
+  cprox_pose poses[2] = {cprox_pose_identity(), cprox_pose_identity()};
+  poses[1].position.z = 2.0;
+  cprox_body *two = NULL;
+  assert_int_equal(cprox_body_create_compound(parts, poses, 2, ws, &two), CPROX_OK);
+  const cprox_status status = cprox_pair(cprox_at(two, cprox_pose_identity()), t, o, ws, r->result);
+  cprox_body_free(two);
+  return status;
+}
+
+static cprox_status translating(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)m;
+  const cprox_translating a = {.from = own_body(w)}, b = {.from = t, .velocity = {0.1, 0, 0}};
+  return cprox_translating_distance(a, b, 1.0, o, ws, r->result);
+}
+
+static cprox_status translating_contact(const world *w, cprox_mover m, cprox_target t, const cprox_options *o,
+                                        reply *r) {
+  (void)m;
+  const cprox_translating a = {.from = own_body(w)}, b = {.from = t, .velocity = {0.1, 0, 3.9}};
+  return cprox_translating_contact(a, b, 1.0, o, ws, r->result);
+}
+
+static cprox_status growth(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+  (void)m;
+  return cprox_growth_distance(own_body(w), t, o, ws, &r->growth);
+}
+
+enum {
+  SEARCH = 1 << STOP | 1 << RELATIVE | 1 << RUNG,
+  TAKES_MOVERS = 1 << 20,
+  TAKES_SELF = 1 << 21,
+  IS_DISTANCE = 1 << 22, /* the interval is that of a distance */
+};
+
+typedef struct row {
+  const char *name;
+  query ask;
+  unsigned has;
+} row;
+
+static const row QUERIES[] = {
+    {"distance", distance, SEARCH | 1 << CERTIFICATE | 1 << SIGNED | TAKES_MOVERS | TAKES_SELF | IS_DISTANCE},
+    {"tolerance", tolerance, SEARCH | 1 << CERTIFICATE | TAKES_MOVERS | TAKES_SELF},
+    {"collision", collision, SEARCH | 1 << CERTIFICATE | TAKES_MOVERS | TAKES_SELF},
+    {"first contact", first_contact, 1 << STOP | 1 << RUNG | TAKES_MOVERS | TAKES_SELF},
+    {"nearest", nearest, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
+    {"within", within, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
+    {"nearest pairs", nearest_pairs, SEARCH | TAKES_MOVERS | TAKES_SELF | IS_DISTANCE},
+    {"profile", profile, SEARCH | 1 << SIGNED | TAKES_MOVERS | TAKES_SELF | IS_DISTANCE},
+    {"gradient", gradient, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
+    {"certify", certify, 1 << RELATIVE | 1 << RUNG | TAKES_MOVERS},
+    {"set distance", set_distance, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
+    {"set tolerance", set_tolerance, SEARCH | TAKES_MOVERS},
+    {"set collision", set_collision, SEARCH | TAKES_MOVERS},
+    {"set first contact", set_first_contact, 1 << STOP | 1 << RUNG | TAKES_MOVERS},
+    {"set nearest", set_nearest, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
+    {"batch distance", batch_distance, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
+    {"batch tolerance", batch_tolerance, SEARCH | TAKES_MOVERS},
+    {"batch collision", batch_collision, SEARCH | TAKES_MOVERS},
+    {"pair", pair, SEARCH | 1 << SIGNED},
+    {"pair of parts", pair_of_parts, SEARCH | 1 << SIGNED},
+    {"translating distance", translating, 1 << RELATIVE},
+    {"translating contact", translating_contact, 1 << STOP},
+    {"growth distance", growth, 1 << STOP},
+};
+enum { N_QUERIES = sizeof QUERIES / sizeof *QUERIES };
+
+/* ---- the table ---------------------------------------------------------------------------------------------------------- */
+
+typedef struct walk {
+  world w;
+  size_t refused, answered, stopped[N_QUERIES], proven, deep;
+} walk;
+
+/* With the option it must answer, and the option must show. */
+static void expect_effect(walk *all, size_t q, mover_kind mover, target_kind target, bool apart, option o,
+                          const reply *plain, const reply *r, const char *what) {
+  const cprox_result *before = plain->result, *now = r->result;
+  const bool measured = (QUERIES[q].has & IS_DISTANCE) != 0;
+  if (o == STOP) all->stopped[q] += stop_calls;
+  if (o == SIGNED && measured && !apart && (target == BALL || target == BOX || target == PLANE || target == QUADRIC)) {
+    if (!(now->upper < -0.01)) fail_msg("%s: [%g, %g] is not signed", what, now->lower, now->upper);
+    all->deep++;
+  }
+  if (o == SIGNED && measured && apart && fabs(now->upper - before->upper) > 2e-6)
+    fail_msg("%s: %.9g, not %.9g", what, now->upper, before->upper);
+  if (o == CERTIFICATE && apart && mover <= TUBE && (target <= PLANE || target == LINE)) {
+    if (cprox_certificate_size(proof) == 0) fail_msg("%s: no certificate", what);
+    all->proven++;
+  }
+  if (o == RELATIVE && measured && (now->lower > before->upper || before->lower > now->upper))
+    fail_msg("%s: [%g, %g], not [%g, %g]", what, now->lower, now->upper, before->lower, before->upper);
+  if (o == RUNG && measured && now->lower > before->upper) fail_msg("%s: a ball is farther than what is in it", what);
+}
+
+static void walk_option(walk *all, size_t q, mover_kind mover, target_kind target, bool apart, option o,
+                        const reply *plain, cprox_status base) {
+  const cprox_mover m = mover_of(&all->w, mover);
+  const cprox_target t = target_of(&all->w, target, apart ? 4.0 : 0.0);
+  const cprox_options options = with(o);
+  reply r, untouched;
+  memset(&r, 0x5a, sizeof r);
+  memset(&untouched, 0x5a, sizeof untouched);
+  stop_calls = 0;
+  const cprox_status status = QUERIES[q].ask(&all->w, m, t, &options, &r);
+  char what[160];
+  snprintf(what, sizeof what, "%s, %s, %s, %s, %s", QUERIES[q].name, MOVER_NAMES[mover], TARGET_NAMES[target],
+           apart ? "apart" : "not apart", OPTION_NAMES[o]);
+
+  const bool robot = (mover == ROBOT || mover == ROBOT_SELF) && (QUERIES[q].has & TAKES_MOVERS);
+  const bool has = (QUERIES[q].has >> o & 1u) != 0 && !(o == SIGNED && robot);
+  if (!has) {
+    all->refused++;
+    const char *reason = cprox_workspace_reason(ws);
+    if (status != CPROX_INVALID) fail_msg("%s: %s, and the option does not apply", what, cprox_status_name(status));
+    if (base >= 0 && (!strstr(reason, OPTION_NAMES[o]) || !strstr(reason, "does not apply")))
+      fail_msg("%s: '%s'", what, reason);
+    if (memcmp(&r, &untouched, sizeof r) != 0) fail_msg("%s: refused, but the result is written", what);
+    return;
+  }
+  if (base < 0) {
+    /* balls may be answered where bodies are not */
+    if (o != RUNG) assert_int_equal(status, base);
+    return;
+  }
+  if (status < 0) fail_msg("%s: %s", what, cprox_workspace_reason(ws));
+  all->answered++;
+  expect_effect(all, q, mover, target, apart, o, plain, &r, what);
+}
+
+/* 23 queries, 5 movers, 9 targets, apart or not, 5 options. What the plain question refuses is refused with the option, too. */
+static void options_have_their_effect_or_are_refused(void **state) {
+  (void)state;
+  walk all = {.w = make_world()};
+  for (size_t q = 0; q < N_QUERIES; q++) {
+    for (mover_kind mover = POINT; mover < N_MOVERS; mover++) {
+      if (mover != POINT && !(QUERIES[q].has & TAKES_MOVERS)) continue;
+      if (mover == ROBOT_SELF && !(QUERIES[q].has & TAKES_SELF)) continue;
+      for (target_kind target = BALL; target < N_TARGETS; target++) {
+        for (int apart = 0; apart < 2; apart++) {
+          const cprox_options options = cprox_options_default();
+          reply plain = {0};
+          const cprox_target t = target_of(&all.w, target, apart ? 4.0 : 0.0);
+          const cprox_status base = QUERIES[q].ask(&all.w, mover_of(&all.w, mover), t, &options, &plain);
+          for (option o = SIGNED; o < N_OPTIONS; o++) walk_option(&all, q, mover, target, apart, o, &plain, base);
+        }
+      }
+    }
+  }
+  for (size_t q = 0; q < N_QUERIES; q++)
+    if ((QUERIES[q].has >> STOP & 1u) && all.stopped[q] == 0 && strcmp(QUERIES[q].name, "pair") != 0)
+      fail_msg("%s never asks its stop function", QUERIES[q].name);
+  assert_true(all.refused > 500 && all.answered > 1000 && all.proven > 10 && all.deep > 30);
+  free_world(&all.w);
+}
+
+/* ---- structures besides the options ------------------------------------------------------------------------------------- */
+
+/* Pairs and `self` are a robot's: with a curve they are refused by every query. */
+static void what_belongs_to_robots_is_refused_with_curves(void **state) {
+  (void)state;
+  world w = make_world();
+  const cprox_robot_pair one = {0, 0};
+  for (size_t q = 0; q < N_QUERIES; q++) {
+    if (!(QUERIES[q].has & TAKES_MOVERS)) continue;
+    for (int i = 0; i < 3; i++) {
+      cprox_mover m = cprox_point_along(w.way);
+      if (i == 0) m.pairs = &one, m.n_pairs = 1;
+      if (i == 1) m.n_pairs = 1;
+      if (i == 2) m.self = true;
+      reply r;
+      const cprox_options options = cprox_options_default();
+      const cprox_target t = target_of(&w, BALL, 4.0);
+      m.self = false;
+      cprox_mover asked = m;
+      asked.self = i == 2;
+      assert_int_equal(QUERIES[q].ask(&w, asked, t, &options, &r), CPROX_INVALID);
+    }
+  }
+  cprox_mover m = cprox_robot_along(w.motion, NULL, 0);
+  m.radius = 0.1;
+  cprox_result r;
+  assert_int_equal(cprox_distance(m, target_of(&w, BALL, 4.0), NULL, ws, &r), CPROX_INVALID);
+  free_world(&w);
+}
+
+/* The number of samples follows from delta, or is given. */
+static void gaps_refuse_delta_and_samples_together(void **state) {
+  (void)state;
+  cprox_solid *ball = NULL;
+  assert_int_equal(cprox_solid_create_ball(3, 1.0, ws, &ball), CPROX_OK);
+  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap *gap = NULL;
+  o.samples = 9, o.delta = 0.3;
+  assert_int_equal(cprox_gap_create(ball, ball, &o, ws, &gap), CPROX_INVALID);
+  assert_non_null(strstr(cprox_workspace_reason(ws), "delta is 0.3 and samples is 9"));
+  o.delta = NAN;
+  assert_int_equal(cprox_gap_create(ball, ball, &o, ws, &gap), CPROX_INVALID);
+  o.delta = 0.0;
+  assert_int_equal(cprox_gap_create(ball, ball, &o, ws, &gap), CPROX_OK);
+  cprox_gap_free(gap);
+  cprox_solid_free(ball);
+}
+
+/* Signed: of two bodies that the curve goes through the deeper one is the nearest, alone, in a set and in a batch. */
+static void the_deepest_is_the_nearest_where_distances_are_signed(void **state) {
+  (void)state;
+  world w = make_world();
+  cprox_target targets[3] = {target_of(&w, BOX, 0.0), target_of(&w, BALL, 0.0), target_of(&w, BALL, 3.0)};
+  const cprox_options options = with(SIGNED);
+  const cprox_mover m = cprox_point_along(w.way);
+  cprox_set *set = NULL;
+  assert_int_equal(cprox_set_create(targets, 3, ws, &set), CPROX_OK);
+  cprox_result one[3], near[3], found[3];
+  size_t n, count;
+  for (size_t i = 0; i < 3; i++) assert_int_equal(cprox_distance(m, targets[i], &options, ws, &one[i]), CPROX_OK);
+  assert_true(one[1].upper < one[0].upper && one[0].upper < -0.1);
+  for (size_t k = 1; k <= 3; k++) {
+    assert_int_equal(cprox_nearest(m, targets, 3, k, &options, ws, near, &n), CPROX_OK);
+    assert_int_equal(cprox_set_nearest(set, m, k, &options, ws, found, &count), CPROX_OK);
+    assert_true(n == k && count == k);
+    const int32_t order[3] = {1, 0, 2};
+    for (size_t i = 0; i < k; i++) {
+      assert_int_equal(near[i].target_index, order[i]);
+      assert_int_equal(found[i].target_index, order[i]);
+      assert_true(fabs(near[i].upper - one[order[i]].upper) <= 2e-6 && fabs(found[i].upper - near[i].upper) <= 2e-6);
+    }
+  }
+  assert_int_equal(cprox_within(m, targets, 3, 0.0, &options, ws, near, &n), CPROX_OK);
+  assert_true(n == 2 && near[0].upper < -0.1 && near[0].upper - near[0].lower <= 1e-6);
+  cprox_set_free(set);
+  free_world(&w);
+}
+
+static int setup(void **state) {
+  proof = cprox_certificate_create();
+  return workspace_setup(state);
+}
+
+static int teardown(void **state) {
+  cprox_certificate_free(proof);
+  return workspace_teardown(state);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(options_have_their_effect_or_are_refused),
+      cmocka_unit_test(what_belongs_to_robots_is_refused_with_curves),
+      cmocka_unit_test(gaps_refuse_delta_and_samples_together),
+      cmocka_unit_test(the_deepest_is_the_nearest_where_distances_are_signed),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
