@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/frame.h"
@@ -131,8 +132,174 @@ static void one_inside_a_solid_overlaps_it(void **state) {
   mesh_free(&small);
 }
 
+/* ---- what it costs ---------------------------------------------------------------------------------------------------- */
+
+/* A tube along z of `around` times `along` pairs of triangles, open at both ends: few along it make them long and thin. */
+static test_mesh open_tube(rng *r, size_t around, size_t along, double radius, double length) {
+  test_mesh tube = {.n = around * (along + 1), .m = 0};
+  tube.vertices = malloc(tube.n * sizeof *tube.vertices);
+  tube.triangles = malloc(2 * around * along * sizeof *tube.triangles);
+  for (size_t k = 0; k <= along; k++) {
+    for (size_t i = 0; i < around; i++) {
+      const double a = 6.283185307179586 * (double)i / (double)around, z = length * ((double)k / (double)along - 0.5);
+      const double wide = radius * (1.0 + 0.1 * sin(3.0 * a) + rng_uniform(r, 0.0, 0.01));
+      tube.vertices[k * around + i] = vec(wide * cos(a), wide * sin(a), z);
+    }
+  }
+  for (size_t k = 0; k < along; k++) {
+    for (size_t i = 0; i < around; i++) {
+      const uint32_t a = (uint32_t)(k * around + i), b = (uint32_t)(k * around + (i + 1) % around);
+      const uint32_t c = a + (uint32_t)around, d = b + (uint32_t)around;
+      memcpy(tube.triangles[tube.m++], (uint32_t[3]){a, b, d}, sizeof *tube.triangles);
+      memcpy(tube.triangles[tube.m++], (uint32_t[3]){a, d, c}, sizeof *tube.triangles);
+    }
+  }
+  return tube;
+}
+
+static test_mesh any_mesh(rng *r, size_t kind) {
+  switch (kind % 4) {
+    case 0: return mesh_soup(r, 20 + rng_index(r, 400), 1.0, 0.3);
+    case 1: return mesh_torus(6 + rng_index(r, 20), 5 + rng_index(r, 15), 1.0, 0.3, 0.2);
+    case 2: return open_tube(r, 20 + rng_index(r, 60), 1 + rng_index(r, 2), 0.3, 2.0);
+    default: return open_tube(r, 20 + rng_index(r, 60), 10 + rng_index(r, 30), 0.3, 2.0);
+  }
+}
+
+/* 150 pairs (seed 147) of soups, tori and tubes of long and of small triangles, apart, close and crossing, with padding and without: both ways
+ * round the same interval and the same cost, and the cost never rises with epsilon, absolute or relative. */
+static void neither_order_nor_a_looser_epsilon_costs_more(void **state) {
+  (void)state;
+  rng r = rng_seed(147);
+  static const double EPSILON[][2] = {{0, 0},      {1e-9, 0},     {1e-6, 0}, {1e-6, 1e-3}, {1e-6, 0.1},
+                                      {1e-6, 0.5}, {1e-6, 0.999}, {1e-4, 0}, {1e-2, 0},    {1.0, 0}};
+  size_t worst = 0;
+  for (size_t i = 0; i < test_cases(150); i++) {
+    test_mesh a = any_mesh(&r, i), b = any_mesh(&r, i / 4);
+    cprox_body *x = mesh_body(&a, CPROX_MESH_SURFACE, ws), *y = mesh_body(&b, CPROX_MESH_SURFACE, ws);
+    const cprox_pose at = rng_pose(&r, 0.2);
+    cprox_pose there = rng_pose(&r, 0.2);
+    there.position = vec_axpy(there.position, rng_uniform(&r, 0.5, 3.5), rng_unit(&r));
+    const cprox_target one = cprox_padded(cprox_at(x, at), i % 5 ? 0.0 : 0.01), two = cprox_at(y, there);
+    uint32_t nodes[sizeof EPSILON / sizeof *EPSILON];
+    for (size_t e = 0; e < sizeof EPSILON / sizeof *EPSILON; e++) {
+      cprox_options options = cprox_options_default();
+      options.epsilon = EPSILON[e][0], options.relative_epsilon = EPSILON[e][1], options.max_nodes = 1000000;
+      cprox_result p, q;
+      const cprox_status status = cprox_pair(one, two, &options, ws, &p);
+      assert_int_equal(cprox_pair(two, one, &options, ws, &q), status);
+      if (status < 0) fail_msg("case %zu: %s", i, cprox_workspace_reason(ws));
+      if (a.m != b.m && (p.nodes != q.nodes || p.probes != q.probes || p.lower != q.lower || p.upper != q.upper))
+        fail_msg("case %zu: %u nodes and %u the other way round", i, p.nodes, q.nodes);
+      nodes[e] = p.nodes;
+      if (p.nodes > worst) worst = p.nodes;
+      const size_t looser_than = e == 0 ? 0 : e < 7 ? e - 1 : e == 7 ? 2 : e - 1;
+      if (nodes[e] > nodes[looser_than])
+        fail_msg("case %zu: epsilon %g, %g takes %u nodes, epsilon %g, %g takes %u", i, EPSILON[e][0], EPSILON[e][1],
+                 nodes[e], EPSILON[looser_than][0], EPSILON[looser_than][1], nodes[looser_than]);
+      /* an epsilon as wide as the answer is had for the first look at either */
+      const double allowed = fmax(options.epsilon, options.relative_epsilon * fabs(p.upper));
+      if (status == CPROX_OK && p.upper - p.lower > allowed) fail_msg("case %zu: [%g, %g]", i, p.lower, p.upper);
+    }
+    cprox_body_free(x);
+    cprox_body_free(y);
+    mesh_free(&a);
+    mesh_free(&b);
+  }
+  assert_true(worst < 20000);
+}
+
+/* A forearm of 1,000 long triangles and a sensor of 43,000 small ones, open, .12 m apart (seed 149): within the default budget, whichever is
+ * named first; with a budget of 40 the distance of surfaces is at least 0. */
+static void a_coarse_mesh_and_a_fine_one_take_the_same_either_way(void **state) {
+  (void)state;
+  rng r = rng_seed(149);
+  for (int shape = 0; shape < 2; shape++) {
+    test_mesh a = shape ? open_tube(&r, 25, 20, 0.055, 0.4) : open_tube(&r, 500, 1, 0.055, 0.4);
+    test_mesh b = open_tube(&r, 215, 100, 0.03, 0.12);
+    cprox_body *arm = mesh_body(&a, CPROX_MESH_SURFACE, ws), *sensor = mesh_body(&b, CPROX_MESH_SURFACE, ws);
+    for (int i = 0; i < 10; i++) {
+      const cprox_pose at = cprox_pose_identity();
+      cprox_pose there = rng_pose(&r, 0.0);
+      const double turned = rng_uniform(&r, 0.0, 6.3), away = i % 2 ? 0.25 : 0.35;
+      there.position = vec(away * cos(turned), away * sin(turned), rng_uniform(&r, -0.2, 0.2));
+      const cprox_target one = cprox_at(arm, at), two = cprox_at(sensor, there);
+      cprox_options options = cprox_options_default();
+      cprox_result p, q;
+      assert_int_equal(cprox_pair(one, two, &options, ws, &p), CPROX_OK);
+      assert_int_equal(cprox_pair(two, one, &options, ws, &q), CPROX_OK);
+      assert_true(p.nodes == q.nodes && p.probes < 1000 && p.nodes < 10000);
+      options.max_nodes = 40;
+      if (cprox_pair(one, two, &options, ws, &q) == CPROX_BUDGET)
+        assert_true(q.lower >= 0.0 && q.lower <= p.upper && q.upper >= p.lower);
+      options.max_nodes = 20000, options.relative_epsilon = 0.999;
+      assert_int_equal(cprox_pair(one, two, &options, ws, &q), CPROX_OK);
+      assert_true(q.nodes <= p.nodes && q.lower <= p.upper && q.upper >= p.lower);
+    }
+    cprox_body_free(arm);
+    cprox_body_free(sensor);
+    mesh_free(&a);
+    mesh_free(&b);
+  }
+}
+
+/* Crossing, or nested, and ended by the budget before that is known: the bounds hold, and of surfaces lower is not below 0 (seed 151). */
+static void what_a_budget_leaves_open_is_bounded_by_what_is_meant(void **state) {
+  (void)state;
+  rng r = rng_seed(151);
+  size_t ended = 0;
+  for (size_t i = 0; i < test_cases(300); i++) {
+    test_mesh a = mesh_torus(20, 12, 1.0, 0.3, 0.1), b = mesh_torus(18, 11, 0.5, 0.1, 0.05);
+    const bool solid = i % 2;
+    cprox_body *x = mesh_body(&a, solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE, ws);
+    cprox_body *y = mesh_body(&b, CPROX_MESH_SURFACE, ws);
+    const cprox_target one = cprox_at(x, rng_pose(&r, 0.5)), two = cprox_at(y, rng_pose(&r, 0.5));
+    cprox_options options = cprox_options_default();
+    options.max_nodes = 5 + (uint32_t)rng_index(&r, 60);
+    cprox_result p, all;
+    const cprox_status status = cprox_pair(one, two, &options, ws, &p);
+    assert_true(cprox_pair(one, two, NULL, ws, &all) >= 0);
+    assert_true(p.lower <= all.upper && p.upper >= all.lower);
+    if (status == CPROX_BUDGET) {
+      ended++;
+      if (!solid) assert_true(p.lower >= 0.0);
+    }
+    cprox_body_free(x);
+    cprox_body_free(y);
+    mesh_free(&a);
+    mesh_free(&b);
+  }
+  assert_true(ended > 20);
+}
+
+static bool at_once(void *user) {
+  (void)user;
+  return true;
+}
+
+/* The stop function ends a search through two meshes: what it says is true. */
+static void a_search_through_meshes_can_be_stopped(void **state) {
+  (void)state;
+  test_mesh a = mesh_torus(40, 25, 1.0, 0.3, 0.1);
+  cprox_body *x = mesh_body(&a, CPROX_MESH_SURFACE, ws);
+  cprox_pose there = cprox_pose_identity();
+  there.position.x = 4.0;
+  cprox_options options = cprox_options_default();
+  cprox_result p, q;
+  assert_int_equal(cprox_pair(cprox_at(x, cprox_pose_identity()), cprox_at(x, there), &options, ws, &p), CPROX_OK);
+  options.stop = at_once;
+  assert_int_equal(cprox_pair(cprox_at(x, cprox_pose_identity()), cprox_at(x, there), &options, ws, &q), CPROX_STOPPED);
+  assert_true(q.lower >= 0.0 && q.lower <= p.upper && q.upper >= p.lower && q.nodes < p.nodes);
+  cprox_body_free(x);
+  mesh_free(&a);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(neither_order_nor_a_looser_epsilon_costs_more),
+      cmocka_unit_test(a_coarse_mesh_and_a_fine_one_take_the_same_either_way),
+      cmocka_unit_test(what_a_budget_leaves_open_is_bounded_by_what_is_meant),
+      cmocka_unit_test(a_search_through_meshes_can_be_stopped),
       cmocka_unit_test(meshes_are_as_far_apart_as_their_nearest_triangles),
       cmocka_unit_test(large_meshes_clouds_and_boxes_too),
       cmocka_unit_test(one_inside_a_solid_overlaps_it),

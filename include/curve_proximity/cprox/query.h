@@ -219,8 +219,11 @@ CPROX_API cprox_status cprox_first_contact_all(cprox_mover mover, const cprox_ta
  *  normal; on_mover and on_target are the ends of that way, on either surface. How deep two implicit bodies without a
  *  support function of closed form overlap may stay open: then lower <= minus the depth, upper = 0, CPROX_OVERLAP.
  *  Meshes, points and boxes are held against convex bodies and each other; how deep they overlap is not measured: CPROX_OVERLAP.
+ *  Of two of these the order does not matter, a looser epsilon never costs more, and after CPROX_BUDGET or CPROX_STOPPED lower is at least
+ *  minus the paddings, but for solids and boxes that are not proven apart.
  *  A compound answers with the least over its parts. on_mover is the point on a, on_target that on b; nodes counts
- *  iterations, probes support evaluations.
+ *  iterations (of meshes, points and boxes nodes of their trees, too), probes support evaluations. stop is asked between parts and in
+ *  searches through two meshes.
  *  CPROX_INVALID for two halfspaces (they have no distance), for a curve, and for arguments that are unusable.
  *  Cost: a few support evaluations; no allocation.
  *  Source: doc/convex-pairs.md.

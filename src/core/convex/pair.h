@@ -17,6 +17,8 @@ typedef struct pair_goal {
   double epsilon, relative_epsilon;
   double floor, fraction; /* or this fraction of what its lower end is above the floor; 0: none */
   uint32_t max_steps;
+  bool (*stop)(void *user); /* searches through many elements ask it now and then; NULL: never */
+  void *stop_user;
   vec3 start; /* a's frame, unit: near the normal of the answer; (0,0,0): nothing is known */
   bool wants_feature;
   bool wants_depth; /* how deep the cores overlap, not only that they do */

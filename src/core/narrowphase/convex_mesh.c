@@ -9,7 +9,9 @@
 typedef struct search {
   const pair_side *elements, *convex_side;
   const pair_placement *place;
-  pair_goal goal;
+  pair_goal goal; /* of all of them; */
+  pair_goal
+      each; /* an element is measured more exactly: what a loose upper end costs in elements is more than that saves */
   pair_answer best;
   double lower;
 } search;
@@ -23,6 +25,9 @@ static vec3 turn_back(const double r[9], vec3 v) {
   return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
              r[2] * v.x + r[5] * v.y + r[8] * v.z);
 }
+
+/* What an element may leave of what all of them may. */
+static const double FINER = 1.0 / 16.0;
 
 static double margins(const search *s) {
   return s->elements->margin + s->convex_side->margin;
@@ -82,7 +87,7 @@ static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
   place.t = vec_sub(place.t, centre);
   place.error += ROUND_UP * ROUND_U * (vec_norm(place.t) + 2.0 * vec_norm(centre) + 2.0 * shape.scale);
   pair_answer answer;
-  pair_separate(&shape, s->elements->margin, s->convex_side->shape, s->convex_side->margin, &place, &s->goal, &answer);
+  pair_separate(&shape, s->elements->margin, s->convex_side->shape, s->convex_side->margin, &place, &s->each, &answer);
   s->best.steps += answer.steps;
   s->best.supports += answer.supports;
   s->best.fault = s->best.fault || answer.fault;
@@ -101,7 +106,9 @@ static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
     seeker->bound = -INFINITY;
     return;
   }
-  seeker->bound = fmin(seeker->bound, answer.upper + margins(s));
+  const double relative = s->goal.relative_epsilon * fabs(s->best.upper) - 4.0 * rounding_of(s);
+  const double width = fmax(s->goal.epsilon, relative);
+  seeker->bound = fmin(seeker->bound, s->best.upper - width + margins(s));
 
   /* the shape lies behind the plane that separates it from this element */
   if (!(vec_norm2(answer.normal) > 0.5)) return;
@@ -167,6 +174,8 @@ void pair_elements(const pair_side *elements, const pair_side *convex_side, cons
   s.goal.wants_depth = false;
   /* what is left over pays for the tree's own rounding */
   s.goal.epsilon = fmax(goal->epsilon - 2.0 * rounding_of(&s), 0.0);
+  s.each = s.goal;
+  s.each.epsilon *= FINER, s.each.relative_epsilon *= FINER;
   const cprox_body_kind kind = convex_side->shape->ops->kind;
   if (kind == CPROX_POINT || kind == CPROX_SPHERE)
     ball(&s, answer);

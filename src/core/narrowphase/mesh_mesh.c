@@ -6,20 +6,33 @@
 #include "bvh/winding.h"
 #include "narrowphase/convex_mesh.h"
 
-/* Lanes of a node or a pack of b that may still be nearest to something in a box of a. */
-typedef struct tree_entry {
-  uint32_t at, lanes;
-} tree_entry;
+/* A box or an element of one of the two trees: a lane of a node, or of a pack (TREE_LEAF). */
+typedef struct dual_side {
+  uint32_t at, lane;
+} dual_side;
 
-/* Depth first through a; every box of it has the list of what in b still matters to it, which its children go through again. */
+/* Lanes of a node or a pack of one tree, held against a box or an element of the other one by their own normals. Those that may be nearest
+ * are looked at first, of equals the nearest by the middle, of those again the latest. */
+typedef struct dual_entry {
+  double lower, far2;
+  dual_side other;
+  uint32_t at, lanes;
+  uint64_t number;
+  uint8_t which; /* tree the lanes are of */
+  bool by_both;  /* two elements: the normals of both were tried */
+} dual_entry;
+
+/* Best first through both trees at once. */
 typedef struct dual {
-  const pair_side *a, *b;
-  const pair_placement *place; /* b, seen from a */
+  const pair_side *side[2];
+  const pair_placement *place; /* the second, seen from the first */
   pair_goal goal;
-  double margins, rounding;
+  double margins, rounding, least; /* least: of what is under margins and rounding, no bound is lower */
   cprox_workspace *workspace;
   pair_answer best;
   double lower; /* the least bound of what was left out */
+  size_t count; /* of the heap in the workspace */
+  uint64_t entries, visits;
   bool out_of_memory;
 } dual;
 
@@ -33,21 +46,61 @@ static vec3 turn_back(const double r[9], vec3 v) {
              r[2] * v.x + r[5] * v.y + r[8] * v.z);
 }
 
-static vec3 to_b(const dual *d, vec3 p) {
+static const tree *tree_of(const dual *d, int which) {
+  return d->side[which]->body->tree;
+}
+
+/* A point of one tree's frame, seen in the other's. */
+static vec3 across(const dual *d, int from, vec3 p) {
+  if (from == 1) return vec_add(turn(d->place->r, p), d->place->t);
   return turn_back(d->place->r, vec_sub(p, d->place->t));
 }
 
-static bool is_over(const dual *d) {
-  return d->best.overlap || d->best.fault || d->out_of_memory || d->best.steps > d->goal.max_steps;
+/* ---- the heap --------------------------------------------------------------------------------------------------------- */
+
+static bool is_before(const dual_entry *a, const dual_entry *b) {
+  if (a->lower != b->lower) return a->lower < b->lower;
+  if (a->far2 != b->far2) return a->far2 < b->far2;
+  return a->number > b->number;
+}
+
+static dual_entry *heap_of(const dual *d, size_t n) {
+  return workspace_reserve(d->workspace, WORKSPACE_LISTS, n * sizeof(dual_entry));
+}
+
+static void push(dual *d, dual_entry entry) {
+  dual_entry *heap = heap_of(d, d->count + 1);
+  if (!heap) {
+    d->out_of_memory = true;
+    return;
+  }
+  size_t i = d->count++;
+  for (; i > 0 && is_before(&entry, &heap[(i - 1) / 2]); i = (i - 1) / 2) heap[i] = heap[(i - 1) / 2];
+  heap[i] = entry;
+}
+
+static dual_entry pop(dual *d) {
+  dual_entry *heap = heap_of(d, d->count);
+  const dual_entry top = heap[0], moved = heap[--d->count];
+  size_t i = 0;
+  for (size_t child = 1; child < d->count; child = 2 * i + 1) {
+    if (child + 1 < d->count && is_before(&heap[child + 1], &heap[child])) child++;
+    if (!is_before(&heap[child], &moved)) break;
+    heap[i] = heap[child];
+    i = child;
+  }
+  heap[i] = moved;
+  return top;
 }
 
 /* ---- two elements ----------------------------------------------------------------------------------------------------- */
 
+/* As exactly as doubles allow, whatever is asked for: so the order of the search does not depend on that. */
 static void measure(dual *d, tree_place at, tree_place there) {
   convex shape[2];
   double vertices[2][3][TREE_LANES];
-  const vec3 own = pair_element_shape(d->a->body->tree, at, vertices[0], &shape[0]);
-  const vec3 other = pair_element_shape(d->b->body->tree, there, vertices[1], &shape[1]);
+  const vec3 own = pair_element_shape(tree_of(d, 0), at, vertices[0], &shape[0]);
+  const vec3 other = pair_element_shape(tree_of(d, 1), there, vertices[1], &shape[1]);
   pair_placement place = *d->place;
   const vec3 turned = turn(place.r, other);
   place.t = vec_sub(vec_add(place.t, turned), own);
@@ -55,8 +108,9 @@ static void measure(dual *d, tree_place at, tree_place there) {
       ROUND_UP * ROUND_U *
       (2.0 * ROUND_ROTATION * vec_norm(other) + 4.0 * (vec_norm(d->place->t) + vec_norm(own) + vec_norm(place.t)) +
        2.0 * (shape[0].scale + shape[1].scale));
+  const pair_goal exactly = {.max_steps = d->goal.max_steps};
   pair_answer answer;
-  pair_separate(&shape[0], d->a->margin, &shape[1], d->b->margin, &place, &d->goal, &answer);
+  pair_separate(&shape[0], d->side[0]->margin, &shape[1], d->side[1]->margin, &place, &exactly, &answer);
   answer.steps += d->best.steps;
   answer.supports += d->best.supports;
   answer.exhausted = answer.exhausted || d->best.exhausted;
@@ -71,56 +125,14 @@ static void measure(dual *d, tree_place at, tree_place there) {
   d->best.common = vec_add(answer.common, own);
 }
 
-/* ---- lists ------------------------------------------------------------------------------------------------------------ */
+/* ---- boxes ------------------------------------------------------------------------------------------------------------ */
 
-/* What of the list from first to last may come nearer to the hull of the corners (of a box or an element of a) than the best; appended
- * behind it. `whole`: down to elements, else as far as boxes are wider than that. */
-static bool filter(dual *d, const vec3 *corner, size_t n, bool whole, size_t first, size_t *last) {
-  const tree *b = d->b->body->tree;
-  tree_entry open[TREE_LANES * TREE_DEEPEST];
-  tree_stretch stretch = {.n = n, .beyond = d->best.upper - d->goal.epsilon + d->margins + d->rounding};
-  vec3 low = to_b(d, corner[0]), high = low, p[8];
-  for (size_t k = 0; k < n; k++) {
-    p[k] = to_b(d, corner[k]);
-    low = vec(fmin(low.x, p[k].x), fmin(low.y, p[k].y), fmin(low.z, p[k].z));
-    high = vec(fmax(high.x, p[k].x), fmax(high.y, p[k].y), fmax(high.z, p[k].z));
-  }
-  stretch.x = vec_axpy(vec_scale(0.5, low), 0.5, high);
-  const double wide2 = whole ? -1.0 : vec_norm2(vec_sub(high, low));
-  for (size_t k = 0; k < n; k++) {
-    const vec3 q = vec_sub(p[k], stretch.x);
-    stretch.p[0][k] = q.x, stretch.p[1][k] = q.y, stretch.p[2][k] = q.z;
-  }
-  size_t count = 0, end = *last;
-  tree_entry *list = workspace_reserve(d->workspace, WORKSPACE_LISTS, end * sizeof *list);
-  for (size_t i = first; count > 0 || i < *last;) {
-    const tree_entry entry = count > 0 ? open[--count] : list[i++];
-    const bool leaf = (entry.at & TREE_LEAF) != 0;
-    tree_lanes lanes;
-    tree_measure(b, entry.at, entry.lanes, &stretch, &lanes);
-    d->lower = fmin(d->lower, lanes.rest - d->margins - d->rounding);
-    uint32_t kept = 0;
-    for (uint32_t left = lanes.live; left; left &= left - 1) {
-      const uint32_t l = (uint32_t)__builtin_ctz(left);
-      if (leaf || !(lanes.width2[l] > wide2)) {
-        kept |= 1u << l;
-        continue;
-      }
-      const uint32_t child = b->nodes[entry.at].child[l];
-      open[count++] = (tree_entry){child, child & TREE_LEAF ? TREE_ALL_LANES : b->nodes[child].lanes};
-    }
-    if (!kept) continue;
-    list = workspace_reserve(d->workspace, WORKSPACE_LISTS, (end + 1) * sizeof *list);
-    if (!list) return false;
-    list[end++] = (tree_entry){entry.at, kept};
-  }
-  *last = end;
-  return true;
+static bool is_element(dual_side s) {
+  return (s.at & TREE_LEAF) != 0;
 }
 
-static bool is_repeated(const tree *t, uint32_t pack, uint32_t lane) {
-  const uint32_t *ids = t->ids + (size_t)pack * TREE_LANES;
-  return lane > 0 && ids[lane] == ids[lane - 1];
+static tree_place place_of(dual_side s) {
+  return (tree_place){s.at & ~TREE_LEAF, s.lane};
 }
 
 static size_t corners_of_box(vec3 low, vec3 high, vec3 corner[8]) {
@@ -129,72 +141,190 @@ static size_t corners_of_box(vec3 low, vec3 high, vec3 corner[8]) {
   return 8;
 }
 
+static size_t corners_of(const tree *t, dual_side s, vec3 corner[8]) {
+  if (is_element(s)) {
+    const size_t n = (size_t)tree_corners(t, place_of(s), corner);
+    return t->kind == TREE_BOXES ? corners_of_box(corner[0], corner[1], corner) : n;
+  }
+  const tree_node *node = &t->nodes[s.at];
+  return corners_of_box(vec(node->low[0][s.lane], node->low[1][s.lane], node->low[2][s.lane]),
+                        vec(node->high[0][s.lane], node->high[1][s.lane], node->high[2][s.lane]), corner);
+}
+
+static double width2_of(const tree *t, dual_side s) {
+  vec3 corner[8], low, high;
+  const size_t n = corners_of(t, s, corner);
+  low = high = corner[0];
+  for (size_t k = 1; k < n; k++) {
+    low = vec(fmin(low.x, corner[k].x), fmin(low.y, corner[k].y), fmin(low.z, corner[k].z));
+    high = vec(fmax(high.x, corner[k].x), fmax(high.y, corner[k].y), fmax(high.z, corner[k].z));
+  }
+  return vec_norm2(vec_sub(high, low));
+}
+
+static bool is_repeated(const tree *t, uint32_t pack, uint32_t lane) {
+  const uint32_t *ids = t->ids + (size_t)pack * TREE_LANES;
+  return lane > 0 && ids[lane] == ids[lane - 1];
+}
+
+/* How much lower than the best a bound must be to matter. */
+static double worth(const dual *d) {
+  return d->best.upper - fmax(d->goal.epsilon, d->goal.relative_epsilon * fabs(d->best.upper));
+}
+
+/* What is in a lane of tree 1 - which, as a stretch in the frame of tree `which`. */
+static tree_stretch stretch_of(const dual *d, int which, dual_side other) {
+  vec3 corner[8];
+  tree_stretch stretch = {.n = corners_of(tree_of(d, 1 - which), other, corner),
+                          .beyond = d->best.upper + d->margins + d->rounding};
+  vec3 low = across(d, 1 - which, corner[0]), high = low;
+  for (size_t k = 0; k < stretch.n; k++) {
+    corner[k] = across(d, 1 - which, corner[k]);
+    low = vec(fmin(low.x, corner[k].x), fmin(low.y, corner[k].y), fmin(low.z, corner[k].z));
+    high = vec(fmax(high.x, corner[k].x), fmax(high.y, corner[k].y), fmax(high.z, corner[k].z));
+  }
+  stretch.x = vec_axpy(vec_scale(0.5, low), 0.5, high);
+  for (size_t k = 0; k < stretch.n; k++) {
+    const vec3 q = vec_sub(corner[k], stretch.x);
+    stretch.p[0][k] = q.x, stretch.p[1][k] = q.y, stretch.p[2][k] = q.z;
+  }
+  return stretch;
+}
+
+/* Lanes of a node or a pack of tree `which` against a box or an element of the other one: what of them may matter enters the heap, two elements
+ * each by itself. What is left out does not depend on epsilon, and neither does the order in which all is looked at. */
+static void spread(dual *d, int which, uint32_t at, uint32_t wanted, dual_side other, double above) {
+  const tree *t = tree_of(d, which);
+  const tree_stretch stretch = stretch_of(d, which, other);
+  const bool leaf = (at & TREE_LEAF) != 0;
+  tree_lanes lanes;
+  tree_measure(t, at, wanted, &stretch, &lanes);
+  d->lower = fmin(d->lower, fmax(lanes.rest - d->margins - d->rounding, above));
+  d->best.steps++;
+  dual_entry entry = {.lower = INFINITY, .far2 = INFINITY, .other = other, .at = at, .which = (uint8_t)which};
+  for (uint32_t left = lanes.live; left; left &= left - 1) {
+    const uint32_t l = (uint32_t)__builtin_ctz(left);
+    if (leaf && is_repeated(t, at & ~TREE_LEAF, l)) continue;
+    const bool alone = leaf && is_element(other);
+    if (alone)
+      entry = (dual_entry){.lower = INFINITY, .far2 = INFINITY, .other = other, .at = at, .which = entry.which};
+    entry.lower = fmin(entry.lower, fmax(lanes.bound[l] - d->margins - d->rounding, above));
+    entry.far2 = fmin(entry.far2, lanes.distance2[l]);
+    entry.lanes |= 1u << l;
+    entry.number = d->entries + l;
+    if (alone) push(d, entry);
+  }
+  if (entry.lanes && !(leaf && is_element(other))) push(d, entry);
+  d->entries += TREE_LANES;
+}
+
 /* ---- the descent ------------------------------------------------------------------------------------------------------ */
 
-static void visit_element(dual *d, tree_place at, size_t first, size_t last) {
-  vec3 given[3], corner[8];
-  size_t n = (size_t)tree_corners(d->a->body->tree, at, given), end = last;
-  if (d->a->body->tree->kind == TREE_BOXES)
-    n = corners_of_box(given[0], given[1], corner);
+static uint32_t lanes_of(const tree *t, uint32_t at) {
+  return at & TREE_LEAF ? TREE_ALL_LANES : t->nodes[at].lanes;
+}
+
+/* What is in each of the lanes, instead of them. */
+static void open_lanes(dual *d, const dual_entry *e) {
+  const tree *t = tree_of(d, e->which);
+  for (uint32_t left = e->lanes; left; left &= left - 1) {
+    const uint32_t in = t->nodes[e->at].child[__builtin_ctz(left)];
+    spread(d, e->which, in, lanes_of(t, in), e->other, e->lower);
+  }
+}
+
+/* What is in the other box, instead of it. */
+static void open_other(dual *d, const dual_entry *e) {
+  const tree *t = tree_of(d, 1 - e->which);
+  const uint32_t in = t->nodes[e->other.at].child[e->other.lane];
+  for (uint32_t left = lanes_of(t, in); left; left &= left - 1) {
+    const uint32_t l = (uint32_t)__builtin_ctz(left);
+    if (!(in & TREE_LEAF) || !is_repeated(t, in & ~TREE_LEAF, l))
+      spread(d, e->which, e->at, e->lanes, (dual_side){in, l}, e->lower);
+  }
+}
+
+/* The same, but by the normals of what is in it. */
+static void exchange(dual *d, const dual_entry *e) {
+  const tree *t = tree_of(d, 1 - e->which);
+  const uint32_t in = t->nodes[e->other.at].child[e->other.lane];
+  for (uint32_t left = e->lanes; left; left &= left - 1)
+    spread(d, 1 - e->which, in, lanes_of(t, in), (dual_side){e->at, (uint32_t)__builtin_ctz(left)}, e->lower);
+}
+
+/* Two elements: once more by the normals of the other one; true where they wait for that. */
+static bool waits(dual *d, const dual_entry *e, dual_side own) {
+  if (e->by_both) return false;
+  const int which = 1 - e->which;
+  const tree_stretch stretch = stretch_of(d, which, own);
+  tree_lanes lanes;
+  tree_measure(tree_of(d, which), e->other.at, 1u << e->other.lane, &stretch, &lanes);
+  d->best.steps++;
+  dual_entry again = *e;
+  again.lower = lanes.bound[e->other.lane] - d->margins - d->rounding;
+  again.by_both = true;
+  if (!(again.lower > e->lower)) return false;
+  push(d, again);
+  return true;
+}
+
+/* Two elements are measured. Else the wider side is opened: so what is wide ends as lanes, which part what is small from them by normals of
+ * their own. */
+static void visit(dual *d, const dual_entry *e) {
+  const bool leaf = (e->at & TREE_LEAF) != 0;
+  if (leaf && is_element(e->other)) {
+    const dual_side own = {e->at, (uint32_t)__builtin_ctz(e->lanes)};
+    if (waits(d, e, own)) return;
+    measure(d, place_of(e->which == 0 ? own : e->other), place_of(e->which == 0 ? e->other : own));
+    return;
+  }
+  double widest2 = 0.0;
+  for (uint32_t left = e->lanes; left; left &= left - 1)
+    widest2 = fmax(widest2, width2_of(tree_of(d, e->which), (dual_side){e->at, (uint32_t)__builtin_ctz(left)}));
+  const bool wider = is_element(e->other) || widest2 >= width2_of(tree_of(d, 1 - e->which), e->other);
+  if (!wider)
+    exchange(d, e);
+  else if (leaf)
+    open_other(d, e);
   else
-    for (size_t k = 0; k < n; k++) corner[k] = given[k];
-  if (!filter(d, corner, n, true, first, &end)) {
-    d->out_of_memory = true;
-    return;
-  }
-  for (size_t i = last; i < end && !is_over(d); i++) {
-    const tree_entry *list = workspace_reserve(d->workspace, WORKSPACE_LISTS, end * sizeof *list);
-    const tree_entry entry = list[i];
-    const uint32_t pack = entry.at & ~TREE_LEAF;
-    for (uint32_t left = entry.lanes; left && !is_over(d); left &= left - 1) {
-      const uint32_t l = (uint32_t)__builtin_ctz(left);
-      if (!is_repeated(d->b->body->tree, pack, l)) measure(d, at, (tree_place){pack, l});
+    open_lanes(d, e);
+}
+
+static bool is_stopped(const dual *d) {
+  enum { POLL_INTERVAL = 64 };
+  return d->goal.stop && d->visits % POLL_INTERVAL == 0 && d->goal.stop(d->goal.stop_user);
+}
+
+/* Until what is left is no nearer than the best, or as near as is asked for. */
+static void descend(dual *d) {
+  for (uint32_t left = tree_of(d, 0)->nodes[0].lanes; left && !d->out_of_memory; left &= left - 1)
+    spread(d, 1, 0, tree_of(d, 1)->nodes[0].lanes, (dual_side){0, (uint32_t)__builtin_ctz(left)}, d->least);
+  while (d->count > 0 && !d->best.overlap && !d->best.fault && !d->out_of_memory) {
+    d->best.stopped = is_stopped(d);
+    d->best.exhausted = d->best.exhausted || d->best.steps > d->goal.max_steps;
+    const dual_entry top = pop(d);
+    if (top.lower >= worth(d) || d->best.stopped || d->best.steps > d->goal.max_steps) {
+      d->lower = fmin(d->lower, top.lower);
+      if (top.lower >= worth(d)) d->best.exhausted = d->best.stopped = false;
+      break;
     }
+    d->visits++;
+    visit(d, &top);
   }
 }
 
-/* A child of a's tree with the list of what may be near it: its elements, or its lanes, the nearest to the best point first. */
-static void visit(dual *d, uint32_t at, size_t first, size_t last) {
-  const tree *a = d->a->body->tree;
-  if (at & TREE_LEAF) {
-    for (uint32_t l = 0; l < TREE_LANES && !is_over(d); l++)
-      if (!is_repeated(a, at & ~TREE_LEAF, l)) visit_element(d, (tree_place){at & ~TREE_LEAF, l}, first, last);
-    return;
-  }
-  const tree_node *node = &a->nodes[at];
-  uint32_t order[TREE_LANES], n = 0;
-  double far[TREE_LANES];
-  for (uint32_t l = 0; l < TREE_LANES && (node->lanes >> l & 1u); l++) {
-    const vec3 m =
-        vec(node->low[0][l] + node->high[0][l], node->low[1][l] + node->high[1][l], node->low[2][l] + node->high[2][l]);
-    const double distance = vec_norm2(vec_axpy(m, -2.0, d->best.on_b));
-    uint32_t i = n++;
-    for (; i > 0 && far[i - 1] > distance; i--) order[i] = order[i - 1], far[i] = far[i - 1];
-    order[i] = l, far[i] = distance;
-  }
-  for (uint32_t i = 0; i < n && !is_over(d); i++) {
-    const uint32_t l = order[i];
-    vec3 corner[8];
-    corners_of_box(vec(node->low[0][l], node->low[1][l], node->low[2][l]),
-                   vec(node->high[0][l], node->high[1][l], node->high[2][l]), corner);
-    size_t end = last;
-    if (!filter(d, corner, 8, false, first, &end)) d->out_of_memory = true;
-    if (end > last && !d->out_of_memory) visit(d, node->child[l], last, end);
-  }
-}
-
-/* An element of a that is near b, and one of b that is near that. */
+/* An element of the first that is near the second, and one of the second that is near that. */
 static void seed(dual *d) {
-  const tree_hit hit = tree_nearest(d->a->body->tree, d->place->t, INFINITY);
+  const tree_hit hit = tree_nearest(tree_of(d, 0), d->place->t, INFINITY);
   vec3 v[3];
-  tree_corners(d->a->body->tree, hit.at, v);
-  const tree_hit there = tree_nearest(d->b->body->tree, to_b(d, v[0]), INFINITY);
+  tree_corners(tree_of(d, 0), hit.at, v);
+  const tree_hit there = tree_nearest(tree_of(d, 1), across(d, 0, v[0]), INFINITY);
   measure(d, hit.at, there.at);
 }
 
 /* Less than minus any depth: to move one out of the other altogether. */
 static double least_of(const dual *d) {
-  return -(2.0 * (d->a->body->tree->scale + d->b->body->tree->scale) + d->margins);
+  return -(2.0 * (tree_of(d, 0)->scale + tree_of(d, 1)->scale) + d->margins);
 }
 
 static void overlap(const dual *d, vec3 common, pair_answer *answer) {
@@ -205,45 +335,59 @@ static void overlap(const dual *d, vec3 common, pair_answer *answer) {
   answer->normal = vec(0, 0, 0);
 }
 
-/* Surfaces that do not meet: one inside of the other, where that is solid, or each outside of the other. */
-static bool holds(const pair_side *solid, vec3 point) {
-  return solid->body->winding && winding_is_inside(solid->body->winding, solid->body->tree, point);
+/* ---- insides ---------------------------------------------------------------------------------------------------------- */
+
+static bool is_solid(const pair_side *side) {
+  return side->body->winding != NULL;
+}
+
+/* Whether a corner of one's first element is inside of the other, which is solid; where the surfaces do not meet, then all of it is. */
+static bool holds(const dual *d, int solid, vec3 *point) {
+  if (!is_solid(d->side[solid])) return false;
+  vec3 corner[3];
+  tree_corners(tree_of(d, 1 - solid), (tree_place){0, 0}, corner);
+  const vec3 there = across(d, 1 - solid, corner[0]);
+  *point = solid == 1 ? corner[0] : there;
+  return winding_is_inside(d->side[solid]->body->winding, tree_of(d, solid), there);
+}
+
+/* What was not looked at is a surface, which has no inside to be deep in; else it may be as deep as anything. */
+static double least_unseen(const dual *d) {
+  const bool boxes = tree_of(d, 0)->kind == TREE_BOXES || tree_of(d, 1)->kind == TREE_BOXES;
+  return boxes || is_solid(d->side[0]) || is_solid(d->side[1]) ? least_of(d) : -d->margins;
+}
+
+static void conclude(const dual *d, pair_answer *answer) {
+  *answer = d->best;
+  if (answer->fault) return;
+  if (answer->overlap) {
+    overlap(d, d->best.common, answer);
+    return;
+  }
+  answer->rounding = fmax(answer->rounding, d->rounding);
+  answer->lower = fmin(d->lower, answer->upper);
+  const bool apart = answer->lower + d->margins > d->rounding;
+  if ((answer->exhausted || answer->stopped) && !apart) answer->lower = fmin(least_unseen(d), answer->upper);
+
+  /* surfaces that do not meet: one inside of the other, where that is solid, or each outside of the other */
+  vec3 inner = vec(0, 0, 0);
+  if (apart && (holds(d, 1, &inner) || holds(d, 0, &inner))) overlap(d, inner, answer);
 }
 
 bool pair_trees(const pair_side *a, const pair_side *b, const pair_goal *goal, cprox_workspace *workspace,
                 pair_answer *answer) {
   const pair_placement place = pair_place(a, b);
   const tree *x = a->body->tree, *y = b->body->tree;
-  dual d = {.a = a, .b = b, .place = &place, .goal = *goal, .margins = a->margin + b->margin, .workspace = workspace};
+  dual d = {.side = {a, b}, .place = &place, .goal = *goal, .margins = a->margin + b->margin, .workspace = workspace};
   d.rounding = ROUND_UP * (place.error + (2.0 * ROUND_ROTATION + 2.0 * TREE_ROUND) * ROUND_U *
                                              (vec_norm(place.t) + x->scale + y->scale + d.margins));
-  d.goal.wants_depth = false;
   d.goal.epsilon = fmax(goal->epsilon - 4.0 * d.rounding, 0.0);
   d.best = (pair_answer){.upper = INFINITY};
   d.lower = INFINITY;
-  tree_entry *list = workspace_reserve(workspace, WORKSPACE_LISTS, sizeof *list);
-  if (!list) return false;
-  list[0] = (tree_entry){0, y->nodes[0].lanes};
+  d.least = -d.margins - d.rounding;
   seed(&d);
-  if (!is_over(&d)) visit(&d, 0, 0, 1);
+  if (!d.best.overlap && !d.best.fault) descend(&d);
   if (d.out_of_memory) return false;
-  *answer = d.best;
-  if (answer->fault) return true;
-  if (answer->overlap) {
-    overlap(&d, d.best.common, answer);
-    return true;
-  }
-  if (d.best.steps > d.goal.max_steps) {
-    answer->exhausted = true;
-    d.lower = least_of(&d); /* what was not looked at */
-  }
-  answer->rounding = fmax(answer->rounding, d.rounding);
-  answer->lower = fmin(d.lower, answer->upper);
-  vec3 own[3], other[3];
-  tree_corners(x, (tree_place){0, 0}, own);
-  tree_corners(y, (tree_place){0, 0}, other);
-  const vec3 there = vec_add(turn(place.r, other[0]), place.t);
-  if (answer->lower + d.margins > d.rounding && (holds(b, to_b(&d, own[0])) || holds(a, there)))
-    overlap(&d, holds(a, there) ? there : own[0], answer);
+  conclude(&d, answer);
   return true;
 }

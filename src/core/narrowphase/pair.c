@@ -176,15 +176,25 @@ static void pair_answer_to_world(const pair_side *a, pair_answer *answer) {
   answer->normal = frame_turn_to_world(&a->f, answer->normal);
 }
 
+/* Two of many elements: the larger one is the first, so that the answer does not depend on their order. */
+static bool pair_trees_swap(const pair_side *a, const pair_side *b) {
+  const tree *x = a->body->tree, *y = b->body->tree;
+  if (x->n != y->n) return x->n < y->n;
+  if (x->kind != y->kind) return x->kind < y->kind;
+  return x->scale != y->scale ? x->scale < y->scale : a->margin < b->margin;
+}
+
 /* One of the two is made of many elements. */
 static cprox_status pair_with_elements(const pair_side *a, const pair_side *b, const pair_goal *goal,
                                        cprox_workspace *workspace, pair_answer *answer) {
-  const bool swapped = !a->body->tree;
+  const bool many = a->body->tree && b->body->tree;
+  const bool swapped = many ? pair_trees_swap(a, b) : !a->body->tree;
   const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
-  if (second->body->tree) {
-    if (!pair_trees(a, b, goal, workspace, answer))
+  if (many) {
+    if (!pair_trees(first, second, goal, workspace, answer))
       return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of meshes");
-    pair_answer_to_world(a, answer);
+    if (swapped) pair_swap(answer);
+    pair_answer_to_world(first, answer);
     return CPROX_OK;
   }
   if (second->shape->ops->kind == CPROX_HALFSPACE)
@@ -344,6 +354,8 @@ cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *opt
   const pair_goal goal = {.epsilon = asked.epsilon,
                           .relative_epsilon = asked.relative_epsilon,
                           .max_steps = asked.max_nodes,
+                          .stop = asked.stop,
+                          .stop_user = asked.stop_user,
                           .wants_depth = true};
   pair_reply best;
   const cprox_rung finest = asked.max_rung == CPROX_RUNG_NONE ? CPROX_RUNG_MESH : asked.max_rung;
