@@ -28,6 +28,8 @@ using Triangles = Eigen::Matrix<int, 3, Eigen::Dynamic>;
  *    SUPERQUADRIC  [a1, a2, a3, n1, n2, n3]: sum |x_i/a_i|^n_i <= 1, exponents 1 … 1000
  *    IMPLICIT   none; the intersection of `hyperquadrics`, `planes` and `quadrics`, bounded and with an interior
  *    POLYTOPE   none; the convex hull of `vertices`, solid, of any dimension
+ *    POLYGON    none; a convex polygon in the plane z = 0 of its frame, its `vertices` in order, z = 0. Curves in its plane get planar
+ *               answers: its inside counts as inside
  *    MESH       none, or a scale [x, y, z]; `vertices` and `triangles`, or `resource`: a surface, with `solid` also
  *               its inside
  *    POINTS     none, or [radius] >= 0: a ball of that radius about each of `vertices`, as sensors measure them
@@ -42,6 +44,7 @@ enum class ShapeType {
   ELLIPSOID,
   HALFSPACE,
   POLYTOPE,
+  POLYGON,
   MESH,
   SUPERQUADRIC,
   IMPLICIT,

@@ -146,6 +146,9 @@ SolidHandle solidOf(const ShapeDescription &shape, int dimension) {
         return cprox_solid_create_ellipsoid(dimension, {d.at(0), d.at(1), d.at(2)}, w, s);
       });
     case ShapeType::POLYTOPE: return dimension == 2 ? polygonSolid(shape.vertices) : hullSolid(shape.vertices);
+    case ShapeType::POLYGON:
+      if (dimension == 3) break;
+      return polygonSolid(shape.vertices);
     case ShapeType::CYLINDER:
     case ShapeType::CAPSULE:
       if (dimension == 2) break;

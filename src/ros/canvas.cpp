@@ -150,6 +150,17 @@ void Canvas::addConvex(const std::string &space, const cprox_body *body, const E
   }
 }
 
+/** A fan of triangles, seen from both sides. */
+void Canvas::addPolygon(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
+                        const std_msgs::ColorRGBA &tint) {
+  Marker &marker = add(space, Marker::TRIANGLE_LIST, pose);
+  marker.color = tint;
+  const auto corner = [&](Eigen::Index i) { marker.points.push_back(toPointMessage(toVec3(shape.vertices.col(i)))); };
+  for (Eigen::Index i = 1; i + 1 < shape.vertices.cols(); ++i) {
+    for (const Eigen::Index k : {Eigen::Index{0}, i, i + 1, Eigen::Index{0}, i + 1, i}) corner(k);
+  }
+}
+
 /** A slab whose upper face is the halfspace's boundary near the origin of its frame. */
 void Canvas::addHalfspace(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
                           const std_msgs::ColorRGBA &tint) {
@@ -254,6 +265,7 @@ void Canvas::addShape(const std::string &space, const ShapeDescription &shape, c
     case ShapeType::MESH:
       if (!addMesh(space, shape, resources, pose, tint)) addConvex(space, body.get(), pose, tint);
       break;
+    case ShapeType::POLYGON: addPolygon(space, shape, pose, tint); break;
     case ShapeType::POINTS: addPoints(space, shape, pose, tint); break;
     case ShapeType::OCTREE: addOctree(space, shape, resources, pose, tint); break;
     default: addConvex(space, body.get(), pose, tint); break;

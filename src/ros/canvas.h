@@ -43,6 +43,8 @@ class Canvas {
   visualization_msgs::MarkerArray take();
 
  private:
+  void addPolygon(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
+                  const std_msgs::ColorRGBA &tint);
   void addHalfspace(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,
                     const std_msgs::ColorRGBA &tint);
   void addPoints(const std::string &space, const ShapeDescription &shape, const Eigen::Isometry3d &pose,

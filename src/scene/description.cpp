@@ -7,7 +7,7 @@
 namespace curve_proximity {
 namespace {
 
-constexpr std::array<std::pair<ShapeType, const char *>, 14> SHAPE_TYPES = {{{ShapeType::POINT, "point"},
+constexpr std::array<std::pair<ShapeType, const char *>, 15> SHAPE_TYPES = {{{ShapeType::POINT, "point"},
                                                                              {ShapeType::SPHERE, "sphere"},
                                                                              {ShapeType::BOX, "box"},
                                                                              {ShapeType::CAPSULE, "capsule"},
@@ -16,6 +16,7 @@ constexpr std::array<std::pair<ShapeType, const char *>, 14> SHAPE_TYPES = {{{Sh
                                                                              {ShapeType::ELLIPSOID, "ellipsoid"},
                                                                              {ShapeType::HALFSPACE, "halfspace"},
                                                                              {ShapeType::POLYTOPE, "polytope"},
+                                                                             {ShapeType::POLYGON, "polygon"},
                                                                              {ShapeType::MESH, "mesh"},
                                                                              {ShapeType::SUPERQUADRIC, "superquadric"},
                                                                              {ShapeType::IMPLICIT, "implicit"},

@@ -33,6 +33,7 @@ Expected expectedDimensions(ShapeType type) {
     case ShapeType::POINTS: return {1, "[radius]", Expected::NOT_NEGATIVE, true};
     case ShapeType::POINT:
     case ShapeType::POLYTOPE:
+    case ShapeType::POLYGON:
     case ShapeType::IMPLICIT:
     case ShapeType::OCTREE: break;
   }
@@ -80,7 +81,14 @@ void checkVertices(const ShapeDescription &shape) {
 
   // Which types have vertices, and what else belongs to a mesh alone.
   const bool mesh = shape.type == ShapeType::MESH, octree = shape.type == ShapeType::OCTREE;
-  const bool points = shape.type == ShapeType::POLYTOPE || shape.type == ShapeType::POINTS;
+  const bool polygon = shape.type == ShapeType::POLYGON;
+  const bool points = polygon || shape.type == ShapeType::POLYTOPE || shape.type == ShapeType::POINTS;
+  for (Eigen::Index i = 0; polygon && i < n; ++i) {
+    if (shape.vertices(2, i) != 0.0) {
+      throw Error("polygon vertex " + std::to_string(i) + " has z = " + number(shape.vertices(2, i)) +
+                  ": a polygon lies in the plane z = 0 of its frame, and its pose may move that");
+    }
+  }
   if (shape.type == ShapeType::POINT && n > 1) throw Error("point needs at most 1 vertex, got " + std::to_string(n));
   if (points && n == 0) throw Error(name + " has no vertices");
   if (shape.type != ShapeType::POINT && !points && !mesh && n > 0) {
@@ -151,6 +159,7 @@ BodyHandle makeBody(const ShapeDescription &shape, const ResourceOptions &option
     case ShapeType::ELLIPSOID: return makeEllipsoid({d[0], d[1], d[2]});
     case ShapeType::HALFSPACE: return makeHalfspace({d[0], d[1], d[2]}, d[3]);
     case ShapeType::POLYTOPE: return makePolytope(shape.vertices);
+    case ShapeType::POLYGON: return makePolygon(shape.vertices.topRows<2>());
     case ShapeType::SUPERQUADRIC: return makeSuperquadric({d[0], d[1], d[2]}, {d[3], d[4], d[5]});
     case ShapeType::IMPLICIT: return makeImplicit(shape.hyperquadrics, shape.planes, shape.quadrics);
     case ShapeType::POINTS: return makePoints(shape.vertices, d.empty() ? 0.0 : d[0], options.memory_limit);

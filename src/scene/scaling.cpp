@@ -40,6 +40,7 @@ ShapeDescription scaledShape(const ShapeDescription &shape, double scale, const 
   switch (shape.type) {
     case ShapeType::MESH: scaleMesh(out, scale, resources); break;
     case ShapeType::POINT:
+    case ShapeType::POLYGON:
     case ShapeType::POLYTOPE: out.vertices *= scale; break;
     case ShapeType::POINTS: /* [radius] */
       out.vertices *= scale;

@@ -94,7 +94,7 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
   const std::optional<ShapeType> known = shapeTypeFromName(name);
   if (!known) {
     type.fail("type '" + name + "' is unknown; it must be point, sphere, box, capsule, cylinder, cone, ellipsoid, " +
-              "halfspace, polytope, mesh, points, octree, superquadric or implicit");
+              "halfspace, polytope, polygon, mesh, points, octree, superquadric or implicit");
   }
   shape.type = *known;
 
@@ -121,8 +121,8 @@ ShapeDescription readBody(const YamlValue &value, Warnings &warnings) {
   value.warnOfOthers({"type", "dimensions", "vertices", "pose"}, warnings);
   if (const auto dimensions = value.find("dimensions")) shape.dimensions = dimensions->numbers();
   shape.vertices = readVertices(value);
-  const bool by_vertices =
-      shape.type == ShapeType::POLYTOPE || shape.type == ShapeType::POINT || shape.type == ShapeType::POINTS;
+  const bool by_vertices = shape.type == ShapeType::POLYTOPE || shape.type == ShapeType::POLYGON ||
+                           shape.type == ShapeType::POINT || shape.type == ShapeType::POINTS;
   if (!by_vertices && shape.vertices.cols() > 0) value.fail("a " + name + " has dimensions, not vertices");
   return shape;
 }
