@@ -82,6 +82,7 @@ class Answers(TestCase):
             (body('s', 'cylinder', [3, 0.4]), 0.5), (body('s', 'cone', [3, 0.4]), 0.5),
             (body('s', 'ellipsoid', [1, 1, 0.5]), 1.5), (body('s', 'halfspace', [0, 0, 2, -1]), 1.5),
             (body('s', 'polytope', vertices=corners), 1.0),
+            (body('s', 'polygon', vertices=[(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]), 2.0),
             (body('s', 'superquadric', [1, 1, 0.5, 4, 1.5, 8]), 1.5),
             (implicit('s', [[(0.5, 0, 0, 0, 4), (0, 0.5, 0, 0, 4), (0, 0, 0.5, 0, 4)]], [(0, 0, 2, -1)]), 1.5),
             (implicit('s', planes=[(0, 0, 1, -1), (0, 0, -1, -1)], quadrics=[(1, 0, 0, 1, 0, 0, 0, 0, 0, -1)]), 1.0)]
@@ -89,6 +90,19 @@ class Answers(TestCase):
             with self.subTest(thing_.bodies or thing_.primitives or thing_.planes or 'mesh'):
                 self.server.replace(thing_)
                 self.assertContains(self.distance(line), true_distance)
+
+    def test_a_polygon_has_an_inside_to_curves_in_its_plane(self):
+        self.server.replace(body('square', 'polygon', vertices=[(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]))
+        inside, beside = bezier((-0.5, 0, 0), (0.5, 0.1, 0)), bezier((2, -3, 0), (2, 3, 0))
+        self.assertEqual(self.row(self.server.collision(inside)).verdict, 'yes')
+        self.assertEqual(self.row(self.server.collision(beside)).verdict, 'no')
+        self.assertContains(self.distance(beside), 1.0)
+
+    def test_what_does_not_apply_is_refused_and_named(self):
+        self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
+        refused = self.server.collision(ABOVE, self_collision=True)
+        self.assertFalse(refused.success)
+        self.assertIn('self_collision', refused.message)
 
     def test_poses_of_object_and_shape_are_chained(self):
         # the object is turned by 90 degrees about z, so its shape at (1, 0, 0) stands at (3, 1, 0)
