@@ -184,8 +184,9 @@ CPROX_API void cprox_body_bounding_sphere(const cprox_body *body, cprox_vec3 *ce
 CPROX_API double cprox_body_support(const cprox_body *body, cprox_vec3 direction, cprox_vec3 *point);
 
 /** The nearest point of the body to a point of its frame, and the distance to it: negative inside (minus the distance
- * to the surface) for the kinds that can tell, else 0. nearest NULL if not needed. Accuracy: 64 2^-53 (|point| + size);
- * a plain evaluation: certified answers come from the queries. */
+ * to the surface) for the kinds that can tell, else 0. nearest NULL if not needed. Accuracy: 64 2^-53 (|point| + size); inside support
+ * bodies, superquadrics and implicit bodies whatever 400 support queries tell. A plain evaluation: certified answers come
+ * from the queries. Inside polytopes of more than 400 vertices it allocates memory while it runs. */
 CPROX_API double cprox_body_nearest(const cprox_body *body, cprox_vec3 point, cprox_vec3 *nearest);
 
 #ifdef __cplusplus

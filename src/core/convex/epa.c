@@ -3,6 +3,8 @@
  * n·p >= min n·w over its vertices, so the least of these offsets is a depth that is proven, whatever the normals' accuracy. */
 #include "convex/epa.h"
 
+#include <stdlib.h>
+
 #include "base/rounding.h"
 #include "convex/feature.h"
 #include "convex/twofold.h"
@@ -24,14 +26,43 @@ typedef struct facet {
 } facet;
 
 typedef struct surface {
-  simplex_vertex vertex[MOST_VERTICES];
-  int32_t n_vertices;
-  facet facet[MOST_FACETS];
-  int32_t n_facets;
-  int32_t free[MOST_FACETS], n_free;
-  double offset
-      [MOST_FACETS]; /* of each facet, beside the others so that the least is found quickly; infinity where it is free */
+  vec3 shift; /* w of the vertices are relative to this: 0, or a place beside it */
+  simplex_vertex *vertex;
+  int32_t n_vertices, most_vertices;
+  facet *facet;
+  int32_t n_facets, most_facets;
+  int32_t *free, n_free;
+  double *offset; /* of each facet, beside the others so that the least is found quickly; infinity where it is free */
 } surface;
+
+/* Where a surface stands: as large as a query needs, without allocation, or allocated. */
+typedef struct surface_room {
+  simplex_vertex vertex[MOST_VERTICES];
+  facet facet[MOST_FACETS];
+  int32_t free[MOST_FACETS];
+  double offset[MOST_FACETS];
+  void *allocated;
+} surface_room;
+
+static void surface_place(surface *s, surface_room *room, int32_t wanted) {
+  *s = (surface){.vertex = room->vertex,
+                 .most_vertices = MOST_VERTICES,
+                 .facet = room->facet,
+                 .most_facets = MOST_FACETS,
+                 .free = room->free,
+                 .offset = room->offset};
+  room->allocated = NULL;
+  if (wanted <= MOST_VERTICES) return;
+  const size_t n = (size_t)wanted, m = 2 * n;
+  char *bytes = malloc(n * sizeof *s->vertex + m * (sizeof *s->facet + sizeof *s->offset + sizeof *s->free));
+  if (!bytes) return;
+  room->allocated = bytes;
+  s->most_vertices = wanted, s->most_facets = 2 * wanted;
+  s->vertex = (simplex_vertex *)bytes;
+  s->facet = (facet *)(s->vertex + n);
+  s->offset = (double *)(s->facet + m);
+  s->free = (int32_t *)(s->offset + m);
+}
 
 /* ---- facets ----------------------------------------------------------------------------------------------------------- */
 
@@ -46,6 +77,11 @@ static void facet_try(const surface *s, facet *f, vec3 n) {
   if (!(offset > f->offset)) return;
   f->offset = offset;
   f->normal = n;
+}
+
+/* Whether the rounding of the edges' product outweighs it. */
+static bool is_sliver(vec3 cross, vec3 ab, vec3 ac) {
+  return !(vec_norm2(cross) > 1e-6 * vec_norm2(ab) * vec_norm2(ac));
 }
 
 /* A sliver's own normal is computed in sums of two doubles; where it has no area at all, the direction in which it lies from 0 is a
@@ -71,7 +107,7 @@ static void facet_find_normal(const surface *s, facet *f) {
   vec3 n;
   feature_unit(cross, &n);
   facet_try(s, f, n);
-  if (!(vec_norm2(cross) > 1e-6 * vec_norm2(ab) * vec_norm2(ac))) facet_try_sliver(s, f);
+  if (is_sliver(cross, ab, ac)) facet_try_sliver(s, f);
 }
 
 /* Adds a facet: there is room. Its neighbours are set by who joins it to them. */
@@ -181,8 +217,8 @@ static void view_alone(const surface *s, int32_t first, view *v) {
 
 /* Takes the seen facets away and joins the loop to the new vertex. False where there is no room; nothing has changed then. */
 static bool surface_grow(surface *s, const simplex_vertex *x, const view *v) {
-  if (s->n_vertices == MOST_VERTICES) return false;
-  if (s->n_free + v->n_seen + MOST_FACETS - s->n_facets < v->n_edges) return false;
+  if (s->n_vertices == s->most_vertices) return false;
+  if (s->n_free + v->n_seen + s->most_facets - s->n_facets < v->n_edges) return false;
   const int32_t top = s->n_vertices++;
   s->vertex[top] = *x;
   for (int32_t i = 0; i < v->n_seen; i++) surface_drop(s, v->seen[i]);
@@ -201,6 +237,13 @@ static bool surface_grow(surface *s, const simplex_vertex *x, const view *v) {
 }
 
 /* ---- the search ------------------------------------------------------------------------------------------------------- */
+
+/* The set's point farthest along n, seen from the middle that the surface is round. */
+static simplex_vertex farthest_from(const expand_set *set, vec3 shift, vec3 n) {
+  simplex_vertex x = set->farthest(set->self, n);
+  x.w = vec_sub(x.w, shift);
+  return x;
+}
 
 /* A surface that begins: its facets counter-clockwise from outside, and what lies beyond their edges. */
 typedef struct shell {
@@ -226,11 +269,12 @@ static bool surface_begin(surface *s, const simplex_vertex *vertex, const shell 
   for (int i = 0; i < form->n_facets; i++) {
     const int *corner = form->corner[i];
     const vec3 a = vertex[corner[0]].w, ab = vec_sub(vertex[corner[1]].w, a), ac = vec_sub(vertex[corner[2]].w, a);
-    vec3 n;
-    feature_unit(vec_cross(ab, ac), &n);
+    vec3 n, cross = vec_cross(ab, ac);
+    if (is_sliver(cross, ab, ac)) cross = twofold_cross(a, vertex[corner[1]].w, vertex[corner[2]].w);
+    feature_unit(cross, &n);
     if (!(vec_dot(n, a) > rounding)) return false;
-    for (int k = 0; k < form->n_vertices; k++)
-      if (vec_dot(n, vertex[k].w) > vec_dot(n, a) + rounding) return false;
+    for (int k = 0; k < form->n_vertices && form->n_vertices > 4; k++)
+      if (vec_dot(n, vertex[k].w) > vec_dot(n, a) + 16.0 * rounding) return false;
     const int32_t f = surface_add(s, corner[0], corner[1], corner[2]);
     for (int k = 0; k < 3; k++) s->facet[f].neighbour[k] = form->beyond[i][k];
   }
@@ -257,8 +301,8 @@ static bool begin_triangle(surface *s, const expand_set *set, const simplex *sta
   feature_unit(vec_cross(vec_sub(start->vertex[1].w, a), vec_sub(start->vertex[2].w, a)), &n);
   if (vec_norm2(n) == 0.0) return false;
   for (int i = 0; i < 3; i++) vertex[i] = start->vertex[i];
-  vertex[3] = set->farthest(set->self, n);
-  vertex[4] = set->farthest(set->self, vec_neg(n));
+  vertex[3] = farthest_from(set, s->shift, n);
+  vertex[4] = farthest_from(set, s->shift, vec_neg(n));
   return surface_begin(s, vertex, &BIPYRAMID, rounding);
 }
 
@@ -268,12 +312,12 @@ static bool begin_line(surface *s, const expand_set *set, vec3 n, double roundin
   simplex_vertex vertex[5];
   vec3 e, f;
   feature_tangents(n, &e, &f);
-  vertex[3] = set->farthest(set->self, n);
-  vertex[4] = set->farthest(set->self, vec_neg(n));
+  vertex[3] = farthest_from(set, s->shift, n);
+  vertex[4] = farthest_from(set, s->shift, vec_neg(n));
   for (int k = 0; k < ANGLES; k++) {
     for (int i = 0; i < 3; i++) {
       const double angle = 2.0943951023931953 * ((double)i + (double)k / ANGLES);
-      vertex[i] = set->farthest(set->self, vec_add(vec_scale(cos(angle), e), vec_scale(sin(angle), f)));
+      vertex[i] = farthest_from(set, s->shift, vec_add(vec_scale(cos(angle), e), vec_scale(sin(angle), f)));
     }
     if (surface_begin(s, vertex, &BIPYRAMID, rounding)) return true;
   }
@@ -322,23 +366,28 @@ static void find_touch(surface *s, double room, double rounding, expand_depth *d
   }
 }
 
-bool expand_from(const expand_set *set, const simplex *start, const expand_goal *goal, expand_depth *depth) {
-  surface s;
+static bool is_enough(const expand_depth *depth, const expand_goal *goal) {
+  if (goal->rough && depth->least > goal->rounding && depth->most <= 4.0 * depth->least) return true;
+  return depth->most - depth->least <= goal->width;
+}
+
+/* Until the bounds are as close as is asked for, or `least` passes what is enough. False where the set is at fault. */
+static bool surface_expand(surface *s, const expand_set *set, const expand_goal *goal, double enough,
+                           expand_depth *depth) {
   view v;
-  if (!begin_from(&s, set, start, goal->rounding)) return false;
-  *depth = (expand_depth){.least = -INFINITY, .most = INFINITY, .exhausted = true};
-  const uint32_t most = goal->max_steps < MOST_STEPS ? goal->max_steps : MOST_STEPS;
+  const uint32_t room = (uint32_t)s->most_vertices - (MOST_VERTICES - MOST_STEPS);
+  const uint32_t most = goal->max_steps < room ? goal->max_steps : room;
   while (depth->steps < most) {
-    const int32_t best = surface_nearest(&s);
-    const facet *f = &s.facet[best];
+    const int32_t best = surface_nearest(s);
+    const facet *f = &s->facet[best];
     depth->least = greater(depth->least, f->offset);
-    if (depth->most - depth->least <= goal->width) {
+    if (is_enough(depth, goal) || depth->least > enough) {
       depth->exhausted = false;
       break;
     }
 
     /* the set's plane above the facet that is nearest to 0 */
-    const simplex_vertex x = set->farthest(set->self, f->normal);
+    const simplex_vertex x = farthest_from(set, s->shift, f->normal);
     depth->steps++;
     const double reach = vec_dot(f->normal, x.w);
     if (isnan(reach)) return false;
@@ -346,14 +395,77 @@ bool expand_from(const expand_set *set, const simplex *start, const expand_goal 
       depth->most = reach;
       depth->normal = f->normal;
     }
-    if (depth->most - depth->least <= goal->width || !(reach - f->offset > 0.25 * goal->rounding) ||
-        !is_seen(f, x.w, goal->rounding)) {
+    if (is_enough(depth, goal) || !(reach - f->offset > 0.25 * goal->rounding) || !is_seen(f, x.w, goal->rounding)) {
       depth->exhausted = false;
       break;
     }
-    if (!view_from(&s, best, x.w, goal->rounding, &v) || !view_close(&v)) view_alone(&s, best, &v);
-    if (!surface_grow(&s, &x, &v)) break;
+    if (!view_from(s, best, x.w, goal->rounding, &v) || !view_close(&v)) view_alone(s, best, &v);
+    if (!surface_grow(s, &x, &v)) break;
   }
-  find_touch(&s, greater(goal->width, goal->rounding), goal->rounding, depth);
   return true;
+}
+
+static const expand_depth UNKNOWN = {.least = -INFINITY, .most = INFINITY, .exhausted = true};
+
+/* From a surface that encloses 0. */
+static bool surface_finish(surface *s, const expand_set *set, const expand_goal *goal, expand_depth *depth) {
+  if (!surface_expand(s, set, goal, INFINITY, depth)) return false;
+  find_touch(s, greater(goal->width, goal->rounding), goal->rounding, depth);
+  return true;
+}
+
+bool expand_from(const expand_set *set, const simplex *start, const expand_goal *goal, expand_depth *depth) {
+  surface_room room;
+  surface s;
+  surface_place(&s, &room, goal->room);
+  bool found = begin_from(&s, set, start, goal->rounding);
+  if (found) {
+    *depth = UNKNOWN;
+    found = surface_finish(&s, set, goal, depth);
+  }
+  free(room.allocated);
+  return found;
+}
+
+/* Seen from 0 again, which lies nearer to `shift` than any facet: so every facet has it behind, and the surface encloses it as well. */
+static void surface_return(surface *s) {
+  for (int32_t i = 0; i < s->n_vertices; i++) s->vertex[i].w = vec_add(s->vertex[i].w, s->shift);
+  s->shift = vec(0, 0, 0);
+  for (int32_t i = 0; i < s->n_facets; i++) {
+    facet *f = &s->facet[i];
+    if (!f->alive) continue;
+    const vec3 before = f->normal;
+    f->offset = -INFINITY;
+    facet_try(s, f, before);
+    facet_find_normal(s, f);
+    s->offset[i] = f->offset;
+  }
+}
+
+/* From a surface round its shift. */
+static bool surface_expand_beside(surface *s, const expand_set *set, const simplex *start, const expand_goal *goal,
+                                  expand_depth *depth) {
+  if (!begin_from(s, set, start, goal->rounding)) return false;
+
+  /* until a ball about the shift is free that holds 0 and more than the rounding */
+  const double needed = vec_norm(s->shift) + 2.0 * goal->rounding;
+  expand_goal inner = *goal;
+  inner.width = 0.0, inner.rough = false;
+  expand_depth free = UNKNOWN;
+  if (!surface_expand(s, set, &inner, needed, &free) || !(free.least > needed)) return false;
+  surface_return(s);
+  *depth = UNKNOWN;
+  depth->steps = free.steps;
+  return s->offset[surface_nearest(s)] > goal->rounding && surface_finish(s, set, goal, depth);
+}
+
+bool expand_beside(const expand_set *set, const simplex *start, vec3 shift, const expand_goal *goal,
+                   expand_depth *depth) {
+  surface_room room;
+  surface s;
+  surface_place(&s, &room, goal->room);
+  s.shift = shift;
+  const bool found = surface_expand_beside(&s, set, start, goal, depth);
+  free(room.allocated);
+  return found;
 }

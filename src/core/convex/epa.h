@@ -15,7 +15,9 @@ typedef struct expand_set {
 typedef struct expand_goal {
   double rounding; /* every w is within this of a point of the set, and every n·w of the set's maximum */
   double width;    /* how wide [least, most] may be, rounding not counted */
+  bool rough;      /* or `most` may be four times `least` */
   uint32_t max_steps;
+  int32_t room; /* for so many vertices, where that is more than a query needs: allocated, and none if memory is out */
 } expand_goal;
 
 /* least <= depth <= most, but for rounding. */
@@ -31,7 +33,13 @@ typedef struct expand_depth {
  * nothing is set. */
 bool expand_from(const expand_set *set, const simplex *start, const expand_goal *goal, expand_depth *depth);
 
-/* For a set of revolution about z, made of two shapes of revolution about their own z: from scratch. */
-bool expand_ring(const expand_set *set, const expand_goal *goal, expand_depth *depth);
+/* The same from a simplex that encloses `shift` instead, whose w are relative to it: where 0 lies on faces that any vertices span, a
+ * place beside it does not. False where the set does not reach farther than `shift` all round. */
+bool expand_beside(const expand_set *set, const simplex *start, vec3 shift, const expand_goal *goal,
+                   expand_depth *depth);
+
+/* For a set of two shapes of revolution about their own z, the second one's points at most `off` from where they would be if its axis
+ * were the first one's: from scratch. */
+bool expand_ring(const expand_set *set, double off, const expand_goal *goal, expand_depth *depth);
 
 #endif

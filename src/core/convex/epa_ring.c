@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The same for a set that is one of revolution about z, where the nearest points of the surface may be a whole ring: a polygon that
- * expands in the half plane of (hypot(x, y), z), from the lowest point of the set to the highest. A disc of the plane lies in the
- * set's section if and only if the ball lies in the set. */
+/* The same for a set that is all but one of revolution about z, where the nearest points of the surface may be a whole ring: a polygon
+ * that expands in the half plane of (hypot(x, y), z), from the lowest point of the set to the highest. Of a set of revolution a disc of the plane
+ * lies in the section if and only if the ball lies in the set. Where no point is farther than `off` from one of such a set and the other way
+ * round, the polygon is within `off` of its section, and its ball less `off` within `off` of the set: 2 off in all. From above nothing is
+ * taken from the profile: the reach along a direction is that of the set itself. */
 #include "convex/epa.h"
 
 #include "base/rounding.h"
@@ -12,6 +14,7 @@ enum { MOST_CORNERS = 128 };
 typedef struct corner {
   simplex_vertex vertex;
   double rho, z;
+  double reach; /* of the set along the direction in which the corner was found */
 } corner;
 
 /* The edge to the corner above. */
@@ -29,7 +32,8 @@ typedef struct profile {
 
 static int32_t profile_add_corner(profile *p, const expand_set *set, double x, double z) {
   const simplex_vertex v = set->farthest(set->self, vec(x, 0.0, z));
-  p->corner[p->n_corners] = (corner){.vertex = v, .rho = feature_hypot(v.w.x, v.w.y), .z = v.w.z};
+  const double reach = x * v.w.x + z * v.w.z;
+  p->corner[p->n_corners] = (corner){.vertex = v, .rho = feature_hypot(v.w.x, v.w.y), .z = v.w.z, .reach = reach};
   return p->n_corners++;
 }
 
@@ -106,27 +110,28 @@ static void lower_most(expand_depth *depth, double reach, double x, double z) {
   depth->normal = vec(x, 0.0, z);
 }
 
-bool expand_ring(const expand_set *set, const expand_goal *goal, expand_depth *depth) {
+bool expand_ring(const expand_set *set, double off, const expand_goal *goal, expand_depth *depth) {
   profile p;
-  if (!profile_begin(&p, set, goal->rounding)) return false;
+  const double rounding = goal->rounding + off, width = goal->width - 2.0 * off;
+  if (!profile_begin(&p, set, rounding)) return false;
   *depth = (expand_depth){.least = -INFINITY, .most = INFINITY, .exhausted = true, .steps = 5};
   lower_most(depth, -set->farthest(set->self, vec(0, 0, -1)).w.z, 0.0, -1.0);
   lower_most(depth, set->farthest(set->self, vec(0, 0, 1)).w.z, 0.0, 1.0);
-  lower_most(depth, p.corner[1].rho, 1.0, 0.0);
+  lower_most(depth, p.corner[1].reach, 1.0, 0.0);
   const double ends = fmin(-p.corner[0].z, p.corner[2].z);
   while (p.n_corners < MOST_CORNERS && depth->steps < goal->max_steps) {
     const int32_t best = profile_nearest(&p);
     const edge e = p.edge[best];
     depth->least = fmax(depth->least, fmin(e.offset, ends));
-    depth->exhausted = depth->most - depth->least > goal->width;
+    depth->exhausted = depth->most - depth->least > width;
     if (!depth->exhausted) break;
 
     const int32_t top = profile_add_corner(&p, set, e.x, e.z);
     depth->steps++;
     const double reach = reach_along(&p.corner[top], e.x, e.z);
     if (isnan(reach)) return false;
-    lower_most(depth, reach, e.x, e.z);
-    if (!(reach - e.offset > 0.25 * goal->rounding)) {
+    lower_most(depth, p.corner[top].reach, e.x, e.z);
+    if (!(reach - e.offset > 0.25 * rounding)) {
       depth->exhausted = false;
       break;
     }
@@ -135,6 +140,7 @@ bool expand_ring(const expand_set *set, const expand_goal *goal, expand_depth *d
     profile_set_edge(&p, best, e.from, top);
     profile_set_edge(&p, best + 1, top, e.to);
   }
-  find_touch(&p, fmax(goal->rounding, goal->width), depth);
-  return true;
+  find_touch(&p, fmax(rounding, goal->width), depth);
+  depth->least -= 2.0 * off;
+  return depth->least > goal->rounding;
 }

@@ -2,10 +2,17 @@
 #include "convex/gjk.h"
 
 #include "base/rounding.h"
+#include "convex/depth.h"
 #include "convex/feature.h"
 #include "convex/vertices.h"
 
 enum { GJK_MAX_STEPS = 200, GJK_MAX_IDLE = 8 };
+
+/* Depths below this, in hairs, are not searched for beyond the simplices. */
+static const double GJK_SHALLOW = 128.0;
+
+/* A simplex that holds y so much less deep than the shape may hold it says too little. */
+static const double GJK_THIN = 1e-6;
 
 /* The point of the core that is extreme along d, as a vertex of the core seen from y. */
 static simplex_vertex gjk_extreme(const convex *shape, vec3 y, vec3 d) {
@@ -137,6 +144,16 @@ static void gjk_search(gjk *g) {
   if (restarted && !g->nearest.inside && g->nearest.distance > before.nearest.distance) *g = before;
 }
 
+/* Whether y may be deep inside although the simplices do not tell: it lies on planes through vertices, or so near to them that what is
+ * proven is less than its rounding. */
+static bool gjk_is_open(const gjk *g) {
+  const double shallow = GJK_SHALLOW * g->hair;
+  if (g->nearest.inside)
+    return g->nearest.depth <= fmax(shallow, GJK_THIN * fmin(-g->lower, g->shape->scale)) && g->lower < -2.0 * shallow;
+  if (g->near_enough > 0.0 && g->nearest.distance <= g->near_enough) return false;
+  return g->lower < -2.0 * shallow && g->nearest.distance - g->lower > 2.0 * g->hair;
+}
+
 void gjk_nearest(const convex *shape, vec3 y, convex_hint *hint, gjk_answer *answer) {
   gjk g = {.shape = shape, .y = y, .least = INFINITY, .lower = -INFINITY};
   g.hair = 4.0 * ROUND_U * (vec_norm(y) + shape->scale);
@@ -147,6 +164,11 @@ void gjk_nearest(const convex *shape, vec3 y, convex_hint *hint, gjk_answer *ans
   g.s = start;
   g.least = g.nearest.distance;
   gjk_search(&g);
+  if (gjk_is_open(&g)) {
+    const double depth = depth_proven(shape, y);
+    if (depth > 0.0) g.nearest.depth = fmax(depth, g.nearest.depth);
+    g.nearest.inside |= depth > 0.0;
+  }
 
   const bool inside = g.nearest.inside;
   answer->feature = g.s;

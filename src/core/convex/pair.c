@@ -25,6 +25,12 @@ enum {
 /* Rounding of the bounds for shapes of size S, in units of u S: a crude sum of the steps gives 24. */
 static const double PAIR_ROUNDING = 32.0;
 
+/* Overlaps that are no deeper, in units of a bound's rounding, are not searched for beyond the simplices. */
+static const double PAIR_SHALLOW = 8.0;
+
+/* A simplex that holds 0 so much less deep than M may hold it says too little. */
+static const double PAIR_THIN = 1e-6;
+
 /* A Newton step has failed if more than this is left of the gap. */
 static const double PAIR_NEWTON_GAIN = 0.7;
 
@@ -301,7 +307,8 @@ static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) 
  * direction found is only as good as the distance was short. */
 static void pair_draw_apart(pair *p, double size, const pair_goal *goal) {
   double clear = 1e-3 * size;
-  for (int round = 0; round < PAIR_ROUNDS && p->lower < -p->rounding && !p->fault; round++, clear *= 1e-2) {
+  for (int round = 0; round < PAIR_ROUNDS && p->lower < -p->rounding && !p->fault && p->steps < goal->max_steps;
+       round++, clear *= 1e-2) {
     pair q = *p;
     q.t = vec_axpy(p->t, p->lower - clear, p->u);
     q.met = false;
@@ -399,36 +406,77 @@ static double pair_misalignment(const pair *p) {
 
 /* Coaxial bodies may be as deep all round a ring: their profile is a problem of the plane. What are nearly coaxial are so but for
  * `off`. */
-static bool pair_expand_ring(const expand_set *set, const expand_goal *goal, double off, expand_depth *depth) {
-  expand_goal inner = *goal;
-  inner.rounding += off;
-  if (!expand_ring(set, &inner, depth)) return false;
-  depth->least -= off;
-  depth->most += off;
-  return depth->least > goal->rounding;
-}
-
 static bool pair_expand(pair *p, const expand_goal *goal, expand_depth *depth) {
   const expand_set set = {.self = p, .farthest = pair_farthest};
   const double off = pair_misalignment(p);
-  if (off <= 0.25 * goal->width && pair_expand_ring(&set, goal, off, depth)) return true;
+  if (off <= 0.25 * goal->width && expand_ring(&set, off, goal, depth)) return true;
   if (!expand_from(&set, &p->s, goal, depth)) return false;
   expand_depth ring;
   const double width = depth->most - depth->least;
-  if (depth->exhausted && 2.0 * off < width && pair_expand_ring(&set, goal, off, &ring) &&
-      ring.most - ring.least < width)
+  if (depth->exhausted && 2.0 * off < width && expand_ring(&set, off, goal, &ring) && ring.most - ring.least < width)
     *depth = ring;
   return true;
 }
 
+/* Where 0 lies on a plane through vertices of M, no simplex of theirs may have it inside. A place beside 0 lies on none by chance: it is
+ * enclosed, and the surface round it grows until it holds 0 as well. The farther the place the clearer it is of all planes; what
+ * is less deep is missed. */
+static bool pair_expand_beside(pair *p, const expand_goal *goal, expand_depth *depth) {
+  static const double beside[] = {1024.0, 64.0, 8.0};
+  const expand_set set = {.self = p, .farthest = pair_farthest};
+  expand_goal left = *goal;
+  for (int round = 0; round < 3 && left.max_steps > 1; round++) {
+    const double far = beside[round] * p->rounding;
+    if (!(p->lower < -2.0 * far)) continue;
+    vec3 shift, inwards; /* M lies about -t */
+    feature_unit(vec_norm(p->t) > p->a->scale * 1e-3 ? vec_neg(p->t) : vec(0, 0, 0), &inwards);
+    feature_unit(vec_axpy(inwards, 0.5, simplex_spread[round]), &shift);
+    shift = vec_scale(far, shift);
+    pair q = *p;
+    q.t = vec_add(p->t, shift);
+    q.met = true;
+    q.steps = 0;
+    const pair_goal inside = {.max_steps = left.max_steps};
+    pair_search(&q, p->u, 0.0, &inside);
+    p->supports = q.supports;
+    p->steps += q.steps;
+    p->fault = q.fault;
+    if (p->fault) return false;
+    left.max_steps -= q.steps < left.max_steps ? q.steps : left.max_steps;
+    if (!expand_beside(&set, &q.s, shift, &left, depth)) continue;
+    if (far < p->nearest.distance) p->s = q.s;
+    return true;
+  }
+  return false;
+}
+
+typedef bool (*pair_expander)(pair *p, const expand_goal *goal, expand_depth *depth);
+
+static uint32_t pair_steps_left(const pair *p, const pair_goal *goal) {
+  return goal->max_steps > p->steps ? goal->max_steps - p->steps : 0;
+}
+
+/* That they overlap, and no more. */
+static void pair_prove_overlap(pair *p, const pair_goal *goal, pair_expander expand, pair_answer *answer) {
+  const expand_goal inner = {.rounding = p->rounding, .rough = true, .max_steps = pair_steps_left(p, goal)};
+  expand_depth depth;
+  if (!expand(p, &inner, &depth) || !(depth.least > p->rounding)) return;
+  p->steps += depth.steps;
+  p->nearest.depth = p->nearest.inside ? fmax(depth.least, p->nearest.depth) : depth.least;
+  p->nearest.inside = true;
+  answer->overlap = true;
+}
+
 /* 0 is inside the simplex, or on it; it expands until it has found the nearest way out of M. */
-static void pair_measure_depth(pair *p, double margin_a, double margin_b, const pair_goal *goal, pair_answer *answer) {
+static void pair_measure_depth(pair *p, double margin_a, double margin_b, const pair_goal *goal, pair_expander expand,
+                               pair_answer *answer) {
   const double relative = goal->relative_epsilon * (p->nearest.depth + margin_a + margin_b);
   const expand_goal inner = {.rounding = p->rounding,
                              .width = fmax(fmax(goal->epsilon, relative) - 2.0 * p->rounding, 0.25 * p->rounding),
-                             .max_steps = goal->max_steps > p->steps ? goal->max_steps - p->steps : 0};
+                             .max_steps = pair_steps_left(p, goal),
+                             .room = goal->room};
   expand_depth depth;
-  if (!pair_expand(p, &inner, &depth) || !(depth.most < INFINITY)) return;
+  if (!expand(p, &inner, &depth) || !(depth.most < INFINITY)) return;
   p->steps += depth.steps;
   p->nearest.inside = true;
   p->nearest.depth = depth.least;
@@ -481,6 +529,42 @@ static void pair_find(pair *p, vec3 u, double margins, const pair_goal *goal, pa
   if (goal->wants_feature && !found.described && !p->nearest.inside && !p->fault) pair_describe(p, feature);
 }
 
+/* Neither apart nor overlapping is proven by more than a few roundings, or the depth is wanted; and no direction yet tells that there is
+ * nothing to prove. */
+static bool pair_is_open(const pair *p, double margins, const pair_goal *goal) {
+  const double shallow = PAIR_SHALLOW * p->rounding;
+  if (p->fault || p->steps >= goal->max_steps || !(p->lower < -2.0 * shallow)) return false;
+  if (p->nearest.inside)
+    return goal->wants_depth || !(p->nearest.depth + margins > fmax(shallow, -PAIR_THIN * p->lower));
+  if (p->nearest.distance <= p->rounding) return true;
+  return !pair_is_reached(goal, margins, p->rounding, p->lower, p->nearest.distance);
+}
+
+/* What the search leaves where the cores overlap, or touch, or 0 lies on a plane through vertices of M. */
+static void pair_go_inside(pair *p, double margin_a, double margin_b, double size, const pair_goal *goal,
+                           pair_answer *answer) {
+  const double margins = margin_a + margin_b;
+  const bool on = p->nearest.inside || p->nearest.distance <= p->hair;
+  const bool open = pair_is_open(p, margins, goal);
+  if (!on && !open) return;
+  if (goal->wants_depth)
+    pair_measure_depth(p, margin_a, margin_b, goal, pair_expand, answer);
+  else if (open)
+    pair_prove_overlap(p, goal, pair_expand, answer);
+  if (answer->measured) return;
+
+  pair_draw_apart(p, size, goal);
+  if (pair_is_open(p, margins, goal)) {
+    if (goal->wants_depth)
+      pair_measure_depth(p, margin_a, margin_b, goal, pair_expand_beside, answer);
+    else
+      pair_prove_overlap(p, goal, pair_expand_beside, answer);
+  }
+  if (answer->measured) return;
+  if (open && answer->overlap) pair_points(p, margin_a, margin_b, answer);
+  if (!p->nearest.inside) answer->normal = p->u;
+}
+
 void pair_separate(const convex *a, double margin_a, const convex *b, double margin_b, const pair_placement *placement,
                    const pair_goal *goal, pair_answer *answer) {
   *answer = (pair_answer){0};
@@ -490,6 +574,7 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   const double size = a->scale + b->scale + distance + margins;
   p.rounding = ROUND_UP * (PAIR_ROUNDING * ROUND_U * size + placement->error + 2.0 * (a->slack + b->slack));
   p.hair = 4.0 * ROUND_U * size;
+  if (goal->plain) p.rounding = p.hair + 2.0 * (a->slack + b->slack);
 
   /* from what is known on, or the line of the centres */
   vec3 u = goal->start;
@@ -499,12 +584,7 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   answer->exhausted = p.steps >= goal->max_steps || p.steps >= PAIR_MAX_STEPS;
   answer->overlap = p.nearest.inside && p.nearest.depth + margins > p.rounding;
   pair_points(&p, margin_a, margin_b, answer);
-  if (goal->wants_depth && (answer->overlap || p.nearest.distance <= p.hair))
-    pair_measure_depth(&p, margin_a, margin_b, goal, answer);
-  if (!answer->measured && (p.nearest.inside || p.nearest.distance <= p.hair)) {
-    pair_draw_apart(&p, size, goal);
-    if (!p.nearest.inside) answer->normal = p.u;
-  }
+  pair_go_inside(&p, margin_a, margin_b, size, goal, answer);
 
   answer->fault = p.fault;
   answer->steps = p.steps;

@@ -22,6 +22,8 @@ typedef struct pair_goal {
   vec3 start; /* a's frame, unit: near the normal of the answer; (0,0,0): nothing is known */
   bool wants_feature;
   bool wants_depth; /* how deep the cores overlap, not only that they do */
+  bool plain;       /* the bounds need not hold: what is likely to be rounding and not what may be at worst */
+  int32_t room;     /* wants_depth: memory may be allocated for so many vertices of M; 0: none */
 } pair_goal;
 
 /* What the point of M = A - B that is nearest to 0 lies on: how the distance changes when 0 moves. */

@@ -9,6 +9,7 @@
 #include "base/workspace.h"
 #include "bvh/bvh.h"
 #include "bvh/winding.h"
+#include "convex/depth.h"
 #include "convex/feature.h"
 #include "shape/construct.h"
 #include "shape/elements.h"
@@ -400,8 +401,10 @@ double cprox_body_nearest(const cprox_body *body, cprox_vec3 point, cprox_vec3 *
   if (body->kind == CPROX_COMPOUND) return compound_nearest(body, point, nearest);
   if (body->mesh) return cprox_body_nearest(body->mesh, point, nearest);
   if (body->tree) return elements_nearest(body, point, nearest);
+  const vec3 y = vec_sub(point, body->centre);
   convex_near near;
-  body->shape.ops->nearest(&body->shape, vec_sub(point, body->centre), NULL, &near);
+  body->shape.ops->nearest(&body->shape, y, NULL, &near);
+  depth_complete(&body->shape, y, &near);
   if (nearest) *nearest = vec_add(near.point, body->centre);
   return near.distance;
 }
