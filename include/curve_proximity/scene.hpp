@@ -36,7 +36,7 @@ struct Operation {
   ObjectDescription object; /**< MOVE and REMOVE use its id (and pose) only */
 };
 
-/** Whether two of objects and links may touch; b empty: the default of a towards everything. */
+/** Whether two of objects and links may touch (see Snapshot::mayTouch()); b empty: the default of a. */
 struct AllowedPair {
   std::string a, b;
   bool allowed = true;
@@ -147,10 +147,15 @@ class Snapshot {
     return default_link_padding_;
   }
 
-  /** Sorted by name; a <= b, or b empty. */
+  /** The allowed collision matrix: an entry for each pair of names, `false` ones too. Sorted by name; a <= b, or b empty. */
   const std::vector<AllowedPair> &allowed() const {
-    return allowed_;
+    return *allowed_;
   }
+
+  /** Whether the allowed collision matrix lets two of objects and links touch, as moveit_msgs/AllowedCollisionMatrix says:
+   *  the entry of the pair wins. Without one, the default of either name counts; where both names have a default, both must
+   *  be true. Without entry and default the answer is false. Cost: a search in allowed(). */
+  bool mayTouch(const std::string &a, const std::string &b) const;
 
   /** The objects' shapes with the tree over them (a part of the library, not of its interface). */
   const World &world() const {
@@ -170,7 +175,7 @@ class Snapshot {
   std::map<std::string, double> link_padding_, link_scale_;
   std::map<std::string, std::shared_ptr<const std::vector<LinkGeometry>>> scaled_; /* of the links in link_scale_ */
   double default_link_padding_ = 0.0;
-  std::vector<AllowedPair> allowed_;
+  std::shared_ptr<const std::vector<AllowedPair>> allowed_; /* shared by the snapshots that do not change it */
   std::unique_ptr<const World> world_;
 };
 
@@ -192,7 +197,7 @@ class Scene {
    *  scene as it was and is told in a sentence that names it ("object 'box1': cylinder needs 2 dimensions
    *  [height, radius], got 1"). Returns these sentences in the order of the change; none: all was applied. An unknown id
    *  on MOVE or REMOVE, an object without an id or with that of a carried one, poses and paddings that are not finite, a
-   *  padding < 0, an unknown link and a halfspace that is to be carried are faults.
+   *  padding < 0, an unknown link, an allowed pair without a first name and a halfspace that is to be carried are faults.
    *  Cost: microseconds an object that stays, more for those that are made; bodies that stay are shared. */
   std::vector<std::string> apply(const SceneChange &change);
 

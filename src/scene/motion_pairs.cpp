@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Which pairs a question about a robot in motion is about, and why others are not. */
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "motion_data.h"
@@ -16,34 +15,6 @@ using Links = std::array<std::string, 2>;
 Links ordered(const std::string &a, const std::string &b) {
   return a < b ? Links{a, b} : Links{b, a};
 }
-
-/* Does the allowed collision matrix let two touch? What is said of the pair counts, else what is said of either. */
-class Allowed {
- public:
-  explicit Allowed(const Snapshot &snapshot) {
-    for (const AllowedPair &pair : snapshot.allowed()) {
-      if (pair.b.empty()) {
-        defaults_[pair.a] = pair.allowed;
-      } else {
-        pairs_[ordered(pair.a, pair.b)] = pair.allowed;
-      }
-    }
-  }
-
-  bool operator()(const std::string &a, const std::string &b) const {
-    const auto pair = pairs_.find(ordered(a, b));
-    if (pair != pairs_.end()) return pair->second;
-    const auto of = [this](const std::string &name) {
-      const auto it = defaults_.find(name);
-      return it != defaults_.end() && it->second;
-    };
-    return of(a) || of(b);
-  }
-
- private:
-  std::map<Links, bool> pairs_;
-  std::map<std::string, bool> defaults_;
-};
 
 bool moves(const RobotMotion::Data &data, const MovingGeometry &geometry) {
   return cprox_motion_moves_link(data.core.get(), data.kinematics->links.at(*geometry.link));
@@ -68,7 +39,7 @@ bool mayTouch(const MovingGeometry &a, const MovingGeometry &b) {
 /* Why two geometries of the robot are not asked about; "" where they are. Neighbours in the chain overlap by their making; what is
  * carried does not, and is asked about as soon as a joint moves it against the other. */
 std::string exemptionOf(const MovingGeometry &a, const MovingGeometry &b, const RobotMotion::Data &data,
-                        const std::set<Links> &off, const Allowed &allowed) {
+                        const std::set<Links> &off) {
   const std::size_t link_a = data.kinematics->links.at(*a.link), link_b = data.kinematics->links.at(*b.link);
   const bool carried = a.attached || b.attached;
   if (carried && !cprox_motion_moves_between(data.core.get(), link_a, link_b))
@@ -77,14 +48,13 @@ std::string exemptionOf(const MovingGeometry &a, const MovingGeometry &b, const 
     return "this trajectory does not move them against each other, or a single joint does";
   if (mayTouch(a, b) || mayTouch(b, a)) return "it is one of its touch_links";
   if (!carried && off.count(ordered(*a.link, *b.link)) > 0) return "the SRDF disables them";
-  return allowed(a.owner(), b.owner()) ? "they are allowed to touch" : "";
+  return data.snapshot->mayTouch(a.owner(), b.owner()) ? "they are allowed to touch" : "";
 }
 
 } // namespace
 
 void choosePairs(const std::vector<Links> &disabled, RobotMotion::Data &data) {
   const std::vector<MovingGeometry> &geometries = data.kinematics->geometries;
-  const Allowed allowed(*data.snapshot);
   std::set<Links> off;
   for (const Links &pair : disabled) off.insert(ordered(pair[0], pair[1]));
   std::set<std::string> told;
@@ -100,7 +70,7 @@ void choosePairs(const std::vector<Links> &disabled, RobotMotion::Data &data) {
     if (!moves(data, geometries[i])) tell(name + ": the trajectory does not move it");
     for (std::size_t k = 0; k < items.size() && moves(data, geometries[i]); ++k) {
       const std::string &object = *items[k].owner;
-      if (allowed(geometries[i].owner(), object)) {
+      if (data.snapshot->mayTouch(geometries[i].owner(), object)) {
         tell(name + " and object '" + object + "': they are allowed to touch");
       } else {
         data.environment.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
@@ -110,7 +80,7 @@ void choosePairs(const std::vector<Links> &disabled, RobotMotion::Data &data) {
     /* and of itself */
     for (std::size_t k = i + 1; k < geometries.size(); ++k) {
       if (geometries[i].link == geometries[k].link) continue;
-      const std::string why = exemptionOf(geometries[i], geometries[k], data, off, allowed);
+      const std::string why = exemptionOf(geometries[i], geometries[k], data, off);
       if (why.empty()) {
         data.self.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
       } else {

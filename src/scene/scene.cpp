@@ -196,20 +196,31 @@ void checkLinkPaddings(const std::map<std::string, double> &paddings, const Robo
   }
 }
 
-/* An entry for each pair of names, in a fixed order. */
-void mergeAllowed(const std::vector<AllowedPair> &from, std::vector<AllowedPair> &into) {
-  const auto before = [](const AllowedPair &x, const AllowedPair &y) {
-    return std::tie(x.a, x.b) < std::tie(y.a, y.b);
-  };
-  for (AllowedPair pair : from) {
-    if (!pair.b.empty() && pair.b < pair.a) std::swap(pair.a, pair.b);
-    const auto it = std::lower_bound(into.begin(), into.end(), pair, before);
-    if (it != into.end() && !before(pair, *it)) {
-      *it = pair;
-    } else {
-      into.insert(it, pair);
-    }
+/* ---- who may touch whom --------------------------------------------------------------------------------------------- */
+
+using NamedPair = std::pair<const std::string &, const std::string &>;
+
+/* Each replaces the entry of the same names. Returns a matrix with an entry for each pair of names, sorted by name. */
+std::vector<AllowedPair> mergeAllowed(const std::vector<AllowedPair> &before, const std::vector<AllowedPair> &change) {
+  std::map<std::pair<std::string, std::string>, bool> entries;
+  for (const AllowedPair &pair : before) entries[{pair.a, pair.b}] = pair.allowed;
+  for (const AllowedPair &pair : change) {
+    if (pair.a.empty()) throw Error("an allowed pair has no first name");
+    const bool turned = !pair.b.empty() && pair.b < pair.a;
+    entries[turned ? std::make_pair(pair.b, pair.a) : std::make_pair(pair.a, pair.b)] = pair.allowed;
   }
+  std::vector<AllowedPair> out;
+  out.reserve(entries.size());
+  for (const auto &[names, allowed] : entries) out.push_back({names.first, names.second, allowed});
+  return out;
+}
+
+/* The entry of two names in their order, or of a name and "". Null where there is none. */
+const AllowedPair *findAllowed(const std::vector<AllowedPair> &matrix, const NamedPair &names) {
+  const auto it = std::lower_bound(matrix.begin(), matrix.end(), names, [](const AllowedPair &x, const NamedPair &y) {
+    return std::tie(x.a, x.b) < std::tie(y.first, y.second);
+  });
+  return it != matrix.end() && it->a == names.first && it->b == names.second ? &*it : nullptr;
 }
 
 } // namespace
@@ -236,7 +247,7 @@ World::World(const Objects &objects) {
 
 /* ---- Snapshot ------------------------------------------------------------------------------------------------------ */
 
-Snapshot::Snapshot() = default;
+Snapshot::Snapshot() : allowed_(std::make_shared<const std::vector<AllowedPair>>()) {}
 Snapshot::~Snapshot() = default;
 
 Snapshot::Snapshot(const Snapshot &other)
@@ -253,6 +264,14 @@ Snapshot::Snapshot(const Snapshot &other)
 double Snapshot::linkPadding(const std::string &link) const {
   const auto it = link_padding_.find(link);
   return it == link_padding_.end() ? default_link_padding_ : it->second;
+}
+
+bool Snapshot::mayTouch(const std::string &a, const std::string &b) const {
+  const std::vector<AllowedPair> &matrix = *allowed_;
+  if (const AllowedPair *entry = findAllowed(matrix, a < b ? NamedPair(a, b) : NamedPair(b, a))) return entry->allowed;
+  const std::string none;
+  const AllowedPair *of_a = findAllowed(matrix, {a, none}), *of_b = findAllowed(matrix, {b, none});
+  return (of_a || of_b) && (!of_a || of_a->allowed) && (!of_b || of_b->allowed);
 }
 
 const std::vector<LinkGeometry> &Snapshot::linkGeometry(const std::string &link) const {
@@ -298,7 +317,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
   ++next->version_;
   if (change.clear) {
     next->objects_.clear();
-    next->allowed_.clear();
+    next->allowed_ = std::make_shared<const std::vector<AllowedPair>>();
     next->attached_.clear();
     next->link_padding_.clear();
     next->default_link_padding_ = 0.0;
@@ -338,7 +357,13 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
   } catch (const Error &error) {
     faults.push_back(error.what());
   }
-  mergeAllowed(change.allowed, next->allowed_);
+  if (!change.allowed.empty()) {
+    try {
+      next->allowed_ = std::make_shared<const std::vector<AllowedPair>>(mergeAllowed(*next->allowed_, change.allowed));
+    } catch (const Error &error) {
+      faults.push_back(error.what());
+    }
+  }
 
   // Made in full before it becomes visible.
   next->world_ = std::make_unique<const World>(next->objects_);

@@ -113,6 +113,17 @@ joint_trajectory:
         answer = self.robot('distance', SLIDE, scene=scene)
         self.assertEqual(answer.row('go')['b'], 'post')
 
+    def an_entry_of_the_matrix_wins_over_defaults_and_two_defaults_must_agree(self):
+        names, values = 'default_entry_names', 'default_entry_values'
+        entries = 'entry_names: [cart, hand, wall], entry_values: [[false, false, NO], [false, false, NO], [NO, NO, false]], '
+        for matrix, nearest in ((entries.replace('NO', 'false') + f'{names}: [wall], {values}: [true]', 'wall'),
+                                (entries.replace('NO', 'true') + f'{names}: [wall], {values}: [false]', 'post'),
+                                (f'{names}: [wall, cart, hand], {values}: [true, false, false]', 'wall'),
+                                (f'{names}: [wall, cart, hand], {values}: [true, true, true]', 'post')):
+            with self.subTest(matrix=matrix):
+                answer = self.robot('distance', SLIDE, scene=WALL + 'allowed_collision_matrix: {' + matrix + '}\n')
+                self.assertEqual(answer.row('go')['b'], nearest)
+
     def objects_that_a_link_carries_ride_along(self):
         # a ball of 0.1 half a metre ahead of the cart, given in the frame of the link, and of the scene
         held = ('robot_state:\n  attached_collision_objects: [{link_name: cart, touch_links: [TOUCH], object: {id: held, header: {frame_id: FRAME}, '

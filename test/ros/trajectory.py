@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The Panda along joint trajectories, asked through the live node."""
+import itertools
 import json
 import os
 import unittest
@@ -92,6 +93,22 @@ class Trajectory(unittest.TestCase):
             self.assertLessEqual(answers[0][kind].lower, answers[1][kind].upper)
             self.assertLessEqual(answers[1][kind].lower, answers[0][kind].upper)
         self.assertGreater(answers[0]['environment'].upper, 0.01)
+
+    def test_the_allowed_contacts_mean_what_moveit_msgs_says(self):
+        # what is said of the pair counts, else what is said of both; a far ball is answered where the near one is allowed
+        path = trajectory(READY, [0.5] + READY[1:])
+        near, far = sphere('near', 0.1, (0.75, 0.1, 0.6)), sphere('far', 0.1, (3, 0, 0.6))
+        links = [f'panda_link{i}' for i in range(8)] + ['panda_hand', 'panda_leftfinger', 'panda_rightfinger']
+        for pair, a, b in itertools.product((None, False, True), repeat=3):
+            contacts = [AllowedContact(link, 'near', pair) for link in links if pair is not None]
+            contacts += [AllowedContact(link, '', a) for link in links if a is not None]
+            contacts += [AllowedContact('near', '', b)] if b is not None else []
+            said = [word for word in (a, b) if word is not None]
+            expected = pair if pair is not None else bool(said) and all(said)
+            with self.subTest(pair=pair, a=a, b=b):
+                self.server.replace(near, far, allowed_contacts=contacts)
+                row = self.rows(self.server.distance([], trajectory=path, objects=['near'])).get('environment')
+                self.assertEqual(row.b == 'near', not expected)
 
     def test_verdicts_follow_the_distance(self):
         self.server.replace(sphere('ball', 0.1, (0.75, 0.1, 0.6)))

@@ -2,6 +2,8 @@
 #include "scene_yaml.h"
 
 #include <array>
+#include <map>
+#include <utility>
 
 #include "body_yaml.h"
 #include "failure.h"
@@ -226,31 +228,61 @@ std::vector<YamlValue> readMatrixRow(const YamlValue &row) {
   return row.isMap() ? row.itemsOf("enabled") : row.items();
 }
 
+/* The entries of the matrix, each once, with both of its values. Two that contradict each other are an error: neither of
+ * them can be meant. `second` empty: the default of the first. */
+class AllowedEntries {
+ public:
+  void add(const YamlValue &first, const std::string &second, const YamlValue &value) {
+    const std::string name = first.text();
+    if (name.empty()) first.fail("must be a name");
+    const bool allowed = value.truth(), turned = !second.empty() && second < name;
+    const auto [it, is_new] = entries_.emplace(turned ? Names(second, name) : Names(name, second), allowed);
+    if (is_new || it->second == allowed) return;
+    value.fail("contradicts an earlier entry of '" + name + (second.empty() ? "'" : "' and '" + second + "'"));
+  }
+
+  std::vector<AllowedPair> pairs() const {
+    std::vector<AllowedPair> out;
+    for (const auto &[names, allowed] : entries_) out.push_back({names.first, names.second, allowed});
+    return out;
+  }
+
+ private:
+  using Names = std::pair<std::string, std::string>;
+  std::map<Names, bool> entries_;
+};
+
+/* What the matrix says of every pair of entry_names counts, `false` too: it wins over the defaults. */
+void readEntries(const YamlValue &matrix, AllowedEntries &entries) {
+  const std::vector<YamlValue> names = matrix.itemsOf("entry_names"), rows = matrix.itemsOf("entry_values");
+  if (names.size() != rows.size()) {
+    matrix.fail("has " + std::to_string(names.size()) + " entry_names and " + std::to_string(rows.size()) +
+                " entry_values");
+  }
+  for (const YamlValue &name : names) {
+    if (name.text().empty()) name.fail("must be a name");
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::vector<YamlValue> row = readMatrixRow(rows[i]);
+    if (row.size() != names.size()) rows[i].fail("must have an entry for each of the entry_names");
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      if (j != i) entries.add(names[i], names[j].text(), row[j]);
+    }
+  }
+}
+
 void readAllowed(const YamlValue &root, SceneFile &out, Warnings &warnings) {
   const std::optional<YamlValue> matrix = root.find("allowed_collision_matrix");
   if (!matrix) return;
   matrix->warnOfOthers({"entry_names", "entry_values", "default_entry_names", "default_entry_values"}, warnings);
 
-  /* the matrix is symmetric: its upper half says all */
-  const std::vector<YamlValue> names = matrix->itemsOf("entry_names"), rows = matrix->itemsOf("entry_values");
-  if (names.size() != rows.size()) {
-    matrix->fail("has " + std::to_string(names.size()) + " entry_names and " + std::to_string(rows.size()) +
-                 " entry_values");
-  }
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::vector<YamlValue> row = readMatrixRow(rows[i]);
-    if (row.size() != names.size()) rows[i].fail("must have an entry for each of the entry_names");
-    for (std::size_t j = i + 1; j < row.size(); ++j) {
-      if (row[j].truth()) out.allowed.push_back({names[i].text(), names[j].text(), true});
-    }
-  }
-
+  AllowedEntries entries;
+  readEntries(*matrix, entries);
   const std::vector<YamlValue> defaults = matrix->itemsOf("default_entry_names");
   const std::vector<YamlValue> values = matrix->itemsOf("default_entry_values");
   if (defaults.size() != values.size()) matrix->fail("has default_entry_names and _values of different number");
-  for (std::size_t i = 0; i < defaults.size(); ++i) {
-    out.allowed.push_back({defaults[i].text(), "", values[i].truth()});
-  }
+  for (std::size_t i = 0; i < defaults.size(); ++i) entries.add(defaults[i], "", values[i]);
+  out.allowed = entries.pairs();
 }
 
 } // namespace
