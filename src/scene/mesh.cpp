@@ -2,16 +2,14 @@
 #include "mesh.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <limits>
-#include <memory>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include <geometric_shapes/bodies.h>
-#include <geometric_shapes/mesh_operations.h>
+
+#include "mesh_process.h"
 
 namespace curve_proximity {
 namespace {
@@ -113,21 +111,12 @@ double largestCoordinate(const Points &points) {
 } // namespace
 
 MeshData readMesh(const std::string &file) {
-  // The bytes are read here, not by a URI library: file names may hold any character.
-  std::ifstream stream(file, std::ios::binary);
-  const std::vector<char> bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream && bytes.empty()) throw Error("mesh '" + file + "' cannot be read");
-  if (bytes.empty()) throw Error("mesh '" + file + "' is empty");
-
-  const std::unique_ptr<const shapes::Mesh> mesh(shapes::createMeshFromBinary(bytes.data(), bytes.size(), file));
-  if (!mesh || mesh->triangle_count == 0) throw Error("mesh '" + file + "' holds no triangle that can be read");
-
-  MeshData data;
-  data.vertices = Eigen::Map<const Eigen::Matrix3Xd>(mesh->vertices, 3, mesh->vertex_count);
-  data.triangles =
-      Eigen::Map<const Eigen::Matrix<unsigned, 3, Eigen::Dynamic>>(mesh->triangles, 3, mesh->triangle_count)
-          .cast<int>();
-  return data;
+  static const std::string program = meshReaderProgram();
+  try {
+    return readMeshBy(program, file);
+  } catch (const Error &error) {
+    throw Error("mesh '" + file + "': " + error.what(), error.status());
+  }
 }
 
 Hull hullCovering(const Points &all, Points kept) {

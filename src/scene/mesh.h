@@ -15,7 +15,8 @@ struct MeshData {
   Triangles triangles;
 };
 
-/* Reads any format that assimp knows. Throws Error, naming the file, where there is no triangle in it. */
+/* Reads any format that assimp knows, in a process of its own: a malformed file costs seconds at most. Throws Error, naming the
+ * file and what is wrong with it, where it is cut short or otherwise malformed, or holds no triangle. */
 MeshData readMesh(const std::string &file);
 
 /* The mesh, scaled along the axes, as a ladder of the convex hull of the vertices that triangles use, and the triangles.

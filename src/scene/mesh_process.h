@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Reading a mesh file in a process of its own: what is in the file can neither end this process nor hold it up. */
+#ifndef CURVE_PROXIMITY_SCENE_MESH_PROCESS_H
+#define CURVE_PROXIMITY_SCENE_MESH_PROCESS_H
+
+#include <sys/types.h>
+
+#include <string>
+
+#include "../mesh_reader/protocol.h"
+#include "mesh.h"
+
+namespace curve_proximity {
+
+/* The program curve_proximity_mesh_reader, where it stands beside this library. */
+std::string meshReaderProgram();
+
+/* What `program` says of the file (mesh_reader/protocol.h). The process has limits of memory and time, which grow with the
+ * file; one that keeps neither them nor the protocol is ended. Throws Error in one sentence without the file's name.
+ * Thread safety: any number of threads. SIGCHLD and SIGPIPE may be ignored, blocked or handled, and a handler may reap. */
+MeshData readMeshBy(const std::string &program, const std::string &file);
+
+/* The second half of readMeshBy(): listens to the process of that id at the pipe `from`, then ends and reaps it. */
+MeshData hearMesh(int from, pid_t id, const mesh_reader::Limits &limits);
+
+} // namespace curve_proximity
+#endif
