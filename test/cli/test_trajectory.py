@@ -115,7 +115,8 @@ joint_trajectory:
 
     def an_entry_of_the_matrix_wins_over_defaults_and_two_defaults_must_agree(self):
         names, values = 'default_entry_names', 'default_entry_values'
-        entries = 'entry_names: [cart, hand, wall], entry_values: [[false, false, NO], [false, false, NO], [NO, NO, false]], '
+        no, said = '[false, false, false, NO]', '[NO, NO, NO, false]'
+        entries = f'entry_names: [cart, arm, hand, wall], entry_values: [{no}, {no}, {no}, {said}], '
         for matrix, nearest in ((entries.replace('NO', 'false') + f'{names}: [wall], {values}: [true]', 'wall'),
                                 (entries.replace('NO', 'true') + f'{names}: [wall], {values}: [false]', 'post'),
                                 (f'{names}: [wall, cart, hand], {values}: [true, false, false]', 'wall'),
