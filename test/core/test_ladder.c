@@ -366,6 +366,80 @@ static void bad_input_is_refused_with_a_sentence(void **state) {
   mesh_free(&torus);
 }
 
+/* ---- one answer for all --------------------------------------------------------------------------------------------------- */
+
+static cprox_status ask_all(int verb, cprox_mover mover, const cprox_target *targets, size_t n,
+                            const cprox_options *options, cprox_result *all, cprox_result *each) {
+  if (verb == 0) return cprox_distance_all(mover, targets, n, options, ws, all, each);
+  if (verb == 1) return cprox_tolerance_all(mover, targets, n, 0.3, options, ws, all, each);
+  return cprox_collision_all(mover, targets, n, options, ws, all, each);
+}
+
+/* Whether an interval is what the options or the verdict ask for. */
+static bool is_enough(int verb, const cprox_options *options, const cprox_result *r) {
+  const double limit = verb == 1 ? 0.3 : 0.0;
+  if (verb > 0 && (r->upper <= limit || r->lower > limit)) return true;
+  return !(r->upper - r->lower > fmax(options->epsilon, options->relative_epsilon * r->upper));
+}
+
+/* Seed 84, 1500 questions of three verbs about up to 6 ladders and hulls, most with a budget that is too small for some of them: the answer
+ * to all is the union of the answers to each, with the finest level of detail among them, and it is called short where its own
+ * interval is. */
+static void the_answer_to_all_is_the_union_of_the_answers_to_each(void **state) {
+  (void)state;
+  rng r = rng_seed(84);
+  test_mesh torus = mesh_torus(16, 10, 1.0, 0.3, 0.1), bracket = mesh_bracket();
+  test_ladder ladders[2] = {ladder_make(&torus), ladder_make(&bracket)};
+  size_t finer = 0, enough = 0, shorter = 0;
+  for (size_t i = 0; i < test_cases(1500); i++) {
+    const int verb = (int)rng_index(&r, 3);
+    const size_t n = 2 + rng_index(&r, 5);
+    cprox_target targets[6];
+    for (size_t k = 0; k < n; k++) {
+      const test_ladder *l = &ladders[rng_index(&r, 2)];
+      targets[k] = cprox_at(rng_index(&r, 3) ? l->body : l->hull, rng_pose(&r, 2.5));
+    }
+    cprox_curve *curve = random_curve(&r, 2.5);
+    cprox_options options = up_to(CPROX_RUNG_MESH, rng_log_uniform(&r, 1e-9, 1e-2));
+    if (rng_index(&r, 2)) options.relative_epsilon = rng_log_uniform(&r, 1e-6, 1e-1);
+    if (rng_index(&r, 4)) options.max_nodes = 1 + (uint32_t)rng_index(&r, 30);
+
+    cprox_result all, each[6];
+    const cprox_status status = ask_all(verb, cprox_tube_along(curve, 0.02), targets, n, &options, &all, each);
+    assert_true(status >= 0 && status == all.status);
+    cprox_result expected = {.lower = INFINITY, .upper = INFINITY};
+    cprox_status blamed = CPROX_OK, worst = CPROX_OK;
+    for (size_t k = 0; k < n; k++) {
+      if (each[k].lower < expected.lower) expected.lower = each[k].lower, blamed = each[k].status;
+      expected.upper = fmin(expected.upper, each[k].upper);
+      if (each[k].rung > expected.rung) expected.rung = each[k].rung;
+      if (each[k].status > worst) worst = each[k].status;
+      expected.nodes += each[k].nodes, expected.probes += each[k].probes;
+    }
+    expected.lower = fmin(expected.lower, expected.upper);
+    if (!(all.lower == expected.lower && all.upper == expected.upper && all.nodes == expected.nodes &&
+          all.probes == expected.probes))
+      fail_msg("case %zu: [%.17g, %.17g], not [%.17g, %.17g]", i, all.lower, all.upper, expected.lower, expected.upper);
+    if (all.rung != expected.rung)
+      fail_msg("case %zu: %s, but %s was needed", i, cprox_rung_name(all.rung), cprox_rung_name(expected.rung));
+    if (status != (is_enough(verb, &options, &all) ? CPROX_OK : blamed))
+      fail_msg("case %zu: %s, [%.17g, %.17g]", i, cprox_status_name(status), all.lower, all.upper);
+    assert_true((status == CPROX_OK) == (cprox_workspace_reason(ws)[0] == '\0'));
+    assert_int_equal(all.target_index < 0, isinf(all.upper));
+    if (all.target_index >= 0) assert_true(all.upper == each[all.target_index].upper);
+    finer += all.target_index >= 0 && all.rung > each[all.target_index].rung;
+    enough += status == CPROX_OK && worst != CPROX_OK, shorter += status != CPROX_OK;
+    cprox_curve_free(curve);
+  }
+  print_message(
+      "%zu needed a finer model than their nearest, %zu were enough though one of them was not, %zu fell short\n",
+      finer, enough, shorter);
+  assert_true(finer > 20 && enough > 20 && shorter > 20);
+  for (int i = 0; i < 2; i++) ladder_free(&ladders[i]);
+  mesh_free(&torus);
+  mesh_free(&bracket);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rungs_contain_each_other_and_are_what_they_are_called),
@@ -374,6 +448,7 @@ int main(void) {
       cmocka_unit_test(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best),
       cmocka_unit_test(a_mesh_waits_until_it_is_the_nearest_by_its_hull),
       cmocka_unit_test(pairs_climb_too),
+      cmocka_unit_test(the_answer_to_all_is_the_union_of_the_answers_to_each),
       cmocka_unit_test(bad_input_is_refused_with_a_sentence),
   };
   return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);

@@ -30,24 +30,21 @@ static cprox_status ask_all(question *q, cprox_result *nearest, cprox_result *ea
   question_ask_whole(q);
   if (!each) return question_answer(q, 0, q->n, INFINITY, nearest);
 
-  /* each target by itself; the union is the least of them */
-  cprox_result all = {.lower = INFINITY, .upper = INFINITY, .t_target = NAN, .target_index = -1};
-  all.verdict = question_verdict(q, &all);
+  /* each target by itself; where the union falls short, it is for the one that is not known to be farther */
+  cprox_result all = question_nothing();
+  cprox_status trouble = CPROX_OK;
   for (size_t i = 0; i < q->n; i++) {
     cprox_result one;
     const cprox_status status = question_answer(q, i, i + 1, INFINITY, &one);
     if (status < 0) return status;
+    if (!(one.lower >= all.lower)) trouble = status;
+    question_join(&all, &one);
     if (one.target_index < 0) one.target_index = (int32_t)i;
     each[i] = one;
-    const double lower = fmin(all.lower, one.lower);
-    const uint32_t nodes = all.nodes + one.nodes, probes = all.probes + one.probes;
-    const cprox_status worst = one.status > all.status ? one.status : all.status;
-    if (one.upper < all.upper || i == 0) all = one;
-    all.lower = lower, all.nodes = nodes, all.probes = probes, all.status = worst;
   }
-  all.verdict = question_verdict(q, &all);
+  workspace_clear(q->workspace);
   *nearest = all;
-  return all.status;
+  return question_conclude(q, INFINITY, trouble, nearest);
 }
 
 static cprox_status ask(question *q, cprox_result *nearest, cprox_result *each) {
