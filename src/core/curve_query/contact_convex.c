@@ -5,6 +5,7 @@
 
 #include "base/rounding.h"
 #include "curve/control.h"
+#include "curve_query/crossing.h"
 
 /* ---- measuring -------------------------------------------------------------------------------------------------------- */
 
@@ -157,5 +158,10 @@ cprox_status contact_convex_prove(contact_convex *c) {
     if (status < 0) return status;
     sight = o->last;
   }
+  if (c->proven_bound.at < found_at || !crossing_prove(o, &sight)) return CPROX_OK;
+
+  /* through a flat body, which nothing lies below the surface of */
+  bound = (search_best){.upper = 0.0, .at = curve_side_parameter(&o->side, sight.piece, sight.s)};
+  if (bound.at < found_at) c->proven = sight, c->proven_bound = bound;
   return CPROX_OK;
 }

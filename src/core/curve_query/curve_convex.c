@@ -3,18 +3,16 @@
 
 #include "base/rounding.h"
 #include "convex/depth.h"
+#include "convex/feature.h"
 #include "curve/control.h"
 #include "curve/packets.h"
 #include "curve_query/newton_convex.h"
-
-/* Slots of the pool that nodes never get. */
-enum { SLOT_ROOT, SLOT_SCRATCH, SLOTS_RESERVED };
 
 /* The loaded piece lies in the plane z = 0 of a polygon's frame, exactly: then so does the true curve. */
 static bool piece_is_planar(curve_convex *o) {
   if (o->planar_piece != o->side.root_piece) {
     const size_t degree = o->side.curve->degree;
-    const double *z = points_pool_at(&o->pool, SLOT_ROOT) + 2 * (degree + 1);
+    const double *z = points_pool_at(&o->pool, CURVE_CONVEX_ROOT) + 2 * (degree + 1);
     o->planar_piece = o->side.root_piece;
     o->planar = o->shape->ops->kind == CPROX_POLYGON && o->side.frame.about_z && !o->side.curve->arcs;
     for (size_t i = 0; i <= degree && o->planar; i++) o->planar = z[i] == 0.0;
@@ -69,7 +67,7 @@ static bool cover_is_the_body(const curve_convex *o) {
 static void bound_by_cover(curve_convex *o, search_node *node) {
   const double from_centre =
       curve_side_distance_from(&o->side, &node->side[0], o->cover.centre, o->cover.cylinder ? &o->cover.axis : NULL,
-                               points_pool_at(&o->pool, SLOT_SCRATCH));
+                               points_pool_at(&o->pool, CURVE_CONVEX_SCRATCH));
   const double bound = from_centre - o->cover.radius - o->offset;
   const double slack = ROUND_UP * (node->side[0].error + 4.0 * ROUND_U * (from_centre + o->cover.radius + o->offset));
   node->lower = greater(bound - slack, node->lower);
@@ -113,6 +111,38 @@ static double near_enough(const curve_convex *o, double rounding) {
   return d > 0.0 ? d + o->shape->margin - 2.0 * (rounding + 4.0 * ROUND_U * (d + o->shape->margin)) : 0.0;
 }
 
+bool curve_convex_is_flat(curve_convex *o) {
+  if (!o->flat_known) flat_describe(o->shape, &o->flat);
+  o->flat_known = true;
+  return o->flat.dimension < 3;
+}
+
+/* How far a point may be from the plane that supports the shape along n, on its side of it. */
+static double depth_along(curve_convex *o, vec3 y, vec3 n) {
+  return o->shape->ops->support(o->shape, n, &o->support_hint, NULL) - vec_dot(n, y);
+}
+
+/* Bounds need a plane between the shape and a point that touches it, and there the way from its nearest point is rounding, or none: the
+ * plane of the shape if it is flat, else one that parts the shape from a point a little farther out, and a little less. */
+static vec3 touching_normal(curve_convex *o, vec3 y, vec3 seen, double rounding) {
+  enum { ROUNDS = 4 };
+  vec3 best = seen, outward, n;
+  double least = vec_norm2(seen) > 0.0 ? depth_along(o, y, seen) : INFINITY;
+  if (!(least > 4.0 * rounding)) return seen;
+  if (curve_convex_is_flat(o)) return o->flat.normal;
+  feature_unit(y, &outward);
+  double step = 1e-2 * o->shape->scale;
+  for (int i = 0; i < ROUNDS && least > 4.0 * rounding; i++, step *= 1e-2) {
+    convex_near near;
+    convex_hint hint = {0};
+    o->shape->ops->nearest(o->shape, vec_axpy(y, step, outward), &hint, &near);
+    if (!(feature_unit(near.normal, &n) > 0.0)) break;
+    const double depth = depth_along(o, y, n);
+    if (depth < least) least = depth, best = n;
+  }
+  return best;
+}
+
 cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sight *sight,
                                   search_best *bound) {
   const cprox_status usable = curve_side_status(&o->side);
@@ -138,12 +168,14 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
 
   /* any direction near the normal will do for the lower bounds, as long as its length is 1 */
   sight->normal = sight->near.normal;
+  const bool touching = fabs(d) <= rounding && bound->upper > greater(o->good_enough, 0.0) && !piece_is_planar(o);
+  if (touching) sight->normal = touching_normal(o, y, sight->normal, rounding);
   const double length2 = vec_norm2(sight->normal);
   if (fabs(length2 - 1.0) > 4.0 * ROUND_U && length2 > 0.0)
     sight->normal = vec_scale(1.0 / sqrt(length2), sight->normal);
   sight->support = INFINITY;
   if (length2 > 0.0) {
-    const double height = sight->near.height_known
+    const double height = sight->near.height_known && !touching
                               ? sight->near.height
                               : o->shape->ops->support(o->shape, sight->normal, &o->support_hint, NULL);
     sight->support = height + o->shape->margin + o->offset;
@@ -160,7 +192,7 @@ void curve_convex_adopt(curve_convex *o, const curve_sight *sight, search_best b
 
 /* Measures at s of the loaded piece, and goes on from there by Newton's steps, the first no longer than `step`. */
 static cprox_status probe_at(curve_convex *o, size_t piece, double s, double step) {
-  const double *points = points_pool_at(&o->pool, SLOT_ROOT);
+  const double *points = points_pool_at(&o->pool, CURVE_CONVEX_ROOT);
   curve_jet jet;
   if (o->side.curve->arcs)
     jet.x = curve_side_point(&o->side, s); /* it has no derivatives */
@@ -190,7 +222,7 @@ static bool look_from_origin(curve_convex *o, const search_node *node) {
 /* Where the loaded piece comes nearest to the frame's origin, about which the body stands, as far as a few points tell. */
 static double first_look(const curve_convex *o) {
   const size_t degree = o->side.curve->degree;
-  const double *basis = lanes_basis(degree, o->workspace), *x = points_pool_at(&o->pool, SLOT_ROOT);
+  const double *basis = lanes_basis(degree, o->workspace), *x = points_pool_at(&o->pool, CURVE_CONVEX_ROOT);
   return basis ? lanes_first_look(basis, x, x + degree + 1, x + 2 * (degree + 1), degree) : 0.5;
 }
 
@@ -379,8 +411,8 @@ bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex 
   *o = (curve_convex){.shape = shape, .offset = offset, .workspace = workspace, .planar_piece = SIZE_MAX};
   o->best_bound.upper = INFINITY;
   o->good_enough = -INFINITY;
-  curve_side_begin(&o->side, curve, &placed, &o->pool, SLOT_ROOT);
-  return points_pool_begin(&o->pool, curve->degree, SLOTS_RESERVED, workspace);
+  curve_side_begin(&o->side, curve, &placed, &o->pool, CURVE_CONVEX_ROOT);
+  return points_pool_begin(&o->pool, curve->degree, CURVE_CONVEX_RESERVED, workspace);
 }
 
 search_node curve_convex_root(const curve_convex *o) {

@@ -3,6 +3,7 @@
 #ifndef CPROX_CURVE_QUERY_CURVE_CONVEX_H
 #define CPROX_CURVE_QUERY_CURVE_CONVEX_H
 
+#include "convex/flat.h"
 #include "curve/subcurve.h"
 #include "shape/body.h"
 
@@ -43,7 +44,12 @@ typedef struct curve_convex {
   points_pool pool;
   size_t planar_piece; /* the piece that `planar` speaks of */
   bool planar;
+  bool flat_known; /* where the shape lies, asked for when it is first touched */
+  flat_shape flat;
 } curve_convex;
+
+/* Slots of the pool that nodes never get: the loaded piece, and room for whoever asks. */
+enum { CURVE_CONVEX_ROOT, CURVE_CONVEX_SCRATCH, CURVE_CONVEX_LEFT, CURVE_CONVEX_RESERVED };
 
 /* Makes the oracle ready; false where memory is out. The shape stands in the frame; offset >= 0. */
 bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex *shape, frame placed, double offset,
@@ -65,6 +71,9 @@ void curve_convex_bound(const curve_convex *o, search_node *node, const curve_si
 /* For curve_query/newton_convex.c: measures at a curve point y = psi(s) of the piece, which is within `error` of the exact one; */
 cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sight *sight,
                                   search_best *bound);
+
+/* whether the shape has no inside: o->flat says where it lies; */
+bool curve_convex_is_flat(curve_convex *o);
 
 /* makes a sight the best one. */
 void curve_convex_adopt(curve_convex *o, const curve_sight *sight, search_best bound);

@@ -3,6 +3,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/contact_bvh.c
   ${CMAKE_CURRENT_LIST_DIR}/contact_convex.c
   ${CMAKE_CURRENT_LIST_DIR}/contact_curve.c
+  ${CMAKE_CURRENT_LIST_DIR}/crossing.c
   ${CMAKE_CURRENT_LIST_DIR}/curve_bvh.c
   ${CMAKE_CURRENT_LIST_DIR}/curve_convex.c
   ${CMAKE_CURRENT_LIST_DIR}/curve_curve.c

@@ -3,6 +3,7 @@
 #include "curve_query/search_pair.h"
 #include "base/rounding.h"
 #include "curve/relative_curve.h"
+#include "curve_query/crossing.h"
 #include "narrowphase/witness.h"
 #include "problem/minkowski.h"
 #include "shape/body.h"
@@ -108,6 +109,12 @@ bool candidate_begin_convex(const question *q, const candidate *c, curve_convex 
   return true;
 }
 
+/* That of the best sight in the world; none where it is only one to bound by. */
+static vec3 normal_seen(const curve_convex *o) {
+  if (vec_norm2(o->best.near.normal) == 0.0) return vec(0, 0, 0);
+  return frame_turn_to_world(&o->side.frame, o->best.normal);
+}
+
 /* Where the other mover is at the parameter of the best sight, and this one from there. */
 static cprox_status report_clock(const question *q, const candidate *c, const curve_convex *o, vec3 apart,
                                  cprox_result *r) {
@@ -118,7 +125,7 @@ static cprox_status report_clock(const question *q, const candidate *c, const cu
   if (!standing.body) standing.body = &carried_point;
   r->t_target = r->t;
   const vec3 centre = vec_add(standing.pose.position, apart);
-  return report_pair(q, c, centre, &standing, c->part, frame_turn_to_world(&o->side.frame, o->best.normal), r);
+  return report_pair(q, c, centre, &standing, c->part, normal_seen(o), r);
 }
 
 cprox_status candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r) {
@@ -128,10 +135,9 @@ cprox_status candidate_report_convex(const question *q, const candidate *c, cons
   r->t = curve_side_parameter(&o->side, best->piece, best->s);
   const cprox_target *target = &q->targets[c->target];
   if (target->on_clock) return report_clock(q, c, o, frame_to_world(f, best->y), r);
-  if (q->mover.body)
-    return report_pair(q, c, frame_to_world(f, best->y), target, c->part, frame_turn_to_world(f, best->normal), r);
-  report_points(q, c, frame_to_world(f, best->y), frame_to_world(f, best->near.point),
-                frame_turn_to_world(f, best->normal), best->near.distance, r);
+  if (q->mover.body) return report_pair(q, c, frame_to_world(f, best->y), target, c->part, normal_seen(o), r);
+  report_points(q, c, frame_to_world(f, best->y), frame_to_world(f, best->near.point), normal_seen(o),
+                best->near.distance, r);
   return CPROX_OK;
 }
 
@@ -207,6 +213,15 @@ cprox_status candidate_report_curve(const question *q, const candidate *c, const
   return CPROX_OK;
 }
 
+/* So near that only a proof of contact is better: the sides of a flat body may have one. */
+static bool proves_crossing(const question *q, curve_convex *o) {
+  curve_sight sight = o->best;
+  const double upper = o->best_bound.upper;
+  if (q->limit != 0.0 || !(upper > 0.0 && upper <= q->options.epsilon) || !crossing_prove(o, &sight)) return false;
+  curve_convex_adopt(o, &sight, (search_best){.upper = 0.0, .slack = o->best_bound.slack});
+  return true;
+}
+
 static cprox_status search_convex(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
                                   cprox_result *r) {
   curve_convex o;
@@ -228,9 +243,11 @@ static cprox_status search_convex(const question *q, const candidate *c, const s
     found->lower = root.lower;
   else
     status = search_run(&rest, &oracle, root, q->workspace, found);
-  found->best = o.best_bound;
   r->probes = o.probes;
+  const bool crosses = status >= 0 && proves_crossing(q, &o);
+  found->best = o.best_bound;
   const cprox_status reported = status >= 0 ? candidate_report_convex(q, c, &o, r) : status;
+  if (crosses) r->on_target = r->on_mover;
   return reported < 0 ? reported : status;
 }
 

@@ -45,6 +45,7 @@ static cprox_status meet_convex(const question *q, const candidate *c, const sea
     o->best = state.proven;
     reported = candidate_report_convex(q, c, o, &met->touch);
     if (reported < 0) return reported;
+    met->touch.on_target = met->touch.on_mover;
     met->touch.upper = state.proven_bound.upper;
   }
   met->probes = o->probes;
