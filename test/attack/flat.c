@@ -23,8 +23,16 @@ typedef struct scene {
   double s; /* where the two are made to meet */
 } scene;
 
+/* The polygon as a mesh of triangles about its first corner. */
+static cprox_status make_fan(scene *c, cprox_workspace *ws) {
+  uint32_t triangles[MOST_CORNERS][3];
+  for (uint32_t i = 0; i + 2 < c->n; i++) triangles[i][0] = 0, triangles[i][1] = i + 1, triangles[i][2] = i + 2;
+  return cprox_body_create_mesh(c->corner, c->n, (const uint32_t(*)[3])triangles, c->n - 2, CPROX_MESH_SURFACE, SIZE_MAX, ws,
+                                &c->body);
+}
+
 static void make_body(attack *a, rng *r, scene *c) {
-  const size_t kind = rng_index(r, 4);
+  const size_t kind = rng_index(r, 5);
   double flat[MOST_CORNERS][2];
   c->n = kind == 0 ? 2 : kind == 1 ? 3 : 3 + rng_index(r, MOST_CORNERS - 2);
   const double turn = rng_uniform(r, 0, 6), long_one = rng_log_uniform(r, 0.05, 1.0);
@@ -35,7 +43,9 @@ static void make_body(attack *a, rng *r, scene *c) {
   }
   c->pose = rng_pose(r, 1.0);
   cprox_status status;
-  if (kind == 3)
+  if (kind == 4)
+    status = make_fan(c, a->ws);
+  else if (kind == 3)
     status = cprox_body_create_polygon((const double(*)[2])flat, c->n, a->ws, &c->body);
   else
     status = cprox_body_create_polytope(c->corner, c->n, a->ws, &c->body);
@@ -43,7 +53,11 @@ static void make_body(attack *a, rng *r, scene *c) {
   for (int i = 0; i < 2; i++) c->carried[i] = rng_in_cube(r, 0.5);
   if (status == CPROX_OK && kind == 0) status = cprox_body_create_polytope(c->carried, 2, a->ws, &c->rider);
   if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_reason(a->ws));
-  attack_kind(a, "%s", kind == 0 ? "segment across segment" : kind == 3 ? "polygon" : "flat polytope");
+  attack_kind(a, "%s",
+              kind == 0   ? "segment across segment"
+              : kind == 3 ? "polygon"
+              : kind == 4 ? "mesh"
+                          : "flat polytope");
 }
 
 /* The corners of the difference in the world, less the target's own motion: at most eighteen. */

@@ -158,7 +158,7 @@ cprox_status contact_convex_prove(contact_convex *c) {
     if (status < 0) return status;
     sight = o->last;
   }
-  if (c->proven_bound.at < found_at || !crossing_prove(o, &sight)) return CPROX_OK;
+  if (c->proven_bound.at < found_at || !crossing_prove_convex(o, &sight)) return CPROX_OK;
 
   /* through a flat body, which nothing lies below the surface of */
   bound = (search_best){.upper = 0.0, .at = curve_side_parameter(&o->side, sight.piece, sight.s)};

@@ -3,7 +3,6 @@
 
 #include "base/rounding.h"
 #include "curve/control.h"
-#include "curve_query/newton_convex.h"
 
 /* Stretches round the place that are tried, in pieces: from about as short as double allows. */
 static const double FIRST_STEP = 1e-14, LAST_STEP = 0.05;
@@ -21,27 +20,27 @@ typedef struct passage {
 } passage;
 
 /* Brings [from, to] of a piece into the scratch slot; returns how far the points are off. */
-static double cut_out(curve_convex *o, const stretch *of) {
-  const size_t degree = o->side.curve->degree;
-  curve_side_load(&o->side, of->piece);
-  double *rest = points_pool_at(&o->pool, CURVE_CONVEX_SCRATCH), *left = points_pool_at(&o->pool, CURVE_CONVEX_LEFT);
-  const double *whole = points_pool_at(&o->pool, o->side.root_slot);
+static double cut_out(const crossing *o, const stretch *of) {
+  const size_t degree = o->side->curve->degree;
+  curve_side_load(o->side, of->piece);
+  double *rest = points_pool_at(o->side->pool, o->slot[0]), *left = points_pool_at(o->side->pool, o->slot[1]);
+  const double *whole = points_pool_at(o->side->pool, o->side->root_slot);
   for (size_t i = 0; i < control_size(degree); i++) rest[i] = whole[i];
-  double error = o->side.root_error + control_split(left, rest, degree, of->to, o->side.root_magnitude);
+  double error = o->side->root_error + control_split(left, rest, degree, of->to, o->side->root_magnitude);
   for (size_t i = 0; i < control_size(degree); i++) rest[i] = left[i];
-  error += control_split(left, rest, degree, of->from / of->to, o->side.root_magnitude);
+  error += control_split(left, rest, degree, of->from / of->to, o->side->root_magnitude);
   return error; /* from/to is rounded: what stands in `rest` is [from (1 + u), to] */
 }
 
 /* The stretch seen from the plane: false where it may leave what the body covers. */
-static bool passes_over(curve_convex *o, const stretch *of, flat_region *region, passage *seen) {
-  const flat_shape *flat = &o->flat;
-  const size_t n = o->side.curve->degree + 1;
-  const double error = cut_out(o, of), size = o->side.root_magnitude + o->shape->scale;
+static bool passes_over(const crossing *o, const stretch *of, flat_region *region, passage *seen) {
+  const flat_shape *flat = o->flat;
+  const size_t n = o->side->curve->degree + 1;
+  const double error = cut_out(o, of), size = o->side->root_magnitude + o->shape->scale;
   seen->room = ROUND_UP * (4.0 * error + 64.0 * ROUND_U * size + o->shape->slack);
 
   /* their places along e and f, and their heights, take the room of x, y and z */
-  double *x = points_pool_at(&o->pool, CURVE_CONVEX_SCRATCH), *y = x + n, *z = y + n;
+  double *x = points_pool_at(o->side->pool, o->slot[0]), *y = x + n, *z = y + n;
   for (size_t i = 0; i < n; i++) {
     const vec3 p = vec_sub(vec(x[i], y[i], z[i]), flat->origin);
     x[i] = vec_dot(flat->e, p), y[i] = vec_dot(flat->f, p), z[i] = vec_dot(flat->normal, p);
@@ -51,34 +50,37 @@ static bool passes_over(curve_convex *o, const stretch *of, flat_region *region,
 }
 
 /* [at - step, at + step] of a piece, into the piece before or behind it where that is longer: one stretch, or two. */
-static int stretches_about(const curve_convex *o, size_t piece, double at, double step, stretch part[2]) {
-  const bool whole = !curve_side_is_piece(&o->side, &o->side.part);
-  const double a = whole ? 0.0 : o->side.part.a, b = whole ? 1.0 : o->side.part.b;
+static int stretches_about(const crossing *o, size_t piece, double at, double step, stretch part[2]) {
+  const bool whole = !curve_side_is_piece(o->side, &o->side->part);
+  const double a = whole ? 0.0 : o->side->part.a, b = whole ? 1.0 : o->side->part.b;
   part[0] = (stretch){piece, greater(at - step, a), lesser(at + step, b)};
   if (whole && at - step < 0.0 && piece > 0) {
     part[1] = part[0];
     part[0] = (stretch){piece - 1, 1.0 - step, 1.0};
     return 2;
   }
-  if (whole && at + step > 1.0 && piece + 1 < o->side.curve->n_pieces) {
+  if (whole && at + step > 1.0 && piece + 1 < o->side->curve->n_pieces) {
     part[1] = (stretch){piece + 1, 0.0, step};
     return 2;
   }
   return 1;
 }
 
-static double height_of(const curve_convex *o, vec3 x) {
-  return vec_dot(o->flat.normal, vec_sub(x, o->flat.origin));
+static double height_of(const crossing *o, vec3 x) {
+  return vec_dot(o->flat->normal, vec_sub(x, o->flat->origin));
 }
 
 /* Where the loaded piece meets the plane, from s on, by Newton's method. */
-static double meet_plane(const curve_convex *o, double s) {
+static double meet_plane(const crossing *o, double s) {
   enum { MOST_STEPS = 16 };
-  const double *points = points_pool_at(&o->pool, o->side.root_slot);
+  const size_t degree = o->side->curve->degree;
+  const double *points = points_pool_at(o->side->pool, o->side->root_slot);
   for (int i = 0; i < MOST_STEPS; i++) {
-    const curve_jet j = polish_jet(o, points, s);
-    const double height = height_of(o, j.x);
-    const double speed = vec_dot(o->flat.normal, j.d1);
+    vec3 at, velocity;
+    curve_bezier_evaluate(points, points + degree + 1, points + 2 * (degree + 1), 1, degree, o->side->curve->binomial,
+                          s, &at, &velocity, NULL);
+    const double height = height_of(o, at);
+    const double speed = vec_dot(o->flat->normal, velocity);
     const double next = lesser(greater(s - height / speed, 0.0), 1.0);
     if (!(fabs(next - s) > ROUND_U)) return isfinite(next) ? next : s;
     s = next;
@@ -87,7 +89,7 @@ static double meet_plane(const curve_convex *o, double s) {
 }
 
 /* The ends on the two sides of the plane, farther from it than all corners of the region; and all between is over the body. */
-static bool passes_through(curve_convex *o, const stretch part[2], int n, flat_region *region) {
+static bool passes_through(const crossing *o, const stretch part[2], int n, flat_region *region) {
   double first = 0.0, last = 0.0, room = 0.0;
   for (int i = 0; i < n; i++) {
     passage seen;
@@ -101,52 +103,62 @@ static bool passes_through(curve_convex *o, const stretch part[2], int n, flat_r
 }
 
 /* The point of the stretches at which the curve changes sides, by bisection. */
-static vec3 meeting_point(curve_convex *o, const stretch part[2], int n) {
+static vec3 meeting_point(const crossing *o, const stretch part[2], int n) {
   enum { BISECTIONS = 60 };
-  curve_side_load(&o->side, part[0].piece);
-  const bool below = height_of(o, curve_side_point(&o->side, part[0].from)) < 0.0;
+  curve_side_load(o->side, part[0].piece);
+  const bool below = height_of(o, curve_side_point(o->side, part[0].from)) < 0.0;
   stretch in = part[0];
-  if (n == 2 && (height_of(o, curve_side_point(&o->side, in.to)) < 0.0) == below) {
+  if (n == 2 && (height_of(o, curve_side_point(o->side, in.to)) < 0.0) == below) {
     in = part[1];
-    curve_side_load(&o->side, in.piece);
+    curve_side_load(o->side, in.piece);
   }
   for (int i = 0; i < BISECTIONS; i++) {
     const double middle = 0.5 * (in.from + in.to);
-    *((height_of(o, curve_side_point(&o->side, middle)) < 0.0) == below ? &in.from : &in.to) = middle;
+    *((height_of(o, curve_side_point(o->side, middle)) < 0.0) == below ? &in.from : &in.to) = middle;
   }
-  return curve_side_point(&o->side, in.to);
+  return curve_side_point(o->side, in.to);
 }
 
-/* At a place in the plane of the loaded piece: from the shortest stretch on that has its ends on both sides. */
-static bool proves_at(curve_convex *o, double at, flat_region *region, curve_sight *sight) {
+/* At a place in the plane of a piece: from the shortest stretch on that has its ends on both sides. */
+static bool proves_at(const crossing *o, double at, flat_region *region, crossing_place *place) {
   for (double step = FIRST_STEP; step < LAST_STEP; step *= 8.0) {
     stretch part[2];
-    const int n = stretches_about(o, sight->piece, at, step, part);
+    const int n = stretches_about(o, place->piece, at, step, part);
     if (!passes_through(o, part, n, region)) continue;
-    sight->y = sight->near.point = meeting_point(o, part, n);
-    sight->near.distance = 0.0;
-    sight->piece = part[n - 1].piece, sight->s = part[n - 1].to;
-    curve_side_load(&o->side, sight->piece);
+    place->meeting = meeting_point(o, part, n);
+    place->piece = part[n - 1].piece, place->s = part[n - 1].to;
+    curve_side_load(o->side, place->piece);
     return true;
   }
   return false;
 }
 
-bool crossing_prove(curve_convex *o, curve_sight *sight) {
-  if (o->side.curve->arcs || !curve_convex_is_flat(o) || o->flat.dimension != 2) return false;
+bool crossing_prove(const crossing *o, crossing_place *place) {
+  if (o->side->curve->arcs || o->flat->dimension != 2) return false;
   flat_region region;
-  flat_region_begin(o->shape, &o->flat, &region);
+  flat_region_begin(o->shape, o->flat, &region);
 
   /* Newton's method may run past the place: it begins again a little to either side */
   static const double APART[] = {0.0, -1e-3, 1e-3, -1e-2, 1e-2, -1e-1, 1e-1};
   double tried = -1.0;
   for (size_t i = 0; i < sizeof APART / sizeof *APART; i++) {
-    const double from = sight->s + APART[i];
+    const double from = place->s + APART[i];
     if (from < 0.0 || from > 1.0) continue;
-    curve_side_load(&o->side, sight->piece);
+    curve_side_load(o->side, place->piece);
     const double at = meet_plane(o, from);
-    if (at != tried && proves_at(o, at, &region, sight)) return true;
+    if (at != tried && proves_at(o, at, &region, place)) return true;
     tried = at;
   }
   return false;
+}
+
+bool crossing_prove_convex(curve_convex *o, curve_sight *sight) {
+  if (!curve_convex_is_flat(o)) return false;
+  const crossing of = {&o->side, o->shape, &o->flat, {CURVE_CONVEX_SCRATCH, CURVE_CONVEX_LEFT}};
+  crossing_place place = {.piece = sight->piece, .s = sight->s};
+  if (!crossing_prove(&of, &place)) return false;
+  sight->piece = place.piece, sight->s = place.s;
+  sight->y = sight->near.point = place.meeting;
+  sight->near.distance = 0.0;
+  return true;
 }

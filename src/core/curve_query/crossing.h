@@ -6,9 +6,25 @@
 
 #include "curve_query/curve_convex.h"
 
-/* Whether the curve certainly passes through the body near a sight, which then becomes that of the place: sight->s is a parameter
- * before which, or at which, they have met, sight->y the point where they meet but for rounding. False also of bodies that have an
- * inside. */
-bool crossing_prove(curve_convex *o, curve_sight *sight);
+/* A curve, the flat shape in its frame, and slots of its pool that may be written on. */
+typedef struct crossing {
+  curve_side *side;
+  const convex *shape;
+  const flat_shape *flat;
+  size_t slot[2];
+} crossing;
+
+/* Near s of a piece; when a crossing is proven, s of a piece by which the two have met, and the point where they do but for rounding. */
+typedef struct crossing_place {
+  size_t piece;
+  double s;
+  vec3 meeting;
+} crossing_place;
+
+/* Whether the curve certainly passes through the shape near a place, which then moves; the piece is the loaded one. */
+bool crossing_prove(const crossing *of, crossing_place *place);
+
+/* The same near a sight, which becomes that of the place. False also of shapes that have an inside. */
+bool crossing_prove_convex(curve_convex *o, curve_sight *sight);
 
 #endif

@@ -3,7 +3,7 @@
 
 #include "base/rounding.h"
 #include "bvh/winding.h"
-#include "curve/control.h"
+#include "curve_query/crossing.h"
 
 /* Slots of the pool that nodes never get. */
 enum { SLOT_ROOT, SLOT_SCRATCH, SLOT_SCRATCH_LEFT, SLOTS_RESERVED };
@@ -101,40 +101,26 @@ static void polish(curve_tree *o) {
 
 /* ---- proof of contact ------------------------------------------------------------------------------------------------- */
 
-/* The plane of the triangle has the curve's ends on its two sides, and the curve stays between the planes through the edges. */
-static bool goes_through(curve_tree *o, const tree_sight *sight, double from, double to) {
-  const size_t degree = o->side.curve->degree;
-  double *rest = points_pool_at(&o->pool, SLOT_SCRATCH), *left = points_pool_at(&o->pool, SLOT_SCRATCH_LEFT);
-  const double *whole = points_pool_at(&o->pool, SLOT_ROOT);
-  for (size_t i = 0; i < control_size(degree); i++) rest[i] = whole[i];
-  double error = o->side.root_error;
-  error += control_split(left, rest, degree, to, o->side.root_magnitude);
-  for (size_t i = 0; i < control_size(degree); i++) rest[i] = left[i];
-  error += control_split(left, rest, degree, from / to, o->side.root_magnitude);
-  /* from/to is rounded: what stands in `rest` is [from (1 + u), to] */
-
+/* Through the triangle of a sight, which moves to where that is. */
+static bool goes_through(curve_tree *o, tree_sight *sight) {
   vec3 v[3];
+  double x[8], y[8], z[8], scale = 0.0;
   tree_corners(o->tree, sight->place, v);
-  const vec3 m = vec_cross(vec_sub(v[1], v[0]), vec_sub(v[2], v[1]));
-  const double length = vec_norm(m);
-  if (!(length > 0.0)) return false;
-  const vec3 n = vec_scale(1.0 / length, m);
-  const double *x = rest, *y = x + degree + 1, *z = y + degree + 1;
-  const double size = o->side.root_magnitude + o->tree->scale;
-  /* n is off by the rounding of the cross product, which slivers magnify */
-  const double longest =
-      fmax(vec_norm(vec_sub(v[1], v[0])), fmax(vec_norm(vec_sub(v[2], v[1])), vec_norm(vec_sub(v[0], v[2]))));
-  const double room = 4.0 * error + 64.0 * ROUND_U * size * (1.0 + longest * longest / length);
-  const double first = vec_dot(n, vec_sub(vec(x[0], y[0], z[0]), v[0]));
-  const double last = vec_dot(n, vec_sub(vec(x[degree], y[degree], z[degree]), v[0]));
-  if (!((first > room && last < -room) || (first < -room && last > room))) return false;
-  for (int k = 0; k < 3; k++) {
-    const vec3 e = vec_sub(v[(k + 1) % 3], v[k]), inward = vec_cross(n, e);
-    const double norm = vec_norm(inward);
-    if (!(norm > 0.0)) return false;
-    if (!(control_least(rest, degree, vec_scale(1.0 / norm, inward)) - vec_dot(inward, v[k]) / norm > room))
-      return false;
+  for (int i = 0; i < 8; i++) {
+    const vec3 corner = v[i < 3 ? i : 2];
+    x[i] = corner.x, y[i] = corner.y, z[i] = corner.z;
+    scale = fmax(scale, vec_norm(corner));
   }
+  const convex triangle = {
+      .ops = &convex_polytope, .scale = ROUND_UP * scale, .n = 3, .padded = 8, .x = x, .y = y, .z = z};
+  flat_shape flat;
+  flat_describe(&triangle, &flat);
+  const crossing of = {&o->side, &triangle, &flat, {SLOT_SCRATCH, SLOT_SCRATCH_LEFT}};
+  crossing_place place = {.piece = sight->piece, .s = sight->s};
+  if (!crossing_prove(&of, &place)) return false;
+  sight->piece = place.piece, sight->s = place.s;
+  sight->y = sight->near.point = place.meeting;
+  sight->near.distance = 0.0;
   return true;
 }
 
@@ -148,16 +134,20 @@ static bool is_inside(const curve_tree *o, vec3 y, double error) {
 bool curve_tree_meets(curve_tree *o, tree_sight *sight, double *until) {
   if (o->tree->kind != TREE_TRIANGLES || o->side.curve->arcs) return false;
   curve_side_load(&o->side, sight->piece);
-  const double error = curve_side_point_error(&o->side);
+  if (goes_through(o, sight)) {
+    *until = sight->s;
+    return true;
+  }
+  if (!o->body->winding) return false;
+
+  /* a little farther along, or a little before, it is inside */
   enum { MOST_WIDTHS = 12 };
+  curve_side_load(&o->side, sight->piece);
+  const double error = curve_side_point_error(&o->side);
   double step = 1e-12;
   for (int i = 0; i < MOST_WIDTHS && step < 0.1; i++, step *= 10.0) {
-    const double from = fmax(sight->s - step, o->side.part.a), to = fmin(sight->s + step, o->side.part.b);
-    *until = to;
-    if (goes_through(o, sight, from, to)) return true;
-    if (!o->body->winding) continue;
     for (int k = 0; k < 2; k++) {
-      const double s = k == 0 ? from : to;
+      const double s = k == 0 ? fmax(sight->s - step, o->side.part.a) : fmin(sight->s + step, o->side.part.b);
       const vec3 y = curve_side_point(&o->side, s);
       if (!is_inside(o, y, error)) continue;
       curve_tree_measure(o, sight->place, sight->piece, s, y, error, sight);

@@ -217,7 +217,8 @@ cprox_status candidate_report_curve(const question *q, const candidate *c, const
 static bool proves_crossing(const question *q, curve_convex *o) {
   curve_sight sight = o->best;
   const double upper = o->best_bound.upper;
-  if (q->limit != 0.0 || !(upper > 0.0 && upper <= q->options.epsilon) || !crossing_prove(o, &sight)) return false;
+  if (q->limit != 0.0 || !(upper > 0.0 && upper <= q->options.epsilon) || !crossing_prove_convex(o, &sight))
+    return false;
   curve_convex_adopt(o, &sight, (search_best){.upper = 0.0, .slack = o->best_bound.slack});
   return true;
 }
