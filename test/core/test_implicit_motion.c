@@ -113,7 +113,8 @@ static void first_contact_is_never_late_and_never_undecided(void **state) {
       else
         assert_true(least.upper > 0.0);
       if (found.verdict == CPROX_YES && found.t > 0.0) {
-        assert_true(found.upper <= options.epsilon);
+        assert_true(found.upper <= 0.0 && found.t_free <= found.t);
+        assert_true(pair_at(b, x, y, found.t_free, 0.01 * options.epsilon).lower <= options.epsilon);
         for (int k = 1; k <= 8; k++) /* free before */
           assert_true(pair_at(b, x, y, found.t_free * (1.0 - ldexp(1.0, -3 * k)), 1e-9).upper > 0.0);
       }

@@ -198,8 +198,10 @@ CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_target
  *  t_free      no contact at any t < t_free, certified. The distance at t_free is at most epsilon, or t_free is the end of
  *              the range.
  *  verdict     yes: they touch or overlap at t, proven: the first contact lies in [t_free, t]. no: they do not touch at all;
- *              lower > 0. undecided: closer than epsilon at t_free = t, contact not proven anywhere.
- *  lower, upper  of the distance over the whole range, as in cprox_collision().
+ *              lower > 0. undecided: closer than epsilon at t, the earliest such place that was measured; contact is not
+ *              proven anywhere.
+ *  lower, upper  of the distance over the whole range, as in cprox_collision(). upper is the distance of the two points at t:
+ *              0 for yes, at most epsilon for undecided.
  *
  *  A ball round the target that is not to be entered is its padding. Returns as cprox_distance(); after CPROX_BUDGET,
  *  CPROX_STOPPED and CPROX_PRECISION t_free is true, but may lie before the place where the distance is epsilon.

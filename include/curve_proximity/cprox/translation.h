@@ -32,9 +32,10 @@ CPROX_API cprox_status cprox_translating_distance(cprox_translating a, cprox_tra
 /** When two convex bodies (no compounds) that translate first touch.
  *
  *  t_free   no contact at any time < t_free, certified
- *  verdict  yes: at t the distance is at most epsilon [m]. no: they do not touch up to the duration. undecided: the budget was
- *           too small; t_free is true.
- *  lower, upper, points: of the distance at t. Where contact is deep already at 0: t = t_free = 0.
+ *  verdict  yes: they touch or overlap at t, proven: the first contact lies in [t_free, t]. no: they do not touch up to the
+ *           duration. undecided: contact is not proven; at t = t_free the distance is at most epsilon [m], unless the status says
+ *           that the search fell short.
+ *  lower, upper, points: of the signed distance at t, as in cprox_pair(). Where contact is deep already at 0: t = t_free = 0.
  *  Returns as cprox_pair(). Cost: about four pairs. */
 CPROX_API cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b, double duration,
                                                  const cprox_options *options, cprox_workspace *workspace,

@@ -158,6 +158,34 @@ static cprox_status approach_run(approach *p, const cprox_options *options, cpro
   return CPROX_BUDGET;
 }
 
+/* They are within epsilon at free_until. A little later they may certainly touch: by their speed, as deep as rounding could hide it. Then
+ * that is where p->last is asked, and *at. */
+static cprox_status approach_prove(approach *p, const cprox_options *options, cprox_workspace *workspace, double *at) {
+  enum { MOST_STEPS = 12 };
+  cprox_options fine = *options;
+  fine.epsilon = fmin(0.25 * options->epsilon, 1e-3 * fabs(p->last.upper));
+  fine.relative_epsilon = 0.0;
+  cprox_result r = p->last;
+  double t = p->free_until,
+         hidden = 128.0 * ROUND_U *
+                  (vec_norm(p->b.pose.position) + vec_norm(p->a.pose.position) + vec_norm(p->velocity) * p->duration +
+                   p->a.body->ball_radius + p->b.body->ball_radius);
+  for (int i = 0; i < MOST_STEPS && t < p->duration && r.upper > 0.0; i++, hidden *= 8.0) {
+    const double towards = vec_dot(r.normal, p->velocity);
+    if (!(towards > 0.0)) break;
+    const double next = fmin(t + (r.upper + hidden) / towards * (1.0 + 1e-12), p->duration);
+    if (!(next > t)) break;
+    t = next;
+    const cprox_status status = cprox_pair(p->a, approach_at(p, t), &fine, workspace, &r);
+    if (status < 0) return status;
+    p->pairs++;
+  }
+  if (r.upper > 0.0) return CPROX_OK;
+  p->last = r;
+  *at = t;
+  return CPROX_OK;
+}
+
 cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b, double duration,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   workspace_clear(workspace);
@@ -170,10 +198,16 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
   approach p = {.a = a.from, .b = b.from, .velocity = vec_sub(b.velocity, a.velocity), .duration = duration};
   status = approach_run(&p, &asked, workspace);
   if (status < 0) return status;
-  const vec3 moved = vec_scale(p.free_until, a.velocity);
+  double at = p.free_until;
+  if (status == CPROX_OK && !p.never && p.last.upper > 0.0) {
+    const cprox_status proved = approach_prove(&p, &asked, workspace, &at);
+    if (proved < 0) return proved;
+  }
+  workspace_clear(workspace);
+  const vec3 moved = vec_scale(at, a.velocity);
   *result = p.last;
-  result->t = result->t_free = p.free_until;
-  result->verdict = p.never ? CPROX_NO : status == CPROX_OK ? CPROX_YES : CPROX_UNDECIDED;
+  result->t = at, result->t_free = p.free_until;
+  result->verdict = p.never ? CPROX_NO : p.last.upper <= 0.0 ? CPROX_YES : CPROX_UNDECIDED;
   result->on_mover = vec_add(result->on_mover, moved);
   result->on_target = vec_add(result->on_target, moved);
   result->probes = p.pairs + 1;

@@ -97,6 +97,8 @@ cprox_status robot_first_contact(const question *q, cprox_result *result) {
   search_outcome found;
   const cprox_status status = run(q, &goal, &o, &found);
   if (status < 0) return status;
+  const cprox_status proved = robot_search_prove(&o, q->t1);
+  if (proved < 0) return proved;
 
   const bool touch = o.touch.pair >= 0, near = o.best_bound.upper <= q->options.epsilon;
   const robot_sight *sight = touch ? &o.touch : &o.best;

@@ -629,6 +629,75 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   lists_begin(&o->lists, o->scene.q->workspace);
 }
 
+/* ---- proof of contact ----------------------------------------------------------------------------------------------------- */
+
+/* The distance of a pair at a time, as exactly as arithmetic has it; what it proves stands in o->touch. */
+static cprox_status look_at(robot_search *o, int32_t pair, double t, double *upper) {
+  const cprox_motion *m = o->scene.motion;
+  size_t segment = 0;
+  while (segment + 1 < m->n_segments && m->times[segment + 1] <= t) segment++;
+  const double from = m->times[segment], to = m->times[segment + 1];
+  const double u = fmin(fmax((t - from) / (to - from), 0.0), 1.0);
+  robot_scene_enter(&o->scene, segment, u, u);
+
+  /* what was found stays the best, whatever is seen here */
+  const robot_sight best = o->best;
+  const search_best bound = o->best_bound;
+  const double epsilon = o->epsilon;
+  o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
+  o->epsilon = 0.0;
+  const cprox_status status = measure_whole(o, pair, segment, u);
+  *upper = o->best_bound.upper;
+  o->best = best, o->best_bound = bound, o->epsilon = epsilon;
+  return status;
+}
+
+/* By the speed at which the two approach each other. */
+static cprox_status prove_by_speed(robot_search *o, int32_t pair, double t, double first, double end) {
+  enum { MOST_STEPS = 8 };
+  double before, now, step = first;
+  cprox_status status = look_at(o, pair, t, &before);
+  for (int i = 0; i < MOST_STEPS && status >= 0 && t + step < o->touch_at; i++) {
+    const double next = fmin(t + step, end);
+    if (!(next > t)) break;
+    status = look_at(o, pair, next, &now);
+    if (status < 0 || !(now > 0.0)) break;
+    const double speed = (before - now) / (next - t);
+    if (!(speed > 0.0)) break;
+    /* a little deeper than the surface, or rounding hides it */
+    step = now / speed * (1.0 + 1e-6) + 1e-9 * first;
+    t = next, before = now;
+  }
+  return status;
+}
+
+cprox_status robot_search_prove(robot_search *o, double end) {
+  enum { MOST_STEPS = 24, MOST_CUTS = 40 };
+  const double begin = o->best_bound.at, range = end - begin;
+  const int32_t pair = o->best.pair;
+  if (pair < 0 || !(o->best_bound.upper <= o->epsilon) || !(o->best_bound.upper > 0.0) || !(range > 0.0))
+    return CPROX_OK;
+  double known = o->touch_at, unused;
+  cprox_status status = prove_by_speed(o, pair, begin, 1e-6 * range, end);
+  if (status < 0 || o->touch_at < known) return status;
+
+  /* farther along in growing steps, and then back to where it is not proven */
+  double step = 1e-7 * range, before = begin;
+  for (int i = 0; i < MOST_STEPS && step < range && begin + step < known; i++, step *= 2.0) {
+    status = look_at(o, pair, begin + step, &unused);
+    if (status < 0 || o->touch_at < known) break;
+    before = begin + step;
+  }
+  if (status < 0 || !isfinite(o->touch_at) || o->touch.pair != pair) return status;
+  for (int i = 0; i < MOST_CUTS && o->touch_at - before > 1e-9 * range; i++) {
+    const double middle = 0.5 * (before + o->touch_at);
+    status = look_at(o, pair, middle, &unused);
+    if (status < 0) return status;
+    if (o->touch_at > middle) before = middle;
+  }
+  return CPROX_OK;
+}
+
 search_oracle robot_search_oracle(robot_search *o) {
   return (search_oracle){.self = o, .filter = filter, .probe = probe, .split = split, .release = release};
 }

@@ -46,4 +46,8 @@ search_node robot_search_root(robot_search *o, size_t first, double u0, size_t l
 
 search_oracle robot_search_oracle(robot_search *o);
 
+/* After a search from left to right: contact that is nearer than epsilon, but proven only later if at all, becomes proven a little farther
+ * along, up to the time `end`, if a few measurements of its pair succeed. CPROX_OK, or a negative status. */
+cprox_status robot_search_prove(robot_search *o, double end);
+
 #endif
