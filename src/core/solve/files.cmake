@@ -1,6 +1,7 @@
 # The files of this room. A new file is one line here.
 target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/gradient.c
+  ${CMAKE_CURRENT_LIST_DIR}/gradient_ties.c
   ${CMAKE_CURRENT_LIST_DIR}/solve.c
   ${CMAKE_CURRENT_LIST_DIR}/time_of_contact.c
 )

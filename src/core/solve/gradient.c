@@ -1,21 +1,33 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Danskin: where the minimiser is one alone, the derivatives of the minimum are those of the distance there. */
+/* Danskin: where the minimiser is one alone, the derivatives of the minimum are
+ * those of the distance there. */
 #include "curve_proximity/cprox/gradient.h"
 
 #include "base/workspace.h"
+#include "curve/relative_curve.h"
 #include "curve_proximity/cprox/clearance.h"
 #include "curve_query/search_pair.h"
 #include "problem/level_of_detail.h"
 #include "problem/minkowski.h"
 #include "problem/validate.h"
 #include "shape/body.h"
+#include "solve/gradient_ties.h"
 #include "solve/solve.h"
 
-/* How near another minimiser must not come, in lengths of the curve, unless epsilon is less still. */
+/* How near another minimiser must not come, in lengths of the curve, unless
+ * epsilon is less still. */
 static const double APART = 1e-9;
 
-/* The neighbourhoods of the minimiser that are tried, as fractions of the range, until everything beyond is farther. */
+/* The neighbourhoods of the minimiser that are tried, as fractions of the
+ * range, until everything beyond is farther. */
 static const double NEIGHBOURHOOD[] = {1e-4, 1e-3, 1e-2, 3e-2};
+
+/* And nearer to it, until the distance there is greater by more than its
+ * rounding. */
+static const double NEARBY[] = {1e-6, 1e-5, 1e-4, 1e-3};
+
+/* How narrowly those are searched, in lengths of the curve and distances. */
+static const double HARDLY = 1e-14;
 
 static cprox_status invalid(cprox_workspace *workspace, cprox_gradient *g, const char *why) {
   g->valid = false;
@@ -23,12 +35,15 @@ static cprox_status invalid(cprox_workspace *workspace, cprox_gradient *g, const
   return CPROX_OK;
 }
 
-/* ---- the minimiser along the curve ----------------------------------------------------------------------------------------- */
+/* ---- the minimiser along the curve
+ * -----------------------------------------------------------------------------------------
+ */
 
 /* The distance at t, and how fast it changes along the curve. */
 typedef struct look {
   curve_sight sight;
   double slope;
+  double slack; /* of the distance */
 } look;
 
 static cprox_status look_at(curve_convex *o, double t, bool from_left, look *seen) {
@@ -45,10 +60,12 @@ static cprox_status look_at(curve_convex *o, double t, bool from_left, look *see
   const cprox_status status =
       curve_convex_measure(o, piece, s, at, curve_side_point_error(&o->side), &seen->sight, &bound);
   seen->slope = vec_dot(seen->sight.normal, velocity) / length;
+  seen->slack = bound.slack;
   return status;
 }
 
-/* Between left, where the distance falls, and right, where it grows: where it does neither (Illinois). */
+/* Between left, where the distance falls, and right, where it grows: where it
+ * does neither (Illinois). */
 static cprox_status find_root(curve_convex *o, double left, double right, look *a, look *b, double *t) {
   enum { MOST_STEPS = 100 };
   double fa = a->slope, fb = b->slope;
@@ -76,7 +93,8 @@ static cprox_status find_root(curve_convex *o, double left, double right, look *
   return CPROX_OK;
 }
 
-/* The minimiser near t, to the last digits; *end: -1 or 1 where it is an end of the range. */
+/* The minimiser near t, to the last digits; *end: -1 or 1 where it is an end of
+ * the range. */
 static cprox_status refine(curve_convex *o, double t0, double t1, double *t, int *end) {
   enum { MOST_STEPS = 8 };
   const double range = t1 - t0;
@@ -101,7 +119,9 @@ static cprox_status refine(curve_convex *o, double t0, double t1, double *t, int
   return CPROX_OK; /* as it was: the checks that follow will find it flat */
 }
 
-/* ---- the minimiser on two curves ------------------------------------------------------------------------------------------- */
+/* ---- the minimiser on two curves
+ * -------------------------------------------------------------------------------------------
+ */
 
 typedef struct curve_jet {
   vec3 x, d1, d2;
@@ -118,7 +138,8 @@ static double clamp(double x, double least, double most) {
   return x < least ? least : x > most ? most : x;
 }
 
-/* Newton on |psi(t) - phi(u)|²/2 from a minimiser that is nearly one; parameters at an end stay there. */
+/* Newton on |psi(t) - phi(u)|²/2 from a minimiser that is nearly one;
+ * parameters at an end stay there. */
 static void refine_pair(const cprox_mover *mover, const cprox_target *target, cprox_workspace *workspace, double *t,
                         double *u) {
   enum { MOST_STEPS = 12 };
@@ -150,30 +171,55 @@ static void refine_pair(const cprox_mover *mover, const cprox_target *target, cp
   }
 }
 
-/* ---- is it the only one? ------------------------------------------------------------------------------------------------------ */
+/* ---- is it the only one?
+ * ------------------------------------------------------------------------------------------------------
+ */
 
-/* Whether the mover is farther than `distance` wherever it is not near t. */
-static cprox_status is_alone(cprox_mover mover, const cprox_target *target, const cprox_options *options, double t,
-                             double distance, cprox_workspace *workspace, bool *alone) {
-  double t0, t1;
-  cprox_curve_domain(mover.curve, &t0, &t1);
-  *alone = false;
-  for (size_t k = 0; k < sizeof NEIGHBOURHOOD / sizeof *NEIGHBOURHOOD && !*alone; k++) {
-    const double near = NEIGHBOURHOOD[k] * (t1 - t0);
-    const double breaks[4] = {t0, t - near, t + near, t1};
-    *alone = true;
-    for (int i = 0; i < 4 && *alone; i += 2) {
-      if (!(breaks[i] < breaks[i + 1])) continue;
-      cprox_stretch stretch;
-      const cprox_status status = cprox_profile(mover, target, 1, &breaks[i], 1, options, workspace, &stretch);
-      if (status < 0) return status;
-      *alone = stretch.lower > distance + options->epsilon;
-    }
+/* Whether the mover is farther than `distance` by more than epsilon in
+ * [breaks[0], breaks[1]] and [breaks[2], breaks[3]]. */
+static cprox_status is_farther(cprox_mover mover, const cprox_target *target, const cprox_options *options,
+                               const double breaks[4], double distance, cprox_workspace *workspace, bool *farther) {
+  *farther = true;
+  for (int i = 0; i < 4 && *farther; i += 2) {
+    if (!(breaks[i] < breaks[i + 1])) continue;
+    cprox_stretch stretch;
+    const cprox_status status = cprox_profile(mover, target, 1, &breaks[i], 1, options, workspace, &stretch);
+    if (status < 0) return status;
+    *farther = stretch.lower > distance + options->epsilon;
   }
   return CPROX_OK;
 }
 
-/* What stands when the mover is stopped where psi is `at`, seen by a target curve that moves instead. */
+/* Whether the mover is farther than `distance` wherever it is not near t, and
+ * closer to t at least not as near. */
+static cprox_status is_alone(cprox_mover mover, const cprox_target *target, const cprox_options *options, double t,
+                             double distance, cprox_workspace *workspace, bool *alone) {
+  double t0, t1, outer = 0.0;
+  cprox_curve_domain(mover.curve, &t0, &t1);
+  *alone = false;
+  for (size_t k = 0; k < sizeof NEIGHBOURHOOD / sizeof *NEIGHBOURHOOD && !*alone; k++) {
+    outer = NEIGHBOURHOOD[k] * (t1 - t0);
+    const double breaks[4] = {t0, t - outer, t + outer, t1};
+    const cprox_status status = is_farther(mover, target, options, breaks, distance, workspace, alone);
+    if (status < 0) return status;
+  }
+  if (!*alone) return CPROX_OK;
+
+  cprox_options fine = *options;
+  const curve_capsule *all = &mover.curve->whole;
+  fine.epsilon = HARDLY * (vec_norm(vec_sub(all->b, all->a)) + 2.0 * all->radius + fabs(distance));
+  *alone = false;
+  for (size_t k = 0; k < sizeof NEARBY / sizeof *NEARBY && !*alone; k++) {
+    const double inner = NEARBY[k] * (t1 - t0);
+    const double breaks[4] = {fmax(t - outer, t0), t - inner, t + inner, fmin(t + outer, t1)};
+    const cprox_status status = is_farther(mover, target, &fine, breaks, distance, workspace, alone);
+    if (status < 0) return status;
+  }
+  return CPROX_OK;
+}
+
+/* What stands when the mover is stopped where psi is `at`, seen by a target
+ * curve that moves instead. */
 static cprox_target stopped(const cprox_mover *mover, const cprox_target *target, vec3 at) {
   const frame f = frame_create(&target->pose, vec(0, 0, 0));
   const cprox_quat q = target->pose.orientation;
@@ -204,24 +250,78 @@ static cprox_status part_is_alone(const question *q, const candidate *best, doub
   return CPROX_OK;
 }
 
-/* Inside, the way out may change from one face to another: then the normal jumps nearby. */
-static cprox_status way_out_is_alone(curve_convex *o, const look *here, bool *alone) {
-  *alone = true;
-  if (here->sight.near.distance > 0.0) return CPROX_OK;
-  const double step = 1e-6 * (o->shape->scale + o->shape->margin), jump = 0.05;
-  for (int i = 0; i < 6 && *alone; i++) {
-    const double d = i % 2 ? step : -step;
-    const vec3 y = vec_add(here->sight.y, vec(i / 2 == 0 ? d : 0.0, i / 2 == 1 ? d : 0.0, i / 2 == 2 ? d : 0.0));
-    curve_sight sight;
-    search_best bound;
-    const cprox_status status = curve_convex_measure(o, here->sight.piece, here->sight.s, y, 0.0, &sight, &bound);
-    if (status < 0) return status;
-    *alone = vec_norm(vec_sub(sight.normal, here->sight.normal)) < jump;
+/* How much the normal differs a step to either side, along the axis where that
+ * is most. */
+static cprox_status lean_of(curve_convex *o, const look *here, double step, double *lean) {
+  *lean = 0.0;
+  for (int i = 0; i < 3; i++) {
+    curve_sight seen[2];
+    for (int k = 0; k < 2; k++) {
+      const double d = k ? step : -step;
+      const vec3 y = vec_add(here->sight.y, vec(i == 0 ? d : 0.0, i == 1 ? d : 0.0, i == 2 ? d : 0.0));
+      search_best bound;
+      const cprox_status status = curve_convex_measure(o, here->sight.piece, here->sight.s, y, 0.0, &seen[k], &bound);
+      if (status < 0) return status;
+    }
+    *lean = fmax(vec_norm(vec_sub(seen[1].normal, seen[0].normal)), *lean);
   }
   return CPROX_OK;
 }
 
-/* ---- the gradient ------------------------------------------------------------------------------------------------------------- */
+/* Inside, and where that cannot be told, the way out may change from one face
+ * to another: then the normal jumps nearby. */
+static cprox_status way_out_is_alone(curve_convex *o, const look *here, bool *alone) {
+  static const double NOISE = 2e-5; /* normals of carried bodies are known to
+                                       the root of what depths are */
+  *alone = true;
+  if (here->sight.near.distance > 2.0 * here->slack) return CPROX_OK;
+  const double size = o->shape->scale + o->shape->margin;
+  double near, far = 0.0;
+  cprox_status status = lean_of(o, here, TIES_NEAR * size, &near);
+  if (status >= 0 && near > NOISE) status = lean_of(o, here, TIES_FAR * size, &far);
+  *alone = !ties_is_jump(near, far, NOISE);
+  return status < 0 ? status : CPROX_OK;
+}
+
+/* The mover at t, and what stands, or is on its clock, where it is then. */
+static placed_bodies bodies_at(const question *q, const candidate *c, double t) {
+  placed_bodies p = {.b = q->targets[0],
+                     .part_a = (size_t)c->mover_part,
+                     .part_b = (size_t)c->part,
+                     .finest = q->options.max_rung,
+                     .depth = q->is_signed,
+                     .workspace = q->workspace};
+  p.a = (cprox_target){.body = q->mover.body ? q->mover.body : &carried_point,
+                       .pose = {.orientation = {1, 0, 0, 0}},
+                       .padding = q->mover.radius};
+  cprox_curve_evaluate(q->mover.curve, t, q->workspace, &p.a.pose.position, NULL, NULL);
+  if (!p.b.on_clock) return p;
+  const frame f = frame_create(&p.b.pose, vec(0, 0, 0));
+  p.b.pose.position = frame_to_world(&f, relative_point(p.b.curve, t, false, q->workspace));
+  if (!p.b.body) p.b.body = &carried_point;
+  return p;
+}
+
+static bool is_round(const cprox_body *body) {
+  return !body || body->kind == CPROX_POINT || body->kind == CPROX_SPHERE;
+}
+
+/* A ball has one nearest point where it has one normal. Two other bodies may
+ * meet along an edge or a face. */
+static cprox_status nearest_is_alone(const question *q, const candidate *c, double t, bool *alone) {
+  cprox_pose unused;
+  const cprox_body *standing = candidate_body(q, c), *carried = q->mover.body ? candidate_carried(q, c, &unused) : NULL;
+  *alone = true;
+  if (is_round(standing) || is_round(carried)) return CPROX_OK;
+  placed_bodies p = bodies_at(q, c, t);
+  p.size = carried->shape.scale + carried->shape.margin;
+  if (standing->kind != CPROX_HALFSPACE) p.size = fmin(p.size, standing->shape.scale + standing->shape.margin);
+  return ties_point_is_alone(&p, alone);
+}
+
+/* ---- the gradient
+ * -------------------------------------------------------------------------------------------------------------
+ */
 
 static void fill(const cprox_target *target, vec3 n, vec3 on_target, cprox_gradient *g) {
   const frame f = frame_create(&target->pose, vec(0, 0, 0));
@@ -254,12 +354,15 @@ static cprox_status gradient_of_body(const question *q, const candidate *c, cpro
   fill(&q->targets[0], r.normal, r.on_target, g);
   if (q->targets[0].on_clock) g->t_target = g->t;
   if (vec_norm2(r.normal) == 0.0) return invalid(q->workspace, g, "there is no normal");
-  if (!q->is_signed && !(distance > 0.0)) return invalid(q->workspace, g, "the distance is 0");
+  if (!q->is_signed && !(distance > here.slack)) return invalid(q->workspace, g, "the distance is 0");
 
   bool alone = true;
   status = way_out_is_alone(&o, &here, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "there is more than one way out");
+  status = nearest_is_alone(q, c, g->t, &alone);
+  if (status < 0) return status;
+  if (!alone) return invalid(q->workspace, g, "the nearest points are not the only ones");
   status = part_is_alone(q, c, g->t, distance, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "two parts are equally near");
@@ -270,7 +373,20 @@ static cprox_status gradient_of_body(const question *q, const candidate *c, cpro
   return CPROX_OK;
 }
 
-static cprox_status gradient_of_curve(const question *q, const cprox_result *result, cprox_gradient *g) {
+/* A carried body may leave the curve that crosses it by more than one side. */
+static cprox_status carried_way_out_is_alone(const question *q, const candidate *c, vec3 on_curve, double t,
+                                             double distance, bool *alone) {
+  *alone = true;
+  if (!q->mover.body || !(distance + q->mover.radius + q->targets[0].padding <= 0.0)) return CPROX_OK;
+  placed_bodies p = bodies_at(q, c, t);
+  p.b = (cprox_target){.body = &carried_point, .pose = {on_curve, {1, 0, 0, 0}}, .padding = q->targets[0].padding};
+  p.part_b = 0;
+  p.size = q->mover.body->ball_radius;
+  return ties_normal_is_alone(&p, alone);
+}
+
+static cprox_status gradient_of_curve(const question *q, const candidate *c, const cprox_result *result,
+                                      cprox_gradient *g) {
   const cprox_target *target = &q->targets[0];
   if (!q->mover.body) refine_pair(&q->mover, target, q->workspace, &g->t, &g->t_target);
   const frame f = frame_create(&target->pose, vec(0, 0, 0));
@@ -290,7 +406,10 @@ static cprox_status gradient_of_curve(const question *q, const cprox_result *res
   if (!q->is_signed && !(distance > 0.0)) return invalid(q->workspace, g, "the distance is 0");
 
   bool alone = true;
-  cprox_status status = is_alone(q->mover, target, &q->options, g->t, distance, q->workspace, &alone);
+  cprox_status status = carried_way_out_is_alone(q, c, y.x, g->t, distance, &alone);
+  if (status < 0) return status;
+  if (!alone) return invalid(q->workspace, g, "there is more than one way out");
+  status = is_alone(q->mover, target, &q->options, g->t, distance, q->workspace, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "the distance is as small elsewhere along the curve");
   const cprox_target other = stopped(&q->mover, target, x.x);
@@ -327,7 +446,8 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, con
     return workspace_fail(workspace, CPROX_INVALID, "the result's target_part %d is no part of the target",
                           result->target_part);
 
-  /* the whole curve is searched as narrowly as other minimisers are to be told apart */
+  /* the whole curve is searched as narrowly as other minimisers are to be told
+   * apart */
   q.is_signed = q.options.signed_distance;
   const curve_capsule *all = &mover.curve->whole;
   const double length = vec_norm(vec_sub(all->b, all->a)) + 2.0 * all->radius;
@@ -339,7 +459,7 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, con
     status = gradient_of_body(&q, &c, &g);
   } else {
     g.t_target = result->t_target;
-    status = gradient_of_curve(&q, result, &g);
+    status = gradient_of_curve(&q, &c, result, &g);
   }
   if (status == CPROX_OK) *gradient = g;
   return status;
