@@ -306,6 +306,42 @@ static void energies_of_loops_are_exact(void **state) {
   cprox_solid_free(s);
 }
 
+/* Seed 706: random grids in plane and space, rho up to four cells. A cell is taken where it is within rho of an occupied one, by
+ * looking at each; cells that border are 0 apart. */
+static void the_offset_of_a_grid_is_the_cells_within_rho(void **state) {
+  (void)state;
+  rng r = rng_seed(706);
+  for (size_t trial = 0; trial < test_cases(60); trial++) {
+    const int dimension = 2 + (int)(trial % 2);
+    const uint32_t n[3] = {1 + (uint32_t)rng_index(&r, 6), 1 + (uint32_t)rng_index(&r, 6),
+                           dimension == 2 ? 1 : 1 + (uint32_t)rng_index(&r, 6)};
+    const double cell = rng_log_uniform(&r, 0.01, 10.0), rho = rng_uniform(&r, 0.0, 4.0) * cell;
+    unsigned char cells[216];
+    for (uint32_t i = 0; i < n[0] * n[1] * n[2]; i++) cells[i] = rng_index(&r, 8) == 0;
+    cells[rng_index(&r, n[0] * n[1] * n[2])] = 1;
+    cprox_solid *s;
+    MADE(cprox_solid_create_grid(dimension, vec(0, 0, 0), cell, n, cells, ws, &s));
+    double reach;
+    cprox_solid *o = solid_offset(s, rho, &reach);
+    assert_non_null(o);
+    const piece *p = &o->pieces[0];
+    const int m = (int)(p->counts[0] - n[0]) / 2, mz = (int)(p->counts[2] - n[2]) / 2;
+    for (uint32_t at = 0; at < p->counts[0] * p->counts[1] * p->counts[2]; at++) {
+      const int x = (int)(at % p->counts[0]) - m, y = (int)(at / p->counts[0] % p->counts[1]) - m,
+                z = (int)(at / p->counts[0] / p->counts[1]) - mz;
+      double least = INFINITY;
+      for (uint32_t i = 0; i < n[0] * n[1] * n[2]; i++) {
+        const double dx = fmax(0, abs(x - (int)(i % n[0])) - 1), dy = fmax(0, abs(y - (int)(i / n[0] % n[1])) - 1),
+                     dz = fmax(0, abs(z - (int)(i / n[0] / n[1])) - 1);
+        if (cells[i]) least = fmin(least, dx * dx + dy * dy + dz * dz);
+      }
+      assert_int_equal(p->cells[at] != 0, cell * sqrt(least) <= rho);
+    }
+    cprox_solid_free(o);
+    cprox_solid_free(s);
+  }
+}
+
 /* The transform axis by axis, at all lattice points, against the sum over runs of cells: 1e-13 of the measure. */
 static void grids_transform_axis_by_axis_to_the_same_spectrum(void **state) {
   (void)state;
@@ -410,6 +446,7 @@ int main(void) {
       cmocka_unit_test(offsets_hold_every_point_within_rho),
       cmocka_unit_test(the_offset_of_a_convex_mesh_has_the_volume_of_steiners_formula),
       cmocka_unit_test(energies_of_loops_are_exact),
+      cmocka_unit_test(the_offset_of_a_grid_is_the_cells_within_rho),
       cmocka_unit_test(grids_transform_axis_by_axis_to_the_same_spectrum),
       cmocka_unit_test(bad_solids_are_refused_in_words),
       cmocka_unit_test(solids_survive_every_failed_allocation),

@@ -19,6 +19,7 @@ typedef struct gap_plan {
   int dimension, N;
   double beta, period, offset;
   double over_reach;
+  bool unbounded;    /* no over-reach can be proven, however many samples */
   bool turned_first; /* whether the first solid is the one to turn; the lattice lies in the other's frame */
 } gap_plan;
 

@@ -66,30 +66,57 @@ static void offset_ellipsoid(const piece *p, int dimension, double rho, piece *o
   }
 }
 
+#define FAR UINT32_MAX
+
+/* Along a line: out[j] = least in[i] + max(|j - m - i| - 1, 0)² over |j - m - i| <= m, j = 0 … n + 2 m - 1. Cells that border are
+ * 0 apart. */
+static void spread_line(const uint32_t *in, int64_t stride, int64_t n, int64_t m, uint32_t *out, int64_t out_stride) {
+  for (int64_t j = 0; j < n + 2 * m; j++) {
+    uint32_t best = FAR;
+    const int64_t first = j > 2 * m ? j - 2 * m : 0, last = j < n ? j : n - 1;
+    for (int64_t i = first; i <= last; i++) {
+      const int64_t away = (j - m < i ? i - j + m : j - m - i) - 1;
+      const uint32_t add = away > 0 ? (uint32_t)(away * away) : 0;
+      if (in[i * stride] != FAR && in[i * stride] + add < best) best = in[i * stride] + add;
+    }
+    out[j * out_stride] = best;
+  }
+}
+
+/* The squares of distances to occupied cells, in cells, axis by axis: cells of `out` where it is at most rho. from, rows, line: room for
+ * nx ny nz, wx wy nz and wz. */
+static void spread_grid(const piece *p, const int64_t m[3], double rho, piece *out, uint32_t *from, uint32_t *rows,
+                        uint32_t *line) {
+  const int64_t nx = p->counts[0], ny = p->counts[1], nz = p->counts[2];
+  const int64_t wx = out->counts[0], wy = out->counts[1], wz = out->counts[2];
+  for (int64_t i = 0; i < nx * ny * nz; i++) from[i] = p->cells[i] ? 0 : FAR;
+  uint32_t *wide = rows + wx * wy * nz; /* wx ny nz: rows alone */
+  for (int64_t i = 0; i < ny * nz; i++) spread_line(from + nx * i, 1, nx, m[0], wide + wx * i, 1);
+  for (int64_t z = 0; z < nz; z++)
+    for (int64_t x = 0; x < wx; x++) spread_line(wide + x + wx * ny * z, wx, ny, m[1], rows + x + wx * wy * z, wx);
+  for (int64_t i = 0; i < wx * wy; i++) {
+    spread_line(rows + i, wx * wy, nz, m[2], line, 1);
+    for (int64_t z = 0; z < wz; z++)
+      out->cells[i + wx * wy * z] = line[z] != FAR && p->size[0] * sqrt((double)line[z]) <= rho;
+  }
+}
+
 /* Cells that come within rho of an occupied one. */
 static bool offset_grid(const piece *p, int dimension, double rho, piece *out, double *reach) {
   const double cell = p->size[0];
-  const int64_t m = (int64_t)floor(rho / cell) + 1, mz = dimension == 2 ? 0 : m;
+  const int64_t near = (int64_t)floor(rho / cell) + 1, m[3] = {near, near, dimension == 2 ? 0 : near};
   const int64_t nx = p->counts[0], ny = p->counts[1], nz = p->counts[2];
-  const int64_t wx = nx + 2 * m, wy = ny + 2 * m, wz = nz + 2 * mz;
+  const int64_t wx = nx + 2 * m[0], wy = ny + 2 * m[1], wz = nz + 2 * m[2];
   if ((double)wx * (double)wy * (double)wz > 4e9) return false;
   out->counts[0] = (uint32_t)wx, out->counts[1] = (uint32_t)wy, out->counts[2] = (uint32_t)wz;
-  out->centre = vec_sub(p->centre, turn_apply(p->turn, vec_scale(cell, vec((double)m, (double)m, (double)mz))));
+  out->centre = vec_sub(p->centre, turn_apply(p->turn, vec_scale(cell, vec((double)m[0], (double)m[1], (double)m[2]))));
   out->cells = calloc((size_t)(wx * wy * wz), 1);
-  if (!out->cells) return false;
-  for (int64_t i = 0; i < nx * ny * nz; i++) {
-    if (!p->cells[i]) continue;
-    for (int64_t c = -mz; c <= mz; c++)
-      for (int64_t b = -m; b <= m; b++)
-        for (int64_t a = -m; a <= m; a++) {
-          const double x = fmax(fabs((double)a) - 1.0, 0.0), y = fmax(fabs((double)b) - 1.0, 0.0),
-                       z = fmax(fabs((double)c) - 1.0, 0.0);
-          if (cell * sqrt(x * x + y * y + z * z) > rho) continue;
-          out->cells[(i % nx + a + m) + wx * ((i / nx % ny + b + m) + wy * (i / (nx * ny) + c + mz))] = 1;
-        }
-  }
+  uint32_t *room = malloc((size_t)(nx * ny * nz + wz + wx * (wy + ny) * nz) * sizeof *room);
+  if (out->cells && room) spread_grid(p, m, rho, out, room, room + nx * ny * nz + wz, room + nx * ny * nz);
+  const bool ok = out->cells && room;
+  free(room);
   *reach = fmax(*reach, rho + cell * sqrt((double)dimension));
-  return true;
+  return ok;
 }
 
 bool piece_offset(const piece *p, int dimension, double rho, piece *out, double *reach) {

@@ -1,11 +1,20 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* How many samples, which period, offset and kernel: no more than the accuracy asked needs. */
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "fourier/gap.h"
 
 cprox_gap_options cprox_gap_options_default(void) {
   return (cprox_gap_options){.mode = CPROX_GAP_CERTIFIED, .memory_limit = (size_t)256 << 20};
+}
+
+/* The signal's blur sigma in L/n. */
+#define SIGNAL_BLUR 2.2
+
+/* Images need a period of at least this: both bounding balls' diameters. */
+static double solids_size(const cprox_solid *a, const cprox_solid *b) {
+  return 2.0 * (a->radius + b->radius);
 }
 
 /* Measured over-reach of the tuned mode, in L/n, times 1.25: rods at n = 9 are the worst. */
@@ -83,18 +92,20 @@ static double over_reach(const gap_plan *plan, const enlarged *e, double t, cons
   return x < 0.5 ? e->reach + x * L : INFINITY;
 }
 
-enum { MOST_STEPS = 60 };
+/* A period is given up beyond so many times the solids' size: offsets that grow as fast as the period never let it settle. */
+enum { MOST_STEPS = 60, LONGEST_PERIOD = 64 };
 
 /* Enlarges L until images are apart: from each other at the offsets, and by the over-reach where there is one. */
 static cprox_status settle_period(const cprox_solid *a, const cprox_solid *b, const double *outside, const kernel *k,
                                   cprox_workspace *workspace, gap_plan *plan) {
-  const double size = 2.0 * (a->radius + b->radius), asked = plan->period;
+  const double size = solids_size(a, b), asked = plan->period;
   const int n = 2 * plan->N + 1;
   plan->period = asked > 0.0 ? asked : 1.05 * size;
-  for (int step = 0; step < MOST_STEPS; step++) {
+  for (int step = 0; step < MOST_STEPS && (asked > 0.0 || plan->period <= LONGEST_PERIOD * size); step++) {
     plan->offset = kernel_offset(plan->dimension, n, plan->mode) * plan->period / n;
     const enlarged e = enlarge(a, b, plan->offset);
     if (!e.ok) return no_memory(workspace);
+    plan->unbounded = plan->mode == CPROX_GAP_CERTIFIED && isinf(e.most);
     plan->over_reach = over_reach(plan, &e, gap_threshold(k, plan, a, b), outside);
     const bool known = plan->over_reach < INFINITY;
     const double needed = size + (known ? fmax(e.reach, plan->over_reach) : e.reach);
@@ -102,7 +113,7 @@ static cprox_status settle_period(const cprox_solid *a, const cprox_solid *b, co
       return workspace_fail(workspace, CPROX_INVALID, "period %g is too small: images of the solids need %g at n = %d",
                             asked, needed, n);
     /* a period four times the solids is the end of trying for an over-reach that coarse samples do not have */
-    const bool hopeless = plan->mode != CPROX_GAP_CERTIFIED || isinf(e.most) || plan->period > 4.0 * size;
+    const bool hopeless = plan->mode != CPROX_GAP_CERTIFIED || plan->unbounded || plan->period > 4.0 * size;
     if (asked > 0.0 || (plan->period >= needed && (known || hopeless))) return CPROX_OK;
     plan->period = known || plan->period < needed ? fmax(1.002 * needed, plan->period) : 1.15 * plan->period;
   }
@@ -156,6 +167,9 @@ static cprox_status check_options(const cprox_solid *a, const cprox_solid *b, co
   if (o->samples != 0) return CPROX_OK;
   if (!(o->delta > 0.0))
     return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be > 0 (or give samples)", o->delta);
+  if (o->period > 0.0 && o->period < solids_size(a, b))
+    return workspace_fail(workspace, CPROX_INVALID, "period %g is too small: images of the solids need more than %g",
+                          o->period, solids_size(a, b));
   if (o->delta > a->radius + b->radius)
     return workspace_fail(workspace, CPROX_INVALID,
                           "delta %g is larger than the bodies (radii %g and %g): their bounding spheres say as much",
@@ -165,7 +179,112 @@ static cprox_status check_options(const cprox_solid *a, const cprox_solid *b, co
 
 /* The signal has no over-reach: its blur sigma = 2.2 L/n is what delta means. */
 static double accuracy(const gap_plan *plan) {
-  return plan->mode == CPROX_GAP_SIGNAL ? 2.2 * plan->period / (2 * plan->N + 1) : plan->over_reach;
+  return plan->mode == CPROX_GAP_SIGNAL ? SIGNAL_BLUR * plan->period / (2 * plan->N + 1) : plan->over_reach;
+}
+
+/* What no period can bring the accuracy of 2N+1 samples below: the period is at least the solids' size, and both offsets are part of
+ * a proven over-reach. */
+static double best_accuracy(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options, int N) {
+  const int n = 2 * N + 1;
+  const double factor = options->mode == CPROX_GAP_SIGNAL  ? SIGNAL_BLUR
+                        : options->mode == CPROX_GAP_TUNED ? tuned_reach(a->dimension, n)
+                                                           : 2.0 * kernel_offset(a->dimension, n, options->mode);
+  return (1.0 - 1e-9) * factor * solids_size(a, b) / n;
+}
+
+/* One trial of the search for n. A refusal (no period keeps images apart, or only a longer one than was asked) says that these
+ * samples are too few, as an accuracy above delta does: more may do. */
+typedef struct trial {
+  gap_plan plan;
+  double accuracy; /* infinite where refused, or known to be above delta without a plan */
+  bool enough;
+} trial;
+
+static cprox_status try_samples(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options, int N,
+                                cprox_workspace *workspace, trial *t) {
+  *t = (trial){.plan = {.N = N}, .accuracy = INFINITY};
+  if (best_accuracy(a, b, options, N) > options->delta) return CPROX_OK;
+  const cprox_status status = plan_for(a, b, options, N, workspace, &t->plan);
+  if (status == CPROX_OK) t->accuracy = accuracy(&t->plan);
+  t->enough = t->accuracy <= options->delta;
+  if (status != CPROX_INVALID) return status;
+  workspace_clear(workspace);
+  return CPROX_OK;
+}
+
+/* The trials so far. Over-reaches fall with n, those of sweeps down to a least one: from there on their threshold falls faster than
+ * what the kernel has outside. */
+typedef struct search {
+  int low, high;     /* not enough, and the trial after it */
+  int before, after; /* the best trial lies between these */
+  int rises;         /* trials in a row that were worse than the one before */
+  double best, last;
+  bool enough;
+} search;
+
+enum { MOST_RISES = 3 };
+
+static cprox_status too_many(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options, int N,
+                             cprox_workspace *workspace) {
+  gap_plan plan;
+  const cprox_status status = plan_for(a, b, options, N, workspace, &plan);
+  if (status != CPROX_OK) return status;
+  const int n = 2 * N + 1;
+  char beyond[64] = "", had[64] = "no over-reach can be proven there";
+  if (N < KERNEL_MOST_N) snprintf(beyond, sizeof beyond, ", beyond the limit of %zu", options->memory_limit);
+  if (isfinite(accuracy(&plan))) snprintf(had, sizeof had, "%g is had there", accuracy(&plan));
+  return workspace_fail(workspace, CPROX_INVALID, "delta %g needs more than n = %d samples, %.3g bytes%s; %s",
+                        options->delta, n, gap_bytes(a->dimension, N), beyond, had);
+}
+
+/* Gallops up to enough samples, to more than may be, or to where more are worse. */
+static cprox_status gallop(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
+                           cprox_workspace *workspace, search *s) {
+  for (;;) {
+    trial t;
+    const cprox_status status = try_samples(a, b, options, s->high, workspace, &t);
+    if (status != CPROX_OK) return status;
+    s->enough = t.enough;
+    if (t.enough) return CPROX_OK;
+    if (t.plan.unbounded)
+      return workspace_fail(workspace, CPROX_INVALID,
+                            "no over-reach can be proven for these solids (two that are not sums of convex pieces): "
+                            "give samples");
+    const int next = s->high + s->high / 2 + 1 < KERNEL_MOST_N ? s->high + s->high / 2 + 1 : KERNEL_MOST_N;
+    s->rises = t.accuracy > s->last ? s->rises + 1 : 0;
+    if (s->rises == MOST_RISES) return CPROX_OK;
+    s->last = t.accuracy;
+    if (t.accuracy < s->best) s->best = t.accuracy, s->before = s->low, s->after = next;
+    if (s->high == KERNEL_MOST_N || gap_bytes(a->dimension, s->high) > (double)options->memory_limit)
+      return too_many(a, b, options, s->high, workspace);
+    s->low = s->high;
+    s->high = next;
+  }
+}
+
+/* Between samples that are too few and more that are worse again: in thirds down to the least accuracy, until one is enough. */
+static cprox_status search_valley(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
+                                  cprox_workspace *workspace, search *s) {
+  int low = s->before, high = s->after;
+  while (high - low > 1) {
+    const int third = (high - low + 2) / 3, at[2] = {low + third, high - third};
+    trial t[2];
+    for (int i = 0; i < 2; i++) {
+      const cprox_status status = try_samples(a, b, options, at[i], workspace, &t[i]);
+      if (status != CPROX_OK) return status;
+      s->best = fmin(s->best, t[i].accuracy);
+      s->low = s->before, s->high = at[i];
+      s->enough = t[i].enough;
+      if (t[i].enough) return CPROX_OK;
+    }
+    if (t[0].accuracy <= t[1].accuracy)
+      high = at[1];
+    else
+      low = at[0];
+  }
+  return workspace_fail(workspace, CPROX_INVALID,
+                        "delta %g cannot be proven for these solids: %g is the least, and more samples are worse",
+                        options->delta, s->best);
 }
 
 cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
@@ -174,36 +293,21 @@ cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const c
   if (status != CPROX_OK) return status;
   if (options->samples != 0) return plan_for(a, b, options, (int)options->samples / 2, workspace, plan);
 
-  /* gallop up to enough samples, then halve down to the least */
-  int low = 0, high = 1;
-  for (;;) {
-    status = plan_for(a, b, options, high, workspace, plan);
+  search s = {.high = 1, .best = INFINITY, .last = INFINITY};
+  status = gallop(a, b, options, workspace, &s);
+  if (status == CPROX_OK && !s.enough) status = search_valley(a, b, options, workspace, &s);
+  if (status != CPROX_OK) return status;
+
+  /* halve down to the least */
+  while (s.high - s.low > 1) {
+    trial t;
+    const int mid = (s.low + s.high) / 2;
+    status = try_samples(a, b, options, mid, workspace, &t);
     if (status != CPROX_OK) return status;
-    if (accuracy(plan) <= options->delta) break;
-    if (isinf(accuracy(plan)) && high > 8)
-      return workspace_fail(workspace, CPROX_INVALID,
-                            "no over-reach can be proven for these solids (two folded meshes, or parts of wholly "
-                            "different sizes): give samples");
-    low = high;
-    if (high == KERNEL_MOST_N)
-      return workspace_fail(workspace, CPROX_INVALID,
-                            "delta %g needs more than n = %d samples, %.3g bytes; %g is had there", options->delta,
-                            2 * high + 1, gap_bytes(a->dimension, high), accuracy(plan));
-    if (gap_bytes(a->dimension, high) > (double)options->memory_limit)
-      return workspace_fail(
-          workspace, CPROX_INVALID,
-          "delta %g needs more than n = %d samples, %.3g bytes, beyond the limit of %zu; %g is had there",
-          options->delta, 2 * high + 1, gap_bytes(a->dimension, high), options->memory_limit, accuracy(plan));
-    high = high + high / 2 + 1 < KERNEL_MOST_N ? high + high / 2 + 1 : KERNEL_MOST_N;
-  }
-  while (high - low > 1) {
-    const int mid = (low + high) / 2;
-    status = plan_for(a, b, options, mid, workspace, plan);
-    if (status != CPROX_OK) return status;
-    if (accuracy(plan) <= options->delta)
-      high = mid;
+    if (t.enough)
+      s.high = mid;
     else
-      low = mid;
+      s.low = mid;
   }
-  return plan_for(a, b, options, high, workspace, plan);
+  return plan_for(a, b, options, s.high, workspace, plan);
 }
