@@ -319,7 +319,7 @@ cprox check     FILE  (the inputs of the question)  what the certificates in FIL
                     skipped
   --against FILE    curves, too: instead of a scene
   --scene FILE      moveit_msgs/PlanningScene as YAML; may be left out where there is a robot
-  --robot FILE      a URDF: its links are objects, too; meshes count as their convex hulls
+  --robot FILE      a URDF: its links are objects, too; meshes answer as meshes (see --max-rung)
   --trajectory FILE a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint
   --self            how close the robot comes to itself, too
   --signed          distances of curves inside a body are negative: minus the deepest penetration

@@ -18,7 +18,8 @@ import passes  # noqa: E402
 import repeat  # noqa: E402
 import soundness  # noqa: E402
 import targets  # noqa: E402
-from pages import readme  # noqa: E402
+from pages import choosing, readme  # noqa: E402
+from pages.figures import Figures  # noqa: E402
 
 CHARTS = os.path.join(REPO, 'doc', 'charts')
 
@@ -158,6 +159,17 @@ class Pages(unittest.TestCase):
                 said = text.read()
             for asked in targets.read_targets():
                 self.assertIn(f"| {asked['name']} |", said)
+
+    def test_a_general_solver_is_quoted_by_the_median_over_the_pairs_and_with_its_failures(self):
+        rows = [row(group='implicit', workload='table I', parameter=f'pair {i}', median_us=10) for i in range(3)]
+        rows += [row(group='implicit', workload='table I', parameter=f'pair {i}', method='ipopt', median_us=10 * ratio, failures=i)
+                 for i, ratio in enumerate((200, 9000, 300))]
+        said = choosing.superquadric_pairs(Figures(rows))
+        self.assertIn('takes 300 times as long', said)
+        self.assertIn('the least is 200', said)
+        self.assertNotIn('9000', said)
+        self.assertIn('fails in 3 of the cases', said)
+        self.assertNotIn('Ipopt', choosing.superquadric_pairs(Figures(rows[:3])))
 
     def test_what_is_missed_is_listed_and_what_is_nearly_so_where_a_reason_is_known(self):
         rows = [row(), row(method='peer', median_us=10)]

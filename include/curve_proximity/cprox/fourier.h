@@ -188,7 +188,7 @@ typedef struct cprox_gap cprox_gap;
 /** Makes a pair ready: chooses n, L, rho, the kernel and the threshold.
  *
  *  Certified: n is the least odd number whose proven over-reach is at most delta; kernel and offset are those that make
- *  it least. Returns CPROX_INVALID where delta cannot be had below the memory limit, with the n and the bytes it would
+ *  the over-reach of bodies of ordinary proportions least. Returns CPROX_INVALID where delta cannot be had below the memory limit, with the n and the bytes it would
  *  need; where delta exceeds the size of the pair (nothing would be left to decide); for solids of different dimensions.
  *  Cost: the spectrum of one solid at n^d/2 frequencies. */
 CPROX_API cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
