@@ -71,6 +71,7 @@ static double accuracy(const gap_plan *plan) {
 static cprox_status plan_with(const test_solid s[2], cprox_gap_options o, uint32_t samples, gap_plan *plan) {
   workspace_clear(ws);
   o.samples = samples;
+  if (samples > 0) o.delta = 0.0;
   return gap_plan_choose(s[0].solid, s[1].solid, &o, ws, plan);
 }
 
@@ -136,7 +137,7 @@ static void every_call(rng *r, const test_solid s[2]) {
   for (int mode = 0; mode < 3; mode++) {
     cprox_gap_options o = cprox_gap_options_default();
     o.mode = (cprox_gap_mode)mode, o.delta = radii(s);
-    if (o.mode == CPROX_GAP_CERTIFIED && !is_provable(s)) o.samples = 9;
+    if (o.mode == CPROX_GAP_CERTIFIED && !is_provable(s)) o.samples = 9, o.delta = 0.0;
     cprox_gap *gap;
     if (cprox_gap_create(s[0].solid, s[1].solid, &o, ws, &gap) != CPROX_OK)
       fail_pair(s, &o, cprox_workspace_reason(ws));
