@@ -107,6 +107,7 @@ static cprox_status ask_carried(const coaxial *c, double length, cprox_workspace
   cprox_status status = cprox_body_create_compound(&part, &still, 1, ws, &turned);
   if (status >= 0) status = cprox_curve_create_bezier(points, 2, 0.0, 1.0, ws, &curve);
   options->signed_distance = true;
+  options->max_nodes = 50; /* each may take as long as a pair; what is left open is true as well */
   if (status >= 0)
     status = cprox_distance(cprox_body_along(turned, curve), cprox_at(c->a.body, c->pa), options, ws, result);
   cprox_curve_free(curve);

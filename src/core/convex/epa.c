@@ -66,13 +66,13 @@ static void surface_place(surface *s, surface_room *room, int32_t wanted) {
 
 /* ---- facets ----------------------------------------------------------------------------------------------------------- */
 
-static double offset_along(const surface *s, const facet *f, vec3 n) {
+static inline double offset_along(const surface *s, const facet *f, vec3 n) {
   return lesser(vec_dot(n, s->vertex[f->vertex[0]].w),
                 lesser(vec_dot(n, s->vertex[f->vertex[1]].w), vec_dot(n, s->vertex[f->vertex[2]].w)));
 }
 
 /* Takes a normal if it proves more. */
-static void facet_try(const surface *s, facet *f, vec3 n) {
+static inline void facet_try(const surface *s, facet *f, vec3 n) {
   const double offset = offset_along(s, f, n);
   if (!(offset > f->offset)) return;
   f->offset = offset;
@@ -101,7 +101,7 @@ static void facet_try_sliver(const surface *s, facet *f) {
 }
 
 /* The normal of the triangle itself, wherever that is well defined. */
-static void facet_find_normal(const surface *s, facet *f) {
+static inline void facet_find_normal(const surface *s, facet *f) {
   const vec3 a = s->vertex[f->vertex[0]].w, b = s->vertex[f->vertex[1]].w, c = s->vertex[f->vertex[2]].w;
   const vec3 ab = vec_sub(b, a), ac = vec_sub(c, a), cross = vec_cross(ab, ac);
   vec3 n;
@@ -130,7 +130,7 @@ static void surface_drop(surface *s, int32_t at) {
 }
 
 /* The facet that is nearest to 0. There are few, and a scan has no branches to guess: a heap takes longer. */
-static int32_t surface_nearest(const surface *s) {
+static inline int32_t surface_nearest(const surface *s) {
   double least = INFINITY;
 #pragma omp simd reduction(min : least)
   for (int32_t i = 0; i < s->n_facets; i++) least = s->offset[i] < least ? s->offset[i] : least;
