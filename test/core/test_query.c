@@ -14,6 +14,7 @@
 #include "support/builders.h"
 #include "support/counting.h"
 #include "support/random.h"
+#include "support/reference.h"
 
 /* ---- builders ---------------------------------------------------------------------------------------------------------- */
 
@@ -535,6 +536,38 @@ static void medians_stay_within_6_nodes_and_10_probes(void **state) {
   }
 }
 
+/* However early a search stops, its two points are those that attain upper: as far apart as it says, the one within the radius of the
+ * curve's point, the other within the padding of the hull. 2^-44 of the sizes: roundings of points in double. */
+static void witness_points_attain_upper_however_loose_epsilon_is(void **state) {
+  (void)state;
+  rng r = rng_seed(29);
+  const size_t cases = test_cases(2000);
+  for (size_t i = 0; i < cases; i++) {
+    vec3 points[4], vertices[9];
+    for (int k = 0; k < 4; k++) points[k] = vec_add(vec(2.5, 0.0, 0.0), rng_in_cube(&r, 2.0));
+    for (int k = 0; k < 9; k++) vertices[k] = rng_unit(&r);
+    cprox_curve *curve = bezier(points, 4);
+    cprox_body *hull = NULL;
+    assert_int_equal(cprox_body_create_polytope(vertices, 9, ws, &hull), CPROX_OK);
+    const double radius = rng_uniform(&r, 0.0, 0.5), padding = rng_uniform(&r, 0.0, 0.5);
+    const cprox_options options = accurate(rng_log_uniform(&r, 1e-3, 1e3));
+    cprox_result result;
+    const cprox_target target = cprox_padded(cprox_at(hull, cprox_pose_identity()), padding);
+    assert_int_equal(cprox_distance(cprox_tube_along(curve, radius), target, &options, ws, &result), CPROX_OK);
+
+    vec3 at;
+    cprox_curve_evaluate(curve, result.t, ws, &at, NULL, NULL);
+    const double room = 0x1p-44 * 8.0;
+    const vec3 on_target = result.on_target;
+    assert_true(vec_norm(vec_sub(result.on_mover, on_target)) <= result.upper + room);
+    assert_true(vec_norm(vec_sub(result.on_mover, at)) <= radius + room);
+    const vec3l p = {on_target.x, on_target.y, on_target.z};
+    assert_true((double)ref_point_hull(p, vertices, 9) <= padding + room);
+    cprox_curve_free(curve);
+    cprox_body_free(hull);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_segment_past_a_box_has_the_distance_of_its_nearest_end),
@@ -545,6 +578,7 @@ int main(void) {
       cmocka_unit_test(a_curve_that_stands_still_is_answered_as_a_point),
       cmocka_unit_test(a_long_spline_is_searched_by_its_tree),
       cmocka_unit_test(epsilon_of_any_size_ends_with_a_true_interval),
+      cmocka_unit_test(witness_points_attain_upper_however_loose_epsilon_is),
       cmocka_unit_test(a_spent_budget_leaves_a_true_interval),
       cmocka_unit_test(a_stop_function_ends_the_search_with_a_true_interval),
       cmocka_unit_test(what_is_stopped_before_it_began_knows_what_the_balls_say),

@@ -34,11 +34,21 @@ static search_goal goal_of(const question *q, double ceiling) {
                        .stop_user = q->options.stop_user};
 }
 
+/* The direction from a surface point to the moving object's centre. The normal is that of the best lower bound: a search that stops
+ * early, because its upper bound is good enough, leaves another direction between the two points that attain that upper bound. */
+static vec3 witness_direction(vec3 centre, vec3 surface, vec3 normal) {
+  const vec3 between = vec_sub(centre, surface);
+  const double length = vec_norm(between), sizes = vec_norm(centre) + vec_norm(surface);
+  const bool aligned = vec_norm2(normal) == 0.0 || length - vec_dot(between, normal) <= 64.0 * ROUND_U * sizes;
+  return aligned ? normal : vec_scale(1.0 / length, between);
+}
+
 /* The two surface points and their normal: where the ball of the mover and the padded target come closest, or one point of both
  * where they overlap; signed, the two ends of the way out. */
 static void report_points(const question *q, const candidate *c, vec3 centre, vec3 surface, vec3 normal, double apart,
                           cprox_result *r) {
   const double padding = candidate_padding(q, c);
+  if (apart > 0.0) normal = witness_direction(centre, surface, normal);
   r->normal = normal;
   r->target_index = c->target, r->target_part = c->part;
   if (q->is_signed || apart > padding + q->mover.radius) {
