@@ -173,6 +173,7 @@ int attack_main(int argc, char **argv, const char *family, attack_case one) {
   }
   running = (attack){.family = family, .seed = c.seed, .ws = cprox_workspace_create(), .alone = c.alone};
   if (!running.ws) return 2;
+  setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
   watch();
   const time_t begin = time(NULL);
   size_t wrong = 0, shown = 0, cases = 0;

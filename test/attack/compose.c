@@ -1,0 +1,470 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Everything with everything: curves of every family, points, balls and bodies on them, bodies of every kind, curves and other moving
+ * objects as obstacles, every query, scales from 1e-6 to 1e6 m, up to 1e6 scales from the origin, every accuracy and budget.
+ *
+ * Held against scenes.h. A lower bound must not be above a distance that is found at any parameter; at the parameter of an upper
+ * bound the distance must not be above it, and the witness points must lie in both and be as near; verdicts must follow from that;
+ * a status ok promises the width. Not a number, more intervals than the budget and results of a failed call are faults. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "scenes.h"
+
+typedef struct question {
+  attack *a;
+  rng *r;
+  scene s;
+  cprox_options options;
+  const char *query;
+} question;
+
+#define RESULT "[%.17g, %.17g] (%s, %s) at t = %.17g"
+#define SHOWN(x) (x)->lower, (x)->upper, cprox_status_name((x)->status), cprox_verdict_name((x)->verdict), (x)->t
+
+/* ---- what holds of every result ---- */
+
+static bool numbers_are_sound(question *q, const cprox_result *x, size_t targets) {
+  const bool numbers = x->lower <= x->upper && !isnan(x->t) && isfinite(x->t_free) && vec_finite(x->normal) &&
+                       (isinf(x->upper) || (vec_finite(x->on_mover) && vec_finite(x->on_target)));
+  attack_check(q->a, numbers, "%s: " RESULT " is not sound", q->query, SHOWN(x));
+  const size_t most =
+      (targets + 1) * ((size_t)q->options.max_nodes + 2) + cprox_curve_pieces(q->s.path.curve) * (targets + 1);
+  return attack_check(q->a, x->nodes <= most, "%s: %u intervals with a budget of %u", q->query, x->nodes,
+                      q->options.max_nodes);
+}
+
+/* The smallest distance from obstacle i that is found, and that lower is not above it. */
+static void check_lower(question *q, size_t i, const cprox_result *x, double t0, double t1) {
+  double where;
+  const long double least = scene_least(&q->s, i, q->r, x->t, t0, t1, &where), room = scene_room(&q->s, i);
+  const long double cut = q->options.signed_distance ? least : fmaxl(0.0L, least);
+  attack_check(q->a, (long double)x->lower <= cut + room,
+               "%s: " RESULT ", lower is above %.19Lg at t = %.17g, by %.3Lg (obstacle %zu: %s)", q->query, SHOWN(x),
+               cut, where, (long double)x->lower - cut, i, q->s.obstacles[i].body.name);
+}
+
+/* The least over t and what its rounding may stand for; jumps belong to both sides. */
+static long double distance_about(question *q, size_t i, double t, double at) {
+  const scene *s = &q->s;
+  const double step = scene_step(&s->path);
+  long double least = HUGE_VALL;
+  for (int k = -2; k <= 2; k++)
+    least = fminl(least, scene_distance(s, i, fmax(s->path.t0, fmin(s->path.t1, t + 0.5 * k * step)), at));
+  return least;
+}
+
+static void check_witness(question *q, size_t i, const cprox_result *x) {
+  const scene *s = &q->s;
+  const long double room = scene_witness_room(s, i);
+  const double step = scene_step(&s->path);
+  long double off = HUGE_VALL, off_obstacle = HUGE_VALL;
+  for (int k = -1; k <= 1; k++) {
+    const double t = fmax(s->path.t0, fmin(s->path.t1, x->t + k * step));
+    off = fminl(off, scene_off_mover(s, t, ref_vec(x->on_mover)));
+    off_obstacle = fminl(off_obstacle, scene_off_obstacle(s, i, t, x->t_target, ref_vec(x->on_target)));
+  }
+  const long double apart = ref_norm(ref_sub(ref_vec(x->on_mover), ref_vec(x->on_target)));
+  attack_check(q->a, off <= room, "%s: " RESULT ", on_mover is %.3Lg off", q->query, SHOWN(x), off);
+  attack_check(q->a, off_obstacle <= room, "%s: " RESULT ", on_target is %.3Lg off obstacle %zu: %s", q->query,
+               SHOWN(x), off_obstacle, i, q->s.obstacles[i].body.name);
+  if (x->lower >= 0.0)
+    attack_check(q->a, apart <= x->upper + room, "%s: " RESULT ", the witness points are %.17Lg apart", q->query,
+                 SHOWN(x), apart);
+}
+
+static void check_upper(question *q, size_t i, const cprox_result *x) {
+  const scene *s = &q->s;
+  if (isinf(x->upper)) return;
+  attack_check(q->a, x->t >= s->path.t0 && x->t <= s->path.t1, "%s: " RESULT " is not on the curve", q->query,
+               SHOWN(x));
+  if (attack_failed(q->a)) return;
+  /* by the reference alone where it is exact, and there a pose of twice 2^-53 is not counted as an error */
+  if (scene_is_exact(s, i)) {
+    long double d = distance_about(q, i, x->t, x->t_target);
+    if (!q->options.signed_distance) d = fmaxl(0.0L, d);
+    attack_check(q->a, d <= x->upper + scene_room(s, i),
+                 "%s: " RESULT ", but there it is %.19Lg, above by %.3Lg (obstacle %zu: %s)", q->query, SHOWN(x), d,
+                 d - (long double)x->upper, i, q->s.obstacles[i].body.name);
+  }
+  if (!q->options.signed_distance || x->upper > 0.0) check_witness(q, i, x);
+}
+
+static double width_asked(const question *q, double upper) {
+  return fmax(q->options.epsilon, q->options.relative_epsilon * fabs(upper));
+}
+
+/* Of one obstacle alone, over [t0, t1]. */
+static void check_one(question *q, size_t i, const cprox_result *x) {
+  if (!numbers_are_sound(q, x, 1)) return;
+  check_lower(q, i, x, q->s.path.t0, q->s.path.t1);
+  check_upper(q, i, x);
+}
+
+/* Of the union: lower holds for all, upper for the one that is named. */
+static void check_all(question *q, const cprox_result *x) {
+  if (!numbers_are_sound(q, x, q->s.n)) return;
+  for (size_t i = 0; i < q->s.n; i++) check_lower(q, i, x, q->s.path.t0, q->s.path.t1);
+  if (isinf(x->upper)) return;
+  const bool named = x->target_index >= 0 && (size_t)x->target_index < q->s.n;
+  if (attack_check(q->a, named, "%s: " RESULT " names target %d of %zu", q->query, SHOWN(x), x->target_index, q->s.n))
+    check_upper(q, (size_t)x->target_index, x);
+}
+
+static void check_width(question *q, const cprox_result *x) {
+  if (x->status != CPROX_OK) {
+    attack_count(q->a, cprox_status_name(x->status));
+    return;
+  }
+  const double width = width_asked(q, x->upper);
+  attack_check(q->a, x->upper - x->lower <= width * (1.0 + 1e-12), "%s: " RESULT " is wider than %.17g", q->query,
+               SHOWN(x), width);
+}
+
+/* Refusals are for bodies and curves that the queries' headers name, each with a sentence. */
+static bool answered(question *q, cprox_status status) {
+  if (status >= 0) return true;
+  const char *reason = cprox_workspace_reason(q->a->ws);
+  attack_check(q->a, reason[0], "%s: %s without a reason", q->query, cprox_status_name(status));
+  char said[90];
+  const char *last = strrchr(reason, ':');
+  snprintf(said, sizeof said, "%s: %s", "refused", last ? last + 2 : reason);
+  attack_count(q->a, said);
+  return false;
+}
+
+/* ---- the queries ---- */
+
+static void ask_distance(question *q) {
+  cprox_result x, each[SCENE_OBSTACLES];
+  const scene *s = &q->s;
+  const bool all = s->n > 1 || rng_index(q->r, 2), separately = rng_index(q->r, 2);
+  const cprox_status status =
+      all ? cprox_distance_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &x, separately ? each : NULL)
+          : cprox_distance(s->mover, s->targets[0], &q->options, q->a->ws, &x);
+  if (!answered(q, status)) return;
+  if (all)
+    check_all(q, &x);
+  else
+    check_one(q, 0, &x);
+  check_width(q, &x);
+  for (size_t i = 0; all && separately && i < s->n; i++) {
+    check_one(q, i, &each[i]);
+    check_width(q, &each[i]);
+    attack_check(q->a, x.lower <= each[i].upper, "distance: lower %.17g of all is above upper %.17g of obstacle %zu",
+                 x.lower, each[i].upper, i);
+  }
+}
+
+static double some_delta(question *q, const cprox_result *x) {
+  switch (rng_index(q->r, 6)) {
+    case 0: return fmax(0.0, x->lower);
+    case 1: return fmax(0.0, x->upper);
+    case 2: return fmax(0.0, nextafter(x->lower, -1.0));
+    case 3: return 0.0;
+    case 4: return fmax(0.0, x->upper) * rng_uniform(q->r, 0.9, 1.1);
+    default: return q->s.scale * rng_log_uniform(q->r, 1e-3, 3.0);
+  }
+}
+
+/* delta < 0: a collision. */
+static void check_verdict(question *q, const cprox_result *x, double delta) {
+  attack_count(q->a, x->verdict == CPROX_UNDECIDED ? "undecided" : x->verdict == CPROX_YES ? "yes" : "no");
+  if (delta >= 0.0) {
+    if (x->verdict == CPROX_YES)
+      attack_check(q->a, x->lower > delta, "%s: " RESULT " of %.17g", q->query, SHOWN(x), delta);
+    if (x->verdict == CPROX_NO)
+      attack_check(q->a, x->upper <= delta, "%s: " RESULT " of %.17g", q->query, SHOWN(x), delta);
+  } else {
+    if (x->verdict == CPROX_NO) attack_check(q->a, x->lower > 0.0, "%s: " RESULT, q->query, SHOWN(x));
+    if (x->verdict == CPROX_YES) attack_check(q->a, x->lower == 0.0, "%s: " RESULT, q->query, SHOWN(x));
+  }
+  if (x->verdict == CPROX_UNDECIDED && x->status == CPROX_OK)
+    attack_check(q->a, x->upper - x->lower <= width_asked(q, x->upper) * (1.0 + 1e-12),
+                 "%s: " RESULT " of %.17g is undecided", q->query, SHOWN(x), delta);
+}
+
+static void ask_tolerance(question *q) {
+  const scene *s = &q->s;
+  cprox_result x, before;
+  if (!answered(q, cprox_distance_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &before, NULL))) return;
+  const double delta = some_delta(q, &before);
+  if (isinf(delta)) return;
+  if (!answered(q, cprox_tolerance_all(s->mover, s->targets, s->n, delta, &q->options, q->a->ws, &x, NULL))) return;
+  check_all(q, &x);
+  check_verdict(q, &x, delta);
+  attack_check(q->a, x.lower <= before.upper && before.lower <= x.upper, "tolerance: [%.17g, %.17g] and [%.17g, %.17g]",
+               x.lower, x.upper, before.lower, before.upper);
+}
+
+static void ask_collision(question *q) {
+  const scene *s = &q->s;
+  cprox_result x;
+  if (!answered(q, cprox_collision_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &x, NULL))) return;
+  check_all(q, &x);
+  check_verdict(q, &x, -1.0);
+}
+
+/* Is there a parameter before t_free at which they overlap by more than the reference's error? */
+static void check_not_late(question *q, const cprox_result *x) {
+  const scene *s = &q->s;
+  const double t0 = s->path.t0;
+  if (!(x->t_free > t0)) return;
+  const double before = nextafter(x->t_free - 2.0 * scene_step(&s->path), t0);
+  if (before <= t0) return;
+  for (size_t i = 0; i < s->n; i++) {
+    double where;
+    const long double least = scene_least(s, i, q->r, before, t0, before, &where);
+    attack_check(q->a, least >= -scene_room(s, i) - 4.0L * cprox_curve_error(s->path.curve),
+                 "first contact: none before %.17g, but at %.17g they overlap by %.3Lg (obstacle %zu: %s)", x->t_free,
+                 where, -least, i, s->obstacles[i].body.name);
+  }
+}
+
+static void ask_first_contact(question *q) {
+  const scene *s = &q->s;
+  cprox_result x;
+  const cprox_status status = s->n == 1 && rng_index(q->r, 2)
+                                  ? cprox_first_contact(s->mover, s->targets[0], &q->options, q->a->ws, &x)
+                                  : cprox_first_contact_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &x);
+  if (!answered(q, status)) return;
+  attack_count(q->a, x.verdict == CPROX_UNDECIDED ? "undecided" : x.verdict == CPROX_YES ? "yes" : "no");
+  attack_check(q->a, x.t_free >= s->path.t0 && x.t_free <= s->path.t1, "first contact: t_free %.17g", x.t_free);
+  attack_check(q->a, x.lower <= x.upper, "first contact: " RESULT, SHOWN(&x));
+  for (size_t i = 0; i < s->n; i++) check_lower(q, i, &x, s->path.t0, s->path.t1);
+  check_not_late(q, &x);
+  /* at t_free something is as near as epsilon, at t there is contact */
+  long double at_free = HUGE_VALL, at_t = HUGE_VALL, room = 0.0L;
+  bool exact = true;
+  for (size_t i = 0; i < s->n; i++) {
+    at_free = fminl(at_free, distance_about(q, i, x.t_free, NAN));
+    at_t = fminl(at_t, distance_about(q, i, x.t, NAN));
+    room = fmaxl(room, scene_witness_room(s, i));
+    exact = exact && scene_is_exact(s, i);
+  }
+  if (x.verdict == CPROX_NO) attack_check(q->a, x.lower > 0.0, "first contact: " RESULT, SHOWN(&x));
+  if (x.verdict == CPROX_YES && exact)
+    attack_check(q->a, x.t >= x.t_free && at_t <= room,
+                 "first contact: touching at %.17g, free before %.17g, but there it is %.3Lg", x.t, x.t_free, at_t);
+  if (x.status == CPROX_OK && x.t_free < s->path.t1 && exact)
+    attack_check(q->a, at_free <= q->options.epsilon + room,
+                 "first contact: t_free = %.17g with ok, epsilon %.3g, but there it is %.3Lg", x.t_free,
+                 q->options.epsilon, at_free);
+}
+
+static void ask_profile(question *q) {
+  enum { STRETCHES = 4 };
+  const scene *s = &q->s;
+  double breaks[STRETCHES + 1];
+  cprox_stretch stretches[STRETCHES];
+  for (int k = 0; k <= STRETCHES; k++)
+    breaks[k] = k == STRETCHES ? s->path.t1 : s->path.t0 + (s->path.t1 - s->path.t0) * k / STRETCHES;
+  const cprox_status status =
+      cprox_profile(s->mover, s->targets, s->n, breaks, STRETCHES, &q->options, q->a->ws, stretches);
+  if (!answered(q, status)) return;
+  for (int k = 0; k < STRETCHES; k++) {
+    const cprox_stretch *p = &stretches[k];
+    attack_check(q->a, p->t0 == breaks[k] && p->t1 == breaks[k + 1] && p->lower <= p->upper, "profile: [%.17g, %.17g]",
+                 p->lower, p->upper);
+    const cprox_result x = {
+        .lower = p->lower, .upper = p->upper, .t = p->t, .t_target = NAN, .status = status, .verdict = CPROX_UNDECIDED};
+    /* a jump at the end of a stretch belongs to the next */
+    const double end = k + 1 < STRETCHES ? p->t1 - scene_step(&s->path) : p->t1;
+    for (size_t i = 0; i < s->n; i++) check_lower(q, i, &x, p->t0, end);
+    if (isinf(p->upper) || p->target_index < 0 || (size_t)p->target_index >= s->n) {
+      attack_check(q->a, isinf(p->upper), "profile: target %d", p->target_index);
+      continue;
+    }
+    attack_check(q->a, p->t >= p->t0 && p->t <= p->t1, "profile: t = %.17g", p->t);
+    const size_t i = (size_t)p->target_index;
+    if (scene_is_exact(s, i) && !attack_failed(q->a)) {
+      const long double d = distance_about(q, i, p->t, NAN);
+      attack_check(q->a, d <= p->upper + scene_room(s, i), "profile: " RESULT ", but there it is %.19Lg", SHOWN(&x), d);
+    }
+    if (status == CPROX_OK)
+      attack_check(q->a, p->upper - p->lower <= width_asked(q, p->upper) * (1.0 + 1e-12),
+                   "profile: " RESULT " is too wide", SHOWN(&x));
+  }
+}
+
+/* What is not among the answers must be far enough. */
+static void check_left_out(question *q, const cprox_result *found, size_t count, double beyond) {
+  const scene *s = &q->s;
+  for (size_t i = 0; i < s->n; i++) {
+    bool among = false;
+    for (size_t k = 0; k < count; k++) among = among || found[k].target_index == (int32_t)i;
+    if (among) continue;
+    double where;
+    const long double least = fmaxl(0.0L, scene_least(s, i, q->r, s->path.t0, s->path.t0, s->path.t1, &where));
+    attack_check(q->a, least >= beyond - scene_room(s, i),
+                 "%s: obstacle %zu is left out, but %.19Lg away at t = %.17g, not %.17g", q->query, i, least, where,
+                 beyond);
+  }
+}
+
+static void ask_nearest(question *q) {
+  const scene *s = &q->s;
+  cprox_result found[SCENE_OBSTACLES];
+  size_t count = 0;
+  const size_t k = 1 + rng_index(q->r, s->n);
+  const cprox_status status = cprox_nearest(s->mover, s->targets, s->n, k, &q->options, q->a->ws, found, &count);
+  if (!answered(q, status)) return;
+  if (!attack_check(q->a, count == k, "nearest: %zu results for k = %zu", count, k)) return;
+  for (size_t i = 0; i < count; i++) {
+    const bool named = found[i].target_index >= 0 && (size_t)found[i].target_index < s->n;
+    if (!attack_check(q->a, named || isinf(found[i].upper), "nearest: target %d", found[i].target_index)) return;
+    if (named) check_one(q, (size_t)found[i].target_index, &found[i]);
+    attack_check(q->a, i == 0 || found[i - 1].upper <= found[i].upper, "nearest: not ascending");
+  }
+  if (status == CPROX_OK)
+    check_left_out(q, found, count, found[count - 1].upper - width_asked(q, found[count - 1].upper));
+}
+
+static void ask_within(question *q) {
+  const scene *s = &q->s;
+  cprox_result found[SCENE_OBSTACLES];
+  size_t count = 0;
+  const double delta = rng_index(q->r, 4) ? s->scale * rng_log_uniform(q->r, 1e-2, 10.0) : 0.0;
+  const cprox_status status = cprox_within(s->mover, s->targets, s->n, delta, &q->options, q->a->ws, found, &count);
+  if (!answered(q, status)) return;
+  for (size_t i = 0; i < count && i < SCENE_OBSTACLES; i++) {
+    const bool named = found[i].target_index >= 0 && (size_t)found[i].target_index < s->n;
+    if (!attack_check(q->a, named, "within: target %d", found[i].target_index)) return;
+    attack_check(q->a, found[i].lower <= delta, "within %.17g: " RESULT, delta, SHOWN(&found[i]));
+    attack_check(q->a, found[i].verdict != CPROX_YES || found[i].upper <= delta, "within %.17g: " RESULT, delta,
+                 SHOWN(&found[i]));
+    check_one(q, (size_t)found[i].target_index, &found[i]);
+  }
+  check_left_out(q, found, count, delta);
+}
+
+static void ask_set(question *q) {
+  const scene *s = &q->s;
+  cprox_set *set = NULL;
+  cprox_result x;
+  if (!answered(q, cprox_set_create(s->targets, s->n, q->a->ws, &set))) return;
+  cprox_status status = cprox_set_distance(set, s->mover, &q->options, q->a->ws, &x);
+  const size_t query = rng_index(q->r, 3);
+  if (query == 1) status = cprox_set_tolerance(set, s->mover, s->scale, &q->options, q->a->ws, &x);
+  if (query == 2) status = cprox_set_collision(set, s->mover, &q->options, q->a->ws, &x);
+  if (answered(q, status)) {
+    check_all(q, &x);
+    if (query == 0)
+      check_width(q, &x);
+    else
+      check_verdict(q, &x, query == 1 ? s->scale : -1.0);
+  }
+  cprox_set_free(set);
+}
+
+static void ask_batch(question *q) {
+  const scene *s = &q->s;
+  cprox_batch *batch = NULL;
+  cprox_result x[2];
+  const cprox_mover movers[2] = {s->mover, s->mover};
+  if (!answered(q, cprox_batch_create(s->targets, s->n, q->a->ws, &batch))) return;
+  const size_t query = rng_index(q->r, 3);
+  cprox_status status = CPROX_OK;
+  if (query == 0) status = cprox_batch_distance(batch, movers, 0, 2, &q->options, q->a->ws, x);
+  if (query == 1) status = cprox_batch_tolerance(batch, movers, 0, 2, s->scale, &q->options, q->a->ws, x);
+  if (query == 2) status = cprox_batch_collision(batch, movers, 0, 2, &q->options, q->a->ws, x);
+  if (answered(q, status)) {
+    check_all(q, &x[0]);
+    attack_check(q->a, x[0].lower == x[1].lower && x[0].upper == x[1].upper,
+                 "batch: the same mover twice: [%.17g, %.17g], [%.17g, %.17g]", x[0].lower, x[0].upper, x[1].lower,
+                 x[1].upper);
+    if (query == 0)
+      check_width(q, &x[0]);
+    else
+      check_verdict(q, &x[0], query == 1 ? s->scale : -1.0);
+  }
+  cprox_batch_free(batch);
+}
+
+static void ask_signed(question *q) {
+  const scene *s = &q->s;
+  cprox_result x;
+  q->options.signed_distance = true;
+  if (!answered(q, cprox_distance(s->mover, s->targets[0], &q->options, q->a->ws, &x))) return;
+  if (!numbers_are_sound(q, &x, 1)) return;
+  const obstacle *o = &s->obstacles[0];
+  const bool known = scene_is_exact(s, 0) && (o->curved ? !o->bodied : o->body.depth);
+  if (known) check_one(q, 0, &x);
+  check_width(q, &x);
+}
+
+static void ask_gradient(question *q) {
+  const scene *s = &q->s;
+  cprox_result x;
+  cprox_gradient g;
+  q->options.signed_distance = rng_index(q->r, 2);
+  if (!answered(q, cprox_distance(s->mover, s->targets[0], &q->options, q->a->ws, &x))) return;
+  if (!answered(q, cprox_distance_gradient(s->mover, s->targets[0], &q->options, &x, q->a->ws, &g))) return;
+  attack_count(q->a, g.valid ? "gradient valid" : "gradient not valid");
+  const bool sound = vec_finite(g.mover) && vec_finite(g.position) && vec_finite(g.rotation) && isfinite(g.t0) &&
+                     isfinite(g.t1) && isfinite(g.t);
+  attack_check(q->a, sound, "gradient: not finite");
+  if (!g.valid) return;
+  /* by moving the mover's point: a unit vector, and what the target's position does is its opposite */
+  attack_check(q->a, fabs(vec_norm(g.mover) - 1.0) < 1e-9, "gradient: |by the mover| = %.17g", vec_norm(g.mover));
+  attack_check(q->a, vec_norm(vec_add(g.mover, g.position)) < 1e-9,
+               "gradient: by the mover (%.17g, %.17g, %.17g), by the position (%.17g, %.17g, %.17g)", g.mover.x,
+               g.mover.y, g.mover.z, g.position.x, g.position.y, g.position.z);
+}
+
+/* ---- one case ---- */
+
+static cprox_options some_options(rng *r, double scale) {
+  const double epsilons[] = {0.0, 1e-9 * scale, 1e-6 * scale, 1e-6, 1e-3 * scale, 0.3 * scale, 1e3 * scale};
+  const double relative[] = {0.0, 0.0, 1e-6, 1e-2, 0.999, 10.0};
+  const uint32_t budgets[] = {2000, 2000, 2000, 20000, 200, 10, 1};
+  cprox_options options = cprox_options_default();
+  options.epsilon = epsilons[rng_index(r, 7)];
+  options.relative_epsilon = relative[rng_index(r, 6)];
+  options.max_nodes = budgets[rng_index(r, 7)];
+  return options;
+}
+
+static void one_case(attack *a, rng *r) {
+  static const struct {
+    const char *name;
+    void (*ask)(question *q);
+  } QUERIES[] = {{"distance", ask_distance},
+                 {"distance", ask_distance},
+                 {"tolerance", ask_tolerance},
+                 {"collision", ask_collision},
+                 {"first contact", ask_first_contact},
+                 {"profile", ask_profile},
+                 {"nearest", ask_nearest},
+                 {"within", ask_within},
+                 {"set", ask_set},
+                 {"batch", ask_batch},
+                 {"signed", ask_signed},
+                 {"gradient", ask_gradient}};
+  static question q;
+  q = (question){.a = a, .r = r};
+  const size_t which = rng_index(r, sizeof QUERIES / sizeof *QUERIES);
+  q.query = QUERIES[which].name;
+  if (scene_make(a, r, &q.s)) {
+    const obstacle *o = &q.s.obstacles[0];
+    attack_kind(a, "%s: %s on %s", q.query,
+                q.s.bodied         ? "body"
+                : q.s.radius > 0.0 ? "ball"
+                                   : "point",
+                path_name(q.s.path.family));
+    if (a->alone)
+      printf("%s, scale %g: %s on a %s curve, obstacle 0 of %zu: %s%s%s\n", q.query, q.s.scale,
+             q.s.bodied ? q.s.body.name : "a point", path_name(q.s.path.family), q.s.n,
+             o->curved ? path_name(o->path.family) : "", o->on_clock ? " on the clock " : "", o->body.name);
+    q.options = some_options(r, q.s.scale);
+    if (a->alone)
+      printf("epsilon %g, relative %g, budget %u\n", q.options.epsilon, q.options.relative_epsilon,
+             q.options.max_nodes);
+    QUERIES[which].ask(&q);
+  }
+  scene_free(&q.s);
+}
+
+int main(int argc, char **argv) {
+  return attack_main(argc, argv, "compose", one_case);
+}
