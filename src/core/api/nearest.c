@@ -3,6 +3,7 @@
 #include "curve_proximity/cprox/clearance.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "problem/validate.h"
 #include "solve/solve.h"
@@ -42,19 +43,23 @@ cprox_status cprox_nearest(cprox_mover mover, const cprox_target *targets, size_
   question_ask_whole(&q);
   const candidate *rank = rank_targets(&q);
   if (!rank) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of targets");
+  cprox_result *kept = question_reserve_results(&q, n);
+  if (!kept) return CPROX_MEMORY;
 
-  *count = 0;
+  size_t found = 0;
   cprox_status trouble = CPROX_OK;
   for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
-    const double ceiling = *count == k ? nearest[k - 1].upper : INFINITY;
+    const double ceiling = found == k ? kept[k - 1].upper : INFINITY;
     if (rank[i].lower > ceiling) break;
     cprox_result r;
     const size_t target = (size_t)rank[i].target;
     const cprox_status status = question_answer(&q, target, target + 1, ceiling, &r);
     if (status < 0) return status;
     trouble = worse(trouble, status);
-    question_rank(nearest, count, k, &r);
+    question_rank(kept, &found, k, &r);
   }
+  if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
+  *count = found;
   if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
   return trouble;
 }
@@ -70,11 +75,13 @@ cprox_status cprox_within(cprox_mover mover, const cprox_target *targets, size_t
   const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   question_ask_whole(&q);
+  cprox_result *kept = question_reserve_results(&q, n);
+  if (!kept) return CPROX_MEMORY;
 
   /* a search that ends at the ceiling has a lower bound of at least ceiling - width: above delta */
   const double width = fmax(q.options.epsilon, q.options.relative_epsilon * delta);
   const double ceiling = (delta + 2.0 * width) * (1.0 + 4.0 * (q.options.relative_epsilon + 1e-15));
-  *count = 0;
+  size_t found = 0;
   cprox_status trouble = CPROX_OK;
   for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
     cprox_result r;
@@ -84,8 +91,10 @@ cprox_status cprox_within(cprox_mover mover, const cprox_target *targets, size_t
     trouble = worse(trouble, status);
     if (r.target_index < 0) r.target_index = (int32_t)i;
     r.verdict = r.upper <= delta ? CPROX_YES : CPROX_UNDECIDED;
-    near[(*count)++] = r;
+    kept[found++] = r;
   }
+  if (found > 0) memcpy(near, kept, found * sizeof *kept);
+  *count = found;
   if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
   return trouble;
 }

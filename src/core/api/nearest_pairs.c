@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The pairs of a robot that come closest: a search for each, which ends where the pair is out of question. */
 #include <math.h>
+#include <string.h>
 
 #include "base/workspace.h"
 #include "curve_proximity/cprox/clearance.h"
@@ -84,8 +85,13 @@ cprox_status cprox_nearest_pairs(cprox_mover mover, const cprox_target *targets,
     list_pairs(&q, listed);
     pairs = listed;
   }
-  *count = 0;
-  const cprox_status trouble = ask_pairs(&q, pairs, n_pairs, k, delta, nearest, count);
+  cprox_result *kept = question_reserve_results(&q, n_pairs);
+  if (!kept) return CPROX_MEMORY;
+  size_t found = 0;
+  const cprox_status trouble = ask_pairs(&q, pairs, n_pairs, k, delta, kept, &found);
+  if (trouble < 0) return trouble;
+  if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
+  *count = found;
   if (trouble > CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
   return trouble;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The queries of an obstacle set. */
 #include <math.h>
+#include <string.h>
 
 #include "base/workspace.h"
 #include "broadphase/obstacle_set.h"
@@ -122,11 +123,13 @@ cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k
   if (q.mover.motion || !boxes_hold(&q))
     return cprox_nearest(mover, set->targets, set->n, k, &q.options, workspace, nearest, count);
   set_walk walk;
+  cprox_result *kept = question_reserve_results(&q, set->n);
+  if (!kept) return CPROX_MEMORY;
   if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
-  *count = 0;
+  size_t found = 0;
   cprox_status trouble = CPROX_OK;
   while (trouble != CPROX_STOPPED) {
-    const double ceiling = *count == k ? nearest[k - 1].upper : INFINITY;
+    const double ceiling = found == k ? kept[k - 1].upper : INFINITY;
     uint32_t target;
     double lower;
     if (!set_walk_next(&walk, ceiling, &target, &lower)) return out_of_memory(&q);
@@ -135,8 +138,10 @@ cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k
     const cprox_status status = question_answer(&q, target, (size_t)target + 1, ceiling, &r);
     if (status < 0) return status;
     if (trouble == CPROX_OK) trouble = status;
-    question_rank(nearest, count, k, &r);
+    question_rank(kept, &found, k, &r);
   }
+  if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
+  *count = found;
   if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
   return trouble;
 }

@@ -65,6 +65,12 @@ void question_join(cprox_result *all, const cprox_result *one) {
   all->rung = rung;
 }
 
+cprox_result *question_reserve_results(const question *q, size_t n) {
+  cprox_result *results = workspace_reserve(q->workspace, WORKSPACE_NEAREST, (n + 1) * sizeof *results);
+  if (!results) workspace_fail(q->workspace, CPROX_MEMORY, "no memory for %zu results", n);
+  return results;
+}
+
 void question_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r) {
   size_t i = *count;
   if (i == k) {

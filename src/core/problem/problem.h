@@ -51,6 +51,10 @@ cprox_result question_nothing(void);
 /* Adds the answer against another set to the union's: the least of both ends, with the witness of the upper one. */
 void question_join(cprox_result *all, const cprox_result *one);
 
+/* Room in the workspace for the results of up to n targets, so that the caller's array is written only when the query has succeeded.
+ * NULL where memory is out. */
+cprox_result *question_reserve_results(const question *q, size_t n);
+
 /* Puts a result where it belongs among the k nearest so far, ascending by upper. */
 void question_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r);
 
