@@ -224,6 +224,7 @@ static void check_not_late(question *q, const cprox_result *x) {
 static void ask_first_contact(question *q) {
   const scene *s = &q->s;
   cprox_result x;
+  q->options.relative_epsilon = 0.0; /* it does not apply */
   const cprox_status status = s->n == 1 && rng_index(q->r, 2)
                                   ? cprox_first_contact(s->mover, s->targets[0], &q->options, q->a->ws, &x)
                                   : cprox_first_contact_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &x);
