@@ -197,7 +197,8 @@ static bool make_obstacle(attack *a, rng *r, const scene *s, vec3 origin, obstac
   /* its curve is made about its own frame's origin; on the clock over the same range */
   const path_family family = (path_family)rng_index(r, PATH_FAMILIES);
   const bool by_length = (family == PATH_RECTIFIABLE) != (s->path.family == PATH_RECTIFIABLE);
-  o->on_clock = rng_index(r, 2) && path_has_range(family) && !by_length;
+  const bool long_range = s->path.t1 - s->path.t0 > 20.0; /* arc lengths: too many turns for a trigonometric series */
+  o->on_clock = rng_index(r, 2) && path_has_range(family) && !by_length && !long_range;
   const double t0 = o->on_clock ? s->path.t0 : 0.0, t1 = o->on_clock ? s->path.t1 : 1.0;
   path_make_on(a, r, family, s->scale, vec(0, 0, 0), s->planar, t0, t1, &o->path);
   if (!o->path.curve) return false;
