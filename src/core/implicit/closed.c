@@ -273,8 +273,8 @@ bool implicit_closed_nearest(const implicit *body, vec3 y, double width, implici
     if (!closest_apart(&c)) return false;
   }
 
-  /* what rounding left is drawn onto the surface */
-  double sum = -1.0, slope = 0.0;
+  /* what rounding left is drawn onto the surface; the search may also have ended elsewhere, and then nothing is known */
+  double sum = -1.0, slope = 0.0, steepest = 1.0;
   vec3 gradient = vec(0, 0, 0);
   for (int i = 0; i < 3; i++) {
     if (!c.live[i]) continue;
@@ -282,8 +282,10 @@ bool implicit_closed_nearest(const implicit *body, vec3 y, double width, implici
     const double power = exp(c.p[i] * c.t[i]);
     sum += power;
     slope += c.p[i] * power;
+    steepest = fmax(steepest, c.p[i]);
     gradient = vec_axpy(gradient, sign[i] * c.p[i] * exp((c.p[i] - 1.0) * c.t[i]), body->term[i].a);
   }
+  if (!implicit_is_drawn(sum, slope, steepest)) return false;
   vec3 x = vec(0, 0, 0);
   const double *inv = body->inverse, by = 1.0 - sum / slope - 4.0 * ROUND_U;
   for (int i = 0; i < 3; i++)

@@ -9,6 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/rounding.h"
 #include "base/vec.h"
 
 typedef struct implicit_plane {
@@ -118,6 +119,14 @@ double implicit_quadric_at(const implicit_quadric *quadric, vec3 x, vec3 *gradie
 double implicit_gauge(const implicit *body, vec3 x, double tolerance);
 
 /* ---- support (power.c, certificate.c, solve.c) ---- */
+
+/* A point u >= 0 with sum u^p = 1 + miss and sum p u^p = slope may be drawn to the surface by the one factor 1 - miss/slope: the sum is convex in
+ * the logarithm of the factor, with a second derivative of at most the largest p times the slope, so that what is left outside is half of
+ * p (miss/slope)², and so at most u/2 of the length. */
+static inline bool implicit_is_drawn(double miss, double slope, double steepest) {
+  const double by = miss / slope;
+  return steepest * by * by <= ROUND_U;
+}
 
 /* max of sum w_i u_i over sum |u_i|^p_i <= 1, for w_i >= 0: an upper bound whatever `mu` > 0 it starts from (<= 0: from
  * scratch), within 8 u of itself of the maximum once Newton's method has ended; u receives the maximiser, *mu where it

@@ -62,10 +62,37 @@ static double reach_multiplier(const implicit_term *term, int32_t n, const doubl
   return live > 0 ? fmax(exp(z), least) : least;
 }
 
+/* Draws u along its ray to sum u^p = 1, from wherever it is: the logarithm of the sum is convex in that of the length, so that Newton's
+ * method comes down from outside. What it cannot draw becomes the point 0, which is inside. */
+static void draw(const implicit_term *term, int32_t n, double *u) {
+  enum { STEPS = 60 };
+  double most = 0.0, steepest = 1.0;
+  for (int32_t i = 0; i < n; i++) {
+    most = fmax(most, u[i]);
+    steepest = fmax(steepest, term[i].p);
+  }
+  double by = most > 0.0 && isfinite(most) ? 1.0 / most : 0.0;
+  for (int32_t i = 0; i < n; i++) u[i] = by > 0.0 ? by * u[i] : 0.0;
+  for (int step = 0; by > 0.0 && step < STEPS; step++) {
+    double sum = 0.0, slope = 0.0;
+    for (int32_t i = 0; i < n; i++) {
+      const double power = implicit_raise(&term[i], u[i]);
+      sum += power;
+      slope += term[i].p * power;
+    }
+    const bool last = implicit_is_drawn(sum - 1.0, slope, steepest);
+    by = last ? 1.0 - (sum - 1.0) / slope : exp(-log(sum) * sum / slope);
+    for (int32_t i = 0; i < n; i++) u[i] *= by;
+    if (last) return;
+  }
+  for (int32_t i = 0; i < n; i++) u[i] = 0.0;
+}
+
 double implicit_power_reach(const implicit_term *term, int32_t n, const double *w, double *mu, int steps, double *u) {
   /* mu may not fall below the weight of a term with p = 1, whose part of the bound would be positive */
-  double least = 0.0, start = 0.0;
+  double least = 0.0, start = 0.0, steepest = 1.0;
   for (int32_t i = 0; i < n; i++) {
+    steepest = fmax(steepest, term[i].p);
     if (term[i].p == 1.0) least = fmax(least, w[i]);
     start = fmax(start, w[i] * term[i].root);
     u[i] = 0.0;
@@ -79,11 +106,7 @@ double implicit_power_reach(const implicit_term *term, int32_t n, const double *
   double sum;
   const double bound = reach_at(term, n, w, *mu, u, &sum);
 
-  /* the maximiser is drawn onto the surface along its ray, off which it is by rounding alone; terms with p = 1 take what the
-   * others leave, mu being the weight of one of them */
-  double by = 0.0;
-  for (int32_t i = 0; i < n; i++) by += term[i].p > 1.0 ? u[i] * w[i] : 0.0; /* sum p u^p times mu */
-  by /= *mu;
+  /* terms with p = 1 take what the others leave, mu being the weight of one of them */
   if (*mu == least && sum < 1.0) {
     for (int32_t i = 0; i < n; i++) {
       if (term[i].p != 1.0 || w[i] != least) continue;
@@ -91,7 +114,12 @@ double implicit_power_reach(const implicit_term *term, int32_t n, const double *
       return bound;
     }
   }
-  if (by > 0.0 && fabs(sum - 1.0) < 0.01)
-    for (int32_t i = 0; i < n; i++) u[i] *= 1.0 - (sum - 1.0) / by;
+  double slope = 0.0; /* sum p u^p */
+  for (int32_t i = 0; i < n; i++) slope += term[i].p > 1.0 ? u[i] * w[i] : 0.0;
+  slope /= *mu;
+  if (fabs(sum - 1.0) < 0.01 && implicit_is_drawn(sum - 1.0, slope, steepest))
+    for (int32_t i = 0; i < n; i++) u[i] *= 1.0 - (sum - 1.0) / slope;
+  else
+    draw(term, n, u);
   return bound;
 }
