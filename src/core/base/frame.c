@@ -9,7 +9,10 @@ cprox_pose cprox_pose_identity(void) {
 
 const char *frame_pose_fault(const cprox_pose *pose) {
   const cprox_quat q = pose->orientation;
-  if (!vec_finite(pose->position)) return "the position is not finite";
+  const vec3 p = pose->position;
+  if (!vec_finite(p)) return "the position is not finite";
+  if (fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))) > LENGTH_MOST)
+    return "the position is farther than 1e60 m from the origin";
   if (!(isfinite(q.w) && isfinite(q.x) && isfinite(q.y) && isfinite(q.z))) return "the quaternion is not finite";
   const double norm2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
   if (!(norm2 > 0.0)) return "the quaternion's norm is 0";
@@ -94,8 +97,17 @@ vec3 frame_to_world(const frame *f, vec3 local) {
   return vec_add(frame_turn_to_world(f, vec_add(local, f->centre)), f->position);
 }
 
+/* The same rotation by a quaternion whose products neither overflow nor vanish: scaled by a power of 2, exactly, where its norm is far
+ * from 1. (A part that is lost to underflow then is 2^-1000 of the largest.) */
+static cprox_quat mid_sized(cprox_quat q) {
+  const double most = fmax(fmax(fabs(q.w), fabs(q.x)), fmax(fabs(q.y), fabs(q.z)));
+  if (most > 1e-30 && most < 1e30) return q;
+  const int e = -ilogb(most);
+  return (cprox_quat){ldexp(q.w, e), ldexp(q.x, e), ldexp(q.y, e), ldexp(q.z, e)};
+}
+
 cprox_pose frame_compose(const cprox_pose *outer, const cprox_pose *inner) {
-  const cprox_quat a = outer->orientation, b = inner->orientation;
+  const cprox_quat a = mid_sized(outer->orientation), b = mid_sized(inner->orientation);
   const frame f = frame_create(outer, vec(0, 0, 0));
   return (cprox_pose){
       .position = frame_to_world(&f, inner->position),
