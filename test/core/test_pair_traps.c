@@ -333,7 +333,7 @@ static void unusable_arguments_are_refused_in_words(void **state) {
   REFUSED(cprox_at(h, at(0, 0, 0)), cprox_at(both, at(0, 0, 0)), NULL, "two halfspaces have no distance");
   cprox_options options = cprox_options_default();
   options.epsilon = NAN;
-  REFUSED(ok, ok, &options, "epsilon is nan, must be 0 or more");
+  REFUSED(ok, ok, &options, "epsilon is nan, must be finite and 0 or more");
   options = cprox_options_default();
   options.max_nodes = 0;
   REFUSED(ok, ok, &options, "max_nodes is 0: a query needs a budget of at least 1 node");

@@ -60,7 +60,7 @@ typedef struct cprox_quat {
 
 /** Where a body's own frame stands in the world: p_world = R(orientation) p_body + position. */
 typedef struct cprox_pose {
-  cprox_vec3 position;    /**< [m] */
+  cprox_vec3 position;    /**< [m] each coordinate at most 1e60 in size */
   cprox_quat orientation; /**< not (0, 0, 0, 0) */
 } cprox_pose;
 

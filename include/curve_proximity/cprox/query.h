@@ -2,7 +2,8 @@
 /** The verbs: distance, tolerance, collision of what moves against what stands; static pairs.
  *
  *  Every answer is an interval [lower, upper] that contains the true value, rounding included, or a verdict that
- * follows from one. Any number of threads may ask at once, each with its own workspace. */
+ * follows from one. Numbers must be finite, and no length, position or accuracy may exceed 1e60 m, whose powers still fit into
+ * a double: everything else is refused with CPROX_INVALID and a reason. Any number of threads may ask at once, each with its own workspace. */
 #ifndef CURVE_PROXIMITY_CPROX_QUERY_H
 #define CURVE_PROXIMITY_CPROX_QUERY_H
 
@@ -97,12 +98,12 @@ CPROX_API const char *cprox_rung_name(cprox_rung rung);
  *    translating contact, growth distance      no                yes   no        no           no
  *    certificate for an answer                 yes               no    yes       no           no */
 typedef struct cprox_options {
-  double epsilon;           /**< [m] width of the interval asked for, >= 0; 0 asks for the narrowest one that double
+  double epsilon; /**< [m] width of the interval asked for, 0 … 1e60; 0 asks for the narrowest one that double
                                 arithmetic allows, and the status says precision. Default 1e-6 */
-  double relative_epsilon;  /**< the interval may also be this fraction of upper wide; >= 0, default 0 */
-  uint32_t max_nodes;       /**< budget of parameter intervals examined, for each target; >= 1, default 20000 */
-  bool (*stop)(void *user); /**< polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
-  void *stop_user;          /**< handed to stop */
+  double relative_epsilon;        /**< the interval may also be this fraction of upper wide; 0 … 1e60, default 0 */
+  uint32_t max_nodes;             /**< budget of parameter intervals examined, for each target; >= 1, default 20000 */
+  bool (*stop)(void *user);       /**< polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
+  void *stop_user;                /**< handed to stop */
   cprox_certificate *certificate; /**< receives the proof of the answer, against all targets at once; NULL: none. For a
                                 distance the claim is that of lower, or where lower is 0 that of upper */
   bool
@@ -195,7 +196,7 @@ CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_target
 
 /** Where, along its parameter, does the mover first touch the target? Never late.
  *
- *  t_free      no contact at any t < t_free, certified. The distance at t_free is at most epsilon, or t_free is the end of
+ *  t_free      no contact at any t < t_free, certified and rounded down. The distance at t_free is at most epsilon, or t_free is the end of
  *              the range.
  *  verdict     yes: they touch or overlap at t, proven: the first contact lies in [t_free, t]. no: they do not touch at all;
  *              lower > 0. undecided: closer than epsilon at t, the earliest such place that was measured; contact is not

@@ -32,10 +32,11 @@ typedef enum cprox_joint_type {
 typedef struct cprox_link {
   int32_t parent; /**< which link, one before this one; -1: the world */
   cprox_joint_type type;
-  cprox_pose origin;         /**< of the joint's frame in the parent link's */
-  cprox_vec3 axis;           /**< revolute and prismatic: in the joint's frame, not 0, of any length */
-  int32_t variable;          /**< the first of the joint's variables; links may share one (mimic joints) */
-  double multiplier, offset; /**< revolute and prismatic: the joint is at multiplier * variable + offset */
+  cprox_pose origin; /**< of the joint's frame in the parent link's */
+  cprox_vec3 axis;   /**< revolute and prismatic: in the joint's frame, not 0, of any length */
+  int32_t variable;  /**< the first of the joint's variables; links may share one (mimic joints) */
+  double multiplier,
+      offset; /**< revolute and prismatic: the joint is at multiplier * variable + offset; at most 1e60 in size */
 } cprox_link;
 
 /** A body on a link. */

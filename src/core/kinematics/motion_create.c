@@ -245,7 +245,7 @@ static cprox_status finish_axes(cprox_motion *m, const motion_source *s) {
 }
 
 /* Transforms that are off by ROUND_JOINT a joint, and values that are off by theirs, about levers of at most the reach. */
-static void finish_parts(cprox_motion *m) {
+static cprox_status finish_parts(cprox_motion *m, cprox_workspace *workspace) {
   for (size_t p = 0; p < m->robot->n_parts; p++) {
     const robot_part *part = &m->robot->parts[p];
     double reach = part->reach, angles = 0.0, shifts = 0.0;
@@ -261,18 +261,23 @@ static void finish_parts(cprox_motion *m) {
       if (axis->kind == AXIS_REVOLUTE) angles += off;
       if (axis->kind == AXIS_BALL) angles += 2.0 * sum / m->norm[i];
     }
+    if (!(reach <= LENGTH_MOST))
+      return workspace_fail(workspace, CPROX_INVALID,
+                            "the motion takes geometry %d as far as %g m, at most %g m are possible",
+                            (int)part->geometry, reach, LENGTH_MOST);
     m->part_error[p] = ROUND_UP * (ROUND_JOINT * (double)part->steps * ROUND_U * reach + angles * reach + shifts);
   }
+  return CPROX_OK;
 }
 
 static cprox_status finish(cprox_motion *m, const motion_source *s, cprox_motion **motion) {
   find_moving(m, s);
-  const cprox_status status = finish_axes(m, s);
+  cprox_status status = finish_axes(m, s);
+  if (status == CPROX_OK) status = finish_parts(m, s->workspace);
   if (status != CPROX_OK) {
     cprox_motion_free(m);
     return status;
   }
-  finish_parts(m);
   *motion = m;
   return CPROX_OK;
 }

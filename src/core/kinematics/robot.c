@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/rounding.h"
 #include "base/workspace.h"
 #include "kinematics/joint_tree.h"
 
@@ -44,6 +45,9 @@ static cprox_status check_link(const cprox_link *link, size_t i, size_t n_variab
   if (!isfinite(link->multiplier) || !isfinite(link->offset))
     return workspace_fail(workspace, CPROX_INVALID, "link %zu: multiplier %g and offset %g must be finite", i,
                           link->multiplier, link->offset);
+  if (fmax(fabs(link->multiplier), fabs(link->offset)) > LENGTH_MOST)
+    return workspace_fail(workspace, CPROX_INVALID, "link %zu: multiplier %g and offset %g must be at most %g", i,
+                          link->multiplier, link->offset, LENGTH_MOST);
   return CPROX_OK;
 }
 
@@ -59,6 +63,9 @@ static cprox_status check_geometry(const cprox_link_geometry *g, size_t i, size_
   if (!isfinite(g->body->ball_radius))
     return workspace_fail(workspace, CPROX_INVALID,
                           "geometry %zu: a halfspace, or a compound with one; must be bounded", i);
+  if (g->padding > LENGTH_MOST || !body_is_in_reach(g->body))
+    return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: the body or its padding reaches farther than %g m",
+                          i, LENGTH_MOST);
   if (part_model_is_solid(g->body))
     return workspace_fail(workspace, CPROX_INVALID,
                           "geometry %zu is a solid mesh: robots have surfaces; fill it with convex parts", i);

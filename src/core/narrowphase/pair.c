@@ -31,6 +31,11 @@ static cprox_status pair_check_target(const char *name, const cprox_target *targ
   if (!(target->padding >= 0.0) || !isfinite(target->padding))
     return workspace_fail(workspace, CPROX_INVALID, "%s: padding is %g, must be >= 0 and finite", name,
                           target->padding);
+  if (target->padding > LENGTH_MOST)
+    return workspace_fail(workspace, CPROX_INVALID, "%s: padding is %g, must be at most %g", name, target->padding,
+                          LENGTH_MOST);
+  if (!body_is_in_reach(target->body))
+    return workspace_fail(workspace, CPROX_INVALID, "%s: the body reaches farther than %g m", name, LENGTH_MOST);
   return CPROX_OK;
 }
 

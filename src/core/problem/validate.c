@@ -4,12 +4,21 @@
 #include <math.h>
 
 #include "base/frame.h"
+#include "base/rounding.h"
 #include "base/workspace.h"
 #include "curve/curve.h"
 #include "kinematics/link_model.h"
 #include "kinematics/motion.h"
 #include "problem/level_of_detail.h"
 #include "shape/body.h"
+
+cprox_status arguments_check_length(const char *name, double value, cprox_workspace *workspace) {
+  if (!(value >= 0.0 && isfinite(value)))
+    return workspace_fail(workspace, CPROX_INVALID, "%s is %g, must be finite and 0 or more", name, value);
+  if (value > LENGTH_MOST)
+    return workspace_fail(workspace, CPROX_INVALID, "%s is %g, must be at most %g", name, value, LENGTH_MOST);
+  return CPROX_OK;
+}
 
 /* An option that is set and that the query does not have is refused: the answer would not be what was asked for. */
 static cprox_status check_applies(const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
@@ -35,11 +44,9 @@ static cprox_status check_applies(const cprox_options *options, arguments_query 
 }
 
 cprox_status arguments_check_options(const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
-  if (!(options->epsilon >= 0.0))
-    return workspace_fail(workspace, CPROX_INVALID, "epsilon is %g, must be 0 or more", options->epsilon);
-  if (!(options->relative_epsilon >= 0.0))
-    return workspace_fail(workspace, CPROX_INVALID, "relative_epsilon is %g, must be 0 or more",
-                          options->relative_epsilon);
+  cprox_status status = arguments_check_length("epsilon", options->epsilon, workspace);
+  if (status == CPROX_OK) status = arguments_check_length("relative_epsilon", options->relative_epsilon, workspace);
+  if (status != CPROX_OK) return status;
   if (options->max_nodes == 0)
     return workspace_fail(workspace, CPROX_INVALID, "max_nodes is 0: a query needs a budget of at least 1 node");
   if ((int)options->max_rung < CPROX_RUNG_NONE || options->max_rung > CPROX_RUNG_MESH)
@@ -49,8 +56,7 @@ cprox_status arguments_check_options(const cprox_options *options, arguments_que
 }
 
 cprox_status arguments_check_delta(double delta, cprox_workspace *workspace) {
-  if (delta >= 0.0 && isfinite(delta)) return CPROX_OK;
-  return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be finite and 0 or more", delta);
+  return arguments_check_length("delta", delta, workspace);
 }
 
 cprox_status arguments_check_target(const cprox_target *target, size_t index, cprox_workspace *workspace) {
@@ -62,9 +68,19 @@ cprox_status arguments_check_target(const cprox_target *target, size_t index, cp
     return workspace_fail(workspace, CPROX_INVALID, "target %zu has both a body and a curve", index);
   const char *fault = frame_pose_fault(&target->pose);
   if (fault) return workspace_fail(workspace, CPROX_INVALID, "target %zu: %s", index, fault);
-  if (target->padding >= 0.0 && isfinite(target->padding)) return CPROX_OK;
-  return workspace_fail(workspace, CPROX_INVALID, "target %zu: padding is %g, must be finite and 0 or more", index,
-                        target->padding);
+  if (!(target->padding >= 0.0 && isfinite(target->padding)))
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu: padding is %g, must be finite and 0 or more", index,
+                          target->padding);
+  if (target->padding > LENGTH_MOST)
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu: padding is %g, must be at most %g", index,
+                          target->padding, LENGTH_MOST);
+  if (target->body && !body_is_in_reach(target->body))
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu: the body reaches farther than %g m", index,
+                          LENGTH_MOST);
+  if (target->curve && !curve_is_in_reach(target->curve))
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu: the curve reaches farther than %g m", index,
+                          LENGTH_MOST);
+  return CPROX_OK;
 }
 
 cprox_status arguments_check_targets(const cprox_target *targets, size_t n, cprox_workspace *workspace) {
@@ -101,6 +117,8 @@ static cprox_status check_carried(const cprox_body *body, cprox_rung finest, cpr
   if (!body) return CPROX_OK;
   if (!isfinite(body->ball_radius))
     return workspace_fail(workspace, CPROX_INVALID, "the mover's body is a halfspace or has one: it must be bounded");
+  if (!body_is_in_reach(body))
+    return workspace_fail(workspace, CPROX_INVALID, "the mover's body reaches farther than %g m", LENGTH_MOST);
   /* past some targets it goes by its hull even where balls are asked for */
   if (model_has_tree(body, finest == CPROX_RUNG_SPHERE ? CPROX_RUNG_HULL : finest))
     return workspace_fail(
@@ -148,9 +166,8 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target 
                                    const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   if (!workspace) return CPROX_INVALID;
   if (!mover->curve && !mover->motion) return workspace_fail(workspace, CPROX_INVALID, "the mover has no curve");
-  if (!(mover->radius >= 0.0 && isfinite(mover->radius)))
-    return workspace_fail(workspace, CPROX_INVALID, "radius is %g, must be finite and 0 or more", mover->radius);
-  const cprox_status checked = arguments_check_options(options, asked, workspace);
+  cprox_status checked = arguments_check_length("radius", mover->radius, workspace);
+  if (checked == CPROX_OK) checked = arguments_check_options(options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   if (!mover->motion && (mover->pairs || mover->n_pairs > 0 || mover->self))
     return workspace_fail(workspace, CPROX_INVALID,
@@ -159,6 +176,8 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target 
   if (mover->motion && options->signed_distance)
     return workspace_fail(workspace, CPROX_INVALID,
                           "signed_distance does not apply to robots: how deep they overlap is not measured");
+  if (mover->curve && !curve_is_in_reach(mover->curve))
+    return workspace_fail(workspace, CPROX_INVALID, "the mover's curve reaches farther than %g m", LENGTH_MOST);
   const cprox_status carried = check_carried(mover->body, options->max_rung, workspace);
   if (carried != CPROX_OK) return carried;
   const cprox_status standing = arguments_check_targets(targets, n, workspace);

@@ -23,6 +23,8 @@ typedef struct arguments_query {
 
 /* CPROX_OK, or CPROX_INVALID with a sentence that names the argument. */
 cprox_status arguments_check_options(const cprox_options *options, arguments_query asked, cprox_workspace *workspace);
+/* Finite, 0 or more, and no longer than powers can hold. */
+cprox_status arguments_check_length(const char *name, double value, cprox_workspace *workspace);
 cprox_status arguments_check_delta(double delta, cprox_workspace *workspace);
 cprox_status arguments_check_target(const cprox_target *target, size_t index, cprox_workspace *workspace);
 cprox_status arguments_check_targets(const cprox_target *targets, size_t n, cprox_workspace *workspace);

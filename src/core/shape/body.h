@@ -4,6 +4,7 @@
 #define CPROX_SHAPE_BODY_H
 
 #include "base/frame.h"
+#include "base/rounding.h"
 #include "convex/convex.h"
 #include "curve_proximity/cprox/body.h"
 
@@ -26,5 +27,12 @@ struct cprox_body {
   const cprox_body *hull, *mesh; /* ladders: the two models, */
   double excess;                 /* and how far the mesh may stick out of the hull */
 };
+
+/* Whether it keeps within what questions can hold; of a halfspace the distance of its plane counts. */
+static inline bool body_is_in_reach(const cprox_body *body) {
+  const vec3 c = body->ball_centre;
+  const double radius = isinf(body->ball_radius) ? body->shape.scale : body->ball_radius;
+  return radius <= LENGTH_MOST && fabs(c.x) <= LENGTH_MOST && fabs(c.y) <= LENGTH_MOST && fabs(c.z) <= LENGTH_MOST;
+}
 
 #endif

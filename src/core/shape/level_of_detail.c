@@ -36,6 +36,8 @@ cprox_status cprox_body_create_ladder(const cprox_body *hull, double excess, con
                           cprox_body_kind_name(mesh->kind));
   if (!(excess >= 0.0) || !isfinite(excess))
     return workspace_fail(workspace, CPROX_INVALID, "excess is %g, must be finite and 0 or more", excess);
+  if (excess > LENGTH_MOST)
+    return workspace_fail(workspace, CPROX_INVALID, "excess is %g, must be at most %g", excess, LENGTH_MOST);
   const cprox_status covered = check_cover(hull, excess, mesh, workspace);
   if (covered != CPROX_OK) return covered;
 
