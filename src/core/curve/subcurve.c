@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/round_down.h"
 #include "base/rounding.h"
 #include "curve/control.h"
 #include "curve/pack.h"
@@ -121,8 +122,12 @@ double curve_side_parameter(const curve_side *side, size_t piece, double s) {
   return s == 1.0 ? t1 : t0 + s * (t1 - t0);
 }
 
+double curve_side_parameter_below(const curve_side *side, size_t piece, double s) {
+  return round_down_between(side->curve->breaks[piece], side->curve->breaks[piece + 1], s);
+}
+
 double curve_side_start(const curve_side *side, const search_interval *at) {
-  if (curve_side_is_piece(side, at)) return curve_side_parameter(side, curve_side_piece(side, at), at->a);
+  if (curve_side_is_piece(side, at)) return curve_side_parameter_below(side, curve_side_piece(side, at), at->a);
   size_t leaf = at->part;
   while (leaf < side->curve->n_leaves) leaf *= 2;
   return side->curve->breaks[leaf - side->curve->n_leaves];

@@ -125,5 +125,7 @@ double curve_side_start(const curve_side *side, const search_interval *at);
 
 /* The curve's parameter at s of a piece. */
 double curve_side_parameter(const curve_side *side, size_t piece, double s);
+/* The same, rounded down: for what is certified of all parameters before. */
+double curve_side_parameter_below(const curve_side *side, size_t piece, double s);
 
 #endif

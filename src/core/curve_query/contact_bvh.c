@@ -31,7 +31,7 @@ static void consider(contact_tree *c, const tree_sight *sight, const search_best
 static tree_sight measure(contact_tree *c, tree_place place, size_t piece, double s, vec3 y, double error) {
   tree_sight sight;
   search_best bound = curve_tree_measure(&c->base, place, piece, s, y, error, &sight);
-  bound.at = curve_side_parameter(&c->base.side, piece, s);
+  bound.at = curve_side_parameter_below(&c->base.side, piece, s);
   consider(c, &sight, &bound);
   return sight;
 }
@@ -45,7 +45,7 @@ static void begin(contact_tree *c) {
   const size_t first = piece ? curve_side_piece(&o->side, part) : 0;
   const double s = piece ? part->a : 0.0;
   if (curve_tree_begins_inside(o, &sight)) {
-    consider(c, &sight, &(search_best){.upper = -o->offset, .at = curve_side_parameter(&o->side, first, s)});
+    consider(c, &sight, &(search_best){.upper = -o->offset, .at = curve_side_parameter_below(&o->side, first, s)});
     return;
   }
   curve_side_load(&o->side, first);
@@ -163,6 +163,7 @@ static int split(void *self, search_node *node, search_node *child) {
 bool contact_tree_begin(contact_tree *c, search_node *root) {
   c->base.best_bound.at = INFINITY;
   c->proven_bound = (search_best){.upper = INFINITY, .at = INFINITY};
+  c->proven_within = false;
   if (!curve_tree_root(&c->base, root)) return false;
   root->start = curve_side_start(&c->base.side, &root->side[0]);
   return true;
@@ -207,7 +208,7 @@ void contact_tree_prove(contact_tree *c) {
     next = fmin(next, 1.0);
     const vec3 y = curve_side_point(&o->side, next);
     bound = curve_tree_measure(o, sight.place, piece, next, y, curve_side_point_error(&o->side), &sight);
-    bound.at = curve_side_parameter(&o->side, piece, next);
+    bound.at = curve_side_parameter_below(&o->side, piece, next);
     consider(c, &sight, &bound);
   }
   if (c->proven_bound.at < found_at || o->offset > 0.0) return;
@@ -216,6 +217,9 @@ void contact_tree_prove(contact_tree *c) {
   double until;
   sight = o->best;
   if (!curve_tree_meets(o, &sight, &until)) return;
-  bound = (search_best){.upper = 0.0, .at = curve_side_parameter(&o->side, sight.piece, until)};
+  bound = (search_best){.upper = 0.0, .at = curve_side_parameter_below(&o->side, sight.piece, until)};
+  const double before = c->proven_bound.at;
   consider(c, &sight, &bound);
+  c->proven_within = c->proven_bound.at < before;
+  c->proven_t = curve_side_parameter(&o->side, sight.piece, until);
 }

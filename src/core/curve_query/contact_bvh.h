@@ -10,7 +10,9 @@ typedef struct contact_tree {
   curve_tree base;   /* its best sight is the leftmost within epsilon; while there is none, the nearest */
   tree_sight proven; /* the leftmost sight at which they certainly touch */
   search_best proven_bound;
-  double share; /* how much of the node that was probed last is free, */
+  bool proven_within; /* contact is proven between the sight and */
+  double proven_t;    /* this parameter */
+  double share;       /* how much of the node that was probed last is free, */
   double
       ahead; /* and where contact would be if the nearest element were approached as at its beginning; infinity: nowhere */
 } contact_tree;

@@ -21,7 +21,7 @@ static cprox_status measure(contact_convex *c, size_t piece, double s, vec3 y, d
   curve_convex *o = &c->base;
   const cprox_status status = curve_convex_measure(o, piece, s, y, error, &o->last, bound);
   if (status < 0) return status;
-  bound->at = curve_side_parameter(&o->side, piece, s);
+  bound->at = curve_side_parameter_below(&o->side, piece, s);
   if (bound->upper <= 0.0 && bound->at < c->proven_bound.at) {
     c->proven = o->last;
     c->proven_bound = *bound;

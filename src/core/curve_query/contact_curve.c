@@ -16,7 +16,7 @@ static search_best consider(contact_curve *c, curve_meeting *m, double error) {
   curve_curve *o = &c->base;
   search_best bound = {.upper = INFINITY};
   curve_curve_measure(o, m, error, &bound);
-  bound.at = curve_side_parameter(&o->side[0], m->piece[0], m->s[0]);
+  bound.at = curve_side_parameter_below(&o->side[0], m->piece[0], m->s[0]);
   if (bound.upper <= 0.0 && bound.at < c->proven_bound.at) {
     c->proven = *m;
     c->proven_bound = bound;

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/round_down.h"
 #include "base/rounding.h"
 #include "simd/dispatch.h"
 
@@ -268,6 +269,10 @@ void motion_place(const cprox_motion *m, size_t segment, double u, double *value
 
 double motion_time(const cprox_motion *m, size_t segment, double u) {
   return (1.0 - u) * m->times[segment] + u * m->times[segment + 1];
+}
+
+double motion_time_below(const cprox_motion *m, size_t segment, double u) {
+  return round_down_between(m->times[segment], m->times[segment + 1], u);
 }
 
 void cprox_motion_domain(const cprox_motion *motion, double *t0, double *t1) {

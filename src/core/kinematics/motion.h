@@ -70,5 +70,7 @@ void motion_place(const cprox_motion *motion, size_t segment, double u, double *
 
 /* The time at u of a segment, within the segment. */
 double motion_time(const cprox_motion *motion, size_t segment, double u);
+/* The same, rounded down: for what is certified of all times before. */
+double motion_time_below(const cprox_motion *motion, size_t segment, double u);
 
 #endif

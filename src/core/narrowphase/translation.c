@@ -43,6 +43,11 @@ static cprox_status check_motion(const cprox_translating *a, const cprox_transla
     return workspace_fail(workspace, CPROX_INVALID, "a velocity is not finite");
   if (!(duration > 0.0) || !isfinite(duration))
     return workspace_fail(workspace, CPROX_INVALID, "duration is %g, must be > 0 and finite", duration);
+  const vec3 u = a->velocity, v = b->velocity;
+  const double speed = fabs(u.x) + fabs(u.y) + fabs(u.z) + fabs(v.x) + fabs(v.y) + fabs(v.z);
+  if (!(fmax(speed, 1.0) * fmax(duration, 1.0) <= LENGTH_MOST))
+    return workspace_fail(workspace, CPROX_INVALID, "velocities up to %g m/s for %g s: at most %g m are possible",
+                          speed, duration, LENGTH_MOST);
   return CPROX_OK;
 }
 
@@ -147,8 +152,9 @@ static cprox_status approach_run(approach *p, const cprox_options *options, cpro
     }
     const double rounded = 8.0 * ROUND_U * (vec_norm(p->b.pose.position) + speed * p->duration);
     const double step = (r->lower - rounded) / (towards + 8.0 * ROUND_U * speed) * (1.0 - 1e-12);
-    if (!(step > 0.0) || p->free_until + step == p->free_until) return CPROX_PRECISION;
-    p->free_until += step;
+    const double next = step > 0.0 ? nextafter(p->free_until + step, -INFINITY) : 0.0; /* below the exact sum */
+    if (!(next > p->free_until)) return CPROX_PRECISION;
+    p->free_until = next;
     if (p->free_until >= p->duration) {
       p->free_until = p->duration;
       p->never = true;

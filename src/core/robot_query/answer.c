@@ -109,6 +109,7 @@ cprox_status robot_first_contact(const question *q, cprox_result *result) {
   r.t_free = fmin(found.free_until, q->t1);
   r.verdict = touch ? CPROX_YES : isinf(found.free_until) ? CPROX_NO : CPROX_UNDECIDED;
   if (sight->pair < 0) r.t = NAN;
+  if (touch) r.t = fmax(r.t, r.t_free); /* one is rounded, the other rounded down */
   r.nodes = found.nodes, r.probes = o.gaps;
   r.rung = rung_of(&o);
   r.status = status;

@@ -49,7 +49,7 @@ static search_node node_of(const robot_search *o, const search_node *parent, siz
   search_node node = *parent;
   node.side[0].part = (uint32_t)first, node.side[0].a = a;
   node.side[1].part = (uint32_t)last, node.side[1].b = b;
-  node.start = motion_time(o->scene.motion, first, a);
+  node.start = motion_time_below(o->scene.motion, first, a);
   return node;
 }
 
@@ -97,7 +97,7 @@ static cprox_status refuse_callback(const robot_search *o) {
 
 /* What was measured may be the least so far, or a contact. */
 static void keep_sight(robot_search *o, int32_t index, size_t segment, double u, const robot_gap *gap) {
-  const double upper = fmax(gap->upper, 0.0), at = motion_time(o->scene.motion, segment, u);
+  const double upper = fmax(gap->upper, 0.0), at = motion_time_below(o->scene.motion, segment, u);
   const robot_sight sight = {.gap = *gap, .pair = index, .segment = segment, .u = u};
   if (is_better(o, upper, at)) {
     o->best = sight;

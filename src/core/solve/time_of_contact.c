@@ -39,6 +39,7 @@ static cprox_status meet_convex(const question *q, const candidate *c, const sea
   cprox_status reported = candidate_report_convex(q, c, o, &met->near);
   if (reported < 0) return reported;
   met->near.upper = o->best_bound.upper;
+  met->near_at = o->best_bound.at;
   const cprox_status proved = contact_convex_prove(&state);
   if (proved < 0) return proved;
   if (state.proven_bound.at < goal->horizon) {
@@ -64,6 +65,7 @@ static cprox_status meet_curve(const question *q, const candidate *c, const sear
   cprox_status reported = candidate_report_curve(q, c, o, &met->near);
   if (reported < 0) return reported;
   met->near.upper = o->best_bound.upper;
+  met->near_at = o->best_bound.at;
   contact_curve_prove(&state);
   if (state.proven_bound.at < goal->horizon) {
     o->best = state.proven;
@@ -88,12 +90,13 @@ static cprox_status meet_tree(const question *q, const candidate *c, const searc
   if (status < 0) return status;
   candidate_report_tree(q, c, o, &met->near);
   met->near.upper = o->best_bound.upper;
+  met->near_at = o->best_bound.at;
   contact_tree_prove(&state);
   if (state.proven_bound.at < goal->horizon) {
     o->best = state.proven;
     candidate_report_tree(q, c, o, &met->touch);
     met->touch.upper = state.proven_bound.upper;
-    met->touch.t = state.proven_bound.at;
+    if (state.proven_within) met->touch.t = state.proven_t;
   }
   met->probes = o->probes;
   return status;
@@ -127,7 +130,7 @@ static cprox_status meet_model(const question *q, const candidate *c, double hor
   met->free_until = found.free_until;
   met->lower = fmax(found.lower, c->lower);
   const bool near = met->near.upper <= q->options.epsilon;
-  const double end = near ? fmin(met->near.t, horizon) : horizon;
+  const double end = near ? fmin(met->near_at, horizon) : horizon;
   if (met->status == CPROX_OK && met->free_until < end) met->status = CPROX_PRECISION;
   return near && !isfinite(met->touch.t) && !isfinite(horizon) ? prove_farther(q, c, met) : CPROX_OK;
 }
@@ -185,6 +188,7 @@ cprox_status first_contact_conclude(const first_contact *all, const question *q,
   r.lower = touch ? 0.0 : fmax(fmin(all->lower, r.upper), 0.0);
   r.upper = fmax(r.upper, 0.0);
   r.verdict = touch ? CPROX_YES : isinf(all->free_until) ? CPROX_NO : CPROX_UNDECIDED;
+  if (touch) r.t = fmax(r.t, r.t_free); /* one is rounded, the other rounded down */
   if (!touch && !near) r.t = r.target_index < 0 ? NAN : r.t;
   r.rung = all->rung != CPROX_RUNG_NONE ? all->rung : q->n > 0 ? CPROX_RUNG_SPHERE : CPROX_RUNG_NONE;
   r.nodes = all->nodes, r.probes = all->probes;

@@ -12,6 +12,7 @@ typedef struct first_contact {
   cprox_result touch; /* t: the leftmost parameter of proven contact, or infinity; upper <= 0 */
   cprox_result
       near; /* t: that of contact within epsilon, or infinity; if there is none, upper is the least distance measured */
+  double near_at; /* near.t, rounded down as free_until is */
   uint32_t nodes, probes;
   cprox_rung rung;     /* the finest that was needed */
   cprox_status status; /* CPROX_OK: free_until is as far as it goes, to within epsilon of contact */

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A parameter between two others, from below: for what is certified of all smaller ones. */
+#ifndef CPROX_BASE_ROUND_DOWN_H
+#define CPROX_BASE_ROUND_DOWN_H
+
+#include "base/double_double.h"
+
+/* A double that is at most t0 + s (t1 - t0), for t0 <= t1 and 0 <= s <= 1: the value itself where that is a double and is computed
+ * without rounding, else within a few roundings below it. */
+static inline double round_down_between(double t0, double t1, double s) {
+  if (s == 0.0) return t0;
+  if (s == 1.0) return t1;
+  const dd length = dd_sum(t1, -t0), way = dd_product(s, length.high), t = dd_sum(t0, way.high);
+  const double more = s * length.low, bound = 4.0 * ROUND_U * (fabs(t.low) + fabs(way.low) + fabs(more));
+  /* at most what the rounding of t left out */
+  const double rest = t.low + way.low + more - bound;
+  if (rest >= 0.0) return t.high;
+  return fmax(t0, nextafter(t.high + rest, -INFINITY));
+}
+
+#endif
