@@ -28,6 +28,9 @@ CPROX_API cprox_certificate *cprox_certificate_create(void);
 /** Frees a certificate; NULL is allowed. */
 CPROX_API void cprox_certificate_free(cprox_certificate *certificate);
 
+/** Empties it: nothing is claimed. NULL is allowed. */
+CPROX_API void cprox_certificate_clear(cprox_certificate *certificate);
+
 /** The bytes to be kept or sent, and their number; 0 where nothing is proven. Valid until the next query with it. */
 CPROX_API const void *cprox_certificate_bytes(const cprox_certificate *certificate);
 CPROX_API size_t cprox_certificate_size(const cprox_certificate *certificate);
@@ -41,7 +44,11 @@ CPROX_API double cprox_certificate_delta(const cprox_certificate *certificate);
  *  answer      of a query with these arguments; its witness is used, its bounds are not trusted. delta <= its upper bound.
  *  delta       [m] >= 0. Claimed is `near` where answer->upper <= delta, else `apart`.
  *  options     max_nodes bounds the parts of the cover that are tried, for each target; NULL: the default.
- *  certificate receives the proof, or nothing (CPROX_CLAIM_NONE) where none was found.
+ *  certificate receives the proof. It is empty (CPROX_CLAIM_NONE) where none was found, and where the call failed.
+ *
+ *  A mesh is known by the convex hull that it was made with (cprox_body_create_ladder), which contains it. `apart` is proven of the
+ *  hull; `near` is never claimed of a mesh. Of a distance that a mesh answered, the claim is the distance to the hulls, where that is
+ *  above 0.
  *
  *  A claim that is as tight as double arithmetic allows may be proven for a delta that is weaker by a few roundings; that of a
  *  distance (delta == answer->lower) by epsilon, where the curve bends round a target at a constant distance and planes cannot
@@ -51,8 +58,9 @@ CPROX_API double cprox_certificate_delta(const cprox_certificate *certificate);
  *  Returns CPROX_OK        there is a proof
  *          CPROX_BUDGET    max_nodes were not enough
  *          CPROX_PRECISION the distance is too close to delta
- *          CPROX_INVALID   an argument is unusable, or of a kind that has no certificates: support callbacks, carried
- *                          bodies, movers on one clock; of robots, bodies that are neither convex nor have a hull
+ *          CPROX_INVALID   an argument is unusable, or of a kind that has no certificates: support callbacks, superquadrics and
+ *                          other implicit bodies, points, octrees, meshes without a hull, carried bodies, movers on one clock;
+ *                          or the nearest target is a mesh, and `near` was to be claimed
  *          CPROX_MEMORY    an allocation failed
  *  with the reason in the workspace. Cost: a few times that of the query; memory is allocated for the certificate.
  *  Source: doc/certificates.md.
@@ -64,7 +72,8 @@ CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_target *targ
 /** The target as the checker reads it: lines of text, numbers in hexadecimal without rounding, bodies as the library holds them.
  *
  *  text   receives the lines, cut to size - 1 characters and ended by 0; NULL with size 0: only their length is asked.
- *  Returns the length of the whole text without the 0; 0 for a kind that has no certificates, and for curves.
+ *  Returns the length of the whole text without the 0; 0 for a kind that has no certificates, and for curves. Of meshes the hulls
+ *  stand for them (`hull`), of which the checker accepts no `near`.
  */
 CPROX_API size_t cprox_target_describe(const cprox_target *target, char *text, size_t size);
 

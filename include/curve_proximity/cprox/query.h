@@ -105,7 +105,8 @@ typedef struct cprox_options {
   bool (*stop)(void *user);       /**< polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
   void *stop_user;                /**< handed to stop */
   cprox_certificate *certificate; /**< receives the proof of the answer, against all targets at once; NULL: none. For a
-                                distance the claim is that of lower, or where lower is 0 that of upper */
+                                distance the claim is that of lower, or where lower is 0 that of upper. It changes nothing in the
+                                answer; it is empty where there is no proof, and the reason in the workspace says why */
   bool
       signed_distance; /**< distance: where they overlap, the answer is minus the depth of the deepest overlap along the curve:
                              the shortest way by which the mover, there, could leave the target (a part of it, for compounds).

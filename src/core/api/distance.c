@@ -1,19 +1,30 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Distance, tolerance, collision: of one mover against one target or against many. All six are one search. */
 #include <math.h>
+#include <stdio.h>
 
 #include "base/workspace.h"
 #include "certificate/write.h"
 #include "problem/validate.h"
 #include "solve/solve.h"
 
-/* The proof that was asked for. That there is none changes nothing in the answer. */
+enum { REASON = 256 };
+
+/* The proof that was asked for. That there is none changes nothing in the answer; the reason tells why, after that of the answer. */
 static void leave_certificate(const question *q, const cprox_result *answer) {
   if (!q->options.certificate) return;
+  char of_answer[REASON], of_proof[REASON];
+  snprintf(of_answer, sizeof of_answer, "%s", cprox_workspace_reason(q->workspace));
   const double delta = question_wants_verdict(q) ? q->limit
                        : answer->lower > 0.0     ? answer->lower
                                                  : fmax(answer->upper, 0.0);
-  certify(&q->mover, q->targets, q->n, delta, answer, &q->options, q->workspace, q->options.certificate);
+  const cprox_status status =
+      certify(&q->mover, q->targets, q->n, delta, answer, &q->options, q->workspace, q->options.certificate);
+  snprintf(of_proof, sizeof of_proof, "%s", cprox_workspace_reason(q->workspace));
+  if (status == CPROX_OK)
+    workspace_fail(q->workspace, answer->status, "%s", of_answer);
+  else
+    workspace_fail(q->workspace, answer->status, "%s%sno certificate: %s", of_answer, *of_answer ? "; " : "", of_proof);
 }
 
 static arguments_query query_of(const question *q) {
@@ -48,6 +59,7 @@ static cprox_status ask_all(question *q, cprox_result *nearest, cprox_result *ea
 }
 
 static cprox_status ask(question *q, cprox_result *nearest, cprox_result *each) {
+  cprox_certificate_clear(q->options.certificate);
   const cprox_status status = ask_all(q, nearest, each);
   if (status >= 0) leave_certificate(q, nearest);
   return status;
@@ -65,6 +77,7 @@ cprox_status cprox_distance_all(cprox_mover mover, const cprox_target *targets, 
 cprox_status cprox_tolerance_all(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
                                  const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                                  cprox_result *each) {
+  cprox_certificate_clear(options ? options->certificate : NULL);
   const cprox_status checked = arguments_check_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
   question q = question_create(mover, targets, n, delta, true, options, workspace);

@@ -72,7 +72,8 @@ void certificate_begin(cprox_certificate *c, uint32_t width, cprox_claim claim, 
   certificate_count(c, sections);
 }
 
-void certificate_clear(cprox_certificate *c) {
+void cprox_certificate_clear(cprox_certificate *c) {
+  if (!c) return;
   c->size = 0;
   c->claim = CPROX_CLAIM_NONE;
   c->delta = 0.0;

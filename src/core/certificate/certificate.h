@@ -26,9 +26,6 @@ enum { TREE_LEAF = 0, TREE_CUT_FIRST = 1, TREE_CUT_SECOND = 2 };
 /* Empties it and writes the head; width: bytes of a normal's number, 4 or 8. */
 void certificate_begin(cprox_certificate *c, uint32_t width, cprox_claim claim, double delta, uint32_t sections);
 
-/* Nothing is claimed. */
-void certificate_clear(cprox_certificate *c);
-
 void certificate_byte(cprox_certificate *c, unsigned char value);
 void certificate_count(cprox_certificate *c, uint32_t value);
 

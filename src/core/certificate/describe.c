@@ -33,9 +33,22 @@ static void say_vertices(text *t, const cprox_body *body) {
   for (int32_t i = 0; i < body->shape.n; i++) say_vector(t, vec(body->shape.x[i], body->shape.y[i], body->shape.z[i]));
 }
 
-bool say_knows(const cprox_body *body) {
+static bool is_known(const cprox_body *body) {
   if (!body->mesh) return reach_is_known(body);
   return body->hull->kind == CPROX_POLYTOPE || body->hull->kind == CPROX_POLYGON;
+}
+
+const cprox_body *say_unknown(const cprox_body *body) {
+  if (body->kind != CPROX_COMPOUND) return is_known(body) ? NULL : body;
+  for (size_t i = 0; i < body->n_parts; i++)
+    if (!is_known(body->parts[i].body)) return body->parts[i].body;
+  return NULL;
+}
+
+bool say_has_mesh(const cprox_body *body) {
+  bool found = body->mesh != NULL;
+  for (size_t i = 0; i < body->n_parts; i++) found = found || body->parts[i].body->mesh;
+  return found;
 }
 
 void say_body(text *t, const cprox_body *body) {
@@ -71,16 +84,14 @@ static void say_part(text *t, const cprox_target *target, const cprox_body *body
 
 size_t cprox_target_describe(const cprox_target *target, char *out, size_t size) {
   const cprox_body *body = target->body;
-  if (!body) return 0;
+  if (!body || target->on_clock || say_unknown(body)) return 0;
   text t = {.at = out, .size = out ? size : 0};
   if (body->kind != CPROX_COMPOUND) {
-    if (!say_knows(body)) return 0;
     say_part(&t, target, body, NULL);
     return t.length;
   }
   for (size_t i = 0; i < body->n_parts; i++) {
     const body_part *part = &body->parts[i];
-    if (!say_knows(part->body)) return 0;
     say_part(&t, target, part->body, &part->pose);
   }
   return t.length;

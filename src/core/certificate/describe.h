@@ -19,6 +19,11 @@ void say_pose(text *t, const cprox_pose *pose);
 
 /* A convex body, or of a mesh with its hull the hull. */
 void say_body(text *t, const cprox_body *body);
-bool say_knows(const cprox_body *body);
+
+/* The part of a body, or the body itself, that certificates do not know; NULL: they know all of it. */
+const cprox_body *say_unknown(const cprox_body *body);
+
+/* Whether a part of it is a mesh, of which its hull stands in the text. */
+bool say_has_mesh(const cprox_body *body);
 
 #endif

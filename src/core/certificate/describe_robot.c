@@ -35,14 +35,10 @@ static void say_geometry(text *t, const cprox_link_geometry *g) {
   for (size_t i = 0; i < g->body->n_parts; i++) say_part(t, g, g->body->parts[i].body, &g->body->parts[i].pose);
 }
 
-bool certify_knows_robot(const cprox_robot *robot) {
-  for (size_t i = 0; i < robot->n_geometries; i++) {
-    const cprox_body *body = robot->given_geometries[i].body;
-    if (body->kind != CPROX_COMPOUND && !say_knows(body)) return false;
-    for (size_t k = 0; body->kind == CPROX_COMPOUND && k < body->n_parts; k++)
-      if (!say_knows(body->parts[k].body)) return false;
-  }
-  return true;
+size_t certify_unknown_geometry(const cprox_robot *robot) {
+  size_t i = 0;
+  while (i < robot->n_geometries && !say_unknown(robot->given_geometries[i].body)) i++;
+  return i;
 }
 
 /* ---- its motion ----------------------------------------------------------------------------------------------------------- */
@@ -86,7 +82,7 @@ static void say_motion(text *t, const cprox_motion *motion) {
 size_t cprox_mover_describe(const cprox_mover *mover, const cprox_target *targets, size_t n, const char *id,
                             cprox_workspace *workspace, char *out, size_t size) {
   question q = question_create(*mover, targets, n, -1.0, false, NULL, workspace);
-  if (!mover->motion || !certify_knows_robot(mover->motion->robot) ||
+  if (!mover->motion || certify_unknown_geometry(mover->motion->robot) < mover->motion->robot->n_geometries ||
       arguments_check_query(mover, targets, n, &q.options, (arguments_query){"a description", 0}, workspace) !=
           CPROX_OK)
     return 0;

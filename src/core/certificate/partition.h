@@ -13,7 +13,8 @@
 /* What is to be proven, and what may help. */
 typedef struct cover {
   const cprox_curve *curve;
-  reach_set set;   /* the radius of the mover belongs to its offset */
+  reach_set set;   /* the radius of the mover belongs to its offset; of a mesh its hull */
+  bool is_mesh;    /* the set may be larger than what it stands for: nothing is near because it is */
   cprox_pose pose; /* of the set, composed */
   double delta;
   double witness, witness_on_set; /* counting parameters where mover and curve targets are nearest, -1: not known */

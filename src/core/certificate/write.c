@@ -2,8 +2,11 @@
 /* A certificate for an answer: which sets there are, how precisely normals are written, how tight a claim can be proven. */
 #include "certificate/write.h"
 #include "base/rounding.h"
+#include "certificate/describe.h"
 #include "certificate/partition.h"
+#include "kinematics/motion.h"
 #include "problem/validate.h"
+#include "solve/solve.h"
 
 /* Parts shorter than this, relative to a piece, are given up: normals in single precision are for claims with room. */
 #define SHORTEST_SINGLE 0x1p-12
@@ -18,6 +21,7 @@ typedef struct task {
   size_t n;
   double delta;
   const cprox_result *answer;
+  const cprox_options *options;
   uint32_t budget;
   double epsilon; /* what a distance may give away */
   cprox_workspace *workspace;
@@ -28,21 +32,18 @@ static size_t parts_of(const cprox_target *target) {
   return target->body && target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
 }
 
-static bool is_known(const cprox_target *target) {
-  if (target->on_clock) return false;
-  if (!target->body) return !target->curve->arcs;
-  if (target->body->kind != CPROX_COMPOUND) return reach_is_known(target->body);
-  for (size_t i = 0; i < target->body->n_parts; i++)
-    if (!reach_is_known(target->body->parts[i].body)) return false;
-  return true;
-}
-
 /* The counting parameter at t. */
 static double count_at(const cprox_curve *curve, double t) {
   size_t piece = 0;
   while (piece + 1 < curve->n_pieces && curve->breaks[piece + 1] <= t) piece++;
   const double t0 = curve->breaks[piece], t1 = curve->breaks[piece + 1];
   return (double)piece + fmin(fmax((t - t0) / (t1 - t0), 0.0), 1.0);
+}
+
+/* The least double that is not below the sum of two that are not negative. */
+static double sum_up(double a, double b) {
+  const dd sum = dd_sum(a, b);
+  return sum.low > 0.0 ? nextafter(sum.high, INFINITY) : sum.high;
 }
 
 /* The set that part of a target is, with the mover's ball, and what the answer knows of it. */
@@ -57,13 +58,18 @@ static cover cover_of(const task *t, size_t target, size_t part, uint32_t width)
              .shortest = width == 4 ? SHORTEST_SINGLE : SHORTEST_DOUBLE,
              .workspace = t->workspace,
              .certificate = t->certificate};
-  c.set.offset = t->mover->radius + at->padding;
+  c.set.offset = sum_up(t->mover->radius, at->padding);
   if (at->body && at->body->kind == CPROX_COMPOUND) {
     const body_part *inner = &at->body->parts[part];
     c.set.body = inner->body;
     c.set.pose[1] = &inner->pose;
     c.set.poses = 2;
     c.pose = frame_compose(&at->pose, &inner->pose);
+  }
+  if (c.set.body && c.set.body->mesh) {
+    c.is_mesh = true;
+    c.set.offset = sum_up(c.set.offset, c.set.body->excess);
+    c.set.body = c.set.body->hull;
   }
   const cprox_result *r = t->answer;
   if (r && r->target_index == (int32_t)target && r->target_part == (int32_t)part && isfinite(r->t)) {
@@ -130,6 +136,9 @@ static cprox_status certify_near(const task *t) {
   size_t section = (size_t)r->target_part;
   for (size_t i = 0; i < (size_t)r->target_index; i++) section += parts_of(&t->targets[i]);
   cover c = cover_of(t, (size_t)r->target_index, (size_t)r->target_part, 8);
+  if (c.is_mesh)
+    return workspace_fail(t->workspace, CPROX_INVALID,
+                          "target %d is a mesh: its convex hull cannot prove that it is near", (int)r->target_index);
   c.delta = t->delta;
   certificate_begin(t->certificate, 8, CPROX_CLAIM_NEAR, t->delta, 1);
   return cover_near(&c, (uint32_t)section, r);
@@ -141,10 +150,55 @@ static cprox_status certify_curve(const task *t) {
     return workspace_fail(t->workspace, CPROX_INVALID, "bodies that move have no certificates");
   if (mover->curve->arcs)
     return workspace_fail(t->workspace, CPROX_INVALID, "curves known by their arc length have no certificates");
-  for (size_t i = 0; i < t->n; i++)
-    if (!is_known(&t->targets[i]))
-      return workspace_fail(t->workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates", i);
-  return t->answer && t->answer->upper <= t->delta ? certify_near(t) : certify_apart(t);
+  for (size_t i = 0; i < t->n; i++) {
+    const cprox_target *target = &t->targets[i];
+    if (target->on_clock)
+      return workspace_fail(t->workspace, CPROX_INVALID, "target %zu is on the mover's clock: it has no certificates",
+                            i);
+    if (!target->body && target->curve->arcs)
+      return workspace_fail(t->workspace, CPROX_INVALID,
+                            "target %zu is known by its arc length alone: it has no certificates", i);
+    if (target->body && say_unknown(target->body))
+      return workspace_fail(t->workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates: %s", i,
+                            cprox_body_kind_name(say_unknown(target->body)->kind));
+  }
+  if (!t->answer || t->answer->upper > t->delta) return certify_apart(t);
+  const cprox_status status = certify_near(t);
+  if (status == CPROX_OK || status == CPROX_MEMORY || !is_of_distance(t) || !(t->delta > 0.0)) return status;
+  return certify_apart(t); /* a distance that is known exactly: it is no less, either */
+}
+
+static cprox_status prove(const task *t) {
+  if (!t->mover->motion) return certify_curve(t);
+  return certify_robot(t->mover, t->targets, t->n, t->delta, t->answer, t->options, t->workspace, t->certificate);
+}
+
+/* ---- meshes ----------------------------------------------------------------------------------------------------------------- */
+
+static bool has_mesh(const task *t) {
+  bool found = false;
+  for (size_t i = 0; i < t->n && !found; i++) found = t->targets[i].body && say_has_mesh(t->targets[i].body);
+  const cprox_robot *robot = t->mover->motion ? t->mover->motion->robot : NULL;
+  for (size_t i = 0; robot && i < robot->n_geometries && !found; i++)
+    found = say_has_mesh(robot->given_geometries[i].body);
+  return found;
+}
+
+/* What the hulls of meshes can prove of their distance: that the hulls are as far apart as they are. */
+static cprox_status prove_of_hulls(const task *t) {
+  cprox_options options = *t->options;
+  options.max_rung = CPROX_RUNG_HULL;
+  options.signed_distance = false;
+  question q = question_create(*t->mover, t->targets, t->n, -1.0, false, &options, t->workspace);
+  question_ask_whole(&q);
+  cprox_result hulls;
+  const cprox_status status = question_answer(&q, 0, q.n, INFINITY, &hulls);
+  if (status < 0) return status;
+  if (!(hulls.lower > 0.0) || !isfinite(hulls.lower)) return CPROX_PRECISION;
+  task coarse = *t;
+  coarse.answer = &hulls;
+  coarse.delta = hulls.lower;
+  return prove(&coarse);
 }
 
 cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
@@ -155,21 +209,27 @@ cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size
                   .n = n,
                   .delta = delta,
                   .answer = answer,
+                  .options = options,
                   .budget = options->max_nodes,
                   .epsilon = answer ? fmax(options->epsilon, options->relative_epsilon * answer->upper) : 0.0,
                   .workspace = workspace,
                   .certificate = certificate};
-  certificate_clear(certificate);
-  const cprox_status status = mover->motion
-                                  ? certify_robot(mover, targets, n, delta, answer, options, workspace, certificate)
-                                  : certify_curve(&t);
-  if (status == CPROX_OK) return status;
-  certificate_clear(certificate);
+  if (!isfinite(delta)) return workspace_fail(workspace, CPROX_INVALID, "there is nothing to measure");
+  const bool by_mesh = is_of_distance(&t) && delta > 0.0 && has_mesh(&t);
+  cprox_status status = CPROX_PRECISION;
+  if (!by_mesh || answer->rung != CPROX_RUNG_MESH) status = prove(&t);
+  if (status > 0 && by_mesh) status = prove_of_hulls(&t);
+  if (status == CPROX_OK) {
+    workspace_clear(workspace);
+    return status;
+  }
+  cprox_certificate_clear(certificate);
   if (status == CPROX_INVALID) return status; /* its reason is told */
   if (status == CPROX_MEMORY) return workspace_fail(workspace, status, "no memory for a certificate");
-  return workspace_fail(
-      workspace, status,
-      status == CPROX_BUDGET ? "max_nodes were not enough for a certificate" : "too close to delta for a certificate");
+  if (status == CPROX_BUDGET) return workspace_fail(workspace, status, "max_nodes were not enough for a certificate");
+  return workspace_fail(workspace, status,
+                        has_mesh(&t) ? "too close to delta for a certificate, which takes meshes by their convex hulls"
+                                     : "too close to delta for a certificate");
 }
 
 cprox_status cprox_certify(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
@@ -177,7 +237,8 @@ cprox_status cprox_certify(cprox_mover mover, const cprox_target *targets, size_
                            cprox_certificate *certificate) {
   const cprox_options chosen = options ? *options : cprox_options_default();
   workspace_clear(workspace);
-  const arguments_query asked = {"a certificate for an answer", ARGUMENTS_RELATIVE | ARGUMENTS_RUNG};
+  cprox_certificate_clear(certificate);
+  const arguments_query asked = {"a certificate for an answer", ARGUMENTS_SEARCH};
   cprox_status status = arguments_check_query(&mover, targets, n, &chosen, asked, workspace);
   if (status == CPROX_OK) status = arguments_check_delta(delta, workspace);
   if (status != CPROX_OK) return status;

@@ -17,7 +17,7 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_target *targets
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate);
 
-/* Can the bodies on the robot's links be spoken of in a certificate? */
-bool certify_knows_robot(const cprox_robot *robot);
+/* The first geometry of the robot's links that certificates do not know; their number, where they know all. */
+size_t certify_unknown_geometry(const cprox_robot *robot);
 
 #endif

@@ -10,14 +10,18 @@
 #define SHORTEST_DOUBLE 0x1p-40
 enum { MOST_PAIRS = 0xffff };
 
-static bool knows_targets(const cprox_target *targets, size_t n) {
-  for (size_t i = 0; i < n; i++) {
-    const cprox_body *body = targets[i].body;
-    if (body->kind != CPROX_COMPOUND && !say_knows(body)) return false;
-    for (size_t k = 0; body->kind == CPROX_COMPOUND && k < body->n_parts; k++)
-      if (!say_knows(body->parts[k].body)) return false;
-  }
-  return true;
+/* CPROX_OK, or what it is that certificates do not know. */
+static cprox_status check_kinds(const cprox_robot *robot, const cprox_target *targets, size_t n,
+                                cprox_workspace *workspace) {
+  const size_t geometry = certify_unknown_geometry(robot);
+  if (geometry < robot->n_geometries)
+    return workspace_fail(workspace, CPROX_INVALID, "geometry %zu is of a kind that has no certificates: %s", geometry,
+                          cprox_body_kind_name(say_unknown(robot->given_geometries[geometry].body)->kind));
+  for (size_t i = 0; i < n; i++)
+    if (say_unknown(targets[i].body))
+      return workspace_fail(workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates: %s", i,
+                            cprox_body_kind_name(say_unknown(targets[i].body)->kind));
+  return CPROX_OK;
 }
 
 static cprox_status attempt(robot_scene *scene, uint32_t width, double delta, uint32_t budget, cprox_certificate *c) {
@@ -43,14 +47,18 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_target *targets
                            cprox_certificate *certificate) {
   question q = question_create(*mover, targets, n, delta, false, options, workspace);
   q.options.max_rung = CPROX_RUNG_HULL;
-  if (!certify_knows_robot(mover->motion->robot) || !knows_targets(targets, n))
-    return workspace_fail(workspace, CPROX_INVALID, "a body of the question is of a kind that has no certificates");
+  const cprox_status known = check_kinds(mover->motion->robot, targets, n, workspace);
+  if (known != CPROX_OK) return known;
   robot_scene scene;
   if (!robot_scene_begin(&scene, &q, 0, n)) return CPROX_MEMORY;
   if (scene.n_pairs > MOST_PAIRS)
     return workspace_fail(workspace, CPROX_INVALID, "%zu pairs are too many for a certificate", scene.n_pairs);
   const double epsilon = answer ? fmax(options->epsilon, options->relative_epsilon * answer->upper) : 0.0;
   const robot_cover near = {.scene = &scene, .delta = delta, .certificate = certificate};
-  if (answer && answer->upper <= delta) return cover_robot_near(&near, answer);
+  const bool distance = answer && answer->verdict == CPROX_UNDECIDED && delta == answer->lower && delta > 0.0;
+  if (answer && answer->upper <= delta) {
+    const cprox_status status = cover_robot_near(&near, answer);
+    if (status == CPROX_OK || status == CPROX_MEMORY || !distance) return status;
+  }
   return certify_apart(&scene, delta, answer, epsilon, options->max_nodes, certificate);
 }

@@ -99,7 +99,10 @@ cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) 
   const robot_body *moving = robot_scene_moving(s, pair), *standing = robot_scene_standing(s, pair);
   const cprox_body *part = body_of_part(m->robot, pair->moving);
   const cprox_body *other = s->self ? body_of_part(m->robot, pair->standing) : body_of_obstacle(s, pair->standing);
-  if (!part || !other) return CPROX_PRECISION;
+  if (!part || !other)
+    return workspace_fail(
+        s->q->workspace, CPROX_INVALID, "%s %d is a mesh: its convex hull cannot prove that it is near",
+        !part || s->self ? "geometry" : "target", (int)(part ? answer->target_index : answer->mover_part));
 
   cprox_certificate *to = c->certificate;
   certificate_begin(to, 8, CPROX_CLAIM_NEAR, c->delta, (uint32_t)s->n_pairs);
