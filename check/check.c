@@ -18,13 +18,16 @@
 
 enum { MAX_DEPTH = 256 };
 
+/* Bits of the arithmetic: few at first, many for what the few leave open. */
+static const int BITS[PIECES_LEVELS] = {640, 4096};
+
 /* What a section is checked against. */
 typedef struct section {
   reader *in;
   uint32_t width;
   const set *set;
-  const pieces *mover, *target; /* target: of a set that is a curve */
-  const iv *gap;                /* delta + radius + padding */
+  pieces *mover, *target; /* target: of a set that is a curve */
+  double balls[3];        /* delta, radius, padding */
   size_t *leaves;
 } section;
 
@@ -32,32 +35,56 @@ typedef struct part {
   double from, to;
 } part;
 
-/* One leaf: of all of the set, or of a part of a curve. */
-static bool separates(const section *c, const double normal[3], part mine, const part *theirs) {
-  iv *n = iv_new(3), *own = iv_new(3), *w = iv_new(3);
+/* What a number that is known within an interval is. */
+typedef enum sign { NOT_POSITIVE, POSITIVE, OPEN } sign;
+
+static sign sign_of(const iv *a) {
+  if (iv_is_positive(a)) return POSITIVE;
+  return mpfr_number_p(a->hi) && mpfr_sgn(a->hi) <= 0 ? NOT_POSITIVE : OPEN;
+}
+
+/* Is what the two are apart along n more than n makes of the balls? Of all of the set, or of a part of a curve. */
+static sign separation(const section *c, int level, const double normal[3], part mine, const part *theirs) {
+  iv *n = iv_new(3), *own = iv_new(3), *w = iv_new(3), *gap = iv_new(1);
   for (int k = 0; k < 3; k++) iv_set_d(&n[k], normal[k]);
   if (c->set->kind == HALFSPACE) support_halfspace_normal(n, c->set); /* it has no other */
   support_of_frame(&w[0], own, c->set, n);
   if (theirs) {
     for (int k = 0; k < 3; k++) iv_neg(&own[k], &own[k]);
-    pieces_least(&w[1], c->target, own, theirs->from, theirs->to);
+    pieces_least(&w[1], c->target, level, own, theirs->from, theirs->to);
     iv_neg(&w[1], &w[1]);
   } else {
     support_of_body(&w[1], c->set, own);
   }
   iv_add(&w[0], &w[0], &w[1]);
+  for (int i = 0; i < 3; i++) {
+    iv_set_d(&w[1], c->balls[i]);
+    iv_add(gap, gap, &w[1]);
+  }
   iv_norm(&w[1], n);
-  const bool proper = iv_is_positive(&w[1]);
-  iv_mul(&w[1], &w[1], c->gap);
+  const sign proper = sign_of(&w[1]);
+  iv_mul(&w[1], &w[1], gap);
   iv_add(&w[0], &w[0], &w[1]);
-  pieces_least(&w[2], c->mover, n, mine.from, mine.to);
+  pieces_least(&w[2], c->mover, level, n, mine.from, mine.to);
   iv_sub(&w[2], &w[2], &w[0]);
-  const bool separated = proper && iv_is_positive(&w[2]);
+  const sign apart = sign_of(&w[2]);
   iv_free(n, 3);
   iv_free(own, 3);
   iv_free(w, 3);
+  iv_free(gap, 1);
+  return proper == POSITIVE ? apart : proper;
+}
+
+/* One leaf. More bits are for what fewer leave open, and for nothing else: to refuse it needs no more than to accept. */
+static bool separates(const section *c, const double normal[3], part mine, const part *theirs) {
+  sign found = OPEN;
+  for (int level = 0; level < PIECES_LEVELS && found == OPEN; level++) {
+    iv_precision(BITS[level]);
+    found = separation(c, level, normal, mine, theirs);
+  }
+  iv_precision(BITS[0]);
   ++*c->leaves;
-  return separated;
+  return found == POSITIVE;
 }
 
 /* m leaves {end, n}, the ends ascending from 0 to the number of pieces. */
@@ -96,42 +123,29 @@ static const char *check_tree(const section *c, part mine, part theirs, int dept
   return check_tree(c, mine, theirs, depth + 1);
 }
 
-/* The number of pieces and where they join, and the pieces themselves. */
-static const char *read_pieces(reader *in, const curve *c, pieces *p) {
+/* The number of pieces and where they join, and the pieces of it. *breaks is to be freed after them. */
+static const char *read_pieces(reader *in, const curve *c, pieces *p, double **breaks) {
   const uint32_t n = reader_count(in);
   if (in->bad || n == 0 || n - 1 > reader_left(in) / 8) return "it is cut off";
-  double *breaks = malloc((n + (size_t)1) * sizeof *breaks);
-  if (!breaks) return "memory is out";
-  breaks[0] = c->t0;
-  breaks[n] = c->t1;
-  for (uint32_t i = 1; i < n; i++) breaks[i] = reader_number(in);
-  const char *fault = in->bad ? "it is cut off or not a number" : pieces_make(p, c, breaks, n);
-  free(breaks);
-  return fault;
+  double *b = *breaks = malloc((n + (size_t)1) * sizeof *b);
+  if (!b) return "memory is out";
+  b[0] = c->t0;
+  b[n] = c->t1;
+  for (uint32_t i = 1; i < n; i++) b[i] = reader_number(in);
+  return in->bad ? "it is cut off or not a number" : pieces_make(p, c, b, n);
 }
 
-static const char *check_section(section *c, const problem *p, double delta) {
-  iv *gap = iv_new(2);
-  const double balls[3] = {delta, p->mover.radius, c->set->padding};
-  for (int i = 0; i < 3; i++) {
-    iv_set_d(&gap[1], balls[i]);
-    iv_add(&gap[0], &gap[0], &gap[1]);
-  }
-  c->gap = gap;
+static const char *check_section(section *c) {
   const unsigned char wanted = c->set->kind == CURVE ? 2 : 1;
-  const char *fault = NULL;
-  if (reader_byte(c->in) != wanted) {
-    fault = "it is about another kind of target";
-  } else if (wanted == 1) {
-    fault = check_convex(c);
-  } else {
-    pieces target = {0};
-    fault = read_pieces(c->in, &c->set->curve, &target);
-    c->target = &target;
-    if (!fault) fault = check_tree(c, (part){0.0, (double)c->mover->n}, (part){0.0, (double)target.n}, 0);
-    pieces_free(&target);
-  }
-  iv_free(gap, 2);
+  if (reader_byte(c->in) != wanted) return "it is about another kind of target";
+  if (wanted == 1) return check_convex(c);
+  pieces target = {0};
+  double *breaks = NULL;
+  const char *fault = read_pieces(c->in, &c->set->curve, &target, &breaks);
+  c->target = &target;
+  if (!fault) fault = check_tree(c, (part){0.0, (double)c->mover->n}, (part){0.0, (double)target.n}, 0);
+  pieces_free(&target);
+  free(breaks);
   return fault;
 }
 
@@ -143,20 +157,38 @@ static const char *check_robot(robot *r, reader *in, uint32_t width, claim claim
 
 static const char *check_apart(const problem *p, reader *in, uint32_t width, finding *found) {
   pieces path = {0};
-  const char *fault = read_pieces(in, &p->mover.curve, &path);
+  double *breaks = NULL;
+  const char *fault = read_pieces(in, &p->mover.curve, &path, &breaks);
   for (size_t i = 0; i < p->n_sets && !fault; i++) {
     section c = {.in = in, .width = width, .set = &p->sets[i], .mover = &path, .leaves = &found->leaves};
-    fault = check_section(&c, p, found->delta);
+    const double balls[3] = {found->delta, p->mover.radius, c.set->padding};
+    memcpy(c.balls, balls, sizeof balls);
+    fault = check_section(&c);
   }
   pieces_free(&path);
+  free(breaks);
   return fault;
 }
 
-finding check_certificate(const problem *p, const unsigned char *bytes, size_t size, int bits) {
+/* One point: what few bits leave open is tried once more with many. */
+static const char *check_one_point(const problem *p, reader *in, double delta) {
+  const reader start = *in;
+  const char *fault = "";
+  for (int level = 0; level < PIECES_LEVELS && fault && (level == 0 || near_left_open()); level++) {
+    *in = start;
+    iv_precision(BITS[level]);
+    fault = check_near(p, in, delta);
+  }
+  iv_precision(BITS[0]);
+  return fault;
+}
+
+finding check(const problem *p, const unsigned char *bytes, size_t size) {
   finding found = {0};
   reader in = {.at = bytes, .end = bytes + size};
+  const double before = iv_work();
   mpfr_clear_flags();
-  iv_precision(bits);
+  iv_precision(BITS[0]);
 
   /* the head */
   char magic[4];
@@ -174,16 +206,12 @@ finding check_certificate(const problem *p, const unsigned char *bytes, size_t s
   else if (claimed == CLAIM_APART)
     found.fault = sections == p->n_sets ? check_apart(p, &in, width, &found) : "it is about another number of targets";
   else if (claimed == CLAIM_NEAR)
-    found.fault = check_near(p, &in, found.delta);
+    found.fault = check_one_point(p, &in, found.delta);
   else
     found.fault = "it claims nothing that is known";
   if (!found.fault && in.at != in.end) found.fault = "bytes follow its end";
   if (!found.fault && mpfr_nanflag_p()) found.fault = "its arithmetic broke down";
   if (!found.fault) found.claim = (claim)claimed;
+  found.work = iv_work() - before;
   return found;
-}
-
-finding check(const problem *p, const unsigned char *bytes, size_t size) {
-  const finding found = check_certificate(p, bytes, size, 640);
-  return found.fault && !p->mover.robot ? check_certificate(p, bytes, size, 4096) : found;
 }

@@ -5,10 +5,24 @@
 #include <stdlib.h>
 
 static mpfr_prec_t precision = 640;
+static double work;
 
 void iv_precision(int bits) {
   precision = bits;
 }
+
+double iv_work(void) {
+  return work;
+}
+
+/* Of operations that cost about so many products each. */
+static void count(int products) {
+  const double words = (double)precision / 64.0;
+  work += products * words * words;
+}
+
+/* Sines, cosines, roots, quotients: about so many products. */
+enum { TRIGONOMETRIC_WORK = 60, ROOT_WORK = 4, QUOTIENT_WORK = 4 };
 
 iv *iv_new(size_t n) {
   iv *a = malloc((n ? n : 1) * sizeof *a);
@@ -81,6 +95,7 @@ void iv_mul(iv *out, const iv *a, const iv *b) {
   iv *product = iv_new(2);
   mpfr_srcptr ends[4][2] = {{a->lo, b->lo}, {a->lo, b->hi}, {a->hi, b->lo}, {a->hi, b->hi}};
   const int n = mpfr_equal_p(a->lo, a->hi) && mpfr_equal_p(b->lo, b->hi) ? 1 : 4;
+  count(2 * n);
   for (int i = 0; i < n; i++) {
     iv *p = &product[i > 0];
     mpfr_mul(p->lo, ends[i][0], ends[i][1], MPFR_RNDD);
@@ -108,6 +123,7 @@ void iv_div(iv *out, const iv *a, const iv *b) {
     return;
   }
   iv *inverse = iv_new(1);
+  count(2 * QUOTIENT_WORK);
   mpfr_ui_div(inverse->lo, 1, b->hi, MPFR_RNDD);
   mpfr_ui_div(inverse->hi, 1, b->lo, MPFR_RNDU);
   iv_mul(out, a, inverse);
@@ -115,6 +131,7 @@ void iv_div(iv *out, const iv *a, const iv *b) {
 }
 
 void iv_sqrt(iv *out, const iv *a) {
+  count(2 * ROOT_WORK);
   if (mpfr_sgn(a->lo) < 0)
     mpfr_set_ui(out->lo, 0, MPFR_RNDD);
   else
@@ -125,6 +142,7 @@ void iv_sqrt(iv *out, const iv *a) {
 /* Both are within 1 of their slope: f(a) lies within the width of a of its value at one end. */
 static void around(iv *out, const iv *a, int (*f)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t)) {
   iv *value = iv_new(1);
+  count(2 * TRIGONOMETRIC_WORK);
   mpfr_t width;
   mpfr_init2(width, precision);
   mpfr_sub(width, a->hi, a->lo, MPFR_RNDU);

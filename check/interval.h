@@ -15,6 +15,9 @@ typedef struct iv {
 /* Bits of every number made from now on. */
 void iv_precision(int bits);
 
+/* What has been done since the program began, in products of two words of 64 bits: a measure that is the same on all machines. */
+double iv_work(void);
+
 /* n intervals, all [0, 0]; ends the program where memory is out. iv_free() takes the same n. */
 iv *iv_new(size_t n);
 void iv_free(iv *a, size_t n);

@@ -9,6 +9,7 @@
 
 #include "bytes.h"
 #include "check.h"
+#include "robot.h"
 
 enum { EXIT_PROVEN = 0, EXIT_NOT_PROVEN = 1, EXIT_USAGE = 2 };
 
@@ -35,6 +36,33 @@ static unsigned char *read_all(const char *path, size_t *size) {
   return bytes;
 }
 
+/* Meshes are spoken of by their convex hulls: whose they are. Several parts in a row may have one name. */
+static void report_hulls(const problem *p) {
+  enum { MOST_NAMES = 4 };
+  size_t named = 0, more = 0, parts = 0;
+  const char *last = NULL, *before = "; meshes by their convex hulls: ";
+  for (size_t i = 0; i < p->n_sets; i++) {
+    const set *s = &p->sets[i];
+    if (s->kind != HULL || (last && s->name[0] && strcmp(last, s->name) == 0)) continue;
+    last = s->name;
+    if (named == MOST_NAMES) {
+      more++;
+      continue;
+    }
+    printf("%s", before);
+    if (s->name[0])
+      printf("'%s'", s->name);
+    else
+      printf("target %zu", i);
+    before = ", ";
+    named++;
+  }
+  const robot *r = p->mover.robot;
+  for (size_t i = 0; r && i < r->n_parts; i++) parts += r->parts[i].kind == HULL;
+  if (more > 0) printf(" and %zu more", more);
+  if (parts > 0) printf("%s%zu of the robot's %zu bodies", before, parts, r->n_parts);
+}
+
 /* One certificate and its line of the report; whether it proves anything. */
 static bool report(const problem *p, reader *file) {
   const uint32_t size = reader_count(file);
@@ -50,10 +78,12 @@ static bool report(const problem *p, reader *file) {
     return false;
   }
   const finding found = check(p, bytes, size);
-  if (found.claim == CLAIM_APART)
-    printf("%s: proven: farther than %.17g m everywhere (%u bytes, %zu directions)\n", p->mover.id, found.delta,
+  if (found.claim == CLAIM_APART) {
+    printf("%s: proven: farther than %.17g m everywhere (%u bytes, %zu directions", p->mover.id, found.delta,
            (unsigned)size, found.leaves);
-  else if (found.claim == CLAIM_NEAR)
+    report_hulls(p);
+    puts(")");
+  } else if (found.claim == CLAIM_NEAR)
     printf("%s: proven: not farther than %.17g m (%u bytes)\n", p->mover.id, found.delta, (unsigned)size);
   else
     printf("%s: refused: %s\n", p->mover.id, found.fault);

@@ -2,39 +2,47 @@
 #include "pieces.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- polynomials: Bézier points are values of the blossom f, b_j = f(lo, …, lo, hi, …, hi) with hi j times ---------------- */
 
-/* The blossom of a spline's span over its 2p knots, of one coordinate; d is spoilt. Argument i is lo for i < p - j, else hi. */
-static void spline_blossom(iv *out, iv *d, size_t p, const double *knots, const iv *lo, const iv *hi, size_t j) {
+/* A polynomial of one coordinate whose arguments are given away one by one: a spline's span over its 2p knots, or sum c_k x^k with
+ * d_k = c_k / C(p, k). */
+typedef struct blossom {
+  size_t p;
+  const double *knots; /* NULL: powers */
+} blossom;
+
+/* Gives x away as argument l = 1 … p; of d, p + 1 - l numbers are left. */
+static void give(const blossom *b, iv *d, size_t l, const iv *x) {
   iv *w = iv_new(3);
-  for (size_t l = 1; l <= p; l++) {
-    const iv *x = l <= p - j ? lo : hi;
-    for (size_t i = 0; i + l <= p; i++) {
-      iv_set_d(&w[0], knots[i + l - 1]);
-      iv_set_d(&w[1], knots[i + p]);
-      iv_sub(&w[1], &w[1], &w[0]);
-      iv_sub(&w[2], x, &w[0]);
-      iv_div(&w[2], &w[2], &w[1]);
-      iv_blend(&d[i], &d[i + 1], &w[2]);
+  for (size_t i = 0; i + l <= b->p; i++) {
+    if (!b->knots) { /* d_k <- d_k + x d_(k+1) */
+      iv_mul(&w[0], x, &d[i + 1]);
+      iv_add(&d[i], &d[i], &w[0]);
+      continue;
     }
+    iv_set_d(&w[0], b->knots[i + l - 1]);
+    iv_set_d(&w[1], b->knots[i + b->p]);
+    iv_sub(&w[1], &w[1], &w[0]);
+    iv_sub(&w[2], x, &w[0]);
+    iv_div(&w[2], &w[2], &w[1]);
+    iv_blend(&d[i], &d[i + 1], &w[2]);
   }
-  iv_set(out, &d[0]);
   iv_free(w, 3);
 }
 
-/* The same of sum c_k x^k, d_k = c_k / C(p, k): giving x away is d_k <- d_k + x d_(k+1). */
-static void power_blossom(iv *out, iv *d, size_t p, const iv *lo, const iv *hi, size_t j) {
-  iv *step = iv_new(1);
-  for (size_t l = 1; l <= p; l++) {
-    for (size_t k = 0; k + l <= p; k++) {
-      iv_mul(step, l <= p - j ? lo : hi, &d[k + 1]);
-      iv_add(&d[k], &d[k], step);
-    }
+/* out[j * stride] = f(lo p - j times, hi j times) for all j; d is spoilt. */
+static void blossom_all(const blossom *b, iv *d, const iv *lo, const iv *hi, iv *out, size_t stride) {
+  iv *rest = iv_new(b->p + 1);
+  for (size_t j = b->p + 1; j-- > 0;) { /* lo has been given p - j times */
+    for (size_t i = 0; i <= j; i++) iv_set(&rest[i], &d[i]);
+    for (size_t l = b->p - j + 1; l <= b->p; l++) give(b, rest, l, hi);
+    iv_set(&out[j * stride], &rest[0]);
+    if (j > 0) give(b, d, b->p - j + 1, lo);
   }
-  iv_set(out, &d[0]);
-  iv_free(step, 1);
+  iv_free(rest, b->p + 1);
 }
 
 /* x = (a t + b) / (t1 - t0): from t0 … t1 to -1 … 1 for a Legendre series, to 0 … 1 for Lagrange's nodes and Bézier's parameter. */
@@ -152,66 +160,161 @@ static size_t span_of(const curve *c, double lo, double hi, bool first) {
   return found;
 }
 
-static const char *polynomial_piece(const curve *c, double lo, double hi, bool left, iv *points) {
-  const size_t p = c->degree, span = c->basis == BSPLINE ? span_of(c, lo, hi, left) : p;
-  if (span == 0 && p > 0) return "a knot of the spline lies inside a piece";
-  double knots[120] = {0.0}; /* a Bézier curve is a span whose knots are 0 and 1 */
-  for (size_t i = 0; i < p; i++) knots[p + i] = 1.0;
-  if (c->basis == BSPLINE) memcpy(knots, c->knots + (span - p + 1), 2 * p * sizeof *knots);
-  const bool direct = c->basis == BSPLINE || c->basis == POLYNOMIAL;
-  iv *x = iv_new(2), *d = iv_new(p + 1), *spoilt = iv_new(p + 1);
-  iv_set_d(&x[0], lo);
-  iv_set_d(&x[1], hi);
-  if (!direct) {
-    normal_parameter(&x[0], c, lo);
-    normal_parameter(&x[1], c, hi);
-  }
+/* Where a piece is cut from: a span of a spline, the whole of another polynomial. */
+typedef struct source {
+  size_t span;
+  double from, to;
+} source;
+
+static source source_of(const curve *c, size_t span) {
+  if (c->basis != BSPLINE) return (source){c->degree, c->t0, c->t1};
+  return (source){span, c->knots[span], c->knots[span + 1]};
+}
+
+/* One coordinate of a source, ready to be given arguments. */
+static void coefficients(const curve *c, const source *s, int k, iv *d) {
   const bool spline = c->basis == BSPLINE || c->basis == BEZIER;
-  const bool whole = c->basis == BEZIER && lo == c->t0 && hi == c->t1;
+  for (size_t i = 0; i <= c->degree && spline; i++) iv_set_d(&d[i], c->points[s->span - c->degree + i][k]);
+  if (!spline) power_of(d, c, k);
+}
+
+/* Its argument at t: a spline's and a polynomial's own parameter, else that of the basis. */
+static void argument(iv *x, const curve *c, double t) {
+  if (c->basis == BSPLINE || c->basis == POLYNOMIAL)
+    iv_set_d(x, t);
+  else
+    normal_parameter(x, c, t);
+}
+
+enum { MOST_KNOTS = 120 };
+
+static blossom blossom_of(const curve *c, const source *s, double knots[MOST_KNOTS]) {
+  const size_t p = c->degree;
+  for (size_t i = 0; i < p; i++)
+    knots[i] = 0.0, knots[p + i] = 1.0; /* a Bézier curve is a span whose knots are 0 and 1 */
+  if (c->basis == BSPLINE) memcpy(knots, c->knots + (s->span - p + 1), 2 * p * sizeof *knots);
+  return (blossom){p, c->basis == BSPLINE || c->basis == BEZIER ? knots : NULL};
+}
+
+/* The Bézier points of a source, three numbers each. */
+static void source_points(const curve *c, const source *s, iv *points) {
+  const size_t p = c->degree;
+  double knots[MOST_KNOTS];
+  const blossom b = blossom_of(c, s, knots);
+  iv *x = iv_new(2), *d = iv_new(p + 1);
+  argument(&x[0], c, s->from);
+  argument(&x[1], c, s->to);
   for (int k = 0; k < 3; k++) {
-    for (size_t i = 0; i <= p && spline; i++) iv_set_d(&d[i], c->points[span - p + i][k]);
-    if (!spline) power_of(d, c, k);
-    for (size_t j = 0; j <= p; j++) {
-      iv *out = &points[3 * j + (size_t)k];
-      for (size_t i = 0; i <= p; i++) iv_set(&spoilt[i], &d[i]);
-      if (whole)
-        iv_set(out, &d[j]);
-      else if (spline)
-        spline_blossom(out, spoilt, p, knots, &x[0], &x[1], j);
-      else
-        power_blossom(out, spoilt, p, &x[0], &x[1], j);
-    }
+    coefficients(c, s, k, d);
+    for (size_t j = 0; j <= p && c->basis == BEZIER; j++) iv_set(&points[3 * j + (size_t)k], &d[j]);
+    if (c->basis != BEZIER) blossom_all(&b, d, &x[0], &x[1], points + k, 3);
   }
   iv_free(x, 2);
   iv_free(d, p + 1);
-  iv_free(spoilt, p + 1);
+}
+
+/* de Casteljau: the ordinates of the part right of s, or left of it. */
+static void cut(iv *a, size_t degree, const iv *s, bool left) {
+  for (size_t level = 1; level <= degree; level++) {
+    if (!left)
+      for (size_t i = 0; i + level <= degree; i++) iv_blend(&a[i], &a[i + 1], s);
+    else
+      for (size_t i = degree; i >= level; i--) {
+        iv *right = iv_new(1); /* (1 - s) a[i-1] + s a[i] */
+        iv_set(right, &a[i]);
+        iv_set(&a[i], &a[i - 1]);
+        iv_blend(&a[i], right, s);
+        iv_free(right, 1);
+      }
+  }
+}
+
+/* s = (t - from) / (to - from) */
+static void fraction(iv *s, double t, double from, double to) {
+  iv *w = iv_new(2);
+  iv_set_d(&w[0], from);
+  iv_set_d(&w[1], to);
+  iv_sub(&w[1], &w[1], &w[0]);
+  iv_set_d(s, t);
+  iv_sub(s, s, &w[0]);
+  iv_div(s, s, &w[1]);
+  iv_free(w, 2);
+}
+
+/* The part [lo, hi] of a source. */
+static void polynomial_piece(const iv *whole, size_t p, const source *s, double lo, double hi, iv *points) {
+  iv *a = iv_new(p + 1), *at = iv_new(1);
+  for (size_t k = 0; k < 3; k++) {
+    for (size_t j = 0; j <= p; j++) iv_set(&a[j], &whole[3 * j + k]);
+    if (hi != s->to) {
+      fraction(at, hi, s->from, s->to);
+      cut(a, p, at, true);
+    }
+    if (lo != s->from) {
+      fraction(at, lo, s->from, hi);
+      cut(a, p, at, false);
+    }
+    for (size_t j = 0; j <= p; j++) iv_set(&points[3 * j + k], &a[j]);
+  }
+  iv_free(a, p + 1);
+  iv_free(at, 1);
+}
+
+static const char *polynomial_point(const curve *c, double t, bool left, iv point[3]) {
+  const size_t span = c->basis == BSPLINE ? span_of(c, t, t, left) : c->degree;
+  if (span == 0 && c->degree > 0) return "a knot of the spline lies inside a piece";
+  const source s = source_of(c, span);
+  double knots[MOST_KNOTS];
+  const blossom b = blossom_of(c, &s, knots);
+  iv *x = iv_new(1), *d = iv_new(c->degree + 1);
+  argument(x, c, t);
+  for (int k = 0; k < 3; k++) {
+    coefficients(c, &s, k, d);
+    for (size_t l = 1; l <= c->degree; l++) give(&b, d, l, x);
+    iv_set(&point[k], &d[0]);
+  }
+  iv_free(x, 1);
+  iv_free(d, c->degree + 1);
   return NULL;
 }
 
 /* ---- trigonometric series: quintic Hermite pieces, remainder K6 h^6 / 46080 ------------------------------------------------ */
 
+/* (c, s) of an angle becomes that of the sum with another: c c1 - s s1, s c1 + c s1. */
+static void turn_on(iv *angle, const iv *by) {
+  iv *w = iv_new(4);
+  iv_mul(&w[0], &angle[0], &by[0]);
+  iv_mul(&w[1], &angle[1], &by[1]);
+  iv_mul(&w[2], &angle[1], &by[0]);
+  iv_mul(&w[3], &angle[0], &by[1]);
+  iv_sub(&angle[0], &w[0], &w[1]);
+  iv_add(&angle[1], &w[2], &w[3]);
+  iv_free(w, 4);
+}
+
 /* Value, first and second derivative at t, three numbers each. */
 static void series_jet(iv jet[9], const curve *c, double t) {
-  iv *w = iv_new(5);
+  iv *w = iv_new(6), *angle = w, *once = w + 2;
   for (size_t i = 0; i < 9; i++) iv_set_d(&jet[i], i < 3 ? c->points[0][i] : 0.0);
+  iv_set_d(&w[4], t);
+  iv_cos(&once[0], &w[4]);
+  iv_sin(&once[1], &w[4]);
+  iv_set_d(&angle[0], 1.0);
   for (size_t m = 1; m <= c->degree; m++) {
     const double f = (double)m;
-    iv_set_d(&w[0], t);
-    iv_mul_d(&w[0], &w[0], f);
-    iv_cos(&w[1], &w[0]);
-    iv_sin(&w[2], &w[0]);
+    turn_on(angle, once);
     for (size_t k = 0; k < 3; k++) {
       const double a = c->points[2 * m - 1][k], b = c->points[2 * m][k];
       for (int order = 0; order < 3; order++) { /* a cos + b sin, m (b cos - a sin), -m² (a cos + b sin) */
-        iv_mul_d(&w[3], &w[1], order == 1 ? b : a);
-        iv_mul_d(&w[4], &w[2], order == 1 ? -a : b);
-        iv_add(&w[3], &w[3], &w[4]);
-        if (order > 0) iv_mul_d(&w[3], &w[3], order == 1 ? f : -f * f);
-        iv_add(&jet[3 * (size_t)order + k], &jet[3 * (size_t)order + k], &w[3]);
+        iv_mul_d(&w[4], &angle[0], order == 1 ? b : a);
+        iv_mul_d(&w[5], &angle[1], order == 1 ? -a : b);
+        iv_add(&w[4], &w[4], &w[5]);
+        if (order > 0) iv_mul_d(&w[4], &w[4], order == 1 ? f : -f * f);
+        iv_add(&jet[3 * (size_t)order + k], &jet[3 * (size_t)order + k], &w[4]);
       }
     }
   }
-  iv_free(w, 5);
+  iv_free(w, 6);
 }
 
 /* K6 = sum m^6 A_m with the semi-major axes A_m of the ellipses a cos + b sin. */
@@ -243,8 +346,10 @@ static void series_sixth(iv *sum, const curve *c) {
   iv_free(w, 4);
 }
 
-static void series_piece(const curve *c, double lo, double hi, iv *points, iv *remainder) {
-  iv *jet = iv_new(18), *h = iv_new(4), *w = iv_new(1);
+/* From the jets at both ends. */
+static void series_piece(double lo, double hi, const iv *at_lo, const iv *at_hi, const iv *sixth, iv *points,
+                         iv *remainder) {
+  iv *h = iv_new(4), *w = iv_new(1);
   iv_set_d(&h[0], lo);
   iv_set_d(&h[1], hi);
   iv_sub(&h[0], &h[1], &h[0]);
@@ -253,11 +358,9 @@ static void series_piece(const curve *c, double lo, double hi, iv *points, iv *r
   iv_mul(&h[2], &h[0], &h[0]);
   iv_set_d(w, 20.0);
   iv_div(&h[3], &h[2], w); /* h²/20 */
-  series_jet(jet, c, lo);
-  series_jet(jet + 9, c, hi);
   for (size_t j = 0; j < 6; j++) {
     /* from its own end: p, p ± h/5 p', p ± 2h/5 p' + h²/20 p'' */
-    const iv *at = j < 3 ? jet : jet + 9;
+    const iv *at = j < 3 ? at_lo : at_hi;
     const double steps = j < 3 ? (double)j : (double)j - 5.0;
     for (size_t k = 0; k < 3; k++) {
       iv *out = &points[3 * j + k];
@@ -268,80 +371,121 @@ static void series_piece(const curve *c, double lo, double hi, iv *points, iv *r
       if (fabs(steps) == 2.0) iv_add(out, out, w);
     }
   }
-  series_sixth(remainder, c);
   iv_mul(&h[0], &h[2], &h[2]);
   iv_mul(&h[0], &h[0], &h[2]);
-  iv_mul(remainder, remainder, &h[0]);
+  iv_mul(remainder, sixth, &h[0]);
   iv_set_d(w, 46080.0);
   iv_div(remainder, remainder, w);
-  iv_free(jet, 18);
   iv_free(h, 4);
   iv_free(w, 1);
 }
 
 /* ---- any basis --------------------------------------------------------------------------------------------------------------- */
 
+/* Which source a piece is cut from; the pieces are asked about in order. NULL, or why it is cut from none. */
+static const char *find_source(pieces *p, size_t i) {
+  const curve *c = p->curve;
+  if (c->basis != BSPLINE) return NULL;
+  size_t r = i == 0 ? c->degree : p->span[i - 1];
+  while (r + 1 < c->n && !(p->breaks[i] < c->knots[r + 1])) r++;
+  p->span[i] = r;
+  const bool inside = c->knots[r] <= p->breaks[i] && p->breaks[i + 1] <= c->knots[r + 1];
+  return inside ? NULL : "a knot of the spline lies inside a piece";
+}
+
 const char *pieces_make(pieces *p, const curve *c, const double *breaks, size_t n) {
-  const size_t degree = c->basis == TRIGONOMETRIC ? 5 : c->degree, stride = 3 * (degree + 1);
-  *p = (pieces){.degree = degree, .n = n, .points = iv_new(n * stride), .remainder = iv_new(n)};
+  const size_t degree = c->basis == TRIGONOMETRIC ? 5 : c->degree;
+  *p = (pieces){.curve = c, .degree = degree, .n = n, .n_sources = c->basis == BSPLINE ? c->n : 1, .breaks = breaks};
+  p->span = calloc(n, sizeof *p->span);
+  for (int level = 0; level < PIECES_LEVELS; level++) {
+    p->at[level].piece = calloc(n, sizeof(iv *));
+    p->at[level].jet = calloc(n + 1, sizeof(iv *));
+    p->at[level].source = calloc(p->n_sources, sizeof(iv *));
+    if (!p->at[level].piece || !p->at[level].jet || !p->at[level].source) return "memory is out";
+  }
+  if (!p->span) return "memory is out";
   if (breaks[0] != c->t0 || breaks[n] != c->t1) return "the pieces do not cover the curve";
   for (size_t i = 0; i < n; i++) {
     if (!(breaks[i] < breaks[i + 1])) return "the pieces do not follow each other";
-    if (c->basis == TRIGONOMETRIC) {
-      series_piece(c, breaks[i], breaks[i + 1], p->points + i * stride, &p->remainder[i]);
-      continue;
-    }
-    const char *fault = polynomial_piece(c, breaks[i], breaks[i + 1], true, p->points + i * stride);
+    const char *fault = find_source(p, i);
     if (fault) return fault;
   }
   return NULL;
 }
 
 const char *pieces_point(iv point[3], iv *remainder, const curve *c, double t, bool left) {
-  iv *points = iv_new(3 * (c->degree > 5 ? c->degree + 1 : 6));
-  const char *fault = NULL;
   iv_set_d(remainder, 0.0);
-  if (c->basis == TRIGONOMETRIC) {
-    iv *jet = iv_new(9);
-    series_jet(jet, c, t);
-    for (int k = 0; k < 3; k++) iv_set(&points[k], &jet[k]);
-    iv_free(jet, 9);
-  } else {
-    fault = polynomial_piece(c, t, t, left, points);
-  }
-  for (int k = 0; k < 3; k++) iv_set(&point[k], &points[k]);
-  iv_free(points, 3 * (c->degree > 5 ? c->degree + 1 : 6));
-  return fault;
+  if (c->basis != TRIGONOMETRIC) return polynomial_point(c, t, left, point);
+  iv *jet = iv_new(9);
+  series_jet(jet, c, t);
+  for (int k = 0; k < 3; k++) iv_set(&point[k], &jet[k]);
+  iv_free(jet, 9);
+  return NULL;
+}
+
+static size_t numbers_of(const pieces *p) {
+  return 3 * (p->degree + 1);
+}
+
+static void free_rows(iv **rows, size_t n, size_t numbers) {
+  for (size_t i = 0; rows && i < n; i++)
+    if (rows[i]) iv_free(rows[i], numbers);
+  free(rows);
 }
 
 void pieces_free(pieces *p) {
-  iv_free(p->points, p->n * 3 * (p->degree + 1));
-  iv_free(p->remainder, p->n);
-}
-
-/* de Casteljau: the ordinates of the part right of s, or left of it. */
-static void cut(iv *a, size_t degree, const iv *s, bool left) {
-  for (size_t level = 1; level <= degree; level++) {
-    if (!left)
-      for (size_t i = 0; i + level <= degree; i++) iv_blend(&a[i], &a[i + 1], s);
-    else
-      for (size_t i = degree; i >= level; i--) {
-        iv *right = iv_new(1); /* (1 - s) a[i-1] + s a[i] */
-        iv_set(right, &a[i]);
-        iv_set(&a[i], &a[i - 1]);
-        iv_blend(&a[i], right, s);
-        iv_free(right, 1);
-      }
+  for (int level = 0; level < PIECES_LEVELS; level++) {
+    pieces_level *l = &p->at[level];
+    free_rows(l->piece, p->n, numbers_of(p) + 1);
+    free_rows(l->jet, p->n + 1, 9);
+    free_rows(l->source, p->n_sources, numbers_of(p));
+    if (l->sixth) iv_free(l->sixth, 1);
   }
+  free(p->span);
+  *p = (pieces){0};
 }
 
-void pieces_least(iv *out, const pieces *p, const iv n[3], double from, double to) {
+static const iv *jet_at(const pieces *p, pieces_level *l, size_t i) {
+  if (!l->jet[i]) {
+    l->jet[i] = iv_new(9);
+    series_jet(l->jet[i], p->curve, p->breaks[i]);
+  }
+  return l->jet[i];
+}
+
+/* The points of piece i and behind them its remainder: made when they are first needed. */
+static const iv *piece_at(const pieces *p, pieces_level *l, size_t i) {
+  if (l->piece[i]) return l->piece[i];
+  const curve *c = p->curve;
+  const double lo = p->breaks[i], hi = p->breaks[i + 1];
+  iv *made = iv_new(numbers_of(p) + 1);
+  if (c->basis == TRIGONOMETRIC) {
+    if (!l->sixth) {
+      l->sixth = iv_new(1);
+      series_sixth(l->sixth, c);
+    }
+    series_piece(lo, hi, jet_at(p, l, i), jet_at(p, l, i + 1), l->sixth, made, made + numbers_of(p));
+  } else {
+    const source s = source_of(c, p->span[i]);
+    iv **whole = &l->source[c->basis == BSPLINE ? s.span : 0];
+    if (!*whole) {
+      *whole = iv_new(numbers_of(p));
+      source_points(c, &s, *whole);
+    }
+    polynomial_piece(*whole, p->degree, &s, lo, hi, made);
+  }
+  l->piece[i] = made;
+  return made;
+}
+
+void pieces_least(iv *out, pieces *p, int level, const iv n[3], double from, double to) {
   iv *a = iv_new(p->degree + 1), *s = iv_new(3), *length = iv_new(1);
   iv_norm(length, n);
   bool first = true;
   for (size_t i = (size_t)floor(from); i < (size_t)ceil(to) && i < p->n; i++) {
+    const iv *piece = piece_at(p, &p->at[level], i);
     const double k = (double)i, s0 = fmax(from - k, 0.0), s1 = fmin(to - k, 1.0);
-    for (size_t j = 0; j <= p->degree; j++) iv_dot(&a[j], n, p->points + 3 * (i * (p->degree + 1) + j));
+    for (size_t j = 0; j <= p->degree; j++) iv_dot(&a[j], n, piece + 3 * j);
     iv_set_d(&s[0], s0);
     if (s0 > 0.0) cut(a, p->degree, &s[0], false);
     if (s1 < 1.0) { /* (s1 - s0) / (1 - s0) of what is left */
@@ -352,7 +496,7 @@ void pieces_least(iv *out, const pieces *p, const iv n[3], double from, double t
       iv_div(&s[1], &s[1], &s[2]);
       cut(a, p->degree, &s[1], true);
     }
-    iv_mul(&s[0], length, &p->remainder[i]);
+    iv_mul(&s[0], length, &piece[numbers_of(p)]);
     for (size_t j = 0; j <= p->degree; j++) {
       iv_sub(&a[j], &a[j], &s[0]);
       if (first) iv_set(out, &a[j]);

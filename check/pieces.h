@@ -7,19 +7,33 @@
 #include "interval.h"
 #include "problem.h"
 
+/* Arithmetic of few bits, and of many for what the few leave open. */
+enum { PIECES_LEVELS = 2 };
+
+/* What has been made of the pieces with so many bits; NULL where nothing has needed it. */
+typedef struct pieces_level {
+  iv **
+      piece; /* degree + 1 points of three numbers, and a remainder: every point of the curve is within this of the piece's */
+  iv **source; /* Bézier points of the span or the polynomial that pieces are cut from */
+  iv **jet;    /* of a trigonometric series at the breaks */
+  iv *sixth;   /* bounds its sixth derivative */
+} pieces_level;
+
 typedef struct pieces {
-  size_t degree, n;
-  iv *points;    /* piece by piece, degree + 1 points of three numbers */
-  iv *remainder; /* a piece's: every point of the curve is within this of the piece's */
+  const curve *curve;
+  size_t degree, n, n_sources;
+  const double *breaks;
+  size_t *span; /* of a spline: which one each piece is cut from */
+  pieces_level at[PIECES_LEVELS];
 } pieces;
 
-/* Piece i runs from breaks[i] to breaks[i+1]. NULL, or why these cannot be the breaks: they do not ascend from t0 to t1, or a knot
- * of a spline lies inside a piece. To be freed in any case. */
+/* Piece i runs from breaks[i] to breaks[i+1], which are kept by reference. NULL, or why these cannot be the breaks: they do not ascend
+ * from t0 to t1, or a knot of a spline lies inside a piece. To be freed in any case. */
 const char *pieces_make(pieces *p, const curve *c, const double *breaks, size_t n);
 void pieces_free(pieces *p);
 
-/* min n·x over the part [from, to] of the pieces, counted from 0 to their number. */
-void pieces_least(iv *out, const pieces *p, const iv n[3], double from, double to);
+/* min n·x over the part [from, to] of the pieces, counted from 0 to their number. The level's bits are those of the arithmetic. */
+void pieces_least(iv *out, pieces *p, int level, const iv n[3], double from, double to);
 
 /* The point of the curve at the parameter t of [t0, t1]: a piece of no length. At a knot where a spline jumps, its limit from the left
  * or from the right. */

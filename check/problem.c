@@ -17,6 +17,10 @@ const char *words_next(words *w) {
   return found ? found : "";
 }
 
+const char *words_optional(words *w) {
+  return w->wrong ? NULL : strtok_r(NULL, " \t\r\n", &w->rest);
+}
+
 double words_number(words *w) {
   const char *text = words_next(w);
   char *end;
@@ -139,17 +143,22 @@ void words_set(words *w, set *s) {
 const char *words_line(problem *p, words *w) {
   const char *found = NULL;
   w->wrong = false;
+  p->first = NULL;
   while (!found) {
     if (getline(&p->line, &p->capacity, p->in) < 0) return NULL;
     p->number++;
     found = strtok_r(p->line, " \t\r\n", &w->rest);
   }
+  p->first = found;
   return found;
 }
 
 bool words_end(problem *p, words *w) {
-  if (!w->wrong && strtok_r(NULL, " \t\r\n", &w->rest)) w->wrong = true;
-  if (w->wrong) snprintf(p->fault, sizeof p->fault, "line %zu of the problem is not understood", p->number);
+  if (words_optional(w)) w->wrong = true;
+  if (w->wrong && !p->first)
+    snprintf(p->fault, sizeof p->fault, "the problem ends too early, after line %zu", p->number);
+  else if (w->wrong)
+    snprintf(p->fault, sizeof p->fault, "line %zu of the problem, '%.40s ...', is not understood", p->number, p->first);
   return !w->wrong;
 }
 
@@ -164,14 +173,29 @@ bool problem_open(problem *p, FILE *in) {
   *p = (problem){.in = in};
   words w = {0};
   const char *first = words_line(p, &w);
-  if (!first || strcmp(first, "cprox-problem") != 0 || words_number(&w) != 1.0) w.wrong = true;
-  return words_end(p, &w);
+  if (!first) {
+    snprintf(p->fault, sizeof p->fault, "the problem is empty: its first line is missing, 'cprox-problem 1'");
+    return false;
+  }
+  if (strcmp(first, "cprox-problem") != 0 || words_number(&w) != 1.0 || words_optional(&w)) {
+    snprintf(p->fault, sizeof p->fault, "line %zu of the problem must be 'cprox-problem 1'", p->number);
+    return false;
+  }
+  return true;
 }
 
 bool words_begin(problem *p, words *w, const char *first) {
   const char *found = words_line(p, w);
   if (!found || strcmp(found, first) != 0) w->wrong = true;
   return !w->wrong;
+}
+
+/* [called NAME] */
+static void read_name(words *w, set *s) {
+  const char *word = words_optional(w);
+  if (!word) return;
+  if (strcmp(word, "called") != 0) w->wrong = true;
+  snprintf(s->name, sizeof s->name, "%s", words_next(w));
 }
 
 /* The N lines of targets, "targets" being read. */
@@ -182,7 +206,9 @@ static bool read_sets(problem *p, words *w) {
   p->sets = words_room(w, n, sizeof *p->sets);
   while (!w->wrong && p->n_sets < n) {
     words_begin(p, w, "target");
-    words_set(w, &p->sets[p->n_sets++]);
+    set *s = &p->sets[p->n_sets++];
+    words_set(w, s);
+    read_name(w, s);
     if (!words_end(p, w)) return false;
   }
   return !w->wrong;

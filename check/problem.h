@@ -36,6 +36,7 @@ typedef struct set {
   size_t n;
   double (*vertices)[3]; /* about the centre */
   curve curve;
+  char name[64]; /* whose it is, or "" */
 } set;
 
 typedef struct mover {
@@ -52,6 +53,7 @@ typedef struct problem {
   mover mover; /* the one that was read last */
   char fault[300];
   char *line; /* the reader's */
+  const char *first;
   size_t capacity, number;
   FILE *in;
 } problem;

@@ -147,6 +147,12 @@ static const char *check_stretch(walk *w, num *points, const size_t *open, size_
   if (w->in->bad || depth > MAX_DEPTH) return "its tree is broken";
   const char *fault = read_directions(w, head / 2);
   if (fault) return fault;
+
+  /* where nothing is open any more, what is left is read and not worked out */
+  if (n == 0) {
+    for (size_t half = 0; half < head % 2 * 2 && !fault; half++) fault = check_stretch(w, points, open, 0, depth + 1);
+    return fault;
+  }
   kinematics_axes(r, w->degree, points, w->states);
   w->mover = NULL;
   for (size_t i = 0; i < r->n_bodies; i++) w->places[i] = kinematics_place(&r->bodies[i], w->states);

@@ -20,6 +20,10 @@ bool words_end(problem *p, words *w);
 bool words_begin(problem *p, words *w, const char *first);
 
 const char *words_next(words *w);
+
+/* The next word where there is one, else NULL. */
+const char *words_optional(words *w);
+
 double words_number(words *w);
 void words_numbers(words *w, size_t n, double *x);
 

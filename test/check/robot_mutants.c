@@ -45,7 +45,16 @@ static bool is_true(const finding *found, const double interval[2]) {
   return found->claim == CLAIM_NONE || found->delta >= interval[0];
 }
 
-static void judge(const finding *found, const double interval[2], const char *done, size_t question, tally *sum) {
+/* Every stretch takes two bytes at least, and on every stretch each pair is tried with two directions at most. The head of a genuine
+ * certificate tells the number of pairs. */
+static bool is_bounded(const bytes *genuine, size_t size, const finding *found) {
+  uint32_t pairs;
+  memcpy(&pairs, genuine->at + HEAD - sizeof pairs, sizeof pairs);
+  return found->leaves <= 2 * (size_t)pairs * (size / 2 + 1);
+}
+
+static void judge(const finding *found, bool bounded, const double interval[2], const char *done, size_t question,
+                  tally *sum) {
   const bool genuine = strcmp(done, "genuine") == 0, proven = found->claim != CLAIM_NONE;
   sum->genuine += genuine;
   sum->tampered += !genuine;
@@ -56,6 +65,9 @@ static void judge(const finding *found, const double interval[2], const char *do
   } else if (!is_true(found, interval)) {
     printf("FAILED question %zu (%s): %s %.17g was accepted, but the distance is in [%.17g, %.17g]\n", question, done,
            found->claim == CLAIM_APART ? "apart" : "near", found->delta, interval[0], interval[1]);
+    sum->failed++;
+  } else if (!bounded) {
+    printf("FAILED question %zu (%s): %zu directions were tried\n", question, done, found->leaves);
     sum->failed++;
   }
 }
@@ -112,7 +124,7 @@ static void try_question(robot_question *q, size_t number, size_t mutants, rng *
     mutant = *genuine;
     const char *done = k == 0 ? "genuine" : tamper(&mutant, r, other);
     const finding found = robot_text_check(&text, mutant.at, mutant.n);
-    judge(&found, interval, done, number, sum);
+    judge(&found, is_bounded(genuine, mutant.n, &found), interval, done, number, sum);
     write_record(f, q, &mutant, ws);
   }
   robot_text_free(&text);
@@ -122,7 +134,7 @@ static void try_question(robot_question *q, size_t number, size_t mutants, rng *
     if (!ask(q, r, ws, NULL, changed, NULL)) continue;
     text = robot_text_of(&q->mover, q->targets, q->n, ws);
     const finding found = robot_text_check(&text, genuine->at, genuine->n);
-    judge(&found, changed, "changed question", number, sum);
+    judge(&found, is_bounded(genuine, genuine->n, &found), changed, "changed question", number, sum);
     robot_text_free(&text);
   }
 }
@@ -140,7 +152,7 @@ int main(int argc, char **argv) {
   tally sum = {0};
   for (size_t i = 0; i < questions;) {
     robot_question q;
-    robot_question_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), ws);
+    robot_question_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), i % 3 == 2, ws);
     double interval[2];
     if (ask(&q, &r, ws, c, interval, &genuine)) {
       const files f = open_files(argc == 5 ? argv[4] : NULL, i, &q);

@@ -208,16 +208,16 @@ def interpolate(values):
 
 class Set:
     SIZES = {'point': 0, 'sphere': 1, 'box': 3, 'capsule': 2, 'cylinder': 2, 'cone': 2, 'ellipsoid': 3, 'halfspace': 4,
-             'polytope': 0, 'curve': 0}
+             'polytope': 0, 'hull': 1, 'curve': 0}
 
     def __init__(self, words):
         self.padding = words.number()
         self.poses = [(words.numbers(3), words.numbers(4)) for _ in range(words.count())]
         self.kind = words.word()
         self.size = words.numbers(self.SIZES[self.kind])
-        if self.kind in ('point', 'polytope'):
+        if self.kind in ('point', 'polytope', 'hull'):
             centre = words.numbers(3)
-            about = [words.numbers(3) for _ in range(words.count())] if self.kind == 'polytope' else [[F(0)] * 3]
+            about = [words.numbers(3) for _ in range(words.count())] if self.kind != 'point' else [[F(0)] * 3]
             self.vertices = [[c + x for c, x in zip(centre, v)] for v in about]
         if self.kind == 'curve':
             self.curve = Curve(words)
@@ -254,6 +254,8 @@ class Set:
         s, (x, y, z) = self.size, n
         if self.kind in ('point', 'polytope'):
             return max(dot(n, v) for v in self.vertices)
+        if self.kind == 'hull':  # of a mesh that may stick out of it
+            return max(dot(n, v) for v in self.vertices) + s[0] * norm_up(n)
         if self.kind == 'sphere':
             return s[0] * norm_up(n)
         if self.kind == 'box':
@@ -270,6 +272,8 @@ class Set:
 
     def contains(self, p):
         s, (x, y, z) = self.size, p
+        if self.kind == 'hull':  # what is in it need not be in the mesh
+            return False
         if self.kind == 'sphere':
             return dot(p, p) <= s[0] ** 2
         if self.kind == 'box':

@@ -5,9 +5,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <string.h>
+
 #include <cmocka.h>
 
 #include "support/questions.h"
+#include "support/tampering.h"
+
+enum { SAMPLES = 200, MUTANTS = 25 };
 
 /* Figures of a campaign, printed at its end. */
 typedef struct tally {
@@ -94,11 +99,200 @@ static void curves_against_curves_leave_certificates_that_hold(void **state) {
   examine_many(3, 60, (asked_kinds){.curve_target = true}, "curve, curve");
 }
 
+/* ---- meshes ----------------------------------------------------------------------------------------------------------------- */
+
+/* The least distance that is seen from the curve to the triangles of the target, or into the inside of a closed one: no claim may say
+ * that it is farther. */
+static double seen(const asked *q, size_t target, cprox_workspace *ws) {
+  const question_mesh *mesh = &q->mesh[target];
+  const cprox_target *t = &q->targets[target];
+  double least = INFINITY, t0, t1;
+  cprox_curve_domain(q->mover.curve, &t0, &t1);
+  for (int i = 0; i <= SAMPLES; i++) {
+    vec3 p;
+    const double at = fmin(t0 + (t1 - t0) * i / SAMPLES, t1);
+    assert_int_equal(cprox_curve_evaluate(q->mover.curve, at, ws, &p, NULL, NULL), CPROX_OK);
+    const vec3l y = ref_to_local(&t->pose, ref_vec(p));
+    const bool inside = cprox_body_is_solid(mesh->mesh) && fabsl(mesh_winding(&mesh->surface, y)) > 0.5L;
+    const double d = inside ? 0.0 : (double)mesh_distance(&mesh->surface, y);
+    least = fmin(least, fmax(d - q->radius - t->padding, 0.0));
+  }
+  return least;
+}
+
+/* How close mover and target come, by hulls. */
+static cprox_result hulls_of(const asked *q, cprox_options options, cprox_workspace *ws) {
+  cprox_result r;
+  options.max_rung = CPROX_RUNG_HULL;
+  options.certificate = NULL;
+  ask(q, -1.0, &options, ws, &r);
+  return r;
+}
+
+static bool is_same(const cprox_result *a, const cprox_result *b) {
+  return a->status == b->status && a->verdict == b->verdict && a->lower == b->lower && a->upper == b->upper &&
+         a->t == b->t && vec_norm2(vec_sub(a->on_mover, b->on_mover)) == 0.0 &&
+         vec_norm2(vec_sub(a->on_target, b->on_target)) == 0.0 && a->target_index == b->target_index &&
+         a->rung == b->rung && a->nodes == b->nodes && a->probes == b->probes;
+}
+
+/* A question with and without a certificate: the answer is the same, and what is proven is so. */
+static void examine_mesh(const asked *q, double delta, cprox_workspace *ws, cprox_certificate *c, tally *sum) {
+  cprox_options options = cprox_options_default();
+  options.epsilon = 1e-6 * q->scale;
+  cprox_result plain, r;
+  assert_true(ask(q, delta, &options, ws, &plain) >= 0);
+  options.certificate = c;
+  assert_true(ask(q, delta, &options, ws, &r) >= 0);
+  assert_true(is_same(&plain, &r));
+  sum->asked++;
+  const cprox_result hulls = hulls_of(q, options, ws);
+  if (cprox_certificate_size(c) == 0) {
+    const double wanted = delta < 0.0 ? 0.0 : delta;
+    if (r.lower > wanted && hulls.lower > wanted)
+      fail_msg("no certificate of lower %.17g, by hulls %.17g, over %.17g", r.lower, hulls.lower, wanted);
+    sum->none++;
+    return;
+  }
+  const finding found = asked_check(q, cprox_certificate_bytes(c), cprox_certificate_size(c));
+  if (found.fault) fail_msg("refused: %s", found.fault);
+  sum->apart += found.claim == CLAIM_APART;
+  sum->near += found.claim == CLAIM_NEAR;
+  if (found.claim == CLAIM_NEAR) {
+    assert_null(q->mesh[r.target_index].body);
+    assert_true(found.delta >= r.lower);
+    return;
+  }
+  for (size_t i = 0; i < q->n; i++)
+    if (q->mesh[i].body && seen(q, i, ws) < found.delta * (1.0 - 1e-12))
+      fail_msg("farther than %g is not so", found.delta);
+  const double least = fmin(r.lower, hulls.lower) - 2.0 * options.epsilon;
+  if (delta < 0.0 && found.delta < least) fail_msg("farther than %.17g is proven, not %.17g", found.delta, least);
+}
+
+/* 150 questions, seed 4: curves beside meshes that are not convex, in their holes and inside of them. */
+static void proofs_of_meshes_hold_of_their_triangles_and_leave_answers_as_they_are(void **state) {
+  (void)state;
+  rng r = rng_seed(4);
+  cprox_workspace *ws = cprox_workspace_create();
+  cprox_certificate *c = cprox_certificate_create();
+  tally sum = {0};
+  size_t within = 0;
+  for (size_t i = 0; i < test_cases(150); i++) {
+    asked q;
+    asked_random(&q, &r, (asked_kinds){.meshes = true, .bezier_only = i % 2 == 0}, 1.0, i % 3 ? 1.0 : 0.1, ws);
+    for (size_t k = 0; k < q.n && i % 2; k++)
+      if (q.mesh[k].body) q.targets[k].pose.position = vec_add(q.mover.points[0], rng_in_cube(&r, 0.3));
+    cprox_options options = cprox_options_default();
+    const double distance = hulls_of(&q, options, ws).lower;
+    cprox_result exact;
+    ask(&q, -1.0, &options, ws, &exact);
+    within += distance == 0.0 && exact.lower > 0.0;
+    examine_mesh(&q, -1.0, ws, c, &sum);
+    examine_mesh(&q, 0.5 * distance, ws, c, &sum);
+    examine_mesh(&q, 0.5 * exact.lower, ws, c, &sum);
+    examine_mesh(&q, 1.5 * exact.lower, ws, c, &sum);
+    asked_free(&q);
+  }
+  print_message("meshes: %zu asked, %zu apart, %zu near, %zu without; %zu in a hull that clear the mesh\n", sum.asked,
+                sum.apart, sum.near, sum.none, within);
+  assert_true(within > 5 && sum.apart > 100 && sum.near > 20);
+  cprox_certificate_free(c);
+  cprox_workspace_free(ws);
+}
+
+/* A proof that a curve is near the polytope which a mesh's hull is, held against the question about the mesh. */
+static void that_a_hull_is_near_proves_nothing_of_its_mesh(void **state) {
+  (void)state;
+  rng r = rng_seed(5);
+  cprox_workspace *ws = cprox_workspace_create();
+  cprox_certificate *c = cprox_certificate_create();
+  size_t tried = 0;
+  for (size_t i = 0; i < test_cases(100); i++) {
+    asked q;
+    asked_random(&q, &r, (asked_kinds){.meshes = true}, 1.0, 1.0, ws);
+    cprox_options options = cprox_options_default();
+    options.certificate = c;
+    cprox_target ladders[QUESTION_MAX_TARGETS];
+    for (size_t k = 0; k < q.n; k++) {
+      ladders[k] = q.targets[k];
+      if (q.mesh[k].body) q.targets[k].body = q.mesh[k].hull;
+    }
+    cprox_result by_hull;
+    ask(&q, 2.0, &options, ws, &by_hull);
+    for (size_t k = 0; k < q.n; k++) q.targets[k] = ladders[k];
+    if (cprox_certificate_claim(c) == CPROX_CLAIM_NEAR && q.mesh[by_hull.target_index].body) {
+      assert_int_equal(asked_check(&q, cprox_certificate_bytes(c), cprox_certificate_size(c)).claim, CLAIM_NONE);
+      tried++;
+    }
+    asked_free(&q);
+  }
+  assert_true(tried > 20);
+  cprox_certificate_free(c);
+  cprox_workspace_free(ws);
+}
+
+/* ---- work ------------------------------------------------------------------------------------------------------------------- */
+
+/* The numbers of a question: points of both curves, vertices, and what every target takes. */
+static double numbers_of(const asked *q) {
+  double numbers = (double)(q->mover.n + q->mover.n_knots + q->target_curve.n + q->target_curve.n_knots);
+  for (size_t i = 0; i < q->n; i++) numbers += 16.0 + (double)cprox_target_describe(&q->targets[i], NULL, 0) / 20.0;
+  return numbers;
+}
+
+/* Products of 640 bits that a number of the certificate may cost with each number of the question. */
+#define DEAR 200.0
+
+/* 60 questions of every basis and kind (seed 6), each with its certificate tampered with 25 times: what the checker does is bounded by the
+ * bytes of the certificate and the size of the question, and to refuse one takes no more than to accept it. In products of words, so
+ * that it is no matter of the machine. */
+static void what_a_check_takes_is_bounded_by_what_it_is_given(void **state) {
+  (void)state;
+  static bytes genuine, other, mutant;
+  rng r = rng_seed(6);
+  cprox_workspace *ws = cprox_workspace_create();
+  cprox_certificate *c = cprox_certificate_create();
+  double dearest = 0.0, most = 0.0;
+  for (size_t i = 0; i < test_cases(60); i++) {
+    asked q;
+    asked_random(&q, &r, (asked_kinds){.curve_target = i % 3 == 0, .meshes = i % 3 == 1}, 1.0, 1.0, ws);
+    cprox_options options = cprox_options_default();
+    options.certificate = c;
+    cprox_result result;
+    ask(&q, -1.0, &options, ws, &result);
+    genuine.n = cprox_certificate_size(c);
+    if (genuine.n > 0 && genuine.n + 16 < MOST_BYTES) {
+      memcpy(genuine.at, cprox_certificate_bytes(c), genuine.n);
+      const finding accepted = asked_check(&q, genuine.at, genuine.n);
+      assert_null(accepted.fault);
+      for (int k = 0; k < MUTANTS; k++) {
+        mutant = genuine;
+        tamper(&mutant, &r, other.n > 0 ? &other : &genuine);
+        const finding found = asked_check(&q, mutant.at, mutant.n);
+        const double given = (double)(mutant.n + 8) / 8.0 * numbers_of(&q);
+        dearest = fmax(dearest, found.work / 100.0 / given);
+        if (found.fault && strcmp(found.fault, "it is about another kind of target") != 0)
+          most = fmax(most, found.work / accepted.work);
+      }
+      other = genuine;
+    }
+    asked_free(&q);
+  }
+  print_message("work: %.3g products a number of both, a mutant %.3g times what the genuine one took\n", dearest, most);
+  assert_true(dearest < DEAR && most < 3.0);
+  cprox_certificate_free(c);
+  cprox_workspace_free(ws);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_bezier_curve_and_a_polytope_leave_a_certificate_that_holds),
       cmocka_unit_test(every_basis_and_every_convex_kind_leave_certificates_that_hold),
       cmocka_unit_test(curves_against_curves_leave_certificates_that_hold),
+      cmocka_unit_test(proofs_of_meshes_hold_of_their_triangles_and_leave_answers_as_they_are),
+      cmocka_unit_test(that_a_hull_is_near_proves_nothing_of_its_mesh),
+      cmocka_unit_test(what_a_check_takes_is_bounded_by_what_it_is_given),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

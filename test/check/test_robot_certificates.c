@@ -132,7 +132,7 @@ static void random_robots_leave_certificates_that_hold(void **state) {
   rng r = rng_seed(4);
   for (size_t i = 0; i < test_cases(100); i++) {
     robot_question q;
-    robot_question_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), ws);
+    robot_question_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), false, ws);
     char name[40];
     snprintf(name, sizeof name, "robot %zu", i);
     ask_thrice(&q.mover, q.targets, q.n, 1e-5, name, c, sum);
@@ -142,6 +142,42 @@ static void random_robots_leave_certificates_that_hold(void **state) {
   print_tally("random robots, .9 of it", &sum[1]);
   print_tally("random robots, 1.1 of it", &sum[2]);
   assert_true(sum[0].apart > 20);
+  cprox_certificate_free(c);
+}
+
+/* ---- meshes ----------------------------------------------------------------------------------------------------------------- */
+
+/* 60 robots with meshes on links and beside them (seed 5). The answer is that without a certificate; what is proven is accepted and
+ * does not contradict the distance to the triangles; of hulls nothing is near. */
+static void meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are(void **state) {
+  (void)state;
+  cprox_certificate *c = cprox_certificate_create();
+  rng r = rng_seed(5);
+  size_t apart = 0, near = 0, none = 0;
+  for (size_t i = 0; i < test_cases(60); i++) {
+    robot_question q;
+    robot_question_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.3, 2.0), true, ws);
+    cprox_options options = accurate(1e-5);
+    cprox_result plain, with;
+    assert_true(cprox_distance_all(q.mover, q.targets, q.n, &options, ws, &plain, NULL) >= 0);
+    options.certificate = c;
+    assert_true(cprox_distance_all(q.mover, q.targets, q.n, &options, ws, &with, NULL) >= 0);
+    assert_true(with.status == plain.status && with.lower == plain.lower && with.upper == plain.upper);
+    assert_true(with.t == plain.t && with.rung == plain.rung && with.nodes == plain.nodes);
+    none += cprox_certificate_size(c) == 0;
+    if (cprox_certificate_size(c) > 0) {
+      robot_text text = robot_text_of(&q.mover, q.targets, q.n, ws);
+      const finding found = robot_text_check(&text, cprox_certificate_bytes(c), cprox_certificate_size(c));
+      robot_text_free(&text);
+      if (found.fault) fail_msg("robot %zu: refused: %s", i, found.fault);
+      if (found.claim == CLAIM_APART ? found.delta >= plain.upper : found.delta < plain.lower)
+        fail_msg("robot %zu: %g is proven of [%.17g, %.17g]", i, found.delta, plain.lower, plain.upper);
+      apart += found.claim == CLAIM_APART, near += found.claim == CLAIM_NEAR;
+    }
+    robot_question_free(&q);
+  }
+  print_message("robots with meshes: %zu apart, %zu near, %zu without\n", apart, near, none);
+  assert_true(apart > 10);
   cprox_certificate_free(c);
 }
 
@@ -213,6 +249,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(real_robots_leave_certificates_that_hold),
       cmocka_unit_test(random_robots_leave_certificates_that_hold),
+      cmocka_unit_test(meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are),
       cmocka_unit_test(a_direction_of_any_length_proves_what_is_so_and_nothing_else),
   };
   return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "shape/body.h"
+#include "support/meshes.h"
 
 /* ---- curves ------------------------------------------------------------------------------------------------------------- */
 
@@ -138,6 +139,24 @@ cprox_body *question_body(rng *r, double scale, bool polytope_only, cprox_worksp
   return body;
 }
 
+/* A torus with bumps, or triangles anywhere; the hull may be smaller than it by what it is told to be. */
+question_mesh question_mesh_random(rng *r, double scale, cprox_mesh_fill fill, cprox_workspace *ws) {
+  const double size = rng_uniform(r, 0.2, 0.5) * scale;
+  test_mesh mesh = fill == CPROX_MESH_SOLID || rng_index(r, 2) ? mesh_torus(6 + rng_index(r, 8), 4 + rng_index(r, 4),
+                                                                            size, size * rng_uniform(r, 0.1, 0.5), 0.1)
+                                                               : mesh_soup(r, 3 + rng_index(r, 20), 0.5 * size, size);
+  question_mesh made = {.mesh = mesh_body(&mesh, fill, ws), .surface = mesh};
+  const double excess = rng_index(r, 2) ? 0.0 : 0.01 * size;
+  vec3 *inner = calloc(mesh.n, sizeof *inner);
+  assert_non_null(inner);
+  for (size_t i = 0; i < mesh.n; i++) inner[i] = vec_scale(1.0 - 0.2 * excess / size, mesh.vertices[i]);
+  if (cprox_body_create_polytope(inner, mesh.n, ws, &made.hull) != CPROX_OK ||
+      cprox_body_create_ladder(made.hull, excess, made.mesh, ws, &made.body) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_reason(ws));
+  free(inner);
+  return made;
+}
+
 static cprox_body *body_random(asked *q, rng *r, bool polytope_only, cprox_workspace *ws) {
   cprox_body *body = question_body(r, q->scale, polytope_only, ws);
   q->bodies[q->n_bodies++] = body;
@@ -170,6 +189,12 @@ void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away
       if (rng_index(r, 2)) t->pose = (cprox_pose){beside, {1, 0, 0, 0}};
       continue;
     }
+    if (kinds.meshes && rng_index(r, 2)) {
+      q->mesh[i] = question_mesh_random(r, scale, rng_index(r, 3) ? CPROX_MESH_SURFACE : CPROX_MESH_SOLID, ws);
+      *t = cprox_at(q->mesh[i].body, (cprox_pose){vec_add(middle, beside), rng_quat(r)});
+      if (rng_index(r, 3) == 0) *t = cprox_padded(*t, 0.05 * scale);
+      continue;
+    }
     const bool compound = !kinds.polytope_only && q->n_bodies == 0 && rng_index(r, 5) == 0;
     const cprox_body *body = compound ? compound_random(q, r, ws) : body_random(q, r, kinds.polytope_only, ws);
     *t = cprox_at(body, (cprox_pose){vec_add(middle, beside), rng_quat(r)});
@@ -178,7 +203,15 @@ void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away
   }
 }
 
+void question_mesh_free(question_mesh *mesh) {
+  cprox_body_free(mesh->body);
+  cprox_body_free(mesh->mesh);
+  cprox_body_free(mesh->hull);
+  mesh_free(&mesh->surface);
+}
+
 void asked_free(asked *q) {
+  for (size_t i = 0; i < q->n; i++) question_mesh_free(&q->mesh[i]);
   for (size_t i = 0; i < q->n_bodies; i++) cprox_body_free(q->bodies[i]);
   cprox_curve_free(q->mover.curve);
   cprox_curve_free(q->target_curve.curve);

@@ -7,9 +7,10 @@
 
 #include "check.h"
 #include "curve_proximity/cprox.h"
+#include "support/meshes.h"
 #include "support/random.h"
 
-enum { QUESTION_MAX_POINTS = 40, QUESTION_MAX_TARGETS = 3, QUESTION_MAX_BODIES = 8 };
+enum { QUESTION_MAX_POINTS = 40, QUESTION_MAX_TARGETS = 3, QUESTION_MAX_BODIES = 12 };
 
 /* A curve as it was given. */
 typedef struct given_curve {
@@ -21,6 +22,12 @@ typedef struct given_curve {
   cprox_curve *curve;
 } given_curve;
 
+/* A mesh that is not convex, with its hull: the body of both, the mesh, the hull; to be freed in this order. And its triangles. */
+typedef struct question_mesh {
+  cprox_body *body, *mesh, *hull;
+  test_mesh surface;
+} question_mesh;
+
 typedef struct asked {
   given_curve mover;
   double radius;
@@ -29,7 +36,8 @@ typedef struct asked {
   given_curve target_curve; /* of a target that is a curve, curve NULL: none */
   cprox_body *bodies[QUESTION_MAX_BODIES];
   size_t n_bodies;
-  double scale; /* of the sizes [m] */
+  question_mesh mesh[QUESTION_MAX_TARGETS]; /* of a target that is a mesh; body NULL: it is none */
+  double scale;                             /* of the sizes [m] */
 } asked;
 
 /* What may be asked. */
@@ -37,10 +45,14 @@ typedef struct asked_kinds {
   bool bezier_only; /* curves of the other bases, too */
   bool polytope_only;
   bool curve_target;
+  bool meshes; /* half of the targets */
 } asked_kinds;
 
 /* Of any convex kind. */
 cprox_body *question_body(rng *r, double scale, bool polytope_only, cprox_workspace *ws);
+
+question_mesh question_mesh_random(rng *r, double scale, cprox_mesh_fill fill, cprox_workspace *ws);
+void question_mesh_free(question_mesh *mesh);
 
 /* Fills q, which must stay where it is. Sizes around `scale`, everything `away` from the origin. */
 void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away, cprox_workspace *ws);

@@ -11,8 +11,6 @@
 
 #include <cmocka.h>
 
-#include "support/questions.h"
-
 /* One that ends somewhere: a link's. */
 static cprox_body *bounded_body(rng *r, double scale, cprox_workspace *ws) {
   cprox_body *body = question_body(r, scale, false, ws);
@@ -23,8 +21,13 @@ static cprox_body *bounded_body(rng *r, double scale, cprox_workspace *ws) {
   return body;
 }
 
-/* One body, or a union of two. */
-static cprox_body *one_or_two(robot_question *q, rng *r, bool bounded, double scale, cprox_workspace *ws) {
+/* One body, a mesh, or a union of two. */
+static cprox_body *one_or_two(robot_question *q, rng *r, bool bounded, double scale, bool meshes, cprox_workspace *ws) {
+  if (meshes && rng_index(r, 3) == 0) {
+    question_mesh *mesh = &q->mesh[q->n_meshes++];
+    *mesh = question_mesh_random(r, scale, CPROX_MESH_SURFACE, ws);
+    return mesh->body;
+  }
   cprox_body *one = bounded ? bounded_body(r, scale, ws) : question_body(r, scale, false, ws), *both = NULL;
   if (rng_index(r, 5)) return one;
   cprox_body *parts[2] = {one, bounded_body(r, scale, ws)};
@@ -35,19 +38,19 @@ static cprox_body *one_or_two(robot_question *q, rng *r, bool bounded, double sc
   return both;
 }
 
-void robot_question_random(robot_question *q, rng *r, double speed, double apart, cprox_workspace *ws) {
+void robot_question_random(robot_question *q, rng *r, double speed, double apart, bool meshes, cprox_workspace *ws) {
   *q = (robot_question){.n = 1 + rng_index(r, ROBOT_QUESTION_TARGETS)};
   robot_make(r, speed, &q->robot);
   for (size_t i = 0; i < q->robot.n_links; i++) {
     if (rng_index(r, 2)) continue;
     cprox_body_free((cprox_body *)q->robot.geometries[i].body);
-    q->robot.geometries[i].body = one_or_two(q, r, true, 0.3, ws);
+    q->robot.geometries[i].body = one_or_two(q, r, true, 0.3, meshes, ws);
   }
   robot_rebuild(&q->robot);
   for (size_t i = 0; i < q->n; i++) {
     cprox_pose at = rng_pose(r, 0.3);
     at.position = vec_axpy(at.position, apart, rng_unit(r));
-    q->targets[i] = cprox_at(one_or_two(q, r, false, 0.5, ws), at);
+    q->targets[i] = cprox_at(one_or_two(q, r, false, 0.5, meshes, ws), at);
     q->targets[i].padding = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0.0, 0.1);
   }
   const bool self = rng_index(r, 3) == 0;
@@ -61,6 +64,10 @@ void robot_question_free(robot_question *q) {
   for (size_t i = 0; i < q->n; i++) cprox_body_free((cprox_body *)q->targets[i].body);
   robot_free(&q->robot);
   for (size_t i = 0; i < q->n_loose; i++) cprox_body_free(q->loose[i]);
+  for (size_t i = 0; i < q->n_meshes; i++) {
+    q->mesh[i].body = NULL; /* it went with its link or its target */
+    question_mesh_free(&q->mesh[i]);
+  }
 }
 
 /* ---- text ----------------------------------------------------------------------------------------------------------------- */

@@ -7,12 +7,14 @@
 
 #include "check.h"
 #include "curve_proximity/cprox.h"
+#include "support/questions.h"
 #include "support/robots.h"
 
 enum {
   ROBOT_QUESTION_MOST = 64,
   ROBOT_QUESTION_TARGETS = 4,
-  ROBOT_QUESTION_LOOSE = 2 * (TEST_MAX_LINKS + ROBOT_QUESTION_TARGETS)
+  ROBOT_QUESTION_BODIES = TEST_MAX_LINKS + ROBOT_QUESTION_TARGETS,
+  ROBOT_QUESTION_LOOSE = 2 * ROBOT_QUESTION_BODIES
 };
 
 typedef struct robot_question {
@@ -21,11 +23,13 @@ typedef struct robot_question {
   size_t n;
   cprox_body *loose[ROBOT_QUESTION_LOOSE]; /* what unions are made of */
   size_t n_loose;
+  question_mesh mesh[ROBOT_QUESTION_BODIES]; /* their bodies are those of links and targets */
+  size_t n_meshes;
   cprox_mover mover; /* along, or against itself */
 } robot_question;
 
-/* speed: as robot_make(). apart: how far the targets are from the robot's base [m]. */
-void robot_question_random(robot_question *q, rng *r, double speed, double apart, cprox_workspace *ws);
+/* speed: as robot_make(). apart: how far the targets are from the robot's base [m]. meshes: a third of the bodies. */
+void robot_question_random(robot_question *q, rng *r, double speed, double apart, bool meshes, cprox_workspace *ws);
 void robot_question_free(robot_question *q);
 
 /* The head and the targets; then a robot. */
