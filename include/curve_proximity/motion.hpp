@@ -71,9 +71,12 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &qu
 Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &workspace);
 
 /** The question as the program cprox_check reads it (doc/certificates.md): where things stand, the robot along its motion, the pairs that
- *  askEnvironment() or with `self` askSelf() asks about; meshes by their convex hulls. A certificate of these (options.certificate, with
- *  max_rung hull) is about this text. Empty where there is no pair, or a body of a kind that has no certificates. */
+ *  askEnvironment() or with `self` askSelf() asks about; meshes by their convex hulls. A certificate of these (options.certificate) is
+ *  about this text. Empty where there is no pair, or a body of a kind that has no certificates. */
 std::string describeQuestion(const RobotMotion &motion, bool self, const Question &question);
+
+/** What has no certificates, with its kind: a sentence each. Where there is any, no answer can be proven. */
+std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Question &question);
 
 /** How many pairs are asked about at most, and how close they must come. */
 struct PairLimits {

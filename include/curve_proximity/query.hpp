@@ -21,8 +21,11 @@ enum class Verb { DISTANCE, TOLERANCE, COLLISION };
  *  options what the table at cprox_options says. */
 struct Question {
   Verb verb = Verb::DISTANCE;
-  double delta = 0.0;                              /**< [m] >= 0: of TOLERANCE, else 0 */
-  cprox_options options = cprox_options_default(); /**< epsilon, budget, stop function */
+  double delta = 0.0; /**< [m] >= 0: of TOLERANCE, else 0 */
+
+  /** Epsilon, budget, stop function. `certificate` receives the proof of the answer, about everything that is asked about, or is left
+   *  empty: then Answer::unproven says why. It changes nothing in the answer. */
+  cprox_options options = cprox_options_default();
   bool per_object = false; /**< one answer for each object and each link (for its nearest shape), else one in all */
 
   /** What the curve is measured against: everything where both lists are empty, else only what they name (objects alone:
@@ -54,6 +57,7 @@ struct Answer {
   double microseconds = 0; /**< steady clock, around the search of this curve (per object: of this object) */
   std::string status;      /**< cprox_status_name(result.status) */
   std::string message;     /**< for a person: why there is no answer, or what is special about it; often empty */
+  std::string unproven;    /**< for a person: why the certificate that was asked for is empty; else empty */
 };
 
 /** A curve made ready for any number of queries, by any number of threads. */
@@ -94,12 +98,19 @@ class Targets {
   std::unique_ptr<const Data> data_;
 };
 
-/** Everything that a question is about, as the core takes it with max_rung hull; valid as long as `targets` is. Certificates are
- *  about these: where things stand, in doubles, when rounding before the core is done, meshes by their convex hulls. */
+/** Everything that a question is about, as the core takes it; valid as long as `targets` is. Certificates are about these: where
+ *  things stand, in doubles, when rounding before the core is done. */
 std::vector<cprox_target> coreTargets(const Targets &targets);
 
 /** Which of them an answer names; -1 for none. */
 std::int32_t coreTargetOf(const Targets &targets, const Answer &answer);
+
+/** The same as the program cprox_check reads it (doc/certificates.md), a line a convex part with the name of its owner; meshes by their
+ *  convex hulls. Empty where something is of a kind that has no certificates. */
+std::string describeTargets(const Targets &targets);
+
+/** What has no certificates, with its kind: a sentence each. Where there is any, no answer can be proven. */
+std::vector<std::string> unprovable(const Targets &targets);
 
 /** Answers a question for one curve: one answer, or with per_object one for each object and link in the order of their
  *  names (objects first; none at all: one answer with b empty).

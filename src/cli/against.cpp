@@ -43,7 +43,11 @@ CompiledCurve curveOf(const std::optional<CsvRow> &row, const std::string &file)
   }
 }
 
-Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Question &question, Workspace &workspace) {
+Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Question &given, Workspace &workspace) {
+  const CertificateHandle proof = makeCertificate();
+  const bool with_proof = !arguments.certificate.empty();
+  Question question = given;
+  if (with_proof) question.options.certificate = proof.get();
   using Clock = std::chrono::steady_clock;
   ResultRow row;
   row.kind = "curve_curve";
@@ -60,10 +64,8 @@ Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Questi
     out.stopped = row.result.status == CPROX_STOPPED;
     if (row.result.status < 0)
       out.complaints.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_reason(workspace.get()));
-    out.certificate =
-        arguments.certificate.empty()
-            ? ""
-            : certificateRecord(a, {cprox_curve_target(b.curve.get(), b.radius)}, row.result, question, workspace);
+    if (with_proof && row.result.status >= 0 && cprox_certificate_size(proof.get()) == 0)
+      out.unproven.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_reason(workspace.get()));
   } catch (const std::bad_alloc &) {
     row.result.status = CPROX_MEMORY;
     out.complaints.push_back(arguments.curves + ": id '" + row.id + "': " + cprox_status_text(CPROX_MEMORY));
@@ -72,7 +74,8 @@ Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Questi
     const bool own = !rows.second && rows.first;
     out.complaints.push_back(own ? placeOf(*rows.first, arguments.curves) + ": " + e.what() : e.what());
   }
-  if (out.certificate.empty() && !arguments.certificate.empty()) out.certificate = emptyRecord();
+  if (with_proof) row.proof = proofOf(proof);
+  if (with_proof) out.certificate = recordOf(proof);
   out.text = resultsLine(row);
   return out;
 }
@@ -91,7 +94,7 @@ int answerAgainst(const Arguments &arguments, Console &console) {
   console.warn(warnings);
 
   catchInterrupts();
-  results.write(resultsHeader());
+  results.write(resultsHeader(!arguments.certificate.empty()));
   Rows rows;
   rows.next = [&]() -> std::optional<Task> {
     RowPair pair{first.next(), second.next()};

@@ -205,14 +205,6 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
   out.state = words.text("--state");
 }
 
-/* Certificates speak of convex bodies: with them meshes are answered by their hulls. */
-void limitToHulls(const Words &words, Arguments &out) {
-  if (!words.has("--certificate")) return;
-  cprox_rung &finest = out.question.options.max_rung;
-  if (words.has("--max-rung") && finest != CPROX_RUNG_HULL) throw BadUsage("--certificate needs --max-rung hull");
-  finest = CPROX_RUNG_HULL;
-}
-
 /* The files that a verb cannot do without, and words that it does not understand. */
 void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
   const auto required = [&](const std::string &name, const std::string &what) {
@@ -230,7 +222,6 @@ void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
     case Action::CURVES:
       if (words.has("--trajectory")) {
         readTrajectoryWords(words, out);
-        limitToHulls(words, out);
         break;
       }
       if (words.has("--self")) throw BadUsage("--self needs --trajectory T.yaml");
@@ -244,7 +235,6 @@ void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
       out.robot = words.text("--robot");
       out.srdf = words.text("--srdf");
       out.state = words.text("--state");
-      limitToHulls(words, out);
       if (out.robot.empty() && !out.state.empty()) throw BadUsage("--state needs --robot URDF");
       if (out.robot.empty() && !out.srdf.empty()) throw BadUsage("--srdf needs --robot URDF");
       break;
@@ -330,7 +320,9 @@ cprox check     FILE  (the inputs of the question)  what the certificates in FIL
   --in FILE         a list of {id, a: BODY, b: BODY}; of 'constraints' the request of ~evaluate_constraints:
                     cases: [{id, a: {pose, bodies: [BODY], ...} or {id: an object of --scene}, b, curve}]
   --provider NAME   curve_proximity/CurveDistance, .../SuperquadricDistance, .../FourierGap, or another package's
-  --certificate FILE  proofs of the answers, for 'check': whoever doubts the search need not believe it
+  --certificate FILE  writes proofs of the answers to FILE, which 'check' verifies, and adds the column proof: apart, near or none.
+                    The answers are the same as without. A mesh is taken by its convex hull: that it is far can be proven, that
+                    it is near cannot. Superquadrics and other implicit bodies, clouds and octrees have no proofs
   --epsilon E       width of the intervals asked for, metres, above 0 (default 1e-06)
   --delta D         the clearance asked of 'tolerance', metres
   --max-nodes N     budget of parameter intervals for each target (default 20000)

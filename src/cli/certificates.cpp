@@ -2,7 +2,6 @@
 #include "certificates.h"
 
 #include <algorithm>
-#include <cmath>
 #include <new>
 
 #include "failure.h"
@@ -44,16 +43,6 @@ std::string curveWords(const CurveDescription &curve) {
   return line;
 }
 
-/* What the answer claims: the limit of a verdict; of a distance its lower bound, or where that is 0 its upper bound. */
-double claimOf(const Question &question, const cprox_result &result) {
-  switch (question.verb) {
-    case Verb::DISTANCE: break;
-    case Verb::TOLERANCE: return question.delta;
-    case Verb::COLLISION: return 0.0;
-  }
-  return result.lower > 0.0 ? result.lower : std::max(result.upper, 0.0);
-}
-
 } // namespace
 
 std::string emptyRecord() {
@@ -70,30 +59,21 @@ std::string recordOf(const CertificateHandle &certificate) {
   return recordOf(cprox_certificate_bytes(certificate.get()), cprox_certificate_size(certificate.get()));
 }
 
-std::string certificateRecord(const CompiledCurve &curve, const std::vector<cprox_target> &targets,
-                              const cprox_result &result, const Question &question, Workspace &workspace) {
-  const double delta = claimOf(question, result);
-  if (result.status < 0 || targets.empty() || !std::isfinite(delta)) return emptyRecord();
-  const CertificateHandle certificate = makeCertificate();
-  cprox_certify(along(curve.curve, curve.radius), targets.data(), targets.size(), delta, &result, &question.options,
-                workspace.get(), certificate.get());
-  return recordOf(certificate);
+std::string proofOf(const CertificateHandle &certificate) {
+  switch (cprox_certificate_claim(certificate.get())) {
+    case CPROX_CLAIM_APART: return "apart";
+    case CPROX_CLAIM_NEAR: return "near";
+    case CPROX_CLAIM_NONE: break;
+  }
+  return "none";
+}
+
+void warnOfUnprovable(const std::vector<std::string> &sentences, Warnings &warnings) {
+  for (const std::string &sentence : sentences) warnings.add(sentence + "; no row can be proven");
 }
 
 std::string problemHead() {
   return "cprox-problem 1\n";
-}
-
-std::string targetLines(const std::vector<cprox_target> &targets) {
-  std::string lines;
-  for (const cprox_target &target : targets) {
-    std::string text(cprox_target_describe(&target, nullptr, 0) + 1, '\0');
-    if (text.size() == 1) throw BadUsage("the scene holds a body of a kind that has no certificates");
-    cprox_target_describe(&target, text.data(), text.size());
-    text.pop_back();
-    lines += text;
-  }
-  return "targets " + std::to_string(std::count(lines.begin(), lines.end(), '\n')) + "\n" + lines;
 }
 
 std::string curveTargetLines(const CurveDescription &curve) {

@@ -9,6 +9,9 @@
 
 #include <curve_proximity/query.hpp>
 
+#include "../scene/yaml/yaml_value.h"
+#include "failure.h"
+
 namespace curve_proximity::cli {
 
 /** The record of one row: a certificate behind its length. Of length 0 where there is no answer or none can be proven. */
@@ -19,14 +22,14 @@ using CertificateHandle = std::unique_ptr<cprox_certificate, decltype(&cprox_cer
 CertificateHandle makeCertificate();
 std::string recordOf(const CertificateHandle &certificate);
 
-/** The record of an answer. result.target_index is that among the targets. */
-std::string certificateRecord(const CompiledCurve &curve, const std::vector<cprox_target> &targets,
-                              const cprox_result &result, const Question &question, Workspace &workspace);
+/** What it claims, for the column `proof`: "apart", "near", or "none". */
+std::string proofOf(const CertificateHandle &certificate);
+
+/** What has no certificates (unprovable() of query.hpp and motion.hpp). */
+void warnOfUnprovable(const std::vector<std::string> &sentences, Warnings &warnings);
 
 /** Lines of a problem, see doc/certificates.md. */
 std::string problemHead();
-std::string targetLines(
-    const std::vector<cprox_target> &targets); /**< throws BadUsage for kinds without certificates */
 std::string curveTargetLines(const CurveDescription &curve);
 std::string moverLine(const CurveDescription &curve);
 std::string noMoverLine(const std::string &id);

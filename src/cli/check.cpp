@@ -31,24 +31,7 @@ std::string checkerPath() {
 /* cprox_check at work, its standard input being the problem. */
 class Checker {
  public:
-  explicit Checker(const std::string &certificates) {
-    std::array<int, 2> ends{};
-    if (pipe(ends.data()) != 0) throw BadUsage(std::string("no pipe to cprox_check: ") + std::strerror(errno));
-    const std::string path = checkerPath();
-    process_ = fork();
-    if (process_ < 0) throw BadUsage(std::string("cprox_check cannot be started: ") + std::strerror(errno));
-    if (process_ == 0) {
-      dup2(ends[0], STDIN_FILENO);
-      close(ends[0]);
-      close(ends[1]);
-      execlp(path.c_str(), "cprox_check", "-", certificates.c_str(), static_cast<char *>(nullptr));
-      constexpr int kNotThere = 127;
-      _exit(kNotThere);
-    }
-    close(ends[0]);
-    input_ = ends[1];
-    std::signal(SIGPIPE, SIG_IGN); // it may give up before it has read all
-  }
+  explicit Checker(std::string certificates) : certificates_(std::move(certificates)) {}
 
   ~Checker() {
     if (input_ >= 0) finish();
@@ -57,8 +40,9 @@ class Checker {
   Checker(const Checker &) = delete;
   Checker &operator=(const Checker &) = delete;
 
-  /* False where it no longer listens. */
+  /* False where it no longer listens. It is started by the first text: an input that cannot be read is no problem of its own. */
   bool tell(const std::string &text) {
+    if (process_ < 0) start();
     for (std::size_t sent = 0; sent < text.size();) {
       const ssize_t n = write(input_, text.data() + sent, text.size() - sent);
       if (n < 0 && errno == EINTR) continue;
@@ -79,6 +63,26 @@ class Checker {
   }
 
  private:
+  void start() {
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) throw BadUsage(std::string("no pipe to cprox_check: ") + std::strerror(errno));
+    const std::string path = checkerPath();
+    process_ = fork();
+    if (process_ < 0) throw BadUsage(std::string("cprox_check cannot be started: ") + std::strerror(errno));
+    if (process_ == 0) {
+      dup2(ends[0], STDIN_FILENO);
+      close(ends[0]);
+      close(ends[1]);
+      execlp(path.c_str(), "cprox_check", "-", certificates_.c_str(), static_cast<char *>(nullptr));
+      constexpr int kNotThere = 127;
+      _exit(kNotThere);
+    }
+    close(ends[0]);
+    input_ = ends[1];
+    std::signal(SIGPIPE, SIG_IGN); // it may give up before it has read all
+  }
+
+  std::string certificates_;
   pid_t process_ = -1;
   int input_ = -1;
 };
@@ -114,11 +118,13 @@ void tellCurves(const Arguments &arguments, Console &console, Checker &checker) 
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
   const Targets targets(world.snapshot, world.links, arguments.question);
+  const std::vector<std::string> none = unprovable(targets);
+  warnOfUnprovable(none, warnings);
   console.warn(warnings);
   CsvFile file(arguments.curves);
-  bool listening = checker.tell(problemHead() + targetLines(coreTargets(targets)));
+  bool listening = checker.tell(problemHead() + (none.empty() ? describeTargets(targets) : ""));
   for (std::optional<CsvRow> row = file.next(); row && listening; row = file.next()) {
-    listening = checker.tell(moverOf(*row));
+    listening = checker.tell(none.empty() ? moverOf(*row) : noMoverLine(rowId(row->text)));
   }
 }
 
@@ -126,6 +132,8 @@ void tellTrajectory(const Arguments &arguments, Console &console, Checker &check
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
   const RobotMotion motion = readMotion(arguments, world, warnings);
+  warnOfUnprovable(unprovable(motion, false, arguments.question), warnings);
+  if (arguments.self) warnOfUnprovable(unprovable(motion, true, arguments.question), warnings);
   console.warn(warnings);
   bool listening = checker.tell(problemHead());
   for (const bool self : {false, true}) {

@@ -12,8 +12,10 @@ namespace curve_proximity::cli {
 namespace {
 
 /* The row of a curve that could not be asked about, and the sentence that says why. */
-Outcome failedCurve(const std::string &id, const std::string &place, const std::string &why, cprox_status status) {
+Outcome failedCurve(const std::string &id, const std::string &place, const std::string &why, cprox_status status,
+                    bool with_proof) {
   ResultRow row;
+  row.proof = with_proof ? "none" : "";
   row.id = row.a = id;
   row.kind = "curve";
   row.result.status = status;
@@ -26,21 +28,23 @@ Outcome failedCurve(const std::string &id, const std::string &place, const std::
 
 /* All rows of one curve. */
 Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &targets, const Question &question,
-                    const std::optional<std::vector<cprox_target>> &to_certify, Workspace &workspace) {
+                    bool with_proof, Workspace &workspace) {
   const std::string id = rowId(csv.text);
   const std::string place = placeOf(csv, file);
   try {
     const CompiledCurve curve = compile(parseCurve(csv.text));
     Outcome out;
-    for (const Answer &answer : ask(targets, curve, question, workspace)) {
+    const CertificateHandle proof = makeCertificate();
+    Question asked = question;
+    if (with_proof) asked.options.certificate = proof.get();
+    for (const Answer &answer : ask(targets, curve, asked, workspace)) {
       const cprox_status status = answer.result.status;
       out.stopped = out.stopped || status == CPROX_STOPPED;
-      out.text += resultsLine(toRow(answer, question.verb));
-      if (to_certify) {
-        cprox_result named = answer.result;
-        named.target_index = coreTargetOf(targets, answer);
-        out.certificate = certificateRecord(curve, *to_certify, named, question, workspace);
-      }
+      ResultRow row = toRow(answer, question.verb);
+      if (with_proof) row.proof = proofOf(proof);
+      if (with_proof) out.certificate = recordOf(proof);
+      if (!answer.unproven.empty()) out.unproven.push_back(place + ": no certificate: " + answer.unproven);
+      out.text += resultsLine(row);
       if (status < 0) {
         const std::string against = answer.b.empty() ? "" : ": against '" + answer.b + "'";
         out.complaints.push_back(place + against + ": " + answer.message);
@@ -48,11 +52,11 @@ Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &t
     }
     return out;
   } catch (const Error &e) {
-    return failedCurve(id, place, e.what(), e.status());
+    return failedCurve(id, place, e.what(), e.status(), with_proof);
   } catch (const std::bad_alloc &) {
-    return failedCurve(id, place, cprox_status_text(CPROX_MEMORY), CPROX_MEMORY);
+    return failedCurve(id, place, cprox_status_text(CPROX_MEMORY), CPROX_MEMORY, with_proof);
   } catch (const std::exception &e) {
-    return failedCurve(id, place, e.what(), CPROX_INVALID);
+    return failedCurve(id, place, e.what(), CPROX_INVALID, with_proof);
   }
 }
 
@@ -70,23 +74,23 @@ int answerCurves(const Arguments &arguments, Console &console) {
   const std::vector<std::string> inputs{arguments.curves, arguments.scene, arguments.robot, arguments.srdf};
   ResultsFile results(arguments.out, inputs);
   std::optional<ResultsFile> certificates;
-  std::optional<std::vector<cprox_target>> to_certify;
-  if (!arguments.certificate.empty()) {
+  const bool with_proofs = !arguments.certificate.empty();
+  if (with_proofs) {
     certificates.emplace(arguments.certificate, inputs, "--certificate");
-    to_certify = coreTargets(targets);
+    warnOfUnprovable(unprovable(targets), warnings);
   }
   console.warn(warnings);
   if (arguments.skipped) tellSkipped(world.skipped, console);
 
   /* row by row */
   catchInterrupts();
-  results.write(resultsHeader());
+  results.write(resultsHeader(with_proofs));
   Rows rows;
   rows.next = [&]() -> std::optional<Task> {
     std::optional<CsvRow> row = file.next();
     if (!row) return std::nullopt;
     return [&, csv = *std::move(row)](Workspace &workspace) {
-      return answerCurve(csv, arguments.curves, targets, question, to_certify, workspace);
+      return answerCurve(csv, arguments.curves, targets, question, with_proofs, workspace);
     };
   };
   rows.write = [&](const std::string &text) { results.write(text); };

@@ -12,6 +12,7 @@ void tellSkipped(const std::vector<std::string> &sentences, Console &console) {
 
 int finish(const Tally &tally, Console &console) {
   if (tally.failed) console.say(std::to_string(tally.failed) + " of " + std::to_string(tally.rows) + " rows failed");
+  if (tally.unproven) console.say(std::to_string(tally.unproven) + " answers have no certificate (column proof: none)");
   if (tally.interrupted) {
     console.say("interrupted: the output holds the first " + std::to_string(tally.rows) + " rows of the input");
     return kInterrupted;

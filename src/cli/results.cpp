@@ -61,8 +61,10 @@ ResultRow toRow(const Answer &answer, Verb verb) {
   return row;
 }
 
-std::string resultsHeader() {
-  return "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,probes,microseconds,t_b,rung\n";
+std::string resultsHeader(bool with_proofs) {
+  return std::string(
+             "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,probes,microseconds,t_b,rung") +
+         (with_proofs ? ",proof\n" : "\n");
 }
 
 std::string resultsLine(const ResultRow &row) {
@@ -92,6 +94,7 @@ std::string resultsLine(const ResultRow &row) {
   } else {
     line += ",,,,,";
   }
+  if (!row.proof.empty()) line += ',' + row.proof;
   return line + '\n';
 }
 

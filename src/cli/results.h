@@ -21,13 +21,14 @@ struct ResultRow {
   bool has_t = false;       /**< the witness has a parameter: there is a curve, and something to measure against */
   bool has_t_b = false;     /**< so has that of a second curve */
   bool has_points = false;  /**< there is something to measure against */
+  std::string proof;        /**< where certificates are asked for: what is proven (proofOf()) */
 };
 
 /** What the scene says, as a row. */
 ResultRow toRow(const Answer &answer, Verb verb);
 
 /** The first line, with its newline. */
-std::string resultsHeader();
+std::string resultsHeader(bool with_proofs = false);
 
 /** The line of a row, with its newline. Numbers have 17 significant digits. */
 std::string resultsLine(const ResultRow &row);

@@ -22,6 +22,9 @@ void onInterrupt(int) {
 /* How far the threads may run ahead of a row that takes long: a bound on what waits to be written. */
 constexpr std::size_t kMostAhead = 4096;
 
+/* Warnings about single rows that are told; the rest is counted. */
+constexpr std::size_t kMostWarnings = 10;
+
 constexpr std::chrono::milliseconds kProgressEvery(200);
 
 class Run {
@@ -98,6 +101,9 @@ class Run {
       stopped_ = next.stopped;
       if (stopped_) break;
       for (const std::string &complaint : next.complaints) console_.say(complaint);
+      for (const std::string &sentence : next.unproven) {
+        if (tally_.unproven++ < kMostWarnings) console_.say("warning: " + sentence);
+      }
       lines += next.text;
       records += next.certificate;
       ++tally_.rows;

@@ -20,6 +20,7 @@ struct Outcome {
   std::string text;                    /**< the lines of the results */
   std::string certificate;             /**< its record, where certificates are wanted */
   std::vector<std::string> complaints; /**< for standard error: why there is no answer */
+  std::vector<std::string> unproven;   /**< likewise, of an answer: why the certificate that is wanted is empty */
   bool stopped = false;                /**< it was interrupted: it is not to be written */
 };
 
@@ -37,6 +38,7 @@ struct Rows {
 
 struct Tally {
   std::size_t rows = 0, failed = 0; /**< rows of the input */
+  std::size_t unproven = 0;         /**< answers without the certificate that was wanted */
   bool interrupted = false;
 };
 

@@ -22,11 +22,15 @@ JointPositions restOf(const TrajectoryDescription &trajectory, const World &worl
   return out;
 }
 
-Outcome toOutcome(const std::vector<Answer> &answers, Verb verb, const std::string &file) {
+Outcome toOutcome(const std::vector<Answer> &answers, Verb verb, const std::string &file, const std::string &proof) {
   Outcome out;
   for (const Answer &answer : answers) {
     out.stopped = out.stopped || answer.result.status == CPROX_STOPPED;
-    out.text += resultsLine(toRow(answer, verb));
+    ResultRow row = toRow(answer, verb);
+    row.proof = proof;
+    out.text += resultsLine(row);
+    if (!answer.unproven.empty())
+      out.unproven.push_back(file + ": " + answer.kind + ": no certificate: " + answer.unproven);
     if (answer.result.status < 0) out.complaints.push_back(file + ": " + answer.kind + ": " + answer.message);
   }
   return out;
@@ -41,8 +45,9 @@ Outcome askOne(const RobotMotion &motion, bool self, const Question &question, c
   if (self) asked.per_object = false; /* the robot itself is one row */
   const std::vector<Answer> answers =
       self ? std::vector<Answer>{askSelf(motion, asked, workspace)} : askEnvironment(motion, asked, workspace);
-  Outcome out = toOutcome(answers, question.verb, arguments.trajectory);
-  if (!arguments.certificate.empty()) out.certificate = recordOf(proof);
+  const bool with_proof = !arguments.certificate.empty();
+  Outcome out = toOutcome(answers, question.verb, arguments.trajectory, with_proof ? proofOf(proof) : "");
+  if (with_proof) out.certificate = recordOf(proof);
   return out;
 }
 
@@ -69,7 +74,11 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   const std::vector<std::string> inputs{arguments.trajectory, arguments.scene, arguments.robot, arguments.srdf};
   ResultsFile results(arguments.out, inputs);
   std::optional<ResultsFile> certificates;
-  if (!arguments.certificate.empty()) certificates.emplace(arguments.certificate, inputs, "--certificate");
+  if (!arguments.certificate.empty()) {
+    certificates.emplace(arguments.certificate, inputs, "--certificate");
+    warnOfUnprovable(unprovable(motion, false, question), warnings);
+    if (arguments.self) warnOfUnprovable(unprovable(motion, true, question), warnings);
+  }
   console.warn(warnings);
   if (arguments.skipped) {
     tellSkipped(world.skipped, console);
@@ -78,7 +87,7 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
 
   /* two tasks: the scene, and the robot itself */
   catchInterrupts();
-  results.write(resultsHeader());
+  results.write(resultsHeader(!arguments.certificate.empty()));
   std::vector<Task> tasks;
   tasks.push_back([&](Workspace &workspace) { return askOne(motion, false, question, arguments, workspace); });
   if (arguments.self)

@@ -133,7 +133,8 @@ class Builder {
     for (std::size_t i = 0; i < geometries.size(); ++i) {
       const Geometry &geometry = geometries[i].geometry;
       geometries_.push_back({geometry.surface.get(), toPose(geometries[i].pose), link, padding});
-      out_.geometries.push_back({&name, attached, static_cast<int>(i), geometry.excess, geometry.is_mesh});
+      out_.geometries.push_back(
+          {&name, attached, static_cast<int>(i), geometry.excess, geometry.is_mesh, geometry.surface.get()});
     }
   }
 

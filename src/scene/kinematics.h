@@ -21,6 +21,7 @@ struct MovingGeometry {
   int part = 0;                             /* its number among the link's or the object's */
   double excess = 0.0;                      /* [m] how far points of the shape may be outside its body */
   bool is_mesh = false;
+  const cprox_body *body = nullptr;
 
   const std::string &owner() const {
     return attached ? attached->description.id : *link;

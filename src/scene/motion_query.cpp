@@ -6,6 +6,7 @@
 
 #include "answering.h"
 #include "motion_data.h"
+#include "proving.h"
 
 namespace curve_proximity {
 namespace {
@@ -27,7 +28,8 @@ struct Asked {
   std::vector<std::size_t> items; /* by target */
   std::vector<cprox_target> targets;
   std::vector<cprox_robot_pair> pairs;
-  double rounding; /* [m] that the core does not know of */
+  double rounding;                  /* [m] that the core does not know of */
+  std::vector<cprox_target> proven; /* the targets as a proof takes them: it must know a hull from a convex body */
 
   cprox_mover mover() const {
     return self ? cprox_robot_self(data.core.get(), pairs.data(), pairs.size())
@@ -37,7 +39,7 @@ struct Asked {
 
 /* Robots are asked about surfaces: solid meshes are answered by their hulls, which contain their inside. */
 Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted) {
-  Asked asked{data, false, std::move(wanted), {}, {}, mostExcess(data.kinematics->geometries)};
+  Asked asked{data, false, std::move(wanted), {}, {}, mostExcess(data.kinematics->geometries), {}};
   const std::vector<Item> &items = data.snapshot->world().items();
   std::vector<std::int32_t> number(items.size(), -1);
   double rounding = 0.0;
@@ -46,6 +48,7 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted)
     const PlacedShape &shape = *items[k].shape;
     const bool by_hull = shape.is_mesh && cprox_body_is_solid(shape.target.body);
     asked.targets.push_back(by_hull ? shape.hull : shape.target);
+    asked.proven.push_back(shape.surface);
     rounding = std::max(rounding, shape.rounding + (by_hull ? shape.hull_excess : 0.0));
   }
   for (const cprox_robot_pair &pair : data.environment) {
@@ -57,7 +60,7 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted)
 }
 
 Asked askedSelf(const RobotMotion::Data &data) {
-  return {data, true, {}, {}, data.self, 2.0 * mostExcess(data.kinematics->geometries)};
+  return {data, true, {}, {}, data.self, 2.0 * mostExcess(data.kinematics->geometries), {}};
 }
 
 /* The items of all objects, or of those that are named. Throws Error for a name that is none. */
@@ -138,10 +141,15 @@ Answer answerOf(const Asked &asked, const Question &question, Workspace &workspa
   if (asked.pairs.empty()) {
     answerNothing(question, result);
   } else {
-    const cprox_options options = withoutRounding(question.options, asked.rounding);
+    cprox_options options = withoutRounding(question.options, asked.rounding);
+    options.certificate = nullptr;
     result.status = askCore(question, options, asked.mover(), asked.targets, workspace, result);
   }
-  return toAnswer(asked, result, question, workspace, start);
+  Answer answer = toAnswer(asked, result, question, workspace, start);
+  if (!question.options.certificate) return answer;
+  if (!asked.pairs.empty() && result.status >= 0) widen(question, asked.rounding, INFINITE, result);
+  leaveProof(question, asked.mover(), asked.proven, result, workspace, answer);
+  return answer;
 }
 
 /* What is asked about is a distance, and of all objects. */
@@ -164,6 +172,7 @@ Asked askedOf(const RobotMotion &motion, bool self, const Question &question) {
 
 std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &question, Workspace &workspace) {
   const RobotMotion::Data &data = motion.data();
+  cprox_certificate_clear(question.options.certificate);
   const std::string fault = faultOfMotion(question, false);
   if (!fault.empty()) return {refusal(data.id, "environment", fault)};
   const std::vector<std::size_t> named = namedItems(data, question.objects);
@@ -184,6 +193,7 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &qu
 }
 
 Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &workspace) {
+  cprox_certificate_clear(question.options.certificate);
   std::string fault = faultOfMotion(question, true);
   if (fault.empty() && !question.objects.empty())
     fault = "objects do not apply to a robot against itself, '" + question.objects.front() + "' among them";
@@ -194,27 +204,35 @@ Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &w
 std::string describeQuestion(const RobotMotion &motion, bool self, const Question &question) {
   const Asked asked = askedOf(motion, self, question);
   if (asked.pairs.empty()) return {};
-  std::string bodies;
-  for (const cprox_target &target : asked.targets) {
-    std::string lines(cprox_target_describe(&target, nullptr, 0) + 1, '\0');
-    if (cprox_target_describe(&target, lines.data(), lines.size()) == 0) return {};
-    bodies.append(lines, 0, lines.size() - 1);
-  }
-
-  /* an id is one word there */
-  std::string id = motion.data().id + (self ? ".self" : ".environment");
-  std::replace_if(
-      id.begin(), id.end(), [](unsigned char c) { return c <= ' '; }, '_');
+  std::vector<std::string> names;
+  for (const std::size_t item : asked.items) names.push_back(*asked.data.snapshot->world().items()[item].owner);
+  const std::string bodies = targetLines(asked.proven, names);
+  if (bodies.empty()) return {};
+  const std::string id = wordOf(motion.data().id + (self ? ".self" : ".environment"));
   Workspace workspace;
   const cprox_mover mover = asked.mover();
   const auto describe = [&](char *text, std::size_t size) {
-    return cprox_mover_describe(&mover, asked.targets.data(), asked.targets.size(), id.c_str(), workspace.get(), text,
+    return cprox_mover_describe(&mover, asked.proven.data(), asked.proven.size(), id.c_str(), workspace.get(), text,
                                 size);
   };
   std::string robot(describe(nullptr, 0) + 1, '\0');
   if (describe(robot.data(), robot.size()) == 0) return {};
   robot.pop_back();
-  return "targets " + std::to_string(std::count(bodies.begin(), bodies.end(), '\n')) + "\n" + bodies + robot;
+  return bodies + robot;
+}
+
+std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Question &question) {
+  const Asked asked = askedOf(motion, self, question);
+  std::vector<std::string> sentences;
+  const auto look = [&](const std::string &who, const cprox_body *body) {
+    const std::string sentence = unprovableBody(who, body);
+    if (!sentence.empty()) sentences.push_back(sentence);
+  };
+  for (const MovingGeometry &geometry : asked.data.kinematics->geometries)
+    look((geometry.attached ? "object '" : "link '") + geometry.owner() + "'", geometry.body);
+  for (std::size_t i = 0; i < asked.items.size(); ++i)
+    look("object '" + *asked.data.snapshot->world().items()[asked.items[i]].owner + "'", asked.proven[i].body);
+  return sentences;
 }
 
 std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits,

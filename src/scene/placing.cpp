@@ -54,6 +54,7 @@ PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, cons
   const BodyHandle &body = geometry.body;
   out.target = at(body, pose, padding);
   out.hull = at(geometry.hull, pose, padding);
+  out.surface = at(geometry.surface, pose, padding);
   out.hull_excess = geometry.hull_excess;
   out.is_mesh = geometry.is_mesh;
   out.is_open = geometry.is_open;

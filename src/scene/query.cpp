@@ -8,6 +8,7 @@
 
 #include "answering.h"
 #include "placing.h"
+#include "proving.h"
 #include "targets.h"
 
 namespace curve_proximity {
@@ -216,16 +217,31 @@ double microsecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
+/* With the proof of the one answer: about everything that was asked about, and not only what the search chose. */
+std::vector<Answer> askWithProof(const Targets &targets, const CompiledCurve &curve, const Question &question,
+                                 Workspace &workspace) {
+  Question bare = question;
+  bare.options.certificate = nullptr;
+  std::vector<Answer> answers = ask(targets, curve, bare, workspace);
+  Answer &answer = answers.front();
+  cprox_result named = answer.result;
+  named.target_index = coreTargetOf(targets, answer);
+  leaveProof(question, along(curve.curve, curve.radius), coreTargets(targets), named, workspace, answer);
+  return answers;
+}
+
 } // namespace
 
 std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Question &question,
                         Workspace &workspace) {
+  cprox_certificate_clear(question.options.certificate);
   const std::string fault = faultOf(question);
   if (!fault.empty()) {
     Answer answer = refusal(curve.id, "curve", fault);
     answer.a = curve.id;
     return {answer};
   }
+  if (question.options.certificate) return askWithProof(targets, curve, question, workspace);
   const Targets::Data &data = targets.data();
   const std::vector<Item> &items = data.items;
   std::vector<Answer> answers;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "placing.h"
+#include "proving.h"
 
 namespace curve_proximity {
 namespace {
@@ -98,8 +99,24 @@ Targets &Targets::operator=(Targets &&) noexcept = default;
 
 std::vector<cprox_target> coreTargets(const Targets &targets) {
   std::vector<cprox_target> all;
-  for (const Item &item : targets.data().items) all.push_back(item.shape->hull);
+  for (const Item &item : targets.data().items) all.push_back(item.shape->target);
   return all;
+}
+
+std::string describeTargets(const Targets &targets) {
+  std::vector<std::string> names;
+  for (const Item &item : targets.data().items) names.push_back(*item.owner);
+  return targetLines(coreTargets(targets), names);
+}
+
+std::vector<std::string> unprovable(const Targets &targets) {
+  std::vector<std::string> sentences;
+  for (const Item &item : targets.data().items) {
+    const std::string who = (item.is_link ? "link '" : "object '") + *item.owner + "'";
+    const std::string sentence = unprovableBody(who, item.shape->target.body);
+    if (!sentence.empty()) sentences.push_back(sentence);
+  }
+  return sentences;
 }
 
 std::int32_t coreTargetOf(const Targets &targets, const Answer &answer) {

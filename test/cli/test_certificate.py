@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """--certificate and check: what is written is proven by the program cprox_check, for these inputs and for no others."""
+import math
 import os
+import random
 import struct
 
 from support import BOX_SCENE, PASSING, Case, bezier, cprox
@@ -18,6 +20,32 @@ world:
 ROWS = [PASSING, bezier('through', (-3, 0, 0), (3, 0.1, 0)), bezier('tube', (3, 2, 1), (2, 4, 2), (3, 5, 0), radius=0.1),
         'circle,trigonometric,1,0,3,0,3,0,0,6,1,0,0,0,1,0',
         'spline,bspline,2,0,2,0,4,3,-2,0,3,0,1,4,1,0,3,3,0,0,0,0,1,2,2,2']
+
+
+def ring(around=16, across=8, radius=0.3, tube=0.1):
+    """The mesh of a torus about z, as YAML."""
+    vertices, triangles = [], []
+    for i in range(around):
+        for j in range(across):
+            u, v = 2 * math.pi * i / around, 2 * math.pi * j / across
+            w = radius + tube * math.cos(v)
+            vertices.append([w * math.cos(u), w * math.sin(u), tube * math.sin(v)])
+            a, b = i * across + j, (i + 1) % around * across + j
+            c, d = (i + 1) % around * across + (j + 1) % across, i * across + (j + 1) % across
+            triangles += [[a, b, c], [a, c, d]]
+    return f'{{type: mesh, vertices: {vertices}, triangles: {triangles}'
+
+
+RING_SCENE = """
+world:
+  collision_objects:
+    - {id: ring, bodies: [%s%s}]}
+    - {id: post, primitives: [{type: sphere, dimensions: [0.1]}], primitive_poses: [{position: [0.9, 0, 0]}]}
+"""
+
+
+def without_proof(answer):
+    return [{k: v for k, v in row.items() if k not in ('microseconds', 'proof')} for row in answer.rows]
 
 
 class CertificateTest(Case):
@@ -96,6 +124,61 @@ class CertificateTest(Case):
         checked = cprox('check', self.certificates, *question)
         self.assertEqual(checked.code, 0, checked.out + checked.err)
         self.assertEqual(checked.out.count('proven'), 2)
+
+    def a_proof_changes_no_answer(self):
+        """40 curves (seed 11) about and through a ring, as a surface and as a solid, every verb and model."""
+        chance = random.Random(11)
+        rows = [bezier(f'c{i}', *[[chance.uniform(-0.5, 0.5) for _ in range(3)] for _ in range(4)], radius=0.01) for i in range(40)]
+        self.certificates = os.path.join(self.folder, 'answers.cpc')
+        for solid in ('', ', solid: true'):
+            scene = RING_SCENE % (ring(), solid)
+            for verb, more in (('distance', []), ('tolerance', ['--delta', '0.05']), ('collision', []),
+                               ('distance', ['--max-rung', 'hull']), ('distance', ['--max-rung', 'sphere'])):
+                plain = self.ask(verb, rows, scene, *more)
+                proven = self.ask(verb, rows, scene, '--certificate', self.certificates, *more)
+                self.assertEqual((plain.code, proven.code), (0, 0), proven.err)
+                self.assertEqual(without_proof(plain), without_proof(proven))
+                for line, row in zip(self.check().out.splitlines(), proven.rows):
+                    said = {'apart': ': proven: farther than', 'near': ': proven: not farther than', 'none': ': nothing is claimed'}
+                    self.assertIn(said[row['proof']], line)
+                    if row['proof'] == 'near':
+                        self.assertEqual(row['b'], 'post')  # of the ring there is its hull alone
+                    if row['proof'] == 'apart':
+                        self.assertIn("meshes by their convex hulls: 'ring'", line)
+
+    def a_line_through_the_hole_of_a_ring_is_not_near(self):
+        hole, far = bezier('hole', (0, 0, -1), (0, 0, 1), radius=0.02), bezier('far', (0, 0, 0.5), (0.1, 0, 0.9))
+        for solid in ('', ', solid: true'):
+            for verb, more in (('distance', []), ('collision', []), ('tolerance', ['--delta', '0.1'])):
+                answer = self.write(verb, [hole, far], RING_SCENE % (ring(), solid), *more)
+                self.assertGreater(float(answer.row('hole')['lower']), 0.17 if verb == 'distance' else 0.0)
+                self.assertEqual([row['proof'] for row in answer.rows], ['none', 'apart'])
+                self.assertIn("id 'hole'): no certificate: too close to delta", answer.err)
+                checked = self.check()
+                self.assertEqual(checked.code, 1)
+                self.assertIn('hole: nothing is claimed', checked.out)
+                self.assertIn('far: proven: farther than', checked.out)
+
+    def what_has_no_certificates_is_named(self):
+        rows = [PASSING, bezier('other', (3, -4, 1), (3, 4, 1))]
+        for body, kind in (('{type: superquadric, dimensions: [1, 1, 1, 2, 2, 2]}', 'superquadric'),
+                           ('{type: points, dimensions: [0.1], vertices: [[0, 0, 0]]}', 'points')):
+            scene = BOX_SCENE + f'    - {{id: odd, bodies: [{body}]}}\n'
+            plain = self.ask('distance', rows, scene)
+            answer = self.write('distance', rows, scene)
+            said = f"warning: object 'odd' is of a kind that has no certificates: {kind}; no row can be proven"
+            self.assertIn(said, answer.err)
+            self.assertEqual([row['proof'] for row in answer.rows], ['none', 'none'])
+            self.assertEqual(without_proof(plain), without_proof(answer))
+            checked = self.check()
+            self.assertEqual((checked.code, checked.out), (1, 'passing: nothing is claimed\nother: nothing is claimed\n'))
+            self.assertEqual(checked.err, said + '\n')
+
+    def a_scene_that_cannot_be_read_is_said_in_one_line(self):
+        self.write('distance', [PASSING], BOX_SCENE)
+        self.file('broken.yaml', 'world: {collision_objects: [{id: box, primitives: 3}]}')
+        checked = self.check(scene='broken.yaml')
+        self.assertEqual((checked.code, checked.out, len(checked.err.splitlines())), (2, '', 1), checked.err)
 
     def what_cannot_be_meant_is_refused_in_a_line(self):
         curves = self.file('curves.csv', PASSING + '\n')

@@ -79,7 +79,36 @@ class Trajectory(Case):
             checked = self.robot('check', trajectory, file)
             self.assertEqual(checked.code, code, checked.out + checked.err)
         self.assertIn('go.environment: refused: a pair is not settled', checked.out)
-        self.assertRefused(self.robot('distance', SLIDE, '--certificate', file, '--max-rung', 'mesh'), '--certificate needs --max-rung hull')
+
+    def proofs_of_meshes_change_no_answer_and_claim_nothing_near(self):
+        """A slider that goes through a window: the mesh of a frame, and the same as a solid."""
+        file = os.path.join(self.folder, 'proof.cpc')
+        corners = [[0, y, z] for s in (1, 3) for y, z in ((-s, -s), (s, -s), (s, s), (-s, s))]
+        vertices = [[x, y, z] for x in (0.8, 1.2) for _, y, z in corners]
+        triangles = []
+        for k in range(4):
+            n = (k + 1) % 4
+            quads = [(k, 4 + k, 4 + n, n), (8 + n, 12 + n, 12 + k, 8 + k), (n, 8 + n, 8 + k, k), (4 + k, 12 + k, 12 + n, 4 + n)]
+            triangles += [t for a, b, c, d in quads for t in ([a, b, c], [a, c, d])]
+        for solid in ('', ', solid: true'):
+            scene = ('world: {collision_objects: [{id: window, bodies: [{type: mesh, vertices: %s, triangles: %s%s}]}]}'
+                     % (vertices, triangles, solid))
+            urdf = SLIDER.replace('size="0.1 0.1 1"', 'size="0.1 0.1 0.2"').replace('xyz="0 0 1.2"', 'xyz="0 0 0.4"')
+            for verb, more in (('distance', []), ('collision', []), ('tolerance', ['--delta', '0.01'])):
+                plain = self.robot(verb, SLIDE, *more, scene=scene, urdf=urdf)
+                asked = self.robot(verb, SLIDE, '--certificate', file, *more, scene=scene, urdf=urdf)
+                self.assertEqual((plain.code, asked.code), (0, 0), asked.err)
+                self.assertEqual([{k: v for k, v in row.items() if k not in ('microseconds', 'proof')} for row in asked.rows],
+                                 plain.without_times()[0:len(asked.rows)])
+                self.assertEqual(asked.rows[0]['proof'], 'none')
+                self.assertIn('no certificate', asked.err)
+                checked = self.robot('check', SLIDE, file, scene=scene, urdf=urdf)
+                self.assertEqual((checked.code, checked.out), (1, 'go.environment: nothing is claimed\n'), checked.err)
+            short = SLIDE.replace('[2]', '[0.3]')
+            asked = self.robot('distance', short, '--certificate', file, scene=scene, urdf=urdf)
+            self.assertEqual(asked.rows[0]['proof'], 'apart', asked.err)
+            checked = self.robot('check', short, file, scene=scene, urdf=urdf)
+            self.assertIn("meshes by their convex hulls: 'window'", checked.out, checked.err)
 
     def each_object_has_a_row_of_its_own_when_asked(self):
         answer = self.robot('distance', SLIDE, '--per-object')
@@ -234,6 +263,7 @@ joint_trajectory:
             with self.subTest(trajectory=case['trajectory']):
                 asked = cprox('distance', *question, '--certificate', file)
                 self.assertEqual(asked.code, 0, asked.err)
+                self.assertEqual({row['proof'] for row in asked.rows}, {'apart'})
                 checked = cprox('check', file, *question)
                 self.assertEqual(checked.code, 0, checked.out + checked.err)
                 self.assertEqual(checked.out.count('proven: farther than'), len(case['results']), checked.out)

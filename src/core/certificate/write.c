@@ -238,7 +238,7 @@ cprox_status cprox_certify(cprox_mover mover, const cprox_target *targets, size_
   const cprox_options chosen = options ? *options : cprox_options_default();
   workspace_clear(workspace);
   cprox_certificate_clear(certificate);
-  const arguments_query asked = {"a certificate for an answer", ARGUMENTS_SEARCH};
+  const arguments_query asked = {"a certificate for an answer", ARGUMENTS_RELATIVE | ARGUMENTS_RUNG};
   cprox_status status = arguments_check_query(&mover, targets, n, &chosen, asked, workspace);
   if (status == CPROX_OK) status = arguments_check_delta(delta, workspace);
   if (status != CPROX_OK) return status;

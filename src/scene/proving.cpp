@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "proving.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace curve_proximity {
+namespace {
+
+/* What the answer claims: the limit of a verdict; of a distance its lower bound, or where that is 0 its upper bound. */
+double claimOf(const Question &question, const cprox_result &result) {
+  switch (question.verb) {
+    case Verb::DISTANCE: break;
+    case Verb::TOLERANCE: return question.delta;
+    case Verb::COLLISION: return 0.0;
+  }
+  return result.lower > 0.0 ? result.lower : std::max(result.upper, 0.0);
+}
+
+cprox_target targetOf(const cprox_body *body) {
+  return cprox_at(body, cprox_pose_identity());
+}
+
+} // namespace
+
+void leaveProof(const Question &question, const cprox_mover &mover, const std::vector<cprox_target> &targets,
+                const cprox_result &result, Workspace &workspace, Answer &answer) {
+  cprox_certificate *certificate = question.options.certificate;
+  cprox_certificate_clear(certificate);
+  if (result.status < 0) return; // the answer says why
+  const double delta = claimOf(question, result);
+  if (!std::isfinite(delta)) {
+    answer.unproven = "there is nothing to measure";
+    return;
+  }
+  cprox_options options = question.options; // what is of the query alone is not of its proof
+  options.certificate = nullptr;
+  options.signed_distance = false;
+  options.stop = nullptr;
+  const cprox_status status =
+      cprox_certify(mover, targets.data(), targets.size(), delta, &result, &options, workspace.get(), certificate);
+  if (status != CPROX_OK) answer.unproven = workspace.reason();
+}
+
+std::string unprovableBody(const std::string &who, const cprox_body *body) {
+  const cprox_target target = targetOf(body);
+  if (cprox_target_describe(&target, nullptr, 0) > 0) return {};
+  return who + " is of a kind that has no certificates: " + cprox_body_kind_name(cprox_body_get_kind(body));
+}
+
+std::string wordOf(const std::string &text) {
+  std::string word = text.empty() ? "-" : text;
+  std::replace_if(
+      word.begin(), word.end(), [](unsigned char c) { return c <= ' '; }, '_');
+  return word;
+}
+
+std::string targetLines(const std::vector<cprox_target> &targets, const std::vector<std::string> &names) {
+  std::string all;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    std::string lines(cprox_target_describe(&targets[i], nullptr, 0) + 1, '\0');
+    if (lines.size() == 1) return {};
+    cprox_target_describe(&targets[i], lines.data(), lines.size());
+    lines.pop_back();
+    for (const char c : lines) {
+      if (c == '\n') all += " called " + wordOf(names[i]);
+      count += c == '\n' ? 1 : 0;
+      all += c;
+    }
+  }
+  return "targets " + std::to_string(count) + "\n" + all;
+}
+
+} // namespace curve_proximity
