@@ -51,7 +51,7 @@ void flat_describe(const convex *shape, flat_shape *flat) {
   const double down =
       shape->ops->support(shape, vec_neg(flat->normal), NULL, NULL) + vec_dot(flat->normal, flat->origin);
   flat->thickness = greater(fabs(up), fabs(down));
-  if (flat->thickness > least) return;
+  if (!(flat->thickness <= least)) return;
   flat->dimension = farthest > least ? 2 : length > least ? 1 : 0;
 }
 

@@ -141,12 +141,14 @@ bool crossing_prove(const crossing *o, crossing_place *place) {
   /* Newton's method may run past the place: it begins again a little to either side */
   static const double APART[] = {0.0, -1e-3, 1e-3, -1e-2, 1e-2, -1e-1, 1e-1};
   double tried = -1.0;
+  const double start = place->s;
   for (size_t i = 0; i < sizeof APART / sizeof *APART; i++) {
-    const double from = place->s + APART[i];
+    const double from = start + APART[i];
     if (from < 0.0 || from > 1.0) continue;
     curve_side_load(o->side, place->piece);
     const double at = meet_plane(o, from);
     if (at != tried && proves_at(o, at, &region, place)) return true;
+    if (i == 0) place->s = at;
     tried = at;
   }
   return false;

@@ -21,7 +21,8 @@ typedef struct crossing_place {
   vec3 meeting;
 } crossing_place;
 
-/* Whether the curve certainly passes through the shape near a place, which then moves; the piece is the loaded one. */
+/* Whether the curve certainly passes through the shape near a place, which then moves; the piece is the loaded one. Where it does not, s
+ * is where it meets the plane, as far as Newton's method finds that. */
 bool crossing_prove(const crossing *of, crossing_place *place);
 
 /* The same near a sight, which becomes that of the place. False also of shapes that have an inside. */

@@ -101,8 +101,8 @@ static void polish(curve_tree *o) {
 
 /* ---- proof of contact ------------------------------------------------------------------------------------------------- */
 
-/* Through the triangle of a sight, which moves to where that is. */
-static bool goes_through(curve_tree *o, tree_sight *sight) {
+/* Through the triangle of a sight, which moves to where that is, or to where the curve meets its plane. */
+static bool goes_through_triangle(curve_tree *o, tree_sight *sight) {
   vec3 v[3];
   double x[8], y[8], z[8], scale = 0.0;
   tree_corners(o->tree, sight->place, v);
@@ -117,11 +117,28 @@ static bool goes_through(curve_tree *o, tree_sight *sight) {
   flat_describe(&triangle, &flat);
   const crossing of = {&o->side, &triangle, &flat, {SLOT_SCRATCH, SLOT_SCRATCH_LEFT}};
   crossing_place place = {.piece = sight->piece, .s = sight->s};
-  if (!crossing_prove(&of, &place)) return false;
+  const bool proven = crossing_prove(&of, &place);
   sight->piece = place.piece, sight->s = place.s;
+  if (!proven) return false;
   sight->y = sight->near.point = place.meeting;
   sight->near.distance = 0.0;
   return true;
+}
+
+/* Through the triangle of a sight, or through the one that is nearest where the curve meets the plane of that. */
+static bool goes_through(curve_tree *o, tree_sight *sight) {
+  enum { MOST_TRIANGLES = 4 };
+  const tree_sight before = *sight;
+  for (int i = 0; i < MOST_TRIANGLES; i++) {
+    curve_side_load(&o->side, sight->piece);
+    if (goes_through_triangle(o, sight)) return true;
+    curve_side_load(&o->side, sight->piece);
+    const tree_hit hit = tree_nearest(o->tree, curve_side_point(&o->side, sight->s), INFINITY);
+    if (!hit.found || (hit.at.pack == sight->place.pack && hit.at.lane == sight->place.lane)) break;
+    sight->place = hit.at;
+  }
+  *sight = before;
+  return false;
 }
 
 /* Inside of the solid, and farther from its surface than rounding. */
