@@ -200,6 +200,10 @@ def headers():
     return run_one([os.path.join(REPO, 'test/headers/run')], 'headers', count_lines)
 
 
+def text():
+    return run_one([os.path.join(REPO, 'test/text/run')], 'text', count_lines)
+
+
 def lint():
     package = os.path.join(WORKSPACE, 'src/curve_proximity')  # a folder of the package's name, whatever the clone's is
     return run_one(['catkin_lint', '--strict', '-W2', '--offline', package], 'catkin_lint', count_exit)
@@ -340,7 +344,7 @@ def on_debian_12():
 
 
 GROUPS = {
-    'layering': layering, 'headers': headers, 'lint': lint, 'format': formatting, 'bench': bench_pages,
+    'layering': layering, 'headers': headers, 'text': text, 'lint': lint, 'format': formatting, 'bench': bench_pages,
     'core': core, 'tidy': tidy, 'sanitizers': sanitized, 'threads': threads,
     'scene': lambda: room('scene'), 'providers': lambda: room('providers'), 'cli': lambda: room('cli'), 'ros': lambda: room('ros', together=False),
     'install': install, 'demo': demo,

@@ -13,9 +13,9 @@
 
 namespace curve_proximity {
 
-/** Calls one service over a persistent connection: about a tenth of the cost of a connection a call. Such a handle stays
- *  failed once its server has gone, and a loop that just tries again spins through millions of failures a second; this
- *  one looks the service up again, with pauses that double from 10 ms to 500 ms. For one thread. */
+/** Calls one service over a persistent connection: about a tenth of the cost of a connection a call. Such a handle
+ *  stays failed once its server has gone, and a loop that just tries again spins through millions of failures a second;
+ *  this one looks the service up again, with pauses that double from 10 ms to 500 ms. For one thread. */
 template <class Service>
 class PersistentClient {
  public:

@@ -21,8 +21,8 @@ namespace curve_proximity {
 using ParameterValue = std::variant<bool, int, double, std::string, std::vector<double>>;
 using ParameterMap = std::map<std::string, ParameterValue>;
 
-/** Reads a map once. Each function gives the named value, or `otherwise` where it is not there, and throws Error, naming the
- *  parameter and what is expected, for a wrong type or value. end() refuses what nobody has asked for. */
+/** Reads a map once. Each function gives the named value, or `otherwise` where it is not there, and throws Error,
+ *  naming the parameter and what is expected, for a wrong type or value. end() refuses what nobody has asked for. */
 class ParameterReader {
  public:
   explicit ParameterReader(const ParameterMap &map) : map_(map) {}

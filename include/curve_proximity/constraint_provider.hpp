@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Constraints for planners and optimisers: a clearance as a number that is positive where all is well, and how it changes.
+/** Constraints for planners and optimisers: a clearance as a number that is positive where all is well, and how it
+ *  changes.
  *
  *  A provider is a pluginlib plugin whose base class is curve_proximity::ConstraintProvider; one example stands in
- *  test/install/example_provider, signs, units, frames and thread rules on one page in doc/constraint-providers.md. Nothing here
- *  needs ROS. Metres, radians, right-handed frames. */
+ *  test/install/example_provider, signs, units, frames and thread rules on one page in doc/constraint-providers.md.
+ *  Nothing here needs ROS. Metres, radians, right-handed frames. */
 #ifndef CURVE_PROXIMITY_CONSTRAINT_PROVIDER_HPP
 #define CURVE_PROXIMITY_CONSTRAINT_PROVIDER_HPP
 
@@ -37,8 +38,8 @@ struct ConstraintBody {
 struct ConstraintPair {
   ConstraintBody a, b;
 
-  /** false: both stand where an evaluation's poses say. true: a rides the curve of each evaluation without turning, its origin
-   *  on the curve; a without parts is the curve's ball alone. */
+  /** false: both stand where an evaluation's poses say. true: a rides the curve of each evaluation without turning, its
+   *  origin on the curve; a without parts is the curve's ball alone. */
   bool along_curve = false;
 };
 
@@ -58,8 +59,8 @@ struct ConstraintPlace {
 /* ---- what a constraint answers ----------------------------------------------------------------------------------- */
 
 /** How a value changes when one side moves rigidly by a small step: d value = linear·v + angular·w, for the step
- *  position += v, R <- exp([w]) R: axes of the fixed frame, turning about the side's own origin. Of a pair along a curve, side a
- *  is the curve: it turns about the origin of the fixed frame, and what rides it does not turn. */
+ *  position += v, R <- exp([w]) R: axes of the fixed frame, turning about the side's own origin. Of a pair along a
+ *  curve, side a is the curve: it turns about the origin of the fixed frame, and what rides it does not turn. */
 struct ConstraintGradient {
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();  /**< [unit of value/m] */
   Eigen::Vector3d angular = Eigen::Vector3d::Zero(); /**< [unit of value/rad] */
@@ -75,9 +76,9 @@ struct ConstraintValue {
   bool valid = false;      /**< false: the value is not differentiable here, or cannot be told to be */
   std::string reason;      /**< why not, in a few words */
   ConstraintGradient a, b; /**< where valid is false: those of one of the minimisers, or 0 */
-  Eigen::Matrix3Xd
-      points;          /**< by the curve's control points or coefficients, a column each; of other pairs 0 columns */
-  double radius = 0.0; /**< by the curve's radius (of other pairs 0) */
+  /** by the curve's control points or coefficients, a column each; of other pairs 0 columns */
+  Eigen::Matrix3Xd points;
+  double radius = 0.0;                                 /**< by the curve's radius (of other pairs 0) */
   double t = std::numeric_limits<double>::quiet_NaN(); /**< the curve's parameter where the value is attained */
   bool has_points = false;                             /**< point_a, point_b and normal are set */
   Eigen::Vector3d point_a = Eigen::Vector3d::Zero();   /**< [m] the nearest points, in the fixed frame */
@@ -87,22 +88,24 @@ struct ConstraintValue {
 
 /* ---- providers --------------------------------------------------------------------------------------------------- */
 
-/** A pair made ready for any number of evaluations. Immutable: any number of threads may evaluate at once, each with its own
- *  workspace and its own value. It must not outlive its provider. */
+/** A pair made ready for any number of evaluations. Immutable: any number of threads may evaluate at once, each with
+ *  its own workspace and its own value. It must not outlive its provider. */
 class Constraint {
  public:
   virtual ~Constraint() = default;
 
-  /** Value and gradient where the two sides stand so. Throws Error, one line that says what is wrong with the place; the value
-   *  is then unspecified. Allocates nothing once workspace and value have grown. */
+  /** Value and gradient where the two sides stand so. Throws Error, one line that says what is wrong with the place;
+   *  the value is then unspecified. Allocates nothing once workspace and value have grown. */
   virtual void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &value) const = 0;
 };
 
-/** Raised with every change of what plugin and loader share that no size shows: the order of virtual functions, what a field means. */
+/** Raised with every change of what plugin and loader share that no size shows: the order of virtual functions, what a
+ *  field means. */
 constexpr std::uint64_t PROVIDER_VERSION = 1;
 
-/** What a plugin and whoever loads it must have in common, as one number: the version, the size of all that they hand each other,
- *  and how Eigen and the standard library were set up (-mavx alone changes how Eigen's memory is given back). */
+/** What a plugin and whoever loads it must have in common, as one number: the version, the size of all that they hand
+ *  each other, and how Eigen and the standard library were set up (-mavx alone changes how Eigen's memory is given
+ *  back). */
 constexpr std::uint64_t providerLayout() {
   std::uint64_t layout = PROVIDER_VERSION;
   for (const std::size_t part :
@@ -115,18 +118,19 @@ constexpr std::uint64_t providerLayout() {
   return layout;
 }
 
-/** The base class of the plugins, under its name ConstraintProvider. What is shared is part of its type: pluginlib finds no plugin in a
- *  library that was built against other headers, so that none of its functions is ever called. */
+/** The base class of the plugins, under its name ConstraintProvider. What is shared is part of its type: pluginlib
+ *  finds no plugin in a library that was built against other headers, so that none of its functions is ever called. */
 template <std::uint64_t Layout>
 class LayoutProvider {
  public:
   virtual ~LayoutProvider() = default;
 
-  /** Called once, before all else. Throws Error for parameters that are wrong, and names them (ParameterReader does). */
+  /** Called once, before all else. Throws Error for parameters that are wrong, and names them (ParameterReader
+   *  does). */
   virtual void initialise(const ParameterMap &parameters) = 0;
 
-  /** Makes a pair ready. What costs more than one evaluation belongs in here. Throws Error: a shape that this provider cannot
-   *  answer for, named by its type. Any number of threads at once. */
+  /** Makes a pair ready. What costs more than one evaluation belongs in here. Throws Error: a shape that this provider
+   *  cannot answer for, named by its type. Any number of threads at once. */
   virtual std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const = 0;
 
   /** Both in one step, for a pair that is asked about once. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The C library in C++: handles that free themselves, failures as exceptions, Eigen types in and out.
  *
- *  Header-only over libcprox: no ROS, no other library of this package. Metres and radians throughout. Bodies and curves
- *  are immutable and may be shared by any number of threads; a Workspace belongs to one thread at a time. */
+ *  Header-only over libcprox: no ROS, no other library of this package. Metres and radians throughout. Bodies and
+ *  curves are immutable and may be shared by any number of threads; a Workspace belongs to one thread at a time. */
 #ifndef CURVE_PROXIMITY_CORE_HPP
 #define CURVE_PROXIMITY_CORE_HPP
 
@@ -261,8 +261,8 @@ inline BodyHandle makeMesh(const Eigen::Matrix3Xd &vertices, const Eigen::Matrix
   });
 }
 
-/** A mesh, points or boxes with a convex hull that answers what does not need them; it keeps both alive. excess [m] >= 0: no
- *  point of the mesh is farther than this from the hull. */
+/** A mesh, points or boxes with a convex hull that answers what does not need them; it keeps both alive. excess [m] >=
+ *  0: no point of the mesh is farther than this from the hull. */
 inline BodyHandle makeLadder(const BodyHandle &hull, double excess, const BodyHandle &mesh) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) {
@@ -394,7 +394,8 @@ inline CurveHandle makePiecewise(const std::vector<CurveHandle> &curves, const s
   });
 }
 
-/** A smooth curve by functions, as cprox_smooth_curve: value and two derivatives, a bound of the sixth, errors, accuracy. */
+/** A smooth curve by functions, as cprox_smooth_curve: value and two derivatives, a bound of the sixth, errors,
+ *  accuracy. */
 struct SmoothCurve {
   std::function<std::array<Eigen::Vector3d, 3>(double)> evaluate;
   std::function<double(double, double)> sixth;
@@ -440,8 +441,8 @@ inline CurveHandle makeSmooth(const SmoothCurve &functions, double t0, double t1
   }
 }
 
-/** A curve by its points and the lengths of its parts, as cprox_rectifiable_curve; `length` or `velocity` may be empty. Queries
- *  call the functions from their own threads; one that throws ends the query with an Error that says where. */
+/** A curve by its points and the lengths of its parts, as cprox_rectifiable_curve; `length` or `velocity` may be empty.
+ *  Queries call the functions from their own threads; one that throws ends the query with an Error that says where. */
 struct RectifiableCurve {
   std::function<Eigen::Vector3d(double)> point;
   std::function<double(double, double)> length;
@@ -529,8 +530,8 @@ inline cprox_result pair(const cprox_target &a, const cprox_target &b, const cpr
   return result;
 }
 
-/** cprox_set: many targets in one tree; a mover tests itself once against it. Any number of threads may ask, each with its own
- *  workspace. Functions throw Error where there is no answer. */
+/** cprox_set: many targets in one tree; a mover tests itself once against it. Any number of threads may ask, each with
+ *  its own workspace. Functions throw Error where there is no answer. */
 class Set {
  public:
   /** What the targets name must outlive the set. */

@@ -28,8 +28,8 @@ using Triangles = Eigen::Matrix<int, 3, Eigen::Dynamic>;
  *    SUPERQUADRIC  [a1, a2, a3, n1, n2, n3]: sum |x_i/a_i|^n_i <= 1, exponents 1 … 1000
  *    IMPLICIT   none; the intersection of `hyperquadrics`, `planes` and `quadrics`, bounded and with an interior
  *    POLYTOPE   none; the convex hull of `vertices`, solid, of any dimension
- *    POLYGON    none; a convex polygon in the plane z = 0 of its frame, its `vertices` in order, z = 0. Curves in its plane get planar
- *               answers: its inside counts as inside
+ *    POLYGON    none; a convex polygon in the plane z = 0 of its frame, its `vertices` in order, z = 0. Curves in its
+ *               plane get planar answers: its inside counts as inside
  *    MESH       none, or a scale [x, y, z]; `vertices` and `triangles`, or `resource`: a surface, with `solid` also
  *               its inside
  *    POINTS     none, or [radius] >= 0: a ball of that radius about each of `vertices`, as sensors measure them
@@ -58,7 +58,8 @@ const char *shapeTypeName(ShapeType type);
 /** The type of that name (lower case, as above); nothing for any other word. */
 std::optional<ShapeType> shapeTypeFromName(const std::string &name);
 
-/** An occupancy octree as octomap serialises it, the fields of octomap_msgs/Octomap. Cell (0, 0, 0) begins at the origin. */
+/** An occupancy octree as octomap serialises it, the fields of octomap_msgs/Octomap. Cell (0, 0, 0) begins at the
+ *  origin. */
 struct OctreeData {
   std::string id = "OcTree"; /**< of its nodes: "OcTree" or "ColorOcTree" */
   double resolution = 0.0;   /**< [m] > 0: edge length of the smallest cells */
@@ -76,14 +77,13 @@ struct ShapeDescription {
   Triangles triangles;                          /**< of a MESH given by its vertices */
   std::vector<HyperquadricTerms> hyperquadrics; /**< of an IMPLICIT */
   std::vector<std::array<double, 4>> planes;    /**< of an IMPLICIT, each [b1, b2, b3, c]: b·x + c <= 0 */
-  std::vector<std::array<double, 10>> quadrics; /**< of an IMPLICIT, each [q11, q12, q13, q22, q23, q33, b1, b2, b3, c]:
-                                                     x'Qx + b·x + c <= 0 */
+  /** of an IMPLICIT, each [q11, q12, q13, q22, q23, q33, b1, b2, b3, c]: x'Qx + b·x + c <= 0 */
+  std::vector<std::array<double, 10>> quadrics;
   bool solid = false;   /**< of a MESH: its inside belongs to it if it is closed; where it is not, answers say so */
   std::string resource; /**< URI or path of the file of a MESH or an OCTREE; then what it stands for is empty */
   OctreeData octree;    /**< of an OCTREE given by its bytes */
-  bool unknown_is_occupied =
-      false; /**< of an OCTREE: cells that were never measured count as occupied, within the box of those
-                                         that were; else as free */
+  /** of an OCTREE: cells that were never measured count as occupied, within the box of those that were; else as free */
+  bool unknown_is_occupied = false;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the object's frame */
 };
 
@@ -101,10 +101,11 @@ struct CurveDescription {
   std::size_t degree = 0;       /**< of a bezier 0 or the number of points less one */
   double t0 = 0.0, t1 = 1.0;    /**< the parameter range, t0 < t1 */
   double radius = 0.0;          /**< [m] >= 0: of the ball that rides the curve */
-  Eigen::Matrix3Xd points;      /**< [m] in the fixed frame, a column a control point, coefficient or value: degree + 1
-                                     of them, of a bspline more, of a trigonometric series 2 degree + 1 */
-  std::vector<double> knots;    /**< of a bspline: points.cols() + degree + 1, non-decreasing; of a lagrange curve its
-                                     nodes; else none */
+  /** [m] in the fixed frame, a column a control point, coefficient or value: degree + 1 of them, of a bspline more,
+   *  of a trigonometric series 2 degree + 1 */
+  Eigen::Matrix3Xd points;
+  /** of a bspline: points.cols() + degree + 1, non-decreasing; of a lagrange curve its nodes; else none */
+  std::vector<double> knots;
 };
 
 } // namespace curve_proximity

@@ -12,9 +12,9 @@
 
 namespace curve_proximity {
 
-/** 64 bits of a message that begins with a Header: of its serialised bytes, with the header's seq as 0, since roscpp sets it anew
- *  at each hop over a wire. h = 0xcbf29ce484222325 ^ length; then for each eight bytes, little-endian, the last ones filled up
- *  with 0: h = (h ^ word) 0x9e3779b97f4a7c15 mod 2^64; h = h ^ (h >> 29).
+/** 64 bits of a message that begins with a Header: of its serialised bytes, with the header's seq as 0, since roscpp
+ *  sets it anew at each hop over a wire. h = 0xcbf29ce484222325 ^ length; then for each eight bytes, little-endian, the
+ *  last ones filled up with 0: h = (h ^ word) 0x9e3779b97f4a7c15 mod 2^64; h = h ^ (h >> 29).
  *  It tells messages apart that differ by chance, not those of an adversary. Cost: about a nanosecond a byte. */
 template <class Message>
 std::uint64_t fingerprint(const Message &message) {

@@ -18,14 +18,16 @@ namespace curve_proximity {
 class RobotMotion {
  public:
   /** snapshot    is kept: its robot, paddings, objects and allowed pairs are what is asked about.
-   *  trajectory  its fixed_joints are not looked at: the caller puts them into `rest`, in the order of precedence that it has.
-   *  rest        values of joints that the trajectory does not move; others are at 0, or at mid-range where 0 is outside their
-   *              limits. Names that the robot does not have are an error.
+   *  trajectory  its fixed_joints are not looked at: the caller puts them into `rest`, in the order of precedence that
+   *              it has.
+   *  rest        values of joints that the trajectory does not move; others are at 0, or at mid-range where 0 is
+   *              outside their limits. Names that the robot does not have are an error.
    *  base        where the root link, or the parent frame of its virtual joint, stands in the fixed frame.
    *  disabled    pairs of links that are not checked against each other (an SRDF's).
    *
-   *  Throws Error: no robot, what checkTrajectory() finds, joints that the robot does not have, a trajectory of one point, a base
-   *  joint whose child is not the root link. A mimic joint follows its leader; what a trajectory says of it is not looked at. */
+   *  Throws Error: no robot, what checkTrajectory() finds, joints that the robot does not have, a trajectory of one
+   *  point, a base joint whose child is not the root link. A mimic joint follows its leader; what a trajectory says of
+   *  it is not looked at. */
   RobotMotion(SnapshotPtr snapshot, const TrajectoryDescription &trajectory, const JointPositions &rest,
               const std::vector<std::array<std::string, 2>> &disabled = {},
               const Eigen::Isometry3d &base = Eigen::Isometry3d::Identity());
@@ -42,8 +44,8 @@ class RobotMotion {
   /** What takes no part, and why: a sentence each. */
   const std::vector<std::string> &skipped() const;
 
-  /** Joints that the trajectory takes beyond their limits: a sentence each. They are answered as they are, and every answer's message
-   *  says it too. */
+  /** Joints that the trajectory takes beyond their limits: a sentence each. They are answered as they are, and every
+   *  answer's message says it too. */
   const std::vector<std::string> &warnings() const;
 
   struct Data;
@@ -55,24 +57,26 @@ class RobotMotion {
   std::unique_ptr<const Data> data_;
 };
 
-/** Questions about a robot in motion take no question.links and no signed_distance: such a question is refused. askSelf(), nearestPairs() and
- *  clearanceProfile() take no per_object, none about the robot itself takes question.objects, and the last two take no other verb than
- *  DISTANCE and no certificate.
+/** Questions about a robot in motion take no question.links and no signed_distance: such a question is refused.
+ *  askSelf(), nearestPairs() and clearanceProfile() take no per_object, none about the robot itself takes
+ *  question.objects, and the last two take no other verb than DISTANCE and no certificate.
  *
- *  How close the moving links and what they carry come to the objects (question.objects: only these; per_object: an answer for each object, in the order
- *  of their names). kind "environment", a the link or the carried object, b the object, result.t the time [s], result.mover_part the number of the
- *  collision element of a. As ask() of query.hpp in everything else. */
+ *  How close the moving links and what they carry come to the objects (question.objects: only these; per_object: an
+ *  answer for each object, in the order of their names). kind "environment", a the link or the carried object, b the
+ *  object, result.t the time [s], result.mover_part the number of the collision element of a. As ask() of query.hpp in
+ *  everything else. */
 std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &question, Workspace &workspace);
 
-/** How close the robot comes to itself: pairs of links between which at least two joints can move and this trajectory moves one,
- *  and pairs of what a link carries and any other link, or what that carries, that this trajectory moves against each other; less
- *  those that are disabled, touch_links or allowed to touch. kind "self", a and b links or carried objects; result.target_index is the number of the
- *  collision element of b. */
+/** How close the robot comes to itself: pairs of links between which at least two joints can move and this trajectory
+ *  moves one, and pairs of what a link carries and any other link, or what that carries, that this trajectory moves
+ *  against each other; less those that are disabled, touch_links or allowed to touch. kind "self", a and b links or
+ *  carried objects; result.target_index is the number of the collision element of b. */
 Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &workspace);
 
-/** The question as the program cprox_check reads it (doc/certificates.md): where things stand, the robot along its motion, the pairs that
- *  askEnvironment() or with `self` askSelf() asks about; meshes by their convex hulls. A certificate of these (options.certificate) is
- *  about this text. Empty where there is no pair, or a body of a kind that has no certificates. */
+/** The question as the program cprox_check reads it (doc/certificates.md): where things stand, the robot along its
+ *  motion, the pairs that askEnvironment() or with `self` askSelf() asks about; meshes by their convex hulls. A
+ *  certificate of these (options.certificate) is about this text. Empty where there is no pair, or a body of a kind
+ *  that has no certificates. */
 std::string describeQuestion(const RobotMotion &motion, bool self, const Question &question);
 
 /** What has no certificates, with its kind: a sentence each. Where there is any, no answer can be proven. */
@@ -84,8 +88,9 @@ struct PairLimits {
   double within = std::numeric_limits<double>::infinity(); /**< [m] >= 0 */
 };
 
-/** The pairs that come closest, nearest first: of a link or carried object and an object (question.objects: only these), or, `self`,
- *  of two that belong to the robot. Each answer is that to DISTANCE for its pair alone; pairs are of single collision elements. */
+/** The pairs that come closest, nearest first: of a link or carried object and an object (question.objects: only
+ *  these), or, `self`, of two that belong to the robot. Each answer is that to DISTANCE for its pair alone; pairs are
+ *  of single collision elements. */
 std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits,
                                  const Question &question, Workspace &workspace);
 
@@ -97,8 +102,9 @@ struct ClearanceStretch {
   std::string a, b;                /**< of whom: empty where nothing was measured */
 };
 
-/** The swept clearance: the least distance of the robot to the objects (question.objects: only these), or with `self` to itself, on each
- *  stretch between two breaks [s], ascending and within domain(). Throws Error for breaks that are not, and where the core refuses. */
+/** The swept clearance: the least distance of the robot to the objects (question.objects: only these), or with `self`
+ *  to itself, on each stretch between two breaks [s], ascending and within domain(). Throws Error for breaks that are
+ *  not, and where the core refuses. */
 std::vector<ClearanceStretch> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
                                                const Question &question, Workspace &workspace);
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Threads for batches: a pool whose threads wait for ranges, and many movers against the same targets over it.
  *
- *  Header-only over libcprox and the standard library's threads. The core starts none: a batch call takes a range and a workspace. */
+ *  Header-only over libcprox and the standard library's threads. The core starts none: a batch call takes a range and a
+ *  workspace. */
 #ifndef CURVE_PROXIMITY_PARALLEL_HPP
 #define CURVE_PROXIMITY_PARALLEL_HPP
 
@@ -53,9 +54,9 @@ class Pool {
     return static_cast<unsigned>(threads_.size()) + 1;
   }
 
-  /** Calls work for ranges of at most `grain` >= 1 that together are 0 … n-1, in any order and at once; returns when all are done.
-   *  After an exception the ranges that have not begun are left out, and the first one is thrown on. One run at a time: a
-   *  second thread that calls this waits for the first. */
+  /** Calls work for ranges of at most `grain` >= 1 that together are 0 … n-1, in any order and at once; returns when
+   *  all are done. After an exception the ranges that have not begun are left out, and the first one is thrown on. One
+   *  run at a time: a second thread that calls this waits for the first. */
   void run(std::size_t n, std::size_t grain, const Work &work) {
     const std::lock_guard<std::mutex> alone(runs_);
     {
@@ -80,8 +81,8 @@ class Pool {
   }
 
  private:
-  /** POSIX's. Before 2.41 glibc's condition variables may lose a wake-up (its bug 25847), and one was seen to wait for ever where
-   *  it should end, with all threads joined. */
+  /** POSIX's. Before 2.41 glibc's condition variables may lose a wake-up (its bug 25847), and one was seen to wait for
+   *  ever where it should end, with all threads joined. */
   class Semaphore {
    public:
     Semaphore() {

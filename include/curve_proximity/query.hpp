@@ -17,19 +17,19 @@ namespace curve_proximity {
 
 enum class Verb { DISTANCE, TOLERANCE, COLLISION };
 
-/** What is asked. What does not apply is refused, never ignored: delta but to TOLERANCE; per_object together with a certificate; and of
- *  options what the table at cprox_options says. */
+/** What is asked. What does not apply is refused, never ignored: delta but to TOLERANCE; per_object together with a
+ *  certificate; and of options what the table at cprox_options says. */
 struct Question {
   Verb verb = Verb::DISTANCE;
   double delta = 0.0; /**< [m] >= 0: of TOLERANCE, else 0 */
 
-  /** Epsilon, budget, stop function. `certificate` receives the proof of the answer, about everything that is asked about, or is left
-   *  empty: then Answer::unproven says why. It changes nothing in the answer. */
+  /** Epsilon, budget, stop function. `certificate` receives the proof of the answer, about everything that is asked
+   *  about, or is left empty: then Answer::unproven says why. It changes nothing in the answer. */
   cprox_options options = cprox_options_default();
   bool per_object = false; /**< one answer for each object and each link (for its nearest shape), else one in all */
 
-  /** What the curve is measured against: everything where both lists are empty, else only what they name (objects alone:
-   *  no links). A name that is not in the snapshot, and a link without geometry, is an error that names it. */
+  /** What the curve is measured against: everything where both lists are empty, else only what they name (objects
+   *  alone: no links). A name that is not in the snapshot, and a link without geometry, is an error that names it. */
   std::vector<std::string> objects, links;
 };
 
@@ -44,16 +44,16 @@ struct Answer {
   /** As the core gives it; target_index is the number of the shape in object b (or of the collision element in link b),
    *  -1 for none. lower and upper hold for the whole set that was asked about, the rounding of poses and hulls
    *  included (where the bodies as placed touch or overlap, upper is 0). Nothing to measure: status CPROX_OK,
-   *  lower = upper = infinity; for TOLERANCE verdict yes, for COLLISION no. Not answered: status < 0, and the rest means
-   *  nothing. */
+   *  lower = upper = infinity; for TOLERANCE verdict yes, for COLLISION no. Not answered: status < 0, and the rest
+   *  means nothing. */
   cprox_result result{};
 
   std::string a;          /**< what moved: the curve's id */
   std::string b;          /**< the nearest object or link; empty where there is none */
   bool b_is_link = false; /**< b names a link of the robot */
-  bool by_hull =
-      false; /**< the nearest shape is a mesh, and its convex hull or bounding ball, which contains it, answered for it: as
-                                options.max_rung asked, or because it is solid and the robot moves */
+  /** the nearest shape is a mesh, and its convex hull or bounding ball, which contains it, answered for it: as
+   *  options.max_rung asked, or because it is solid and the robot moves */
+  bool by_hull = false;
   double microseconds = 0; /**< steady clock, around the search of this curve (per object: of this object) */
   std::string status;      /**< cprox_status_name(result.status) */
   std::string message;     /**< for a person: why there is no answer, or what is special about it; often empty */
@@ -98,15 +98,15 @@ class Targets {
   std::unique_ptr<const Data> data_;
 };
 
-/** Everything that a question is about, as the core takes it; valid as long as `targets` is. Certificates are about these: where
- *  things stand, in doubles, when rounding before the core is done. */
+/** Everything that a question is about, as the core takes it; valid as long as `targets` is. Certificates are about
+ *  these: where things stand, in doubles, when rounding before the core is done. */
 std::vector<cprox_target> coreTargets(const Targets &targets);
 
 /** Which of them an answer names; -1 for none. */
 std::int32_t coreTargetOf(const Targets &targets, const Answer &answer);
 
-/** The same as the program cprox_check reads it (doc/certificates.md), a line a convex part with the name of its owner; meshes by their
- *  convex hulls. Empty where something is of a kind that has no certificates. */
+/** The same as the program cprox_check reads it (doc/certificates.md), a line a convex part with the name of its owner;
+ *  meshes by their convex hulls. Empty where something is of a kind that has no certificates. */
 std::string describeTargets(const Targets &targets);
 
 /** What has no certificates, with its kind: a sentence each. Where there is any, no answer can be proven. */

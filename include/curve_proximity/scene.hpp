@@ -26,8 +26,8 @@ class World;
 /** One change of one object. */
 struct Operation {
   /** ADD     a new object, or in the place of the one with that id.
-   *  APPEND  further shapes for an object (relative to the object's pose; operation.object.pose must be that pose or the
-   *          identity); without such an object the same as ADD.
+   *  APPEND  further shapes for an object (relative to the object's pose; operation.object.pose must be that pose or
+   *          the identity); without such an object the same as ADD.
    *  MOVE    a new pose for an object; shapes given with it are an error.
    *  REMOVE  away with an object; with an empty id, with all.
    *  The object's padding is set by ADD; by APPEND and MOVE only where it is not 0. */
@@ -44,10 +44,12 @@ struct AllowedPair {
 
 /** One change of what the robot carries. */
 struct Attachment {
-  /** ATTACH  a link carries an object from now on: `object`, its pose in the link's frame, in the place of one of that id in the
-   *          scene or on any link; without shapes the object of the scene of that id, which stays where it is at link_pose.
-   *  DETACH  the object of that id stands in the scene from now on, where it is at link_pose; with an empty id, all that the link
-   *          carries; with an empty link too, everything. */
+  /** ATTACH  a link carries an object from now on: `object`, its pose in the link's frame, in the place of one of that
+   *  id in the
+   *          scene or on any link; without shapes the object of the scene of that id, which stays where it is at
+   *          link_pose.
+   *  DETACH  the object of that id stands in the scene from now on, where it is at link_pose; with an empty id, all
+   *          that the link carries; with an empty link too, everything. */
   enum class Kind { ATTACH, DETACH };
   Kind kind = Kind::ATTACH;
   std::string link;
@@ -130,8 +132,8 @@ class Snapshot {
     return object.description.padding + linkPadding(object.link);
   }
 
-  /** The collision elements of a link of the robot at its scale. A scale enlarges each of them, of any type, about its own origin;
-   *  a mesh about the mean of its vertices, as MoveIt does. */
+  /** The collision elements of a link of the robot at its scale. A scale enlarges each of them, of any type, about its
+   *  own origin; a mesh about the mean of its vertices, as MoveIt does. */
   const std::vector<LinkGeometry> &linkGeometry(const std::string &link) const;
 
   /** The scales that are not 1, by link. */
@@ -148,14 +150,15 @@ class Snapshot {
     return default_link_padding_;
   }
 
-  /** The allowed collision matrix: an entry for each pair of names, `false` ones too. Sorted by name; a <= b, or b empty. */
+  /** The allowed collision matrix: an entry for each pair of names, `false` ones too. Sorted by name; a <= b, or b
+   *  empty. */
   const std::vector<AllowedPair> &allowed() const {
     return *allowed_;
   }
 
-  /** Whether the allowed collision matrix lets two of objects and links touch, as moveit_msgs/AllowedCollisionMatrix says:
-   *  the entry of the pair wins. Without one, the default of either name counts; where both names have a default, both must
-   *  be true. Without entry and default the answer is false. Cost: a search in allowed(). */
+  /** Whether the allowed collision matrix lets two of objects and links touch, as moveit_msgs/AllowedCollisionMatrix
+   *  says: the entry of the pair wins. Without one, the default of either name counts; where both names have a default,
+   *  both must be true. Without entry and default the answer is false. Cost: a search in allowed(). */
   bool mayTouch(const std::string &a, const std::string &b) const;
 
   /** The objects' shapes with the tree over them (a part of the library, not of its interface). */
@@ -182,7 +185,8 @@ class Snapshot {
 
 using SnapshotPtr = std::shared_ptr<const Snapshot>;
 
-/** Thread safety: any number of threads; changes wait for each other, snapshot() never waits for a change in the making.
+/** Thread safety: any number of threads; changes wait for each other, snapshot() never waits for a change in the
+ *  making.
  */
 class Scene {
  public:
@@ -194,12 +198,13 @@ class Scene {
 
   /** Applies a change; what can be applied becomes visible at once, as one new snapshot.
    *
-   *  All or nothing for each operation and attachment, and for the link paddings, scales and allowed pairs each: what is faulty leaves the
-   *  scene as it was and is told in a sentence that names it ("object 'box1': cylinder needs 2 dimensions
-   *  [height, radius], got 1"). Returns these sentences in the order of the change; none: all was applied. An unknown id
-   *  on MOVE or REMOVE, an object without an id or with that of a carried one, poses and paddings that are not finite, a
-   *  padding < 0, an unknown link, an allowed pair without a first name and a halfspace that is to be carried are faults.
-   *  Cost: microseconds an object that stays, more for those that are made; bodies that stay are shared. */
+   *  All or nothing for each operation and attachment, and for the link paddings, scales and allowed pairs each: what
+   *  is faulty leaves the scene as it was and is told in a sentence that names it ("object 'box1': cylinder needs 2
+   *  dimensions [height, radius], got 1"). Returns these sentences in the order of the change; none: all was applied.
+   *  An unknown id on MOVE or REMOVE, an object without an id or with that of a carried one, poses and paddings that
+   *  are not finite, a padding < 0, an unknown link, an allowed pair without a first name and a halfspace that is to be
+   *  carried are faults. Cost: microseconds an object that stays, more for those that are made; bodies that stay are
+   *  shared. */
   std::vector<std::string> apply(const SceneChange &change);
 
  private:

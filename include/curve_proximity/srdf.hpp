@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What an SRDF says that matters here: how the robot stands in the world, and which links need no check against each other. */
+/** What an SRDF says that matters here: how the robot stands in the world, and which links need no check against each
+ *  other. */
 #ifndef CURVE_PROXIMITY_SRDF_HPP
 #define CURVE_PROXIMITY_SRDF_HPP
 
@@ -20,8 +21,8 @@ struct Srdf {
   std::vector<std::array<std::string, 2>> disabled; /**< pairs of links that are not checked against each other */
 };
 
-/** Reads an SRDF. Throws Error, naming the element: XML that is none, no <robot>, a virtual joint of an unknown type, elements
- *  that lack an attribute. Elements that say nothing of the above are not looked at. */
+/** Reads an SRDF. Throws Error, naming the element: XML that is none, no <robot>, a virtual joint of an unknown type,
+ *  elements that lack an attribute. Elements that say nothing of the above are not looked at. */
 Srdf parseSrdf(const std::string &xml);
 
 } // namespace curve_proximity

@@ -13,8 +13,9 @@ namespace curve_proximity {
 
 /** How the joints move between two points: as joint_trajectory_controller does. */
 enum class Interpolation {
-  BY_POINTS, /**< by what both points of a segment carry: positions only: linear; velocities too: cubic; accelerations too:
-                  quintic */
+  /** by what both points of a segment carry: positions only: linear; velocities too: cubic; accelerations too:
+   *  quintic */
+  BY_POINTS,
   LINEAR,
   CUBIC,
   QUINTIC
@@ -34,16 +35,17 @@ struct TrajectoryDescription {
 
   JointPositions fixed_joints;    /**< joints that stand still at a value of their own */
   std::vector<VirtualJoint> base; /**< the joint above the root link, where the trajectory names it: none or one */
-  std::vector<std::string>
-      base_joints; /**< the names of its parts (planar: x, y, theta; floating: x, y, z and the quaternion's x, y,
-                                             z, w); empty: as MoveIt names them, NAME/x … */
+  /** the names of its parts (planar: x, y, theta; floating: x, y, z and the quaternion's x, y, z, w); empty: as
+   *  MoveIt names them, NAME/x … */
+  std::vector<std::string> base_joints;
 };
 
-/** Gives a trajectory that names parts of one of these joints (NAME/x …) and no base of its own that joint as its base. */
+/** Gives a trajectory that names parts of one of these joints (NAME/x …) and no base of its own that joint as its
+ *  base. */
 void adoptBase(const std::vector<VirtualJoint> &joints, TrajectoryDescription &trajectory);
 
-/** Throws Error, naming point and joint: no joints or points, a name twice, counts that differ, numbers that are not finite, times
- *  that do not ascend, an interpolation for which points lack velocities or accelerations. */
+/** Throws Error, naming point and joint: no joints or points, a name twice, counts that differ, numbers that are not
+ *  finite, times that do not ascend, an interpolation for which points lack velocities or accelerations. */
 void checkTrajectory(const TrajectoryDescription &trajectory);
 
 } // namespace curve_proximity

@@ -80,9 +80,9 @@ CPROX_API cprox_workspace *cprox_workspace_create(void);
 CPROX_API void cprox_workspace_free(cprox_workspace *workspace);
 
 /** One line, for a person, that says why the last call with this workspace did not end with CPROX_OK
- *  ("knot 7 is 0.3, below knot 6 at 0.5"). "" where it did, with one exception: a query that was to leave a certificate and could
- *  not says why ("no certificate: target 0 ..."), after its own reason where there is one; its status and result are those of the
- *  same query without a certificate. Valid until the next call with this workspace. */
+ *  ("knot 7 is 0.3, below knot 6 at 0.5"). "" where it did, with one exception: a query that was to leave a certificate
+ *  and could not says why ("no certificate: target 0 ..."), after its own reason where there is one; its status and
+ *  result are those of the same query without a certificate. Valid until the next call with this workspace. */
 CPROX_API const char *cprox_workspace_reason(const cprox_workspace *workspace);
 
 /** The bytes a workspace holds now. */

@@ -112,51 +112,56 @@ typedef enum cprox_mesh_fill {
  *
  *  vertices      n of them [m], finite, at most 1e60 m from the origin; duplicates are allowed
  *  triangles     m of them, each three indices below n; degenerate and repeated triangles are allowed
- *  fill          CPROX_MESH_SOLID asks for the inside too, by the generalised winding number (Jacobson et al. 2013). It is granted
- *                where the mesh is closed: every edge run through as often one way as the other, vertices with equal coordinates
- *                being one. Where it is not, the body is the surface, and cprox_body_is_solid() says so.
- *  memory_limit  the most bytes that the body may take, SIZE_MAX: any. Beyond it CPROX_MEMORY, and the reason names the bytes.
+ *  fill          CPROX_MESH_SOLID asks for the inside too, by the generalised winding number (Jacobson et al. 2013). It
+ *                is granted where the mesh is closed: every edge run through as often one way as the other, vertices
+ *                with equal coordinates being one. Where it is not, the body is the surface, and cprox_body_is_solid()
+ *                says so.
+ *  memory_limit  the most bytes that the body may take, SIZE_MAX: any. Beyond it CPROX_MEMORY, and the reason names the
+ *                bytes.
  *
- *  Curves, tubes, balls and convex bodies are held against meshes; meshes are not carried along curves. A surface has no inside, so
- *  that depth is not measured: what a surface overlaps has distance 0. Both arrays are copied. Cost: n log n.
- *  Source: doc/non-convex.md. */
+ *  Curves, tubes, balls and convex bodies are held against meshes; meshes are not carried along curves. A surface has
+ *  no inside, so that depth is not measured: what a surface overlaps has distance 0. Both arrays are copied. Cost: n
+ *  log n. Source: doc/non-convex.md. */
 CPROX_API cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const uint32_t (*triangles)[3],
                                               size_t m, cprox_mesh_fill fill, size_t memory_limit,
                                               cprox_workspace *workspace, cprox_body **body);
 
-/** Points, each a ball of the radius [m] >= 0. n >= 1, finite. memory_limit as for meshes. Built for speed: for what a sensor
- *  measures thirty times a second. */
+/** Points, each a ball of the radius [m] >= 0. n >= 1, finite. memory_limit as for meshes. Built for speed: for what a
+ *  sensor measures thirty times a second. */
 CPROX_API cprox_status cprox_body_create_points(const cprox_vec3 *points, size_t n, double radius, size_t memory_limit,
                                                 cprox_workspace *workspace, cprox_body **body);
 
-/** The points of `previous`, but that its point changed[i] stands at points[i] now: for maps of which a part changes, thirty times a second,
- *  while queries run on the body as it was. `previous` stays as it is.
+/** The points of `previous`, but that its point changed[i] stands at points[i] now: for maps of which a part changes,
+ *  thirty times a second, while queries run on the body as it was. `previous` stays as it is.
  *
- *  changed, points  n of them; numbers as the points were given first, positions finite. Of one named twice the last counts.
- *  retired          a body made from the same points by updates, of which no query and no snapshot makes use any more, or NULL. Where the
- *                   call succeeds it is used up, handle and all: with two bodies in turns only what has changed is written.
+ *  changed, points  n of them; numbers as the points were given first, positions finite. Of one named twice the last
+ *                   counts.
+ *  retired          a body made from the same points by updates, of which no query and no snapshot makes use any more,
+ *                   or NULL. Where the call succeeds it is used up, handle and all: with two bodies in turns only what
+ *                   has changed is written.
  *
- *  Cost: blocks of 4096 neighbouring points with a change in them are sorted anew; without `retired` the rest is copied. Points that
- *  wander far make wide boxes and slow queries, never wrong ones: make the body anew then. */
+ *  Cost: blocks of 4096 neighbouring points with a change in them are sorted anew; without `retired` the rest is
+ *  copied. Points that wander far make wide boxes and slow queries, never wrong ones: make the body anew then. */
 CPROX_API cprox_status cprox_body_update_points(const cprox_body *previous, const uint32_t *changed,
                                                 const cprox_vec3 *points, size_t n, cprox_body *retired,
                                                 cprox_workspace *workspace, cprox_body **body);
 
-/** Boxes along the axes, from low[i] to high[i], low <= high, as an octree's occupied leaves are. n >= 1, finite. They may overlap.
- *  Each is solid. memory_limit as for meshes. */
+/** Boxes along the axes, from low[i] to high[i], low <= high, as an octree's occupied leaves are. n >= 1, finite. They
+ *  may overlap. Each is solid. memory_limit as for meshes. */
 CPROX_API cprox_status cprox_body_create_boxes(const cprox_vec3 *low, const cprox_vec3 *high, size_t n,
                                                size_t memory_limit, cprox_workspace *workspace, cprox_body **body);
 
 /** A ladder of models of one set: the mesh, and a convex hull of it that answers what does not need the mesh.
  *
  *  hull    convex: a polytope, or any other convex body but a halfspace.
- *  excess  [m] >= 0: no point of the mesh is farther than this from the hull. 0 for its convex hull, made of its own vertices.
- *          Checked along 26 directions only: a hull that leaves out more would make answers wrong.
+ *  excess  [m] >= 0: no point of the mesh is farther than this from the hull. 0 for its convex hull, made of its own
+ *          vertices. Checked along 26 directions only: a hull that leaves out more would make answers wrong.
  *  mesh    a mesh, points or boxes.
  *
- *  Both are kept by reference, stand in the frame of the ladder, and must outlive it. A ladder may be part of a compound. Queries
- *  climb from the hull to the mesh where the hull cannot decide; cprox_options.max_rung ends the climb before, and
- *  cprox_result.rung says how far it went. Its support, nearest point and bounding sphere are the mesh's. */
+ *  Both are kept by reference, stand in the frame of the ladder, and must outlive it. A ladder may be part of a
+ *  compound. Queries climb from the hull to the mesh where the hull cannot decide; cprox_options.max_rung ends the
+ *  climb before, and cprox_result.rung says how far it went. Its support, nearest point and bounding sphere are the
+ *  mesh's. */
 CPROX_API cprox_status cprox_body_create_ladder(const cprox_body *hull, double excess, const cprox_body *mesh,
                                                 cprox_workspace *workspace, cprox_body **body);
 
@@ -184,9 +189,10 @@ CPROX_API void cprox_body_bounding_sphere(const cprox_body *body, cprox_vec3 *ce
 CPROX_API double cprox_body_support(const cprox_body *body, cprox_vec3 direction, cprox_vec3 *point);
 
 /** The nearest point of the body to a point of its frame, and the distance to it: negative inside (minus the distance
- * to the surface) for the kinds that can tell, else 0. nearest NULL if not needed. Accuracy: 64 2^-53 (|point| + size); inside support
- * bodies, superquadrics and implicit bodies whatever 400 support queries tell. A plain evaluation: certified answers come
- * from the queries. Inside polytopes of more than 400 vertices it allocates memory while it runs. */
+ * to the surface) for the kinds that can tell, else 0. nearest NULL if not needed. Accuracy: 64 2^-53 (|point| + size);
+ * inside support bodies, superquadrics and implicit bodies whatever 400 support queries tell. A plain evaluation:
+ * certified answers come from the queries. Inside polytopes of more than 400 vertices it allocates memory while it
+ * runs. */
 CPROX_API double cprox_body_nearest(const cprox_body *body, cprox_vec3 point, cprox_vec3 *nearest);
 
 #ifdef __cplusplus

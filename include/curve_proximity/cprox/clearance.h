@@ -11,14 +11,14 @@ extern "C" {
 
 /** The k targets that come closest.
  *
- *  nearest   receives min(k, n) results, ascending by upper; target_index says which. Each is as cprox_distance() gives it,
- *            signed where options say so.
+ *  nearest   receives min(k, n) results, ascending by upper; target_index says which. Each is as cprox_distance() gives
+ *            it, signed where options say so.
  *            Every target that is not among them is at least nearest[last].upper - w away, w = max(epsilon,
  *            relative_epsilon * nearest[last].upper).
  *  count     receives their number.
  *
- *  Returns as cprox_distance(); the first status above CPROX_OK that a target gave is returned, and then the sentence about
- *  the rest holds with that target's own lower bound in place of it. On a negative status nothing is written.
+ *  Returns as cprox_distance(); the first status above CPROX_OK that a target gave is returned, and then the sentence
+ *  about the rest holds with that target's own lower bound in place of it. On a negative status nothing is written.
  *  k >= 1. Cost: a bounding-ball test a target, and a search for those that the k-th best so far does not rule out. */
 CPROX_API cprox_status cprox_nearest(cprox_mover mover, const cprox_target *targets, size_t n, size_t k,
                                      const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
@@ -26,8 +26,8 @@ CPROX_API cprox_status cprox_nearest(cprox_mover mover, const cprox_target *targ
 
 /** All targets that come within delta >= 0 [m].
  *
- *  near      room for n results; receives those with lower <= delta, in the order of the targets. verdict yes: upper <= delta,
- *            and then upper - lower <= epsilon. undecided: neither was proven.
+ *  near      room for n results; receives those with lower <= delta, in the order of the targets. verdict yes: upper <=
+ *            delta, and then upper - lower <= epsilon. undecided: neither was proven.
  *            Every target that is not among them is farther than delta everywhere.
  *  count     receives their number.
  *
@@ -43,8 +43,8 @@ CPROX_API cprox_status cprox_within(cprox_mover mover, const cprox_target *targe
  *  delta     [m] >= 0: only pairs that come within it; infinity: any.
  *  nearest   receives up to k results, ascending by upper; mover_part and target_index say which pair. Each is as
  *            cprox_distance() gives it for that pair alone.
- *            Every pair that is not among them is farther than delta everywhere, or at least nearest[last].upper - w away, w =
- *            max(epsilon, relative_epsilon * nearest[last].upper).
+ *            Every pair that is not among them is farther than delta everywhere, or at least nearest[last].upper - w
+ *            away, w = max(epsilon, relative_epsilon * nearest[last].upper).
  *  count     receives their number.
  *
  *  Returns as cprox_nearest(). Cost: a search a pair, which ends where the pair is out of question. */
@@ -55,20 +55,23 @@ CPROX_API cprox_status cprox_nearest_pairs(cprox_mover mover, const cprox_target
 /** The clearance of the mover on one stretch of its way. */
 typedef struct cprox_stretch {
   double t0, t1; /**< the stretch of the parameter */
-  double lower,
-      upper; /**< [m] lower <= min over [t0, t1] of the distance to the nearest target <= upper; infinity: no target */
-  double t;  /**< where in [t0, t1] upper was attained */
+  /** [m] lower <= min over [t0, t1] of the distance to the nearest target <= upper; infinity: no target */
+  double lower, upper;
+  double t;             /**< where in [t0, t1] upper was attained */
   int32_t target_index; /**< which target that was; -1 for none */
   int32_t mover_part;   /**< of a robot: which geometry; else as in cprox_result */
 } cprox_stretch;
 
-/** The clearance profile: lower and upper clearance on each stretch of a partition, for colouring a path and for planners.
+/** The clearance profile: lower and upper clearance on each stretch of a partition, for colouring a path and for
+ *  planners.
  *
  *  breaks      n_stretches + 1 parameters, ascending, inside the mover's range.
  *  stretches   receives n_stretches of them, each to the accuracy that options ask for.
  *
- *  Returns as cprox_distance(); a status above CPROX_OK means that some stretch is less accurate than asked, and all are true.
- *  CPROX_INVALID also where breaks do not ascend or leave the range. On a negative status nothing or some is written. */
+ *  Returns as cprox_distance(); a status above CPROX_OK means that some stretch is less accurate than asked, and all
+ *  are true.
+ *  CPROX_INVALID also where breaks do not ascend or leave the range. On a negative status nothing or some is
+ *  written. */
 CPROX_API cprox_status cprox_profile(cprox_mover mover, const cprox_target *targets, size_t n, const double *breaks,
                                      size_t n_stretches, const cprox_options *options, cprox_workspace *workspace,
                                      cprox_stretch *stretches);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Fourier gap functions: a smooth measure of how much two solids overlap, with its SE(2) or SE(3) gradient.
  *
- *  Solids are given by the closed-form Fourier transforms of their (offset) indicators. A gap is made once for a pair of
- *  solids and an accuracy; then each pose costs one short sum. The gap speaks of overlapping *interiors*: touching
+ *  Solids are given by the closed-form Fourier transforms of their (offset) indicators. A gap is made once for a pair
+ *  of solids and an accuracy; then each pose costs one short sum. The gap speaks of overlapping *interiors*: touching
  *  surfaces do not count, unlike elsewhere in this library.
  *
  *  In the certified mode CPROX_GAP_CLEAR is a proof that the interiors do not overlap. CPROX_GAP_COLLIDE only says that
@@ -30,7 +30,8 @@ extern "C" {
  *
  *  Constructors copy what they are given and check it once; they return CPROX_INVALID with a sentence in the workspace
  *  (which may be NULL: then without the sentence), or CPROX_MEMORY, and leave *solid untouched on failure. The handle
- *  is the caller's: cprox_solid_free(). Every length in metres, finite, and between 1e-100 and 1e100. dimension: 2, 3. */
+ *  is the caller's: cprox_solid_free(). Every length in metres, finite, and between 1e-100 and 1e100. dimension: 2,
+ *  3. */
 typedef struct cprox_solid cprox_solid;
 
 /** A disc or ball about the origin, radius > 0. */
@@ -49,7 +50,8 @@ CPROX_API cprox_status cprox_solid_create_ellipsoid(int dimension, cprox_vec3 se
 CPROX_API cprox_status cprox_solid_create_cylinder(double height, double radius, cprox_workspace *workspace,
                                                    cprox_solid **solid);
 
-/** All points within radius of the segment of length height about the origin, along x in the plane, along z in space. */
+/** All points within radius of the segment of length height about the origin, along x in the plane, along z in
+ *  space. */
 CPROX_API cprox_status cprox_solid_create_capsule(int dimension, double height, double radius,
                                                   cprox_workspace *workspace, cprox_solid **solid);
 
@@ -80,8 +82,8 @@ CPROX_API cprox_status cprox_solid_create_sweep(int dimension, const cprox_curve
  *
  *  lowest     the corner of cell (0, 0, 0).   cell: its edge length, > 0.
  *  counts     cells along x, y, z, each >= 1 and their product <= 2^30; counts[2] is 1 in the plane.
- *  occupied   one byte a cell, x fastest; not 0: occupied. At least one is. The union is what is certified: occupy every
- *             cell that the body meets. */
+ *  occupied   one byte a cell, x fastest; not 0: occupied. At least one is. The union is what is certified: occupy
+ *             every cell that the body meets. */
 CPROX_API cprox_status cprox_solid_create_grid(int dimension, cprox_vec3 lowest, double cell, const uint32_t counts[3],
                                                const unsigned char *occupied, cprox_workspace *workspace,
                                                cprox_solid **solid);
@@ -129,12 +131,13 @@ typedef enum cprox_gap_mode {
 /** Start from cprox_gap_options_default(). */
 typedef struct cprox_gap_options {
   cprox_gap_mode mode;
-  double delta;        /**< [m] > 0: the largest clearance that may still be called a collision; chooses the samples.
-                            Default 0: samples must be given. Refused together with samples */
-  uint32_t samples;    /**< n, odd, 3 … 1025: samples an axis; 0: the fewest for delta. Default 0 */
-  double period;       /**< [m] L, or 0 for the least that keeps images apart (default); a smaller one is refused */
-  size_t memory_limit; /**< bytes a gap may hold; beyond it CPROX_INVALID and a sentence with n and the bytes it needs.
-                            Default 256 MiB */
+  /** [m] > 0: the largest clearance that may still be called a collision; chooses the samples. Default 0: samples
+   *  must be given. Refused together with samples */
+  double delta;
+  uint32_t samples; /**< n, odd, 3 … 1025: samples an axis; 0: the fewest for delta. Default 0 */
+  double period;    /**< [m] L, or 0 for the least that keeps images apart (default); a smaller one is refused */
+  /** bytes a gap may hold; beyond it CPROX_INVALID and a sentence with n and the bytes it needs. Default 256 MiB */
+  size_t memory_limit;
 } cprox_gap_options;
 
 CPROX_API cprox_gap_options cprox_gap_options_default(void);
@@ -143,13 +146,14 @@ CPROX_API cprox_gap_options cprox_gap_options_default(void);
 typedef struct cprox_gap_info {
   cprox_gap_mode mode;
   int dimension;
-  uint32_t samples;  /**< n: samples an axis */
-  double period;     /**< L [m] */
-  double offset;     /**< rho [m], by which both solids are enlarged; 0 in the signal mode */
-  double threshold;  /**< t, in units of the measure squared over L^d; V_ref in the signal mode */
-  double over_reach; /**< [m] solids farther apart than this are never called colliding. Certified: proven. Tuned:
-                           what was measured, times 1.25. To a clipped solid: from the solid or from its region,
-                           whichever is farther. Infinity in the signal mode, and where the gap is too coarse to say */
+  uint32_t samples; /**< n: samples an axis */
+  double period;    /**< L [m] */
+  double offset;    /**< rho [m], by which both solids are enlarged; 0 in the signal mode */
+  double threshold; /**< t, in units of the measure squared over L^d; V_ref in the signal mode */
+  /** [m] solids farther apart than this are never called colliding. Certified: proven. Tuned: what was measured,
+   *  times 1.25. To a clipped solid: from the solid or from its region, whichever is farther. Infinity in the signal
+   *  mode, and where the gap is too coarse to say */
+  double over_reach;
   bool guaranteed;   /**< clear is a proof */
   bool turned_first; /**< the first solid, the simpler one, is the one whose spectrum is turned */
   size_t terms;      /**< of the sum */
@@ -169,16 +173,18 @@ CPROX_API const char *cprox_gap_verdict_name(cprox_gap_verdict verdict);
 
 typedef struct cprox_gap_result {
   cprox_gap_verdict verdict;
-  double value;     /**< certified, tuned: V/t, overlap is possible from 1 on. Signal: c = -log(V/V_ref), the larger the
-                         freer. FAR: 0 (signal: infinity) with gradients 0 */
-  double error;     /**< |exact - value| at most: the rounding, and what an early exit left out. Of V/V_ref in the
-                         signal mode */
+  /** certified, tuned: V/t, overlap is possible from 1 on. Signal: c = -log(V/V_ref), the larger the freer. FAR: 0
+   *  (signal: infinity) with gradients 0 */
+  double value;
+  /** |exact - value| at most: the rounding, and what an early exit left out. Of V/V_ref in the signal mode */
+  double error;
   double clearance; /**< [m] the distance of the bounding spheres, 0 where they overlap */
   uint32_t terms;   /**< summed */
   /** Gradients of value. Position: world frame [1/m]. Rotation: in the body's own frame, d/ds of the value for
    *  R exp(s[w]) is rotation·w [1/rad]; only z in the plane. 0 from cprox_gap_test(). */
   cprox_vec3 position_a, rotation_a, position_b, rotation_b;
-  /** The same of the relative pose (R, x): R = R_a^T R_b, x = R_a^T (x_b - x_a), x in the frame of a, the rotation in b's. */
+  /** The same of the relative pose (R, x): R = R_a^T R_b, x = R_a^T (x_b - x_a), x in the frame of a, the rotation in
+   *  b's. */
   cprox_vec3 position, rotation;
 } cprox_gap_result;
 
@@ -188,9 +194,9 @@ typedef struct cprox_gap cprox_gap;
 /** Makes a pair ready: chooses n, L, rho, the kernel and the threshold.
  *
  *  Certified: n is the least odd number whose proven over-reach is at most delta; kernel and offset are those that make
- *  the over-reach of bodies of ordinary proportions least. Returns CPROX_INVALID where delta cannot be had below the memory limit, with the n and the bytes it would
- *  need; where delta exceeds the size of the pair (nothing would be left to decide); for solids of different dimensions.
- *  Cost: the spectrum of one solid at n^d/2 frequencies. */
+ *  the over-reach of bodies of ordinary proportions least. Returns CPROX_INVALID where delta cannot be had below the
+ *  memory limit, with the n and the bytes it would need; where delta exceeds the size of the pair (nothing would be
+ *  left to decide); for solids of different dimensions. Cost: the spectrum of one solid at n^d/2 frequencies. */
 CPROX_API cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
                                         cprox_workspace *workspace, cprox_gap **gap);
 
@@ -223,14 +229,16 @@ CPROX_API void cprox_gap_cascade_free(cprox_gap_cascade *cascade);
 /** The finest level: owned by the cascade. */
 CPROX_API const cprox_gap *cprox_gap_cascade_finest(const cprox_gap_cascade *cascade);
 
-/** As cprox_gap_test() of the finest level, but stops at the first level that proves the pair clear. terms: of all levels. */
+/** As cprox_gap_test() of the finest level, but stops at the first level that proves the pair clear. terms: of all
+ *  levels. */
 CPROX_API cprox_status cprox_gap_cascade_test(const cprox_gap_cascade *cascade, const cprox_pose *pose_a,
                                               const cprox_pose *pose_b, cprox_workspace *workspace,
                                               cprox_gap_result *result);
 
 /* ---- Along a curve ---- */
 
-/** The second solid carried along a curve without turning, its origin at psi(t): result as of cprox_gap_evaluate() at that pose.
+/** The second solid carried along a curve without turning, its origin at psi(t): result as of cprox_gap_evaluate() at
+ *  that pose.
  *
  *  derivative  d value/dt [1/unit of t], NULL if not needed.
  *  CPROX_INVALID if t is outside the curve's range, or the curve outside the plane of a planar gap. */
@@ -245,8 +253,8 @@ typedef struct cprox_gap_along_result {
   uint32_t nodes;            /**< intervals looked at */
 } cprox_gap_along_result;
 
-/** The verdict over the whole interval [t0, t1] of the curve: between the parameters looked at, value and gradient there and a
- *  bound of the second derivative keep V below t. max_nodes >= 1: CPROX_BUDGET beyond it, and undecided. */
+/** The verdict over the whole interval [t0, t1] of the curve: between the parameters looked at, value and gradient
+ *  there and a bound of the second derivative keep V below t. max_nodes >= 1: CPROX_BUDGET beyond it, and undecided. */
 CPROX_API cprox_status cprox_gap_along_test(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_curve *curve,
                                             const cprox_quat *orientation, double t0, double t1, uint32_t max_nodes,
                                             cprox_workspace *workspace, cprox_gap_along_result *result);

@@ -11,16 +11,18 @@ extern "C" {
 
 /** The derivatives of a distance, signed or not, at its minimiser. */
 typedef struct cprox_gradient {
-  bool valid;         /**< false: the distance is not differentiable here, or cannot be told to be; the reason is in the
-                                  workspace, the numbers are those of one of the minimisers or 0 */
+  /** false: the distance is not differentiable here, or cannot be told to be; the reason is in the workspace, the
+   *  numbers are those of one of the minimisers or 0 */
+  bool valid;
   double t, t_target; /**< the minimiser, as exactly as double arithmetic finds it; t_target NaN for bodies */
-  cprox_vec3 mover;   /**< by the mover's point at t. By a coefficient of the mover's curve: its weight at t
-                                  (cprox_bezier_weights() and so on) times this */
-  cprox_vec3
-      target_point; /**< the same of a target that is a curve: by its point at t_target, in the target's frame; else 0 */
+  /** by the mover's point at t. By a coefficient of the mover's curve: its weight at t (cprox_bezier_weights() and so
+   *  on) times this */
+  cprox_vec3 mover;
+  /** the same of a target that is a curve: by its point at t_target, in the target's frame; else 0 */
+  cprox_vec3 target_point;
   cprox_vec3 position; /**< by the target's position, world axes */
-  cprox_vec3 rotation; /**< [m/rad] by a small rotation vector w that turns the target about its position, world axes:
-                                  R becomes exp([w]) R */
+  /** [m/rad] by a small rotation vector w that turns the target about its position, world axes: R becomes exp([w]) R */
+  cprox_vec3 rotation;
   double radius, padding; /**< by the mover's radius and the target's padding: -1 */
   double t0, t1; /**< by the ends of the range, the curve itself going on as it is: 0 unless the minimiser is an end */
 } cprox_gradient;
@@ -30,25 +32,27 @@ typedef struct cprox_gradient {
  *  options   of that very call, less its certificate, which is refused here.
  *  result    of that very call; of a call with many targets, `target` is the one that result->target_index names.
  *
- *  By Danskin's theorem the derivatives are those of the distance at the minimiser alone, if there is only one. So the whole
- *  curve is searched once more. valid is false
- *    where the distance elsewhere comes within min(epsilon, 1e-9 curve lengths) of the least, or is as small on a stretch of
- *    more than 1e-3 of the range about the minimiser (of 1e-6 where the distance grows like a square),
+ *  By Danskin's theorem the derivatives are those of the distance at the minimiser alone, if there is only one. So the
+ *  whole curve is searched once more. valid is false
+ *    where the distance elsewhere comes within min(epsilon, 1e-9 curve lengths) of the least, or is as small on a
+ *    stretch of more than 1e-3 of the range about the minimiser (of 1e-6 where the distance grows like a square),
  *    where two parts or two points of a target curve are equally near,
- *    where the nearest points are not the only ones (face on face, edge along a face, a cone's base): a turn of 1e-6 rad to
- *    either side moves them by as much as one of 1e-4 rad,
+ *    where the nearest points are not the only ones (face on face, edge along a face, a cone's base): a turn of 1e-6
+ *    rad to either side moves them by as much as one of 1e-4 rad,
  *    where the way out of an overlap is not unique, found likewise by shifts of 1e-6 and 1e-4 sizes,
  *    and where the distance is 0 and not signed.
  *
- *  Returns CPROX_OK also where valid is false. CPROX_INVALID for unusable arguments, for a result without a witness, and for
- *  movers and targets of which no gradient is known (meshes, points, robots). *gradient is untouched then.
- *  Cost: about five distance queries, and for carried bodies four static pairs. Source: J. M. Danskin, The theory of max-min, 1967; doc/curve-bound.md. */
+ *  Returns CPROX_OK also where valid is false. CPROX_INVALID for unusable arguments, for a result without a witness,
+ *  and for movers and targets of which no gradient is known (meshes, points, robots). *gradient is untouched then.
+ *  Cost: about five distance queries, and for carried bodies four static pairs. Source: J. M. Danskin, The theory of
+ *  max-min, 1967; doc/curve-bound.md. */
 CPROX_API cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, const cprox_options *options,
                                                const cprox_result *result, cprox_workspace *workspace,
                                                cprox_gradient *gradient);
 
-/** psi(t) = sum of weights[i] times coefficient i, for each basis as its constructor has it; weights receives as many numbers as
- *  there are coefficients. Arguments as there, unchecked. Accuracy: a few n 2^-53 of the sum of |weights|. */
+/** psi(t) = sum of weights[i] times coefficient i, for each basis as its constructor has it; weights receives as many
+ *  numbers as there are coefficients. Arguments as there, unchecked. Accuracy: a few n 2^-53 of the sum of
+ *  |weights|. */
 CPROX_API void cprox_bezier_weights(size_t n_points, double t0, double t1, double t, double *weights);
 CPROX_API void cprox_bspline_weights(size_t n_points, size_t degree, const double *knots, double t, double *weights);
 CPROX_API void cprox_polynomial_weights(size_t n_coefficients, double t, double *weights);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Implicit bodies: superquadrics, hyperquadrics, quadrics, planes and their intersections, under any invertible affine map.
+/** Implicit bodies: superquadrics, hyperquadrics, quadrics, planes and their intersections, under any invertible affine
+ *  map.
  *
  *  They are bodies like any other (movers, targets, compounds, pairs).
  *  Source: Chakraborty, Peng, Akella and Mitchell 2008, as doc/implicit.md carries it out. */
@@ -27,14 +28,16 @@ typedef struct cprox_hyperquadric {
   size_t n_terms;           /**< 1 … 64 */
 } cprox_hyperquadric;
 
-/** The intersection of what is listed; each array NULL where its count is 0. At most 1024 constraints and terms in all. */
+/** The intersection of what is listed; each array NULL where its count is 0. At most 1024 constraints and terms in
+ *  all. */
 typedef struct cprox_implicit_description {
   const cprox_hyperquadric *hyperquadrics;
   size_t n_hyperquadrics;
   const double (*planes)[4]; /**< each b1, b2, b3, c: b·x + c <= 0 */
   size_t n_planes;
-  const double (*quadrics)[10]; /**< each q11, q12, q13, q22, q23, q33, b1, b2, b3, c: x'Qx + b·x + c <= 0, Q symmetric
-                                     (x'Qx counts q12, q13, q23 twice) and positive semidefinite */
+  /** each q11, q12, q13, q22, q23, q33, b1, b2, b3, c: x'Qx + b·x + c <= 0, Q symmetric (x'Qx counts q12, q13, q23
+   *  twice) and positive semidefinite */
+  const double (*quadrics)[10];
   size_t n_quadrics;
 } cprox_implicit_description;
 
@@ -49,8 +52,8 @@ CPROX_API cprox_affine cprox_affine_identity(void);
 
 /** The image of the described set under a map (NULL: the set itself).
  *
- *  The set must be bounded (within 1e10 m of the origin) and have an interior (a ball of 1e-9 of its size). The map is applied to
- *  the coefficients in twice the precision of double; the body is that of the coefficients so rounded.
+ *  The set must be bounded (within 1e10 m of the origin) and have an interior (a ball of 1e-9 of its size). The map is
+ *  applied to the coefficients in twice the precision of double; the body is that of the coefficients so rounded.
  *  CPROX_INVALID names the plane, quadric or term that is at fault: not finite, an exponent below 1, not positive
  *  semidefinite, out of range; an empty interior; an unbounded set and the axis along which it is; a singular map. */
 CPROX_API cprox_status cprox_body_create_implicit(const cprox_implicit_description *description,
@@ -63,8 +66,8 @@ CPROX_API cprox_status cprox_body_create_implicit(const cprox_implicit_descripti
  *  exponents  one for each term in the order of the description (a superquadric's x, y, z), 1 … 1000; NULL: as they are
  *  n          their number, that of the body's terms
  *
- *  Cheaper than making the body anew: what a map does to centre and size is known. Meant for bodies that deform from query to
- *  query. Errors as cprox_body_create_implicit(). */
+ *  Cheaper than making the body anew: what a map does to centre and size is known. Meant for bodies that deform from
+ *  query to query. Errors as cprox_body_create_implicit(). */
 CPROX_API cprox_status cprox_body_create_deformed(const cprox_body *body, const cprox_affine *map,
                                                   const double *exponents, size_t n, cprox_workspace *workspace,
                                                   cprox_body **deformed);

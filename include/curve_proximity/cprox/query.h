@@ -2,8 +2,9 @@
 /** The verbs: distance, tolerance, collision of what moves against what stands; static pairs.
  *
  *  Every answer is an interval [lower, upper] that contains the true value, rounding included, or a verdict that
- * follows from one. Numbers must be finite, and no length, position or accuracy may exceed 1e60 m, whose powers still fit into
- * a double: everything else is refused with CPROX_INVALID and a reason. Any number of threads may ask at once, each with its own workspace. */
+ * follows from one. Numbers must be finite, and no length, position or accuracy may exceed 1e60 m, whose powers still
+ * fit into a double: everything else is refused with CPROX_INVALID and a reason. Any number of threads may ask at once,
+ * each with its own workspace. */
 #ifndef CURVE_PROXIMITY_CPROX_QUERY_H
 #define CURVE_PROXIMITY_CPROX_QUERY_H
 
@@ -29,9 +30,9 @@ typedef struct cprox_target {
 CPROX_API cprox_target cprox_at(const cprox_body *body, cprox_pose pose);
 CPROX_API cprox_target cprox_padded(cprox_target target, double padding);
 
-/** A curve that stands where it was made, as thick as a ball of the radius that rides it: [m] >= 0, 0 for a line. The mover and
- *  the target are each at any parameter of their own. Its pose may be changed like that of a body. Curves have no inside, so
- *  that two without radius that cross or touch are answered [0, upper] and undecided. */
+/** A curve that stands where it was made, as thick as a ball of the radius that rides it: [m] >= 0, 0 for a line. The
+ *  mover and the target are each at any parameter of their own. Its pose may be changed like that of a body. Curves
+ *  have no inside, so that two without radius that cross or touch are answered [0, upper] and undecided. */
 CPROX_API cprox_target cprox_curve_target(const cprox_curve *curve, double radius);
 
 struct cprox_motion;
@@ -41,9 +42,9 @@ struct cprox_robot_pair;
 typedef struct cprox_mover {
   const cprox_curve *curve;
   double radius; /**< [m] >= 0: a ball that rides the curve, 0 for a point; with a body, its padding */
-  const cprox_body
-      *body; /**< what is carried along the curve without turning, its frame's origin on the curve and its axes those
-                               of the world; NULL: a point. Convex or a compound, no halfspace. Kept by reference. */
+  /** what is carried along the curve without turning, its frame's origin on the curve and its axes those of the
+   *  world; NULL: a point. Convex or a compound, no halfspace. Kept by reference. */
+  const cprox_body *body;
   const struct cprox_motion *motion; /**< instead of a curve: a robot along a joint motion, see robot.h */
   const struct cprox_robot_pair *pairs;
   size_t n_pairs;
@@ -53,13 +54,14 @@ typedef struct cprox_mover {
 CPROX_API cprox_mover cprox_point_along(const cprox_curve *curve);
 CPROX_API cprox_mover cprox_tube_along(const cprox_curve *curve, double radius);
 
-/** A body that is carried along the curve without turning. Every verb answers for it: the curve of its origin is held against the
- *  Minkowski difference of the target and the body, doc/curve-bound.md. */
+/** A body that is carried along the curve without turning. Every verb answers for it: the curve of its origin is held
+ *  against the Minkowski difference of the target and the body, doc/curve-bound.md. */
 CPROX_API cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve);
 
-/** Another mover on the clock of the mover asked about: both are at the same parameter, so that they may cross each other's way at
- *  different times. Both curves must have the same domain, else CPROX_INVALID. Either may carry a ball or a body. The pose that
- *  the target is given, identity at first, moves the other's curve and turns its body with it. */
+/** Another mover on the clock of the mover asked about: both are at the same parameter, so that they may cross each
+ *  other's way at different times. Both curves must have the same domain, else CPROX_INVALID. Either may carry a ball
+ *  or a body. The pose that the target is given, identity at first, moves the other's curve and turns its body with
+ *  it. */
 CPROX_API cprox_target cprox_on_clock(cprox_mover other);
 
 /** What a query can leave behind as proof: see certificate.h. */
@@ -83,8 +85,8 @@ CPROX_API const char *cprox_rung_name(cprox_rung rung);
 
 /** How a query is to be answered. Start from cprox_options_default().
  *
- *  Every query has epsilon and max_nodes. An option that is set and does not apply to the query is refused: CPROX_INVALID, and the
- *  reason names the option. What applies:
+ *  Every query has epsilon and max_nodes. An option that is set and does not apply to the query is refused:
+ *  CPROX_INVALID, and the reason names the option. What applies:
  *
  *    query                                     relative_epsilon  stop  max_rung  certificate  signed_distance
  *    distance                                  yes               yes   yes       yes          yes, not for robots
@@ -98,43 +100,45 @@ CPROX_API const char *cprox_rung_name(cprox_rung rung);
  *    translating contact, growth distance      no                yes   no        no           no
  *    certificate for an answer                 yes               no    yes       no           no */
 typedef struct cprox_options {
-  double epsilon; /**< [m] width of the interval asked for, 0 … 1e60; 0 asks for the narrowest one that double
-                                arithmetic allows, and the status says precision. Default 1e-6 */
-  double relative_epsilon;        /**< the interval may also be this fraction of upper wide; 0 … 1e60, default 0 */
-  uint32_t max_nodes;             /**< budget of parameter intervals examined, for each target; >= 1, default 20000 */
-  bool (*stop)(void *user);       /**< polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
-  void *stop_user;                /**< handed to stop */
-  cprox_certificate *certificate; /**< receives the proof of the answer, against all targets at once; NULL: none. For a
-                                distance the claim is that of lower, or where lower is 0 that of upper. It changes nothing in the
-                                answer; it is empty where there is no proof, and the reason in the workspace says why */
-  bool
-      signed_distance; /**< distance: where they overlap, the answer is minus the depth of the deepest overlap along the curve:
-                             the shortest way by which the mover, there, could leave the target (a part of it, for compounds).
-                             Curves have no inside beyond their radius. Meshes, points and octrees cannot tell: CPROX_OVERLAP,
-                             and lower only bounds it. Refused for robots: how deep they overlap is not measured.
-                             Default false: distances are 0 at least */
-  cprox_rung
-      max_rung; /**< the finest model of targets that may answer, CPROX_RUNG_MESH (or NONE): any. HULL: ladders by their hulls.
-                          SPHERE: all bodies by their bounding balls, but for points, octrees and halfspaces, which stay what they
-                          are. A coarser model contains the body: lower and "clear" hold for the body itself as well, but upper,
-                          the witness and "hit" are the model's */
+  /** [m] width of the interval asked for, 0 … 1e60; 0 asks for the narrowest one that double arithmetic allows, and
+   *  the status says precision. Default 1e-6 */
+  double epsilon;
+  double relative_epsilon;  /**< the interval may also be this fraction of upper wide; 0 … 1e60, default 0 */
+  uint32_t max_nodes;       /**< budget of parameter intervals examined, for each target; >= 1, default 20000 */
+  bool (*stop)(void *user); /**< polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
+  void *stop_user;          /**< handed to stop */
+  /** receives the proof of the answer, against all targets at once; NULL: none. For a distance the claim is that of
+   *  lower, or where lower is 0 that of upper. It changes nothing in the answer; it is empty where there is no proof,
+   *  and the reason in the workspace says why */
+  cprox_certificate *certificate;
+  /** distance: where they overlap, the answer is minus the depth of the deepest overlap along the curve: the shortest
+   *  way by which the mover, there, could leave the target (a part of it, for compounds). Curves have no inside
+   *  beyond their radius. Meshes, points and octrees cannot tell: CPROX_OVERLAP, and lower only bounds it. Refused
+   *  for robots: how deep they overlap is not measured. Default false: distances are 0 at least */
+  bool signed_distance;
+  /** the finest model of targets that may answer, CPROX_RUNG_MESH (or NONE): any. HULL: ladders by their hulls.
+   *  SPHERE: all bodies by their bounding balls, but for points, octrees and halfspaces, which stay what they are. A
+   *  coarser model contains the body: lower and "clear" hold for the body itself as well, but upper, the witness and
+   *  "hit" are the model's */
+  cprox_rung max_rung;
 } cprox_options;
 
 CPROX_API cprox_options cprox_options_default(void);
 
 typedef struct cprox_result {
-  cprox_status status;   /**< the same that the call returned */
-  cprox_verdict verdict; /**< tolerance: yes = farther than delta everywhere; collision: yes = they touch or overlap;
-                              undecided counts as unsafe. distance: undecided, always */
-  double lower,
-      upper;       /**< [m] certified: lower <= true value <= upper. upper = infinity where bounding balls (in batches
-                              also boxes) alone decided a verdict: then there is no witness, and target_index is -1 */
+  cprox_status status; /**< the same that the call returned */
+  /** tolerance: yes = farther than delta everywhere; collision: yes = they touch or overlap; undecided counts as
+   *  unsafe. distance: undecided, always */
+  cprox_verdict verdict;
+  /** [m] certified: lower <= true value <= upper. upper = infinity where bounding balls (in batches also boxes) alone
+   *  decided a verdict: then there is no witness, and target_index is -1 */
+  double lower, upper;
   double t;        /**< where on the mover's curve upper was attained */
   double t_target; /**< where on a target that is a curve; NaN for bodies */
-  cprox_vec3 on_mover, on_target; /**< [m] world frame, the two points that attain upper (surfaces, radius and padding
-                                       included); equal where they overlap, and either end of
-                                       the way out for signed distances */
-  cprox_vec3 normal;              /**< unit, world frame, from target to mover; (0,0,0) where there is none */
+  /** [m] world frame, the two points that attain upper (surfaces, radius and padding included); equal where they
+   *  overlap, and either end of the way out for signed distances */
+  cprox_vec3 on_mover, on_target;
+  cprox_vec3 normal;    /**< unit, world frame, from target to mover; (0,0,0) where there is none */
   int32_t target_index; /**< which target; which other geometry, where a robot is asked about itself; -1 for none */
   int32_t target_part;  /**< which part of a compound; 0 otherwise */
   int32_t mover_part;   /**< which part of a carried compound; which geometry of a robot, -1 for none; 0 otherwise */
@@ -164,8 +168,8 @@ CPROX_API cprox_status cprox_distance(cprox_mover mover, cprox_target target, co
 
 /** Is the mover farther than delta from the target everywhere? delta >= 0 [m].
  *
- *  verdict yes: lower > delta. no: upper <= delta. undecided: the distance is within epsilon of delta, or the budget was
- *  too small. The interval is true, but only as narrow as the verdict needed. Returns as cprox_distance().
+ *  verdict yes: lower > delta. no: upper <= delta. undecided: the distance is within epsilon of delta, or the budget
+ *  was too small. The interval is true, but only as narrow as the verdict needed. Returns as cprox_distance().
  *  Source: Lakshmanan et al. 2019, Algorithm 3. */
 CPROX_API cprox_status cprox_tolerance(cprox_mover mover, cprox_target target, double delta,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result);
@@ -197,12 +201,13 @@ CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_target
 
 /** Where, along its parameter, does the mover first touch the target? Never late.
  *
- *  t_free      no contact at any t < t_free, certified and rounded down. The distance at t_free is at most epsilon, or t_free is the end of
- *              the range.
- *  verdict     yes: they touch or overlap at t, proven: the first contact lies in [t_free, t]. no: they do not touch at all;
- *              lower > 0. undecided: closer than epsilon at t, the earliest such place that was measured; contact is not
- *              proven anywhere.
- *  lower, upper  of the distance over the whole range, as in cprox_collision(). upper is the distance of the two points at t:
+ *  t_free      no contact at any t < t_free, certified and rounded down. The distance at t_free is at most epsilon, or
+ *              t_free is the end of the range.
+ *  verdict     yes: they touch or overlap at t, proven: the first contact lies in [t_free, t]. no: they do not touch at
+ *              all; lower > 0. undecided: closer than epsilon at t, the earliest such place that was measured; contact
+ *              is not proven anywhere.
+ *  lower, upper  of the distance over the whole range, as in cprox_collision(). upper is the distance of the two points
+ *                at t:
  *              0 for yes, at most epsilon for undecided.
  *
  *  A ball round the target that is not to be entered is its padding. Returns as cprox_distance(); after CPROX_BUDGET,
@@ -219,15 +224,15 @@ CPROX_API cprox_status cprox_first_contact_all(cprox_mover mover, const cprox_ta
 /** Signed distance of two standing bodies.
  *
  *  Apart: lower <= distance <= upper, both witness points, the normal from b to a, CPROX_OK.
- *  Overlapping: the same, both bounds negative, minus the penetration depth: the shortest way by which a can leave b, along the
- *  normal; on_mover and on_target are the ends of that way, on either surface. How deep two implicit bodies without a
- *  support function of closed form overlap may stay open: then lower <= minus the depth, upper = 0, CPROX_OVERLAP.
- *  Meshes, points and boxes are held against convex bodies and each other; how deep they overlap is not measured: CPROX_OVERLAP.
- *  Of two of these the order does not matter, a looser epsilon never costs more, and after CPROX_BUDGET or CPROX_STOPPED lower is at least
- *  minus the paddings, but for solids and boxes that are not proven apart.
- *  A compound answers with the least over its parts. on_mover is the point on a, on_target that on b; nodes counts
- *  iterations (of meshes, points and boxes nodes of their trees, too), probes support evaluations. stop is asked between parts and in
- *  searches through two meshes.
+ *  Overlapping: the same, both bounds negative, minus the penetration depth: the shortest way by which a can leave b,
+ *  along the normal; on_mover and on_target are the ends of that way, on either surface. How deep two implicit bodies
+ *  without a support function of closed form overlap may stay open: then lower <= minus the depth, upper = 0,
+ *  CPROX_OVERLAP. Meshes, points and boxes are held against convex bodies and each other; how deep they overlap is not
+ *  measured: CPROX_OVERLAP. Of two of these the order does not matter, a looser epsilon never costs more, and after
+ *  CPROX_BUDGET or CPROX_STOPPED lower is at least minus the paddings, but for solids and boxes that are not proven
+ *  apart. A compound answers with the least over its parts. on_mover is the point on a, on_target that on b; nodes
+ *  counts iterations (of meshes, points and boxes nodes of their trees, too), probes support evaluations. stop is asked
+ *  between parts and in searches through two meshes.
  *  CPROX_INVALID for two halfspaces (they have no distance), for a curve, and for arguments that are unusable.
  *  Cost: a few support evaluations; no allocation.
  *  Source: doc/convex-pairs.md.

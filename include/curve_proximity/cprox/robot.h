@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Robots: kinematic trees with bodies on their links, and motions of all their joints at once.
  *
- *  A motion becomes a mover (cprox_robot_along, cprox_robot_self), and every verb of query.h answers for it: t is the time of the
- *  motion [s], mover_part a geometry of the robot, target_index a target, or in a question about the robot itself the other
- *  geometry. Robots and motions are immutable once made, shared by any number of threads. Constructors copy what they are given,
- *  but keep bodies by reference; they return CPROX_INVALID with a sentence in the workspace, or CPROX_MEMORY, and leave the
- *  handle untouched on failure. */
+ *  A motion becomes a mover (cprox_robot_along, cprox_robot_self), and every verb of query.h answers for it: t is the
+ *  time of the motion [s], mover_part a geometry of the robot, target_index a target, or in a question about the robot
+ *  itself the other geometry. Robots and motions are immutable once made, shared by any number of threads. Constructors
+ *  copy what they are given, but keep bodies by reference; they return CPROX_INVALID with a sentence in the workspace,
+ *  or CPROX_MEMORY, and leave the handle untouched on failure. */
 #ifndef CURVE_PROXIMITY_CPROX_ROBOT_H
 #define CURVE_PROXIMITY_CPROX_ROBOT_H
 
@@ -35,20 +35,21 @@ typedef struct cprox_link {
   cprox_pose origin; /**< of the joint's frame in the parent link's */
   cprox_vec3 axis;   /**< revolute and prismatic: in the joint's frame, not 0, of any length */
   int32_t variable;  /**< the first of the joint's variables; links may share one (mimic joints) */
-  double multiplier,
-      offset; /**< revolute and prismatic: the joint is at multiplier * variable + offset; at most 1e60 in size */
+  /** revolute and prismatic: the joint is at multiplier * variable + offset; at most 1e60 in size */
+  double multiplier, offset;
 } cprox_link;
 
 /** A body on a link. */
 typedef struct cprox_link_geometry {
-  const cprox_body *
-      body; /**< convex, a ladder, a mesh's surface, points, boxes, or a compound of these; no halfspace; kept by reference */
+  /** convex, a ladder, a mesh's surface, points, boxes, or a compound of these; no halfspace; kept by reference */
+  const cprox_body *body;
   cprox_pose pose; /**< in the link's frame */
   int32_t link;
   double padding; /**< [m] >= 0 */
 } cprox_link_geometry;
 
-/** A robot of n_links >= 1 links, parents first, and n_geometries bodies; its variables are numbered from 0 to n_variables - 1. */
+/** A robot of n_links >= 1 links, parents first, and n_geometries bodies; its variables are numbered from 0 to
+ *  n_variables - 1. */
 CPROX_API cprox_status cprox_robot_create(const cprox_link *links, size_t n_links,
                                           const cprox_link_geometry *geometries, size_t n_geometries,
                                           size_t n_variables, cprox_workspace *workspace, cprox_robot **robot);
@@ -56,8 +57,8 @@ CPROX_API cprox_status cprox_robot_create(const cprox_link *links, size_t n_link
 /** Frees a robot; NULL is allowed. No motion may be using it. */
 CPROX_API void cprox_robot_free(cprox_robot *robot);
 
-/** Where the origin of a link's frame is, and where its axes point: columns of a row-major matrix, for the given values of all
- *  variables. A plain evaluation: 1e-15 of the robot's size a joint. */
+/** Where the origin of a link's frame is, and where its axes point: columns of a row-major matrix, for the given values
+ *  of all variables. A plain evaluation: 1e-15 of the robot's size a joint. */
 CPROX_API void cprox_robot_link_frame(const cprox_robot *robot, const double *variables, size_t link,
                                       cprox_vec3 *position, double rotation[9]);
 
@@ -74,14 +75,15 @@ typedef struct cprox_waypoint {
 
 /** How variables go from one waypoint to the next, as joint_trajectory_controller has it. */
 typedef enum cprox_interpolation {
-  CPROX_BY_WAYPOINTS, /**< by what both waypoints know: positions: linear; velocities too: cubic; accelerations too: quintic */
+  /** by what both waypoints know: positions: linear; velocities too: cubic; accelerations too: quintic */
+  CPROX_BY_WAYPOINTS,
   CPROX_LINEAR,
   CPROX_CUBIC,
   CPROX_QUINTIC
 } cprox_interpolation;
 
-/** The motion through n_points >= 2 waypoints at ascending times: Hermite polynomials between them. Where a controller would start
- *  from the state that the robot is in, that state is the first waypoint.
+/** The motion through n_points >= 2 waypoints at ascending times: Hermite polynomials between them. Where a controller
+ *  would start from the state that the robot is in, that state is the first waypoint.
  *
  *  variables  which ones the waypoints speak of, n of them, none twice.
  *  rest       the values of all the robot's variables, for those that stand still; NULL: all 0. */
@@ -108,8 +110,8 @@ CPROX_API void cprox_motion_domain(const cprox_motion *motion, double *t0, doubl
 /** The values of all the robot's variables at a time (clamped to the domain). A plain evaluation. */
 CPROX_API void cprox_motion_evaluate(const cprox_motion *motion, double t, double *variables);
 
-/** The values that a variable of the robot takes along the motion: all of them are in [*low, *high], and those come as near to both as
- *  1e-9 of the motion's largest coefficient. */
+/** The values that a variable of the robot takes along the motion: all of them are in [*low, *high], and those come as
+ *  near to both as 1e-9 of the motion's largest coefficient. */
 CPROX_API void cprox_motion_range(const cprox_motion *motion, size_t variable, double *low, double *high);
 
 /** Does the motion move the link? Of a link that it does not, nothing is asked unless pairs are given. */
@@ -118,8 +120,8 @@ CPROX_API bool cprox_motion_moves_link(const cprox_motion *motion, size_t link);
 /** Does the motion move the two links against each other? */
 CPROX_API bool cprox_motion_moves_between(const cprox_motion *motion, size_t link_a, size_t link_b);
 
-/** Can two links come closer in a way that is worth asking for: are there at least two joints that can move between them, and at
- *  least one that this motion moves? */
+/** Can two links come closer in a way that is worth asking for: are there at least two joints that can move between
+ *  them, and at least one that this motion moves? */
 CPROX_API bool cprox_motion_relates_links(const cprox_motion *motion, size_t link_a, size_t link_b);
 
 /** A pair that is asked about: a geometry of the robot, and the number of a target or of another geometry. */
@@ -128,13 +130,14 @@ typedef struct cprox_robot_pair {
 } cprox_robot_pair;
 
 /** The robot along a motion. Targets are bodies; of meshes the surface counts, and solid
- *  ones are refused. Of ladders, on links and as targets, the mesh is asked where the hull cannot decide; result.rung says whether.
- *  pairs: those that are asked about, kept by reference, `other` being targets; NULL: all geometries of links that the motion
- *  moves, against all targets. */
+ *  ones are refused. Of ladders, on links and as targets, the mesh is asked where the hull cannot decide; result.rung
+ *  says whether. pairs: those that are asked about, kept by reference, `other` being targets; NULL: all geometries of
+ *  links that the motion moves, against all targets. */
 CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
-/** The robot along a motion against itself: ask without targets (cprox_distance_all(mover, NULL, 0, …)). pairs: those that are
- *  asked about, kept by reference, `other` being geometries; NULL: all on links that cprox_motion_relates_links(). */
+/** The robot along a motion against itself: ask without targets (cprox_distance_all(mover, NULL, 0, …)). pairs: those
+ *  that are asked about, kept by reference, `other` being geometries; NULL: all on links that
+ *  cprox_motion_relates_links(). */
 CPROX_API cprox_mover cprox_robot_self(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
 #ifdef __cplusplus

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Sets: many targets in one tree over their boxes. A mover tests itself once against the tree and then against what is near. */
+/** Sets: many targets in one tree over their boxes. A mover tests itself once against the tree and then against what is
+ *  near. */
 #ifndef CURVE_PROXIMITY_CPROX_SET_H
 #define CURVE_PROXIMITY_CPROX_SET_H
 
@@ -12,8 +13,9 @@ extern "C" {
 /** Immutable once made; any number of threads may ask at once, each with its own workspace. */
 typedef struct cprox_set cprox_set;
 
-/** A set of n >= 0 targets. They are copied; the bodies and curves that they name are kept by reference and must outlive the set.
- *  Targets without bounds (halfspaces) and those on the mover's clock are allowed: they are asked every time.
+/** A set of n >= 0 targets. They are copied; the bodies and curves that they name are kept by reference and must
+ *  outlive the set. Targets without bounds (halfspaces) and those on the mover's clock are allowed: they are asked
+ *  every time.
  *  CPROX_INVALID where one is unusable, its number in the reason. Cost: n log n, and 6 support values a target. */
 CPROX_API cprox_status cprox_set_create(const cprox_target *targets, size_t n, cprox_workspace *workspace,
                                         cprox_set **set);
@@ -27,8 +29,9 @@ CPROX_API size_t cprox_set_size(const cprox_set *set);
 /** The bytes it takes, without the bodies and curves. */
 CPROX_API size_t cprox_set_bytes(const cprox_set *set);
 
-/** As cprox_distance_all(), cprox_tolerance_all(), cprox_collision_all() and cprox_first_contact_all() with the targets of the set:
- *  the answer against their union, result->target_index counting as they were given; robots, too. No certificates: CPROX_INVALID where one is asked for. */
+/** As cprox_distance_all(), cprox_tolerance_all(), cprox_collision_all() and cprox_first_contact_all() with the targets
+ *  of the set: the answer against their union, result->target_index counting as they were given; robots, too. No
+ *  certificates: CPROX_INVALID where one is asked for. */
 CPROX_API cprox_status cprox_set_distance(const cprox_set *set, cprox_mover mover, const cprox_options *options,
                                           cprox_workspace *workspace, cprox_result *result);
 CPROX_API cprox_status cprox_set_tolerance(const cprox_set *set, cprox_mover mover, double delta,

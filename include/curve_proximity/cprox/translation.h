@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Two convex bodies that move without turning, each at a constant velocity: how close they come, and when they first touch;
- *  and the least scaling at which two bodies touch.
+/** Two convex bodies that move without turning, each at a constant velocity: how close they come, and when they first
+ *  touch; and the least scaling at which two bodies touch.
  *
- *  Along polylines and splines a body is carried by cprox_body_along(). Source: Chakraborty et al. 2008, Eq. 13 and 14, by the
- *  methods of doc/implicit.md. */
+ *  Along polylines and splines a body is carried by cprox_body_along(). Source: Chakraborty et al. 2008, Eq. 13 and 14,
+ *  by the methods of doc/implicit.md. */
 #ifndef CURVE_PROXIMITY_CPROX_TRANSLATION_H
 #define CURVE_PROXIMITY_CPROX_TRANSLATION_H
 
@@ -21,10 +21,10 @@ typedef struct cprox_translating {
 
 /** The least distance over the times 0 … duration [s], duration > 0, of two superquadrics or implicit bodies.
  *
- *  lower <= the least distance <= upper; t: when upper was attained; the points stand where the bodies are then. 0 where they
- *  touch or overlap at some time: verdict yes where a common point is proven, no where lower > 0.
- *  Returns as cprox_pair(), and CPROX_INVALID for other kinds of bodies. Cost: one interior point search; no allocation once the
- *  workspace has grown. */
+ *  lower <= the least distance <= upper; t: when upper was attained; the points stand where the bodies are then. 0
+ *  where they touch or overlap at some time: verdict yes where a common point is proven, no where lower > 0.
+ *  Returns as cprox_pair(), and CPROX_INVALID for other kinds of bodies. Cost: one interior point search; no allocation
+ *  once the workspace has grown. */
 CPROX_API cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b, double duration,
                                                   const cprox_options *options, cprox_workspace *workspace,
                                                   cprox_result *result);
@@ -32,11 +32,11 @@ CPROX_API cprox_status cprox_translating_distance(cprox_translating a, cprox_tra
 /** When two convex bodies (no compounds) that translate first touch.
  *
  *  t_free   no contact at any time < t_free, certified
- *  verdict  yes: they touch or overlap at t, proven: the first contact lies in [t_free, t]. no: they do not touch up to the
- *           duration. undecided: contact is not proven; at t = t_free the distance is at most epsilon [m], unless the status says
- *           that the search fell short.
- *  lower, upper, points: of the signed distance at t, as in cprox_pair(). Where contact is deep already at 0: t = t_free = 0.
- *  Returns as cprox_pair(). Cost: about four pairs. */
+ *  verdict  yes: they touch or overlap at t, proven: the first contact lies in [t_free, t]. no: they do not touch up to
+ *           the duration. undecided: contact is not proven; at t = t_free the distance is at most epsilon [m], unless
+ *           the status says that the search fell short.
+ *  lower, upper, points: of the signed distance at t, as in cprox_pair(). Where contact is deep already at 0: t =
+ *  t_free = 0. Returns as cprox_pair(). Cost: about four pairs. */
 CPROX_API cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b, double duration,
                                                  const cprox_options *options, cprox_workspace *workspace,
                                                  cprox_result *result);
