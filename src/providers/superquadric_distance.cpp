@@ -3,6 +3,8 @@
  * superquadric that encloses it. */
 #include <pluginlib/class_list_macros.hpp>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 
 #include <curve_proximity/constraint_provider.hpp>
@@ -11,8 +13,15 @@
 namespace curve_proximity {
 namespace {
 
-/* How far another way out, or another pair of nearest points, is looked for: fractions of the size, and of a turn. */
-constexpr double NEARBY = 1e-6, TILT = 1e-5, JUMP = 0.05, SPREAD = 1e-2, ALIKE = 1e-9;
+/* Two steps, in sizes and in radians: a jump stays as it is from one to the other, what is smooth shrinks to a hundredth. */
+constexpr double NEAR = 1e-6, FAR = 1e-4, LEAST_LEFT = 0.25;
+
+/* What is rounding: of nearest points in sizes, of normals, of distances in sizes. */
+constexpr double POINT_NOISE = 1e-6, NORMAL_NOISE = 2e-5, ALIKE = 1e-9;
+
+bool isJump(double near, double far, double noise) {
+  return near > noise && near > LEAST_LEFT * far;
+}
 
 struct Parameters {
   cprox_options options = cprox_options_default();
@@ -168,7 +177,7 @@ class SuperquadricConstraint : public Constraint {
       out.reason = "two pairs of parts are equally near";
     } else if (best.result.upper < 0.0 && !wayOutIsAlone(best, place, size, workspace)) {
       out.reason = "there is more than one way out";
-    } else if (a_.may_be_flat && b_.may_be_flat && facesMeet(best, place, size, out.normal)) {
+    } else if (a_.may_be_flat && b_.may_be_flat && !nearestIsAlone(best, place, size, workspace)) {
       out.reason = "the nearest points are not the only ones";
     } else {
       out.reason.clear();
@@ -176,43 +185,63 @@ class SuperquadricConstraint : public Constraint {
     }
   }
 
+  cprox_result pairAt(const Nearest &best, const cprox_pose &a, const cprox_pose &b, Workspace &workspace) const {
+    // A turn of 1e-6 rad changes the distance by so much less than epsilon that it would not be seen.
+    cprox_options exact = parameters_.options;
+    exact.epsilon = std::min(exact.epsilon, 1e-13 * std::min(a_.size, b_.size));
+    cprox_result r{};
+    require(cprox_pair(cprox_padded(cprox_at(best.a, a), a_.padding), cprox_padded(cprox_at(best.b, b), b_.padding),
+                       &exact, workspace.get(), &r),
+            workspace);
+    return r;
+  }
+
   /* Inside, the way out may change from one side to another: then the normal jumps nearby. */
   bool wayOutIsAlone(const Nearest &best, const ConstraintPlace &place, double size, Workspace &workspace) const {
-    for (int i = 0; i < 6; ++i) {
-      const double step = (i % 2 ? 1.0 : -1.0) * NEARBY * size;
-      cprox_pose moved = place.a;
-      (i / 2 == 0 ? moved.position.x : i / 2 == 1 ? moved.position.y : moved.position.z) += step;
-      cprox_result r{};
-      require(
-          cprox_pair(cprox_padded(cprox_at(best.a, moved), a_.padding),
-                     cprox_padded(cprox_at(best.b, place.b), b_.padding), &parameters_.options, workspace.get(), &r),
-          workspace);
-      if ((toEigen(r.normal) - toEigen(best.result.normal)).norm() > JUMP) return false;
-    }
-    return true;
+    const double near = lean(best, place, NEAR * size, workspace);
+    return near <= NORMAL_NOISE || !isJump(near, lean(best, place, FAR * size, workspace), NORMAL_NOISE);
   }
 
-  /* Two flat faces, or an edge along a face: where the normal tilts by a little, the points of both sides run far along it. */
-  static bool facesMeet(const Nearest &best, const ConstraintPlace &place, double size, const Eigen::Vector3d &n) {
+  /* How much the normal differs a step to either side, along the axis where that is most. */
+  double lean(const Nearest &best, const ConstraintPlace &place, double step, Workspace &workspace) const {
+    double most = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      std::array<Eigen::Vector3d, 2> normals;
+      for (std::size_t k = 0; k < 2; ++k) {
+        cprox_pose moved = place.a;
+        moved.position = toVec3(toEigen(moved.position) + (k ? step : -step) * Eigen::Vector3d::Unit(i));
+        normals[k] = toEigen(pairAt(best, moved, place.b, workspace).normal);
+      }
+      most = std::max(most, (normals[1] - normals[0]).norm());
+    }
+    return most;
+  }
+
+  /* Two flat faces, or an edge along a face: a turn to either side moves the nearest points to either end. */
+  bool nearestIsAlone(const Nearest &best, const ConstraintPlace &place, double size, Workspace &workspace) const {
+    const double noise = POINT_NOISE * size, near = spread(best, place, NEAR, workspace);
+    return near <= noise || !isJump(near, spread(best, place, FAR, workspace), noise);
+  }
+
+  /* How far apart b's nearest points are when it has turned about its own to one side and to the other, about the axis across the
+   * normal where that is most. */
+  double spread(const Nearest &best, const ConstraintPlace &place, double turn, Workspace &workspace) const {
+    const Eigen::Vector3d n = toEigen(best.result.normal), centre = toEigen(best.result.on_target);
     const Eigen::Vector3d across = n.unitOrthogonal(), other = n.cross(across);
-    const Eigen::Matrix3d turn_a = toIsometry(place.a).linear(), turn_b = toIsometry(place.b).linear();
-    for (const Eigen::Vector3d &tilt :
-         {across, other, Eigen::Vector3d(across + other), Eigen::Vector3d(across - other)}) {
-      const double along_a = run(best.a, turn_a, -n, tilt), along_b = run(best.b, turn_b, n, tilt);
-      if (std::min(along_a, along_b) > SPREAD * size) return true;
+    const cprox_quat &q = place.b.orientation;
+    double most = 0.0;
+    for (const Eigen::Vector3d &axis : {across, other}) {
+      std::array<Eigen::Vector3d, 2> points;
+      for (std::size_t k = 0; k < 2; ++k) {
+        const Eigen::Quaterniond by(Eigen::AngleAxisd(k ? turn : -turn, axis));
+        const Eigen::Quaterniond turned = by * Eigen::Quaterniond(q.w, q.x, q.y, q.z);
+        const cprox_pose b = {toVec3(centre + by * (toEigen(place.b.position) - centre)),
+                              {turned.w(), turned.x(), turned.y(), turned.z()}};
+        points[k] = toEigen(pairAt(best, place.a, b, workspace).on_target);
+      }
+      most = std::max(most, (points[1] - points[0]).norm());
     }
-    return false;
-  }
-
-  /* How far the support point runs when the direction tilts to either side. */
-  static double run(const cprox_body *body, const Eigen::Matrix3d &turn, const Eigen::Vector3d &n,
-                    const Eigen::Vector3d &tilt) {
-    cprox_vec3 ahead, behind;
-    if (!std::isfinite(cprox_body_support(body, toVec3(turn.transpose() * (n + TILT * tilt)), nullptr)))
-      return std::numeric_limits<double>::infinity(); // a halfspace, whose face is without end
-    cprox_body_support(body, toVec3(turn.transpose() * (n + TILT * tilt)), &ahead);
-    cprox_body_support(body, toVec3(turn.transpose() * (n - TILT * tilt)), &behind);
-    return (toEigen(ahead) - toEigen(behind)).norm();
+    return most;
   }
 
   const Parameters parameters_;

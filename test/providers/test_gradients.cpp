@@ -290,6 +290,62 @@ TEST(Gradients, are_not_valid_where_the_minimiser_is_not_unique) {
   EXPECT_FALSE(value.reason.empty());
 }
 
+/* A frustum with a top of half width w: faces that are small against the body count, too. */
+ShapeDescription frustum(double w) {
+  ShapeDescription out;
+  out.type = ShapeType::IMPLICIT;
+  const double slope = 1.0 - w; // |x| <= 1 - slope (z + 0.5) between z = -0.5 and 0.5
+  out.planes = {{1, 0, slope, 0.5 * slope - 1},
+                {-1, 0, slope, 0.5 * slope - 1},
+                {0, 1, slope, 0.5 * slope - 1},
+                {0, -1, slope, 0.5 * slope - 1},
+                {0, 0, 1, -0.5},
+                {0, 0, -1, -0.5}};
+  return out;
+}
+
+/* Seed 815, 300 places of a frustum under a slab, level or tilted by 1e-12 to 1e-2, apart and overlapping. What is called a gradient is the
+ * derivative to either side: one-sided differences at steps of 1e-3 to 1e-7 of values that are exact to 1e-12. */
+TEST(Gradients, of_SuperquadricDistance_hold_to_either_side_where_faces_are_level) {
+  const Loaded provider("curve_proximity/SuperquadricDistance", {{"epsilon", 1e-13}});
+  Random random(815);
+  Workspace workspace;
+  ConstraintValue value, there;
+  int valid = 0, refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    ConstraintPair pair;
+    pair.a = side({frustum(i % 3 ? random.uniform(0.002, 0.02) : random.uniform(0.1, 0.9))});
+    ShapeDescription slab;
+    slab.type = ShapeType::IMPLICIT;
+    slab.planes = {{1, 0, 0, -2}, {-1, 0, 0, -2}, {0, 1, 0, -2}, {0, -1, 0, -2}, {0, 0, 1, -1}, {0, 0, -1, -1}};
+    pair.b = side({slab});
+    const auto constraint = provider->prepare(pair);
+    Case c;
+    const double turn = random.uniform(-3.0, 3.0), tilt = i % 2 ? 0.0 : std::pow(10.0, random.uniform(-12.0, -2.0));
+    c.a.orientation = {std::cos(turn), tilt, 0.3 * tilt, std::sin(turn)};
+    c.b.position = {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), i % 5 ? random.uniform(1.6, 3.0) : 1.45};
+    Step step = randomStep(random, c);
+    const double here = valueAt(*constraint, c, step, 0.0, workspace, value);
+    if (!value.valid) {
+      ++refused;
+      continue;
+    }
+    ++valid;
+    const double expected = value.a.linear.dot(step.linear_a) + value.a.angular.dot(step.angular_a) +
+                            value.b.linear.dot(step.linear_b) + value.b.angular.dot(step.angular_b);
+    for (const double sign : {1.0, -1.0}) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const double h : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7})
+        least = std::min(
+            least, std::abs((valueAt(*constraint, c, step, sign * h, workspace, there) - here) / h - sign * expected));
+      EXPECT_LT(least, 1e-3) << "case " << i << " tilt " << tilt << " value " << here;
+    }
+  }
+  std::printf("level faces: %d valid, %d refused\n", valid, refused);
+  EXPECT_GT(valid, 30);
+  EXPECT_GT(refused, 100);
+}
+
 TEST(Values, are_negative_inside_and_a_margin_is_taken_off) {
   Workspace workspace;
   ConstraintPair pair;

@@ -490,7 +490,9 @@ TEST(Options, what_does_not_apply_to_a_question_is_refused_and_named) {
       Workspace workspace;
       const Answer answer = ask(scene.snapshot(), {}, curve, question, workspace).front();
       EXPECT_EQ(answer.result.status >= 0, applies) << word << ": " << answer.message;
-      if (!applies) EXPECT_NE(answer.message.find(word), std::string::npos) << answer.message;
+      if (!applies) {
+        EXPECT_NE(answer.message.find(word), std::string::npos) << answer.message;
+      }
     };
     expect(
         "delta", [](Question &q) { q.delta = 0.1; }, verb == Verb::TOLERANCE);
