@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "shape/body.h"
 #include "convex/pair.h"
 #include "curve_proximity/cprox/translation.h"
 #include "peers/naive.h"
+#include "shape/body.h"
 #include "support/implicit_problems.h"
 #include "support/measure.h"
 #ifdef CPROX_BENCH_IPOPT

@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "solve/solve.h"
 #include "robot_query/oracle.h"
 #include "robots.h"
+#include "solve/solve.h"
 
 typedef struct watched {
   robot_search search;

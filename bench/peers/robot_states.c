@@ -5,10 +5,10 @@
 #include <stdlib.h>
 
 #include "base/frame.h"
-#include "shape/body.h"
+#include "bvh/bvh.h"
 #include "kinematics/motion.h"
 #include "peers/two_ended.h"
-#include "bvh/bvh.h"
+#include "shape/body.h"
 
 static void add_shape(robot_fcl *fcl, const cprox_body *body, const cprox_body *surface) {
   const double *size = body->shape.size;

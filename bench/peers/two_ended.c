@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "solve/solve.h"
 #include "robot_query/answer.h"
 #include "robot_query/pair_state.h"
+#include "solve/solve.h"
 
 /* A pair on a stretch: what is known of its distance at both ends. */
 typedef struct ends {

@@ -8,10 +8,10 @@
 #include <cmocka.h>
 
 #include "base/rounding.h"
-#include "shape/body.h"
 #include "convex/feature.h"
 #include "convex/pair.h"
 #include "curve_proximity/cprox/query.h"
+#include "shape/body.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"

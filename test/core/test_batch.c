@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "shape/body.h"
 #include "batch/obstacles.h"
+#include "shape/body.h"
 #include "support/counting.h"
 #include "support/curves.h"
 #include "support/reference.h"

@@ -9,8 +9,8 @@
 #include <cmocka.h>
 
 #include "base/rounding.h"
-#include "shape/body.h"
 #include "curve_proximity/cprox/query.h"
+#include "shape/body.h"
 #include "support/builders.h"
 #include "support/counting.h"
 #include "support/random.h"

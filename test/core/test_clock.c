@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "base/rounding.h"
-#include "curve_proximity/cprox.h"
 #include "curve/relative_curve.h"
+#include "curve_proximity/cprox.h"
 #include "support/builders.h"
 #include "support/counting.h"
 #include "support/curves.h"

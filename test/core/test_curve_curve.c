@@ -9,8 +9,8 @@
 
 #include "base/rounding.h"
 #include "curve/curve.h"
-#include "curve_proximity/cprox.h"
 #include "curve/packets.h"
+#include "curve_proximity/cprox.h"
 #include "curve_query/curve_curve.h"
 #include "support/builders.h"
 #include "support/csv.h"

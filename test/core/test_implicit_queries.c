@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "shape/body.h"
 #include "curve_proximity/cprox.h"
+#include "shape/body.h"
 #include "support/implicits.h"
 #include "support/random.h"
 

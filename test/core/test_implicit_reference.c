@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "shape/body.h"
 #include "curve_proximity/cprox/query.h"
+#include "shape/body.h"
 #include "support/csv.h"
 #include "support/implicits.h"
 

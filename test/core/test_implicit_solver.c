@@ -11,9 +11,9 @@
 #include <cmocka.h>
 
 #include "base/frame.h"
-#include "shape/body.h"
 #include "curve_proximity/cprox.h"
 #include "implicit/implicit.h"
+#include "shape/body.h"
 #include "support/implicits.h"
 #include "support/random.h"
 

@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "shape/body.h"
 #include "curve_proximity/cprox.h"
+#include "shape/body.h"
 #include "support/builders.h"
 #include "support/counting.h"
 #include "support/meshes.h"

@@ -8,8 +8,8 @@
 #include <ccd/ccd.h>
 #include <cmocka.h>
 
-#include "shape/body.h"
 #include "curve_proximity/cprox/query.h"
+#include "shape/body.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"

@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "base/rounding.h"
-#include "shape/body.h"
 #include "curve_proximity/cprox/query.h"
+#include "shape/body.h"
 #include "support/csv.h"
 #include "support/reference.h"
 

@@ -204,7 +204,7 @@ static void epsilon_of_any_size_ends_with_a_true_interval(void **state) {
   const cprox_options fine = accurate(1e-13);
   cprox_result reference;
   assert_true(cprox_distance(cprox_point_along(curve), at(body, 0, -0.5, 0), &fine, ws, &reference) >= 0);
-  const double epsilons[] = {0.0, 1e-300, 1e-16, 1e-6, 1e3, INFINITY};
+  const double epsilons[] = {0.0, 1e-300, 1e-16, 1e-6, 1e3, 1e60};
   for (size_t i = 0; i < sizeof epsilons / sizeof *epsilons; i++) {
     const cprox_options options = accurate(epsilons[i]);
     cprox_result r;

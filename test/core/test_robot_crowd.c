@@ -9,10 +9,10 @@
 
 #include <cmocka.h>
 
-#include "curve_proximity/cprox.h"
-#include "solve/solve.h"
-#include "robot_query/cull.h"
 #include "broadphase/obstacle_set.h"
+#include "curve_proximity/cprox.h"
+#include "robot_query/cull.h"
+#include "solve/solve.h"
 #include "support/builders.h"
 #include "support/robots.h"
 

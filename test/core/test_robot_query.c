@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "shape/body.h"
 #include "curve_proximity/cprox.h"
+#include "shape/body.h"
 #include "support/builders.h"
 #include "support/counting.h"
 #include "support/robot_case.h"

@@ -10,10 +10,10 @@
 #include <cmocka.h>
 
 #include "base/rounding.h"
-#include "shape/body.h"
 #include "curve/control.h"
 #include "curve/curve.h"
 #include "curve_query/curve_convex.h"
+#include "shape/body.h"
 #include "support/curves.h"
 #include "support/exact.h"
 #include "support/random.h"

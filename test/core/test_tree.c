@@ -8,8 +8,8 @@
 #include <cmocka.h>
 #include <string.h>
 
-#include "support/meshes.h"
 #include "bvh/kernels.h"
+#include "support/meshes.h"
 
 enum { MOST = 3000 };
 
