@@ -41,6 +41,28 @@ class Constraints(Case):
         self.assertEqual((row['lower'], row['a_x'], row['valid']), ('', '', 'true'))
         self.assertGreater(float(row['gb_vx']), 0.0)
 
+    def a_gap_for_a_delta_is_made_of_every_kind_of_body_in_every_mode(self):
+        corners = ', '.join(f'[{x}, {y}, {z}]' for x in (-0.4, 0.4) for y in (-0.3, 0.3) for z in (-0.35, 0.35))
+        flat = '[[-0.5, -0.4, 0], [0.5, -0.4, 0], [0, 0.6, 0]]'
+        both = {'sphere': 'dimensions: [0.5]', 'box': 'dimensions: [1, 0.8, 0.6]', 'ellipsoid': 'dimensions: [0.6, 0.5, 0.7]'}
+        kinds = {2: {**both, 'polytope': f'vertices: {flat}'},
+                 3: {**both, 'cylinder': 'dimensions: [1, 0.4]', 'capsule': 'dimensions: [0.6, 0.4]', 'cone': 'dimensions: [1, 0.5]',
+                     'polytope': f'vertices: [{corners}]',
+                     'mesh': 'mesh: {vertices: [[-0.5, -0.4, -0.3], [0.5, -0.4, -0.3], [0, 0.6, -0.3], [0, 0, 0.6]], '
+                             'triangles: [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]}'}}
+        for dimension, bodies in kinds.items():
+            cases = ''.join(f'- {{id: {kind}_{other}, a: {{bodies: [{{type: {kind}, {body}}}]}}, '
+                            f'b: {{bodies: [{{type: {other}, {bodies[other]}}}], pose: {{position: [0.4, 0.1, 0]}}}}}}\n'
+                            for kind, body in bodies.items() for other in dict.fromkeys((kind, 'box')))
+            for mode in ('certified', 'tuned', 'signal'):
+                with self.subTest(dimension=dimension, mode=mode):
+                    answer = self.constraints(GAP, cases, '--parameters', f'mode: {mode}, dimension: {dimension}, delta: 0.95')
+                    self.assertEqual((answer.code, answer.err), (0, ''))
+                    for kind in bodies:
+                        self.assertEqual(answer.row(f'{kind}_box')['status'], 'ok')
+                        if mode == 'certified':
+                            self.assertLess(float(answer.row(f'{kind}_{kind}')['upper']), 0.0)
+
     def objects_are_those_of_the_scene(self):
         scene = self.file('scene.yaml', '''
 world:

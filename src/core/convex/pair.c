@@ -404,33 +404,19 @@ static double pair_misalignment(const pair *p) {
   return 1.5 * tilt * p->b->scale + feature_hypot(p->t.x, p->t.y);
 }
 
-/* Coaxial bodies may be as deep all round a ring: their profile is a problem of the plane. What are nearly coaxial are so but for
- * `off`. */
-static bool pair_expand(pair *p, const expand_goal *goal, expand_depth *depth) {
-  const expand_set set = {.self = p, .farthest = pair_farthest};
-  const double off = pair_misalignment(p);
-  if (off <= 0.25 * goal->width && expand_ring(&set, off, goal, depth)) return true;
-  if (!expand_from(&set, &p->s, goal, depth)) return false;
-  expand_depth ring;
-  const double width = depth->most - depth->least;
-  if (depth->exhausted && 2.0 * off < width && expand_ring(&set, off, goal, &ring) && ring.most - ring.least < width)
-    *depth = ring;
-  return true;
-}
-
 /* Where 0 lies on a plane through vertices of M, no simplex of theirs may have it inside. A place beside 0 lies on none by chance: it is
  * enclosed, and the surface round it grows until it holds 0 as well. The farther the place the clearer it is of all planes; what
  * is less deep is missed. */
 static bool pair_expand_beside(pair *p, const expand_goal *goal, expand_depth *depth) {
-  static const double beside[] = {1024.0, 64.0, 8.0};
+  static const double beside[] = {1024.0, 64.0, 16.0, 8.0};
   const expand_set set = {.self = p, .farthest = pair_farthest};
   expand_goal left = *goal;
-  for (int round = 0; round < 3 && left.max_steps > 1; round++) {
-    const double far = beside[round] * p->rounding;
+  for (int round = 0; round < 8 && left.max_steps > 1; round++) { /* twice each, not in the same direction */
+    const double far = beside[round / 2] * p->rounding;
     if (!(p->lower < -2.0 * far)) continue;
     vec3 shift, inwards; /* M lies about -t */
     feature_unit(vec_norm(p->t) > p->a->scale * 1e-3 ? vec_neg(p->t) : vec(0, 0, 0), &inwards);
-    feature_unit(vec_axpy(inwards, 0.5, simplex_spread[round]), &shift);
+    feature_unit(vec_axpy(inwards, 0.5, simplex_spread[(round + round / 4) % 4]), &shift);
     shift = vec_scale(far, shift);
     pair q = *p;
     q.t = vec_add(p->t, shift);
@@ -448,6 +434,27 @@ static bool pair_expand_beside(pair *p, const expand_goal *goal, expand_depth *d
     return true;
   }
   return false;
+}
+
+/* Coaxial bodies may be as deep all round a ring: their profile is a problem of the plane. What are nearly coaxial are so but for
+ * `off`. */
+static bool pair_expand(pair *p, const expand_goal *goal, expand_depth *depth) {
+  const expand_set set = {.self = p, .farthest = pair_farthest};
+  const double off = pair_misalignment(p);
+  if (off <= 0.25 * goal->width && expand_ring(&set, off, goal, depth)) return true;
+  if (!expand_from(&set, &p->s, goal, depth)) return false;
+  expand_depth ring, other;
+  double width = depth->most - depth->least;
+
+  /* where rounding has ended it early, a facet passes too near to 0 */
+  const bool ended = !depth->exhausted && width > goal->width && depth->most > 4.0 * depth->least;
+  if (ended && pair_expand_beside(p, goal, &other) && other.most - other.least < width) {
+    *depth = other;
+    width = depth->most - depth->least;
+  }
+  if (depth->exhausted && 2.0 * off < width && expand_ring(&set, off, goal, &ring) && ring.most - ring.least < width)
+    *depth = ring;
+  return true;
 }
 
 typedef bool (*pair_expander)(pair *p, const expand_goal *goal, expand_depth *depth);

@@ -4,8 +4,9 @@
 #include "base/rounding.h"
 #include "curve/control.h"
 
-/* Stretches round the place that are tried, in pieces: from about as short as double allows. */
-static const double FIRST_STEP = 1e-14, LAST_STEP = 0.05;
+/* Stretches round the place that are tried, in pieces: from about as short as double allows, each 8 times the one before. */
+static const double FIRST_STEP = 1e-14;
+enum { STEPS = 15 };
 
 /* Some of a piece; its control points stand in the scratch slot. */
 typedef struct stretch {
@@ -121,7 +122,8 @@ static vec3 meeting_point(const crossing *o, const stretch part[2], int n) {
 
 /* At a place in the plane of a piece: from the shortest stretch on that has its ends on both sides. */
 static bool proves_at(const crossing *o, double at, flat_region *region, crossing_place *place) {
-  for (double step = FIRST_STEP; step < LAST_STEP; step *= 8.0) {
+  for (int i = 0; i < STEPS; i++) {
+    const double step = ldexp(FIRST_STEP, 3 * i);
     stretch part[2];
     const int n = stretches_about(o, place->piece, at, step, part);
     if (!passes_through(o, part, n, region)) continue;

@@ -111,7 +111,7 @@ static bool offset_grid(const piece *p, int dimension, double rho, piece *out, d
   out->counts[0] = (uint32_t)wx, out->counts[1] = (uint32_t)wy, out->counts[2] = (uint32_t)wz;
   out->centre = vec_sub(p->centre, turn_apply(p->turn, vec_scale(cell, vec((double)m[0], (double)m[1], (double)m[2]))));
   out->cells = calloc((size_t)(wx * wy * wz), 1);
-  uint32_t *room = malloc((size_t)(nx * ny * nz + wz + wx * (wy + ny) * nz) * sizeof *room);
+  uint32_t *room = calloc((size_t)(nx * ny * nz + wz + wx * (wy + ny) * nz), sizeof *room);
   if (out->cells && room) spread_grid(p, m, rho, out, room, room + nx * ny * nz + wz, room + nx * ny * nz);
   const bool ok = out->cells && room;
   free(room);
