@@ -38,7 +38,7 @@ class Planar(Case):
         self.assertEqual(self.ask('collision', [inside], scene(square())).row('inside')['verdict'], 'yes')
         self.assertEqual(self.ask('collision', [beside], scene(square())).row('beside')['verdict'], 'no')
         row = self.ask('distance', [inside], scene(square()), '--signed').row('inside')
-        self.assertAnswer(row, -1)
+        self.assertAnswer(row, -21 / 22)  # deepest where it is as far from the upper as from the left edge
 
     def its_pose_turns_and_tilts_it(self):
         turned = '{position: [5, 0, 0], orientation: [0, 0, 1, 0]}'

@@ -99,6 +99,7 @@ TEST(Broadphase, never_changes_a_distance) {
       }
     }
     question.verb = Verb::COLLISION;
+    question.delta = 0.0;
     const Answer hit = askOne(scene, {}, d, question);
     if (expected.lower > 2e-6) {
       EXPECT_EQ(hit.result.verdict, CPROX_NO) << i;

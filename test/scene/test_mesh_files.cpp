@@ -110,7 +110,7 @@ TEST(MeshFiles, what_is_wrong_is_said_with_its_place) {
   expectContains(changed("a.ply", ply, "float x", "floot x"), "line 5: 'floot' is no type");
   expectContains(changed("a.ply", ply, "property float y", "propeloat y"),
                  "line 6: 'propeloat' is no word of a PLY header");
-  expectContains(changed("a.ply", ply, "end_header", ""), "within the header");
+  expectContains(changed("a.ply", ply, "end_header", ""), "line 12: '0' is no word of a PLY header");
   expectContains(changed("a.ply", test::binaryPly(true), "face 4", "face 9"),
                  "the header promises 9 of the element 'face', the file ends after 4");
   expectContains(changed("a.obj", obj, "f 1 3 2", "f 1 3 9"), "line 11: a face uses vertex 9, but there are 4");

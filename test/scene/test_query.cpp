@@ -191,7 +191,7 @@ TEST(Ask, with_nothing_to_measure_everything_is_far) {
   const Scene scene;
   for (const bool per_object : {false, true}) {
     for (const Verb verb : {Verb::DISTANCE, Verb::TOLERANCE, Verb::COLLISION}) {
-      Question question = questionOf(verb, 1.0);
+      Question question = questionOf(verb, verb == Verb::TOLERANCE ? 1.0 : 0.0);
       question.per_object = per_object;
       const Answer answer = askOne(scene, {}, UPRIGHT, question);
       EXPECT_EQ(answer.status, "ok");
