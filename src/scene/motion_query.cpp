@@ -155,7 +155,7 @@ Answer answerOf(const Asked &asked, const Question &question, Workspace &workspa
 /* What is asked about is a distance, and of all objects. */
 void checkDistances(bool self, const Question &question) {
   if (question.verb != Verb::DISTANCE)
-    throw Error("pairs and stretches are answered by their distances: ask for those");
+    throw Error("verb does not apply: pairs and clearance profiles are answered by their distances");
   const std::string fault = faultOfMotion(question, true);
   if (!fault.empty()) throw Error(fault);
   if (self && !question.objects.empty())
