@@ -51,6 +51,7 @@ Answer refusal(const std::string &id, const std::string &kind, const std::string
   answer.id = id;
   answer.kind = kind;
   answer.result.status = CPROX_INVALID;
+  answer.result.verdict = CPROX_UNDECIDED;
   answer.result.target_index = -1;
   answer.status = cprox_status_name(CPROX_INVALID);
   answer.message = why;
