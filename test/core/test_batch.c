@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "batch/obstacles.h"
+#include "problem/placed_pair.h"
 #include "shape/body.h"
 #include "support/counting.h"
 #include "support/curves.h"
@@ -601,8 +602,9 @@ static void bricks_hold_their_parts(void **state) {
       const batch_core *core = &batch->cores[k];
       if (!core->has_brick) continue;
       bricks++;
-      const cprox_body *body = candidate_body(&q, &batch->parts[k]);
-      const frame f = candidate_frame(&q, &batch->parts[k]);
+      const placed_pair placed = placed_pair_resolve(&q, &batch->parts[k]);
+      const cprox_body *body = placed.shape;
+      const frame f = placed.frame;
       const frame own = {.position = core->brick.position, .centre = core->brick.centre, .rotated = true};
       frame brick = own;
       memcpy(brick.r, core->brick.r, sizeof brick.r);

@@ -7,6 +7,7 @@
 
 #include "base/frame.h"
 #include "base/rounding.h"
+#include "problem/placed_pair.h"
 #include "problem/validate.h"
 #include "shape/body.h"
 
@@ -71,12 +72,11 @@ static double outer_radius(const cprox_body *body, vec3 centre) {
   return most;
 }
 
-static batch_core core_of(const question *q, const candidate *c, candidate_ball round) {
-  const cprox_body *body = candidate_body(q, c);
+static batch_core core_of(const placed_pair *p, candidate_ball round) {
+  const cprox_body *body = p->shape;
   batch_core core = {.centre = round.centre, .inner = -1.0, .outer = round.radius};
   if (!body || !has_depth(body)) return core;
-  const cprox_pose pose = candidate_pose(q, c);
-  const frame f = frame_create(&pose, body->centre);
+  const frame f = frame_create(&p->pose, body->centre);
   core.flat = body->kind == CPROX_POLYGON;
   if (core.flat && !f.about_z) return core;
   vec3 centre;
@@ -98,11 +98,11 @@ static double half_along(const convex *shape, vec3 axis) {
 }
 
 /* A ball says more of a sphere than any box. */
-static void lay_brick(const question *q, const candidate *c, batch_core *core) {
-  const cprox_body *body = candidate_body(q, c);
+static void lay_brick(const placed_pair *p, batch_core *core) {
+  const cprox_body *body = p->shape;
   if (!body || !has_depth(body) || body->kind == CPROX_SPHERE) return;
   const convex *shape = &body->shape;
-  const frame f = candidate_frame(q, c);
+  const frame f = p->frame;
   lanes_brick *brick = &core->brick;
   memcpy(brick->r, f.r, sizeof brick->r);
   brick->position = f.position;
@@ -168,10 +168,11 @@ static void describe(cprox_batch *batch, const question *q, size_t k) {
   batch->balls.z[k] = round.centre.z;
   batch->balls.reach[k] = round.radius + target->padding;
   batch->balls.sizes[k] = vec_norm(round.centre) + placing + batch->balls.reach[k];
-  batch->cores[k] = core_of(q, c, round);
+  const placed_pair placed = placed_pair_resolve(q, c);
+  batch->cores[k] = core_of(&placed, round);
   batch->cores[k].plane = target->pose.position.z;
   batch->cores[k].padding = target->padding;
-  lay_brick(q, c, &batch->cores[k]);
+  lay_brick(&placed, &batch->cores[k]);
 }
 
 /* All parts, those that stand together one after the other; what is everywhere comes last. False where memory is out. */

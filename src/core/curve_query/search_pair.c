@@ -45,77 +45,80 @@ static vec3 witness_direction(vec3 centre, vec3 surface, vec3 normal) {
 
 /* The two surface points and their normal: where the ball of the mover and the padded target come closest, or one point of both
  * where they overlap; signed, the two ends of the way out. */
-static void report_points(const question *q, const candidate *c, vec3 centre, vec3 surface, vec3 normal, double apart,
+static void report_points(const question *q, const placed_pair *p, vec3 centre, vec3 surface, vec3 normal, double apart,
                           cprox_result *r) {
-  const double padding = candidate_padding(q, c);
+  const double margin = p->margin;
   if (apart > 0.0) normal = witness_direction(centre, surface, normal);
   r->normal = normal;
-  r->target_index = c->target, r->target_part = c->part;
-  if (q->is_signed || apart > padding + q->mover.radius) {
-    r->on_target = vec_axpy(surface, padding, normal);
+  r->target_index = p->which.target, r->target_part = p->which.part;
+  if (q->is_signed || apart > margin + q->mover.radius) {
+    r->on_target = vec_axpy(surface, margin, normal);
     r->on_mover = vec_axpy(centre, -q->mover.radius, normal);
   } else {
     /* the padded target's nearest point to the ball's centre */
-    r->on_mover = r->on_target = apart > padding ? vec_axpy(surface, padding, normal) : centre;
+    r->on_mover = r->on_target = apart > margin ? vec_axpy(surface, margin, normal) : centre;
   }
 }
 
 /* The same where a body is carried, its curve at `centre`, or what stands is on the clock: asked of the pair that both make there. */
-static cprox_status report_pair(const question *q, const candidate *c, vec3 centre, const cprox_target *standing,
+static cprox_status report_pair(const question *q, const placed_pair *p, vec3 centre, const cprox_target *standing,
                                 int32_t part, vec3 normal, cprox_result *r) {
   const cprox_target moved = {.body = q->mover.body ? q->mover.body : &carried_point,
                               .pose = {.position = centre, .orientation = {1, 0, 0, 0}},
                               .padding = q->mover.radius};
   pair_witness witness;
-  const cprox_status status = pair_witness_of(&moved, (size_t)c->mover_part, standing, (size_t)part,
-                                              candidate_rung(q, c), q->is_signed, q->workspace, &witness);
+  const cprox_status status = pair_witness_of(&moved, (size_t)p->which.mover_part, standing, (size_t)part, p->rung,
+                                              q->is_signed, q->workspace, &witness);
   if (status < 0) return status;
   const bool normal_known = vec_norm2(normal) > 0.0;
   r->normal = normal_known ? normal : witness.normal;
-  r->target_index = c->target, r->target_part = c->part, r->mover_part = c->mover_part;
+  r->target_index = p->which.target, r->target_part = p->which.part, r->mover_part = p->which.mover_part;
   r->on_mover = witness.on_a, r->on_target = witness.on_b;
   return CPROX_OK;
 }
 
 /* A carried body and what stands make one shape. */
-static bool begin_carried(const question *q, const candidate *c, const cprox_body *body, const cprox_curve *curve,
-                          curve_convex *o) {
-  const cprox_pose pose = candidate_pose(q, c);
-  carried_shape joined = {.placed = candidate_frame(q, c)};
-  cprox_pose carried_pose;
-  const cprox_body *carried = candidate_carried(q, c, &carried_pose);
-  if (!carried_join(body, &pose, carried, &carried_pose, &joined)) return false;
-  joined.shape.slack += candidate_misplaced(q, c);
-  const double offset = candidate_offset(q, c) + joined.offset;
-  if (!curve_convex_begin(o, curve, &body->shape, joined.placed, offset, q->workspace)) return false;
+static bool begin_carried(const question *q, const placed_pair *p, const cprox_curve *curve, curve_convex *o) {
+  carried_shape joined = {.placed = p->frame};
+  if (!carried_join(p->shape, &p->pose, p->carried, &p->carried_pose, &joined)) return false;
+  joined.shape.slack += p->position_error;
+  const double offset = p->offset + joined.offset;
+  if (!curve_convex_begin(o, curve, &p->shape->shape, joined.placed, offset, q->workspace)) return false;
   o->joined = joined.shape;
   o->shape = &o->joined;
   return true;
 }
 
-bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o) {
-  const cprox_target *target = &q->targets[c->target];
-  const cprox_body *body = candidate_body(q, c);
+/* The curve that the search runs along, about the obstacle: on one clock it is where the mover is, seen from the other. NULL where
+ * memory is out. */
+static const cprox_curve *curve_about(const question *q, const placed_pair *p, cprox_curve *relative) {
+  const cprox_target *obstacle = p->obstacle;
+  if (!obstacle->on_clock) return q->mover.curve;
+  const bool made =
+      relative_create(q->mover.curve, obstacle->curve, &obstacle->pose, q->t0, q->t1, q->workspace, relative);
+  return made ? relative : NULL;
+}
 
-  /* on one clock the curve is where the mover is, seen from the other */
-  const cprox_curve *curve = q->mover.curve;
+/* The search owns the relative curve, which is all of it; of another curve it sees the part in question. */
+static void keep_curve(const question *q, const placed_pair *p, const cprox_curve *relative, cprox_curve *kept,
+                       curve_side *side) {
+  side->part = q->part;
+  if (!p->obstacle->on_clock) return;
+  *kept = *relative;
+  side->curve = kept;
+  side->part = curve_side_whole();
+}
+
+bool placed_begin_convex(const question *q, const placed_pair *p, curve_convex *o) {
   cprox_curve relative;
-  if (target->on_clock) {
-    if (!relative_create(curve, target->curve, &target->pose, q->t0, q->t1, q->workspace, &relative)) return false;
-    curve = &relative;
-  }
-
+  const cprox_curve *curve = curve_about(q, p, &relative);
+  if (!curve) return false;
   if (q->mover.body) {
-    if (!begin_carried(q, c, body, curve, o)) return false;
-  } else if (!curve_convex_begin(o, curve, &body->shape, candidate_frame(q, c), candidate_offset(q, c), q->workspace)) {
+    if (!begin_carried(q, p, curve, o)) return false;
+  } else if (!curve_convex_begin(o, curve, &p->shape->shape, p->frame, p->offset, q->workspace)) {
     return false;
   }
-  o->side.part = q->part;
-  if (target->on_clock) {
-    o->relative = relative;
-    o->side.curve = &o->relative;
-    o->side.part = curve_side_whole();
-  }
+  keep_curve(q, p, &relative, &o->relative, &o->side);
   return true;
 }
 
@@ -126,62 +129,49 @@ static vec3 normal_seen(const curve_convex *o) {
 }
 
 /* Where the other mover is at the parameter of the best sight, and this one from there. */
-static cprox_status report_clock(const question *q, const candidate *c, const curve_convex *o, vec3 apart,
+static cprox_status report_clock(const question *q, const placed_pair *p, const curve_convex *o, vec3 apart,
                                  cprox_result *r) {
-  cprox_target standing = q->targets[c->target];
+  cprox_target standing = *p->obstacle;
   const vec3 at = relative_point(standing.curve, r->t, o->best.s == 1.0, q->workspace);
   const frame f = frame_create(&standing.pose, vec(0, 0, 0));
   standing.pose.position = frame_to_world(&f, at);
   if (!standing.body) standing.body = &carried_point;
   r->t_target = r->t;
   const vec3 centre = vec_add(standing.pose.position, apart);
-  return report_pair(q, c, centre, &standing, c->part, normal_seen(o), r);
+  return report_pair(q, p, centre, &standing, p->which.part, normal_seen(o), r);
 }
 
-cprox_status candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r) {
+cprox_status placed_report_convex(const question *q, const placed_pair *p, const curve_convex *o, cprox_result *r) {
   if (o->incumbent == 0) return CPROX_OK;
   const frame *f = &o->side.frame;
   const curve_sight *best = &o->best;
   r->t = curve_side_parameter(&o->side, best->piece, best->s);
-  const cprox_target *target = &q->targets[c->target];
-  if (target->on_clock) return report_clock(q, c, o, frame_to_world(f, best->y), r);
-  if (q->mover.body) return report_pair(q, c, frame_to_world(f, best->y), target, c->part, normal_seen(o), r);
-  report_points(q, c, frame_to_world(f, best->y), frame_to_world(f, best->near.point), normal_seen(o),
+  const cprox_target *target = p->obstacle;
+  if (target->on_clock) return report_clock(q, p, o, frame_to_world(f, best->y), r);
+  if (q->mover.body) return report_pair(q, p, frame_to_world(f, best->y), target, p->which.part, normal_seen(o), r);
+  report_points(q, p, frame_to_world(f, best->y), frame_to_world(f, best->near.point), normal_seen(o),
                 best->near.distance, r);
   return CPROX_OK;
 }
 
-bool candidate_is_tree(const question *q, const candidate *c) {
-  const cprox_body *body = candidate_body(q, c);
-  return body && body->tree;
+bool placed_is_tree(const placed_pair *p) {
+  return p->shape && p->shape->tree;
 }
 
-bool candidate_begin_tree(const question *q, const candidate *c, curve_tree *o) {
-  const cprox_target *target = &q->targets[c->target];
-  const cprox_body *body = candidate_body(q, c);
-  const cprox_curve *curve = q->mover.curve;
+bool placed_begin_tree(const question *q, const placed_pair *p, curve_tree *o) {
   cprox_curve relative;
-  if (target->on_clock) {
-    if (!relative_create(curve, target->curve, &target->pose, q->t0, q->t1, q->workspace, &relative)) return false;
-    curve = &relative;
-  }
-  const frame placed = candidate_frame(q, c);
-  if (!curve_tree_begin(o, curve, body, placed, candidate_offset(q, c), q->workspace)) return false;
-  o->side.part = q->part;
-  if (target->on_clock) {
-    o->relative = relative;
-    o->side.curve = &o->relative;
-    o->side.part = curve_side_whole();
-  }
+  const cprox_curve *curve = curve_about(q, p, &relative);
+  if (!curve || !curve_tree_begin(o, curve, p->shape, p->frame, p->offset, q->workspace)) return false;
+  keep_curve(q, p, &relative, &o->relative, &o->side);
   return true;
 }
 
-void candidate_report_tree(const question *q, const candidate *c, const curve_tree *o, cprox_result *r) {
+void placed_report_tree(const question *q, const placed_pair *p, const curve_tree *o, cprox_result *r) {
   if (!o->found) return;
   const frame *f = &o->side.frame;
   const tree_sight *best = &o->best;
   const double margin = o->body->shape.margin;
-  const cprox_target *target = &q->targets[c->target];
+  const cprox_target *target = p->obstacle;
   r->t = curve_side_parameter(&o->side, best->piece, best->s);
   vec3 shift = vec(0, 0, 0);
   if (target->on_clock) {
@@ -191,21 +181,18 @@ void candidate_report_tree(const question *q, const candidate *c, const curve_tr
   }
   const vec3 centre = frame_to_world(f, best->y);
   const vec3 surface = frame_to_world(f, vec_axpy(best->near.point, margin, best->near.normal));
-  report_points(q, c, vec_add(centre, shift), vec_add(surface, shift), frame_turn_to_world(f, best->near.normal),
+  report_points(q, p, vec_add(centre, shift), vec_add(surface, shift), frame_turn_to_world(f, best->near.normal),
                 best->near.distance - margin, r);
 }
 
-bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o) {
-  const cprox_target *target = &q->targets[c->target];
-  const double offset = candidate_offset(q, c);
-  if (!curve_curve_begin(o, q->mover.curve, target->curve, &target->pose, offset, q->workspace)) return false;
+bool placed_begin_curve(const question *q, const placed_pair *p, curve_curve *o) {
+  const cprox_target *other = p->obstacle;
+  if (!curve_curve_begin(o, q->mover.curve, other->curve, &other->pose, p->offset, q->workspace)) return false;
   o->side[0].part = q->part;
-  cprox_pose carried_pose;
-  const cprox_body *carried = candidate_carried(q, c, &carried_pose);
-  return !carried || curve_curve_carry(o, &target->pose, carried, &carried_pose);
+  return !p->carried || curve_curve_carry(o, &other->pose, p->carried, &p->carried_pose);
 }
 
-cprox_status candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r) {
+cprox_status placed_report_curve(const question *q, const placed_pair *p, const curve_curve *o, cprox_result *r) {
   if (o->incumbent == 0) return CPROX_OK;
   const frame *f = &o->side[0].frame;
   const curve_meeting *best = &o->best;
@@ -213,12 +200,11 @@ cprox_status candidate_report_curve(const question *q, const candidate *c, const
   r->t_target = curve_side_parameter(&o->side[1], best->piece[1], best->s[1]);
   if (q->mover.body) {
     const vec3 at = frame_to_world(f, best->point[1]);
-    const cprox_target standing = {.body = &carried_point,
-                                   .pose = {.position = at, .orientation = {1, 0, 0, 0}},
-                                   .padding = q->targets[c->target].padding};
-    return report_pair(q, c, frame_to_world(f, best->point[0]), &standing, 0, frame_turn_to_world(f, best->normal), r);
+    const cprox_target standing = {
+        .body = &carried_point, .pose = {.position = at, .orientation = {1, 0, 0, 0}}, .padding = p->obstacle->padding};
+    return report_pair(q, p, frame_to_world(f, best->point[0]), &standing, 0, frame_turn_to_world(f, best->normal), r);
   }
-  report_points(q, c, frame_to_world(f, best->point[0]), frame_to_world(f, best->point[1]),
+  report_points(q, p, frame_to_world(f, best->point[0]), frame_to_world(f, best->point[1]),
                 frame_turn_to_world(f, best->normal), best->distance, r);
   return CPROX_OK;
 }
@@ -233,10 +219,10 @@ static bool proves_crossing(const question *q, curve_convex *o) {
   return true;
 }
 
-static cprox_status search_convex(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
-                                  cprox_result *r) {
+static cprox_status search_convex(const question *q, const placed_pair *p, const search_goal *goal,
+                                  search_outcome *found, cprox_result *r) {
   curve_convex o;
-  if (!candidate_begin_convex(q, c, &o)) return CPROX_MEMORY;
+  if (!placed_begin_convex(q, p, &o)) return CPROX_MEMORY;
   o.polish_after = nodes_before_newton(q);
   o.good_enough = good_enough(q);
   o.epsilon = q->options.epsilon;
@@ -244,8 +230,8 @@ static cprox_status search_convex(const question *q, const candidate *c, const s
   const search_oracle oracle = curve_convex_oracle(&o);
   search_node root = curve_convex_root(&o);
   search_goal rest = *goal;
-  if (c->seed_s > 0.0) {
-    const cprox_status seeded = curve_convex_seed(&o, c->seed_piece, c->seed_s, &root);
+  if (p->which.seed_s > 0.0) {
+    const cprox_status seeded = curve_convex_seed(&o, p->which.seed_piece, p->which.seed_s, &root);
     if (seeded < 0) return seeded;
     rest.ceiling = lesser(rest.ceiling, o.best_bound.upper);
   }
@@ -257,15 +243,15 @@ static cprox_status search_convex(const question *q, const candidate *c, const s
   r->probes = o.probes;
   const bool crosses = status >= 0 && proves_crossing(q, &o);
   found->best = o.best_bound;
-  const cprox_status reported = status >= 0 ? candidate_report_convex(q, c, &o, r) : status;
+  const cprox_status reported = status >= 0 ? placed_report_convex(q, p, &o, r) : status;
   if (crosses) r->on_target = r->on_mover;
   return reported < 0 ? reported : status;
 }
 
-static cprox_status search_curve(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
-                                 cprox_result *r) {
+static cprox_status search_curve(const question *q, const placed_pair *p, const search_goal *goal,
+                                 search_outcome *found, cprox_result *r) {
   curve_curve o;
-  if (!candidate_begin_curve(q, c, &o)) return CPROX_MEMORY;
+  if (!placed_begin_curve(q, p, &o)) return CPROX_MEMORY;
   o.polish_after = nodes_before_newton(q);
   o.good_enough = good_enough(q);
   o.epsilon = q->options.epsilon;
@@ -273,15 +259,15 @@ static cprox_status search_curve(const question *q, const candidate *c, const se
   const search_oracle oracle = curve_curve_oracle(&o);
   const cprox_status status = search_run(goal, &oracle, curve_curve_root(&o), q->workspace, found);
   r->probes = o.probes;
-  const cprox_status reported = status >= 0 ? candidate_report_curve(q, c, &o, r) : status;
+  const cprox_status reported = status >= 0 ? placed_report_curve(q, p, &o, r) : status;
   return reported < 0 ? reported : status;
 }
 
-static cprox_status search_tree(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+static cprox_status search_tree(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
                                 cprox_result *r) {
   curve_tree o;
   search_node root;
-  if (!candidate_begin_tree(q, c, &o) || !curve_tree_root(&o, &root)) return CPROX_MEMORY;
+  if (!placed_begin_tree(q, p, &o) || !curve_tree_root(&o, &root)) return CPROX_MEMORY;
   o.asked = *goal;
   o.asked.order = SEARCH_DEPTH_FIRST; /* lists of elements are kept on a stack */
   o.polish_after = nodes_before_newton(q);
@@ -289,25 +275,26 @@ static cprox_status search_tree(const question *q, const candidate *c, const sea
   const search_oracle oracle = curve_tree_oracle(&o);
   const cprox_status status = search_run(&o.asked, &oracle, root, q->workspace, found);
   r->probes = o.probes;
-  if (status >= 0) candidate_report_tree(q, c, &o, r);
+  if (status >= 0) placed_report_tree(q, p, &o, r);
   return status;
 }
 
 /* The one place that says which kernel answers. */
-static cprox_status search_any(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+static cprox_status search_any(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
                                cprox_result *r) {
-  if (candidate_is_tree(q, c)) return search_tree(q, c, goal, found, r);
-  return candidate_body(q, c) ? search_convex(q, c, goal, found, r) : search_curve(q, c, goal, found, r);
+  if (placed_is_tree(p)) return search_tree(q, p, goal, found, r);
+  return p->shape ? search_convex(q, p, goal, found, r) : search_curve(q, p, goal, found, r);
 }
 
 /* By the one model that the candidate names. */
 static cprox_status search_model(const question *q, const candidate *c, double ceiling, cprox_result *result) {
-  cprox_result r = {.target_index = -1, .t_target = NAN, .rung = candidate_rung(q, c)};
+  const placed_pair placed = placed_pair_resolve(q, c), *p = &placed;
+  cprox_result r = {.target_index = -1, .t_target = NAN, .rung = p->rung};
   search_goal goal = goal_of(q, ceiling);
-  const bool depth_unknown = q->is_signed && candidate_is_tree(q, c);
+  const bool depth_unknown = q->is_signed && placed_is_tree(p);
   if (depth_unknown) goal.is_signed = false;
   search_outcome found = {0};
-  r.status = search_any(q, c, &goal, &found, &r);
+  r.status = search_any(q, p, &goal, &found, &r);
   if (r.status == CPROX_MEMORY) return workspace_fail(q->workspace, r.status, "no memory for the open intervals");
   if (r.status < 0) return r.status;
 
@@ -337,13 +324,14 @@ bool candidate_may_climb(const question *q, const candidate *c) {
 }
 
 cprox_status candidate_measure_mesh(const question *q, const candidate *c, cprox_result *result) {
+  const placed_pair p = placed_pair_resolve(q, c);
   curve_tree o;
-  if (!candidate_begin_tree(q, c, &o)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a curve");
+  if (!placed_begin_tree(q, &p, &o)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a curve");
   curve_tree_look(&o, result->t);
   if (curve_side_status(&o.side) < 0) return curve_side_status(&o.side);
   result->probes += o.probes;
   result->upper = fmax(o.best_bound.upper, 0.0);
-  candidate_report_tree(q, c, &o, result);
+  placed_report_tree(q, &p, &o, result);
   return CPROX_OK;
 }
 

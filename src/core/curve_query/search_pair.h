@@ -6,7 +6,7 @@
 #include "curve_query/curve_bvh.h"
 #include "curve_query/curve_convex.h"
 #include "curve_query/curve_curve.h"
-#include "problem/candidates.h"
+#include "problem/placed_pair.h"
 
 /* Searches one candidate; *result holds its own interval and the witness. `ceiling`: an upper bound known from others. A ladder is
  * searched by its hull first where that may do, unless the candidate says which rung. */
@@ -23,19 +23,19 @@ cprox_status candidate_rank(const question *q, candidate *c, uint32_t *nodes, ui
  * its own, and an upper bound. */
 cprox_status candidate_measure_mesh(const question *q, const candidate *c, cprox_result *result);
 
-/* The oracle of a candidate with a convex body, ready to search; false where memory is out. */
-bool candidate_begin_convex(const question *q, const candidate *c, curve_convex *o);
+/* The oracle of a pair with a convex shape, ready to search; false where memory is out. */
+bool placed_begin_convex(const question *q, const placed_pair *p, curve_convex *o);
 
 /* Parameter, points and normal of its best sight, if it has one. CPROX_OK, or a negative status. */
-cprox_status candidate_report_convex(const question *q, const candidate *c, const curve_convex *o, cprox_result *r);
+cprox_status placed_report_convex(const question *q, const placed_pair *p, const curve_convex *o, cprox_result *r);
 
-/* The same of a candidate made of many elements: a mesh, points, boxes. */
-bool candidate_is_tree(const question *q, const candidate *c);
-bool candidate_begin_tree(const question *q, const candidate *c, curve_tree *o);
-void candidate_report_tree(const question *q, const candidate *c, const curve_tree *o, cprox_result *r);
+/* The same of an obstacle made of many elements: a mesh, points, boxes. */
+bool placed_is_tree(const placed_pair *p);
+bool placed_begin_tree(const question *q, const placed_pair *p, curve_tree *o);
+void placed_report_tree(const question *q, const placed_pair *p, const curve_tree *o, cprox_result *r);
 
-/* The same of a candidate that is a curve. */
-bool candidate_begin_curve(const question *q, const candidate *c, curve_curve *o);
-cprox_status candidate_report_curve(const question *q, const candidate *c, const curve_curve *o, cprox_result *r);
+/* The same of an obstacle that is a curve. */
+bool placed_begin_curve(const question *q, const placed_pair *p, curve_curve *o);
+cprox_status placed_report_curve(const question *q, const placed_pair *p, const curve_curve *o, cprox_result *r);
 
 #endif

@@ -3,104 +3,8 @@
 
 #include "base/frame.h"
 #include "base/rounding.h"
-#include "problem/level_of_detail.h"
-#include "problem/minkowski.h"
+#include "problem/placed_pair.h"
 #include "shape/body.h"
-
-/* The model that is searched, and its pose in the frame of the target. */
-typedef struct placed_model {
-  const cprox_body *body; /* NULL: none */
-  double excess;
-  cprox_rung rung;
-  bool moved;       /* false: the pose is the identity, */
-  cprox_pose inner; /* and not set */
-} placed_model;
-
-/* Asked for often, and seldom more than the body itself. */
-static inline void place_model(const cprox_body *body, int32_t part, cprox_rung finest, placed_model *m) {
-  m->body = body;
-  m->excess = 0.0;
-  m->moved = false;
-  m->rung = body && body->tree ? CPROX_RUNG_MESH : CPROX_RUNG_HULL;
-  if (!body || model_is_body(body, finest)) return;
-  const model is = model_of_part(body, (size_t)part, finest, &m->inner, &m->moved);
-  m->body = is.body, m->excess = is.excess, m->rung = is.rung;
-}
-
-static inline void model_at(const question *q, const candidate *c, placed_model *m) {
-  const cprox_target *target = &q->targets[c->target];
-  const cprox_body *body = target->on_clock && !target->body ? &carried_point : target->body;
-  place_model(body, c->part, c->rung != CPROX_RUNG_NONE ? c->rung : q->options.max_rung, m);
-}
-
-const cprox_body *candidate_body(const question *q, const candidate *c) {
-  placed_model m;
-  model_at(q, c, &m);
-  return m.body;
-}
-
-cprox_rung candidate_rung(const question *q, const candidate *c) {
-  placed_model m;
-  model_at(q, c, &m);
-  return m.rung;
-}
-
-/* Of what is carried past it, on the same rung. */
-static inline void carried_model(const question *q, const candidate *c, placed_model *m) {
-  place_model(q->mover.body, c->mover_part, q->mover.body ? candidate_rung(q, c) : CPROX_RUNG_HULL, m);
-}
-
-static cprox_pose clock_pose(const question *q, const candidate *c) {
-  cprox_pose pose = q->targets[c->target].pose;
-  if (q->targets[c->target].on_clock) pose.position = vec(0, 0, 0);
-  return pose;
-}
-
-cprox_pose candidate_pose(const question *q, const candidate *c) {
-  placed_model m;
-  model_at(q, c, &m);
-  const cprox_pose pose = clock_pose(q, c);
-  return m.moved ? frame_compose(&pose, &m.inner) : pose;
-}
-
-double candidate_misplaced(const question *q, const candidate *c) {
-  placed_model m, carried;
-  model_at(q, c, &m);
-  if (!m.moved || !m.body) return 0.0;
-  carried_model(q, c, &carried);
-  /* a turn of both shapes, and the sum of the positions */
-  const double own = carried.body ? carried.body->shape.scale : 0.0;
-  const double turned = vec_norm(m.inner.position) + vec_norm(m.body->centre) + m.body->shape.scale + own;
-  const cprox_pose pose = candidate_pose(q, c);
-  return ROUND_UP * ROUND_U * (2.0 * ROUND_ROTATION * turned + 3.0 * vec_norm(pose.position));
-}
-
-frame candidate_frame(const question *q, const candidate *c) {
-  placed_model m;
-  model_at(q, c, &m);
-  const cprox_pose pose = clock_pose(q, c);
-  const vec3 centre = m.body ? m.body->centre : vec(0, 0, 0);
-  return m.moved ? frame_create_within(&pose, &m.inner, centre) : frame_create(&pose, centre);
-}
-
-double candidate_padding(const question *q, const candidate *c) {
-  placed_model m;
-  model_at(q, c, &m);
-  return q->targets[c->target].padding + m.excess;
-}
-
-double candidate_offset(const question *q, const candidate *c) {
-  placed_model m;
-  carried_model(q, c, &m);
-  return q->mover.radius + m.excess + candidate_padding(q, c);
-}
-
-const cprox_body *candidate_carried(const question *q, const candidate *c, cprox_pose *pose) {
-  placed_model m;
-  carried_model(q, c, &m);
-  *pose = m.moved ? m.inner : cprox_pose_identity();
-  return m.body;
-}
 
 /* No less than the length, and had without a root: for sums of sizes that rounding is measured by. */
 static double size_of(vec3 v) {
@@ -121,24 +25,23 @@ static candidate_ball ball_of_curve(const cprox_curve *curve) {
   return (candidate_ball){.centre = vec_lerp(capsule->a, capsule->b, 0.5), .radius = 0.5 * length + capsule->radius};
 }
 
-candidate_ball candidate_bounding_ball(const question *q, const candidate *c, double *sizes) {
-  const cprox_target *target = &q->targets[c->target];
-  const cprox_body *body = candidate_body(q, c);
+/* Round one model of an obstacle, or where its curve carries that. */
+static candidate_ball bounding_ball_of(const cprox_target *obstacle, int32_t part, const placed_model *m,
+                                       double *sizes) {
   candidate_ball round = {0};
   *sizes = 0.0;
-  if (body) {
-    const cprox_pose pose = candidate_pose(q, c);
-    const frame f = frame_create(&pose, vec(0, 0, 0));
-    round.centre = frame_to_world(&f, body->ball_centre);
-    round.radius = body->ball_radius;
-    *sizes += size_of(body->ball_centre) + size_of(pose.position);
+  if (m->body) {
+    const frame f = frame_create(&m->pose, vec(0, 0, 0));
+    round.centre = frame_to_world(&f, m->body->ball_centre);
+    round.radius = m->body->ball_radius;
+    *sizes += size_of(m->body->ball_centre) + size_of(m->pose.position);
     /* a compound's part: what the two positions lose may be more than their sum, which is small where they cancel */
-    if (target->body && target->body->kind == CPROX_COMPOUND)
-      *sizes += size_of(target->body->parts[c->part].pose.position);
+    if (obstacle->body && obstacle->body->kind == CPROX_COMPOUND)
+      *sizes += size_of(obstacle->body->parts[part].pose.position);
   }
-  if (target->curve) {
-    const candidate_ball run = ball_of_curve(target->curve);
-    const frame f = frame_create(&target->pose, vec(0, 0, 0));
+  if (obstacle->curve) {
+    const candidate_ball run = ball_of_curve(obstacle->curve);
+    const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
     round.centre = vec_add(round.centre, frame_to_world(&f, run.centre));
     round.radius += run.radius;
     *sizes += size_of(run.centre) + size_of(f.position) + round.radius;
@@ -146,24 +49,31 @@ candidate_ball candidate_bounding_ball(const question *q, const candidate *c, do
   return round;
 }
 
+candidate_ball candidate_bounding_ball(const question *q, const candidate *c, double *sizes) {
+  const placed_model m = placed_model_of_obstacle(q, c);
+  return bounding_ball_of(&q->targets[c->target], c->part, &m, sizes);
+}
+
 /* The ball round what is carried, about the curve's point. */
-static candidate_ball carried_ball(const question *q, const candidate *c) {
-  cprox_pose pose;
-  const cprox_body *body = q->mover.body ? candidate_carried(q, c, &pose) : NULL;
-  if (!body) return (candidate_ball){0};
-  const frame f = frame_create(&pose, vec(0, 0, 0));
-  return (candidate_ball){.centre = frame_to_world(&f, body->ball_centre), .radius = body->ball_radius};
+static candidate_ball carried_ball(const placed_model *carried) {
+  if (!carried->body) return (candidate_ball){0};
+  const frame f = frame_create(&carried->pose, vec(0, 0, 0));
+  return (candidate_ball){.centre = frame_to_world(&f, carried->body->ball_centre),
+                          .radius = carried->body->ball_radius};
 }
 
 /* The mover's capsule against the candidate's ball. */
 double candidate_ball_bound(const question *q, const candidate *c) {
+  const cprox_target *obstacle = &q->targets[c->target];
+  const placed_models both = placed_models_resolve(q, c);
   double placing;
-  const candidate_ball round = candidate_bounding_ball(q, c, &placing);
+  const candidate_ball round = bounding_ball_of(obstacle, c->part, &both.obstacle, &placing);
   if (!isfinite(round.radius)) return -INFINITY;
-  const candidate_ball own = carried_ball(q, c);
+  const candidate_ball own = carried_ball(&both.carried);
   const vec3 centre = vec_sub(round.centre, own.centre);
   const curve_capsule *capsule = &q->reach;
-  const double reach = capsule->radius + round.radius + own.radius + candidate_offset(q, c);
+  const double offset = q->mover.radius + both.carried.excess + (obstacle->padding + both.obstacle.excess);
+  const double reach = capsule->radius + round.radius + own.radius + offset;
   /* rounding: the pose of the centre, the projection on the chord, the sums; doc/rounding.md */
   const double sizes =
       size_of(capsule->a) + size_of(capsule->b) + size_of(centre) + placing + 2.0 * size_of(own.centre) + reach;

@@ -3,10 +3,10 @@
 #ifndef CPROX_PROBLEM_CANDIDATES_H
 #define CPROX_PROBLEM_CANDIDATES_H
 
-#include "base/frame.h"
 #include "problem/problem.h"
 
-/* One convex part of one target, or a curve, against one convex part of what is carried, with what their bounding balls say. */
+/* One convex part of one target, or a curve, against one convex part of what is carried, with what their bounding balls say.
+ * placed_pair_resolve() looks the indices up. */
 typedef struct candidate {
   double lower;
   int32_t target, part, mover_part;
@@ -31,25 +31,5 @@ candidate_ball candidate_bounding_ball(const question *q, const candidate *c, do
 
 /* Ascending by lower. */
 void candidates_sort(candidate *list, size_t n);
-
-/* The model of a candidate that is searched (its body is NULL for a curve at its own parameter), its pose in the world, what is
- * round it, and that and the ball that rides the curve. What is on the mover's clock has a body, if only a point, and stands where
- * it would if its curve were at the origin. */
-const cprox_body *candidate_body(const question *q, const candidate *c);
-cprox_pose candidate_pose(const question *q, const candidate *c);
-double candidate_padding(const question *q, const candidate *c);
-
-/* How far the pose may be off, and what turns with it, because it had to be composed. */
-double candidate_misplaced(const question *q, const candidate *c);
-
-/* The rung of that model. */
-cprox_rung candidate_rung(const question *q, const candidate *c);
-
-/* The body's frame, with what composing its poses may have moved it. */
-frame candidate_frame(const question *q, const candidate *c);
-double candidate_offset(const question *q, const candidate *c);
-
-/* The convex part that the mover carries (NULL for none), and its pose while the curve is at the origin. */
-const cprox_body *candidate_carried(const question *q, const candidate *c, cprox_pose *pose);
 
 #endif

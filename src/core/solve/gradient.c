@@ -230,16 +230,17 @@ static cprox_target stopped(const cprox_mover *mover, const cprox_target *target
 }
 
 /* Whether no other pair of parts is as near at the minimiser. */
-static cprox_status part_is_alone(const question *q, const candidate *best, double t, double distance, bool *alone) {
+static cprox_status part_is_alone(const question *q, const placed_pair *best, double t, double distance, bool *alone) {
   const cprox_body *standing = q->targets[0].body, *carried = q->mover.body;
   const size_t parts = standing && standing->kind == CPROX_COMPOUND ? standing->n_parts : 1;
   const size_t own = carried && carried->kind == CPROX_COMPOUND ? carried->n_parts : 1;
   *alone = true;
   for (size_t i = 0; i < parts * own && *alone; i++) {
     const candidate c = {.part = (int32_t)(i / own), .mover_part = (int32_t)(i % own)};
-    if (c.part == best->part && c.mover_part == best->mover_part) continue;
+    if (c.part == best->which.part && c.mover_part == best->which.mover_part) continue;
     curve_convex o;
-    if (!candidate_begin_convex(q, &c, &o)) return CPROX_MEMORY;
+    const placed_pair other = placed_pair_resolve(q, &c);
+    if (!placed_begin_convex(q, &other, &o)) return CPROX_MEMORY;
     o.is_signed = q->is_signed;
     o.epsilon = q->options.epsilon;
     look seen;
@@ -284,10 +285,10 @@ static cprox_status way_out_is_alone(curve_convex *o, const look *here, bool *al
 }
 
 /* The mover at t, and what stands, or is on its clock, where it is then. */
-static placed_bodies bodies_at(const question *q, const candidate *c, double t) {
+static placed_bodies bodies_at(const question *q, const placed_pair *c, double t) {
   placed_bodies p = {.b = q->targets[0],
-                     .part_a = (size_t)c->mover_part,
-                     .part_b = (size_t)c->part,
+                     .part_a = (size_t)c->which.mover_part,
+                     .part_b = (size_t)c->which.part,
                      .finest = q->options.max_rung,
                      .depth = q->is_signed,
                      .workspace = q->workspace};
@@ -308,9 +309,8 @@ static bool is_round(const cprox_body *body) {
 
 /* A ball has one nearest point where it has one normal. Two other bodies may
  * meet along an edge or a face. */
-static cprox_status nearest_is_alone(const question *q, const candidate *c, double t, bool *alone) {
-  cprox_pose unused;
-  const cprox_body *standing = candidate_body(q, c), *carried = q->mover.body ? candidate_carried(q, c, &unused) : NULL;
+static cprox_status nearest_is_alone(const question *q, const placed_pair *c, double t, bool *alone) {
+  const cprox_body *standing = c->shape, *carried = c->carried;
   *alone = true;
   if (is_round(standing) || is_round(carried)) return CPROX_OK;
   placed_bodies p = bodies_at(q, c, t);
@@ -332,9 +332,9 @@ static void fill(const cprox_target *target, vec3 n, vec3 on_target, cprox_gradi
   g->radius = g->padding = -1.0;
 }
 
-static cprox_status gradient_of_body(const question *q, const candidate *c, cprox_gradient *g) {
+static cprox_status gradient_of_body(const question *q, const placed_pair *c, cprox_gradient *g) {
   curve_convex o;
-  if (!candidate_begin_convex(q, c, &o)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a gradient");
+  if (!placed_begin_convex(q, c, &o)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a gradient");
   o.is_signed = q->is_signed;
   o.epsilon = 1e-3 * q->options.epsilon;
   int end;
@@ -349,7 +349,7 @@ static cprox_status gradient_of_body(const question *q, const candidate *c, cpro
   /* the points, as the search would report them */
   curve_convex_adopt(&o, &here.sight, (search_best){.upper = distance});
   cprox_result r = {.t_target = NAN};
-  status = candidate_report_convex(q, c, &o, &r);
+  status = placed_report_convex(q, c, &o, &r);
   if (status < 0) return status;
   fill(&q->targets[0], r.normal, r.on_target, g);
   if (q->targets[0].on_clock) g->t_target = g->t;
@@ -374,7 +374,7 @@ static cprox_status gradient_of_body(const question *q, const candidate *c, cpro
 }
 
 /* A carried body may leave the curve that crosses it by more than one side. */
-static cprox_status carried_way_out_is_alone(const question *q, const candidate *c, vec3 on_curve, double t,
+static cprox_status carried_way_out_is_alone(const question *q, const placed_pair *c, vec3 on_curve, double t,
                                              double distance, bool *alone) {
   *alone = true;
   if (!q->mover.body || !(distance + q->mover.radius + q->targets[0].padding <= 0.0)) return CPROX_OK;
@@ -385,7 +385,7 @@ static cprox_status carried_way_out_is_alone(const question *q, const candidate 
   return ties_normal_is_alone(&p, alone);
 }
 
-static cprox_status gradient_of_curve(const question *q, const candidate *c, const cprox_result *result,
+static cprox_status gradient_of_curve(const question *q, const placed_pair *c, const cprox_result *result,
                                       cprox_gradient *g) {
   const cprox_target *target = &q->targets[0];
   if (!q->mover.body) refine_pair(&q->mover, target, q->workspace, &g->t, &g->t_target);
@@ -455,11 +455,12 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, con
   q.options.relative_epsilon = 0.0;
   cprox_gradient g = {.t = result->t, .t_target = NAN};
   cprox_status status;
-  if (candidate_body(&q, &c)) {
-    status = gradient_of_body(&q, &c, &g);
+  const placed_pair placed = placed_pair_resolve(&q, &c);
+  if (placed.shape) {
+    status = gradient_of_body(&q, &placed, &g);
   } else {
     g.t_target = result->t_target;
-    status = gradient_of_curve(&q, &c, result, &g);
+    status = gradient_of_curve(&q, &placed, result, &g);
   }
   if (status == CPROX_OK) *gradient = g;
   return status;

@@ -27,16 +27,16 @@ static search_goal goal_of(const question *q, double horizon) {
 
 /* ---- one candidate ---------------------------------------------------------------------------------------------------- */
 
-static cprox_status meet_convex(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+static cprox_status meet_convex(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
                                 first_contact *met) {
   contact_convex state;
   curve_convex *o = &state.base;
-  if (!candidate_begin_convex(q, c, o)) return CPROX_MEMORY;
+  if (!placed_begin_convex(q, p, o)) return CPROX_MEMORY;
   contact_convex_begin(&state, q->options.epsilon);
   const search_oracle oracle = contact_convex_oracle(&state);
   cprox_status status = search_run(goal, &oracle, contact_convex_root(&state), q->workspace, found);
   if (status < 0) return status;
-  cprox_status reported = candidate_report_convex(q, c, o, &met->near);
+  cprox_status reported = placed_report_convex(q, p, o, &met->near);
   if (reported < 0) return reported;
   met->near.upper = o->best_bound.upper;
   met->near_at = o->best_bound.at;
@@ -44,7 +44,7 @@ static cprox_status meet_convex(const question *q, const candidate *c, const sea
   if (proved < 0) return proved;
   if (state.proven_bound.at < goal->horizon) {
     o->best = state.proven;
-    reported = candidate_report_convex(q, c, o, &met->touch);
+    reported = placed_report_convex(q, p, o, &met->touch);
     if (reported < 0) return reported;
     met->touch.on_target = met->touch.on_mover;
     met->touch.upper = state.proven_bound.upper;
@@ -53,23 +53,23 @@ static cprox_status meet_convex(const question *q, const candidate *c, const sea
   return status;
 }
 
-static cprox_status meet_curve(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+static cprox_status meet_curve(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
                                first_contact *met) {
   contact_curve state;
   curve_curve *o = &state.base;
-  if (!candidate_begin_curve(q, c, o)) return CPROX_MEMORY;
+  if (!placed_begin_curve(q, p, o)) return CPROX_MEMORY;
   contact_curve_begin(&state, q->options.epsilon);
   const search_oracle oracle = contact_curve_oracle(&state);
   const cprox_status status = search_run(goal, &oracle, contact_curve_root(&state), q->workspace, found);
   if (status < 0) return status;
-  cprox_status reported = candidate_report_curve(q, c, o, &met->near);
+  cprox_status reported = placed_report_curve(q, p, o, &met->near);
   if (reported < 0) return reported;
   met->near.upper = o->best_bound.upper;
   met->near_at = o->best_bound.at;
   contact_curve_prove(&state);
   if (state.proven_bound.at < goal->horizon) {
     o->best = state.proven;
-    reported = candidate_report_curve(q, c, o, &met->touch);
+    reported = placed_report_curve(q, p, o, &met->touch);
     if (reported < 0) return reported;
     met->touch.upper = state.proven_bound.upper;
   }
@@ -77,24 +77,24 @@ static cprox_status meet_curve(const question *q, const candidate *c, const sear
   return status;
 }
 
-static cprox_status meet_tree(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+static cprox_status meet_tree(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
                               first_contact *met) {
   contact_tree state;
   curve_tree *o = &state.base;
   search_node root;
-  if (!candidate_begin_tree(q, c, o)) return CPROX_MEMORY;
+  if (!placed_begin_tree(q, p, o)) return CPROX_MEMORY;
   o->asked = *goal;
   if (!contact_tree_begin(&state, &root)) return CPROX_MEMORY;
   const search_oracle oracle = contact_tree_oracle(&state);
   const cprox_status status = search_run(goal, &oracle, root, q->workspace, found);
   if (status < 0) return status;
-  candidate_report_tree(q, c, o, &met->near);
+  placed_report_tree(q, p, o, &met->near);
   met->near.upper = o->best_bound.upper;
   met->near_at = o->best_bound.at;
   contact_tree_prove(&state);
   if (state.proven_bound.at < goal->horizon) {
     o->best = state.proven;
-    candidate_report_tree(q, c, o, &met->touch);
+    placed_report_tree(q, p, o, &met->touch);
     met->touch.upper = state.proven_bound.upper;
     if (state.proven_within) met->touch.t = state.proven_t;
   }
@@ -102,10 +102,10 @@ static cprox_status meet_tree(const question *q, const candidate *c, const searc
   return status;
 }
 
-static cprox_status meet_any(const question *q, const candidate *c, const search_goal *goal, search_outcome *found,
+static cprox_status meet_any(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
                              first_contact *met) {
-  if (candidate_is_tree(q, c)) return meet_tree(q, c, goal, found, met);
-  return candidate_body(q, c) ? meet_convex(q, c, goal, found, met) : meet_curve(q, c, goal, found, met);
+  if (placed_is_tree(p)) return meet_tree(q, p, goal, found, met);
+  return p->shape ? meet_convex(q, p, goal, found, met) : meet_curve(q, p, goal, found, met);
 }
 
 /* Contact is proven nowhere near the first place within epsilon; perhaps farther along. */
@@ -119,10 +119,11 @@ static cprox_status prove_farther(const question *q, const candidate *c, first_c
 }
 
 static cprox_status meet_model(const question *q, const candidate *c, double horizon, first_contact *met) {
-  *met = (first_contact){.touch = nothing(), .near = nothing(), .rung = candidate_rung(q, c)};
+  const placed_pair p = placed_pair_resolve(q, c);
+  *met = (first_contact){.touch = nothing(), .near = nothing(), .rung = p.rung};
   const search_goal goal = goal_of(q, horizon);
   search_outcome found = {0};
-  met->status = meet_any(q, c, &goal, &found, met);
+  met->status = meet_any(q, &p, &goal, &found, met);
   if (met->status == CPROX_MEMORY)
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the open intervals");
   if (met->status < 0) return met->status;

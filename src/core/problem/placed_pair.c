@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "problem/placed_pair.h"
+
+#include "base/rounding.h"
+#include "problem/level_of_detail.h"
+#include "problem/minkowski.h"
+#include "shape/body.h"
+
+/* Most bodies are their own model. */
+static inline placed_model model_at(const cprox_body *body, int32_t part, cprox_rung finest) {
+  placed_model m = {.body = body, .rung = body && body->tree ? CPROX_RUNG_MESH : CPROX_RUNG_HULL};
+  if (!body || model_is_body(body, finest)) return m;
+  const model is = model_of_part(body, (size_t)part, finest, &m.inner, &m.moved);
+  m.body = is.body, m.excess = is.excess, m.rung = is.rung;
+  return m;
+}
+
+/* The pose of the obstacle, with its curve at the origin where it is on the mover's clock. */
+static cprox_pose obstacle_pose(const cprox_target *obstacle) {
+  cprox_pose pose = obstacle->pose;
+  if (obstacle->on_clock) pose.position = vec(0, 0, 0);
+  return pose;
+}
+
+placed_model placed_model_of_obstacle(const question *q, const candidate *c) {
+  const cprox_target *obstacle = &q->targets[c->target];
+  const cprox_body *body = obstacle->on_clock && !obstacle->body ? &carried_point : obstacle->body;
+  placed_model m = model_at(body, c->part, c->rung != CPROX_RUNG_NONE ? c->rung : q->options.max_rung);
+  m.pose = obstacle_pose(obstacle);
+  if (m.moved) m.pose = frame_compose(&m.pose, &m.inner);
+  return m;
+}
+
+placed_models placed_models_resolve(const question *q, const candidate *c) {
+  placed_models both = {.obstacle = placed_model_of_obstacle(q, c)};
+  both.carried = model_at(q->mover.body, c->mover_part, both.obstacle.rung);
+  both.carried.pose = both.carried.moved ? both.carried.inner : cprox_pose_identity();
+  return both;
+}
+
+/* What composing the poses costs: a turn of both shapes, and the sum of the positions. */
+static double position_error_of(const placed_model *m, const cprox_body *carried) {
+  if (!m->moved || !m->body) return 0.0;
+  const double own = carried ? carried->shape.scale : 0.0;
+  const double turned = vec_norm(m->inner.position) + vec_norm(m->body->centre) + m->body->shape.scale + own;
+  return ROUND_UP * ROUND_U * (2.0 * ROUND_ROTATION * turned + 3.0 * vec_norm(m->pose.position));
+}
+
+placed_pair placed_pair_resolve(const question *q, const candidate *c) {
+  const placed_models both = placed_models_resolve(q, c);
+  const placed_model *m = &both.obstacle;
+  placed_pair p = {.which = *c,
+                   .obstacle = &q->targets[c->target],
+                   .rung = m->rung,
+                   .shape = m->body,
+                   .pose = m->pose,
+                   .carried = both.carried.body,
+                   .carried_pose = both.carried.pose};
+  p.margin = p.obstacle->padding + m->excess;
+  p.offset = q->mover.radius + both.carried.excess + p.margin;
+  p.position_error = position_error_of(m, p.carried);
+  if (!p.shape) return p;
+  const cprox_pose outer = obstacle_pose(p.obstacle);
+  p.frame = m->moved ? frame_create_within(&outer, &m->inner, p.shape->centre) : frame_create(&outer, p.shape->centre);
+  return p;
+}
