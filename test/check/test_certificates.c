@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a query leaves behind is accepted by the checker, which reads the question itself and shares no line with the search. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "support/cases.h"
 #include "support/questions.h"
 #include "support/tampering.h"
 
@@ -84,18 +79,15 @@ static void examine_many(uint64_t seed, size_t cases, asked_kinds kinds, const c
 }
 
 /* Seeds 1 to 3, sizes below. */
-static void a_bezier_curve_and_a_polytope_leave_a_certificate_that_holds(void **state) {
-  (void)state;
+CASE(a_bezier_curve_and_a_polytope_leave_a_certificate_that_holds) {
   examine_many(1, 200, (asked_kinds){.bezier_only = true, .polytope_only = true}, "bezier, polytope");
 }
 
-static void every_basis_and_every_convex_kind_leave_certificates_that_hold(void **state) {
-  (void)state;
+CASE(every_basis_and_every_convex_kind_leave_certificates_that_hold) {
   examine_many(2, 200, (asked_kinds){0}, "all kinds");
 }
 
-static void curves_against_curves_leave_certificates_that_hold(void **state) {
-  (void)state;
+CASE(curves_against_curves_leave_certificates_that_hold) {
   examine_many(3, 60, (asked_kinds){.curve_target = true}, "curve, curve");
 }
 
@@ -171,8 +163,7 @@ static void examine_mesh(const asked *q, double delta, cprox_workspace *ws, cpro
 }
 
 /* 150 questions, seed 4: curves beside meshes that are not convex, in their holes and inside of them. */
-static void proofs_of_meshes_hold_of_their_triangles_and_leave_answers_as_they_are(void **state) {
-  (void)state;
+CASE(proofs_of_meshes_hold_of_their_triangles_and_leave_answers_as_they_are) {
   rng r = rng_seed(4);
   cprox_workspace *ws = cprox_workspace_create();
   cprox_certificate *c = cprox_certificate_create();
@@ -202,8 +193,7 @@ static void proofs_of_meshes_hold_of_their_triangles_and_leave_answers_as_they_a
 }
 
 /* A proof that a curve is near the polytope which a mesh's hull is, held against the question about the mesh. */
-static void that_a_hull_is_near_proves_nothing_of_its_mesh(void **state) {
-  (void)state;
+CASE(that_a_hull_is_near_proves_nothing_of_its_mesh) {
   rng r = rng_seed(5);
   cprox_workspace *ws = cprox_workspace_create();
   cprox_certificate *c = cprox_certificate_create();
@@ -247,8 +237,7 @@ static double numbers_of(const asked *q) {
 /* 60 questions of every basis and kind (seed 6), each with its certificate tampered with 25 times: what the checker does is bounded by the
  * bytes of the certificate and the size of the question, and to refuse one takes no more than to accept it. In products of words, so
  * that it is no matter of the machine. */
-static void what_a_check_takes_is_bounded_by_what_it_is_given(void **state) {
-  (void)state;
+CASE(what_a_check_takes_is_bounded_by_what_it_is_given) {
   static bytes genuine, other, mutant;
   rng r = rng_seed(6);
   cprox_workspace *ws = cprox_workspace_create();
@@ -286,13 +275,5 @@ static void what_a_check_takes_is_bounded_by_what_it_is_given(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_bezier_curve_and_a_polytope_leave_a_certificate_that_holds),
-      cmocka_unit_test(every_basis_and_every_convex_kind_leave_certificates_that_hold),
-      cmocka_unit_test(curves_against_curves_leave_certificates_that_hold),
-      cmocka_unit_test(proofs_of_meshes_hold_of_their_triangles_and_leave_answers_as_they_are),
-      cmocka_unit_test(that_a_hull_is_near_proves_nothing_of_its_mesh),
-      cmocka_unit_test(what_a_check_takes_is_bounded_by_what_it_is_given),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -2,17 +2,12 @@
 /* What a query about a robot in motion leaves behind is accepted by the checker, which reads the question itself, does its own
  * kinematics and shares no line with the search. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include <cmocka.h>
-
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/robot_case.h"
 #include "support/robot_questions.h"
 
@@ -97,8 +92,7 @@ static void ask_thrice(const cprox_mover *along, const cprox_target *targets, si
 }
 
 /* The saved trajectories of Panda, Fanuc and Husky: scene and self, links by their hulls. */
-static void real_robots_leave_certificates_that_hold(void **state) {
-  (void)state;
+CASE(real_robots_leave_certificates_that_hold) {
   static tally sum[3];
   cprox_certificate *c = cprox_certificate_create();
   FILE *f = fopen(TEST_DATA_DIR "/motion/cases.txt", "r");
@@ -125,8 +119,7 @@ static void real_robots_leave_certificates_that_hold(void **state) {
 }
 
 /* Robots of all joint types, splines and waypoints, bodies of every kind: seed 4, 100 robots. */
-static void random_robots_leave_certificates_that_hold(void **state) {
-  (void)state;
+CASE(random_robots_leave_certificates_that_hold) {
   static tally sum[3];
   cprox_certificate *c = cprox_certificate_create();
   rng r = rng_seed(4);
@@ -149,8 +142,7 @@ static void random_robots_leave_certificates_that_hold(void **state) {
 
 /* 60 robots with meshes on links and beside them (seed 5). The answer is that without a certificate; what is proven is accepted and
  * does not contradict the distance to the triangles; of hulls nothing is near. */
-static void meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are(void **state) {
-  (void)state;
+CASE(meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are) {
   cprox_certificate *c = cprox_certificate_create();
   rng r = rng_seed(5);
   size_t apart = 0, near = 0, none = 0;
@@ -235,8 +227,7 @@ static finding check_slide(double delta, double length) {
   return found;
 }
 
-static void a_direction_of_any_length_proves_what_is_so_and_nothing_else(void **state) {
-  (void)state;
+CASE(a_direction_of_any_length_proves_what_is_so_and_nothing_else) {
   static const double LENGTH[] = {1.0, 1e-3, 1e20, 1e-29, 1e-160, 1e-200, 1e-300, 5e-324, 1e160, 1e300};
   for (size_t i = 0; i < sizeof LENGTH / sizeof *LENGTH; i++) {
     assert_int_equal(check_slide(0.51, LENGTH[i]).claim, CLAIM_NONE);
@@ -246,11 +237,5 @@ static void a_direction_of_any_length_proves_what_is_so_and_nothing_else(void **
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(real_robots_leave_certificates_that_hold),
-      cmocka_unit_test(random_robots_leave_certificates_that_hold),
-      cmocka_unit_test(meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are),
-      cmocka_unit_test(a_direction_of_any_length_proves_what_is_so_and_nothing_else),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

@@ -1,17 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Projections onto cores, and what is found by them of pairs: held against closed forms, differences and known distances. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "base/rounding.h"
 #include "convex/feature.h"
 #include "convex/pair.h"
 #include "curve_proximity/cprox/query.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
@@ -25,8 +19,7 @@ enum { N_PROJECTED = 6, FIRST_SOLID = 2, N_SOLID = 5 };
 
 /* Seed 801, 1e5 points, from inside to 10 sizes away, on both sides of every limit between pieces. The distance of the foot is that of
  * the closed form, margin put back, to 32 roundings of the sizes; the foot is a point of the core and, inside, the point itself. */
-static void a_foot_is_the_nearest_point_of_the_core(void **state) {
-  (void)state;
+CASE(a_foot_is_the_nearest_point_of_the_core) {
   rng r = rng_seed(801);
   static test_shape s;
   for (size_t i = 0; i < 100000; i++) {
@@ -52,8 +45,7 @@ static void a_foot_is_the_nearest_point_of_the_core(void **state) {
 /* Seed 802, 5e4 points outside: the foot moves along its tangents as `along` says and nowhere else, by central differences of
  * 1e-6; where the two ends fall on pieces of other dimensions nothing is said. Tolerance 1e-6: second derivatives of bodies of
  * size .25 to 1 and rounding over the step. */
-static void a_foot_moves_along_its_tangents(void **state) {
-  (void)state;
+CASE(a_foot_moves_along_its_tangents) {
   rng r = rng_seed(802);
   const double h = 1e-6;
   static test_shape s;
@@ -106,8 +98,7 @@ static vec3 near_axis(rng *r, const cprox_pose *pose, double tilt) {
 /* Seed 803, 2e5 pairs of boxes, capsules, cylinders, cones and ellipsoids: half of them in the attitudes where faces, edges, rims and axes are
  * parallel or nearly so (tilts of 1e-16 to 1e-2), aspects up to 1e6, size ratios up to 1e12, gaps of 1e-15 to 10 sizes. Distances by
  * construction; tolerance: what the rounding of b's position moved. */
-static void grazing_rims_and_parallel_edges_lie_in_the_interval(void **state) {
-  (void)state;
+CASE(grazing_rims_and_parallel_edges_lie_in_the_interval) {
   rng r = rng_seed(803);
   static test_shape a, b;
   size_t open = 0;
@@ -181,8 +172,7 @@ static double curvature_along(const pair_feature *feature, vec3 d, double distan
 /* Seed 806, 2e4 pairs, somewhere and apart by their sizes: the feature tells the second derivative of the distance of the cores, by central differences of
  * 1e-4. Tolerance 1e-4: rounding of 1e-15 over 1e-8, and fourth derivatives up to 1e3 times 1e-8; in one pair of five hundred the step may cross to
  * another feature. */
-static void the_feature_tells_how_the_distance_bends(void **state) {
-  (void)state;
+CASE(the_feature_tells_how_the_distance_bends) {
   rng r = rng_seed(806);
   const double h = 1e-4;
   static test_shape a, b;
@@ -236,19 +226,11 @@ static double looks_of(uint64_t seed, cprox_body_kind kind_a, cprox_body_kind ki
 }
 
 /* Seeds 804 and 805: the simplex search takes 10 looks for the one, 6 for the other. */
-static void projections_and_smoothness_save_looks(void **state) {
-  (void)state;
+CASE(projections_and_smoothness_save_looks) {
   assert_true(looks_of(804, CPROX_BOX, CPROX_CYLINDER) <= 4.0);
   assert_true(looks_of(805, CPROX_ELLIPSOID, CPROX_ELLIPSOID) <= 5.0);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_foot_is_the_nearest_point_of_the_core),
-      cmocka_unit_test(a_foot_moves_along_its_tangents),
-      cmocka_unit_test(grazing_rims_and_parallel_edges_lie_in_the_interval),
-      cmocka_unit_test(the_feature_tells_how_the_distance_bends),
-      cmocka_unit_test(projections_and_smoothness_save_looks),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Statuses, the workspace and poses. u = 2^-53; exact answers in long double, 2000 times finer than every bound here. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "base/frame.h"
 #include "base/workspace.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/random.h"
 #include "support/reference.h"
@@ -19,8 +14,7 @@
 
 /* ---- statuses ---- */
 
-static void every_status_has_its_own_name_and_a_sentence(void **state) {
-  (void)state;
+CASE(every_status_has_its_own_name_and_a_sentence) {
 #define STATUS(code, value, name, sentence)           \
   assert_int_equal(code, value);                      \
   assert_string_equal(cprox_status_name(code), name); \
@@ -40,8 +34,7 @@ static void every_status_has_its_own_name_and_a_sentence(void **state) {
 /* ---- version ---- */
 
 /* PROJECT_VERSION is CMake's; package.xml has its own. */
-static void the_version_is_that_of_the_project(void **state) {
-  (void)state;
+CASE(the_version_is_that_of_the_project) {
   assert_string_equal(cprox_version(), PROJECT_VERSION);
   FILE *package = fopen(PACKAGE_XML, "r");
   assert_non_null(package);
@@ -54,8 +47,7 @@ static void the_version_is_that_of_the_project(void **state) {
 
 /* ---- workspace ---- */
 
-static void a_workspace_grows_and_keeps_what_it_holds(void **state) {
-  (void)state;
+CASE(a_workspace_grows_and_keeps_what_it_holds) {
   const size_t live = allocations_live();
   cprox_workspace *w = cprox_workspace_create();
   assert_non_null(w);
@@ -83,8 +75,7 @@ static void a_workspace_grows_and_keeps_what_it_holds(void **state) {
   assert_int_equal(allocations_live(), live);
 }
 
-static void a_workspace_survives_memory_that_is_out(void **state) {
-  (void)state;
+CASE(a_workspace_survives_memory_that_is_out) {
   const size_t live = allocations_live();
   allocations_fail_after(0);
   cprox_workspace *none = cprox_workspace_create();
@@ -106,8 +97,7 @@ static void a_workspace_survives_memory_that_is_out(void **state) {
   assert_int_equal(allocations_live(), live);
 }
 
-static void the_reason_is_kept_until_the_next_call(void **state) {
-  (void)state;
+CASE(the_reason_is_kept_until_the_next_call) {
   cprox_workspace *w = cprox_workspace_create();
   assert_string_equal(cprox_workspace_reason(w), "");
   assert_int_equal(workspace_fail(w, CPROX_INVALID, "knot %d is %g", 7, 0.3), CPROX_INVALID);
@@ -132,8 +122,7 @@ static void the_reason_is_kept_until_the_next_call(void **state) {
 
 /* ---- poses ---- */
 
-static void poses_that_are_no_rotation_are_named(void **state) {
-  (void)state;
+CASE(poses_that_are_no_rotation_are_named) {
   cprox_pose pose = cprox_pose_identity();
   assert_null(frame_pose_fault(&pose));
   pose.position.y = NAN;
@@ -169,8 +158,7 @@ static cprox_pose awkward_pose(rng *r) {
 
 /* seed 401, 200,000 poses and points, half of the points near the pose's position: the error that is reported is an
  * upper bound (T3 and T7), and not padded: some cases come within 1/20 of it. */
-static void the_error_of_local_coordinates_is_never_understated(void **state) {
-  (void)state;
+CASE(the_error_of_local_coordinates_is_never_understated) {
   rng r = rng_seed(401);
   double largest = 0.0;
   for (size_t i = test_cases(200000); i-- > 0;) {
@@ -203,8 +191,7 @@ static void the_error_of_local_coordinates_is_never_understated(void **state) {
 }
 
 /* seed 402, 100,000 round trips: the error of the way there, 27 u of the local size and u of the world's for the way back */
-static void world_coordinates_come_back(void **state) {
-  (void)state;
+CASE(world_coordinates_come_back) {
   rng r = rng_seed(402);
   for (size_t i = test_cases(100000); i-- > 0;) {
     const cprox_pose pose = awkward_pose(&r);
@@ -220,8 +207,7 @@ static void world_coordinates_come_back(void **state) {
 }
 
 /* seed 403, 100,000 directions: 26 u of their length, both ways; the worst comes within 1/10 of it */
-static void directions_turn_within_their_bound(void **state) {
-  (void)state;
+CASE(directions_turn_within_their_bound) {
   rng r = rng_seed(403);
   double largest = 0.0;
   for (size_t i = test_cases(100000); i-- > 0;) {
@@ -239,8 +225,7 @@ static void directions_turn_within_their_bound(void **state) {
 }
 
 /* seed 404: no rotation and rotations about z are told exactly, so that planar problems stay planar */
-static void planar_poses_stay_planar(void **state) {
-  (void)state;
+CASE(planar_poses_stay_planar) {
   rng r = rng_seed(404);
   for (size_t i = test_cases(10000); i-- > 0;) {
     cprox_pose pose = rng_pose(&r, 10.0);
@@ -269,8 +254,7 @@ static void scale_quaternion(cprox_quat *q, double norm) {
 
 /* seed 405, 100,000 pairs of poses, quaternions of any norm: one after the other is their composition. 64 u of all sizes covers two turns of 26 u
  * and the rounding of the product of the quaternions. */
-static void composition_applies_the_inner_pose_first(void **state) {
-  (void)state;
+CASE(composition_applies_the_inner_pose_first) {
   rng r = rng_seed(405);
   for (size_t i = test_cases(100000); i-- > 0;) {
     cprox_pose outer = rng_pose(&r, rng_log_uniform(&r, 1e-2, 1e3)),
@@ -287,18 +271,5 @@ static void composition_applies_the_inner_pose_first(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_status_has_its_own_name_and_a_sentence),
-      cmocka_unit_test(the_version_is_that_of_the_project),
-      cmocka_unit_test(a_workspace_grows_and_keeps_what_it_holds),
-      cmocka_unit_test(a_workspace_survives_memory_that_is_out),
-      cmocka_unit_test(the_reason_is_kept_until_the_next_call),
-      cmocka_unit_test(poses_that_are_no_rotation_are_named),
-      cmocka_unit_test(the_error_of_local_coordinates_is_never_understated),
-      cmocka_unit_test(world_coordinates_come_back),
-      cmocka_unit_test(directions_turn_within_their_bound),
-      cmocka_unit_test(planar_poses_stay_planar),
-      cmocka_unit_test(composition_applies_the_inner_pose_first),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -3,18 +3,13 @@
 #include <curve_proximity/cprox.h>
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "batch/obstacles.h"
 #include "problem/placed_pair.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/curves.h"
 #include "support/reference.h"
@@ -152,8 +147,7 @@ static double sampled_distance(const scene *s, size_t i) {
 
 /* Seed 11, 20 scenes of 64 movers; the two answers are of one truth, so their intervals share a point. A verdict that one gives and
  * the other does not, though both are within their epsilon, is counted: none is met at this seed. */
-static void answers_agree_with_those_of_one_mover(void **state) {
-  (void)state;
+CASE(answers_agree_with_those_of_one_mover) {
   rng r = rng_seed(11);
   cprox_workspace *workspace = cprox_workspace_create();
   size_t settled_by_balls = 0, answers = 0;
@@ -196,8 +190,7 @@ static void answers_agree_with_those_of_one_mover(void **state) {
 
 /* A witness is where it says: the mover's surface point is within its radius of the curve's point, and both points are `upper` apart
  * or one. Seed 12; 1e-9 is the plain evaluation's own rounding, amply. */
-static void witnesses_lie_where_they_say(void **state) {
-  (void)state;
+CASE(witnesses_lie_where_they_say) {
   rng r = rng_seed(12);
   cprox_workspace *workspace = cprox_workspace_create();
   scene s = {0};
@@ -229,8 +222,7 @@ static void witnesses_lie_where_they_say(void **state) {
 }
 
 /* A polygon of width 1 in the plane z = 0: curves 0.05 above it, across it, and in it. */
-static void a_disc_tells_nothing_of_curves_off_its_plane(void **state) {
-  (void)state;
+CASE(a_disc_tells_nothing_of_curves_off_its_plane) {
   cprox_workspace *workspace = cprox_workspace_create();
   const double square[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
   cprox_body *body = NULL;
@@ -260,8 +252,7 @@ static void a_disc_tells_nothing_of_curves_off_its_plane(void **state) {
 
 /* Seed 18, 4000 balls, each part of a compound, 1e6 m from the compound's origin, which stands as far off the other way: where the ball
  * stands depends on the rounding of both, 1e-10 m. Limits are nearly as near to the truth as that. The reference's own error is 1e-12. */
-static void parts_far_from_their_compound_stay_where_the_interval_is(void **state) {
-  (void)state;
+CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
   rng r = rng_seed(18);
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_body *ball = NULL;
@@ -326,8 +317,7 @@ static void *work(void *argument) {
 }
 
 /* Seed 13: 1 to 8 threads on ranges of random lengths, each with a workspace of its own, write into one array. */
-static void results_are_the_same_for_every_split_and_number_of_threads(void **state) {
-  (void)state;
+CASE(results_are_the_same_for_every_split_and_number_of_threads) {
   rng r = rng_seed(13);
   cprox_workspace *workspace = cprox_workspace_create();
   for (int planar = 0; planar < 2; planar++) {
@@ -364,8 +354,7 @@ static void results_are_the_same_for_every_split_and_number_of_threads(void **st
 
 /* Seed 14, 2000 sets of 13 balls, scales 1e-6 … 1e6, offsets to 1e6 of them: never above the distance in long double, and no
  * farther below than twice the rounding that the code states. */
-static void ball_bounds_are_never_above_the_true_distance(void **state) {
-  (void)state;
+CASE(ball_bounds_are_never_above_the_true_distance) {
   enum { BALLS = 13, PADDED = 16 };
   rng r = rng_seed(14);
   for (size_t round = 0; round < test_cases(2000); round++) {
@@ -395,8 +384,7 @@ static void ball_bounds_are_never_above_the_true_distance(void **state) {
 
 /* Seed 15, 3000 pieces of all degrees: chords begin within (10 n + 16) u of de Casteljau's points in long double; the nearest point of
  * the chords is no farther and no nearer than that of each by itself, within 16 u of the sizes. */
-static void chords_are_those_of_the_piece(void **state) {
-  (void)state;
+CASE(chords_are_those_of_the_piece) {
   rng r = rng_seed(15);
   cprox_workspace *workspace = cprox_workspace_create();
   for (size_t round = 0; round < test_cases(3000); round++) {
@@ -447,8 +435,7 @@ static long double square_from_box(const lanes_box *box, vec3 p) {
 
 /* Seed 19, 3000 pieces of all degrees, 8 balls each, at offsets up to 1e6: the bound by boxes is never above the distance of the chords in them,
  * lies within 160 u of the sizes below that of the boxes, and lowers nothing. */
-static void boxes_bound_the_chords_in_them(void **state) {
-  (void)state;
+CASE(boxes_bound_the_chords_in_them) {
   enum { BALLS = 8 };
   rng r = rng_seed(19);
   cprox_workspace *workspace = cprox_workspace_create();
@@ -495,8 +482,7 @@ static void boxes_bound_the_chords_in_them(void **state) {
 }
 
 /* Seed 20, 2000 pieces of all degrees: points within a chord are those of de Casteljau in long double, within (10 n + 16) u. */
-static void chords_are_cut_again_where_the_piece_goes(void **state) {
-  (void)state;
+CASE(chords_are_cut_again_where_the_piece_goes) {
   rng r = rng_seed(20);
   cprox_workspace *workspace = cprox_workspace_create();
   for (size_t round = 0; round < test_cases(2000); round++) {
@@ -537,8 +523,7 @@ static long double from_brick(const lanes_brick *b, const lanes_chords *c, size_
 
 /* Seed 21, 1000 bricks anywhere, also flat ones and points, 1 to 1e6 m away: the bound of a chord is not above its distance, which is convex along the
  * chord and found by golden section to 1e-12 of it; it is the distance to 5 % and less for nine chords in ten that are apart; the point is where it says. */
-static void bricks_bound_chords_from_below(void **state) {
-  (void)state;
+CASE(bricks_bound_chords_from_below) {
   rng r = rng_seed(21);
   cprox_workspace *workspace = cprox_workspace_create();
   size_t apart = 0, tight = 0;
@@ -587,8 +572,7 @@ static void bricks_bound_chords_from_below(void **state) {
 
 /* Seed 23, 20 scenes: a brick holds the points of its part that lie farthest in 100 directions, and each of its faces has one of them within a
  * third of its width; 1e-12 is the rounding of the poses here, amply. */
-static void bricks_hold_their_parts(void **state) {
-  (void)state;
+CASE(bricks_hold_their_parts) {
   rng r = rng_seed(23);
   cprox_workspace *workspace = cprox_workspace_create();
   size_t bricks = 0;
@@ -634,8 +618,7 @@ static void bricks_hold_their_parts(void **state) {
 
 /* Seed 24: 75 boxes, compounds of two, and two halfspaces, which have no balls. Each part is in one block; the bound of a block is above the distance of none
  * of its balls from 4 boxes, in long double, and no more than 160 u of the sizes below that of the box round its balls. */
-static void blocks_hold_each_part_once_and_bound_it(void **state) {
-  (void)state;
+CASE(blocks_hold_each_part_once_and_bound_it) {
   enum { N = 75, BOXES = 4 };
   rng r = rng_seed(24);
   cprox_workspace *workspace = cprox_workspace_create();
@@ -715,8 +698,7 @@ static void blocks_hold_each_part_once_and_bound_it(void **state) {
 
 /* Seed 22: 300 quintics, some of them tubes, through 80 small boxes: the verdicts of the queries of one mover, in intervals that share a point with
  * theirs; what is called a hit has a point of the tube within a box, or within the limit of it. Bricks leave next to no verdict and next to no contact to search. */
-static void small_boxes_are_met_or_passed_without_a_search(void **state) {
-  (void)state;
+CASE(small_boxes_are_met_or_passed_without_a_search) {
   enum { CURVES = 300, BOXES = 80 };
   rng r = rng_seed(22);
   cprox_workspace *workspace = cprox_workspace_create();
@@ -779,8 +761,7 @@ static void small_boxes_are_met_or_passed_without_a_search(void **state) {
 
 /* ---- input -------------------------------------------------------------------------------------------------------------- */
 
-static void a_mover_that_is_unusable_fails_alone(void **state) {
-  (void)state;
+CASE(a_mover_that_is_unusable_fails_alone) {
   rng r = rng_seed(16);
   cprox_workspace *workspace = cprox_workspace_create();
   scene s = {0};
@@ -817,8 +798,7 @@ static void a_mover_that_is_unusable_fails_alone(void **state) {
   cprox_workspace_free(workspace);
 }
 
-static void unusable_calls_are_refused_with_a_sentence(void **state) {
-  (void)state;
+CASE(unusable_calls_are_refused_with_a_sentence) {
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_result result;
   cprox_batch *batch = NULL;
@@ -854,8 +834,7 @@ static void unusable_calls_are_refused_with_a_sentence(void **state) {
   cprox_workspace_free(workspace);
 }
 
-static void a_warm_workspace_allocates_nothing_and_no_memory_is_reported(void **state) {
-  (void)state;
+CASE(a_warm_workspace_allocates_nothing_and_no_memory_is_reported) {
   rng r = rng_seed(17);
   cprox_workspace *workspace = cprox_workspace_create();
   scene s = {0};
@@ -882,23 +861,5 @@ static void a_warm_workspace_allocates_nothing_and_no_memory_is_reported(void **
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(answers_agree_with_those_of_one_mover),
-      cmocka_unit_test(witnesses_lie_where_they_say),
-      cmocka_unit_test(a_disc_tells_nothing_of_curves_off_its_plane),
-      cmocka_unit_test(parts_far_from_their_compound_stay_where_the_interval_is),
-      cmocka_unit_test(results_are_the_same_for_every_split_and_number_of_threads),
-      cmocka_unit_test(ball_bounds_are_never_above_the_true_distance),
-      cmocka_unit_test(chords_are_those_of_the_piece),
-      cmocka_unit_test(boxes_bound_the_chords_in_them),
-      cmocka_unit_test(chords_are_cut_again_where_the_piece_goes),
-      cmocka_unit_test(bricks_bound_chords_from_below),
-      cmocka_unit_test(bricks_hold_their_parts),
-      cmocka_unit_test(blocks_hold_each_part_once_and_bound_it),
-      cmocka_unit_test(small_boxes_are_met_or_passed_without_a_search),
-      cmocka_unit_test(a_mover_that_is_unusable_fails_alone),
-      cmocka_unit_test(unusable_calls_are_refused_with_a_sentence),
-      cmocka_unit_test(a_warm_workspace_allocates_nothing_and_no_memory_is_reported),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Bodies: what constructors refuse and in which words, bounding spheres, supports, nearest points, compounds. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/rounding.h"
 #include "curve_proximity/cprox/query.h"
 #include "shape/body.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/random.h"
 #include "support/reference.h"
@@ -26,8 +21,7 @@
     assert_true(body == (cprox_body *)&ws && allocations_live() == live); \
   } while (0)
 
-static void bad_sizes_are_refused_by_name_and_value(void **state) {
-  (void)state;
+CASE(bad_sizes_are_refused_by_name_and_value) {
   REFUSED(cprox_body_create_sphere(-1.0, ws, &body), "radius is -1, must be > 0");
   REFUSED(cprox_body_create_sphere(0.0, ws, &body), "radius is 0, must be > 0");
   REFUSED(cprox_body_create_sphere(NAN, ws, &body), "radius is nan, must be > 0");
@@ -46,8 +40,7 @@ static void bad_sizes_are_refused_by_name_and_value(void **state) {
           "the point is (0, 2e+100, 1), farther than 1e+100 from the origin");
 }
 
-static void bad_vertices_are_refused_by_number(void **state) {
-  (void)state;
+CASE(bad_vertices_are_refused_by_number) {
   const vec3 v[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, INFINITY, 1}};
   REFUSED(cprox_body_create_polytope(v, 4, ws, &body), "vertex 3 is not finite: (0, inf, 1)");
   REFUSED(cprox_body_create_polytope(v, 0, ws, &body), "a polytope needs at least 1 vertex, got none");
@@ -55,8 +48,7 @@ static void bad_vertices_are_refused_by_number(void **state) {
   assert_int_equal(cprox_body_create_polytope(v, 3, ws, NULL), CPROX_INVALID);
 }
 
-static void polygons_that_are_not_convex_are_refused(void **state) {
-  (void)state;
+CASE(polygons_that_are_not_convex_are_refused) {
   const double dent[5][2] = {{0, 0}, {2, 0}, {2, 2}, {1, 0.5}, {0, 2}};
   const double line[3][2] = {{0, 0}, {1, 1}, {3, 3}};
   const double back[5][2] = {{0, 0}, {3, 0}, {2, 0}, {2, 2}, {0, 2}};
@@ -80,8 +72,7 @@ static void any_support(const void *shape, const double d[3], double p[3]) {
   p[0] = p[1] = p[2] = 0.0;
 }
 
-static void bad_callbacks_are_refused(void **state) {
-  (void)state;
+CASE(bad_callbacks_are_refused) {
   const vec3 o = {0, 0, 0};
   REFUSED(cprox_body_create_support(NULL, NULL, o, 1.0, 0.0, 0.0, ws, &body), "support is NULL");
   REFUSED(cprox_body_create_support(any_support, NULL, o, 0.0, 0.0, 0.0, ws, &body), "radius is 0, must be > 0");
@@ -89,8 +80,7 @@ static void bad_callbacks_are_refused(void **state) {
   REFUSED(cprox_body_create_support(any_support, NULL, o, 1.0, 0.0, NAN, ws, &body), "margin is nan, must be >= 0");
 }
 
-static void bad_parts_are_refused_by_number(void **state) {
-  (void)state;
+CASE(bad_parts_are_refused_by_number) {
   cprox_body *ball = NULL, *two = NULL;
   assert_int_equal(cprox_body_create_sphere(1.0, ws, &ball), CPROX_OK);
   cprox_pose poses[2] = {cprox_pose_identity(), cprox_pose_identity()};
@@ -110,8 +100,7 @@ static void bad_parts_are_refused_by_number(void **state) {
   cprox_body_free(ball);
 }
 
-static void a_workspace_is_not_needed(void **state) {
-  (void)state;
+CASE(a_workspace_is_not_needed) {
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_sphere(-1.0, NULL, &body), CPROX_INVALID);
   assert_null(body);
@@ -120,8 +109,7 @@ static void a_workspace_is_not_needed(void **state) {
   cprox_body_free(NULL);
 }
 
-static void a_failed_allocation_is_said_and_leaves_nothing_behind(void **state) {
-  (void)state;
+CASE(a_failed_allocation_is_said_and_leaves_nothing_behind) {
   const vec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const double flat[3][2] = {{0, 0}, {1, 0}, {0, 1}};
   cprox_body *ball = NULL, *body = NULL;
@@ -146,8 +134,7 @@ static void a_failed_allocation_is_said_and_leaves_nothing_behind(void **state) 
   cprox_body_free(ball);
 }
 
-static void every_kind_has_its_name(void **state) {
-  (void)state;
+CASE(every_kind_has_its_name) {
   const char *names[] = {"point",     "sphere",    "box",      "capsule", "cylinder", "cone",
                          "ellipsoid", "halfspace", "polytope", "polygon", "compound", "support"};
   for (int k = CPROX_POINT; k <= CPROX_SUPPORT; k++)
@@ -158,8 +145,7 @@ static void every_kind_has_its_name(void **state) {
   cprox_body_free(body);
 }
 
-static void a_polygon_may_turn_either_way_and_repeat_or_line_up_vertices(void **state) {
-  (void)state;
+CASE(a_polygon_may_turn_either_way_and_repeat_or_line_up_vertices) {
   const double left[6][2] = {{0, 0}, {1, 0}, {2, 0}, {2, 2}, {2, 2}, {0, 2}};
   double right[6][2];
   for (int i = 0; i < 6; i++) memcpy(right[i], left[5 - i], sizeof right[i]);
@@ -178,8 +164,7 @@ static void a_polygon_may_turn_either_way_and_repeat_or_line_up_vertices(void **
 }
 
 /* Seed 501, 1e5 points about polygons of 3 to 20 vertices, aspects up to 1e6 and sharp corners: in space and in the plane. */
-static void the_distance_of_a_polygon_is_within_its_rounding(void **state) {
-  (void)state;
+CASE(the_distance_of_a_polygon_is_within_its_rounding) {
   rng r = rng_seed(501);
   long double worst = 0;
   for (size_t i = 0; i < test_cases(12500); i++) {
@@ -256,8 +241,7 @@ static cprox_body *some_body(rng *r, int k) {
 }
 
 /* Seed 502, 2e4 bodies and unions of three of them, 20 directions each. */
-static void the_bounding_sphere_holds_the_body(void **state) {
-  (void)state;
+CASE(the_bounding_sphere_holds_the_body) {
   rng r = rng_seed(502);
   for (size_t i = 0; i < test_cases(20000); i++) {
     cprox_body *parts[3], *all = NULL;
@@ -285,8 +269,7 @@ static void the_bounding_sphere_holds_the_body(void **state) {
 }
 
 /* Seed 503, 2e4 points. */
-static void the_nearest_point_of_a_compound_is_that_of_its_nearest_part(void **state) {
-  (void)state;
+CASE(the_nearest_point_of_a_compound_is_that_of_its_nearest_part) {
   rng r = rng_seed(503);
   for (size_t i = 0; i < test_cases(20000); i++) {
     cprox_body *parts[3], *all = NULL;
@@ -312,8 +295,7 @@ static void the_nearest_point_of_a_compound_is_that_of_its_nearest_part(void **s
   }
 }
 
-static void a_halfspace_has_no_end(void **state) {
-  (void)state;
+CASE(a_halfspace_has_no_end) {
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_halfspace(vec(0, 3, 4), -10.0, ws, &body), CPROX_OK);
   vec3 p;
@@ -334,20 +316,5 @@ static void a_halfspace_has_no_end(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bad_sizes_are_refused_by_name_and_value),
-      cmocka_unit_test(bad_vertices_are_refused_by_number),
-      cmocka_unit_test(polygons_that_are_not_convex_are_refused),
-      cmocka_unit_test(bad_callbacks_are_refused),
-      cmocka_unit_test(bad_parts_are_refused_by_number),
-      cmocka_unit_test(a_workspace_is_not_needed),
-      cmocka_unit_test(a_failed_allocation_is_said_and_leaves_nothing_behind),
-      cmocka_unit_test(every_kind_has_its_name),
-      cmocka_unit_test(a_polygon_may_turn_either_way_and_repeat_or_line_up_vertices),
-      cmocka_unit_test(the_distance_of_a_polygon_is_within_its_rounding),
-      cmocka_unit_test(the_bounding_sphere_holds_the_body),
-      cmocka_unit_test(the_nearest_point_of_a_compound_is_that_of_its_nearest_part),
-      cmocka_unit_test(a_halfspace_has_no_end),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

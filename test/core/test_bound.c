@@ -2,15 +2,9 @@
 /* The bound itself: whatever intervals the oracle makes, and whatever normals it uses, no bound lies above the distance of any
  * point in its interval, and the best upper bound is never below the distance at its own point. The distances are those of the
  * long double references, which know nothing of the search. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "curve/curve.h"
 #include "curve_query/curve_convex.h"
+#include "support/cases.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -208,8 +202,7 @@ static size_t attack(const problem *p, rng *r, cprox_workspace *ws) {
 }
 
 /* Seed 1, 120,000 intervals, each at two random points. Tolerance 0: the slack is in the bound. */
-static void no_bound_lies_above_the_distance_and_no_best_point_below_it(void **state) {
-  (void)state;
+CASE(no_bound_lies_above_the_distance_and_no_best_point_below_it) {
   rng r = rng_seed(1);
   cprox_workspace *ws = cprox_workspace_create();
   for (size_t checked = 0; checked < test_cases(INTERVALS);) {
@@ -221,6 +214,5 @@ static void no_bound_lies_above_the_distance_and_no_best_point_below_it(void **s
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(no_bound_lies_above_the_distance_and_no_best_point_below_it)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -2,17 +2,12 @@
 /* Bodies carried along curves, against bodies, compounds and curves: intervals, verdicts, witnesses, cost. Polyhedra are held
  * against the hull of all differences of vertices in long double; the other kinds against static pairs at many parameters, which
  * know nothing of curves. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 
 #include "base/rounding.h"
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/random.h"
 #include "support/reference.h"
@@ -111,8 +106,7 @@ static long double polyhedra_distance(const polyhedra *p, double t) {
 }
 
 /* Seed 31, 300 cases, 12 parameters and the reported one each: exact but for long double, 1e-3 u of all sizes. */
-static void intervals_of_carried_polytopes_contain_the_distance_in_long_double(void **state) {
-  (void)state;
+CASE(intervals_of_carried_polytopes_contain_the_distance_in_long_double) {
   rng r = rng_seed(31);
   const size_t cases = test_cases(300);
   for (size_t k = 0; k < cases; k++) {
@@ -176,8 +170,7 @@ static double distance_from(const cprox_body *body, const cprox_pose *pose, vec3
 }
 
 /* Seed 32: all pairs of bounded kinds, the halfspace too as what stands, 6 cases each; unit sizes, so that 1e-13 is a thousand u. */
-static void every_kind_is_carried_past_every_kind(void **state) {
-  (void)state;
+CASE(every_kind_is_carried_past_every_kind) {
   rng r = rng_seed(32);
   const size_t cases = test_cases(6);
   for (int a = 0; a < TEST_N_BOUNDED; a++)
@@ -231,8 +224,7 @@ static void every_kind_is_carried_past_every_kind(void **state) {
 }
 
 /* Seed 33, 60 cases: compounds of three parts either way. */
-static void compounds_are_carried_and_stand_as_the_nearest_of_their_parts(void **state) {
-  (void)state;
+CASE(compounds_are_carried_and_stand_as_the_nearest_of_their_parts) {
   rng r = rng_seed(33);
   const size_t cases = test_cases(60);
   for (size_t k = 0; k < cases; k++) {
@@ -262,8 +254,7 @@ static void compounds_are_carried_and_stand_as_the_nearest_of_their_parts(void *
 }
 
 /* Seed 34, 10 kinds x 12 cases: a curve as the target, at its own parameter, 16 x 16 pairs of parameters and those about the best. */
-static void a_carried_body_is_measured_against_a_curve(void **state) {
-  (void)state;
+CASE(a_carried_body_is_measured_against_a_curve) {
   rng r = rng_seed(34);
   const size_t cases = test_cases(12);
   for (int kind = 0; kind < TEST_N_BOUNDED; kind++)
@@ -305,8 +296,7 @@ static void a_carried_body_is_measured_against_a_curve(void **state) {
 
 /* ---- arguments, memory, cost ---------------------------------------------------------------------------------------------------- */
 
-static void an_unbounded_body_is_not_carried(void **state) {
-  (void)state;
+CASE(an_unbounded_body_is_not_carried) {
   cprox_body *halfspace = NULL;
   assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 0.0, ws, &halfspace), CPROX_OK);
   cprox_curve *curve = bezier((vec3[]){{0, 0, 0}, {1, 0, 0}}, 2);
@@ -324,8 +314,7 @@ static int by_count(const void *a, const void *b) {
 }
 
 /* Seed 35, 200 problems a pair of kinds, quintics in the unit cube, epsilon 1e-9. No allocation once the first is answered. */
-static void medians_stay_within_8_nodes_and_14_probes(void **state) {
-  (void)state;
+CASE(medians_stay_within_8_nodes_and_14_probes) {
   enum { PROBLEMS = 200 };
   rng r = rng_seed(35);
   const cprox_body_kind kinds[][2] = {{CPROX_BOX, CPROX_BOX},
@@ -369,13 +358,5 @@ static void medians_stay_within_8_nodes_and_14_probes(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(intervals_of_carried_polytopes_contain_the_distance_in_long_double),
-      cmocka_unit_test(every_kind_is_carried_past_every_kind),
-      cmocka_unit_test(compounds_are_carried_and_stand_as_the_nearest_of_their_parts),
-      cmocka_unit_test(a_carried_body_is_measured_against_a_curve),
-      cmocka_unit_test(an_unbounded_body_is_not_carried),
-      cmocka_unit_test(medians_stay_within_8_nodes_and_14_probes),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Which targets are close, and how close each stretch of a curve is: against one query a target, and against sampling. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/random.h"
 #include "support/reference.h"
@@ -63,8 +58,7 @@ static int ascending(const void *a, const void *b) {
 }
 
 /* 600 worlds, seed 1: the i-th result is within epsilon of the i-th least of the distances asked one by one. */
-static void the_k_nearest_are_the_least_of_all_distances(void **state) {
-  (void)state;
+CASE(the_k_nearest_are_the_least_of_all_distances) {
   rng r = rng_seed(1);
   for (size_t i = 0, cases = test_cases(600); i < cases; i++) {
     world w = world_make(&r);
@@ -92,8 +86,7 @@ static void the_k_nearest_are_the_least_of_all_distances(void **state) {
 }
 
 /* 600 worlds, seed 2: who is listed and who is not, against the distances asked one by one. */
-static void within_lists_exactly_those_within(void **state) {
-  (void)state;
+CASE(within_lists_exactly_those_within) {
   rng r = rng_seed(2);
   size_t listed = 0, left_out = 0;
   for (size_t i = 0, cases = test_cases(600); i < cases; i++) {
@@ -125,8 +118,7 @@ static void within_lists_exactly_those_within(void **state) {
 
 /* 200 worlds, seed 3, up to 12 stretches each, some as short as 1e-9: the least clearance sampled in long double at 40 parameters of
  * a stretch is never below its lower bound, and the whole is the least of the parts. */
-static void a_profile_holds_on_every_stretch_and_adds_up_to_the_whole(void **state) {
-  (void)state;
+CASE(a_profile_holds_on_every_stretch_and_adds_up_to_the_whole) {
   rng r = rng_seed(3);
   for (size_t i = 0, cases = test_cases(200); i < cases; i++) {
     world w = world_make(&r);
@@ -163,8 +155,7 @@ static void a_profile_holds_on_every_stretch_and_adds_up_to_the_whole(void **sta
 }
 
 /* A spline of 60 pieces whose clearance over a floor is known, in stretches that cut pieces anywhere. */
-static void stretches_may_begin_and_end_inside_pieces(void **state) {
-  (void)state;
+CASE(stretches_may_begin_and_end_inside_pieces) {
   enum { N = 63, STRETCHES = 17 };
   vec3 p[N];
   double knots[N + 4], breaks[STRETCHES + 1];
@@ -190,8 +181,7 @@ static void stretches_may_begin_and_end_inside_pieces(void **state) {
   cprox_curve_free(curve);
 }
 
-static void unusable_arguments_are_named(void **state) {
-  (void)state;
+CASE(unusable_arguments_are_named) {
   rng r = rng_seed(5);
   world w = world_make(&r);
   cprox_result result[MOST_TARGETS];
@@ -208,8 +198,7 @@ static void unusable_arguments_are_named(void **state) {
   world_free(&w);
 }
 
-static void with_no_targets_everything_is_infinitely_far(void **state) {
-  (void)state;
+CASE(with_no_targets_everything_is_infinitely_far) {
   rng r = rng_seed(6);
   world w = world_make(&r);
   cprox_result result[1];
@@ -222,8 +211,7 @@ static void with_no_targets_everything_is_infinitely_far(void **state) {
   world_free(&w);
 }
 
-static void nothing_is_allocated_once_the_workspace_has_grown(void **state) {
-  (void)state;
+CASE(nothing_is_allocated_once_the_workspace_has_grown) {
   rng r = rng_seed(7);
   world w = world_make(&r);
   cprox_result result[MOST_TARGETS], first;
@@ -241,14 +229,5 @@ static void nothing_is_allocated_once_the_workspace_has_grown(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_k_nearest_are_the_least_of_all_distances),
-      cmocka_unit_test(within_lists_exactly_those_within),
-      cmocka_unit_test(a_profile_holds_on_every_stretch_and_adds_up_to_the_whole),
-      cmocka_unit_test(stretches_may_begin_and_end_inside_pieces),
-      cmocka_unit_test(unusable_arguments_are_named),
-      cmocka_unit_test(with_no_targets_everything_is_infinitely_far),
-      cmocka_unit_test(nothing_is_allocated_once_the_workspace_has_grown),
-  };
-  return cmocka_run_group_tests_name("clearance", tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

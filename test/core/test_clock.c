@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Two movers on one clock: their distance at the same parameter, whatever they carry. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <string.h>
 
 #include "base/rounding.h"
 #include "curve/relative_curve.h"
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/curves.h"
 #include "support/random.h"
@@ -26,8 +21,7 @@ static cprox_curve *bezier_on(const vec3 *points, size_t n, double t0, double t1
 
 /* Seed 41, 2000 cases, degrees 1 to 12, sizes 1e-3 to 1e3, up to 1e6 sizes from the origin: |psi(t) - phi(t)| in long double at 20
  * parameters and at the reported one. The points stand on a grid on which differences are exact, so the room is long double's own. */
-static void points_on_one_clock_are_as_near_as_long_double_says(void **state) {
-  (void)state;
+CASE(points_on_one_clock_are_as_near_as_long_double_says) {
   rng r = rng_seed(41);
   const size_t cases = test_cases(2000);
   for (size_t k = 0; k < cases; k++) {
@@ -79,8 +73,7 @@ static void points_on_one_clock_are_as_near_as_long_double_says(void **state) {
 
 /* Seed 45, 3000 cases, 10 parameters each: the converted piece, evaluated in long double, is within its error of R psi - phi; and the
  * error is no more than a hundred times what occurs. */
-static void the_relative_curve_is_within_its_error(void **state) {
-  (void)state;
+CASE(the_relative_curve_is_within_its_error) {
   rng r = rng_seed(45);
   const size_t cases = test_cases(3000);
   long double worst = 0.0L;
@@ -148,8 +141,7 @@ static cprox_curve *spline(rng *r, size_t n, size_t degree, double t1) {
 
 /* Seed 42, 400 cases: splines with joints of their own, turned targets, bodies of every kind or none on either side; static pairs at
  * 40 parameters. 1e-12: thousands of u of a few metres. */
-static void splines_that_carry_bodies_agree_with_static_pairs(void **state) {
-  (void)state;
+CASE(splines_that_carry_bodies_agree_with_static_pairs) {
   rng r = rng_seed(42);
   const size_t cases = test_cases(400);
   for (size_t k = 0; k < cases; k++) {
@@ -184,8 +176,7 @@ static void splines_that_carry_bodies_agree_with_static_pairs(void **state) {
   }
 }
 
-static void two_that_cross_at_different_times_do_not_meet(void **state) {
-  (void)state;
+CASE(two_that_cross_at_different_times_do_not_meet) {
   cprox_curve *first = bezier_on((vec3[]){{-1, 0, 0}, {1, 0, 0}}, 2, 0.0, 1.0);
   cprox_curve *second = bezier_on((vec3[]){{0, -1, 0}, {0, 3, 0}}, 2, 0.0, 1.0);
   cprox_result result;
@@ -202,8 +193,7 @@ static void two_that_cross_at_different_times_do_not_meet(void **state) {
   cprox_curve_free(second);
 }
 
-static void one_and_the_same_mover_is_at_distance_0(void **state) {
-  (void)state;
+CASE(one_and_the_same_mover_is_at_distance_0) {
   rng r = rng_seed(43);
   cprox_curve *curve = spline(&r, 8, 3, 2.0);
   cprox_result result;
@@ -213,8 +203,7 @@ static void one_and_the_same_mover_is_at_distance_0(void **state) {
   cprox_curve_free(curve);
 }
 
-static void different_domains_are_refused(void **state) {
-  (void)state;
+CASE(different_domains_are_refused) {
   cprox_curve *first = bezier_on((vec3[]){{-1, 0, 0}, {1, 0, 0}}, 2, 0.0, 1.0);
   cprox_curve *second = bezier_on((vec3[]){{0, -1, 0}, {0, 3, 0}}, 2, 0.0, 1.5);
   cprox_result result = {.lower = -7.0};
@@ -231,8 +220,7 @@ static void different_domains_are_refused(void **state) {
 }
 
 /* Among many targets, and again: the second time nothing is allocated. */
-static void clocks_stand_among_other_targets_and_allocate_once(void **state) {
-  (void)state;
+CASE(clocks_stand_among_other_targets_and_allocate_once) {
   rng r = rng_seed(44);
   cprox_curve *curve = spline(&r, 9, 3, 1.0), *other[8];
   cprox_body *box = NULL;
@@ -259,14 +247,5 @@ static void clocks_stand_among_other_targets_and_allocate_once(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(points_on_one_clock_are_as_near_as_long_double_says),
-      cmocka_unit_test(the_relative_curve_is_within_its_error),
-      cmocka_unit_test(splines_that_carry_bodies_agree_with_static_pairs),
-      cmocka_unit_test(two_that_cross_at_different_times_do_not_meet),
-      cmocka_unit_test(one_and_the_same_mover_is_at_distance_0),
-      cmocka_unit_test(different_domains_are_refused),
-      cmocka_unit_test(clocks_stand_among_other_targets_and_allocate_once),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

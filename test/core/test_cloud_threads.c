@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Points that move: bodies made by updates answer as bodies made anew, and queries run on the body as it was while the next one is made.
  * Also run under ThreadSanitizer. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
+#include "support/cases.h"
 #include "support/random.h"
 
 static cprox_body *cloud(const vec3 *points, size_t n, cprox_workspace *ws) {
@@ -49,8 +44,7 @@ static void move_some(rng *r, vec3 *points, size_t all, uint32_t *changed, vec3 
 
 /* Clouds of 1 to 30,000 points (seed 131), 8 updates each, with and without memory of retired bodies: distances are those of a cloud
  * made anew, to epsilon; nearest points are equally far; the body before answers as before. */
-static void updated_clouds_answer_as_new_ones_do(void **state) {
-  (void)state;
+CASE(updated_clouds_answer_as_new_ones_do) {
   enum { MOST = 30000 };
   static vec3 points[MOST], places[2 * MOST];
   static uint32_t changed[2 * MOST];
@@ -99,8 +93,7 @@ static void updated_clouds_answer_as_new_ones_do(void **state) {
   cprox_workspace_free(ws);
 }
 
-static void bad_updates_are_refused(void **state) {
-  (void)state;
+CASE(bad_updates_are_refused) {
   cprox_workspace *ws = cprox_workspace_create();
   const vec3 points[2] = {{0, 0, 0}, {1, 0, 0}}, wrong[1] = {{NAN, 0, 0}};
   const uint32_t which[1] = {2}, first[1] = {0};
@@ -174,8 +167,7 @@ static int free_slot(board *b) {
 
 /* Two readers, one writer that raises a plane of 8,192 points step by step, with the memory of retired bodies. Every answer is that of one
  * state, never of a mixture. */
-static void readers_see_one_state_while_the_next_is_made(void **state) {
-  (void)state;
+CASE(readers_see_one_state_while_the_next_is_made) {
   static vec3 points[POINTS];
   static uint32_t all[POINTS];
   cprox_workspace *ws = cprox_workspace_create();
@@ -211,10 +203,5 @@ static void readers_see_one_state_while_the_next_is_made(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(updated_clouds_answer_as_new_ones_do),
-      cmocka_unit_test(bad_updates_are_refused),
-      cmocka_unit_test(readers_see_one_state_while_the_next_is_made),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

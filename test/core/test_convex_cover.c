@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Covers hold the whole shape and touch it; supports and nearest points speak of the same set. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "base/rounding.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -75,8 +69,7 @@ static long double reach(const convex_cover *cover, vec3 p) {
 
 /* Seed 401, 1e5 covers of shapes of aspect up to 1e3: every extreme point tried lies inside to the last bit, and the cover
  * passes within 1e-12 (R + size) of the nearest point. Extreme points carry their own rounding, 8 u size. */
-static void a_cover_holds_the_whole_shape_and_touches_it(void **state) {
-  (void)state;
+CASE(a_cover_holds_the_whole_shape_and_touches_it) {
   rng r = rng_seed(401);
   size_t covers[N_KINDS] = {0}, cylinders[N_KINDS] = {0};
   for (size_t i = 0; i < test_cases(100000); i++) {
@@ -117,8 +110,7 @@ static void a_cover_holds_the_whole_shape_and_touches_it(void **state) {
   assert_true(cylinders[2] > 0 && cylinders[3] > 0 && cylinders[4] > 0 && cylinders[7] > 0);
 }
 
-static void a_face_has_no_cover(void **state) {
-  (void)state;
+CASE(a_face_has_no_cover) {
   cprox_body *box = NULL;
   cprox_body_create_box(vec(2, 2, 2), NULL, &box);
   convex_near near;
@@ -136,8 +128,7 @@ static void a_face_has_no_cover(void **state) {
 
 /* Seed 402, 1e5 directions of any length: h(d) is d·x of the point it names, that point is in the shape and within its scale,
  * and no point of the shape lies beyond it. ROUND_SUPPORT u |d| scale as convex.h states it. */
-static void the_support_is_attained_and_never_passed(void **state) {
-  (void)state;
+CASE(the_support_is_attained_and_never_passed) {
   rng r = rng_seed(402);
   for (size_t i = 0; i < test_cases(100000); i++) {
     const size_t k = i % N_KINDS;
@@ -172,8 +163,7 @@ static void the_support_is_attained_and_never_passed(void **state) {
 
 /* Seed 403, 3e4 directions at least 0.2 off the axis: central differences over a turn of 1e-5 agree with the derivative within
  * 1e-6 sizes (their second order is 1e-10, their rounding 1e-11, times what a ratio of axes of 4 and 1/0.2 raise it by). */
-static void the_maximiser_moves_as_its_curvature_says(void **state) {
-  (void)state;
+CASE(the_maximiser_moves_as_its_curvature_says) {
   rng r = rng_seed(403);
   const cprox_body_kind curved[] = {CPROX_CYLINDER, CPROX_CONE, CPROX_ELLIPSOID};
   for (size_t i = 0; i < test_cases(30000); i++) {
@@ -203,11 +193,5 @@ static void the_maximiser_moves_as_its_curvature_says(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_cover_holds_the_whole_shape_and_touches_it),
-      cmocka_unit_test(a_face_has_no_cover),
-      cmocka_unit_test(the_support_is_attained_and_never_passed),
-      cmocka_unit_test(the_maximiser_moves_as_its_curvature_says),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

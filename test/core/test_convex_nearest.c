@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Nearest points of the primitives, held against long double at every scale and aspect ratio. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "base/rounding.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -237,34 +231,27 @@ static void check_kind(const kind *k) {
 
 /* Seeds 101 to 106, 1e5 points each at scales 1e-6 to 1e6, aspects up to 1e6: on and beside faces, edges, rims, axes and
  * surfaces, and far away. Long double (2^-64) is 2048 times finer than what is tested. */
-static void the_distance_of_a_sphere_is_within_its_rounding(void **state) {
-  (void)state;
+CASE(the_distance_of_a_sphere_is_within_its_rounding) {
   check_kind(&SPHERE);
 }
-static void the_distance_of_a_box_is_within_its_rounding(void **state) {
-  (void)state;
+CASE(the_distance_of_a_box_is_within_its_rounding) {
   check_kind(&BOX);
 }
-static void the_distance_of_a_capsule_is_within_its_rounding(void **state) {
-  (void)state;
+CASE(the_distance_of_a_capsule_is_within_its_rounding) {
   check_kind(&CAPSULE);
 }
-static void the_distance_of_a_cylinder_is_within_its_rounding(void **state) {
-  (void)state;
+CASE(the_distance_of_a_cylinder_is_within_its_rounding) {
   check_kind(&CYLINDER);
 }
-static void the_distance_of_a_cone_is_within_its_rounding(void **state) {
-  (void)state;
+CASE(the_distance_of_a_cone_is_within_its_rounding) {
   check_kind(&CONE);
 }
-static void the_distance_of_an_ellipsoid_is_within_its_rounding(void **state) {
-  (void)state;
+CASE(the_distance_of_an_ellipsoid_is_within_its_rounding) {
   check_kind(&ELLIPSOID);
 }
 
 /* Seed 107, 1e5 points. The point must be attained, whatever rounding did: the exact sum is at most 1. */
-static void the_nearest_point_of_an_ellipsoid_is_a_point_of_it(void **state) {
-  (void)state;
+CASE(the_nearest_point_of_an_ellipsoid_is_a_point_of_it) {
   rng r = rng_seed(107);
   for (size_t i = 0; i < test_cases(CASES); i++) {
     double size[3];
@@ -295,8 +282,7 @@ static bool same_feature(const convex_near *a, const convex_near *b) {
 
 /* Seed 108, 2e4 points a kind outside shapes of aspect up to 3, no nearer than 0.1 sizes, not within 1e-2 of a border between
  * features. Second differences with steps of 1e-4 sizes are good to 1e-7 (rounding/step², truncation step²). */
-static void the_distance_field_bends_as_its_feature_says(void **state) {
-  (void)state;
+CASE(the_distance_field_bends_as_its_feature_says) {
   const kind *kinds[] = {&SPHERE, &BOX, &CAPSULE, &CYLINDER, &CONE, &ELLIPSOID};
   rng r = rng_seed(108);
   for (size_t i = 0; i < test_cases(6 * 20000); i++) {
@@ -334,15 +320,5 @@ static void the_distance_field_bends_as_its_feature_says(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_distance_of_a_sphere_is_within_its_rounding),
-      cmocka_unit_test(the_distance_of_a_box_is_within_its_rounding),
-      cmocka_unit_test(the_distance_of_a_capsule_is_within_its_rounding),
-      cmocka_unit_test(the_distance_of_a_cylinder_is_within_its_rounding),
-      cmocka_unit_test(the_distance_of_a_cone_is_within_its_rounding),
-      cmocka_unit_test(the_distance_of_an_ellipsoid_is_within_its_rounding),
-      cmocka_unit_test(the_nearest_point_of_an_ellipsoid_is_a_point_of_it),
-      cmocka_unit_test(the_distance_field_bends_as_its_feature_says),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

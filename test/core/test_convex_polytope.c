@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Nearest points of vertex sets: against all faces where there are few, against a proof by duality where there are many. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "base/rounding.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -146,8 +140,7 @@ static double check_certificate(const convex *shape, vec3 y, const convex_near *
 
 /* Seed 201, 1e5 points against hulls of 1 to 7 vertices in 0 to 3 dimensions, aspects up to 1e6, repeated and collinear vertices
  * among them. near_rounding u (|y| + scale) as convex.h states it; the hull by all segments, triangles and tetrahedra in quadruple precision. */
-static void the_distance_of_a_small_polytope_is_that_of_its_nearest_face(void **state) {
-  (void)state;
+CASE(the_distance_of_a_small_polytope_is_that_of_its_nearest_face) {
   rng r = rng_seed(201);
   long double worst = 0;
   size_t inside = 0;
@@ -180,8 +173,7 @@ static void the_distance_of_a_small_polytope_is_that_of_its_nearest_face(void **
 
 /* Seed 202, 2e5 points against hulls of 4 to 500 vertices, aspects up to 1e3: primal and dual meet within 64 u (|y| + scale),
  * near_rounding and as much again for the bound's own rounding and for normals of thin faces. */
-static void the_normal_proves_the_distance_of_a_large_polytope(void **state) {
-  (void)state;
+CASE(the_normal_proves_the_distance_of_a_large_polytope) {
   rng r = rng_seed(202);
   double worst = 0.0;
   static vec3 v[MOST];
@@ -208,8 +200,7 @@ static void the_normal_proves_the_distance_of_a_large_polytope(void **state) {
 }
 
 /* Seed 203, 2e4 points inside hulls of 8 to 60 vertices: a ball of the claimed depth reaches no supporting plane. */
-static void a_depth_that_is_claimed_inside_is_there(void **state) {
-  (void)state;
+CASE(a_depth_that_is_claimed_inside_is_there) {
   rng r = rng_seed(203);
   static vec3 v[MOST];
   size_t claimed = 0;
@@ -237,8 +228,7 @@ static void a_depth_that_is_claimed_inside_is_there(void **state) {
 }
 
 /* 0 on an edge or diagonal of the first simplex by chance: the search starts again from all round. */
-static void the_middle_of_a_box_is_inside_it(void **state) {
-  (void)state;
+CASE(the_middle_of_a_box_is_inside_it) {
   vec3 v[8];
   for (int i = 0; i < 8; i++) v[i] = vec(i & 1 ? 1 : -1, i & 2 ? 2 : -2, i & 4 ? 3 : -3);
   cprox_body *body = make(v, 8);
@@ -248,8 +238,7 @@ static void the_middle_of_a_box_is_inside_it(void **state) {
 }
 
 /* Seed 207, 1e4 points in boxes, every third beside a face by 1e-15 to 1e-3: the least of six heights. The accuracy is that of body.h. */
-static void a_point_inside_a_box_is_as_deep_as_its_nearest_face(void **state) {
-  (void)state;
+CASE(a_point_inside_a_box_is_as_deep_as_its_nearest_face) {
   rng r = rng_seed(207);
   for (size_t i = 0; i < test_cases(10000); i++) {
     const vec3 half = vec(rng_uniform(&r, 0.1, 1.0), rng_uniform(&r, 0.1, 1.0), rng_uniform(&r, 0.1, 1.0));
@@ -267,8 +256,7 @@ static void a_point_inside_a_box_is_as_deep_as_its_nearest_face(void **state) {
   }
 }
 
-static void a_bad_hint_costs_time_but_not_truth(void **state) {
-  (void)state;
+CASE(a_bad_hint_costs_time_but_not_truth) {
   rng r = rng_seed(204);
   vec3 v[40];
   random_vertices(&r, 40, 3, 3.0, v);
@@ -289,8 +277,7 @@ static void a_bad_hint_costs_time_but_not_truth(void **state) {
 }
 
 /* The trap "a repeated vertex taken for convergence": every vertex eight times over. */
-static void repeated_vertices_do_not_end_the_search_early(void **state) {
-  (void)state;
+CASE(repeated_vertices_do_not_end_the_search_early) {
   rng r = rng_seed(205);
   vec3 v[64];
   for (int i = 0; i < 64; i++) v[i] = vec(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
@@ -306,8 +293,7 @@ static void repeated_vertices_do_not_end_the_search_early(void **state) {
 }
 
 /* The trap "v/|v| at 1e-12 S": a hair over a face the direction of the nearest point is noise, the face's normal is not. */
-static void the_normal_is_the_faces_own_a_hair_above_it(void **state) {
-  (void)state;
+CASE(the_normal_is_the_faces_own_a_hair_above_it) {
   rng r = rng_seed(206);
   for (int i = 0; i < 10000; i++) {
     const cprox_pose pose = rng_pose(&r, 0.0);
@@ -325,8 +311,7 @@ static void the_normal_is_the_faces_own_a_hair_above_it(void **state) {
   }
 }
 
-static void points_segments_and_flat_polygons_are_polytopes(void **state) {
-  (void)state;
+CASE(points_segments_and_flat_polygons_are_polytopes) {
   const vec3 v[4] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
   const double expected[4] = {5.0, 5.0, sqrt(16.0 + 9.0), 3.0};
   const vec3 from[4] = {{3, 4, 0}, {1, 0, 5}, {6, 1, 3}, {1, 1, 3}};
@@ -339,8 +324,7 @@ static void points_segments_and_flat_polygons_are_polytopes(void **state) {
   }
 }
 
-static void sizes_and_not_positions_enter_the_rounding(void **state) {
-  (void)state;
+CASE(sizes_and_not_positions_enter_the_rounding) {
   const vec3 far = vec(1e6, -2e6, 3e6);
   vec3 v[8];
   for (int k = 0; k < 8; k++) v[k] = vec(far.x + (k & 1), far.y + (k & 2), far.z + (k & 4));
@@ -351,17 +335,5 @@ static void sizes_and_not_positions_enter_the_rounding(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_distance_of_a_small_polytope_is_that_of_its_nearest_face),
-      cmocka_unit_test(the_normal_proves_the_distance_of_a_large_polytope),
-      cmocka_unit_test(a_depth_that_is_claimed_inside_is_there),
-      cmocka_unit_test(the_middle_of_a_box_is_inside_it),
-      cmocka_unit_test(a_point_inside_a_box_is_as_deep_as_its_nearest_face),
-      cmocka_unit_test(a_bad_hint_costs_time_but_not_truth),
-      cmocka_unit_test(repeated_vertices_do_not_end_the_search_early),
-      cmocka_unit_test(the_normal_is_the_faces_own_a_hair_above_it),
-      cmocka_unit_test(points_segments_and_flat_polygons_are_polytopes),
-      cmocka_unit_test(sizes_and_not_positions_enter_the_rounding),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* B-splines against the Cox-de Boor basis in long double. u = 2^-53, p the degree, M = max|control point of the span|. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "curve/curve.h"
+#include "support/cases.h"
 #include "support/curves.h"
 #include "support/reference.h"
 
@@ -31,8 +26,7 @@ static size_t span_of(const test_spline *s, const cprox_curve *c, size_t piece) 
 
 /* seed 201, 100,000 pieces and more: every point of the computed piece is within the piece's error of the exact curve.
  * The reference itself may be off by 8p roundings of long double. */
-static void every_piece_is_within_its_error_of_the_spline(void **state) {
-  (void)state;
+CASE(every_piece_is_within_its_error_of_the_spline) {
   rng r = rng_seed(201);
   double largest = 0.0;
   size_t offset = 0;
@@ -69,8 +63,7 @@ static void every_piece_is_within_its_error_of_the_spline(void **state) {
 }
 
 /* seed 202: pieces follow each other, begin at t0, end at t1 and never have length 0 */
-static void pieces_cover_the_range_exactly(void **state) {
-  (void)state;
+CASE(pieces_cover_the_range_exactly) {
   rng r = rng_seed(202);
   for (size_t i = test_cases(20000); i-- > 0;) {
     const test_spline s = random_spline(&r, random_degree(&r));
@@ -92,8 +85,7 @@ static void pieces_cover_the_range_exactly(void **state) {
 
 /* seed 203, 100,000 parameters, knots and ends among them: (12p + 20) u M, of which 5p are the conversion's. Derivatives:
  * the conversion adds 2p · 5p and 4p(p-1) · 5p to the bounds of the Bézier test. */
-static void evaluation_by_t_stays_within_its_bound(void **state) {
-  (void)state;
+CASE(evaluation_by_t_stays_within_its_bound) {
   rng r = rng_seed(203);
   for (size_t i = test_cases(20000); i-- > 0;) {
     const test_spline s = random_spline(&r, 1 + rng_index(&r, rng_index(&r, 8) ? 8 : 60));
@@ -122,8 +114,7 @@ static void evaluation_by_t_stays_within_its_bound(void **state) {
 }
 
 /* seed 204, 20,000 parts: within 5p u M' of the computed piece's, M' that piece's largest control point */
-static void control_points_of_a_part_lie_inside_one_piece(void **state) {
-  (void)state;
+CASE(control_points_of_a_part_lie_inside_one_piece) {
   rng r = rng_seed(204);
   for (size_t i = test_cases(20000); i-- > 0;) {
     const test_spline s = random_spline(&r, 1 + rng_index(&r, 8));
@@ -151,8 +142,7 @@ static void control_points_of_a_part_lie_inside_one_piece(void **state) {
 }
 
 /* seed 205: a spline on Bézier knots about the origin is that Bézier curve, bit by bit */
-static void bezier_knots_give_the_bezier_curve(void **state) {
-  (void)state;
+CASE(bezier_knots_give_the_bezier_curve) {
   rng r = rng_seed(205);
   for (size_t degree = 1; degree <= 60; degree++) {
     test_spline s = {.degree = degree, .n_points = degree + 1, .n_knots = 2 * degree + 2, .t0 = 0.0, .t1 = 1.0};
@@ -168,8 +158,7 @@ static void bezier_knots_give_the_bezier_curve(void **state) {
 }
 
 /* A double knot of a linear spline: the curve jumps from (1,0,0) to (5,0,0), and the right piece answers at the joint. */
-static void a_curve_that_jumps_keeps_both_sides(void **state) {
-  (void)state;
+CASE(a_curve_that_jumps_keeps_both_sides) {
   const vec3 p[4] = {{0, 0, 0}, {1, 0, 0}, {5, 0, 0}, {6, 0, 0}};
   const double knots[6] = {0, 0, 1, 1, 2, 2};
   cprox_curve *c = NULL;
@@ -187,8 +176,7 @@ static void a_curve_that_jumps_keeps_both_sides(void **state) {
 
 /* 100,000 control points: memory in proportion (the pieces themselves, and two capsules a piece at most four times
  * over), the answer right at the far end. */
-static void a_hundred_thousand_control_points_are_taken(void **state) {
-  (void)state;
+CASE(a_hundred_thousand_control_points_are_taken) {
   const size_t n = 100000, degree = 3;
   vec3 *p = calloc(n, sizeof *p);
   double *knots = calloc(n + degree + 1, sizeof *knots);
@@ -209,14 +197,5 @@ static void a_hundred_thousand_control_points_are_taken(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_piece_is_within_its_error_of_the_spline),
-      cmocka_unit_test(pieces_cover_the_range_exactly),
-      cmocka_unit_test(evaluation_by_t_stays_within_its_bound),
-      cmocka_unit_test(control_points_of_a_part_lie_inside_one_piece),
-      cmocka_unit_test(bezier_knots_give_the_bezier_curve),
-      cmocka_unit_test(a_curve_that_jumps_keeps_both_sides),
-      cmocka_unit_test(a_hundred_thousand_control_points_are_taken),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The tree of chord capsules: every capsule contains the part of the curve that it stands for. The points come from the
  * spline's own definition in long double, not from the pieces. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "curve/pack.h"
+#include "support/cases.h"
 #include "support/curves.h"
 #include "support/reference.h"
 
@@ -56,8 +51,7 @@ static void check_tree(const cprox_curve *c, const test_spline *s) {
 }
 
 /* seed 301, 4000 splines of up to 13 spans, each point against all levels above it: more than 1e5 checks */
-static void every_capsule_contains_its_part_of_the_curve(void **state) {
-  (void)state;
+CASE(every_capsule_contains_its_part_of_the_curve) {
   rng r = rng_seed(301);
   for (size_t i = test_cases(4000); i-- > 0;) {
     const test_spline s = random_spline(&r, 1 + rng_index(&r, rng_index(&r, 8) ? 8 : 60));
@@ -118,8 +112,7 @@ static void check_packs(const cprox_curve *c, rng *r) {
 }
 
 /* seed 304, 2000 splines of up to 13 spans, some 1e5 capsules */
-static void packs_reach_no_farther_than_what_they_contain(void **state) {
-  (void)state;
+CASE(packs_reach_no_farther_than_what_they_contain) {
   rng r = rng_seed(304);
   for (size_t i = test_cases(2000); i-- > 0;) {
     const test_spline s = random_spline(&r, 1 + rng_index(&r, 8));
@@ -132,8 +125,7 @@ static void packs_reach_no_farther_than_what_they_contain(void **state) {
 }
 
 /* seed 302: ends that coincide or nearly do; the chord says nothing, the radius must say it all */
-static void closed_curves_are_contained(void **state) {
-  (void)state;
+CASE(closed_curves_are_contained) {
   rng r = rng_seed(302);
   for (size_t i = test_cases(4000); i-- > 0;) {
     const size_t degree = 2 + rng_index(&r, 10);
@@ -150,8 +142,7 @@ static void closed_curves_are_contained(void **state) {
 }
 
 /* Curves that stand still, run to and fro on a line, or have sizes at the ends of the range. */
-static void degenerate_curves_are_contained(void **state) {
-  (void)state;
+CASE(degenerate_curves_are_contained) {
   for (int exponent = -1020; exponent <= 495; exponent++) {
     const double size = ldexp(1.0, exponent);
     const vec3 curves[4][4] = {{{size, 0, 0}, {size, 0, 0}, {size, 0, 0}, {size, 0, 0}},
@@ -170,8 +161,7 @@ static void degenerate_curves_are_contained(void **state) {
 
 /* A capsule that is far too wide would be as true and useless. A straight spline's radius is rounding alone; for a
  * half circle of 64 pieces the root is at most twice its height over the chord. */
-static void capsules_are_no_wider_than_they_need_be(void **state) {
-  (void)state;
+CASE(capsules_are_no_wider_than_they_need_be) {
   vec3 straight[67], arc[67];
   double knots[71];
   for (size_t i = 0; i < 67; i++) {
@@ -191,12 +181,5 @@ static void capsules_are_no_wider_than_they_need_be(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_capsule_contains_its_part_of_the_curve),
-      cmocka_unit_test(packs_reach_no_farther_than_what_they_contain),
-      cmocka_unit_test(closed_curves_are_contained),
-      cmocka_unit_test(degenerate_curves_are_contained),
-      cmocka_unit_test(capsules_are_no_wider_than_they_need_be),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What control points tell of a piece: halves within the error they state, distances from a centre never above the true ones. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "base/rounding.h"
 #include "curve/control.h"
 #include "curve/curve.h"
+#include "support/cases.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -42,8 +36,7 @@ static long double section_error(const vec3 *p, size_t degree, double s0, double
 
 /* Seed 21, 1e5 cuts of degrees 1 to 60 at 0.5 and elsewhere, coordinates with awkward mantissas. The bound is T1 of doc/rounding.md; long
  * double itself is off by degree 2^-64 |P|, a 2048th of it. */
-static void halves_are_within_the_error_that_the_cut_states(void **state) {
-  (void)state;
+CASE(halves_are_within_the_error_that_the_cut_states) {
   rng r = rng_seed(21);
   long double worst = 0;
   for (size_t k = 0; k < test_cases(CASES); k++) {
@@ -80,8 +73,7 @@ static void arc_random(rng *r, size_t degree, double scale, vec3 centre, const v
 
 /* Seed 22, 1e5 pieces of degrees 1 to 60, wide ones and arcs, with and without an axis; each at both ends, where the bound may be
  * attained, and at two points between. Tolerance 0: the slack is in the bound. */
-static void distances_from_a_centre_are_never_overstated(void **state) {
-  (void)state;
+CASE(distances_from_a_centre_are_never_overstated) {
   rng r = rng_seed(22);
   long double tightest = 1e30L;
   for (size_t k = 0; k < test_cases(CASES); k++) {
@@ -114,8 +106,7 @@ static void distances_from_a_centre_are_never_overstated(void **state) {
 }
 
 /* Seed 23, 1e5 directions. A dot product of three terms is off by 3 u |n||P|. */
-static void the_least_ordinate_is_that_of_the_lowest_control_point(void **state) {
-  (void)state;
+CASE(the_least_ordinate_is_that_of_the_lowest_control_point) {
   rng r = rng_seed(23);
   for (size_t k = 0; k < test_cases(CASES); k++) {
     const size_t degree = degree_random(&r);
@@ -132,10 +123,5 @@ static void the_least_ordinate_is_that_of_the_lowest_control_point(void **state)
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(halves_are_within_the_error_that_the_cut_states),
-      cmocka_unit_test(distances_from_a_centre_are_never_overstated),
-      cmocka_unit_test(the_least_ordinate_is_that_of_the_lowest_control_point),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

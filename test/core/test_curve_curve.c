@@ -1,18 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Curve against curve: reference answers, bounds against long double, the pairs on which other methods do not end. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "base/rounding.h"
 #include "curve/curve.h"
 #include "curve/packets.h"
 #include "curve_proximity/cprox.h"
 #include "curve_query/curve_curve.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/csv.h"
 #include "support/random.h"
 #include "support/reference.h"
@@ -64,8 +58,7 @@ static void check_case(const char *id, const cprox_curve *a, const cprox_curve *
   }
 }
 
-static void curve_curve_intervals_contain_their_references(void **state) {
-  (void)state;
+CASE(curve_curve_intervals_contain_their_references) {
   csv_table in = csv_read("reference/curve_curve_inputs.csv"), ref = csv_read("reference/curve_curve_ref.csv");
   assert_true(in.n > 50);
   for (size_t i = 0; i < in.n; i++) {
@@ -158,8 +151,7 @@ static size_t attack(const problem *p, rng *r) {
 
 /* Seed 31, 120,000 pairs of intervals, each at two random points. Tolerance 0: the slack is in the bound; long double is off by a
  * 2048th of it. */
-static void no_bound_lies_above_the_distance_of_two_points(void **state) {
-  (void)state;
+CASE(no_bound_lies_above_the_distance_of_two_points) {
   rng r = rng_seed(31);
   for (size_t checked = 0; checked < test_cases(INTERVALS);) {
     problem p = problem_random(&r);
@@ -185,8 +177,7 @@ static cprox_result ask(const vec3 *a, size_t na, const vec3 *b, size_t nb, doub
   return r;
 }
 
-static void contacts_of_every_kind_end_within_their_budget(void **state) {
-  (void)state;
+CASE(contacts_of_every_kind_end_within_their_budget) {
   const vec3 s[] = {{0, 0, 0}, {0.3, 1, 0.2}, {0.6, -1, 0.4}, {1, 0.2, 0}};
   const vec3 reversed[] = {{1, 0.2, 0}, {0.6, -1, 0.4}, {0.3, 1, 0.2}, {0, 0, 0}};
   const vec3 moved[] = {{0, 0, 1e-3}, {0.3, 1, 0.2 + 1e-3}, {0.6, -1, 0.4 + 1e-3}, {1, 0.2, 1e-3}};
@@ -213,8 +204,7 @@ static void contacts_of_every_kind_end_within_their_budget(void **state) {
 }
 
 /* Circular arcs about one centre: every point of one is nearest to some point of the other. The budget ends it. */
-static void concentric_arcs_spend_their_budget_and_say_so(void **state) {
-  (void)state;
+CASE(concentric_arcs_spend_their_budget_and_say_so) {
   const double k = 0.5522847498;
   const vec3 inner[] = {{1, 0, 0}, {1, k, 0}, {k, 1, 0}, {0, 1, 0}},
              outer[] = {{2, 0, 0}, {2, 2 * k, 0}, {2 * k, 2, 0}, {0, 2, 0}};
@@ -236,8 +226,7 @@ static void concentric_arcs_spend_their_budget_and_say_so(void **state) {
 }
 
 /* Seed 33: two splines of 300 cubic spans each, against sampling; and a curve among bodies in one list of targets. */
-static void long_splines_are_searched_by_their_trees(void **state) {
-  (void)state;
+CASE(long_splines_are_searched_by_their_trees) {
   enum { N = 303 };
   vec3 points[2][N];
   double knots[N + 4];
@@ -297,8 +286,7 @@ static vec3l point_of(const double *points, size_t degree, double s) {
 
 /* Seed 41, 1000 pairs of pieces of degrees 1 to 12: no two of 17 points of each, in long double, are nearer than those that are found,
  * within (10 n + 16) u of the size 2 for either point. */
-static void the_first_pair_is_the_nearest_of_all_points_looked_at(void **state) {
-  (void)state;
+CASE(the_first_pair_is_the_nearest_of_all_points_looked_at) {
   rng r = rng_seed(41);
   for (size_t round = 0; round < test_cases(1000); round++) {
     double points[2][3 * (MAX_DEGREE + 1)], s[2];
@@ -320,8 +308,7 @@ static void the_first_pair_is_the_nearest_of_all_points_looked_at(void **state) 
 
 /* Seed 42, 400 pairs of degree 5 in neighbouring cubes, of which those count that are more than 0.02 apart. Nine in ten are seen at the
  * first node to come within 1.1 times their distance, and half are known within four to stay beyond 0.9 of it. */
-static void verdicts_about_pieces_take_few_nodes(void **state) {
-  (void)state;
+CASE(verdicts_about_pieces_take_few_nodes) {
   enum { PAIRS = 400, POINTS = 6 };
   rng r = rng_seed(42);
   uint32_t seen_at_once = 0, settled_soon = 0, asked = 0;
@@ -350,8 +337,7 @@ static void verdicts_about_pieces_take_few_nodes(void **state) {
   assert_true(10 * seen_at_once > 9 * asked && 2 * settled_soon > asked);
 }
 
-static void a_target_is_a_body_or_a_curve_and_not_both(void **state) {
-  (void)state;
+CASE(a_target_is_a_body_or_a_curve_and_not_both) {
   cprox_curve *curve = bezier((vec3[]){{0, 0, 0}, {1, 0, 0}}, 2);
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
@@ -370,15 +356,5 @@ static void a_target_is_a_body_or_a_curve_and_not_both(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(curve_curve_intervals_contain_their_references),
-      cmocka_unit_test(no_bound_lies_above_the_distance_of_two_points),
-      cmocka_unit_test(contacts_of_every_kind_end_within_their_budget),
-      cmocka_unit_test(concentric_arcs_spend_their_budget_and_say_so),
-      cmocka_unit_test(long_splines_are_searched_by_their_trees),
-      cmocka_unit_test(the_first_pair_is_the_nearest_of_all_points_looked_at),
-      cmocka_unit_test(verdicts_about_pieces_take_few_nodes),
-      cmocka_unit_test(a_target_is_a_body_or_a_curve_and_not_both),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

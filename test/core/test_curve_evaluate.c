@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Points, derivatives and sub-intervals of Bézier curves against de Casteljau in long double, whose own error is 1/2000
  * of every bound here. u = 2^-53, M = max|control point|, n the degree. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "curve/curve.h"
+#include "support/cases.h"
 #include "support/curves.h"
 #include "support/reference.h"
 
@@ -22,8 +16,7 @@ static cprox_curve *bezier(const vec3 *p, size_t degree, double t0, double t1) {
 
 /* seed 101, 100,000 cases. Value: (3n + 8) u M, derived beside the function. The derivatives are n(d1 - d0) and so on of
  * points that are off by 3n u M each: n (6n + 8) u M and n(n-1)(12n + 12) u M. */
-static void a_bezier_point_and_its_derivatives_stay_within_their_bounds(void **state) {
-  (void)state;
+CASE(a_bezier_point_and_its_derivatives_stay_within_their_bounds) {
   rng r = rng_seed(101);
   double largest = 0.0;
   for (size_t i = test_cases(100000); i-- > 0;) {
@@ -47,8 +40,7 @@ static void a_bezier_point_and_its_derivatives_stay_within_their_bounds(void **s
 }
 
 /* seed 102, 20,000 cases */
-static void ends_are_exact_and_a_stride_changes_nothing(void **state) {
-  (void)state;
+CASE(ends_are_exact_and_a_stride_changes_nothing) {
   rng r = rng_seed(102);
   for (size_t i = test_cases(20000); i-- > 0;) {
     const size_t degree = random_degree(&r);
@@ -70,8 +62,7 @@ static void ends_are_exact_and_a_stride_changes_nothing(void **state) {
 }
 
 /* Powers of s down to 1e-300^58 vanish on the way; what is left must be the true point. */
-static void powers_that_underflow_do_no_harm(void **state) {
-  (void)state;
+CASE(powers_that_underflow_do_no_harm) {
   rng r = rng_seed(103);
   vec3 p[61], value;
   for (int exponent = -1074; exponent < 0; exponent++) {
@@ -86,8 +77,7 @@ static void powers_that_underflow_do_no_harm(void **state) {
 
 /* seed 104, 100,000 cases, (6n + 20) u M as the header promises; derivatives by t: rounding s moves them by at most
  * 2u times the next derivative, 2n·n M and 4n·n·n M, and the quotient rounds twice. */
-static void evaluation_by_t_stays_within_its_bound(void **state) {
-  (void)state;
+CASE(evaluation_by_t_stays_within_its_bound) {
   rng r = rng_seed(104);
   for (size_t i = test_cases(100000); i-- > 0;) {
     const size_t degree = random_degree(&r);
@@ -112,8 +102,7 @@ static void evaluation_by_t_stays_within_its_bound(void **state) {
 
 /* seed 105, 100,000 sub-intervals, 5n u M a control point (curve_blossom). The reference cuts twice, in long double, on
  * doubles a and b that share a binade with the ends: 2000 times finer than the bound. */
-static void control_points_of_a_part_stay_within_their_bound(void **state) {
-  (void)state;
+CASE(control_points_of_a_part_stay_within_their_bound) {
   rng r = rng_seed(105);
   double largest = 0.0;
   for (size_t i = test_cases(100000); i-- > 0;) {
@@ -145,8 +134,7 @@ static void control_points_of_a_part_stay_within_their_bound(void **state) {
   assert_true(largest > 0.05);
 }
 
-static void the_whole_range_gives_the_control_points_back(void **state) {
-  (void)state;
+CASE(the_whole_range_gives_the_control_points_back) {
   rng r = rng_seed(106);
   for (size_t degree = 1; degree <= 60; degree++) {
     vec3 p[61], part[61], low, high;
@@ -171,13 +159,5 @@ static void the_whole_range_gives_the_control_points_back(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_bezier_point_and_its_derivatives_stay_within_their_bounds),
-      cmocka_unit_test(ends_are_exact_and_a_stride_changes_nothing),
-      cmocka_unit_test(powers_that_underflow_do_no_harm),
-      cmocka_unit_test(evaluation_by_t_stays_within_its_bound),
-      cmocka_unit_test(control_points_of_a_part_stay_within_their_bound),
-      cmocka_unit_test(the_whole_range_gives_the_control_points_back),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

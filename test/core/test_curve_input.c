@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What is wrong is refused in one sentence that says what and where, *curve stays as it was, and nothing leaks. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "curve/curve.h"
+#include "support/cases.h"
 #include "support/counting.h"
 
 static cprox_workspace *workspace;
@@ -48,8 +43,7 @@ static void bspline_refused(const good_spline *s, size_t n, size_t degree, size_
   assert_int_equal(allocations_live(), live);
 }
 
-static void bad_control_points_are_refused(void **state) {
-  (void)state;
+CASE(bad_control_points_are_refused) {
   vec3 many[62] = {{0, 0, 0}};
   bezier_refused(NULL, 3, 0, 1, "the control points are NULL");
   bezier_refused(NULL, 0, 0, 1, "a curve needs at least 2 control points, got 0");
@@ -71,8 +65,7 @@ static void bad_control_points_are_refused(void **state) {
   bezier_refused(many, 3, 0, 1, "control point 1 is (0, 0, -2e+150), beyond 1e+150 m");
 }
 
-static void bad_ranges_are_refused(void **state) {
-  (void)state;
+CASE(bad_ranges_are_refused) {
   const vec3 points[2] = {{0, 0, 0}, {1, 1, 1}};
   bezier_refused(points, 2, 1, 1, "t0 = 1 is not below t1 = 1");
   bezier_refused(points, 2, 2, 1, "t0 = 2 is not below t1 = 1");
@@ -89,8 +82,7 @@ static void bad_ranges_are_refused(void **state) {
   bspline_refused(&open, 5, 2, 8, 2, 6, "[t0, t1] = [2, 6] leaves the spline's domain [2, 5]");
 }
 
-static void bad_degrees_and_knots_are_refused(void **state) {
-  (void)state;
+CASE(bad_degrees_and_knots_are_refused) {
   bspline_refused(&good, 5, 0, 6, 0, 1, "the degree is 0; a curve needs at least 1");
   bspline_refused(&good, 5, 61, 67, 0, 1, "the degree is 61, above 60");
   bspline_refused(&good, 2, 2, 5, 0, 1, "a B-spline of degree 2 needs at least 3 control points, got 2");
@@ -119,8 +111,7 @@ static void polynomial_refused(const vec3 *c, size_t n, double t0, double t1, co
   assert_int_equal(allocations_live(), live);
 }
 
-static void bad_polynomials_are_refused(void **state) {
-  (void)state;
+CASE(bad_polynomials_are_refused) {
   vec3 c[62] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
   polynomial_refused(c, 0, 0, 1, "there is no coefficient; a curve needs at least 1");
   polynomial_refused(c, 62, 0, 1, "there are 62 coefficients, above 61");
@@ -137,8 +128,7 @@ static void bad_polynomials_are_refused(void **state) {
   polynomial_refused(c, 3, 0, 1, "coefficient 1 is (4, -2e+150, 6), beyond 1e+150 m");
 }
 
-static void bad_legendre_series_are_refused(void **state) {
-  (void)state;
+CASE(bad_legendre_series_are_refused) {
   cprox_curve *curve = (cprox_curve *)workspace;
   const size_t live = allocations_live();
   vec3 c[62] = {{1, 2, 3}, {4, 5, 6}, {9e149, 0, 0}, {9e149, 0, 0}};
@@ -164,8 +154,7 @@ static void lagrange_refused(const vec3 *y, const double *x, size_t n, const cha
   assert_int_equal(allocations_live(), live);
 }
 
-static void bad_nodes_and_values_are_refused(void **state) {
-  (void)state;
+CASE(bad_nodes_and_values_are_refused) {
   vec3 y[62] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
   double x[62] = {0, 0.5, 1};
   lagrange_refused(y, x, 0, "there is no point; a curve needs at least 1");
@@ -189,8 +178,7 @@ static void bad_nodes_and_values_are_refused(void **state) {
   refused(cprox_curve_create_lagrange(y, x, 2, 0, 1, workspace, NULL), curve, "the pointer for the new curve is NULL");
 }
 
-static void a_missing_result_pointer_is_refused(void **state) {
-  (void)state;
+CASE(a_missing_result_pointer_is_refused) {
   assert_int_equal(cprox_curve_create_bezier(good.points, 5, 0, 1, workspace, NULL), CPROX_INVALID);
   assert_string_equal(cprox_workspace_reason(workspace), "the pointer for the new curve is NULL");
   assert_int_equal(cprox_curve_create_polynomial(good.points, 5, 0, 1, workspace, NULL), CPROX_INVALID);
@@ -199,8 +187,7 @@ static void a_missing_result_pointer_is_refused(void **state) {
   assert_string_equal(cprox_workspace_reason(workspace), "the pointer for the new curve is NULL");
 }
 
-static void questions_outside_the_range_are_refused(void **state) {
-  (void)state;
+CASE(questions_outside_the_range_are_refused) {
   cprox_curve *curve = NULL;
   assert_int_equal(cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, &curve), CPROX_OK);
   assert_string_equal(cprox_workspace_reason(workspace), "");
@@ -234,8 +221,7 @@ static void questions_outside_the_range_are_refused(void **state) {
 }
 
 /* Each allocation of a constructor fails in turn. */
-static void memory_that_is_out_leaks_nothing(void **state) {
-  (void)state;
+CASE(memory_that_is_out_leaks_nothing) {
   cprox_curve_free(NULL);
   for (int kind = 0; kind < 7; kind++) {
     const size_t live = allocations_live();
@@ -279,12 +265,5 @@ static int tear_down(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bad_control_points_are_refused),      cmocka_unit_test(bad_ranges_are_refused),
-      cmocka_unit_test(bad_degrees_and_knots_are_refused),   cmocka_unit_test(bad_polynomials_are_refused),
-      cmocka_unit_test(bad_legendre_series_are_refused),     cmocka_unit_test(bad_nodes_and_values_are_refused),
-      cmocka_unit_test(a_missing_result_pointer_is_refused), cmocka_unit_test(questions_outside_the_range_are_refused),
-      cmocka_unit_test(memory_that_is_out_leaks_nothing),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cases_run(set_up, tear_down);
 }

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Curves with names (heart, ranunculoid, fish and Lissajous as trigonometric series, Euler spiral, involutes): the intervals
  * contain the reference answers of test/data/reference/named_ref.csv. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
+#include "support/cases.h"
 #include "support/csv.h"
 
 #define MOST_DEGREE 6
@@ -121,23 +116,20 @@ static void check_curves(const char *id, cprox_curve *first, cprox_curve *second
   cprox_curve_free(first);
 }
 
-static void hearts_and_ranunculoids_against_polygons(void **state) {
-  (void)state;
+CASE(hearts_and_ranunculoids_against_polygons) {
   check_polygon("a_heart_poly", compile(heart()));
   check_polygon("b_ranunculoid_poly", compile(ranunculoid()));
   check_polygon("heart_in_collision_poly", compile(heart()));
 }
 
-static void a_fish_against_lissajous_curves(void **state) {
-  (void)state;
+CASE(a_fish_against_lissajous_curves) {
   check_curves("f_fish_lissajous32", compile(fish()), compile(placed(lissajous(3, 2), 0.0, 0.75, 0.2)));
   check_curves("f2_fish_lissajous54", compile(placed(fish(), 0.3, 0.0, 0.0)),
                compile(placed(lissajous(5, 4), 0.5, 0.8, 0.1)));
 }
 
 /* a (∫ cos s², ∫ sin s²) for t in [-2π, 2π]: of curvature 2t/a, at arc length a t. a = 1/2 costs no rounding. */
-static void an_euler_spiral_against_a_polygon(void **state) {
-  (void)state;
+CASE(an_euler_spiral_against_a_polygon) {
   cprox_curve *curve = NULL;
   assert_int_equal(
       cprox_curve_create_clothoid(vec(0, 0, 0), 0.0, 0.0, 8.0, -3.141592653589793, 3.141592653589793, NULL, &curve),
@@ -146,8 +138,7 @@ static void an_euler_spiral_against_a_polygon(void **state) {
 }
 
 /* The rows that are Bézier curves, in the layout of the other reference files. */
-static void bezier_curves_with_names(void **state) {
-  (void)state;
+CASE(bezier_curves_with_names) {
   csv_table in = csv_read("reference/namedbez_inputs.csv");
   for (size_t i = 0; i < in.n; i++) {
     const csv_row *row = &in.row[i];
@@ -183,15 +174,13 @@ static cprox_curve *involute(double turned, double x, double y) {
   return curve;
 }
 
-static void involutes_against_curves(void **state) {
-  (void)state;
+CASE(involutes_against_curves) {
   check_curves("e_involute_involute", involute(0.0, 0.0, 0.0), involute(3.141592653589793, 0.8, 0.15));
   check_curves("fig1b_heart_involute", compile(heart()), involute(3.141592653589793, -1.0, 0.0));
 }
 
 /* One row asks the Euler spiral by another method of its own; it has the reference of the other. */
-static void every_reference_was_asked(void **state) {
-  (void)state;
+CASE(every_reference_was_asked) {
   csv_table ref = csv_read("reference/named_ref.csv"), in = csv_read("reference/named_inputs.csv");
   assert_int_equal(asked, ref.n);
   assert_int_equal(asked + 1, in.n);
@@ -200,13 +189,5 @@ static void every_reference_was_asked(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(hearts_and_ranunculoids_against_polygons),
-      cmocka_unit_test(a_fish_against_lissajous_curves),
-      cmocka_unit_test(an_euler_spiral_against_a_polygon),
-      cmocka_unit_test(involutes_against_curves),
-      cmocka_unit_test(bezier_curves_with_names),
-      cmocka_unit_test(every_reference_was_asked),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

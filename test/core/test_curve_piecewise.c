@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Curves end to end are the curves they are made of: point for point in 113 bits, at their own parameters. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "base/rounding.h"
+#include "support/cases.h"
 #include "support/curves.h"
 #include "support/quad.h"
 
@@ -48,8 +42,7 @@ static quad3 bernstein(const vec3 *p, size_t degree, quad s) {
 }
 
 /* seed 621, 1400 curves of 1 … 5, about 80 points each. */
-static void the_whole_is_its_parts(void **state) {
-  (void)state;
+CASE(the_whole_is_its_parts) {
   rng r = rng_seed(621);
   double largest = 0.0, largest_moved = 0.0;
   for (size_t i = test_cases(1400); i-- > 0;) {
@@ -100,8 +93,7 @@ static void the_whole_is_its_parts(void **state) {
 }
 
 /* A line, a jump, a line: the point between the two is nearer to neither end than both are. */
-static void a_jump_is_not_bridged(void **state) {
-  (void)state;
+CASE(a_jump_is_not_bridged) {
   const vec3 a[2] = {{0, 0, 0}, {1, 0, 0}}, b[2] = {{1, 2, 0}, {2, 2, 0}};
   cprox_curve *part[2] = {NULL, NULL}, *whole = NULL;
   assert_int_equal(cprox_curve_create_bezier(a, 2, 0, 1, NULL, &part[0]), CPROX_OK);
@@ -128,8 +120,7 @@ static void refused(const cprox_curve *const *curves, size_t n, const double *en
   cprox_workspace_free(ws);
 }
 
-static void bad_pieces_are_refused(void **state) {
-  (void)state;
+CASE(bad_pieces_are_refused) {
   const vec3 a[2] = {{0, 0, 0}, {1, 0, 0}}, b[2] = {{1, 2, 0}, {2, 2, 0}};
   cprox_curve *part[3] = {NULL, NULL, NULL};
   assert_int_equal(cprox_curve_create_bezier(a, 2, 0, 1, NULL, &part[0]), CPROX_OK);
@@ -150,10 +141,5 @@ static void bad_pieces_are_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_whole_is_its_parts),
-      cmocka_unit_test(a_jump_is_not_bridged),
-      cmocka_unit_test(bad_pieces_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Clothoids, Dubins paths and involutes against their definitions in long double: every point of the compiled pieces is within
  * their error. Clothoids are integrated anew, by Gauss' rule with 16 nodes in steps of half a radian at most. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "base/rounding.h"
 #include "curve/compile.h"
+#include "support/cases.h"
 #include "support/curves.h"
 #include "support/quad.h"
 #include "support/reference.h"
@@ -124,8 +119,7 @@ static double signed_uniform(rng *r, double low, double high) {
 }
 
 /* seed 601, 2500 clothoids, 40 points each. What long double loses: 30 roundings of the length and those of the heading. */
-static void clothoids_are_within_their_error(void **state) {
-  (void)state;
+CASE(clothoids_are_within_their_error) {
   rng r = rng_seed(601);
   worst w = {0};
   size_t pieces = 0;
@@ -158,8 +152,7 @@ static void clothoids_are_within_their_error(void **state) {
 }
 
 /* seed 602, 2500 involutes, 40 points each. */
-static void involutes_are_within_their_error(void **state) {
-  (void)state;
+CASE(involutes_are_within_their_error) {
   rng r = rng_seed(602);
   worst w = {0};
   for (size_t i = test_cases(2500); i-- > 0;) {
@@ -236,8 +229,7 @@ static void walk_path(dubins_walker *d, const cprox_dubins_path *path, double ra
 
 /* seed 603, 3200 pairs of poses, one word each, 40 points. The end: two turns that may be left out, and 40 roundings of the path
  * and of the coordinates; its heading besides: two roundings of a joint's arc length. */
-static void dubins_paths_are_within_their_error_and_reach_their_end(void **state) {
-  (void)state;
+CASE(dubins_paths_are_within_their_error_and_reach_their_end) {
   rng r = rng_seed(603);
   worst w = {0};
   double largest_gap = 0.0;
@@ -284,8 +276,7 @@ static void dubins_paths_are_within_their_error_and_reach_their_end(void **state
 }
 
 /* The shortest is as short as each of the six, and a straight line or an arc stays one: no turn is made of rounding. */
-static void the_shortest_word_is_the_shortest(void **state) {
-  (void)state;
+CASE(the_shortest_word_is_the_shortest) {
   rng r = rng_seed(604);
   for (size_t i = test_cases(500); i-- > 0;) {
     const poses p = random_poses(&r);
@@ -330,8 +321,7 @@ static void refused(cprox_status status, cprox_workspace *workspace, const char 
   assert_string_equal(cprox_workspace_reason(workspace), reason);
 }
 
-static void bad_clothoids_and_involutes_are_refused(void **state) {
-  (void)state;
+CASE(bad_clothoids_and_involutes_are_refused) {
   cprox_workspace *ws = cprox_workspace_create();
   cprox_curve *c = NULL;
   const vec3 o = {0, 0, 0};
@@ -359,8 +349,7 @@ static void bad_clothoids_and_involutes_are_refused(void **state) {
 }
 
 /* No constructor leads there: what is without length is refused before. */
-static void a_curve_without_pieces_is_not_made(void **state) {
-  (void)state;
+CASE(a_curve_without_pieces_is_not_made) {
   cprox_workspace *ws = cprox_workspace_create();
   compile none = {.workspace = ws};
   cprox_curve *c = NULL;
@@ -369,8 +358,7 @@ static void a_curve_without_pieces_is_not_made(void **state) {
   cprox_workspace_free(ws);
 }
 
-static void bad_dubins_paths_are_refused(void **state) {
-  (void)state;
+CASE(bad_dubins_paths_are_refused) {
   cprox_workspace *ws = cprox_workspace_create();
   cprox_curve *c = NULL;
   const vec3 o = {0, 0, 0}, e = {1, 0, 0};
@@ -402,14 +390,5 @@ static void bad_dubins_paths_are_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(clothoids_are_within_their_error),
-      cmocka_unit_test(involutes_are_within_their_error),
-      cmocka_unit_test(dubins_paths_are_within_their_error_and_reach_their_end),
-      cmocka_unit_test(the_shortest_word_is_the_shortest),
-      cmocka_unit_test(bad_clothoids_and_involutes_are_refused),
-      cmocka_unit_test(a_curve_without_pieces_is_not_made),
-      cmocka_unit_test(bad_dubins_paths_are_refused),
-  };
-  return cmocka_run_group_tests(tests, find_nodes, NULL);
+  return cases_run(find_nodes, NULL);
 }

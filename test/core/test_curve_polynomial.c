@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Polynomials given by powers, by Legendre coefficients and by values, each against its own definition in 113 bits. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
+#include "support/cases.h"
 #include "support/curves.h"
 #include "support/quad.h"
 #include "support/reference.h"
@@ -89,8 +83,7 @@ static void random_powers(rng *r, definition *d, vec3 *c) {
 
 /* seed 501, 100,000 curves, three parameters each. Up to degree 20, with terms no larger than 1e10 times the curve, no
  * more than 5 u max|psi| is lost (4 by the halving, the rest by what the ends miss of the maximum). */
-static void polynomials_are_within_their_error(void **state) {
-  (void)state;
+CASE(polynomials_are_within_their_error) {
   rng r = rng_seed(501);
   tally all = {0};
   for (size_t i = test_cases(100000); i-- > 0;) {
@@ -137,8 +130,7 @@ static quad3 by_legendre(const definition *d, double t, double *terms) {
 
 /* seed 502, 100,000 curves, three parameters each; coefficients that fall off, or not at all. The error allowed up to
  * degree 40 is 5 u of the coefficients' sum, which |psi| does not exceed. */
-static void legendre_series_are_within_their_error(void **state) {
-  (void)state;
+CASE(legendre_series_are_within_their_error) {
   rng r = rng_seed(502);
   tally all = {0};
   for (size_t i = test_cases(100000); i-- > 0;) {
@@ -223,8 +215,7 @@ static bool all_differ(const double *x, size_t n) {
 
 /* seed 503, 100,000 curves, three parameters each. Even nodes up to degree 20 and Chebyshev's up to 60 lose no more than
  * 5 u times the sum of |y_i l_i| where it is largest. */
-static void lagrange_curves_are_within_their_error(void **state) {
-  (void)state;
+CASE(lagrange_curves_are_within_their_error) {
   rng r = rng_seed(503);
   tally all = {0};
   double worst_even = 0.0, worst_chebyshev = 0.0;
@@ -260,8 +251,7 @@ static void lagrange_curves_are_within_their_error(void **state) {
 }
 
 /* One coefficient is a curve that stands still, exactly. */
-static void a_constant_stands_still(void **state) {
-  (void)state;
+CASE(a_constant_stands_still) {
   const vec3 p = {0.1, -0.2, 1e6};
   cprox_curve *curve = NULL;
   assert_int_equal(cprox_curve_create_polynomial(&p, 1, -3.0, 5.0, NULL, &curve), CPROX_OK);
@@ -280,11 +270,5 @@ static void a_constant_stands_still(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(polynomials_are_within_their_error),
-      cmocka_unit_test(legendre_series_are_within_their_error),
-      cmocka_unit_test(lagrange_curves_are_within_their_error),
-      cmocka_unit_test(a_constant_stands_still),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

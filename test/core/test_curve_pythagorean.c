@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Pythagorean-hodograph curves against their definition in 113 bits: the preimage by its powers, its form squared and
  * integrated term by term. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
+#include "support/cases.h"
 #include "support/curves.h"
 #include "support/quad.h"
 
@@ -80,8 +74,7 @@ static size_t random_preimage(rng *r, cprox_quat *a) {
 }
 
 /* seed 611, 10000 curves, 12 points each. The reference adds a few roundings of 113 bits a term. */
-static void every_piece_is_within_its_error_of_the_integral(void **state) {
-  (void)state;
+CASE(every_piece_is_within_its_error_of_the_integral) {
   rng r = rng_seed(611);
   double largest = 0.0;
   for (size_t i = test_cases(10000); i-- > 0;) {
@@ -111,8 +104,7 @@ static void every_piece_is_within_its_error_of_the_integral(void **state) {
 }
 
 /* (1 + is)² = 1 - s² + 2is: the curve (s - s³/3, s²), and its speed 1 + s². */
-static void a_planar_cubic_is_the_known_one(void **state) {
-  (void)state;
+CASE(a_planar_cubic_is_the_known_one) {
   const cprox_quat a[2] = {{1, 0, 0, 0}, {1, 0, 0, 1}};
   cprox_curve *c = NULL;
   assert_int_equal(cprox_curve_create_pythagorean_hodograph(vec(0, 0, 0), a, 2, 0, 1, NULL, &c), CPROX_OK);
@@ -125,8 +117,7 @@ static void a_planar_cubic_is_the_known_one(void **state) {
   cprox_curve_free(c);
 }
 
-static void bad_preimages_are_refused(void **state) {
-  (void)state;
+CASE(bad_preimages_are_refused) {
   cprox_workspace *ws = cprox_workspace_create();
   cprox_curve *c = NULL;
   cprox_quat a[31] = {{1, 0, 0, 0}};
@@ -153,10 +144,5 @@ static void bad_preimages_are_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_piece_is_within_its_error_of_the_integral),
-      cmocka_unit_test(a_planar_cubic_is_the_known_one),
-      cmocka_unit_test(bad_preimages_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

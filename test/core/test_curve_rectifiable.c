@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Curves that are known by their arc length alone. The same Bézier curve is asked both ways: by its control points, and by its
  * points and sqrt((b - a) integral of |psi'|²); both answers are intervals that hold one true distance. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/rounding.h"
 #include "curve/rectifiable.h"
 #include "curve_proximity/cprox.h"
+#include "support/cases.h"
 #include "support/curves.h"
 #include "support/reference.h"
 
@@ -124,8 +119,7 @@ static void exact_line(rng *r, bezier *b, double *from, double *to) {
 
 /* seed 641, 20000 intervals down to 1e-12 long, of which a third on exact lines at even speed: there W² - L² is all rounding, and
  * a normal across the chord shows it. The reach is within 8u of the sizes, as its header says; n's own length is u from 1. */
-static void no_ellipsoid_leaves_out_a_point(void **state) {
-  (void)state;
+CASE(no_ellipsoid_leaves_out_a_point) {
   rng r = rng_seed(641);
   double largest = -INFINITY;
   for (size_t i = test_cases(20000); i-- > 0;) {
@@ -230,8 +224,7 @@ static void check_body(bezier *b, bool with_velocity, const cprox_target *target
 
 /* seed 642, 400 curves of 1e-6 … 1e6 m, half of them up to 1e6 m from the origin, every other one by Gauss and Kronrod. Epsilon
  * is 1e-6 of the size; where the points' own error of 2u at 1e6 m is not far below that, the answer may say so. */
-static void distances_by_arcs_and_by_points_agree(void **state) {
-  (void)state;
+CASE(distances_by_arcs_and_by_points_agree) {
   rng r = rng_seed(642);
   cprox_workspace *ws = cprox_workspace_create();
   unsigned long nodes = 0, most = 0, n = 0, not_ok = 0;
@@ -260,8 +253,7 @@ static void distances_by_arcs_and_by_points_agree(void **state) {
 
 /* seed 647, 200 curves: the first contact by arcs is not after the one by points, nor before the free stretch that is proven; and
  * every stretch of the profile holds what the stretch by points holds. */
-static void first_contacts_and_profiles_agree(void **state) {
-  (void)state;
+CASE(first_contacts_and_profiles_agree) {
   rng r = rng_seed(647);
   cprox_workspace *ws = cprox_workspace_create();
   unsigned long hits = 0;
@@ -300,8 +292,7 @@ static void first_contacts_and_profiles_agree(void **state) {
 }
 
 /* seed 643, 60 pairs; 1e-4, both by arcs or one by points. */
-static void curves_by_arcs_and_by_points_agree(void **state) {
-  (void)state;
+CASE(curves_by_arcs_and_by_points_agree) {
   rng r = rng_seed(643);
   cprox_workspace *ws = cprox_workspace_create();
   unsigned long nodes = 0, n = 0, not_ok = 0;
@@ -334,8 +325,7 @@ static void curves_by_arcs_and_by_points_agree(void **state) {
 
 /* ---- what is wrong ---- */
 
-static void what_contradicts_itself_is_refused_at_once(void **state) {
-  (void)state;
+CASE(what_contradicts_itself_is_refused_at_once) {
   rng r = rng_seed(644);
   cprox_workspace *ws = cprox_workspace_create();
   cprox_curve *c = NULL;
@@ -376,8 +366,7 @@ static void what_contradicts_itself_is_refused_at_once(void **state) {
 
 /* Distances and first contacts with a curve whose functions go wrong after it was made: an honest status and sentence and no result,
  * or an answer that did not need to ask. */
-static void what_goes_wrong_midway_ends_the_query(void **state) {
-  (void)state;
+CASE(what_goes_wrong_midway_ends_the_query) {
   rng r = rng_seed(645);
   cprox_workspace *ws = cprox_workspace_create();
   int asked = 0, refused = 0;
@@ -423,8 +412,7 @@ static void what_goes_wrong_midway_ends_the_query(void **state) {
 }
 
 /* What such a curve has not is said, and what it has is right. */
-static void it_says_what_it_is(void **state) {
-  (void)state;
+CASE(it_says_what_it_is) {
   rng r = rng_seed(646);
   bezier b = random_bezier(&r);
   cprox_workspace *ws = cprox_workspace_create();
@@ -459,14 +447,5 @@ static void it_says_what_it_is(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(no_ellipsoid_leaves_out_a_point),
-      cmocka_unit_test(distances_by_arcs_and_by_points_agree),
-      cmocka_unit_test(first_contacts_and_profiles_agree),
-      cmocka_unit_test(curves_by_arcs_and_by_points_agree),
-      cmocka_unit_test(what_contradicts_itself_is_refused_at_once),
-      cmocka_unit_test(what_goes_wrong_midway_ends_the_query),
-      cmocka_unit_test(it_says_what_it_is),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Curves by a caller's functions: the compiled pieces are within their error of them, and what the functions say falsely is
  * refused where it shows. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "base/rounding.h"
+#include "support/cases.h"
 #include "support/curves.h"
 #include "support/quad.h"
 
@@ -70,8 +65,7 @@ static blend random_blend(rng *r) {
 }
 
 /* seed 631, 2000 curves, 50 points each. */
-static void every_piece_is_within_its_error(void **state) {
-  (void)state;
+CASE(every_piece_is_within_its_error) {
   rng r = rng_seed(631);
   double largest = 0.0;
   size_t pieces = 0;
@@ -104,8 +98,7 @@ static void every_piece_is_within_its_error(void **state) {
 }
 
 /* A logarithm from 1e-3 on: its pieces grow with t, by 1000 from the first to the last. */
-static void pieces_are_as_long_as_the_bound_allows_where_they_are(void **state) {
-  (void)state;
+CASE(pieces_are_as_long_as_the_bound_allows_where_they_are) {
   blend f = {.c = 1.0, .spoilt_from = INFINITY, .sixth_factor = 1.0};
   cprox_smooth_curve given = functions(&f, 1e-3, 1.0);
   given.accuracy = 1e-12;
@@ -130,8 +123,7 @@ static void refused(blend f, double t1, const char *reason) {
 }
 
 /* A bound of 2/3 of the truth, an error that is not stated, a number that is none: all show. */
-static void what_is_false_is_refused_where_it_shows(void **state) {
-  (void)state;
+CASE(what_is_false_is_refused_where_it_shows) {
   const blend good = {.a = 1.0, .w = 3.0, .b = 1.0, .k = 1.0, .c = 0.5, .spoilt_from = INFINITY, .sixth_factor = 1.0};
   blend f = good;
   f.sixth_factor = 0.66;
@@ -152,8 +144,7 @@ static void what_is_false_is_refused_where_it_shows(void **state) {
   refused(f, 0.5, "t0 = 0.5 is not below t1 = 0.5");
 }
 
-static void functions_that_are_missing_are_refused(void **state) {
-  (void)state;
+CASE(functions_that_are_missing_are_refused) {
   cprox_workspace *ws = cprox_workspace_create();
   cprox_curve *c = NULL;
   blend f = {.a = 1.0, .w = 1.0, .spoilt_from = INFINITY, .sixth_factor = 1.0};
@@ -174,11 +165,5 @@ static void functions_that_are_missing_are_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_piece_is_within_its_error),
-      cmocka_unit_test(pieces_are_as_long_as_the_bound_allows_where_they_are),
-      cmocka_unit_test(what_is_false_is_refused_where_it_shows),
-      cmocka_unit_test(functions_that_are_missing_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

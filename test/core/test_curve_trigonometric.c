@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Trigonometric series against themselves in long double: every point of the compiled pieces is within their error. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "support/cases.h"
 #include "support/curves.h"
 #include "support/quad.h"
 #include "support/reference.h"
@@ -39,8 +34,7 @@ static void random_series(rng *r, size_t degree, vec3 *c) {
 }
 
 /* seed 511, 4000 series, 40 parameters each. The bound is no padding: the remainder of an ellipse reaches it. */
-static void every_piece_is_within_its_error_of_the_series(void **state) {
-  (void)state;
+CASE(every_piece_is_within_its_error_of_the_series) {
   rng r = rng_seed(511);
   double largest = 0.0, largest_rounding = 0.0;
   size_t pieces = 0;
@@ -76,8 +70,7 @@ static void every_piece_is_within_its_error_of_the_series(void **state) {
 
 /* seed 512, 2000 parameters at 1e9 and more. With k <= 7 an angle kt has at most 56 digits: more than a double holds, none
  * too many for a long double, whose cosine is the reference. */
-static void parameters_far_from_zero_cost_nothing(void **state) {
-  (void)state;
+CASE(parameters_far_from_zero_cost_nothing) {
   rng r = rng_seed(512);
   for (size_t i = test_cases(2000); i-- > 0;) {
     const double t0 = rng_log_uniform(&r, 1e9, 1e12);
@@ -99,8 +92,7 @@ static void parameters_far_from_zero_cost_nothing(void **state) {
 }
 
 /* The remainder aimed at is reached, and so is the number of pieces that the header gives for a circle. */
-static void a_circle_takes_about_a_hundred_pieces(void **state) {
-  (void)state;
+CASE(a_circle_takes_about_a_hundred_pieces) {
   const vec3 c[3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
   cprox_curve *curve = NULL;
   assert_int_equal(cprox_curve_create_trigonometric(c, 3, 0, 6.283185307179586, NULL, &curve), CPROX_OK);
@@ -112,8 +104,7 @@ static void a_circle_takes_about_a_hundred_pieces(void **state) {
 }
 
 /* Terms that are all 0 are a point. */
-static void a_series_of_zeros_stands_still(void **state) {
-  (void)state;
+CASE(a_series_of_zeros_stands_still) {
   const vec3 c[5] = {{1, 2, 3}};
   cprox_curve *curve = NULL;
   assert_int_equal(cprox_curve_create_trigonometric(c, 5, 0, 6.0, NULL, &curve), CPROX_OK);
@@ -132,8 +123,7 @@ static void refused(const vec3 *c, size_t n, double t0, double t1, const char *r
   cprox_workspace_free(workspace);
 }
 
-static void bad_series_are_refused(void **state) {
-  (void)state;
+CASE(bad_series_are_refused) {
   vec3 c[123] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   refused(c, 0, 0, 1, "there is no coefficient; a curve needs at least 1");
   refused(c, 1, 0, 1, "the trigonometric series has a constant but no terms");
@@ -158,12 +148,5 @@ static void bad_series_are_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_piece_is_within_its_error_of_the_series),
-      cmocka_unit_test(parameters_far_from_zero_cost_nothing),
-      cmocka_unit_test(a_circle_takes_about_a_hundred_pieces),
-      cmocka_unit_test(a_series_of_zeros_stands_still),
-      cmocka_unit_test(bad_series_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

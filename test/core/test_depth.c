@@ -2,15 +2,9 @@
 /* Penetration depth of convex pairs. Polyhedra are held against all planes of the difference of their vertices in long double; the
  * other kinds against their support functions in long double: the depth is the least of them over all directions, so that any
  * direction bounds it from above and the best one, climbed to from many, is it. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "base/rounding.h"
 #include "curve_proximity/cprox.h"
+#include "support/cases.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
@@ -71,8 +65,7 @@ static void compare_with_directions(rng *r, const test_shape *a, const cprox_pos
 }
 
 /* Seed 81, 55 pairs of kinds, 40 cases each, sizes 1e-3 to 1e3, from just touching to concentric. The tolerance is long double's own. */
-static void no_direction_leads_out_sooner_and_the_normal_leads_out_so_soon(void **state) {
-  (void)state;
+CASE(no_direction_leads_out_sooner_and_the_normal_leads_out_so_soon) {
   rng r = rng_seed(81);
   static test_shape a, b;
   size_t asked = 0, open = 0;
@@ -119,8 +112,7 @@ static long double depth_of_hull(const vec3l *v, size_t n) {
 
 /* Seed 82, 150 pairs of hulls of 4 to 6 vertices, unit size: all planes of up to 36 differences. 1e-13 is what the planes called
  * supporting leave open. */
-static void hulls_are_as_deep_as_the_nearest_plane_of_their_difference(void **state) {
-  (void)state;
+CASE(hulls_are_as_deep_as_the_nearest_plane_of_their_difference) {
   rng r = rng_seed(82);
   size_t deep = 0;
   for (size_t k = 0; k < test_cases(150); k++) {
@@ -150,8 +142,7 @@ static void hulls_are_as_deep_as_the_nearest_plane_of_their_difference(void **st
 }
 
 /* Boxes with the same axes: the least of three differences; and what is moved out along the normal by the depth touches. */
-static void a_body_moved_out_by_the_depth_touches(void **state) {
-  (void)state;
+CASE(a_body_moved_out_by_the_depth_touches) {
   rng r = rng_seed(83);
   static test_shape a, b;
   for (size_t k = 0; k < test_cases(400); k++) {
@@ -178,8 +169,7 @@ static cprox_quat spun(cprox_quat q, double angle) {
 
 /* Seed 84, 600 coaxial pairs in random poses, of cylinders, cones and capsules, at most 1e-12 beside each other's axis: as deep all round
  * a ring, or at an end. A thousand directions of one meridian plane are the reference, and the closed form for two cylinders. */
-static void coaxial_bodies_are_measured_in_their_profile(void **state) {
-  (void)state;
+CASE(coaxial_bodies_are_measured_in_their_profile) {
   rng r = rng_seed(84);
   static test_shape a, b;
   const cprox_body_kind kinds[] = {CPROX_CYLINDER, CPROX_CONE, CPROX_CAPSULE};
@@ -218,8 +208,7 @@ static void coaxial_bodies_are_measured_in_their_profile(void **state) {
   }
 }
 
-static void a_small_budget_leaves_a_true_bracket(void **state) {
-  (void)state;
+CASE(a_small_budget_leaves_a_true_bracket) {
   cprox_body *a = NULL, *b = NULL;
   assert_int_equal(cprox_body_create_ellipsoid(vec(1, 2, 3), NULL, &a), CPROX_OK);
   assert_int_equal(cprox_body_create_ellipsoid(vec(2, 1, 1.5), NULL, &b), CPROX_OK);
@@ -241,12 +230,5 @@ static void a_small_budget_leaves_a_true_bracket(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(no_direction_leads_out_sooner_and_the_normal_leads_out_so_soon),
-      cmocka_unit_test(hulls_are_as_deep_as_the_nearest_plane_of_their_difference),
-      cmocka_unit_test(a_body_moved_out_by_the_depth_touches),
-      cmocka_unit_test(coaxial_bodies_are_measured_in_their_profile),
-      cmocka_unit_test(a_small_budget_leaves_a_true_bracket),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

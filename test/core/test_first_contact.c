@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* First contact along the parameter: never late, as close as asked, proven where it is said to be. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "base/frame.h"
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -61,8 +56,7 @@ static long double obstacle_distance(const obstacle *o, vec3l world) {
 
 /* 3000 random pairs, seed 1, degrees 1 to 9, points and tubes. Distances by long double at 60 parameters before t_free and at
  * t_free and t themselves; both sides of a comparison are within 1e-14 at this scale. */
-static void nothing_touches_before_t_free_and_t_free_is_within_epsilon_of_contact(void **state) {
-  (void)state;
+CASE(nothing_touches_before_t_free_and_t_free_is_within_epsilon_of_contact) {
   const double doubt = 1e-14;
   const size_t cases = test_cases(3000);
   rng r = rng_seed(1);
@@ -123,8 +117,7 @@ static long double descends_to(const vec3 *p, size_t degree, long double height)
 
 /* 1200 curves that go down through a plate of 1e-9 to 1e-3, seed 2, the plate turned anyhow. Where the curve meets the upper
  * side is found by bisection: t_free is no later, and no earlier than where the curve is still epsilon above. */
-static void a_plate_is_neither_missed_nor_met_late(void **state) {
-  (void)state;
+CASE(a_plate_is_neither_missed_nor_met_late) {
   const size_t cases = test_cases(1200);
   rng r = rng_seed(2);
   for (size_t i = 0; i < cases; i++) {
@@ -158,8 +151,7 @@ static void a_plate_is_neither_missed_nor_met_late(void **state) {
 
 /* 1200 parabolas over a ball whose top they pass at a height of -1e-3 … 1e-3, seed 3. The least height decides, except within
  * epsilon and rounding of 0. */
-static void grazes_are_told_from_misses(void **state) {
-  (void)state;
+CASE(grazes_are_told_from_misses) {
   const size_t cases = test_cases(1200);
   rng r = rng_seed(3);
   cprox_body *ball = NULL;
@@ -183,8 +175,7 @@ static void grazes_are_told_from_misses(void **state) {
 
 /* ---- splines, several targets, curves as targets ---------------------------------------------------------------------------- */
 
-static void the_earliest_of_many_targets_is_met(void **state) {
-  (void)state;
+CASE(the_earliest_of_many_targets_is_met) {
   const vec3 p[2] = {{0, 0, 0}, {10, 0, 0}};
   cprox_curve *curve = bezier(p, 2);
   cprox_body *ball = NULL;
@@ -207,8 +198,7 @@ static void the_earliest_of_many_targets_is_met(void **state) {
   cprox_curve_free(curve);
 }
 
-static void contact_on_a_late_piece_of_a_long_spline_is_found_there(void **state) {
-  (void)state;
+CASE(contact_on_a_late_piece_of_a_long_spline_is_found_there) {
   enum { N = 400 };
   static vec3 p[N];
   static double knots[N + 4];
@@ -230,8 +220,7 @@ static void contact_on_a_late_piece_of_a_long_spline_is_found_there(void **state
 }
 
 /* Two tubes, 300 pairs of cubics, seed 4, against the brute minimum over 400 parameters of the other curve. */
-static void tubes_meet_no_later_than_they_touch(void **state) {
-  (void)state;
+CASE(tubes_meet_no_later_than_they_touch) {
   const size_t cases = test_cases(300);
   rng r = rng_seed(4);
   size_t hits = 0;
@@ -262,8 +251,7 @@ static void tubes_meet_no_later_than_they_touch(void **state) {
   assert_true(hits * 4 > cases);
 }
 
-static void a_start_inside_is_contact_at_the_start(void **state) {
-  (void)state;
+CASE(a_start_inside_is_contact_at_the_start) {
   const vec3 p[3] = {{0.1, 0, 0}, {1, 1, 0}, {2, 0, 0}};
   cprox_curve *curve = bezier(p, 3);
   cprox_body *ball = NULL;
@@ -277,8 +265,7 @@ static void a_start_inside_is_contact_at_the_start(void **state) {
 }
 
 /* A line that slides along a face at distance 0 from its start on, and one that ends on the face. */
-static void resting_contact_ends_within_the_budget(void **state) {
-  (void)state;
+CASE(resting_contact_ends_within_the_budget) {
   cprox_body *box = NULL;
   assert_int_equal(cprox_body_create_box(vec(2, 2, 2), ws, &box), CPROX_OK);
   const vec3 slide[3] = {{-3, 0, 1}, {0, 0.5, 1}, {3, 0, 1}}, land[3] = {{0, 0, 2}, {0.5, 0, 2}, {0, 0.5, 1}};
@@ -294,8 +281,7 @@ static void resting_contact_ends_within_the_budget(void **state) {
   cprox_body_free(box);
 }
 
-static void out_of_budget_t_free_is_still_true(void **state) {
-  (void)state;
+CASE(out_of_budget_t_free_is_still_true) {
   const vec3 p[4] = {{-2, 0.1, 0}, {3, 2, 0}, {-3, -2, 0.5}, {2, 0.5, 0}};
   cprox_curve *curve = bezier(p, 4);
   cprox_body *ball = NULL;
@@ -315,16 +301,5 @@ static void out_of_budget_t_free_is_still_true(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nothing_touches_before_t_free_and_t_free_is_within_epsilon_of_contact),
-      cmocka_unit_test(a_plate_is_neither_missed_nor_met_late),
-      cmocka_unit_test(grazes_are_told_from_misses),
-      cmocka_unit_test(the_earliest_of_many_targets_is_met),
-      cmocka_unit_test(contact_on_a_late_piece_of_a_long_spline_is_found_there),
-      cmocka_unit_test(tubes_meet_no_later_than_they_touch),
-      cmocka_unit_test(a_start_inside_is_contact_at_the_start),
-      cmocka_unit_test(resting_contact_ends_within_the_budget),
-      cmocka_unit_test(out_of_budget_t_free_is_still_true),
-  };
-  return cmocka_run_group_tests_name("first contact", tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

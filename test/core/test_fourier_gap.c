@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The guarantee: a certified "clear" is never wrong, and bodies beyond the over-reach are never called colliding. Truth comes from
  * separating axes of convex pieces and from distances between their edges. Larger campaigns: CPROX_TEST_SCALE. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "fourier/gap.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/csv.h"
 #include "support/random.h"
 
@@ -116,8 +111,7 @@ static long double exact(const shape *a, const cprox_pose *pa, const shape *b, c
 /* Seed 711: letters, a star and polygons at random poses, a third of them near contact. Certified mode at n = 9, 17, 33: no
  * overlap deeper than 1e-12 is called clear, nothing beyond the proven over-reach is called colliding, and what is called so is within
  * 3.6 L/n. Tuned mode: within 1.7 L/n from n = 17 on (rods at n = 9 reach 2.2). */
-static void certified_is_never_wrong_about_clear(void **state) {
-  (void)state;
+CASE(certified_is_never_wrong_about_clear) {
   static const char *const names[] = {"L", "T", "E", "star", "square", "triangle", "hex", "rod"};
   enum { N = sizeof names / sizeof *names };
   csv_table t = csv_read("fourier/spectrum_2d.csv");
@@ -199,8 +193,7 @@ static long double box_overlap(const double h[2][3], const frame f[2]) {
 }
 
 /* Seed 712: the same for boxes in space, as boxes and as meshes, against each other. */
-static void certified_is_never_wrong_in_space(void **state) {
-  (void)state;
+CASE(certified_is_never_wrong_in_space) {
   rng r = rng_seed(712);
   const double outside[1][4] = {{1, 0, 0, 99}};
   size_t colliding = 0, clear = 0;
@@ -241,8 +234,7 @@ static void certified_is_never_wrong_in_space(void **state) {
 }
 
 /* A dot on a dot among bars where the ball-shaped window's kernel is negative: the bars' negative share outweighs the dots'. */
-static void bars_around_a_dot_break_the_tuned_mode_and_not_the_certified_one(void **state) {
-  (void)state;
+CASE(bars_around_a_dot_break_the_tuned_mode_and_not_the_certified_one) {
   cprox_solid *dot, *bar, *all;
   MADE(cprox_solid_create_ball(2, 1e-3, ws, &dot));
   MADE(cprox_solid_create_box(2, vec(0.1, 8.5, 0), ws, &bar));
@@ -270,8 +262,7 @@ static void bars_around_a_dot_break_the_tuned_mode_and_not_the_certified_one(voi
 }
 
 /* Crossed rods 0.011 L thick: without an offset their overlap is below the t of an offset of L/4n, and would be called clear. */
-static void thin_bodies_need_the_offset(void **state) {
-  (void)state;
+CASE(thin_bodies_need_the_offset) {
   cprox_solid *rod;
   MADE(cprox_solid_create_box(2, vec(2, 0.05, 0), ws, &rod));
   const cprox_pose a = planar(0, 0, 0), b = planar(0.3, 0, 1.3);
@@ -296,8 +287,7 @@ static void thin_bodies_need_the_offset(void **state) {
 }
 
 /* Out to 50 periods in every direction images never answer for the body; at the edge of the bounding spheres neither. */
-static void images_of_the_period_never_answer(void **state) {
-  (void)state;
+CASE(images_of_the_period_never_answer) {
   rng r = rng_seed(713);
   cprox_solid *s;
   MADE(cprox_solid_create_box(2, vec(1, 0.6, 0), ws, &s));
@@ -328,8 +318,7 @@ static void images_of_the_period_never_answer(void **state) {
 }
 
 /* Kernels of the certified mode are squares: nonnegative up to rounding. */
-static void certified_kernels_are_not_negative(void **state) {
-  (void)state;
+CASE(certified_kernels_are_not_negative) {
   kernel k;
   for (int N = 1; N <= 96; N += N < 16 ? 1 : 16) {
     kernel_certified(&k, N, kernel_beta(2, 2 * N + 1));
@@ -347,8 +336,7 @@ static void certified_kernels_are_not_negative(void **state) {
 
 /* A gap for a delta holds it, with a proof; half the delta costs about twice the samples; a delta that memory does not hold is
  * refused with what it would take. */
-static void delta_chooses_no_more_than_is_needed(void **state) {
-  (void)state;
+CASE(delta_chooses_no_more_than_is_needed) {
   cprox_solid *a, *b;
   MADE(cprox_solid_create_box(2, vec(1, 0.6, 0), ws, &a));
   MADE(cprox_solid_create_ball(2, 0.5, ws, &b));
@@ -388,8 +376,7 @@ static void delta_chooses_no_more_than_is_needed(void **state) {
 }
 
 /* Bodies of very different sizes: the accuracy is that of the pair's period, which exceeds the small body here. */
-static void a_small_body_beside_a_large_one_is_seen_coarsely(void **state) {
-  (void)state;
+CASE(a_small_body_beside_a_large_one_is_seen_coarsely) {
   cprox_solid *large, *small;
   MADE(cprox_solid_create_box(2, vec(4, 4, 0), ws, &large));
   MADE(cprox_solid_create_box(2, vec(0.1, 0.1, 0), ws, &small));
@@ -410,15 +397,5 @@ static void a_small_body_beside_a_large_one_is_seen_coarsely(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(certified_is_never_wrong_about_clear),
-      cmocka_unit_test(certified_is_never_wrong_in_space),
-      cmocka_unit_test(bars_around_a_dot_break_the_tuned_mode_and_not_the_certified_one),
-      cmocka_unit_test(thin_bodies_need_the_offset),
-      cmocka_unit_test(images_of_the_period_never_answer),
-      cmocka_unit_test(certified_kernels_are_not_negative),
-      cmocka_unit_test(delta_chooses_no_more_than_is_needed),
-      cmocka_unit_test(a_small_body_beside_a_large_one_is_seen_coarsely),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

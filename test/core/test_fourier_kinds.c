@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Gaps of every pair of kinds of solids: those that can be proven are made for the delta that was asked, and what they say of an overlap and
  * of their over-reach holds against the distance of the same sets as convex bodies. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "fourier/gap.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/solids.h"
 
 #define MADE(call) \
@@ -119,8 +114,7 @@ static void delta_in_every_mode(rng *r, const test_solid s[2]) {
 }
 
 /* Seed 731: every pair of kinds in both dimensions and all modes, with the least period or a given one. */
-static void delta_is_had_by_every_pair_that_can_be_proven(void **state) {
-  (void)state;
+CASE(delta_is_had_by_every_pair_that_can_be_proven) {
   rng r = rng_seed(731);
   for (size_t i = 0; i < test_cases(1); i++)
     for (int dimension = 2; dimension <= 3; dimension++) visit_pairs(&r, dimension, delta_in_every_mode);
@@ -173,8 +167,7 @@ static void every_call(rng *r, const test_solid s[2]) {
 }
 
 /* Seed 732: one gap of every pair of kinds in each mode; in space of each kind with itself and with a box. */
-static void every_call_takes_every_pair(void **state) {
-  (void)state;
+CASE(every_call_takes_every_pair) {
   rng r = rng_seed(732);
   for (size_t i = 0; i < test_cases(1); i++)
     for (int dimension = 2; dimension <= 3; dimension++) visit_pairs(&r, dimension, every_call);
@@ -231,8 +224,7 @@ static void verdict_holds(rng *r, const test_solid s[2]) {
 
 /* Seed 733: certified gaps of every pair of kinds at n = 7 … 11. No overlap deeper than 1e-6 is called clear, nothing
  * beyond the over-reach is called colliding. */
-static void over_reach_holds_for_every_pair(void **state) {
-  (void)state;
+CASE(over_reach_holds_for_every_pair) {
   rng r = rng_seed(733);
   for (int dimension = 2; dimension <= 3; dimension++) {
     memset(&seen, 0, sizeof seen);
@@ -244,10 +236,5 @@ static void over_reach_holds_for_every_pair(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(delta_is_had_by_every_pair_that_can_be_proven),
-      cmocka_unit_test(every_call_takes_every_pair),
-      cmocka_unit_test(over_reach_holds_for_every_pair),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What is asked of a gap: gradients, early exit, lanes, memory, symmetry, signals, cascades, regions, sweeps, curves. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "fourier/gap.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/random.h"
 
@@ -108,8 +103,7 @@ static double component(vec3 position, vec3 rotation, int axis) {
 
 /* Seed 721, every pair, certified and signal: central differences of order 4, step 2e-3 of the size over N; tolerance 1e-7 of
  * max(|gradient|, 1e-3/rho) and, in the signal, 1e-7 of max(|gradient|, 1). Value and relative gradients too. */
-static void gradients_agree_with_differences(void **state) {
-  (void)state;
+CASE(gradients_agree_with_differences) {
   rng r = rng_seed(721);
   for (int i = 0; i < 2 * PAIRS; i++) {
     cprox_solid *s[2];
@@ -158,8 +152,7 @@ static void gradients_agree_with_differences(void **state) {
 
 /* Seed 722, every pair, both modes with verdicts: the early exit says what the whole sum says, within its own error, and often
  * with fewer terms. All lane widths of this machine agree to the last bit. */
-static void early_exit_and_lanes_change_no_verdict(void **state) {
-  (void)state;
+CASE(early_exit_and_lanes_change_no_verdict) {
   rng r = rng_seed(722);
   size_t fewer = 0, all = 0;
   for (int i = 0; i < 2 * PAIRS; i++) {
@@ -196,8 +189,7 @@ static void early_exit_and_lanes_change_no_verdict(void **state) {
 
 /* The stated rounding covers the difference between the two roles' sums of equal balls, where both lattices see the same, and
  * moving the world: seed 723. */
-static void values_do_not_depend_on_where_the_world_is(void **state) {
-  (void)state;
+CASE(values_do_not_depend_on_where_the_world_is) {
   rng r = rng_seed(723);
   for (int i = 0; i < PAIRS; i++) {
     cprox_solid *s[2];
@@ -220,8 +212,7 @@ static void values_do_not_depend_on_where_the_world_is(void **state) {
   }
 }
 
-static void queries_do_not_allocate_once_warm(void **state) {
-  (void)state;
+CASE(queries_do_not_allocate_once_warm) {
   cprox_solid *s[2];
   make_pair(0, s);
   cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, 33);
@@ -238,8 +229,7 @@ static void queries_do_not_allocate_once_warm(void **state) {
 }
 
 /* Squares at one place: nowhere is down. The gradient is 0 within rounding, and says nothing of the way out. */
-static void perfect_symmetry_has_no_gradient(void **state) {
-  (void)state;
+CASE(perfect_symmetry_has_no_gradient) {
   cprox_solid *s;
   MADE(cprox_solid_create_box(2, vec(1, 1, 0), ws, &s));
   cprox_gap *gap = gap_of(s, s, CPROX_GAP_CERTIFIED, 17);
@@ -253,8 +243,7 @@ static void perfect_symmetry_has_no_gradient(void **state) {
 }
 
 /* At touch V/t is far larger face to face than corner to corner: a value is no distance. */
-static void level_sets_are_not_equidistant(void **state) {
-  (void)state;
+CASE(level_sets_are_not_equidistant) {
   cprox_solid *s;
   MADE(cprox_solid_create_box(2, vec(1, 1, 0), ws, &s));
   cprox_gap *gap = gap_of(s, s, CPROX_GAP_CERTIFIED, 65);
@@ -268,8 +257,7 @@ static void level_sets_are_not_equidistant(void **state) {
 }
 
 /* c grows all the way out of a deep overlap to the edge of the bounding spheres, and its gradient leads there. */
-static void the_signal_rises_with_clearance(void **state) {
-  (void)state;
+CASE(the_signal_rises_with_clearance) {
   cprox_solid *s;
   MADE(cprox_solid_create_polygon(L_SHAPE, 6, ws, &s));
   cprox_gap *gap = gap_of(s, s, CPROX_GAP_SIGNAL, 33);
@@ -289,8 +277,7 @@ static void the_signal_rises_with_clearance(void **state) {
   cprox_solid_free(s);
 }
 
-static void bad_questions_are_refused_in_words(void **state) {
-  (void)state;
+CASE(bad_questions_are_refused_in_words) {
   cprox_solid *s[2], *space;
   make_pair(1, s);
   MADE(cprox_solid_create_ball(3, 1, ws, &space));
@@ -319,8 +306,7 @@ static void bad_questions_are_refused_in_words(void **state) {
 }
 
 /* Seed 724: a cascade says clear only where a level proves it, says clear wherever its finest does, and mostly stops early. */
-static void a_cascade_stops_at_the_first_proof(void **state) {
-  (void)state;
+CASE(a_cascade_stops_at_the_first_proof) {
   rng r = rng_seed(724);
   cprox_solid *s[2];
   make_pair(0, s);
@@ -348,8 +334,7 @@ static void a_cascade_stops_at_the_first_proof(void **state) {
 }
 
 /* Theorem 2: overlap outside the region does not count, overlap inside does. */
-static void a_region_localises_the_test(void **state) {
-  (void)state;
+CASE(a_region_localises_the_test) {
   cprox_solid *bar, *ball, *right;
   MADE(cprox_solid_create_box(2, vec(4, 0.4, 0), ws, &bar));
   MADE(cprox_solid_create_ball(2, 0.3, ws, &ball));
@@ -394,8 +379,7 @@ static double box_to_curve(const cprox_curve *c, const cprox_pose *box, const cp
 
 /* Seed 725: a sphere swept along a curve against a box, one sum. Wherever the sphere overlaps the box (by more than the samples'
  * own 1e-3) the verdict is not clear, wherever the distance exceeds the over-reach it is; the threshold of a plain pair would have been too high. */
-static void a_sweep_is_never_called_clear_where_it_hits(void **state) {
-  (void)state;
+CASE(a_sweep_is_never_called_clear_where_it_hits) {
   rng r = rng_seed(725);
   const double radius = 0.05;
   cprox_curve *c = wave_curve();
@@ -430,8 +414,7 @@ static void a_sweep_is_never_called_clear_where_it_hits(void **state) {
 
 /* Seed 726: the derivative along t by differences of order 4; the verdict over an interval against 2000 tests inside it: clear only if
  * all are, and the value never above 1. */
-static void along_a_curve_the_verdict_holds_at_every_parameter(void **state) {
-  (void)state;
+CASE(along_a_curve_the_verdict_holds_at_every_parameter) {
   rng r = rng_seed(726);
   cprox_curve *c = wave_curve();
   cprox_solid *s[2];
@@ -482,8 +465,7 @@ static void along_a_curve_the_verdict_holds_at_every_parameter(void **state) {
 }
 
 /* Each allocation of making a gap or a cascade fails in turn. */
-static void gaps_survive_every_failed_allocation(void **state) {
-  (void)state;
+CASE(gaps_survive_every_failed_allocation) {
   cprox_solid *s[2];
   make_pair(1, s);
   cprox_gap_options o = cprox_gap_options_default();
@@ -508,20 +490,5 @@ static void gaps_survive_every_failed_allocation(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(gradients_agree_with_differences),
-      cmocka_unit_test(early_exit_and_lanes_change_no_verdict),
-      cmocka_unit_test(values_do_not_depend_on_where_the_world_is),
-      cmocka_unit_test(queries_do_not_allocate_once_warm),
-      cmocka_unit_test(perfect_symmetry_has_no_gradient),
-      cmocka_unit_test(level_sets_are_not_equidistant),
-      cmocka_unit_test(the_signal_rises_with_clearance),
-      cmocka_unit_test(bad_questions_are_refused_in_words),
-      cmocka_unit_test(a_cascade_stops_at_the_first_proof),
-      cmocka_unit_test(a_region_localises_the_test),
-      cmocka_unit_test(a_sweep_is_never_called_clear_where_it_hits),
-      cmocka_unit_test(along_a_curve_the_verdict_holds_at_every_parameter),
-      cmocka_unit_test(gaps_survive_every_failed_allocation),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

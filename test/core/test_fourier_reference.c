@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Spectra, values and gradients against reference answers computed in numpy from the same corrected formulas by other code. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "fourier/gap.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/csv.h"
 
 static bool is(const csv_row *row, size_t field, const char *text) {
@@ -191,20 +186,17 @@ static void check_file(const char *name, int dimension, size_t least) {
   csv_free(&t);
 }
 
-static void gaps_in_the_plane_agree_with_the_reference_in_either_role(void **state) {
-  (void)state;
+CASE(gaps_in_the_plane_agree_with_the_reference_in_either_role) {
   check_file("fourier/gap_2d.csv", 2, 160);
 }
 
-static void gaps_in_space_agree_with_the_reference_in_either_role(void **state) {
-  (void)state;
+CASE(gaps_in_space_agree_with_the_reference_in_either_role) {
   check_file("fourier/gap_3d.csv", 3, 80);
 }
 
 /* 80 frequencies up to |q| = 500: within 1e-12 of the area, the reference's own error at tiny frequencies (2e-13, where symmetry
  * makes the imaginary part vanish). */
-static void spectra_of_polygons_agree_with_the_reference(void **state) {
-  (void)state;
+CASE(spectra_of_polygons_agree_with_the_reference) {
   csv_table t = csv_read("fourier/spectrum_2d.csv");
   size_t compared = 0;
   for (size_t i = 0; i < t.n; i++) {
@@ -230,10 +222,5 @@ static void spectra_of_polygons_agree_with_the_reference(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(spectra_of_polygons_agree_with_the_reference),
-      cmocka_unit_test(gaps_in_the_plane_agree_with_the_reference_in_either_role),
-      cmocka_unit_test(gaps_in_space_agree_with_the_reference_in_either_role),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Spectra against each other, against differences and against limits; offsets hold what they must; bad solids are refused. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "fourier/gap.h"
 #include "fourier/grid.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/random.h"
 
@@ -97,8 +92,7 @@ static vec3 random_frequency(rng *r, int dimension, double radius) {
 
 /* Seed 701, 2800 cases: central differences of order 4 with step 0.01/radius err by (0.01)^4/30 of the fifth derivative, radius^5
  * times the measure at most: 3e-10, and by rounding 1e-13/0.01; tolerance 2e-9 of measure times radius. */
-static void gradients_of_spectra_agree_with_differences(void **state) {
-  (void)state;
+CASE(gradients_of_spectra_agree_with_differences) {
   rng r = rng_seed(701);
   for (size_t i = 0; i < test_cases(2800); i++) {
     cprox_solid *s = solid_of((int)(i % KINDS)), *u = moved(s, &r);
@@ -133,8 +127,7 @@ static double difference(const cprox_solid *a, const cprox_solid *b, vec3 q) {
 
 /* A box clipped by half-spaces that do not touch it becomes a polygon or a mesh of the same body. Seed 702, 2000 frequencies:
  * 1e-14 of the measure, tiny |q| included. */
-static void a_box_as_a_mesh_or_a_polygon_has_the_spectrum_of_a_box(void **state) {
-  (void)state;
+CASE(a_box_as_a_mesh_or_a_polygon_has_the_spectrum_of_a_box) {
   rng r = rng_seed(702);
   const double outside[1][4] = {{1, 0, 0, 9}};
   for (int dimension = 2; dimension <= 3; dimension++) {
@@ -153,8 +146,7 @@ static void a_box_as_a_mesh_or_a_polygon_has_the_spectrum_of_a_box(void **state)
 }
 
 /* Half by half: the parts on both sides of a cut add up to the whole. Seed 703: 1e-13 of the measure. */
-static void parts_on_both_sides_of_a_cut_add_up(void **state) {
-  (void)state;
+CASE(parts_on_both_sides_of_a_cut_add_up) {
   rng r = rng_seed(703);
   for (size_t i = 0; i < test_cases(400); i++) {
     cprox_solid *s = solid_of(i % 2 ? 9 : 10), *a, *b;
@@ -180,8 +172,7 @@ static void parts_on_both_sides_of_a_cut_add_up(void **state) {
 
 /* A capsule of no length is a ball (closed form against quadrature); in the plane, its outline with 20000 corners has its
  * spectrum to the outline's own error, area (2 pi/20000)²/6. Seed 704. */
-static void capsules_agree_with_balls_and_outlines(void **state) {
-  (void)state;
+CASE(capsules_agree_with_balls_and_outlines) {
   rng r = rng_seed(704);
   cprox_solid *capsule, *ball, *outline;
   for (int dimension = 2; dimension <= 3; dimension++) {
@@ -244,8 +235,7 @@ static vec3 point_near(const cprox_solid *s, double rho, rng *r) {
 
 /* Seed 705, 20000 points within rho of a non-convex polygon or mesh, near its faces, edges and corners alike: the offset's
  * function is at least 1 there (angles add up to 1e-6). It is 0 beyond its reach, and 1 at most where the mesh is convex. */
-static void offsets_hold_every_point_within_rho(void **state) {
-  (void)state;
+CASE(offsets_hold_every_point_within_rho) {
   rng r = rng_seed(705);
   for (int kind = 9; kind <= 10; kind++) {
     cprox_solid *s = solid_of(kind);
@@ -269,8 +259,7 @@ static void offsets_hold_every_point_within_rho(void **state) {
 }
 
 /* Minkowski sums of convex bodies with balls have the volumes of Steiner's formula; circumscribed pieces a little more. */
-static void the_offset_of_a_convex_mesh_has_the_volume_of_steiners_formula(void **state) {
-  (void)state;
+CASE(the_offset_of_a_convex_mesh_has_the_volume_of_steiners_formula) {
   const double outside[1][4] = {{1, 0, 0, 9}}, rho = 0.2;
   cprox_solid *box, *mesh;
   MADE(cprox_solid_create_box(3, vec(1, 2, 3), ws, &box));
@@ -290,8 +279,7 @@ static void the_offset_of_a_convex_mesh_has_the_volume_of_steiners_formula(void 
 }
 
 /* Overlapping squares: the energy and the peak of the sum are those of the overlay, counted by hand. */
-static void energies_of_loops_are_exact(void **state) {
-  (void)state;
+CASE(energies_of_loops_are_exact) {
   const double square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   cprox_solid *s, *u;
   MADE(cprox_solid_create_polygon(square, 4, ws, &s));
@@ -308,8 +296,7 @@ static void energies_of_loops_are_exact(void **state) {
 
 /* Seed 706: random grids in plane and space, rho up to four cells. A cell is taken where it is within rho of an occupied one, by
  * looking at each; cells that border are 0 apart. */
-static void the_offset_of_a_grid_is_the_cells_within_rho(void **state) {
-  (void)state;
+CASE(the_offset_of_a_grid_is_the_cells_within_rho) {
   rng r = rng_seed(706);
   for (size_t trial = 0; trial < test_cases(60); trial++) {
     const int dimension = 2 + (int)(trial % 2);
@@ -343,8 +330,7 @@ static void the_offset_of_a_grid_is_the_cells_within_rho(void **state) {
 }
 
 /* The transform axis by axis, at all lattice points, against the sum over runs of cells: 1e-13 of the measure. */
-static void grids_transform_axis_by_axis_to_the_same_spectrum(void **state) {
-  (void)state;
+CASE(grids_transform_axis_by_axis_to_the_same_spectrum) {
   for (int dimension = 2; dimension <= 3; dimension++) {
     cprox_solid *s = grid(dimension);
     grid_table table;
@@ -373,8 +359,7 @@ static void grids_transform_axis_by_axis_to_the_same_spectrum(void **state) {
     assert_true(solid == (cprox_solid *)&ws && allocations_live() == live); \
   } while (0)
 
-static void bad_solids_are_refused_in_words(void **state) {
-  (void)state;
+CASE(bad_solids_are_refused_in_words) {
   REFUSED(cprox_solid_create_ball(4, 1.0, ws, &solid), "dimension is 4, must be 2 or 3");
   REFUSED(cprox_solid_create_ball(3, NAN, ws, &solid), "radius is nan, must be > 0");
   REFUSED(cprox_solid_create_box(3, vec(1, 2, -1), ws, &solid), "size.z is -1, must be > 0");
@@ -418,8 +403,7 @@ static void bad_solids_are_refused_in_words(void **state) {
 }
 
 /* Each allocation in turn fails: the status says so, nothing leaks. */
-static void solids_survive_every_failed_allocation(void **state) {
-  (void)state;
+CASE(solids_survive_every_failed_allocation) {
   for (int kind = 0; kind < KINDS; kind++) {
     cprox_solid *s = solid_of(kind);
     for (size_t n = 0;; n++) {
@@ -438,18 +422,5 @@ static void solids_survive_every_failed_allocation(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(gradients_of_spectra_agree_with_differences),
-      cmocka_unit_test(a_box_as_a_mesh_or_a_polygon_has_the_spectrum_of_a_box),
-      cmocka_unit_test(parts_on_both_sides_of_a_cut_add_up),
-      cmocka_unit_test(capsules_agree_with_balls_and_outlines),
-      cmocka_unit_test(offsets_hold_every_point_within_rho),
-      cmocka_unit_test(the_offset_of_a_convex_mesh_has_the_volume_of_steiners_formula),
-      cmocka_unit_test(energies_of_loops_are_exact),
-      cmocka_unit_test(the_offset_of_a_grid_is_the_cells_within_rho),
-      cmocka_unit_test(grids_transform_axis_by_axis_to_the_same_spectrum),
-      cmocka_unit_test(bad_solids_are_refused_in_words),
-      cmocka_unit_test(solids_survive_every_failed_allocation),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

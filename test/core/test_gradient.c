@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Gradients against central differences of distances; the weights against the curves themselves; and where none is to be had. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
@@ -176,8 +171,7 @@ static const cprox_body_kind SOLID[] = {CPROX_SPHERE, CPROX_BOX,       CPROX_CAP
 
 /* Seed 101, 10000 problems against seven kinds of bodies, 2000 of two curves, 2000 on one clock: 1e-7 (1 + |derivative|), which
  * leaves the differences 1e-8 for their own rounding and truncation. */
-static void gradients_are_the_limits_of_differences(void **state) {
-  (void)state;
+CASE(gradients_are_the_limits_of_differences) {
   rng r = rng_seed(101);
   size_t valid = 0, all = 0;
   for (size_t k = 0; k < test_cases(10000); k++, all++) {
@@ -210,8 +204,7 @@ static void gradients_are_the_limits_of_differences(void **state) {
 
 /* Seed 102, 1000 problems of carried bodies: the normal comes from a search between two bounds that are 1e-13 apart, and is as exact as
  * the root of that: 2e-6. */
-static void carried_bodies_have_gradients(void **state) {
-  (void)state;
+CASE(carried_bodies_have_gradients) {
   rng r = rng_seed(102);
   size_t valid = 0, all = 0;
   for (size_t k = 0; k < test_cases(1000); k++, all++) {
@@ -229,8 +222,7 @@ static void carried_bodies_have_gradients(void **state) {
 }
 
 /* Seed 103, 2000 problems through balls, ellipsoids and boxes: depths have gradients where one way out is the shortest. */
-static void depths_have_gradients(void **state) {
-  (void)state;
+CASE(depths_have_gradients) {
   rng r = rng_seed(103);
   const cprox_body_kind kinds[] = {CPROX_SPHERE, CPROX_ELLIPSOID, CPROX_BOX, CPROX_CAPSULE};
   size_t valid = 0, all = 0;
@@ -260,8 +252,7 @@ static void assert_none(cprox_mover mover, cprox_target target, bool is_signed, 
     fail_msg("valid %d: %s", g.valid, cprox_workspace_reason(ws));
 }
 
-static void where_the_minimiser_is_not_unique_the_flag_says_so(void **state) {
-  (void)state;
+CASE(where_the_minimiser_is_not_unique_the_flag_says_so) {
   const char *elsewhere = "no gradient: the distance is as small elsewhere along the curve";
   cprox_body *box = NULL, *ball = NULL, *two = NULL;
   assert_int_equal(cprox_body_create_box(vec(2, 2, 2), ws, &box), CPROX_OK);
@@ -308,8 +299,7 @@ static void where_the_minimiser_is_not_unique_the_flag_says_so(void **state) {
 /* ---- weights ----------------------------------------------------------------------------------------------------------------------- */
 
 /* Seed 104, 500 curves a basis: the weighted sum of the coefficients is the point. 1e-11: what the lesser bases lose at degree 9. */
-static void weighted_coefficients_make_the_point(void **state) {
-  (void)state;
+CASE(weighted_coefficients_make_the_point) {
   rng r = rng_seed(104);
   for (size_t k = 0; k < test_cases(3000); k++) {
     const size_t basis = k % 6, n = basis == 5 ? 3 + 2 * rng_index(&r, 3) : 3 + rng_index(&r, 7);
@@ -349,12 +339,5 @@ static void weighted_coefficients_make_the_point(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(weighted_coefficients_make_the_point),
-      cmocka_unit_test(gradients_are_the_limits_of_differences),
-      cmocka_unit_test(carried_bodies_have_gradients),
-      cmocka_unit_test(depths_have_gradients),
-      cmocka_unit_test(where_the_minimiser_is_not_unique_the_flag_says_so),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

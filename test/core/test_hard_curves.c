@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Curves that break other methods. Every distance is known by construction; every answer ends within its budget with an interval that
  * contains it, at any epsilon, and no verdict contradicts it. DOUBT covers what the doubles of a case are off the numbers meant. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <math.h>
 
 #include "support/builders.h"
+#include "support/cases.h"
 
 #define DOUBT 1e-12
 #define TURN 6.283185307179586
@@ -100,27 +95,23 @@ static void curves_are_at(double truth, cprox_curve *first, cprox_curve *second)
 
 /* ---- curves and bodies ---------------------------------------------------------------------------------------------------- */
 
-static void a_line_parallel_to_a_face_at_uneven_speed(void **state) {
-  (void)state;
+CASE(a_line_parallel_to_a_face_at_uneven_speed) {
   box_is_at(0.5, BEZIER({-0.9, 0, 1.5}, {-0.9, 0, 1.5}, {-0.85, 0, 1.5}, {0.9, 0, 1.5}));
 }
 
-static void near_tangent_at_1e_9_and_tangent(void **state) {
-  (void)state;
+CASE(near_tangent_at_1e_9_and_tangent) {
   box_is_at(1e-9, graph(0.5, 1.0 + 1e-9, 2));
   box_is_at(0.0, graph(0.5, 1.0, 2));
 }
 
-static void resting_on_a_face_passing_through_and_ending_on_it(void **state) {
-  (void)state;
+CASE(resting_on_a_face_passing_through_and_ending_on_it) {
   box_is_at(0.0, BEZIER({-0.5, 0, 1}, {0.5, 0.2, 1}));
   box_is_at(0.0, BEZIER({0.1, 0.2, 3}, {0, 0, -3}));
   box_is_at(0.0, BEZIER({2, 2, 3}, {0, 0, 1}));
   box_is_at(0.0, BEZIER({1, 1, 1}, {2, 3, 4}, {5, 3, 4}));
 }
 
-static void a_cusp_towards_a_face_and_towards_a_point(void **state) {
-  (void)state;
+CASE(a_cusp_towards_a_face_and_towards_a_point) {
   /* (t³, 0, c + t²) */
   for (int k = 0; k < 2; k++) {
     cprox_curve *curve = NULL;
@@ -134,23 +125,20 @@ static void a_cusp_towards_a_face_and_towards_a_point(void **state) {
   }
 }
 
-static void contacts_of_order_4_and_8(void **state) {
-  (void)state;
+CASE(contacts_of_order_4_and_8) {
   box_is_at(0.25, graph(0.5, 1.25, 4));
   box_is_at(0.0, graph(0.5, 1.0, 4));
   box_is_at(0.25, graph(0.5, 1.25, 8));
   box_is_at(0.0, graph(0.5, 1.0, 8));
 }
 
-static void a_curve_that_stands_still(void **state) {
-  (void)state;
+CASE(a_curve_that_stands_still) {
   box_is_at(2.0, BEZIER({0, 0, 3}, {0, 0, 3}, {0, 0, 3}));
   point_is_at(0.0, BEZIER({0, 0, 0}, {0, 0, 0}));
 }
 
 /* The arc's quintic form is within 3e-4 outside the circle and meets it at its ends. */
-static void an_arc_with_the_point_at_its_centre_and_off_it(void **state) {
-  (void)state;
+CASE(an_arc_with_the_point_at_its_centre_and_off_it) {
   const double k = 0.5522847498307936, a = 3.0 / 5.0 * k, b = 3.0 / 10.0 + 3.0 / 5.0 * k;
   const vec3 arc[6] = {{1, 0, 0}, {1, a, 0}, {0.1 + 0.6 + 0.3 * k, b, 0}, {b, 0.1 + 0.6 + 0.3 * k, 0},
                        {a, 1, 0}, {0, 1, 0}};
@@ -160,28 +148,24 @@ static void an_arc_with_the_point_at_its_centre_and_off_it(void **state) {
   point_is_at(sqrt(1.0 + 0.0625), bezier(moved, 6)); /* its far end is the nearest */
 }
 
-static void a_circle_with_the_point_at_its_centre(void **state) {
-  (void)state;
+CASE(a_circle_with_the_point_at_its_centre) {
   point_is_at(1.0, circle(1.0, TURN));
 }
 
-static void a_point_on_the_curve(void **state) {
-  (void)state;
+CASE(a_point_on_the_curve) {
   point_is_at(0.0, BEZIER({-1, -1, -1}, {1, 1, 1}));
   point_is_at(0.0, BEZIER({0, 0, 0}, {1, 2, 3}, {4, 5, 7}));
   point_is_at(0.0, graph(1.0, 0.0, 3));
 }
 
-static void features_of_1e_6_at_1e6(void **state) {
-  (void)state;
+CASE(features_of_1e_6_at_1e6) {
   /* all numbers are exact: 1e6 + 1 + 2^-20 */
   const double away = 1e6, z = away + 1.0 + 0x1p-20;
   const cprox_target target = cprox_at(box, (cprox_pose){{away, -away, away}, {1, 0, 0, 0}});
   is_at(0x1p-20, BEZIER({away - 0.5, -away, z}, {away, -away, z}, {away + 0.5, -away, z + 1.0}), target, NULL);
 }
 
-static void repeated_control_points_and_knots(void **state) {
-  (void)state;
+CASE(repeated_control_points_and_knots) {
   box_is_at(1.0, BEZIER({0, 0, 2}, {0, 0, 2}, {0, 0, 2}, {0, 0, 5}, {0, 0, 5}, {1, 0, 5}));
   /* a jump in direction at the triple knot, and a knot that comes twice */
   const vec3 points[] = {{-3, 0, 4}, {-2, 0, 3}, {-1, 0, 2.5}, {0, 0, 2}, {1, 0, 2.5},
@@ -192,8 +176,7 @@ static void repeated_control_points_and_knots(void **state) {
   box_is_at(1.0, curve);
 }
 
-static void order_45_and_60(void **state) {
-  (void)state;
+CASE(order_45_and_60) {
   for (size_t order = 45; order <= 60; order += 15) {
     vec3 points[61];
     for (size_t i = 0; i <= order; i++)
@@ -205,53 +188,31 @@ static void order_45_and_60(void **state) {
 
 /* ---- curves and curves ---------------------------------------------------------------------------------------------------- */
 
-static void identical_reversed_and_overlapping_curves(void **state) {
-  (void)state;
+CASE(identical_reversed_and_overlapping_curves) {
   curves_are_at(0.0, BEZIER({0, 0, 0}, {1, 2, 0}, {2, 0, 1}), BEZIER({0, 0, 0}, {1, 2, 0}, {2, 0, 1}));
   curves_are_at(0.0, BEZIER({0, 0, 0}, {1, 2, 0}, {2, 0, 1}), BEZIER({2, 0, 1}, {1, 2, 0}, {0, 0, 0}));
   curves_are_at(0.0, BEZIER({0, 0, 0}, {2, 0, 0}), BEZIER({1, 0, 0}, {3, 0, 0}));
   curves_are_at(0.0, graph(1.0, 0.0, 2), BEZIER({0, 0, 0}, {0.25, 0, 0}, {0.5, 0, 0.25}));
 }
 
-static void crossing_and_touching_curves(void **state) {
-  (void)state;
+CASE(crossing_and_touching_curves) {
   curves_are_at(0.0, BEZIER({-1, 0, 0}, {1, 0, 0}), BEZIER({0, -1, 0}, {0, 1, 0}));
   curves_are_at(0.0, graph(1.0, 0.0, 2), BEZIER({-1, 0, 0}, {1, 0, 0}));
   curves_are_at(0.0, BEZIER({-1, 0, 0}, {1, 0, 0}), BEZIER({1, 0, 0}, {2, 5, 0}));
   curves_are_at(1e-9, graph(1.0, 1e-9, 2), BEZIER({-1, 0, 0}, {1, 0, 0}));
 }
 
-static void parallel_lines_and_nested_parabolas(void **state) {
-  (void)state;
+CASE(parallel_lines_and_nested_parabolas) {
   curves_are_at(0.25, BEZIER({-1, 0, 0}, {1, 0, 0}), BEZIER({-0.5, 0.25, 0}, {1.5, 0.25, 0}));
   curves_are_at(0.0, graph(1.0, 0.0, 2), graph(0.5, 0.0, 2));
   curves_are_at(0.125, graph(1.0, -0.125, 2), graph(0.25, 0.0, 2));
 }
 
-static void concentric_arcs_and_circles(void **state) {
-  (void)state;
+CASE(concentric_arcs_and_circles) {
   curves_are_at(1.0, circle(1.0, 1.0), circle(2.0, 1.0));
   curves_are_at(1.0, circle(1.0, TURN), circle(2.0, TURN));
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_line_parallel_to_a_face_at_uneven_speed),
-      cmocka_unit_test(near_tangent_at_1e_9_and_tangent),
-      cmocka_unit_test(resting_on_a_face_passing_through_and_ending_on_it),
-      cmocka_unit_test(a_cusp_towards_a_face_and_towards_a_point),
-      cmocka_unit_test(contacts_of_order_4_and_8),
-      cmocka_unit_test(a_curve_that_stands_still),
-      cmocka_unit_test(an_arc_with_the_point_at_its_centre_and_off_it),
-      cmocka_unit_test(a_circle_with_the_point_at_its_centre),
-      cmocka_unit_test(a_point_on_the_curve),
-      cmocka_unit_test(features_of_1e_6_at_1e6),
-      cmocka_unit_test(repeated_control_points_and_knots),
-      cmocka_unit_test(order_45_and_60),
-      cmocka_unit_test(identical_reversed_and_overlapping_curves),
-      cmocka_unit_test(crossing_and_touching_curves),
-      cmocka_unit_test(parallel_lines_and_nested_parabolas),
-      cmocka_unit_test(concentric_arcs_and_circles),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cases_run(setup, teardown);
 }

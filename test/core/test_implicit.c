@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Implicit bodies as bodies: what their constructors refuse, support and nearest points, curves and pairs. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/rounding.h"
 #include "curve_proximity/cprox.h"
 #include "implicit/implicit.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/implicits.h"
 #include "support/random.h"
 
@@ -35,7 +30,7 @@ static void assert_refused(cprox_status status, cprox_workspace *workspace, cons
     fail_msg("\"%s\" is not in \"%s\"", reason, cprox_workspace_reason(workspace));
 }
 
-static void a_superquadric_of_bad_numbers_is_refused_by_name(void **state) {
+CASE(a_superquadric_of_bad_numbers_is_refused_by_name) {
   cprox_workspace *w = *state;
   cprox_body *body = NULL;
   const vec3 a = vec(1, 1, 1), n = vec(2, 2, 2);
@@ -58,7 +53,7 @@ static void refuse_text(const char *text, const char *reason, cprox_workspace *w
   assert_null(body);
 }
 
-static void an_implicit_body_is_refused_by_the_constraint_at_fault(void **state) {
+CASE(an_implicit_body_is_refused_by_the_constraint_at_fault) {
   cprox_workspace *w = *state;
   refuse_text("P:0:0:0:-1", "the normal of plane 0 is 0", w);
   refuse_text("P:1:0:0:-1|P:nan:0:0:-1", "plane 1 is not finite", w);
@@ -76,7 +71,7 @@ static void an_implicit_body_is_refused_by_the_constraint_at_fault(void **state)
   refuse_text("H:1:0:0:0:2|H:1e300:0:0:0:2", "term 0 of hyperquadric 1 is out of range", w);
 }
 
-static void a_set_without_an_interior_is_refused(void **state) {
+CASE(a_set_without_an_interior_is_refused) {
   cprox_workspace *w = *state;
   refuse_text("Q:1:0:0:1:0:1:0:0:0:-1|P:1:0:0:2", "no interior", w);            /* the plane excludes the ball */
   refuse_text("Q:1:0:0:1:0:1:0:0:0:-1|P:1:0:0:0|P:-1:0:0:0", "no interior", w); /* a disc */
@@ -85,7 +80,7 @@ static void a_set_without_an_interior_is_refused(void **state) {
   refuse_text("H:1:0:0:0:2:1:0:0:4:2:0:1:0:0:2:0:0:1:0:2", "no interior", w);
 }
 
-static void an_unbounded_set_is_refused_with_the_axis(void **state) {
+CASE(an_unbounded_set_is_refused_with_the_axis) {
   cprox_workspace *w = *state;
   refuse_text("P:1:0:0:-1", "unbounded", w);
   refuse_text("Q:1:0:0:1:0:0:0:0:0:-1", "unbounded, or larger than 1e+10, along (0, 0, 1)", w); /* a cylinder */
@@ -94,7 +89,7 @@ static void an_unbounded_set_is_refused_with_the_axis(void **state) {
   refuse_text("P:1:0:1:-1|P:-1:0:1:-1|P:0:1:1:-1|P:0:-1:1:-1", "along (1, 0, 0)", w); /* a pyramid without a base */
 }
 
-static void maps_that_are_singular_and_lists_that_are_too_long_are_refused(void **state) {
+CASE(maps_that_are_singular_and_lists_that_are_too_long_are_refused) {
   cprox_workspace *w = *state;
   cprox_body *body = NULL;
   implicit_case c;
@@ -123,8 +118,7 @@ static void maps_that_are_singular_and_lists_that_are_too_long_are_refused(void 
 
 /* Seed 1, 200 points a body: every point of the set is in the bounding ball, and the inner ball is in the set (Object IV's
  * origin is not). */
-static void the_bounding_ball_holds_the_body_and_the_inner_ball_is_in_it(void **state) {
-  (void)state;
+CASE(the_bounding_ball_holds_the_body_and_the_inner_ball_is_in_it) {
   rng r = rng_seed(1);
   for (int object = 1; object <= 6; object++) {
     implicit_case c;
@@ -158,7 +152,7 @@ static void the_bounding_ball_holds_the_body_and_the_inner_ball_is_in_it(void **
 
 /* Seed 2, exponents 1 … 1000, aspects to 1e3, cold and from the mu of the last direction: on the surface to 1e-12, and no
  * point of 300 random ones on it reaches farther. */
-static void support_points_lie_on_the_surface_and_reach_farthest(void **state) {
+CASE(support_points_lie_on_the_surface_and_reach_farthest) {
   cprox_workspace *w = *state;
   rng r = rng_seed(2);
   static const double exponent[] = {1, 1.0001, 1.05, 4.0 / 3, 1.9, 2, 2.0001, 7, 30, 100, 1000};
@@ -204,7 +198,7 @@ static void support_points_lie_on_the_surface_and_reach_farthest(void **state) {
 
 /* Seed 3: the derivative of the support point against central differences; where the surface is flat its size is bounded by
  * what the differences see. */
-static void the_support_points_derivative_is_that_of_differences(void **state) {
+CASE(the_support_points_derivative_is_that_of_differences) {
   cprox_workspace *w = *state;
   rng r = rng_seed(3);
   for (int test = 0; test < 300; test++) {
@@ -237,8 +231,7 @@ static void the_support_points_derivative_is_that_of_differences(void **state) {
 
 /* Seed 4, 300 points a body at 1e-9 … 1e2 from the centre's ball: the point is in the body, the distance is its own, and the
  * plane through it separates. Inside, the depth is one that the body has. */
-static void nearest_points_are_optimal(void **state) {
-  (void)state;
+CASE(nearest_points_are_optimal) {
   rng r = rng_seed(4);
   for (int object = 1; object <= 6; object++) {
     implicit_case c;
@@ -269,8 +262,7 @@ static void nearest_points_are_optimal(void **state) {
 }
 
 /* Seed 5: the second derivative of the distance against differences of the normal, for bodies without flats. */
-static void the_distances_second_derivative_is_that_of_differences(void **state) {
-  (void)state;
+CASE(the_distances_second_derivative_is_that_of_differences) {
   rng r = rng_seed(5);
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_superquadric(vec(1, 0.7, 1.5), vec(2, 3, 1.6), NULL, &body), CPROX_OK);
@@ -297,7 +289,7 @@ static void the_distances_second_derivative_is_that_of_differences(void **state)
 /* ---- special cases that other kinds answer ---- */
 
 /* Seed 6: a superquadric of exponents 2 is an ellipsoid, six planes are a box, a quadric is a sphere: curves see the same. */
-static void a_curve_sees_the_same_distance_as_from_the_kind_it_equals(void **state) {
+CASE(a_curve_sees_the_same_distance_as_from_the_kind_it_equals) {
   cprox_workspace *w = *state;
   rng r = rng_seed(6);
   for (size_t test = 0; test < test_cases(60); test++) {
@@ -341,8 +333,7 @@ static void a_curve_sees_the_same_distance_as_from_the_kind_it_equals(void **sta
 }
 
 /* Seed 7: a map moves, scales and shears the set: points are inside when their preimages are, as computed in long double. */
-static void a_mapped_body_holds_the_images_of_the_points(void **state) {
-  (void)state;
+CASE(a_mapped_body_holds_the_images_of_the_points) {
   rng r = rng_seed(7);
   for (int test = 0; test < 60; test++) {
     implicit_case c;
@@ -368,19 +359,5 @@ static void a_mapped_body_holds_the_images_of_the_points(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_superquadric_of_bad_numbers_is_refused_by_name),
-      cmocka_unit_test(an_implicit_body_is_refused_by_the_constraint_at_fault),
-      cmocka_unit_test(a_set_without_an_interior_is_refused),
-      cmocka_unit_test(an_unbounded_set_is_refused_with_the_axis),
-      cmocka_unit_test(maps_that_are_singular_and_lists_that_are_too_long_are_refused),
-      cmocka_unit_test(the_bounding_ball_holds_the_body_and_the_inner_ball_is_in_it),
-      cmocka_unit_test(support_points_lie_on_the_surface_and_reach_farthest),
-      cmocka_unit_test(the_support_points_derivative_is_that_of_differences),
-      cmocka_unit_test(nearest_points_are_optimal),
-      cmocka_unit_test(the_distances_second_derivative_is_that_of_differences),
-      cmocka_unit_test(a_curve_sees_the_same_distance_as_from_the_kind_it_equals),
-      cmocka_unit_test(a_mapped_body_holds_the_images_of_the_points),
-  };
-  return cmocka_run_group_tests(tests, make_workspace, free_workspace);
+  return cases_run(make_workspace, free_workspace);
 }

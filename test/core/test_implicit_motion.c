@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Implicit bodies that translate, grow and deform. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "curve_proximity/cprox.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/implicits.h"
 #include "support/random.h"
 
@@ -58,7 +53,7 @@ static cprox_result pair_at(const bodies *b, cprox_translating x, cprox_translat
 
 /* Seed 21, 40 places a pair: the least distance over the time is below that at 33 times, is attained at its own t, and is not
  * above what the separating plane at that t allows. Tolerance: the widths asked for, 1e-8. */
-static void the_least_distance_over_a_time_is_below_that_at_every_time(void **state) {
+CASE(the_least_distance_over_a_time_is_below_that_at_every_time) {
   bodies *b = *state;
   rng r = rng_seed(21);
   cprox_options options = cprox_options_default();
@@ -87,7 +82,7 @@ static void the_least_distance_over_a_time_is_below_that_at_every_time(void **st
 
 /* Seed 22, 500 places a pair, contact tolerance 1e-7 of the sizes: nothing undecided, free before as bisection by pairs finds
  * it (within tolerance over the speed), and the least distance agrees with the verdict. */
-static void first_contact_is_never_late_and_never_undecided(void **state) {
+CASE(first_contact_is_never_late_and_never_undecided) {
   bodies *b = *state;
   rng r = rng_seed(22);
   uint64_t pairs = 0, contacts = 0;
@@ -125,7 +120,7 @@ static void first_contact_is_never_late_and_never_undecided(void **state) {
   assert_true(contacts > 1000);
 }
 
-static void bodies_that_part_or_overlap_at_once_are_told_at_once(void **state) {
+CASE(bodies_that_part_or_overlap_at_once_are_told_at_once) {
   bodies *b = *state;
   cprox_pose away = cprox_pose_identity();
   away.position.x = 6;
@@ -162,7 +157,7 @@ static cprox_body *scaled(const bodies *b, const cprox_body *body, double g) {
 }
 
 /* Seed 23, 60 places a pair, near and deep: scaled by a little less the bodies are apart, by a little more they overlap. */
-static void scaled_by_the_growth_distance_bodies_touch(void **state) {
+CASE(scaled_by_the_growth_distance_bodies_touch) {
   bodies *b = *state;
   rng r = rng_seed(23);
   for (int pair = 0; pair < 8; pair++) {
@@ -195,7 +190,7 @@ static void scaled_by_the_growth_distance_bodies_touch(void **state) {
   }
 }
 
-static void concentric_bodies_have_growth_distance_zero(void **state) {
+CASE(concentric_bodies_have_growth_distance_zero) {
   bodies *b = *state;
   cprox_growth growth;
   const cprox_target x = cprox_at(b->body[2], cprox_pose_identity());
@@ -207,7 +202,7 @@ static void concentric_bodies_have_growth_distance_zero(void **state) {
 
 /* Seed 24, 20 maps a body, the deformation by a map and the body made anew under the same map answer the same; and the paper's
  * Fig. 7: object I with the exponents of III is object III but for its semi-axes. */
-static void a_deformed_body_is_the_one_made_anew(void **state) {
+CASE(a_deformed_body_is_the_one_made_anew) {
   bodies *b = *state;
   rng r = rng_seed(24);
   cprox_options options = cprox_options_default();
@@ -252,13 +247,5 @@ static void a_deformed_body_is_the_one_made_anew(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_least_distance_over_a_time_is_below_that_at_every_time),
-      cmocka_unit_test(first_contact_is_never_late_and_never_undecided),
-      cmocka_unit_test(bodies_that_part_or_overlap_at_once_are_told_at_once),
-      cmocka_unit_test(scaled_by_the_growth_distance_bodies_touch),
-      cmocka_unit_test(concentric_bodies_have_growth_distance_zero),
-      cmocka_unit_test(a_deformed_body_is_the_one_made_anew),
-  };
-  return cmocka_run_group_tests(tests, make_bodies, free_bodies);
+  return cases_run(make_bodies, free_bodies);
 }

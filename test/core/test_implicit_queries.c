@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Implicit bodies in the queries of all bodies: against other kinds, overlapping, carried along curves, in compounds. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "curve_proximity/cprox.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/implicits.h"
 #include "support/random.h"
 
@@ -61,7 +56,7 @@ static void assert_agree(const cprox_result *x, const cprox_result *y) {
 
 /* Seed 31: pairs of twins against twins, apart, touching and overlapping to all depths: known-known, implicit-known and
  * implicit-implicit answer the same signed distance, each to 1e-6. */
-static void pairs_of_twins_have_one_signed_distance(void **state) {
+CASE(pairs_of_twins_have_one_signed_distance) {
   cprox_workspace *w = *state;
   rng r = rng_seed(31);
   for (size_t i = 0; i < test_cases(400); i++) {
@@ -83,7 +78,7 @@ static void pairs_of_twins_have_one_signed_distance(void **state) {
 
 /* Seed 32: the paper's objects against boxes, capsules and polytopes by the search over supports, and against the box as six
  * planes by the interior point method. */
-static void other_kinds_are_measured_against_implicit_bodies(void **state) {
+CASE(other_kinds_are_measured_against_implicit_bodies) {
   cprox_workspace *w = *state;
   rng r = rng_seed(32);
   for (int object = 1; object <= 6; object++) {
@@ -110,7 +105,7 @@ static void other_kinds_are_measured_against_implicit_bodies(void **state) {
 
 /* Seed 33: a carried twin and its known kind along the same curve, against a twin and a known kind that stand; and the same in a
  * compound: distance, signed distance and first contact agree. */
-static void a_carried_twin_is_measured_like_the_kind_it_equals(void **state) {
+CASE(a_carried_twin_is_measured_like_the_kind_it_equals) {
   cprox_workspace *w = *state;
   rng r = rng_seed(33);
   for (size_t i = 0; i < test_cases(25); i++) {
@@ -152,10 +147,5 @@ static void a_carried_twin_is_measured_like_the_kind_it_equals(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(pairs_of_twins_have_one_signed_distance),
-      cmocka_unit_test(other_kinds_are_measured_against_implicit_bodies),
-      cmocka_unit_test(a_carried_twin_is_measured_like_the_kind_it_equals),
-  };
-  return cmocka_run_group_tests(tests, make_workspace, free_workspace);
+  return cases_run(make_workspace, free_workspace);
 }

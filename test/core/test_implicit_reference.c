@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Implicit bodies against answers in quadruple precision: the paper's pairs, and families on which solvers fail. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "curve_proximity/cprox/query.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/csv.h"
 #include "support/implicits.h"
 
@@ -58,32 +53,22 @@ static void check_rows(const char *name, double relative) {
   csv_free(&table);
 }
 
-static void the_papers_pairs_contain_the_reference_at_1e_8(void **state) {
-  (void)state;
+CASE(the_papers_pairs_contain_the_reference_at_1e_8) {
   check_rows("reference/implicit_pairs.csv", 1e-8);
 }
 
-static void the_papers_pairs_contain_the_reference_at_1e_10(void **state) {
-  (void)state;
+CASE(the_papers_pairs_contain_the_reference_at_1e_10) {
   check_rows("reference/implicit_pairs.csv", 1e-10);
 }
 
-static void the_hard_families_contain_the_reference_at_1e_8(void **state) {
-  (void)state;
+CASE(the_hard_families_contain_the_reference_at_1e_8) {
   check_rows("reference/implicit_hard.csv", 1e-8);
 }
 
-static void the_hard_families_contain_the_reference_at_1e_10(void **state) {
-  (void)state;
+CASE(the_hard_families_contain_the_reference_at_1e_10) {
   check_rows("reference/implicit_hard.csv", 1e-10);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_papers_pairs_contain_the_reference_at_1e_8),
-      cmocka_unit_test(the_papers_pairs_contain_the_reference_at_1e_10),
-      cmocka_unit_test(the_hard_families_contain_the_reference_at_1e_8),
-      cmocka_unit_test(the_hard_families_contain_the_reference_at_1e_10),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -2,18 +2,13 @@
 /* The interior point method by itself: random places of the paper's pairs, each answered to 1e-8 with a certificate
  * (CPROX_TEST_SCALE=100: a million a pair), starts from a former answer, many constraints. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "base/frame.h"
 #include "curve_proximity/cprox.h"
 #include "implicit/implicit.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/implicits.h"
 #include "support/random.h"
 
@@ -56,8 +51,7 @@ static const int PAIRS[8][2] = {{1, 2}, {1, 3}, {2, 3}, {3, 4}, {2, 4}, {3, 5}, 
 
 /* Seed 11 and the pair's number, 10,000 places at 1 … 8: none is left wider than 1e-8 of distance and sizes, whichever rung of
  * the ladder it takes; the support function search, where there is one, agrees on every tenth. */
-static void every_random_place_is_certified_to_1e_8(void **state) {
-  (void)state;
+CASE(every_random_place_is_certified_to_1e_8) {
   cprox_workspace *workspace = cprox_workspace_create();
   for (int pair = 0; pair < 8; pair++) {
     rng r = rng_seed(11 + (uint64_t)pair);
@@ -97,8 +91,7 @@ static void every_random_place_is_certified_to_1e_8(void **state) {
 
 /* Seed 12: a body that moves by steps of 1e-6 … 1: the answer from a former one is the answer from scratch, in fewer steps
  * where the move is small. */
-static void a_warm_start_answers_what_a_cold_one_does(void **state) {
-  (void)state;
+CASE(a_warm_start_answers_what_a_cold_one_does) {
   for (int pair = 0; pair < 8; pair++) {
     rng r = rng_seed(12 + (uint64_t)pair);
     two t = two_create(PAIRS[pair][0], PAIRS[pair][1]);
@@ -132,8 +125,7 @@ static void a_warm_start_answers_what_a_cold_one_does(void **state) {
 }
 
 /* Spheres cut by n planes that touch them: 12 … 500 constraints, still certified, in a number of steps that hardly grows. */
-static void many_constraints_take_hardly_more_steps(void **state) {
-  (void)state;
+CASE(many_constraints_take_hardly_more_steps) {
   rng r = rng_seed(13);
   uint32_t most = 0;
   for (size_t n = 6; n <= 500; n *= 3) {
@@ -166,8 +158,7 @@ static void many_constraints_take_hardly_more_steps(void **state) {
 
 /* Seed 14: intersections of 2 … 40 superquadrics in general position: certified to 1e-8, their support function to 1e-11 of the
  * size. */
-static void intersections_of_superquadrics_are_certified(void **state) {
-  (void)state;
+CASE(intersections_of_superquadrics_are_certified) {
   cprox_workspace *workspace = cprox_workspace_create();
   rng r = rng_seed(14);
   for (size_t n = 2; n <= 40; n *= 2) {
@@ -213,11 +204,5 @@ static void intersections_of_superquadrics_are_certified(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_random_place_is_certified_to_1e_8),
-      cmocka_unit_test(a_warm_start_answers_what_a_cold_one_does),
-      cmocka_unit_test(many_constraints_take_hardly_more_steps),
-      cmocka_unit_test(intersections_of_superquadrics_are_certified),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Ladders: the hull answers what it can, the mesh the rest, and both agree. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/meshes.h"
 
 /* ---- builders --------------------------------------------------------------------------------------------------------- */
@@ -73,8 +68,7 @@ static test_mesh mesh_bracket(void) {
 
 /* 400 curves (seed 81) past tori and a bracket at any pose, epsilon 1e-7. A coarser model contains the finer one: ball <= hull <= mesh but
  * for epsilon, each by the interval of its own body, and the ladder's own answer is the mesh's. */
-static void rungs_contain_each_other_and_are_what_they_are_called(void **state) {
-  (void)state;
+CASE(rungs_contain_each_other_and_are_what_they_are_called) {
   rng r = rng_seed(81);
   test_mesh torus = mesh_torus(16, 10, 1.0, 0.3, 0.1), bracket = mesh_bracket();
   test_ladder ladders[2] = {ladder_make(&torus), ladder_make(&bracket)};
@@ -122,8 +116,7 @@ static void rungs_contain_each_other_and_are_what_they_are_called(void **state) 
 
 /* 300 curves (seed 83), Delta and first contact: the ladder's verdict is that of the mesh alone wherever that has one, t_free agrees with
  * the mesh's to epsilon / the curve's least speed near contact (1e-5 here), and "clear" by the hull is rung hull. */
-static void verdicts_are_those_of_the_mesh(void **state) {
-  (void)state;
+CASE(verdicts_are_those_of_the_mesh) {
   rng r = rng_seed(83);
   test_mesh torus = mesh_torus(16, 10, 1.0, 0.3, 0.1), bracket = mesh_bracket();
   test_ladder ladders[2] = {ladder_make(&torus), ladder_make(&bracket)};
@@ -163,8 +156,7 @@ static void verdicts_are_those_of_the_mesh(void **state) {
 }
 
 /* Along the inside of the bracket's corner: within the hull, 0.2 off the mesh. Through the torus's hole: likewise. */
-static void a_curve_through_the_hull_but_clear_of_the_mesh_is_clear(void **state) {
-  (void)state;
+CASE(a_curve_through_the_hull_but_clear_of_the_mesh_is_clear) {
   test_mesh bracket = mesh_bracket(), torus = mesh_torus(32, 16, 1.0, 0.3, 0.0);
   test_ladder ladders[2] = {ladder_make(&bracket), ladder_make(&torus)};
   const vec3 ways[2][2] = {{{0.3, 0.3, -1}, {0.3, 0.3, 1}}, {{0.1, 0, -1}, {-0.1, 0, 1}}};
@@ -196,8 +188,7 @@ static void a_curve_through_the_hull_but_clear_of_the_mesh_is_clear(void **state
 /* 30 tori (seed 87) in a cube, their bounding balls overlapping; 60 curves. All ways to ask about many answer as the meshes would.
  * Together with a small box the answer is rung hull, no mesh looked into, where every hull is farther than the box by the hundredth
  * part that ranking may give away; where one is nearer, rung mesh. */
-static void a_distance_climbs_only_where_the_hull_is_nearer_than_the_best(void **state) {
-  (void)state;
+CASE(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best) {
   enum { N = 30 };
   rng r = rng_seed(87);
   test_mesh torus = mesh_torus(24, 16, 0.4, 0.05, 0.1);
@@ -260,8 +251,7 @@ static void a_distance_climbs_only_where_the_hull_is_nearer_than_the_best(void *
 
 /* Within the bracket's bounding ball and 0.495 off its hull, a box 0.25 away: the ball says bracket first, the hull says that it need not be
  * looked into. */
-static void a_mesh_waits_until_it_is_the_nearest_by_its_hull(void **state) {
-  (void)state;
+CASE(a_mesh_waits_until_it_is_the_nearest_by_its_hull) {
   test_mesh bracket = mesh_bracket();
   test_ladder l = ladder_make(&bracket);
   cprox_body *box = NULL;
@@ -282,8 +272,7 @@ static void a_mesh_waits_until_it_is_the_nearest_by_its_hull(void **state) {
 }
 
 /* A compound of 12 ladders (seed 89) against boxes and balls: cprox_pair is that of the meshes; by hulls alone it is no farther. */
-static void pairs_climb_too(void **state) {
-  (void)state;
+CASE(pairs_climb_too) {
   enum { N = 12 };
   rng r = rng_seed(89);
   test_mesh torus = mesh_torus(12, 8, 0.4, 0.1, 0.1);
@@ -323,8 +312,7 @@ static void expect_reason(cprox_status status, const char *words) {
   if (!strstr(cprox_workspace_reason(ws), words)) fail_msg("'%s' does not say '%s'", cprox_workspace_reason(ws), words);
 }
 
-static void bad_input_is_refused_with_a_sentence(void **state) {
-  (void)state;
+CASE(bad_input_is_refused_with_a_sentence) {
   test_mesh torus = mesh_torus(12, 8, 1.0, 0.3, 0.0);
   test_ladder l = ladder_make(&torus);
   cprox_body *ball = NULL, *made = NULL, *halfspace = NULL;
@@ -385,8 +373,7 @@ static bool is_enough(int verb, const cprox_options *options, const cprox_result
 /* Seed 84, 1500 questions of three verbs about up to 6 ladders and hulls, most with a budget that is too small for some of them: the answer
  * to all is the union of the answers to each, with the finest level of detail among them, and it is called short where its own
  * interval is. */
-static void the_answer_to_all_is_the_union_of_the_answers_to_each(void **state) {
-  (void)state;
+CASE(the_answer_to_all_is_the_union_of_the_answers_to_each) {
   rng r = rng_seed(84);
   test_mesh torus = mesh_torus(16, 10, 1.0, 0.3, 0.1), bracket = mesh_bracket();
   test_ladder ladders[2] = {ladder_make(&torus), ladder_make(&bracket)};
@@ -441,15 +428,5 @@ static void the_answer_to_all_is_the_union_of_the_answers_to_each(void **state) 
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rungs_contain_each_other_and_are_what_they_are_called),
-      cmocka_unit_test(verdicts_are_those_of_the_mesh),
-      cmocka_unit_test(a_curve_through_the_hull_but_clear_of_the_mesh_is_clear),
-      cmocka_unit_test(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best),
-      cmocka_unit_test(a_mesh_waits_until_it_is_the_nearest_by_its_hull),
-      cmocka_unit_test(pairs_climb_too),
-      cmocka_unit_test(the_answer_to_all_is_the_union_of_the_answers_to_each),
-      cmocka_unit_test(bad_input_is_refused_with_a_sentence),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Curves against meshes: sound, as narrow as asked, whatever the triangles look like. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
 #include "shape/body.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/meshes.h"
 
@@ -58,8 +53,7 @@ static long double least_near(const test_bezier *b, const test_mesh *mesh, const
  * closed tori, at any pose and padding, offsets up to 1e6 m of pose and curve together. epsilon is 1e-12 at unit scale, where double
  * allows it. Wanted: lower <= the true distance anywhere on the curve, the true distance at t <= upper. No tolerance: rounding is the
  * interval's own affair; the reference's, some 40 roundings of 2^-64 of the sizes, is given away. */
-static void distance_holds_everywhere_and_at_its_witness(void **state) {
-  (void)state;
+CASE(distance_holds_everywhere_and_at_its_witness) {
   rng r = rng_seed(51);
   const cprox_options options = accurate(1e-12);
   size_t unconverged = 0;
@@ -108,8 +102,7 @@ static void distance_holds_everywhere_and_at_its_witness(void **state) {
  * torus, and through it; epsilon 1e-9. Never late: at 60 parameters before t_free, the last one 1e-9 before it, the distance in long
  * double is above 0. Not missed: at t_free it is at most epsilon, unless t_free is the end. Where contact is said to be proven, the
  * distance at t is at most rounding, 1e-13, or the curve has gone through. */
-static void first_contact_is_never_late_and_never_missed(void **state) {
-  (void)state;
+CASE(first_contact_is_never_late_and_never_missed) {
   rng r = rng_seed(53);
   const cprox_options options = accurate(1e-9);
   size_t hits = 0;
@@ -160,8 +153,7 @@ static void first_contact_is_never_late_and_never_missed(void **state) {
 }
 
 /* A point that goes through a surface: the crossing itself is the proof. */
-static void a_point_through_a_surface_is_a_proven_collision(void **state) {
-  (void)state;
+CASE(a_point_through_a_surface_is_a_proven_collision) {
   rng r = rng_seed(57);
   test_mesh mesh = mesh_torus(24, 16, 1.0, 0.3, 0.1);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
@@ -185,8 +177,7 @@ static void a_point_through_a_surface_is_a_proven_collision(void **state) {
 /* ---- solids ----------------------------------------------------------------------------------------------------------- */
 
 /* 300 points (seed 59) against the winding number of all triangles in long double, where they are 1e-9 off the surface. */
-static void a_closed_mesh_is_solid_inside(void **state) {
-  (void)state;
+CASE(a_closed_mesh_is_solid_inside) {
   rng r = rng_seed(59);
   test_mesh mesh = mesh_torus(30, 20, 1.0, 0.4, 0.2);
   cprox_body *solid = mesh_body(&mesh, CPROX_MESH_SOLID, ws);
@@ -220,8 +211,7 @@ static void a_closed_mesh_is_solid_inside(void **state) {
 /* ---- points and boxes ------------------------------------------------------------------------------------------------- */
 
 /* 600 random queries (seed 61) against clouds and boxes, held against every element in long double; epsilon 1e-6. */
-static void clouds_and_boxes_hold_too(void **state) {
-  (void)state;
+CASE(clouds_and_boxes_hold_too) {
   rng r = rng_seed(61);
   const cprox_options options = accurate(1e-6);
   for (size_t i = 0; i < test_cases(600); i++) {
@@ -268,8 +258,7 @@ static void clouds_and_boxes_hold_too(void **state) {
 
 /* 400 pairs (seed 71) of a soup or torus with a ball, and with a box by every triangle's own pair; epsilon 1e-9, so that two answers
  * differ by twice that where they are apart. */
-static void pairs_answer_as_their_triangles_do(void **state) {
-  (void)state;
+CASE(pairs_answer_as_their_triangles_do) {
   rng r = rng_seed(71);
   const cprox_options options = accurate(1e-9);
   for (size_t i = 0; i < test_cases(400); i++) {
@@ -319,8 +308,7 @@ static void expect_reason(cprox_status status, cprox_status wanted, const char *
   if (!strstr(cprox_workspace_reason(ws), words)) fail_msg("'%s' does not say '%s'", cprox_workspace_reason(ws), words);
 }
 
-static void bad_input_is_refused_with_a_sentence(void **state) {
-  (void)state;
+CASE(bad_input_is_refused_with_a_sentence) {
   cprox_body *body = NULL;
   vec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const uint32_t good[1][3] = {{0, 1, 2}}, bad[2][3] = {{0, 1, 2}, {0, 1, 3}};
@@ -374,8 +362,7 @@ static void bad_input_is_refused_with_a_sentence(void **state) {
 }
 
 /* A tube between two sheets, and after it a second query of the same kind: the second one allocates nothing. */
-static void queries_do_not_allocate_once_the_workspace_has_grown(void **state) {
-  (void)state;
+CASE(queries_do_not_allocate_once_the_workspace_has_grown) {
   rng r = rng_seed(67);
   test_mesh mesh = mesh_torus(40, 30, 1.0, 0.3, 0.1);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
@@ -396,15 +383,5 @@ static void queries_do_not_allocate_once_the_workspace_has_grown(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(distance_holds_everywhere_and_at_its_witness),
-      cmocka_unit_test(first_contact_is_never_late_and_never_missed),
-      cmocka_unit_test(a_point_through_a_surface_is_a_proven_collision),
-      cmocka_unit_test(a_closed_mesh_is_solid_inside),
-      cmocka_unit_test(clouds_and_boxes_hold_too),
-      cmocka_unit_test(pairs_answer_as_their_triangles_do),
-      cmocka_unit_test(bad_input_is_refused_with_a_sentence),
-      cmocka_unit_test(queries_do_not_allocate_once_the_workspace_has_grown),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

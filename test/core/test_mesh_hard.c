@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The cases that are hard for curves against meshes, by name: parallel, concentric, touching, far away, too accurate. Whatever they cost, the
  * interval is true and the budget kept; what they may cost is written down, about half as much again as was counted. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/frame.h"
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/meshes.h"
 
 /* The distance at epsilon, which must hold `truth` (itself within `doubt`) and take at most so many intervals; converged, unless the
@@ -34,8 +29,7 @@ static cprox_result expect_distance(const char *name, const cprox_curve *curve, 
 /* ---- plates ----------------------------------------------------------------------------------------------------------- */
 
 /* A plate of 2 * 40² triangles in z = 0, one unit wide each way; straight lines along an axis. */
-static void lines_along_a_plate_take_one_interval(void **state) {
-  (void)state;
+CASE(lines_along_a_plate_take_one_interval) {
   test_mesh mesh = mesh_plate(40, 1.0);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
   const cprox_pose here = cprox_pose_identity();
@@ -56,8 +50,7 @@ static void lines_along_a_plate_take_one_interval(void **state) {
 }
 
 /* The same plate turned by 0.3 about (1, 2, 3), the line parallel to it but for the pose's rounding. */
-static void a_line_parallel_to_an_oblique_plate_converges(void **state) {
-  (void)state;
+CASE(a_line_parallel_to_an_oblique_plate_converges) {
   test_mesh mesh = mesh_plate(40, 1.0);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
   const double s = sin(0.15) / sqrt(14.0);
@@ -99,8 +92,7 @@ static test_mesh mesh_mantle(size_t n, size_t k, double radius, double half) {
 
 /* Along the axis every triangle is as near as any other, up to the chords of the rings: radius * cos(pi/n). An arc outside, concentric,
  * is nearest to every edge: the gap between a vertex and an arc at twice the radius is the radius. */
-static void concentric_curves_end_within_the_budget(void **state) {
-  (void)state;
+CASE(concentric_curves_end_within_the_budget) {
   enum { N = 64 };
   test_mesh mesh = mesh_mantle(N, 16, 0.5, 1.0);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
@@ -119,8 +111,7 @@ static void concentric_curves_end_within_the_budget(void **state) {
 }
 
 /* Two plates that meet at a right angle in the y axis; the line runs in the plane between them, 0.2 from both. */
-static void the_bisector_of_a_groove_converges(void **state) {
-  (void)state;
+CASE(the_bisector_of_a_groove_converges) {
   test_mesh one = mesh_plate(30, 1.0), mesh = {.n = 2 * one.n, .m = 2 * one.m};
   mesh.vertices = malloc(mesh.n * sizeof *mesh.vertices);
   mesh.triangles = malloc(mesh.m * sizeof *mesh.triangles);
@@ -147,8 +138,7 @@ static void the_bisector_of_a_groove_converges(void **state) {
 /* ---- long, far and fine ----------------------------------------------------------------------------------------------- */
 
 /* A cubic spline of 1000 pieces that winds ten times round a torus; nowhere nearer than what it is at 20,000 of its points. */
-static void a_spline_of_a_thousand_pieces_is_answered(void **state) {
-  (void)state;
+CASE(a_spline_of_a_thousand_pieces_is_answered) {
   enum { PIECES = 1000, POINTS = PIECES + 3 };
   test_mesh mesh = mesh_torus(60, 30, 1.0, 0.3, 0.1);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
@@ -178,8 +168,7 @@ static void a_spline_of_a_thousand_pieces_is_answered(void **state) {
 }
 
 /* 1e6 m from the origin the curve's own rounding is 1e-10: the interval is true and wider than 1e-12, and says why. */
-static void far_away_the_interval_is_as_wide_as_it_must_be(void **state) {
-  (void)state;
+CASE(far_away_the_interval_is_as_wide_as_it_must_be) {
   rng r = rng_seed(121);
   for (int i = 0; i < 40; i++) {
     test_mesh mesh = mesh_torus(12, 8, 1.0, 0.3, 0.1);
@@ -207,8 +196,7 @@ static void far_away_the_interval_is_as_wide_as_it_must_be(void **state) {
 }
 
 /* Epsilon 0 and 1e-15 on a torus of size 1: the narrowest interval, a few 1e-15 wide, long before the budget. */
-static void tiny_epsilons_end_with_the_narrowest_interval(void **state) {
-  (void)state;
+CASE(tiny_epsilons_end_with_the_narrowest_interval) {
   rng r = rng_seed(123);
   test_mesh mesh = mesh_torus(24, 16, 1.0, 0.3, 0.1);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
@@ -231,8 +219,7 @@ static void tiny_epsilons_end_with_the_narrowest_interval(void **state) {
 }
 
 /* A budget of 10 intervals for what needs hundreds: the interval is true. */
-static void a_budget_is_kept(void **state) {
-  (void)state;
+CASE(a_budget_is_kept) {
   test_mesh mesh = mesh_mantle(64, 16, 0.5, 1.0);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
   const vec3 axis[2] = {{0.001, 0, -0.8}, {0, 0.001, 0.8}};
@@ -258,8 +245,7 @@ static void a_budget_is_kept(void **state) {
 /* 40 quintics of a tube of 0.05 into a torus of 2 * 60 * 30 triangles (seed 47), to 1e-9: halving would need 30 intervals for the last
  * digits alone, cuts aimed at the contact need 12 on average. Never late: at t_free, nine tenths and half of it the tube is clear of
  * every triangle. */
-static void first_contact_takes_few_intervals(void **state) {
-  (void)state;
+CASE(first_contact_takes_few_intervals) {
   test_mesh mesh = mesh_torus(60, 30, 1.0, 0.3, 0.02);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
   rng r = rng_seed(47);
@@ -293,16 +279,5 @@ static void first_contact_takes_few_intervals(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(lines_along_a_plate_take_one_interval),
-      cmocka_unit_test(a_line_parallel_to_an_oblique_plate_converges),
-      cmocka_unit_test(concentric_curves_end_within_the_budget),
-      cmocka_unit_test(the_bisector_of_a_groove_converges),
-      cmocka_unit_test(a_spline_of_a_thousand_pieces_is_answered),
-      cmocka_unit_test(far_away_the_interval_is_as_wide_as_it_must_be),
-      cmocka_unit_test(tiny_epsilons_end_with_the_narrowest_interval),
-      cmocka_unit_test(a_budget_is_kept),
-      cmocka_unit_test(first_contact_takes_few_intervals),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

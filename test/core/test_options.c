@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Every option of every query with every kind of mover and target: it has its effect, or the call is refused and says so. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/meshes.h"
 
 /* ---- the options -------------------------------------------------------------------------------------------------------- */
@@ -430,8 +425,7 @@ static void walk_option(walk *all, size_t q, mover_kind mover, target_kind targe
 }
 
 /* 23 queries, 5 movers, 9 targets, apart or not, 5 options. What the plain question refuses is refused with the option, too. */
-static void options_have_their_effect_or_are_refused(void **state) {
-  (void)state;
+CASE(options_have_their_effect_or_are_refused) {
   walk all = {.w = make_world()};
   for (size_t q = 0; q < N_QUERIES; q++) {
     for (mover_kind mover = POINT; mover < N_MOVERS; mover++) {
@@ -458,8 +452,7 @@ static void options_have_their_effect_or_are_refused(void **state) {
 /* ---- structures besides the options ------------------------------------------------------------------------------------- */
 
 /* Pairs and `self` are a robot's: with a curve they are refused by every query. */
-static void what_belongs_to_robots_is_refused_with_curves(void **state) {
-  (void)state;
+CASE(what_belongs_to_robots_is_refused_with_curves) {
   world w = make_world();
   const cprox_robot_pair one = {0, 0};
   for (size_t q = 0; q < N_QUERIES; q++) {
@@ -486,8 +479,7 @@ static void what_belongs_to_robots_is_refused_with_curves(void **state) {
 }
 
 /* The number of samples follows from delta, or is given. */
-static void gaps_refuse_delta_and_samples_together(void **state) {
-  (void)state;
+CASE(gaps_refuse_delta_and_samples_together) {
   cprox_solid *ball = NULL;
   assert_int_equal(cprox_solid_create_ball(3, 1.0, ws, &ball), CPROX_OK);
   cprox_gap_options o = cprox_gap_options_default();
@@ -504,8 +496,7 @@ static void gaps_refuse_delta_and_samples_together(void **state) {
 }
 
 /* Signed: of two bodies that the curve goes through the deeper one is the nearest, alone, in a set and in a batch. */
-static void the_deepest_is_the_nearest_where_distances_are_signed(void **state) {
-  (void)state;
+CASE(the_deepest_is_the_nearest_where_distances_are_signed) {
   world w = make_world();
   cprox_target targets[3] = {target_of(&w, BOX, 0.0), target_of(&w, BALL, 0.0), target_of(&w, BALL, 3.0)};
   const cprox_options options = with(SIGNED);
@@ -544,11 +535,5 @@ static int teardown(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(options_have_their_effect_or_are_refused),
-      cmocka_unit_test(what_belongs_to_robots_is_refused_with_curves),
-      cmocka_unit_test(gaps_refuse_delta_and_samples_together),
-      cmocka_unit_test(the_deepest_is_the_nearest_where_distances_are_signed),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cases_run(setup, teardown);
 }

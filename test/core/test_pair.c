@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Signed distances of standing bodies, held against distances that are known by construction. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/rounding.h"
 #include "curve_proximity/cprox/query.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/random.h"
 #include "support/reference.h"
@@ -83,33 +78,28 @@ static void check_apart(const sweep *w) {
 }
 
 /* Seed 301, 1e5 pairs of all kinds at scales 1e-3 to 1e3. Tolerance: what the rounding of b's position moved. */
-static void a_distance_known_by_construction_lies_in_the_interval(void **state) {
-  (void)state;
+CASE(a_distance_known_by_construction_lies_in_the_interval) {
   check_apart(&(sweep){301, 100000, 4.0, 4.0, 1e-3, 10.0, 5e-4});
 }
 
 /* Seed 302, 1e5 pairs, gaps 1e-15 to 1e-2 of the size. */
-static void gaps_down_to_rounding_lie_in_the_interval(void **state) {
-  (void)state;
+CASE(gaps_down_to_rounding_lie_in_the_interval) {
   check_apart(&(sweep){302, 100000, 4.0, 4.0, 1e-15, 1e-2, 2e-3});
 }
 
 /* Seed 303, 3e4 pairs of aspect up to 1e6; seed 304, 3e4 pairs whose sizes are up to 1e12 apart. What thin shapes leave
  * undecided is counted, not wrong. */
-static void needles_and_wafers_lie_in_the_interval(void **state) {
-  (void)state;
+CASE(needles_and_wafers_lie_in_the_interval) {
   check_apart(&(sweep){303, 30000, 1e6, 4.0, 1e-9, 1.0, 5e-2});
 }
 
-static void sizes_a_million_million_apart_lie_in_the_interval(void **state) {
-  (void)state;
+CASE(sizes_a_million_million_apart_lie_in_the_interval) {
   check_apart(&(sweep){304, 30000, 4.0, 1e12, 1e-9, 1.0, 2e-3});
 }
 
 /* Seed 305, 1e5 pairs that share a point, from a touch to deep inside: the interval starts at or below 0, ends at or above phi
  * of any direction, and where the overlap is proven that is said. */
-static void overlaps_are_never_called_apart(void **state) {
-  (void)state;
+CASE(overlaps_are_never_called_apart) {
   rng r = rng_seed(305);
   size_t proven = 0, deep = 0;
   static test_shape a, b;
@@ -161,8 +151,7 @@ static void overlaps_are_never_called_apart(void **state) {
 
 /* Seed 311, 1e5 pairs of boxes, as boxes and as polytopes, aligned with the axes: the gaps are differences of the doubles given,
  * long double is exact to 2^-64, and there is no tolerance: the reference lies in the interval itself. */
-static void aligned_boxes_need_no_tolerance(void **state) {
-  (void)state;
+CASE(aligned_boxes_need_no_tolerance) {
   rng r = rng_seed(311);
   for (size_t i = 0; i < test_cases(100000); i++) {
     cprox_body *body[2] = {NULL, NULL};
@@ -198,8 +187,7 @@ static void aligned_boxes_need_no_tolerance(void **state) {
 
 /* Seed 312, needles of length 100 side by side, not turned and less than 5 apart: the rounding that sizes bring, K u S, has to
  * be in the interval by itself, since positions are short. Tolerance: the rounding of b's position, 5 u. */
-static void the_rounding_of_large_bodies_close_together_is_in_the_interval(void **state) {
-  (void)state;
+CASE(the_rounding_of_large_bodies_close_together_is_in_the_interval) {
   rng r = rng_seed(312);
   static test_shape s[2];
   size_t asked = 0;
@@ -231,8 +219,7 @@ static void the_rounding_of_large_bodies_close_together_is_in_the_interval(void 
 }
 
 /* Seed 306, 2e4 pairs far from the origin of the world: what positions share does not enter the interval's width. */
-static void a_common_offset_of_a_million_metres_costs_nothing(void **state) {
-  (void)state;
+CASE(a_common_offset_of_a_million_metres_costs_nothing) {
   rng r = rng_seed(306);
   static test_shape a, b;
   for (size_t i = 0; i < test_cases(20000); i++) {
@@ -255,8 +242,7 @@ static void a_common_offset_of_a_million_metres_costs_nothing(void **state) {
 
 /* Seed 307, 5e4 pairs with a ball: exact on both sides of the surface, against the ball's centre in long double for a ball and
  * against 2e4 directions for the rest: no direction may do better than lower says. */
-static void balls_have_their_exact_signed_distance(void **state) {
-  (void)state;
+CASE(balls_have_their_exact_signed_distance) {
   rng r = rng_seed(307);
   static test_shape a, b;
   for (size_t i = 0; i < test_cases(50000); i++) {
@@ -284,8 +270,7 @@ static void balls_have_their_exact_signed_distance(void **state) {
 }
 
 /* Seed 308, 5e4 bodies above, through and below a halfspace: the lowest point's height in long double. */
-static void a_halfspace_knows_the_signed_distance_of_everything(void **state) {
-  (void)state;
+CASE(a_halfspace_knows_the_signed_distance_of_everything) {
   rng r = rng_seed(308);
   static test_shape b;
   for (size_t i = 0; i < test_cases(50000); i++) {
@@ -315,8 +300,7 @@ static void a_halfspace_knows_the_signed_distance_of_everything(void **state) {
 }
 
 /* Seed 309, 2e4 pairs. */
-static void padding_is_taken_off_the_distance(void **state) {
-  (void)state;
+CASE(padding_is_taken_off_the_distance) {
   rng r = rng_seed(309);
   static test_shape a, b;
   for (size_t i = 0; i < test_cases(20000); i++) {
@@ -343,8 +327,7 @@ static void padding_is_taken_off_the_distance(void **state) {
 }
 
 /* Seed 310, 5000 unions of three against unions of two: the least of the six, and which part it was. */
-static void a_compound_is_as_near_as_its_nearest_part(void **state) {
-  (void)state;
+CASE(a_compound_is_as_near_as_its_nearest_part) {
   rng r = rng_seed(310);
   static test_shape part[5];
   for (size_t i = 0; i < test_cases(5000); i++) {
@@ -382,19 +365,5 @@ static void a_compound_is_as_near_as_its_nearest_part(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_distance_known_by_construction_lies_in_the_interval),
-      cmocka_unit_test(gaps_down_to_rounding_lie_in_the_interval),
-      cmocka_unit_test(needles_and_wafers_lie_in_the_interval),
-      cmocka_unit_test(sizes_a_million_million_apart_lie_in_the_interval),
-      cmocka_unit_test(overlaps_are_never_called_apart),
-      cmocka_unit_test(aligned_boxes_need_no_tolerance),
-      cmocka_unit_test(the_rounding_of_large_bodies_close_together_is_in_the_interval),
-      cmocka_unit_test(a_common_offset_of_a_million_metres_costs_nothing),
-      cmocka_unit_test(balls_have_their_exact_signed_distance),
-      cmocka_unit_test(a_halfspace_knows_the_signed_distance_of_everything),
-      cmocka_unit_test(padding_is_taken_off_the_distance),
-      cmocka_unit_test(a_compound_is_as_near_as_its_nearest_part),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

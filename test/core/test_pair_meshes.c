@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Standing meshes, clouds and boxes against each other: as all pairs of their elements say. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/frame.h"
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/meshes.h"
 
 /* The least of all pairs of triangles, each by its own pair of polytopes. */
@@ -39,8 +34,7 @@ static double by_triangles(const test_mesh *a, const cprox_pose *at, const test_
 
 /* 60 pairs (seed 141) of soups and tori of 10 to 60 triangles, apart or not; epsilon 1e-9, so that two answers that are apart differ by
  * twice that. The witnesses are as far apart as is said, and the normal is theirs. */
-static void meshes_are_as_far_apart_as_their_nearest_triangles(void **state) {
-  (void)state;
+CASE(meshes_are_as_far_apart_as_their_nearest_triangles) {
   rng r = rng_seed(141);
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-9;
@@ -78,8 +72,7 @@ static void meshes_are_as_far_apart_as_their_nearest_triangles(void **state) {
 
 /* Tori of 2,000 triangles (seed 143), clouds and boxes against each other: the same both ways round, with padding, and no farther than at any
  * of 200 vertices. */
-static void large_meshes_clouds_and_boxes_too(void **state) {
-  (void)state;
+CASE(large_meshes_clouds_and_boxes_too) {
   rng r = rng_seed(143);
   test_mesh torus = mesh_torus(40, 25, 1.0, 0.3, 0.1);
   vec3 low[300], high[300];
@@ -111,8 +104,7 @@ static void large_meshes_clouds_and_boxes_too(void **state) {
 }
 
 /* A small box inside a hollow one: clear of the surface, inside of the solid. */
-static void one_inside_a_solid_overlaps_it(void **state) {
-  (void)state;
+CASE(one_inside_a_solid_overlaps_it) {
   test_mesh large = mesh_box(vec(1, 1, 1)), small = mesh_box(vec(0.1, 0.1, 0.1));
   cprox_body *solid = mesh_body(&large, CPROX_MESH_SOLID, ws), *surface = mesh_body(&large, CPROX_MESH_SURFACE, ws);
   cprox_body *inner = mesh_body(&small, CPROX_MESH_SURFACE, ws);
@@ -168,8 +160,7 @@ static test_mesh any_mesh(rng *r, size_t kind) {
 
 /* 150 pairs (seed 147) of soups, tori and tubes of long and of small triangles, apart, close and crossing, with padding and without: both ways
  * round the same interval and the same cost, and the cost never rises with epsilon, absolute or relative. */
-static void neither_order_nor_a_looser_epsilon_costs_more(void **state) {
-  (void)state;
+CASE(neither_order_nor_a_looser_epsilon_costs_more) {
   rng r = rng_seed(147);
   static const double EPSILON[][2] = {{0, 0},      {1e-9, 0},     {1e-6, 0}, {1e-6, 1e-3}, {1e-6, 0.1},
                                       {1e-6, 0.5}, {1e-6, 0.999}, {1e-4, 0}, {1e-2, 0},    {1.0, 0}};
@@ -211,8 +202,7 @@ static void neither_order_nor_a_looser_epsilon_costs_more(void **state) {
 
 /* A forearm of 1,000 long triangles and a sensor of 43,000 small ones, open, .12 m apart (seed 149): within the default budget, whichever is
  * named first; with a budget of 40 the distance of surfaces is at least 0. */
-static void a_coarse_mesh_and_a_fine_one_take_the_same_either_way(void **state) {
-  (void)state;
+CASE(a_coarse_mesh_and_a_fine_one_take_the_same_either_way) {
   rng r = rng_seed(149);
   for (int shape = 0; shape < 2; shape++) {
     test_mesh a = shape ? open_tube(&r, 25, 20, 0.055, 0.4) : open_tube(&r, 500, 1, 0.055, 0.4);
@@ -244,8 +234,7 @@ static void a_coarse_mesh_and_a_fine_one_take_the_same_either_way(void **state) 
 }
 
 /* Crossing, or nested, and ended by the budget before that is known: the bounds hold, and of surfaces lower is not below 0 (seed 151). */
-static void what_a_budget_leaves_open_is_bounded_by_what_is_meant(void **state) {
-  (void)state;
+CASE(what_a_budget_leaves_open_is_bounded_by_what_is_meant) {
   rng r = rng_seed(151);
   size_t ended = 0;
   for (size_t i = 0; i < test_cases(300); i++) {
@@ -278,8 +267,7 @@ static bool at_once(void *user) {
 }
 
 /* The stop function ends a search through two meshes: what it says is true. */
-static void a_search_through_meshes_can_be_stopped(void **state) {
-  (void)state;
+CASE(a_search_through_meshes_can_be_stopped) {
   test_mesh a = mesh_torus(40, 25, 1.0, 0.3, 0.1);
   cprox_body *x = mesh_body(&a, CPROX_MESH_SURFACE, ws);
   cprox_pose there = cprox_pose_identity();
@@ -295,14 +283,5 @@ static void a_search_through_meshes_can_be_stopped(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(neither_order_nor_a_looser_epsilon_costs_more),
-      cmocka_unit_test(a_coarse_mesh_and_a_fine_one_take_the_same_either_way),
-      cmocka_unit_test(what_a_budget_leaves_open_is_bounded_by_what_is_meant),
-      cmocka_unit_test(a_search_through_meshes_can_be_stopped),
-      cmocka_unit_test(meshes_are_as_far_apart_as_their_nearest_triangles),
-      cmocka_unit_test(large_meshes_clouds_and_boxes_too),
-      cmocka_unit_test(one_inside_a_solid_overlaps_it),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

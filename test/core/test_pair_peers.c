@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* libccd beside our pair solver: wherever bodies are clearly apart or clearly overlap, both say the same. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
 #include <ccd/ccd.h>
-#include <cmocka.h>
-
 #include "curve_proximity/cprox/query.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
@@ -40,8 +35,7 @@ static bool ccd_says_overlap(const test_shape *a, const cprox_pose *pa, const te
 /* Seed 701, 1e5 pairs of solid kinds and polytopes: half apart by construction by 1e-6 to 1 sizes, half sharing a point that is
  * at least a twentieth of the way from the surface to the middle of each. libccd has no tolerance of its own in this verdict but
  * its arithmetic; it must not contradict a distance above 1e-6. */
-static void libccd_gives_the_same_verdict_where_it_is_clear(void **state) {
-  (void)state;
+CASE(libccd_gives_the_same_verdict_where_it_is_clear) {
   rng r = rng_seed(701);
   static test_shape a, b;
   const cprox_body_kind kinds[] = {CPROX_SPHERE, CPROX_BOX, CPROX_CAPSULE, CPROX_CYLINDER, CPROX_CONE, CPROX_ELLIPSOID};
@@ -73,8 +67,5 @@ static void libccd_gives_the_same_verdict_where_it_is_clear(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(libccd_gives_the_same_verdict_where_it_is_clear),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The pairs on which published libraries failed: each interval contains the reference. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/rounding.h"
 #include "curve_proximity/cprox/query.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/csv.h"
 #include "support/reference.h"
 
@@ -140,20 +135,14 @@ static size_t check_rows(bool corners) {
   return separated;
 }
 
-static void every_published_failure_is_in_its_interval(void **state) {
-  (void)state;
+CASE(every_published_failure_is_in_its_interval) {
   assert_int_equal(check_rows(false), 19);
 }
 
-static void so_it_is_with_boxes_as_polytopes(void **state) {
-  (void)state;
+CASE(so_it_is_with_boxes_as_polytopes) {
   assert_int_equal(check_rows(true), 19);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_published_failure_is_in_its_interval),
-      cmocka_unit_test(so_it_is_with_boxes_as_polytopes),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

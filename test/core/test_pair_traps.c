@@ -1,16 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What pair solvers have fallen into, one test each, and what cprox_pair refuses. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "base/rounding.h"
 #include "curve_proximity/cprox/query.h"
 #include "shape/body.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/random.h"
 #include "support/reference.h"
@@ -43,8 +37,7 @@ static cprox_body *cylinder(double height, double radius) {
 /* ---- traps ---- */
 
 /* "Re-evaluated rim points that collapse a disc": seen along its axis every rim point is extreme. */
-static void a_disc_that_faces_a_disc_does_not_collapse(void **state) {
-  (void)state;
+CASE(a_disc_that_faces_a_disc_does_not_collapse) {
   cprox_body *a = cylinder(1.0, 2.0), *b = cylinder(1.0, 0.5), *c = box(1, 1, 1);
   for (int i = 0; i < 9; i++) {
     const double x = 0.3 * i, gap = 0.125;
@@ -62,8 +55,7 @@ static void a_disc_that_faces_a_disc_does_not_collapse(void **state) {
 }
 
 /* "v/|v| at 1e-12 S": the direction between nearest points is noise there, the face's normal is not. */
-static void a_hair_over_a_face_the_bounds_still_meet(void **state) {
-  (void)state;
+CASE(a_hair_over_a_face_the_bounds_still_meet) {
   rng r = rng_seed(601);
   cprox_body *a = box(1, 2, 3), *b = box(1, 1, 1);
   for (int i = 0; i < 5000; i++) {
@@ -87,8 +79,7 @@ static void a_hair_over_a_face_the_bounds_still_meet(void **state) {
 
 /* The same where an edge is nearest: v is short, and what rounding left of it along the edge is magnified in v/|v|. Seed 608, 2e4
  * pairs of polyhedra brought to 1e-6 of each other along the line between their nearest points. */
-static void a_hair_beside_an_edge_the_bounds_still_meet(void **state) {
-  (void)state;
+CASE(a_hair_beside_an_edge_the_bounds_still_meet) {
   rng r = rng_seed(608);
   static test_shape a, b;
   const cprox_body_kind flat[] = {CPROX_BOX, CPROX_POLYTOPE};
@@ -116,8 +107,7 @@ static void a_hair_beside_an_edge_the_bounds_still_meet(void **state) {
 }
 
 /* "0 just outside the polytope at touch": face on face, edge on edge, corner on corner, aligned and turned. */
-static void bodies_that_touch_are_neither_apart_nor_deep(void **state) {
-  (void)state;
+CASE(bodies_that_touch_are_neither_apart_nor_deep) {
   cprox_body *a = box(1, 1, 1), *c = cylinder(1, 0.5);
   cprox_body *e = NULL;
   assert_int_equal(cprox_body_create_ellipsoid(vec(0.5, 1, 2), ws, &e), CPROX_OK);
@@ -139,8 +129,7 @@ static void bodies_that_touch_are_neither_apart_nor_deep(void **state) {
 }
 
 /* 0 in the middle of a feature of the first simplex: concentric bodies overlap, and do so by proof. */
-static void concentric_bodies_overlap(void **state) {
-  (void)state;
+CASE(concentric_bodies_overlap) {
   static test_shape a, b;
   rng r = rng_seed(602);
   const cprox_body_kind solid[] = {CPROX_BOX, CPROX_CYLINDER, CPROX_CONE, CPROX_ELLIPSOID, CPROX_SUPPORT};
@@ -161,8 +150,7 @@ static void concentric_bodies_overlap(void **state) {
 /* "Newton alternating between features", "restarted on the dual's plateau", "curvature shifted by a negative phi": seed 603,
  * 4e4 pairs of curved shapes close to each other. With any of the three some per cent end with lower exact and upper off, or
  * the other way round; the bound on how many may is that of the design, 5e-4. */
-static void newton_that_does_not_help_gives_way(void **state) {
-  (void)state;
+CASE(newton_that_does_not_help_gives_way) {
   rng r = rng_seed(603);
   const cprox_body_kind curved[] = {CPROX_CYLINDER, CPROX_CONE, CPROX_ELLIPSOID, CPROX_POLYTOPE};
   static test_shape a, b;
@@ -189,8 +177,7 @@ static void newton_that_does_not_help_gives_way(void **state) {
 
 /* "A status from the loop's flag instead of the gap": with every budget the interval is true, OK means its width, and what was
  * cut short says so. */
-static void the_status_is_that_of_the_interval(void **state) {
-  (void)state;
+CASE(the_status_is_that_of_the_interval) {
   rng r = rng_seed(604);
   static test_shape a, b;
   size_t cut = 0;
@@ -218,8 +205,7 @@ static void the_status_is_that_of_the_interval(void **state) {
 }
 
 /* "Rotations that are not orthonormal": a quaternion of any length stands for the rotation of its direction. */
-static void the_length_of_a_quaternion_does_not_matter(void **state) {
-  (void)state;
+CASE(the_length_of_a_quaternion_does_not_matter) {
   cprox_body *a = box(1, 2, 3), *b = cylinder(1, 0.25);
   rng r = rng_seed(605);
   for (int i = 0; i < 1000; i++) {
@@ -237,8 +223,7 @@ static void the_length_of_a_quaternion_does_not_matter(void **state) {
 }
 
 /* "A repeated vertex taken for convergence", of pairs. */
-static void repeated_vertices_change_nothing(void **state) {
-  (void)state;
+CASE(repeated_vertices_change_nothing) {
   rng r = rng_seed(606);
   vec3 v[80];
   for (int i = 0; i < 80; i++) v[i] = vec(i & 1 ? 0.5 : -0.5, i & 2 ? 1 : -1, i & 4 ? 1.5 : -1.5);
@@ -256,8 +241,7 @@ static void repeated_vertices_change_nothing(void **state) {
 
 /* ---- manners ---- */
 
-static void a_pair_allocates_nothing(void **state) {
-  (void)state;
+CASE(a_pair_allocates_nothing) {
   rng r = rng_seed(607);
   static test_shape a, b;
   for (int i = 0; i < 500; i++) {
@@ -282,8 +266,7 @@ static void far_callback(const void *shape, const double d[3], double p[3]) {
   for (int i = 0; i < 3; i++) p[i] = d[i] < 0 ? -2.0 : 2.0;
 }
 
-static void a_callback_that_breaks_its_promise_is_caught(void **state) {
-  (void)state;
+CASE(a_callback_that_breaks_its_promise_is_caught) {
   cprox_body *a = box(1, 1, 1), *half = NULL, *ball = NULL;
   const cprox_support_fn bad[] = {nan_callback, far_callback};
   assert_int_equal(cprox_body_create_halfspace(vec(1, 0, 0), 0.0, ws, &half), CPROX_OK);
@@ -314,8 +297,7 @@ static void a_callback_that_breaks_its_promise_is_caught(void **state) {
     assert_int_equal(result.nodes, 77);                                      \
   } while (0)
 
-static void unusable_arguments_are_refused_in_words(void **state) {
-  (void)state;
+CASE(unusable_arguments_are_refused_in_words) {
   cprox_body *a = box(1, 1, 1), *h = NULL, *both = NULL;
   assert_int_equal(cprox_body_create_halfspace(vec(1, 0, 0), 0.0, ws, &h), CPROX_OK);
   const cprox_body *parts[2] = {a, h};
@@ -345,19 +327,5 @@ static void unusable_arguments_are_refused_in_words(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_disc_that_faces_a_disc_does_not_collapse),
-      cmocka_unit_test(a_hair_over_a_face_the_bounds_still_meet),
-      cmocka_unit_test(a_hair_beside_an_edge_the_bounds_still_meet),
-      cmocka_unit_test(bodies_that_touch_are_neither_apart_nor_deep),
-      cmocka_unit_test(concentric_bodies_overlap),
-      cmocka_unit_test(newton_that_does_not_help_gives_way),
-      cmocka_unit_test(the_status_is_that_of_the_interval),
-      cmocka_unit_test(the_length_of_a_quaternion_does_not_matter),
-      cmocka_unit_test(repeated_vertices_change_nothing),
-      cmocka_unit_test(a_pair_allocates_nothing),
-      cmocka_unit_test(a_callback_that_breaks_its_promise_is_caught),
-      cmocka_unit_test(unusable_arguments_are_refused_in_words),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

@@ -10,12 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-extern "C" {
-#include <cmocka.h>
-}
+#include "support/cases.h"
 
 using curve_proximity::Batch;
 using curve_proximity::Pool;
@@ -23,7 +18,7 @@ using curve_proximity::Workspace;
 
 namespace {
 
-void every_number_is_taken_once(void **) {
+CASE(every_number_is_taken_once) {
   for (unsigned threads = 1; threads <= 8; ++threads) {
     Pool pool(threads);
     assert_int_equal(pool.threads(), threads);
@@ -72,7 +67,7 @@ Outcome throwInTheTenth(unsigned threads) {
 
 /* One thread begins nothing after the range that throws. Several cannot know at once: each range after it takes a millisecond, so that all of
  * them would take three threads more than three seconds, and the one that throws has as long to say so, whatever else the machine does. */
-void the_first_exception_arrives_and_the_pool_goes_on(void **) {
+CASE(the_first_exception_arrives_and_the_pool_goes_on) {
   for (int round = 0; round < 50; ++round) {
     const bool alone = round % 2 == 1;
     const Outcome outcome = throwInTheTenth(alone ? 1 : 4);
@@ -118,7 +113,7 @@ bool same(const cprox_result &a, const cprox_result &b) {
          a.target_index == b.target_index && a.nodes == b.nodes && a.probes == b.probes;
 }
 
-void answers_are_the_same_for_one_to_eight_threads(void **) {
+CASE(answers_are_the_same_for_one_to_eight_threads) {
   World world;
   world.movers[300].radius = -1;
   world.movers[70].radius = NAN;
@@ -146,7 +141,7 @@ void answers_are_the_same_for_one_to_eight_threads(void **) {
   }
 }
 
-void unusable_targets_and_options_are_told(void **) {
+CASE(unusable_targets_and_options_are_told) {
   World world;
   std::vector<cprox_target> bad = world.targets;
   bad[3].padding = -1;
@@ -169,11 +164,5 @@ void unusable_targets_and_options_are_told(void **) {
 } // namespace
 
 int main() {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_number_is_taken_once),
-      cmocka_unit_test(the_first_exception_arrives_and_the_pool_goes_on),
-      cmocka_unit_test(answers_are_the_same_for_one_to_eight_threads),
-      cmocka_unit_test(unusable_targets_and_options_are_told),
-  };
-  return cmocka_run_group_tests(tests, nullptr, nullptr);
+  return cases_run(nullptr, nullptr);
 }

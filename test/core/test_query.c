@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The verbs as a caller meets them: intervals, verdicts, budgets, many targets, unusable arguments, memory, cost. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/vec.h"
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/random.h"
 #include "support/reference.h"
@@ -50,8 +45,7 @@ static void assert_contains(const cprox_result *r, double truth, double doubt) {
 
 /* ---- one curve, one body ----------------------------------------------------------------------------------------------- */
 
-static void a_segment_past_a_box_has_the_distance_of_its_nearest_end(void **state) {
-  (void)state;
+CASE(a_segment_past_a_box_has_the_distance_of_its_nearest_end) {
   cprox_curve *curve = segment(vec(2, -1, 0), vec(2, 1, 0));
   cprox_body *body = box(1, 1, 1);
   const cprox_options options = accurate(1e-9);
@@ -69,8 +63,7 @@ static void a_segment_past_a_box_has_the_distance_of_its_nearest_end(void **stat
   cprox_curve_free(curve);
 }
 
-static void a_turned_and_moved_body_is_measured_where_it_stands(void **state) {
-  (void)state;
+CASE(a_turned_and_moved_body_is_measured_where_it_stands) {
   cprox_curve *curve = segment(vec(10, 20, 33), vec(10, 20, 35));
   cprox_body *body = box(2, 4, 6);
   /* a quarter turn about x, by a quaternion of norm 3 */
@@ -85,8 +78,7 @@ static void a_turned_and_moved_body_is_measured_where_it_stands(void **state) {
   cprox_curve_free(curve);
 }
 
-static void a_curve_through_a_body_is_at_distance_0_and_collides(void **state) {
-  (void)state;
+CASE(a_curve_through_a_body_is_at_distance_0_and_collides) {
   const vec3 points[] = {{-2, 0.1, 0}, {0, 0.3, 0.1}, {0, -0.3, 0}, {2, 0.5, 0}};
   cprox_curve *curve = bezier(points, 4);
   cprox_body *bodies[4] = {box(1, 1, 1), sphere(0.5), NULL, NULL};
@@ -107,8 +99,7 @@ static void a_curve_through_a_body_is_at_distance_0_and_collides(void **state) {
   cprox_curve_free(curve);
 }
 
-static void a_planar_curve_through_a_polygon_collides(void **state) {
-  (void)state;
+CASE(a_planar_curve_through_a_polygon_collides) {
   cprox_curve *curve = segment(vec(-3, 0.2, 0), vec(3, 0.1, 0));
   cprox_body *polygon = NULL;
   const double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
@@ -124,8 +115,7 @@ static void a_planar_curve_through_a_polygon_collides(void **state) {
   cprox_curve_free(curve);
 }
 
-static void touching_is_never_called_free(void **state) {
-  (void)state;
+CASE(touching_is_never_called_free) {
   /* a parabola that touches the box's face, a tube that rests on it, an end point on its corner */
   const vec3 parabola[] = {{-1, 1.5, 0}, {0, -0.5, 0}, {1, 1.5, 0}};
   cprox_curve *curves[] = {bezier(parabola, 3), segment(vec(-2, 0.75, 0), vec(2, 0.75, 0)),
@@ -145,8 +135,7 @@ static void touching_is_never_called_free(void **state) {
   cprox_body_free(body);
 }
 
-static void a_curve_that_stands_still_is_answered_as_a_point(void **state) {
-  (void)state;
+CASE(a_curve_that_stands_still_is_answered_as_a_point) {
   const vec3 points[] = {{3, 0, 0}, {3, 0, 0}, {3, 0, 0}, {3, 0, 0}};
   cprox_curve *curve = bezier(points, 4);
   cprox_body *body = sphere(1.0);
@@ -158,8 +147,7 @@ static void a_curve_that_stands_still_is_answered_as_a_point(void **state) {
   cprox_curve_free(curve);
 }
 
-static void a_long_spline_is_searched_by_its_tree(void **state) {
-  (void)state;
+CASE(a_long_spline_is_searched_by_its_tree) {
   /* a helix of 100,000 control points round the z axis, radius 2; a ball on the axis */
   enum { N = 100000 };
   vec3 *points = malloc(N * sizeof *points);
@@ -196,8 +184,7 @@ static void a_long_spline_is_searched_by_its_tree(void **state) {
 
 /* ---- accuracy, budget, stop -------------------------------------------------------------------------------------------- */
 
-static void epsilon_of_any_size_ends_with_a_true_interval(void **state) {
-  (void)state;
+CASE(epsilon_of_any_size_ends_with_a_true_interval) {
   const vec3 points[] = {{-2, 1, 0.3}, {-1, 3, 0.1}, {1, -1, 0}, {2, 2, 0.7}};
   cprox_curve *curve = bezier(points, 4);
   cprox_body *body = box(1, 1, 1);
@@ -242,8 +229,7 @@ static void hard_case_free(hard_case *c) {
   cprox_curve_free(c->curve);
 }
 
-static void a_spent_budget_leaves_a_true_interval(void **state) {
-  (void)state;
+CASE(a_spent_budget_leaves_a_true_interval) {
   hard_case c = hard_case_create();
   cprox_options options = accurate(1e-12);
   double width = INFINITY;
@@ -264,8 +250,7 @@ static bool stop_after(void *user) {
   return --*(int *)user < 0;
 }
 
-static void a_stop_function_ends_the_search_with_a_true_interval(void **state) {
-  (void)state;
+CASE(a_stop_function_ends_the_search_with_a_true_interval) {
   hard_case c = hard_case_create();
   cprox_options options = accurate(1e-12);
   int polls = 1;
@@ -289,8 +274,7 @@ static bool stop_at_once(void *user) {
 }
 
 /* The segment lies at x = 0, the box within half the root of 3 of (10, 0, 0). */
-static void what_is_stopped_before_it_began_knows_what_the_balls_say(void **state) {
-  (void)state;
+CASE(what_is_stopped_before_it_began_knows_what_the_balls_say) {
   cprox_curve *curve = segment(vec(0, -1, 0), vec(0, 1, 0));
   cprox_body *body = box(1, 1, 1);
   cprox_options options = accurate(1e-9);
@@ -302,8 +286,7 @@ static void what_is_stopped_before_it_began_knows_what_the_balls_say(void **stat
   cprox_curve_free(curve);
 }
 
-static void many_targets_are_answered_like_the_nearest_of_them(void **state) {
-  (void)state;
+CASE(many_targets_are_answered_like_the_nearest_of_them) {
   rng r = rng_seed(5);
   enum { N = 30 };
   cprox_body *ball = sphere(0.05), *brick = box(0.1, 0.2, 0.3), *pair = NULL;
@@ -357,8 +340,7 @@ static void many_targets_are_answered_like_the_nearest_of_them(void **state) {
   cprox_body_free(brick);
 }
 
-static void nothing_to_measure_is_infinitely_far(void **state) {
-  (void)state;
+CASE(nothing_to_measure_is_infinitely_far) {
   cprox_curve *curve = segment(vec(0, 0, 0), vec(1, 0, 0));
   cprox_result r;
   assert_int_equal(cprox_distance_all(cprox_point_along(curve), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
@@ -378,8 +360,7 @@ static void expect_refusal(cprox_status status, const char *word, const cprox_re
   assert_true(r->lower == -7.0); /* untouched */
 }
 
-static void unusable_arguments_are_refused_by_name(void **state) {
-  (void)state;
+CASE(unusable_arguments_are_refused_by_name) {
   cprox_curve *curve = segment(vec(0, 0, 0), vec(1, 0, 0));
   cprox_body *body = sphere(1.0);
   const cprox_mover mover = cprox_point_along(curve);
@@ -415,8 +396,7 @@ static void stray_support(const void *shape, const double direction[3], double p
   p[0] = p[1] = p[2] = *answer;
 }
 
-static void a_support_callback_that_leaves_its_body_is_refused(void **state) {
-  (void)state;
+CASE(a_support_callback_that_leaves_its_body_is_refused) {
   cprox_curve *curve = segment(vec(5, 0, 0), vec(6, 0, 0));
   const double answers[] = {NAN, 100.0};
   for (int i = 0; i < 2; i++) {
@@ -431,8 +411,7 @@ static void a_support_callback_that_leaves_its_body_is_refused(void **state) {
 
 /* ---- memory and cost --------------------------------------------------------------------------------------------------- */
 
-static void a_second_query_of_a_size_allocates_nothing(void **state) {
-  (void)state;
+CASE(a_second_query_of_a_size_allocates_nothing) {
   rng r = rng_seed(9);
   vec3 points[16], cloud[64];
   for (int i = 0; i < 16; i++) points[i] = rng_in_cube(&r, 1.0);
@@ -456,8 +435,7 @@ static void a_second_query_of_a_size_allocates_nothing(void **state) {
   cprox_curve_free(curve);
 }
 
-static void a_failed_allocation_is_a_status_and_the_next_query_answers(void **state) {
-  (void)state;
+CASE(a_failed_allocation_is_a_status_and_the_next_query_answers) {
   cprox_curve *curve = segment(vec(2, -1, 0), vec(2, 1, 0));
   cprox_body *body = box(1, 1, 1);
   for (size_t successes = 0; successes < 4; successes++) {
@@ -484,8 +462,7 @@ static int by_count(const void *a, const void *b) {
 }
 
 /* Seed 11, 400 problems a group, curves in the unit cube, epsilon 1e-10. */
-static void medians_stay_within_6_nodes_and_10_probes(void **state) {
-  (void)state;
+CASE(medians_stay_within_6_nodes_and_10_probes) {
   enum { PROBLEMS = 400 };
   rng r = rng_seed(11);
   const size_t orders[] = {5, 10, 15};
@@ -538,8 +515,7 @@ static void medians_stay_within_6_nodes_and_10_probes(void **state) {
 
 /* However early a search stops, its two points are those that attain upper: as far apart as it says, the one within the radius of the
  * curve's point, the other within the padding of the hull. 2^-44 of the sizes: roundings of points in double. */
-static void witness_points_attain_upper_however_loose_epsilon_is(void **state) {
-  (void)state;
+CASE(witness_points_attain_upper_however_loose_epsilon_is) {
   rng r = rng_seed(29);
   const size_t cases = test_cases(2000);
   for (size_t i = 0; i < cases; i++) {
@@ -569,26 +545,5 @@ static void witness_points_attain_upper_however_loose_epsilon_is(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_segment_past_a_box_has_the_distance_of_its_nearest_end),
-      cmocka_unit_test(a_turned_and_moved_body_is_measured_where_it_stands),
-      cmocka_unit_test(a_curve_through_a_body_is_at_distance_0_and_collides),
-      cmocka_unit_test(a_planar_curve_through_a_polygon_collides),
-      cmocka_unit_test(touching_is_never_called_free),
-      cmocka_unit_test(a_curve_that_stands_still_is_answered_as_a_point),
-      cmocka_unit_test(a_long_spline_is_searched_by_its_tree),
-      cmocka_unit_test(epsilon_of_any_size_ends_with_a_true_interval),
-      cmocka_unit_test(witness_points_attain_upper_however_loose_epsilon_is),
-      cmocka_unit_test(a_spent_budget_leaves_a_true_interval),
-      cmocka_unit_test(a_stop_function_ends_the_search_with_a_true_interval),
-      cmocka_unit_test(what_is_stopped_before_it_began_knows_what_the_balls_say),
-      cmocka_unit_test(many_targets_are_answered_like_the_nearest_of_them),
-      cmocka_unit_test(nothing_to_measure_is_infinitely_far),
-      cmocka_unit_test(unusable_arguments_are_refused_by_name),
-      cmocka_unit_test(a_support_callback_that_leaves_its_body_is_refused),
-      cmocka_unit_test(a_second_query_of_a_size_allocates_nothing),
-      cmocka_unit_test(a_failed_allocation_is_a_status_and_the_next_query_answers),
-      cmocka_unit_test(medians_stay_within_6_nodes_and_10_probes),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

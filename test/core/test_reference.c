@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Reference answers in test/data/reference, computed by dense sampling and refinement in long double: every interval contains
  * its reference and is as narrow as asked, or says that double arithmetic allows no more. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/rounding.h"
 #include "curve_proximity/cprox.h"
+#include "support/cases.h"
 #include "support/csv.h"
 
 /* The body of a case: one vertex is a point, vertices in the plane a polygon (two a segment), in space a polytope. */
@@ -116,32 +111,22 @@ static void check_file(const char *inputs, const char *references) {
   csv_free(&ref);
 }
 
-static void curve_point_intervals_contain_their_references(void **state) {
-  (void)state;
+CASE(curve_point_intervals_contain_their_references) {
   check_file("reference/curve_point_inputs.csv", "reference/curve_point_ref.csv");
 }
 
-static void curve_polygon_intervals_contain_their_references(void **state) {
-  (void)state;
+CASE(curve_polygon_intervals_contain_their_references) {
   check_file("reference/curve_polygon_inputs.csv", "reference/curve_polygon_ref.csv");
 }
 
-static void curve3d_intervals_contain_their_references(void **state) {
-  (void)state;
+CASE(curve3d_intervals_contain_their_references) {
   check_file("reference/curve3d_inputs.csv", "reference/curve3d_ref.csv");
 }
 
-static void edge_case_intervals_contain_their_references(void **state) {
-  (void)state;
+CASE(edge_case_intervals_contain_their_references) {
   check_file("reference/edge_inputs.csv", "reference/edge_ref.csv");
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(curve_point_intervals_contain_their_references),
-      cmocka_unit_test(curve_polygon_intervals_contain_their_references),
-      cmocka_unit_test(curve3d_intervals_contain_their_references),
-      cmocka_unit_test(edge_case_intervals_contain_their_references),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

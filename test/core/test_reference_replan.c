@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A thousand quintic curves round two obstacles (A. Lakshmanan et al. 2019, Fig. 12): each distance is in its interval, and the
  * verdicts sort the curves as the reference does. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 
 #include "curve_proximity/cprox.h"
+#include "support/cases.h"
 #include "support/csv.h"
 
 #define DELTA 0.03
@@ -82,8 +77,7 @@ static unsigned class_of(const cprox_curve *curve, cprox_workspace *ws) {
   return worst;
 }
 
-static void the_curves_are_sorted_as_the_reference_sorts_them(void **state) {
-  (void)state;
+CASE(the_curves_are_sorted_as_the_reference_sorts_them) {
   csv_table table = csv_read("reference/replan_curves.csv");
   cprox_workspace *ws = cprox_workspace_create();
   size_t of_class[4] = {0};
@@ -103,8 +97,5 @@ static void the_curves_are_sorted_as_the_reference_sorts_them(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_curves_are_sorted_as_the_reference_sorts_them),
-  };
-  return cmocka_run_group_tests(tests, make_obstacles, free_obstacles);
+  return cases_run(make_obstacles, free_obstacles);
 }

@@ -2,18 +2,13 @@
 /* Robots among many targets that form a set: whatever the tree of their boxes leaves out, the answers are those of single targets,
  * one question each. Targets are boxes, balls, cylinders, compounds, surfaces, and among some a halfspace. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "broadphase/obstacle_set.h"
 #include "curve_proximity/cprox.h"
 #include "robot_query/cull.h"
 #include "solve/solve.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/robots.h"
 
 enum { MOST_TARGETS = 300, KINDS = 6, ROBOTS = 24 };
@@ -80,8 +75,7 @@ static cprox_result least_of(const crowd *c, cprox_mover mover, const cprox_opti
 }
 
 /* Both intervals hold the truth and are within epsilon of each other's ends; verdicts hold on both sides of it. */
-static void a_set_is_answered_as_its_targets_one_by_one(void **state) {
-  (void)state;
+CASE(a_set_is_answered_as_its_targets_one_by_one) {
   rng r = rng_seed(6601);
   size_t touching = 0, apart = 0;
   for (size_t i = 0; i < test_cases(ROBOTS); i++) {
@@ -129,8 +123,7 @@ static void a_set_is_answered_as_its_targets_one_by_one(void **state) {
 }
 
 /* Never later than the earliest contact with a single target, and no earlier than epsilon away from one. */
-static void first_contact_with_a_set_is_the_earliest_of_its_targets(void **state) {
-  (void)state;
+CASE(first_contact_with_a_set_is_the_earliest_of_its_targets) {
   rng r = rng_seed(6602);
   for (size_t i = 0; i < test_cases(6); i++) {
     test_robot t;
@@ -178,8 +171,7 @@ static double lanes_below(robot_scene *scene, uint32_t at, double travel, const 
   return least;
 }
 
-static void lanes_bound_what_is_under_them_over_the_whole_node(void **state) {
-  (void)state;
+CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
   enum { BALLS = 60 };
   rng r = rng_seed(6604);
   for (size_t round = 0; round < test_cases(200); round++) {
@@ -233,8 +225,7 @@ static void lanes_bound_what_is_under_them_over_the_whole_node(void **state) {
 }
 
 /* A robot that moves among targets ten times as many looks at few more of them. */
-static void the_work_hardly_grows_with_the_number_of_targets(void **state) {
-  (void)state;
+CASE(the_work_hardly_grows_with_the_number_of_targets) {
   enum { MANY = 4000 };
   static cprox_target targets[MANY];
   rng r = rng_seed(6603);
@@ -261,11 +252,5 @@ static void the_work_hardly_grows_with_the_number_of_targets(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_set_is_answered_as_its_targets_one_by_one),
-      cmocka_unit_test(first_contact_with_a_set_is_the_earliest_of_its_targets),
-      cmocka_unit_test(lanes_bound_what_is_under_them_over_the_whole_node),
-      cmocka_unit_test(the_work_hardly_grows_with_the_number_of_targets),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

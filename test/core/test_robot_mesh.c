@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Robots whose links are meshes, with and without hulls, past points, meshes and clouds: against every triangle in long double. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 #include <time.h>
 
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/meshes.h"
 #include "support/robot_case.h"
 #include "support/robots.h"
@@ -94,8 +89,7 @@ static cprox_result ask(const mesh_robot *m, const cprox_target *targets, size_t
   return r;
 }
 
-static void points_are_as_far_as_every_triangle_says(void **state) {
-  (void)state;
+CASE(points_are_as_far_as_every_triangle_says) {
   rng r = rng_seed(7001);
   size_t climbed = 0;
   for (size_t i = 0; i < test_cases(40); i++) {
@@ -141,8 +135,7 @@ static void points_are_as_far_as_every_triangle_says(void **state) {
 }
 
 /* Meshes past meshes: a target of triangles is as far as all of its triangles as convex bodies of their own. */
-static void meshes_are_as_far_as_their_triangles_one_by_one(void **state) {
-  (void)state;
+CASE(meshes_are_as_far_as_their_triangles_one_by_one) {
   enum { MOST = 400 };
   rng r = rng_seed(7002);
   for (size_t i = 0; i < test_cases(15); i++) {
@@ -180,8 +173,7 @@ static void meshes_are_as_far_as_their_triangles_one_by_one(void **state) {
 }
 
 /* What stops at the hull says what a robot of hulls says. */
-static void the_highest_rung_may_be_the_hull_or_the_ball(void **state) {
-  (void)state;
+CASE(the_highest_rung_may_be_the_hull_or_the_ball) {
   rng r = rng_seed(7003);
   for (size_t i = 0; i < test_cases(20); i++) {
     mesh_robot m;
@@ -222,8 +214,7 @@ static int ascending(const void *a, const void *b) {
 }
 
 /* Meshes are inside their hulls: no nearer than those. Verdicts on either side of the distance are right. */
-static void meshes_of_real_robots_are_no_nearer_than_their_hulls(void **state) {
-  (void)state;
+CASE(meshes_of_real_robots_are_no_nearer_than_their_hulls) {
   FILE *f = fopen(TEST_DATA_DIR "/motion/cases.txt", "r");
   assert_non_null(f);
   size_t n, farther = 0, count = 0;
@@ -269,11 +260,5 @@ static void meshes_of_real_robots_are_no_nearer_than_their_hulls(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(points_are_as_far_as_every_triangle_says),
-      cmocka_unit_test(meshes_are_as_far_as_their_triangles_one_by_one),
-      cmocka_unit_test(the_highest_rung_may_be_the_hull_or_the_ball),
-      cmocka_unit_test(meshes_of_real_robots_are_no_nearer_than_their_hulls),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

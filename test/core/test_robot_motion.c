@@ -2,22 +2,16 @@
 /* Kinematics and motion bounds of random robots with every type of joint, against long double. Tolerances are the bounds that the
  * core itself states, rounding included; long double adds at most 1e-17. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "kinematics/bound.h"
+#include "support/cases.h"
 #include "support/robots.h"
 
 enum { MAX_AXES = 4 * TEST_MAX_LINKS, SAMPLES = 8 };
 
 /* ---- kinematics ----------------------------------------------------------------------------------------------------------- */
 
-static void parts_are_within_their_error_of_where_they_are(void **state) {
-  (void)state;
+CASE(parts_are_within_their_error_of_where_they_are) {
   rng r = rng_seed(4401);
   double worst = 0.0;
   for (size_t i = 0; i < test_cases(2000); i++) {
@@ -55,8 +49,7 @@ static void parts_are_within_their_error_of_where_they_are(void **state) {
   assert_true(worst > 1e-3);
 }
 
-static void evaluation_agrees_with_the_splines(void **state) {
-  (void)state;
+CASE(evaluation_agrees_with_the_splines) {
   rng r = rng_seed(4402);
   for (size_t i = 0; i < test_cases(500); i++) {
     test_robot t;
@@ -164,8 +157,7 @@ static bound_claim claim_of(const test_robot *t, const bound_case *c, vec3 n, ve
 }
 
 /* At least 1e5 random pairs of an interval and two geometries (or one and the world), over all types of joint. */
-static void no_point_is_nearer_than_the_bounds_say(void **state) {
-  (void)state;
+CASE(no_point_is_nearer_than_the_bounds_say) {
   rng r = rng_seed(4403);
   size_t checks = 0, third_wins = 0;
   for (size_t i = 0; i < test_cases(2000); i++) {
@@ -223,8 +215,7 @@ static vec3l angular_velocity(const test_robot *t, size_t segment, int32_t varia
 }
 
 /* Differences of differences leave 1e-5 of the rates. */
-static void balls_turn_no_faster_than_said(void **state) {
-  (void)state;
+CASE(balls_turn_no_faster_than_said) {
   static const long double STEP = 1e-3L, LEFT = 1e-5L;
   rng r = rng_seed(4405);
   double nearest[3] = {0};
@@ -259,8 +250,7 @@ static void balls_turn_no_faster_than_said(void **state) {
 }
 
 /* Halving a node takes the bound of third order an eighth nearer, that of second order a quarter, the travel a half. */
-static void bounds_are_of_their_order(void **state) {
-  (void)state;
+CASE(bounds_are_of_their_order) {
   rng r = rng_seed(4404);
   double log_ratio[3] = {0};
   size_t counted = 0;
@@ -297,12 +287,5 @@ static void bounds_are_of_their_order(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(parts_are_within_their_error_of_where_they_are),
-      cmocka_unit_test(evaluation_agrees_with_the_splines),
-      cmocka_unit_test(no_point_is_nearer_than_the_bounds_say),
-      cmocka_unit_test(balls_turn_no_faster_than_said),
-      cmocka_unit_test(bounds_are_of_their_order),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -1,23 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The pairs of a robot that come closest, against a search for each pair alone; the range of variables against samples in long double. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/robot_case.h"
 #include "support/robots.h"
 
 enum { CASES = 4, MOST_PAIRS = 700 };
 
 /* Every pair of the first real robots, then the same with fewer and nearer ones. */
-static void the_nearest_pairs_are_those_of_single_questions(void **state) {
-  (void)state;
+CASE(the_nearest_pairs_are_those_of_single_questions) {
   FILE *f = fopen(TEST_DATA_DIR "/motion/cases.txt", "r");
   assert_non_null(f);
   size_t n;
@@ -65,8 +59,7 @@ static void the_nearest_pairs_are_those_of_single_questions(void **state) {
 }
 
 /* 100 random motions; 1e-8: nine digits of the largest coefficient, which is below 10. */
-static void a_range_holds_all_values_and_is_reached(void **state) {
-  (void)state;
+CASE(a_range_holds_all_values_and_is_reached) {
   rng r = rng_seed(811);
   for (size_t i = 0; i < test_cases(100); i++) {
     test_robot t;
@@ -94,8 +87,7 @@ static void a_range_holds_all_values_and_is_reached(void **state) {
   }
 }
 
-static void what_is_no_question_about_pairs_gets_a_sentence(void **state) {
-  (void)state;
+CASE(what_is_no_question_about_pairs_gets_a_sentence) {
   rng r = rng_seed(3);
   test_robot t;
   robot_make(&r, 1.0, &t);
@@ -109,10 +101,5 @@ static void what_is_no_question_about_pairs_gets_a_sentence(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_nearest_pairs_are_those_of_single_questions),
-      cmocka_unit_test(a_range_holds_all_values_and_is_reached),
-      cmocka_unit_test(what_is_no_question_about_pairs_gets_a_sentence),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

@@ -2,18 +2,13 @@
 /* What robots in motion are asked: against the saved answers of another program for real robots, against static pairs at many times
  * (which know nothing of motions), and against hulls in long double. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
 #include "shape/body.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/robot_case.h"
 #include "support/robots.h"
@@ -57,8 +52,7 @@ static cprox_result ask(const robot_case *c, const case_answer *a, double delta)
   return r;
 }
 
-static void saved_answers_are_found_again(void **state) {
-  (void)state;
+CASE(saved_answers_are_found_again) {
   size_t n, counted = 0;
   FILE *f = open_cases(&n);
   double nodes[REFERENCE_CASES], probes[REFERENCE_CASES];
@@ -103,8 +97,7 @@ static cprox_body *mesh_of_box(const cprox_body *box) {
 }
 
 /* The robot starts outside; where it does not touch, the surface is as far as the solid. */
-static void surfaces_of_boxes_are_as_far_as_boxes(void **state) {
-  (void)state;
+CASE(surfaces_of_boxes_are_as_far_as_boxes) {
   size_t n, compared = 0;
   FILE *f = open_cases(&n);
   for (size_t i = 0; i < n; i++) {
@@ -131,8 +124,7 @@ static void surfaces_of_boxes_are_as_far_as_boxes(void **state) {
   assert_true(compared > 10);
 }
 
-static void nothing_is_allocated_once_the_workspace_has_grown(void **state) {
-  (void)state;
+CASE(nothing_is_allocated_once_the_workspace_has_grown) {
   size_t n;
   FILE *f = open_cases(&n);
   robot_case c;
@@ -181,8 +173,7 @@ static void free_targets(cprox_target *targets) {
   for (size_t i = 0; i < TARGETS; i++) cprox_body_free((cprox_body *)targets[i].body);
 }
 
-static void no_sample_is_nearer_than_lower(void **state) {
-  (void)state;
+CASE(no_sample_is_nearer_than_lower) {
   rng r = rng_seed(4411);
   for (size_t i = 0; i < test_cases(250); i++) {
     test_robot t;
@@ -240,8 +231,7 @@ static double static_distance(const test_robot *t, double time, const cprox_robo
   return fmax(r.upper, 0.0);
 }
 
-static void the_robot_is_no_nearer_to_itself_than_lower(void **state) {
-  (void)state;
+CASE(the_robot_is_no_nearer_to_itself_than_lower) {
   rng r = rng_seed(4412);
   size_t asked = 0;
   for (size_t i = 0; i < test_cases(250); i++) {
@@ -267,8 +257,7 @@ static void the_robot_is_no_nearer_to_itself_than_lower(void **state) {
   assert_true(asked > test_cases(250));
 }
 
-static void a_profile_is_true_on_every_stretch(void **state) {
-  (void)state;
+CASE(a_profile_is_true_on_every_stretch) {
   rng r = rng_seed(4413);
   for (size_t i = 0; i < test_cases(40); i++) {
     enum { STRETCHES = 7 };
@@ -312,8 +301,7 @@ static void a_profile_is_true_on_every_stretch(void **state) {
     if (!strstr(cprox_workspace_reason(ws), part)) fail_msg("%s", cprox_workspace_reason(ws)); \
   } while (0)
 
-static void bad_input_gets_a_sentence(void **state) {
-  (void)state;
+CASE(bad_input_gets_a_sentence) {
   rng r = rng_seed(4414);
   test_robot t;
   robot_make(&r, 1.0, &t);
@@ -367,14 +355,5 @@ static void bad_input_gets_a_sentence(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(saved_answers_are_found_again),
-      cmocka_unit_test(surfaces_of_boxes_are_as_far_as_boxes),
-      cmocka_unit_test(nothing_is_allocated_once_the_workspace_has_grown),
-      cmocka_unit_test(no_sample_is_nearer_than_lower),
-      cmocka_unit_test(the_robot_is_no_nearer_to_itself_than_lower),
-      cmocka_unit_test(a_profile_is_true_on_every_stretch),
-      cmocka_unit_test(bad_input_gets_a_sentence),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

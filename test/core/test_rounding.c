@@ -2,18 +2,12 @@
 /* The theorems of doc/rounding.md against 320 bits: no error is above its bound, and no bound is padded. Each test prints the largest
  * actual error as a fraction of its bound, and asserts that it is at least FULL: a bound that is far above every error that was ever
  * seen costs precision for nothing (asked of ENOUGH cases and more). Built with and without fused multiply-add. Tolerance 0; the reference's own error is 2^-267. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "base/rounding.h"
 #include "curve/control.h"
 #include "curve/curve.h"
 #include "curve_query/curve_convex.h"
 #include "shape/body.h"
+#include "support/cases.h"
 #include "support/curves.h"
 #include "support/exact.h"
 #include "support/random.h"
@@ -83,8 +77,7 @@ static num3 to_local(const cprox_pose *pose, vec3 centre, vec3 world) {
 /* ---- T1 ------------------------------------------------------------------------------------------------------------------- */
 
 /* Seed 1. A quarter at s = 1/2, where a level costs u and not 3u. */
-static void a_cut_adds_no_more_than_it_says(void **state) {
-  (void)state;
+CASE(a_cut_adds_no_more_than_it_says) {
   rng r = rng_seed(1);
   fraction halves = {0}, others = {0};
   for (size_t i = 0; i < test_cases(CASES); i++) {
@@ -115,8 +108,7 @@ static void a_cut_adds_no_more_than_it_says(void **state) {
 /* ---- T3, T7 --------------------------------------------------------------------------------------------------------------- */
 
 /* Seed 2. Points up to 1e6 sizes from the origin; the bound speaks of the difference to the pose's position alone. */
-static void a_point_in_a_frame_is_as_near_as_it_says(void **state) {
-  (void)state;
+CASE(a_point_in_a_frame_is_as_near_as_it_says) {
   rng r = rng_seed(2);
   fraction f = {0};
   for (size_t i = 0; i < test_cases(CASES); i++) {
@@ -275,8 +267,7 @@ static void attack(problem *p, rng *r, fraction *lower, fraction *upper) {
 }
 
 /* Seed 3, four points of each curve. */
-static void bounds_give_rounding_no_more_than_they_say(void **state) {
-  (void)state;
+CASE(bounds_give_rounding_no_more_than_they_say) {
   rng r = rng_seed(3);
   cprox_workspace *ws = cprox_workspace_create();
   fraction lower = {0}, upper = {0};
@@ -319,8 +310,7 @@ static double off_at(const cprox_curve *curve, size_t piece, double s, const vec
 }
 
 /* Seed 4. Half of the points in the middle of a piece, where the remainder is largest. */
-static void a_compiled_series_is_within_its_error(void **state) {
-  (void)state;
+CASE(a_compiled_series_is_within_its_error) {
   rng r = rng_seed(4);
   fraction f = {0};
   cprox_workspace *ws = cprox_workspace_create();
@@ -351,11 +341,5 @@ static int free_numbers(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_cut_adds_no_more_than_it_says),
-      cmocka_unit_test(a_point_in_a_frame_is_as_near_as_it_says),
-      cmocka_unit_test(bounds_give_rounding_no_more_than_they_say),
-      cmocka_unit_test(a_compiled_series_is_within_its_error),
-  };
-  return cmocka_run_group_tests(tests, NULL, free_numbers);
+  return cases_run(NULL, free_numbers);
 }

@@ -2,15 +2,9 @@
 /* T5 of doc/rounding.md against 320 bits: points at the end of a chain of revolute joints are off by no more than the running sum says, and
  * that sum is not padded: the largest error is at least FULL of it. Built with and without fused multiply-add. Tolerance 0; the
  * reference's own error is 2^-267. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "base/rounding.h"
 #include "kinematics/motion.h"
+#include "support/cases.h"
 #include "support/exact.h"
 #include "support/random.h"
 
@@ -140,13 +134,11 @@ static void hold_chains(uint64_t seed, bool aligned, const char *what) {
 }
 
 /* Seeds 1 and 2. */
-static void chains_about_coordinates_are_off_by_the_running_sum_at_most(void **state) {
-  (void)state;
+CASE(chains_about_coordinates_are_off_by_the_running_sum_at_most) {
   hold_chains(1, true, "T5, chains about coordinates");
 }
 
-static void chains_about_any_axes_are_off_by_the_running_sum_at_most(void **state) {
-  (void)state;
+CASE(chains_about_any_axes_are_off_by_the_running_sum_at_most) {
   hold_chains(2, false, "T5, chains about any axes");
 }
 
@@ -157,9 +149,5 @@ static int give_up_numbers(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(chains_about_coordinates_are_off_by_the_running_sum_at_most),
-      cmocka_unit_test(chains_about_any_axes_are_off_by_the_running_sum_at_most),
-  };
-  return cmocka_run_group_tests(tests, NULL, give_up_numbers);
+  return cases_run(NULL, give_up_numbers);
 }

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Sets: the same answers as of all targets one by one, from what is near alone. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/meshes.h"
 
@@ -97,8 +92,7 @@ static void expect_overlap(const char *what, size_t i, const cprox_result *a, co
 
 /* 300 movers (seed 91) through scenes of 1 to 120 targets of every kind: points, tubes, splines; signed and not. Verdicts are equal,
  * distances, k nearest and first contacts the same to epsilon. */
-static void sets_answer_as_all_their_targets_do(void **state) {
-  (void)state;
+CASE(sets_answer_as_all_their_targets_do) {
   rng r = rng_seed(91);
   size_t hits = 0;
   const size_t cases = test_cases(300);
@@ -142,8 +136,7 @@ static void sets_answer_as_all_their_targets_do(void **state) {
 }
 
 /* A carried box past 60 boxes, balls and capsules (seed 93); meshes are refused, as without a set. By coarser models, too. */
-static void carried_bodies_and_coarser_models_are_answered_as_without_a_set(void **state) {
-  (void)state;
+CASE(carried_bodies_and_coarser_models_are_answered_as_without_a_set) {
   rng r = rng_seed(93);
   scene s = scene_make(&r, 180, 2.0, true);
   cprox_target convex[60];
@@ -173,8 +166,7 @@ static void carried_bodies_and_coarser_models_are_answered_as_without_a_set(void
 
 /* The same density of targets, 100 to 6,400 of them, one short curve: what is searched does not grow with them. 64 times the targets may
  * cost twice the intervals. */
-static void what_is_searched_does_not_grow_with_the_set(void **state) {
-  (void)state;
+CASE(what_is_searched_does_not_grow_with_the_set) {
   rng r = rng_seed(97);
   uint32_t nodes[2] = {0};
   for (int k = 0; k < 2; k++) {
@@ -194,8 +186,7 @@ static void what_is_searched_does_not_grow_with_the_set(void **state) {
   if (nodes[1] > 2 * nodes[0]) fail_msg("%u intervals with 100 targets, %u with 6400", nodes[0], nodes[1]);
 }
 
-static void queries_do_not_allocate_once_the_workspace_has_grown(void **state) {
-  (void)state;
+CASE(queries_do_not_allocate_once_the_workspace_has_grown) {
   rng r = rng_seed(99);
   scene s = scene_make(&r, 300, 2.0, true);
   cprox_set *set = set_make(&s);
@@ -217,8 +208,7 @@ static void queries_do_not_allocate_once_the_workspace_has_grown(void **state) {
 
 /* ---- bad input -------------------------------------------------------------------------------------------------------- */
 
-static void bad_input_is_refused_and_nothing_is_far(void **state) {
-  (void)state;
+CASE(bad_input_is_refused_and_nothing_is_far) {
   rng r = rng_seed(101);
   cprox_set *set = NULL;
   cprox_curve *curve = way(&r, 4, 1.0);
@@ -238,12 +228,5 @@ static void bad_input_is_refused_and_nothing_is_far(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(sets_answer_as_all_their_targets_do),
-      cmocka_unit_test(carried_bodies_and_coarser_models_are_answered_as_without_a_set),
-      cmocka_unit_test(what_is_searched_does_not_grow_with_the_set),
-      cmocka_unit_test(queries_do_not_allocate_once_the_workspace_has_grown),
-      cmocka_unit_test(bad_input_is_refused_and_nothing_is_far),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

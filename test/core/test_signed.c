@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Signed distance along curves: minus the deepest overlap. Boxes, capsules and hulls are held against closed forms and planes in long
  * double; every kind, carried or not, against static pairs at many parameters, whose depth test_depth holds against long double. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 
 #include "base/rounding.h"
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
@@ -79,8 +74,7 @@ static long double truth(const problem *p, vec3l world) {
 
 /* Seed 91, 1500 curves of degree 1 to 7 through and about unit bodies; 30 parameters and the reported one. Tolerance: 1e-17, long
  * double's own. */
-static void the_interval_contains_minus_the_deepest_overlap(void **state) {
-  (void)state;
+CASE(the_interval_contains_minus_the_deepest_overlap) {
   rng r = rng_seed(91);
   size_t deep = 0;
   for (size_t k = 0; k < test_cases(1500); k++) {
@@ -134,8 +128,7 @@ static cprox_result pair_at(const cprox_mover *mover, const cprox_target *target
 }
 
 /* Seed 92: all pairs of bounded kinds, the first carried; and each kind by itself against points; 4 cases each, through one another. */
-static void every_kind_knows_how_deep_it_goes(void **state) {
-  (void)state;
+CASE(every_kind_knows_how_deep_it_goes) {
   rng r = rng_seed(92);
   size_t asked_for = 0, open = 0, deep = 0;
   for (int a = -1; a < TEST_N_BOUNDED; a++)
@@ -171,8 +164,7 @@ static void every_kind_knows_how_deep_it_goes(void **state) {
   assert_true(open * 50 <= asked_for && 4 * deep > asked_for);
 }
 
-static void a_compound_is_as_deep_as_its_deepest_part(void **state) {
-  (void)state;
+CASE(a_compound_is_as_deep_as_its_deepest_part) {
   cprox_body *small = NULL, *large = NULL, *both = NULL;
   assert_int_equal(cprox_body_create_sphere(0.25, ws, &small), CPROX_OK);
   assert_int_equal(cprox_body_create_box(vec(2, 2, 2), ws, &large), CPROX_OK);
@@ -202,8 +194,7 @@ static void a_compound_is_as_deep_as_its_deepest_part(void **state) {
 }
 
 /* Cells have an inside, but trees of them do not measure it: the status says so, and lower is a bound all the same. */
-static void bodies_that_cannot_tell_their_depth_say_so(void **state) {
-  (void)state;
+CASE(bodies_that_cannot_tell_their_depth_say_so) {
   cprox_body *cells = NULL;
   const vec3 low[2] = {{-1, -1, -1}, {3, 0, 0}}, high[2] = {{1, 1, 1}, {4, 1, 1}};
   assert_int_equal(cprox_body_create_boxes(low, high, 2, SIZE_MAX, ws, &cells), CPROX_OK);
@@ -223,8 +214,7 @@ static void bodies_that_cannot_tell_their_depth_say_so(void **state) {
 }
 
 /* Tubes about two curves that cross: minus the sum of the radii. */
-static void tubes_that_cross_are_as_deep_as_their_radii(void **state) {
-  (void)state;
+CASE(tubes_that_cross_are_as_deep_as_their_radii) {
   cprox_curve *first = bezier((vec3[]){{-1, 0, 0}, {1, 0, 0}}, 2),
               *second = bezier((vec3[]){{0, -1, 0}, {0.1, 1, 0}}, 2);
   const cprox_options options = asked(1e-9);
@@ -243,8 +233,7 @@ static int by_count(const void *a, const void *b) {
 
 /* Seed 93, 300 quintics through a hull of 32 vertices and through a box, epsilon 1e-9. The deepest point mostly lies where two faces are
  * equally near, and there only bisection closes the interval: about four nodes a digit. */
-static void medians_stay_within_60_nodes(void **state) {
-  (void)state;
+CASE(medians_stay_within_60_nodes) {
   enum { PROBLEMS = 300 };
   rng r = rng_seed(93);
   for (int kind = 0; kind < 2; kind++) {
@@ -273,13 +262,5 @@ static void medians_stay_within_60_nodes(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_interval_contains_minus_the_deepest_overlap),
-      cmocka_unit_test(every_kind_knows_how_deep_it_goes),
-      cmocka_unit_test(a_compound_is_as_deep_as_its_deepest_part),
-      cmocka_unit_test(tubes_that_cross_are_as_deep_as_their_radii),
-      cmocka_unit_test(bodies_that_cannot_tell_their_depth_say_so),
-      cmocka_unit_test(medians_stay_within_60_nodes),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

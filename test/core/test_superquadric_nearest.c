@@ -1,20 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Nearest points of superquadrics against intervals in long double that rest on a point of the body and a tangent plane of it. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "shape/body.h"
 #include "support/builders.h"
+#include "support/cases.h"
 #include "support/superquadrics.h"
 
 /* Seed 1: the nearest point is a point of the body and its distance is the least. */
-static void nearest_points_are_points_of_the_body(void **state) {
-  (void)state;
+CASE(nearest_points_are_points_of_the_body) {
   rng r = rng_seed(1);
   size_t wrong = 0;
   for (size_t i = 0; i < test_cases(10000); i++) {
@@ -40,8 +34,5 @@ static void nearest_points_are_points_of_the_body(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nearest_points_are_points_of_the_body),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

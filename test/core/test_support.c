@@ -1,20 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The helpers themselves: a reference that is wrong would make every test that leans on it worthless. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
+#include "support/cases.h"
 #include "support/counting.h"
 #include "support/csv.h"
 #include "support/random.h"
 #include "support/reference.h"
 
-static void every_reference_curve_case_is_read_whole(void **state) {
-  (void)state;
+CASE(every_reference_curve_case_is_read_whole) {
   const char *const names[][2] = {{"reference/curve_point_inputs.csv", "reference/curve_point_ref.csv"},
                                   {"reference/curve_polygon_inputs.csv", "reference/curve_polygon_ref.csv"},
                                   {"reference/curve3d_inputs.csv", "reference/curve3d_ref.csv"},
@@ -35,8 +29,7 @@ static void every_reference_curve_case_is_read_whole(void **state) {
 }
 
 /* seed 11, 2000 hulls; the triangles' own distance is held against the points of the triangle on a grid */
-static void distance_references_agree_with_each_other(void **state) {
-  (void)state;
+CASE(distance_references_agree_with_each_other) {
   rng r = rng_seed(11);
   const long double near = 1e-15L; /* 64 times the long double's unit roundoff at coordinates up to 8 */
   for (size_t i = 0; i < 2000; i++) {
@@ -70,8 +63,7 @@ static void distance_references_agree_with_each_other(void **state) {
 }
 
 /* seed 12, 5000 curves: two formulas that share nothing, to 4e-17 of the largest coordinate */
-static void curve_references_agree_with_each_other(void **state) {
-  (void)state;
+CASE(curve_references_agree_with_each_other) {
   rng r = rng_seed(12);
   for (size_t i = 0; i < 5000; i++) {
     const size_t degree = 1 + rng_index(&r, 20);
@@ -95,8 +87,7 @@ static void curve_references_agree_with_each_other(void **state) {
   }
 }
 
-static void pose_references_undo_each_other(void **state) {
-  (void)state;
+CASE(pose_references_undo_each_other) {
   rng r = rng_seed(13);
   for (size_t i = 0; i < 2000; i++) {
     const cprox_pose pose = rng_pose(&r, 1.0);
@@ -109,8 +100,7 @@ static void pose_references_undo_each_other(void **state) {
   assert_true(ref_norm(ref_sub(y, (vec3l){0, 1, 1})) == 0.0L);
 }
 
-static void allocations_are_counted_and_fail_on_demand(void **state) {
-  (void)state;
+CASE(allocations_are_counted_and_fail_on_demand) {
   const size_t made = allocations_made(), live = allocations_live();
   void *volatile a = malloc(10), *volatile b = calloc(2, 5);
   a = realloc(a, 20);
@@ -128,8 +118,30 @@ static void allocations_are_counted_and_fail_on_demand(void **state) {
   assert_int_equal(allocations_live(), live);
 }
 
-static void random_numbers_are_the_same_every_time(void **state) {
-  (void)state;
+CASE(cases_run_in_the_order_of_their_lines) {
+  test_case a = {.name = "a", .file = "f", .line = 7}, b = {.name = "b", .file = "f", .line = 30},
+            c = {.name = "c", .file = "g", .line = 1}, *list = NULL;
+  case_insert(&list, &c);
+  case_insert(&list, &b);
+  case_insert(&list, &a);
+  assert_ptr_equal(list, &a);
+  assert_ptr_equal(a.next, &b);
+  assert_ptr_equal(b.next, &c);
+  assert_null(c.next);
+}
+
+CASE(an_empty_list_and_a_name_that_stands_twice_are_faults) {
+  test_case a = {.name = "a", .file = "f", .line = 1}, b = {.name = "b", .file = "f", .line = 2},
+            again = {.name = "a", .file = "g", .line = 1}, *list = NULL;
+  assert_non_null(cases_fault(list));
+  case_insert(&list, &a);
+  case_insert(&list, &b);
+  assert_null(cases_fault(list));
+  case_insert(&list, &again);
+  assert_non_null(cases_fault(list));
+}
+
+CASE(random_numbers_are_the_same_every_time) {
   rng a = rng_seed(1), b = rng_seed(1), c = rng_seed(2);
   assert_true(rng_next(&a) == rng_next(&b));
   assert_true(rng_next(&a) != rng_next(&c));
@@ -144,13 +156,5 @@ static void random_numbers_are_the_same_every_time(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_reference_curve_case_is_read_whole),
-      cmocka_unit_test(distance_references_agree_with_each_other),
-      cmocka_unit_test(curve_references_agree_with_each_other),
-      cmocka_unit_test(pose_references_undo_each_other),
-      cmocka_unit_test(allocations_are_counted_and_fail_on_demand),
-      cmocka_unit_test(random_numbers_are_the_same_every_time),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

@@ -4,14 +4,10 @@
 #include <curve_proximity/cprox.h>
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "support/cases.h"
 
 enum { THREADS = 4, ROUNDS = 50, TARGETS = 6, ANSWERS = 3 };
 
@@ -54,8 +50,7 @@ static void *run(void *argument) {
   return NULL;
 }
 
-static void threads_that_share_bodies_and_curves_get_the_answers_of_one_thread(void **state) {
-  (void)state;
+CASE(threads_that_share_bodies_and_curves_get_the_answers_of_one_thread) {
   cprox_workspace *workspace = cprox_workspace_create();
 
   /* A B-spline that weaves through a body of each of six kinds. */
@@ -103,8 +98,5 @@ static void threads_that_share_bodies_and_curves_get_the_answers_of_one_thread(v
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(threads_that_share_bodies_and_curves_get_the_answers_of_one_thread),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

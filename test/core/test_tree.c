@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Trees: every kernel gives the same answer, and it is that of looking at every element. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <string.h>
 
 #include "bvh/kernels.h"
+#include "support/cases.h"
 #include "support/meshes.h"
 
 enum { MOST = 3000 };
@@ -39,8 +34,7 @@ static double distance_to(const tree *t, tree_place at, vec3 x) {
 
 /* 60 trees of 1 to 3,000 elements of each kind (seed 31), both builds, 20 points each. The nearest distance of all elements, one by one,
  * lies in [lower, upper] but for the rounding that tree.h states; kernels agree to the bit. */
-static void nearest_is_that_of_all_elements_for_every_kernel(void **state) {
-  (void)state;
+CASE(nearest_is_that_of_all_elements_for_every_kernel) {
   static vec3 low[MOST], high[MOST];
   rng r = rng_seed(31);
   for (size_t i = 0; i < test_cases(60); i++) {
@@ -73,8 +67,7 @@ static void nearest_is_that_of_all_elements_for_every_kernel(void **state) {
 }
 
 /* Bounds over a stretch (seed 37): no element of a lane is nearer to a point of the stretch's hull than the lane's bound. */
-static void bounds_hold_over_the_hull_and_agree_between_kernels(void **state) {
-  (void)state;
+CASE(bounds_hold_over_the_hull_and_agree_between_kernels) {
   static vec3 low[MOST], high[MOST];
   rng r = rng_seed(37);
   for (size_t i = 0; i < test_cases(300); i++) {
@@ -124,8 +117,7 @@ static double least_below(const tree *t, uint32_t at, vec3 x) {
 /* A torus of 2 * 40 * 20 triangles (seed 41) and soups of 300, 60 of each, stretches up to 100 sizes away: nothing below a lane is
  * nearer to a point of the hull than the lane's bound, by its box and slab, but for the rounding that tree.h states. A slab never
  * makes a bound worse, and along a torus makes a third of them better. */
-static void bounds_of_nodes_hold_for_what_is_below_them(void **state) {
-  (void)state;
+CASE(bounds_of_nodes_hold_for_what_is_below_them) {
   rng r = rng_seed(41);
   size_t better = 0, all = 0;
   for (size_t i = 0; i < test_cases(120); i++) {
@@ -172,10 +164,5 @@ static void bounds_of_nodes_hold_for_what_is_below_them(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nearest_is_that_of_all_elements_for_every_kernel),
-      cmocka_unit_test(bounds_hold_over_the_hull_and_agree_between_kernels),
-      cmocka_unit_test(bounds_of_nodes_hold_for_what_is_below_them),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cases_run(NULL, NULL);
 }

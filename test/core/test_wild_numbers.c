@@ -2,15 +2,10 @@
 /* Every number of every argument and option, one at a time, is made not finite or longer than squares hold: the call is refused with a
  * reason, and nothing is written. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "support/builders.h"
+#include "support/cases.h"
 
 static const double WILD[] = {NAN, INFINITY, -INFINITY, 1e308, -1e308, 1e61};
 enum { N_WILD = sizeof WILD / sizeof *WILD };
@@ -173,8 +168,7 @@ static void check_question(arguments *a, size_t q) {
   }
 }
 
-static void every_number_of_every_question_is_finite_or_refused(void **state) {
-  (void)state;
+CASE(every_number_of_every_question_is_finite_or_refused) {
   const vec3 ends[2] = {{3, 0, 0}, {3, 1, 0}};
   cprox_curve *curve = bezier(ends, 2);
   cprox_body *points = NULL, *ball = NULL;
@@ -200,8 +194,7 @@ static void every_number_of_every_question_is_finite_or_refused(void **state) {
 }
 
 /* An infinite epsilon once led a distance to a cloud out of its memory. */
-static void the_widest_epsilon_is_answered(void **state) {
-  (void)state;
+CASE(the_widest_epsilon_is_answered) {
   vec3 cloud[300];
   for (size_t i = 0; i < 300; i++)
     cloud[i] = vec(0.01 * (double)(i % 17), 0.02 * (double)(i % 23), 0.03 * (double)(i % 7));
@@ -244,8 +237,7 @@ static cprox_status make_robot(const robot_arguments *a) {
   return status;
 }
 
-static void every_number_of_a_robot_and_its_motion_is_finite_or_refused(void **state) {
-  (void)state;
+CASE(every_number_of_a_robot_and_its_motion_is_finite_or_refused) {
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(1.0, ws, &ball), CPROX_OK);
   robot_arguments a = {.link = {.parent = -1,
@@ -291,10 +283,5 @@ static void every_number_of_a_robot_and_its_motion_is_finite_or_refused(void **s
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_number_of_every_question_is_finite_or_refused),
-      cmocka_unit_test(the_widest_epsilon_is_answered),
-      cmocka_unit_test(every_number_of_a_robot_and_its_motion_is_finite_or_refused),
-  };
-  return cmocka_run_group_tests(tests, workspace_setup, workspace_teardown);
+  return cases_run(workspace_setup, workspace_teardown);
 }

@@ -8,7 +8,7 @@
 
 extern cprox_workspace *ws;
 
-/* For cmocka_run_group_tests(). */
+/* For cases_run(). */
 int workspace_setup(void **state);
 int workspace_teardown(void **state);
 
