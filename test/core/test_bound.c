@@ -136,30 +136,32 @@ static long double true_distance(const problem *p, size_t piece, double s) {
 /* The pieces that a node has a share in. */
 static void pieces_of(const curve_convex *o, const search_node *node, size_t *first, size_t *end) {
   const cprox_curve *c = o->side.curve;
-  size_t low = node->side[0].part, high = low + 1;
+  size_t low = curve_convex_known(node)->at.part, high = low + 1;
   while (low < c->n_leaves) low *= 2, high *= 2;
   *first = low - c->n_leaves;
   *end = high - c->n_leaves < c->n_pieces ? high - c->n_leaves : c->n_pieces;
 }
 
 static bool touches_best(const curve_convex *o, const search_node *node) {
+  const curve_convex_node *payload = curve_convex_known(node);
   size_t first, end;
   pieces_of(o, node, &first, &end);
-  return first <= o->best.piece && o->best.piece < end && node->side[0].a <= o->best.s && o->best.s <= node->side[0].b;
+  return first <= o->best.piece && o->best.piece < end && payload->at.a <= o->best.s && o->best.s <= payload->at.b;
 }
 
 /* Two points well inside the interval: its ends are labels in double, the pieces themselves are cut exactly. */
 static size_t check_node(const problem *p, rng *r, const search_node *node, const curve_convex *o) {
-  if (node->side[0].b - node->side[0].a < 1e-9) return 0;
+  const curve_convex_node *payload = curve_convex_known(node);
+  if (payload->at.b - payload->at.a < 1e-9) return 0;
   for (int k = 0; k < 2; k++) {
     size_t first, end;
     pieces_of(o, node, &first, &end);
     const size_t piece = first + rng_index(r, end - first);
-    const double s = node->side[0].a + rng_uniform(r, 1e-3, 1.0 - 1e-3) * (node->side[0].b - node->side[0].a);
+    const double s = payload->at.a + rng_uniform(r, 1e-3, 1.0 - 1e-3) * (payload->at.b - payload->at.a);
     const long double d = true_distance(p, piece, s);
     if ((long double)node->lower > d && (long double)node->lower > -(long double)p->offset)
       fail_msg("kind %d degree %zu: bound %.17g above the distance %.17Lg at s = %.17g of [%g, %g]", p->kind, p->degree,
-               node->lower, d, s, node->side[0].a, node->side[0].b);
+               node->lower, d, s, payload->at.a, payload->at.b);
   }
   const long double best = true_distance(p, o->best.piece, o->best.s);
   if (o->incumbent > 0 && (long double)o->best_bound.upper < best && best > -(long double)p->offset)

@@ -105,7 +105,7 @@ static long double true_distance(const problem *p, double s, double t) {
 
 /* Two points well inside: the intervals' ends are labels in double, the pieces themselves are cut exactly. */
 static size_t check_node(const problem *p, rng *r, const search_node *node, const curve_curve *o) {
-  const search_interval *a = &node->side[0], *b = &node->side[1];
+  const curve_interval *a = &curve_curve_known(node)->side[0], *b = &curve_curve_known(node)->side[1];
   if (a->b - a->a < 1e-9 || b->b - b->a < 1e-9) return 0;
   for (int k = 0; k < 2; k++) {
     const double s = a->a + rng_uniform(r, 1e-3, 1.0 - 1e-3) * (a->b - a->a);
@@ -132,7 +132,7 @@ static size_t attack(const problem *p, rng *r) {
   for (int step = 0; step < STEPS && n < MAX_OPEN; step++) {
     size_t i = rng_index(r, n);
     for (size_t k = 0; chase && o.incumbent > 0 && k < n; k++) {
-      const search_interval *a = &open[k].side[0], *b = &open[k].side[1];
+      const curve_interval *a = &curve_curve_known(&open[k])->side[0], *b = &curve_curve_known(&open[k])->side[1];
       if (a->a <= o.best.s[0] && o.best.s[0] <= a->b && b->a <= o.best.s[1] && o.best.s[1] <= b->b) i = k;
     }
     oracle.filter(oracle.self, &open[i], INFINITY);

@@ -233,7 +233,7 @@ static num bound_exactly(const problem *p, const num3 *points, num3 n) {
 static void attack(problem *p, rng *r, fraction *lower, fraction *upper) {
   curve_convex *c = &p->c;
   search_node node = curve_convex_root(c);
-  assert_true(curve_side_materialise(&c->side, &node.side[0]));
+  assert_true(curve_side_materialise(&c->side, &curve_convex_own(&node)->at));
   const double s = random_parameter(r);
   curve_sight sight;
   search_best best;
@@ -255,10 +255,10 @@ static void attack(problem *p, rng *r, fraction *lower, fraction *upper) {
   if (!isfinite(sight.support)) return;
   num3 *part = whole;
   if (s > 0.0 && s < 1.0 && rng_index(r, 2)) {
-    search_interval half[2];
-    assert_true(curve_side_cut_piece(&c->side, &node.side[0], s, s, half));
+    curve_interval half[2];
+    assert_true(curve_side_cut_piece(&c->side, &curve_convex_own(&node)->at, s, s, half));
     const size_t k = rng_index(r, 2);
-    node.side[0] = half[k];
+    curve_convex_own(&node)->at = half[k];
     part = k ? right : left;
   }
   curve_convex_bound(c, &node, &sight);

@@ -11,24 +11,19 @@
 
 #include "curve_proximity/cprox/base.h"
 
-/* Where a node is on one moving side: a sub-interval of one of its parts. */
-typedef struct search_interval {
-  double a, b;   /* in [0, 1] */
-  double error;  /* of the stored points */
-  uint32_t part; /* which part of the side */
-  int32_t slot;  /* where its points are stored, -1 for nowhere */
-} search_interval;
+/* What an oracle knows of a node: the parameters that it covers, and what is left to look at. The engine copies it and never looks
+ * into it; each oracle has a struct of its own for it, which begins at `bytes`. */
+typedef union search_payload {
+  unsigned char bytes[72];
+  double aligned;
+} search_payload;
 
-/* A piece of the parameter range, or of two ranges at once. `lower` and `slack` are the engine's and the oracle's, the rest the
- * oracle's alone. */
+/* A part of the parameter range, or of two ranges at once. */
 typedef struct search_node {
   double lower; /* the distance over the node is at least this, rounding included */
   double slack; /* how much of that was given away to rounding: no bound on this node gets nearer than this */
   double start; /* left to right: the parameter at which the node begins */
-  search_interval side[2];
-  uint32_t seen, seen_ball; /* the incumbents that its bound knows already */
-  uint32_t list, list_end;  /* against trees: the lanes that still matter to it, */
-  double rest;              /* and the least bound of those that do not */
+  search_payload payload;
 } search_node;
 
 enum { SEARCH_MAX_CHILDREN = 8 };

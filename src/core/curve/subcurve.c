@@ -97,23 +97,23 @@ void curve_side_begin(curve_side *side, const cprox_curve *curve, const frame *p
   measure_ranges(side);
 }
 
-search_interval curve_side_whole(void) {
-  return (search_interval){.a = 0.0, .b = 1.0, .part = 1, .slot = -1};
+curve_interval curve_side_whole(void) {
+  return (curve_interval){.a = 0.0, .b = 1.0, .part = 1, .slot = -1};
 }
 
-search_interval curve_side_section(const cprox_curve *curve, size_t piece, double a, double b) {
-  return (search_interval){.a = a, .b = b, .part = (uint32_t)(curve->n_leaves + piece), .slot = -1};
+curve_interval curve_side_section(const cprox_curve *curve, size_t piece, double a, double b) {
+  return (curve_interval){.a = a, .b = b, .part = (uint32_t)(curve->n_leaves + piece), .slot = -1};
 }
 
-bool curve_side_is_piece(const curve_side *side, const search_interval *at) {
+bool curve_side_is_piece(const curve_side *side, const curve_interval *at) {
   return at->part >= side->curve->n_leaves;
 }
 
-size_t curve_side_piece(const curve_side *side, const search_interval *at) {
+size_t curve_side_piece(const curve_side *side, const curve_interval *at) {
   return at->part - side->curve->n_leaves;
 }
 
-bool curve_side_is_empty(const curve_side *side, const search_interval *at) {
+bool curve_side_is_empty(const curve_side *side, const curve_interval *at) {
   return curve_capsule_at(side->curve, at->part).radius < 0.0;
 }
 
@@ -126,14 +126,14 @@ double curve_side_parameter_below(const curve_side *side, size_t piece, double s
   return round_down_between(side->curve->breaks[piece], side->curve->breaks[piece + 1], s);
 }
 
-double curve_side_start(const curve_side *side, const search_interval *at) {
+double curve_side_start(const curve_side *side, const curve_interval *at) {
   if (curve_side_is_piece(side, at)) return curve_side_parameter_below(side, curve_side_piece(side, at), at->a);
   size_t leaf = at->part;
   while (leaf < side->curve->n_leaves) leaf *= 2;
   return side->curve->breaks[leaf - side->curve->n_leaves];
 }
 
-vec3 curve_side_chord_from_origin(const curve_side *side, const search_interval *range) {
+vec3 curve_side_chord_from_origin(const curve_side *side, const curve_interval *range) {
   const curve_capsule capsule = curve_capsule_at(side->curve, range->part);
   const vec3 a = local_of(&side->frame, capsule.a), along = vec_sub(local_of(&side->frame, capsule.b), a);
   const double length2 = vec_norm2(along), s = -vec_dot(a, along);
@@ -152,7 +152,7 @@ static void distances_of_pack(const curve_side *side, size_t node, double distan
                       frame_turn_to_world(&side->frame, side->frame.centre), distance, s);
 }
 
-size_t curve_side_nearest_piece(const curve_side *side, const search_interval *range, double *s) {
+size_t curve_side_nearest_piece(const curve_side *side, const curve_interval *range, double *s) {
   const cprox_curve *c = side->curve;
   size_t node = range->part;
   while (node < c->n_leaves) {
@@ -214,7 +214,7 @@ static bool arc_point(const curve_side *side, size_t piece, double s, vec3 *poin
 }
 
 /* Fills the slot of an interval with its ends and their hull. */
-static bool arc_fill(const curve_side *side, search_interval *at, vec3 a, vec3 b, double error) {
+static bool arc_fill(const curve_side *side, curve_interval *at, vec3 a, vec3 b, double error) {
   const size_t piece = curve_side_piece(side, at);
   const double ta = arc_parameter(side, piece, at->a), tb = arc_parameter(side, piece, at->b);
   rectifiable_hull hull;
@@ -226,20 +226,20 @@ static bool arc_fill(const curve_side *side, search_interval *at, vec3 a, vec3 b
   return true;
 }
 
-static void arc_ends(const curve_side *side, const search_interval *at, vec3 *a, vec3 *b) {
+static void arc_ends(const curve_side *side, const curve_interval *at, vec3 *a, vec3 *b) {
   const double *p = points_pool_at(side->pool, (size_t)at->slot);
   *a = vec(p[0], p[2], p[4]);
   *b = vec(p[1], p[3], p[5]);
 }
 
-static rectifiable_hull arc_hull(const curve_side *side, const search_interval *at) {
+static rectifiable_hull arc_hull(const curve_side *side, const curve_interval *at) {
   const double *p = points_pool_at(side->pool, (size_t)at->slot);
   return (rectifiable_hull){.axis = p[ARC_HULL], .radius = p[ARC_HULL + 1]};
 }
 
 /* An interval of its own. Where it is asked to end within a piece its ends are rounded, by 4u of the parameters in all: what lies
  * between is within its length of an end. */
-static bool arc_materialise(const curve_side *side, search_interval *at) {
+static bool arc_materialise(const curve_side *side, curve_interval *at) {
   const size_t piece = curve_side_piece(side, at);
   vec3 a, b;
   double error = 0.0, beyond = 0.0;
@@ -260,7 +260,7 @@ static bool arc_materialise(const curve_side *side, search_interval *at) {
 }
 
 /* The right half keeps the slot. */
-static bool arc_cut(const curve_side *side, const search_interval *whole, search_interval half[2]) {
+static bool arc_cut(const curve_side *side, const curve_interval *whole, curve_interval half[2]) {
   vec3 a, b, middle;
   double error = whole->error;
   arc_ends(side, whole, &a, &b);
@@ -271,7 +271,7 @@ static bool arc_cut(const curve_side *side, const search_interval *whole, search
 /* ---- intervals of pieces ------------------------------------------------------------------------------------------------ */
 
 /* Cuts the points of a whole piece down to those of [a, b]. False where memory is out. */
-static bool cut_to_section(curve_side *side, search_interval *at) {
+static bool cut_to_section(curve_side *side, curve_interval *at) {
   const int32_t rest = points_pool_take(side->pool);
   if (rest < 0) return false;
   const size_t degree = side->curve->degree;
@@ -289,7 +289,7 @@ static bool cut_to_section(curve_side *side, search_interval *at) {
   return true;
 }
 
-bool curve_side_materialise(curve_side *side, search_interval *at) {
+bool curve_side_materialise(curve_side *side, curve_interval *at) {
   curve_side_load(side, curve_side_piece(side, at));
   if (at->slot >= 0) return true;
   at->slot = points_pool_take(side->pool);
@@ -301,7 +301,7 @@ bool curve_side_materialise(curve_side *side, search_interval *at) {
   return (at->a == 0.0 && at->b == 1.0) || cut_to_section(side, at);
 }
 
-bool curve_side_copy(const curve_side *side, search_interval *at) {
+bool curve_side_copy(const curve_side *side, curve_interval *at) {
   if (at->slot < 0) return true;
   const int32_t slot = points_pool_take(side->pool);
   if (slot < 0) return false;
@@ -314,7 +314,7 @@ bool curve_side_copy(const curve_side *side, search_interval *at) {
 /* ---- bounds ----------------------------------------------------------------------------------------------------------- */
 
 /* What an ellipsoid reaches: rectifiable.h says within what. */
-static curve_reach arc_reach(const curve_side *side, const search_interval *at, vec3 n) {
+static curve_reach arc_reach(const curve_side *side, const curve_interval *at, vec3 n) {
   const rectifiable_hull hull = arc_hull(side, at);
   vec3 a, b;
   arc_ends(side, at, &a, &b);
@@ -324,7 +324,7 @@ static curve_reach arc_reach(const curve_side *side, const search_interval *at, 
 }
 
 /* The pieces lie in a capsule round the chord from the first to the last point. The normal is turned, not the points. */
-static curve_reach range_reach(const curve_side *side, const search_interval *at, vec3 n) {
+static curve_reach range_reach(const curve_side *side, const curve_interval *at, vec3 n) {
   const curve_capsule capsule = curve_capsule_at(side->curve, at->part);
   const vec3 turned = frame_turn_to_world(&side->frame, n);
   const double a = vec_dot(turned, vec_sub(capsule.a, side->frame.position));
@@ -334,7 +334,7 @@ static curve_reach range_reach(const curve_side *side, const search_interval *at
                        .magnitude = side->range_magnitude};
 }
 
-size_t curve_side_fan(const curve_side *side, const search_interval *range, search_interval part[CURVE_PACK]) {
+size_t curve_side_fan(const curve_side *side, const curve_interval *range, curve_interval part[CURVE_PACK]) {
   const cprox_curve *c = side->curve;
   const int levels = fan_levels(c, range->part);
   const size_t first = (size_t)range->part << levels, lane = first % CURVE_PACK;
@@ -347,7 +347,7 @@ size_t curve_side_fan(const curve_side *side, const search_interval *range, sear
   return n;
 }
 
-curve_reach curve_side_fan_reach(const curve_side *side, const search_interval *first, vec3 n,
+curve_reach curve_side_fan_reach(const curve_side *side, const curve_interval *first, vec3 n,
                                  double least[CURVE_PACK]) {
   const size_t lane = first->part % CURVE_PACK;
   double all[CURVE_PACK];
@@ -358,7 +358,7 @@ curve_reach curve_side_fan_reach(const curve_side *side, const search_interval *
   return (curve_reach){.least = -INFINITY, .error = side->range_error, .magnitude = side->range_magnitude};
 }
 
-double curve_side_distance_from(const curve_side *side, const search_interval *at, vec3 centre, const vec3 *axis,
+double curve_side_distance_from(const curve_side *side, const curve_interval *at, vec3 centre, const vec3 *axis,
                                 double *scratch) {
   const double *points = points_pool_at(side->pool, (size_t)at->slot);
   const double distance =
@@ -367,7 +367,7 @@ double curve_side_distance_from(const curve_side *side, const search_interval *a
   return side->curve->arcs ? fmax(distance - ROUND_UP * arc_hull(side, at).radius, 0.0) : distance;
 }
 
-curve_reach curve_side_reach(const curve_side *side, const search_interval *at, vec3 n) {
+curve_reach curve_side_reach(const curve_side *side, const curve_interval *at, vec3 n) {
   if (at->slot >= 0 && side->curve->arcs) return arc_reach(side, at, n);
   if (at->slot >= 0)
     return (curve_reach){.least = control_least(points_pool_at(side->pool, (size_t)at->slot), side->curve->degree, n),
@@ -376,7 +376,7 @@ curve_reach curve_side_reach(const curve_side *side, const search_interval *at, 
   return range_reach(side, at, n);
 }
 
-curve_reach curve_side_fan_distance(const curve_side *side, const search_interval *first, double least[CURVE_PACK]) {
+curve_reach curve_side_fan_distance(const curve_side *side, const curve_interval *first, double least[CURVE_PACK]) {
   const size_t lane = first->part % CURVE_PACK;
   const double *radius = side->curve->packs[first->part / CURVE_PACK].radius;
   double distance[CURVE_PACK], unused[CURVE_PACK];
@@ -386,7 +386,7 @@ curve_reach curve_side_fan_distance(const curve_side *side, const search_interva
       .least = -INFINITY, .error = side->range_error + CURVE_LEAST, .magnitude = side->range_magnitude};
 }
 
-curve_hull curve_side_hull(const curve_side *side, const search_interval *at, vec3 from, double *x, double *y,
+curve_hull curve_side_hull(const curve_side *side, const curve_interval *at, vec3 from, double *x, double *y,
                            double *z) {
   const size_t degree = side->curve->degree;
   if (at->slot >= 0) {
@@ -436,7 +436,7 @@ double curve_side_point_error(const curve_side *side) {
   return ROUND_UP * (side->root_error + steps * ROUND_U * 1.7320508075688774 * side->root_magnitude);
 }
 
-vec3 curve_side_junction(curve_side *side, const search_interval *range, size_t *piece, double *s, double *error) {
+vec3 curve_side_junction(curve_side *side, const curve_interval *range, size_t *piece, double *s, double *error) {
   /* the right child's leftmost leaf; past the last piece, the end of the curve */
   size_t leaf = 2 * (size_t)range->part + 1;
   while (leaf < side->curve->n_leaves) leaf *= 2;
@@ -455,14 +455,14 @@ vec3 curve_side_junction(curve_side *side, const search_interval *range, size_t 
 
 /* ---- cuts ------------------------------------------------------------------------------------------------------------- */
 
-void curve_side_cut_range(const search_interval *range, search_interval half[2]) {
+void curve_side_cut_range(const curve_interval *range, curve_interval half[2]) {
   for (uint32_t k = 0; k < 2; k++) {
     half[k] = *range;
     half[k].part = 2 * range->part + k;
   }
 }
 
-bool curve_side_cut_piece(curve_side *side, search_interval *piece, double cut, double s, search_interval half[2]) {
+bool curve_side_cut_piece(curve_side *side, curve_interval *piece, double cut, double s, curve_interval half[2]) {
   const int32_t left = points_pool_take(side->pool);
   if (left < 0) return false;
   if (side->curve->arcs) {

@@ -6,8 +6,15 @@
 
 #include "base/frame.h"
 #include "base/workspace.h"
-#include "branch_and_bound/search.h"
 #include "curve/curve.h"
+
+/* A sub-interval of a piece of a curve, or a range of pieces. */
+typedef struct curve_interval {
+  double a, b;   /* in [0, 1] */
+  double error;  /* of the stored points */
+  uint32_t part; /* which piece or range: a node of the curve's tree */
+  int32_t slot;  /* where its points are stored, -1 for nowhere */
+} curve_interval;
 
 /* Sets of control points by slot, in the workspace; slots given back are used again. */
 typedef struct points_pool {
@@ -26,7 +33,7 @@ void points_pool_give(points_pool *pool, int32_t slot);
 typedef struct curve_side {
   const cprox_curve *curve;
   frame frame;
-  search_interval part; /* what of the curve is asked about: all of it, or some of one piece */
+  curve_interval part; /* what of the curve is asked about: all of it, or some of one piece */
   points_pool *pool;
   size_t root_slot;  /* reserved: the whole piece that was asked for last */
   size_t root_piece; /* SIZE_MAX: none yet */
@@ -45,30 +52,30 @@ cprox_status curve_side_trouble(const curve_side *side);
 cprox_status curve_side_status(const curve_side *side);
 
 /* The interval that is the whole curve. */
-search_interval curve_side_whole(void);
+curve_interval curve_side_whole(void);
 
 /* Intervals are single pieces or their parts, or ranges of pieces: nodes of the curve's tree. */
-bool curve_side_is_piece(const curve_side *side, const search_interval *at);
-size_t curve_side_piece(const curve_side *side, const search_interval *at);
+bool curve_side_is_piece(const curve_side *side, const curve_interval *at);
+size_t curve_side_piece(const curve_side *side, const curve_interval *at);
 
 /* The point of a range's chord that is nearest to the frame's origin, but for rounding. */
-vec3 curve_side_chord_from_origin(const curve_side *side, const search_interval *range);
+vec3 curve_side_chord_from_origin(const curve_side *side, const curve_interval *range);
 
 /* Which piece of a range may be nearest the frame's origin: the one that the nearer chords lead to; and s of it, by its own chord. */
-size_t curve_side_nearest_piece(const curve_side *side, const search_interval *range, double *s);
+size_t curve_side_nearest_piece(const curve_side *side, const curve_interval *range, double *s);
 
 /* Brings a piece's control points into the frame, in the root slot. */
 void curve_side_load(curve_side *side, size_t piece);
 
 /* The interval that is [a, b] of a piece, 0 <= a < b <= 1. */
-search_interval curve_side_section(const cprox_curve *curve, size_t piece, double a, double b);
+curve_interval curve_side_section(const cprox_curve *curve, size_t piece, double a, double b);
 
 /* Gives a piece's interval control points of its own: of a curve that is known by its arc length, its ends and their ellipsoid
  * (rectifiable.h), which bounds see and others need not. False where memory is out, or by curve_side_trouble(). */
-bool curve_side_materialise(curve_side *side, search_interval *at);
+bool curve_side_materialise(curve_side *side, curve_interval *at);
 
 /* Gives an interval that shares its control points with another a copy of its own. False where memory is out. */
-bool curve_side_copy(const curve_side *side, search_interval *at);
+bool curve_side_copy(const curve_side *side, curve_interval *at);
 
 /* What an interval reaches along a direction. */
 typedef struct curve_reach {
@@ -79,17 +86,16 @@ typedef struct curve_reach {
 
 /* A range falls into 2, 4 or 8 ranges or pieces that lie in one pack of the tree, fewer where there are no pieces: their number, and
  * where they are. */
-size_t curve_side_fan(const curve_side *side, const search_interval *range, search_interval part[CURVE_PACK]);
+size_t curve_side_fan(const curve_side *side, const curve_interval *range, curve_interval part[CURVE_PACK]);
 
 /* What each of them reaches, the first being given: least[k] of part k, the rest of the answer being that of all. */
-curve_reach curve_side_fan_reach(const curve_side *side, const search_interval *first, vec3 n,
-                                 double least[CURVE_PACK]);
+curve_reach curve_side_fan_reach(const curve_side *side, const curve_interval *first, vec3 n, double least[CURVE_PACK]);
 
 /* How far each of them is from the frame's origin, likewise; the products lose 64 u of the magnitude. */
-curve_reach curve_side_fan_distance(const curve_side *side, const search_interval *first, double least[CURVE_PACK]);
+curve_reach curve_side_fan_distance(const curve_side *side, const curve_interval *first, double least[CURVE_PACK]);
 
 /* n: unit within 4 u. A piece with points of its own must be the loaded one. */
-curve_reach curve_side_reach(const curve_side *side, const search_interval *at, vec3 n);
+curve_reach curve_side_reach(const curve_side *side, const curve_interval *at, vec3 n);
 
 /* An interval lies in the hull of balls about points: how many (at most degree + 1), and their one radius. */
 typedef struct curve_hull {
@@ -99,12 +105,12 @@ typedef struct curve_hull {
 } curve_hull;
 
 /* Fills points, relative to `from`. A piece must have points of its own. */
-curve_hull curve_side_hull(const curve_side *side, const search_interval *at, vec3 from, double *x, double *y,
+curve_hull curve_side_hull(const curve_side *side, const curve_interval *at, vec3 from, double *x, double *y,
                            double *z);
 
 /* A lower bound of the distance from a centre, or an axis through it (NULL for none), over an interval with points of its own, as
  * control_distance_from() gives it. `scratch` holds a slot's numbers. */
-double curve_side_distance_from(const curve_side *side, const search_interval *at, vec3 centre, const vec3 *axis,
+double curve_side_distance_from(const curve_side *side, const curve_interval *at, vec3 centre, const vec3 *axis,
                                 double *scratch);
 
 /* A point of the loaded piece, and how far a point computed so may be from the exact curve. */
@@ -112,16 +118,16 @@ vec3 curve_side_point(const curve_side *side, double s);
 double curve_side_point_error(const curve_side *side);
 
 /* The control point at which a range falls in two: its piece, parameter and error. Loads that piece. */
-vec3 curve_side_junction(curve_side *side, const search_interval *range, size_t *piece, double *s, double *error);
+vec3 curve_side_junction(curve_side *side, const curve_interval *range, size_t *piece, double *s, double *error);
 
 /* Cuts a range at its junction, or a piece at `cut` of its parameter range (s of the interval itself). False where memory is
  * out. A half without pieces has curve_side_is_empty(). */
-void curve_side_cut_range(const search_interval *range, search_interval half[2]);
-bool curve_side_cut_piece(curve_side *side, search_interval *piece, double cut, double s, search_interval half[2]);
-bool curve_side_is_empty(const curve_side *side, const search_interval *at);
+void curve_side_cut_range(const curve_interval *range, curve_interval half[2]);
+bool curve_side_cut_piece(curve_side *side, curve_interval *piece, double cut, double s, curve_interval half[2]);
+bool curve_side_is_empty(const curve_side *side, const curve_interval *at);
 
 /* The curve's parameter where an interval begins. */
-double curve_side_start(const curve_side *side, const search_interval *at);
+double curve_side_start(const curve_side *side, const curve_interval *at);
 
 /* The curve's parameter at s of a piece. */
 double curve_side_parameter(const curve_side *side, size_t piece, double s);

@@ -40,7 +40,7 @@ static tree_sight measure(contact_tree *c, tree_place place, size_t piece, doubl
 static void begin(contact_tree *c) {
   curve_tree *o = &c->base;
   tree_sight sight;
-  const search_interval *part = &o->side.part;
+  const curve_interval *part = &o->side.part;
   const bool piece = curve_side_is_piece(&o->side, part);
   const size_t first = piece ? curve_side_piece(&o->side, part) : 0;
   const double s = piece ? part->a : 0.0;
@@ -63,15 +63,16 @@ static vec3 first_velocity(const tree_stretch *stretch) {
 
 /* The list is gone through from the middle, and what remains from the left end, which says how far the way is free. */
 static cprox_status probe_piece(contact_tree *c, search_node *node) {
+  curve_tree_node *payload = curve_tree_own(node);
   curve_tree *o = &c->base;
-  const search_interval *at = &node->side[0];
+  const curve_interval *at = &payload->at;
   tree_stretch stretch;
   double slack, least2;
   tree_place nearest = {0, 0};
   stretch.stepping = false;
   curve_tree_stretch(o, node, curve_side_point(&o->side, 0.5 * (at->a + at->b)), &stretch, &slack);
   cprox_status status = curve_tree_filter(o, node, &stretch, slack, &nearest, &least2, NULL);
-  if (status < 0 || node->list == node->list_end) return status;
+  if (status < 0 || payload->list == payload->list_end) return status;
 
   const size_t stride = o->side.curve->degree + 1;
   const double *points = points_pool_at(&o->pool, (size_t)at->slot);
@@ -95,7 +96,7 @@ static cprox_status probe_piece(contact_tree *c, search_node *node) {
 
 static cprox_status probe_range(contact_tree *c, search_node *node) {
   curve_tree *o = &c->base;
-  const curve_capsule capsule = curve_capsule_at(o->side.curve, node->side[0].part);
+  const curve_capsule capsule = curve_capsule_at(o->side.curve, curve_tree_own(node)->at.part);
   double unused = 0.0, slack, least2;
   const vec3 x = frame_to_local(&o->side.frame, vec_lerp(capsule.a, capsule.b, 0.5), &unused);
   tree_stretch stretch;
@@ -106,6 +107,7 @@ static cprox_status probe_range(contact_tree *c, search_node *node) {
 }
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {
+  curve_tree_node *payload = curve_tree_own(node);
   contact_tree *c = self;
   curve_tree *o = &c->base;
   o->nodes++;
@@ -114,10 +116,10 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   c->share = 0.0;
   c->ahead = INFINITY;
   cprox_status status;
-  if (!curve_side_is_piece(&o->side, &node->side[0])) {
+  if (!curve_side_is_piece(&o->side, &payload->at)) {
     status = probe_range(c, node);
   } else {
-    if (!curve_side_materialise(&o->side, &node->side[0])) return curve_side_trouble(&o->side);
+    if (!curve_side_materialise(&o->side, &payload->at)) return curve_side_trouble(&o->side);
     status = probe_piece(c, node);
   }
   if (status < 0) return status;
@@ -129,13 +131,14 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 /* ---- cutting ---------------------------------------------------------------------------------------------------------- */
 
 static int split(void *self, search_node *node, search_node *child) {
+  curve_tree_node *payload = curve_tree_own(node);
   enum { SHORTEST_STEP = 4 }; /* free stretches below 1/4 are not worth a cut of their own */
   contact_tree *c = self;
   curve_tree *o = &c->base;
-  search_interval *at = &node->side[0], half[2];
+  curve_interval *at = &payload->at, half[2];
   const bool piece = curve_side_is_piece(&o->side, at);
   const bool stepping = piece && c->share * SHORTEST_STEP > 1.0 && c->share < 1.0;
-  if (node->list == node->list_end) return 0;
+  if (payload->list == payload->list_end) return 0;
   if (!piece) {
     curve_side_cut_range(at, half);
   } else {
@@ -149,7 +152,7 @@ static int split(void *self, search_node *node, search_node *child) {
   for (int k = 0; k < 2; k++) {
     if (curve_side_is_empty(&o->side, &half[k])) continue;
     child[children] = *node;
-    child[children].side[0] = half[k];
+    curve_tree_own(&child[children])->at = half[k];
     child[children].start = curve_side_start(&o->side, &half[k]);
     /* the left part is free by the lines that lie below its bounds */
     if (stepping && k == 0) child[children].lower = fmax(node->lower, BARELY);
@@ -165,7 +168,7 @@ bool contact_tree_begin(contact_tree *c, search_node *root) {
   c->proven_bound = (search_best){.upper = INFINITY, .at = INFINITY};
   c->proven_within = false;
   if (!curve_tree_root(&c->base, root)) return false;
-  root->start = curve_side_start(&c->base.side, &root->side[0]);
+  root->start = curve_side_start(&c->base.side, &curve_tree_own(root)->at);
   return true;
 }
 

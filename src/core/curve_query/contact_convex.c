@@ -34,7 +34,7 @@ static cprox_status measure(contact_convex *c, size_t piece, double s, vec3 y, d
 static cprox_status probe(void *self, search_node *node, search_best *best) {
   contact_convex *c = self;
   curve_convex *o = &c->base;
-  search_interval *at = &node->side[0];
+  curve_interval *at = &curve_convex_own(node)->at;
   o->nodes++;
   size_t piece;
   double s, error;
@@ -63,7 +63,8 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 static double free_fraction(const contact_convex *c, const search_node *node) {
   const curve_convex *o = &c->base;
   const size_t degree = o->side.curve->degree;
-  const double *x = points_pool_at(&o->pool, (size_t)node->side[0].slot), *y = x + degree + 1, *z = y + degree + 1;
+  const double *x = points_pool_at(&o->pool, (size_t)curve_convex_known(node)->at.slot), *y = x + degree + 1,
+               *z = y + degree + 1;
   const vec3 n = o->last.normal;
   const double first = vec_dot(n, vec(x[0], y[0], z[0]));
   double slope = 0.0;
@@ -75,11 +76,12 @@ static double free_fraction(const contact_convex *c, const search_node *node) {
   return slope < 0.0 && isfinite(above) ? above / -slope : 0.0;
 }
 
-static void begin_child(contact_convex *c, search_node *child, const search_node *node, search_interval at) {
+static void begin_child(contact_convex *c, search_node *child, const search_node *node, curve_interval at) {
+  curve_convex_node *payload = curve_convex_own(child);
   *child = *node;
-  child->side[0] = at;
+  payload->at = at;
   child->start = curve_side_start(&c->base.side, &at);
-  child->seen = child->seen_ball = 0;
+  payload->seen = payload->seen_ball = 0;
   curve_convex_bound(&c->base, child, &c->base.last);
 }
 
@@ -87,7 +89,7 @@ static int split(void *self, search_node *node, search_node *child) {
   enum { SHORTEST_STEP = 4 }; /* free stretches below 1/4 are not worth a cut of their own */
   contact_convex *c = self;
   curve_convex *o = &c->base;
-  search_interval *at = &node->side[0], half[2];
+  curve_interval *at = &curve_convex_own(node)->at, half[2];
   if (!curve_side_is_piece(&o->side, at)) {
     curve_side_cut_range(at, half);
   } else {
@@ -113,7 +115,7 @@ void contact_convex_begin(contact_convex *c, double epsilon) {
 
 search_node contact_convex_root(const contact_convex *c) {
   search_node root = curve_convex_root(&c->base);
-  root.start = curve_side_start(&c->base.side, &root.side[0]);
+  root.start = curve_side_start(&c->base.side, &curve_convex_own(&root)->at);
   return root;
 }
 

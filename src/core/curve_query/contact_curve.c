@@ -35,7 +35,7 @@ static vec3 jet_at(const curve_side *side, double s, vec3 *first, vec3 *second) 
 }
 
 /* A parameter of the interval at which the loaded piece is nearest to p, as far as Newton's method finds it from s: a suggestion. */
-static double nearest_on(const curve_side *side, const search_interval *at, vec3 p, double s) {
+static double nearest_on(const curve_side *side, const curve_interval *at, vec3 p, double s) {
   enum { MOST_STEPS = 10 };
   for (int i = 0; i < MOST_STEPS; i++) {
     vec3 first, second;
@@ -50,6 +50,7 @@ static double nearest_on(const curve_side *side, const search_interval *at, vec3
 }
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {
+  curve_curve_node *payload = curve_curve_own(node);
   contact_curve *c = self;
   curve_curve *o = &c->base;
   o->nodes++;
@@ -65,7 +66,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   curve_meeting m = curve_curve_meeting_near(o, node, fraction, &error);
   c->nearest = -1.0;
   if (pieces) {
-    m.s[1] = c->nearest = nearest_on(&o->side[1], &node->side[1], m.point[0], m.s[1]);
+    m.s[1] = c->nearest = nearest_on(&o->side[1], &payload->side[1], m.point[0], m.s[1]);
     m.point[1] = curve_side_point(&o->side[1], m.s[1]);
   }
   consider(c, &m, error);
@@ -74,7 +75,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
   /* measuring at a junction may have loaded other pieces */
   for (int k = 0; k < 2; k++)
-    if (node->side[k].slot >= 0) curve_side_load(&o->side[k], curve_side_piece(&o->side[k], &node->side[k]));
+    if (payload->side[k].slot >= 0) curve_side_load(&o->side[k], curve_side_piece(&o->side[k], &payload->side[k]));
   o->last_normal = vec_norm2(m.normal) > 0.0 ? m.normal : suggested;
   curve_curve_bound(o, node, o->last_normal);
   return CPROX_OK;
@@ -87,7 +88,8 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 static double free_fraction(const contact_curve *c, const search_node *node) {
   const curve_curve *o = &c->base;
   const size_t degree = o->side[0].curve->degree;
-  const double *x = points_pool_at(&o->pool, (size_t)node->side[0].slot), *y = x + degree + 1, *z = y + degree + 1;
+  const double *x = points_pool_at(&o->pool, (size_t)curve_curve_known(node)->side[0].slot), *y = x + degree + 1,
+               *z = y + degree + 1;
   const vec3 n = o->last_normal, start = vec(x[0], y[0], z[0]);
   double slope = 0.0;
   for (size_t k = 1; k <= degree; k++) {
@@ -102,6 +104,7 @@ static double free_fraction(const contact_curve *c, const search_node *node) {
 /* The first curve where its left end's free stretch would end, were the second curve nowhere nearer than at its nearest point, less
  * some room for the second curve to come nearer after all; only what lies before is then worth cutting the second curve for. */
 static curve_curve_cuts choose_cuts(const contact_curve *c, const search_node *node) {
+  const curve_curve_node *payload = curve_curve_known(node);
   const double room = 0.75, worthwhile = 0.25, inner = 0.05;
   const curve_curve *o = &c->base;
   curve_curve_cuts cuts = {.wanted = {false, false}};
@@ -109,7 +112,7 @@ static curve_curve_cuts choose_cuts(const contact_curve *c, const search_node *n
     curve_curve_cut_middle(&cuts, node, curve_curve_longer_side(o, node));
     return cuts;
   }
-  const search_interval *first = &node->side[0], *second = &node->side[1];
+  const curve_interval *first = &payload->side[0], *second = &payload->side[1];
   const double s = free_fraction(c, node), t = (c->nearest - second->a) / (second->b - second->a);
   if (s >= 1.0) {
     curve_curve_cut_middle(&cuts, node, 1);
@@ -125,7 +128,8 @@ static int split(void *self, search_node *node, search_node *child) {
   contact_curve *c = self;
   const curve_curve_cuts cuts = choose_cuts(c, node);
   const int children = curve_curve_cut(&c->base, node, &cuts, child);
-  for (int k = 0; k < children; k++) child[k].start = curve_side_start(&c->base.side[0], &child[k].side[0]);
+  for (int k = 0; k < children; k++)
+    child[k].start = curve_side_start(&c->base.side[0], &curve_curve_own(&child[k])->side[0]);
   return children;
 }
 
@@ -140,7 +144,7 @@ void contact_curve_begin(contact_curve *c, double epsilon) {
 
 search_node contact_curve_root(const contact_curve *c) {
   search_node root = curve_curve_root(&c->base);
-  root.start = curve_side_start(&c->base.side[0], &root.side[0]);
+  root.start = curve_side_start(&c->base.side[0], &curve_curve_own(&root)->side[0]);
   return root;
 }
 
@@ -162,7 +166,7 @@ void contact_curve_prove(contact_curve *c) {
   const double found_at = c->proven_bound.at;
   curve_meeting m = o->best;
   for (int k = 0; k < 2; k++) curve_side_load(&o->side[k], m.piece[k]);
-  const search_interval whole = {.a = 0.0, .b = 1.0};
+  const curve_interval whole = {.a = 0.0, .b = 1.0};
   for (int i = 0; i < MOST_STEPS && c->proven_bound.at == found_at; i++) {
     vec3 velocity, unused;
     jet_at(&o->side[0], m.s[0], &velocity, &unused);

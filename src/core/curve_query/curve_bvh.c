@@ -20,7 +20,7 @@ typedef struct tree_entry {
 } tree_entry;
 
 static bool is_piece(const curve_tree *o, const search_node *node) {
-  return curve_side_is_piece(&o->side, &node->side[0]);
+  return curve_side_is_piece(&o->side, &curve_tree_known(node)->at);
 }
 
 /* ---- measuring -------------------------------------------------------------------------------------------------------- */
@@ -178,7 +178,7 @@ bool curve_tree_meets(curve_tree *o, tree_sight *sight, double *until) {
 
 bool curve_tree_begins_inside(curve_tree *o, tree_sight *sight) {
   if (!o->body->winding) return false;
-  const search_interval *part = &o->side.part;
+  const curve_interval *part = &o->side.part;
   const bool piece = curve_side_is_piece(&o->side, part);
   curve_side_load(&o->side, piece ? curve_side_piece(&o->side, part) : 0);
   const double s = piece ? part->a : 0.0;
@@ -228,7 +228,7 @@ static void seed(curve_tree *o) {
     adopt_better(o, &sight, &(search_best){.upper = -o->offset, .slack = 0.0});
     return;
   }
-  const search_interval *part = &o->side.part;
+  const curve_interval *part = &o->side.part;
   const bool piece = curve_side_is_piece(&o->side, part), verdict = o->asked.limit >= 0.0;
   const size_t first = piece ? curve_side_piece(&o->side, part) : 0, pieces = piece ? 1 : o->side.curve->n_pieces;
   const size_t wanted = verdict ? 2 : LEAST_SEEDS + pieces / PIECES_A_SEED;
@@ -251,7 +251,8 @@ static tree_entry *list_reserve(const curve_tree *o, size_t n) {
 
 void curve_tree_stretch(const curve_tree *o, const search_node *node, vec3 x, tree_stretch *stretch, double *slack) {
   stretch->x = x;
-  const curve_hull hull = curve_side_hull(&o->side, &node->side[0], x, stretch->p[0], stretch->p[1], stretch->p[2]);
+  const curve_hull hull =
+      curve_side_hull(&o->side, &curve_tree_known(node)->at, x, stretch->p[0], stretch->p[1], stretch->p[2]);
   stretch->n = hull.n;
   stretch->radius = hull.radius;
   stretch->known = o->found && vec_norm2(o->best.near.normal) > 0.5;
@@ -308,17 +309,18 @@ static bool is_worth_opening(const tree_node *node, const tree_lanes *lanes, uin
 
 cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_stretch *stretch, double slack,
                                tree_place *nearest, double *least2, double *share) {
+  curve_tree_node *payload = curve_tree_own(node);
   tree_entry open[TREE_LANES * TREE_DEEPEST];
-  size_t count = 0, end = node->list_end;
+  size_t count = 0, end = payload->list_end;
   const double taken = o->offset + slack,
                wide2 = (o->asked.limit >= 0.0 ? WIDE_VERDICT2 : WIDE_DISTANCE2) * width2_of(stretch), goal = goal_of(o);
   const double best = fmax(o->best_bound.upper + o->offset, 0.0), best2 = best < 1e150 ? best * best : INFINITY;
-  double kept = INFINITY, rest = node->rest;
+  double kept = INFINITY, rest = payload->rest;
   *least2 = INFINITY;
   /* so much farther that what is left of it, less what was taken, is still above the goal */
   stretch->beyond = goal + taken + 4.0 * ROUND_U * (fabs(goal) + taken);
   tree_entry *list = list_reserve(o, end);
-  for (size_t i = node->list; count > 0 || i < node->list_end;) {
+  for (size_t i = payload->list; count > 0 || i < payload->list_end;) {
     const tree_entry entry = count > 0 ? open[--count] : list[i++];
     const bool leaf = (entry.at & TREE_LEAF) != 0;
     tree_lanes lanes;
@@ -350,9 +352,9 @@ cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_stretch *s
       return workspace_fail(o->workspace, CPROX_MEMORY, "no memory for a list of elements");
     list[end++] = (tree_entry){entry.at, kept_lanes};
   }
-  node->list = node->list_end;
-  node->list_end = (uint32_t)end;
-  node->rest = rest;
+  payload->list = payload->list_end;
+  payload->list_end = (uint32_t)end;
+  payload->rest = rest;
   node->slack = slack;
   node->lower = fmax(node->lower, fmin(kept, rest));
   return CPROX_OK;
@@ -367,7 +369,7 @@ static double filter(void *self, search_node *node, double goal) {
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {
   curve_tree *o = self;
-  search_interval *at = &node->side[0];
+  curve_interval *at = &curve_tree_own(node)->at;
   o->nodes++;
   if (!o->seeded) {
     o->seeded = true;
@@ -412,16 +414,17 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
 /* Where the best point cuts the node's own parameter, or a half where it does not lie well inside. */
 static double cut_of(const curve_tree *o, const search_node *node) {
-  const search_interval *at = &node->side[0];
+  const curve_interval *at = &curve_tree_known(node)->at;
   if (!o->found || curve_side_piece(&o->side, at) != o->best.piece) return 0.5;
   const double s = (o->best.s - at->a) / (at->b - at->a);
   return s > 1e-9 && s < 1.0 - 1e-9 ? s : 0.5;
 }
 
 static int split(void *self, search_node *node, search_node *child) {
+  curve_tree_node *payload = curve_tree_own(node);
   curve_tree *o = self;
-  search_interval *at = &node->side[0], half[2];
-  if (node->list == node->list_end) return 0;
+  curve_interval *at = &payload->at, half[2];
+  if (payload->list == payload->list_end) return 0;
   if (!is_piece(o, node)) {
     curve_side_cut_range(at, half);
   } else {
@@ -435,17 +438,17 @@ static int split(void *self, search_node *node, search_node *child) {
   const int first = t < middle ? 1 : 0;
   int children = 0;
   for (int k = 0; k < 2; k++) {
-    const search_interval *part = &half[k == 0 ? first : 1 - first];
+    const curve_interval *part = &half[k == 0 ? first : 1 - first];
     if (curve_side_is_empty(&o->side, part)) continue;
     child[children] = *node;
-    child[children++].side[0] = *part;
+    curve_tree_own(&child[children++])->at = *part;
   }
   return children;
 }
 
 static void release(void *self, const search_node *node) {
   curve_tree *o = self;
-  points_pool_give(&o->pool, node->side[0].slot);
+  points_pool_give(&o->pool, curve_tree_known(node)->at.slot);
 }
 
 /* ---- the oracle ------------------------------------------------------------------------------------------------------- */
@@ -467,7 +470,8 @@ bool curve_tree_root(curve_tree *o, search_node *root) {
   tree_entry *list = list_reserve(o, 1);
   if (!list) return false;
   list[0] = (tree_entry){0, o->tree->nodes[0].lanes};
-  *root = (search_node){.lower = -INFINITY, .side[0] = o->side.part, .list_end = 1, .rest = INFINITY};
+  *root = (search_node){.lower = -INFINITY};
+  *curve_tree_own(root) = (curve_tree_node){.at = o->side.part, .list_end = 1, .rest = INFINITY};
   return true;
 }
 

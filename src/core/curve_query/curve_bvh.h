@@ -4,9 +4,26 @@
 #ifndef CPROX_CURVE_QUERY_CURVE_BVH_H
 #define CPROX_CURVE_QUERY_CURVE_BVH_H
 
+#include "branch_and_bound/search.h"
 #include "bvh/bvh.h"
 #include "curve/subcurve.h"
 #include "shape/body.h"
+
+/* The payload of a node, and how to get at it. */
+typedef struct curve_tree_node {
+  curve_interval at;
+  uint32_t list, list_end; /* the lanes that still matter to it, */
+  double rest;             /* and the least bound of those that do not */
+} curve_tree_node;
+
+static inline const curve_tree_node *curve_tree_known(const search_node *node) {
+  _Static_assert(sizeof(curve_tree_node) <= sizeof(search_payload), "a node's payload holds it");
+  return (const curve_tree_node *)node->payload.bytes;
+}
+
+static inline curve_tree_node *curve_tree_own(search_node *node) {
+  return (curve_tree_node *)node->payload.bytes;
+}
 
 /* The nearest point of one element, and where on the curve it was seen. */
 typedef struct tree_sight {

@@ -21,7 +21,7 @@ static bool piece_is_planar(curve_convex *o) {
 }
 
 static bool is_piece(const curve_convex *o, const search_node *node) {
-  return curve_side_is_piece(&o->side, &node->side[0]);
+  return curve_side_is_piece(&o->side, &curve_convex_known(node)->at);
 }
 
 /* ---- bounds ----------------------------------------------------------------------------------------------------------- */
@@ -36,7 +36,7 @@ static double bound_slack(const curve_convex *o, double error, double magnitude,
 /* Weak duality: along any unit n the body reaches no farther than h(n), so min n·P - h(n) is a lower bound. */
 void curve_convex_bound(const curve_convex *o, search_node *node, const curve_sight *sight) {
   if (!isfinite(sight->support)) return;
-  const curve_reach reach = curve_side_reach(&o->side, &node->side[0], sight->normal);
+  const curve_reach reach = curve_side_reach(&o->side, &curve_convex_own(node)->at, sight->normal);
   const double bound = reach.least - sight->support;
   const double slack = bound_slack(o, reach.error, reach.magnitude, bound);
   node->lower = greater(bound - slack, node->lower);
@@ -65,40 +65,44 @@ static bool cover_is_the_body(const curve_convex *o) {
 
 /* Where the curve bends round a vertex or an edge, a plane is too weak; the distance from the cover's centre is not. */
 static void bound_by_cover(curve_convex *o, search_node *node) {
+  curve_convex_node *payload = curve_convex_own(node);
   const double from_centre =
-      curve_side_distance_from(&o->side, &node->side[0], o->cover.centre, o->cover.cylinder ? &o->cover.axis : NULL,
+      curve_side_distance_from(&o->side, &payload->at, o->cover.centre, o->cover.cylinder ? &o->cover.axis : NULL,
                                points_pool_at(&o->pool, CURVE_CONVEX_SCRATCH));
   const double bound = from_centre - o->cover.radius - o->offset;
-  const double slack = ROUND_UP * (node->side[0].error + 4.0 * ROUND_U * (from_centre + o->cover.radius + o->offset));
+  const double slack = ROUND_UP * (payload->at.error + 4.0 * ROUND_U * (from_centre + o->cover.radius + o->offset));
   node->lower = greater(bound - slack, node->lower);
 }
 
 /* Nodes touch at their ends, so the best point may belong to two of them. */
 static bool holds_best(const curve_convex *o, const search_node *node) {
-  return curve_side_piece(&o->side, &node->side[0]) == o->best.piece && node->side[0].a <= o->best.s &&
-         o->best.s <= node->side[0].b;
+  const curve_convex_node *payload = curve_convex_known(node);
+  return curve_side_piece(&o->side, &payload->at) == o->best.piece && payload->at.a <= o->best.s &&
+         o->best.s <= payload->at.b;
 }
 
 /* Where the best point cuts the node's own parameter, or -1 where it does not lie well inside. */
 static double best_inside(const curve_convex *o, const search_node *node) {
+  const curve_convex_node *payload = curve_convex_known(node);
   if (o->incumbent == 0 || !holds_best(o, node)) return -1.0;
-  const double s = (o->best.s - node->side[0].a) / (node->side[0].b - node->side[0].a);
+  const double s = (o->best.s - payload->at.a) / (payload->at.b - payload->at.a);
   return s > 1e-12 && s < 1.0 - 1e-12 ? s : -1.0;
 }
 
 static double filter(void *self, search_node *node, double goal) {
+  curve_convex_node *payload = curve_convex_own(node);
   curve_convex *o = self;
   o->goal = goal;
   if (o->incumbent == 0) return node->lower;
-  if (node->side[0].slot >= 0) curve_side_load(&o->side, curve_side_piece(&o->side, &node->side[0]));
-  if (node->seen != o->incumbent) {
+  if (payload->at.slot >= 0) curve_side_load(&o->side, curve_side_piece(&o->side, &payload->at));
+  if (payload->seen != o->incumbent) {
     curve_convex_bound(o, node, &o->best);
-    node->seen = o->incumbent;
+    payload->seen = o->incumbent;
   }
-  if (node->side[0].slot >= 0 && node->lower < goal && node->seen_ball != o->incumbent && o->nodes >= o->polish_after &&
-      know_cover(o) && (cover_is_the_body(o) || holds_best(o, node))) {
+  if (payload->at.slot >= 0 && node->lower < goal && payload->seen_ball != o->incumbent &&
+      o->nodes >= o->polish_after && know_cover(o) && (cover_is_the_body(o) || holds_best(o, node))) {
     bound_by_cover(o, node);
-    node->seen_ball = o->incumbent;
+    payload->seen_ball = o->incumbent;
   }
   return node->lower;
 }
@@ -210,7 +214,7 @@ static cprox_status probe_at(curve_convex *o, size_t piece, double s, double ste
 /* From the frame's origin, about which the body stands, towards the chord of a range: a normal that is had without a measurement.
  * False where the chord meets the origin. */
 static bool look_from_origin(curve_convex *o, const search_node *node) {
-  const vec3 y = curve_side_chord_from_origin(&o->side, &node->side[0]);
+  const vec3 y = curve_side_chord_from_origin(&o->side, &curve_convex_known(node)->at);
   const double length2 = vec_norm2(y);
   if (!(length2 > 0.0 && isfinite(length2))) return false;
   o->last.normal = vec_scale(1.0 / sqrt(length2), y);
@@ -234,9 +238,10 @@ static bool is_long(const curve_convex *o) {
 /* The first measurement is on the piece that the nearer chords lead to. Of what a range falls into bounds are had without any; a curve
  * that has no chords is measured at the point where two ranges meet, which is a control point. */
 static cprox_status probe_range(curve_convex *o, const search_node *node) {
+  const curve_convex_node *payload = curve_convex_known(node);
   if (o->incumbent == 0 && !o->side.curve->arcs) {
     double s;
-    const size_t nearest = curve_side_nearest_piece(&o->side, &node->side[0], &s);
+    const size_t nearest = curve_side_nearest_piece(&o->side, &payload->at, &s);
     curve_side_load(&o->side, nearest);
     return probe_at(o, nearest, is_long(o) ? s : first_look(o), 0.5 / CHORDS);
   }
@@ -246,7 +251,7 @@ static cprox_status probe_range(curve_convex *o, const search_node *node) {
   }
   size_t piece;
   double s, error;
-  const vec3 y = curve_side_junction(&o->side, &node->side[0], &piece, &s, &error);
+  const vec3 y = curve_side_junction(&o->side, &payload->at, &piece, &s, &error);
   search_best bound = {.upper = INFINITY};
   const cprox_status status = curve_convex_measure(o, piece, s, y, error, &o->last, &bound);
   if (status == CPROX_OK && bound.upper < o->best_bound.upper) curve_convex_adopt(o, &o->last, bound);
@@ -255,7 +260,7 @@ static cprox_status probe_range(curve_convex *o, const search_node *node) {
 
 /* Where the interval's lowest control point along the best normal pulls most, but well inside. Without a normal, where the piece comes
  * nearest to the frame's origin, about which the body stands, as far as a few points tell, or the middle. */
-static double promising(const curve_convex *o, const search_interval *at, double *step) {
+static double promising(const curve_convex *o, const curve_interval *at, double *step) {
   double fraction = 0.5;
   *step = 0.25 * (at->b - at->a);
   if (o->incumbent == 0 && !o->side.curve->arcs && at->a == 0.0 && at->b == 1.0) {
@@ -271,32 +276,34 @@ static double promising(const curve_convex *o, const search_interval *at, double
 }
 
 static cprox_status probe_piece(curve_convex *o, const search_node *node) {
-  const search_interval *at = &node->side[0];
+  const curve_interval *at = &curve_convex_known(node)->at;
   double step;
   const double s = promising(o, at, &step);
   return probe_at(o, curve_side_piece(&o->side, at), s, step);
 }
 
 cprox_status curve_convex_seed(curve_convex *o, size_t piece, double s, search_node *root) {
+  curve_convex_node *payload = curve_convex_own(root);
   o->nodes++;
   curve_side_load(&o->side, piece);
   const cprox_status status = probe_at(o, piece, s, 1.0 / 16);
   if (status < 0 || o->incumbent == 0 || o->best_bound.upper <= o->good_enough) return status;
-  if (is_piece(o, root) && !curve_side_materialise(&o->side, &root->side[0])) return curve_side_trouble(&o->side);
+  if (is_piece(o, root) && !curve_side_materialise(&o->side, &payload->at)) return curve_side_trouble(&o->side);
   curve_convex_bound(o, root, &o->best);
-  root->seen = o->incumbent;
+  payload->seen = o->incumbent;
   return CPROX_OK;
 }
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {
+  curve_convex_node *payload = curve_convex_own(node);
   curve_convex *o = self;
   o->nodes++;
   const bool piece = is_piece(o, node);
   if (piece) {
-    if (!curve_side_materialise(&o->side, &node->side[0])) return curve_side_trouble(&o->side);
+    if (!curve_side_materialise(&o->side, &payload->at)) return curve_side_trouble(&o->side);
     if (best_inside(o, node) >= 0.0) {
-      if (node->seen != o->incumbent) curve_convex_bound(o, node, &o->best);
-      node->seen = o->incumbent;
+      if (payload->seen != o->incumbent) curve_convex_bound(o, node, &o->best);
+      payload->seen = o->incumbent;
       o->last = o->best;
       return CPROX_OK;
     }
@@ -311,10 +318,10 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
   /* the probe's own normal, and the best one if it is another: one step further is the best of a probe that was not polished */
   curve_convex_bound(o, node, &o->last);
-  if (node->seen != o->incumbent &&
+  if (payload->seen != o->incumbent &&
       !(o->incumbent == before + 1 && o->last.s == o->best.s && o->last.piece == o->best.piece))
     curve_convex_bound(o, node, &o->best);
-  node->seen = o->incumbent;
+  payload->seen = o->incumbent;
   return CPROX_OK;
 }
 
@@ -324,14 +331,14 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 static void bound_child(curve_convex *o, search_node *child) {
   curve_convex_bound(o, child, &o->best);
   if (!is_enough(o, child->lower) && !vec_equal(o->last.normal, o->best.normal)) curve_convex_bound(o, child, &o->last);
-  child->seen = o->incumbent;
+  curve_convex_own(child)->seen = o->incumbent;
 }
 
 /* A child that is this part of the node; the number of children then. */
-static int add_child(curve_convex *o, const search_node *node, const search_interval *part, search_node *child, int n) {
+static int add_child(curve_convex *o, const search_node *node, const curve_interval *part, search_node *child, int n) {
   child[n] = *node;
-  child[n].side[0] = *part;
-  child[n].seen_ball = 0;
+  curve_convex_own(&child[n])->at = *part;
+  curve_convex_own(&child[n])->seen_ball = 0;
   bound_child(o, &child[n]);
   return n + 1;
 }
@@ -340,7 +347,7 @@ static int add_child(curve_convex *o, const search_node *node, const search_inte
 static void bound_fan(const curve_convex *o, search_node *child, size_t n, const curve_sight *sight) {
   if (!isfinite(sight->support)) return;
   double least[CURVE_PACK];
-  const curve_reach reach = curve_side_fan_reach(&o->side, &child[0].side[0], sight->normal, least);
+  const curve_reach reach = curve_side_fan_reach(&o->side, &curve_convex_own(&child[0])->at, sight->normal, least);
   for (size_t k = 0; k < n; k++) {
     const double bound = least[k] - sight->support;
     const double slack = bound_slack(o, reach.error, reach.magnitude, bound);
@@ -354,7 +361,7 @@ static void bound_fan_by_ball(const curve_convex *o, search_node *child, size_t 
   const convex *shape = o->shape;
   if (shape->ops->kind == CPROX_HALFSPACE) return;
   double least[CURVE_PACK];
-  const curve_reach reach = curve_side_fan_distance(&o->side, &child[0].side[0], least);
+  const curve_reach reach = curve_side_fan_distance(&o->side, &curve_convex_own(&child[0])->at, least);
   const double radius = shape->scale + o->offset;
   const double slack = ROUND_UP * (reach.error + 64.0 * ROUND_U * (reach.magnitude + radius) + shape->slack);
   for (size_t k = 0; k < n; k++) child[k].lower = greater(least[k] - radius - slack, child[k].lower);
@@ -370,13 +377,13 @@ static bool is_open(const curve_convex *o, const search_node *child, size_t n) {
 /* A range of pieces falls into as many as are bounded at once: a bound costs much less than a measurement. What the ball leaves open the
  * best normal may settle, and what that leaves the one from the body's middle. */
 static int split_range(curve_convex *o, const search_node *node, search_node *child) {
-  search_interval part[CURVE_PACK];
-  const size_t n = curve_side_fan(&o->side, &node->side[0], part);
+  curve_interval part[CURVE_PACK];
+  const size_t n = curve_side_fan(&o->side, &curve_convex_known(node)->at, part);
   for (size_t k = 0; k < n; k++) {
     child[k] = *node;
-    child[k].side[0] = part[k];
-    child[k].seen_ball = 0;
-    child[k].seen = o->incumbent;
+    curve_convex_own(&child[k])->at = part[k];
+    curve_convex_own(&child[k])->seen_ball = 0;
+    curve_convex_own(&child[k])->seen = o->incumbent;
   }
   bound_fan_by_ball(o, child, n);
   if (is_open(o, child, n)) bound_fan(o, child, n, &o->best);
@@ -389,7 +396,7 @@ static int split(void *self, search_node *node, search_node *child) {
   if (!is_piece(o, node)) return split_range(o, node, child);
 
   /* at the witness point, or in the middle */
-  search_interval *at = &node->side[0], half[2];
+  curve_interval *at = &curve_convex_own(node)->at, half[2];
   const double inside = best_inside(o, node);
   const double cut = inside < 0.0 ? 0.5 * (at->a + at->b) : o->best.s;
   if (!(at->a < cut && cut < at->b)) return 0;
@@ -401,7 +408,7 @@ static int split(void *self, search_node *node, search_node *child) {
 
 static void release(void *self, const search_node *node) {
   curve_convex *o = self;
-  points_pool_give(&o->pool, node->side[0].slot);
+  points_pool_give(&o->pool, curve_convex_known(node)->at.slot);
 }
 
 /* ---- the oracle ------------------------------------------------------------------------------------------------------- */
@@ -416,7 +423,9 @@ bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex 
 }
 
 search_node curve_convex_root(const curve_convex *o) {
-  return (search_node){.lower = -INFINITY, .side[0] = o->side.part};
+  search_node root = {.lower = -INFINITY};
+  curve_convex_own(&root)->at = o->side.part;
+  return root;
 }
 
 search_oracle curve_convex_oracle(curve_convex *o) {

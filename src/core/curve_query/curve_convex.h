@@ -3,9 +3,25 @@
 #ifndef CPROX_CURVE_QUERY_CURVE_CONVEX_H
 #define CPROX_CURVE_QUERY_CURVE_CONVEX_H
 
+#include "branch_and_bound/search.h"
 #include "convex/flat.h"
 #include "curve/subcurve.h"
 #include "shape/body.h"
+
+/* The payload of a node, and how to get at it. */
+typedef struct curve_convex_node {
+  curve_interval at;
+  uint32_t seen, seen_ball; /* the incumbents that its bound knows already: by their normals, and by the cover */
+} curve_convex_node;
+
+static inline const curve_convex_node *curve_convex_known(const search_node *node) {
+  _Static_assert(sizeof(curve_convex_node) <= sizeof(search_payload), "a node's payload holds it");
+  return (const curve_convex_node *)node->payload.bytes;
+}
+
+static inline curve_convex_node *curve_convex_own(search_node *node) {
+  return (curve_convex_node *)node->payload.bytes;
+}
 
 /* A surface point of the body, the direction away from it, and where on the curve it was seen. */
 typedef struct curve_sight {

@@ -30,14 +30,15 @@ static void bound_by_reaches(const curve_curve *o, search_node *node, vec3 n, co
 }
 
 void curve_curve_bound(const curve_curve *o, search_node *node, vec3 n) {
+  curve_curve_node *payload = curve_curve_own(node);
   if (vec_norm2(n) == 0.0) return;
-  const curve_reach first = curve_side_reach(&o->side[0], &node->side[0], n);
-  const curve_reach second = curve_side_reach(&o->side[1], &node->side[1], vec_neg(n));
+  const curve_reach first = curve_side_reach(&o->side[0], &payload->side[0], n);
+  const curve_reach second = curve_side_reach(&o->side[1], &payload->side[1], vec_neg(n));
   bound_by_reaches(o, node, n, &first, &second);
 }
 
 /* The same for children that are all pairs of the parts: each part is asked once. */
-static void bound_children(const curve_curve *o, search_node *child, search_interval part[2][2], const int n_parts[2],
+static void bound_children(const curve_curve *o, search_node *child, curve_interval part[2][2], const int n_parts[2],
                            vec3 n) {
   if (vec_norm2(n) == 0.0) return;
   curve_reach reach[2][2];
@@ -57,17 +58,19 @@ static bool is_open(const curve_curve *o, const search_node *child, int n) {
 
 /* Pieces with points of their own are bounded with their whole piece loaded. */
 static void load_pieces(curve_curve *o, const search_node *node) {
+  const curve_curve_node *payload = curve_curve_known(node);
   for (int k = 0; k < 2; k++)
-    if (node->side[k].slot >= 0) curve_side_load(&o->side[k], curve_side_piece(&o->side[k], &node->side[k]));
+    if (payload->side[k].slot >= 0) curve_side_load(&o->side[k], curve_side_piece(&o->side[k], &payload->side[k]));
 }
 
 static double filter(void *self, search_node *node, double goal) {
+  curve_curve_node *payload = curve_curve_own(node);
   curve_curve *o = self;
   o->goal = goal;
-  if (o->incumbent == 0 || node->seen == o->incumbent) return node->lower;
+  if (o->incumbent == 0 || payload->seen == o->incumbent) return node->lower;
   load_pieces(o, node);
   curve_curve_bound(o, node, o->best.normal);
-  node->seen = o->incumbent;
+  payload->seen = o->incumbent;
   return node->lower;
 }
 
@@ -75,7 +78,7 @@ static double filter(void *self, search_node *node, double goal) {
 
 /* Where the best meeting cuts one side of a node, as a fraction of it: in [0, 1] if it lies there at all, else -1. */
 static double best_within(const curve_curve *o, const search_node *node, int k) {
-  const search_interval *at = &node->side[k];
+  const curve_interval *at = &curve_curve_known(node)->side[k];
   if (o->incumbent == 0 || !curve_side_is_piece(&o->side[k], at)) return -1.0;
   if (curve_side_piece(&o->side[k], at) != o->best.piece[k]) return -1.0;
   const double s = (o->best.s[k] - at->a) / (at->b - at->a);
@@ -139,7 +142,7 @@ static void consider(curve_curve *o, curve_meeting *m, double error) {
 }
 
 /* The ends of an interval's chord. */
-static void chord_of(const curve_side *side, const search_interval *at, vec3 ends[2]) {
+static void chord_of(const curve_side *side, const curve_interval *at, vec3 ends[2]) {
   if (at->slot < 0) {
     double turned = 0.0;
     const curve_capsule capsule = curve_capsule_at(side->curve, at->part);
@@ -154,7 +157,7 @@ static void chord_of(const curve_side *side, const search_interval *at, vec3 end
 }
 
 /* A point of the interval near the fraction f of its chord; ranges have one at their junction. */
-static double point_near(curve_side *side, const search_interval *at, double f, vec3 *point, size_t *piece, double *s) {
+static double point_near(curve_side *side, const curve_interval *at, double f, vec3 *point, size_t *piece, double *s) {
   double error;
   if (!curve_side_is_piece(side, at)) {
     *point = curve_side_junction(side, at, piece, s, &error);
@@ -174,11 +177,12 @@ static void polish(curve_curve *o, double step) {
 }
 
 cprox_status curve_curve_materialise(curve_curve *o, search_node *node, bool *pieces) {
+  curve_curve_node *payload = curve_curve_own(node);
   *pieces = true;
   for (int k = 0; k < 2; k++) {
-    if (!curve_side_is_piece(&o->side[k], &node->side[k])) {
+    if (!curve_side_is_piece(&o->side[k], &payload->side[k])) {
       *pieces = false;
-    } else if (!curve_side_materialise(&o->side[k], &node->side[k])) {
+    } else if (!curve_side_materialise(&o->side[k], &payload->side[k])) {
       return curve_side_trouble(&o->side[k]);
     }
   }
@@ -186,9 +190,10 @@ cprox_status curve_curve_materialise(curve_curve *o, search_node *node, bool *pi
 }
 
 vec3 curve_curve_suggest(curve_curve *o, const search_node *node, double fraction[2]) {
+  const curve_curve_node *payload = curve_curve_known(node);
   vec3 first[2], second[2];
-  chord_of(&o->side[0], &node->side[0], first);
-  chord_of(&o->side[1], &node->side[1], second);
+  chord_of(&o->side[0], &payload->side[0], first);
+  chord_of(&o->side[1], &payload->side[1], second);
   return meeting_of_chords(first, second, fraction);
 }
 
@@ -197,20 +202,22 @@ curve_meeting curve_curve_meeting_near(curve_curve *o, const search_node *node, 
   curve_meeting m = {.distance = INFINITY};
   *error = 0.0;
   for (int k = 0; k < 2; k++)
-    *error += point_near(&o->side[k], &node->side[k], fraction[k], &m.point[k], &m.piece[k], &m.s[k]);
+    *error +=
+        point_near(&o->side[k], &curve_curve_known(node)->side[k], fraction[k], &m.point[k], &m.piece[k], &m.s[k]);
   return m;
 }
 
 /* Where the two pieces that the search begins with come nearest, as far as a few points of each tell. */
 static bool first_look(const curve_curve *o, const search_node *node, double fraction[2]) {
+  const curve_curve_node *payload = curve_curve_known(node);
   lanes_piece piece[2];
   const double *basis[2];
   const size_t degree[2] = {o->side[0].curve->degree, o->side[1].curve->degree};
   for (int k = 0; k < 2; k++)
-    if (o->side[k].curve->arcs || node->side[k].a > 0.0 || node->side[k].b < 1.0) return false;
+    if (o->side[k].curve->arcs || payload->side[k].a > 0.0 || payload->side[k].b < 1.0) return false;
   if (o->carries || !lanes_bases(degree, o->workspace, basis)) return false;
   for (size_t k = 0; k < 2; k++)
-    piece[k] = (lanes_piece){basis[k], points_pool_at(&o->pool, (size_t)node->side[k].slot), degree[k]};
+    piece[k] = (lanes_piece){basis[k], points_pool_at(&o->pool, (size_t)payload->side[k].slot), degree[k]};
   lanes_first_pair(&piece[0], &piece[1], fraction);
   return true;
 }
@@ -227,6 +234,7 @@ static bool is_worth_polishing(const curve_curve *o) {
  * are no chords, or where it is worth more than theirs. */
 static cprox_status measure_node(curve_curve *o, search_node *node, const double fraction[2], bool pieces,
                                  bool looked) {
+  const curve_curve_node *payload = curve_curve_known(node);
   double error;
   curve_meeting m = curve_curve_meeting_near(o, node, fraction, &error);
   const uint32_t before = o->incumbent;
@@ -239,12 +247,13 @@ static cprox_status measure_node(curve_curve *o, search_node *node, const double
     o->last_normal = m.normal;
   }
   if (o->carries) curve_curve_bound(o, node, m.normal);
-  const double step = 0.25 * fmax(node->side[0].b - node->side[0].a, node->side[1].b - node->side[1].a);
+  const double step = 0.25 * fmax(payload->side[0].b - payload->side[0].a, payload->side[1].b - payload->side[1].a);
   if (pieces && o->incumbent != before && is_worth_polishing(o)) polish(o, step);
   return CPROX_OK;
 }
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {
+  curve_curve_node *payload = curve_curve_own(node);
   curve_curve *o = self;
   o->nodes++;
   bool pieces;
@@ -268,15 +277,15 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
   /* measuring may have loaded other pieces */
   load_pieces(o, node);
-  if (node->seen != o->incumbent) curve_curve_bound(o, node, o->best.normal);
-  node->seen = o->incumbent;
+  if (payload->seen != o->incumbent) curve_curve_bound(o, node, o->best.normal);
+  payload->seen = o->incumbent;
   return CPROX_OK;
 }
 
 /* ---- splits ----------------------------------------------------------------------------------------------------------- */
 
 /* How long an interval is, roughly: which side to cut. */
-static double length_of(const curve_side *side, const search_interval *at) {
+static double length_of(const curve_side *side, const curve_interval *at) {
   vec3 ends[2];
   chord_of(side, at, ends);
   const double radius = curve_capsule_at(side->curve, at->part).radius;
@@ -284,27 +293,31 @@ static double length_of(const curve_side *side, const search_interval *at) {
 }
 
 int curve_curve_longer_side(const curve_curve *o, const search_node *node) {
-  return length_of(&o->side[0], &node->side[0]) >= length_of(&o->side[1], &node->side[1]) ? 0 : 1;
+  const curve_curve_node *payload = curve_curve_known(node);
+  return length_of(&o->side[0], &payload->side[0]) >= length_of(&o->side[1], &payload->side[1]) ? 0 : 1;
 }
 
 void curve_curve_cut_middle(curve_curve_cuts *cuts, const search_node *node, int k) {
+  const curve_curve_node *payload = curve_curve_known(node);
   cuts->wanted[k] = true;
   cuts->s[k] = 0.5;
-  cuts->at[k] = 0.5 * (node->side[k].a + node->side[k].b);
+  cuts->at[k] = 0.5 * (payload->side[k].a + payload->side[k].b);
 }
 
 static bool are_ranges(const curve_curve *o, const search_node *node) {
-  return !curve_side_is_piece(&o->side[0], &node->side[0]) && !curve_side_is_piece(&o->side[1], &node->side[1]);
+  const curve_curve_node *payload = curve_curve_known(node);
+  return !curve_side_is_piece(&o->side[0], &payload->side[0]) && !curve_side_is_piece(&o->side[1], &payload->side[1]);
 }
 
 /* The longer side in its middle; two ranges of about one length both, since bounds cost less than measurements. */
 static curve_curve_cuts choose_cuts(const curve_curve *o, const search_node *node) {
+  const curve_curve_node *payload = curve_curve_known(node);
   curve_curve_cuts cuts = {.wanted = {false, false}};
   if (!holds_best(o, node)) {
     const int longer = curve_curve_longer_side(o, node), other = 1 - longer;
     curve_curve_cut_middle(&cuts, node, longer);
     if (are_ranges(o, node) &&
-        2.0 * length_of(&o->side[other], &node->side[other]) > length_of(&o->side[longer], &node->side[longer]))
+        2.0 * length_of(&o->side[other], &payload->side[other]) > length_of(&o->side[longer], &payload->side[longer]))
       curve_curve_cut_middle(&cuts, node, other);
     return cuts;
   }
@@ -317,8 +330,8 @@ static curve_curve_cuts choose_cuts(const curve_curve *o, const search_node *nod
 }
 
 /* Cuts side k of the node in two, or leaves it whole; the number of parts, 0 where it is too short, -1 without memory. */
-static int cut_side(curve_curve *o, search_node *node, int k, const curve_curve_cuts *cuts, search_interval part[2]) {
-  search_interval *at = &node->side[k];
+static int cut_side(curve_curve *o, search_node *node, int k, const curve_curve_cuts *cuts, curve_interval part[2]) {
+  curve_interval *at = &curve_curve_own(node)->side[k];
   curve_side *side = &o->side[k];
   part[0] = *at;
   if (!cuts->wanted[k]) return 1;
@@ -332,7 +345,7 @@ static int cut_side(curve_curve *o, search_node *node, int k, const curve_curve_
 }
 
 int curve_curve_cut(curve_curve *o, search_node *node, const curve_curve_cuts *cuts, search_node *child) {
-  search_interval part[2][2];
+  curve_interval part[2][2];
   int n[2];
   for (int k = 0; k < 2; k++) {
     n[k] = cut_side(o, node, k, cuts, part[k]);
@@ -346,12 +359,13 @@ int curve_curve_cut(curve_curve *o, search_node *node, const curve_curve_cuts *c
     for (int j = 0; j < n[1]; j++) {
       search_node *made = &child[children++];
       *made = *node;
-      made->side[0] = part[0][i];
-      made->side[1] = part[1][j];
-      if ((j > 0 && !curve_side_copy(&o->side[0], &made->side[0])) ||
-          (i > 0 && !curve_side_copy(&o->side[1], &made->side[1])))
+      curve_curve_node *payload = curve_curve_own(made);
+      payload->side[0] = part[0][i];
+      payload->side[1] = part[1][j];
+      if ((j > 0 && !curve_side_copy(&o->side[0], &payload->side[0])) ||
+          (i > 0 && !curve_side_copy(&o->side[1], &payload->side[1])))
         return curve_side_trouble(&o->side[0]);
-      made->seen = o->incumbent;
+      payload->seen = o->incumbent;
     }
   }
   bound_children(o, child, part, n, o->last_normal);
@@ -368,7 +382,7 @@ static int split(void *self, search_node *node, search_node *child) {
 
 static void release(void *self, const search_node *node) {
   curve_curve *o = self;
-  for (int k = 0; k < 2; k++) points_pool_give(&o->pool, node->side[k].slot);
+  for (int k = 0; k < 2; k++) points_pool_give(&o->pool, curve_curve_known(node)->side[k].slot);
 }
 
 /* ---- the oracle ------------------------------------------------------------------------------------------------------- */
@@ -401,7 +415,9 @@ bool curve_curve_carry(curve_curve *o, const cprox_pose *placed, const cprox_bod
 
 search_node curve_curve_root(const curve_curve *o) {
   /* two balls on curves are never nearer than minus the sum of their radii: curves have no inside */
-  return (search_node){.lower = o->carries ? -INFINITY : -o->offset, .side = {o->side[0].part, o->side[1].part}};
+  search_node root = {.lower = o->carries ? -INFINITY : -o->offset};
+  *curve_curve_own(&root) = (curve_curve_node){.side = {o->side[0].part, o->side[1].part}};
+  return root;
 }
 
 search_oracle curve_curve_oracle(curve_curve *o) {

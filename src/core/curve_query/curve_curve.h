@@ -4,8 +4,24 @@
 #ifndef CPROX_CURVE_QUERY_CURVE_CURVE_H
 #define CPROX_CURVE_QUERY_CURVE_CURVE_H
 
+#include "branch_and_bound/search.h"
 #include "curve/subcurve.h"
 #include "shape/body.h"
+
+/* The payload of a node, and how to get at it. */
+typedef struct curve_curve_node {
+  curve_interval side[2];
+  uint32_t seen; /* the incumbent that its bound knows already */
+} curve_curve_node;
+
+static inline const curve_curve_node *curve_curve_known(const search_node *node) {
+  _Static_assert(sizeof(curve_curve_node) <= sizeof(search_payload), "a node's payload holds it");
+  return (const curve_curve_node *)node->payload.bytes;
+}
+
+static inline curve_curve_node *curve_curve_own(search_node *node) {
+  return (curve_curve_node *)node->payload.bytes;
+}
 
 /* A point of either curve, how far apart they are, and the direction from the second to the first. */
 typedef struct curve_meeting {

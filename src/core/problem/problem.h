@@ -5,7 +5,7 @@
 
 #include "base/workspace.h"
 #include "branch_and_bound/search.h"
-#include "curve/curve.h"
+#include "curve/subcurve.h"
 #include "curve_proximity/cprox/query.h"
 
 /* What every verb asks. */
@@ -18,9 +18,9 @@ typedef struct question {
   bool farther_is_yes; /* tolerance's yes is collision's no */
   cprox_options options;
   cprox_workspace *workspace;
-  search_interval part; /* of the mover's curve: the whole of it, or some of one piece */
-  curve_capsule reach;  /* contains that part */
-  double t0, t1;        /* that part by the curve's parameter */
+  curve_interval part; /* of the mover's curve: the whole of it, or some of one piece */
+  curve_capsule reach; /* contains that part */
+  double t0, t1;       /* that part by the curve's parameter */
   const struct cprox_set
       *set; /* a robot's question: the set that the targets are, by whose boxes they are found; or NULL */
 } question;

@@ -11,7 +11,7 @@
 /* ---- the search ----------------------------------------------------------------------------------------------------------- */
 
 /* Fractions are rounded outwards by a little more than a division can be off. */
-static search_node root_of(const question *q, robot_search *o) {
+static bool root_of(const question *q, robot_search *o, search_node *root) {
   const cprox_motion *m = q->mover.motion;
   size_t first = 0, last = m->n_segments;
   while (first + 1 < last && m->times[first + 1] <= q->t0) first++;
@@ -19,15 +19,15 @@ static search_node root_of(const question *q, robot_search *o) {
   const double u0 = (q->t0 - m->times[first]) / (m->times[first + 1] - m->times[first]);
   const double u1 = (q->t1 - m->times[last - 1]) / (m->times[last] - m->times[last - 1]);
   return robot_search_root(o, first, q->t0 <= m->times[first] ? 0.0 : fmax(u0 - 0x1p-50, 0.0), last,
-                           q->t1 >= m->times[last] ? 1.0 : fmin(u1 + 0x1p-50, 1.0));
+                           q->t1 >= m->times[last] ? 1.0 : fmin(u1 + 0x1p-50, 1.0), root);
 }
 
 static cprox_status run(const question *q, const search_goal *goal, robot_search *o, search_outcome *found) {
   robot_search_begin(o, goal);
   *found = (search_outcome){.lower = INFINITY, .free_until = INFINITY, .best = {.upper = INFINITY, .at = INFINITY}};
   if (o->scene.n_pairs == 0 && !q->set) return CPROX_OK;
-  const search_node root = root_of(q, o);
-  if (root.side[0].slot < 0) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the lists of pairs");
+  search_node root;
+  if (!root_of(q, o, &root)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the lists of pairs");
   const search_oracle oracle = robot_search_oracle(o);
   const cprox_status status = search_run(goal, &oracle, root, q->workspace, found);
   if (status == CPROX_MEMORY) return workspace_fail(q->workspace, status, "no memory for the open intervals");

@@ -35,38 +35,57 @@ static const double ENOUGH_PIECES = 3.0;
 
 /* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
 
-/* From u = a of segment first(n) to u = b of segment last(n). */
-static size_t first_of(const search_node *node) {
-  return node->side[0].part;
+/* The payload of a node: from u = a of segment `first` to u = b of segment last - 1, and the list of its pairs. */
+typedef struct robot_node {
+  double a, b;
+  uint32_t first, last;
+  int32_t list;
+} robot_node;
+
+static const robot_node *robot_known(const search_node *node) {
+  _Static_assert(sizeof(robot_node) <= sizeof(search_payload), "a node's payload holds it");
+  return (const robot_node *)node->payload.bytes;
 }
 
-static size_t last_of(const search_node *node) {
-  return node->side[1].part;
+static robot_node *robot_own(search_node *node) {
+  return (robot_node *)node->payload.bytes;
+}
+
+static double middle_of(const search_node *node) {
+  const robot_node *payload = robot_known(node);
+  return 0.5 * (payload->a + payload->b);
+}
+
+static double width_of(const search_node *node) {
+  const robot_node *payload = robot_known(node);
+  return payload->b - payload->a;
 }
 
 static search_node node_of(const robot_search *o, const search_node *parent, size_t first, double a, size_t last,
                            double b) {
   search_node node = *parent;
-  node.side[0].part = (uint32_t)first, node.side[0].a = a;
-  node.side[1].part = (uint32_t)last, node.side[1].b = b;
+  robot_node *to = robot_own(&node);
+  to->a = a, to->first = (uint32_t)first;
+  to->b = b, to->last = (uint32_t)last;
   node.start = motion_time_below(o->scene.motion, first, a);
   return node;
 }
 
-search_node robot_search_root(robot_search *o, size_t first, double u0, size_t last, double u1) {
-  search_node root = {.lower = -INFINITY};
+bool robot_search_root(robot_search *o, size_t first, double u0, size_t last, double u1, search_node *root) {
+  *root = (search_node){.lower = -INFINITY};
   const cprox_set *set = o->scene.q->set;
   const size_t n_pairs = o->scene.n_pairs, n_parts = set && set->boxes ? o->scene.motion->robot->n_parts : 0;
   const int32_t slot = lists_take(&o->lists, n_pairs + n_parts);
-  root.side[0].slot = slot;
-  if (slot < 0) return root;
+  if (slot < 0) return false;
+  robot_own(root)->list = slot;
   list_entry *entry = lists_at(&o->lists, slot);
   for (size_t i = 0; i < n_pairs; i++) entry[i] = (list_entry){.lower = -INFINITY, .pair = (int32_t)i};
   size_t n = n_pairs;
   for (size_t i = 0; i < n_parts; i++)
     if (robot_scene_asks(&o->scene, i)) entry[n++] = (list_entry){.lower = -INFINITY, .pair = -1, .part = (int32_t)i};
   lists_set_count(&o->lists, slot, n);
-  return node_of(o, &root, first, u0, last, u1);
+  *root = node_of(o, root, first, u0, last, u1);
+  return true;
 }
 
 /* ---- measuring ------------------------------------------------------------------------------------------------------------ */
@@ -226,15 +245,16 @@ static cprox_status try_crowd(robot_search *o, const list_entry *entry, nearest_
 
 /* Measures the pair whose balls and boxes come closest in a few places, so that the search begins with a distance. */
 static cprox_status seed(robot_search *o, const search_node *node) {
-  const int32_t list = node->side[0].slot;
-  const size_t n = lists_count(&o->lists, list), first = first_of(node), last = last_of(node);
+  const robot_node *payload = robot_known(node);
+  const int32_t list = payload->list;
+  const size_t n = lists_count(&o->lists, list), first = payload->first, last = payload->last;
   size_t places = (last - first) * SEEDS_PER_SEGMENT + 2;
   while (places > 1 && places * n > MOST_SEED_TESTS) places /= 2;
   for (size_t i = 0; i < places; i++) {
     size_t segment = first + i / SEEDS_PER_SEGMENT;
     double u = ((double)(i % SEEDS_PER_SEGMENT) + 0.5) / SEEDS_PER_SEGMENT;
-    if (i == places - 2) segment = first, u = node->side[0].a;
-    if (i == places - 1) segment = last - 1, u = node->side[1].b;
+    if (i == places - 2) segment = first, u = payload->a;
+    if (i == places - 1) segment = last - 1, u = payload->b;
     robot_scene_enter(&o->scene, segment, u, u);
     const double most = o->limit >= 0.0 ? lesser(o->best_bound.upper, o->limit) : o->best_bound.upper;
     nearest_pair nearest = {.apart = most, .pair = -1};
@@ -257,8 +277,8 @@ static cprox_status seed(robot_search *o, const search_node *node) {
 /* The pair's last normal, carried on to the middle of the node as it turned; in the standing frame. (0,0,0) where there is none. */
 static vec3 known_normal(const search_node *node, const robot_pair *pair) {
   if (!pair->normal_known) return vec(0, 0, 0);
-  const double middle = 0.5 * (node->side[0].a + node->side[1].b);
-  const double away = pair->segment == first_of(node) ? middle - pair->u : 0.0;
+  const double middle = middle_of(node);
+  const double away = pair->segment == robot_known(node)->first ? middle - pair->u : 0.0;
   const vec3 n = vec_axpy(pair->normal, away, pair->drift);
   return vec_scale(1.0 / vec_norm(n), n);
 }
@@ -274,7 +294,7 @@ static void keep_guess(const search_node *node, robot_pair *pair, const robot_bo
   const vec3 guess = robot_scene_guess(moving, standing);
   if (!(vec_norm2(guess) > 0.0)) return;
   pair->normal = guess, pair->drift = vec(0, 0, 0);
-  pair->segment = first_of(node), pair->u = 0.5 * (node->side[0].a + node->side[1].b);
+  pair->segment = robot_known(node)->first, pair->u = middle_of(node);
   pair->normal_known = true;
 }
 
@@ -286,16 +306,12 @@ static double plane_middle(const search_node *node, const robot_pair *pair, cons
   return along - bound_height(&moving->side, vec_neg(n)) - robot_scene_height(standing, n);
 }
 
-static double width_of(const search_node *node) {
-  return node->side[1].b - node->side[0].a;
-}
-
 /* What that normal says of the node. */
 static double bound_by_normal(robot_search *o, const search_node *node, const robot_pair *pair,
                               const robot_body *moving, const robot_body *standing, const chain_motion *motion,
                               double goal, double *slack) {
   const double width = width_of(node);
-  const bool same_segment = pair->segment == first_of(node);
+  const bool same_segment = pair->segment == robot_known(node)->first;
   const vec3 n = normal_in_middle(node, pair, standing);
   vec3 drift = placement_turn(&standing->side.at, vec_scale(same_segment ? width : 0.0, pair->drift));
   drift = vec_axpy(drift, -vec_dot(drift, n), n);
@@ -344,13 +360,13 @@ static bool keep_entry(robot_search *o, const list_entry *entry) {
 
 /* One of the pairs of elements that take the place of a pair: kept where its own plane does not settle it. */
 static cprox_status enlist(robot_search *o, search_node *node, const robot_pair *whole, const robot_found *found) {
-  const double u = 0.5 * (node->side[0].a + node->side[1].b);
+  const double u = middle_of(node);
   robot_pair pair = {
       .moving = whole->moving, .standing = whole->standing, .element = {found->element[0], found->element[1]}};
   const robot_body *moving = robot_scene_moving(&o->scene, &pair), *standing = robot_scene_standing(&o->scene, &pair);
   chain_motion own;
   const chain_motion *motion = robot_scene_motion(&o->scene, &pair, moving, &own);
-  keep_normal(&pair, standing, first_of(node), u, &found->gap);
+  keep_normal(&pair, standing, robot_known(node)->first, u, &found->gap);
   list_entry entry = {.lower = found->gap.lower - motion->travel};
   double slack = moving->side.error + standing->side.error;
   if (!is_settled(o, entry.lower) && pair.normal_known && found->gap.upper > 0.0)
@@ -369,11 +385,11 @@ static cprox_status enlist(robot_search *o, search_node *node, const robot_pair 
 /* The hulls do not settle it: what of their elements comes near enough takes the place of the pair. */
 static cprox_status climb_pair(robot_search *o, search_node *node, list_entry *entry, const robot_gap *hulls,
                                double travel) {
-  const double u = 0.5 * (node->side[0].a + node->side[1].b);
+  const double u = middle_of(node);
   const double spare = 4.0 * hulls->slack;
   robot_climb c = climb_from(o, entry->pair, hulls, settling_bound(o) + travel + spare, travel + spare);
   c.listing = true;
-  const cprox_status status = climb(o, &c, first_of(node), u);
+  const cprox_status status = climb(o, &c, robot_known(node)->first, u);
   if (status < 0 || c.too_many) return status;
   entry->lower = fmax(entry->lower, c.rest - travel - hulls->slack);
   const robot_pair whole = o->scene.pairs[entry->pair];
@@ -409,6 +425,7 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
 
 /* The same by planes and distances, the cheapest way that settles it. */
 static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *entry, double *slack) {
+  const robot_node *payload = robot_known(node);
   robot_pair *pair = &o->scene.pairs[entry->pair];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   *slack = moving->side.error + standing->side.error;
@@ -433,10 +450,10 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   /* another pair wants the node cut: pieces will tell more */
   if (o->cut) return CPROX_OK;
   robot_gap gap;
-  const double u = 0.5 * (node->side[0].a + node->side[1].b);
+  const double u = middle_of(node);
   const robot_accuracy accuracy = {GAP_FRACTION * o->epsilon, settling_bound(o), EXCESS_FRACTION,
                                    known_normal(node, pair)};
-  const cprox_status status = measure(o, entry->pair, first_of(node), u, accuracy, &gap);
+  const cprox_status status = measure(o, entry->pair, payload->first, u, accuracy, &gap);
   if (status < 0) return status;
   entry->lower = fmax(entry->lower, gap.lower - travel);
   if (pair->normal_known && gap.upper > 0.0)
@@ -447,7 +464,7 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
   if (o->limit < 0.0 && gap.lower < o->best_bound.upper) {
     robot_climb nearest = climb_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
-    const cprox_status climbed = climb(o, &nearest, first_of(node), u);
+    const cprox_status climbed = climb(o, &nearest, payload->first, u);
     if (climbed < 0) return climbed;
   }
   if (is_settled(o, gap.lower) && width > SHORT_STRETCH) return CPROX_OK;
@@ -510,7 +527,7 @@ static cprox_status open_crowd(robot_search *o, const search_node *node, const l
 
 /* Balls and boxes of all pairs of a node; those that still matter are kept. */
 static cprox_status bound_roughly(robot_search *o, const search_node *node) {
-  const int32_t list = node->side[0].slot;
+  const int32_t list = robot_known(node)->list;
   const size_t n = lists_count(&o->lists, list);
   cprox_status status = CPROX_OK;
   for (size_t i = 0; i < n && status == CPROX_OK; i++) {
@@ -527,9 +544,10 @@ static cprox_status bound_roughly(robot_search *o, const search_node *node) {
 
 /* Bounds all pairs of a node of one segment; those that still matter become its own list. */
 static cprox_status bound_node(robot_search *o, search_node *node) {
-  const int32_t old = node->side[0].slot;
+  robot_node *payload = robot_own(node);
+  const int32_t old = payload->list;
   const double inherited = node->lower;
-  robot_scene_enter(&o->scene, first_of(node), node->side[0].a, node->side[1].b);
+  robot_scene_enter(&o->scene, payload->first, payload->a, payload->b);
   o->n_next = 0;
   o->pieces = 2.0;
   const cprox_status rough = bound_roughly(o, node);
@@ -557,13 +575,13 @@ static cprox_status bound_node(robot_search *o, search_node *node) {
   for (size_t i = n; i < o->n_next; i++) o->next[kept++] = o->next[i];
   o->n_next = kept;
 
-  const int32_t own = lists_take(&o->lists, o->n_next);
-  if (own < 0) return CPROX_MEMORY;
-  list_entry *to = lists_at(&o->lists, own);
+  const int32_t list = lists_take(&o->lists, o->n_next);
+  if (list < 0) return CPROX_MEMORY;
+  list_entry *to = lists_at(&o->lists, list);
   for (size_t i = 0; i < o->n_next; i++) to[i] = o->next[i];
-  lists_set_count(&o->lists, own, o->n_next);
+  lists_set_count(&o->lists, list, o->n_next);
   lists_give(&o->lists, old);
-  node->side[0].slot = own;
+  payload->list = list;
   node->lower = fmax(node->lower, inherited);
   return CPROX_OK;
 }
@@ -576,6 +594,7 @@ static double filter(void *self, search_node *node, double goal) {
 }
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {
+  const robot_node *payload = robot_known(node);
   robot_search *o = self;
   cprox_status status = CPROX_OK;
   if (!o->seeded) {
@@ -583,15 +602,16 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     status = seed(o, node);
   }
   const bool answered = o->order != SEARCH_LEFT_TO_RIGHT && o->best_bound.upper <= fmax(o->limit, 0.0);
-  if (status == CPROX_OK && !answered && first_of(node) + 1 == last_of(node)) status = bound_node(o, node);
+  if (status == CPROX_OK && !answered && payload->first + 1 == payload->last) status = bound_node(o, node);
   *best = o->best_bound;
   return status;
 }
 
 static int split(void *self, search_node *node, search_node *child) {
+  const robot_node *payload = robot_known(node);
   robot_search *o = self;
-  const size_t first = first_of(node), last = last_of(node);
-  const double a = node->side[0].a, b = node->side[1].b;
+  const size_t first = payload->first, last = payload->last;
+  const double a = payload->a, b = payload->b;
   int n = 2;
   if (first + 1 < last) {
     const size_t segments = last - first;
@@ -604,17 +624,17 @@ static int split(void *self, search_node *node, search_node *child) {
     if (!(b - a > SHORTEST_STRETCH)) return 0;
     n = o->pieces < 2.0 ? 2 : o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (int)ceil(o->pieces);
     for (int k = 0; k < n; k++) {
-      const double from = k == 0 ? a : child[k - 1].side[1].b, to = k + 1 == n ? b : a + (b - a) * (k + 1) / n;
+      const double from = k == 0 ? a : robot_known(&child[k - 1])->b, to = k + 1 == n ? b : a + (b - a) * (k + 1) / n;
       child[k] = node_of(o, node, first, from, last, to);
     }
   }
-  for (int k = 1; k < n; k++) lists_share(&o->lists, node->side[0].slot);
+  for (int k = 1; k < n; k++) lists_share(&o->lists, payload->list);
   return n;
 }
 
 static void release(void *self, const search_node *node) {
   robot_search *o = self;
-  lists_give(&o->lists, node->side[0].slot);
+  lists_give(&o->lists, robot_known(node)->list);
 }
 
 void robot_search_begin(robot_search *o, const search_goal *goal) {
