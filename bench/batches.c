@@ -14,7 +14,7 @@
 
 enum { CURVES = 1000, POINTS = 6, MAX_OBSTACLES = 100, SCENES = 3, SIDES = 20 };
 
-typedef enum verb { DISTANCE, TOLERANCE, COLLISION } verb;
+typedef enum query_type { DISTANCE, TOLERANCE, COLLISION } query_type;
 static const double DELTA = 0.03, EPSILON = 1e-10, TUBE = 0.005;
 
 typedef struct scene {
@@ -27,10 +27,10 @@ typedef struct scene {
   size_t n;
   vec3 vertex[2][SIDES], half[MAX_OBSTACLES];
   cprox_body *bodies[MAX_OBSTACLES];
-  cprox_target targets[MAX_OBSTACLES];
+  cprox_obstacle targets[MAX_OBSTACLES];
   cprox_batch *batch;
   sampling *sampling;
-  cprox_result truth[3][CURVES]; /* certified, by verb */
+  cprox_result truth[3][CURVES]; /* certified, by query */
 } scene;
 
 /* A method's own state; what it answers never changes, so that each scene is judged once and not on the clock of the others. */
@@ -41,7 +41,7 @@ typedef struct judged {
 } judged;
 
 typedef struct asked {
-  verb verb;
+  query_type query_type;
   cprox_workspace *workspace;
   cprox_result *results;
   double *values;
@@ -80,7 +80,7 @@ static void make_polygons(scene *s) {
       s->vertex[k][i] = vec(v[i][0], v[i][1], 0);
     }
     check(cprox_body_create_polygon((const double(*)[2])v, SIDES, NULL, &s->bodies[k]));
-    s->targets[k] = cprox_at(s->bodies[k], cprox_pose_identity());
+    s->targets[k] = cprox_obstacle_at(s->bodies[k], cprox_pose_identity());
   }
 }
 
@@ -93,7 +93,7 @@ static void make_boxes(rng *r, scene *s) {
     check(cprox_body_create_box(edges, NULL, &s->bodies[k]));
     cprox_pose pose = rng_pose(r, 0.5);
     pose.position = vec_add(pose.position, vec(0.5, 0.5, 0.5));
-    s->targets[k] = cprox_at(s->bodies[k], pose);
+    s->targets[k] = cprox_obstacle_at(s->bodies[k], pose);
     sampling_add_box(s->sampling, edges, pose);
   }
   sampling_ready(s->sampling);
@@ -133,15 +133,15 @@ static void scene_free(scene *s) {
 
 static void judge_results(const scene *s, const asked *q, bench_answer *a) {
   *a = (bench_answer){0};
-  uint32_t nodes = 0, probes = 0;
+  uint32_t nodes = 0, distance_queries = 0;
   for (size_t i = 0; i < CURVES; i++) {
-    const cprox_result *r = &q->results[i], *t = &s->truth[q->verb][i];
-    nodes += r->nodes, probes += r->probes;
+    const cprox_result *r = &q->results[i], *t = &s->truth[q->query_type][i];
+    nodes += r->nodes, distance_queries += r->distance_queries;
     if (r->status < 0 || r->status == CPROX_BUDGET) a->failed = true;
     a->wrong += r->verdict != t->verdict || r->lower > t->upper || t->lower > r->upper;
-    if (q->verb == DISTANCE) a->upper = fmax(a->upper, fabs(r->upper - 0.5 * (t->lower + t->upper)));
+    if (q->query_type == DISTANCE) a->upper = fmax(a->upper, fabs(r->upper - 0.5 * (t->lower + t->upper)));
   }
-  a->nodes = nodes, a->probes = probes;
+  a->nodes = nodes, a->distance_queries = distance_queries;
   a->lower = a->upper;
 }
 
@@ -149,11 +149,11 @@ static void judge_results(const scene *s, const asked *q, bench_answer *a) {
 static void judge_values(const scene *s, const asked *q, bench_answer *a) {
   *a = (bench_answer){0};
   for (size_t i = 0; i < CURVES; i++) {
-    const cprox_result *t = &s->truth[q->verb][i];
-    if (q->verb == DISTANCE)
+    const cprox_result *t = &s->truth[q->query_type][i];
+    if (q->query_type == DISTANCE)
       a->upper = fmax(a->upper, fabs(q->values[i] - 0.5 * (t->lower + t->upper)));
     else
-      a->wrong += (q->values[i] == 1.0) == (t->verdict == (q->verb == TOLERANCE ? CPROX_YES : CPROX_NO));
+      a->wrong += (q->values[i] == 1.0) == (t->verdict == (q->query_type == TOLERANCE ? CPROX_YES : CPROX_NO));
   }
   a->lower = a->upper;
 }
@@ -166,12 +166,13 @@ static void batch(const void *problems, size_t i, void *state, bench_answer *a) 
   const asked *q = own->asked;
   cprox_options o = cprox_options_default();
   o.epsilon = EPSILON;
-  if (q->verb == DISTANCE) cprox_batch_distance(s->batch, s->movers, 0, CURVES, &o, q->workspace, q->results);
-  if (q->verb == TOLERANCE) cprox_batch_tolerance(s->batch, s->movers, 0, CURVES, DELTA, &o, q->workspace, q->results);
-  if (q->verb == COLLISION) cprox_batch_collision(s->batch, s->movers, 0, CURVES, &o, q->workspace, q->results);
-  if (!own->known[i][q->verb]) judge_results(s, q, &own->answer[i][q->verb]);
-  own->known[i][q->verb] = true;
-  *a = own->answer[i][q->verb];
+  if (q->query_type == DISTANCE) cprox_batch_distance(s->batch, s->movers, 0, CURVES, &o, q->workspace, q->results);
+  if (q->query_type == TOLERANCE)
+    cprox_batch_tolerance(s->batch, s->movers, 0, CURVES, DELTA, &o, q->workspace, q->results);
+  if (q->query_type == COLLISION) cprox_batch_collision(s->batch, s->movers, 0, CURVES, &o, q->workspace, q->results);
+  if (!own->known[i][q->query_type]) judge_results(s, q, &own->answer[i][q->query_type]);
+  own->known[i][q->query_type] = true;
+  *a = own->answer[i][q->query_type];
 }
 
 static void one_by_one(const void *problems, size_t i, void *state, bench_answer *a) {
@@ -182,39 +183,40 @@ static void one_by_one(const void *problems, size_t i, void *state, bench_answer
   o.epsilon = EPSILON;
   for (size_t k = 0; k < CURVES; k++) {
     cprox_result *r = &q->results[k];
-    if (q->verb == DISTANCE) cprox_distance_all(s->movers[k], s->targets, s->n, &o, q->workspace, r, NULL);
-    if (q->verb == TOLERANCE) cprox_tolerance_all(s->movers[k], s->targets, s->n, DELTA, &o, q->workspace, r, NULL);
-    if (q->verb == COLLISION) cprox_collision_all(s->movers[k], s->targets, s->n, &o, q->workspace, r, NULL);
+    if (q->query_type == DISTANCE) cprox_distance_all(s->movers[k], s->targets, s->n, &o, q->workspace, r, NULL);
+    if (q->query_type == TOLERANCE)
+      cprox_tolerance_all(s->movers[k], s->targets, s->n, DELTA, &o, q->workspace, r, NULL);
+    if (q->query_type == COLLISION) cprox_collision_all(s->movers[k], s->targets, s->n, &o, q->workspace, r, NULL);
   }
-  if (!own->known[i][q->verb]) judge_results(s, q, &own->answer[i][q->verb]);
-  own->known[i][q->verb] = true;
-  *a = own->answer[i][q->verb];
+  if (!own->known[i][q->query_type]) judge_results(s, q, &own->answer[i][q->query_type]);
+  own->known[i][q->query_type] = true;
+  *a = own->answer[i][q->query_type];
 }
 
 static void paper(const void *problems, size_t i, void *state, bench_answer *a) {
   const scene *s = ((scene *const *)problems)[i];
   judged *own = state;
   const asked *q = own->asked;
-  const paper_verb verbs[] = {PAPER_DISTANCE, PAPER_TOLERANCE, PAPER_COLLISION};
-  const paper_question question = {verbs[q->verb], DELTA, EPSILON, PAPER_MAX_NODES};
+  const paper_query_type query_types[] = {PAPER_DISTANCE, PAPER_TOLERANCE, PAPER_COLLISION};
+  const paper_query query = {query_types[q->query_type], DELTA, EPSILON, PAPER_MAX_NODES};
   uint32_t nodes = 0, evaluations = 0;
   for (size_t k = 0; k < CURVES; k++) {
     const paper_curve curve = paper_bezier_curve(&s->bezier[k], true);
-    double value = q->verb == DISTANCE ? INFINITY : 0.0;
+    double value = q->query_type == DISTANCE ? INFINITY : 0.0;
     for (size_t j = 0; j < s->n && value != 1.0; j++) {
       const paper_obstacle obstacle = {s->vertex[j], SIDES};
       paper_answer r;
-      paper_search(&curve, &obstacle, &question, q->heap, &r);
+      paper_search(&curve, &obstacle, &query, q->heap, &r);
       nodes += r.nodes, evaluations += r.evaluations;
-      if (q->verb == DISTANCE)
+      if (q->query_type == DISTANCE)
         value = fmin(value, r.upper);
-      else if (r.verdict == (q->verb == COLLISION))
+      else if (r.verdict == (q->query_type == COLLISION))
         value = 1.0;
     }
     q->values[k] = value;
   }
   judge_values(s, q, a);
-  a->nodes = nodes, a->probes = evaluations;
+  a->nodes = nodes, a->distance_queries = evaluations;
 }
 
 static void sampled(const void *problems, size_t i, void *state, bench_answer *a) {
@@ -222,11 +224,11 @@ static void sampled(const void *problems, size_t i, void *state, bench_answer *a
   judged *own = state;
   const asked *q = own->asked;
   for (size_t k = 0; k < CURVES; k++) {
-    if (q->verb == COLLISION)
+    if (q->query_type == COLLISION)
       q->values[k] = sampling_collides(s->sampling, s->points[k], POINTS, TUBE, 100);
     else
       q->values[k] = sampling_distance(s->sampling, s->points[k], POINTS, TUBE, 100);
-    if (q->verb == TOLERANCE) q->values[k] = q->values[k] <= DELTA ? 1.0 : 0.0;
+    if (q->query_type == TOLERANCE) q->values[k] = q->values[k] <= DELTA ? 1.0 : 0.0;
   }
   judge_values(s, q, a);
 }
@@ -235,7 +237,7 @@ static void sampled(const void *problems, size_t i, void *state, bench_answer *a
 
 static void measure_scenes(const bench_size *size, const char *name, bool planar, size_t n, asked *q) {
   if (!bench_wanted(size, name)) return;
-  static const char *const verbs[] = {"distance", "tolerance", "collision"};
+  static const char *const query_types[] = {"distance", "tolerance", "collision"};
   scene *s[SCENES];
   for (size_t i = 0; i < SCENES; i++) s[i] = scene_make(100 + i, planar, n, q);
   judged own[3] = {{.asked = q}, {.asked = q}, {.asked = q}};
@@ -246,10 +248,10 @@ static void measure_scenes(const bench_size *size, const char *name, bool planar
   const double none[SCENES] = {0};
   for (int v = 0; v < 3; v++) {
     char workload[64], parameter[32];
-    snprintf(workload, sizeof workload, "%s %s", name, verbs[v]);
+    snprintf(workload, sizeof workload, "%s %s", name, query_types[v]);
     snprintf(parameter, sizeof parameter, "%zu obstacles", n);
     const bench_workload w = {"batches", workload, parameter, s, SCENES, none, 0.0};
-    q->verb = (verb)v;
+    q->query_type = (query_type)v;
     bench_measure(&w, size, methods, n_methods);
   }
   for (size_t i = 0; i < SCENES; i++) scene_free(s[i]);

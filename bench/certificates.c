@@ -14,56 +14,57 @@
 
 enum { MAX_CASES = 32, DEGREE = 5 };
 
-/* One question, and what the checker is given. */
-typedef struct question {
+/* One query, and what the checker is given. */
+typedef struct query {
   cprox_mover mover;
-  const cprox_target *targets;
+  const cprox_obstacle *targets;
   size_t n;
   double delta;
   problem read;
   char *text;
   cprox_certificate *proof;
-} question;
+} query;
 
-static cprox_status ask(const question *q, cprox_certificate *proof, cprox_workspace *ws, bench_answer *a) {
+static cprox_status ask(const query *q, cprox_certificate *proof, cprox_workspace *ws, bench_answer *a) {
   cprox_options options = cprox_options_default();
   options.certificate = proof;
   cprox_result r = {.status = CPROX_INVALID};
   const cprox_status status = cprox_tolerance_all(q->mover, q->targets, q->n, q->delta, &options, ws, &r, NULL);
-  *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.nodes, .probes = r.probes, .failed = status < 0};
+  *a = (bench_answer){
+      .lower = NAN, .upper = NAN, .nodes = r.nodes, .distance_queries = r.distance_queries, .failed = status < 0};
   a->wrong = r.verdict == CPROX_NO;
   return status;
 }
 
-static void verdict(const void *questions, size_t i, void *state, bench_answer *a) {
-  ask((const question *)questions + i, NULL, state, a);
+static void verdict(const void *queries, size_t i, void *state, bench_answer *a) {
+  ask((const query *)queries + i, NULL, state, a);
 }
 
-static void with_certificate(const void *questions, size_t i, void *state, bench_answer *a) {
-  const question *q = (const question *)questions + i;
+static void with_certificate(const void *queries, size_t i, void *state, bench_answer *a) {
+  const query *q = (const query *)queries + i;
   ask(q, q->proof, state, a);
   a->nodes = (uint32_t)cprox_certificate_size(q->proof);
   a->failed = a->failed || a->nodes == 0;
 }
 
-static void by_checker(const void *questions, size_t i, void *state, bench_answer *a) {
-  const question *q = (const question *)questions + i;
+static void by_checker(const void *queries, size_t i, void *state, bench_answer *a) {
+  const query *q = (const query *)queries + i;
   (void)state;
   const finding f = check(&q->read, cprox_certificate_bytes(q->proof), cprox_certificate_size(q->proof));
   *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = (uint32_t)f.leaves, .failed = f.claim != CLAIM_APART};
 }
 
-/* Reads the question back as the checker does: targets, then the line of the mover, which is freed. */
-static void give_to_checker(question *q, char *line) {
+/* Reads the query back as the checker does: targets, then the line of the mover, which is freed. */
+static void give_to_checker(query *q, char *line) {
   size_t length = 0;
   FILE *out = open_memstream(&q->text, &length);
   if (!out || !line) exit(1);
   fprintf(out, "cprox-problem 1\ntargets %zu\n", q->n);
   for (size_t i = 0; i < q->n; i++) {
-    const size_t size = cprox_target_describe(&q->targets[i], NULL, 0) + 1;
+    const size_t size = cprox_obstacle_describe(&q->targets[i], NULL, 0) + 1;
     char *text = calloc(size, 1);
     if (!text) exit(1);
-    cprox_target_describe(&q->targets[i], text, size);
+    cprox_obstacle_describe(&q->targets[i], text, size);
     fputs(text, out);
     free(text);
   }
@@ -79,29 +80,29 @@ static void give_to_checker(question *q, char *line) {
   q->proof = cprox_certificate_create();
 }
 
-static void measure(const bench_size *size, const char *workload, question *questions, size_t n, cprox_workspace *ws) {
-  const bench_workload w = {"certificates", workload, "delta 0.9 d", questions, n, NULL, 0.0};
+static void measure(const bench_size *size, const char *workload, query *queries, size_t n, cprox_workspace *ws) {
+  const bench_workload w = {"certificates", workload, "delta 0.9 d", queries, n, NULL, 0.0};
   const bench_method methods[] = {{"curve_proximity", verdict, ws},
                                   {"curve_proximity with certificate", with_certificate, ws},
                                   {"cprox_check", by_checker, ws}};
   bench_measure(&w, size, methods, 3);
   for (size_t i = 0; i < n; i++) {
-    problem_close(&questions[i].read);
-    cprox_certificate_free(questions[i].proof);
-    free(questions[i].text);
+    problem_close(&queries[i].read);
+    cprox_certificate_free(queries[i].proof);
+    free(queries[i].text);
   }
-  free(questions);
+  free(queries);
 }
 
 static void curves(const bench_size *size, cprox_workspace *ws) {
   const size_t n = size->problems;
   curve_problem *problems = curve_problems_make(OBSTACLE_POLYTOPE, DEGREE, n);
   double *truth = curve_problems_truth(problems, n, OBSTACLE_POLYTOPE);
-  question *questions = calloc(n, sizeof *questions);
-  if (!questions) exit(1);
+  query *queries = calloc(n, sizeof *queries);
+  if (!queries) exit(1);
   for (size_t i = 0; i < n; i++) {
-    questions[i] = (question){.mover = cprox_point_along(problems[i].curve), .targets = &problems[i].target, .n = 1};
-    questions[i].delta = 0.9 * truth[i];
+    queries[i] = (query){.mover = cprox_point_along(problems[i].curve), .targets = &problems[i].target, .n = 1};
+    queries[i].delta = 0.9 * truth[i];
     char *line = NULL;
     size_t length = 0;
     FILE *out = open_memstream(&line, &length);
@@ -113,9 +114,9 @@ static void curves(const bench_size *size, cprox_workspace *ws) {
     }
     fputs(" 0\n", out);
     fclose(out);
-    give_to_checker(&questions[i], line);
+    give_to_checker(&queries[i], line);
   }
-  measure(size, "Bezier and polytope", questions, n, ws);
+  measure(size, "Bezier and polytope", queries, n, ws);
   free(truth);
   curve_problems_free(problems, n);
 }
@@ -125,15 +126,15 @@ static void robots(const bench_size *size, cprox_workspace *ws) {
   size_t n_cases = 0, n = 0;
   FILE *f = fopen(BENCH_DATA_DIR "/motion/cases.txt", "r");
   if (!f || fscanf(f, "%zu", &n_cases) != 1 || n_cases > MAX_CASES) exit(1);
-  question *questions = calloc(n_cases, sizeof *questions);
-  if (!questions) exit(1);
+  query *queries = calloc(n_cases, sizeof *queries);
+  if (!queries) exit(1);
   for (size_t i = 0; i < n_cases; i++) {
     robot_case *c = &cases[i];
     if (!robot_case_read(f, BENCH_DATA_DIR "/motion", c)) exit(1);
     for (size_t k = 0; k < c->n_answers; k++) {
       if (c->answers[k].self || c->answers[k].lower <= 1e-3) continue;
-      question *q = &questions[n++];
-      *q = (question){.mover = cprox_robot_along(c->motion, NULL, 0), .targets = c->targets, .n = c->n_targets};
+      query *q = &queries[n++];
+      *q = (query){.mover = cprox_robot_along(c->motion, NULL, 0), .targets = c->targets, .n = c->n_targets};
       q->delta = 0.9 * c->answers[k].lower;
       const size_t most = cprox_mover_describe(&q->mover, q->targets, q->n, "m", ws, NULL, 0) + 1;
       char *text = calloc(most, 1);
@@ -144,7 +145,7 @@ static void robots(const bench_size *size, cprox_workspace *ws) {
     }
   }
   fclose(f);
-  measure(size, "robot trajectory", questions, n, ws);
+  measure(size, "robot trajectory", queries, n, ws);
   for (size_t i = 0; i < n_cases; i++) robot_case_free(&cases[i]);
 }
 

@@ -152,7 +152,7 @@ def splines(rows, out):
 
 def peers(rows, out):
     for workload, name in (('point and curve', 'points'), ('curve and curve', 'curves'), ('path distance', 'paths'),
-                           ('first contact', 'first_contact')):
+                           ('time of contact', 'time_of_contact')):
         yield bars(rows, out, 'peers', lambda row: row['workload'] == workload, workload[0].upper() + workload[1:], f'peers_{name}',
                    lambda row: row['parameter'])
 
@@ -160,8 +160,8 @@ def peers(rows, out):
 def batches(rows, out):
     yield bars(rows, out, 'batches', lambda row: row['workload'].startswith(('polygons', 'boxes')), 'A thousand quintic Bézier curves', 'batches',
                lambda row: f"{row['workload'].replace(' ', chr(10))}\n{row['parameter'].split()[0]}", 'median time of all curves [µs]')
-    for verb in ('distance', 'tolerance', 'collision'):
-        yield rates(rows, out, f'boxes {verb}', f'Batches of a thousand quintics, {verb}', f'batches_rate_{verb}')
+    for query_type in ('distance', 'tolerance', 'collision'):
+        yield rates(rows, out, f'boxes {query}', f'Batches of a thousand quintics, {query}', f'batches_rate_{query_type}')
     yield threads(rows, out)
 
 
@@ -240,9 +240,9 @@ def fourier(rows, out):
 def seeds(rows, out):
     """Fig. 7 and 10 of Lakshmanan et al., and its Table II as bars."""
     yield narrowing(rows, out)
-    for verb in ('distance', 'tolerance', 'collision'):
-        yield work_precision(rows, out, 'seeds', f'figure 10 {verb}', r'order (\d+)', f'Bézier curves and a point, {verb}',
-                             f'seeds_figure_10_{verb}', 'order of the curve', reverse=False)
+    for query_type in ('distance', 'tolerance', 'collision'):
+        yield work_precision(rows, out, 'seeds', f'figure 10 {query}', r'order (\d+)', f'Bézier curves and a point, {query}',
+                             f'seeds_figure_10_{query_type}', 'order of the curve', reverse=False)
     yield bars(rows, out, 'seeds', lambda row: row['workload'].startswith('table II'), 'The pairs of Table II', 'seeds_table_2',
                lambda row: f"{row['parameter'][0]}\n{row['workload'][9:]}")
 

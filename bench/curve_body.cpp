@@ -19,7 +19,7 @@ constexpr int kProblems = 256;
 struct Problem {
   cprox_curve *curve = nullptr;
   cprox_body *body = nullptr;
-  cprox_target target{};
+  cprox_obstacle target{};
 };
 
 /* The same problems in every run: curves in the unit cube, obstacles a quarter of its size. */
@@ -77,7 +77,7 @@ class Problems {
       check(cprox_body_create_polytope(cloud.data(), cloud.size(), nullptr, &p->body));
       pose.orientation.x = uniform(-1, 1);
     }
-    p->target = cprox_at(p->body, pose);
+    p->target = cprox_obstacle_at(p->body, pose);
   }
 
   static void check(cprox_status status) {
@@ -98,12 +98,12 @@ void distance(benchmark::State &state, Obstacle obstacle) {
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-10;
-  std::vector<uint32_t> nodes(kProblems), probes(kProblems);
+  std::vector<uint32_t> nodes(kProblems), distance_queries(kProblems);
   for (auto _ : state) {
     for (size_t i = 0; i < kProblems; i++) {
       cprox_result r;
       cprox_distance(cprox_point_along(problems[i].curve), problems[i].target, &options, workspace, &r);
-      nodes[i] = r.nodes, probes[i] = r.probes;
+      nodes[i] = r.nodes, distance_queries[i] = r.distance_queries;
       benchmark::DoNotOptimize(r);
     }
   }
@@ -111,7 +111,7 @@ void distance(benchmark::State &state, Obstacle obstacle) {
   state.counters["us"] = benchmark::Counter(static_cast<double>(state.iterations()) * kProblems * 1e-6,
                                             benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
   state.counters["median_nodes"] = median(nodes);
-  state.counters["median_probes"] = median(probes);
+  state.counters["median_distance_queries"] = median(distance_queries);
   cprox_workspace_free(workspace);
 }
 

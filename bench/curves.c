@@ -23,27 +23,27 @@ static void judge_verdict(const asked *q, cprox_verdict verdict, bench_answer *a
   a->lower = a->upper = NAN;
 }
 
-static void take(const asked *q, size_t i, cprox_mover mover, cprox_target target, bench_answer *a) {
+static void take(const asked *q, size_t i, cprox_mover mover, cprox_obstacle target, bench_answer *a) {
   cprox_options options = cprox_options_default();
   options.epsilon = q->epsilon;
   cprox_result r;
   const cprox_status status = q->factor > 0.0
                                   ? cprox_tolerance(mover, target, q->factor * q->truth[i], &options, q->workspace, &r)
                                   : cprox_distance(mover, target, &options, q->workspace, &r);
-  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes};
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.distance_queries};
   a->failed = status != CPROX_OK && status != CPROX_PRECISION;
   if (q->factor > 0.0) judge_verdict(q, r.verdict, a);
 }
 
-static paper_question paper_question_of(const asked *q, size_t i) {
-  return (paper_question){.verb = q->factor > 0.0 ? PAPER_TOLERANCE : PAPER_DISTANCE,
-                          .delta = q->factor > 0.0 ? q->factor * q->truth[i] : 0.0,
-                          .epsilon = q->epsilon,
-                          .max_nodes = PAPER_MAX_NODES};
+static paper_query paper_query_of(const asked *q, size_t i) {
+  return (paper_query){.query_type = q->factor > 0.0 ? PAPER_TOLERANCE : PAPER_DISTANCE,
+                       .delta = q->factor > 0.0 ? q->factor * q->truth[i] : 0.0,
+                       .epsilon = q->epsilon,
+                       .max_nodes = PAPER_MAX_NODES};
 }
 
 static void take_paper(const asked *q, const paper_answer *r, bench_answer *a) {
-  *a = (bench_answer){.lower = r->lower, .upper = r->upper, .nodes = r->nodes, .probes = r->evaluations};
+  *a = (bench_answer){.lower = r->lower, .upper = r->upper, .nodes = r->nodes, .distance_queries = r->evaluations};
   a->failed = !r->ended;
   if (q->factor > 0.0) judge_verdict(q, r->verdict ? CPROX_YES : CPROX_NO, a);
 }
@@ -58,23 +58,23 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
 static void paper(const void *problems, size_t i, void *state, bench_answer *a) {
   const curve_problem *p = (const curve_problem *)problems + i;
   const asked *q = state;
-  const paper_question question = paper_question_of(q, i);
+  const paper_query query = paper_query_of(q, i);
   paper_answer r;
-  paper_search(&p->paper, &p->paper_obstacle, &question, q->heap, &r);
+  paper_search(&p->paper, &p->paper_obstacle, &query, q->heap, &r);
   take_paper(q, &r, a);
 }
 
 static void ours_pair(const void *pairs, size_t i, void *state, bench_answer *a) {
   const curve_pair *p = (const curve_pair *)pairs + i;
-  take(state, i, cprox_point_along(p->curve[0]), cprox_curve_target(p->curve[1], 0.0), a);
+  take(state, i, cprox_point_along(p->curve[0]), cprox_obstacle_curve(p->curve[1], 0.0), a);
 }
 
 static void paper_pair(const void *pairs, size_t i, void *state, bench_answer *a) {
   const curve_pair *p = (const curve_pair *)pairs + i;
   const asked *q = state;
-  const paper_question question = paper_question_of(q, i);
+  const paper_query query = paper_query_of(q, i);
   paper_answer r;
-  paper_search_curves(&p->paper[0], &p->paper[1], &question, q->heap, &r);
+  paper_search_curves(&p->paper[0], &p->paper[1], &query, q->heap, &r);
   take_paper(q, &r, a);
 }
 
@@ -119,8 +119,8 @@ typedef struct library {
   size_t number;
 } library;
 
-static void by_library(const void *questions, size_t i, void *state, bench_answer *a) {
-  const sampled_question *p = (const sampled_question *)questions + i;
+static void by_library(const void *queries, size_t i, void *state, bench_answer *a) {
+  const sampled_query *p = (const sampled_query *)queries + i;
   const library *s = state;
   const void *first = s->own[i][0][s->number], *second = s->own[i][1][s->number];
   double point[3] = {0.0, 0.0, 0.0};
@@ -131,16 +131,16 @@ static void by_library(const void *questions, size_t i, void *state, bench_answe
 }
 
 /* own: the libraries' copies of the curves, or NULL. */
-static void measure_others(const bench_size *size, const char *name, int order, sampled_question *questions, size_t n,
+static void measure_others(const bench_size *size, const char *name, int order, sampled_query *queries, size_t n,
                            const double *truth, void *(*own)[2][MOST_LIBRARIES]) {
   char workload[64], prefix[32], parameter[48];
   snprintf(workload, sizeof workload, "%s distance", name);
   snprintf(prefix, sizeof prefix, "order %d ", order);
   snprintf(parameter, sizeof parameter, "order %d as it is", order);
-  samples_measure(size, "curves", workload, prefix, questions, n, truth);
+  samples_measure(size, "curves", workload, prefix, queries, n, truth);
   for (size_t k = 0; own && curve_libraries[k]; k++) {
     library s = {.peer = curve_libraries[k], .own = own, .number = k};
-    const bench_workload w = {"curves", workload, parameter, questions, n, truth, 1e-15};
+    const bench_workload w = {"curves", workload, parameter, queries, n, truth, 1e-15};
     bench_measure(&w, size, &(bench_method){curve_libraries[k]->name, by_library, &s}, 1);
   }
   for (size_t i = 0; own && i < n; i++) {
@@ -152,32 +152,32 @@ static void measure_others(const bench_size *size, const char *name, int order, 
 static void others_of_obstacles(const bench_size *size, obstacle_kind kind, const char *name,
                                 const curve_problem *problems, const double *truth) {
   const size_t n = size->problems / 4;
-  sampled_question *questions = calloc(n, sizeof *questions);
+  sampled_query *queries = calloc(n, sizeof *queries);
   void *(*own)[2][MOST_LIBRARIES] = calloc(n, sizeof *own);
-  if (!questions || !own) exit(1);
+  if (!queries || !own) exit(1);
   for (size_t i = 0; i < n; i++) {
-    questions[i] = (sampled_question){.curve = problems[i].curve, .obstacle = &problems[i].obstacle};
+    queries[i] = (sampled_query){.curve = problems[i].curve, .obstacle = &problems[i].obstacle};
     if (kind == OBSTACLE_POINT)
       libraries_make(problems[i].points, problems[i].degree + 1, problems[i].degree, NULL, own[i][0]);
   }
-  measure_others(size, name, (int)problems[0].degree, questions, n, truth, kind == OBSTACLE_POINT ? own : NULL);
+  measure_others(size, name, (int)problems[0].degree, queries, n, truth, kind == OBSTACLE_POINT ? own : NULL);
   free(own);
-  free(questions);
+  free(queries);
 }
 
 static void others_of_pairs(const bench_size *size, const char *name, const curve_pair *pairs, const double *truth) {
   const size_t n = size->problems / 4;
-  sampled_question *questions = calloc(n, sizeof *questions);
+  sampled_query *queries = calloc(n, sizeof *queries);
   void *(*own)[2][MOST_LIBRARIES] = calloc(n, sizeof *own);
-  if (!questions || !own) exit(1);
+  if (!queries || !own) exit(1);
   for (size_t i = 0; i < n; i++) {
-    questions[i] = (sampled_question){.curve = pairs[i].curve[0], .second = pairs[i].curve[1]};
+    queries[i] = (sampled_query){.curve = pairs[i].curve[0], .second = pairs[i].curve[1]};
     for (int k = 0; k < 2; k++)
       libraries_make(pairs[i].points[k], pairs[i].degree + 1, pairs[i].degree, NULL, own[i][k]);
   }
-  measure_others(size, name, (int)pairs[0].degree, questions, n, truth, own);
+  measure_others(size, name, (int)pairs[0].degree, queries, n, truth, own);
   free(own);
-  free(questions);
+  free(queries);
 }
 
 /* ---- all of one kind ------------------------------------------------------------------------------------------------------------ */

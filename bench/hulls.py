@@ -15,15 +15,15 @@ import subprocess
 import sys
 
 DATA = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'test', 'data')
-RUNGS = ('hull', 'mesh')
-ASKED = ('lower', 'upper', 'a', 'b', 'rung', 'microseconds')
+LODS = ('hull', 'mesh')
+ASKED = ('lower', 'upper', 'a', 'b', 'lod', 'microseconds')
 
 
-def answers(program, epsilon, case, rung, repeats):
+def answers(program, epsilon, case, lod, repeats):
     """The rows of one trajectory by kind, with the median of their times."""
     name = os.path.basename(case['trajectory'])
     words = [program, 'distance', '--robot', f"{DATA}/{case['robot']}", '--scene', f"{DATA}/{case['scene']}", '--self', '--epsilon', epsilon,
-             '--max-rung', rung, '--trajectory', f'{DATA}/trajectories/{name}']
+             '--max-lod', lod, '--trajectory', f'{DATA}/trajectories/{name}']
     if case.get('srdf'):
         words += ['--srdf', f"{DATA}/{case['srdf']}"]
     runs = [subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True, text=True).stdout for _ in range(repeats)]
@@ -42,13 +42,13 @@ def main():
     with open(os.path.join(DATA, 'reference', 'expected_hull_model.json')) as text:
         cases = json.load(text)['cases']
     out = csv.writer(sys.stdout, lineterminator='\n')
-    out.writerow(['trajectory', 'kind', 'reference_lower', 'reference_upper', *(f'{rung}_{column}' for rung in RUNGS for column in ASKED)])
+    out.writerow(['trajectory', 'kind', 'reference_lower', 'reference_upper', *(f'{lod}_{column}' for lod in LODS for column in ASKED)])
     for case in cases:
-        found = {rung: answers(arguments.cprox, arguments.epsilon, case, rung, 1 if arguments.quick else 3) for rung in RUNGS}
+        found = {lod: answers(arguments.cprox, arguments.epsilon, case, lod, 1 if arguments.quick else 3) for lod in LODS}
         name = os.path.splitext(os.path.basename(case['trajectory']))[0]
         for expected in case['results']:
             kind = expected['kind']
-            out.writerow([name, kind, expected['lower'], expected['upper'], *(found[rung][kind][column] for rung in RUNGS for column in ASKED)])
+            out.writerow([name, kind, expected['lower'], expected['upper'], *(found[lod][kind][column] for lod in LODS for column in ASKED)])
         sys.stdout.flush()
 
 

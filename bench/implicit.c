@@ -28,7 +28,7 @@ typedef struct bench_state {
 } bench_state;
 
 static double accuracy_of(const implicit_problem *p) {
-  return ACCURACY * (p->question.a->radius + p->question.b->radius);
+  return ACCURACY * (p->query.a->radius + p->query.b->radius);
 }
 
 /* ---- Table I -------------------------------------------------------------------------------------------------------------- */
@@ -39,9 +39,9 @@ static void hybrid(const void *problems, size_t i, void *state, bench_answer *a)
   cprox_options options = cprox_options_default();
   options.epsilon = accuracy_of(p);
   cprox_result r;
-  const cprox_status status =
-      cprox_pair(cprox_at(p->a, cprox_pose_identity()), cprox_at(p->b, p->pose), &options, s->workspace, &r);
-  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes};
+  const cprox_status status = cprox_pair(cprox_obstacle_at(p->a, cprox_pose_identity()),
+                                         cprox_obstacle_at(p->b, p->pose), &options, s->workspace, &r);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.distance_queries};
   a->failed = status != CPROX_OK;
 }
 
@@ -50,7 +50,7 @@ static void interior_point(const void *problems, size_t i, void *state, bench_an
   const bench_state *s = state;
   const implicit_goal goal = {.epsilon = accuracy_of(p), .max_steps = 2000};
   implicit_answer r;
-  implicit_solve(&p->question, &goal, NULL, s->memory, &r);
+  implicit_solve(&p->query, &goal, NULL, s->memory, &r);
   *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.steps, .failed = !r.certified};
 }
 
@@ -58,24 +58,24 @@ static void interior_point(const void *problems, size_t i, void *state, bench_an
 static void supports(const void *problems, size_t i, void *state, bench_answer *a) {
   (void)state;
   const implicit_problem *p = (const implicit_problem *)problems + i;
-  pair_placement place = {.t = p->question.t};
-  for (int k = 0; k < 9; k++) place.r[k] = p->question.m[k];
+  pair_placement place = {.t = p->query.t};
+  for (int k = 0; k < 9; k++) place.r[k] = p->query.m[k];
   const pair_goal goal = {.epsilon = accuracy_of(p), .max_steps = 2000};
   pair_answer r;
   pair_separate(&p->a->shape, 0.0, &p->b->shape, 0.0, &place, &goal, &r);
-  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.steps, .probes = r.supports};
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.steps, .distance_queries = r.supports};
   a->failed = !(r.upper - r.lower <= goal.epsilon);
 }
 
 /* Neither has a certificate: what is off by more than 1e-6 counts as failed. */
 static bool is_off(const bench_state *s, const implicit_problem *p, size_t i, double distance) {
-  const double reach = p->question.a->radius + p->question.b->radius;
+  const double reach = p->query.a->radius + p->query.b->radius;
   return s->truth && !(fabs(distance - s->truth[i]) <= 1e-6 * (reach + s->truth[i]));
 }
 
 static void naive(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
-  const naive_answer r = naive_pair(&p->question, ACCURACY);
+  const naive_answer r = naive_pair(&p->query, ACCURACY);
   *a = (bench_answer){.lower = r.distance, .upper = r.distance, .nodes = (uint32_t)r.iterations};
   a->failed = !r.converged || is_off(state, p, i, r.distance);
 }
@@ -83,7 +83,7 @@ static void naive(const void *problems, size_t i, void *state, bench_answer *a) 
 #ifdef CPROX_BENCH_IPOPT
 static void ipopt(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
-  const ipopt_answer r = ipopt_pair(&p->question);
+  const ipopt_answer r = ipopt_pair(&p->query);
   *a = (bench_answer){.lower = r.distance, .upper = r.distance, .nodes = (uint32_t)r.iterations};
   a->failed = !r.solved || is_off(state, p, i, r.distance);
 }
@@ -139,9 +139,10 @@ static void table_1(const bench_size *size, cprox_body *const *object, bench_sta
 static void closest(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
   const bench_state *s = state;
-  const cprox_translating x = {.from = cprox_at(p->a, cprox_pose_identity())};
+  const cprox_translating x = {.from = cprox_obstacle_at(p->a, cprox_pose_identity())};
   const vec3 aim = vec_scale(-1.0, p->pose.position);
-  const cprox_translating y = {.from = cprox_at(p->b, p->pose), .velocity = {aim.y + aim.x, aim.y - aim.x, aim.z}};
+  const cprox_translating y = {.from = cprox_obstacle_at(p->b, p->pose),
+                               .velocity = {aim.y + aim.x, aim.y - aim.x, aim.z}};
   cprox_options options = cprox_options_default();
   options.epsilon = accuracy_of(p);
   cprox_result r;
@@ -149,16 +150,17 @@ static void closest(const void *problems, size_t i, void *state, bench_answer *a
   *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .failed = status != CPROX_OK};
 }
 
-static void first_contact(const void *problems, size_t i, void *state, bench_answer *a) {
+static void time_of_contact(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
   const bench_state *s = state;
-  const cprox_translating x = {.from = cprox_at(p->a, cprox_pose_identity())};
-  const cprox_translating y = {.from = cprox_at(p->b, p->pose), .velocity = vec_scale(-1.0, p->pose.position)};
+  const cprox_translating x = {.from = cprox_obstacle_at(p->a, cprox_pose_identity())};
+  const cprox_translating y = {.from = cprox_obstacle_at(p->b, p->pose), .velocity = vec_scale(-1.0, p->pose.position)};
   cprox_options options = cprox_options_default();
-  options.epsilon = 1e-7 * (p->question.a->radius + p->question.b->radius);
+  options.epsilon = 1e-7 * (p->query.a->radius + p->query.b->radius);
   cprox_result r;
   const cprox_status status = cprox_translating_contact(x, y, s->duration, &options, s->workspace, &r);
-  *a = (bench_answer){.lower = r.t_free, .upper = r.t, .nodes = r.probes, .failed = status != CPROX_OK};
+  *a = (bench_answer){
+      .lower = r.t_contact_lower, .upper = r.t, .nodes = r.distance_queries, .failed = status != CPROX_OK};
   a->failed = a->failed || r.verdict != CPROX_YES;
 }
 
@@ -172,8 +174,8 @@ static void table_2(const bench_size *size, cprox_body *const *object, bench_sta
     s->duration = 1.0;
     w.name = "table II closest distance";
     bench_measure(&w, size, &(bench_method){"curve_proximity", closest, s}, 1);
-    w.name = "table II first contact";
-    bench_measure(&w, size, &(bench_method){"curve_proximity", first_contact, s}, 1);
+    w.name = "table II time of contact";
+    bench_measure(&w, size, &(bench_method){"curve_proximity", time_of_contact, s}, 1);
     free(problems);
   }
 }
@@ -188,7 +190,7 @@ static void deformed(const void *problems, size_t i, void *state, bench_answer *
   cprox_affine map = cprox_affine_identity();
   double exponents[3];
   for (int k = 0; k < 3; k++) {
-    const double from = p->question.a->term[k].p;
+    const double from = p->query.a->term[k].p;
     exponents[k] = s->exponents ? from + part * (s->exponents[k] - from) : from;
     if (!s->exponents) map.linear[4 * k] = 1.0 + part * (s->scale.linear[4 * k] - 1.0);
   }
@@ -198,7 +200,8 @@ static void deformed(const void *problems, size_t i, void *state, bench_answer *
   cprox_result r = {.status = CPROX_INVALID};
   if (cprox_body_create_deformed(p->a, s->exponents ? NULL : &map, s->exponents ? exponents : NULL, 3, s->workspace,
                                  &body) == CPROX_OK)
-    cprox_pair(cprox_at(body, cprox_pose_identity()), cprox_at(p->b, p->pose), &options, s->workspace, &r);
+    cprox_pair(cprox_obstacle_at(body, cprox_pose_identity()), cprox_obstacle_at(p->b, p->pose), &options, s->workspace,
+               &r);
   cprox_body_free(body);
   *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .failed = r.status != CPROX_OK};
 }
@@ -261,7 +264,7 @@ static void hard(const bench_size *size, bench_state *s) {
       s->truth = truth;
       size_t most = 0;
       for (size_t i = 0; i < n; i++) {
-        const size_t bytes = implicit_memory(problems[i].question.a, problems[i].question.b);
+        const size_t bytes = implicit_memory(problems[i].query.a, problems[i].query.b);
         most = bytes > most ? bytes : most;
       }
       s->memory = malloc(most);
@@ -286,17 +289,17 @@ static void point_quick(const void *problems, size_t i, void *state, bench_answe
   (void)state;
   const implicit_problem *p = (const implicit_problem *)problems + i;
   convex_near near;
-  p->a->shape.ops->nearest(&p->a->shape, p->question.t, NULL, &near);
+  p->a->shape.ops->nearest(&p->a->shape, p->query.t, NULL, &near);
   *a = (bench_answer){.lower = near.distance, .upper = near.distance};
 }
 
 static void point_interior(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
   const bench_state *s = state;
-  const implicit_question question = {.a = p->question.a, .t = p->question.t};
-  const implicit_goal goal = {.epsilon = 1e-12 * p->question.a->radius, .relative_epsilon = 1e-12, .max_steps = 2000};
+  const implicit_query query = {.a = p->query.a, .t = p->query.t};
+  const implicit_goal goal = {.epsilon = 1e-12 * p->query.a->radius, .relative_epsilon = 1e-12, .max_steps = 2000};
   implicit_answer r;
-  implicit_solve(&question, &goal, NULL, s->memory, &r);
+  implicit_solve(&query, &goal, NULL, s->memory, &r);
   *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.steps, .failed = !r.certified};
 }
 

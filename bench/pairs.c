@@ -126,7 +126,7 @@ static cprox_result ask(const pair *p, const asked *q) {
   options.epsilon = p->distance < 0.0 ? 1e-8 * p->size : 0.0;
   options.relative_epsilon = 1e-9;
   cprox_result r = {.status = CPROX_INVALID};
-  cprox_pair(cprox_at(p->a.body, p->at), cprox_at(p->b.body, p->bt), &options, q->workspace, &r);
+  cprox_pair(cprox_obstacle_at(p->a.body, p->at), cprox_obstacle_at(p->b.body, p->bt), &options, q->workspace, &r);
   return r;
 }
 
@@ -137,7 +137,8 @@ static bool is_decided(const cprox_result *r) {
 static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   const pair *p = (const pair *)problems + i;
   const cprox_result r = ask(p, state);
-  *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.nodes, .probes = r.probes, .failed = r.status < 0};
+  *a = (bench_answer){
+      .lower = NAN, .upper = NAN, .nodes = r.nodes, .distance_queries = r.distance_queries, .failed = r.status < 0};
   const double doubt = 256.0 * 0x1p-53 * p->size; /* of the construction: a few roundings of positions and supports */
   a->wrong = p->distance < 0.0 ? r.lower > 0.0 : r.lower > p->distance + doubt || r.upper < p->distance - doubt;
 }

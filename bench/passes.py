@@ -13,7 +13,7 @@ import targets
 SPREAD = 'spread.csv'
 TIMES = ('median_us', 'p95_us')
 # Rounds vary little in these; or they are counts.
-LARGEST = ('nodes', 'probes', 'error', 'unsound', 'failures')
+LARGEST = ('nodes', 'distance_queries', 'error', 'unsound', 'failures')
 
 
 def key_of(row):

@@ -56,7 +56,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *answ
   *answer = (bench_answer){.lower = scene.lower,
                            .upper = scene.upper,
                            .nodes = scene.nodes + self.nodes,
-                           .probes = scene.probes + self.probes,
+                           .distance_queries = scene.distance_queries + self.distance_queries,
                            .failed = a < 0 || b < 0};
 }
 

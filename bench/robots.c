@@ -53,7 +53,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *answ
     *answer = (bench_answer){.lower = p->truth, .upper = p->truth};
     answer->wrong = r.verdict != (s->factor < 1.0 ? CPROX_YES : CPROX_NO);
   }
-  answer->nodes = r.nodes, answer->probes = r.probes, answer->failed = status != CPROX_OK;
+  answer->nodes = r.nodes, answer->distance_queries = r.distance_queries, answer->failed = status != CPROX_OK;
 }
 
 static void by_bound(const void *problems, size_t i, void *state, bench_answer *answer) {
@@ -62,8 +62,11 @@ static void by_bound(const void *problems, size_t i, void *state, bench_answer *
   const cprox_mover mover = mover_of(p);
   peer_answer r;
   central_distance(&mover, p->c->targets, targets_of(p), s->order, s->epsilon, PEER_NODES, s->workspace, &r);
-  *answer =
-      (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes, .failed = !r.complete};
+  *answer = (bench_answer){.lower = r.lower,
+                           .upper = r.upper,
+                           .nodes = r.nodes,
+                           .distance_queries = r.distance_queries,
+                           .failed = !r.complete};
 }
 
 static void by_fcl(const void *problems, size_t i, void *state, bench_answer *answer) {
@@ -79,9 +82,11 @@ static void sampled(const void *problems, size_t i, void *state, bench_answer *a
   const cprox_mover mover = mover_of(p);
   peer_answer r;
   sampled_distance(&mover, p->c->targets, targets_of(p), s->step, false, s->workspace, &r);
-  *answer = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes};
+  *answer =
+      (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.distance_queries};
   if (s->factor < 0.0) return;
-  *answer = (bench_answer){.lower = p->truth, .upper = p->truth, .nodes = r.nodes, .probes = r.probes};
+  *answer =
+      (bench_answer){.lower = p->truth, .upper = p->truth, .nodes = r.nodes, .distance_queries = r.distance_queries};
   answer->wrong = (r.upper > s->factor * p->truth) != (s->factor < 1.0);
 }
 
@@ -162,7 +167,7 @@ enum { MAX_THIN = 10000, FULL_RUN = 200 };
 
 typedef struct thin {
   const robot_case *c;
-  cprox_target target;
+  cprox_obstacle target;
 } thin;
 
 static cprox_body *thin_body(rng *r) {
@@ -182,7 +187,7 @@ static void ours_thin(const void *problems, size_t i, void *state, bench_answer 
   peer_answer fine;
   const cprox_mover mover = cprox_robot_along(p->c->motion, NULL, 0);
   const cprox_status status = cprox_collision(mover, p->target, NULL, s->workspace, &r);
-  *answer = (bench_answer){.nodes = r.nodes, .probes = r.probes, .failed = status < 0};
+  *answer = (bench_answer){.nodes = r.nodes, .distance_queries = r.distance_queries, .failed = status < 0};
   if (s->step > 0.0 &&
       r.verdict == CPROX_NO) { /* a sample that hits would give the lie to it; every eighth is looked at closer */
     const double step = i % 8 == 0 ? 0.3 * s->step : s->step;
@@ -198,7 +203,7 @@ static void sampled_thin(const void *problems, size_t i, void *state, bench_answ
   peer_answer r;
   cprox_result certified;
   sampled_distance(&mover, &p->target, 1, s->step, true, s->workspace, &r);
-  *answer = (bench_answer){.nodes = r.nodes, .probes = r.probes};
+  *answer = (bench_answer){.nodes = r.nodes, .distance_queries = r.distance_queries};
   if (r.upper <= 0.0) return;
   cprox_collision(mover, p->target, NULL, s->workspace, &certified); /* a hit with a witness that the samples missed */
   answer->wrong = certified.verdict == CPROX_YES;
@@ -214,7 +219,7 @@ static void thin_obstacles(const robot_case *cases, size_t n_cases, const bench_
     const cprox_pose pose = {
         .position = {rng_uniform(&r, -0.9, 0.9), rng_uniform(&r, -0.9, 0.9), rng_uniform(&r, 0, 1.2)},
         .orientation = rng_quat(&r)};
-    problems[i] = (thin){&cases[rng_index(&r, n_cases)], cprox_at(thin_body(&r), pose)};
+    problems[i] = (thin){&cases[rng_index(&r, n_cases)], cprox_obstacle_at(thin_body(&r), pose)};
   }
   method_state certified = {.workspace = ws}, coarse = {.workspace = ws, .step = 0.05},
                fine = {.workspace = ws, .step = 0.01}, checked = {.workspace = ws, .step = 0.01};

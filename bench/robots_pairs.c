@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* How many of the pairs that a node looks at have their distance measured: the same search as a query's, its oracle watched from outside.
- * `nodes` are looks at a pair on a stretch of the motion, `probes` distances measured, those that the search begins with and those of
- * elements of meshes included, `error` their share. */
+ * `nodes` are looks at a pair on a interval of the motion, `distance queries` distances measured, those that the search
+ * begins with and those of elements of meshes included, `error` their share. */
 #include <math.h>
 #include <stdio.h>
 
@@ -27,7 +27,7 @@ static double filter(void *self, search_node *node, double goal) {
   return w->oracle.filter(w->oracle.self, node, goal);
 }
 
-/* Only stretches of one segment look at pairs. */
+/* Only intervals of one segment look at pairs. */
 static cprox_status probe(void *self, search_node *node, search_best *best) {
   watched *w = self;
   const robot_search *o = &w->search;
@@ -49,7 +49,7 @@ static void release(void *self, const search_node *node) {
   w->oracle.release(w->oracle.self, node);
 }
 
-/* The search of one question; false where it is not the one that the query makes. */
+/* The search of one query; false where it is not the one that the query makes. */
 static bool watch(const robot_case *c, bool self, double delta, double epsilon, cprox_workspace *ws, uint64_t *looks,
                   uint64_t *measured) {
   const cprox_mover mover =
@@ -63,8 +63,8 @@ static bool watch(const robot_case *c, bool self, double delta, double epsilon, 
   else
     cprox_tolerance_all(mover, c->targets, n, delta, &options, ws, &r, NULL);
 
-  question q = question_create(mover, c->targets, n, delta, true, &options, ws);
-  question_ask_whole(&q);
+  query q = query_create(mover, c->targets, n, delta, true, &options, ws);
+  query_ask_whole(&q);
   watched w = {.looks = 0};
   const search_goal goal = {.order = delta < 0.0 ? SEARCH_BEST_FIRST : SEARCH_DEPTH_FIRST,
                             .limit = delta,
@@ -81,7 +81,7 @@ static bool watch(const robot_case *c, bool self, double delta, double epsilon, 
   const search_node root = robot_search_root(&w.search, 0, 0.0, c->motion->n_segments, 1.0);
   if (root.side[0].slot < 0 || search_run(&goal, &outer, root, ws, &found) != CPROX_OK) return false;
   *looks += w.looks, *measured += w.search.gaps;
-  return found.nodes == r.nodes && w.search.gaps == r.probes;
+  return found.nodes == r.nodes && w.search.gaps == r.distance_queries;
 }
 
 /* Whose pairs: with the scene, the robot's own. */

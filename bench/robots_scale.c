@@ -15,7 +15,7 @@ static const double EPSILON = 1e-4, STEP = 0.05;
 
 typedef struct problem {
   cprox_mover mover;
-  const cprox_target *targets;
+  const cprox_obstacle *targets;
   size_t n;
   const cprox_set *set;
   double delta;   /* verdicts; below 0: a distance */
@@ -23,7 +23,8 @@ typedef struct problem {
 } problem;
 
 static void answer_with(cprox_status status, const cprox_result *r, bench_answer *answer) {
-  *answer = (bench_answer){.lower = r->lower, .upper = r->upper, .nodes = r->nodes, .probes = r->probes};
+  *answer =
+      (bench_answer){.lower = r->lower, .upper = r->upper, .nodes = r->nodes, .distance_queries = r->distance_queries};
   answer->failed = status != CPROX_OK;
 }
 
@@ -57,15 +58,19 @@ static void sampled(const void *problems, size_t i, void *state, bench_answer *a
   const problem *p = (const problem *)problems + i;
   peer_answer r;
   sampled_distance(&p->mover, p->targets, p->n, STEP, false, state, &r);
-  *answer = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes};
+  *answer =
+      (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.distance_queries};
 }
 
 static void two_ended(const void *problems, size_t i, void *state, bench_answer *answer) {
   const problem *p = (const problem *)problems + i;
   peer_answer r;
   two_ended_distance(&p->mover, p->targets, p->n, epsilon_of(p), 60000, state, &r);
-  *answer =
-      (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes, .failed = !r.complete};
+  *answer = (bench_answer){.lower = r.lower,
+                           .upper = r.upper,
+                           .nodes = r.nodes,
+                           .distance_queries = r.distance_queries,
+                           .failed = !r.complete};
 }
 
 /* The distance by list, which is what all others are held against. */
@@ -92,7 +97,7 @@ static void obstacles(const robot_case *arm, const bench_size *size, cprox_works
   static const double CLEAR = 0.02, HALF = 1.2;
   static const size_t COUNTS[] = {10, 30, 100, 300, 1000, 3000, MOST};
   rng r = rng_seed(90);
-  cprox_target *targets = calloc(MOST, sizeof *targets);
+  cprox_obstacle *targets = calloc(MOST, sizeof *targets);
   cprox_body *boxes[8];
   for (int i = 0; i < 8; i++) {
     const cprox_vec3 edges = {rng_uniform(&r, 0.01, 0.1), rng_uniform(&r, 0.01, 0.1), rng_uniform(&r, 0.01, 0.1)};
@@ -102,7 +107,7 @@ static void obstacles(const robot_case *arm, const bench_size *size, cprox_works
   size_t n = 0;
   for (size_t k = 0; k < sizeof COUNTS / sizeof *COUNTS; k++) {
     while (n < COUNTS[k]) {
-      targets[n] = cprox_at(boxes[rng_index(&r, 8)], rng_pose(&r, HALF));
+      targets[n] = cprox_obstacle_at(boxes[rng_index(&r, 8)], rng_pose(&r, HALF));
       cprox_result clear;
       cprox_tolerance(mover, targets[n], CLEAR, NULL, ws, &clear);
       n += clear.verdict == CPROX_YES;
@@ -230,7 +235,7 @@ static void two_arms(const robot_case *arm, const bench_size *size, cprox_worksp
     p.delta = 0.9 * truth_of(&p, ws);
     measure("two arms tolerance", parameter, &p, size, distance, 1, ws);
   } else {
-    fprintf(stderr, "two arms: %s\n", cprox_workspace_reason(ws));
+    fprintf(stderr, "two arms: %s\n", cprox_workspace_error(ws));
   }
   cprox_motion_free(motion);
   cprox_robot_free(robot);
@@ -266,7 +271,8 @@ static void slide(const bench_size *size, cprox_workspace *ws) {
                                     {.time = 4, .positions = to, .velocities = still, .accelerations = still}};
   if (cprox_robot_create(tree, 2, &body, 1, 2, ws, &robot) == CPROX_OK &&
       cprox_motion_create_waypoints(robot, variables, 2, points, 3, CPROX_QUINTIC, NULL, ws, &motion) == CPROX_OK) {
-    const cprox_target target = cprox_at(wall, (cprox_pose){.position = {0, 0.5, 0}, .orientation = {.w = 1.0}});
+    const cprox_obstacle target =
+        cprox_obstacle_at(wall, (cprox_pose){.position = {0, 0.5, 0}, .orientation = {.w = 1.0}});
     for (int k = 0; k < 2; k++) {
       const problem p = {.mover = cprox_robot_along(motion, NULL, 0),
                          .targets = &target,
@@ -279,7 +285,7 @@ static void slide(const bench_size *size, cprox_workspace *ws) {
       measure("flat slide", parameter, &p, size, methods, 2, ws);
     }
   } else {
-    fprintf(stderr, "flat slide: %s\n", cprox_workspace_reason(ws));
+    fprintf(stderr, "flat slide: %s\n", cprox_workspace_error(ws));
   }
   cprox_motion_free(motion);
   cprox_robot_free(robot);

@@ -21,13 +21,13 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 PREFIX = 'curve_proximity_bench_'
 NOT_GROUPS = {'core'}  # Google benchmark's: no rows of results.csv
-SCRIPTS = {'rungs': 'rungs.py'}  # groups that ask the command line, where there is one
+SCRIPTS = {'lod': 'lod.py'}  # groups that ask the command line, where there is one
 TABLES = {'hulls.csv': 'hulls.py'}  # tables beside results.csv, of the command line too
 MADE = 'made.txt'  # how the results came to be
 PASSES, ROUNDS = 3, '3'
-ONCE = {'ros', 'rungs', 'stability'}  # asked for counts, or too long: in the first pass only
+ONCE = {'ros', 'lod', 'stability'}  # asked for counts, or too long: in the first pass only
 LONG = {'fourier', 'implicit', 'robots', 'worlds'}  # these, too, where the run is to be quick
-COLUMNS = ['group', 'workload', 'method', 'parameter', 'median_us', 'p95_us', 'nodes', 'probes', 'error', 'unsound', 'failures']
+COLUMNS = ['group', 'workload', 'method', 'parameter', 'median_us', 'p95_us', 'nodes', 'distance_queries', 'error', 'unsound', 'failures']
 
 
 def programs(folders):

@@ -14,7 +14,7 @@ enum { MOST_SEGMENTS = 1000, HARMONICS = 3, TERMS = 2 * HARMONICS + 1 };
 typedef struct problem {
   cprox_curve *curve;
   obstacle obstacle;
-  cprox_target target;
+  cprox_obstacle target;
   paper_curve paper;
   paper_obstacle paper_obstacle;
   /* what the paper's method knows: Bézier segments and the energy before each, or a series and that of its squared speed */
@@ -34,7 +34,7 @@ typedef struct asked {
 
 static void check(cprox_status status, const cprox_workspace *ws) {
   if (status == CPROX_OK) return;
-  fprintf(stderr, "a problem could not be made: %s\n", cprox_workspace_reason(ws));
+  fprintf(stderr, "a problem could not be made: %s\n", cprox_workspace_error(ws));
   exit(1);
 }
 
@@ -164,7 +164,7 @@ static void make_problem(rng *r, bool planar, size_t segments, cprox_workspace *
     else
       make_series(r, planar, ws, p);
     obstacle_make(r, planar ? OBSTACLE_POLYGON : OBSTACLE_POLYTOPE, &p->obstacle);
-    p->target = cprox_at(p->obstacle.body, cprox_pose_identity());
+    p->target = cprox_obstacle_at(p->obstacle.body, cprox_pose_identity());
     p->paper_obstacle = (paper_obstacle){.vertex = p->obstacle.vertex, .n = p->obstacle.n};
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-12;
@@ -188,7 +188,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   const cprox_status status =
       q->factor > 0.0 ? cprox_tolerance(mover, p->target, q->factor * q->distance[i], &options, q->workspace, &r)
                       : cprox_distance(mover, p->target, &options, q->workspace, &r);
-  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes};
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.distance_queries};
   a->failed = status != CPROX_OK && status != CPROX_PRECISION;
   if (q->factor == 0.0) return;
   a->wrong = r.verdict != (q->factor < 1.0 ? CPROX_YES : CPROX_NO);
@@ -198,13 +198,13 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
 static void paper(const void *problems, size_t i, void *state, bench_answer *a) {
   const problem *p = (const problem *)problems + i;
   const asked *q = state;
-  const paper_question question = {.verb = q->factor > 0.0 ? PAPER_TOLERANCE : PAPER_DISTANCE,
-                                   .delta = q->factor * q->distance[i],
-                                   .epsilon = q->epsilon,
-                                   .max_nodes = PAPER_MAX_NODES};
+  const paper_query query = {.query_type = q->factor > 0.0 ? PAPER_TOLERANCE : PAPER_DISTANCE,
+                             .delta = q->factor * q->distance[i],
+                             .epsilon = q->epsilon,
+                             .max_nodes = PAPER_MAX_NODES};
   paper_answer r;
-  paper_search(&p->paper, &p->paper_obstacle, &question, q->heap, &r);
-  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.evaluations};
+  paper_search(&p->paper, &p->paper_obstacle, &query, q->heap, &r);
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.evaluations};
   a->failed = !r.ended;
   if (q->factor == 0.0) return;
   a->wrong = r.verdict != (q->factor < 1.0);
@@ -227,12 +227,12 @@ static void measure_accuracies(const bench_size *size, const char *name, const p
     const bench_workload w = {"splines", workload, parameter, problems, n, q->distance, 2e-12};
     bench_measure(&w, size, methods, 2);
   }
-  sampled_question *questions = calloc(n, sizeof *questions);
-  if (!questions) exit(1);
+  sampled_query *queries = calloc(n, sizeof *queries);
+  if (!queries) exit(1);
   for (size_t i = 0; i < n; i++)
-    questions[i] = (sampled_question){.curve = problems[i].curve, .obstacle = &problems[i].obstacle};
-  samples_measure(size, "splines", workload, "", questions, n, q->distance);
-  free(questions);
+    queries[i] = (sampled_query){.curve = problems[i].curve, .obstacle = &problems[i].obstacle};
+  samples_measure(size, "splines", workload, "", queries, n, q->distance);
+  free(queries);
 }
 
 static void measure(const bench_size *size, const char *name, const char *parameter, bool planar, size_t segments,
@@ -246,10 +246,10 @@ static void measure(const bench_size *size, const char *name, const char *parame
   q->distance = distance;
   const bench_method methods[] = {{"curve_proximity", ours, q}, {"paper", paper, q}};
   static const double factors[] = {0.0, 0.9, 1.1};
-  static const char *const questions[] = {"distance", "tolerance clear", "tolerance violated"};
+  static const char *const queries[] = {"distance", "tolerance clear", "tolerance violated"};
   for (size_t k = 0; k < 3; k++) {
     char workload[64];
-    snprintf(workload, sizeof workload, "%s %s %s", name, planar ? "2-D" : "3-D", questions[k]);
+    snprintf(workload, sizeof workload, "%s %s %s", name, planar ? "2-D" : "3-D", queries[k]);
     q->epsilon = 1e-10, q->factor = factors[k];
     const bench_workload w = {"splines", workload, parameter, problems, n, k == 0 ? distance : NULL, 2e-12};
     if (bench_wanted(size, workload)) bench_measure(&w, size, methods, 2);

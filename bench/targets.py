@@ -76,7 +76,7 @@ def figure(rows, target):
         return max(exponent([row for row in ours if row['workload'] == name]) for name in {row['workload'] for row in ours})
     if kind == 'microseconds':
         return max(float(row['median_us']) for row in ours)
-    if kind in ('nodes', 'probes'):
+    if kind in ('nodes', 'distance_queries'):
         return max(float(row[kind]) for row in ours)
     if kind == 'error':
         return max(float(row['error']) for row in ours)

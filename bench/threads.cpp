@@ -30,7 +30,7 @@ constexpr double kTube = 0.02, kDelta = 0.05;
 struct Scene {
   std::vector<cprox_curve *> curves;
   std::vector<cprox_body *> bodies;
-  std::vector<cprox_target> targets;
+  std::vector<cprox_obstacle> targets;
   std::vector<cprox_mover> movers;
 
   Scene() {
@@ -51,7 +51,7 @@ struct Scene {
       cprox_body_create_box(edges, nullptr, &bodies.back());
       const cprox_pose pose = {{unit(engine), unit(engine), unit(engine)},
                                {turn(engine), turn(engine), turn(engine), turn(engine)}};
-      targets.push_back(cprox_at(bodies.back(), pose));
+      targets.push_back(cprox_obstacle_at(bodies.back(), pose));
     }
   }
 
@@ -134,12 +134,12 @@ int main(int argc, char **argv) {
   const Scene scene;
   const Batch batch(scene.targets);
   const cprox_options options = cprox_options_default();
-  const std::pair<const char *, std::function<Batch::Answers(Pool &)>> verbs[] = {
+  const std::pair<const char *, std::function<Batch::Answers(Pool &)>> query_types[] = {
       {"distance", [&](Pool &pool) { return batch.distance(scene.movers, options, pool); }},
       {"tolerance", [&](Pool &pool) { return batch.tolerance(scene.movers, kDelta, options, pool); }},
       {"collision", [&](Pool &pool) { return batch.collision(scene.movers, options, pool); }}};
-  for (const auto &[verb, ask] : verbs) {
-    const std::string workload = std::string("growth threads ") + verb;
+  for (const auto &[query_type, ask] : query_types) {
+    const std::string workload = std::string("growth threads ") + query_type;
     if (!bench_wanted(&size, workload.c_str())) continue;
     std::vector<Batch::Answers> answers(pools.size());
     const std::vector<Times> times = measure(pools, rounds, [&](std::size_t k) { answers[k] = ask(*pools[k]); });

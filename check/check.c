@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The core of the checker. A leaf with the direction n proves that a part of the mover is farther than delta from a set, if
- *   min n·psi over the control points of the part  -  max n·x over the set  >  (delta + radius + padding) |n|:
+ *   min n·psi over the control points of the part  -  max n·x over the set  >  (delta + radius + margin) |n|:
  * weak duality, for any n whatever. The leaves together cover all of the parameter range. */
 #include "check.h"
 
@@ -27,7 +27,7 @@ typedef struct section {
   uint32_t width;
   const set *set;
   pieces *mover, *target; /* target: of a set that is a curve */
-  double balls[3];        /* delta, radius, padding */
+  double balls[3];        /* delta, radius, margin */
   size_t *leaves;
 } section;
 
@@ -161,7 +161,7 @@ static const char *check_apart(const problem *p, reader *in, uint32_t width, fin
   const char *fault = read_pieces(in, &p->mover.curve, &path, &breaks);
   for (size_t i = 0; i < p->n_sets && !fault; i++) {
     section c = {.in = in, .width = width, .set = &p->sets[i], .mover = &path, .leaves = &found->leaves};
-    const double balls[3] = {found->delta, p->mover.radius, c.set->padding};
+    const double balls[3] = {found->delta, p->mover.radius, c.set->margin};
     memcpy(c.balls, balls, sizeof balls);
     fault = check_section(&c);
   }

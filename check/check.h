@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Does a certificate prove what it claims about a question? */
+/* Does a certificate prove what it claims about a query? */
 #ifndef CHECK_CHECK_H
 #define CHECK_CHECK_H
 

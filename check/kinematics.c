@@ -5,7 +5,8 @@
 
 enum { ORDERS = 3, ROOM = ROBOT_MAX_DEGREE + 1 };
 
-/* A polynomial over the stretch: value, first and second derivative in the middle; what the points of its derivatives are at most. */
+/* A polynomial over the interval: value, first and second derivative in the middle; what the points of its derivatives
+ * are at most. */
 typedef struct jet {
   num at[ORDERS];
   double most[ORDERS + 1]; /* from 1 */
@@ -150,7 +151,7 @@ static size_t find_chain(const robot *r, int standing, int moving, int *chain, s
   return n;
 }
 
-/* From the tip to the base: the lever of each axis over the stretch, and how far the body travels. */
+/* From the tip to the base: the lever of each axis over the interval, and how far the body travels. */
 static void find_levers(const robot *r, const axis_state *states, const int *chain, size_t n, const vec *centre,
                         double radius, double *levers, double *travel) {
   *travel = 0.0;

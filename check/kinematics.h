@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* How the bodies of a robot move over a stretch of a segment of its motion. doc/robot-bounds.md proves what is computed here; u in
- * [0, 1] is the stretch's own parameter, and all derivatives are by it. */
+/* How the bodies of a robot move over a interval of a segment of its motion. doc/robot-bounds.md proves what is
+ * computed here; u in [0, 1] is the interval's own parameter, and all derivatives are by it. */
 #ifndef CHECK_KINEMATICS_H
 #define CHECK_KINEMATICS_H
 
 #include "robot.h"
 
-/* An axis: where it is and how it moves in the middle, in world axes, and bounds over the stretch. */
+/* An axis: where it is and how it moves in the middle, in world axes, and bounds over the interval. */
 typedef struct axis_state {
   place frame; /* moved */
   vec z;       /* not of a quaternion's */
@@ -15,7 +15,7 @@ typedef struct axis_state {
   double shift;   /* it is never farther than this from where it is in the middle */
 } axis_state;
 
-/* points: of the stretch, laid out as those of a segment. Radii are infinite where nothing can be said. */
+/* points: of the interval, laid out as those of a segment. Radii are infinite where nothing can be said. */
 void kinematics_axes(const robot *r, size_t degree, const num *points, axis_state *states);
 
 /* The world place of a body in the middle. */

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* cprox_check PROBLEM CERTIFICATES: says of each certificate what it proves, or why it does not.
  *
- * PROBLEM is the question as text ("-": standard input), CERTIFICATES a row of certificates, each behind its length (u32, little
- * endian), one a mover of the problem. doc/certificates.md has both formats. Exit: 0 all proven, 1 some not, 2 bad usage. */
+ * PROBLEM is the query as text ("-": standard input), CERTIFICATES a row of certificates, each behind its length (u32,
+ * little endian), one a mover of the problem. doc/certificates.md has both formats. Exit: 0 all proven, 1 some not, 2
+ * bad usage. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

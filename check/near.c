@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* At the parameter t the point y of the mover is within delta + radius + padding of a point of the set: then the distance is at most
- * delta. Everything is seen from the set's own frame. What the point of the set is:
+/* At the parameter t the point y of the mover is within delta + radius + margin of a point of the set: then the
+ * distance is at most delta. Everything is seen from the set's own frame. What the point of the set is:
  *   a curve's own at a parameter; a point itself; of four vertices of a polytope the mean by weights, or where all weights are 0
  *   y itself, inside their tetrahedron; of the other bodies y - v, v being given. */
 #include "near.h"
@@ -224,7 +224,7 @@ static const char *check_limits(const problem *p, reader *in, double delta, int 
   const char *fault = point_at(y, &w[0], &p->mover.curve, t, (limits & 1) != 0);
   if (!fault) {
     support_point_to_frame(own, s, y);
-    const double balls[3] = {delta, p->mover.radius, s->padding};
+    const double balls[3] = {delta, p->mover.radius, s->margin};
     iv_neg(&w[0], &w[0]); /* the mover's remainder takes from the balls */
     for (int i = 0; i < 3; i++) {
       iv_set_d(&w[1], balls[i]);

@@ -115,9 +115,9 @@ void words_set(words *w, set *s) {
   static const char *const names[] = {"point",     "sphere",    "box",      "capsule", "cylinder", "cone",
                                       "ellipsoid", "halfspace", "polytope", "hull",    "curve"};
   static const size_t sizes[] = {0, 1, 3, 2, 2, 2, 3, 4, 0, 1, 0};
-  s->padding = words_number(w);
+  s->margin = words_number(w);
   s->n_poses = words_count(w);
-  if (!(s->padding >= 0.0) || s->n_poses > 2) w->wrong = true;
+  if (!(s->margin >= 0.0) || s->n_poses > 2) w->wrong = true;
   for (size_t i = 0; i < s->n_poses && !w->wrong; i++) {
     words_numbers(w, 3, s->poses[i].x);
     words_numbers(w, 4, s->poses[i].q);

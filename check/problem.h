@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The question that certificates are about, read from text. All numbers are doubles and taken as exact. */
+/* The query that certificates are about, read from text. All numbers are doubles and taken as exact. */
 #ifndef CHECK_PROBLEM_H
 #define CHECK_PROBLEM_H
 
@@ -28,7 +28,7 @@ typedef struct pose {
 /* A convex body or a curve, inside its poses (the outermost first), and a ball added to it. */
 typedef struct set {
   kind kind;
-  double padding;
+  double margin;
   size_t n_poses;
   pose poses[2];
   double size[4];   /* as the text has them */

@@ -37,7 +37,7 @@ typedef struct body {
   const set *shape;
   int axis;
   place at;                  /* of the set's own frame, moved to the set's centre */
-  double radius;             /* about the centre, without padding */
+  double radius;             /* about the centre, without margin */
   double middle[3], half[3]; /* of a box about it in its own frame; only to choose by */
 } body;
 

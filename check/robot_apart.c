@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* For each segment of the motion a tree of stretches, cut in halves. On each, every pair that is still open is tried with the last
- * direction that the certificate gave for it, and with one that follows from its place: from the box round what stands to the centre of
- * what moves. What neither settles is open on both halves; a stretch that is not cut must settle all.
+/* For each segment of the motion a tree of intervals, cut in halves. On each, every pair that is still open is tried
+ * with the last direction that the certificate gave for it, and with one that follows from its place: from the box
+ * round what stands to the centre of what moves. What neither settles is open on both halves; a interval that is not
+ * cut must settle all.
  *
  * A direction n, fixed in what stands, settles a pair if in the middle its plane parts the two by more than delta and the way that points
- * of the moving body may take (first order), or if the second or third order expansion of n·x over the stretch stays above delta. */
+ * of the moving body may take (first order), or if the second or third order expansion of n·x over the interval stays
+ * above delta. */
 #include "robot_check.h"
 
 #include <stdlib.h>
@@ -30,37 +32,36 @@ typedef struct walk {
   int *chain;
   double *levers;
 
-  /* the motion that was found last on this stretch: pairs that differ in a body that stands share it */
+  /* the motion that was found last on this interval: pairs that differ in a body that stands share it */
   const body *mover;
   int seen_from; /* axis */
   body_motion motion;
 } walk;
 
-/* A pair over the stretch, seen from what stands. */
+/* A pair over the interval, seen from what stands. */
 typedef struct view {
   const body *moving, *standing;
   const place *at, *from;
-  double pad; /* both paddings */
+  double pad; /* both margins */
   vec apart;  /* of the centres */
   const body_motion *motion;
 } view;
 
-/* min d·(x - centre) over the moving body, without padding. */
+/* min d·(x - centre) over the moving body, without margin. */
 static num lowest(const view *v, const vec *d) {
   vec down = rot_turn(&v->at->r, d, true);
   for (int k = 0; k < 3; k++) down.m[k] = -down.m[k];
   return num_neg(span_along(v->moving->shape, v->moving->radius, &down));
 }
 
-/* f - rest |n| > delta |n| + the paddings, whose share of n·x depends on what d is: |d| <= length. */
+/* f - rest |n| > delta |n| + the margins, whose share of n·x depends on what d is: |d| <= length. */
 static bool is_beyond(num f, double rest) {
   return num_bottom(f) > rest;
 }
 
 static bool settles(const walk *w, const view *v, const double own[3]) {
   const vec n_own = vec_of(own), n = rot_turn(&v->from->r, &n_own, false);
-  const double size = vec_top(&n_own), moving_pad = v->moving->shape->padding,
-               standing_pad = v->standing->shape->padding;
+  const double size = vec_top(&n_own), moving_pad = v->moving->shape->margin, standing_pad = v->standing->shape->margin;
   const num start = num_sub(vec_dot(&n, &v->apart), span_along(v->standing->shape, v->standing->radius, &n_own));
   const double limit = GROW((w->delta + standing_pad) * size);
   ++*w->tries;
@@ -115,7 +116,7 @@ static bool is_settled(walk *w, const pair *p) {
   v.apart = vec_sub(&v.at->p, &v.from->p);
   v.motion = &w->motion;
   if (w->mover != v.moving || w->seen_from != v.standing->axis) {
-    const double radius = GROW(v.moving->radius + v.moving->shape->padding);
+    const double radius = GROW(v.moving->radius + v.moving->shape->margin);
     kinematics_motion(w->r, w->states, v.moving, v.at, radius, v.standing, w->chain, w->levers, &w->motion);
     w->mover = v.moving, w->seen_from = v.standing->axis;
   }
@@ -139,9 +140,9 @@ static const char *read_directions(const walk *w, size_t count) {
   return NULL;
 }
 
-/* One stretch: `open` pairs, n of them; points are overwritten. NODE: u16 2 × COUNT + (1 where it is cut), the directions, and where it
- * is cut the left and the right half. */
-static const char *check_stretch(walk *w, num *points, const size_t *open, size_t n, int depth) {
+/* One interval: `open` pairs, n of them; points are overwritten. NODE: u16 2 × COUNT + (1 where it is cut), the
+ * directions, and where it is cut the left and the right half. */
+static const char *check_interval(walk *w, num *points, const size_t *open, size_t n, int depth) {
   const robot *r = w->r;
   const size_t head = (size_t)reader_bits(w->in, 2), room = r->n_variables * (ROBOT_MAX_DEGREE + 1);
   if (w->in->bad || depth > MAX_DEPTH) return "its tree is broken";
@@ -150,7 +151,7 @@ static const char *check_stretch(walk *w, num *points, const size_t *open, size_
 
   /* where nothing is open any more, what is left is read and not worked out */
   if (n == 0) {
-    for (size_t half = 0; half < head % 2 * 2 && !fault; half++) fault = check_stretch(w, points, open, 0, depth + 1);
+    for (size_t half = 0; half < head % 2 * 2 && !fault; half++) fault = check_interval(w, points, open, 0, depth + 1);
     return fault;
   }
   kinematics_axes(r, w->degree, points, w->states);
@@ -162,14 +163,14 @@ static const char *check_stretch(walk *w, num *points, const size_t *open, size_
   for (size_t i = 0; i < n && !fault; i++) {
     if (is_settled(w, &r->pairs[open[i]])) continue;
     left_open[kept++] = open[i];
-    if (head % 2 == 0) fault = "a pair is not settled on a stretch";
+    if (head % 2 == 0) fault = "a pair is not settled on a interval";
   }
   if (!fault && head % 2 == 1) {
     for (size_t v = 0; v < r->n_variables; v++)
       if (r->moved[v])
         trajectory_halve(points + v * (ROBOT_MAX_DEGREE + 1), w->degree, left + v * (ROBOT_MAX_DEGREE + 1));
-    fault = check_stretch(w, left, left_open, kept, depth + 1);
-    if (!fault) fault = check_stretch(w, points, left_open, kept, depth + 1);
+    fault = check_interval(w, left, left_open, kept, depth + 1);
+    if (!fault) fault = check_interval(w, points, left_open, kept, depth + 1);
   }
   free(left_open);
   free(left);
@@ -193,7 +194,7 @@ const char *robot_apart(robot *r, reader *in, uint32_t width, double delta, size
   for (size_t s = 0; s < r->n_segments && !fault; s++) {
     w.degree = r->degrees[s];
     for (size_t i = 0; i < room; i++) points[i] = robot_points(r, s, 0)[i];
-    fault = check_stretch(&w, points, all, r->n_pairs, 0);
+    fault = check_interval(&w, points, all, r->n_pairs, 0);
   }
   free(w.states);
   free(w.places);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* At one place of the motion a point of the one body is within delta and both paddings of a point of the other. Which points these are
- * is told as for curves (near.c); where they stand at that time, by kinematics.c. */
+/* At one place of the motion a point of the one body is within delta and both margins of a point of the other. Which
+ * points these are is told as for curves (near.c); where they stand at that time, by kinematics.c. */
 #include <stdlib.h>
 
 #include "kinematics.h"
@@ -62,7 +62,7 @@ static const char *check_points(const robot *r, reader *in, const pair *p, const
   iv *y = iv_new(3), *apart = iv_new(2);
   const char *fault = near_read_point(y, moving->shape, in) ? NULL : "the point it names is not in the robot's part";
   if (!fault) {
-    const double balls[3] = {delta, moving->shape->padding, standing->shape->padding};
+    const double balls[3] = {delta, moving->shape->margin, standing->shape->margin};
     for (int i = 0; i < 3; i++) {
       iv_set_d(&apart[1], balls[i]);
       iv_add(&apart[0], &apart[0], &apart[1]);

@@ -6,7 +6,7 @@
 #include "ball.h"
 #include "problem.h"
 
-/* max n·x over the set about its centre, without padding; a halfspace only along its own normal. */
+/* max n·x over the set about its centre, without margin; a halfspace only along its own normal. */
 num span_along(const set *s, double radius, const vec *n);
 
 /* No point is farther from the centre; a halfspace: the distance of its plane. */

@@ -9,7 +9,7 @@
 /* The world direction n in the set's own frame, and n·(where that frame's origin stands). */
 void support_of_frame(iv *far, iv own[3], const set *s, const iv n[3]);
 
-/* max n·x over the body in its own frame, without padding. */
+/* max n·x over the body in its own frame, without margin. */
 void support_of_body(iv *out, const set *s, const iv n[3]);
 
 /* The normal of a halfspace, in the world. */

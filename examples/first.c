@@ -12,8 +12,9 @@ int main(void) {
 
   if (cprox_curve_create_bezier(points, 4, 0.0, 1.0, workspace, &path) < 0 ||
       cprox_body_create_box((cprox_vec3){0.5, 0.5, 0.5}, workspace, &box) < 0 ||
-      cprox_distance(cprox_tube_along(path, 0.02), cprox_at(box, cprox_pose_identity()), NULL, workspace, &r) < 0) {
-    fprintf(stderr, "%s\n", cprox_workspace_reason(workspace));
+      cprox_distance(cprox_tube_along(path, 0.02), cprox_obstacle_at(box, cprox_pose_identity()), NULL, workspace, &r) <
+          0) {
+    fprintf(stderr, "%s\n", cprox_workspace_error(workspace));
     return 1;
   }
   printf("%.6f <= distance <= %.6f m, at t = %.4f (%s)\n", r.lower, r.upper, r.t, cprox_status_text(r.status));

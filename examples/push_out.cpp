@@ -4,9 +4,9 @@
  *      push_out SCENE.yaml [OUT.csv]
  *
  *  A ball of 3 cm is to go along a cubic B-spline from one end to the other, as smoothly as can be and 1 cm clear of every object.
- *  The variables are the inner control points; the constraints are the signed distances of eight stretches of the spline to each
- *  object. At the end the whole spline is asked about once more: its clearance is then proven, not sampled.
- *  OUT.csv gets the spline before and after as CURVES.csv has them, for `cprox` and for draw_push_out.py. */
+ *  The variables are the inner control points; the constraints are the signed distances of eight intervals of the
+ *  spline to each object. At the end the whole spline is asked about once more: its clearance is then proven, not
+ *  sampled. OUT.csv gets the spline before and after as CURVES.csv has them, for `cprox` and for draw_push_out.py. */
 #include <nlopt.h>
 #include <pluginlib/class_loader.hpp>
 
@@ -25,7 +25,7 @@ using namespace curve_proximity;
 namespace {
 
 constexpr Eigen::Index kPoints = 12;
-constexpr int kStretches = 8;
+constexpr int kIntervals = 8;
 constexpr double kRadius = 0.03, kClearance = 0.01;
 
 /* The problem: the spline, and what it is to stay clear of. */
@@ -83,12 +83,12 @@ double smoothness(unsigned n, const double *x, double *gradient, void *data) {
   return sum;
 }
 
-/* The provider's values, a row for each object and stretch, and their gradients by the inner control points. */
+/* The provider's values, a row for each object and interval, and their gradients by the inner control points. */
 void clearances(Problem &problem, unsigned n, const double *x, double *result, double *gradient) {
   ConstraintCurve part{splineAt(problem, x), nullptr};
-  for (int k = 0; k < kStretches; ++k) {
-    part.description.t0 = k / static_cast<double>(kStretches);
-    part.description.t1 = (k + 1) / static_cast<double>(kStretches);
+  for (int k = 0; k < kIntervals; ++k) {
+    part.description.t0 = k / static_cast<double>(kIntervals);
+    part.description.t1 = (k + 1) / static_cast<double>(kIntervals);
     part.curve = compile(part.description).curve;
     for (std::size_t i = 0; i < problem.objects.size(); ++i) {
       ConstraintPlace place;
@@ -119,10 +119,10 @@ void tooNear(unsigned m, double *result, unsigned n, const double *x, double *gr
 
 /* What is proven of the whole spline against all objects. */
 Answer clearance(const SnapshotPtr &snapshot, const CurveDescription &spline) {
-  Question question;
-  question.options.epsilon = 1e-6;
+  Query query;
+  query.options.epsilon = 1e-6;
   Workspace workspace;
-  return ask(snapshot, {}, spline, question, workspace).front();
+  return ask(snapshot, {}, spline, query, workspace).front();
 }
 
 void writeRow(std::FILE *file, const CurveDescription &c) {
@@ -159,7 +159,7 @@ int run(const std::string &scene_file, const char *out) {
   }
 
   // From the straight spline to the smoothest one that is clear.
-  const unsigned n = 3 * (kPoints - 2), m = static_cast<unsigned>(problem.objects.size()) * kStretches;
+  const unsigned n = 3 * (kPoints - 2), m = static_cast<unsigned>(problem.objects.size()) * kIntervals;
   const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> optimiser(nlopt_create(NLOPT_LD_SLSQP, n), nlopt_destroy);
   problem.optimiser = optimiser.get();
   const std::vector<double> tolerances(m, 1e-6);

@@ -133,7 +133,7 @@ def run_together(jobs):
 
 
 def count_core(output, code, name):
-    """A test of the core is a cmocka program, or a campaign of thousands of questions, which is one case."""
+    """A test of the core is a cmocka program, or a campaign of thousands of queries, which is one case."""
     if not re.search(r'^\d+ passed, \d+ failed$', output, re.M):
         return count_cmocka(output, code, name)
     campaign = count_lines(output, code, name)

@@ -68,10 +68,10 @@ class Programs:
         return process, log
 
 
-def wait_for(question, process, log, seconds):
-    """Waits until question() is true; a program that has ended or says nothing for too long is a failure."""
+def wait_for(query, process, log, seconds):
+    """Waits until query() is true; a program that has ended or says nothing for too long is a failure."""
     deadline = time.monotonic() + seconds
-    while not question():
+    while not query():
         if process.poll() is not None or time.monotonic() > deadline:
             with open(log, errors='replace') as text:
                 tail = ''.join(text.readlines()[-15:])
@@ -104,12 +104,12 @@ def master_answers():
     return subprocess.call(['rosparam', 'get', '/run_id'], **quiet) == 0
 
 
-def ask(verb, **request):
+def ask(query_type, **request):
     """Calls a service of the node with rosservice, and returns its results."""
     text = yaml.safe_dump(request, default_flow_style=True, width=1e9)
-    answer = yaml.safe_load(run('rosservice', 'call', f'{NODE}/{verb}', text))
+    answer = yaml.safe_load(run('rosservice', 'call', f'{NODE}/{query_type}', text))
     if not answer['success']:
-        raise Failure(f"{verb}: {answer['message']}")
+        raise Failure(f"{query}: {answer['message']}")
     return answer['results']
 
 
@@ -133,14 +133,14 @@ def at(message):
 
 # ------------------------------------------------------------------------------------------------------------ the demo
 def ask_and_tell():
-    """The three questions, in words. Returns the nearest pair."""
+    """The three queries, in words. Returns the nearest pair."""
     waiting, reaching = posture(WAITING), posture(REACHING)
 
     print('\n1. How close does the tool come to anything?   rosservice call ~distance')
     near, = ask('distance', curves=[tool_path()], joint_state=waiting, epsilon=1e-6)
     lower, upper, microseconds = (float(near[key]) for key in ('lower', 'upper', 'microseconds'))
     print(f"   {1e3 * upper:.6f} mm, to {near['b']}, at t = {float(near['t']):.4f} of the path.\n"
-          f"   The tool's surface is then at {at(near['point_a'])}, that of {near['b']} at {at(near['point_b'])}.\n"
+          f"   The tool's surface is then at {at(near['witness_a'])}, that of {near['b']} at {at(near['witness_b'])}.\n"
           f"   Certified: the true distance is at most {1e3 * (upper - lower):.1g} mm less, and no more. "
           f"It took {near['nodes']} intervals, {microseconds:.0f} microseconds.")
 
@@ -151,7 +151,7 @@ def ask_and_tell():
 
     print('\n3. And while the arm reaches into the shelf: does the tool hit it?   rosservice call ~collision')
     hit, = ask('collision', curves=[tool_path()], joint_state=reaching)
-    print('   ' + {'yes': f"Yes: it hits {hit['b']} at t = {float(hit['t']):.4f}, near {at(hit['point_a'])}.",
+    print('   ' + {'yes': f"Yes: it hits {hit['b']} at t = {float(hit['t']):.4f}, near {at(hit['witness_a'])}.",
                    'no': 'No: the whole path is free.'}.get(hit['verdict'], 'Undecided, which counts as a hit.'))
     return near
 
@@ -164,7 +164,7 @@ def picture(out, near):
     draw_scene.draw(
         out, SCENE, ROBOT, dict(zip(JOINTS, WAITING)), draw_scene.bspline_points(CONTROL, DEGREE, KNOTS, ends), RADIUS,
         [float(piece['lower']) for piece in pieces],
-        {'a': point(near['point_a']), 'b': point(near['point_b']), 'name': near['b'], 't': float(near['t']),
+        {'a': point(near['witness_a']), 'b': point(near['witness_b']), 'name': near['b'], 't': float(near['t']),
          'distance': float(near['lower'])},
         f'A tool of {100 * RADIUS:.0f} cm radius\nthrough a shelf, past a Panda')
 

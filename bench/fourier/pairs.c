@@ -11,7 +11,7 @@
 
 typedef struct pair_problem {
   cprox_pose a, b;
-  cprox_target at, bt;
+  cprox_obstacle at, bt;
   double truth;
 } pair_problem;
 
@@ -37,8 +37,11 @@ static void by_distance(const void *problems, size_t i, void *state, bench_answe
   o.epsilon = 1e-3;
   cprox_result r = {0};
   const cprox_status status = cprox_pair(p->at, p->bt, &o, q->ws, &r);
-  *answer =
-      (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.nodes, .probes = r.probes, .failed = status < CPROX_OK};
+  *answer = (bench_answer){.lower = NAN,
+                           .upper = NAN,
+                           .nodes = r.nodes,
+                           .distance_queries = r.distance_queries,
+                           .failed = status < CPROX_OK};
 }
 
 void fourier_pairs(const bench_size *size) {
@@ -54,7 +57,7 @@ void fourier_pairs(const bench_size *size) {
     pair_problem *p = &problems[i];
     p->a = (cprox_pose){.orientation = rng_quat(&r)};
     p->b = (cprox_pose){.orientation = rng_quat(&r), .position = vec_scale(rng_uniform(&r, 0.2, 1.25), rng_unit(&r))};
-    p->at = cprox_at(b[0], p->a), p->bt = cprox_at(b[1], p->b);
+    p->at = cprox_obstacle_at(b[0], p->a), p->bt = cprox_obstacle_at(b[1], p->b);
     cprox_options o = cprox_options_default();
     cprox_result x = {0};
     cprox_pair(p->at, p->bt, &o, ws, &x);

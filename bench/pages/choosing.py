@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""choosing.md: which method, which epsilon, which verb, for which scene; every number from results.csv."""
+"""choosing.md: which method, which epsilon, which query, for which scene; every number from results.csv."""
 import statistics
 
 import targets
@@ -28,7 +28,7 @@ def page(figures):
     near = figures.time('curves', 'polytope 3-D tolerance clear', 'order 15 delta 0.99 d')
     distance = figures.time('curves', polytope, order + '1e-06')
     batch = ('batches', 'boxes {}', '100 obstacles')
-    tolerance_batch, distance_batch = (figures.time(batch[0], batch[1].format(verb), batch[2]) for verb in ('tolerance', 'distance'))
+    tolerance_batch, distance_batch = (figures.time(batch[0], batch[1].format(query_type), batch[2]) for query_type in ('tolerance', 'distance'))
     missed = figures.row('batches', 'boxes collision', '100 obstacles', 'FCL at 100 points')['unsound']
     robot = figures.time('robots', 'environment', 'epsilon 1e-06')
     robot_loose = figures.time('robots', 'environment', 'epsilon 0.001')
@@ -37,7 +37,7 @@ def page(figures):
 
 Five minutes for whoever plans motions. All times are medians of one run ([README.md](README.md) says of which), one core; what counts is how they relate.
 
-## Which question
+## Which query
 - **Only "is it farther than Δ?"**: ask `tolerance`. Against a 3-D polytope, for a curve of order 15, it takes {clear} when Δ is half of the distance, {near} when it is
   99 % of it; the distance itself to 1e-6 takes {distance}. The farther Δ is from the distance, the cheaper.
 - **Only "does it hit?"**: ask `collision`: a tolerance with Δ = 0.
@@ -52,7 +52,7 @@ below what a robot can be controlled to. Robots along joint splines against a sc
 
 ## Which model
 - Boxes, spheres, capsules, cylinders, cones, polytopes: give them as they are; they are closed forms or support functions.
-- Meshes: leave them meshes. Their hull answers first, the triangles only where the hull cannot decide (`max_rung` stops at the hull).
+- Meshes: leave them meshes. Their hull answers first, the triangles only where the hull cannot decide (`max_lod` stops at the hull).
 - Superquadrics and implicit bodies: certified to 1e-8. {superquadrics}
 - What a sensor sees: point clouds and octrees, rebuilt at sensor rate.
 

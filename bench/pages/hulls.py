@@ -20,9 +20,9 @@ def interval(lower, upper):
 
 
 def line(row):
-    hull, mesh = (interval(row[f'{rung}_lower'], row[f'{rung}_upper']) for rung in ('hull', 'mesh'))
+    hull, mesh = (interval(row[f'{lod}_lower'], row[f'{lod}_upper']) for lod in ('hull', 'mesh'))
     pair = f"{row['mesh_a']}, {row['mesh_b']}"
-    times = [float(row[f'{rung}_microseconds']) for rung in ('hull', 'mesh')]
+    times = [float(row[f'{lod}_microseconds']) for lod in ('hull', 'mesh')]
     return [row['trajectory'], row['kind'], interval(row['reference_lower'], row['reference_upper']), hull, mesh, pair, *map(microseconds, times),
             f'{times[1] / times[0]:.1f}']
 

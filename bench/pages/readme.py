@@ -14,7 +14,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 CHARTS = [
     ('work_precision_*', 'time against the accuracy asked: a point, a polygon, a polytope, another curve, long splines, trigonometric series; beside the '
                          'published method, points of the curve (by FCL where a polytope is asked about), OpenCASCADE and SISL'),
-    ('distance_by_order', 'the same questions over orders 5, 15, 45'),
+    ('distance_by_order', 'the same queries over orders 5, 15, 45'),
     ('tolerance', 'verdicts over delta, as a fraction of the distance'),
     ('splines_*', 'long B-splines: time against the number of segments'),
     ('trigonometric', 'series that are compiled once, distance and tolerance'),
@@ -99,23 +99,23 @@ def loss_lines(rows):
         yield f'- {group}, {workload}: **{method}** takes {short(ratio)} of our time. {reason_for(name, known)}'
 
 
-def rungs(rows):
+def lods(rows):
     """What each model of a body settled."""
     found = {}
     for row in rows:
-        if row['group'] == 'rungs':
+        if row['group'] == 'lod':
             found.setdefault(row['workload'], {})[row['parameter']] = row
     if not found:
         return ''
     kinds = ('sphere', 'hull', 'mesh')
-    body = [[*name.rsplit(' ', 1), *(cell for kind in kinds for cell in (f"{100.0 * float(of[kind]['nodes']) / float(of[kind]['probes']):.0f} %",
+    body = [[*name.rsplit(' ', 1), *(cell for kind in kinds for cell in (f"{100.0 * float(of[kind]['nodes']) / float(of[kind]['distance queries']):.0f} %",
              microseconds(float(of[kind]['median_us'])) if of[kind]['median_us'] else ''))] for name, of in found.items()]
     return f'''
 ## What each model settles
-Curves through scenes, an answer for each object and link (`bench/rungs.py`): the share of the answers that each rung of a body's ladder gave, and the
+Curves through scenes, an answer for each object and link (`bench/lod.py`): the share of the answers that each lod of a body's lod gave, and the
 median of what they cost. A distance to 1e-6 is the mesh's own wherever the nearest body is one; verdicts seldom need it.
 
-{table(['scene', 'verb', *(word for kind in kinds for word in (kind, 'cost'))], body)}
+{table(['scene', 'query_type', *(word for kind in kinds for word in (kind, 'cost'))], body)}
 '''
 
 
@@ -148,7 +148,7 @@ more than that least is "within slack". {second_run(out)}
 Time or memory against size: the exponent of a power, fitted by least squares to the logarithms. 1 is in proportion, 0 is not at all.
 
 {table(['group', 'workload', 'method', 'of', 'sizes', 'exponent'], list(growth_lines(figures.rows)))}
-{rungs(figures.rows)}
+{lods(figures.rows)}
 ## Where we lose
 {chr(10).join(loss_lines(figures.rows)) or 'Nowhere in this run.'}
 '''

@@ -22,9 +22,9 @@ def proximity(figures):
                'e involute | involute': (1.21e3, 204.68, 116.22), 'f fish | Lissajous': (3.74e3, 471.99, 229.25)}
     lines = []
     for pair, values in printed.items():
-        for verb, value in zip(('distance', 'tolerance', 'collision'), values):
-            key = ('seeds', f'table II {verb}', pair)
-            lines.append([pair.replace(' | ', ', ') if verb == 'distance' else '', verb, microseconds(value),
+        for query_type, value in zip(('distance', 'tolerance', 'collision'), values):
+            key = ('seeds', f'table II {query}', pair)
+            lines.append([pair.replace(' | ', ', ') if query_type == 'distance' else '', query_type, microseconds(value),
                           figures.time(*key, method=PAPER), figures.time(*key), figures.count(*key, method=PAPER, column='nodes'),
                           figures.count(*key, column='nodes')])
     return table(['pair', 'query', 'printed', 'its method here', 'ours', 'its intervals', 'ours'], lines)
@@ -34,8 +34,8 @@ def orders(figures):
     lines = []
     for order in range(5, 50, 5):
         line = [str(order)]
-        for verb in ('distance', 'tolerance', 'collision'):
-            key = ('seeds', f'figure 10 {verb}', f'order {order:02d}')
+        for query_type in ('distance', 'tolerance', 'collision'):
+            key = ('seeds', f'figure 10 {query}', f'order {order:02d}')
             line += [figures.time(*key, method=PAPER), figures.time(*key)]
         lines.append(line)
     return table(['order', 'distance, its method', 'ours', 'tolerance, its method', 'ours', 'collision, its method', 'ours'], lines)
@@ -63,7 +63,7 @@ def implicit_pairs(figures):
 def implicit_motion(figures):
     """Tables II and III of Chakraborty et al.: printed in milliseconds."""
     printed = [('table II closest distance', 'I-III', 1.32), ('table II closest distance', 'II-III', .97),
-               ('table II first contact', 'I-III', 2.03), ('table II first contact', 'II-III', 1.51),
+               ('table II time of contact', 'I-III', 2.03), ('table II time of contact', 'II-III', 1.51),
                ('table III scaling', 'I-III', 1.04), ('table III scaling', 'II-III', .75),
                ('table III exponents', 'I-III', .87), ('table III exponents', 'II-III', .84)]
     lines = [[name, pair, microseconds(1e3 * value), figures.time('implicit', name, pair)] for name, pair, value in printed]
@@ -80,7 +80,7 @@ method" is the published method, written again as described (`bench/paper`).
 ## A. Lakshmanan, A. Patterson, V. Cichella, N. Hovakimyan, "Proximity Queries for Absolutely Continuous Parametric Curves", RSS 2019
 (printed: Julia, 2.3 GHz Core i5)
 
-**Table I**, the length of a stretch of a curve and its bound by Eq. 6:
+**Table I**, the length of a interval of a curve and its bound by Eq. 6:
 
 {arc_lengths(figures)}
 

@@ -57,7 +57,7 @@ def page(figures):
                 'counted as wrong. SISL is asked about points and curves only.',
                 [row for row in hard if row not in missed], lambda row: row['workload'], ('OpenCASCADE', 'SISL')),
         section('Collisions that sampling misses', 'A point or a ball along a quintic through thin plates, and grazes by that depth; all of them collide, by a '
-                'witness that none of the methods gave. Wrong: not seen; a first contact that is late, or early by more than 1e-6 m.',
+                'witness that none of the methods gave. Wrong: not seen; a time of contact that is late, or early by more than 1e-6 m.',
                 missed, lambda row: row['workload'], ('FCL', 'Bullet')),
         section('Implicit bodies', 'Pairs of superquadrics and their like, to a relative gap of 1e-8.', of('implicit', 'hard families'),
                 family_of, ('ipopt',)),

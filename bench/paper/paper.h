@@ -45,13 +45,13 @@ typedef struct paper_obstacle {
 /* Distance of two vertex sets by GJK; *lower is its lower bound. Counts support evaluations in *evaluations. */
 double paper_gjk(const vec3 *a, size_t na, const vec3 *b, size_t nb, double *lower, uint32_t *evaluations);
 
-typedef enum paper_verb { PAPER_DISTANCE, PAPER_TOLERANCE, PAPER_COLLISION } paper_verb;
+typedef enum paper_query_type { PAPER_DISTANCE, PAPER_TOLERANCE, PAPER_COLLISION } paper_query_type;
 
-typedef struct paper_question {
-  paper_verb verb;
+typedef struct paper_query {
+  paper_query_type query_type;
   double delta, epsilon;
   uint32_t max_nodes;
-} paper_question;
+} paper_query;
 
 typedef struct paper_answer {
   double lower, upper;
@@ -64,9 +64,9 @@ typedef struct paper_answer {
 typedef struct paper_node {
   double lower, a[2], b[2];
 } paper_node;
-void paper_search(const paper_curve *curve, const paper_obstacle *obstacle, const paper_question *q, paper_node *heap,
+void paper_search(const paper_curve *curve, const paper_obstacle *obstacle, const paper_query *q, paper_node *heap,
                   paper_answer *answer);
-void paper_search_curves(const paper_curve *first, const paper_curve *second, const paper_question *q, paper_node *heap,
+void paper_search_curves(const paper_curve *first, const paper_curve *second, const paper_query *q, paper_node *heap,
                          paper_answer *answer);
 
 #endif

@@ -88,19 +88,19 @@ static double bound(const problem *p, paper_node *node, double upper, uint32_t *
   return upper;
 }
 
-/* Whether the two bounds answer the question (the loop conditions of Algorithms 1, 3 and 4). */
-static bool answered(const paper_question *q, double lower, double upper, bool *verdict) {
-  if (q->verb == PAPER_DISTANCE) return upper - lower <= q->epsilon;
-  const double delta = q->verb == PAPER_TOLERANCE ? q->delta : 0.0;
+/* Whether the two bounds answer the query (the loop conditions of Algorithms 1, 3 and 4). */
+static bool answered(const paper_query *q, double lower, double upper, bool *verdict) {
+  if (q->query_type == PAPER_DISTANCE) return upper - lower <= q->epsilon;
+  const double delta = q->query_type == PAPER_TOLERANCE ? q->delta : 0.0;
   if (lower > delta) {
-    *verdict = q->verb == PAPER_TOLERANCE;
+    *verdict = q->query_type == PAPER_TOLERANCE;
     return true;
   }
-  *verdict = q->verb == PAPER_COLLISION;
+  *verdict = q->query_type == PAPER_COLLISION;
   return upper - delta <= q->epsilon;
 }
 
-static void search(const problem *p, const paper_question *q, paper_node *heap, paper_answer *r) {
+static void search(const problem *p, const paper_query *q, paper_node *heap, paper_answer *r) {
   uint32_t count = 0;
   *r = (paper_answer){.upper = INFINITY};
   paper_node root = {.lower = 0.0};
@@ -127,12 +127,12 @@ static void search(const problem *p, const paper_question *q, paper_node *heap, 
   }
 }
 
-void paper_search(const paper_curve *curve, const paper_obstacle *obstacle, const paper_question *q, paper_node *heap,
+void paper_search(const paper_curve *curve, const paper_obstacle *obstacle, const paper_query *q, paper_node *heap,
                   paper_answer *answer) {
   search(&(problem){.curve = {curve, NULL}, .obstacle = obstacle}, q, heap, answer);
 }
 
-void paper_search_curves(const paper_curve *first, const paper_curve *second, const paper_question *q, paper_node *heap,
+void paper_search_curves(const paper_curve *first, const paper_curve *second, const paper_query *q, paper_node *heap,
                          paper_answer *answer) {
   search(&(problem){.curve = {first, second}}, q, heap, answer);
 }

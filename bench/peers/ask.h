@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a user would pick instead: points and curves against Bézier curves and B-splines by OpenCASCADE and SISL, a ball along a path
- * past a convex body by FCL at 100 points, its first contact by Bullet on 100 chords; each where it is installed. */
+ * past a convex body by FCL at 100 points, its time of contact by Bullet on 100 chords; each where it is installed. */
 #ifndef CPROX_BENCH_ASK_H
 #define CPROX_BENCH_ASK_H
 

@@ -19,15 +19,15 @@ static void judge_value(double value, double truth, bench_answer *a) {
   a->wrong = !a->failed && fabs(value - truth) > WRONG;
 }
 
-/* One question: two curves, or a curve and a point. */
-typedef struct question {
+/* One query: two curves, or a curve and a point. */
+typedef struct query {
   cprox_mover mover;
-  cprox_target target;
+  cprox_obstacle target;
   double point[3];
   void *own[2][MOST_LIBRARIES]; /* the libraries' copies of both curves */
   bool is_point;
   double truth;
-} question;
+} query;
 
 typedef struct peer_state {
   const curve_peer *peer;
@@ -35,7 +35,7 @@ typedef struct peer_state {
 } peer_state;
 
 static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
-  const question *p = (const question *)problems + i;
+  const query *p = (const query *)problems + i;
   const asked *q = state;
   cprox_options options = cprox_options_default();
   options.epsilon = q->epsilon;
@@ -44,14 +44,14 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
 }
 
 static void theirs(const void *problems, size_t i, void *state, bench_answer *a) {
-  const question *p = (const question *)problems + i;
+  const query *p = (const query *)problems + i;
   const peer_state *s = state;
   const void *first = p->own[0][s->number], *second = p->own[1][s->number];
   judge_value(p->is_point ? s->peer->to_point(first, p->point) : s->peer->to_curve(first, second), p->truth, a);
 }
 
-static void measure_questions(const bench_size *size, const char *workload, const char *parameter,
-                              const question *questions, size_t n, double doubt, asked *q) {
+static void measure_queries(const bench_size *size, const char *workload, const char *parameter, const query *queries,
+                            size_t n, double doubt, asked *q) {
   peer_state states[2];
   bench_method methods[MOST_METHODS] = {{"curve_proximity", ours, q}};
   size_t count = 1;
@@ -60,37 +60,37 @@ static void measure_questions(const bench_size *size, const char *workload, cons
     methods[count++] = (bench_method){curve_libraries[k]->name, theirs, &states[k]};
   }
   double *truth = ask_memory(n, sizeof *truth);
-  for (size_t i = 0; i < n; i++) truth[i] = questions[i].truth;
+  for (size_t i = 0; i < n; i++) truth[i] = queries[i].truth;
   q->epsilon = 1e-12;
-  const bench_workload w = {"peers", workload, parameter, questions, n, truth, doubt};
+  const bench_workload w = {"peers", workload, parameter, queries, n, truth, doubt};
   bench_measure(&w, size, methods, count);
   free(truth);
 }
 
-static void take_from_peers(question *questions, size_t n) {
+static void take_from_peers(query *queries, size_t n) {
   for (size_t i = 0; i < n; i++)
-    for (int side = 0; side < 2; side++) libraries_drop(questions[i].own[side]);
-  free(questions);
+    for (int side = 0; side < 2; side++) libraries_drop(queries[i].own[side]);
+  free(queries);
 }
 
 void ask_points_and_curves(const bench_size *size, size_t degree, asked *q) {
   const size_t n = size->problems;
   curve_problem *problems = curve_problems_make(OBSTACLE_POINT, degree, n);
   double *truth = curve_problems_truth(problems, n, OBSTACLE_POINT);
-  question *questions = ask_memory(n, sizeof *questions);
+  query *queries = ask_memory(n, sizeof *queries);
   for (size_t i = 0; i < n; i++) {
     const vec3 p = problems[i].obstacle.vertex[0];
-    questions[i] = (question){.mover = cprox_point_along(problems[i].curve),
-                              .target = problems[i].target,
-                              .point = {p.x, p.y, p.z},
-                              .is_point = true,
-                              .truth = truth[i]};
-    libraries_make(problems[i].points, degree + 1, degree, NULL, questions[i].own[0]);
+    queries[i] = (query){.mover = cprox_point_along(problems[i].curve),
+                         .target = problems[i].target,
+                         .point = {p.x, p.y, p.z},
+                         .is_point = true,
+                         .truth = truth[i]};
+    libraries_make(problems[i].points, degree + 1, degree, NULL, queries[i].own[0]);
   }
   char parameter[32];
   snprintf(parameter, sizeof parameter, "degree %zu", degree);
-  measure_questions(size, "point and curve", parameter, questions, n, 1e-15, q);
-  take_from_peers(questions, n);
+  measure_queries(size, "point and curve", parameter, queries, n, 1e-15, q);
+  take_from_peers(queries, n);
   free(truth);
   curve_problems_free(problems, n);
 }
@@ -99,17 +99,17 @@ void ask_curves_and_curves(const bench_size *size, size_t degree, asked *q) {
   const size_t n = size->problems / 2;
   curve_pair *pairs = curve_pairs_make(degree, false, n);
   double *truth = curve_pairs_truth(pairs, n);
-  question *questions = ask_memory(n, sizeof *questions);
+  query *queries = ask_memory(n, sizeof *queries);
   for (size_t i = 0; i < n; i++) {
-    questions[i] = (question){.mover = cprox_point_along(pairs[i].curve[0]),
-                              .target = cprox_curve_target(pairs[i].curve[1], 0.0),
-                              .truth = truth[i]};
-    for (int k = 0; k < 2; k++) libraries_make(pairs[i].points[k], degree + 1, degree, NULL, questions[i].own[k]);
+    queries[i] = (query){.mover = cprox_point_along(pairs[i].curve[0]),
+                         .target = cprox_obstacle_curve(pairs[i].curve[1], 0.0),
+                         .truth = truth[i]};
+    for (int k = 0; k < 2; k++) libraries_make(pairs[i].points[k], degree + 1, degree, NULL, queries[i].own[k]);
   }
   char parameter[32];
   snprintf(parameter, sizeof parameter, "degree %zu", degree);
-  measure_questions(size, "curve and curve", parameter, questions, n, 1e-15, q);
-  take_from_peers(questions, n);
+  measure_queries(size, "curve and curve", parameter, queries, n, 1e-15, q);
+  take_from_peers(queries, n);
   free(truth);
   curve_pairs_free(pairs, n);
 }
@@ -117,7 +117,7 @@ void ask_curves_and_curves(const bench_size *size, size_t degree, asked *q) {
 /* Two cubic B-splines of 20 segments in neighbouring cubes. */
 void ask_splines_and_splines(const bench_size *size, asked *q) {
   const size_t n = size->problems / 2;
-  question *questions = ask_memory(n, sizeof *questions);
+  query *queries = ask_memory(n, sizeof *queries);
   rng r = rng_seed(77);
   double knots[MOST_SPLINE_POINTS + 4];
   for (size_t i = 0; i < MOST_SPLINE_POINTS + 4; i++) knots[i] = (double)i;
@@ -129,20 +129,20 @@ void ask_splines_and_splines(const bench_size *size, asked *q) {
       ask_check(cprox_curve_create_bspline(points, MOST_SPLINE_POINTS, 3, knots, MOST_SPLINE_POINTS + 4, 3.0,
                                            MOST_SPLINE_POINTS, q->workspace, &curve[k]),
                 q->workspace);
-      libraries_make(points, MOST_SPLINE_POINTS, 3, knots, questions[i].own[k]);
+      libraries_make(points, MOST_SPLINE_POINTS, 3, knots, queries[i].own[k]);
     }
-    questions[i].mover = cprox_point_along(curve[0]);
-    questions[i].target = cprox_curve_target(curve[1], 0.0);
+    queries[i].mover = cprox_point_along(curve[0]);
+    queries[i].target = cprox_obstacle_curve(curve[1], 0.0);
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-13;
     cprox_result found;
-    cprox_distance(questions[i].mover, questions[i].target, &options, q->workspace, &found);
-    questions[i].truth = 0.5 * (found.lower + found.upper);
+    cprox_distance(queries[i].mover, queries[i].target, &options, q->workspace, &found);
+    queries[i].truth = 0.5 * (found.lower + found.upper);
   }
-  measure_questions(size, "curve and curve", "20 segments", questions, n, 1e-12, q);
+  measure_queries(size, "curve and curve", "20 segments", queries, n, 1e-12, q);
   for (size_t i = 0; i < n; i++) {
-    cprox_curve_free((cprox_curve *)questions[i].mover.curve);
-    cprox_curve_free((cprox_curve *)questions[i].target.curve);
+    cprox_curve_free((cprox_curve *)queries[i].mover.curve);
+    cprox_curve_free((cprox_curve *)queries[i].target.curve);
   }
-  take_from_peers(questions, n);
+  take_from_peers(queries, n);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A ball along a quintic past a convex solid: the least distance and the first contact. unsound counts contacts missed or invented;
- * samples claim nothing, their error tells. References: our intervals of width 1e-12, which the soundness campaigns hold. */
+/* A ball along a quintic past a convex solid: the least distance and the time of contact. unsound counts contacts
+ * missed or invented; samples claim nothing, their error tells. References: our intervals of width 1e-12, which the
+ * soundness campaigns hold. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +16,7 @@ static const double BALL = 0.05, EPSILON = 1e-6;
 typedef struct path {
   cprox_curve *curve;
   cprox_body *body;
-  cprox_target target;
+  cprox_obstacle target;
   double points[PATH_POINTS][3]; /* of the curve, at equal steps */
   void *distance, *contact;      /* of the peers */
   double truth;                  /* the distance */
@@ -38,9 +39,9 @@ static void path_contact(const void *problems, size_t i, void *state, bench_answ
   cprox_options options = cprox_options_default();
   options.epsilon = EPSILON;
   cprox_result r;
-  ask_take(cprox_first_contact(cprox_tube_along(p->curve, BALL), p->target, &options, q->workspace, &r), &r, a);
+  ask_take(cprox_time_of_contact(cprox_tube_along(p->curve, BALL), p->target, &options, q->workspace, &r), &r, a);
   a->wrong = (r.verdict == CPROX_YES) != p->touches;
-  a->lower = a->upper = p->touches ? r.t_free * (PATH_POINTS - 1) : -1.0;
+  a->lower = a->upper = p->touches ? r.t_contact_lower * (PATH_POINTS - 1) : -1.0;
 }
 
 #ifdef CPROX_BENCH_FCL
@@ -89,8 +90,9 @@ static bool make_path(rng *r, solid_kind kind, bool touching, cprox_workspace *w
   *p = (path){.curve = NULL};
   ask_check(cprox_curve_create_bezier(control, PATH_DEGREE + 1, 0.0, 1.0, ws, &p->curve), ws);
   ask_check(solid_body(&s, ws, &p->body), ws);
-  p->target = cprox_at(p->body, (cprox_pose){{s.position[0], s.position[1], s.position[2]},
-                                             {s.quaternion[0], s.quaternion[1], s.quaternion[2], s.quaternion[3]}});
+  p->target =
+      cprox_obstacle_at(p->body, (cprox_pose){{s.position[0], s.position[1], s.position[2]},
+                                              {s.quaternion[0], s.quaternion[1], s.quaternion[2], s.quaternion[3]}});
   for (int i = 0; i < PATH_POINTS; i++) {
     cprox_vec3 at;
     cprox_curve_evaluate(p->curve, (double)i / (PATH_POINTS - 1), ws, &at, NULL, NULL);
@@ -102,8 +104,8 @@ static bool make_path(rng *r, solid_kind kind, bool touching, cprox_workspace *w
   cprox_distance(cprox_tube_along(p->curve, BALL), p->target, &options, ws, &found);
   p->truth = 0.5 * (found.lower + found.upper);
   p->touches = found.upper <= 0.0;
-  cprox_first_contact(cprox_tube_along(p->curve, BALL), p->target, &options, ws, &found);
-  p->first = p->touches ? found.t_free * (PATH_POINTS - 1) : -1.0;
+  cprox_time_of_contact(cprox_tube_along(p->curve, BALL), p->target, &options, ws, &found);
+  p->first = p->touches ? found.t_contact_lower * (PATH_POINTS - 1) : -1.0;
   /* contacts begin outside */
   const bool fits = touching ? p->touches && p->first > 1.0 : p->truth > 1e-3;
   if (fits) {
@@ -150,7 +152,8 @@ void ask_paths(const bench_size *size, bool touching, solid_kind kind, asked *q)
 #ifdef CPROX_BENCH_BULLET
   if (touching) methods[count++] = (bench_method){path_peer_bullet.name, bullet_contact, NULL};
 #endif
-  const bench_workload w = {"peers", touching ? "first contact" : "path distance", names[kind], paths, n, truth, 2e-12};
+  const bench_workload w = {"peers", touching ? "time of contact" : "path distance", names[kind], paths, n, truth,
+                            2e-12};
   bench_measure(&w, size, methods, count);
   free(truth);
   free_paths(paths, n);

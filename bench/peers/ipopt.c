@@ -9,7 +9,7 @@
 
 /* The problem, and how many iterations it has taken so far. */
 typedef struct task {
-  const implicit_question *q;
+  const implicit_query *q;
   int iterations;
 } task;
 
@@ -37,7 +37,7 @@ static Bool objective_gradient(Index n, Number *x, Bool new_x, Number *gradient,
 
 static Bool constraints(Index n, Number *x, Bool new_x, Index m, Number *value, UserDataPtr user) {
   (void)n, (void)new_x, (void)m;
-  const implicit_question *q = ((const task *)user)->q;
+  const implicit_query *q = ((const task *)user)->q;
   const int32_t first = implicit_count(q->a), second = implicit_count(q->b);
   vec3 g;
   double h[6];
@@ -49,7 +49,7 @@ static Bool constraints(Index n, Number *x, Bool new_x, Index m, Number *value, 
 static Bool jacobian(Index n, Number *x, Bool new_x, Index m, Index nonzeros, Index *row, Index *column, Number *value,
                      UserDataPtr user) {
   (void)n, (void)new_x, (void)m, (void)nonzeros;
-  const implicit_question *q = ((const task *)user)->q;
+  const implicit_query *q = ((const task *)user)->q;
   const int32_t first = implicit_count(q->a), all = first + implicit_count(q->b);
   for (int32_t k = 0; k < all; k++) {
     const int offset = k < first ? 0 : 3;
@@ -68,7 +68,7 @@ static Bool jacobian(Index n, Number *x, Bool new_x, Index m, Index nonzeros, In
 static Bool lagrangian(Index n, Number *x, Bool new_x, Number factor, Index m, Number *lambda, Bool new_lambda,
                        Index nonzeros, Index *row, Index *column, Number *value, UserDataPtr user) {
   (void)n, (void)new_x, (void)m, (void)new_lambda, (void)nonzeros;
-  const implicit_question *q = ((const task *)user)->q;
+  const implicit_query *q = ((const task *)user)->q;
   double full[6][6] = {{0}};
   if (value) {
     const int32_t first = implicit_count(q->a), all = first + implicit_count(q->b);
@@ -105,9 +105,9 @@ static Bool count(Index mode, Index iteration, Number value, Number primal, Numb
   return TRUE;
 }
 
-ipopt_answer ipopt_pair(const implicit_question *question) {
-  task t = {.q = question};
-  const int32_t m = implicit_count(question->a) + implicit_count(question->b);
+ipopt_answer ipopt_pair(const implicit_query *query) {
+  task t = {.q = query};
+  const int32_t m = implicit_count(query->a) + implicit_count(query->b);
   double low[6], high[6], x[6] = {0}, value = 0.0;
   for (int i = 0; i < 6; i++) low[i] = -2e19, high[i] = 2e19;
   double *g_low = malloc((size_t)m * sizeof *g_low), *g_high = calloc((size_t)m, sizeof *g_high);

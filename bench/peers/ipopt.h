@@ -14,6 +14,6 @@ typedef struct ipopt_answer {
 } ipopt_answer;
 
 /* From the centres, to the tolerance 1e-8. */
-ipopt_answer ipopt_pair(const implicit_question *question);
+ipopt_answer ipopt_pair(const implicit_query *query);
 
 #endif

@@ -7,7 +7,7 @@
 
 void ask_check(cprox_status status, const cprox_workspace *ws) {
   if (status == CPROX_OK) return;
-  fprintf(stderr, "a problem could not be made: %s\n", cprox_workspace_reason(ws));
+  fprintf(stderr, "a problem could not be made: %s\n", cprox_workspace_error(ws));
   exit(1);
 }
 
@@ -18,7 +18,7 @@ void *ask_memory(size_t n, size_t size) {
 }
 
 void ask_take(cprox_status status, const cprox_result *r, bench_answer *a) {
-  *a = (bench_answer){.lower = r->lower, .upper = r->upper, .nodes = r->nodes, .probes = r->probes};
+  *a = (bench_answer){.lower = r->lower, .upper = r->upper, .nodes = r->nodes, .distance_queries = r->distance_queries};
   a->failed = status != CPROX_OK && status != CPROX_PRECISION;
 }
 
@@ -33,7 +33,7 @@ int main(int argc, char **argv) {
   if (bench_wanted(&size, "curve and curve")) ask_splines_and_splines(&size, &q);
   for (int kind = 0; kind < SOLID_KINDS; kind++) {
     if (bench_wanted(&size, "path distance")) ask_paths(&size, false, (solid_kind)kind, &q);
-    if (bench_wanted(&size, "first contact")) ask_paths(&size, true, (solid_kind)kind, &q);
+    if (bench_wanted(&size, "time of contact")) ask_paths(&size, true, (solid_kind)kind, &q);
   }
   cprox_workspace_free(q.workspace);
   return 0;

@@ -15,7 +15,7 @@ typedef struct naive_row {
 } naive_row;
 
 typedef struct naive {
-  const implicit_question *q;
+  const implicit_query *q;
   int32_t first, all; /* constraints of a, of both */
   naive_row *row;
   double x[6];
@@ -125,14 +125,14 @@ static bool advance(naive *n, const double step[6], double target) {
   return false;
 }
 
-naive_answer naive_pair(const implicit_question *question, double tolerance) {
-  naive n = {.q = question, .first = implicit_count(question->a)};
-  n.all = n.first + implicit_count(question->b);
+naive_answer naive_pair(const implicit_query *query, double tolerance) {
+  naive n = {.q = query, .first = implicit_count(query->a)};
+  n.all = n.first + implicit_count(query->b);
   n.row = calloc((size_t)n.all, sizeof *n.row);
   naive_answer answer = {.distance = INFINITY};
   look(&n);
   double mu = 0.1 * vec_norm2(apart(&n, n.x)) / n.all;
-  const double reach = question->a->radius + question->b->radius;
+  const double reach = query->a->radius + query->b->radius;
   for (int32_t k = 0; k < n.all; k++) n.row[k].l = -mu / n.row[k].f;
   for (; answer.iterations < NAIVE_STEPS; answer.iterations++) {
     double products = 0.0, step[6], residual;

@@ -12,6 +12,6 @@ typedef struct naive_answer {
   int iterations;
 } naive_answer;
 
-naive_answer naive_pair(const implicit_question *question, double tolerance);
+naive_answer naive_pair(const implicit_query *query, double tolerance);
 
 #endif

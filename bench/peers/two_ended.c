@@ -9,30 +9,30 @@
 #include "robot_query/pair_state.h"
 #include "solve/solve.h"
 
-/* A pair on a stretch: what is known of its distance at both ends. */
+/* A pair on a interval: what is known of its distance at both ends. */
 typedef struct ends {
   double lower, at[2];
   int32_t pair;
   bool known[2];
 } ends;
 
-typedef struct stretch {
+typedef struct interval {
   size_t segment;
   double a, b, lower;
   ends *list;
   size_t n;
-} stretch;
+} interval;
 
 typedef struct search {
   robot_scene scene;
-  stretch *heap;
+  interval *heap;
   size_t count, room;
   double upper, dropped, epsilon;
-  uint32_t nodes, probes;
+  uint32_t nodes, distance_queries;
   int order; /* 0: by both ends */
 } search;
 
-static void push(search *s, stretch node) {
+static void push(search *s, interval node) {
   if (s->count == s->room) {
     s->room = 2 * s->room + 64;
     s->heap = realloc(s->heap, s->room * sizeof *s->heap);
@@ -42,8 +42,8 @@ static void push(search *s, stretch node) {
   s->heap[i] = node;
 }
 
-static stretch pop(search *s) {
-  const stretch top = s->heap[0], moved = s->heap[--s->count];
+static interval pop(search *s) {
+  const interval top = s->heap[0], moved = s->heap[--s->count];
   size_t i = 0;
   for (size_t child = 1; child < s->count; child = 2 * i + 1) {
     if (child + 1 < s->count && s->heap[child + 1].lower < s->heap[child].lower) child++;
@@ -80,13 +80,13 @@ static double measured_gap(search *s, const robot_pair *pair) {
   robot_gap gap;
   robot_scene_measure(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair),
                       (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);
-  s->probes++;
+  s->distance_queries++;
   s->upper = fmin(s->upper, fmax(gap.upper, 0.0));
   return fmax(gap.lower, 0.0);
 }
 
-/* Bounds all pairs of a stretch; keeps those that matter. Balls first, then distances at the ends. */
-static void bound(search *s, stretch *node) {
+/* Bounds all pairs of a interval; keeps those that matter. Balls first, then distances at the ends. */
+static void bound(search *s, interval *node) {
   const size_t n_axes = s->scene.motion->robot->n_axes;
   double *ways = malloc(node->n * sizeof *ways);
   chain_axis *chain = malloc((n_axes + 1) * sizeof *chain);
@@ -129,8 +129,8 @@ static void bound(search *s, stretch *node) {
   free(ways), free(chain), free(balls[0]), free(balls[1]);
 }
 
-/* Bounds all pairs of a stretch by what is measured in its middle. */
-static void bound_centrally(search *s, stretch *node, int order) {
+/* Bounds all pairs of a interval by what is measured in its middle. */
+static void bound_centrally(search *s, interval *node, int order) {
   size_t kept = 0;
   s->nodes++;
   robot_scene_enter(&s->scene, node->segment, node->a, node->b);
@@ -145,7 +145,7 @@ static void bound_centrally(search *s, stretch *node, int order) {
     if (!(e.lower > s->upper - s->epsilon)) {
       robot_gap gap;
       robot_scene_measure(moving, standing, (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);
-      s->probes++;
+      s->distance_queries++;
       s->upper = fmin(s->upper, fmax(gap.upper, 0.0));
       e.lower = fmax(e.lower, gap.lower - motion->travel);
       if (order > 2 && gap.lower > 0.0) {
@@ -166,8 +166,8 @@ static void bound_centrally(search *s, stretch *node, int order) {
   node->n = kept;
 }
 
-static void add(search *s, size_t segment, double a, double b, const stretch *parent, int side) {
-  stretch node = {.segment = segment, .a = a, .b = b, .n = parent ? parent->n : s->scene.n_pairs};
+static void add(search *s, size_t segment, double a, double b, const interval *parent, int side) {
+  interval node = {.segment = segment, .a = a, .b = b, .n = parent ? parent->n : s->scene.n_pairs};
   node.list = malloc((node.n + 1) * sizeof *node.list);
   for (size_t i = 0; i < node.n; i++) {
     node.list[i] = parent ? parent->list[i] : (ends){.lower = -INFINITY, .pair = (int32_t)i};
@@ -183,18 +183,18 @@ static void add(search *s, size_t segment, double a, double b, const stretch *pa
     free(node.list);
 }
 
-static bool begin(search *s, question *q, const cprox_mover *mover, const cprox_target *targets, size_t n,
+static bool begin(search *s, query *q, const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
                   double epsilon, cprox_workspace *workspace) {
-  *q = question_create(*mover, targets, n, -1.0, false, NULL, workspace);
+  *q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);
   robot_ask_whole(q);
   *s = (search){.upper = INFINITY, .dropped = INFINITY, .epsilon = epsilon};
   return robot_scene_begin(&s->scene, q, 0, n);
 }
 
-void central_distance(const cprox_mover *mover, const cprox_target *targets, size_t n, int order, double epsilon,
+void central_distance(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, int order, double epsilon,
                       uint32_t max_nodes, cprox_workspace *workspace, peer_answer *answer) {
   search s;
-  question q;
+  query q;
   *answer = (peer_answer){0};
   if (!begin(&s, &q, mover, targets, n, epsilon, workspace)) return;
   s.order = order;
@@ -202,7 +202,7 @@ void central_distance(const cprox_mover *mover, const cprox_target *targets, siz
   double lower = INFINITY;
   bool complete = true;
   while (s.count > 0) {
-    stretch node = pop(&s);
+    interval node = pop(&s);
     complete = s.nodes < max_nodes;
     const bool done = node.lower > s.upper - epsilon || s.upper <= 0.0 || !complete;
     if (done) lower = fmin(lower, node.lower);
@@ -219,11 +219,11 @@ void central_distance(const cprox_mover *mover, const cprox_target *targets, siz
   *answer = (peer_answer){.lower = fmax(fmin(fmin(lower, s.dropped), s.upper), 0.0),
                           .upper = s.upper,
                           .nodes = s.nodes,
-                          .probes = s.probes,
+                          .distance_queries = s.distance_queries,
                           .complete = complete};
 }
 
-void two_ended_distance(const cprox_mover *mover, const cprox_target *targets, size_t n, double epsilon,
+void two_ended_distance(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double epsilon,
                         uint32_t max_nodes, cprox_workspace *workspace, peer_answer *answer) {
   central_distance(mover, targets, n, 0, epsilon, max_nodes, workspace, answer);
 }
@@ -244,10 +244,10 @@ int sampled_steps(const cprox_motion *motion, size_t segment, double step) {
   return 1 + (int)(swing(motion, segment) / step);
 }
 
-void sampled_distance(const cprox_mover *mover, const cprox_target *targets, size_t n, double step, bool first_hit,
+void sampled_distance(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double step, bool first_hit,
                       cprox_workspace *workspace, peer_answer *answer) {
   search s;
-  question q;
+  query q;
   *answer = (peer_answer){0};
   if (!begin(&s, &q, mover, targets, n, 1e-9, workspace)) return;
   for (size_t segment = 0; segment < s.scene.motion->n_segments; segment++) {
@@ -263,5 +263,6 @@ void sampled_distance(const cprox_mover *mover, const cprox_target *targets, siz
       if (first_hit && s.upper <= 0.0) segment = s.scene.motion->n_segments - 1, i = count;
     }
   }
-  *answer = (peer_answer){.lower = s.upper, .upper = s.upper, .nodes = s.nodes, .probes = s.probes, .complete = true};
+  *answer = (peer_answer){
+      .lower = s.upper, .upper = s.upper, .nodes = s.nodes, .distance_queries = s.distance_queries, .complete = true};
 }

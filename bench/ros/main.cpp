@@ -101,7 +101,7 @@ void waitFor(const char *what, Condition condition) {
   }
 }
 
-/* ---- the question -------------------------------------------------------------------------------------------------- */
+/* ---- the query -------------------------------------------------------------------------------------------------- */
 
 geometry_msgs::Point point(double x, double y, double z) {
   geometry_msgs::Point p;
@@ -146,7 +146,7 @@ void build(const std::string &server) {
 
 /* ---- what roscpp costs by itself ----------------------------------------------------------------------------------- */
 
-constexpr double WORK_US = 20.0; /* about what the core takes for the question */
+constexpr double WORK_US = 20.0; /* about what the core takes for the query */
 
 /** An answer of the usual size after the usual time. */
 Proximity plainAnswer() {
@@ -159,7 +159,7 @@ Proximity plainAnswer() {
   row.kind = "curve";
   row.b = "box10";
   row.status = "ok";
-  row.rung = "hull";
+  row.lod = "hull";
   return row;
 }
 
@@ -355,7 +355,7 @@ void measure(bool quick, int calls) {
     }
     measureMemory(handle, node, server, calls);
   }
-  handle.setParam(nodelet + "/verb", "distance");
+  handle.setParam(nodelet + "/query_type", "distance");
   nodelet::Loader loader;
   if (!loader.load(nodelet, "curve_proximity/ProximityServer", {}, {}))
     throw std::runtime_error("the nodelet does not load");

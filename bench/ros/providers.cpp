@@ -134,7 +134,7 @@ int main(int argc, char **argv) {
     options.signed_distance = true;
     const Ask core = [&](std::size_t i) {
       const cprox_mover mover = cprox_point_along(at.curves[i].curve.get());
-      const cprox_target target = cprox_at(pair.b.parts[0].body.get(), at.places[i].b);
+      const cprox_obstacle target = cprox_obstacle_at(pair.b.parts[0].body.get(), at.places[i].b);
       cprox_result result;
       cprox_gradient gradient;
       if (cprox_distance(mover, target, &options, workspace.get(), &result) >= 0)
@@ -156,8 +156,8 @@ int main(int argc, char **argv) {
     options.epsilon = 1e-9;
     const Ask core = [&](std::size_t i) {
       cprox_result result;
-      cprox_pair(cprox_at(pair.a.parts[0].body.get(), at.places[i].a),
-                 cprox_at(pair.b.parts[0].body.get(), at.places[i].b), &options, workspace.get(), &result);
+      cprox_pair(cprox_obstacle_at(pair.a.parts[0].body.get(), at.places[i].a),
+                 cprox_obstacle_at(pair.b.parts[0].body.get(), at.places[i].b), &options, workspace.get(), &result);
     };
     measure("SuperquadricDistance", n, size.rounds, core,
             [&](std::size_t i) { constraint->evaluate(at.places[i], workspace, value); });

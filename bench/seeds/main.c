@@ -14,82 +14,83 @@ typedef struct tools {
   paper_node *heap;
 } tools;
 
-/* One question of Table II or Fig. 10, put to both methods. */
-typedef struct question {
+/* One query of Table II or Fig. 10, put to both methods. */
+typedef struct query {
   const tools *tools;
-  paper_verb verb;
+  paper_query_type query_type;
   double delta;
   cprox_mover mover;
-  cprox_target target;
+  cprox_obstacle target;
   const paper_curve *first, *second; /* second NULL: the obstacle */
   const paper_obstacle *obstacle;
-} question;
+} query;
 
 static const double EPSILON = 1e-10;
-static const char *const VERBS[] = {"distance", "tolerance", "collision"};
+static const char *const QUERY_TYPES[] = {"distance", "tolerance", "collision"};
 
-static void ours(const void *questions, size_t i, void *state, bench_answer *a) {
+static void ours(const void *queries, size_t i, void *state, bench_answer *a) {
   (void)state;
-  const question *q = (const question *)questions + i;
+  const query *q = (const query *)queries + i;
   cprox_options options = cprox_options_default();
   options.epsilon = EPSILON;
   cprox_workspace *w = q->tools->workspace;
   cprox_result r = {.status = CPROX_INVALID};
-  switch (q->verb) {
+  switch (q->query_type) {
     case PAPER_DISTANCE: cprox_distance(q->mover, q->target, &options, w, &r); break;
     case PAPER_TOLERANCE: cprox_tolerance(q->mover, q->target, q->delta, &options, w, &r); break;
     case PAPER_COLLISION: cprox_collision(q->mover, q->target, &options, w, &r); break;
   }
-  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.probes};
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.distance_queries};
   a->failed = r.status != CPROX_OK && r.status != CPROX_PRECISION;
 }
 
-static void paper(const void *questions, size_t i, void *state, bench_answer *a) {
+static void paper(const void *queries, size_t i, void *state, bench_answer *a) {
   (void)state;
-  const question *q = (const question *)questions + i;
-  const paper_question asked = {.verb = q->verb, .delta = q->delta, .epsilon = EPSILON, .max_nodes = PAPER_MAX_NODES};
+  const query *q = (const query *)queries + i;
+  const paper_query asked = {
+      .query_type = q->query_type, .delta = q->delta, .epsilon = EPSILON, .max_nodes = PAPER_MAX_NODES};
   paper_answer r;
   if (q->second) {
     paper_search_curves(q->first, q->second, &asked, q->tools->heap, &r);
   } else {
     paper_search(q->first, q->obstacle, &asked, q->tools->heap, &r);
   }
-  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .probes = r.evaluations};
+  *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.evaluations};
   a->failed = !r.ended;
 }
 
-static void measure(const bench_size *size, const char *workload, const char *parameter, const question *questions,
+static void measure(const bench_size *size, const char *workload, const char *parameter, const query *queries,
                     size_t n) {
-  const bench_workload w = {.group = "seeds", .name = workload, .parameter = parameter, .problems = questions, .n = n};
+  const bench_workload w = {.group = "seeds", .name = workload, .parameter = parameter, .problems = queries, .n = n};
   const bench_method methods[] = {{"curve_proximity", ours, NULL}, {"paper", paper, NULL}};
   bench_measure(&w, size, methods, 2);
 }
 
 /* Distance, tolerance and collision; delta is half of the distance, as far as curves that cross have one. */
-static void measure_verbs(const bench_size *size, const char *workload, const char *parameter, question *questions,
-                          size_t n) {
+static void measure_query_types(const bench_size *size, const char *workload, const char *parameter, query *queries,
+                                size_t n) {
   for (size_t i = 0; i < n; i++) {
     bench_answer a;
-    questions[i].verb = PAPER_DISTANCE;
-    ours(questions, i, NULL, &a);
-    questions[i].delta = 0.5 * a.lower;
+    queries[i].query_type = PAPER_DISTANCE;
+    ours(queries, i, NULL, &a);
+    queries[i].delta = 0.5 * a.lower;
   }
-  for (int verb = PAPER_DISTANCE; verb <= PAPER_COLLISION; verb++) {
-    for (size_t i = 0; i < n; i++) questions[i].verb = (paper_verb)verb;
+  for (int query_type = PAPER_DISTANCE; query_type <= PAPER_COLLISION; query_type++) {
+    for (size_t i = 0; i < n; i++) queries[i].query_type = (paper_query_type)query_type;
     char name[96];
-    snprintf(name, sizeof name, "%s %s", workload, VERBS[verb]);
-    measure(size, name, parameter, questions, n);
+    snprintf(name, sizeof name, "%s %s", workload, QUERY_TYPES[query_type]);
+    measure(size, name, parameter, queries, n);
   }
 }
 
 /* ---- Table I: the length of a curve by quadrature, and its bound in closed form ------------------------------------------------ */
 
 /* One of the three curves, over one interval. */
-typedef struct stretch {
+typedef struct interval {
   double (*speed2)(double t);           /* |psi'|² */
   double (*energy)(double a, double b); /* its integral */
   double a, b;
-} stretch;
+} interval;
 
 static double ellipse_speed2(double t) {
   return 4.0 * sin(t) * sin(t) + cos(t) * cos(t);
@@ -123,9 +124,9 @@ static const double KRONROD_W[8] = {0.022935322010529224963732008058970, 0.06309
                                     0.16900472663926790282829453,        0.190350578064785409913256402421014,
                                     0.204432940075298892414161999234649, 0.209482141084727828012999174891714};
 
-static void length(const void *stretches, size_t i, void *state, bench_answer *a) {
+static void length(const void *intervals, size_t i, void *state, bench_answer *a) {
   (void)state;
-  const stretch *s = (const stretch *)stretches + i;
+  const interval *s = (const interval *)intervals + i;
   const double middle = 0.5 * (s->a + s->b), half = 0.5 * (s->b - s->a);
   double sum = KRONROD_W[7] * sqrt(s->speed2(middle));
   for (int k = 0; k < 7; k++)
@@ -134,9 +135,9 @@ static void length(const void *stretches, size_t i, void *state, bench_answer *a
   *a = (bench_answer){.lower = half * sum, .upper = half * sum};
 }
 
-static void length_bound(const void *stretches, size_t i, void *state, bench_answer *a) {
+static void length_bound(const void *intervals, size_t i, void *state, bench_answer *a) {
   (void)state;
-  const stretch *s = (const stretch *)stretches + i;
+  const interval *s = (const interval *)intervals + i;
   const double bound = sqrt((s->b - s->a) * s->energy(s->a, s->b));
   *a = (bench_answer){.lower = 0.0, .upper = bound};
 }
@@ -151,13 +152,13 @@ static void table_one(const bench_size *size) {
                 {"1/(t + 1) | t", hyperbola_speed2, hyperbola_energy}};
   enum { N = 32 };
   for (size_t k = 0; k < 3; k++) {
-    stretch stretches[N];
+    interval intervals[N];
     for (size_t i = 0; i < N; i++) {
       const double a = (double)(i % 8) / 16.0;
-      stretches[i] = (stretch){curves[k].speed2, curves[k].energy, a, a + 1.0 / (double)(2 + i / 8)};
+      intervals[i] = (interval){curves[k].speed2, curves[k].energy, a, a + 1.0 / (double)(2 + i / 8)};
     }
     const bench_workload w = {
-        .group = "seeds", .name = "table I", .parameter = curves[k].name, .problems = stretches, .n = N};
+        .group = "seeds", .name = "table I", .parameter = curves[k].name, .problems = intervals, .n = N};
     const bench_method methods[] = {{"length by quadrature", length, NULL},
                                     {"bound in closed form", length_bound, NULL}};
     bench_measure(&w, size, methods, 2);
@@ -174,7 +175,7 @@ static void figure_seven(const tools *t) {
   curve_problem *p = curve_problems_make(OBSTACLE_POLYGON, 13, 1);
   double last = INFINITY;
   for (uint32_t nodes = 1; nodes < 400 && last > EPSILON; nodes += 2) {
-    const paper_question q = {.verb = PAPER_DISTANCE, .epsilon = EPSILON, .max_nodes = nodes};
+    const paper_query q = {.query_type = PAPER_DISTANCE, .epsilon = EPSILON, .max_nodes = nodes};
     paper_answer r;
     paper_search(&p->paper, &p->paper_obstacle, &q, t->heap, &r);
     if (r.upper - r.lower < last) print_width("paper", nodes, last = r.upper - r.lower);
@@ -197,17 +198,17 @@ static void figure_ten(const bench_size *size, const tools *t) {
   enum { N = 10 };
   for (size_t order = 5; order <= 45; order += 5) {
     curve_problem *p = curve_problems_make(OBSTACLE_POINT, order, N);
-    question questions[N];
+    query queries[N];
     for (size_t i = 0; i < N; i++) {
-      questions[i] = (question){.tools = t,
-                                .mover = cprox_point_along(p[i].curve),
-                                .target = p[i].target,
-                                .first = &p[i].paper,
-                                .obstacle = &p[i].paper_obstacle};
+      queries[i] = (query){.tools = t,
+                           .mover = cprox_point_along(p[i].curve),
+                           .target = p[i].target,
+                           .first = &p[i].paper,
+                           .obstacle = &p[i].paper_obstacle};
     }
     char parameter[32];
     snprintf(parameter, sizeof parameter, "order %02zu", order);
-    measure_verbs(size, "figure 10", parameter, questions, N);
+    measure_query_types(size, "figure 10", parameter, queries, N);
     curve_problems_free(p, N);
   }
 }
@@ -219,23 +220,23 @@ static void table_two_polygon(const bench_size *size, const tools *t, const char
   cprox_body *body = NULL;
   if (cprox_body_create_polytope(vertex, n, t->workspace, &body) < 0) exit(1);
   const paper_obstacle polygon = {.vertex = vertex, .n = n};
-  question q = {.tools = t,
-                .mover = cprox_point_along(curve->curve),
-                .target = cprox_at(body, cprox_pose_identity()),
-                .first = &curve->paper,
-                .obstacle = &polygon};
-  measure_verbs(size, "table II", name, &q, 1);
+  query q = {.tools = t,
+             .mover = cprox_point_along(curve->curve),
+             .target = cprox_obstacle_at(body, cprox_pose_identity()),
+             .first = &curve->paper,
+             .obstacle = &polygon};
+  measure_query_types(size, "table II", name, &q, 1);
   cprox_body_free(body);
 }
 
 static void table_two_pair(const bench_size *size, const tools *t, const char *name, const cprox_curve *const curve[2],
                            const paper_curve *first, const paper_curve *second) {
-  question q = {.tools = t,
-                .mover = cprox_point_along(curve[0]),
-                .target = cprox_curve_target(curve[1], 0.0),
-                .first = first,
-                .second = second};
-  measure_verbs(size, "table II", name, &q, 1);
+  query q = {.tools = t,
+             .mover = cprox_point_along(curve[0]),
+             .target = cprox_obstacle_curve(curve[1], 0.0),
+             .first = first,
+             .second = second};
+  measure_query_types(size, "table II", name, &q, 1);
 }
 
 static void table_two_named(const bench_size *size, const tools *t, const char *name, const named_curve *a,

@@ -11,7 +11,7 @@
 
 enum { MAX_POINTS = 46, MAX_VERTICES = 8 };
 
-/* One question with its answer: a Bézier curve against a convex polygon, a point, or a second curve of the same degree. */
+/* One query with its answer: a Bézier curve against a convex polygon, a point, or a second curve of the same degree. */
 typedef struct hard {
   size_t degree, n;
   vec3 points[MAX_POINTS];

@@ -19,7 +19,7 @@ static double doubt(const hard *h) {
 }
 
 static void judge(const hard *h, bool ended, double lower, double upper, bench_answer *a) {
-  *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = a->nodes, .probes = a->probes};
+  *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = a->nodes, .distance_queries = a->distance_queries};
   const double slack = doubt(h);
   const bool contains = lower <= h->truth + slack && upper >= h->truth - slack;
   const bool narrow = upper - lower <= EPSILON + 4.0 * slack;
@@ -34,10 +34,11 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   const tools *t = state;
   cprox_options options = cprox_options_default();
   options.epsilon = EPSILON;
-  const cprox_target target = h->second ? cprox_curve_target(h->second, 0.0) : cprox_at(h->body, cprox_pose_identity());
+  const cprox_obstacle target =
+      h->second ? cprox_obstacle_curve(h->second, 0.0) : cprox_obstacle_at(h->body, cprox_pose_identity());
   cprox_result r = {.status = CPROX_INVALID};
   cprox_distance(cprox_point_along(h->curve), target, &options, t->workspace, &r);
-  *a = (bench_answer){.nodes = r.nodes, .probes = r.probes};
+  *a = (bench_answer){.nodes = r.nodes, .distance_queries = r.distance_queries};
   judge(h, r.status == CPROX_OK || (r.status == CPROX_PRECISION && r.upper - r.lower <= EPSILON + 4.0 * doubt(h)),
         r.lower, r.upper, a);
 }
@@ -45,7 +46,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
 static void paper(const void *problems, size_t i, void *state, bench_answer *a) {
   const hard *h = (const hard *)problems + i;
   const tools *t = state;
-  const paper_question q = {.verb = PAPER_DISTANCE, .epsilon = EPSILON, .max_nodes = 20000};
+  const paper_query q = {.query_type = PAPER_DISTANCE, .epsilon = EPSILON, .max_nodes = 20000};
   const paper_curve first = paper_bezier_curve(&h->bezier[0], h->planar);
   paper_answer r;
   if (h->second) {
@@ -55,7 +56,7 @@ static void paper(const void *problems, size_t i, void *state, bench_answer *a) 
     const paper_obstacle obstacle = {.vertex = h->vertex, .n = h->n};
     paper_search(&first, &obstacle, &q, t->heap, &r);
   }
-  *a = (bench_answer){.nodes = r.nodes, .probes = r.evaluations};
+  *a = (bench_answer){.nodes = r.nodes, .distance_queries = r.evaluations};
   judge(h, r.ended, r.lower, r.upper, a);
 }
 

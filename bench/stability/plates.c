@@ -27,7 +27,7 @@ static const kind KINDS[] = {
 typedef struct pass {
   cprox_curve *curve;
   cprox_body *body;
-  cprox_target target;
+  cprox_obstacle target;
   double radius;
   double hit; /* a parameter at which it collides */
   double points[FINE + 1][3];
@@ -86,7 +86,7 @@ static bool draw(rng *r, const kind *k, cprox_workspace *ws, pass *p) {
   if (cprox_curve_create_bezier(control, DEGREE + 1, 0.0, 1.0, ws, &p->curve) != CPROX_OK ||
       cprox_body_create_box(vec(size[0], size[1], size[2]), ws, &p->body) != CPROX_OK)
     exit(1);
-  p->target = cprox_at(p->body, pose);
+  p->target = cprox_obstacle_at(p->body, pose);
   if (!collides(k, ws, p)) {
     drop(p);
     return false;
@@ -116,7 +116,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   const pass *p = (const pass *)problems + i;
   cprox_result r = {.status = CPROX_INVALID};
   cprox_collision(cprox_tube_along(p->curve, p->radius), p->target, NULL, ((const tools *)state)->workspace, &r);
-  *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.nodes, .probes = r.probes};
+  *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.nodes, .distance_queries = r.distance_queries};
   a->wrong = r.verdict == CPROX_NO;
   a->failed = r.verdict == CPROX_UNDECIDED;
 }
@@ -127,12 +127,12 @@ static void our_contact(const void *problems, size_t i, void *state, bench_answe
   cprox_options options = cprox_options_default();
   options.epsilon = CONTACT;
   cprox_result r = {.status = CPROX_INVALID};
-  cprox_first_contact(cprox_tube_along(p->curve, p->radius), p->target, &options, ((const tools *)state)->workspace,
-                      &r);
-  *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.nodes, .probes = r.probes};
+  cprox_time_of_contact(cprox_tube_along(p->curve, p->radius), p->target, &options, ((const tools *)state)->workspace,
+                        &r);
+  *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.nodes, .distance_queries = r.distance_queries};
   a->failed = r.status != CPROX_OK;
-  a->wrong = !a->failed &&
-             (r.verdict != CPROX_YES || r.t_free > p->hit || distance_at(p, r.t_free) > p->radius + CONTACT + 1e-12);
+  a->wrong = !a->failed && (r.verdict != CPROX_YES || r.t_contact_lower > p->hit ||
+                            distance_at(p, r.t_contact_lower) > p->radius + CONTACT + 1e-12);
 }
 
 #ifdef CPROX_BENCH_FCL
@@ -174,7 +174,7 @@ void stability_plates(const bench_size *size, uint64_t seed, tools *t) {
   pass *problems = calloc(n, sizeof *problems);
   if (!problems) exit(1);
   const bench_method methods[] = {
-      {"curve_proximity", ours, t},         {"curve_proximity first contact", our_contact, t},
+      {"curve_proximity", ours, t},         {"curve_proximity time of contact", our_contact, t},
 #ifdef CPROX_BENCH_FCL
       {"FCL at 100 points", fcl_coarse, t}, {"FCL at 1000 points", fcl_fine, t},
 #endif

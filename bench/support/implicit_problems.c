@@ -12,7 +12,7 @@ static cprox_body *make(const cprox_implicit_description *description) {
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_body *body = NULL;
   if (cprox_body_create_implicit(description, NULL, workspace, &body) != CPROX_OK) {
-    fprintf(stderr, "%s\n", cprox_workspace_reason(workspace));
+    fprintf(stderr, "%s\n", cprox_workspace_error(workspace));
     exit(1);
   }
   cprox_workspace_free(workspace);
@@ -46,9 +46,9 @@ cprox_body *implicit_object(int object) {
 void implicit_problem_place(implicit_problem *p, cprox_pose pose) {
   const frame f = frame_create(&pose, vec(0, 0, 0));
   p->pose = pose;
-  p->question = (implicit_question){.a = p->a->shape.implicit, .b = p->b->shape.implicit};
-  for (int i = 0; i < 9; i++) p->question.m[i] = f.r[i];
-  p->question.t = vec_sub(frame_to_world(&f, p->b->centre), p->a->centre);
+  p->query = (implicit_query){.a = p->a->shape.implicit, .b = p->b->shape.implicit};
+  for (int i = 0; i < 9; i++) p->query.m[i] = f.r[i];
+  p->query.t = vec_sub(frame_to_world(&f, p->b->centre), p->a->centre);
 }
 
 implicit_problem *implicit_problems_make(const cprox_body *a, const cprox_body *b, double near, double far,
@@ -64,7 +64,7 @@ implicit_problem *implicit_problems_make(const cprox_body *a, const cprox_body *
     implicit_problem_place(p, (cprox_pose){.position = position, .orientation = rng_quat(&r)});
     const implicit_goal goal = {.epsilon = 1e-6, .max_steps = 2000};
     implicit_answer answer;
-    implicit_solve(&p->question, &goal, NULL, memory, &answer);
+    implicit_solve(&p->query, &goal, NULL, memory, &answer);
     i += answer.lower > 1e-3;
   }
   free(memory);
@@ -73,12 +73,12 @@ implicit_problem *implicit_problems_make(const cprox_body *a, const cprox_body *
 
 double *implicit_problems_truth(const implicit_problem *problems, size_t n) {
   double *truth = malloc(n * sizeof *truth);
-  void *memory = malloc(implicit_memory(problems->question.a, problems->question.b));
+  void *memory = malloc(implicit_memory(problems->query.a, problems->query.b));
   if (!truth || !memory) exit(1);
   for (size_t i = 0; i < n; i++) {
     const implicit_goal goal = {.relative_epsilon = 1e-11, .max_steps = 2000};
     implicit_answer answer;
-    implicit_solve(&problems[i].question, &goal, NULL, memory, &answer);
+    implicit_solve(&problems[i].query, &goal, NULL, memory, &answer);
     truth[i] = 0.5 * (answer.lower + answer.upper);
   }
   free(memory);

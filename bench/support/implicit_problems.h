@@ -11,7 +11,7 @@
 typedef struct implicit_problem {
   const cprox_body *a, *b;
   cprox_pose pose;
-  implicit_question question; /* the same, as the solvers take it */
+  implicit_query query; /* the same, as the solvers take it */
 } implicit_problem;
 
 /* The paper's objects I (1) to VI (6). */

@@ -62,7 +62,7 @@ bool bench_wanted(const bench_size *size, const char *workload) {
 /* What is kept of one method. */
 typedef struct record {
   double *time; /* medians, one a problem [s] */
-  double *nodes, *probes;
+  double *nodes, *distance_queries;
   double error;
   size_t unsound, failures;
 } record;
@@ -91,7 +91,7 @@ static effort effort_for(const bench_workload *w, const bench_size *size, const 
 
 static void judge(const bench_workload *w, size_t problem, const bench_answer *answer, record *r) {
   r->nodes[problem] = answer->nodes;
-  r->probes[problem] = answer->probes;
+  r->distance_queries[problem] = answer->distance_queries;
   if (answer->failed) {
     r->failures++;
     return;
@@ -111,8 +111,8 @@ typedef struct samples {
   bench_answer answer[MAX_METHODS];
 } samples;
 
-/* A method answers some problems in a row before the next one's turn: in use, too, questions come in rows, and what a method finds in the
- * caches is what it left there itself. */
+/* A method answers some problems in a row before the next one's turn: in use, too, queries come in rows, and what a
+ * method finds in the caches is what it left there itself. */
 static void measure_block(const bench_workload *w, const bench_size *size, const bench_method *methods, size_t n,
                           size_t first, size_t count, samples *block, record *records) {
   for (size_t m = 0; m < n; m++)
@@ -143,7 +143,7 @@ void bench_measure(const bench_workload *w, const bench_size *size, const bench_
     records[m].time = calloc(3 * w->n, sizeof(double));
     if (!records[m].time) abort();
     records[m].nodes = records[m].time + w->n;
-    records[m].probes = records[m].nodes + w->n;
+    records[m].distance_queries = records[m].nodes + w->n;
   }
 
   samples *block = calloc(BLOCK, sizeof *block);
@@ -159,7 +159,7 @@ void bench_measure(const bench_workload *w, const bench_size *size, const bench_
     record *r = &records[m];
     printf("%s,%s,%s,%s,%.4g,%.4g,%.4g,%.4g,", w->group, w->name, methods[m].name, w->parameter,
            1e6 * quantile(r->time, w->n, 0.5), 1e6 * quantile(r->time, w->n, 0.95), quantile(r->nodes, w->n, 0.5),
-           quantile(r->probes, w->n, 0.5));
+           quantile(r->distance_queries, w->n, 0.5));
     if (w->truth) printf("%.3g", r->error);
     printf(",%zu,%zu\n", r->unsound, r->failures);
     free(r->time);

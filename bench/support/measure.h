@@ -16,7 +16,7 @@ extern "C" {
 /* What a method says about one problem. */
 typedef struct bench_answer {
   double lower, upper; /* of the distance; a method without bounds sets both to its value */
-  uint32_t nodes, probes;
+  uint32_t nodes, distance_queries;
   bool failed;    /* it did not end, or said that it could not answer */
   uint32_t wrong; /* how many verdicts are not what the truth says */
 } bench_answer;
@@ -48,9 +48,10 @@ typedef struct bench_size {
 bench_size bench_arguments(int argc, char **argv);
 bool bench_wanted(const bench_size *size, const char *workload);
 
-/* Prints a row for each method: group,workload,method,parameter,median_us,p95_us,nodes,probes,error,unsound,failures. Times are
- * medians over the rounds, then median and 95 % over the problems, of thread CPU time; nodes and probes are medians over the
- * problems; error is the largest |upper - truth|; unsound counts intervals that do not contain the truth and wrong verdicts. */
+/* Prints a row for each method: group,workload,method,parameter,median_us,p95_us,nodes,distance
+ * queries,error,unsound,failures. Times are medians over the rounds, then median and 95 % over the problems, of thread
+ * CPU time; nodes and distance queries are medians over the problems; error is the largest |upper - truth|; unsound
+ * counts intervals that do not contain the truth and wrong verdicts. */
 void bench_measure(const bench_workload *workload, const bench_size *size, const bench_method *methods, size_t n);
 
 #ifdef __cplusplus

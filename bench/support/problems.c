@@ -108,7 +108,7 @@ static bool make_problem(rng *r, obstacle_kind kind, size_t degree, cprox_worksp
   make_points(r, degree, planar, p->points);
   obstacle_make(r, kind, &p->obstacle);
   check(cprox_curve_create_bezier(p->points, degree + 1, 0.0, 1.0, NULL, &p->curve));
-  p->target = cprox_at(p->obstacle.body, cprox_pose_identity());
+  p->target = cprox_obstacle_at(p->obstacle.body, cprox_pose_identity());
   cprox_result result;
   check(cprox_distance(cprox_point_along(p->curve), p->target, NULL, ws, &result));
   if (result.lower > 1e-3) {
@@ -207,7 +207,7 @@ curve_pair *curve_pairs_make(size_t degree, bool planar, size_t n) {
       p->paper[k] = paper_bezier_curve(&p->bezier[k], planar);
     }
     cprox_result result;
-    check(cprox_distance(cprox_point_along(p->curve[0]), cprox_curve_target(p->curve[1], 0.0), NULL, ws, &result));
+    check(cprox_distance(cprox_point_along(p->curve[0]), cprox_obstacle_curve(p->curve[1], 0.0), NULL, ws, &result));
     if (result.lower > 1e-3) {
       i++;
     } else {

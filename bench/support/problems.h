@@ -37,7 +37,7 @@ typedef struct curve_problem {
   vec3 points[PROBLEM_MAX_POINTS];
   cprox_curve *curve;
   obstacle obstacle;
-  cprox_target target;
+  cprox_obstacle target;
   paper_bezier bezier;
   paper_curve paper;
   paper_obstacle paper_obstacle;

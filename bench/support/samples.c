@@ -23,8 +23,8 @@ static void take_points(const cprox_curve *curve, size_t n, vec3 *points) {
   }
 }
 
-static void ask(const void *questions, size_t i, void *state, bench_answer *a) {
-  const sampled_question *p = (const sampled_question *)questions + i;
+static void ask(const void *queries, size_t i, void *state, bench_answer *a) {
+  const sampled_query *p = (const sampled_query *)queries + i;
   const effort *e = state;
   const size_t n = p->second ? (size_t)sqrt((double)e->samples) : e->samples;
   double least = INFINITY;
@@ -43,22 +43,22 @@ static void ask(const void *questions, size_t i, void *state, bench_answer *a) {
 }
 
 void samples_measure(const bench_size *size, const char *group, const char *workload, const char *prefix,
-                     sampled_question *questions, size_t n, const double *truth) {
-  const bool polytope = questions[0].obstacle && questions[0].obstacle->n > 1;
+                     sampled_query *queries, size_t n, const double *truth) {
+  const bool polytope = queries[0].obstacle && queries[0].obstacle->n > 1;
   if (polytope && !sampling_polytope_name()) return;
   for (size_t i = 0; i < n && polytope; i++) {
-    const obstacle *o = questions[i].obstacle;
-    questions[i].peer = sampling_polytope(o->vertex, o->n, (const int(*)[3])o->triangle, o->triangles);
+    const obstacle *o = queries[i].obstacle;
+    queries[i].peer = sampling_polytope(o->vertex, o->n, (const int(*)[3])o->triangle, o->triangles);
   }
   effort e = {.points = calloc(2 * (MOST_SAMPLES + 1), sizeof *e.points)};
   if (!e.points) exit(1);
   for (e.samples = 100; e.samples <= MOST_SAMPLES; e.samples *= 10) {
     char parameter[64];
     snprintf(parameter, sizeof parameter, "%ssamples %zu", prefix, e.samples);
-    const bench_workload w = {group, workload, parameter, questions, n, truth, 1e-9};
+    const bench_workload w = {group, workload, parameter, queries, n, truth, 1e-9};
     const bench_method method = {polytope ? sampling_polytope_name() : "points of the curve", ask, &e};
     bench_measure(&w, size, &method, 1);
   }
-  for (size_t i = 0; i < n && polytope; i++) sampling_polytope_free(questions[i].peer);
+  for (size_t i = 0; i < n && polytope; i++) sampling_polytope_free(queries[i].peer);
   free(e.points);
 }

@@ -26,11 +26,11 @@ static void our_collision(const void *problems, size_t i, void *state, bench_ans
   a->wrong = (r.verdict == CPROX_YES) != p->hits;
 }
 
-static void our_first_contact(const void *problems, size_t i, void *state, bench_answer *a) {
+static void our_time_of_contact(const void *problems, size_t i, void *state, bench_answer *a) {
   const worlds_problem *p = (const worlds_problem *)problems + i;
   const cprox_options o = worlds_options(CONTACT);
   cprox_result r = {.status = CPROX_INVALID};
-  cprox_first_contact(worlds_mover(p), p->target, &o, ((worlds_asked *)state)->ws, &r);
+  cprox_time_of_contact(worlds_mover(p), p->target, &o, ((worlds_asked *)state)->ws, &r);
   worlds_take(&r, a);
   a->wrong = (r.verdict == CPROX_YES) != p->hits;
 }
@@ -38,7 +38,7 @@ static void our_first_contact(const void *problems, size_t i, void *state, bench
 static void our_ball(const void *problems, size_t i, void *state, bench_answer *a) {
   const worlds_problem *p = (const worlds_problem *)problems + i;
   cprox_result r = {.status = CPROX_INVALID};
-  cprox_pair(cprox_at(p->ball, p->middle), p->target, NULL, ((worlds_asked *)state)->ws, &r);
+  cprox_pair(cprox_obstacle_at(p->ball, p->middle), p->target, NULL, ((worlds_asked *)state)->ws, &r);
   worlds_take(&r, a);
 }
 
@@ -92,9 +92,9 @@ typedef struct some {
 } some;
 
 /* Ours and, where there are any, the peers. */
-static void measure(const some *s, const char *question, bench_run ours, const bench_method *peers, size_t n_peers) {
+static void measure(const some *s, const char *query, bench_run ours, const bench_method *peers, size_t n_peers) {
   char name[64];
-  snprintf(name, sizeof name, "%s %s", s->scene->what, question);
+  snprintf(name, sizeof name, "%s %s", s->scene->what, query);
   if (!bench_wanted(s->size, name) || s->n == 0) return;
   const bench_workload w = {.group = "worlds",
                             .name = name,
@@ -115,7 +115,7 @@ static size_t make_clear(const worlds_scene *scene, rng *r, worlds_asked *q, siz
   const cprox_options fine = worlds_options(1e-12);
   size_t found = 0;
   for (int tries = 0; found < n && tries < 100000; tries++) {
-    worlds_problem p = {.target = cprox_at(scene->body, cprox_pose_identity()), .peer = scene->peer};
+    worlds_problem p = {.target = cprox_obstacle_at(scene->body, cprox_pose_identity()), .peer = scene->peer};
     worlds_curve_make(r, &p, scene->centre, scene->half, scene->scale);
     cprox_result result;
     worlds_check(cprox_distance(worlds_mover(&p), p.target, &fine, q->ws, &result), q->ws);
@@ -139,7 +139,7 @@ static size_t choose_balls(const worlds_problem *clear, size_t n, const cprox_bo
     worlds_problem p = clear[i];
     p.ball = (cprox_body *)ball;
     cprox_result result;
-    worlds_check(cprox_pair(cprox_at(ball, p.middle), p.target, NULL, q->ws, &result), q->ws);
+    worlds_check(cprox_pair(cprox_obstacle_at(ball, p.middle), p.target, NULL, q->ws, &result), q->ws);
     if (!(result.lower > 1e-3)) continue;
     truth[found] = 0.5 * (result.lower + result.upper);
     balls[found++] = p;
@@ -151,7 +151,8 @@ static size_t choose_balls(const worlds_problem *clear, size_t n, const cprox_bo
 static size_t make_tubes(const worlds_scene *scene, rng *r, worlds_asked *q, size_t n, worlds_problem *tubes) {
   size_t found = 0;
   for (int tries = 0; found < 2 * n && tries < 100000; tries++) {
-    worlds_problem p = {.target = cprox_at(scene->body, cprox_pose_identity()), .peer = scene->peer, .radius = BALL};
+    worlds_problem p = {
+        .target = cprox_obstacle_at(scene->body, cprox_pose_identity()), .peer = scene->peer, .radius = BALL};
     worlds_curve_make(r, &p, scene->centre, scene->half, scene->scale);
     cprox_result result;
     worlds_check(cprox_collision(worlds_mover(&p), p.target, NULL, q->ws, &result), q->ws);
@@ -186,7 +187,7 @@ void worlds_ask_body(const worlds_scene *scene, rng *r, const bench_size *size, 
     for (size_t i = 0; i < n_tubes; i++)
       if (tubes[i].hits == (hits == 1)) chosen[s.n++] = tubes[i];
     measure(&s, hits ? "collision hit" : "collision free", our_collision, &COLLISION, N_PEERS);
-    measure(&s, hits ? "first contact hit" : "first contact free", our_first_contact, NULL, 0);
+    measure(&s, hits ? "time of contact hit" : "time of contact free", our_time_of_contact, NULL, 0);
   }
 
   for (size_t i = 0; i < n_clear; i++) cprox_curve_free(clear[i].curve);

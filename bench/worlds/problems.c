@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Curves, questions and rows that all workloads share. */
+/* Curves, queries and rows that all workloads share. */
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 
 void worlds_check(cprox_status status, const cprox_workspace *ws) {
   if (status >= 0) return;
-  fprintf(stderr, "worlds: %s\n", cprox_workspace_reason(ws));
+  fprintf(stderr, "worlds: %s\n", cprox_workspace_error(ws));
   exit(1);
 }
 
@@ -33,7 +33,7 @@ cprox_mover worlds_mover(const worlds_problem *p) {
 }
 
 void worlds_take(const cprox_result *r, bench_answer *a) {
-  *a = (bench_answer){.lower = r->lower, .upper = r->upper, .nodes = r->nodes, .probes = r->probes};
+  *a = (bench_answer){.lower = r->lower, .upper = r->upper, .nodes = r->nodes, .distance_queries = r->distance_queries};
   a->failed = r->status < 0 || r->status == CPROX_BUDGET;
 }
 

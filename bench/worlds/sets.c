@@ -32,8 +32,8 @@ void worlds_ask_sets(const bench_size *size, worlds_asked *q) {
     rng r = rng_seed(307);
     const size_t n = counts[k], m = size->problems < 40 ? size->problems : 40;
     const double half = 0.5 * cbrt((double)n);
-    cprox_target *targets = worlds_get(n * sizeof *targets);
-    for (size_t i = 0; i < n; i++) targets[i] = cprox_at(body, rng_pose(&r, half));
+    cprox_obstacle *targets = worlds_get(n * sizeof *targets);
+    for (size_t i = 0; i < n; i++) targets[i] = cprox_obstacle_at(body, rng_pose(&r, half));
     cprox_set *set = NULL;
     worlds_check(cprox_set_create(targets, n, q->ws, &set), q->ws);
     worlds_problem *problems = worlds_get(m * sizeof *problems);

@@ -15,12 +15,12 @@ static const double WORLDS_EPSILON = 1e-6;
 typedef struct worlds_problem {
   vec3 points[WORLDS_POINTS];
   cprox_curve *curve;
-  cprox_body *ball; /* at the curve's middle, for questions about one ball */
+  cprox_body *ball; /* at the curve's middle, for queries about one ball */
   cprox_pose middle;
   double radius;
-  cprox_target target;
+  cprox_obstacle target;
   const cprox_set *set;
-  const cprox_target *targets;
+  const cprox_obstacle *targets;
   size_t n_targets;
   const world_peer *peer;
   bool hits;

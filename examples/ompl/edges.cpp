@@ -5,10 +5,10 @@
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 
 using curve_proximity::Answer;
-using curve_proximity::Question;
+using curve_proximity::Query;
+using curve_proximity::QueryType;
 using curve_proximity::RobotMotion;
 using curve_proximity::TrajectoryDescription;
-using curve_proximity::Verb;
 
 namespace {
 
@@ -29,14 +29,14 @@ bool clearBetween(const Task &task, const std::vector<double> &from, const std::
   edge.points = {{from, {}, {}, 0.0}, {to, {}, {}, 1.0}};
   const RobotMotion motion(task.snapshot, edge, task.rest, task.disabled);
 
-  Question question;
-  question.verb = Verb::TOLERANCE;
-  question.delta = task.clearance;
-  for (const Answer &answer : askEnvironment(motion, question, workspace)) {
+  Query query;
+  query.query_type = QueryType::TOLERANCE;
+  query.delta = task.clearance;
+  for (const Answer &answer : askEnvironment(motion, query, workspace)) {
     if (answer.result.verdict != CPROX_YES) return false;
   }
-  question.delta = 0.0;
-  return askSelf(motion, question, workspace).result.verdict == CPROX_YES;
+  query.delta = 0.0;
+  return askSelf(motion, query, workspace).result.verdict == CPROX_YES;
 }
 
 bool CertifiedMotionValidator::checkMotion(const ompl::base::State *from, const ompl::base::State *to) const {

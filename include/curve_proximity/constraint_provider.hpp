@@ -80,9 +80,9 @@ struct ConstraintValue {
   Eigen::Matrix3Xd points;
   double radius = 0.0;                                 /**< by the curve's radius (of other pairs 0) */
   double t = std::numeric_limits<double>::quiet_NaN(); /**< the curve's parameter where the value is attained */
-  bool has_points = false;                             /**< point_a, point_b and normal are set */
-  Eigen::Vector3d point_a = Eigen::Vector3d::Zero();   /**< [m] the nearest points, in the fixed frame */
-  Eigen::Vector3d point_b = Eigen::Vector3d::Zero();
+  bool has_points = false;                             /**< witness_a, witness_b and normal are set */
+  Eigen::Vector3d witness_a = Eigen::Vector3d::Zero(); /**< [m] the nearest points, in the fixed frame */
+  Eigen::Vector3d witness_b = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero(); /**< unit, from b to a */
 };
 
@@ -111,9 +111,9 @@ constexpr std::uint64_t providerLayout() {
   for (const std::size_t part :
        {sizeof(ConstraintPair), sizeof(ConstraintBody::Part), sizeof(ShapeDescription), sizeof(CurveDescription),
         sizeof(ConstraintCurve), sizeof(ConstraintPlace), sizeof(ConstraintValue), sizeof(Workspace),
-        sizeof(ParameterMap), sizeof(ParameterValue), sizeof(cprox_options), sizeof(cprox_target), sizeof(cprox_mover),
-        sizeof(cprox_result), sizeof(cprox_gradient), alignof(ConstraintValue), alignof(ConstraintPair),
-        static_cast<std::size_t>(EIGEN_MAX_STATIC_ALIGN_BYTES)})
+        sizeof(ParameterMap), sizeof(ParameterValue), sizeof(cprox_options), sizeof(cprox_obstacle),
+        sizeof(cprox_mover), sizeof(cprox_result), sizeof(cprox_gradient), alignof(ConstraintValue),
+        alignof(ConstraintPair), static_cast<std::size_t>(EIGEN_MAX_STATIC_ALIGN_BYTES)})
     layout = layout * 1000003u + part;
   return layout;
 }

@@ -59,7 +59,7 @@ class Workspace {
 
   /** Why the last call did not end with CPROX_OK; "" where it did. */
   std::string reason() const {
-    return cprox_workspace_reason(handle_.get());
+    return cprox_workspace_error(handle_.get());
   }
 
  private:
@@ -263,11 +263,9 @@ inline BodyHandle makeMesh(const Eigen::Matrix3Xd &vertices, const Eigen::Matrix
 
 /** A mesh, points or boxes with a convex hull that answers what does not need them; it keeps both alive. excess [m] >=
  *  0: no point of the mesh is farther than this from the hull. */
-inline BodyHandle makeLadder(const BodyHandle &hull, double excess, const BodyHandle &mesh) {
+inline BodyHandle makeLod(const BodyHandle &hull, double excess, const BodyHandle &mesh) {
   return detail::makeBody(
-      [&](cprox_workspace *w, cprox_body **b) {
-        return cprox_body_create_ladder(hull.get(), excess, mesh.get(), w, b);
-      },
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_lod(hull.get(), excess, mesh.get(), w, b); },
       std::make_pair(hull, mesh));
 }
 
@@ -486,15 +484,16 @@ inline CurveHandle makeRectifiable(RectifiableCurve functions, double t0, double
       keep);
 }
 
-/* ---- the verbs: as in cprox/query.h, throwing Error where there is no answer ------------------------------------- */
+/* ---- the queries: as in cprox/query.h, throwing Error where there is no answer -------------------------------------
+ * */
 
-/** A body somewhere: kept by reference, so the BodyHandle must outlive the target. padding >= 0 [m]. */
-inline cprox_target at(const BodyHandle &body, const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity(),
-                       double padding = 0.0) {
-  return cprox_padded(cprox_at(body.get(), toPose(pose)), padding);
+/** A body somewhere: kept by reference, so the BodyHandle must outlive the target. margin >= 0 [m]. */
+inline cprox_obstacle at(const BodyHandle &body, const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity(),
+                         double margin = 0.0) {
+  return cprox_with_margin(cprox_obstacle_at(body.get(), toPose(pose)), margin);
 }
-cprox_target at(BodyHandle &&body, const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity(),
-                double padding = 0.0) = delete; // the target would dangle
+cprox_obstacle at(BodyHandle &&body, const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity(),
+                  double margin = 0.0) = delete; // the target would dangle
 
 /** A ball of the radius (0: a point) along the curve, which must outlive the mover. */
 inline cprox_mover along(const CurveHandle &curve, double radius = 0.0) {
@@ -502,28 +501,28 @@ inline cprox_mover along(const CurveHandle &curve, double radius = 0.0) {
 }
 cprox_mover along(CurveHandle &&curve, double radius = 0.0) = delete;
 
-inline cprox_result distance(const cprox_mover &mover, const cprox_target &target, const cprox_options &options,
+inline cprox_result distance(const cprox_mover &mover, const cprox_obstacle &target, const cprox_options &options,
                              Workspace &workspace) {
   cprox_result result{};
   require(cprox_distance(mover, target, &options, workspace.get(), &result), workspace);
   return result;
 }
 
-inline cprox_result tolerance(const cprox_mover &mover, const cprox_target &target, double delta,
+inline cprox_result tolerance(const cprox_mover &mover, const cprox_obstacle &target, double delta,
                               const cprox_options &options, Workspace &workspace) {
   cprox_result result{};
   require(cprox_tolerance(mover, target, delta, &options, workspace.get(), &result), workspace);
   return result;
 }
 
-inline cprox_result collision(const cprox_mover &mover, const cprox_target &target, const cprox_options &options,
+inline cprox_result collision(const cprox_mover &mover, const cprox_obstacle &target, const cprox_options &options,
                               Workspace &workspace) {
   cprox_result result{};
   require(cprox_collision(mover, target, &options, workspace.get(), &result), workspace);
   return result;
 }
 
-inline cprox_result pair(const cprox_target &a, const cprox_target &b, const cprox_options &options,
+inline cprox_result pair(const cprox_obstacle &a, const cprox_obstacle &b, const cprox_options &options,
                          Workspace &workspace) {
   cprox_result result{};
   require(cprox_pair(a, b, &options, workspace.get(), &result), workspace);
@@ -535,7 +534,7 @@ inline cprox_result pair(const cprox_target &a, const cprox_target &b, const cpr
 class Set {
  public:
   /** What the targets name must outlive the set. */
-  explicit Set(const std::vector<cprox_target> &targets) {
+  explicit Set(const std::vector<cprox_obstacle> &targets) {
     const Workspace workspace;
     cprox_set *made = nullptr;
     require(cprox_set_create(targets.data(), targets.size(), workspace.get(), &made), workspace);
@@ -564,7 +563,7 @@ class Set {
 
   cprox_result firstContact(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
     cprox_result result{};
-    require(cprox_set_first_contact(handle_.get(), mover, &options, workspace.get(), &result), workspace);
+    require(cprox_set_time_of_contact(handle_.get(), mover, &options, workspace.get(), &result), workspace);
     return result;
   }
 

@@ -33,7 +33,8 @@ std::string resolveResource(const std::string &uri, const ResourceOptions &optio
 
 /** A body made of a description. */
 struct Geometry {
-  BodyHandle body;     /**< of a mesh a ladder: its convex hull, and its triangles where the hull cannot decide */
+  BodyHandle
+      body; /**< of a mesh a level-of-detail body: its convex hull, and its triangles where the hull cannot decide */
   BodyHandle hull;     /**< of a mesh its convex hull alone, else the body */
   BodyHandle surface;  /**< the body without its inside, where it is a mesh that has one; else the body */
   double excess = 0.0; /**< [m] how far points of the shape may be outside the body, as whoever moved it knows */

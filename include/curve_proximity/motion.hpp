@@ -57,30 +57,30 @@ class RobotMotion {
   std::unique_ptr<const Data> data_;
 };
 
-/** Questions about a robot in motion take no question.links and no signed_distance: such a question is refused.
+/** Queries about a robot in motion take no query.links and no signed_distance: such a query is refused.
  *  askSelf(), nearestPairs() and clearanceProfile() take no per_object, none about the robot itself takes
- *  question.objects, and the last two take no other verb than DISTANCE and no certificate.
+ *  query.objects, and the last two take no other query than DISTANCE and no certificate.
  *
- *  How close the moving links and what they carry come to the objects (question.objects: only these; per_object: an
+ *  How close the moving links and what they carry come to the objects (query.objects: only these; per_object: an
  *  answer for each object, in the order of their names). kind "environment", a the link or the carried object, b the
  *  object, result.t the time [s], result.mover_part the number of the collision element of a. As ask() of query.hpp in
  *  everything else. */
-std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &question, Workspace &workspace);
+std::vector<Answer> askEnvironment(const RobotMotion &motion, const Query &query, Workspace &workspace);
 
 /** How close the robot comes to itself: pairs of links between which at least two joints can move and this trajectory
  *  moves one, and pairs of what a link carries and any other link, or what that carries, that this trajectory moves
  *  against each other; less those that are disabled, touch_links or allowed to touch. kind "self", a and b links or
- *  carried objects; result.target_index is the number of the collision element of b. */
-Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &workspace);
+ *  carried objects; result.obstacle_index is the number of the collision element of b. */
+Answer askSelf(const RobotMotion &motion, const Query &query, Workspace &workspace);
 
-/** The question as the program cprox_check reads it (doc/certificates.md): where things stand, the robot along its
+/** The query as the program cprox_check reads it (doc/certificates.md): where things stand, the robot along its
  *  motion, the pairs that askEnvironment() or with `self` askSelf() asks about; meshes by their convex hulls. A
  *  certificate of these (options.certificate) is about this text. Empty where there is no pair, or a body of a kind
  *  that has no certificates. */
-std::string describeQuestion(const RobotMotion &motion, bool self, const Question &question);
+std::string describeQuery(const RobotMotion &motion, bool self, const Query &query);
 
 /** What has no certificates, with its kind: a sentence each. Where there is any, no answer can be proven. */
-std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Question &question);
+std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Query &query);
 
 /** How many pairs are asked about at most, and how close they must come. */
 struct PairLimits {
@@ -88,25 +88,26 @@ struct PairLimits {
   double within = std::numeric_limits<double>::infinity(); /**< [m] >= 0 */
 };
 
-/** The pairs that come closest, nearest first: of a link or carried object and an object (question.objects: only
+/** The pairs that come closest, nearest first: of a link or carried object and an object (query.objects: only
  *  these), or, `self`, of two that belong to the robot. Each answer is that to DISTANCE for its pair alone; pairs are
  *  of single collision elements. */
-std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits,
-                                 const Question &question, Workspace &workspace);
+std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits, const Query &query,
+                                 Workspace &workspace);
 
-/** The clearance of a robot on one stretch of its trajectory. */
-struct ClearanceStretch {
-  double t0 = 0.0, t1 = 0.0;       /**< [s] */
-  double lower = 0.0, upper = 0.0; /**< [m] contain the least distance over the stretch; infinity: nothing to measure */
-  double t = 0.0;                  /**< [s] where upper was attained */
-  std::string a, b;                /**< of whom: empty where nothing was measured */
+/** The clearance of a robot on one interval of its trajectory. */
+struct ClearanceInterval {
+  double t0 = 0.0, t1 = 0.0; /**< [s] */
+  double lower = 0.0,
+         upper = 0.0; /**< [m] contain the least distance over the interval; infinity: nothing to measure */
+  double t = 0.0;     /**< [s] where upper was attained */
+  std::string a, b;   /**< of whom: empty where nothing was measured */
 };
 
-/** The swept clearance: the least distance of the robot to the objects (question.objects: only these), or with `self`
- *  to itself, on each stretch between two breaks [s], ascending and within domain(). Throws Error for breaks that are
+/** The swept clearance: the least distance of the robot to the objects (query.objects: only these), or with `self`
+ *  to itself, on each interval between two breaks [s], ascending and within domain(). Throws Error for breaks that are
  *  not, and where the core refuses. */
-std::vector<ClearanceStretch> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
-                                               const Question &question, Workspace &workspace);
+std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
+                                                const Query &query, Workspace &workspace);
 
 } // namespace curve_proximity
 #endif

@@ -177,7 +177,7 @@ class Batch {
   };
 
   /** What the targets name must outlive the batch. Throws Error as cprox_batch_create() fails. */
-  explicit Batch(const std::vector<cprox_target> &targets) {
+  explicit Batch(const std::vector<cprox_obstacle> &targets) {
     const Workspace workspace;
     cprox_batch *made = nullptr;
     require(cprox_batch_create(targets.data(), targets.size(), workspace.get(), &made), workspace);

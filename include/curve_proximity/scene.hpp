@@ -71,9 +71,9 @@ struct SceneChange {
 
 /** A body where it stands in the fixed frame. */
 struct PlacedShape {
-  cprox_target target{};    /**< padding included; the body is owned by whoever owns this */
-  cprox_target hull{};      /**< the same; a mesh by its convex hull */
-  cprox_target surface{};   /**< the same; a mesh that has an inside without it */
+  cprox_obstacle target{};  /**< padding included; the body is owned by whoever owns this */
+  cprox_obstacle hull{};    /**< the same; a mesh by its convex hull */
+  cprox_obstacle surface{}; /**< the same; a mesh that has an inside without it */
   double hull_excess = 0.0; /**< [m] how far points of the shape may be outside `hull`, beside rounding */
   Eigen::AlignedBox3d box;  /**< [m] contains the padded body, rounding included; infinite for a halfspace */
   double rounding = 0.0;    /**< [m] how far the rounding of poses can have moved a point of it */

@@ -3,12 +3,12 @@
 #include <chrono>
 
 #include "certificates.h"
+#include "commands.h"
 #include "csv.h"
 #include "failure.h"
 #include "finish.h"
 #include "results.h"
 #include "run.h"
-#include "verbs.h"
 
 namespace curve_proximity::cli {
 namespace {
@@ -18,15 +18,15 @@ struct RowPair {
   std::optional<CsvRow> first, second;
 };
 
-cprox_status search(const CompiledCurve &a, const CompiledCurve &b, const Question &question, Workspace &workspace,
+cprox_status search(const CompiledCurve &a, const CompiledCurve &b, const Query &query, Workspace &workspace,
                     cprox_result &result) {
   const cprox_mover mover = along(a.curve, a.radius);
-  const cprox_target target = cprox_curve_target(b.curve.get(), b.radius);
-  switch (question.verb) {
-    case Verb::DISTANCE: return cprox_distance(mover, target, &question.options, workspace.get(), &result);
-    case Verb::TOLERANCE:
-      return cprox_tolerance(mover, target, question.delta, &question.options, workspace.get(), &result);
-    case Verb::COLLISION: return cprox_collision(mover, target, &question.options, workspace.get(), &result);
+  const cprox_obstacle target = cprox_obstacle_curve(b.curve.get(), b.radius);
+  switch (query.query_type) {
+    case QueryType::DISTANCE: return cprox_distance(mover, target, &query.options, workspace.get(), &result);
+    case QueryType::TOLERANCE:
+      return cprox_tolerance(mover, target, query.delta, &query.options, workspace.get(), &result);
+    case QueryType::COLLISION: return cprox_collision(mover, target, &query.options, workspace.get(), &result);
   }
   return CPROX_INVALID;
 }
@@ -43,29 +43,29 @@ CompiledCurve curveOf(const std::optional<CsvRow> &row, const std::string &file)
   }
 }
 
-Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Question &given, Workspace &workspace) {
+Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Query &given, Workspace &workspace) {
   const CertificateHandle proof = makeCertificate();
   const bool with_proof = !arguments.certificate.empty();
-  Question question = given;
-  if (with_proof) question.options.certificate = proof.get();
+  Query query = given;
+  if (with_proof) query.options.certificate = proof.get();
   using Clock = std::chrono::steady_clock;
   ResultRow row;
   row.kind = "curve_curve";
   row.id = row.a = rows.first ? rowId(rows.first->text) : "";
   row.b = rows.second ? rowId(rows.second->text) : "";
-  row.has_verdict = question.verb != Verb::DISTANCE;
+  row.has_verdict = query.query_type != QueryType::DISTANCE;
   Outcome out;
   try {
     const CompiledCurve a = curveOf(rows.first, arguments.curves), b = curveOf(rows.second, arguments.against);
     const Clock::time_point start = Clock::now();
-    row.result.status = search(a, b, question, workspace, row.result);
+    row.result.status = search(a, b, query, workspace, row.result);
     row.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-    row.has_t = row.has_t_b = row.has_points = row.result.target_index >= 0;
+    row.has_t = row.has_t_b = row.has_points = row.result.obstacle_index >= 0;
     out.stopped = row.result.status == CPROX_STOPPED;
     if (row.result.status < 0)
-      out.complaints.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_reason(workspace.get()));
+      out.complaints.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_error(workspace.get()));
     if (with_proof && row.result.status >= 0 && cprox_certificate_size(proof.get()) == 0)
-      out.unproven.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_reason(workspace.get()));
+      out.unproven.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_error(workspace.get()));
   } catch (const std::bad_alloc &) {
     row.result.status = CPROX_MEMORY;
     out.complaints.push_back(arguments.curves + ": id '" + row.id + "': " + cprox_status_text(CPROX_MEMORY));
@@ -83,8 +83,8 @@ Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Questi
 } // namespace
 
 int answerAgainst(const Arguments &arguments, Console &console) {
-  Question question = arguments.question;
-  question.options.stop = interrupted;
+  Query query = arguments.query;
+  query.options.stop = interrupted;
   CsvFile first(arguments.curves), second(arguments.against);
   const std::vector<std::string> inputs{arguments.curves, arguments.against};
   ResultsFile results(arguments.out, inputs);
@@ -99,8 +99,7 @@ int answerAgainst(const Arguments &arguments, Console &console) {
   rows.next = [&]() -> std::optional<Task> {
     RowPair pair{first.next(), second.next()};
     if (!pair.first && !pair.second) return std::nullopt;
-    return
-        [&, pair = std::move(pair)](Workspace &workspace) { return answerPair(pair, arguments, question, workspace); };
+    return [&, pair = std::move(pair)](Workspace &workspace) { return answerPair(pair, arguments, query, workspace); };
   };
   rows.write = [&](const std::string &text) { results.write(text); };
   if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };

@@ -43,38 +43,38 @@ const std::map<std::string, Option> &options() {
       {"--max-nodes", {true, {Action::CURVES, Action::PAIRS}}},
       {"--threads", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS}}},
       {"--per-object", {false, {Action::CURVES}}},
-      {"--max-rung", {true, {Action::CURVES, Action::PAIRS}}},
+      {"--max-lod", {true, {Action::CURVES, Action::PAIRS}}},
       {"--skipped", {false, {Action::CURVES, Action::PAIRS}}},
       {"--out", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS}}},
   };
   return table;
 }
 
-struct VerbName {
+struct Command {
   const char *word;
   Action action;
-  Verb verb;
+  QueryType query_type;
 };
-const VerbName kVerbs[] = {
-    {"distance", Action::CURVES, Verb::DISTANCE},
-    {"tolerance", Action::CURVES, Verb::TOLERANCE},
-    {"collision", Action::CURVES, Verb::COLLISION},
-    {"pairs", Action::PAIRS, Verb::DISTANCE},
-    {"send", Action::SEND, Verb::DISTANCE},
-    {"check", Action::CHECK, Verb::DISTANCE},
-    {"constraints", Action::CONSTRAINTS, Verb::DISTANCE},
+const Command kCommands[] = {
+    {"distance", Action::CURVES, QueryType::DISTANCE},
+    {"tolerance", Action::CURVES, QueryType::TOLERANCE},
+    {"collision", Action::CURVES, QueryType::COLLISION},
+    {"pairs", Action::PAIRS, QueryType::DISTANCE},
+    {"send", Action::SEND, QueryType::DISTANCE},
+    {"check", Action::CHECK, QueryType::DISTANCE},
+    {"constraints", Action::CONSTRAINTS, QueryType::DISTANCE},
 };
 
-const VerbName &findVerb(const std::string &word) {
-  for (const VerbName &verb : kVerbs) {
-    if (word == verb.word) return verb;
+const Command &findCommand(const std::string &word) {
+  for (const Command &command : kCommands) {
+    if (word == command.word) return command;
   }
   throw BadUsage(
       "'" + word +
-      "' is no verb; the verbs are distance, tolerance, collision, pairs, constraints, send, check (see --help)");
+      "' is no command; the commands are distance, tolerance, collision, pairs, constraints, send, check (see --help)");
 }
 
-/* The words behind the verb: options with their values, and what is no option. */
+/* The words behind the command: options with their values, and what is no option. */
 struct Words {
   std::map<std::string, std::string> given;
   std::vector<std::string> plain;
@@ -89,17 +89,17 @@ struct Words {
 };
 
 /* Takes one option off the words at `i`, with its value: "--name value" or "--name=value". */
-void takeOption(const std::vector<std::string> &words, std::size_t &i, const std::string &verb, Action action,
+void takeOption(const std::vector<std::string> &words, std::size_t &i, const std::string &command, Action action,
                 Words &out) {
   const std::size_t equals = words[i].find('=');
   const std::string name = words[i].substr(0, equals);
 
-  /* is it an option of this verb? */
+  /* is it an option of this command? */
   const auto known = options().find(name);
   if (known == options().end()) throw BadUsage("unknown option " + name + " (see --help)");
   const std::vector<Action> &actions = known->second.actions;
   if (std::find(actions.begin(), actions.end(), action) == actions.end()) {
-    throw BadUsage("'" + verb + "' takes no " + name);
+    throw BadUsage("'" + command + "' takes no " + name);
   }
 
   /* its value */
@@ -118,11 +118,11 @@ void takeOption(const std::vector<std::string> &words, std::size_t &i, const std
   if (!out.given.emplace(name, value).second) throw BadUsage(name + " is given twice");
 }
 
-Words splitWords(const std::vector<std::string> &words, const VerbName &verb) {
+Words splitWords(const std::vector<std::string> &words, const Command &command) {
   Words out;
   for (std::size_t i = 1; i < words.size(); ++i) {
     if (words[i].size() > 1 && words[i][0] == '-') {
-      takeOption(words, i, verb.word, verb.action, out);
+      takeOption(words, i, command.word, command.action, out);
     } else {
       out.plain.push_back(words[i]);
     }
@@ -149,40 +149,40 @@ std::uint64_t readCount(const Words &words, const std::string &name, std::uint64
   return *value;
 }
 
-void readQuestion(const Words &words, const VerbName &verb, Question &question) {
-  question.verb = verb.verb;
-  question.per_object = words.has("--per-object");
-  question.options.signed_distance = words.has("--signed");
-  if (words.has("--signed") && verb.verb != Verb::DISTANCE) throw BadUsage("--signed is for 'distance'");
+void readQuery(const Words &words, const Command &command, Query &query) {
+  query.query_type = command.query_type;
+  query.per_object = words.has("--per-object");
+  query.options.signed_distance = words.has("--signed");
+  if (words.has("--signed") && command.query_type != QueryType::DISTANCE) throw BadUsage("--signed is for 'distance'");
 
   /* accuracy and budget */
   if (words.has("--epsilon")) {
-    question.options.epsilon = readNumber(words, "--epsilon", 0.0, false, "above 0 (metres)");
+    query.options.epsilon = readNumber(words, "--epsilon", 0.0, false, "above 0 (metres)");
   }
   if (words.has("--max-nodes")) {
     const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-    question.options.max_nodes = static_cast<std::uint32_t>(readCount(words, "--max-nodes", most));
+    query.options.max_nodes = static_cast<std::uint32_t>(readCount(words, "--max-nodes", most));
   }
 
   /* the limit of `tolerance` has no default: a clearance that nobody asked for means nothing */
-  if (words.has("--delta") && verb.verb != Verb::TOLERANCE)
+  if (words.has("--delta") && command.query_type != QueryType::TOLERANCE)
     throw BadUsage("--delta is for 'tolerance': it is the clearance that is asked for");
-  if (words.has("--delta")) question.delta = readNumber(words, "--delta", 0.0, true, "of at least 0 (metres)");
-  if (verb.action == Action::CURVES && verb.verb == Verb::TOLERANCE && !words.has("--delta")) {
+  if (words.has("--delta")) query.delta = readNumber(words, "--delta", 0.0, true, "of at least 0 (metres)");
+  if (command.action == Action::CURVES && command.query_type == QueryType::TOLERANCE && !words.has("--delta")) {
     throw BadUsage("'tolerance' needs --delta D, the clearance that is asked for, in metres");
   }
 
   /* the finest model that may answer */
-  if (words.has("--max-rung")) {
-    const std::optional<cprox_rung> rung = rungFromName(words.text("--max-rung"));
-    if (!rung) throw BadUsage("--max-rung is '" + words.text("--max-rung") + "'; it must be sphere, hull or mesh");
-    question.options.max_rung = *rung;
+  if (words.has("--max-lod")) {
+    const std::optional<cprox_lod> lod = lodFromName(words.text("--max-lod"));
+    if (!lod) throw BadUsage("--max-lod is '" + words.text("--max-lod") + "'; it must be sphere, hull or mesh");
+    query.options.max_lod = *lod;
   }
 }
 
 /* Curves against curves: there is no scene, and a row has one answer. */
 void readAgainst(const Words &words, Arguments &out) {
-  for (const char *name : {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--max-rung"}) {
+  for (const char *name : {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--max-lod"}) {
     if (words.has(name))
       throw BadUsage("--against takes no " + std::string(name) + ": curves are measured against curves");
   }
@@ -205,17 +205,17 @@ void readTrajectoryWords(const Words &words, Arguments &out) {
   out.state = words.text("--state");
 }
 
-/* The files that a verb cannot do without, and words that it does not understand. */
-void readFiles(const Words &words, const VerbName &verb, Arguments &out) {
+/* The files that a command cannot do without, and words that it does not understand. */
+void readFiles(const Words &words, const Command &command, Arguments &out) {
   const auto required = [&](const std::string &name, const std::string &what) {
-    if (!words.has(name)) throw BadUsage("'" + std::string(verb.word) + "' needs " + name + " " + what);
+    if (!words.has(name)) throw BadUsage("'" + std::string(command.word) + "' needs " + name + " " + what);
     return words.text(name);
   };
   std::vector<std::string> plain = words.plain;
 
-  switch (verb.action) {
+  switch (command.action) {
     case Action::CHECK:
-      if (plain.empty()) throw BadUsage("'check' needs a file: cprox check FILE with the inputs of the question");
+      if (plain.empty()) throw BadUsage("'check' needs a file: cprox check FILE with the inputs of the query");
       out.certificate = plain.front();
       plain.erase(plain.begin());
       [[fallthrough]];
@@ -262,7 +262,7 @@ Arguments parseArguments(const std::vector<std::string> &words) {
   Arguments out;
   if (words.empty())
     throw BadUsage(
-        "no verb; the verbs are distance, tolerance, collision, pairs, constraints, send, check (see --help)");
+        "no command; the commands are distance, tolerance, collision, pairs, constraints, send, check (see --help)");
 
   /* help and version win over everything else on the line */
   const auto said = [&](const char *word) { return std::find(words.begin(), words.end(), word) != words.end(); };
@@ -272,15 +272,15 @@ Arguments parseArguments(const std::vector<std::string> &words) {
     return out;
   }
 
-  const VerbName &verb = findVerb(words.front());
-  const Words split = splitWords(words, verb);
-  out.action = verb.action;
-  readQuestion(split, verb, out.question);
-  readFiles(split, verb, out);
+  const Command &command = findCommand(words.front());
+  const Words split = splitWords(words, command);
+  out.action = command.action;
+  readQuery(split, command, out.query);
+  readFiles(split, command, out);
 
   out.out = split.text("--out");
   if (split.has("--certificate")) out.certificate = split.text("--certificate");
-  if (split.has("--certificate") && out.question.per_object) {
+  if (split.has("--certificate") && out.query.per_object) {
     throw BadUsage("--certificate takes no --per-object: a certificate is about all objects at once");
   }
   out.skipped = split.has("--skipped");
@@ -302,14 +302,14 @@ cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodie
 cprox constraints --provider NAME --in CASES.yaml [--scene SCENE.yaml] [--parameters "name: value, ..."]
                                         value and gradient of clearance constraints by a plugin
 cprox send      SCENE.yaml [--node NAME] hands a scene file to a running node
-cprox check     FILE  (the inputs of the question)  what the certificates in FILE prove
+cprox check     FILE  (the inputs of the query)  what the certificates in FILE prove
 
   --curves FILE     one curve a row: id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knots]; basis bezier, bspline,
                     polynomial, legendre, lagrange (nodes for knots) or trigonometric; lines that begin with # are
                     skipped
   --against FILE    curves, too: instead of a scene
   --scene FILE      moveit_msgs/PlanningScene as YAML; may be left out where there is a robot
-  --robot FILE      a URDF: its links are objects, too; meshes answer as meshes (see --max-rung)
+  --robot FILE      a URDF: its links are objects, too; meshes answer as meshes (see --max-lod)
   --trajectory FILE a joint trajectory: joint_trajectory, interpolation, fixed_joints, virtual_joint
   --self            how close the robot comes to itself, too
   --signed          distances of curves inside a body are negative: minus the deepest penetration
@@ -328,7 +328,7 @@ cprox check     FILE  (the inputs of the question)  what the certificates in FIL
   --max-nodes N     budget of parameter intervals for each target (default 20000)
   --threads N       how many rows are worked on at once (default: the machine's cores); the answers do not depend on it
   --per-object      a row for each curve and object or link, not one for the nearest
-  --max-rung R      the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies by
+  --max-lod R      the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies by
                     their bounding balls); a coarser one is never farther away.
   --skipped         tell on standard error what takes no part, and why
   --out FILE        the results, instead of standard output
@@ -336,8 +336,8 @@ cprox check     FILE  (the inputs of the question)  what the certificates in FIL
          std::string(kDefaultNode) + R"()
   --help, --version
 
-Results, a CSV row each: id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,probes,microseconds,
-t_b,rung. Of 'constraints': id,provider,status,value,lower,upper,valid,t, gradients ga_ and gb_ by a step of side a and b
+Results, a CSV row each: id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,
+t_b,lod. Of 'constraints': id,provider,status,value,lower,upper,valid,t, gradients ga_ and gb_ by a step of side a and b
 (v: position, w: turning), a_, b_ and n_ (nearest points, normal), g_radius,microseconds,n,g0x,g0y,g0z,... by the curve's points.
 Metres and radians. A row that fails is told on standard error and has the status 'invalid'.
 Ends with 0: every row is answered; 1: some are not; 2: the command line or an input file cannot be used.

@@ -15,7 +15,7 @@ enum class Action { HELP, VERSION, CURVES, AGAINST, TRAJECTORY, PAIRS, CONSTRAIN
 
 struct Arguments {
   Action action = Action::HELP;
-  Question question; /**< CURVES, AGAINST and PAIRS: the verb, and how it is to be answered */
+  Query query; /**< CURVES, AGAINST and PAIRS: the command, and how it is to be answered */
 
   std::string curves, scene; /**< files; curves: of CURVES, AGAINST and CHECK, scene: of CURVES, CHECK and SEND */
   std::string against;       /**< file of AGAINST; of CHECK where it was given */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Files of certificates, and questions as cprox_check reads them. */
+/** Files of certificates, and queries as cprox_check reads them. */
 #ifndef CURVE_PROXIMITY_CLI_CERTIFICATES_H
 #define CURVE_PROXIMITY_CLI_CERTIFICATES_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* check: hands the question, read from the same inputs again, to the program cprox_check. What is trusted is the reading of the
- * inputs and that program; not the search, nor what wrote the certificates. */
+/* check: hands the query, read from the same inputs again, to the program cprox_check. What is trusted is the reading
+ * of the inputs and that program; not the search, nor what wrote the certificates. */
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,10 +11,10 @@
 #include <filesystem>
 
 #include "certificates.h"
+#include "commands.h"
 #include "csv.h"
 #include "failure.h"
 #include "trajectory.h"
-#include "verbs.h"
 #include "world.h"
 
 namespace curve_proximity::cli {
@@ -117,7 +117,7 @@ std::string pairOf(const std::optional<CsvRow> &first, const std::optional<CsvRo
 void tellCurves(const Arguments &arguments, Console &console, Checker &checker) {
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
-  const Targets targets(world.snapshot, world.links, arguments.question);
+  const Targets targets(world.snapshot, world.links, arguments.query);
   const std::vector<std::string> none = unprovable(targets);
   warnOfUnprovable(none, warnings);
   console.warn(warnings);
@@ -132,14 +132,14 @@ void tellTrajectory(const Arguments &arguments, Console &console, Checker &check
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
   const RobotMotion motion = readMotion(arguments, world, warnings);
-  warnOfUnprovable(unprovable(motion, false, arguments.question), warnings);
-  if (arguments.self) warnOfUnprovable(unprovable(motion, true, arguments.question), warnings);
+  warnOfUnprovable(unprovable(motion, false, arguments.query), warnings);
+  if (arguments.self) warnOfUnprovable(unprovable(motion, true, arguments.query), warnings);
   console.warn(warnings);
   bool listening = checker.tell(problemHead());
   for (const bool self : {false, true}) {
     if (!listening || (self && !arguments.self)) return;
-    const std::string question = describeQuestion(motion, self, arguments.question);
-    listening = checker.tell(question.empty() ? noMoverLine(self ? "self" : "environment") : question);
+    const std::string query = describeQuery(motion, self, arguments.query);
+    listening = checker.tell(query.empty() ? noMoverLine(self ? "self" : "environment") : query);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "../providers/constraint_case.h"
 #include "../scene/yaml/scene_change.h"
 #include "../scene/yaml/scene_yaml.h"
+#include "commands.h"
 #include "constraints_yaml.h"
 #include "csv.h"
 #include "failure.h"
@@ -11,7 +12,6 @@
 #include "packages.h"
 #include "results.h"
 #include "run.h"
-#include "verbs.h"
 #include "world.h"
 
 namespace curve_proximity::cli {
@@ -59,7 +59,7 @@ std::string toLine(const ConstraintRow &row) {
     append(line, side->linear);
     append(line, side->angular);
   }
-  for (const Eigen::Vector3d *point : {&value.point_a, &value.point_b, &value.normal})
+  for (const Eigen::Vector3d *point : {&value.witness_a, &value.witness_b, &value.normal})
     append(line, *point, value.has_points);
   append(line, value.radius);
   char time[40];

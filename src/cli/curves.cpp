@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "certificates.h"
+#include "commands.h"
 #include "csv.h"
 #include "failure.h"
 #include "finish.h"
 #include "results.h"
 #include "run.h"
-#include "verbs.h"
 #include "world.h"
 
 namespace curve_proximity::cli {
@@ -27,7 +27,7 @@ Outcome failedCurve(const std::string &id, const std::string &place, const std::
 }
 
 /* All rows of one curve. */
-Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &targets, const Question &question,
+Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &targets, const Query &query,
                     bool with_proof, Workspace &workspace) {
   const std::string id = rowId(csv.text);
   const std::string place = placeOf(csv, file);
@@ -35,12 +35,12 @@ Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &t
     const CompiledCurve curve = compile(parseCurve(csv.text));
     Outcome out;
     const CertificateHandle proof = makeCertificate();
-    Question asked = question;
+    Query asked = query;
     if (with_proof) asked.options.certificate = proof.get();
     for (const Answer &answer : ask(targets, curve, asked, workspace)) {
       const cprox_status status = answer.result.status;
       out.stopped = out.stopped || status == CPROX_STOPPED;
-      ResultRow row = toRow(answer, question.verb);
+      ResultRow row = toRow(answer, query.query_type);
       if (with_proof) row.proof = proofOf(proof);
       if (with_proof) out.certificate = recordOf(proof);
       if (!answer.unproven.empty()) out.unproven.push_back(place + ": no certificate: " + answer.unproven);
@@ -66,9 +66,9 @@ int answerCurves(const Arguments &arguments, Console &console) {
   /* what curves are measured against */
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
-  Question question = arguments.question;
-  question.options.stop = interrupted;
-  const Targets targets(world.snapshot, world.links, question);
+  Query query = arguments.query;
+  query.options.stop = interrupted;
+  const Targets targets(world.snapshot, world.links, query);
 
   CsvFile file(arguments.curves);
   const std::vector<std::string> inputs{arguments.curves, arguments.scene, arguments.robot, arguments.srdf};
@@ -90,7 +90,7 @@ int answerCurves(const Arguments &arguments, Console &console) {
     std::optional<CsvRow> row = file.next();
     if (!row) return std::nullopt;
     return [&, csv = *std::move(row)](Workspace &workspace) {
-      return answerCurve(csv, arguments.curves, targets, question, with_proofs, workspace);
+      return answerCurve(csv, arguments.curves, targets, query, with_proofs, workspace);
     };
   };
   rows.write = [&](const std::string &text) { results.write(text); };

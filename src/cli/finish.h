@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What the verbs that answer rows say at their beginning and their end. */
+/** What the commands that answer rows say at their beginning and their end. */
 #ifndef CURVE_PROXIMITY_CLI_FINISH_H
 #define CURVE_PROXIMITY_CLI_FINISH_H
 

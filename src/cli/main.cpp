@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "arguments.h"
+#include "commands.h"
 #include "console.h"
 #include "failure.h"
-#include "verbs.h"
 
 namespace {
 

@@ -3,6 +3,7 @@
 #include <variant>
 
 #include "../scene/yaml/scene_change.h"
+#include "commands.h"
 #include "failure.h"
 #include "finish.h"
 #include "packages.h"
@@ -10,7 +11,6 @@
 #include "results.h"
 #include "robot_file.h"
 #include "run.h"
-#include "verbs.h"
 
 namespace curve_proximity::cli {
 namespace {
@@ -22,12 +22,12 @@ struct PairRow {
   std::variant<PairDescription, std::string> pair;
 };
 
-cprox_target place(const Geometry &geometry, const PlacedShape &shape) {
-  return cprox_at(geometry.body.get(), shape.pose);
+cprox_obstacle place(const Geometry &geometry, const PlacedShape &shape) {
+  return cprox_obstacle_at(geometry.body.get(), shape.pose);
 }
 
 /* The signed distance; throws Error where there is none. */
-ResultRow measure(const PairDescription &pair, const Question &question, const ResourceOptions &resources,
+ResultRow measure(const PairDescription &pair, const Query &query, const ResourceOptions &resources,
                   Workspace &workspace) {
   const Geometry a = makeGeometry(pair.a.shape, resources), b = makeGeometry(pair.b.shape, resources);
   ResultRow row;
@@ -35,7 +35,7 @@ ResultRow measure(const PairDescription &pair, const Question &question, const R
   row.id = row.a = row.b = pair.id;
   row.has_points = true;
   const auto begin = std::chrono::steady_clock::now();
-  row.result = curve_proximity::pair(place(a, pair.a), place(b, pair.b), question.options, workspace);
+  row.result = curve_proximity::pair(place(a, pair.a), place(b, pair.b), query.options, workspace);
   row.microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
   return row;
 }
@@ -51,12 +51,12 @@ Outcome failedPair(const PairRow &pair, const std::string &place, const std::str
   return out;
 }
 
-Outcome answerPair(const PairRow &pair, const std::string &file, const Question &question,
-                   const ResourceOptions &resources, Workspace &workspace) {
+Outcome answerPair(const PairRow &pair, const std::string &file, const Query &query, const ResourceOptions &resources,
+                   Workspace &workspace) {
   const std::string place = file + ": row " + std::to_string(pair.number) + " (id '" + pair.id + "')";
   try {
     if (const auto *why = std::get_if<std::string>(&pair.pair)) return failedPair(pair, place, *why, CPROX_INVALID);
-    const ResultRow row = measure(std::get<PairDescription>(pair.pair), question, resources, workspace);
+    const ResultRow row = measure(std::get<PairDescription>(pair.pair), query, resources, workspace);
     Outcome out;
     out.stopped = row.result.status == CPROX_STOPPED;
     out.text = resultsLine(row);
@@ -90,8 +90,8 @@ int answerPairs(const Arguments &arguments, Console &console) {
   ResourceOptions resources;
   resources.base_dir = folderOf(arguments.pairs);
   resources.find_package = packageFinder(resources.base_dir);
-  Question question = arguments.question;
-  question.options.stop = interrupted;
+  Query query = arguments.query;
+  query.options.stop = interrupted;
 
   ResultsFile results(arguments.out, {arguments.pairs});
   if (arguments.skipped) tellSkipped({}, console);
@@ -108,7 +108,7 @@ int answerPairs(const Arguments &arguments, Console &console) {
     ++given;
     for (; warned < warnings.sentences().size(); ++warned) console.say("warning: " + warnings.sentences()[warned]);
     return [&, pair = std::move(pair)](Workspace &workspace) {
-      return answerPair(pair, arguments.pairs, question, resources, workspace);
+      return answerPair(pair, arguments.pairs, query, resources, workspace);
     };
   };
   rows.write = [&](const std::string &text) { results.write(text); };

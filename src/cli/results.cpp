@@ -34,8 +34,8 @@ void appendGeometry(std::string &line, const ResultRow &row) {
     line += ',';
   }
   if (row.has_points) {
-    append(line, result.on_mover);
-    append(line, result.on_target);
+    append(line, result.witness_mover);
+    append(line, result.witness_obstacle);
   } else {
     line += ",,,,,,";
   }
@@ -48,7 +48,7 @@ void writeWhole(std::FILE *file) {
 
 } // namespace
 
-ResultRow toRow(const Answer &answer, Verb verb) {
+ResultRow toRow(const Answer &answer, QueryType query_type) {
   ResultRow row;
   row.id = answer.id;
   row.kind = answer.kind;
@@ -56,14 +56,15 @@ ResultRow toRow(const Answer &answer, Verb verb) {
   row.a = answer.a;
   row.b = answer.b;
   row.microseconds = answer.microseconds;
-  row.has_verdict = verb != Verb::DISTANCE;
-  row.has_t = row.has_points = answer.result.target_index >= 0;
+  row.has_verdict = query_type != QueryType::DISTANCE;
+  row.has_t = row.has_points = answer.result.obstacle_index >= 0;
   return row;
 }
 
 std::string resultsHeader(bool with_proofs) {
   return std::string(
-             "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,probes,microseconds,t_b,rung") +
+             "id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,t_b,"
+             "lod") +
          (with_proofs ? ",proof\n" : "\n");
 }
 
@@ -84,13 +85,13 @@ std::string resultsLine(const ResultRow &row) {
   if (answered) {
     char time[40];
     std::snprintf(time, sizeof time, "%.1f", row.microseconds);
-    line += ',' + std::to_string(result.nodes) + ',' + std::to_string(result.probes) + ',' + time;
+    line += ',' + std::to_string(result.nodes) + ',' + std::to_string(result.distance_queries) + ',' + time;
     if (row.has_t_b) {
-      append(line, result.t_target);
+      append(line, result.t_obstacle);
     } else {
       line += ',';
     }
-    line += std::string(",") + cprox_rung_name(result.rung);
+    line += std::string(",") + cprox_lod_name(result.lod);
   } else {
     line += ",,,,,";
   }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The results as CSV: one shape of row for all verbs. */
+/** The results as CSV: one shape of row for all commands. */
 #ifndef CURVE_PROXIMITY_CLI_RESULTS_H
 #define CURVE_PROXIMITY_CLI_RESULTS_H
 
@@ -25,7 +25,7 @@ struct ResultRow {
 };
 
 /** What the scene says, as a row. */
-ResultRow toRow(const Answer &answer, Verb verb);
+ResultRow toRow(const Answer &answer, QueryType query_type);
 
 /** The first line, with its newline. */
 std::string resultsHeader(bool with_proofs = false);

@@ -8,8 +8,8 @@
 
 #include "../ros/conversions.h"
 #include "../scene/yaml/scene_change.h"
+#include "commands.h"
 #include "failure.h"
-#include "verbs.h"
 
 namespace curve_proximity::cli {
 namespace {

@@ -3,12 +3,12 @@
 #include "trajectory.h"
 
 #include "certificates.h"
+#include "commands.h"
 #include "failure.h"
 #include "finish.h"
 #include "results.h"
 #include "run.h"
 #include "trajectory_yaml.h"
-#include "verbs.h"
 #include "world.h"
 
 namespace curve_proximity::cli {
@@ -22,11 +22,12 @@ JointPositions restOf(const TrajectoryDescription &trajectory, const World &worl
   return out;
 }
 
-Outcome toOutcome(const std::vector<Answer> &answers, Verb verb, const std::string &file, const std::string &proof) {
+Outcome toOutcome(const std::vector<Answer> &answers, QueryType query_type, const std::string &file,
+                  const std::string &proof) {
   Outcome out;
   for (const Answer &answer : answers) {
     out.stopped = out.stopped || answer.result.status == CPROX_STOPPED;
-    ResultRow row = toRow(answer, verb);
+    ResultRow row = toRow(answer, query_type);
     row.proof = proof;
     out.text += resultsLine(row);
     if (!answer.unproven.empty())
@@ -36,17 +37,17 @@ Outcome toOutcome(const std::vector<Answer> &answers, Verb verb, const std::stri
   return out;
 }
 
-/* One of the two questions; with the record of its certificate, where one is wanted. */
-Outcome askOne(const RobotMotion &motion, bool self, const Question &question, const Arguments &arguments,
+/* One of the two queries; with the record of its certificate, where one is wanted. */
+Outcome askOne(const RobotMotion &motion, bool self, const Query &query, const Arguments &arguments,
                Workspace &workspace) {
   const CertificateHandle proof = makeCertificate();
-  Question asked = question;
+  Query asked = query;
   if (!arguments.certificate.empty()) asked.options.certificate = proof.get();
   if (self) asked.per_object = false; /* the robot itself is one row */
   const std::vector<Answer> answers =
       self ? std::vector<Answer>{askSelf(motion, asked, workspace)} : askEnvironment(motion, asked, workspace);
   const bool with_proof = !arguments.certificate.empty();
-  Outcome out = toOutcome(answers, question.verb, arguments.trajectory, with_proof ? proofOf(proof) : "");
+  Outcome out = toOutcome(answers, query.query_type, arguments.trajectory, with_proof ? proofOf(proof) : "");
   if (with_proof) out.certificate = recordOf(proof);
   return out;
 }
@@ -68,16 +69,16 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   const World world = readWorld(arguments, warnings);
   const RobotMotion motion = readMotion(arguments, world, warnings);
   for (const std::string &sentence : motion.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
-  Question question = arguments.question;
-  question.options.stop = interrupted;
+  Query query = arguments.query;
+  query.options.stop = interrupted;
 
   const std::vector<std::string> inputs{arguments.trajectory, arguments.scene, arguments.robot, arguments.srdf};
   ResultsFile results(arguments.out, inputs);
   std::optional<ResultsFile> certificates;
   if (!arguments.certificate.empty()) {
     certificates.emplace(arguments.certificate, inputs, "--certificate");
-    warnOfUnprovable(unprovable(motion, false, question), warnings);
-    if (arguments.self) warnOfUnprovable(unprovable(motion, true, question), warnings);
+    warnOfUnprovable(unprovable(motion, false, query), warnings);
+    if (arguments.self) warnOfUnprovable(unprovable(motion, true, query), warnings);
   }
   console.warn(warnings);
   if (arguments.skipped) {
@@ -89,9 +90,9 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   catchInterrupts();
   results.write(resultsHeader(!arguments.certificate.empty()));
   std::vector<Task> tasks;
-  tasks.push_back([&](Workspace &workspace) { return askOne(motion, false, question, arguments, workspace); });
+  tasks.push_back([&](Workspace &workspace) { return askOne(motion, false, query, arguments, workspace); });
   if (arguments.self)
-    tasks.push_back([&](Workspace &workspace) { return askOne(motion, true, question, arguments, workspace); });
+    tasks.push_back([&](Workspace &workspace) { return askOne(motion, true, query, arguments, workspace); });
   Rows rows;
   std::size_t next = 0;
   rows.next = [&]() -> std::optional<Task> {

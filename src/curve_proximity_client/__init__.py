@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A small client of the node for Python: questions in a line, answers as messages, failures as exceptions.
+"""A small client of the node for Python: queries in a line, answers as messages, failures as exceptions.
 
     from curve_proximity_client import Client, bezier, sphere
     client = Client()                       # of the node /curve_proximity
@@ -21,7 +21,7 @@ __all__ = ['Client', 'Failure', 'bezier', 'bspline', 'body', 'box', 'pose', 'sph
 
 
 class Failure(Exception):
-    """The node refused a question, or could not be reached; the text says why."""
+    """The node refused a query, or could not be reached; the text says why."""
 
 
 # ---------------------------------------------------------------------------------------------------------------- messages

@@ -26,7 +26,7 @@ class CurveDistanceConstraint : public Constraint {
     const CurveDescription &curve = place.curve->description;
     cprox_mover mover = cprox_tube_along(place.curve->curve.get(), curve.radius + pair_.a.padding);
     mover.body = carried_.get();
-    const cprox_target target = cprox_padded(cprox_at(target_.get(), place.b), pair_.b.padding);
+    const cprox_obstacle target = cprox_with_margin(cprox_obstacle_at(target_.get(), place.b), pair_.b.padding);
 
     // The core's two calls.
     cprox_result result{};
@@ -39,7 +39,7 @@ class CurveDistanceConstraint : public Constraint {
     // What they say, in the words of constraint_provider.hpp.
     fillValue(result, out);
     out.valid = gradient.valid;
-    out.reason = gradient.valid ? "" : cprox_workspace_reason(workspace.get());
+    out.reason = gradient.valid ? "" : cprox_workspace_error(workspace.get());
     out.t = gradient.t;
     out.b.linear = toEigen(gradient.position);
     out.b.angular = toEigen(gradient.rotation);
@@ -55,8 +55,8 @@ class CurveDistanceConstraint : public Constraint {
     out.lower = result.lower - excess_ - parameters_.margin;
     out.upper = result.upper - parameters_.margin;
     out.has_points = true;
-    out.point_a = toEigen(result.on_mover);
-    out.point_b = toEigen(result.on_target);
+    out.witness_a = toEigen(result.witness_mover);
+    out.witness_b = toEigen(result.witness_obstacle);
     out.normal = toEigen(result.normal);
   }
 

@@ -137,9 +137,9 @@ class SuperquadricConstraint : public Constraint {
     Nearest out;
     out.a = a.get();
     out.b = b.get();
-    require(cprox_pair(cprox_padded(cprox_at(out.a, place.a), a_.padding),
-                       cprox_padded(cprox_at(out.b, place.b), b_.padding), &parameters_.options, workspace.get(),
-                       &out.result),
+    require(cprox_pair(cprox_with_margin(cprox_obstacle_at(out.a, place.a), a_.padding),
+                       cprox_with_margin(cprox_obstacle_at(out.b, place.b), b_.padding), &parameters_.options,
+                       workspace.get(), &out.result),
             workspace);
     return out;
   }
@@ -154,13 +154,13 @@ class SuperquadricConstraint : public Constraint {
     out.lower = lower - a_.missing - b_.missing - parameters_.margin;
     out.upper = r.upper + a_.excess + b_.excess - parameters_.margin;
     out.has_points = true;
-    out.point_a = toEigen(r.on_mover);
-    out.point_b = toEigen(r.on_target);
+    out.witness_a = toEigen(r.witness_mover);
+    out.witness_b = toEigen(r.witness_obstacle);
     out.normal = toEigen(r.normal);
     out.a.linear = out.normal;
     out.b.linear = -out.normal;
-    out.a.angular = (out.point_a - toEigen(place.a.position)).cross(out.normal);
-    out.b.angular = out.normal.cross(out.point_b - toEigen(place.b.position));
+    out.a.angular = (out.witness_a - toEigen(place.a.position)).cross(out.normal);
+    out.b.angular = out.normal.cross(out.witness_b - toEigen(place.b.position));
     out.points.resize(3, 0);
     out.radius = 0.0;
     out.t = std::numeric_limits<double>::quiet_NaN();
@@ -190,8 +190,8 @@ class SuperquadricConstraint : public Constraint {
     cprox_options exact = parameters_.options;
     exact.epsilon = std::min(exact.epsilon, 1e-13 * std::min(a_.size, b_.size));
     cprox_result r{};
-    require(cprox_pair(cprox_padded(cprox_at(best.a, a), a_.padding), cprox_padded(cprox_at(best.b, b), b_.padding),
-                       &exact, workspace.get(), &r),
+    require(cprox_pair(cprox_with_margin(cprox_obstacle_at(best.a, a), a_.padding),
+                       cprox_with_margin(cprox_obstacle_at(best.b, b), b_.padding), &exact, workspace.get(), &r),
             workspace);
     return r;
   }
@@ -226,7 +226,7 @@ class SuperquadricConstraint : public Constraint {
   /* How far apart b's nearest points are when it has turned about its own to one side and to the other, about the axis across the
    * normal where that is most. */
   double spread(const Nearest &best, const ConstraintPlace &place, double turn, Workspace &workspace) const {
-    const Eigen::Vector3d n = toEigen(best.result.normal), centre = toEigen(best.result.on_target);
+    const Eigen::Vector3d n = toEigen(best.result.normal), centre = toEigen(best.result.witness_obstacle);
     const Eigen::Vector3d across = n.unitOrthogonal(), other = n.cross(across);
     const cprox_quat &q = place.b.orientation;
     double most = 0.0;
@@ -237,7 +237,7 @@ class SuperquadricConstraint : public Constraint {
         const Eigen::Quaterniond turned = by * Eigen::Quaterniond(q.w, q.x, q.y, q.z);
         const cprox_pose b = {toVec3(centre + by * (toEigen(place.b.position) - centre)),
                               {turned.w(), turned.x(), turned.y(), turned.z()}};
-        points[k] = toEigen(pairAt(best, place.a, b, workspace).on_target);
+        points[k] = toEigen(pairAt(best, place.a, b, workspace).witness_obstacle);
       }
       most = std::max(most, (points[1] - points[0]).norm());
     }

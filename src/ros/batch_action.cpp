@@ -122,7 +122,7 @@ void BatchAction::answer(Batch &batch) {
   Feedback feedback(goal->curves.size() + goal->trajectories.size());
   guarded(
       [&] {
-        QueryRequest request{verbFromName(goal->verb),
+        QueryRequest request{queryTypeFromName(goal->query_type),
                              goal->delta,
                              List<Curve>(goal->curves),
                              List<trajectory_msgs::JointTrajectory>(goal->trajectories),

@@ -105,8 +105,8 @@ ConstraintResult toMessage(const ConstraintRow &row) {
   message.gradient_radius = answered ? value.radius : NONE;
   message.t = answered ? value.t : NONE;
   const bool points = answered && value.has_points;
-  message.point_a = toPointMessage(toVec3(points ? value.point_a : nothing));
-  message.point_b = toPointMessage(toVec3(points ? value.point_b : nothing));
+  message.witness_a = toPointMessage(toVec3(points ? value.witness_a : nothing));
+  message.witness_b = toPointMessage(toVec3(points ? value.witness_b : nothing));
   message.normal = toVectorMessage(points ? value.normal : nothing);
   message.microseconds = answered ? row.microseconds : NONE;
   return message;

@@ -526,7 +526,7 @@ ApplySceneRequest toMessage(const SceneChange &change) {
 
 /* ---- answers ------------------------------------------------------------------------------------------------------ */
 
-Proximity toMessage(const Answer &answer, Verb verb) {
+Proximity toMessage(const Answer &answer, QueryType query_type) {
   if (answer.result.status < 0) {
     Proximity failed = toFailedRow(answer.id, answer.message);
     failed.kind = answer.kind;
@@ -538,21 +538,21 @@ Proximity toMessage(const Answer &answer, Verb verb) {
   message.id = answer.id;
   message.kind = answer.kind;
   message.status = answer.status;
-  if (verb != Verb::DISTANCE) message.verdict = cprox_verdict_name(result.verdict);
+  if (query_type != QueryType::DISTANCE) message.verdict = cprox_verdict_name(result.verdict);
   message.lower = result.lower;
   message.upper = result.upper;
   message.t = result.t;
-  message.point_a = toPointMessage(result.on_mover);
-  message.point_b = toPointMessage(result.on_target);
+  message.witness_a = toPointMessage(result.witness_mover);
+  message.witness_b = toPointMessage(result.witness_obstacle);
   message.normal.x = result.normal.x;
   message.normal.y = result.normal.y;
   message.normal.z = result.normal.z;
   message.a = answer.a;
   message.b = answer.b;
   message.nodes = result.nodes;
-  message.probes = result.probes;
+  message.distance_queries = result.distance_queries;
   message.microseconds = answer.microseconds;
-  message.rung = cprox_rung_name(result.rung);
+  message.lod = cprox_lod_name(result.lod);
   message.message = answer.message;
   return message;
 }
@@ -564,12 +564,12 @@ Proximity toFailedRow(const std::string &id, const std::string &why) {
   message.kind = "curve";
   message.status = cprox_status_name(CPROX_INVALID);
   message.lower = message.upper = message.t = none;
-  message.point_a.x = message.point_a.y = message.point_a.z = none;
-  message.point_b = message.point_a;
+  message.witness_a.x = message.witness_a.y = message.witness_a.z = none;
+  message.witness_b = message.witness_a;
   message.normal.x = message.normal.y = message.normal.z = none;
   message.microseconds = none;
   message.a = id;
-  message.rung = cprox_rung_name(CPROX_RUNG_NONE);
+  message.lod = cprox_lod_name(CPROX_LOD_NONE);
   message.message = why;
   return message;
 }

@@ -60,7 +60,7 @@ void toMessage(const Snapshot &snapshot, const std::vector<std::string> &ids, Ge
 ApplySceneRequest toMessage(const SceneChange &change);
 
 /** One row of the results. What has no answer has NaN for numbers. */
-Proximity toMessage(const Answer &answer, Verb verb);
+Proximity toMessage(const Answer &answer, QueryType query_type);
 
 /** The row of a curve that could not be asked about. */
 Proximity toFailedRow(const std::string &id, const std::string &why);

@@ -134,8 +134,8 @@ void addPair(Canvas &canvas, const Answer &answer) {
   Marker &line = canvas.add("pairs", Marker::LINE_LIST);
   setScale(line, LINE_WIDTH, 0.0, 0.0);
   line.color = tint;
-  line.points = {toPointMessage(result.on_mover), toPointMessage(result.on_target)};
-  for (const cprox_vec3 &end : {result.on_mover, result.on_target}) {
+  line.points = {toPointMessage(result.witness_mover), toPointMessage(result.witness_obstacle)};
+  for (const cprox_vec3 &end : {result.witness_mover, result.witness_obstacle}) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.translation() = toEigen(end);
     Marker &ball = canvas.add("pairs", Marker::SPHERE, pose);
@@ -147,7 +147,7 @@ void addPair(Canvas &canvas, const Answer &answer) {
   std::snprintf(text, sizeof text, "%.1f mm", 1e3 * result.upper);
   Eigen::Isometry3d middle = Eigen::Isometry3d::Identity();
   middle.translation() =
-      0.5 * (toEigen(result.on_mover) + toEigen(result.on_target)) + LABEL_ABOVE * Eigen::Vector3d::UnitZ();
+      0.5 * (toEigen(result.witness_mover) + toEigen(result.witness_obstacle)) + LABEL_ABOVE * Eigen::Vector3d::UnitZ();
   Marker &label = canvas.add("labels", Marker::TEXT_VIEW_FACING, middle);
   setScale(label, 0.0, 0.0, LABEL_HEIGHT);
   label.color = colour(0.1, 0.1, 0.12, 1.0);
@@ -156,9 +156,9 @@ void addPair(Canvas &canvas, const Answer &answer) {
 
 /* ---- what is open -------------------------------------------------------------------------------------------------- */
 
-bool isOpen(const Answer &answer, Verb verb) {
+bool isOpen(const Answer &answer, QueryType query_type) {
   const cprox_status status = answer.result.status;
-  const bool undecided = status >= 0 && verb != Verb::DISTANCE && answer.result.verdict == CPROX_UNDECIDED;
+  const bool undecided = status >= 0 && query_type != QueryType::DISTANCE && answer.result.verdict == CPROX_UNDECIDED;
   return undecided || status == CPROX_BUDGET || status == CPROX_STOPPED;
 }
 
@@ -166,29 +166,29 @@ void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &l
   const cprox_curve *curve = line.curve.curve.get();
   const std::size_t degree = cprox_curve_degree(curve);
   if (degree == 0) return; // known by its arc length: it has no control points
-  constexpr std::size_t STRETCHES = 48;
+  constexpr std::size_t INTERVALS = 48;
   constexpr std::uint32_t NODES = 4; /* for each of them and each target */
-  const Targets all(drawing.snapshot, drawing.links, Question{});
-  const std::vector<cprox_target> targets = coreTargets(all);
+  const Targets all(drawing.snapshot, drawing.links, Query{});
+  const std::vector<cprox_obstacle> targets = coreTargets(all);
   double t0 = 0.0, t1 = 0.0;
   cprox_curve_domain(curve, &t0, &t1);
-  std::vector<double> breaks(STRETCHES + 1);
-  for (std::size_t i = 0; i <= STRETCHES; ++i)
-    breaks[i] = i == STRETCHES ? t1 : t0 + (t1 - t0) * static_cast<double>(i) / STRETCHES;
+  std::vector<double> breaks(INTERVALS + 1);
+  for (std::size_t i = 0; i <= INTERVALS; ++i)
+    breaks[i] = i == INTERVALS ? t1 : t0 + (t1 - t0) * static_cast<double>(i) / INTERVALS;
 
   Workspace workspace;
-  std::vector<cprox_stretch> stretches(STRETCHES);
+  std::vector<cprox_profile_interval> intervals(INTERVALS);
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-4;
   options.max_nodes = NODES;
   if (cprox_profile(cprox_tube_along(curve, line.curve.radius), targets.data(), targets.size(), breaks.data(),
-                    STRETCHES, &options, workspace.get(), stretches.data()) < 0)
+                    INTERVALS, &options, workspace.get(), intervals.data()) < 0)
     return;
-  for (const cprox_stretch &stretch : stretches) {
+  for (const cprox_profile_interval &interval : intervals) {
     // Nearer than the best point that is known: the least distance may be here.
-    if (stretch.lower > answer.result.upper) continue;
+    if (interval.lower > answer.result.upper) continue;
     std::vector<cprox_vec3> points;
-    addControlPoints(curve, stretch.t0, stretch.t1, HALVINGS, points);
+    addControlPoints(curve, interval.t0, interval.t1, HALVINGS, points);
     addHull(canvas, points, line.curve.radius);
   }
 }

@@ -31,10 +31,10 @@ void addCurve(Canvas &canvas, const CompiledCurve &curve, const PlacedBodies &pl
 void addPair(Canvas &canvas, const Answer &answer);
 
 /** Did the search leave intervals that decide nothing? */
-bool isOpen(const Answer &answer, Verb verb);
+bool isOpen(const Answer &answer, QueryType query_type);
 
-/** The hulls of those stretches of the curve that, with a small budget each, are not shown to be farther away than the answer's
- *  lower bound and what was asked leave room for. */
+/** The hulls of those intervals of the curve that, with a small budget each, are not shown to be farther away than the
+ *  answer's lower bound and what was asked leave room for. */
 void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &line, const Answer &answer);
 
 } // namespace curve_proximity

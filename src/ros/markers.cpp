@@ -51,7 +51,7 @@ void addCurves(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
     const bool still_true = drawing.snapshot->version() == scene.version();
     if (!still_true || nearest == line.answers.end()) continue;
     addPair(canvas, *nearest);
-    if (isOpen(*nearest, drawing.verb)) addOpenHulls(canvas, drawing, line, *nearest);
+    if (isOpen(*nearest, drawing.query_type)) addOpenHulls(canvas, drawing, line, *nearest);
   }
 }
 

@@ -26,7 +26,7 @@ struct MarkerResources {
 /** All markers in the fixed frame, after one that deletes what was shown before. By namespace:
  *    scene    the objects
  *    curves   the curves, coloured by clearance: tubes of their radius
- *    open     hulls of the stretches of a curve that its budget, or epsilon, left undecided
+ *    open     hulls of the intervals of a curve that its budget, or epsilon, left undecided
  *    robot    the robot: along a trajectory at its closest moment, each link coloured by its clearance from the objects
  *    swept    the robot on its way
  *    sweep    the way of the point of the robot that comes closest

@@ -40,10 +40,11 @@ double linkClearance(const Parts &parts, const Eigen::Isometry3d &link, const Pl
   options.epsilon = 1e-4;
   double least = std::numeric_limits<double>::infinity();
   for (const Part &part : parts) {
-    const cprox_target a = cprox_at(part.element->geometry.hull.get(), toPose(link * part.element->pose));
+    const cprox_obstacle a = cprox_obstacle_at(part.element->geometry.hull.get(), toPose(link * part.element->pose));
     for (const PlacedBody &object : objects) {
       cprox_result result{};
-      if (cprox_pair(a, cprox_at(object.body, toPose(object.pose)), &options, workspace.get(), &result) < 0) continue;
+      if (cprox_pair(a, cprox_obstacle_at(object.body, toPose(object.pose)), &options, workspace.get(), &result) < 0)
+        continue;
       least = std::min(least, std::max(0.0, result.upper) - part.padding - object.padding);
     }
   }
@@ -125,7 +126,7 @@ void addMotion(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
   if (drawing.snapshot->version() == scene.version()) addPair(canvas, *nearest);
   const auto link = poses.find(nearest->a);
   if (link == poses.end()) return; // something that is carried
-  const Eigen::Vector3d point = link->second.inverse() * toEigen(nearest->result.on_mover);
+  const Eigen::Vector3d point = link->second.inverse() * toEigen(nearest->result.witness_mover);
   addSweep(canvas, *drawing.snapshot, motion, link->first, point, objects, workspace);
 }
 

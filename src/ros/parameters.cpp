@@ -180,11 +180,12 @@ Parameters readParameters(const ros::NodeHandle &handle) {
   if (parameters.memory_limit_mb > 0 && parameters.memory_limit_mb < LEAST_MEMORY_MB)
     throw ParameterError("parameter ~memory_limit_mb: 0 or at least " + std::to_string(LEAST_MEMORY_MB) +
                          " is expected");
-  if (parameters.verb != "distance" && parameters.verb != "tolerance" && parameters.verb != "collision")
-    throw ParameterError("parameter ~verb: distance, tolerance or collision is expected, not '" + parameters.verb +
-                         "'");
+  if (parameters.query_type != "distance" && parameters.query_type != "tolerance" &&
+      parameters.query_type != "collision")
+    throw ParameterError("parameter ~query_type: distance, tolerance or collision is expected, not '" +
+                         parameters.query_type + "'");
   if (parameters.fixed_frame.empty()) throw ParameterError("parameter ~fixed_frame: the name of a frame is expected");
-  if (!rungFromName(parameters.max_rung)) throw ParameterError("parameter ~max_rung: sphere, hull or mesh is expected");
+  if (!lodFromName(parameters.max_lod)) throw ParameterError("parameter ~max_lod: sphere, hull or mesh is expected");
   if (parameters.cloud_id.empty()) throw ParameterError("parameter ~cloud_id: the name of an object is expected");
   if (parameters.octomap_id.empty() || parameters.octomap_id == parameters.cloud_id)
     throw ParameterError("parameter ~octomap_id: the name of an object is expected, another than ~cloud_id");

@@ -31,10 +31,10 @@ struct Parameters {
   std::string scene_file;
   double epsilon = 1e-6;
   int max_nodes = 20000;
-  std::string max_rung = "mesh";
+  std::string max_lod = "mesh";
   double budget_ms = 5000.0;
   int threads = 4;
-  std::string verb = "tolerance";
+  std::string query_type = "tolerance";
   double delta = 0.0;
   bool self_collision = true;
   double path_radius = 0.0;
@@ -71,10 +71,10 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("scene_file", parameters.scene_file);
   visit("epsilon", parameters.epsilon, Range{0.0, true});
   visit("max_nodes", parameters.max_nodes, Range{1.0, false, count});
-  visit("max_rung", parameters.max_rung);
+  visit("max_lod", parameters.max_lod);
   visit("budget_ms", parameters.budget_ms, Range{0.0, true, 1e9});
   visit("threads", parameters.threads, Range{1.0, false, 256.0});
-  visit("verb", parameters.verb);
+  visit("query_type", parameters.query_type);
   visit("delta", parameters.delta, Range{0.0});
   visit("self_collision", parameters.self_collision);
   visit("path_radius", parameters.path_radius, Range{0.0});

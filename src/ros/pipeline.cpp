@@ -52,7 +52,7 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
       queries_(queries),
       markers_(markers),
       stop_(stop),
-      verb_(verbFromName(parameters.verb)),
+      query_type_(queryTypeFromName(parameters.query_type)),
       jobs_(static_cast<std::size_t>(parameters.queue_size)),
       handle_(handle),
       spinner_(THREADS, &queue_) {
@@ -118,8 +118,8 @@ void Pipeline::handle(const Job &job) {
       },
       job);
   results->header.frame_id = parameters_.fixed_frame;
-  results->verb = parameters_.verb;
-  results->delta = verb_ == Verb::TOLERANCE ? tuning_.delta.load() : 0.0;
+  results->query_type = parameters_.query_type;
+  results->delta = query_type_ == QueryType::TOLERANCE ? tuning_.delta.load() : 0.0;
   results->epsilon = tuning_.epsilon;
 
   const auto drawing = std::make_shared<Drawing>();
@@ -139,8 +139,8 @@ void Pipeline::handle(const Job &job) {
         }
         const std::vector<std::string> everything;
         const bool self = parameters_.self_collision && asked.trajectories.size() > 0;
-        QueryRequest request{verb_, results->delta, asked.curves, asked.trajectories,
-                             self,  everything,     everything,   state};
+        QueryRequest request{query_type_, results->delta, asked.curves, asked.trajectories,
+                             self,        everything,     everything,   state};
         QueryResponse answer;
         queries_.answer(request, answer, *drawing);
         results->success = answer.success;

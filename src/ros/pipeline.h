@@ -72,7 +72,7 @@ class Pipeline {
   Queries &queries_;
   MarkerPublisher &markers_;
   const std::atomic<bool> &stop_;
-  const Verb verb_;
+  const QueryType query_type_;
   BoundedQueue<Job> jobs_;
   std::mutex joints_mutex_;
   std::map<std::string, double> joints_; /* the latest of ~joint_states, by name */

@@ -59,19 +59,19 @@ void limit(const char *parameter, std::size_t most, std::size_t count, const cha
   throw Error(std::to_string(count) + " " + what + " are more than ~" + parameter + " = " + std::to_string(most));
 }
 
-/** Everything that a question is measured against, for one stamp after the other. For one thread. */
+/** Everything that a query is measured against, for one stamp after the other. For one thread. */
 class StampedTargets {
  public:
-  StampedTargets(SnapshotPtr snapshot, const Question &question, const sensor_msgs::JointState &joint_state,
+  StampedTargets(SnapshotPtr snapshot, const Query &query, const sensor_msgs::JointState &joint_state,
                  FrameLookup &lookup)
-      : snapshot_(std::move(snapshot)), question_(question), lookup_(lookup) {
-    const bool everything = question.objects.empty() && question.links.empty();
-    if (!question.links.empty() && !snapshot_->robot())
-      throw Error("link '" + question.links.front() + "': this server has no robot, only objects");
+      : snapshot_(std::move(snapshot)), query_(query), lookup_(lookup) {
+    const bool everything = query.objects.empty() && query.links.empty();
+    if (!query.links.empty() && !snapshot_->robot())
+      throw Error("link '" + query.links.front() + "': this server has no robot, only objects");
     const auto carried = [&](const std::string &id) { return snapshot_->attached().count(id) > 0; };
-    carried_ = everything ? !snapshot_->attached().empty()
-                          : std::any_of(question.objects.begin(), question.objects.end(), carried);
-    with_robot_ = snapshot_->robot() && (everything || carried_ || !question.links.empty());
+    carried_ =
+        everything ? !snapshot_->attached().empty() : std::any_of(query.objects.begin(), query.objects.end(), carried);
+    with_robot_ = snapshot_->robot() && (everything || carried_ || !query.links.empty());
     from_joints_ = with_robot_ && !joint_state.name.empty();
     if (from_joints_) positions_ = toJointPositions(joint_state);
   }
@@ -87,7 +87,7 @@ class StampedTargets {
     auto found = stamped_.find(key);
     if (found == stamped_.end()) {
       LinkPoses links = with_robot_ ? linkPoses(stamp) : LinkPoses();
-      Targets targets(snapshot_, links, question_);
+      Targets targets(snapshot_, links, query_);
       found = stamped_.emplace(key, Stamped{std::move(links), std::move(targets)}).first;
     }
     return found->second;
@@ -99,12 +99,12 @@ class StampedTargets {
     const Robot &robot = *snapshot_->robot();
     if (from_joints_) return robot.linkPoses(positions_, lookup_.toFixed(robot.rootLink(), stamp));
     LinkPoses poses;
-    if (question_.links.empty()) {
+    if (query_.links.empty()) {
       for (const auto &link : robot.links()) {
         if (!link.second.empty()) poses[link.first] = lookup_.toFixed(link.first, stamp);
       }
     }
-    for (const std::string &link : question_.links) {
+    for (const std::string &link : query_.links) {
       if (robot.links().count(link)) poses[link] = lookup_.toFixed(link, stamp);
     }
     for (const auto &object : snapshot_->attached()) {
@@ -114,7 +114,7 @@ class StampedTargets {
   }
 
   const SnapshotPtr snapshot_;
-  const Question &question_;
+  const Query &query_;
   FrameLookup &lookup_;
   bool with_robot_ = false, from_joints_ = false, carried_ = false;
   JointPositions positions_;
@@ -142,14 +142,14 @@ class Failures {
 
 } // namespace
 
-Verb verbFromName(const std::string &name) {
-  if (name == "distance") return Verb::DISTANCE;
-  if (name == "tolerance") return Verb::TOLERANCE;
-  if (name == "collision") return Verb::COLLISION;
-  throw Error("the verb '" + name + "' is none of distance, tolerance, collision");
+QueryType queryTypeFromName(const std::string &name) {
+  if (name == "distance") return QueryType::DISTANCE;
+  if (name == "tolerance") return QueryType::TOLERANCE;
+  if (name == "collision") return QueryType::COLLISION;
+  throw Error("the query '" + name + "' is none of distance, tolerance, collision");
 }
 
-Question Queries::toQuestion(const QueryRequest &request) const {
+Query Queries::toQuery(const QueryRequest &request) const {
   // Here NaN and negative numbers are told once, not once a row; 0 means the server's own.
   if (request.epsilon != 0.0 && !(request.epsilon > 0.0 && std::isfinite(request.epsilon)))
     throw Error("epsilon is " + std::to_string(request.epsilon) + ": it must be above 0 and finite, or 0 for ~epsilon");
@@ -159,21 +159,20 @@ Question Queries::toQuestion(const QueryRequest &request) const {
     throw Error("delta is " + std::to_string(request.delta) + ": it must be at least 0 and finite");
 
   // What no row would heed is an error, too.
-  if (request.delta != 0.0 && request.verb != Verb::TOLERANCE)
+  if (request.delta != 0.0 && request.query_type != QueryType::TOLERANCE)
     throw Error("delta is " + std::to_string(request.delta) + ": it is the clearance that tolerance asks for");
   if (request.self_collision && request.trajectories.size() == 0)
     throw Error("self_collision is about the robot along a trajectory, and there is none");
-  Question question;
-  question.verb = request.verb;
-  question.delta = request.delta;
-  question.options.epsilon = request.epsilon != 0.0 ? request.epsilon : tuning_.epsilon.load();
-  question.options.max_nodes =
-      request.max_nodes != 0 ? request.max_nodes : static_cast<std::uint32_t>(tuning_.max_nodes);
-  question.options.max_rung = *rungFromName(parameters_.max_rung);
-  question.per_object = request.per_object;
-  question.objects = request.objects;
-  question.links = request.links;
-  return question;
+  Query query;
+  query.query_type = request.query_type;
+  query.delta = request.delta;
+  query.options.epsilon = request.epsilon != 0.0 ? request.epsilon : tuning_.epsilon.load();
+  query.options.max_nodes = request.max_nodes != 0 ? request.max_nodes : static_cast<std::uint32_t>(tuning_.max_nodes);
+  query.options.max_lod = *lodFromName(parameters_.max_lod);
+  query.per_object = request.per_object;
+  query.objects = request.objects;
+  query.links = request.links;
+  return query;
 }
 
 void Queries::checkLimits(const QueryRequest &request, const Snapshot &snapshot) const {
@@ -182,7 +181,7 @@ void Queries::checkLimits(const QueryRequest &request, const Snapshot &snapshot)
   for (const Curve &curve : request.curves) points += curve.points.size();
   limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), points, "control points");
 
-  // With per_object the answer may be far larger than the question.
+  // With per_object the answer may be far larger than the query.
   std::size_t targets = 1;
   if (request.per_object) {
     const bool everything = request.objects.empty() && request.links.empty();
@@ -205,28 +204,28 @@ void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawi
 
 void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing) {
   // One snapshot for all: what changes meanwhile does not change this answer.
-  Question question = toQuestion(request);
+  Query query = toQuery(request);
   TimeBudget budget(request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load(), stop_, request.cancelled);
-  question.options.stop = TimeBudget::isOver;
-  question.options.stop_user = &budget;
+  query.options.stop = TimeBudget::isOver;
+  query.options.stop_user = &budget;
   const SnapshotPtr snapshot = scene_.snapshot();
   checkLimits(request, *snapshot);
   if (!snapshot->robot() && !request.joint_state.name.empty())
     throw Error("joint_state names '" + request.joint_state.name.front() + "', and this server has no robot");
 
-  answerCurves(request, question, snapshot, response, drawing);
-  answerTrajectories(request, question, snapshot, response, drawing);
+  answerCurves(request, query, snapshot, response, drawing);
+  answerTrajectories(request, query, snapshot, response, drawing);
   for (Proximity &row : response.results)
     if (row.status == cprox_status_name(CPROX_STOPPED)) row.message = budget.reason();
-  drawing.verb = request.verb;
+  drawing.query_type = request.query_type;
   drawing.snapshot = snapshot;
 }
 
-void Queries::answerCurves(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+void Queries::answerCurves(const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
                            QueryResponse &response, Drawing &drawing) {
   // Each curve is answered on its own: what is wrong with it fails its row only.
   FrameLookup lookup(frames_);
-  StampedTargets targets(snapshot, question, request.joint_state, lookup);
+  StampedTargets targets(snapshot, query, request.joint_state, lookup);
   const WorkspacePool::Lease workspace(workspaces_);
   response.results.reserve(request.curves.size());
   Failures failures;
@@ -238,9 +237,9 @@ void Queries::answerCurves(const QueryRequest &request, const Question &question
           toDescription(message, lookup.toFixed(message.header.frame_id, message.header.stamp));
       CompiledCurve curve = compile(description);
       const StampedTargets::Stamped &stamped = targets.at(message.header.stamp);
-      std::vector<Answer> answers = ask(stamped.targets, curve, question, *workspace);
+      std::vector<Answer> answers = ask(stamped.targets, curve, query, *workspace);
       for (const Answer &answer : answers) {
-        response.results.push_back(toMessage(answer, request.verb));
+        response.results.push_back(toMessage(answer, request.query_type));
         if (answer.result.status < 0) failures.count(response.results.back(), i);
       }
       if (drawing.lines.size() < MAX_DRAWN_CURVES) {
@@ -256,7 +255,7 @@ void Queries::answerCurves(const QueryRequest &request, const Question &question
   failures.tell(response);
 }
 
-void Queries::answerTrajectories(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+void Queries::answerTrajectories(const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
                                  QueryResponse &response, Drawing &drawing) {
   const auto &trajectories = request.trajectories;
   if (trajectories.size() == 0) return;
@@ -268,13 +267,13 @@ void Queries::answerTrajectories(const QueryRequest &request, const Question &qu
   for (const auto &trajectory : trajectories) {
     const auto i = static_cast<std::size_t>(&trajectory - trajectories.begin());
     const std::string id = trajectories.size() == 1 ? "trajectory" : "trajectory/" + std::to_string(i);
-    answerTrajectory(trajectory, id, request, question, snapshot, response, drawing);
+    answerTrajectory(trajectory, id, request, query, snapshot, response, drawing);
     if (request.progress) (*request.progress)(response, request.curves.size() + i + 1);
   }
 }
 
 void Queries::answerTrajectory(const trajectory_msgs::JointTrajectory &message, const std::string &id,
-                               const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+                               const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
                                QueryResponse &response, Drawing &drawing) {
   // The trajectory, the joints that it leaves alone, and where the robot stands.
   try {
@@ -289,12 +288,12 @@ void Queries::answerTrajectory(const trajectory_msgs::JointTrajectory &message, 
                                                       lookup.toFixed(frame, message.header.stamp));
 
     const WorkspacePool::Lease workspace(workspaces_);
-    std::vector<Answer> answers = askEnvironment(*motion, question, *workspace);
-    Question self = question; // one row, of no objects
+    std::vector<Answer> answers = askEnvironment(*motion, query, *workspace);
+    Query self = query; // one row, of no objects
     self.per_object = false;
     self.objects.clear();
     if (request.self_collision) answers.push_back(askSelf(*motion, self, *workspace));
-    for (const Answer &answer : answers) response.results.push_back(toMessage(answer, request.verb));
+    for (const Answer &answer : answers) response.results.push_back(toMessage(answer, request.query_type));
     drawing.motion = std::move(motion);
     drawing.motion_answers = std::move(answers);
   } catch (const Error &error) {

@@ -56,7 +56,7 @@ using Progress = std::function<void(const QueryResponse &response, std::size_t d
 
 /** What services, topics and the action ask, by reference. */
 struct QueryRequest {
-  Verb verb;
+  QueryType query_type;
   double delta; /**< [m] of TOLERANCE */
   List<Curve> curves;
   List<trajectory_msgs::JointTrajectory> trajectories;
@@ -72,7 +72,7 @@ struct QueryRequest {
 };
 
 /** "distance", "tolerance", "collision". Throws Error for any other word. */
-Verb verbFromName(const std::string &name);
+QueryType queryTypeFromName(const std::string &name);
 
 /** The response that they share. */
 struct QueryResponse {
@@ -87,7 +87,7 @@ struct Drawing {
     CompiledCurve curve;
     std::vector<Answer> answers;
   };
-  Verb verb = Verb::DISTANCE;
+  QueryType query_type = QueryType::DISTANCE;
   std::vector<Line> lines; /**< of the first curves of the request */
   SnapshotPtr snapshot;
   LinkPoses links; /**< of the last of these curves; without curves those of the motion at its closest moment */
@@ -116,13 +116,13 @@ class Queries {
   void answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
 
  private:
-  Question toQuestion(const QueryRequest &request) const;
-  void answerCurves(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+  Query toQuery(const QueryRequest &request) const;
+  void answerCurves(const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
                     QueryResponse &response, Drawing &drawing);
-  void answerTrajectories(const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+  void answerTrajectories(const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
                           QueryResponse &response, Drawing &drawing);
   void answerTrajectory(const trajectory_msgs::JointTrajectory &message, const std::string &id,
-                        const QueryRequest &request, const Question &question, const SnapshotPtr &snapshot,
+                        const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
                         QueryResponse &response, Drawing &drawing);
   void checkLimits(const QueryRequest &request, const Snapshot &snapshot) const;
 

@@ -133,9 +133,9 @@ bool ProximityServer::handle(Response &response, Work &&work) {
 }
 
 template <class Request, class Response>
-bool ProximityServer::query(Verb verb, double delta, const Request &request, Response &response) {
+bool ProximityServer::query(QueryType query_type, double delta, const Request &request, Response &response) {
   return handle(response, [&] {
-    const QueryRequest common{verb,
+    const QueryRequest common{query_type,
                               delta,
                               List<Curve>(request.curves),
                               trajectoriesOf(request.trajectory),
@@ -158,15 +158,15 @@ bool ProximityServer::query(Verb verb, double delta, const Request &request, Res
 }
 
 bool ProximityServer::distance(Distance::Request &request, Distance::Response &response) {
-  return query(Verb::DISTANCE, 0.0, request, response);
+  return query(QueryType::DISTANCE, 0.0, request, response);
 }
 
 bool ProximityServer::tolerance(Tolerance::Request &request, Tolerance::Response &response) {
-  return query(Verb::TOLERANCE, request.delta, request, response);
+  return query(QueryType::TOLERANCE, request.delta, request, response);
 }
 
 bool ProximityServer::collision(Collision::Request &request, Collision::Response &response) {
-  return query(Verb::COLLISION, 0.0, request, response);
+  return query(QueryType::COLLISION, 0.0, request, response);
 }
 
 /** Objects come in any frame; what is wrong with one is told, and the others are applied. */

@@ -66,7 +66,7 @@ class ProximityServer {
   void loadScene();
 
   template <class Request, class Response>
-  bool query(Verb verb, double delta, const Request &request, Response &response);
+  bool query(QueryType query_type, double delta, const Request &request, Response &response);
   template <class Response, class Work>
   bool handle(Response &response, Work &&work);
 

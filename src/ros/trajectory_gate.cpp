@@ -44,8 +44,8 @@ std::optional<Entry> take(std::deque<Entry> &entries, std::uint64_t fingerprint)
 
 bool isClear(const ProximityResults &results, double delta) {
   if (!results.success || results.results.empty()) return false;
-  const bool tolerant = results.verb == "tolerance" && results.delta >= delta;
-  const bool apart = results.verb == "collision" && delta == 0.0;
+  const bool tolerant = results.query_type == "tolerance" && results.delta >= delta;
+  const bool apart = results.query_type == "collision" && delta == 0.0;
   return std::all_of(results.results.begin(), results.results.end(), [&](const Proximity &row) {
     const bool settled = (tolerant && row.verdict == "yes") || (apart && row.verdict == "no");
     return settled || row.lower > delta; // a row without an answer has NaN and no verdict

@@ -155,14 +155,14 @@ Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bo
   checkTriangles(mesh);
   const Hull hull = hullOf(usedVertices(mesh, scale));
   const Eigen::Matrix3Xd vertices = scale.asDiagonal() * mesh.vertices;
-  const auto ladder = [&](cprox_mesh_fill fill) {
-    return makeLadder(hull.body, hull.excess, makeMesh(vertices, mesh.triangles, fill, memory_limit));
+  const auto lod = [&](cprox_mesh_fill fill) {
+    return makeLod(hull.body, hull.excess, makeMesh(vertices, mesh.triangles, fill, memory_limit));
   };
 
   Geometry out;
-  out.body = ladder(solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE);
+  out.body = lod(solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE);
   const bool has_inside = cprox_body_is_solid(out.body.get());
-  out.surface = has_inside ? ladder(CPROX_MESH_SURFACE) : out.body;
+  out.surface = has_inside ? lod(CPROX_MESH_SURFACE) : out.body;
   out.hull = hull.body;
   out.hull_excess = hull.excess;
   out.is_mesh = true;

@@ -19,9 +19,9 @@ struct MeshData {
  * file and what is wrong with it, where it is cut short or otherwise malformed, or holds no triangle. */
 MeshData readMesh(const std::string &file);
 
-/* The mesh, scaled along the axes, as a ladder of the convex hull of the vertices that triangles use, and the triangles.
- * Throws Error: no triangle, an index out of range, vertices or scale not finite, a scale of 0; CPROX_MEMORY where the triangles
- * would take more than memory_limit bytes. */
+/* The mesh, scaled along the axes, as a level-of-detail body of the convex hull of the vertices that triangles use, and
+ * the triangles. Throws Error: no triangle, an index out of range, vertices or scale not finite, a scale of 0;
+ * CPROX_MEMORY where the triangles would take more than memory_limit bytes. */
 Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bool solid, std::size_t memory_limit);
 
 /* A convex hull, and how far what it is the hull of may stand out of it [m]. */

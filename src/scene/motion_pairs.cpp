@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Which pairs a question about a robot in motion is about, and why others are not. */
+/* Which pairs a query about a robot in motion is about, and why others are not. */
 #include <algorithm>
 #include <set>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Questions about a robot in motion, and their answers by name. */
+/* Queries about a robot in motion, and their answers by name. */
 #include <algorithm>
 #include <chrono>
 #include <limits>
@@ -21,15 +21,15 @@ double mostExcess(const std::vector<MovingGeometry> &geometries) {
   return most;
 }
 
-/* Whom a question is about: pairs of geometries and some of the world's items, or of geometries alone. */
+/* Whom a query is about: pairs of geometries and some of the world's items, or of geometries alone. */
 struct Asked {
   const RobotMotion::Data &data;
   bool self;
   std::vector<std::size_t> items; /* by target */
-  std::vector<cprox_target> targets;
+  std::vector<cprox_obstacle> targets;
   std::vector<cprox_robot_pair> pairs;
-  double rounding;                  /* [m] that the core does not know of */
-  std::vector<cprox_target> proven; /* the targets as a proof takes them: it must know a hull from a convex body */
+  double rounding;                    /* [m] that the core does not know of */
+  std::vector<cprox_obstacle> proven; /* the targets as a proof takes them: it must know a hull from a convex body */
 
   cprox_mover mover() const {
     return self ? cprox_robot_self(data.core.get(), pairs.data(), pairs.size())
@@ -90,27 +90,28 @@ void finish(const RobotMotion::Data &data, Answer &answer, Clock::time_point sta
   addWarnings(data, answer);
 }
 
-/* Names both sides of an answer that has a witness, and leaves the numbers of their shapes in mover_part and target_index. */
-void nameSides(const Asked &asked, const Question &question, Answer &answer) {
+/* Names both sides of an answer that has a witness, and leaves the numbers of their shapes in mover_part and
+ * obstacle_index. */
+void nameSides(const Asked &asked, const Query &query, Answer &answer) {
   cprox_result &result = answer.result;
-  if (result.status < 0 || result.target_index < 0) return;
+  if (result.status < 0 || result.obstacle_index < 0) return;
   const std::vector<MovingGeometry> &geometries = asked.data.kinematics->geometries;
   const MovingGeometry &moving = geometries[static_cast<std::size_t>(result.mover_part)];
-  const auto other = static_cast<std::size_t>(result.target_index);
+  const auto other = static_cast<std::size_t>(result.obstacle_index);
   answer.a = moving.owner();
   result.mover_part = moving.part;
-  const bool coarse = question.options.max_rung != CPROX_RUNG_MESH;
+  const bool coarse = query.options.max_lod != CPROX_LOD_MESH;
   answer.by_hull = coarse && moving.is_mesh;
   if (asked.self) {
     const MovingGeometry &standing = geometries[other];
     answer.b = standing.owner();
     answer.b_is_link = !standing.attached;
-    result.target_index = standing.part;
+    result.obstacle_index = standing.part;
     answer.by_hull = answer.by_hull || (coarse && standing.is_mesh);
   } else {
     const Item &item = asked.data.snapshot->world().items()[asked.items[other]];
     answer.b = *item.owner;
-    result.target_index = item.part;
+    result.obstacle_index = item.part;
     answer.by_hull =
         answer.by_hull || (item.shape->is_mesh && (coarse || cprox_body_is_solid(item.shape->target.body)));
   }
@@ -118,7 +119,7 @@ void nameSides(const Asked &asked, const Question &question, Answer &answer) {
 }
 
 /* What the core said, widened by the rounding that it does not know, and by name. */
-Answer toAnswer(const Asked &asked, const cprox_result &result, const Question &question, const Workspace &workspace,
+Answer toAnswer(const Asked &asked, const cprox_result &result, const Query &query, const Workspace &workspace,
                 Clock::time_point start) {
   Answer answer;
   answer.id = asked.data.id;
@@ -127,56 +128,55 @@ Answer toAnswer(const Asked &asked, const cprox_result &result, const Question &
   if (result.status < 0) {
     answer.message = workspace.reason();
   } else {
-    if (!asked.pairs.empty()) widen(question, asked.rounding, INFINITE, answer.result);
-    nameSides(asked, question, answer);
+    if (!asked.pairs.empty()) widen(query, asked.rounding, INFINITE, answer.result);
+    nameSides(asked, query, answer);
   }
   finish(asked.data, answer, start);
   return answer;
 }
 
-Answer answerOf(const Asked &asked, const Question &question, Workspace &workspace) {
+Answer answerOf(const Asked &asked, const Query &query, Workspace &workspace) {
   const Clock::time_point start = Clock::now();
   cprox_result result{};
-  result.target_index = -1;
+  result.obstacle_index = -1;
   if (asked.pairs.empty()) {
-    answerNothing(question, result);
+    answerNothing(query, result);
   } else {
-    cprox_options options = withoutRounding(question.options, asked.rounding);
+    cprox_options options = withoutRounding(query.options, asked.rounding);
     options.certificate = nullptr;
-    result.status = askCore(question, options, asked.mover(), asked.targets, workspace, result);
+    result.status = askCore(query, options, asked.mover(), asked.targets, workspace, result);
   }
-  Answer answer = toAnswer(asked, result, question, workspace, start);
-  if (!question.options.certificate) return answer;
-  if (!asked.pairs.empty() && result.status >= 0) widen(question, asked.rounding, INFINITE, result);
-  leaveProof(question, asked.mover(), asked.proven, result, workspace, answer);
+  Answer answer = toAnswer(asked, result, query, workspace, start);
+  if (!query.options.certificate) return answer;
+  if (!asked.pairs.empty() && result.status >= 0) widen(query, asked.rounding, INFINITE, result);
+  leaveProof(query, asked.mover(), asked.proven, result, workspace, answer);
   return answer;
 }
 
 /* What is asked about is a distance, and of all objects. */
-void checkDistances(bool self, const Question &question) {
-  if (question.verb != Verb::DISTANCE)
-    throw Error("verb does not apply: pairs and clearance profiles are answered by their distances");
-  const std::string fault = faultOfMotion(question, true);
+void checkDistances(bool self, const Query &query) {
+  if (query.query_type != QueryType::DISTANCE)
+    throw Error("query does not apply: pairs and clearance profiles are answered by their distances");
+  const std::string fault = faultOfMotion(query, true);
   if (!fault.empty()) throw Error(fault);
-  if (self && !question.objects.empty())
-    throw Error("objects do not apply to a robot against itself, '" + question.objects.front() + "' among them");
-  if (question.options.certificate)
-    throw Error("a certificate does not apply: ask askEnvironment() or askSelf() for it");
+  if (self && !query.objects.empty())
+    throw Error("objects do not apply to a robot against itself, '" + query.objects.front() + "' among them");
+  if (query.options.certificate) throw Error("a certificate does not apply: ask askEnvironment() or askSelf() for it");
 }
 
-Asked askedOf(const RobotMotion &motion, bool self, const Question &question) {
-  return self ? askedSelf(motion.data()) : askedItems(motion.data(), namedItems(motion.data(), question.objects));
+Asked askedOf(const RobotMotion &motion, bool self, const Query &query) {
+  return self ? askedSelf(motion.data()) : askedItems(motion.data(), namedItems(motion.data(), query.objects));
 }
 
 } // namespace
 
-std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &question, Workspace &workspace) {
+std::vector<Answer> askEnvironment(const RobotMotion &motion, const Query &query, Workspace &workspace) {
   const RobotMotion::Data &data = motion.data();
-  cprox_certificate_clear(question.options.certificate);
-  const std::string fault = faultOfMotion(question, false);
+  cprox_certificate_clear(query.options.certificate);
+  const std::string fault = faultOfMotion(query, false);
   if (!fault.empty()) return {refusal(data.id, "environment", fault)};
-  const std::vector<std::size_t> named = namedItems(data, question.objects);
-  if (!question.per_object || named.empty()) return {answerOf(askedItems(data, named), question, workspace)};
+  const std::vector<std::size_t> named = namedItems(data, query.objects);
+  if (!query.per_object || named.empty()) return {answerOf(askedItems(data, named), query, workspace)};
 
   /* one for each run of items of the same object */
   const std::vector<Item> &items = data.snapshot->world().items();
@@ -185,24 +185,24 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Question &qu
   for (std::size_t i = 0; i < named.size(); ++i) {
     wanted.push_back(named[i]);
     if (i + 1 < named.size() && items[named[i + 1]].owner == items[named[i]].owner) continue;
-    answers.push_back(answerOf(askedItems(data, wanted), question, workspace));
+    answers.push_back(answerOf(askedItems(data, wanted), query, workspace));
     answers.back().b = *items[named[i]].owner;
     wanted.clear();
   }
   return answers;
 }
 
-Answer askSelf(const RobotMotion &motion, const Question &question, Workspace &workspace) {
-  cprox_certificate_clear(question.options.certificate);
-  std::string fault = faultOfMotion(question, true);
-  if (fault.empty() && !question.objects.empty())
-    fault = "objects do not apply to a robot against itself, '" + question.objects.front() + "' among them";
+Answer askSelf(const RobotMotion &motion, const Query &query, Workspace &workspace) {
+  cprox_certificate_clear(query.options.certificate);
+  std::string fault = faultOfMotion(query, true);
+  if (fault.empty() && !query.objects.empty())
+    fault = "objects do not apply to a robot against itself, '" + query.objects.front() + "' among them";
   if (!fault.empty()) return refusal(motion.data().id, "self", fault);
-  return answerOf(askedSelf(motion.data()), question, workspace);
+  return answerOf(askedSelf(motion.data()), query, workspace);
 }
 
-std::string describeQuestion(const RobotMotion &motion, bool self, const Question &question) {
-  const Asked asked = askedOf(motion, self, question);
+std::string describeQuery(const RobotMotion &motion, bool self, const Query &query) {
+  const Asked asked = askedOf(motion, self, query);
   if (asked.pairs.empty()) return {};
   std::vector<std::string> names;
   for (const std::size_t item : asked.items) names.push_back(*asked.data.snapshot->world().items()[item].owner);
@@ -221,8 +221,8 @@ std::string describeQuestion(const RobotMotion &motion, bool self, const Questio
   return bodies + robot;
 }
 
-std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Question &question) {
-  const Asked asked = askedOf(motion, self, question);
+std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Query &query) {
+  const Asked asked = askedOf(motion, self, query);
   std::vector<std::string> sentences;
   const auto look = [&](const std::string &who, const cprox_body *body) {
     const std::string sentence = unprovableBody(who, body);
@@ -235,13 +235,13 @@ std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const 
   return sentences;
 }
 
-std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits,
-                                 const Question &question, Workspace &workspace) {
+std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits, const Query &query,
+                                 Workspace &workspace) {
   const Clock::time_point start = Clock::now();
-  checkDistances(self, question);
-  const Asked asked = askedOf(motion, self, question);
+  checkDistances(self, query);
+  const Asked asked = askedOf(motion, self, query);
   if (asked.pairs.empty()) return {};
-  const cprox_options options = withoutRounding(question.options, asked.rounding);
+  const cprox_options options = withoutRounding(query.options, asked.rounding);
   std::vector<cprox_result> results(std::min(limits.count, asked.pairs.size()));
   std::size_t count = 0;
   const cprox_status status =
@@ -249,33 +249,33 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
                           &options, workspace.get(), results.data(), &count);
   if (status < 0) throw Error(workspace.reason(), status);
   std::vector<Answer> answers;
-  for (std::size_t i = 0; i < count; ++i) answers.push_back(toAnswer(asked, results[i], question, workspace, start));
+  for (std::size_t i = 0; i < count; ++i) answers.push_back(toAnswer(asked, results[i], query, workspace, start));
   return answers;
 }
 
-std::vector<ClearanceStretch> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
-                                               const Question &question, Workspace &workspace) {
+std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool self, const std::vector<double> &breaks,
+                                                const Query &query, Workspace &workspace) {
   if (breaks.size() < 2) throw Error("a clearance profile needs at least two breaks");
-  checkDistances(self, question);
-  const Asked asked = askedOf(motion, self, question);
-  std::vector<cprox_stretch> stretches(breaks.size() - 1);
-  for (std::size_t i = 0; i < stretches.size(); ++i)
-    stretches[i] = {breaks[i], breaks[i + 1], INFINITE, INFINITE, breaks[i], -1, -1};
+  checkDistances(self, query);
+  const Asked asked = askedOf(motion, self, query);
+  std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
+  for (std::size_t i = 0; i < intervals.size(); ++i)
+    intervals[i] = {breaks[i], breaks[i + 1], INFINITE, INFINITE, breaks[i], -1, -1};
   if (!asked.pairs.empty()) {
-    const cprox_options options = withoutRounding(question.options, asked.rounding);
+    const cprox_options options = withoutRounding(query.options, asked.rounding);
     const cprox_status status = cprox_profile(asked.mover(), asked.targets.data(), asked.targets.size(), breaks.data(),
-                                              stretches.size(), &options, workspace.get(), stretches.data());
+                                              intervals.size(), &options, workspace.get(), intervals.data());
     if (status < 0) throw Error(workspace.reason(), status);
   }
-  std::vector<ClearanceStretch> out;
-  for (const cprox_stretch &stretch : stretches) {
+  std::vector<ClearanceInterval> out;
+  for (const cprox_profile_interval &interval : intervals) {
     Answer names;
-    names.result.target_index = stretch.target_index;
-    names.result.mover_part = stretch.mover_part;
-    nameSides(asked, question, names);
-    const double upper = stretch.upper > 0.0 ? stretch.upper + asked.rounding : stretch.upper;
-    out.push_back(
-        {stretch.t0, stretch.t1, std::max(0.0, stretch.lower - asked.rounding), upper, stretch.t, names.a, names.b});
+    names.result.obstacle_index = interval.obstacle_index;
+    names.result.mover_part = interval.mover_part;
+    nameSides(asked, query, names);
+    const double upper = interval.upper > 0.0 ? interval.upper + asked.rounding : interval.upper;
+    out.push_back({interval.t0, interval.t1, std::max(0.0, interval.lower - asked.rounding), upper, interval.t, names.a,
+                   names.b});
   }
   return out;
 }

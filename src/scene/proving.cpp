@@ -8,32 +8,32 @@ namespace curve_proximity {
 namespace {
 
 /* What the answer claims: the limit of a verdict; of a distance its lower bound, or where that is 0 its upper bound. */
-double claimOf(const Question &question, const cprox_result &result) {
-  switch (question.verb) {
-    case Verb::DISTANCE: break;
-    case Verb::TOLERANCE: return question.delta;
-    case Verb::COLLISION: return 0.0;
+double claimOf(const Query &query, const cprox_result &result) {
+  switch (query.query_type) {
+    case QueryType::DISTANCE: break;
+    case QueryType::TOLERANCE: return query.delta;
+    case QueryType::COLLISION: return 0.0;
   }
   return result.lower > 0.0 ? result.lower : std::max(result.upper, 0.0);
 }
 
-cprox_target targetOf(const cprox_body *body) {
-  return cprox_at(body, cprox_pose_identity());
+cprox_obstacle targetOf(const cprox_body *body) {
+  return cprox_obstacle_at(body, cprox_pose_identity());
 }
 
 } // namespace
 
-void leaveProof(const Question &question, const cprox_mover &mover, const std::vector<cprox_target> &targets,
+void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
                 const cprox_result &result, Workspace &workspace, Answer &answer) {
-  cprox_certificate *certificate = question.options.certificate;
+  cprox_certificate *certificate = query.options.certificate;
   cprox_certificate_clear(certificate);
   if (result.status < 0) return; // the answer says why
-  const double delta = claimOf(question, result);
+  const double delta = claimOf(query, result);
   if (!std::isfinite(delta)) {
     answer.unproven = "there is nothing to measure";
     return;
   }
-  cprox_options options = question.options; // what is of the query alone is not of its proof
+  cprox_options options = query.options; // what is of the query alone is not of its proof
   options.certificate = nullptr;
   options.signed_distance = false;
   options.stop = nullptr;
@@ -43,8 +43,8 @@ void leaveProof(const Question &question, const cprox_mover &mover, const std::v
 }
 
 std::string unprovableBody(const std::string &who, const cprox_body *body) {
-  const cprox_target target = targetOf(body);
-  if (cprox_target_describe(&target, nullptr, 0) > 0) return {};
+  const cprox_obstacle target = targetOf(body);
+  if (cprox_obstacle_describe(&target, nullptr, 0) > 0) return {};
   return who + " is of a kind that has no certificates: " + cprox_body_kind_name(cprox_body_get_kind(body));
 }
 
@@ -55,13 +55,13 @@ std::string wordOf(const std::string &text) {
   return word;
 }
 
-std::string targetLines(const std::vector<cprox_target> &targets, const std::vector<std::string> &names) {
+std::string targetLines(const std::vector<cprox_obstacle> &targets, const std::vector<std::string> &names) {
   std::string all;
   std::size_t count = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    std::string lines(cprox_target_describe(&targets[i], nullptr, 0) + 1, '\0');
+    std::string lines(cprox_obstacle_describe(&targets[i], nullptr, 0) + 1, '\0');
     if (lines.size() == 1) return {};
-    cprox_target_describe(&targets[i], lines.data(), lines.size());
+    cprox_obstacle_describe(&targets[i], lines.data(), lines.size());
     lines.pop_back();
     for (const char c : lines) {
       if (c == '\n') all += " called " + wordOf(names[i]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Certificates of answers, and questions as the program cprox_check reads them. */
+/* Certificates of answers, and queries as the program cprox_check reads them. */
 #ifndef CURVE_PROXIMITY_SCENE_PROVING_H
 #define CURVE_PROXIMITY_SCENE_PROVING_H
 
@@ -10,16 +10,17 @@
 
 namespace curve_proximity {
 
-/* Writes the proof of an answer to question.options.certificate, or to answer.unproven why there is none. `result` is the answer in
- * the core's numbers, with the interval of the answer; `targets` are described to the checker by targetLines(). */
-void leaveProof(const Question &question, const cprox_mover &mover, const std::vector<cprox_target> &targets,
+/* Writes the proof of an answer to query.options.certificate, or to answer.unproven why there is none. `result` is the
+ * answer in the core's numbers, with the interval of the answer; `targets` are described to the checker by
+ * targetLines(). */
+void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<cprox_obstacle> &targets,
                 const cprox_result &result, Workspace &workspace, Answer &answer);
 
 /* Why nothing at all can be proven where this body takes part; empty where it can. `who`: "object 'can'". */
 std::string unprovableBody(const std::string &who, const cprox_body *body);
 
 /* The number of lines and a line a convex part, with the name of its owner; empty where a body is of a kind that has no certificates. */
-std::string targetLines(const std::vector<cprox_target> &targets, const std::vector<std::string> &names);
+std::string targetLines(const std::vector<cprox_obstacle> &targets, const std::vector<std::string> &names);
 
 /* The text as one word. */
 std::string wordOf(const std::string &text);

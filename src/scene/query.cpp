@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 /* One search: a curve against some of the items. */
 struct Search {
   const CompiledCurve &curve;
-  const Question &question;
+  const Query &query;
   const std::vector<Item> &items;
   Workspace &workspace;
 
@@ -113,7 +113,7 @@ void chooseAll(Search &search, std::size_t first, std::size_t last) {
 
 /* Distance: nothing whose box is farther than some point of the curve is from the seed can be the nearest. */
 void chooseForDistance(const Seed &seed, const Targets::Data &data, Search &search) {
-  cprox_options rough = search.question.options;
+  cprox_options rough = search.query.options;
   rough.relative_epsilon = std::max(rough.relative_epsilon, 0.1);
   cprox_result result{};
   const cprox_status status = cprox_distance(along(search.curve.curve, search.curve.radius),
@@ -130,7 +130,7 @@ void chooseForDistance(const Seed &seed, const Targets::Data &data, Search &sear
 /* Verdicts: nothing whose box is farther than the limit, and a little more, can touch them. */
 void chooseForVerdict(double limit, const Seed &seed, const Targets::Data &data, Search &search) {
   const double wide = limit + search.curve.radius;
-  const double more = std::max({search.question.options.epsilon, 1e-3 * wide, 1e-6});
+  const double more = std::max({search.query.options.epsilon, 1e-3 * wide, 1e-6});
   if (!std::isfinite(wide + more) || wide < 0.0) { // the core will refuse, and say why
     search.chosen.push_back(seed.index);
     return;
@@ -147,10 +147,10 @@ void choose(const Targets::Data &data, Search &search) {
     chooseAll(search, 0, search.items.size());
     return;
   }
-  switch (search.question.verb) {
-    case Verb::DISTANCE: chooseForDistance(seed, data, search); break;
-    case Verb::TOLERANCE: chooseForVerdict(search.question.delta, seed, data, search); break;
-    case Verb::COLLISION: chooseForVerdict(0.0, seed, data, search); break;
+  switch (search.query.query_type) {
+    case QueryType::DISTANCE: chooseForDistance(seed, data, search); break;
+    case QueryType::TOLERANCE: chooseForVerdict(search.query.delta, seed, data, search); break;
+    case QueryType::COLLISION: chooseForVerdict(0.0, seed, data, search); break;
   }
   if (search.chosen.size() == search.items.size()) search.left_out = INFINITE;
 }
@@ -158,19 +158,19 @@ void choose(const Targets::Data &data, Search &search) {
 /* ---- the search ---------------------------------------------------------------------------------------------------- */
 
 cprox_status runCore(const Search &search, const cprox_options &options, cprox_result &result) {
-  std::vector<cprox_target> targets;
+  std::vector<cprox_obstacle> targets;
   targets.reserve(search.chosen.size());
   for (const std::uint32_t index : search.chosen) targets.push_back(search.shape(index).target);
-  return askCore(search.question, options, along(search.curve.curve, search.curve.radius), targets, search.workspace,
+  return askCore(search.query, options, along(search.curve.curve, search.curve.radius), targets, search.workspace,
                  result);
 }
 
 /* What of a mesh has answered. */
-void sayModel(cprox_rung max_rung, const PlacedShape &shape, Answer &answer) {
-  const bool coarse = max_rung == CPROX_RUNG_SPHERE || max_rung == CPROX_RUNG_HULL;
+void sayModel(cprox_lod max_lod, const PlacedShape &shape, Answer &answer) {
+  const bool coarse = max_lod == CPROX_LOD_SPHERE || max_lod == CPROX_LOD_HULL;
   answer.by_hull = coarse;
   if (coarse) {
-    const std::string model = max_rung == CPROX_RUNG_HULL ? "convex hull" : "bounding ball";
+    const std::string model = max_lod == CPROX_LOD_HULL ? "convex hull" : "bounding ball";
     answer.message = "the nearest shape is a mesh: its " + model + " answers for it";
   } else if (shape.is_open) {
     answer.message = "the nearest shape is a mesh that is not closed: its surface alone counts";
@@ -181,13 +181,13 @@ void sayModel(cprox_rung max_rung, const PlacedShape &shape, Answer &answer) {
 }
 
 void nameTarget(const Search &search, Answer &answer) {
-  const std::int32_t found = answer.result.target_index;
+  const std::int32_t found = answer.result.obstacle_index;
   if (found < 0) return;
   const Item &item = search.items[search.chosen[static_cast<std::size_t>(found)]];
-  answer.result.target_index = item.part;
+  answer.result.obstacle_index = item.part;
   answer.b = *item.owner;
   answer.b_is_link = item.is_link;
-  if (item.shape->is_mesh) sayModel(search.question.options.max_rung, *item.shape, answer);
+  if (item.shape->is_mesh) sayModel(search.query.options.max_lod, *item.shape, answer);
 }
 
 Answer answerOf(const Search &search) {
@@ -195,17 +195,17 @@ Answer answerOf(const Search &search) {
   answer.id = answer.a = search.curve.id;
 
   const double rounding = roundingOf(search);
-  const cprox_options options = withoutRounding(search.question.options, rounding);
+  const cprox_options options = withoutRounding(search.query.options, rounding);
 
   cprox_result &result = answer.result;
-  result.target_index = -1;
+  result.obstacle_index = -1;
   result.status = runCore(search, options, result);
   if (result.status < 0) {
     answer.message = search.workspace.reason();
   } else if (search.chosen.empty()) {
-    answerNothing(search.question, result);
+    answerNothing(search.query, result);
   } else {
-    widen(search.question, rounding, search.left_out, result);
+    widen(search.query, rounding, search.left_out, result);
     nameTarget(search, answer);
   }
   if (result.status != CPROX_OK && answer.message.empty()) answer.message = cprox_status_text(result.status);
@@ -218,38 +218,37 @@ double microsecondsSince(Clock::time_point start) {
 }
 
 /* With the proof of the one answer: about everything that was asked about, and not only what the search chose. */
-std::vector<Answer> askWithProof(const Targets &targets, const CompiledCurve &curve, const Question &question,
+std::vector<Answer> askWithProof(const Targets &targets, const CompiledCurve &curve, const Query &query,
                                  Workspace &workspace) {
-  Question bare = question;
+  Query bare = query;
   bare.options.certificate = nullptr;
   std::vector<Answer> answers = ask(targets, curve, bare, workspace);
   Answer &answer = answers.front();
   cprox_result named = answer.result;
-  named.target_index = coreTargetOf(targets, answer);
-  leaveProof(question, along(curve.curve, curve.radius), coreTargets(targets), named, workspace, answer);
+  named.obstacle_index = coreTargetOf(targets, answer);
+  leaveProof(query, along(curve.curve, curve.radius), coreTargets(targets), named, workspace, answer);
   return answers;
 }
 
 } // namespace
 
-std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Question &question,
-                        Workspace &workspace) {
-  cprox_certificate_clear(question.options.certificate);
-  const std::string fault = faultOf(question);
+std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace) {
+  cprox_certificate_clear(query.options.certificate);
+  const std::string fault = faultOf(query);
   if (!fault.empty()) {
     Answer answer = refusal(curve.id, "curve", fault);
     answer.a = curve.id;
     return {answer};
   }
-  if (question.options.certificate) return askWithProof(targets, curve, question, workspace);
+  if (query.options.certificate) return askWithProof(targets, curve, query, workspace);
   const Targets::Data &data = targets.data();
   const std::vector<Item> &items = data.items;
   std::vector<Answer> answers;
 
   // One in all.
-  if (!question.per_object || items.empty()) {
+  if (!query.per_object || items.empty()) {
     const Clock::time_point start = Clock::now();
-    Search search{curve, question, items, workspace, {}, INFINITE};
+    Search search{curve, query, items, workspace, {}, INFINITE};
     choose(data, search);
     answers.push_back(answerOf(search));
     answers.back().microseconds = microsecondsSince(start);
@@ -261,7 +260,7 @@ std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, cons
     const Clock::time_point start = Clock::now();
     std::size_t last = first + 1;
     while (last < items.size() && items[last].owner == items[first].owner) ++last;
-    Search search{curve, question, items, workspace, {}, INFINITE};
+    Search search{curve, query, items, workspace, {}, INFINITE};
     chooseAll(search, first, last);
     answers.push_back(answerOf(search));
     if (answers.back().b.empty()) { // refused: say of which
@@ -275,14 +274,14 @@ std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, cons
 }
 
 std::vector<Answer> ask(const SnapshotPtr &snapshot, const LinkPoses &links, const CurveDescription &curve,
-                        const Question &question, Workspace &workspace) {
+                        const Query &query, Workspace &workspace) {
   try {
-    return ask(Targets(snapshot, links, question), compile(curve), question, workspace);
+    return ask(Targets(snapshot, links, query), compile(curve), query, workspace);
   } catch (const Error &error) {
     Answer answer;
     answer.id = answer.a = curve.id;
     answer.result.status = error.status();
-    answer.result.target_index = -1;
+    answer.result.obstacle_index = -1;
     answer.status = cprox_status_name(error.status());
     answer.message = error.what();
     return {answer};

@@ -78,9 +78,9 @@ void addAttached(bool everything, const Names &names, const LinkPoses &poses, Ta
 
 } // namespace
 
-Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Question &question) {
-  const Names objects(question.objects.begin(), question.objects.end());
-  const Names named_links(question.links.begin(), question.links.end());
+Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Query &query) {
+  const Names objects(query.objects.begin(), query.objects.end());
+  const Names named_links(query.links.begin(), query.links.end());
   checkObjects(objects, *snapshot);
   checkLinks(named_links, links, snapshot->robot().get());
 
@@ -97,8 +97,8 @@ Targets::~Targets() = default;
 Targets::Targets(Targets &&) noexcept = default;
 Targets &Targets::operator=(Targets &&) noexcept = default;
 
-std::vector<cprox_target> coreTargets(const Targets &targets) {
-  std::vector<cprox_target> all;
+std::vector<cprox_obstacle> coreTargets(const Targets &targets) {
+  std::vector<cprox_obstacle> all;
   for (const Item &item : targets.data().items) all.push_back(item.shape->target);
   return all;
 }
@@ -120,11 +120,11 @@ std::vector<std::string> unprovable(const Targets &targets) {
 }
 
 std::int32_t coreTargetOf(const Targets &targets, const Answer &answer) {
-  if (answer.result.target_index < 0) return -1;
+  if (answer.result.obstacle_index < 0) return -1;
   const std::vector<Item> &items = targets.data().items;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const Item &item = items[i];
-    if (item.is_link == answer.b_is_link && item.part == answer.result.target_index && *item.owner == answer.b)
+    if (item.is_link == answer.b_is_link && item.part == answer.result.obstacle_index && *item.owner == answer.b)
       return static_cast<std::int32_t>(i);
   }
   return -1;

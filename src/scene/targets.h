@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The shapes that a question is about. */
+/* The shapes that a query is about. */
 #ifndef CURVE_PROXIMITY_SCENE_TARGETS_H
 #define CURVE_PROXIMITY_SCENE_TARGETS_H
 

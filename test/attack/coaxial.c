@@ -109,7 +109,7 @@ static cprox_status ask_carried(const coaxial *c, double length, cprox_workspace
   options->signed_distance = true;
   options->max_nodes = 50; /* each may take as long as a pair; what is left open is true as well */
   if (status >= 0)
-    status = cprox_distance(cprox_body_along(turned, curve), cprox_at(c->a.body, c->pa), options, ws, result);
+    status = cprox_distance(cprox_body_along(turned, curve), cprox_obstacle_at(c->a.body, c->pa), options, ws, result);
   cprox_curve_free(curve);
   cprox_body_free(turned);
   return status;
@@ -134,12 +134,12 @@ static void one_case(attack *t, rng *r) {
   options.epsilon = c.size * rng_log_uniform(r, 1e-9, 1e-1);
   const bool carried = rng_index(r, 8) == 0, swapped = rng_index(r, 2) == 0;
   attack_kind(t, "%s, %s%s", shape_name(&c.a), shape_name(&c.b), carried ? ", carried" : "");
-  const cprox_target a = cprox_at(c.a.body, c.pa), b = cprox_at(c.b.body, c.pb);
+  const cprox_obstacle a = cprox_obstacle_at(c.a.body, c.pa), b = cprox_obstacle_at(c.b.body, c.pb);
   const double length = carried ? 1e-14 * c.size : 0.0;
   cprox_result result;
   const cprox_status status = carried ? ask_carried(&c, length, t->ws, &options, &result)
                                       : cprox_pair(swapped ? b : a, swapped ? a : b, &options, t->ws, &result);
-  attack_check(t, status >= 0, "%s", cprox_workspace_reason(t->ws));
+  attack_check(t, status >= 0, "%s", cprox_workspace_error(t->ws));
   if (status > 0) attack_count(t, cprox_status_name(status));
   if (!attack_failed(t)) {
     const bool has_normal = !carried && vec_norm2(result.normal) > 0.0 && result.upper < 0.0;

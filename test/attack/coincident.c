@@ -140,10 +140,10 @@ static void check_pair(attack *t, rng *r, const overlap *o) {
   cprox_options options = cprox_options_default();
   options.epsilon = o->size * rng_log_uniform(r, 1e-10, 1e-2);
   const bool swapped = rng_index(r, 2) == 0;
-  const cprox_target a = cprox_at(o->a.body, o->pa), b = cprox_at(o->b.body, o->pb);
+  const cprox_obstacle a = cprox_obstacle_at(o->a.body, o->pa), b = cprox_obstacle_at(o->b.body, o->pb);
   cprox_result result;
   const cprox_status status = cprox_pair(swapped ? b : a, swapped ? a : b, &options, t->ws, &result);
-  if (!attack_check(t, status >= 0, "%s", cprox_workspace_reason(t->ws))) return;
+  if (!attack_check(t, status >= 0, "%s", cprox_workspace_error(t->ws))) return;
   if (status > 0) attack_count(t, cprox_status_name(status));
   const double hair = 1e-14 * (o->size + vec_norm(o->pa.position));
   const long double best = soonest_way_out(r, o);
@@ -178,7 +178,7 @@ static void check_carried(attack *t, rng *r, const overlap *o) {
   const bool carried = vec_norm(middle(&o->b)) == 0.0 && rng_index(r, 2);
   if (status >= 0)
     status = cprox_collision(carried ? cprox_body_along(turned, curve) : cprox_point_along(curve),
-                             cprox_at(o->a.body, o->pa), &options, t->ws, &result);
+                             cprox_obstacle_at(o->a.body, o->pa), &options, t->ws, &result);
   attack_check(t, status == CPROX_OK && result.verdict == CPROX_YES, "%s: [%.17g, %.17g] after %u nodes, status %s",
                carried ? "carried" : "point", result.lower, result.upper, (unsigned)result.nodes,
                cprox_status_name(status));

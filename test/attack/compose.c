@@ -11,22 +11,22 @@
 
 #include "scenes.h"
 
-typedef struct question {
+typedef struct query {
   attack *a;
   rng *r;
   scene s;
   cprox_options options;
   const char *query;
-} question;
+} query;
 
 #define RESULT "[%.17g, %.17g] (%s, %s) at t = %.17g"
 #define SHOWN(x) (x)->lower, (x)->upper, cprox_status_name((x)->status), cprox_verdict_name((x)->verdict), (x)->t
 
 /* ---- what holds of every result ---- */
 
-static bool numbers_are_sound(question *q, const cprox_result *x, size_t targets) {
-  const bool numbers = x->lower <= x->upper && !isnan(x->t) && isfinite(x->t_free) && vec_finite(x->normal) &&
-                       (isinf(x->upper) || (vec_finite(x->on_mover) && vec_finite(x->on_target)));
+static bool numbers_are_sound(query *q, const cprox_result *x, size_t targets) {
+  const bool numbers = x->lower <= x->upper && !isnan(x->t) && isfinite(x->t_contact_lower) && vec_finite(x->normal) &&
+                       (isinf(x->upper) || (vec_finite(x->witness_mover) && vec_finite(x->witness_obstacle)));
   attack_check(q->a, numbers, "%s: " RESULT " is not sound", q->query, SHOWN(x));
   const size_t most =
       (targets + 1) * ((size_t)q->options.max_nodes + 2) + cprox_curve_pieces(q->s.path.curve) * (targets + 1);
@@ -35,7 +35,7 @@ static bool numbers_are_sound(question *q, const cprox_result *x, size_t targets
 }
 
 /* The smallest distance from obstacle i that is found, and that lower is not above it. */
-static void check_lower(question *q, size_t i, const cprox_result *x, double t0, double t1) {
+static void check_lower(query *q, size_t i, const cprox_result *x, double t0, double t1) {
   double where;
   const long double least = scene_least(&q->s, i, q->r, x->t, t0, t1, &where), room = scene_room(&q->s, i);
   const long double cut = q->options.signed_distance ? least : fmaxl(0.0L, least);
@@ -45,7 +45,7 @@ static void check_lower(question *q, size_t i, const cprox_result *x, double t0,
 }
 
 /* The least over t and what its rounding may stand for; jumps belong to both sides. */
-static long double distance_about(question *q, size_t i, double t, double at) {
+static long double distance_about(query *q, size_t i, double t, double at) {
   const scene *s = &q->s;
   const double step = scene_step(&s->path);
   long double least = HUGE_VALL;
@@ -54,26 +54,26 @@ static long double distance_about(question *q, size_t i, double t, double at) {
   return least;
 }
 
-static void check_witness(question *q, size_t i, const cprox_result *x) {
+static void check_witness(query *q, size_t i, const cprox_result *x) {
   const scene *s = &q->s;
   const long double room = scene_witness_room(s, i);
   const double step = scene_step(&s->path);
   long double off = HUGE_VALL, off_obstacle = HUGE_VALL;
   for (int k = -1; k <= 1; k++) {
     const double t = fmax(s->path.t0, fmin(s->path.t1, x->t + k * step));
-    off = fminl(off, scene_off_mover(s, t, ref_vec(x->on_mover)));
-    off_obstacle = fminl(off_obstacle, scene_off_obstacle(s, i, t, x->t_target, ref_vec(x->on_target)));
+    off = fminl(off, scene_off_mover(s, t, ref_vec(x->witness_mover)));
+    off_obstacle = fminl(off_obstacle, scene_off_obstacle(s, i, t, x->t_obstacle, ref_vec(x->witness_obstacle)));
   }
-  const long double apart = ref_norm(ref_sub(ref_vec(x->on_mover), ref_vec(x->on_target)));
-  attack_check(q->a, off <= room, "%s: " RESULT ", on_mover is %.3Lg off", q->query, SHOWN(x), off);
-  attack_check(q->a, off_obstacle <= room, "%s: " RESULT ", on_target is %.3Lg off obstacle %zu: %s", q->query,
+  const long double apart = ref_norm(ref_sub(ref_vec(x->witness_mover), ref_vec(x->witness_obstacle)));
+  attack_check(q->a, off <= room, "%s: " RESULT ", witness_mover is %.3Lg off", q->query, SHOWN(x), off);
+  attack_check(q->a, off_obstacle <= room, "%s: " RESULT ", witness_obstacle is %.3Lg off obstacle %zu: %s", q->query,
                SHOWN(x), off_obstacle, i, q->s.obstacles[i].body.name);
   if (x->lower >= 0.0)
     attack_check(q->a, apart <= x->upper + room, "%s: " RESULT ", the witness points are %.17Lg apart", q->query,
                  SHOWN(x), apart);
 }
 
-static void check_upper(question *q, size_t i, const cprox_result *x) {
+static void check_upper(query *q, size_t i, const cprox_result *x) {
   const scene *s = &q->s;
   if (isinf(x->upper)) return;
   attack_check(q->a, x->t >= s->path.t0 && x->t <= s->path.t1, "%s: " RESULT " is not on the curve", q->query,
@@ -81,7 +81,7 @@ static void check_upper(question *q, size_t i, const cprox_result *x) {
   if (attack_failed(q->a)) return;
   /* by the reference alone where it is exact, and there a pose of twice 2^-53 is not counted as an error */
   if (scene_is_exact(s, i)) {
-    long double d = distance_about(q, i, x->t, x->t_target);
+    long double d = distance_about(q, i, x->t, x->t_obstacle);
     if (!q->options.signed_distance) d = fmaxl(0.0L, d);
     attack_check(q->a, d <= x->upper + scene_room(s, i),
                  "%s: " RESULT ", but there it is %.19Lg, above by %.3Lg (obstacle %zu: %s)", q->query, SHOWN(x), d,
@@ -90,28 +90,28 @@ static void check_upper(question *q, size_t i, const cprox_result *x) {
   if (!q->options.signed_distance || x->upper > 0.0) check_witness(q, i, x);
 }
 
-static double width_asked(const question *q, double upper) {
+static double width_asked(const query *q, double upper) {
   return fmax(q->options.epsilon, q->options.relative_epsilon * fabs(upper));
 }
 
 /* Of one obstacle alone, over [t0, t1]. */
-static void check_one(question *q, size_t i, const cprox_result *x) {
+static void check_one(query *q, size_t i, const cprox_result *x) {
   if (!numbers_are_sound(q, x, 1)) return;
   check_lower(q, i, x, q->s.path.t0, q->s.path.t1);
   check_upper(q, i, x);
 }
 
 /* Of the union: lower holds for all, upper for the one that is named. */
-static void check_all(question *q, const cprox_result *x) {
+static void check_all(query *q, const cprox_result *x) {
   if (!numbers_are_sound(q, x, q->s.n)) return;
   for (size_t i = 0; i < q->s.n; i++) check_lower(q, i, x, q->s.path.t0, q->s.path.t1);
   if (isinf(x->upper)) return;
-  const bool named = x->target_index >= 0 && (size_t)x->target_index < q->s.n;
-  if (attack_check(q->a, named, "%s: " RESULT " names target %d of %zu", q->query, SHOWN(x), x->target_index, q->s.n))
-    check_upper(q, (size_t)x->target_index, x);
+  const bool named = x->obstacle_index >= 0 && (size_t)x->obstacle_index < q->s.n;
+  if (attack_check(q->a, named, "%s: " RESULT " names target %d of %zu", q->query, SHOWN(x), x->obstacle_index, q->s.n))
+    check_upper(q, (size_t)x->obstacle_index, x);
 }
 
-static void check_width(question *q, const cprox_result *x) {
+static void check_width(query *q, const cprox_result *x) {
   if (x->status != CPROX_OK) {
     attack_count(q->a, cprox_status_name(x->status));
     return;
@@ -122,9 +122,9 @@ static void check_width(question *q, const cprox_result *x) {
 }
 
 /* Refusals are for bodies and curves that the queries' headers name, each with a sentence. */
-static bool answered(question *q, cprox_status status) {
+static bool answered(query *q, cprox_status status) {
   if (status >= 0) return true;
-  const char *reason = cprox_workspace_reason(q->a->ws);
+  const char *reason = cprox_workspace_error(q->a->ws);
   attack_check(q->a, reason[0], "%s: %s without a reason", q->query, cprox_status_name(status));
   char said[90];
   const char *last = strrchr(reason, ':');
@@ -135,7 +135,7 @@ static bool answered(question *q, cprox_status status) {
 
 /* ---- the queries ---- */
 
-static void ask_distance(question *q) {
+static void ask_distance(query *q) {
   cprox_result x, each[SCENE_OBSTACLES];
   const scene *s = &q->s;
   const bool all = s->n > 1 || rng_index(q->r, 2), separately = rng_index(q->r, 2);
@@ -156,7 +156,7 @@ static void ask_distance(question *q) {
   }
 }
 
-static double some_delta(question *q, const cprox_result *x) {
+static double some_delta(query *q, const cprox_result *x) {
   switch (rng_index(q->r, 6)) {
     case 0: return fmax(0.0, x->lower);
     case 1: return fmax(0.0, x->upper);
@@ -168,7 +168,7 @@ static double some_delta(question *q, const cprox_result *x) {
 }
 
 /* delta < 0: a collision. */
-static void check_verdict(question *q, const cprox_result *x, double delta) {
+static void check_verdict(query *q, const cprox_result *x, double delta) {
   attack_count(q->a, x->verdict == CPROX_UNDECIDED ? "undecided" : x->verdict == CPROX_YES ? "yes" : "no");
   if (delta >= 0.0) {
     if (x->verdict == CPROX_YES)
@@ -184,7 +184,7 @@ static void check_verdict(question *q, const cprox_result *x, double delta) {
                  "%s: " RESULT " of %.17g is undecided", q->query, SHOWN(x), delta);
 }
 
-static void ask_tolerance(question *q) {
+static void ask_tolerance(query *q) {
   const scene *s = &q->s;
   cprox_result x, before;
   if (!answered(q, cprox_distance_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &before, NULL))) return;
@@ -197,7 +197,7 @@ static void ask_tolerance(question *q) {
                x.lower, x.upper, before.lower, before.upper);
 }
 
-static void ask_collision(question *q) {
+static void ask_collision(query *q) {
   const scene *s = &q->s;
   cprox_result x;
   if (!answered(q, cprox_collision_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &x, NULL))) return;
@@ -205,79 +205,85 @@ static void ask_collision(question *q) {
   check_verdict(q, &x, -1.0);
 }
 
-/* Is there a parameter before t_free at which they overlap by more than the reference's error? */
-static void check_not_late(question *q, const cprox_result *x) {
+/* Is there a parameter before t_contact_lower at which they overlap by more than the reference's error? */
+static void check_not_late(query *q, const cprox_result *x) {
   const scene *s = &q->s;
   const double t0 = s->path.t0;
-  if (!(x->t_free > t0)) return;
-  const double before = nextafter(x->t_free - 2.0 * scene_step(&s->path), t0);
+  if (!(x->t_contact_lower > t0)) return;
+  const double before = nextafter(x->t_contact_lower - 2.0 * scene_step(&s->path), t0);
   if (before <= t0) return;
   for (size_t i = 0; i < s->n; i++) {
     double where;
     const long double least = scene_least(s, i, q->r, before, t0, before, &where);
     attack_check(q->a, least >= -scene_room(s, i) - 4.0L * cprox_curve_error(s->path.curve),
-                 "first contact: none before %.17g, but at %.17g they overlap by %.3Lg (obstacle %zu: %s)", x->t_free,
-                 where, -least, i, s->obstacles[i].body.name);
+                 "time of contact: none before %.17g, but at %.17g they overlap by %.3Lg (obstacle %zu: %s)",
+                 x->t_contact_lower, where, -least, i, s->obstacles[i].body.name);
   }
 }
 
-static void ask_first_contact(question *q) {
+static void ask_time_of_contact(query *q) {
   const scene *s = &q->s;
   cprox_result x;
   q->options.relative_epsilon = 0.0; /* it does not apply */
   const cprox_status status = s->n == 1 && rng_index(q->r, 2)
-                                  ? cprox_first_contact(s->mover, s->targets[0], &q->options, q->a->ws, &x)
-                                  : cprox_first_contact_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &x);
+                                  ? cprox_time_of_contact(s->mover, s->targets[0], &q->options, q->a->ws, &x)
+                                  : cprox_time_of_contact_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &x);
   if (!answered(q, status)) return;
   attack_count(q->a, x.verdict == CPROX_UNDECIDED ? "undecided" : x.verdict == CPROX_YES ? "yes" : "no");
-  attack_check(q->a, x.t_free >= s->path.t0 && x.t_free <= s->path.t1, "first contact: t_free %.17g", x.t_free);
-  attack_check(q->a, x.lower <= x.upper, "first contact: " RESULT, SHOWN(&x));
+  attack_check(q->a, x.t_contact_lower >= s->path.t0 && x.t_contact_lower <= s->path.t1,
+               "time of contact: t_contact_lower %.17g", x.t_contact_lower);
+  attack_check(q->a, x.lower <= x.upper, "time of contact: " RESULT, SHOWN(&x));
   for (size_t i = 0; i < s->n; i++) check_lower(q, i, &x, s->path.t0, s->path.t1);
   check_not_late(q, &x);
-  /* at t_free something is as near as epsilon, at t there is contact */
+  /* at t_contact_lower something is as near as epsilon, at t there is contact */
   long double at_free = HUGE_VALL, at_t = HUGE_VALL, room = 0.0L;
   bool exact = true;
   for (size_t i = 0; i < s->n; i++) {
-    at_free = fminl(at_free, distance_about(q, i, x.t_free, NAN));
+    at_free = fminl(at_free, distance_about(q, i, x.t_contact_lower, NAN));
     at_t = fminl(at_t, distance_about(q, i, x.t, NAN));
     room = fmaxl(room, scene_witness_room(s, i));
     exact = exact && scene_is_exact(s, i);
   }
-  if (x.verdict == CPROX_NO) attack_check(q->a, x.lower > 0.0, "first contact: " RESULT, SHOWN(&x));
+  if (x.verdict == CPROX_NO) attack_check(q->a, x.lower > 0.0, "time of contact: " RESULT, SHOWN(&x));
   if (x.verdict == CPROX_YES && exact)
-    attack_check(q->a, x.t >= x.t_free && at_t <= room,
-                 "first contact: touching at %.17g, free before %.17g, but there it is %.3Lg", x.t, x.t_free, at_t);
-  if (x.status == CPROX_OK && x.t_free < s->path.t1 && exact)
+    attack_check(q->a, x.t >= x.t_contact_lower && at_t <= room,
+                 "time of contact: touching at %.17g, free before %.17g, but there it is %.3Lg", x.t, x.t_contact_lower,
+                 at_t);
+  if (x.status == CPROX_OK && x.t_contact_lower < s->path.t1 && exact)
     attack_check(q->a, at_free <= q->options.epsilon + room,
-                 "first contact: t_free = %.17g with ok, epsilon %.3g, but there it is %.3Lg", x.t_free,
-                 q->options.epsilon, at_free);
+                 "time of contact: t_contact_lower = %.17g with ok, epsilon %.3g, but there it is %.3Lg",
+                 x.t_contact_lower, q->options.epsilon, at_free);
 }
 
-static void ask_profile(question *q) {
-  enum { STRETCHES = 4 };
+static void ask_profile(query *q) {
+  enum { INTERVALS = 4 };
   const scene *s = &q->s;
-  double breaks[STRETCHES + 1];
-  cprox_stretch stretches[STRETCHES];
-  for (int k = 0; k <= STRETCHES; k++)
-    breaks[k] = k == STRETCHES ? s->path.t1 : s->path.t0 + (s->path.t1 - s->path.t0) * k / STRETCHES;
+  double breaks[INTERVALS + 1];
+  cprox_profile_interval intervals[INTERVALS];
+  for (int k = 0; k <= INTERVALS; k++)
+    breaks[k] = k == INTERVALS ? s->path.t1 : s->path.t0 + (s->path.t1 - s->path.t0) * k / INTERVALS;
   const cprox_status status =
-      cprox_profile(s->mover, s->targets, s->n, breaks, STRETCHES, &q->options, q->a->ws, stretches);
+      cprox_profile(s->mover, s->targets, s->n, breaks, INTERVALS, &q->options, q->a->ws, intervals);
   if (!answered(q, status)) return;
-  for (int k = 0; k < STRETCHES; k++) {
-    const cprox_stretch *p = &stretches[k];
+  for (int k = 0; k < INTERVALS; k++) {
+    const cprox_profile_interval *p = &intervals[k];
     attack_check(q->a, p->t0 == breaks[k] && p->t1 == breaks[k + 1] && p->lower <= p->upper, "profile: [%.17g, %.17g]",
                  p->lower, p->upper);
-    const cprox_result x = {
-        .lower = p->lower, .upper = p->upper, .t = p->t, .t_target = NAN, .status = status, .verdict = CPROX_UNDECIDED};
-    /* a jump at the end of a stretch belongs to the next */
-    const double end = k + 1 < STRETCHES ? p->t1 - scene_step(&s->path) : p->t1;
+    const cprox_result x = {.lower = p->lower,
+                            .upper = p->upper,
+                            .t = p->t,
+                            .t_obstacle = NAN,
+                            .status = status,
+                            .verdict = CPROX_UNDECIDED};
+    /* a jump at the end of a interval belongs to the next */
+    const double end = k + 1 < INTERVALS ? p->t1 - scene_step(&s->path) : p->t1;
     for (size_t i = 0; i < s->n; i++) check_lower(q, i, &x, p->t0, end);
-    if (isinf(p->upper) || p->target_index < 0 || (size_t)p->target_index >= s->n) {
-      attack_check(q->a, isinf(p->upper), "profile: target %d", p->target_index);
+    if (isinf(p->upper) || p->obstacle_index < 0 || (size_t)p->obstacle_index >= s->n) {
+      attack_check(q->a, isinf(p->upper), "profile: target %d", p->obstacle_index);
       continue;
     }
     attack_check(q->a, p->t >= p->t0 && p->t <= p->t1, "profile: t = %.17g", p->t);
-    const size_t i = (size_t)p->target_index;
+    const size_t i = (size_t)p->obstacle_index;
     if (scene_is_exact(s, i) && !attack_failed(q->a)) {
       const long double d = distance_about(q, i, p->t, NAN);
       attack_check(q->a, d <= p->upper + scene_room(s, i), "profile: " RESULT ", but there it is %.19Lg", SHOWN(&x), d);
@@ -289,11 +295,11 @@ static void ask_profile(question *q) {
 }
 
 /* What is not among the answers must be far enough. */
-static void check_left_out(question *q, const cprox_result *found, size_t count, double beyond) {
+static void check_left_out(query *q, const cprox_result *found, size_t count, double beyond) {
   const scene *s = &q->s;
   for (size_t i = 0; i < s->n; i++) {
     bool among = false;
-    for (size_t k = 0; k < count; k++) among = among || found[k].target_index == (int32_t)i;
+    for (size_t k = 0; k < count; k++) among = among || found[k].obstacle_index == (int32_t)i;
     if (among) continue;
     double where;
     const long double least = fmaxl(0.0L, scene_least(s, i, q->r, s->path.t0, s->path.t0, s->path.t1, &where));
@@ -303,7 +309,7 @@ static void check_left_out(question *q, const cprox_result *found, size_t count,
   }
 }
 
-static void ask_nearest(question *q) {
+static void ask_nearest(query *q) {
   const scene *s = &q->s;
   cprox_result found[SCENE_OBSTACLES];
   size_t count = 0;
@@ -312,16 +318,16 @@ static void ask_nearest(question *q) {
   if (!answered(q, status)) return;
   if (!attack_check(q->a, count == k, "nearest: %zu results for k = %zu", count, k)) return;
   for (size_t i = 0; i < count; i++) {
-    const bool named = found[i].target_index >= 0 && (size_t)found[i].target_index < s->n;
-    if (!attack_check(q->a, named || isinf(found[i].upper), "nearest: target %d", found[i].target_index)) return;
-    if (named) check_one(q, (size_t)found[i].target_index, &found[i]);
+    const bool named = found[i].obstacle_index >= 0 && (size_t)found[i].obstacle_index < s->n;
+    if (!attack_check(q->a, named || isinf(found[i].upper), "nearest: target %d", found[i].obstacle_index)) return;
+    if (named) check_one(q, (size_t)found[i].obstacle_index, &found[i]);
     attack_check(q->a, i == 0 || found[i - 1].upper <= found[i].upper, "nearest: not ascending");
   }
   if (status == CPROX_OK)
     check_left_out(q, found, count, found[count - 1].upper - width_asked(q, found[count - 1].upper));
 }
 
-static void ask_within(question *q) {
+static void ask_within(query *q) {
   const scene *s = &q->s;
   cprox_result found[SCENE_OBSTACLES];
   size_t count = 0;
@@ -329,60 +335,60 @@ static void ask_within(question *q) {
   const cprox_status status = cprox_within(s->mover, s->targets, s->n, delta, &q->options, q->a->ws, found, &count);
   if (!answered(q, status)) return;
   for (size_t i = 0; i < count && i < SCENE_OBSTACLES; i++) {
-    const bool named = found[i].target_index >= 0 && (size_t)found[i].target_index < s->n;
-    if (!attack_check(q->a, named, "within: target %d", found[i].target_index)) return;
+    const bool named = found[i].obstacle_index >= 0 && (size_t)found[i].obstacle_index < s->n;
+    if (!attack_check(q->a, named, "within: target %d", found[i].obstacle_index)) return;
     attack_check(q->a, found[i].lower <= delta, "within %.17g: " RESULT, delta, SHOWN(&found[i]));
     attack_check(q->a, found[i].verdict != CPROX_YES || found[i].upper <= delta, "within %.17g: " RESULT, delta,
                  SHOWN(&found[i]));
-    check_one(q, (size_t)found[i].target_index, &found[i]);
+    check_one(q, (size_t)found[i].obstacle_index, &found[i]);
   }
   check_left_out(q, found, count, delta);
 }
 
-static void ask_set(question *q) {
+static void ask_set(query *q) {
   const scene *s = &q->s;
   cprox_set *set = NULL;
   cprox_result x;
   if (!answered(q, cprox_set_create(s->targets, s->n, q->a->ws, &set))) return;
   cprox_status status = cprox_set_distance(set, s->mover, &q->options, q->a->ws, &x);
-  const size_t query = rng_index(q->r, 3);
-  if (query == 1) status = cprox_set_tolerance(set, s->mover, s->scale, &q->options, q->a->ws, &x);
-  if (query == 2) status = cprox_set_collision(set, s->mover, &q->options, q->a->ws, &x);
+  const size_t which = rng_index(q->r, 3);
+  if (which == 1) status = cprox_set_tolerance(set, s->mover, s->scale, &q->options, q->a->ws, &x);
+  if (which == 2) status = cprox_set_collision(set, s->mover, &q->options, q->a->ws, &x);
   if (answered(q, status)) {
     check_all(q, &x);
-    if (query == 0)
+    if (which == 0)
       check_width(q, &x);
     else
-      check_verdict(q, &x, query == 1 ? s->scale : -1.0);
+      check_verdict(q, &x, which == 1 ? s->scale : -1.0);
   }
   cprox_set_free(set);
 }
 
-static void ask_batch(question *q) {
+static void ask_batch(query *q) {
   const scene *s = &q->s;
   cprox_batch *batch = NULL;
   cprox_result x[2];
   const cprox_mover movers[2] = {s->mover, s->mover};
   if (!answered(q, cprox_batch_create(s->targets, s->n, q->a->ws, &batch))) return;
-  const size_t query = rng_index(q->r, 3);
+  const size_t which = rng_index(q->r, 3);
   cprox_status status = CPROX_OK;
-  if (query == 0) status = cprox_batch_distance(batch, movers, 0, 2, &q->options, q->a->ws, x);
-  if (query == 1) status = cprox_batch_tolerance(batch, movers, 0, 2, s->scale, &q->options, q->a->ws, x);
-  if (query == 2) status = cprox_batch_collision(batch, movers, 0, 2, &q->options, q->a->ws, x);
+  if (which == 0) status = cprox_batch_distance(batch, movers, 0, 2, &q->options, q->a->ws, x);
+  if (which == 1) status = cprox_batch_tolerance(batch, movers, 0, 2, s->scale, &q->options, q->a->ws, x);
+  if (which == 2) status = cprox_batch_collision(batch, movers, 0, 2, &q->options, q->a->ws, x);
   if (answered(q, status)) {
     check_all(q, &x[0]);
     attack_check(q->a, x[0].lower == x[1].lower && x[0].upper == x[1].upper,
                  "batch: the same mover twice: [%.17g, %.17g], [%.17g, %.17g]", x[0].lower, x[0].upper, x[1].lower,
                  x[1].upper);
-    if (query == 0)
+    if (which == 0)
       check_width(q, &x[0]);
     else
-      check_verdict(q, &x[0], query == 1 ? s->scale : -1.0);
+      check_verdict(q, &x[0], which == 1 ? s->scale : -1.0);
   }
   cprox_batch_free(batch);
 }
 
-static void ask_signed(question *q) {
+static void ask_signed(query *q) {
   const scene *s = &q->s;
   cprox_result x;
   q->options.signed_distance = true;
@@ -394,7 +400,7 @@ static void ask_signed(question *q) {
   check_width(q, &x);
 }
 
-static void ask_gradient(question *q) {
+static void ask_gradient(query *q) {
   const scene *s = &q->s;
   cprox_result x;
   cprox_gradient g;
@@ -429,12 +435,12 @@ static cprox_options some_options(rng *r, double scale) {
 static void one_case(attack *a, rng *r) {
   static const struct {
     const char *name;
-    void (*ask)(question *q);
+    void (*ask)(query *q);
   } QUERIES[] = {{"distance", ask_distance},
                  {"distance", ask_distance},
                  {"tolerance", ask_tolerance},
                  {"collision", ask_collision},
-                 {"first contact", ask_first_contact},
+                 {"time of contact", ask_time_of_contact},
                  {"profile", ask_profile},
                  {"nearest", ask_nearest},
                  {"within", ask_within},
@@ -442,8 +448,8 @@ static void one_case(attack *a, rng *r) {
                  {"batch", ask_batch},
                  {"signed", ask_signed},
                  {"gradient", ask_gradient}};
-  static question q;
-  q = (question){.a = a, .r = r};
+  static query q;
+  q = (query){.a = a, .r = r};
   const size_t which = rng_index(r, sizeof QUERIES / sizeof *QUERIES);
   q.query = QUERIES[which].name;
   if (scene_make(a, r, &q.s)) {
@@ -456,7 +462,7 @@ static void one_case(attack *a, rng *r) {
     if (a->alone)
       printf("%s, scale %g: %s on a %s curve, obstacle 0 of %zu: %s%s%s\n", q.query, q.s.scale,
              q.s.bodied ? q.s.body.name : "a point", path_name(q.s.path.family), q.s.n,
-             o->curved ? path_name(o->path.family) : "", o->on_clock ? " on the clock " : "", o->body.name);
+             o->curved ? path_name(o->path.family) : "", o->synchronized ? " on the clock " : "", o->body.name);
     q.options = some_options(r, q.s.scale);
     if (a->alone)
       printf("epsilon %g, relative %g, budget %u\n", q.options.epsilon, q.options.relative_epsilon,

@@ -25,7 +25,7 @@ static void make_solid(attack *a, rng *r, int kind, solid *s) {
   if (kind == 1) status = cprox_body_create_sphere(s->radius, a->ws, &s->body);
   if (kind == 2) status = cprox_body_create_box(vec_scale(2.0, s->half), a->ws, &s->body);
   if (kind == 3) status = cprox_body_create_polytope(s->corner, 6, a->ws, &s->body);
-  if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_reason(a->ws));
+  if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_error(a->ws));
 }
 
 static long double off(const solid *s, const cprox_pose *pose, vec3 world) {
@@ -40,10 +40,11 @@ static void check_words(attack *a, const cprox_result *x, double epsilon, const 
                         bool signed_too) {
   static const double ROOM = 1e-10; /* sizes are about 1, and points come from weighted sums and poses */
   attack_count(a, cprox_verdict_name(x->verdict));
-  attack_check(a, x->t_free <= x->t || x->verdict == CPROX_NO, "t_free %.17g, t %.17g", x->t_free, x->t);
-  if (x->target_index < 0 || !isfinite(x->upper)) return;
-  const double apart = vec_norm(vec_sub(x->on_mover, x->on_target));
-  const long double first = off(s[0], &pose[0], x->on_mover), second = off(s[1], &pose[1], x->on_target);
+  attack_check(a, x->t_contact_lower <= x->t || x->verdict == CPROX_NO, "t_contact_lower %.17g, t %.17g",
+               x->t_contact_lower, x->t);
+  if (x->obstacle_index < 0 || !isfinite(x->upper)) return;
+  const double apart = vec_norm(vec_sub(x->witness_mover, x->witness_obstacle));
+  const long double first = off(s[0], &pose[0], x->witness_mover), second = off(s[1], &pose[1], x->witness_obstacle);
   attack_check(a, first <= (long double)ROOM && second <= (long double)ROOM, "points off their bodies by %.3Lg, %.3Lg",
                first, second);
   if (x->verdict == CPROX_YES)
@@ -68,14 +69,14 @@ static void along_curve(attack *a, rng *r, double epsilon) {
   for (size_t i = 0; i < n; i++) points[i] = rng_in_cube(r, 2.0);
   cprox_curve *curve = NULL;
   if (cprox_curve_create_bezier(points, n, 0.0, 1.0, a->ws, &curve) != CPROX_OK)
-    attack_fail(a, "%s", cprox_workspace_reason(a->ws));
+    attack_fail(a, "%s", cprox_workspace_error(a->ws));
   cprox_options options = cprox_options_default();
   options.epsilon = epsilon;
   cprox_pose pose[2] = {cprox_pose_identity(), rng_pose(r, 0.5)};
   cprox_result x;
-  const cprox_status status =
-      cprox_first_contact(cprox_body_along(s[0].body, curve), cprox_at(s[1].body, pose[1]), &options, a->ws, &x);
-  attack_check(a, status >= 0, "%s", cprox_workspace_reason(a->ws));
+  const cprox_status status = cprox_time_of_contact(cprox_body_along(s[0].body, curve),
+                                                    cprox_obstacle_at(s[1].body, pose[1]), &options, a->ws, &x);
+  attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
   if (!attack_failed(a) && isfinite(x.t)) {
     const vec3l at = ref_bezier(points, n - 1, (long double)x.t, 0);
     pose[0].position = vec((double)at.x, (double)at.y, (double)at.z);
@@ -91,7 +92,8 @@ static void at_velocities(attack *a, rng *r, double epsilon) {
   cprox_translating from[2];
   for (int i = 0; i < 2; i++) {
     make_solid(a, r, 1 + (int)rng_index(r, 3), &s[i]);
-    from[i] = (cprox_translating){.from = cprox_at(s[i].body, rng_pose(r, 2.0)), .velocity = rng_in_cube(r, 1.0)};
+    from[i] =
+        (cprox_translating){.from = cprox_obstacle_at(s[i].body, rng_pose(r, 2.0)), .velocity = rng_in_cube(r, 1.0)};
   }
   if (rng_index(r, 2))
     from[0].velocity = vec_add(from[1].velocity, vec_sub(from[1].from.pose.position, from[0].from.pose.position));
@@ -99,7 +101,7 @@ static void at_velocities(attack *a, rng *r, double epsilon) {
   options.epsilon = epsilon;
   cprox_result x;
   const cprox_status status = cprox_translating_contact(from[0], from[1], 2.0, &options, a->ws, &x);
-  attack_check(a, status >= 0, "%s", cprox_workspace_reason(a->ws));
+  attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
   if (!attack_failed(a) && x.verdict != CPROX_NO) {
     cprox_pose pose[2];
     for (int i = 0; i < 2; i++) {
@@ -142,18 +144,19 @@ static void screw(attack *a, rng *r, double epsilon) {
   if (cprox_robot_create(links, 2, &geometry, 1, 2, a->ws, &robot) != CPROX_OK ||
       cprox_motion_create_waypoints(robot, (const int32_t[]){0, 1}, 2, points, 2, CPROX_LINEAR, NULL, a->ws, &motion) !=
           CPROX_OK)
-    attack_fail(a, "%s", cprox_workspace_reason(a->ws));
+    attack_fail(a, "%s", cprox_workspace_error(a->ws));
   const double angle = rng_index(r, 2) ? 0.0 : rng_uniform(r, -1.5, 1.5);
   cprox_pose pose[2] = {geometry.pose, {{0, 0, 0}, {cos(angle), 0, 0, sin(angle)}}};
   cprox_options options = cprox_options_default();
   options.epsilon = epsilon;
   cprox_result x;
-  const cprox_status status =
-      cprox_first_contact(cprox_robot_along(motion, NULL, 0), cprox_at(s[1].body, pose[1]), &options, a->ws, &x);
-  attack_check(a, status >= 0, "%s", cprox_workspace_reason(a->ws));
+  const cprox_status status = cprox_time_of_contact(cprox_robot_along(motion, NULL, 0),
+                                                    cprox_obstacle_at(s[1].body, pose[1]), &options, a->ws, &x);
+  attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
   if (!attack_failed(a)) {
-    attack_check(a, x.verdict == CPROX_YES && x.t_free <= contact + 1e-12, "%s, t_free %.17g, but they touch at %.17g",
-                 cprox_verdict_name(x.verdict), x.t_free, contact);
+    attack_check(a, x.verdict == CPROX_YES && x.t_contact_lower <= contact + 1e-12,
+                 "%s, t_contact_lower %.17g, but they touch at %.17g", cprox_verdict_name(x.verdict), x.t_contact_lower,
+                 contact);
     attack_check(a, x.t >= contact - 1e-12 && x.t <= contact + 1e-5, "contact at %.17g, proven at %.17g", contact, x.t);
     /* where the box is then */
     const double half = 0.5 * turn * x.t;

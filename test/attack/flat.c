@@ -16,7 +16,7 @@ typedef struct scene {
   vec3 corner[MOST_CORNERS], carried[2];
   cprox_body *body, *rider;
   cprox_pose pose;
-  bool on_clock, splines;
+  bool synchronized, splines;
   size_t degree;
   vec3 points[MOST_POINTS], other[MOST_POINTS]; /* of the mover; of the target, where it is on the clock */
   cprox_curve *curve, *clock;
@@ -52,7 +52,7 @@ static void make_body(attack *a, rng *r, scene *c) {
   c->n_carried = kind == 0 ? 2 : 0;
   for (int i = 0; i < 2; i++) c->carried[i] = rng_in_cube(r, 0.5);
   if (status == CPROX_OK && kind == 0) status = cprox_body_create_polytope(c->carried, 2, a->ws, &c->rider);
-  if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_reason(a->ws));
+  if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_error(a->ws));
   attack_kind(a, "%s",
               kind == 0   ? "segment across segment"
               : kind == 3 ? "polygon"
@@ -88,7 +88,7 @@ static cprox_curve *make_curve(attack *a, const scene *c, const vec3 *points) {
   const cprox_status status =
       c->splines ? cprox_curve_create_bspline(points, n, 1, knots, n + 2, 0.0, (double)(n - 1), a->ws, &curve)
                  : cprox_curve_create_bezier(points, n, 0.0, 1.0, a->ws, &curve);
-  if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_reason(a->ws));
+  if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_error(a->ws));
   return curve;
 }
 
@@ -108,7 +108,7 @@ static vec3l curve_at(const scene *c, long double t) {
       at[k] = ref_bezier(relative, c->degree, t, 0);
     }
   }
-  if (!c->on_clock) return at[0];
+  if (!c->synchronized) return at[0];
   cprox_pose turn = c->pose;
   turn.position = vec(0, 0, 0);
   return ref_sub(at[0], ref_to_world(&turn, at[1]));
@@ -117,7 +117,7 @@ static vec3l curve_at(const scene *c, long double t) {
 /* A curve that passes through `hit` at c->s, or near it. */
 static void make_curves(attack *a, rng *r, scene *c, vec3 hit) {
   c->splines = rng_index(r, 3) == 0;
-  c->on_clock = rng_index(r, 4) == 0;
+  c->synchronized = rng_index(r, 4) == 0;
   c->degree = 1 + rng_index(r, MOST_POINTS - 1);
   for (size_t i = 0; i <= c->degree; i++) c->points[i] = rng_in_cube(r, 2.0), c->other[i] = rng_in_cube(r, 0.5);
   /* at a joint of the spline, or anywhere */
@@ -127,7 +127,7 @@ static void make_curves(attack *a, rng *r, scene *c, vec3 hit) {
   for (size_t i = 0; i <= c->degree; i++)
     c->points[i] = vec_add(c->points[i], vec((double)off.x, (double)off.y, (double)off.z));
   c->curve = make_curve(a, c, c->points);
-  if (c->on_clock) c->clock = make_curve(a, c, c->other);
+  if (c->synchronized) c->clock = make_curve(a, c, c->other);
 }
 
 /* ---- the truth ----------------------------------------------------------------------------------------------------------- */
@@ -190,19 +190,19 @@ static void check_contact(attack *a, const scene *c, const char *what, const cpr
   const vec3l meeting = curve_at(c, root);
   const long double inside = inside_by(corner, n, normal, meeting);
   attack_check(a, inside > -1e-17L, "%s: contact at %.17g, but the curve passes by at %.3Lg", what, x->t, -inside);
-  const vec3 apart = vec_sub(x->on_mover, x->on_target);
+  const vec3 apart = vec_sub(x->witness_mover, x->witness_obstacle);
   attack_check(a, x->upper == 0.0 && vec_norm(apart) <= x->upper, "%s: upper %.17g, points %.17g apart", what, x->upper,
                vec_norm(apart));
-  if (c->n_carried == 0 && !c->on_clock)
-    attack_check(a, ref_norm(ref_sub(ref_vec(x->on_mover), meeting)) < 1e-11L, "%s: the common point is off by %.3Lg",
-                 what, ref_norm(ref_sub(ref_vec(x->on_mover), meeting)));
+  if (c->n_carried == 0 && !c->synchronized)
+    attack_check(a, ref_norm(ref_sub(ref_vec(x->witness_mover), meeting)) < 1e-11L,
+                 "%s: the common point is off by %.3Lg", what, ref_norm(ref_sub(ref_vec(x->witness_mover), meeting)));
 }
 
 static void ask(attack *a, rng *r, const scene *c, bool must) {
   cprox_mover mover = cprox_point_along(c->curve);
   if (c->rider) mover = cprox_body_along(c->rider, c->curve);
-  cprox_target target = cprox_at(c->body, c->pose);
-  if (c->on_clock) target = cprox_on_clock(cprox_body_along(c->body, c->clock)), target.pose = c->pose;
+  cprox_obstacle target = cprox_obstacle_at(c->body, c->pose);
+  if (c->synchronized) target = cprox_synchronized(cprox_body_along(c->body, c->clock)), target.pose = c->pose;
   cprox_options options = cprox_options_default();
   options.epsilon = rng_log_uniform(r, 1e-10, 1e-4);
   vec3l corner[2 * MOST_CORNERS];
@@ -210,20 +210,21 @@ static void ask(attack *a, rng *r, const scene *c, bool must) {
 
   cprox_result x;
   cprox_status status = cprox_collision(mover, target, &options, a->ws, &x);
-  attack_check(a, status >= 0, "%s", cprox_workspace_reason(a->ws));
+  attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
   if (!attack_failed(a)) check_contact(a, c, "collision", &x, corner, n, must);
   attack_count(a, x.verdict == CPROX_YES ? "met" : x.verdict == CPROX_NO ? "clear" : "undecided");
   attack_check(a, x.nodes <= 1000, "collision took %u nodes", x.nodes);
 
-  status = cprox_first_contact(mover, target, &options, a->ws, &x);
-  attack_check(a, status >= 0, "%s", cprox_workspace_reason(a->ws));
-  attack_check(a, !must || x.t_free <= c->s + 1e-14, "free until %.17g, but they meet at %.17g", x.t_free, c->s);
+  status = cprox_time_of_contact(mover, target, &options, a->ws, &x);
+  attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
+  attack_check(a, !must || x.t_contact_lower <= c->s + 1e-14, "free until %.17g, but they meet at %.17g",
+               x.t_contact_lower, c->s);
   if (attack_failed(a) || x.verdict != CPROX_YES) return;
   check_contact(a, c, "time of contact", &x, corner, n, must);
   long double root = 0.0L;
   if (root_near(c, normal_of(corner, n), corner[0], (long double)x.t, &root))
-    attack_check(a, root <= (long double)x.t + 1e-15L && x.t_free <= x.t, "contact at %.17g, t %.17g, t_free %.17g",
-                 (double)root, x.t, x.t_free);
+    attack_check(a, root <= (long double)x.t + 1e-15L && x.t_contact_lower <= x.t,
+                 "contact at %.17g, t %.17g, t_contact_lower %.17g", (double)root, x.t, x.t_contact_lower);
 }
 
 /* Sliding in the plane, or along a face of a body that has an inside: nothing can be proven, and soon nothing is tried any more. */
@@ -238,21 +239,22 @@ static void slide(attack *a, rng *r) {
   cprox_curve *curve = NULL;
   if (cprox_body_create_polytope(corner, solid ? 4 : 3, a->ws, &body) != CPROX_OK ||
       cprox_curve_create_bezier(points, n, 0.0, 1.0, a->ws, &curve) != CPROX_OK)
-    attack_fail(a, "%s", cprox_workspace_reason(a->ws));
-  const cprox_target target = cprox_at(body, cprox_pose_identity());
+    attack_fail(a, "%s", cprox_workspace_error(a->ws));
+  const cprox_obstacle target = cprox_obstacle_at(body, cprox_pose_identity());
   cprox_options options = cprox_options_default();
   options.epsilon = rng_log_uniform(r, 1e-12, 1e-3);
   options.max_nodes = 200000;
-  for (int verb = 0; verb < 4; verb++) {
+  for (int query_type = 0; query_type < 4; query_type++) {
     cprox_result x;
-    options.signed_distance = verb == 1;
+    options.signed_distance = query_type == 1;
     const cprox_mover mover = cprox_point_along(curve);
-    const cprox_status status = verb < 2    ? cprox_distance(mover, target, &options, a->ws, &x)
-                                : verb == 2 ? cprox_collision(mover, target, &options, a->ws, &x)
-                                            : cprox_first_contact(mover, target, &options, a->ws, &x);
-    attack_check(a, status >= 0 && x.lower <= 0.0 && x.upper >= 0.0, "verb %d: [%.17g, %.17g]", verb, x.lower, x.upper);
-    attack_check(a, x.nodes <= 500 && x.upper <= options.epsilon, "verb %d: %u nodes, upper %.17g", verb, x.nodes,
+    const cprox_status status = query_type < 2    ? cprox_distance(mover, target, &options, a->ws, &x)
+                                : query_type == 2 ? cprox_collision(mover, target, &options, a->ws, &x)
+                                                  : cprox_time_of_contact(mover, target, &options, a->ws, &x);
+    attack_check(a, status >= 0 && x.lower <= 0.0 && x.upper >= 0.0, "query %d: [%.17g, %.17g]", query_type, x.lower,
                  x.upper);
+    attack_check(a, x.nodes <= 500 && x.upper <= options.epsilon, "query %d: %u nodes, upper %.17g", query_type,
+                 x.nodes, x.upper);
   }
   cprox_curve_free(curve);
   cprox_body_free(body);

@@ -190,8 +190,8 @@ static void check_curve(attack *t, rng *r, const hull *h, vec3 p, quad wanted) {
   options.max_nodes = 2000;
   cprox_result result = {0};
   if (status >= 0)
-    status =
-        cprox_collision(cprox_point_along(curve), cprox_at(h->body, cprox_pose_identity()), &options, t->ws, &result);
+    status = cprox_collision(cprox_point_along(curve), cprox_obstacle_at(h->body, cprox_pose_identity()), &options,
+                             t->ws, &result);
   attack_check(t, status == CPROX_OK && result.verdict == CPROX_YES,
                "curve: [%.17g, %.17g] after %u nodes, depth %.17g", result.lower, result.upper, (unsigned)result.nodes,
                (double)-wanted);
@@ -211,7 +211,7 @@ static void one_case(attack *t, rng *r) {
   const vec3 p = any_point(r, &h);
   quad wanted;
   if (cprox_body_create_polytope(h.v, h.n, t->ws, &h.body) < 0) {
-    attack_fail(t, "%s", cprox_workspace_reason(t->ws));
+    attack_fail(t, "%s", cprox_workspace_error(t->ws));
   } else if (reference(&h, p, &wanted)) {
     check_nearest(t, &h, p, wanted);
     if (rng_index(r, 4) == 0) check_curve(t, r, &h, p, wanted);

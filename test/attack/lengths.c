@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Lengths of any size, from those whose squares vanish to those whose squares overflow: a question is refused with a reason, or its
- * interval is true. The reference: every body holds the origin of its frame and lies in a ball about it, so that the distance of the
- * origins, in long double, bounds that of the bodies from both sides. */
+/* Lengths of any size, from those whose squares vanish to those whose squares overflow: a query is refused with a
+ * reason, or its interval is true. The reference: every body holds the origin of its frame and lies in a ball about it,
+ * so that the distance of the origins, in long double, bounds that of the bodies from both sides. */
 #include <float.h>
 #include <math.h>
 
@@ -69,7 +69,7 @@ static cprox_status make(attack *a, rng *r, thing *t) {
 typedef struct setting {
   thing a, b;
   vec3 ends[2];
-  double padding, radius;
+  double margin, radius;
   cprox_options options;
   double delta;
   cprox_curve *curve;
@@ -79,7 +79,7 @@ static bool setting_make(attack *a, rng *r, setting *s) {
   *s = (setting){.a.kind = rng_index(r, KINDS), .b.kind = rng_index(r, KINDS), .options = cprox_options_default()};
   const double away = length(r), step = length(r);
   s->a.size = length(r), s->b.size = length(r);
-  s->padding = rng_index(r, 3) ? 0.0 : length(r);
+  s->margin = rng_index(r, 3) ? 0.0 : length(r);
   s->radius = rng_index(r, 3) ? 0.0 : length(r);
   s->delta = rng_index(r, 3) ? away : length(r);
   s->options.epsilon = rng_index(r, 2) ? 1e-6 : rng_index(r, 2) ? 1e-6 * away : 0.0;
@@ -90,11 +90,11 @@ static bool setting_make(attack *a, rng *r, setting *s) {
   s->b.pose.position = vec_add(s->a.pose.position, rng_in_cube(r, away));
   for (int i = 0; i < 2; i++) s->ends[i] = vec_add(s->a.pose.position, rng_in_cube(r, step));
   const bool usual = is_usual(away) && is_usual(step) && is_usual(s->a.size) && is_usual(s->b.size) &&
-                     is_usual(s->padding) && is_usual(s->radius) && is_usual(s->delta) &&
+                     is_usual(s->margin) && is_usual(s->radius) && is_usual(s->delta) &&
                      vec_norm(s->a.pose.position) < 2e3;
   const bool made = make(a, r, &s->a) >= 0 && make(a, r, &s->b) >= 0 &&
                     cprox_curve_create_bezier(s->ends, 2, 0.0, 1.0, a->ws, &s->curve) >= 0;
-  attack_check(a, made || !usual, "usual sizes are refused: %s", cprox_workspace_reason(a->ws));
+  attack_check(a, made || !usual, "usual sizes are refused: %s", cprox_workspace_error(a->ws));
   return made;
 }
 
@@ -119,7 +119,7 @@ static truth truth_of(const setting *s, bool line, long double reach) {
 
 static void check(attack *a, const setting *s, const char *what, cprox_status status, const cprox_result *r, truth t) {
   if (status < 0) {
-    attack_check(a, cprox_workspace_reason(a->ws)[0] != '\0', "%s of %s and %s is refused without a reason", what,
+    attack_check(a, cprox_workspace_error(a->ws)[0] != '\0', "%s of %s and %s is refused without a reason", what,
                  KIND[s->a.kind], KIND[s->b.kind]);
     attack_count(a, "refused");
     return;
@@ -129,23 +129,23 @@ static void check(attack *a, const setting *s, const char *what, cprox_status st
   const bool good = lower <= upper && lower <= t.high * (1 + 1e-12L) && upper >= t.low * (t.low > 0 ? 1 - 1e-12L : 1) &&
                     isfinite(r->lower) && (isinf(r->upper) || !isnan(r->t));
   attack_check(a, good,
-               "%s of %s %.17g and %s %.17g: [%.17g, %.17g] %s; the truth is in [%.19Lg, %.19Lg]; padding %g, radius "
+               "%s of %s %.17g and %s %.17g: [%.17g, %.17g] %s; the truth is in [%.19Lg, %.19Lg]; margin %g, radius "
                "%g, epsilon "
                "%g, from %g %g %g, to %g %g %g, a at %g %g %g, b at %g %g %g",
                what, KIND[s->a.kind], s->a.size, KIND[s->b.kind], s->b.size, r->lower, r->upper,
-               cprox_status_name(status), t.low, t.high, s->padding, s->radius, s->options.epsilon, s->ends[0].x,
+               cprox_status_name(status), t.low, t.high, s->margin, s->radius, s->options.epsilon, s->ends[0].x,
                s->ends[0].y, s->ends[0].z, s->ends[1].x, s->ends[1].y, s->ends[1].z, s->a.pose.position.x,
                s->a.pose.position.y, s->a.pose.position.z, s->b.pose.position.x, s->b.pose.position.y,
                s->b.pose.position.z);
 }
 
-/* Every question of a moving a and a standing b. */
+/* Every query of a moving a and a standing b. */
 static void ask_moving(attack *a, rng *r, setting *s) {
   const bool carried = rng_index(r, 3) == 0;
   cprox_mover mover = carried ? cprox_body_along(s->a.body, s->curve) : cprox_tube_along(s->curve, s->radius);
-  const cprox_target target = cprox_padded(cprox_at(s->b.body, s->b.pose), s->padding);
+  const cprox_obstacle target = cprox_with_margin(cprox_obstacle_at(s->b.body, s->b.pose), s->margin);
   const truth t =
-      truth_of(s, true, (carried ? 2.0L * (long double)s->a.size : (long double)s->radius) + (long double)s->padding);
+      truth_of(s, true, (carried ? 2.0L * (long double)s->a.size : (long double)s->radius) + (long double)s->margin);
   cprox_result result = {0};
   s->options.signed_distance = rng_index(r, 4) == 0;
   cprox_status status = cprox_distance(mover, target, &s->options, a->ws, &result);
@@ -155,7 +155,7 @@ static void ask_moving(attack *a, rng *r, setting *s) {
   s->options.signed_distance = false;
   check(a, s, "tolerance", cprox_tolerance(mover, target, s->delta, &s->options, a->ws, &result), &result, t);
   check(a, s, "collision", cprox_collision(mover, target, &s->options, a->ws, &result), &result, t);
-  check(a, s, "first contact", cprox_first_contact(mover, target, &s->options, a->ws, &result), &result, t);
+  check(a, s, "time of contact", cprox_time_of_contact(mover, target, &s->options, a->ws, &result), &result, t);
 
   cprox_set *set = NULL;
   if (cprox_set_create(&target, 1, a->ws, &set) >= 0)
@@ -176,29 +176,30 @@ static void ask_robot(attack *a, setting *s) {
                            .axis = way,
                            .multiplier = 1.0};
   const cprox_link_geometry geometry = {
-      .body = s->a.body, .pose = {.orientation = s->a.pose.orientation}, .padding = s->radius};
+      .body = s->a.body, .pose = {.orientation = s->a.pose.orientation}, .margin = s->radius};
   const int32_t variable = 0;
   const double from = 0.0, to = vec_norm(way);
   const cprox_waypoint points[2] = {{.time = 0.0, .positions = &from}, {.time = 1.0, .positions = &to}};
-  const cprox_target target = cprox_padded(cprox_at(s->b.body, s->b.pose), s->padding);
+  const cprox_obstacle target = cprox_with_margin(cprox_obstacle_at(s->b.body, s->b.pose), s->margin);
   cprox_robot *robot = NULL;
   cprox_motion *motion = NULL;
   cprox_result result = {0};
   if (cprox_robot_create(&link, 1, &geometry, 1, 1, a->ws, &robot) >= 0 &&
       cprox_motion_create_waypoints(robot, &variable, 1, points, 2, CPROX_LINEAR, NULL, a->ws, &motion) >= 0) {
-    const truth t = truth_of(s, true, 2.0L * (long double)s->a.size + (long double)s->radius + (long double)s->padding);
+    const truth t = truth_of(s, true, 2.0L * (long double)s->a.size + (long double)s->radius + (long double)s->margin);
     const cprox_mover mover = cprox_robot_along(motion, NULL, 0);
     check(a, s, "robot", cprox_distance(mover, target, &s->options, a->ws, &result), &result, t);
-    check(a, s, "robot's first contact", cprox_first_contact(mover, target, &s->options, a->ws, &result), &result, t);
+    check(a, s, "robot's time of contact", cprox_time_of_contact(mover, target, &s->options, a->ws, &result), &result,
+          t);
   }
   cprox_motion_free(motion);
   cprox_robot_free(robot);
 }
 
 static void ask_pair(attack *a, setting *s) {
-  const truth t = truth_of(s, false, 2.0L * (long double)s->a.size + (long double)s->padding + (long double)s->radius);
-  const cprox_target one = cprox_padded(cprox_at(s->a.body, s->a.pose), s->radius),
-                     two = cprox_padded(cprox_at(s->b.body, s->b.pose), s->padding);
+  const truth t = truth_of(s, false, 2.0L * (long double)s->a.size + (long double)s->margin + (long double)s->radius);
+  const cprox_obstacle one = cprox_with_margin(cprox_obstacle_at(s->a.body, s->a.pose), s->radius),
+                       two = cprox_with_margin(cprox_obstacle_at(s->b.body, s->b.pose), s->margin);
   cprox_result result = {0};
   check(a, s, "pair", cprox_pair(one, two, &s->options, a->ws, &result), &result, t);
   check(a, s, "pair, swapped", cprox_pair(two, one, &s->options, a->ws, &result), &result, t);
@@ -209,11 +210,11 @@ static void ask_curves(attack *a, rng *r, setting *s) {
   const vec3 ends[2] = {s->b.pose.position, vec_add(s->b.pose.position, rng_in_cube(r, s->b.size))};
   cprox_curve *other = NULL;
   if (cprox_curve_create_bezier(ends, 2, 0.0, 1.0, a->ws, &other) < 0) return;
-  const truth t = truth_of(s, true, (long double)s->radius + (long double)s->padding);
+  const truth t = truth_of(s, true, (long double)s->radius + (long double)s->margin);
   cprox_result result = {0};
   check(a, s, "curve",
-        cprox_distance(cprox_tube_along(s->curve, s->radius), cprox_curve_target(other, s->padding), &s->options, a->ws,
-                       &result),
+        cprox_distance(cprox_tube_along(s->curve, s->radius), cprox_obstacle_curve(other, s->margin), &s->options,
+                       a->ws, &result),
         &result, t);
   cprox_curve_free(other);
 }
@@ -239,13 +240,13 @@ static void ask_in_other_units(attack *a, rng *r) {
   s.a.size = rng_log_uniform(r, 0.01, 1.0), s.b.size = rng_log_uniform(r, 0.01, 1.0);
   s.a.pose = rng_pose(r, 1.0), s.b.pose = rng_pose(r, 1.0);
   s.b.pose.position = vec_add(s.a.pose.position, rng_in_cube(r, rng_index(r, 2) ? 1.0 : 0.1));
-  s.padding = rng_index(r, 3) ? 0.0 : rng_uniform(r, 0.0, 0.3);
+  s.margin = rng_index(r, 3) ? 0.0 : rng_uniform(r, 0.0, 0.3);
   for (int i = 0; i < 2; i++) s.ends[i] = vec_add(s.a.pose.position, rng_in_cube(r, 1.0));
   s.options.signed_distance = rng_index(r, 2);
   s.options.max_nodes = 2000;
   const double by = ldexp(1.0, (int)rng_index(r, 393) - 196);
   o = s;
-  o.a.size *= by, o.b.size *= by, o.padding *= by, o.options.epsilon *= by;
+  o.a.size *= by, o.b.size *= by, o.margin *= by, o.options.epsilon *= by;
   o.a.pose.position = scaled(by, s.a.pose.position), o.b.pose.position = scaled(by, s.b.pose.position);
   for (int i = 0; i < 2; i++) o.ends[i] = scaled(by, s.ends[i]);
   const rng before = *r; /* the same choices for both */
@@ -254,22 +255,21 @@ static void ask_in_other_units(attack *a, rng *r) {
   made = made && make(a, r, &o.a) >= 0 && make(a, r, &o.b) >= 0 &&
          cprox_curve_create_bezier(s.ends, 2, 0.0, 1.0, a->ws, &s.curve) >= 0 &&
          cprox_curve_create_bezier(o.ends, 2, 0.0, 1.0, a->ws, &o.curve) >= 0;
-  attack_check(a, made, "refused: %s", cprox_workspace_reason(a->ws));
-  const cprox_target b = cprox_padded(cprox_at(s.b.body, s.b.pose), s.padding),
-                     ob = cprox_padded(cprox_at(o.b.body, o.b.pose), o.padding);
+  attack_check(a, made, "refused: %s", cprox_workspace_error(a->ws));
+  const cprox_obstacle b = cprox_with_margin(cprox_obstacle_at(s.b.body, s.b.pose), s.margin),
+                       ob = cprox_with_margin(cprox_obstacle_at(o.b.body, o.b.pose), o.margin);
   cprox_result one = {0}, two = {0};
   const bool pair = rng_index(r, 2);
-  const cprox_mover mover =
-      rng_index(r, 2) ? cprox_tube_along(s.curve, s.padding) : cprox_body_along(s.a.body, s.curve);
+  const cprox_mover mover = rng_index(r, 2) ? cprox_tube_along(s.curve, s.margin) : cprox_body_along(s.a.body, s.curve);
   cprox_mover other = mover;
   other.curve = o.curve, other.body = mover.body ? o.a.body : NULL, other.radius = by * mover.radius;
   if (made) {
-    const cprox_status first = pair ? cprox_pair(cprox_at(s.a.body, s.a.pose), b, &s.options, a->ws, &one)
+    const cprox_status first = pair ? cprox_pair(cprox_obstacle_at(s.a.body, s.a.pose), b, &s.options, a->ws, &one)
                                     : cprox_distance(mover, b, &s.options, a->ws, &one);
-    const cprox_status second = pair ? cprox_pair(cprox_at(o.a.body, o.a.pose), ob, &o.options, a->ws, &two)
+    const cprox_status second = pair ? cprox_pair(cprox_obstacle_at(o.a.body, o.a.pose), ob, &o.options, a->ws, &two)
                                      : cprox_distance(other, ob, &o.options, a->ws, &two);
     if (attack_check(a, (first < 0) == (second < 0), "%s and %s, times %g: %s, %s", KIND[s.a.kind], KIND[s.b.kind], by,
-                     cprox_status_name(first), cprox_workspace_reason(a->ws)) &&
+                     cprox_status_name(first), cprox_workspace_error(a->ws)) &&
         first >= 0)
       check_units(a, &s, pair ? "pair" : "distance", by, &one, &two);
   }

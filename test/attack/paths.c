@@ -371,7 +371,7 @@ void path_make_on(attack *a, rng *r, path_family family, double scale, vec3 orig
   p->t0 = t0;
   p->t1 = t1;
   if (make(a, r, scale, origin, planar, p) < 0)
-    attack_fail(a, "a %s curve was refused: %s", NAMES[family], cprox_workspace_reason(a->ws));
+    attack_fail(a, "a %s curve was refused: %s", NAMES[family], cprox_workspace_error(a->ws));
   double sum = vec_norm(origin) + 20.0 * scale;
   for (size_t i = 0; i < p->n && i < PATH_POINTS; i++) sum += vec_norm(p->points[i]);
   p->extent = fmax(p->extent, sum);

@@ -261,17 +261,17 @@ static void make_support(attack *a, rng *r, double scale, random_body *b) {
 
 /* ---- meshes, compounds ---- */
 
-static void make_mesh(attack *a, rng *r, double scale, random_body *b, bool ladder) {
+static void make_mesh(attack *a, rng *r, double scale, random_body *b, bool lod) {
   part *f = b->parts;
   f->form = FORM_MESH;
   const bool solid = rng_index(r, 2);
-  if (solid || ladder) {
+  if (solid || lod) {
     do hull_points(r, scale, f);
     while (!f->full);
   }
   /* a hull's facets are closed where no four points lie in a plane; else the core makes a surface of it */
   if (!solid) {
-    if (!ladder)
+    if (!lod)
       for (f->n = 0; f->n < BODY_POINTS; f->n++) f->points[f->n] = rng_in_cube(r, scale);
     f->m = 1 + rng_index(r, 16);
     for (size_t i = 0; i < f->m; i++)
@@ -279,16 +279,16 @@ static void make_mesh(attack *a, rng *r, double scale, random_body *b, bool ladd
   }
   cprox_body *mesh = NULL;
   cprox_body_create_mesh(f->points, f->n, (const uint32_t(*)[3])f->triangles, f->m,
-                         solid && !ladder ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE, SIZE_MAX, a->ws, &mesh);
-  f->full = mesh && solid && !ladder && cprox_body_is_solid(mesh);
-  snprintf(b->name, sizeof b->name, ladder ? "ladder" : f->full ? "solid mesh" : "mesh");
-  if (!ladder) {
+                         solid && !lod ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE, SIZE_MAX, a->ws, &mesh);
+  f->full = mesh && solid && !lod && cprox_body_is_solid(mesh);
+  snprintf(b->name, sizeof b->name, lod ? "lod" : f->full ? "solid mesh" : "mesh");
+  if (!lod) {
     b->body = mesh;
     return;
   }
   b->owned[0] = mesh;
   cprox_body_create_polytope(f->points, f->n, a->ws, &b->owned[1]);
-  if (mesh && b->owned[1]) cprox_body_create_ladder(b->owned[1], 0.0, mesh, a->ws, &b->body);
+  if (mesh && b->owned[1]) cprox_body_create_lod(b->owned[1], 0.0, mesh, a->ws, &b->body);
 }
 
 static void make_kind(attack *a, rng *r, size_t kind, double scale, random_body *b);
@@ -374,5 +374,5 @@ void body_make(attack *a, rng *r, size_t kind, double scale, random_body *b) {
   b->convex = kind < 13 || kind > 22;
   b->carried = kind < 15 || kind > 22;
   b->extent = extent_of(b, scale);
-  if (!b->body) attack_fail(a, "%s was refused: %s", b->name, cprox_workspace_reason(a->ws));
+  if (!b->body) attack_fail(a, "%s was refused: %s", b->name, cprox_workspace_error(a->ws));
 }

@@ -50,7 +50,7 @@ static vec3l obstacle_nearest(const obstacle *o, long double t, double at, vec3l
   }
   const vec3l own = ref_to_local(&o->pose, p);
   vec3l c;
-  if (o->on_clock)
+  if (o->synchronized)
     c = path_at(&o->path, t);
   else
     c = isnan(at) ? nearest_on_path(&o->path, own) : path_at(&o->path, at);
@@ -66,12 +66,12 @@ long double scene_off_mover(const scene *s, long double t, vec3l p) {
 
 long double scene_off_obstacle(const scene *s, size_t i, long double t, double at, vec3l p) {
   const obstacle *o = &s->obstacles[i];
-  return fmaxl(0.0L, ref_norm(ref_sub(p, obstacle_nearest(o, t, at, p))) - o->padding);
+  return fmaxl(0.0L, ref_norm(ref_sub(p, obstacle_nearest(o, t, at, p))) - o->margin);
 }
 
 bool scene_is_exact(const scene *s, size_t i) {
   const obstacle *o = &s->obstacles[i];
-  return !s->bodied && (!o->curved || o->on_clock);
+  return !s->bodied && (!o->curved || o->synchronized);
 }
 
 /* Points of both in turns: each step brings them closer, and the sets are convex or the bound is but a bound. */
@@ -92,7 +92,7 @@ static long double alternate(const scene *s, const obstacle *o, long double t, d
 long double scene_distance(const scene *s, size_t i, long double t, double at) {
   const obstacle *o = &s->obstacles[i];
   const vec3l x = path_at(&s->path, t);
-  const long double thick = (long double)s->radius + o->padding;
+  const long double thick = (long double)s->radius + o->margin;
   if (s->bodied) return alternate(s, o, t, at, x) - thick;
   const long double d = ref_norm(ref_sub(x, obstacle_nearest(o, t, at, x)));
   if (d > 0.0L || o->curved || !o->body.depth) return d - thick;
@@ -103,7 +103,7 @@ long double scene_distance(const scene *s, size_t i, long double t, double at) {
 
 static long double reach(const scene *s, size_t i) {
   const obstacle *o = &s->obstacles[i];
-  return (long double)s->path.extent + s->body.extent + s->radius + o->body.extent + o->path.extent + o->padding +
+  return (long double)s->path.extent + s->body.extent + s->radius + o->body.extent + o->path.extent + o->margin +
          vec_norm(o->pose.position);
 }
 
@@ -183,7 +183,7 @@ static cprox_pose place(rng *r, double scale, vec3 origin, bool planar) {
 }
 
 static bool make_obstacle(attack *a, rng *r, const scene *s, vec3 origin, obstacle *o) {
-  o->padding = rng_index(r, 3) ? 0.0 : s->scale * rng_uniform(r, 0.0, 0.3);
+  o->margin = rng_index(r, 3) ? 0.0 : s->scale * rng_uniform(r, 0.0, 0.3);
   o->pose = place(r, s->scale, origin, s->planar);
   o->curved = rng_index(r, 6) == 0;
   if (!o->curved) {
@@ -191,19 +191,19 @@ static bool make_obstacle(attack *a, rng *r, const scene *s, vec3 origin, obstac
     const size_t kind =
         s->planar && rng_index(r, 2) ? 8 : rng_index(r, s->bodied && rng_index(r, 50) ? 16 : BODY_KINDS);
     body_make(a, r, kind, s->scale, &o->body);
-    o->target = cprox_padded(cprox_at(o->body.body, o->pose), o->padding);
+    o->target = cprox_with_margin(cprox_obstacle_at(o->body.body, o->pose), o->margin);
     return o->body.body;
   }
   /* its curve is made about its own frame's origin; on the clock over the same range */
   const path_family family = (path_family)rng_index(r, PATH_FAMILIES);
   const bool by_length = (family == PATH_RECTIFIABLE) != (s->path.family == PATH_RECTIFIABLE);
   const bool long_range = s->path.t1 - s->path.t0 > 20.0; /* arc lengths: too many turns for a trigonometric series */
-  o->on_clock = rng_index(r, 2) && path_has_range(family) && !by_length && !long_range;
-  const double t0 = o->on_clock ? s->path.t0 : 0.0, t1 = o->on_clock ? s->path.t1 : 1.0;
+  o->synchronized = rng_index(r, 2) && path_has_range(family) && !by_length && !long_range;
+  const double t0 = o->synchronized ? s->path.t0 : 0.0, t1 = o->synchronized ? s->path.t1 : 1.0;
   path_make_on(a, r, family, s->scale, vec(0, 0, 0), s->planar, t0, t1, &o->path);
   if (!o->path.curve) return false;
-  if (!o->on_clock) {
-    o->target = cprox_curve_target(o->path.curve, o->padding);
+  if (!o->synchronized) {
+    o->target = cprox_obstacle_curve(o->path.curve, o->margin);
     o->target.pose = o->pose;
     return true;
   }
@@ -211,8 +211,8 @@ static bool make_obstacle(attack *a, rng *r, const scene *s, vec3 origin, obstac
   if (o->bodied) body_make(a, r, rng_index(r, 13), s->scale, &o->body);
   if (o->bodied && !o->body.body) return false;
   cprox_mover other = o->bodied ? cprox_body_along(o->body.body, o->path.curve) : cprox_point_along(o->path.curve);
-  other.radius = o->padding;
-  o->target = cprox_on_clock(other);
+  other.radius = o->margin;
+  o->target = cprox_synchronized(other);
   o->target.pose = o->pose;
   return true;
 }

@@ -9,12 +9,12 @@
 enum { SCENE_OBSTACLES = 4 };
 
 typedef struct obstacle {
-  bool curved, on_clock, bodied; /* a curve, at the same parameter, with a body on it; or a body alone */
+  bool curved, synchronized, bodied; /* a curve, at the same parameter, with a body on it; or a body alone */
   random_path path;
   random_body body;
   cprox_pose pose;
-  double padding;
-  cprox_target target;
+  double margin;
+  cprox_obstacle target;
 } obstacle;
 
 typedef struct scene {
@@ -26,7 +26,7 @@ typedef struct scene {
   cprox_mover mover;
   size_t n;
   obstacle obstacles[SCENE_OBSTACLES];
-  cprox_target targets[SCENE_OBSTACLES];
+  cprox_obstacle targets[SCENE_OBSTACLES];
 } scene;
 
 /* Fills s, which must stay where it is. True where the core took everything; scene_free() in either case. */
@@ -35,14 +35,15 @@ void scene_free(scene *s);
 
 /* What is checked at one parameter t. `at` is the obstacle's own parameter where it is a curve at rest, NAN: the best of many. */
 
-/* No less than the distance of the moving object from obstacle i, radius and padding taken off and not cut at 0: negative where they
- * overlap by so much at least. Where neither carries a body and the obstacle is no curve at rest it is the distance. */
+/* No less than the distance of the moving object from obstacle i, radius and margin taken off and not cut at 0:
+ * negative where they overlap by so much at least. Where neither carries a body and the obstacle is no curve at rest it
+ * is the distance. */
 long double scene_distance(const scene *s, size_t i, long double t, double at);
 
 /* Is that so, or is there but a bound? */
 bool scene_is_exact(const scene *s, size_t i);
 
-/* How far a point is from the moving object at t, and from obstacle i: radius and padding taken off, 0 at least. */
+/* How far a point is from the moving object at t, and from obstacle i: radius and margin taken off, 0 at least. */
 long double scene_off_mover(const scene *s, long double t, vec3l p);
 long double scene_off_obstacle(const scene *s, size_t i, long double t, double at, vec3l p);
 

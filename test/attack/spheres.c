@@ -16,7 +16,7 @@ static void one_case(attack *a, rng *r) {
   for (int i = 0; i < 2; i++) {
     pose[i] = rng_pose(r, 2.0 * scale);
     pose[i].position = vec_add(pose[i].position, origin);
-    if (cprox_body_create_sphere(radius[i], a->ws, &body[i]) < 0) attack_fail(a, "%s", cprox_workspace_reason(a->ws));
+    if (cprox_body_create_sphere(radius[i], a->ws, &body[i]) < 0) attack_fail(a, "%s", cprox_workspace_error(a->ws));
   }
   attack_kind(a, away > 0.0 ? "far from the origin" : "near the origin");
 
@@ -28,8 +28,8 @@ static void one_case(attack *a, rng *r) {
   options.epsilon = rng_index(r, 2) ? 0.0 : 1e-6 * scale;
   cprox_result result;
   const cprox_status status =
-      cprox_pair(cprox_at(body[0], pose[0]), cprox_at(body[1], pose[1]), &options, a->ws, &result);
-  attack_check(a, status >= 0, "%s", cprox_workspace_reason(a->ws));
+      cprox_pair(cprox_obstacle_at(body[0], pose[0]), cprox_obstacle_at(body[1], pose[1]), &options, a->ws, &result);
+  attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
   if (!attack_failed(a))
     attack_check(a, (long double)result.lower <= truth + room && truth - room <= (long double)result.upper,
                  "[%.17g, %.17g] does not hold %.19Lg (radii %.17g and %.17g, epsilon %g)", result.lower, result.upper,

@@ -138,7 +138,8 @@ static cprox_status make_curve(size_t which, const material *m, cprox_workspace 
 }
 
 static cprox_status make_other(size_t which, const material *m, cprox_workspace *ws, handle *h) {
-  const cprox_target targets[2] = {cprox_at(m->hull, cprox_pose_identity()), cprox_at(m->mesh, cprox_pose_identity())};
+  const cprox_obstacle targets[2] = {cprox_obstacle_at(m->hull, cprox_pose_identity()),
+                                     cprox_obstacle_at(m->mesh, cprox_pose_identity())};
   switch (which) {
     case 0: return cprox_set_create(targets, 2, ws, &h->set);
     case 1: return cprox_batch_create(targets, 2, ws, &h->batch);
@@ -176,11 +177,11 @@ static void starve_constructor(attack *a, size_t which, const material *m) {
     const cprox_status status = make_any(which, m, ws, &h);
     allocations_allow();
     attack_check(a, status == CPROX_OK || status == CPROX_MEMORY, "constructor %zu, allocation %zu: %s (%s)", which, k,
-                 cprox_status_name(status), cprox_workspace_reason(ws));
+                 cprox_status_name(status), cprox_workspace_error(ws));
     attack_check(a, (status == CPROX_OK) == (h.any != NULL), "constructor %zu, allocation %zu: %s with handle %d",
                  which, k, cprox_status_name(status), h.any != NULL);
     if (status == CPROX_MEMORY)
-      attack_check(a, cprox_workspace_reason(ws)[0], "constructor %zu, allocation %zu: no reason", which, k);
+      attack_check(a, cprox_workspace_error(ws)[0], "constructor %zu, allocation %zu: no reason", which, k);
     if (h.any) release_of(which)(h.any);
     cprox_workspace_free(ws);
     attack_check(a, allocations_live() == before, "constructor %zu, allocation %zu: %zd blocks are left", which, k,
@@ -230,7 +231,7 @@ static cprox_status ask(const scene *s, size_t query, const cprox_options *o, cp
     case 0: return cprox_distance(s->mover, s->targets[0], o, ws, x);
     case 1: return cprox_tolerance_all(s->mover, s->targets, s->n, s->scale, o, ws, x, NULL);
     case 2: return cprox_collision_all(s->mover, s->targets, s->n, o, ws, x, NULL);
-    case 3: return cprox_first_contact_all(s->mover, s->targets, s->n, o, ws, x);
+    case 3: return cprox_time_of_contact_all(s->mover, s->targets, s->n, o, ws, x);
     case 4: return cprox_nearest(s->mover, s->targets, s->n, 1, o, ws, x, &count);
     case 5: return cprox_distance_all(s->mover, s->targets, s->n, o, ws, x, NULL);
     case 6: with.signed_distance = true; return cprox_distance(s->mover, s->targets[0], &with, ws, x);
@@ -272,13 +273,13 @@ static void starve_query(attack *a, const scene *s, size_t query, const cprox_op
                    "query %zu, allocation %zu: memory, but the result was written", query, k);
       attack_check(a, ask(s, query, o, ws, x) == asked, "query %zu, allocation %zu: the next query is not answered",
                    query, k);
-    } else if (status < 0 && strstr(cprox_workspace_reason(ws), "support")) {
+    } else if (status < 0 && strstr(cprox_workspace_error(ws), "support")) {
       /* without its tables the search asks in other directions, and an implicit body may know no support along one of them */
       attack_count(a, "no support of an implicit body");
       memcpy(x, full, sizeof x);
     } else {
       attack_check(a, status >= 0, "query %zu, allocation %zu: %s (%s)", query, k, cprox_status_name(status),
-                   cprox_workspace_reason(ws));
+                   cprox_workspace_error(ws));
     }
     attack_check(a, x->lower <= full->upper && full->lower <= x->upper,
                  "query %zu, allocation %zu: [%.17g, %.17g], and with memory [%.17g, %.17g]", query, k, x->lower,

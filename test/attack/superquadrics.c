@@ -89,8 +89,9 @@ static void ask_line(attack *a, rng *r, bool compound) {
   cprox_options options = accurate(epsilons[rng_index(r, 4)]);
   options.max_nodes = 100;
   cprox_result answer;
-  if (attack_check(a, cprox_distance(cprox_point_along(curve), cprox_at(body, c.pose), &options, a->ws, &answer) >= 0,
-                   "%s", cprox_workspace_reason(a->ws)))
+  if (attack_check(
+          a, cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, c.pose), &options, a->ws, &answer) >= 0,
+          "%s", cprox_workspace_error(a->ws)))
     check_line(a, &c, &answer);
   cprox_curve_free(curve);
   cprox_body_free(c.compound);
@@ -103,12 +104,13 @@ static void ask_point(attack *a, rng *r) {
   c.ends[1] = c.ends[0];
   cprox_body *point = NULL;
   cprox_body_create_point(c.ends[0], a->ws, &point);
-  const cprox_target standing = cprox_at(point, cprox_pose_identity()), body = cprox_at(c.body, c.pose);
+  const cprox_obstacle standing = cprox_obstacle_at(point, cprox_pose_identity()),
+                       body = cprox_obstacle_at(c.body, c.pose);
   const cprox_options options = accurate(rng_index(r, 2) ? 0.0 : 1e-9);
   const bool swapped = rng_index(r, 2);
   cprox_result answer;
   if (attack_check(a, cprox_pair(swapped ? body : standing, swapped ? standing : body, &options, a->ws, &answer) >= 0,
-                   "%s", cprox_workspace_reason(a->ws)) &&
+                   "%s", cprox_workspace_error(a->ws)) &&
       answer.upper > 0.0)
     check_line(a, &c, &answer);
   cprox_body_free(point);
@@ -145,10 +147,12 @@ static void ask_two(attack *a, rng *r) {
   d.pose.position = vec_add(c.pose.position, rng_in_cube(r, apart));
   const cprox_options options = accurate(rng_index(r, 2) ? 0.0 : 1e-9);
   cprox_result answer;
-  if (attack_check(a, cprox_pair(cprox_at(c.body, c.pose), cprox_at(d.body, d.pose), &options, a->ws, &answer) >= 0,
-                   "%s", cprox_workspace_reason(a->ws)) &&
+  if (attack_check(a,
+                   cprox_pair(cprox_obstacle_at(c.body, c.pose), cprox_obstacle_at(d.body, d.pose), &options, a->ws,
+                              &answer) >= 0,
+                   "%s", cprox_workspace_error(a->ws)) &&
       answer.upper > 0.0) {
-    const vec3l start = ref_sub(ref_vec(answer.on_mover), ref_vec(c.pose.position));
+    const vec3l start = ref_sub(ref_vec(answer.witness_mover), ref_vec(c.pose.position));
     const ref_interval truth = distance_of_two(&c, &d, start, 2.0 * apart);
     if (answer.lower > truth.upper) fail(a, &c, &answer, "of two, lower is too high", truth);
     if (answer.upper < truth.lower) fail(a, &c, &answer, "of two, upper is too low", truth);

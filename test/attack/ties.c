@@ -10,12 +10,12 @@
 enum { POINTS = 6 };
 
 typedef struct problem {
-  bool carries, on_clock, is_signed, splines;
+  bool carries, synchronized, is_signed, splines;
   size_t n; /* points of the curve */
   vec3 points[POINTS], other[POINTS];
   cprox_body *body, *carried, *part;
   cprox_pose pose;
-  double radius, padding;
+  double radius, margin;
 } problem;
 
 /* ---- asking
@@ -29,27 +29,28 @@ static cprox_curve *make_curve(attack *a, const problem *p, const vec3 *points) 
   const cprox_status status =
       p->splines ? cprox_curve_create_bspline(points, p->n, 1, knots, p->n + 2, 0.0, knots[p->n], a->ws, &curve)
                  : cprox_curve_create_bezier(points, p->n, 0.0, 1.0, a->ws, &curve);
-  if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_reason(a->ws));
+  if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_error(a->ws));
   return curve;
 }
 
 /* NaN where the distance is not known well enough. */
 static double ask(attack *a, const problem *p, cprox_gradient *gradient) {
-  cprox_curve *curve = make_curve(a, p, p->points), *clock = p->on_clock ? make_curve(a, p, p->other) : NULL;
-  cprox_mover mover = cprox_tube_along(curve, p->radius), second = cprox_tube_along(clock, p->padding);
+  cprox_curve *curve = make_curve(a, p, p->points), *clock = p->synchronized ? make_curve(a, p, p->other) : NULL;
+  cprox_mover mover = cprox_tube_along(curve, p->radius), second = cprox_tube_along(clock, p->margin);
   if (p->carries) mover.body = p->carried;
   second.body = p->body;
-  cprox_target target = p->on_clock ? cprox_on_clock(second) : cprox_padded(cprox_at(p->body, p->pose), p->padding);
+  cprox_obstacle target =
+      p->synchronized ? cprox_synchronized(second) : cprox_with_margin(cprox_obstacle_at(p->body, p->pose), p->margin);
   target.pose = p->pose;
   cprox_options options = cprox_options_default();
   options.epsilon = gradient ? 1e-9 : 1e-12;
   options.signed_distance = p->is_signed;
   cprox_result result = {.upper = NAN};
   cprox_status status = cprox_distance(mover, target, &options, a->ws, &result);
-  attack_check(a, status >= 0, "%s", cprox_workspace_reason(a->ws));
+  attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
   if (gradient && status >= 0) {
     status = cprox_distance_gradient(mover, target, &options, &result, a->ws, gradient);
-    attack_check(a, status >= 0, "%s", cprox_workspace_reason(a->ws));
+    attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
   }
   cprox_curve_free(curve);
   cprox_curve_free(clock);
@@ -99,7 +100,7 @@ static double misfit(attack *a, const problem *p, const step *d, double side, do
 static void check(attack *a, rng *r, const problem *p) {
   cprox_gradient g = {.valid = false};
   ask(a, p, &g);
-  attack_count(a, g.valid ? "with a gradient" : cprox_workspace_reason(a->ws));
+  attack_count(a, g.valid ? "with a gradient" : cprox_workspace_error(a->ws));
   const double here = ask(a, p, NULL);
   if (!g.valid || isnan(here)) return;
   for (int i = 0; i < 3 && !attack_failed(a); i++) {
@@ -159,7 +160,7 @@ static cprox_body *make_body(attack *a, rng *r, size_t kind, double size) {
     }
     status = cprox_body_create_polytope(v, 2 * n, a->ws, &body);
   }
-  if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_reason(a->ws));
+  if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_error(a->ws));
   return body;
 }
 
@@ -194,12 +195,12 @@ static void carried(attack *a, rng *r, problem *p) {
   p->carries = true;
   p->body = make_body(a, r, standing, 1.0);
   p->part = make_body(a, r, rider, 1.0);
-  p->on_clock = standing != 6 && rng_index(r, 4) == 0;
+  p->synchronized = standing != 6 && rng_index(r, 4) == 0;
   p->pose =
       (cprox_pose){.position = rng_in_cube(r, 0.1), .orientation = standing == 6 ? turn_about(0, 0) : level_turn(r)};
   const cprox_pose own = {.position = {0, 0, 0}, .orientation = level_turn(r)};
   if (p->part && cprox_body_create_compound((const cprox_body *[]){p->part}, &own, 1, a->ws, &p->carried) != CPROX_OK)
-    attack_fail(a, "%s", cprox_workspace_reason(a->ws));
+    attack_fail(a, "%s", cprox_workspace_error(a->ws));
   if (rng_index(r, 4) == 0) p->radius = 0.05;
   p->is_signed = rng_index(r, 3) == 0;
   come_down(r, p, p->is_signed ? rng_uniform(r, 0.3, 0.9) : rng_uniform(r, 0.8, 1.5));
@@ -220,9 +221,9 @@ static void inside(attack *a, rng *r, problem *p) {
   p->points[1] = frame_to_world(&f, vec_add(vec_scale(rng_index(r, 2) ? 0.0 : 0.1, rng_unit(r)), rng_in_cube(r, away)));
 }
 
-/* Level stretches and two dips on the way past a box, of any length. */
+/* Level intervals and two dips on the way past a box, of any length. */
 static void level(attack *a, rng *r, problem *p) {
-  attack_kind(a, "level stretch or two dips");
+  attack_kind(a, "level interval or two dips");
   p->body = make_body(a, r, 0, 4.0);
   p->pose = cprox_pose_identity();
   p->splines = true;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Wild arguments: not a number, infinities, huge and denormal numbers, sizes of 0, wrong kinds of words, n = 0, NULL where it is allowed.
  * Every constructor and every query either answers with an interval of numbers or refuses with a sentence and leaves its output
- * untouched. Meant for the sanitizers; what no sanitizer sees (a hang, a wrong interval of a wild question) shows here too. */
+ * untouched. Meant for the sanitizers; what no sanitizer sees (a hang, a wrong interval of a wild query) shows here
+ * too. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -60,7 +61,7 @@ static size_t count(wild *w, size_t most) {
 static void check_status(wild *w, const char *call, cprox_status status, const cprox_workspace *ws) {
   attack_check(w->a, strcmp(cprox_status_name(status), "unknown") != 0, "%s: status %d", call, (int)status);
   if (status < 0 && ws)
-    attack_check(w->a, cprox_workspace_reason(ws)[0], "%s: %s without a reason", call, cprox_status_name(status));
+    attack_check(w->a, cprox_workspace_error(ws)[0], "%s: %s without a reason", call, cprox_status_name(status));
 }
 
 /* A constructor: a handle, at `where`, if and only if the status is ok. */
@@ -193,7 +194,7 @@ static void make_body(wild *w, size_t which) {
   }
 }
 
-/* A compound or a ladder of what there is. */
+/* A compound or a level-of-detail body of what there is. */
 static void join(wild *w) {
   cprox_body *joined = NULL;
   const cprox_body *parts[2] = {w->body[0], w->body[1]};
@@ -202,7 +203,7 @@ static void join(wild *w) {
   if (rng_index(w->r, 2))
     made(w, "compound", cprox_body_create_compound(parts, poses, rng_index(w->r, 3), w->ws, &joined), &joined);
   else
-    made(w, "ladder", cprox_body_create_ladder(parts[0], size(w), parts[1], w->ws, &joined), &joined);
+    made(w, "lod", cprox_body_create_lod(parts[0], size(w), parts[1], w->ws, &joined), &joined);
   if (joined) {
     vec3 centre;
     double radius;
@@ -331,7 +332,7 @@ static cprox_options options(wild *w) {
   if (rng_index(w->r, 3) == 0) o.epsilon = size(w);
   if (rng_index(w->r, 3) == 0) o.relative_epsilon = size(w);
   o.signed_distance = rng_index(w->r, 6) == 0;
-  if (rng_index(w->r, 6) == 0) o.max_rung = (cprox_rung)rng_index(w->r, 6);
+  if (rng_index(w->r, 6) == 0) o.max_lod = (cprox_lod)rng_index(w->r, 6);
   return o;
 }
 
@@ -346,32 +347,32 @@ static void asked(wild *w, const char *call, cprox_status status, const cprox_re
         w->a,
         memcmp(&x->lower, &untouched.lower, sizeof x->lower) == 0 && memcmp(&x->t, &untouched.t, sizeof x->t) == 0,
         "%s: %s, but the result was written: [%.17g, %.17g] (%s)", call, cprox_status_name(status), x->lower, x->upper,
-        cprox_workspace_reason(w->a->ws));
+        cprox_workspace_error(w->a->ws));
     return;
   }
   attack_check(w->a, x->lower <= x->upper && (isinf(x->upper) || !isnan(x->t)), "%s: [%.17g, %.17g] (%s) at %.17g",
                call, x->lower, x->upper, cprox_status_name(status), x->t);
 }
 
-static cprox_target some_target(wild *w) {
-  cprox_target t = {.pose = pose(w)};
+static cprox_obstacle some_target(wild *w) {
+  cprox_obstacle t = {.pose = pose(w)};
   const size_t kind = rng_index(w->r, 6);
   if (kind == 0 && w->curve[1])
-    t = cprox_curve_target(w->curve[1], size(w));
+    t = cprox_obstacle_curve(w->curve[1], size(w));
   else if (kind == 1 && w->curve[1])
-    t = cprox_on_clock(rng_index(w->r, 2) && w->body[1] ? cprox_body_along(w->body[1], w->curve[1])
-                                                        : cprox_tube_along(w->curve[1], size(w)));
+    t = cprox_synchronized(rng_index(w->r, 2) && w->body[1] ? cprox_body_along(w->body[1], w->curve[1])
+                                                            : cprox_tube_along(w->curve[1], size(w)));
   else
     t.body = w->body[rng_index(w->r, 2)];
-  if (rng_index(w->r, 3) == 0) t.padding = size(w);
-  if (rng_index(w->r, 20) == 0) t.on_clock = !t.on_clock;
+  if (rng_index(w->r, 3) == 0) t.margin = size(w);
+  if (rng_index(w->r, 20) == 0) t.synchronized = !t.synchronized;
   return t;
 }
 
-static void ask_many(wild *w, cprox_mover mover, const cprox_target *targets, size_t n, const cprox_options *o,
+static void ask_many(wild *w, cprox_mover mover, const cprox_obstacle *targets, size_t n, const cprox_options *o,
                      cprox_result *x) {
   cprox_result many[3];
-  cprox_stretch stretches[2];
+  cprox_profile_interval intervals[2];
   size_t found = 0;
   const double t0 = number(w), breaks[3] = {rng_index(w->r, 2) ? 0.0 : t0, rng_index(w->r, 4) ? 0.5 : number(w),
                                             rng_index(w->r, 2) ? 1.0 : number(w)};
@@ -387,7 +388,7 @@ static void ask_many(wild *w, cprox_mover mover, const cprox_target *targets, si
       asked(w, "within", status, status < 0 || found ? many : (memset(x, 0, sizeof *x), x));
       break;
     case 2:
-      check_status(w, "profile", cprox_profile(mover, targets, n, breaks, rng_index(w->r, 3), o, w->a->ws, stretches),
+      check_status(w, "profile", cprox_profile(mover, targets, n, breaks, rng_index(w->r, 3), o, w->a->ws, intervals),
                    w->a->ws);
       break;
     case 3: {
@@ -410,7 +411,7 @@ static void ask_many(wild *w, cprox_mover mover, const cprox_target *targets, si
   }
 }
 
-static void ask_others(wild *w, const cprox_target *targets, const cprox_options *o, cprox_result *x) {
+static void ask_others(wild *w, const cprox_obstacle *targets, const cprox_options *o, cprox_result *x) {
   const cprox_translating a = {targets[0], point(w)}, b = {targets[1], point(w)};
   cprox_growth growth;
   switch (rng_index(w->r, 5)) {
@@ -423,7 +424,7 @@ static void ask_others(wild *w, const cprox_target *targets, const cprox_options
   }
 }
 
-static void ask_certified(wild *w, cprox_mover mover, const cprox_target *targets, size_t n, cprox_options *o,
+static void ask_certified(wild *w, cprox_mover mover, const cprox_obstacle *targets, size_t n, cprox_options *o,
                           cprox_result *x) {
   cprox_certificate *certificate = cprox_certificate_create();
   char text[300];
@@ -433,12 +434,12 @@ static void ask_certified(wild *w, cprox_mover mover, const cprox_target *target
   if (status >= 0)
     check_status(w, "certify", cprox_certify(mover, targets, n, size(w), x, o, w->a->ws, certificate), w->a->ws);
   for (size_t i = 0; i < n; i++)
-    if (targets[i].body || targets[i].curve) cprox_target_describe(&targets[i], text, rng_index(w->r, sizeof text));
+    if (targets[i].body || targets[i].curve) cprox_obstacle_describe(&targets[i], text, rng_index(w->r, sizeof text));
   cprox_certificate_free(certificate);
 }
 
 static void ask(wild *w) {
-  cprox_target targets[3];
+  cprox_obstacle targets[3];
   const size_t n = rng_index(w->r, 10) ? 1 + rng_index(w->r, 3) : 0;
   for (size_t i = 0; i < 3; i++) targets[i] = some_target(w);
   cprox_mover mover = cprox_tube_along(w->curve[0], rng_index(w->r, 2) ? 0.0 : size(w));
@@ -454,7 +455,7 @@ static void ask(wild *w) {
       asked(w, "collision", cprox_collision_all(mover, n ? targets : NULL, n, given, w->a->ws, &x, NULL), &x);
       break;
     case 3:
-      asked(w, "first contact", cprox_first_contact_all(mover, n ? targets : NULL, n, given, w->a->ws, &x), &x);
+      asked(w, "time of contact", cprox_time_of_contact_all(mover, n ? targets : NULL, n, given, w->a->ws, &x), &x);
       break;
     case 4:
       asked(w, "distance of all", cprox_distance_all(mover, n ? targets : NULL, n, given, w->a->ws, &x, NULL), &x);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* robot_mutants QUESTIONS MUTANTS SEED [FOLDER]: random robots in motion with genuine certificates and tampered ones, and with genuine ones held
- * against a question that was changed: a target nearer, a motion that goes farther. Genuine ones must be accepted, and of all that is
- * accepted the claim must be true: the distance, known within 1e-9 m, must not contradict it. Where a folder is
- * given, question i becomes i.problem and i.certificates there, for other checkers to be tried on: the genuine one and the tampered ones. */
+/* robot_mutants QUERIES MUTANTS SEED [FOLDER]: random robots in motion with genuine certificates and tampered ones, and
+ * with genuine ones held against a query that was changed: a target nearer, a motion that goes farther. Genuine ones
+ * must be accepted, and of all that is accepted the claim must be true: the distance, known within 1e-9 m, must not
+ * contradict it. Where a folder is given, query i becomes i.problem and i.certificates there, for other checkers to be
+ * tried on: the genuine one and the tampered ones. */
 #include <inttypes.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,15 +14,15 @@
 
 #include <cmocka.h>
 
-#include "support/robot_questions.h"
+#include "support/robot_queries.h"
 #include "support/tampering.h"
 
 typedef struct tally {
   size_t genuine, tampered, accepted, failed;
 } tally;
 
-/* The distance of a question, and a certificate of it or of a verdict about it; false where there is none. */
-static bool ask(const robot_question *q, rng *r, cprox_workspace *ws, cprox_certificate *c, double interval[2],
+/* The distance of a query, and a certificate of it or of a verdict about it; false where there is none. */
+static bool ask(const robot_query *q, rng *r, cprox_workspace *ws, cprox_certificate *c, double interval[2],
                 bytes *genuine) {
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-9;
@@ -39,41 +40,41 @@ static bool ask(const robot_question *q, rng *r, cprox_workspace *ws, cprox_cert
   return true;
 }
 
-/* Is what was found true of a question whose distance lies in the interval? */
+/* Is what was found true of a query whose distance lies in the interval? */
 static bool is_true(const finding *found, const double interval[2]) {
   if (found->claim == CLAIM_APART) return found->delta < interval[1];
   return found->claim == CLAIM_NONE || found->delta >= interval[0];
 }
 
-/* Every stretch takes two bytes at least, and on every stretch each pair is tried with two directions at most. The head of a genuine
- * certificate tells the number of pairs. */
+/* Every interval takes two bytes at least, and on every interval each pair is tried with two directions at most. The
+ * head of a genuine certificate tells the number of pairs. */
 static bool is_bounded(const bytes *genuine, size_t size, const finding *found) {
   uint32_t pairs;
   memcpy(&pairs, genuine->at + HEAD - sizeof pairs, sizeof pairs);
   return found->leaves <= 2 * (size_t)pairs * (size / 2 + 1);
 }
 
-static void judge(const finding *found, bool bounded, const double interval[2], const char *done, size_t question,
+static void judge(const finding *found, bool bounded, const double interval[2], const char *done, size_t query,
                   tally *sum) {
   const bool genuine = strcmp(done, "genuine") == 0, proven = found->claim != CLAIM_NONE;
   sum->genuine += genuine;
   sum->tampered += !genuine;
   sum->accepted += !genuine && proven;
   if (genuine && !proven) {
-    printf("FAILED question %zu: a genuine certificate was refused: %s\n", question, found->fault);
+    printf("FAILED query %zu: a genuine certificate was refused: %s\n", query, found->fault);
     sum->failed++;
   } else if (!is_true(found, interval)) {
-    printf("FAILED question %zu (%s): %s %.17g was accepted, but the distance is in [%.17g, %.17g]\n", question, done,
+    printf("FAILED query %zu (%s): %s %.17g was accepted, but the distance is in [%.17g, %.17g]\n", query, done,
            found->claim == CLAIM_APART ? "apart" : "near", found->delta, interval[0], interval[1]);
     sum->failed++;
   } else if (!bounded) {
-    printf("FAILED question %zu (%s): %zu directions were tried\n", question, done, found->leaves);
+    printf("FAILED query %zu (%s): %zu directions were tried\n", query, done, found->leaves);
     sum->failed++;
   }
 }
 
 /* Targets come nearer by up to a tenth, or the motion goes farther by up to a third. */
-static void change(robot_question *q, rng *r) {
+static void change(robot_query *q, rng *r) {
   if (q->n > 0 && rng_index(r, 2)) {
     for (size_t i = 0; i < q->n; i++)
       q->targets[i].pose.position = vec_scale(1.0 - rng_log_uniform(r, 1e-6, 0.1), q->targets[i].pose.position);
@@ -88,12 +89,12 @@ static void change(robot_question *q, rng *r) {
   q->mover.motion = t->motion;
 }
 
-/* The files of a question, NULL where none are wanted. */
+/* The files of a query, NULL where none are wanted. */
 typedef struct files {
   FILE *problem, *certificates;
 } files;
 
-static files open_files(const char *folder, size_t i, const robot_question *q) {
+static files open_files(const char *folder, size_t i, const robot_query *q) {
   files f = {NULL, NULL};
   if (!folder) return f;
   char path[512];
@@ -109,15 +110,14 @@ static files open_files(const char *folder, size_t i, const robot_question *q) {
   return f;
 }
 
-static void write_record(const files *f, const robot_question *q, const bytes *b, cprox_workspace *ws) {
+static void write_record(const files *f, const robot_query *q, const bytes *b, cprox_workspace *ws) {
   if (!f->problem) return;
   robot_write_mover(&q->mover, q->targets, q->n, "robot", ws, f->problem);
   tampering_write(f->certificates, b);
 }
 
-static void try_question(robot_question *q, size_t number, size_t mutants, rng *r, cprox_workspace *ws,
-                         const bytes *genuine, const bytes *other, const double interval[2], const files *f,
-                         tally *sum) {
+static void try_query(robot_query *q, size_t number, size_t mutants, rng *r, cprox_workspace *ws, const bytes *genuine,
+                      const bytes *other, const double interval[2], const files *f, tally *sum) {
   static bytes mutant;
   robot_text text = robot_text_of(&q->mover, q->targets, q->n, ws);
   for (size_t k = 0; k <= mutants; k++) {
@@ -134,33 +134,33 @@ static void try_question(robot_question *q, size_t number, size_t mutants, rng *
     if (!ask(q, r, ws, NULL, changed, NULL)) continue;
     text = robot_text_of(&q->mover, q->targets, q->n, ws);
     const finding found = robot_text_check(&text, genuine->at, genuine->n);
-    judge(&found, is_bounded(genuine, genuine->n, &found), changed, "changed question", number, sum);
+    judge(&found, is_bounded(genuine, genuine->n, &found), changed, "changed query", number, sum);
     robot_text_free(&text);
   }
 }
 
 int main(int argc, char **argv) {
   if (argc != 4 && argc != 5) {
-    fputs("usage: robot_mutants QUESTIONS MUTANTS SEED [FOLDER]\n", stderr);
+    fputs("usage: robot_mutants QUERIES MUTANTS SEED [FOLDER]\n", stderr);
     return 2;
   }
-  const size_t questions = strtoul(argv[1], NULL, 10), mutants = strtoul(argv[2], NULL, 10);
+  const size_t queries = strtoul(argv[1], NULL, 10), mutants = strtoul(argv[2], NULL, 10);
   rng r = rng_seed(strtoumax(argv[3], NULL, 10));
   cprox_workspace *ws = cprox_workspace_create();
   cprox_certificate *c = cprox_certificate_create();
   static bytes genuine, other;
   tally sum = {0};
-  for (size_t i = 0; i < questions;) {
-    robot_question q;
-    robot_question_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), i % 3 == 2, ws);
+  for (size_t i = 0; i < queries;) {
+    robot_query q;
+    robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), i % 3 == 2, ws);
     double interval[2];
     if (ask(&q, &r, ws, c, interval, &genuine)) {
       const files f = open_files(argc == 5 ? argv[4] : NULL, i, &q);
-      try_question(&q, i++, mutants, &r, ws, &genuine, other.n ? &other : &genuine, interval, &f, &sum);
+      try_query(&q, i++, mutants, &r, ws, &genuine, other.n ? &other : &genuine, interval, &f, &sum);
       if (f.problem) fclose(f.problem), fclose(f.certificates);
       other = genuine;
     }
-    robot_question_free(&q);
+    robot_query_free(&q);
   }
   cprox_certificate_free(c);
   cprox_workspace_free(ws);

@@ -71,7 +71,7 @@ def norm_up(a):
     return root_up(dot(a, a))
 
 
-# ---- the question --------------------------------------------------------------------------------------------------------
+# ---- the query --------------------------------------------------------------------------------------------------------
 
 class Words:
     def __init__(self, line):
@@ -211,7 +211,7 @@ class Set:
              'polytope': 0, 'hull': 1, 'curve': 0}
 
     def __init__(self, words):
-        self.padding = words.number()
+        self.margin = words.number()
         self.poses = [(words.numbers(3), words.numbers(4)) for _ in range(words.count())]
         self.kind = words.word()
         self.size = words.numbers(self.SIZES[self.kind])
@@ -374,7 +374,7 @@ def check_apart(sets, radius, curve, bytes_, width, delta):
     mover = Pieces(curve, bytes_)
     n = F(len(mover.pieces))
     for set_ in sets:
-        gap, kind = delta + radius + set_.padding, bytes_.take('<B')
+        gap, kind = delta + radius + set_.margin, bytes_.take('<B')
         require(kind == (2 if set_.kind == 'curve' else 1), 'another kind of target')
         if kind == 1:
             start = F(0)
@@ -415,7 +415,7 @@ def check_near_at(sets, radius, curve, bytes_, delta, limits):
     require(index < len(sets), 'no such target')
     set_ = sets[index]
     p, error = curve.point(t, limits[0])
-    y, gap = set_.point_to_frame(p), delta + radius + set_.padding - error
+    y, gap = set_.point_to_frame(p), delta + radius + set_.margin - error
     if set_.kind == 'curve':
         q, error = set_.curve.point(bytes_.number(), limits[1])
         v, gap = [a - b for a, b in zip(y, q)], gap - error

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What cprox_check accepts about robots is true wherever it is looked at.
 
-    second_robots.py ROBOT_MUTANTS CPROX_CHECK [QUESTIONS MUTANTS SEED]
+    second_robots.py ROBOT_MUTANTS CPROX_CHECK [QUERIES MUTANTS SEED]
 
 Genuine certificates and tampered ones; each claim that is accepted is tried at random times of the motion: "farther than delta" of all pairs
 there, "not farther" at the time that the certificate names. Another reader of the text, kinematics by quaternions, Hermite's basis
 functions, Cox and de Boor's recursion, and distances by Wolfe's algorithm for the nearest point of a convex set that is known by its
-support function: nothing of the checker, and none of its bounds. TOLERANCE covers doubles. By default 12 questions, 6 mutants, seed 3.
+support function: nothing of the checker, and none of its bounds. TOLERANCE covers doubles. By default 12 queries, 6 mutants, seed 3.
 """
 import math
 import os
@@ -95,7 +95,7 @@ class Body:
     """PADDING P POSE×P KIND SIZES"""
 
     def __init__(self, words):
-        self.padding = words.number()
+        self.margin = words.number()
         self.pose = Pose()
         for _ in range(words.count()):
             x = words.numbers(7)
@@ -109,7 +109,7 @@ class Body:
 
     def margin(self):
         """Of a ball that is added to the rest."""
-        return self.padding + {'sphere': lambda s: s[0], 'capsule': lambda s: s[1], 'hull': lambda s: s[0]}.get(self.kind, lambda s: 0.0)(self.size)
+        return self.margin + {'sphere': lambda s: s[0], 'capsule': lambda s: s[1], 'hull': lambda s: s[0]}.get(self.kind, lambda s: 0.0)(self.size)
 
     def farthest(self, d):
         """The point of the rest that is farthest along d, in the body's own frame."""
@@ -368,18 +368,18 @@ def records(path):
 
 def main():
     writer, program = sys.argv[1:3]
-    questions, mutants, seed = sys.argv[3:6] or ('12', '6', '3')
+    queries, mutants, seed = sys.argv[3:6] or ('12', '6', '3')
     chance = random.Random(int(seed))
     tried = refused = 0
     faults = []
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([writer, questions, mutants, seed, folder], check=True, stdout=subprocess.DEVNULL)
-        for i in range(int(questions)):
+        subprocess.run([writer, queries, mutants, seed, folder], check=True, stdout=subprocess.DEVNULL)
+        for i in range(int(queries)):
             base = os.path.join(folder, str(i))
             robots = read_problem(base + '.problem')
             found = list(findings(program, base + '.problem', base + '.certificates'))
             if not found or not found[0]:
-                faults.append(f'question {i}: the genuine certificate was refused')
+                faults.append(f'query {i}: the genuine certificate was refused')
             for k, (robot, data, finding) in enumerate(zip(robots, records(base + '.certificates'), found)):
                 if not finding:
                     refused += 1
@@ -387,7 +387,7 @@ def main():
                 tried += 1
                 wrong = refute(robot, data, *finding, chance)
                 if wrong:
-                    faults.append(f'question {i}, certificate {k}: {finding} was accepted, but {wrong}')
+                    faults.append(f'query {i}, certificate {k}: {finding} was accepted, but {wrong}')
     for fault in faults:
         print('FAILED', fault)
     print(f'robots, looked at in {TIMES} random times: {tried} claims that were accepted, {refused} certificates refused')

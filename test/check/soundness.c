@@ -121,9 +121,9 @@ static bool examine(const sample_problem *p, rng *r, cprox_workspace *ws, size_t
   options.epsilon = rng_index(r, 2) ? 0.0 : 1e-6 * p->scale;
   cprox_result result;
   const cprox_mover along = cprox_tube_along(p->curve, p->offset);
-  const cprox_status status = cprox_distance(along, cprox_at(p->body, p->pose), &options, ws, &result);
+  const cprox_status status = cprox_distance(along, cprox_obstacle_at(p->body, p->pose), &options, ws, &result);
   if (status < 0) {
-    printf("FAILED query %zu: %s\n", number, cprox_workspace_reason(ws));
+    printf("FAILED query %zu: %s\n", number, cprox_workspace_error(ws));
     return false;
   }
   const long double room = ROOM * (long double)(4.0 * p->scale + p->offset);
@@ -154,7 +154,7 @@ int main(int argc, char **argv) {
   for (; asked < size; asked++) {
     sample_problem p;
     if (!make_problem(&p, &r, ws)) {
-      printf("FAILED query %zu: %s\n", asked, cprox_workspace_reason(ws));
+      printf("FAILED query %zu: %s\n", asked, cprox_workspace_error(ws));
       wrong++;
     } else if (!examine(&p, &r, ws, asked, &tightest)) {
       wrong++;

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What a query leaves behind is accepted by the checker, which reads the question itself and shares no line with the search. */
+/* What a query leaves behind is accepted by the checker, which reads the query itself and shares no line with the
+ * search. */
 
 #include <string.h>
 
 #include "support/cases.h"
-#include "support/questions.h"
+#include "support/queries.h"
 #include "support/tampering.h"
 
 enum { SAMPLES = 200, MUTANTS = 25 };
@@ -38,7 +39,7 @@ static void examine(const asked *q, cprox_workspace *ws, cprox_certificate *c, t
     const bool open = i == 0 ? r.lower == 0.0 && r.upper == 0.0 : r.upper > delta && r.lower <= delta;
     if (cprox_certificate_size(c) == 0) {
       sum->none++;
-      if (!open) fail_msg("no certificate of lower %.17g over %.17g: %s", r.lower, delta, cprox_workspace_reason(ws));
+      if (!open) fail_msg("no certificate of lower %.17g over %.17g: %s", r.lower, delta, cprox_workspace_error(ws));
       continue;
     }
     const finding found = asked_check(q, cprox_certificate_bytes(c), cprox_certificate_size(c));
@@ -96,8 +97,8 @@ CASE(curves_against_curves_leave_certificates_that_hold) {
 /* The least distance that is seen from the curve to the triangles of the target, or into the inside of a closed one: no claim may say
  * that it is farther. */
 static double seen(const asked *q, size_t target, cprox_workspace *ws) {
-  const question_mesh *mesh = &q->mesh[target];
-  const cprox_target *t = &q->targets[target];
+  const query_mesh *mesh = &q->mesh[target];
+  const cprox_obstacle *t = &q->targets[target];
   double least = INFINITY, t0, t1;
   cprox_curve_domain(q->mover.curve, &t0, &t1);
   for (int i = 0; i <= SAMPLES; i++) {
@@ -107,7 +108,7 @@ static double seen(const asked *q, size_t target, cprox_workspace *ws) {
     const vec3l y = ref_to_local(&t->pose, ref_vec(p));
     const bool inside = cprox_body_is_solid(mesh->mesh) && fabsl(mesh_winding(&mesh->surface, y)) > 0.5L;
     const double d = inside ? 0.0 : (double)mesh_distance(&mesh->surface, y);
-    least = fmin(least, fmax(d - q->radius - t->padding, 0.0));
+    least = fmin(least, fmax(d - q->radius - t->margin, 0.0));
   }
   return least;
 }
@@ -115,7 +116,7 @@ static double seen(const asked *q, size_t target, cprox_workspace *ws) {
 /* How close mover and target come, by hulls. */
 static cprox_result hulls_of(const asked *q, cprox_options options, cprox_workspace *ws) {
   cprox_result r;
-  options.max_rung = CPROX_RUNG_HULL;
+  options.max_lod = CPROX_LOD_HULL;
   options.certificate = NULL;
   ask(q, -1.0, &options, ws, &r);
   return r;
@@ -123,12 +124,13 @@ static cprox_result hulls_of(const asked *q, cprox_options options, cprox_worksp
 
 static bool is_same(const cprox_result *a, const cprox_result *b) {
   return a->status == b->status && a->verdict == b->verdict && a->lower == b->lower && a->upper == b->upper &&
-         a->t == b->t && vec_norm2(vec_sub(a->on_mover, b->on_mover)) == 0.0 &&
-         vec_norm2(vec_sub(a->on_target, b->on_target)) == 0.0 && a->target_index == b->target_index &&
-         a->rung == b->rung && a->nodes == b->nodes && a->probes == b->probes;
+         a->t == b->t && vec_norm2(vec_sub(a->witness_mover, b->witness_mover)) == 0.0 &&
+         vec_norm2(vec_sub(a->witness_obstacle, b->witness_obstacle)) == 0.0 &&
+         a->obstacle_index == b->obstacle_index && a->lod == b->lod && a->nodes == b->nodes &&
+         a->distance_queries == b->distance_queries;
 }
 
-/* A question with and without a certificate: the answer is the same, and what is proven is so. */
+/* A query with and without a certificate: the answer is the same, and what is proven is so. */
 static void examine_mesh(const asked *q, double delta, cprox_workspace *ws, cprox_certificate *c, tally *sum) {
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-6 * q->scale;
@@ -151,7 +153,7 @@ static void examine_mesh(const asked *q, double delta, cprox_workspace *ws, cpro
   sum->apart += found.claim == CLAIM_APART;
   sum->near += found.claim == CLAIM_NEAR;
   if (found.claim == CLAIM_NEAR) {
-    assert_null(q->mesh[r.target_index].body);
+    assert_null(q->mesh[r.obstacle_index].body);
     assert_true(found.delta >= r.lower);
     return;
   }
@@ -162,7 +164,7 @@ static void examine_mesh(const asked *q, double delta, cprox_workspace *ws, cpro
   if (delta < 0.0 && found.delta < least) fail_msg("farther than %.17g is proven, not %.17g", found.delta, least);
 }
 
-/* 150 questions, seed 4: curves beside meshes that are not convex, in their holes and inside of them. */
+/* 150 queries, seed 4: curves beside meshes that are not convex, in their holes and inside of them. */
 CASE(proofs_of_meshes_hold_of_their_triangles_and_leave_answers_as_they_are) {
   rng r = rng_seed(4);
   cprox_workspace *ws = cprox_workspace_create();
@@ -192,7 +194,7 @@ CASE(proofs_of_meshes_hold_of_their_triangles_and_leave_answers_as_they_are) {
   cprox_workspace_free(ws);
 }
 
-/* A proof that a curve is near the polytope which a mesh's hull is, held against the question about the mesh. */
+/* A proof that a curve is near the polytope which a mesh's hull is, held against the query about the mesh. */
 CASE(that_a_hull_is_near_proves_nothing_of_its_mesh) {
   rng r = rng_seed(5);
   cprox_workspace *ws = cprox_workspace_create();
@@ -203,15 +205,15 @@ CASE(that_a_hull_is_near_proves_nothing_of_its_mesh) {
     asked_random(&q, &r, (asked_kinds){.meshes = true}, 1.0, 1.0, ws);
     cprox_options options = cprox_options_default();
     options.certificate = c;
-    cprox_target ladders[QUESTION_MAX_TARGETS];
+    cprox_obstacle lods[QUERY_MAX_TARGETS];
     for (size_t k = 0; k < q.n; k++) {
-      ladders[k] = q.targets[k];
+      lods[k] = q.targets[k];
       if (q.mesh[k].body) q.targets[k].body = q.mesh[k].hull;
     }
     cprox_result by_hull;
     ask(&q, 2.0, &options, ws, &by_hull);
-    for (size_t k = 0; k < q.n; k++) q.targets[k] = ladders[k];
-    if (cprox_certificate_claim(c) == CPROX_CLAIM_NEAR && q.mesh[by_hull.target_index].body) {
+    for (size_t k = 0; k < q.n; k++) q.targets[k] = lods[k];
+    if (cprox_certificate_claim(c) == CPROX_CLAIM_NEAR && q.mesh[by_hull.obstacle_index].body) {
       assert_int_equal(asked_check(&q, cprox_certificate_bytes(c), cprox_certificate_size(c)).claim, CLAIM_NONE);
       tried++;
     }
@@ -224,19 +226,19 @@ CASE(that_a_hull_is_near_proves_nothing_of_its_mesh) {
 
 /* ---- work ------------------------------------------------------------------------------------------------------------------- */
 
-/* The numbers of a question: points of both curves, vertices, and what every target takes. */
+/* The numbers of a query: points of both curves, vertices, and what every target takes. */
 static double numbers_of(const asked *q) {
   double numbers = (double)(q->mover.n + q->mover.n_knots + q->target_curve.n + q->target_curve.n_knots);
-  for (size_t i = 0; i < q->n; i++) numbers += 16.0 + (double)cprox_target_describe(&q->targets[i], NULL, 0) / 20.0;
+  for (size_t i = 0; i < q->n; i++) numbers += 16.0 + (double)cprox_obstacle_describe(&q->targets[i], NULL, 0) / 20.0;
   return numbers;
 }
 
-/* Products of 640 bits that a number of the certificate may cost with each number of the question. */
+/* Products of 640 bits that a number of the certificate may cost with each number of the query. */
 #define DEAR 200.0
 
-/* 60 questions of every basis and kind (seed 6), each with its certificate tampered with 25 times: what the checker does is bounded by the
- * bytes of the certificate and the size of the question, and to refuse one takes no more than to accept it. In products of words, so
- * that it is no matter of the machine. */
+/* 60 queries of every basis and kind (seed 6), each with its certificate tampered with 25 times: what the checker does
+ * is bounded by the bytes of the certificate and the size of the query, and to refuse one takes no more than to accept
+ * it. In products of words, so that it is no matter of the machine. */
 CASE(what_a_check_takes_is_bounded_by_what_it_is_given) {
   static bytes genuine, other, mutant;
   rng r = rng_seed(6);

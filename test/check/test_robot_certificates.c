@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What a query about a robot in motion leaves behind is accepted by the checker, which reads the question itself, does its own
- * kinematics and shares no line with the search. */
+/* What a query about a robot in motion leaves behind is accepted by the checker, which reads the query itself, does its
+ * own kinematics and shares no line with the search. */
 #define _POSIX_C_SOURCE 200809L
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/robot_case.h"
-#include "support/robot_questions.h"
+#include "support/robot_queries.h"
 
 enum { MOST_ANSWERS = 4096 };
 
@@ -43,8 +43,8 @@ static double cpu_milliseconds(void) {
   return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
 }
 
-/* One question with the claim that its certificate makes. */
-static void examine(const cprox_mover *along, const cprox_target *targets, size_t n, const cprox_certificate *c,
+/* One query with the claim that its certificate makes. */
+static void examine(const cprox_mover *along, const cprox_obstacle *targets, size_t n, const cprox_certificate *c,
                     const cprox_result *r, double delta, bool verdict, const char *name, tally *sum) {
   sum->asked++;
   if (cprox_certificate_size(c) == 0) {
@@ -52,7 +52,7 @@ static void examine(const cprox_mover *along, const cprox_target *targets, size_
     /* not decided, or in touch: of flat bodies no point lies inside */
     const bool open = r->upper == 0.0 || (verdict && r->lower <= delta + 1e-9 && r->upper > delta - 1e-9);
     if (!open)
-      fail_msg("%s: no certificate of lower %.17g over %.17g: %s", name, r->lower, delta, cprox_workspace_reason(ws));
+      fail_msg("%s: no certificate of lower %.17g over %.17g: %s", name, r->lower, delta, cprox_workspace_error(ws));
     return;
   }
   robot_text text = robot_text_of(along, targets, n, ws);
@@ -73,7 +73,7 @@ static void examine(const cprox_mover *along, const cprox_target *targets, size_
 }
 
 /* The distance, then verdicts about it. */
-static void ask_thrice(const cprox_mover *along, const cprox_target *targets, size_t n, double epsilon,
+static void ask_thrice(const cprox_mover *along, const cprox_obstacle *targets, size_t n, double epsilon,
                        const char *name, cprox_certificate *c, tally sum[3]) {
   static const double SHARE[3] = {0.0, 0.9, 1.1};
   cprox_options options = accurate(epsilon);
@@ -124,12 +124,12 @@ CASE(random_robots_leave_certificates_that_hold) {
   cprox_certificate *c = cprox_certificate_create();
   rng r = rng_seed(4);
   for (size_t i = 0; i < test_cases(100); i++) {
-    robot_question q;
-    robot_question_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), false, ws);
+    robot_query q;
+    robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.5, 3.0), false, ws);
     char name[40];
     snprintf(name, sizeof name, "robot %zu", i);
     ask_thrice(&q.mover, q.targets, q.n, 1e-5, name, c, sum);
-    robot_question_free(&q);
+    robot_query_free(&q);
   }
   print_tally("random robots, distance to 1e-5", &sum[0]);
   print_tally("random robots, .9 of it", &sum[1]);
@@ -147,15 +147,15 @@ CASE(meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are) {
   rng r = rng_seed(5);
   size_t apart = 0, near = 0, none = 0;
   for (size_t i = 0; i < test_cases(60); i++) {
-    robot_question q;
-    robot_question_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.3, 2.0), true, ws);
+    robot_query q;
+    robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.3, 2.0), true, ws);
     cprox_options options = accurate(1e-5);
     cprox_result plain, with;
     assert_true(cprox_distance_all(q.mover, q.targets, q.n, &options, ws, &plain, NULL) >= 0);
     options.certificate = c;
     assert_true(cprox_distance_all(q.mover, q.targets, q.n, &options, ws, &with, NULL) >= 0);
     assert_true(with.status == plain.status && with.lower == plain.lower && with.upper == plain.upper);
-    assert_true(with.t == plain.t && with.rung == plain.rung && with.nodes == plain.nodes);
+    assert_true(with.t == plain.t && with.lod == plain.lod && with.nodes == plain.nodes);
     none += cprox_certificate_size(c) == 0;
     if (cprox_certificate_size(c) > 0) {
       robot_text text = robot_text_of(&q.mover, q.targets, q.n, ws);
@@ -166,7 +166,7 @@ CASE(meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are) {
         fail_msg("robot %zu: %g is proven of [%.17g, %.17g]", i, found.delta, plain.lower, plain.upper);
       apart += found.claim == CLAIM_APART, near += found.claim == CLAIM_NEAR;
     }
-    robot_question_free(&q);
+    robot_query_free(&q);
   }
   print_message("robots with meshes: %zu apart, %zu near, %zu without\n", apart, near, none);
   assert_true(apart > 10);
@@ -186,7 +186,8 @@ static size_t put_number(unsigned char *to, double x) {
   return put(to, bits, 8);
 }
 
-/* A ball slides towards another one; they come within .5 of each other. One stretch, the one direction that parts them, of any length. */
+/* A ball slides towards another one; they come within .5 of each other. One interval, the one direction that parts
+ * them, of any length. */
 static finding check_slide(double delta, double length) {
   cprox_body *ball;
   assert_int_equal(cprox_body_create_sphere(0.25, ws, &ball), CPROX_OK);
@@ -206,7 +207,7 @@ static finding check_slide(double delta, double length) {
                    CPROX_OK);
   cprox_pose there = cprox_pose_identity();
   there.position.x = 2.0;
-  const cprox_target target = cprox_at(ball, there);
+  const cprox_obstacle target = cprox_obstacle_at(ball, there);
   const cprox_mover along = cprox_robot_along(motion, NULL, 0);
 
   unsigned char bytes[64];

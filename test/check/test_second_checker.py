@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Genuine certificates are accepted by both checkers, tampered ones only where what they claim is true, and both always agree.
 
-    test_second_checker.py WRITE_MUTANTS CPROX_CHECK [QUESTIONS MUTANTS SEED]
+    test_second_checker.py WRITE_MUTANTS CPROX_CHECK [QUERIES MUTANTS SEED]
 
-By default 40 questions of all kinds with 5 mutants each, seed 1: a tenth of a second each. A claim counts as false where the
+By default 40 queries of all kinds with 5 mutants each, seed 1: a tenth of a second each. A claim counts as false where the
 distance, known within 1e-12 of the sizes, contradicts it.
 """
 import os
@@ -50,23 +50,23 @@ def is_false(finding, lower, upper):
 
 def main():
     writer, program = sys.argv[1:3]
-    questions, mutants, seed = sys.argv[3:6] or ('40', '5', '1')
+    queries, mutants, seed = sys.argv[3:6] or ('40', '5', '1')
     genuine = tampered = accepted = 0
     faults = []
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([writer, folder, questions, mutants, seed], check=True)
-        for i in range(int(questions)):
+        subprocess.run([writer, folder, queries, mutants, seed], check=True)
+        for i in range(int(queries)):
             base = os.path.join(folder, str(i))
             first = by_cprox_check(program, base + '.problem', base + '.certificates')
             second = by_fractions(base + '.problem', base + '.certificates')
             with open(base + '.truth') as truth:
                 lines = truth.read().splitlines()
             if not len(first) == len(second) == len(lines):
-                faults.append(f'question {i}: {len(first)} and {len(second)} findings on {len(lines)} certificates')
+                faults.append(f'query {i}: {len(first)} and {len(second)} findings on {len(lines)} certificates')
             for k, line in enumerate(lines):
                 lower, upper, done = line.split(' ', 2)
                 lower, upper = float.fromhex(lower), float.fromhex(upper)
-                where = f'question {i}, certificate {k} ({done})'
+                where = f'query {i}, certificate {k} ({done})'
                 if first[k] != second[k]:
                     faults.append(f'{where}: cprox_check finds {first[k]}, the second checker {second[k]}')
                 if first[k] and is_false(first[k], lower, upper):

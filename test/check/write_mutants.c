@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* write_mutants FOLDER QUESTIONS MUTANTS SEED: random questions with genuine certificates and tampered ones, for checkers to be tried
- * on. Question i becomes i.problem, i.certificates and i.truth: a line a certificate, "genuine" or what was done to it, and the
- * interval that the distance lies in. */
+/* write_mutants FOLDER QUERIES MUTANTS SEED: random queries with genuine certificates and tampered ones, for checkers
+ * to be tried on. Query i becomes i.problem, i.certificates and i.truth: a line a certificate, "genuine" or what was
+ * done to it, and the interval that the distance lies in. */
 #include <inttypes.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "support/questions.h"
+#include "support/queries.h"
 #include "support/tampering.h"
 
 static FILE *open_file(const char *folder, size_t i, const char *what) {
@@ -47,8 +47,8 @@ static bool ask(const asked *q, rng *r, cprox_workspace *ws, cprox_certificate *
   return true;
 }
 
-static void write_question(const asked *q, const char *folder, size_t i, size_t mutants, rng *r, const bytes *genuine,
-                           const bytes *other, const double interval[2]) {
+static void write_query(const asked *q, const char *folder, size_t i, size_t mutants, rng *r, const bytes *genuine,
+                        const bytes *other, const double interval[2]) {
   static bytes mutant;
   FILE *text = open_file(folder, i, "problem"), *file = open_file(folder, i, "certificates");
   FILE *truth = open_file(folder, i, "truth");
@@ -69,15 +69,15 @@ static void write_question(const asked *q, const char *folder, size_t i, size_t 
 
 int main(int argc, char **argv) {
   if (argc != 5) {
-    fputs("usage: write_mutants FOLDER QUESTIONS MUTANTS SEED\n", stderr);
+    fputs("usage: write_mutants FOLDER QUERIES MUTANTS SEED\n", stderr);
     return 2;
   }
-  const size_t questions = strtoul(argv[2], NULL, 10), mutants = strtoul(argv[3], NULL, 10);
+  const size_t queries = strtoul(argv[2], NULL, 10), mutants = strtoul(argv[3], NULL, 10);
   rng r = rng_seed(strtoumax(argv[4], NULL, 10));
   cprox_workspace *ws = cprox_workspace_create();
   cprox_certificate *c = cprox_certificate_create();
   static bytes genuine, other;
-  for (size_t i = 0; i < questions;) {
+  for (size_t i = 0; i < queries;) {
     asked q;
     const asked_kinds kinds = {.bezier_only = rng_index(&r, 2) == 0,
                                .polytope_only = rng_index(&r, 3) == 0,
@@ -86,7 +86,7 @@ int main(int argc, char **argv) {
     asked_random(&q, &r, kinds, rng_log_uniform(&r, 1e-2, 1e2), rng_log_uniform(&r, 1e-2, 1e4), ws);
     double interval[2];
     if (ask(&q, &r, ws, c, interval, &genuine)) {
-      write_question(&q, argv[1], i++, mutants, &r, &genuine, other.n ? &other : &genuine, interval);
+      write_query(&q, argv[1], i++, mutants, &r, &genuine, other.n ? &other : &genuine, interval);
       other = genuine;
     }
     asked_free(&q);

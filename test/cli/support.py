@@ -9,8 +9,8 @@ import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 DATA = os.path.join(os.path.dirname(HERE), 'data')
-HEADER = ('id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,probes,microseconds,t_b,rung')
-NUMBERS = ('lower', 'upper', 't', 'a_x', 'a_y', 'a_z', 'b_x', 'b_y', 'b_z', 'nodes', 'probes', 'microseconds', 't_b')
+HEADER = ('id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,t_b,lod')
+NUMBERS = ('lower', 'upper', 't', 'a_x', 'a_y', 'a_z', 'b_x', 'b_y', 'b_z', 'nodes', 'distance_queries', 'microseconds', 't_b')
 LIMIT = 120  # seconds for one call; a call that takes longer is a failure
 
 
@@ -76,10 +76,10 @@ class Case(unittest.TestCase):
             out.write(text if isinstance(text, bytes) else text.encode())
         return path
 
-    def ask(self, verb, curves, scene, *more):
-        """One of the verbs about curves; `curves` and `scene` are the texts of the files."""
+    def ask(self, query_type, curves, scene, *more):
+        """One of the queries about curves; `curves` and `scene` are the texts of the files."""
         lines = curves if isinstance(curves, str) else '\n'.join(curves) + '\n'
-        return cprox(verb, '--curves', self.file('curves.csv', lines), '--scene', self.file('scene.yaml', scene), *more)
+        return cprox(query_type, '--curves', self.file('curves.csv', lines), '--scene', self.file('scene.yaml', scene), *more)
 
     def pairs(self, text, *more):
         return cprox('pairs', '--in', self.file('pairs.yaml', text), *more)

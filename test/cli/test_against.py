@@ -9,9 +9,9 @@ ABOVE = bezier('above', (1, -1, 2), (1, 1, 2), t0=10, t1=12)
 
 
 class Against(Case):
-    def against(self, verb, first, second, *more):
+    def against(self, query_type, first, second, *more):
         a, b = self.file('a.csv', '\n'.join(first) + '\n'), self.file('b.csv', '\n'.join(second) + '\n')
-        return cprox(verb, '--curves', a, '--against', b, *more)
+        return cprox(query_type, '--curves', a, '--against', b, *more)
 
     def a_pair_has_both_parameters_and_both_points(self):
         answer = self.against('distance', [LINE], [ABOVE])
@@ -49,7 +49,7 @@ class Against(Case):
         self.assertEqual((answer.code, [row['b'] for row in answer.rows]), (1, ['above', 'above']))
 
     def options_of_scenes_are_refused(self):
-        for words in (['--scene', 's'], ['--robot', 'r'], ['--per-object'], ['--max-rung', 'hull']):
+        for words in (['--scene', 's'], ['--robot', 'r'], ['--per-object'], ['--max-lod', 'hull']):
             with self.subTest(words=words):
                 self.assertRefused(self.against('distance', [LINE], [ABOVE], *words), '--against takes no ' + words[0])
 

@@ -50,10 +50,10 @@ def without_proof(answer):
 
 class CertificateTest(Case):
 
-    def write(self, verb, rows, scene, *more):
-        """Asks with --certificate; the words of `check` for the same question."""
+    def write(self, query_type, rows, scene, *more):
+        """Asks with --certificate; the words of `check` for the same query."""
         self.certificates = os.path.join(self.folder, 'answers.cpc')
-        answer = self.ask(verb, rows, scene, '--certificate', self.certificates, *more)
+        answer = self.ask(query_type, rows, scene, '--certificate', self.certificates, *more)
         self.assertEqual(answer.code, 0, answer.err)
         return answer
 
@@ -84,7 +84,7 @@ class CertificateTest(Case):
         self.assertEqual(checked.code, 0, checked.out + checked.err)
         self.assertIn('through: proven: not farther than 0 m', checked.out)
 
-    def a_certificate_of_another_question_is_refused(self):
+    def a_certificate_of_another_query_is_refused(self):
         self.write('distance', [PASSING], BOX_SCENE)
         self.file('larger.yaml', BOX_SCENE.replace('[2, 2, 2]', '[2.001, 2, 2]'))
         checked = self.check(scene='larger.yaml')
@@ -118,24 +118,24 @@ class CertificateTest(Case):
         self.certificates = os.path.join(self.folder, 'pairs.cpc')
         first = self.file('a.csv', PASSING + '\n' + bezier('b', (0, 0, 0), (1, 1, 1), (2, 0, 0)) + '\n')
         second = self.file('b.csv', bezier('c', (0, -4, 1), (1, 4, 0)) + '\n' + bezier('d', (0, 1, 1), (1, -1, 0)) + '\n')
-        question = ['--curves', first, '--against', second]
-        asked = cprox('distance', *question, '--certificate', self.certificates)
+        query = ['--curves', first, '--against', second]
+        asked = cprox('distance', *query, '--certificate', self.certificates)
         self.assertEqual(asked.code, 0, asked.err)
-        checked = cprox('check', self.certificates, *question)
+        checked = cprox('check', self.certificates, *query)
         self.assertEqual(checked.code, 0, checked.out + checked.err)
         self.assertEqual(checked.out.count('proven'), 2)
 
     def a_proof_changes_no_answer(self):
-        """40 curves (seed 11) about and through a ring, as a surface and as a solid, every verb and model."""
+        """40 curves (seed 11) about and through a ring, as a surface and as a solid, every query and model."""
         chance = random.Random(11)
         rows = [bezier(f'c{i}', *[[chance.uniform(-0.5, 0.5) for _ in range(3)] for _ in range(4)], radius=0.01) for i in range(40)]
         self.certificates = os.path.join(self.folder, 'answers.cpc')
         for solid in ('', ', solid: true'):
             scene = RING_SCENE % (ring(), solid)
-            for verb, more in (('distance', []), ('tolerance', ['--delta', '0.05']), ('collision', []),
-                               ('distance', ['--max-rung', 'hull']), ('distance', ['--max-rung', 'sphere'])):
-                plain = self.ask(verb, rows, scene, *more)
-                proven = self.ask(verb, rows, scene, '--certificate', self.certificates, *more)
+            for query_type, more in (('distance', []), ('tolerance', ['--delta', '0.05']), ('collision', []),
+                               ('distance', ['--max-lod', 'hull']), ('distance', ['--max-lod', 'sphere'])):
+                plain = self.ask(query_type, rows, scene, *more)
+                proven = self.ask(query_type, rows, scene, '--certificate', self.certificates, *more)
                 self.assertEqual((plain.code, proven.code), (0, 0), proven.err)
                 self.assertEqual(without_proof(plain), without_proof(proven))
                 for line, row in zip(self.check().out.splitlines(), proven.rows):
@@ -149,9 +149,9 @@ class CertificateTest(Case):
     def a_line_through_the_hole_of_a_ring_is_not_near(self):
         hole, far = bezier('hole', (0, 0, -1), (0, 0, 1), radius=0.02), bezier('far', (0, 0, 0.5), (0.1, 0, 0.9))
         for solid in ('', ', solid: true'):
-            for verb, more in (('distance', []), ('collision', []), ('tolerance', ['--delta', '0.1'])):
-                answer = self.write(verb, [hole, far], RING_SCENE % (ring(), solid), *more)
-                self.assertGreater(float(answer.row('hole')['lower']), 0.17 if verb == 'distance' else 0.0)
+            for query_type, more in (('distance', []), ('collision', []), ('tolerance', ['--delta', '0.1'])):
+                answer = self.write(query_type, [hole, far], RING_SCENE % (ring(), solid), *more)
+                self.assertGreater(float(answer.row('hole')['lower']), 0.17 if query_type == 'distance' else 0.0)
                 self.assertEqual([row['proof'] for row in answer.rows], ['none', 'apart'])
                 self.assertIn("id 'hole'): no certificate: too close to delta", answer.err)
                 checked = self.check()

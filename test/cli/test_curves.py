@@ -26,7 +26,7 @@ class Answers(Case):
         self.assertAlmostEqual(float(row['b_x']), 1.0, delta=1e-9)
         self.assertAlmostEqual(float(row['a_y']), -4 + 8 * float(row['t']), delta=1e-9)
         self.assertLessEqual(abs(float(row['a_y'])), 1 + 1e-5)
-        self.assertEqual(row['rung'], 'hull')
+        self.assertEqual(row['lod'], 'hull')
         self.assertGreaterEqual(int(row['nodes']), 1)
 
     def numbers_carry_17_significant_digits(self):

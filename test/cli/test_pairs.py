@@ -57,12 +57,12 @@ class Pairs(Case):
         corners, faces = '[[3, 0, 0], [0, 3, 0], [0, 0, 3], [-1, -1, -1]]', '[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]'
         mesh = f'{{type: mesh, %smesh: {{vertices: {corners}, triangles: {faces}%s}}}}'
         row = self.pairs(pair('m', mesh % ('', ''), '{type: point}')).row('m')
-        self.assertEqual(row['rung'], 'mesh')
+        self.assertEqual(row['lod'], 'mesh')
         self.assertGreater(float(row['lower']), 0.3)
         row = self.pairs(pair('m', mesh % ('', ', solid: true'), '{type: point}')).row('m')
         self.assertLessEqual(float(row['upper']), 0)
-        row = self.pairs(pair('m', mesh % ('', ''), '{type: point}'), '--max-rung', 'hull').row('m')
-        self.assertEqual(row['rung'], 'hull')
+        row = self.pairs(pair('m', mesh % ('', ''), '{type: point}'), '--max-lod', 'hull').row('m')
+        self.assertEqual(row['lod'], 'hull')
         self.assertLess(float(row['upper']), -0.3)
 
     def clouds_octrees_and_meshes_are_bodies_also_against_each_other(self):

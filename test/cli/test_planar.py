@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Planar questions: curves with z = 0 against polygons in the plane, as scenes and as pairs have them."""
+"""Planar queries: curves with z = 0 against polygons in the plane, as scenes and as pairs have them."""
 import os
 import re
 
@@ -67,8 +67,8 @@ class Planar(Case):
     def answers_of_polygons_leave_proofs(self):
         curves = self.file('curves.csv', bezier('beside', (2, -3, 0), (2, 3, 0)) + '\n')
         world, proof = self.file('scene.yaml', scene(square())), os.path.join(self.folder, 'proof')
-        for verb, said in (('distance', 'proven: farther than'), ('collision', 'proven: farther than 0 m')):
-            self.assertEqual(cprox(verb, '--curves', curves, '--scene', world, '--certificate', proof).code, 0)
+        for query_type, said in (('distance', 'proven: farther than'), ('collision', 'proven: farther than 0 m')):
+            self.assertEqual(cprox(query_type, '--curves', curves, '--scene', world, '--certificate', proof).code, 0)
             checked = cprox('check', proof, '--curves', curves, '--scene', world)
             self.assertEqual(checked.code, 0, checked.err)
             self.assertIn(said, checked.out)

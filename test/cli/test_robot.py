@@ -23,8 +23,8 @@ BESIDE = bezier('c', (3, 0, 1), (3 + 1e-9, 0, 1))
 
 
 class Robot(Case):
-    def arm(self, *more, scene=None, curve=BESIDE, verb='distance'):
-        words = [verb, '--curves', self.file('curves.csv', curve), '--robot', self.file('arm.urdf', ARM), *more]
+    def arm(self, *more, scene=None, curve=BESIDE, query_type='distance'):
+        words = [query_type, '--curves', self.file('curves.csv', curve), '--robot', self.file('arm.urdf', ARM), *more]
         if scene is not None:
             words += ['--scene', self.file('scene.yaml', scene)]
         return cprox(*words)

@@ -71,7 +71,7 @@ class Shapes(Case):
             with self.subTest(text=text[:50]):
                 row = self.distance_to_origin(one(text))
                 self.assertAnswer(row, 3, slack=1e-6)  # the hull of a mesh file is read in single precision
-                self.assertEqual(row['rung'], 'mesh')
+                self.assertEqual(row['lod'], 'mesh')
         row = self.distance_to_origin(one('meshes: [{resource: meshes/t.stl, dimensions: [2, 1, 1]}]'))
         self.assertAnswer(row, 6, slack=1e-6)
 

@@ -33,8 +33,8 @@ joint_trajectory:
 
 
 class Trajectory(Case):
-    def robot(self, verb, trajectory, *more, urdf=SLIDER, scene=WALL, srdf=None):
-        words = [verb, '--robot', self.file('robot.urdf', urdf), '--trajectory', self.file('go.yaml', trajectory)]
+    def robot(self, query_type, trajectory, *more, urdf=SLIDER, scene=WALL, srdf=None):
+        words = [query_type, '--robot', self.file('robot.urdf', urdf), '--trajectory', self.file('go.yaml', trajectory)]
         if scene:
             words += ['--scene', self.file('scene.yaml', scene)]
         if srdf:
@@ -57,12 +57,12 @@ class Trajectory(Case):
         self.assertEqual(self.robot('collision', SLIDE).row('go')['verdict'], 'no')
         self.assertEqual(self.robot('collision', SLIDE.replace('[2]', '[3]')).row('go')['verdict'], 'yes')
 
-    def certificates_are_proven_by_the_checker_and_by_no_other_question(self):
+    def certificates_are_proven_by_the_checker_and_by_no_other_query(self):
         file = os.path.join(self.folder, 'proof.cpc')
         swing = SLIDE.replace('[slide]', '[slide, swing]').replace('[0]', '[0, 0]').replace('[2]', '[2, 0.5]')
-        for verb, more, said in (('distance', [], 'proven: farther than'), ('tolerance', ['--delta', '0.1'], 'proven: farther than 0.1'),
+        for query_type, more, said in (('distance', [], 'proven: farther than'), ('tolerance', ['--delta', '0.1'], 'proven: farther than 0.1'),
                                  ('tolerance', ['--delta', '3'], 'proven: not farther than 3 m'), ('collision', [], 'proven: farther than 0 m')):
-            asked = self.robot(verb, swing, '--self', '--certificate', file, *more)
+            asked = self.robot(query_type, swing, '--self', '--certificate', file, *more)
             self.assertEqual((asked.code, asked.err), (0, ''))
             checked = self.robot('check', swing, file, '--self')
             self.assertEqual(checked.code, 0, checked.out + checked.err)
@@ -70,10 +70,10 @@ class Trajectory(Case):
             self.assertEqual([line.split(':')[0] for line in lines], ['go.environment', 'go.self'])
             for line, row in zip(lines, asked.rows):
                 self.assertIn(said, line)
-                if verb == 'distance':
+                if query_type == 'distance':
                     self.assertAlmostEqual(float(line.split('farther than ')[1].split(' m')[0]), float(row['lower']), delta=1.001e-6)
 
-        # it goes farther than the question that was proven
+        # it goes farther than the query that was proven
         self.robot('tolerance', swing, '--certificate', file, '--delta', '0.3')
         for trajectory, code in ((swing, 0), (swing.replace('[2, 0.5]', '[2.5, 0.5]'), 1)):
             checked = self.robot('check', trajectory, file)
@@ -94,9 +94,9 @@ class Trajectory(Case):
             scene = ('world: {collision_objects: [{id: window, bodies: [{type: mesh, vertices: %s, triangles: %s%s}]}]}'
                      % (vertices, triangles, solid))
             urdf = SLIDER.replace('size="0.1 0.1 1"', 'size="0.1 0.1 0.2"').replace('xyz="0 0 1.2"', 'xyz="0 0 0.4"')
-            for verb, more in (('distance', []), ('collision', []), ('tolerance', ['--delta', '0.01'])):
-                plain = self.robot(verb, SLIDE, *more, scene=scene, urdf=urdf)
-                asked = self.robot(verb, SLIDE, '--certificate', file, *more, scene=scene, urdf=urdf)
+            for query_type, more in (('distance', []), ('collision', []), ('tolerance', ['--delta', '0.01'])):
+                plain = self.robot(query_type, SLIDE, *more, scene=scene, urdf=urdf)
+                asked = self.robot(query_type, SLIDE, '--certificate', file, *more, scene=scene, urdf=urdf)
                 self.assertEqual((plain.code, asked.code), (0, 0), asked.err)
                 self.assertEqual([{k: v for k, v in row.items() if k not in ('microseconds', 'proof')} for row in asked.rows],
                                  plain.without_times()[0:len(asked.rows)])
@@ -256,15 +256,15 @@ joint_trajectory:
             if case['robot'] in robots or min(result['lower'] for result in case['results']) == 0.0:
                 continue
             robots.add(case['robot'])
-            question = ['--robot', f"{DATA}/{case['robot']}", '--scene', f"{DATA}/{case['scene']}",
+            query = ['--robot', f"{DATA}/{case['robot']}", '--scene', f"{DATA}/{case['scene']}",
                         '--trajectory', f"{DATA}/trajectories/{os.path.basename(case['trajectory'])}"]
-            question += ['--srdf', f"{DATA}/{case['srdf']}"] if case.get('srdf') else []
-            question += ['--self'] if len(case['results']) == 2 else []
+            query += ['--srdf', f"{DATA}/{case['srdf']}"] if case.get('srdf') else []
+            query += ['--self'] if len(case['results']) == 2 else []
             with self.subTest(trajectory=case['trajectory']):
-                asked = cprox('distance', *question, '--certificate', file)
+                asked = cprox('distance', *query, '--certificate', file)
                 self.assertEqual(asked.code, 0, asked.err)
                 self.assertEqual({row['proof'] for row in asked.rows}, {'apart'})
-                checked = cprox('check', file, *question)
+                checked = cprox('check', file, *query)
                 self.assertEqual(checked.code, 0, checked.out + checked.err)
                 self.assertEqual(checked.out.count('proven: farther than'), len(case['results']), checked.out)
         self.assertEqual(len(robots), 3)
@@ -277,7 +277,7 @@ joint_trajectory:
         self.assertEqual(len(cases), 23)
         for case in cases:
             words = ['distance', '--robot', f"{DATA}/{case['robot']}", '--scene', f"{DATA}/{case['scene']}", '--self', '--epsilon', '1e-6',
-                     '--max-rung', 'hull',
+                     '--max-lod', 'hull',
                      '--trajectory', f"{DATA}/trajectories/{os.path.basename(case['trajectory'])}"]
             if case.get('srdf'):
                 words += ['--srdf', f"{DATA}/{case['srdf']}"]

@@ -8,7 +8,7 @@ class Usage(Case):
         answer = cprox('--help')
         self.assertEqual((answer.code, answer.err), (0, ''))
         for word in ('distance', 'tolerance', 'collision', 'pairs', 'send', '--curves', '--scene', '--robot', '--srdf', '--state',
-                     '--in', '--against', '--trajectory', '--self', '--signed', 'check', '--certificate', '--epsilon', '--delta', '--max-nodes', '--threads', '--per-object', '--max-rung', '--skipped',
+                     '--in', '--against', '--trajectory', '--self', '--signed', 'check', '--certificate', '--epsilon', '--delta', '--max-nodes', '--threads', '--per-object', '--max-lod', '--skipped',
                      '--out', '--node', '--version', 'constraints', '--provider', '--parameters'):
             self.assertIn(word, answer.out)
 
@@ -21,7 +21,7 @@ class Usage(Case):
         self.assertRegex(answer.out, r'^cprox \d+\.\d+\.\d+\n$')
 
     def words_that_are_not_known_are_refused(self):
-        self.assertRefused(cprox(), 'no verb')
+        self.assertRefused(cprox(), 'no command')
         self.assertRefused(cprox('distanse'), "'distanse'", 'distance')
         self.assertRefused(cprox('distance', '--fast'), '--fast')
         self.assertRefused(cprox('distance', 'more.csv', '--curves', 'c', '--scene', 's'), "'more.csv'")
@@ -50,32 +50,32 @@ class Usage(Case):
                     self.assertRefused(cprox('tolerance', *files, '--delta', '1', name, value)
                                        if name != '--delta' else cprox('tolerance', *files, name, value), name, value)
 
-    def rungs_are_known_by_name(self):
-        self.assertRefused(cprox('distance', '--curves', 'c', '--scene', 's', '--max-rung', 'finest'), '--max-rung', 'hull')
+    def lods_are_known_by_name(self):
+        self.assertRefused(cprox('distance', '--curves', 'c', '--scene', 's', '--max-lod', 'finest'), '--max-lod', 'hull')
 
     def an_option_that_does_not_apply_is_refused(self):
-        """Every verb with every input and every option: what the verb has is read, the rest is refused by name."""
+        """Every command with every input and every option: what the command has is read, the rest is refused by name."""
         values = {'--curves': 'c', '--against': 'd', '--trajectory': 't', '--scene': 's', '--robot': 'r', '--srdf': 'q', '--state': 'j: 1',
                   '--certificate': 'f', '--in': 'i', '--provider': 'p', '--parameters': 'k: 1', '--node': '/n', '--epsilon': '1e-3',
-                  '--delta': '1', '--max-nodes': '9', '--threads': '2', '--max-rung': 'hull', '--out': 'o', '--self': None,
+                  '--delta': '1', '--max-nodes': '9', '--threads': '2', '--max-lod': 'hull', '--out': 'o', '--self': None,
                   '--signed': None, '--per-object': None, '--skipped': None}
         run = {'--epsilon', '--max-nodes', '--threads', '--out'}
-        rows = [('pairs', ['--in', 'i'], run | {'--max-rung', '--skipped'}),
+        rows = [('pairs', ['--in', 'i'], run | {'--max-lod', '--skipped'}),
                 ('constraints', ['--in', 'i', '--provider', 'p'], {'--parameters', '--scene', '--threads', '--out'}),
                 ('send', ['s'], {'--node'})]
-        for verb, own in (('distance', {'--signed'}), ('tolerance', {'--delta'}), ('collision', set())):
-            start = ['--delta', '1'] if verb == 'tolerance' else []
-            rows += [(verb, start + ['--curves', 'c', '--robot', 'r'],
-                      run | own | {'--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-rung', '--skipped', '--against'}),
-                     (verb, start + ['--curves', 'c', '--against', 'd'], run | own | {'--certificate', '--scene', '--robot'}),
-                     (verb, start + ['--trajectory', 't', '--robot', 'r'], run | own - {'--signed'} | {
-                         '--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-rung', '--skipped', '--self'})]
-        for verb, inputs, has in rows:
+        for command, own in (('distance', {'--signed'}), ('tolerance', {'--delta'}), ('collision', set())):
+            start = ['--delta', '1'] if command == 'tolerance' else []
+            rows += [(command, start + ['--curves', 'c', '--robot', 'r'],
+                      run | own | {'--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-lod', '--skipped', '--against'}),
+                     (command, start + ['--curves', 'c', '--against', 'd'], run | own | {'--certificate', '--scene', '--robot'}),
+                     (command, start + ['--trajectory', 't', '--robot', 'r'], run | own - {'--signed'} | {
+                         '--scene', '--srdf', '--state', '--certificate', '--per-object', '--max-lod', '--skipped', '--self'})]
+        for command, inputs, has in rows:
             for name, value in values.items():
                 if name in inputs or name in ('--against', '--scene', '--robot') and '--curves' in inputs:
                     continue
-                with self.subTest(verb=verb, inputs=inputs, option=name):
-                    answer = cprox(verb, *inputs, name, *([] if value is None else [value]))
+                with self.subTest(command=command, inputs=inputs, option=name):
+                    answer = cprox(command, *inputs, name, *([] if value is None else [value]))
                     self.assertEqual(answer.code, 2)
                     refused = name in answer.err and ('takes no' in answer.err or 'is for' in answer.err or 'needs' in answer.err)
                     self.assertEqual(refused, name not in has, answer.err)

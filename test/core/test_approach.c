@@ -121,12 +121,13 @@ CASE(grazing_rims_and_parallel_edges_lie_in_the_interval) {
     options.epsilon = 400.0 * ROUND_U * (sizes + vec_norm(a.body->ball_centre) + vec_norm(b.body->ball_centre));
     options.relative_epsilon = 1e-9;
     cprox_result result;
-    assert_true(cprox_pair(cprox_at(a.body, pa), cprox_at(b.body, pb), &options, NULL, &result) >= CPROX_OK);
+    assert_true(cprox_pair(cprox_obstacle_at(a.body, pa), cprox_obstacle_at(b.body, pb), &options, NULL, &result) >=
+                CPROX_OK);
     if (!(result.upper >= gap - tolerance && result.lower <= gap + tolerance && result.lower <= result.upper))
       fail_msg("%s and %s at gap %.17g, tilt %g: [%.17g, %.17g], status %s", shape_name(&a), shape_name(&b), gap, tilt,
                result.lower, result.upper, cprox_status_name(result.status));
     if (result.status == CPROX_OK && gap > 1e-6) {
-      const vec3 apart = vec_sub(result.on_mover, result.on_target);
+      const vec3 apart = vec_sub(result.witness_mover, result.witness_obstacle);
       assert_true(fabs(vec_norm(apart) - result.upper) <= 1e-9 * result.upper + 2.0 * options.epsilon);
       assert_true(vec_dot(apart, result.normal) >= (1.0 - 1e-7) * result.upper - 2.0 * options.epsilon);
     }
@@ -216,8 +217,8 @@ static double looks_of(uint64_t seed, cprox_body_kind kind_a, cprox_body_kind ki
     options.epsilon = 0.0;
     options.relative_epsilon = 1e-9;
     cprox_result result;
-    cprox_pair(cprox_at(a.body, pa), cprox_at(b.body, pb), &options, NULL, &result);
-    looks += result.probes;
+    cprox_pair(cprox_obstacle_at(a.body, pa), cprox_obstacle_at(b.body, pb), &options, NULL, &result);
+    looks += result.distance_queries;
     cprox_body_free(a.body);
     cprox_body_free(b.body);
   }

@@ -99,24 +99,24 @@ CASE(a_workspace_survives_memory_that_is_out) {
 
 CASE(the_reason_is_kept_until_the_next_call) {
   cprox_workspace *w = cprox_workspace_create();
-  assert_string_equal(cprox_workspace_reason(w), "");
+  assert_string_equal(cprox_workspace_error(w), "");
   assert_int_equal(workspace_fail(w, CPROX_INVALID, "knot %d is %g", 7, 0.3), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(w), "knot 7 is 0.3");
+  assert_string_equal(cprox_workspace_error(w), "knot 7 is 0.3");
 
   /* a reason that is too long is cut, not overrun */
   char longer[1000];
   memset(longer, 'x', sizeof longer - 1);
   longer[sizeof longer - 1] = '\0';
   workspace_fail(w, CPROX_INVALID, "%s", longer);
-  const size_t length = strlen(cprox_workspace_reason(w));
+  const size_t length = strlen(cprox_workspace_error(w));
   assert_true(length > 100 && length < 1000);
   workspace_clear(w);
-  assert_string_equal(cprox_workspace_reason(w), "");
+  assert_string_equal(cprox_workspace_error(w), "");
 
   /* none is allowed */
   assert_int_equal(workspace_fail(NULL, CPROX_MEMORY, "lost"), CPROX_MEMORY);
   workspace_clear(NULL);
-  assert_string_equal(cprox_workspace_reason(NULL), "");
+  assert_string_equal(cprox_workspace_error(NULL), "");
   cprox_workspace_free(w);
 }
 

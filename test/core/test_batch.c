@@ -20,7 +20,7 @@ enum { MOVERS = 64, TARGETS = 12, POLYGON_SIDES = 9 };
 /* A scene with every kind of target, and movers of every kind. */
 typedef struct scene {
   cprox_body *bodies[TARGETS];
-  cprox_target targets[TARGETS];
+  cprox_obstacle targets[TARGETS];
   size_t n_targets;
   cprox_curve *curves[MOVERS];
   cprox_mover movers[MOVERS];
@@ -59,11 +59,11 @@ static void scene_targets(rng *r, bool planar, cprox_workspace *workspace, scene
     } else {
       const cprox_vec3 points[4] = {rng_in_cube(r, 1), rng_in_cube(r, 1), rng_in_cube(r, 1), rng_in_cube(r, 1)};
       assert_int_equal(cprox_curve_create_bezier(points, 4, 0, 1, workspace, &s->standing), CPROX_OK);
-      s->targets[i] = cprox_curve_target(s->standing, 0.02);
+      s->targets[i] = cprox_obstacle_curve(s->standing, 0.02);
       continue;
     }
-    s->targets[i] = cprox_at(s->bodies[i], pose);
-    if (i % 3 == 2) s->targets[i].padding = 0.03;
+    s->targets[i] = cprox_obstacle_at(s->bodies[i], pose);
+    if (i % 3 == 2) s->targets[i].margin = 0.03;
   }
   s->n_targets = TARGETS;
 }
@@ -99,10 +99,10 @@ static void scene_free(scene *s) {
   cprox_curve_free(s->standing);
 }
 
-typedef enum verb { DISTANCE, TOLERANCE, COLLISION, VERBS } verb;
+typedef enum query_type { DISTANCE, TOLERANCE, COLLISION, QUERY_TYPES } query_type;
 static const double DELTA = 0.1;
 
-static cprox_status ask_range(verb v, const cprox_batch *batch, const scene *s, size_t first, size_t last,
+static cprox_status ask_range(query_type v, const cprox_batch *batch, const scene *s, size_t first, size_t last,
                               cprox_workspace *workspace, cprox_result *results) {
   switch (v) {
     case DISTANCE: return cprox_batch_distance(batch, s->movers, first, last, NULL, workspace, results);
@@ -111,18 +111,19 @@ static cprox_status ask_range(verb v, const cprox_batch *batch, const scene *s, 
   }
 }
 
-static void ask_alone(verb v, const scene *s, size_t i, cprox_workspace *workspace, cprox_result *r) {
+static void ask_alone(query_type v, const scene *s, size_t i, cprox_workspace *workspace, cprox_result *r) {
   if (v == DISTANCE) cprox_distance_all(s->movers[i], s->targets, s->n_targets, NULL, workspace, r, NULL);
   if (v == TOLERANCE) cprox_tolerance_all(s->movers[i], s->targets, s->n_targets, DELTA, NULL, workspace, r, NULL);
   if (v == COLLISION) cprox_collision_all(s->movers[i], s->targets, s->n_targets, NULL, workspace, r, NULL);
 }
 
 static bool same(const cprox_result *a, const cprox_result *b) {
-  const bool t_target = a->t_target == b->t_target || (isnan(a->t_target) && isnan(b->t_target));
+  const bool t_obstacle = a->t_obstacle == b->t_obstacle || (isnan(a->t_obstacle) && isnan(b->t_obstacle));
   return a->status == b->status && a->verdict == b->verdict && a->lower == b->lower && a->upper == b->upper &&
-         a->t == b->t && t_target && vec_equal(a->on_mover, b->on_mover) && vec_equal(a->on_target, b->on_target) &&
-         vec_equal(a->normal, b->normal) && a->target_index == b->target_index && a->target_part == b->target_part &&
-         a->rung == b->rung && a->nodes == b->nodes && a->probes == b->probes;
+         a->t == b->t && t_obstacle && vec_equal(a->witness_mover, b->witness_mover) &&
+         vec_equal(a->witness_obstacle, b->witness_obstacle) && vec_equal(a->normal, b->normal) &&
+         a->obstacle_index == b->obstacle_index && a->obstacle_part == b->obstacle_part && a->lod == b->lod &&
+         a->nodes == b->nodes && a->distance_queries == b->distance_queries;
 }
 
 /* The least distance over many parameters, by the plain nearest-point function of bodies: an upper bound on the truth. */
@@ -134,12 +135,12 @@ static double sampled_distance(const scene *s, size_t i) {
     cprox_vec3 at;
     cprox_curve_evaluate(s->curves[i], t0 + (t1 - t0) * k / STEPS, NULL, &at, NULL, NULL);
     for (size_t j = 0; j < s->n_targets; j++) {
-      const cprox_target *target = &s->targets[j];
+      const cprox_obstacle *target = &s->targets[j];
       if (!target->body) continue;
       const frame f = frame_create(&target->pose, vec(0, 0, 0));
       double error = 0.0;
       const double d = cprox_body_nearest(target->body, frame_to_local(&f, at, &error), NULL);
-      least = fmin(least, d - target->padding - s->movers[i].radius);
+      least = fmin(least, d - target->margin - s->movers[i].radius);
     }
   }
   return fmax(least, 0.0);
@@ -159,18 +160,18 @@ CASE(answers_agree_with_those_of_one_mover) {
     if (round % 4 >= 2) s.n_targets = 1 + rng_index(&r, TARGETS - 2); /* sparse: more verdicts are "clear" */
     cprox_batch *batch = NULL;
     assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
-    for (int v = 0; v < VERBS; v++) {
+    for (int v = 0; v < QUERY_TYPES; v++) {
       cprox_result results[MOVERS];
-      assert_int_equal(ask_range((verb)v, batch, &s, 0, MOVERS, workspace, results), CPROX_OK);
+      assert_int_equal(ask_range((query_type)v, batch, &s, 0, MOVERS, workspace, results), CPROX_OK);
       for (size_t i = 0; i < MOVERS; i++) {
         const cprox_result *one = &results[i];
         cprox_result alone;
-        ask_alone((verb)v, &s, i, workspace, &alone);
+        ask_alone((query_type)v, &s, i, workspace, &alone);
         assert_int_equal(one->status, CPROX_OK);
         assert_int_equal(one->verdict, alone.verdict);
         assert_true(one->lower <= alone.upper && alone.lower <= one->upper && one->lower <= one->upper);
         if (v == DISTANCE) assert_true(one->upper - one->lower <= 1e-6);
-        settled_by_balls += one->probes == 0 && one->upper == 0.0;
+        settled_by_balls += one->distance_queries == 0 && one->upper == 0.0;
         answers++;
         if (s.movers[i].body || s.n_targets == TARGETS) continue;
         /* plain evaluation is within 1e-12 at this scale */
@@ -198,22 +199,22 @@ CASE(witnesses_lie_where_they_say) {
   scene_movers(&r, false, workspace, &s);
   cprox_batch *batch = NULL;
   assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
-  for (int v = 0; v < VERBS; v++) {
+  for (int v = 0; v < QUERY_TYPES; v++) {
     cprox_result results[MOVERS];
-    ask_range((verb)v, batch, &s, 0, MOVERS, workspace, results);
+    ask_range((query_type)v, batch, &s, 0, MOVERS, workspace, results);
     for (size_t i = 0; i < MOVERS; i++) {
       const cprox_result *one = &results[i];
-      if (one->target_index < 0 || s.movers[i].body) continue;
+      if (one->obstacle_index < 0 || s.movers[i].body) continue;
       cprox_vec3 at;
       cprox_curve_evaluate(s.curves[i], one->t, NULL, &at, NULL, NULL);
-      assert_true(vec_norm(vec_sub(at, one->on_mover)) <= s.movers[i].radius + 1e-9);
-      assert_true(fabs(vec_norm(vec_sub(one->on_mover, one->on_target)) - one->upper) <= 1e-9);
-      const cprox_target *target = &s.targets[one->target_index];
+      assert_true(vec_norm(vec_sub(at, one->witness_mover)) <= s.movers[i].radius + 1e-9);
+      assert_true(fabs(vec_norm(vec_sub(one->witness_mover, one->witness_obstacle)) - one->upper) <= 1e-9);
+      const cprox_obstacle *target = &s.targets[one->obstacle_index];
       if (!target->body) continue;
       const frame f = frame_create(&target->pose, vec(0, 0, 0));
       double error = 0.0;
-      const vec3 local = frame_to_local(&f, one->on_target, &error);
-      assert_true(cprox_body_nearest(target->body, local, NULL) <= target->padding + 1e-9);
+      const vec3 local = frame_to_local(&f, one->witness_obstacle, &error);
+      assert_true(cprox_body_nearest(target->body, local, NULL) <= target->margin + 1e-9);
     }
   }
   cprox_batch_free(batch);
@@ -227,7 +228,7 @@ CASE(a_disc_tells_nothing_of_curves_off_its_plane) {
   const double square[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_polygon(square, 4, workspace, &body), CPROX_OK);
-  const cprox_target target = cprox_at(body, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(body, cprox_pose_identity());
   cprox_batch *batch = NULL;
   assert_int_equal(cprox_batch_create(&target, 1, workspace, &batch), CPROX_OK);
   const cprox_vec3 points[3][3] = {{{-1, 0, 0.05}, {0, 0.1, 0.05}, {1, 0, 0.05}},
@@ -267,7 +268,7 @@ CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
     const cprox_body *part = ball;
     cprox_body *body = NULL;
     assert_int_equal(cprox_body_create_compound(&part, &inner, 1, workspace, &body), CPROX_OK);
-    const cprox_target target = cprox_at(body, outer);
+    const cprox_obstacle target = cprox_obstacle_at(body, outer);
     cprox_batch *batch = NULL;
     assert_int_equal(cprox_batch_create(&target, 1, workspace, &batch), CPROX_OK);
 
@@ -288,7 +289,7 @@ CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
       assert_true((long double)answers[k].lower <= truth + 1e-12L);
       assert_true(truth - 1e-12L <= (long double)answers[k].upper);
     }
-    settled_by_points += answers[1].probes == 0 && answers[1].verdict == CPROX_NO;
+    settled_by_points += answers[1].distance_queries == 0 && answers[1].verdict == CPROX_NO;
     cprox_curve_free(curve);
     cprox_batch_free(batch);
     cprox_body_free(body);
@@ -303,7 +304,7 @@ CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
 typedef struct worker {
   const cprox_batch *batch;
   const scene *scene;
-  verb verb;
+  query_type query_type;
   size_t first, last;
   cprox_result *results;
 } worker;
@@ -311,7 +312,7 @@ typedef struct worker {
 static void *work(void *argument) {
   const worker *w = argument;
   cprox_workspace *workspace = cprox_workspace_create();
-  ask_range(w->verb, w->batch, w->scene, w->first, w->last, workspace, w->results);
+  ask_range(w->query_type, w->batch, w->scene, w->first, w->last, workspace, w->results);
   cprox_workspace_free(workspace);
   return NULL;
 }
@@ -326,9 +327,9 @@ CASE(results_are_the_same_for_every_split_and_number_of_threads) {
     scene_movers(&r, planar, workspace, &s);
     cprox_batch *batch = NULL;
     assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
-    for (int v = 0; v < VERBS; v++) {
+    for (int v = 0; v < QUERY_TYPES; v++) {
       cprox_result whole[MOVERS], split[MOVERS];
-      ask_range((verb)v, batch, &s, 0, MOVERS, workspace, whole);
+      ask_range((query_type)v, batch, &s, 0, MOVERS, workspace, whole);
       for (size_t threads = 1; threads <= 8; threads++) {
         memset(split, 0, sizeof split);
         pthread_t thread[8];
@@ -336,7 +337,7 @@ CASE(results_are_the_same_for_every_split_and_number_of_threads) {
         size_t from = 0;
         for (size_t k = 0; k < threads; k++) {
           const size_t to = k + 1 == threads ? MOVERS : from + rng_index(&r, MOVERS - from + 1);
-          workers[k] = (worker){batch, &s, (verb)v, from, to, split};
+          workers[k] = (worker){batch, &s, (query_type)v, from, to, split};
           from = to;
           assert_int_equal(pthread_create(&thread[k], NULL, work, &workers[k]), 0);
         }
@@ -449,7 +450,7 @@ CASE(boxes_bound_the_chords_in_them) {
     uint32_t unused;
     for (uint32_t first = 0; first < CHORDS; first += LANES)
       lanes_points(lanes_basis(degree, workspace), points, degree, false, first, offset, &chords, &unused);
-    lanes_box boxes[STRETCHES];
+    lanes_box boxes[PACKET_INTERVALS];
     lanes_boxes(&chords, boxes);
 
     double x[BALLS], y[BALLS], z[BALLS], reach[BALLS], sizes[BALLS], lower[BALLS];
@@ -461,7 +462,7 @@ CASE(boxes_bound_the_chords_in_them) {
     }
     const lanes_balls balls = {.n = BALLS, .padded = BALLS, .x = x, .y = y, .z = z, .reach = reach, .sizes = sizes};
     const double radius = rng_uniform(&r, 0, 0.5);
-    lanes_box_bounds(&balls, boxes, STRETCHES, radius, 0.0, lower);
+    lanes_box_bounds(&balls, boxes, PACKET_INTERVALS, radius, 0.0, lower);
     assert_true(lower[0] == 1e300);
     for (int k = 1; k < BALLS; k++) {
       const vec3 c = vec(x[k], y[k], z[k]);
@@ -472,7 +473,7 @@ CASE(boxes_bound_the_chords_in_them) {
         const vec3 b = vec(chords.x[i + 1], chords.y[i + 1], chords.z[i + 1]);
         to_chords = fminl(to_chords, ref_point_segment(ref_vec(c), ref_vec(a), ref_vec(b)));
       }
-      for (size_t i = 0; i < STRETCHES; i++) to_boxes = fminl(to_boxes, sqrtl(square_from_box(&boxes[i], c)));
+      for (size_t i = 0; i < PACKET_INTERVALS; i++) to_boxes = fminl(to_boxes, sqrtl(square_from_box(&boxes[i], c)));
       assert_true((long double)lower[k] <= to_chords - margin);
       assert_true((double)(to_boxes - margin - (long double)lower[k]) <=
                   160 * 0x1p-53 * ((double)(to_boxes + margin) + sizes[k]));
@@ -581,7 +582,7 @@ CASE(bricks_hold_their_parts) {
     scene_targets(&r, round % 4 == 3, workspace, &s);
     cprox_batch *batch = NULL;
     assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
-    const question q = {.targets = s.targets, .n = s.n_targets};
+    const query q = {.targets = s.targets, .n = s.n_targets};
     for (size_t k = 0; k < batch->balls.n; k++) {
       const batch_core *core = &batch->cores[k];
       if (!core->has_brick) continue;
@@ -625,7 +626,7 @@ CASE(blocks_hold_each_part_once_and_bound_it) {
   for (size_t round = 0; round < test_cases(100); round++) {
     const size_t n = 1 + rng_index(&r, N);
     cprox_body *box = NULL, *pair = NULL, *half = NULL;
-    cprox_target targets[N];
+    cprox_obstacle targets[N];
     assert_int_equal(cprox_body_create_box(vec(0.1, 0.2, 0.3), workspace, &box), CPROX_OK);
     assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 0.0, workspace, &half), CPROX_OK);
     const cprox_pose poses[2] = {rng_pose(&r, 0.5), rng_pose(&r, 0.5)};
@@ -636,8 +637,8 @@ CASE(blocks_hold_each_part_once_and_bound_it) {
     for (size_t i = 0; i < n; i++) {
       cprox_pose pose = rng_pose(&r, 2.0);
       pose.position = vec_add(pose.position, offset);
-      targets[i] = cprox_at(i % 40 == 20 ? half : i % 4 == 1 ? pair : box, pose);
-      targets[i].padding = i % 3 == 0 ? 0.1 : 0.0;
+      targets[i] = cprox_obstacle_at(i % 40 == 20 ? half : i % 4 == 1 ? pair : box, pose);
+      targets[i].margin = i % 3 == 0 ? 0.1 : 0.0;
     }
     cprox_batch *batch = NULL;
     assert_int_equal(cprox_batch_create(targets, n, workspace, &batch), CPROX_OK);
@@ -703,12 +704,12 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
   rng r = rng_seed(22);
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_body *bodies[BOXES];
-  cprox_target targets[BOXES];
+  cprox_obstacle targets[BOXES];
   for (size_t k = 0; k < BOXES; k++) {
     const vec3 edges = vec(rng_uniform(&r, .01, .06), rng_uniform(&r, .01, .06), rng_uniform(&r, .01, .06));
     assert_int_equal(cprox_body_create_box(edges, workspace, &bodies[k]), CPROX_OK);
-    targets[k] = cprox_at(bodies[k], rng_pose(&r, 0.5));
-    if (k % 4 == 0) targets[k].padding = 0.004;
+    targets[k] = cprox_obstacle_at(bodies[k], rng_pose(&r, 0.5));
+    if (k % 4 == 0) targets[k].margin = 0.004;
   }
   cprox_batch *batch = NULL;
   assert_int_equal(cprox_batch_create(targets, BOXES, workspace, &batch), CPROX_OK);
@@ -719,7 +720,7 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
     cprox_curve *curve = NULL;
     assert_int_equal(cprox_curve_create_bezier(p, 6, 0, 1, workspace, &curve), CPROX_OK);
     const cprox_mover mover = cprox_tube_along(curve, i % 3 ? 0.005 : 0.0);
-    for (int v = DISTANCE; v < VERBS; v++) {
+    for (int v = DISTANCE; v < QUERY_TYPES; v++) {
       const double delta = v == TOLERANCE ? 0.01 : 0.0;
       cprox_result one, alone;
       if (v == DISTANCE) {
@@ -740,15 +741,15 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
       hits++;
       cprox_vec3 at;
       cprox_curve_evaluate(curve, one.t, NULL, &at, NULL, NULL);
-      const cprox_target *target = &targets[one.target_index];
+      const cprox_obstacle *target = &targets[one.obstacle_index];
       const frame f = frame_create(&target->pose, vec(0, 0, 0));
       double error = 0.0;
       const double d = cprox_body_nearest(target->body, frame_to_local(&f, at, &error), NULL);
-      assert_true(d - target->padding - mover.radius <= one.upper + 1e-12 && one.upper <= delta);
-      const double surface = cprox_body_nearest(target->body, frame_to_local(&f, one.on_target, &error), NULL);
-      assert_true(surface <= target->padding + 1e-12);
-      assert_true(vec_norm(vec_sub(one.on_mover, at)) <= mover.radius + 1e-12);
-      assert_true(fabs(vec_norm(vec_sub(one.on_mover, one.on_target)) - one.upper) <= 1e-12);
+      assert_true(d - target->margin - mover.radius <= one.upper + 1e-12 && one.upper <= delta);
+      const double surface = cprox_body_nearest(target->body, frame_to_local(&f, one.witness_obstacle, &error), NULL);
+      assert_true(surface <= target->margin + 1e-12);
+      assert_true(vec_norm(vec_sub(one.witness_mover, at)) <= mover.radius + 1e-12);
+      assert_true(fabs(vec_norm(vec_sub(one.witness_mover, one.witness_obstacle)) - one.upper) <= 1e-12);
     }
     cprox_curve_free(curve);
   }
@@ -774,7 +775,7 @@ CASE(a_mover_that_is_unusable_fails_alone) {
   s.movers[5].radius = NAN;
   s.movers[9].curve = NULL;
   assert_int_equal(cprox_batch_distance(batch, s.movers, 0, MOVERS, NULL, workspace, results), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(workspace), "mover 5: radius is nan"));
+  assert_non_null(strstr(cprox_workspace_error(workspace), "mover 5: radius is nan"));
   for (size_t i = 0; i < MOVERS; i++) {
     const bool bad = i == 5 || i == 9;
     assert_true(bad ? results[i].status == CPROX_INVALID && results[i].lower == 0.0 && results[i].upper == INFINITY
@@ -786,7 +787,7 @@ CASE(a_mover_that_is_unusable_fails_alone) {
   cprox_result untouched;
   memset(&untouched, 0x5a, sizeof untouched);
   assert_int_equal(cprox_batch_distance(batch, s.movers, 20, 30, NULL, workspace, results), CPROX_OK);
-  assert_string_equal(cprox_workspace_reason(workspace), "");
+  assert_string_equal(cprox_workspace_error(workspace), "");
   for (size_t i = 0; i < MOVERS; i++) {
     if (i >= 20 && i < 30)
       assert_true(same(&results[i], &good[i]));
@@ -802,10 +803,10 @@ CASE(unusable_calls_are_refused_with_a_sentence) {
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_result result;
   cprox_batch *batch = NULL;
-  const cprox_target nothing = {0};
+  const cprox_obstacle nothing = {0};
   assert_int_equal(cprox_batch_create(&nothing, 1, workspace, &batch), CPROX_INVALID);
   assert_null(batch);
-  assert_non_null(strstr(cprox_workspace_reason(workspace), "target 0"));
+  assert_non_null(strstr(cprox_workspace_error(workspace), "target 0"));
   assert_int_equal(cprox_batch_create(NULL, 3, workspace, &batch), CPROX_INVALID);
   assert_int_equal(cprox_batch_create(NULL, 0, NULL, &batch), CPROX_INVALID);
 
@@ -815,7 +816,7 @@ CASE(unusable_calls_are_refused_with_a_sentence) {
   assert_int_equal(cprox_curve_create_bezier(points, 2, 0, 1, workspace, &curve), CPROX_OK);
   const cprox_mover mover = cprox_point_along(curve);
   assert_int_equal(cprox_batch_tolerance(batch, &mover, 0, 1, 0.1, NULL, workspace, &result), CPROX_OK);
-  assert_true(result.lower == INFINITY && result.verdict == CPROX_YES && result.target_index == -1);
+  assert_true(result.lower == INFINITY && result.verdict == CPROX_YES && result.obstacle_index == -1);
   assert_int_equal(cprox_batch_distance(batch, &mover, 0, 0, NULL, workspace, NULL), CPROX_OK);
 
   assert_int_equal(cprox_batch_distance(batch, &mover, 1, 0, NULL, workspace, &result), CPROX_INVALID);
@@ -827,7 +828,7 @@ CASE(unusable_calls_are_refused_with_a_sentence) {
   cprox_options options = cprox_options_default();
   options.epsilon = NAN;
   assert_int_equal(cprox_batch_collision(batch, &mover, 0, 1, &options, workspace, &result), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(workspace), "epsilon"));
+  assert_non_null(strstr(cprox_workspace_error(workspace), "epsilon"));
   cprox_batch_free(batch);
   cprox_batch_free(NULL);
   cprox_curve_free(curve);
@@ -851,9 +852,9 @@ CASE(a_warm_workspace_allocates_nothing_and_no_memory_is_reported) {
   cprox_batch *batch = NULL;
   assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
   cprox_result results[MOVERS];
-  for (int v = 0; v < VERBS; v++) ask_range((verb)v, batch, &s, 0, MOVERS, workspace, results);
+  for (int v = 0; v < QUERY_TYPES; v++) ask_range((query_type)v, batch, &s, 0, MOVERS, workspace, results);
   const size_t before = allocations_made();
-  for (int v = 0; v < VERBS; v++) ask_range((verb)v, batch, &s, 0, MOVERS, workspace, results);
+  for (int v = 0; v < QUERY_TYPES; v++) ask_range((query_type)v, batch, &s, 0, MOVERS, workspace, results);
   assert_int_equal(allocations_made(), before);
   cprox_batch_free(batch);
   scene_free(&s);

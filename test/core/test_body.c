@@ -17,7 +17,7 @@
     cprox_body *body = (cprox_body *)&ws;                                 \
     const size_t live = allocations_live();                               \
     assert_int_equal(call, CPROX_INVALID);                                \
-    assert_string_equal(cprox_workspace_reason(ws), words);               \
+    assert_string_equal(cprox_workspace_error(ws), words);                \
     assert_true(body == (cprox_body *)&ws && allocations_live() == live); \
   } while (0)
 
@@ -128,7 +128,7 @@ CASE(a_failed_allocation_is_said_and_leaves_nothing_behind) {
     assert_int_equal(polytope, CPROX_MEMORY);
     assert_int_equal(polygon, CPROX_MEMORY);
     assert_int_equal(compound, CPROX_MEMORY);
-    assert_string_equal(cprox_workspace_reason(ws), "no memory for a body");
+    assert_string_equal(cprox_workspace_error(ws), "no memory for a body");
     assert_true(body == NULL && allocations_live() == live);
   }
   cprox_body_free(ball);

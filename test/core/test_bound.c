@@ -104,9 +104,9 @@ static problem problem_random(rng *r, cprox_workspace *ws) {
       for (int i = 0; i < 6; i++) p.vertex[i] = rng_in_cube(r, p.size.z);
       status = cprox_body_create_polytope(p.vertex, 6, ws, &p.body);
   }
-  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   status = make_curve(&p, ws);
-  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return p;
 }
 
@@ -170,8 +170,8 @@ static size_t check_node(const problem *p, rng *r, const search_node *node, cons
   return 1;
 }
 
-/* Filters, probes and splits nodes, and checks every node after every step: nodes in random order, or always one that touches the best
- * point, whose bound comes closest to the truth. */
+/* Filters, distance queries and splits nodes, and checks every node after every step: nodes in random order, or always
+ * one that touches the best point, whose bound comes closest to the truth. */
 static size_t attack(const problem *p, rng *r, cprox_workspace *ws) {
   curve_convex o;
   assert_true(

@@ -65,7 +65,7 @@ typedef struct polyhedra {
   size_t degree, n_carried, n_standing;
   vec3 points[8], carried[4], standing[4];
   cprox_pose pose;
-  double radius, padding, scale;
+  double radius, margin, scale;
 } polyhedra;
 
 static polyhedra polyhedra_random(rng *r) {
@@ -89,7 +89,7 @@ static polyhedra polyhedra_random(rng *r) {
     *g = vec(step * nearbyint(g->x / step), step * nearbyint(g->y / step), step * nearbyint(g->z / step));
   }
   p.radius = rng_index(r, 2) ? 0.0 : 0.1 * size;
-  p.padding = rng_index(r, 2) ? 0.0 : 0.1 * other;
+  p.margin = rng_index(r, 2) ? 0.0 : 0.1 * other;
   return p;
 }
 
@@ -102,7 +102,7 @@ static long double polyhedra_distance(const polyhedra *p, double t) {
   for (size_t i = 0; i < p->n_carried; i++)
     for (size_t j = 0; j < p->n_standing; j++)
       v[n++] = ref_sub(ref_add(at, ref_vec(p->carried[i])), pose_turn(&p->pose, ref_vec(p->standing[j])));
-  return distance_of_hull(v, n) - (long double)p->radius - (long double)p->padding;
+  return distance_of_hull(v, n) - (long double)p->radius - (long double)p->margin;
 }
 
 /* Seed 31, 300 cases, 12 parameters and the reported one each: exact but for long double, 1e-3 u of all sizes. */
@@ -118,7 +118,7 @@ CASE(intervals_of_carried_polytopes_contain_the_distance_in_long_double) {
     cprox_options options = cprox_options_default();
     options.epsilon = p.scale * rng_log_uniform(&r, 1e-12, 1e-3);
     cprox_result result;
-    const cprox_target target = cprox_padded(cprox_at(standing, p.pose), p.padding);
+    const cprox_obstacle target = cprox_with_margin(cprox_obstacle_at(standing, p.pose), p.margin);
     const cprox_status status = cprox_distance(mover, target, &options, ws, &result);
     assert_in_range(status, CPROX_OK, CPROX_PRECISION);
     if (status == CPROX_OK) assert_true(result.upper - result.lower <= options.epsilon);
@@ -140,8 +140,8 @@ CASE(intervals_of_carried_polytopes_contain_the_distance_in_long_double) {
 /* ---- every kind, against static pairs ------------------------------------------------------------------------------------------ */
 
 /* The pair at parameter t; its lower bound is on minus the depth where they overlap. */
-static cprox_result pair_at(const cprox_mover *mover, const cprox_target *target, double t) {
-  cprox_target moved = {.body = mover->body, .padding = mover->radius};
+static cprox_result pair_at(const cprox_mover *mover, const cprox_obstacle *target, double t) {
+  cprox_obstacle moved = {.body = mover->body, .margin = mover->radius};
   moved.pose = cprox_pose_identity();
   assert_int_equal(cprox_curve_evaluate(mover->curve, t, ws, &moved.pose.position, NULL, NULL), CPROX_OK);
   cprox_options options = cprox_options_default();
@@ -151,7 +151,7 @@ static cprox_result pair_at(const cprox_mover *mover, const cprox_target *target
   return result;
 }
 
-static void assert_agrees_with_pairs(rng *r, const cprox_mover *mover, const cprox_target *target,
+static void assert_agrees_with_pairs(rng *r, const cprox_mover *mover, const cprox_obstacle *target,
                                      const cprox_result *result, double hair) {
   for (int i = 0; i < 24; i++) {
     const double t =
@@ -189,8 +189,8 @@ CASE(every_kind_is_carried_past_every_kind) {
         mover.radius = rng_index(&r, 2) ? 0.0 : 0.05;
         cprox_pose pose = rng_pose(&r, 1.0);
         if (rng_index(&r, 3) == 0) pose.orientation = (cprox_quat){1, 0, 0, 0};
-        const cprox_target target =
-            cprox_padded(cprox_at(halfspace ? halfspace : standing.body, pose), rng_index(&r, 2) ? 0.0 : 0.1);
+        const cprox_obstacle target = cprox_with_margin(cprox_obstacle_at(halfspace ? halfspace : standing.body, pose),
+                                                        rng_index(&r, 2) ? 0.0 : 0.1);
         cprox_options options = cprox_options_default();
         options.epsilon = 1e-9;
         cprox_result result, verdict;
@@ -202,9 +202,9 @@ CASE(every_kind_is_carried_past_every_kind) {
         vec3 at;
         assert_int_equal(cprox_curve_evaluate(curve, result.t, ws, &at, NULL, NULL), CPROX_OK);
         const cprox_pose there = {.position = at, .orientation = {1, 0, 0, 0}};
-        assert_true(distance_from(carried.body, &there, result.on_mover) <= mover.radius + 1e-7);
-        assert_true(distance_from(target.body, &pose, result.on_target) <= target.padding + 1e-7);
-        const double apart = vec_norm(vec_sub(result.on_mover, result.on_target));
+        assert_true(distance_from(carried.body, &there, result.witness_mover) <= mover.radius + 1e-7);
+        assert_true(distance_from(target.body, &pose, result.witness_obstacle) <= target.margin + 1e-7);
+        const double apart = vec_norm(vec_sub(result.witness_mover, result.witness_obstacle));
         assert_true(fabs(apart - result.upper) <= 2e-7);
 
         /* verdicts agree */
@@ -241,7 +241,7 @@ CASE(compounds_are_carried_and_stand_as_the_nearest_of_their_parts) {
     vec3 points[8];
     cprox_curve *curve = random_bezier(&r, 4, rng_in_cube(&r, 2.0), 1.5, points);
     const cprox_mover mover = cprox_body_along(compound, curve);
-    const cprox_target target = cprox_at(compound, rng_pose(&r, 2.0));
+    const cprox_obstacle target = cprox_obstacle_at(compound, rng_pose(&r, 2.0));
     cprox_result result;
     assert_int_equal(cprox_distance(mover, target, NULL, ws, &result), CPROX_OK);
     assert_agrees_with_pairs(&r, &mover, &target, &result, 1e-13);
@@ -265,7 +265,7 @@ CASE(a_carried_body_is_measured_against_a_curve) {
       cprox_curve *curve = random_bezier(&r, 1 + rng_index(&r, 5), rng_in_cube(&r, 1.0), 1.0, points);
       cprox_curve *other = random_bezier(&r, 1 + rng_index(&r, 5), vec(0, 0, 0), 1.0, others);
       const cprox_mover mover = cprox_body_along(carried.body, curve);
-      cprox_target target = cprox_curve_target(other, rng_index(&r, 2) ? 0.0 : 0.05);
+      cprox_obstacle target = cprox_obstacle_curve(other, rng_index(&r, 2) ? 0.0 : 0.05);
       if (rng_index(&r, 2)) target.pose = rng_pose(&r, 1.0);
       cprox_options options = cprox_options_default();
       options.epsilon = 1e-7;
@@ -276,14 +276,14 @@ CASE(a_carried_body_is_measured_against_a_curve) {
         for (int j = 0; j < 17; j++) {
           const bool best = i == 16 && j == 16;
           const double s = i < 16 ? rng_uniform(&r, 0, 1) : result.t,
-                       t = j < 16 ? rng_uniform(&r, 0, 1) : result.t_target;
+                       t = j < 16 ? rng_uniform(&r, 0, 1) : result.t_obstacle;
           vec3 p, q;
           assert_int_equal(cprox_curve_evaluate(curve, s, ws, &p, NULL, NULL), CPROX_OK);
           assert_int_equal(cprox_curve_evaluate(other, t, ws, &q, NULL, NULL), CPROX_OK);
           const vec3l world = ref_to_world(&target.pose, ref_vec(q));
           const cprox_pose there = {.position = p, .orientation = {1, 0, 0, 0}};
           const double d = distance_from(carried.body, &there, vec((double)world.x, (double)world.y, (double)world.z)) -
-                           target.padding;
+                           target.margin;
           /* what a search for a nearest point leaves between its bounds on a callback */
           assert_true(result.lower <= fmax(d, 0.0) + 1e-9);
           if (best) assert_true(fabs(result.upper - fmax(d, 0.0)) <= 1e-8);
@@ -301,10 +301,10 @@ CASE(an_unbounded_body_is_not_carried) {
   assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 0.0, ws, &halfspace), CPROX_OK);
   cprox_curve *curve = bezier((vec3[]){{0, 0, 0}, {1, 0, 0}}, 2);
   cprox_result result = {.lower = -7.0};
-  const cprox_target target = cprox_at(halfspace, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(halfspace, cprox_pose_identity());
   assert_int_equal(cprox_distance(cprox_body_along(halfspace, curve), target, NULL, ws, &result), CPROX_INVALID);
   assert_true(result.lower == -7.0);
-  assert_string_equal(cprox_workspace_reason(ws), "the mover's body is a halfspace or has one: it must be bounded");
+  assert_string_equal(cprox_workspace_error(ws), "the mover's body is a halfspace or has one: it must be bounded");
   cprox_body_free(halfspace);
   cprox_curve_free(curve);
 }
@@ -322,7 +322,7 @@ CASE(medians_stay_within_8_nodes_and_14_probes) {
                                       {CPROX_CAPSULE, CPROX_POLYTOPE},
                                       {CPROX_ELLIPSOID, CPROX_CONE}};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
-    uint32_t nodes[PROBLEMS], probes[PROBLEMS];
+    uint32_t nodes[PROBLEMS], distance_queries[PROBLEMS];
     size_t n = 0, before = 0;
     while (n < PROBLEMS) {
       test_shape carried, standing;
@@ -334,26 +334,26 @@ CASE(medians_stay_within_8_nodes_and_14_probes) {
       options.epsilon = 1e-9;
       cprox_result result;
       before = allocations_made();
-      assert_int_equal(cprox_distance(cprox_body_along(carried.body, curve), cprox_at(standing.body, rng_pose(&r, 1.5)),
-                                      &options, ws, &result),
+      assert_int_equal(cprox_distance(cprox_body_along(carried.body, curve),
+                                      cprox_obstacle_at(standing.body, rng_pose(&r, 1.5)), &options, ws, &result),
                        CPROX_OK);
       if (n > PROBLEMS / 2) assert_int_equal(allocations_made(), before);
       if (result.upper > 0.0) {
         nodes[n] = result.nodes;
-        probes[n++] = result.probes;
+        distance_queries[n++] = result.distance_queries;
       }
       cprox_body_free(carried.body);
       cprox_body_free(standing.body);
       cprox_curve_free(curve);
     }
     qsort(nodes, PROBLEMS, sizeof *nodes, by_count);
-    qsort(probes, PROBLEMS, sizeof *probes, by_count);
-    print_message("%s past %s: median %u nodes, %u probes; 95 %%: %u, %u; most: %u, %u\n",
+    qsort(distance_queries, PROBLEMS, sizeof *distance_queries, by_count);
+    print_message("%s past %s: median %u nodes, %u distance queries; 95 %%: %u, %u; most: %u, %u\n",
                   cprox_body_kind_name(kinds[k][0]), cprox_body_kind_name(kinds[k][1]), nodes[PROBLEMS / 2],
-                  probes[PROBLEMS / 2], nodes[PROBLEMS * 19 / 20], probes[PROBLEMS * 19 / 20], nodes[PROBLEMS - 1],
-                  probes[PROBLEMS - 1]);
+                  distance_queries[PROBLEMS / 2], nodes[PROBLEMS * 19 / 20], distance_queries[PROBLEMS * 19 / 20],
+                  nodes[PROBLEMS - 1], distance_queries[PROBLEMS - 1]);
     assert_true(nodes[PROBLEMS / 2] <= 8);
-    assert_true(probes[PROBLEMS / 2] <= 14);
+    assert_true(distance_queries[PROBLEMS / 2] <= 14);
   }
 }
 

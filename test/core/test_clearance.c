@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Which targets are close, and how close each stretch of a curve is: against one query a target, and against sampling. */
+/* Which targets are close, and how close each interval of a curve is: against one query a target, and against sampling.
+ * */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -18,7 +19,7 @@ typedef struct world {
   size_t degree, n;
   double half[MOST_TARGETS];
   cprox_body *body[MOST_TARGETS];
-  cprox_target target[MOST_TARGETS];
+  cprox_obstacle target[MOST_TARGETS];
   cprox_mover mover;
 } world;
 
@@ -31,7 +32,7 @@ static world world_make(rng *r) {
     w.half[i] = rng_uniform(r, 0.02, 0.4);
     const double edge = 2.0 * w.half[i];
     assert_int_equal(cprox_body_create_box(vec(edge, edge, edge), ws, &w.body[i]), CPROX_OK);
-    w.target[i] = cprox_at(w.body[i], rng_pose(r, 3.0));
+    w.target[i] = cprox_obstacle_at(w.body[i], rng_pose(r, 3.0));
   }
   w.mover = cprox_tube_along(w.curve, rng_index(r, 2) ? rng_uniform(r, 0.0, 0.2) : 0.0);
   return w;
@@ -79,7 +80,7 @@ CASE(the_k_nearest_are_the_least_of_all_distances) {
     for (size_t j = 0; j < count; j++) {
       assert_true(fabs(nearest[j].upper - all[j]) <= 1e-9);
       assert_true(j == 0 || nearest[j - 1].upper <= nearest[j].upper);
-      for (size_t m = 0; m < j; m++) assert_true(nearest[m].target_index != nearest[j].target_index);
+      for (size_t m = 0; m < j; m++) assert_true(nearest[m].obstacle_index != nearest[j].obstacle_index);
     }
     world_free(&w);
   }
@@ -100,7 +101,7 @@ CASE(within_lists_exactly_those_within) {
     for (size_t j = 0; j < w.n; j++) {
       cprox_result one;
       assert_int_equal(cprox_distance(w.mover, w.target[j], &options, ws, &one), CPROX_OK);
-      if (next < count && near[next].target_index == (int32_t)j) {
+      if (next < count && near[next].obstacle_index == (int32_t)j) {
         assert_true(one.lower <= delta + 1e-7);
         assert_true(near[next].verdict == CPROX_UNDECIDED ||
                     (one.lower <= delta && near[next].upper - near[next].lower <= 1e-7));
@@ -116,9 +117,9 @@ CASE(within_lists_exactly_those_within) {
   assert_true(listed > 500 && left_out > 500);
 }
 
-/* 200 worlds, seed 3, up to 12 stretches each, some as short as 1e-9: the least clearance sampled in long double at 40 parameters of
- * a stretch is never below its lower bound, and the whole is the least of the parts. */
-CASE(a_profile_holds_on_every_stretch_and_adds_up_to_the_whole) {
+/* 200 worlds, seed 3, up to 12 intervals each, some as short as 1e-9: the least clearance sampled in long double at 40
+ * parameters of a interval is never below its lower bound, and the whole is the least of the parts. */
+CASE(a_profile_holds_on_every_interval_and_adds_up_to_the_whole) {
   rng r = rng_seed(3);
   for (size_t i = 0, cases = test_cases(200); i < cases; i++) {
     world w = world_make(&r);
@@ -130,22 +131,22 @@ CASE(a_profile_holds_on_every_stretch_and_adds_up_to_the_whole) {
       breaks[k] = rng_index(&r, 8) ? rng_uniform(&r, 0.001, 0.999) : fmin(breaks[k - 1] + 1e-9, 0.99);
     breaks[n] = 1.0;
     qsort(breaks, n + 1, sizeof *breaks, ascending);
-    cprox_stretch stretch[12];
-    const cprox_status status = cprox_profile(w.mover, w.target, w.n, breaks, n, &options, ws, stretch);
-    if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+    cprox_profile_interval interval[12];
+    const cprox_status status = cprox_profile(w.mover, w.target, w.n, breaks, n, &options, ws, interval);
+    if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
     double least = INFINITY;
     for (size_t k = 0; k < n; k++) {
-      assert_true(stretch[k].upper - stretch[k].lower <= 1e-8);
-      assert_true(stretch[k].t >= breaks[k] && stretch[k].t <= breaks[k + 1]);
-      assert_true(fabs((double)clearance_at(&w, stretch[k].t) - stretch[k].upper) <= 1e-13);
+      assert_true(interval[k].upper - interval[k].lower <= 1e-8);
+      assert_true(interval[k].t >= breaks[k] && interval[k].t <= breaks[k + 1]);
+      assert_true(fabs((double)clearance_at(&w, interval[k].t) - interval[k].upper) <= 1e-13);
       for (int m = 0; m <= 40; m++) {
         const long double t =
             (long double)breaks[k] + ((long double)breaks[k + 1] - (long double)breaks[k]) * m / 40.0L;
         const long double d = clearance_at(&w, t);
-        if (d < (long double)stretch[k].lower - 1e-14L)
-          fail_msg("case %zu, stretch %zu: %.17Lg < %.17g", i, k, d, stretch[k].lower);
+        if (d < (long double)interval[k].lower - 1e-14L)
+          fail_msg("case %zu, interval %zu: %.17Lg < %.17g", i, k, d, interval[k].lower);
       }
-      least = fmin(least, stretch[k].upper);
+      least = fmin(least, interval[k].upper);
     }
     cprox_result whole;
     assert_int_equal(cprox_distance_all(w.mover, w.target, w.n, &options, ws, &whole, NULL), CPROX_OK);
@@ -154,28 +155,28 @@ CASE(a_profile_holds_on_every_stretch_and_adds_up_to_the_whole) {
   }
 }
 
-/* A spline of 60 pieces whose clearance over a floor is known, in stretches that cut pieces anywhere. */
-CASE(stretches_may_begin_and_end_inside_pieces) {
-  enum { N = 63, STRETCHES = 17 };
+/* A spline of 60 pieces whose clearance over a floor is known, in intervals that cut pieces anywhere. */
+CASE(intervals_may_begin_and_end_inside_pieces) {
+  enum { N = 63, INTERVALS = 17 };
   vec3 p[N];
-  double knots[N + 4], breaks[STRETCHES + 1];
+  double knots[N + 4], breaks[INTERVALS + 1];
   for (int i = 0; i < N; i++) p[i] = vec(i, 0, 1.0 + 0.1 * i);
   for (int i = 0; i < N + 4; i++) knots[i] = i;
-  for (int i = 0; i <= STRETCHES; i++) breaks[i] = 3.0 + 60.0 * i / STRETCHES;
+  for (int i = 0; i <= INTERVALS; i++) breaks[i] = 3.0 + 60.0 * i / INTERVALS;
   cprox_curve *curve = NULL;
   assert_int_equal(cprox_curve_create_bspline(p, N, 3, knots, N + 4, 3, N, ws, &curve), CPROX_OK);
   cprox_body *floor = NULL;
   assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 0, ws, &floor), CPROX_OK);
-  const cprox_target target = cprox_at(floor, cprox_pose_identity());
-  cprox_stretch stretch[STRETCHES];
+  const cprox_obstacle target = cprox_obstacle_at(floor, cprox_pose_identity());
+  cprox_profile_interval interval[INTERVALS];
   const cprox_options options = cprox_options_default();
-  assert_int_equal(cprox_profile(cprox_point_along(curve), &target, 1, breaks, STRETCHES, &options, ws, stretch),
+  assert_int_equal(cprox_profile(cprox_point_along(curve), &target, 1, breaks, INTERVALS, &options, ws, interval),
                    CPROX_OK);
-  for (int i = 0; i < STRETCHES; i++) {
+  for (int i = 0; i < INTERVALS; i++) {
     /* z(t) = 1 + 0.1 (t - 2) */
     const double least = 1.0 + 0.1 * (breaks[i] - 2.0);
-    assert_true(stretch[i].lower <= least + 1e-12 && stretch[i].upper >= least - 1e-12 &&
-                stretch[i].upper <= least + 1e-6);
+    assert_true(interval[i].lower <= least + 1e-12 && interval[i].upper >= least - 1e-12 &&
+                interval[i].upper <= least + 1e-6);
   }
   cprox_body_free(floor);
   cprox_curve_free(curve);
@@ -185,16 +186,17 @@ CASE(unusable_arguments_are_named) {
   rng r = rng_seed(5);
   world w = world_make(&r);
   cprox_result result[MOST_TARGETS];
-  cprox_stretch stretch[2];
+  cprox_profile_interval interval[2];
   size_t count = 7;
   assert_int_equal(cprox_nearest(w.mover, w.target, w.n, 0, NULL, ws, result, &count), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "k is 0: ask for at least one target");
+  assert_string_equal(cprox_workspace_error(ws), "k is 0: ask for at least one target");
   assert_int_equal(cprox_within(w.mover, w.target, w.n, -1.0, NULL, ws, result, &count), CPROX_INVALID);
   assert_int_equal(count, 7);
-  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 0.5, 0.5}, 2, NULL, ws, stretch), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "break 2 is 0.5, not above break 1 at 0.5");
-  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 1.5}, 1, NULL, ws, stretch), CPROX_INVALID);
-  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, NAN}, 1, NULL, ws, stretch), CPROX_INVALID);
+  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 0.5, 0.5}, 2, NULL, ws, interval),
+                   CPROX_INVALID);
+  assert_string_equal(cprox_workspace_error(ws), "break 2 is 0.5, not above break 1 at 0.5");
+  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 1.5}, 1, NULL, ws, interval), CPROX_INVALID);
+  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, NAN}, 1, NULL, ws, interval), CPROX_INVALID);
   world_free(&w);
 }
 
@@ -202,12 +204,12 @@ CASE(with_no_targets_everything_is_infinitely_far) {
   rng r = rng_seed(6);
   world w = world_make(&r);
   cprox_result result[1];
-  cprox_stretch stretch[1];
+  cprox_profile_interval interval[1];
   size_t count = 7;
   assert_int_equal(cprox_nearest(w.mover, NULL, 0, 3, NULL, ws, result, &count), CPROX_OK);
   assert_int_equal(count, 0);
-  assert_int_equal(cprox_profile(w.mover, NULL, 0, (double[]){0, 1}, 1, NULL, ws, stretch), CPROX_OK);
-  assert_true(isinf(stretch[0].lower) && isinf(stretch[0].upper) && stretch[0].target_index == -1);
+  assert_int_equal(cprox_profile(w.mover, NULL, 0, (double[]){0, 1}, 1, NULL, ws, interval), CPROX_OK);
+  assert_true(isinf(interval[0].lower) && isinf(interval[0].upper) && interval[0].obstacle_index == -1);
   world_free(&w);
 }
 
@@ -215,13 +217,14 @@ CASE(nothing_is_allocated_once_the_workspace_has_grown) {
   rng r = rng_seed(7);
   world w = world_make(&r);
   cprox_result result[MOST_TARGETS], first;
-  cprox_stretch stretch[4];
+  cprox_profile_interval interval[4];
   size_t count, before = 0;
   for (int round = 0; round < 3; round++) {
     assert_int_equal(cprox_nearest(w.mover, w.target, w.n, 3, NULL, ws, result, &count), CPROX_OK);
     assert_int_equal(cprox_within(w.mover, w.target, w.n, 1.0, NULL, ws, result, &count), CPROX_OK);
-    assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 0.2, 0.7, 1}, 3, NULL, ws, stretch), CPROX_OK);
-    assert_int_equal(cprox_first_contact_all(w.mover, w.target, w.n, NULL, ws, &first), CPROX_OK);
+    assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 0.2, 0.7, 1}, 3, NULL, ws, interval),
+                     CPROX_OK);
+    assert_int_equal(cprox_time_of_contact_all(w.mover, w.target, w.n, NULL, ws, &first), CPROX_OK);
     if (round == 1) before = allocations_made();
   }
   assert_int_equal(allocations_made(), before);

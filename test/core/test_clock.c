@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Two movers on one clock: their distance at the same parameter, whatever they carry. */
+/* Two movers synchronized: their distance at the same parameter, whatever they carry. */
 #include <string.h>
 
 #include "base/rounding.h"
@@ -15,7 +15,7 @@
 
 static cprox_curve *bezier_on(const vec3 *points, size_t n, double t0, double t1) {
   cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, t0, t1, ws, &curve) != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (cprox_curve_create_bezier(points, n, t0, t1, ws, &curve) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }
 
@@ -51,7 +51,7 @@ CASE(points_on_one_clock_are_as_near_as_long_double_says) {
     cprox_options options = cprox_options_default();
     options.epsilon = scale * rng_log_uniform(&r, 1e-13, 1e-3);
     cprox_result result;
-    const cprox_status status = cprox_distance(mover, cprox_on_clock(other), &options, ws, &result);
+    const cprox_status status = cprox_distance(mover, cprox_synchronized(other), &options, ws, &result);
     assert_in_range(status, CPROX_OK, CPROX_PRECISION);
     if (status == CPROX_OK) assert_true(result.upper - result.lower <= options.epsilon);
     const long double radii = (long double)mover.radius + (long double)other.radius;
@@ -65,7 +65,7 @@ CASE(points_on_one_clock_are_as_near_as_long_double_says) {
         assert_true(fabsl((long double)result.upper - fmaxl(d, 0.0L)) <=
                     (t0 > 0.0 ? 1e-4L : 1e-9L) * (long double)scale);
     }
-    assert_true(result.t_target == result.t);
+    assert_true(result.t_obstacle == result.t);
     cprox_curve_free(first);
     cprox_curve_free(second);
   }
@@ -103,12 +103,12 @@ CASE(the_relative_curve_is_within_its_error) {
   assert_true(worst > 0.01L);
 }
 
-static cprox_result pair_at(const cprox_mover *mover, const cprox_target *target, double t) {
+static cprox_result pair_at(const cprox_mover *mover, const cprox_obstacle *target, double t) {
   cprox_body *point = NULL;
   assert_int_equal(cprox_body_create_point(vec(0, 0, 0), ws, &point), CPROX_OK);
-  cprox_target a = {.body = mover->body ? mover->body : point, .padding = mover->radius};
-  cprox_target b = *target;
-  b.on_clock = false, b.curve = NULL;
+  cprox_obstacle a = {.body = mover->body ? mover->body : point, .margin = mover->radius};
+  cprox_obstacle b = *target;
+  b.synchronized = false, b.curve = NULL;
   if (!b.body) b.body = point;
   a.pose = cprox_pose_identity();
   vec3 at;
@@ -135,7 +135,7 @@ static cprox_curve *spline(rng *r, size_t n, size_t degree, double t1) {
   if (rng_index(r, 2) && degree > 1 && n > degree + 2) knots[degree + 2] = knots[degree + 1]; /* a double knot */
   cprox_curve *curve = NULL;
   if (cprox_curve_create_bspline(points, n, degree, knots, n + degree + 1, 0.0, t1, ws, &curve) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
+    fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }
 
@@ -156,7 +156,7 @@ CASE(splines_that_carry_bodies_agree_with_static_pairs) {
     if (rng_index(&r, 3)) mover.body = a.body;
     if (rng_index(&r, 3)) other.body = b.body;
     mover.radius = rng_index(&r, 2) ? 0.0 : 0.05;
-    cprox_target target = cprox_on_clock(other);
+    cprox_obstacle target = cprox_synchronized(other);
     if (rng_index(&r, 2)) target.pose = rng_pose(&r, 1.0);
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-9;
@@ -168,7 +168,7 @@ CASE(splines_that_carry_bodies_agree_with_static_pairs) {
     const cprox_result here = pair_at(&mover, &target, result.t);
     assert_true(result.upper >= here.lower - 1e-12);
     assert_true(result.upper <= fmax(here.upper, 0.0) + 1e-8);
-    assert_true(fabs(vec_norm(vec_sub(result.on_mover, result.on_target)) - result.upper) <= 1e-7);
+    assert_true(fabs(vec_norm(vec_sub(result.witness_mover, result.witness_obstacle)) - result.upper) <= 1e-7);
     cprox_body_free(a.body);
     cprox_body_free(b.body);
     cprox_curve_free(first);
@@ -180,15 +180,16 @@ CASE(two_that_cross_at_different_times_do_not_meet) {
   cprox_curve *first = bezier_on((vec3[]){{-1, 0, 0}, {1, 0, 0}}, 2, 0.0, 1.0);
   cprox_curve *second = bezier_on((vec3[]){{0, -1, 0}, {0, 3, 0}}, 2, 0.0, 1.0);
   cprox_result result;
-  assert_int_equal(cprox_distance(cprox_point_along(first), cprox_curve_target(second, 0.0), NULL, ws, &result),
+  assert_int_equal(cprox_distance(cprox_point_along(first), cprox_obstacle_curve(second, 0.0), NULL, ws, &result),
                    CPROX_OK);
   assert_true(result.upper < 1e-6);
   /* at t they are at (2t - 1, 0) and (0, 4t - 1): least at t = 0.3, where that is (-0.4, 0) and (0, 0.2) */
   assert_int_equal(
-      cprox_distance(cprox_point_along(first), cprox_on_clock(cprox_point_along(second)), NULL, ws, &result), CPROX_OK);
+      cprox_distance(cprox_point_along(first), cprox_synchronized(cprox_point_along(second)), NULL, ws, &result),
+      CPROX_OK);
   assert_true(result.lower <= 0.44721359549995793 && 0.44721359549995793 <= result.upper);
-  assert_true(fabs(result.t - 0.3) < 1e-9 && result.t_target == result.t);
-  assert_true(fabs(result.on_mover.x + 0.4) < 1e-9 && fabs(result.on_target.y - 0.2) < 1e-9);
+  assert_true(fabs(result.t - 0.3) < 1e-9 && result.t_obstacle == result.t);
+  assert_true(fabs(result.witness_mover.x + 0.4) < 1e-9 && fabs(result.witness_obstacle.y - 0.2) < 1e-9);
   cprox_curve_free(first);
   cprox_curve_free(second);
 }
@@ -198,7 +199,8 @@ CASE(one_and_the_same_mover_is_at_distance_0) {
   cprox_curve *curve = spline(&r, 8, 3, 2.0);
   cprox_result result;
   assert_int_equal(
-      cprox_distance(cprox_point_along(curve), cprox_on_clock(cprox_point_along(curve)), NULL, ws, &result), CPROX_OK);
+      cprox_distance(cprox_point_along(curve), cprox_synchronized(cprox_point_along(curve)), NULL, ws, &result),
+      CPROX_OK);
   assert_true(result.lower == 0.0 && result.upper <= 1e-12);
   cprox_curve_free(curve);
 }
@@ -208,12 +210,12 @@ CASE(different_domains_are_refused) {
   cprox_curve *second = bezier_on((vec3[]){{0, -1, 0}, {0, 3, 0}}, 2, 0.0, 1.5);
   cprox_result result = {.lower = -7.0};
   assert_int_equal(
-      cprox_distance(cprox_point_along(first), cprox_on_clock(cprox_point_along(second)), NULL, ws, &result),
+      cprox_distance(cprox_point_along(first), cprox_synchronized(cprox_point_along(second)), NULL, ws, &result),
       CPROX_INVALID);
   assert_true(result.lower == -7.0);
-  assert_string_equal(cprox_workspace_reason(ws),
+  assert_string_equal(cprox_workspace_error(ws),
                       "target 0 is on the mover's clock, but its curve runs over [0, 1.5] and the mover's over [0, 1]");
-  const cprox_target nothing = {.on_clock = true, .pose = cprox_pose_identity()};
+  const cprox_obstacle nothing = {.synchronized = true, .pose = cprox_pose_identity()};
   assert_int_equal(cprox_distance(cprox_point_along(first), nothing, NULL, ws, &result), CPROX_INVALID);
   cprox_curve_free(first);
   cprox_curve_free(second);
@@ -225,12 +227,12 @@ CASE(clocks_stand_among_other_targets_and_allocate_once) {
   cprox_curve *curve = spline(&r, 9, 3, 1.0), *other[8];
   cprox_body *box = NULL;
   assert_int_equal(cprox_body_create_box(vec(0.1, 0.2, 0.3), ws, &box), CPROX_OK);
-  cprox_target targets[9];
+  cprox_obstacle targets[9];
   for (int i = 0; i < 8; i++) {
     other[i] = spline(&r, 5 + rng_index(&r, 6), 1 + rng_index(&r, 4), 1.0);
-    targets[i] = cprox_on_clock(cprox_body_along(box, other[i]));
+    targets[i] = cprox_synchronized(cprox_body_along(box, other[i]));
   }
-  targets[8] = cprox_at(box, rng_pose(&r, 2.0));
+  targets[8] = cprox_obstacle_at(box, rng_pose(&r, 2.0));
   cprox_result nearest, each[9];
   size_t before = 0;
   for (int round = 0; round < 2; round++) {

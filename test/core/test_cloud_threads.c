@@ -12,7 +12,7 @@
 static cprox_body *cloud(const vec3 *points, size_t n, cprox_workspace *ws) {
   cprox_body *body = NULL;
   if (cprox_body_create_points(points, n, 0.01, SIZE_MAX, ws, &body) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
+    fail_msg("%s", cprox_workspace_error(ws));
   return body;
 }
 
@@ -63,7 +63,7 @@ CASE(updated_clouds_answer_as_new_ones_do) {
       cprox_body *next = NULL;
       cprox_body *retired = update % 3 ? before : NULL;
       if (cprox_body_update_points(now, changed, places, n, retired, ws, &next) != CPROX_OK)
-        fail_msg("%s", cprox_workspace_reason(ws));
+        fail_msg("%s", cprox_workspace_error(ws));
       if (!retired) cprox_body_free(before);
       assert_true(cprox_body_nearest(now, seen, NULL) == as_was);
       before = now, now = next;
@@ -79,10 +79,12 @@ CASE(updated_clouds_answer_as_new_ones_do) {
       }
       cprox_curve *curve = random_curve(&r);
       cprox_result a, b;
-      assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_at(now, cprox_pose_identity()), NULL, ws, &a),
-                       CPROX_OK);
-      assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_at(anew, cprox_pose_identity()), NULL, ws, &b),
-                       CPROX_OK);
+      assert_int_equal(
+          cprox_distance(cprox_point_along(curve), cprox_obstacle_at(now, cprox_pose_identity()), NULL, ws, &a),
+          CPROX_OK);
+      assert_int_equal(
+          cprox_distance(cprox_point_along(curve), cprox_obstacle_at(anew, cprox_pose_identity()), NULL, ws, &b),
+          CPROX_OK);
       assert_true(a.lower <= b.upper && b.lower <= a.upper);
       cprox_curve_free(curve);
       cprox_body_free(anew);
@@ -100,7 +102,7 @@ CASE(bad_updates_are_refused) {
   cprox_body *body = cloud(points, 2, ws), *other = cloud(points, 2, ws), *ball = NULL, *made = NULL;
   assert_int_equal(cprox_body_create_sphere(1.0, ws, &ball), CPROX_OK);
   assert_int_equal(cprox_body_update_points(body, which, points, 1, NULL, ws, &made), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(ws), "point 2"));
+  assert_non_null(strstr(cprox_workspace_error(ws), "point 2"));
   assert_int_equal(cprox_body_update_points(body, first, wrong, 1, NULL, ws, &made), CPROX_INVALID);
   assert_int_equal(cprox_body_update_points(ball, first, points, 1, NULL, ws, &made), CPROX_INVALID);
   assert_int_equal(cprox_body_update_points(body, first, points, 1, other, ws, &made), CPROX_INVALID);
@@ -142,7 +144,7 @@ static void *reader(void *argument) {
     /* all points of the plane stand at one height: the distance says which state was seen */
     cprox_result r;
     const cprox_status status =
-        cprox_distance(cprox_point_along(curve), cprox_at(b->body[mine], cprox_pose_identity()), NULL, ws, &r);
+        cprox_distance(cprox_point_along(curve), cprox_obstacle_at(b->body[mine], cprox_pose_identity()), NULL, ws, &r);
     wrong += status != CPROX_OK || fabs(r.upper - (5.0 - b->shift[mine] - 0.01)) > 1e-3;
     pthread_mutex_lock(&b->mutex);
     b->held[mine]--;

@@ -58,7 +58,7 @@ CASE(halves_are_within_the_error_that_the_cut_states) {
     }
   }
   print_message("largest error / stated error: %.2Lf\n", worst);
-  assert_true(worst > 0.05L); /* the bound is not padding */
+  assert_true(worst > 0.05L); /* the bound is not margin */
 }
 
 /* A short arc at nearly constant distance from the centre: there the Bernstein coefficients lie close to the truth, and a bound

@@ -20,39 +20,39 @@ static void check_case(const char *id, const cprox_curve *a, const cprox_curve *
   const double epsilon = 1e-9, doubt = 4.0 * ROUND_U * reference + (reference < 1e-15 ? 1e-16 : 0.0);
   const cprox_options options = accurate(epsilon);
   cprox_result r;
-  assert_int_equal(cprox_distance(cprox_point_along(a), cprox_curve_target(b, 0.0), &options, ws, &r), CPROX_OK);
+  assert_int_equal(cprox_distance(cprox_point_along(a), cprox_obstacle_curve(b, 0.0), &options, ws, &r), CPROX_OK);
   if (r.lower > reference + doubt || r.upper < reference - doubt || r.upper - r.lower > epsilon)
     fail_msg("%s: [%.17g, %.17g] against %.17g", id, r.lower, r.upper, reference);
 
   /* the witness points are those of the parameters, and as far apart as upper says */
   vec3 p, q;
   assert_int_equal(cprox_curve_evaluate(a, r.t, ws, &p, NULL, NULL), CPROX_OK);
-  assert_int_equal(cprox_curve_evaluate(b, r.t_target, ws, &q, NULL, NULL), CPROX_OK);
-  assert_true(vec_norm(vec_sub(p, r.on_mover)) < 1e-12 && vec_norm(vec_sub(q, r.on_target)) < 1e-12);
-  assert_true(fabs(vec_norm(vec_sub(r.on_mover, r.on_target)) - r.upper) < 1e-12);
+  assert_int_equal(cprox_curve_evaluate(b, r.t_obstacle, ws, &q, NULL, NULL), CPROX_OK);
+  assert_true(vec_norm(vec_sub(p, r.witness_mover)) < 1e-12 && vec_norm(vec_sub(q, r.witness_obstacle)) < 1e-12);
+  assert_true(fabs(vec_norm(vec_sub(r.witness_mover, r.witness_obstacle)) - r.upper) < 1e-12);
 
   /* the other way round, with tubes, and the verdicts */
   cprox_result other;
-  assert_int_equal(cprox_distance(cprox_point_along(b), cprox_curve_target(a, 0.0), &options, ws, &other), CPROX_OK);
+  assert_int_equal(cprox_distance(cprox_point_along(b), cprox_obstacle_curve(a, 0.0), &options, ws, &other), CPROX_OK);
   assert_true(other.lower <= r.upper && r.lower <= other.upper);
   if (reference < 1e-6) {
-    assert_true(cprox_collision(cprox_point_along(a), cprox_curve_target(b, 0.0), &options, ws, &other) >= 0);
+    assert_true(cprox_collision(cprox_point_along(a), cprox_obstacle_curve(b, 0.0), &options, ws, &other) >= 0);
     assert_true(other.verdict != CPROX_NO || other.lower <= reference);
-    assert_int_equal(cprox_collision(cprox_tube_along(a, 1e-3), cprox_curve_target(b, 1e-3), &options, ws, &other),
+    assert_int_equal(cprox_collision(cprox_tube_along(a, 1e-3), cprox_obstacle_curve(b, 1e-3), &options, ws, &other),
                      CPROX_OK);
     assert_int_equal(other.verdict, CPROX_YES);
     return;
   }
   const double radius = 0.25 * reference;
-  assert_int_equal(cprox_distance(cprox_tube_along(a, radius), cprox_curve_target(b, radius), &options, ws, &other),
+  assert_int_equal(cprox_distance(cprox_tube_along(a, radius), cprox_obstacle_curve(b, radius), &options, ws, &other),
                    CPROX_OK);
   assert_true(other.lower <= 0.5 * reference + doubt && other.upper >= 0.5 * reference - doubt);
-  assert_int_equal(cprox_collision(cprox_point_along(a), cprox_curve_target(b, 0.0), &options, ws, &other), CPROX_OK);
+  assert_int_equal(cprox_collision(cprox_point_along(a), cprox_obstacle_curve(b, 0.0), &options, ws, &other), CPROX_OK);
   assert_int_equal(other.verdict, CPROX_NO);
   const double factors[] = {0.5, 0.99, 1.01, 1.5};
   for (int k = 0; k < 4; k++) {
     const cprox_mover mover = cprox_point_along(a);
-    assert_int_equal(cprox_tolerance(mover, cprox_curve_target(b, 0.0), factors[k] * reference, &options, ws, &other),
+    assert_int_equal(cprox_tolerance(mover, cprox_obstacle_curve(b, 0.0), factors[k] * reference, &options, ws, &other),
                      CPROX_OK);
     assert_int_equal(other.verdict, factors[k] < 1.0 ? CPROX_YES : CPROX_NO);
   }
@@ -167,8 +167,9 @@ static cprox_result ask(const vec3 *a, size_t na, const vec3 *b, size_t nb, doub
   cprox_curve *first = bezier(a, na), *second = bezier(b, nb);
   const cprox_options options = accurate(epsilon);
   cprox_result r, verdict;
-  assert_true(cprox_distance(cprox_point_along(first), cprox_curve_target(second, 0.0), &options, ws, &r) >= 0);
-  assert_true(cprox_collision(cprox_point_along(first), cprox_curve_target(second, 0.0), &options, ws, &verdict) >= 0);
+  assert_true(cprox_distance(cprox_point_along(first), cprox_obstacle_curve(second, 0.0), &options, ws, &r) >= 0);
+  assert_true(cprox_collision(cprox_point_along(first), cprox_obstacle_curve(second, 0.0), &options, ws, &verdict) >=
+              0);
   if (r.upper <= epsilon) assert_int_not_equal(verdict.verdict, CPROX_NO);
   if (r.lower > 0.0) assert_int_equal(verdict.verdict, CPROX_NO);
   if (r.nodes > most_nodes || verdict.nodes > most_nodes) fail_msg("%u and %u nodes", r.nodes, verdict.nodes);
@@ -215,7 +216,7 @@ CASE(concentric_arcs_spend_their_budget_and_say_so) {
     options.max_nodes = budget;
     cprox_result r;
     const cprox_status status =
-        cprox_distance(cprox_point_along(first), cprox_curve_target(second, 0.0), &options, ws, &r);
+        cprox_distance(cprox_point_along(first), cprox_obstacle_curve(second, 0.0), &options, ws, &r);
     assert_true(status == CPROX_BUDGET || status == CPROX_OK);
     assert_true(r.lower <= 1.0 && r.upper >= 1.0 - 1e-9 && r.upper - r.lower < width);
     width = r.upper - r.lower;
@@ -241,7 +242,7 @@ CASE(long_splines_are_searched_by_their_trees) {
     assert_int_equal(cprox_curve_create_bspline(points[k], N, 3, knots, N + 4, knots[3], knots[N], ws, &curve[k]),
                      CPROX_OK);
   cprox_result r;
-  assert_int_equal(cprox_distance(cprox_point_along(curve[0]), cprox_curve_target(curve[1], 0.0), NULL, ws, &r),
+  assert_int_equal(cprox_distance(cprox_point_along(curve[0]), cprox_obstacle_curve(curve[1], 0.0), NULL, ws, &r),
                    CPROX_OK);
   assert_true(r.upper - r.lower <= 1e-6);
   double least = INFINITY;
@@ -262,10 +263,10 @@ CASE(long_splines_are_searched_by_their_trees) {
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
   const cprox_pose far = {.position = {-50, 0, 0}, .orientation = {1, 0, 0, 0}};
-  const cprox_target targets[] = {cprox_at(ball, far), cprox_curve_target(curve[1], 0.0)};
+  const cprox_obstacle targets[] = {cprox_obstacle_at(ball, far), cprox_obstacle_curve(curve[1], 0.0)};
   cprox_result all;
   assert_int_equal(cprox_distance_all(cprox_point_along(curve[0]), targets, 2, NULL, ws, &all, NULL), CPROX_OK);
-  assert_true(all.target_index == 1 && all.lower <= r.upper && r.lower <= all.upper);
+  assert_true(all.obstacle_index == 1 && all.lower <= r.upper && r.lower <= all.upper);
   cprox_body_free(ball);
   for (int k = 0; k < 2; k++) cprox_curve_free(curve[k]);
 }
@@ -320,7 +321,7 @@ CASE(verdicts_about_pieces_take_few_nodes) {
       curve[k] = bezier(points, POINTS);
     }
     const cprox_mover mover = cprox_point_along(curve[0]);
-    const cprox_target target = cprox_curve_target(curve[1], 0.0);
+    const cprox_obstacle target = cprox_obstacle_curve(curve[1], 0.0);
     cprox_result distance, violated, clear;
     assert_int_equal(cprox_distance(mover, target, NULL, ws, &distance), CPROX_OK);
     if (distance.lower > 0.02) {
@@ -341,16 +342,17 @@ CASE(a_target_is_a_body_or_a_curve_and_not_both) {
   cprox_curve *curve = bezier((vec3[]){{0, 0, 0}, {1, 0, 0}}, 2);
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
-  cprox_target both = cprox_curve_target(curve, 0.0);
+  cprox_obstacle both = cprox_obstacle_curve(curve, 0.0);
   both.body = ball;
   cprox_result r;
   assert_int_equal(cprox_distance(cprox_point_along(curve), both, NULL, ws, &r), CPROX_INVALID);
-  assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_curve_target(NULL, 0.0), NULL, ws, &r),
+  assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_obstacle_curve(NULL, 0.0), NULL, ws, &r),
                    CPROX_INVALID);
-  assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_curve_target(curve, -1.0), NULL, ws, &r),
+  assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_obstacle_curve(curve, -1.0), NULL, ws, &r),
                    CPROX_INVALID);
-  assert_int_equal(cprox_pair(cprox_curve_target(curve, 0.0), cprox_at(ball, cprox_pose_identity()), NULL, ws, &r),
-                   CPROX_INVALID);
+  assert_int_equal(
+      cprox_pair(cprox_obstacle_curve(curve, 0.0), cprox_obstacle_at(ball, cprox_pose_identity()), NULL, ws, &r),
+      CPROX_INVALID);
   cprox_body_free(ball);
   cprox_curve_free(curve);
 }

@@ -21,7 +21,7 @@ static const good_spline good = {.points = {{0, 0, 0}, {1, 0, 0}, {2, 1, 0}, {3,
 static void refused(cprox_status status, const cprox_curve *curve, const char *reason) {
   assert_int_equal(status, CPROX_INVALID);
   assert_ptr_equal(curve, workspace); /* the mark that was there before */
-  assert_string_equal(cprox_workspace_reason(workspace), reason);
+  assert_string_equal(cprox_workspace_error(workspace), reason);
 }
 
 static void bezier_refused(const vec3 *points, size_t n, double t0, double t1, const char *reason) {
@@ -180,43 +180,42 @@ CASE(bad_nodes_and_values_are_refused) {
 
 CASE(a_missing_result_pointer_is_refused) {
   assert_int_equal(cprox_curve_create_bezier(good.points, 5, 0, 1, workspace, NULL), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace), "the pointer for the new curve is NULL");
+  assert_string_equal(cprox_workspace_error(workspace), "the pointer for the new curve is NULL");
   assert_int_equal(cprox_curve_create_polynomial(good.points, 5, 0, 1, workspace, NULL), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace), "the pointer for the new curve is NULL");
+  assert_string_equal(cprox_workspace_error(workspace), "the pointer for the new curve is NULL");
   assert_int_equal(cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, NULL), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace), "the pointer for the new curve is NULL");
+  assert_string_equal(cprox_workspace_error(workspace), "the pointer for the new curve is NULL");
 }
 
-CASE(questions_outside_the_range_are_refused) {
+CASE(queries_outside_the_range_are_refused) {
   cprox_curve *curve = NULL;
   assert_int_equal(cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, &curve), CPROX_OK);
-  assert_string_equal(cprox_workspace_reason(workspace), "");
+  assert_string_equal(cprox_workspace_error(workspace), "");
   vec3 p = {7, 7, 7}, part[3] = {{7, 7, 7}};
   const double outside[4] = {-1e-9, 1.5, NAN, INFINITY};
   for (size_t k = 0; k < 4; k++)
     assert_int_equal(cprox_curve_evaluate(curve, outside[k], workspace, &p, &p, &p), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace), "t = inf is outside the curve's range [0, 1]");
+  assert_string_equal(cprox_workspace_error(workspace), "t = inf is outside the curve's range [0, 1]");
   assert_int_equal(cprox_curve_evaluate(NULL, 0.0, workspace, &p, NULL, NULL), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace), "the curve is NULL");
+  assert_string_equal(cprox_workspace_error(workspace), "the curve is NULL");
 
   assert_int_equal(cprox_curve_control_points(curve, 0.2, 0.2, workspace, part), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace),
-                      "a = 0.20000000000000001 is not below b = 0.20000000000000001");
+  assert_string_equal(cprox_workspace_error(workspace), "a = 0.20000000000000001 is not below b = 0.20000000000000001");
   assert_int_equal(cprox_curve_control_points(curve, 0.0, NAN, workspace, part), CPROX_INVALID);
   assert_int_equal(cprox_curve_control_points(curve, -1.0, 0.1, workspace, part), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace), "[-1, 0.10000000000000001] leaves the curve's range [0, 1]");
+  assert_string_equal(cprox_workspace_error(workspace), "[-1, 0.10000000000000001] leaves the curve's range [0, 1]");
   assert_int_equal(cprox_curve_control_points(curve, 0.75, 1.5, workspace, part), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace), "[0.75, 1.5] leaves the curve's range [0, 1]");
+  assert_string_equal(cprox_workspace_error(workspace), "[0.75, 1.5] leaves the curve's range [0, 1]");
   assert_int_equal(cprox_curve_control_points(curve, 0.25, 0.75, workspace, part), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace), "two pieces join at 0.40000000000000002, inside [0.25, 0.75]");
+  assert_string_equal(cprox_workspace_error(workspace), "two pieces join at 0.40000000000000002, inside [0.25, 0.75]");
   assert_int_equal(cprox_curve_control_points(curve, 0.0, 0.1, workspace, NULL), CPROX_INVALID);
   assert_int_equal(cprox_curve_control_points(NULL, 0.0, 0.1, workspace, part), CPROX_INVALID);
 
-  /* nothing was written, and the next good question is answered */
+  /* nothing was written, and the next good query is answered */
   assert_true(p.x == 7.0 && part[0].x == 7.0);
   assert_int_equal(cprox_curve_control_points(curve, 0.4, 0.5, workspace, part), CPROX_OK);
   assert_int_equal(cprox_curve_evaluate(curve, 1.0, workspace, &p, NULL, NULL), CPROX_OK);
-  assert_string_equal(cprox_workspace_reason(workspace), "");
+  assert_string_equal(cprox_workspace_error(workspace), "");
   cprox_curve_free(curve);
 }
 
@@ -244,7 +243,7 @@ CASE(memory_that_is_out_leaks_nothing) {
       }
       assert_int_equal(status, CPROX_MEMORY);
       assert_ptr_equal(curve, workspace);
-      assert_int_equal(strncmp(cprox_workspace_reason(workspace), "no memory for a curve", 21), 0);
+      assert_int_equal(strncmp(cprox_workspace_error(workspace), "no memory for a curve", 21), 0);
       assert_int_equal(allocations_live(), live);
     }
     assert_true(successes >= 6); /* it did fail, once for each allocation */

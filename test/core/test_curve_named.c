@@ -70,7 +70,7 @@ static cprox_curve *compile(series s) {
 static size_t asked;
 
 /* The reference is rounded to 17 digits and coefficients to double: 1e-15. 2π as a double leaves out less than that. */
-static void check(const char *id, const cprox_curve *curve, cprox_target target) {
+static void check(const char *id, const cprox_curve *curve, cprox_obstacle target) {
   csv_table ref = csv_read("reference/named_ref.csv");
   const double reference = csv_number(&ref, csv_find(&ref, id), 1);
   asked++;
@@ -82,7 +82,7 @@ static void check(const char *id, const cprox_curve *curve, cprox_target target)
     cprox_result r;
     const cprox_status status = cprox_distance(cprox_point_along(curve), target, &options, ws, &r);
     if (status != CPROX_OK)
-      fail_msg("%s: %s (%s), [%.17g, %.17g]", id, cprox_status_name(status), cprox_workspace_reason(ws), r.lower,
+      fail_msg("%s: %s (%s), [%.17g, %.17g]", id, cprox_status_name(status), cprox_workspace_error(ws), r.lower,
                r.upper);
     if (!(r.lower <= reference + 1e-15 && reference - 1e-15 <= r.upper && r.upper - r.lower <= epsilon[k]))
       fail_msg("%s: [%.17g, %.17g], the reference is %.17g", id, r.lower, r.upper, reference);
@@ -104,14 +104,14 @@ static void check_polygon(const char *id, cprox_curve *curve) {
   assert_true(n >= 6 && n % 2 == 0);
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_polygon((const double(*)[2])xy, n / 2, NULL, &body), CPROX_OK);
-  check(id, curve, cprox_at(body, cprox_pose_identity()));
+  check(id, curve, cprox_obstacle_at(body, cprox_pose_identity()));
   cprox_curve_free(curve);
   cprox_body_free(body);
   csv_free(&in);
 }
 
 static void check_curves(const char *id, cprox_curve *first, cprox_curve *second) {
-  check(id, first, cprox_curve_target(second, 0.0));
+  check(id, first, cprox_obstacle_curve(second, 0.0));
   cprox_curve_free(second);
   cprox_curve_free(first);
 }
@@ -156,10 +156,10 @@ CASE(bezier_curves_with_names) {
       double xy[64][2];
       for (size_t k = 0; k < m; k++) xy[k][0] = second[k].x, xy[k][1] = second[k].y;
       assert_int_equal(cprox_body_create_polygon((const double(*)[2])xy, m, NULL, &body), CPROX_OK);
-      check(id, curve, cprox_at(body, cprox_pose_identity()));
+      check(id, curve, cprox_obstacle_at(body, cprox_pose_identity()));
     } else {
       assert_int_equal(cprox_curve_create_bezier(second, m, 0, 1, NULL, &other), CPROX_OK);
-      check(id, curve, cprox_curve_target(other, 0.0));
+      check(id, curve, cprox_obstacle_curve(other, 0.0));
     }
     cprox_body_free(body);
     cprox_curve_free(other);

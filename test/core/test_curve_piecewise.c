@@ -115,7 +115,7 @@ static void refused(const cprox_curve *const *curves, size_t n, const double *en
   cprox_workspace *ws = cprox_workspace_create();
   cprox_curve *c = NULL;
   assert_int_equal(cprox_curve_create_piecewise(curves, n, ends, gap, ws, &c), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), reason);
+  assert_string_equal(cprox_workspace_error(ws), reason);
   assert_null(c);
   cprox_workspace_free(ws);
 }

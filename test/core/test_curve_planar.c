@@ -318,7 +318,7 @@ CASE(the_shortest_word_is_the_shortest) {
 
 static void refused(cprox_status status, cprox_workspace *workspace, const char *reason) {
   assert_int_equal(status, CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace), reason);
+  assert_string_equal(cprox_workspace_error(workspace), reason);
 }
 
 CASE(bad_clothoids_and_involutes_are_refused) {
@@ -336,7 +336,7 @@ CASE(bad_clothoids_and_involutes_are_refused) {
           "the clothoid turns too often between t = 0 and 1000000000");
   refused(cprox_curve_create_clothoid(o, 0, 0, 0, 0, 1, ws, NULL), ws, "the pointer for the new curve is NULL");
   assert_int_equal(cprox_curve_create_clothoid(o, 0, 1, 0, 0, 1e8, ws, &c), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(ws), "would need more than 65536 pieces"));
+  assert_non_null(strstr(cprox_workspace_error(ws), "would need more than 65536 pieces"));
   refused(cprox_curve_create_involute(o, 0, 0, 0, 1, ws, &c), ws,
           "the radius is 0; an involute's is above 0 and at most 1e+75 m");
   refused(cprox_curve_create_involute(o, NAN, 0, 0, 1, ws, &c), ws,

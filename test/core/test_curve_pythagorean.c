@@ -131,14 +131,14 @@ CASE(bad_preimages_are_refused) {
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     assert_int_equal(cprox_curve_create_pythagorean_hodograph(vec(0, 0, 0), bad[i].a, bad[i].n, 0, 1, ws, &c),
                      CPROX_INVALID);
-    assert_string_equal(cprox_workspace_reason(ws), bad[i].reason);
+    assert_string_equal(cprox_workspace_error(ws), bad[i].reason);
   }
   a[2].y = NAN;
   assert_int_equal(cprox_curve_create_pythagorean_hodograph(vec(0, 0, 0), a, 3, 0, 1, ws, &c), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws),
+  assert_string_equal(cprox_workspace_error(ws),
                       "coefficient 2 of the preimage is (0, 0, nan, 0), not finite or longer than 1e+75");
   assert_int_equal(cprox_curve_create_pythagorean_hodograph(vec(0, NAN, 0), a, 2, 0, 1, ws, &c), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "start point 0 is (0, nan, 0), not finite");
+  assert_string_equal(cprox_workspace_error(ws), "start point 0 is (0, nan, 0), not finite");
   assert_null(c);
   cprox_workspace_free(ws);
 }

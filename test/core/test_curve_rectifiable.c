@@ -200,14 +200,14 @@ static void agree(const cprox_result *arcs, const cprox_result *points, double e
 }
 
 /* The interval by arcs holds the distance that the other one holds, too; the verdicts follow. */
-static void check_body(bezier *b, bool with_velocity, const cprox_target *target, double radius, double epsilon,
+static void check_body(bezier *b, bool with_velocity, const cprox_obstacle *target, double radius, double epsilon,
                        cprox_workspace *ws, cprox_result *of_arcs) {
   cprox_curve *arcs = with_velocity ? by_velocity(b) : by_arcs(b), *points = by_points(b);
   cprox_options options = cprox_options_default();
   options.epsilon = epsilon;
   cprox_result of_points;
   const cprox_status status = cprox_distance(cprox_tube_along(arcs, radius), *target, &options, ws, of_arcs);
-  if (status < 0) fail_msg("%s", cprox_workspace_reason(ws));
+  if (status < 0) fail_msg("%s", cprox_workspace_error(ws));
   assert_true(cprox_distance(cprox_tube_along(points, radius), *target, &options, ws, &of_points) >= 0);
   agree(of_arcs, &of_points, epsilon);
   for (int k = 0; k < 2; k++) {
@@ -234,8 +234,8 @@ CASE(distances_by_arcs_and_by_points_agree) {
     const vec3 by = rng_index(&r, 2) ? vec(0, 0, 0) : rng_in_cube(&r, 1e6);
     scale_and_move(&b, scale, by);
     cprox_body *body = random_body(&r, scale);
-    const cprox_target target =
-        cprox_padded(cprox_at(body, random_pose(&r, scale, by)), rng_index(&r, 2) ? 0.0 : 0.05 * scale);
+    const cprox_obstacle target =
+        cprox_with_margin(cprox_obstacle_at(body, random_pose(&r, scale, by)), rng_index(&r, 2) ? 0.0 : 0.05 * scale);
     const double radius = rng_index(&r, 2) ? 0.0 : 0.02 * scale;
     cprox_result of_arcs;
     check_body(&b, i % 2, &target, radius, 1e-6 * scale, ws, &of_arcs);
@@ -251,9 +251,9 @@ CASE(distances_by_arcs_and_by_points_agree) {
   cprox_workspace_free(ws);
 }
 
-/* seed 647, 200 curves: the first contact by arcs is not after the one by points, nor before the free stretch that is proven; and
- * every stretch of the profile holds what the stretch by points holds. */
-CASE(first_contacts_and_profiles_agree) {
+/* seed 647, 200 curves: the time of contact by arcs is not after the one by points, nor before the free interval that
+ * is proven; and every interval of the profile holds what the interval by points holds. */
+CASE(times_of_contact_and_profiles_agree) {
   rng r = rng_seed(647);
   cprox_workspace *ws = cprox_workspace_create();
   unsigned long hits = 0;
@@ -261,21 +261,21 @@ CASE(first_contacts_and_profiles_agree) {
     bezier b = random_bezier(&r);
     cprox_curve *arcs = by_arcs(&b), *points = by_points(&b);
     cprox_body *body = random_body(&r, 1.0);
-    const cprox_target target = cprox_at(body, random_pose(&r, 0.6, vec(0, 0, 0)));
+    const cprox_obstacle target = cprox_obstacle_at(body, random_pose(&r, 0.6, vec(0, 0, 0)));
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-6;
     cprox_result of_arcs, of_points;
-    if (cprox_first_contact(cprox_point_along(arcs), target, &options, ws, &of_arcs) < 0)
-      fail_msg("%s", cprox_workspace_reason(ws));
-    assert_true(cprox_first_contact(cprox_point_along(points), target, &options, ws, &of_points) >= 0);
+    if (cprox_time_of_contact(cprox_point_along(arcs), target, &options, ws, &of_arcs) < 0)
+      fail_msg("%s", cprox_workspace_error(ws));
+    assert_true(cprox_time_of_contact(cprox_point_along(points), target, &options, ws, &of_points) >= 0);
     if (of_points.verdict == CPROX_YES) {
       hits++;
-      assert_true(of_arcs.t_free <= of_points.t);
+      assert_true(of_arcs.t_contact_lower <= of_points.t);
     }
-    if (of_arcs.verdict == CPROX_YES) assert_true(of_points.t_free <= of_arcs.t);
+    if (of_arcs.verdict == CPROX_YES) assert_true(of_points.t_contact_lower <= of_arcs.t);
     if (of_arcs.verdict == CPROX_NO) assert_true(of_points.verdict != CPROX_YES);
 
-    cprox_stretch by_arc[7], by_point[7];
+    cprox_profile_interval by_arc[7], by_point[7];
     double breaks[8] = {0.0};
     for (int k = 0; k < 7; k++) breaks[k + 1] = (k + rng_uniform(&r, 0.5, 1.0)) / 7.0;
     assert_true(cprox_profile(cprox_point_along(arcs), &target, 1, breaks, 7, &options, ws, by_arc) >= 0);
@@ -306,9 +306,9 @@ CASE(curves_by_arcs_and_by_points_agree) {
     options.epsilon = 1e-4;
     cprox_result of_arcs, of_points;
     const cprox_status status =
-        cprox_distance(cprox_point_along(arcs[0]), cprox_curve_target(arcs[1], 0.0), &options, ws, &of_arcs);
-    if (status < 0) fail_msg("%s", cprox_workspace_reason(ws));
-    assert_true(cprox_distance(cprox_point_along(points[0]), cprox_curve_target(points[1], 0.0), &options, ws,
+        cprox_distance(cprox_point_along(arcs[0]), cprox_obstacle_curve(arcs[1], 0.0), &options, ws, &of_arcs);
+    if (status < 0) fail_msg("%s", cprox_workspace_error(ws));
+    assert_true(cprox_distance(cprox_point_along(points[0]), cprox_obstacle_curve(points[1], 0.0), &options, ws,
                                &of_points) >= 0);
     agree(&of_arcs, &of_points, options.epsilon);
     not_ok += status != CPROX_OK;
@@ -333,39 +333,38 @@ CASE(what_contradicts_itself_is_refused_at_once) {
   b.nan_from = 0.7;
   cprox_rectifiable_curve f = functions(&b);
   assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(ws), "at t = 0.703125 the curve's point is ("));
+  assert_non_null(strstr(cprox_workspace_error(ws), "at t = 0.703125 the curve's point is ("));
   b.nan_from = INFINITY, b.short_below = 1.0, b.short_by = 0.9;
   assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
-  assert_non_null(
-      strstr(cprox_workspace_reason(ws), "between t = 0 and 0.015625 the arc length is said to be at most"));
+  assert_non_null(strstr(cprox_workspace_error(ws), "between t = 0 and 0.015625 the arc length is said to be at most"));
   b.short_by = NAN;
   assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
   assert_string_equal(
-      cprox_workspace_reason(ws),
+      cprox_workspace_error(ws),
       "between t = 0 and 0.015625 the bound of the arc length is nan; it must be at least 0 and finite");
   b.short_below = 0.0;
 
   const cprox_rectifiable_curve good = f;
   f.point = NULL;
   assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "the function point is NULL");
+  assert_string_equal(cprox_workspace_error(ws), "the function point is NULL");
   f = good, f.length = NULL;
   assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "the functions length and velocity are both NULL; one is needed");
+  assert_string_equal(cprox_workspace_error(ws), "the functions length and velocity are both NULL; one is needed");
   f = good, f.error = NAN;
   assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "error is nan; it must be at least 0 and finite");
+  assert_string_equal(cprox_workspace_error(ws), "error is nan; it must be at least 0 and finite");
   f = good, f.length = NULL, f.velocity = velocity, f.quadrature_error = -1.0;
   assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "quadrature_error is -1; it must be at least 0 and finite");
+  assert_string_equal(cprox_workspace_error(ws), "quadrature_error is -1; it must be at least 0 and finite");
   assert_int_equal(cprox_curve_create_rectifiable(&good, 1, 1, ws, &c), CPROX_INVALID);
   assert_int_equal(cprox_curve_create_rectifiable(NULL, 0, 1, ws, &c), CPROX_INVALID);
   assert_null(c);
   cprox_workspace_free(ws);
 }
 
-/* Distances and first contacts with a curve whose functions go wrong after it was made: an honest status and sentence and no result,
- * or an answer that did not need to ask. */
+/* Distances and times of contact with a curve whose functions go wrong after it was made: an honest status and sentence
+ * and no result, or an answer that did not need to ask. */
 CASE(what_goes_wrong_midway_ends_the_query) {
   rng r = rng_seed(645);
   cprox_workspace *ws = cprox_workspace_create();
@@ -380,23 +379,24 @@ CASE(what_goes_wrong_midway_ends_the_query) {
       b.short_below = 0.01, b.short_by = 0.5;
     const char *reason = i % 2 ? "the curve's point is (" : "the arc length is said to be at most ";
     const cprox_mover mover = cprox_point_along(c);
-    const cprox_target targets[2] = {cprox_at(body, random_pose(&r, 1.0, vec(0, 0, 0))),
-                                     cprox_curve_target(straight, 0.0)};
-    for (int verb = 0; verb < 6; verb++) {
-      const cprox_target target = targets[verb % 2];
+    const cprox_obstacle targets[2] = {cprox_obstacle_at(body, random_pose(&r, 1.0, vec(0, 0, 0))),
+                                       cprox_obstacle_curve(straight, 0.0)};
+    for (int query_type = 0; query_type < 6; query_type++) {
+      const cprox_obstacle target = targets[query_type % 2];
       cprox_options options = cprox_options_default();
       options.epsilon = 1e-9;
       cprox_result result = {.t = -123.0};
       cprox_status status = CPROX_OK;
-      if (verb < 2) status = cprox_distance(mover, target, &options, ws, &result);
-      if (verb / 2 == 1) status = cprox_first_contact(mover, target, &options, ws, &result);
-      if (verb / 2 == 2)
-        status = cprox_distance(cprox_point_along(straight), cprox_curve_target(c, 0.0), &options, ws, &result);
+      if (query_type < 2) status = cprox_distance(mover, target, &options, ws, &result);
+      if (query_type / 2 == 1) status = cprox_time_of_contact(mover, target, &options, ws, &result);
+      if (query_type / 2 == 2)
+        status = cprox_distance(cprox_point_along(straight), cprox_obstacle_curve(c, 0.0), &options, ws, &result);
       asked++;
       if (status >= 0) continue;
       refused++;
       assert_int_equal(status, CPROX_INVALID);
-      if (!strstr(cprox_workspace_reason(ws), reason)) fail_msg("verb %d: \"%s\"", verb, cprox_workspace_reason(ws));
+      if (!strstr(cprox_workspace_error(ws), reason))
+        fail_msg("query %d: \"%s\"", query_type, cprox_workspace_error(ws));
       assert_true(result.t == -123.0);
     }
     /* and the workspace is as good as ever */
@@ -425,14 +425,14 @@ CASE(it_says_what_it_is) {
   point(&b, 0.25, &should);
   assert_true(vec_equal(x, should));
   assert_int_equal(cprox_curve_evaluate(c, 0.25, ws, &x, &d, NULL), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "the curve has no first derivative");
+  assert_string_equal(cprox_workspace_error(ws), "the curve has no first derivative");
   assert_int_equal(cprox_curve_evaluate(v, 0.25, ws, &x, &d, NULL), CPROX_OK);
   velocity(&b, 0.25, &should);
   assert_true(vec_equal(d, should));
   assert_int_equal(cprox_curve_evaluate(v, 0.25, ws, NULL, NULL, &d), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "the curve has no second derivative");
+  assert_string_equal(cprox_workspace_error(ws), "the curve has no second derivative");
   assert_int_equal(cprox_curve_control_points(c, 0, 0.001, ws, p), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "a curve known by its arc length has no control points");
+  assert_string_equal(cprox_workspace_error(ws), "a curve known by its arc length has no control points");
   const cprox_curve *one[1] = {c};
   assert_int_equal(cprox_curve_create_piecewise(one, 1, NULL, 0.0, ws, &whole), CPROX_INVALID);
   vec3 low, high;

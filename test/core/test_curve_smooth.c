@@ -117,7 +117,7 @@ static void refused(blend f, double t1, const char *reason) {
   cprox_workspace *ws = cprox_workspace_create();
   cprox_curve *c = NULL;
   assert_int_equal(cprox_curve_create_smooth(&given, 0.5, t1, ws, &c), CPROX_INVALID);
-  if (!strstr(cprox_workspace_reason(ws), reason)) fail_msg("\"%s\", not \"%s\"", cprox_workspace_reason(ws), reason);
+  if (!strstr(cprox_workspace_error(ws), reason)) fail_msg("\"%s\", not \"%s\"", cprox_workspace_error(ws), reason);
   assert_null(c);
   cprox_workspace_free(ws);
 }
@@ -156,10 +156,10 @@ CASE(functions_that_are_missing_are_refused) {
       "error[2] is nan; it must be at least 0 and finite", "the accuracy is 0; it must be above 0 and finite"};
   for (int i = 0; i < 5; i++) {
     assert_int_equal(cprox_curve_create_smooth(&bad[i], 1, 2, ws, &c), CPROX_INVALID);
-    assert_string_equal(cprox_workspace_reason(ws), reason[i]);
+    assert_string_equal(cprox_workspace_error(ws), reason[i]);
   }
   assert_int_equal(cprox_curve_create_smooth(NULL, 1, 2, ws, &c), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "the curve's functions are NULL");
+  assert_string_equal(cprox_workspace_error(ws), "the curve's functions are NULL");
   assert_null(c);
   cprox_workspace_free(ws);
 }

@@ -33,7 +33,7 @@ static void random_series(rng *r, size_t degree, vec3 *c) {
   }
 }
 
-/* seed 511, 4000 series, 40 parameters each. The bound is no padding: the remainder of an ellipse reaches it. */
+/* seed 511, 4000 series, 40 parameters each. The bound is no margin: the remainder of an ellipse reaches it. */
 CASE(every_piece_is_within_its_error_of_the_series) {
   rng r = rng_seed(511);
   double largest = 0.0, largest_rounding = 0.0;
@@ -117,7 +117,7 @@ static void refused(const vec3 *c, size_t n, double t0, double t1, const char *r
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_curve *curve = NULL;
   assert_int_equal(cprox_curve_create_trigonometric(c, n, t0, t1, workspace, &curve), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace), reason);
+  assert_string_equal(cprox_workspace_error(workspace), reason);
   assert_int_equal(cprox_curve_create_trigonometric(c, n, t0, t1, NULL, &curve), CPROX_INVALID);
   assert_null(curve);
   cprox_workspace_free(workspace);
@@ -137,9 +137,9 @@ CASE(bad_series_are_refused) {
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_curve *curve = NULL;
   assert_int_equal(cprox_curve_create_trigonometric(c, 3, 0, 1e9, workspace, &curve), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(workspace), "pieces of the series, above 65536"));
+  assert_non_null(strstr(cprox_workspace_error(workspace), "pieces of the series, above 65536"));
   assert_int_equal(cprox_curve_create_trigonometric(c, 3, 0, 1, workspace, NULL), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(workspace), "the pointer for the new curve is NULL");
+  assert_string_equal(cprox_workspace_error(workspace), "the pointer for the new curve is NULL");
   cprox_workspace_free(workspace);
   c[2].x = 1e80;
   refused(c, 3, 0, 1, "coefficient 2 is longer than 1e+75 m");

@@ -13,7 +13,7 @@ static cprox_result ask(const cprox_body *a, cprox_pose pa, const cprox_body *b,
   cprox_options options = cprox_options_default();
   options.epsilon = epsilon;
   cprox_result result;
-  assert_true(cprox_pair(cprox_at(a, pa), cprox_at(b, pb), &options, NULL, &result) >= CPROX_OK);
+  assert_true(cprox_pair(cprox_obstacle_at(a, pa), cprox_obstacle_at(b, pb), &options, NULL, &result) >= CPROX_OK);
   return result;
 }
 
@@ -201,7 +201,7 @@ CASE(coaxial_bodies_are_measured_in_their_profile) {
       const double depth = fmin(a.size[0] + b.size[0], a.size[1] + b.size[1] - fabs(apart));
       assert_true(-result.upper <= depth + 2e-12 && depth - 2e-12 <= -result.lower);
     }
-    const vec3 out = vec_sub(result.on_target, result.on_mover);
+    const vec3 out = vec_sub(result.witness_obstacle, result.witness_mover);
     assert_true(fabs(vec_norm(out) + result.upper) < 1e-8);
     cprox_body_free(a.body);
     cprox_body_free(b.body);
@@ -221,7 +221,7 @@ CASE(a_small_budget_leaves_a_true_bracket) {
     options.epsilon = 1e-10;
     options.max_nodes = budget;
     cprox_result result;
-    const cprox_status status = cprox_pair(cprox_at(a, pa), cprox_at(b, pb), &options, NULL, &result);
+    const cprox_status status = cprox_pair(cprox_obstacle_at(a, pa), cprox_obstacle_at(b, pb), &options, NULL, &result);
     assert_true(status == CPROX_OK || status == CPROX_BUDGET || status == CPROX_OVERLAP);
     assert_true(result.lower <= exact.upper && exact.lower <= result.upper);
   }

@@ -20,7 +20,7 @@ static cprox_gap *gap_of(const cprox_solid *a, const cprox_solid *b, cprox_gap_m
   cprox_gap_options o = cprox_gap_options_default();
   o.mode = mode, o.samples = samples;
   cprox_gap *gap = NULL;
-  if (cprox_gap_create(a, b, &o, ws, &gap) != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (cprox_gap_create(a, b, &o, ws, &gap) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return gap;
 }
 
@@ -312,7 +312,7 @@ CASE(images_of_the_period_never_answer) {
   o.samples = 33, o.period = 0.9 * info.period;
   cprox_gap *none = NULL;
   assert_int_equal(cprox_gap_create(s, s, &o, ws, &none), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(ws), "is too small: images of the solids need"));
+  assert_non_null(strstr(cprox_workspace_error(ws), "is too small: images of the solids need"));
   cprox_gap_free(gap);
   cprox_solid_free(s);
 }
@@ -361,13 +361,13 @@ CASE(delta_chooses_no_more_than_is_needed) {
   cprox_gap *none = NULL;
   o.delta = 0.02, o.memory_limit = 10000;
   assert_int_equal(cprox_gap_create(a, b, &o, ws, &none), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(ws), "beyond the limit of 10000"));
+  assert_non_null(strstr(cprox_workspace_error(ws), "beyond the limit of 10000"));
   o.delta = 5;
   assert_int_equal(cprox_gap_create(a, b, &o, ws, &none), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(ws), "delta 5 is larger than the bodies"));
+  assert_non_null(strstr(cprox_workspace_error(ws), "delta 5 is larger than the bodies"));
   o.delta = 0;
   assert_int_equal(cprox_gap_create(a, b, &o, ws, &none), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "delta is 0, must be > 0 (or give samples)");
+  assert_string_equal(cprox_workspace_error(ws), "delta is 0, must be > 0 (or give samples)");
   o.samples = 8;
   assert_int_equal(cprox_gap_create(a, b, &o, ws, &none), CPROX_INVALID);
   assert_null(none);

@@ -9,7 +9,7 @@
 #include "support/solids.h"
 
 #define MADE(call) \
-  if ((call) != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws))
+  if ((call) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws))
 
 /* A random pair of these kinds; the first and the second may be either. */
 static void make_pair(rng *r, test_solid_kind i, test_solid_kind j, int dimension, test_solid s[2]) {
@@ -86,8 +86,8 @@ static uint32_t choose_delta(rng *r, const test_solid s[2], cprox_gap_options *o
 static void check_delta(rng *r, const test_solid s[2], cprox_gap_options *o) {
   gap_plan plan;
   const uint32_t samples = choose_delta(r, s, o);
-  if (plan_with(s, *o, 0, &plan) != CPROX_OK) fail_pair(s, o, cprox_workspace_reason(ws));
-  assert_string_equal(cprox_workspace_reason(ws), "");
+  if (plan_with(s, *o, 0, &plan) != CPROX_OK) fail_pair(s, o, cprox_workspace_error(ws));
+  assert_string_equal(cprox_workspace_error(ws), "");
   assert_true(accuracy(&plan) <= o->delta);
   if (o->period > 0.0) assert_true(plan.period == o->period);
   const uint32_t found = 2 * (uint32_t)plan.N + 1;
@@ -105,7 +105,7 @@ static void delta_in_every_mode(rng *r, const test_solid s[2]) {
     if (o.mode == CPROX_GAP_CERTIFIED && !is_provable(s)) {
       o.delta = radii(s);
       assert_int_equal(plan_with(s, o, 0, &plan), CPROX_INVALID);
-      assert_non_null(strstr(cprox_workspace_reason(ws), "no over-reach can be proven for these solids"));
+      assert_non_null(strstr(cprox_workspace_error(ws), "no over-reach can be proven for these solids"));
       continue;
     }
     if (rng_index(r, 2)) o.period = rng_uniform(r, 3.1, 6.0) * radii(s);
@@ -133,8 +133,7 @@ static void every_call(rng *r, const test_solid s[2]) {
     o.mode = (cprox_gap_mode)mode, o.delta = radii(s);
     if (o.mode == CPROX_GAP_CERTIFIED && !is_provable(s)) o.samples = 9, o.delta = 0.0;
     cprox_gap *gap;
-    if (cprox_gap_create(s[0].solid, s[1].solid, &o, ws, &gap) != CPROX_OK)
-      fail_pair(s, &o, cprox_workspace_reason(ws));
+    if (cprox_gap_create(s[0].solid, s[1].solid, &o, ws, &gap) != CPROX_OK) fail_pair(s, &o, cprox_workspace_error(ws));
     const cprox_gap_info info = cprox_gap_get_info(gap);
     assert_true(info.mode == o.mode && info.guaranteed == (o.mode == CPROX_GAP_CERTIFIED));
     if (o.samples == 0 && o.mode != CPROX_GAP_SIGNAL) assert_true(info.over_reach <= o.delta);
@@ -151,8 +150,8 @@ static void every_call(rng *r, const test_solid s[2]) {
                  y = o.mode == CPROX_GAP_SIGNAL ? exp(-along.value) : along.value;
     assert_true(along.verdict == at.verdict && fabs(x - y) <= along.error + at.error + 1e-12);
     const cprox_status status = cprox_gap_along_test(gap, &a, line, &b.orientation, 0.0, 1.0, 2, ws, &whole);
-    if (o.mode == CPROX_GAP_SIGNAL) assert_string_equal(cprox_workspace_reason(ws), "the signal mode has no verdict");
-    if (o.mode != CPROX_GAP_SIGNAL && status < CPROX_OK) fail_pair(s, &o, cprox_workspace_reason(ws));
+    if (o.mode == CPROX_GAP_SIGNAL) assert_string_equal(cprox_workspace_error(ws), "the signal mode has no verdict");
+    if (o.mode != CPROX_GAP_SIGNAL && status < CPROX_OK) fail_pair(s, &o, cprox_workspace_error(ws));
     cprox_curve_free(line);
     if (o.mode == CPROX_GAP_CERTIFIED) {
       cprox_gap_cascade *cascade;

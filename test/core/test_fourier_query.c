@@ -16,7 +16,7 @@ static cprox_gap *gap_of(const cprox_solid *a, const cprox_solid *b, cprox_gap_m
   cprox_gap_options o = cprox_gap_options_default();
   o.mode = mode, o.samples = samples;
   cprox_gap *gap = NULL;
-  if (cprox_gap_create(a, b, &o, ws, &gap) != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (cprox_gap_create(a, b, &o, ws, &gap) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return gap;
 }
 
@@ -277,7 +277,7 @@ CASE(the_signal_rises_with_clearance) {
   cprox_solid_free(s);
 }
 
-CASE(bad_questions_are_refused_in_words) {
+CASE(bad_queries_are_refused_in_words) {
   cprox_solid *s[2], *space;
   make_pair(1, s);
   MADE(cprox_solid_create_ball(3, 1, ws, &space));
@@ -286,18 +286,18 @@ CASE(bad_questions_are_refused_in_words) {
   cprox_pose good = planar(0, 0, 0), bad = good;
   bad.position.x = NAN;
   assert_int_equal(cprox_gap_test(gap, &bad, &good, ws, &r), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "pose_a: the position is not finite");
+  assert_string_equal(cprox_workspace_error(ws), "pose_a: the position is not finite");
   bad = good, bad.orientation.w = 0;
   assert_int_equal(cprox_gap_evaluate(gap, &good, &bad, ws, &r), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "pose_b: the quaternion's norm is 0");
+  assert_string_equal(cprox_workspace_error(ws), "pose_b: the quaternion's norm is 0");
   bad = good, bad.orientation.x = 0.1;
   assert_int_equal(cprox_gap_test(gap, &good, &bad, ws, &r), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "pose_b: a planar pose turns about z only");
+  assert_string_equal(cprox_workspace_error(ws), "pose_b: a planar pose turns about z only");
   assert_true(r.value == 77);
   cprox_gap_options o = cprox_gap_options_default();
   o.samples = 9;
   assert_int_equal(cprox_gap_create(s[0], space, &o, ws, &none), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "the solids have dimensions 2 and 3");
+  assert_string_equal(cprox_workspace_error(ws), "the solids have dimensions 2 and 3");
   assert_null(none);
   cprox_gap_free(gap);
   cprox_solid_free(s[0]);
@@ -405,7 +405,7 @@ CASE(a_sweep_is_never_called_clear_where_it_hits) {
   o.samples = 9;
   cprox_gap *none = NULL;
   assert_int_equal(cprox_gap_create(sweep, sweep, &o, ws, &none), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "both solids are sweeps: at most one may be");
+  assert_string_equal(cprox_workspace_error(ws), "both solids are sweeps: at most one may be");
   cprox_gap_free(gap);
   cprox_solid_free(sweep);
   cprox_solid_free(box);
@@ -457,7 +457,7 @@ CASE(along_a_curve_the_verdict_holds_at_every_parameter) {
   assert_int_equal(cprox_gap_along_test(gap, &near, c, &q, 0, 1, 1, ws, &v), CPROX_BUDGET);
   assert_int_equal(v.verdict, CPROX_GAP_UNDECIDED);
   assert_int_equal(cprox_gap_along_test(gap, &near, c, &q, 0, 2, 1, ws, &v), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "the interval [0, 2] must lie within [0, 1]");
+  assert_string_equal(cprox_workspace_error(ws), "the interval [0, 2] must lie within [0, 1]");
   cprox_gap_free(gap);
   cprox_solid_free(s[0]);
   cprox_solid_free(s[1]);

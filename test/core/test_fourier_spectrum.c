@@ -355,7 +355,7 @@ CASE(grids_transform_axis_by_axis_to_the_same_spectrum) {
     cprox_solid *solid = (cprox_solid *)&ws;                                \
     const size_t live = allocations_live();                                 \
     assert_int_equal(call, CPROX_INVALID);                                  \
-    assert_string_equal(cprox_workspace_reason(ws), words);                 \
+    assert_string_equal(cprox_workspace_error(ws), words);                  \
     assert_true(solid == (cprox_solid *)&ws && allocations_live() == live); \
   } while (0)
 
@@ -389,7 +389,7 @@ CASE(bad_solids_are_refused_in_words) {
   const cprox_vec3 tent[5] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, -1}};
   const uint32_t no_floor[4][3] = {{0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}};
   cprox_solid_create_mesh(tent, 5, no_floor, 4, ws, &none);
-  assert_non_null(strstr(cprox_workspace_reason(ws), "mesh is open: nothing borders the edge"));
+  assert_non_null(strstr(cprox_workspace_error(ws), "mesh is open: nothing borders the edge"));
 
   const unsigned char empty[8] = {0};
   REFUSED(cprox_solid_create_grid(3, vec(0, 0, 0), 0.1, (const uint32_t[3]){2, 2, 2}, empty, ws, &solid),

@@ -24,7 +24,7 @@ typedef struct problem {
   double t0, t1;
   const cprox_body *body, *carried;
   cprox_pose pose;
-  double radius, padding;
+  double radius, margin;
 } problem;
 
 static cprox_curve *make(const problem *p, const vec3 *points) {
@@ -32,19 +32,19 @@ static cprox_curve *make(const problem *p, const vec3 *points) {
   const cprox_status status = p->spline ? cprox_curve_create_bspline(points, POINTS, DEGREE, p->knots,
                                                                      POINTS + DEGREE + 1, p->t0, p->t1, ws, &curve)
                                         : cprox_curve_create_bezier(points, POINTS, 0.0, 1.0, ws, &curve);
-  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }
 
 /* Asks for the distance, and its gradient if there is room for it. */
 static double ask(const problem *p, cprox_result *result, cprox_gradient *gradient) {
   cprox_curve *curve = make(p, p->points), *other = p->kind == BODY ? NULL : make(p, p->other);
-  cprox_mover mover = cprox_tube_along(curve, p->radius), second = cprox_tube_along(other, p->padding);
+  cprox_mover mover = cprox_tube_along(curve, p->radius), second = cprox_tube_along(other, p->margin);
   mover.body = p->carried;
   second.body = p->kind == CLOCK ? p->body : NULL;
-  cprox_target target = p->kind == BODY    ? cprox_padded(cprox_at(p->body, p->pose), p->padding)
-                        : p->kind == CURVE ? cprox_curve_target(other, p->padding)
-                                           : cprox_on_clock(second);
+  cprox_obstacle target = p->kind == BODY    ? cprox_with_margin(cprox_obstacle_at(p->body, p->pose), p->margin)
+                          : p->kind == CURVE ? cprox_obstacle_curve(other, p->margin)
+                                             : cprox_synchronized(second);
   target.pose = p->pose;
   cprox_options options = cprox_options_default();
   options.epsilon = gradient ? 1e-9 : 0.0;
@@ -52,7 +52,7 @@ static double ask(const problem *p, cprox_result *result, cprox_gradient *gradie
   assert_true(cprox_distance(mover, target, &options, ws, result) >= 0);
   if (gradient) {
     const cprox_status status = cprox_distance_gradient(mover, target, &options, result, ws, gradient);
-    if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+    if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   }
   cprox_curve_free(curve);
   cprox_curve_free(other);
@@ -62,7 +62,7 @@ static double ask(const problem *p, cprox_result *result, cprox_gradient *gradie
 /* One direction in the space of all parameters. */
 typedef struct step {
   vec3 points[POINTS], other[POINTS], position, turn;
-  double radius, padding, t0, t1;
+  double radius, margin, t0, t1;
 } step;
 
 static step step_random(rng *r, const problem *p) {
@@ -74,7 +74,7 @@ static step step_random(rng *r, const problem *p) {
   d.position = rng_in_cube(r, 1.0);
   d.turn = rng_in_cube(r, 1.0);
   d.radius = p->radius > 0.0 ? rng_uniform(r, -1, 1) : 0.0;
-  d.padding = p->padding > 0.0 ? rng_uniform(r, -1, 1) : 0.0;
+  d.margin = p->margin > 0.0 ? rng_uniform(r, -1, 1) : 0.0;
   if (p->spline && p->kind == BODY) d.t0 = rng_uniform(r, -1, 1), d.t1 = rng_uniform(r, -1, 1);
   return d;
 }
@@ -92,7 +92,7 @@ static problem moved(problem p, const step *d, double h) {
   p.pose.orientation =
       (cprox_quat){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
                    a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
-  p.radius += h * d->radius, p.padding += h * d->padding;
+  p.radius += h * d->radius, p.margin += h * d->margin;
   p.t0 += h * d->t0, p.t1 += h * d->t1;
   return p;
 }
@@ -110,10 +110,10 @@ static double derivative(const problem *p, const cprox_gradient *g, const step *
   weights_at(p, g->t, w);
   for (int i = 0; i < POINTS; i++) sum += w[i] * vec_dot(g->mover, d->points[i]);
   if (p->kind != BODY) {
-    weights_at(p, g->t_target, w);
-    for (int i = 0; i < POINTS; i++) sum += w[i] * vec_dot(g->target_point, d->other[i]);
+    weights_at(p, g->t_obstacle, w);
+    for (int i = 0; i < POINTS; i++) sum += w[i] * vec_dot(g->obstacle_point, d->other[i]);
   }
-  sum += g->radius * d->radius + g->padding * d->padding;
+  sum += g->radius * d->radius + g->margin * d->margin;
   return sum + g->t0 * d->t0 + g->t1 * d->t1;
 }
 
@@ -145,7 +145,7 @@ static problem problem_random(rng *r, target_kind kind, const cprox_body *body) 
   for (int i = 0; i < POINTS + DEGREE + 1; i++) p.knots[i] = 0.25 * (i - DEGREE);
   if (p.spline) p.t0 = 0.1, p.t1 = 0.9;
   p.radius = rng_index(r, 2) ? 0.0 : 0.05;
-  p.padding = rng_index(r, 2) ? 0.0 : 0.05;
+  p.margin = rng_index(r, 2) ? 0.0 : 0.05;
   return p;
 }
 
@@ -169,8 +169,8 @@ static size_t check(rng *r, const problem *p, double tolerance) {
 static const cprox_body_kind SOLID[] = {CPROX_SPHERE, CPROX_BOX,       CPROX_CAPSULE, CPROX_CYLINDER,
                                         CPROX_CONE,   CPROX_ELLIPSOID, CPROX_POLYTOPE};
 
-/* Seed 101, 10000 problems against seven kinds of bodies, 2000 of two curves, 2000 on one clock: 1e-7 (1 + |derivative|), which
- * leaves the differences 1e-8 for their own rounding and truncation. */
+/* Seed 101, 10000 problems against seven kinds of bodies, 2000 of two curves, 2000 synchronized: 1e-7 (1 +
+ * |derivative|), which leaves the differences 1e-8 for their own rounding and truncation. */
 CASE(gradients_are_the_limits_of_differences) {
   rng r = rng_seed(101);
   size_t valid = 0, all = 0;
@@ -198,7 +198,7 @@ CASE(gradients_are_the_limits_of_differences) {
     valid += check(&r, &p, 1e-7);
     cprox_body_free(s.body);
   }
-  print_message("on one clock: %zu of %zu\n", valid, all);
+  print_message("synchronized: %zu of %zu\n", valid, all);
   assert_true(2 * valid > all);
 }
 
@@ -241,15 +241,15 @@ CASE(depths_have_gradients) {
 
 /* ---- where there is none -------------------------------------------------------------------------------------------------------- */
 
-static void assert_none(cprox_mover mover, cprox_target target, bool is_signed, const char *why) {
+static void assert_none(cprox_mover mover, cprox_obstacle target, bool is_signed, const char *why) {
   cprox_options options = cprox_options_default();
   options.signed_distance = is_signed;
   cprox_result result;
   cprox_gradient g = {.valid = true};
   assert_true(cprox_distance(mover, target, &options, ws, &result) >= 0);
   assert_int_equal(cprox_distance_gradient(mover, target, &options, &result, ws, &g), CPROX_OK);
-  if (g.valid || strcmp(cprox_workspace_reason(ws), why) != 0)
-    fail_msg("valid %d: %s", g.valid, cprox_workspace_reason(ws));
+  if (g.valid || strcmp(cprox_workspace_error(ws), why) != 0)
+    fail_msg("valid %d: %s", g.valid, cprox_workspace_error(ws));
 }
 
 CASE(where_the_minimiser_is_not_unique_the_flag_says_so) {
@@ -257,7 +257,8 @@ CASE(where_the_minimiser_is_not_unique_the_flag_says_so) {
   cprox_body *box = NULL, *ball = NULL, *two = NULL;
   assert_int_equal(cprox_body_create_box(vec(2, 2, 2), ws, &box), CPROX_OK);
   assert_int_equal(cprox_body_create_sphere(1.0, ws, &ball), CPROX_OK);
-  const cprox_target at = cprox_at(box, cprox_pose_identity()), round = cprox_at(ball, cprox_pose_identity());
+  const cprox_obstacle at = cprox_obstacle_at(box, cprox_pose_identity()),
+                       round = cprox_obstacle_at(ball, cprox_pose_identity());
 
   /* along a face; down and up twice; through the body; into it along the diagonal between two faces */
   cprox_curve *parallel = bezier((vec3[]){{-0.5, 0, 2}, {0.5, 0, 2}}, 2);
@@ -268,13 +269,14 @@ CASE(where_the_minimiser_is_not_unique_the_flag_says_so) {
   assert_none(cprox_point_along(twice), at, false, elsewhere);
   assert_none(cprox_point_along(through), at, false, "no gradient: the distance is 0");
   assert_none(cprox_point_along(between), at, true, "no gradient: there is more than one way out");
-  assert_none(cprox_point_along(parallel), cprox_curve_target(parallel, 0.0), false, "no gradient: there is no normal");
+  assert_none(cprox_point_along(parallel), cprox_obstacle_curve(parallel, 0.0), false,
+              "no gradient: there is no normal");
 
   /* two parts of one target */
   const cprox_pose poses[2] = {{{-2, 0, 0}, {1, 0, 0, 0}}, {{2, 0, 0}, {1, 0, 0, 0}}};
   assert_int_equal(cprox_body_create_compound((const cprox_body *[]){ball, ball}, poses, 2, ws, &two), CPROX_OK);
   cprox_curve *middle = bezier((vec3[]){{0, 0, 0}, {0, 2, 0}}, 2);
-  assert_none(cprox_point_along(middle), cprox_at(two, cprox_pose_identity()), false,
+  assert_none(cprox_point_along(middle), cprox_obstacle_at(two, cprox_pose_identity()), false,
               "no gradient: two parts are equally near");
 
   /* a plain case, which has one */
@@ -284,10 +286,10 @@ CASE(where_the_minimiser_is_not_unique_the_flag_says_so) {
   assert_int_equal(cprox_distance(cprox_point_along(plain), round, NULL, ws, &result), CPROX_OK);
   assert_int_equal(cprox_distance_gradient(cprox_point_along(plain), round, NULL, &result, ws, &g), CPROX_OK);
   assert_true(g.valid && fabs(vec_norm(g.mover) - 1.0) < 1e-12 && g.radius == -1.0 && g.t0 == 0.0 && g.t1 == 0.0);
-  assert_string_equal(cprox_workspace_reason(ws), "");
+  assert_string_equal(cprox_workspace_error(ws), "");
 
   /* a result without a witness */
-  const cprox_result none = {.target_index = -1, .upper = INFINITY};
+  const cprox_result none = {.obstacle_index = -1, .upper = INFINITY};
   assert_int_equal(cprox_distance_gradient(cprox_point_along(plain), round, NULL, &none, ws, &g), CPROX_INVALID);
   cprox_curve *curves[] = {parallel, twice, through, between, middle, plain};
   for (size_t i = 0; i < sizeof curves / sizeof *curves; i++) cprox_curve_free(curves[i]);
@@ -326,7 +328,7 @@ CASE(weighted_coefficients_make_the_point) {
       status = cprox_curve_create_lagrange(c, nodes, n, t0, t1, ws, &curve), cprox_lagrange_weights(nodes, n, t, w);
     if (basis == 5)
       status = cprox_curve_create_trigonometric(c, n, t0, t1, ws, &curve), cprox_trigonometric_weights(n, t, w);
-    if (status != CPROX_OK) fail_msg("basis %zu: %s", basis, cprox_workspace_reason(ws));
+    if (status != CPROX_OK) fail_msg("basis %zu: %s", basis, cprox_workspace_error(ws));
     vec3 at, sum = vec(0, 0, 0);
     double u0, u1;
     cprox_curve_domain(curve, &u0, &u1);

@@ -33,20 +33,20 @@ static cprox_curve *graph(double a, double c, size_t power) {
   coefficients[power].z += 1.0;
   cprox_curve *curve = NULL;
   if (cprox_curve_create_polynomial(coefficients, power + 1, -1.0, 1.0, ws, &curve))
-    fail_msg("%s", cprox_workspace_reason(ws));
+    fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }
 
 static cprox_curve *circle(double radius, double t1) {
   cprox_curve *curve = NULL;
   if (cprox_curve_create_trigonometric((vec3[]){{0, 0, 0}, {radius, 0, 0}, {0, radius, 0}}, 3, 0.0, t1, ws, &curve))
-    fail_msg("%s", cprox_workspace_reason(ws));
+    fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }
 
-/* ---- questions ---------------------------------------------------------------------------------------------------------- */
+/* ---- queries ---------------------------------------------------------------------------------------------------------- */
 
-static void check_verdict(cprox_mover mover, cprox_target target, double truth, double delta) {
+static void check_verdict(cprox_mover mover, cprox_obstacle target, double truth, double delta) {
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-9;
   cprox_result r;
@@ -56,8 +56,8 @@ static void check_verdict(cprox_mover mover, cprox_target target, double truth, 
 }
 
 /* Asks everything of a case; frees the curves. */
-static void is_at(double truth, cprox_curve *curve, cprox_target target, cprox_curve *second) {
-  if (second) target = cprox_curve_target(second, 0.0);
+static void is_at(double truth, cprox_curve *curve, cprox_obstacle target, cprox_curve *second) {
+  if (second) target = cprox_obstacle_curve(second, 0.0);
   const cprox_mover mover = cprox_point_along(curve);
   static const double epsilons[] = {1e-9, 0.0, 1e-300, 1e3};
   for (size_t k = 0; k < sizeof epsilons / sizeof *epsilons; k++) {
@@ -82,15 +82,15 @@ static void is_at(double truth, cprox_curve *curve, cprox_target target, cprox_c
 }
 
 static void box_is_at(double truth, cprox_curve *curve) {
-  is_at(truth, curve, cprox_at(box, cprox_pose_identity()), NULL);
+  is_at(truth, curve, cprox_obstacle_at(box, cprox_pose_identity()), NULL);
 }
 
 static void point_is_at(double truth, cprox_curve *curve) {
-  is_at(truth, curve, cprox_at(point, cprox_pose_identity()), NULL);
+  is_at(truth, curve, cprox_obstacle_at(point, cprox_pose_identity()), NULL);
 }
 
 static void curves_are_at(double truth, cprox_curve *first, cprox_curve *second) {
-  is_at(truth, first, (cprox_target){0}, second);
+  is_at(truth, first, (cprox_obstacle){0}, second);
 }
 
 /* ---- curves and bodies ---------------------------------------------------------------------------------------------------- */
@@ -161,7 +161,7 @@ CASE(a_point_on_the_curve) {
 CASE(features_of_1e_6_at_1e6) {
   /* all numbers are exact: 1e6 + 1 + 2^-20 */
   const double away = 1e6, z = away + 1.0 + 0x1p-20;
-  const cprox_target target = cprox_at(box, (cprox_pose){{away, -away, away}, {1, 0, 0, 0}});
+  const cprox_obstacle target = cprox_obstacle_at(box, (cprox_pose){{away, -away, away}, {1, 0, 0, 0}});
   is_at(0x1p-20, BEZIER({away - 0.5, -away, z}, {away, -away, z}, {away + 0.5, -away, z + 1.0}), target, NULL);
 }
 

@@ -26,8 +26,8 @@ static int free_workspace(void **state) {
 
 static void assert_refused(cprox_status status, cprox_workspace *workspace, const char *reason) {
   assert_int_equal(status, CPROX_INVALID);
-  if (!strstr(cprox_workspace_reason(workspace), reason))
-    fail_msg("\"%s\" is not in \"%s\"", reason, cprox_workspace_reason(workspace));
+  if (!strstr(cprox_workspace_error(workspace), reason))
+    fail_msg("\"%s\" is not in \"%s\"", reason, cprox_workspace_error(workspace));
 }
 
 CASE(a_superquadric_of_bad_numbers_is_refused_by_name) {
@@ -319,11 +319,13 @@ CASE(a_curve_sees_the_same_distance_as_from_the_kind_it_equals) {
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-9;
     cprox_result expected, found;
-    assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_at(known, pose), &options, w, &expected), CPROX_OK);
-    assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_at(body, pose), &options, w, &found), CPROX_OK);
+    assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(known, pose), &options, w, &expected),
+                     CPROX_OK);
+    assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, pose), &options, w, &found),
+                     CPROX_OK);
     assert_true(found.lower <= expected.upper && expected.lower <= found.upper);
     cprox_result verdict;
-    cprox_collision(cprox_point_along(curve), cprox_at(body, pose), NULL, w, &verdict);
+    cprox_collision(cprox_point_along(curve), cprox_obstacle_at(body, pose), NULL, w, &verdict);
     if (expected.upper == 0.0) assert_int_equal(verdict.verdict, CPROX_YES);
     if (expected.lower > 1e-5) assert_int_equal(verdict.verdict, CPROX_NO);
     cprox_curve_free(curve);

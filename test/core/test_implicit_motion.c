@@ -38,7 +38,8 @@ static int free_bodies(void **state) {
 }
 
 static cprox_translating random_start(rng *r, const cprox_body *body, double near, double far) {
-  return (cprox_translating){.from = cprox_at(body, implicit_random_pose(r, near, far)), .velocity = rng_in_cube(r, 3)};
+  return (cprox_translating){.from = cprox_obstacle_at(body, implicit_random_pose(r, near, far)),
+                             .velocity = rng_in_cube(r, 3)};
 }
 
 static cprox_result pair_at(const bodies *b, cprox_translating x, cprox_translating y, double t, double epsilon) {
@@ -69,7 +70,7 @@ CASE(the_least_distance_over_a_time_is_below_that_at_every_time) {
       const cprox_result there = pair_at(b, x, y, found.t, 1e-8);
       assert_true(fmax(there.lower, 0.0) <= found.upper);
       if (found.verdict != CPROX_YES) {
-        const double gap = vec_norm(vec_sub(found.on_mover, found.on_target));
+        const double gap = vec_norm(vec_sub(found.witness_mover, found.witness_obstacle));
         assert_true(fabs(gap - found.upper) <= 1e-9);
       }
       for (int k = 0; k <= 32; k++) {
@@ -82,7 +83,7 @@ CASE(the_least_distance_over_a_time_is_below_that_at_every_time) {
 
 /* Seed 22, 500 places a pair, contact tolerance 1e-7 of the sizes: nothing undecided, free before as bisection by pairs finds
  * it (within tolerance over the speed), and the least distance agrees with the verdict. */
-CASE(first_contact_is_never_late_and_never_undecided) {
+CASE(time_of_contact_is_never_late_and_never_undecided) {
   bodies *b = *state;
   rng r = rng_seed(22);
   uint64_t pairs = 0, contacts = 0;
@@ -101,17 +102,17 @@ CASE(first_contact_is_never_late_and_never_undecided) {
       assert_int_equal(status, CPROX_OK);
       assert_int_not_equal(found.verdict, CPROX_UNDECIDED);
       assert_int_equal(cprox_translating_distance(x, y, 2.0, &options, b->workspace, &least), CPROX_OK);
-      pairs += found.probes;
+      pairs += found.distance_queries;
       contacts += found.verdict == CPROX_YES;
       if (found.verdict == CPROX_YES)
         assert_true(least.lower <= options.epsilon);
       else
         assert_true(least.upper > 0.0);
       if (found.verdict == CPROX_YES && found.t > 0.0) {
-        assert_true(found.upper <= 0.0 && found.t_free <= found.t);
-        assert_true(pair_at(b, x, y, found.t_free, 0.01 * options.epsilon).lower <= options.epsilon);
+        assert_true(found.upper <= 0.0 && found.t_contact_lower <= found.t);
+        assert_true(pair_at(b, x, y, found.t_contact_lower, 0.01 * options.epsilon).lower <= options.epsilon);
         for (int k = 1; k <= 8; k++) /* free before */
-          assert_true(pair_at(b, x, y, found.t_free * (1.0 - ldexp(1.0, -3 * k)), 1e-9).upper > 0.0);
+          assert_true(pair_at(b, x, y, found.t_contact_lower * (1.0 - ldexp(1.0, -3 * k)), 1e-9).upper > 0.0);
       }
     }
   }
@@ -124,26 +125,26 @@ CASE(bodies_that_part_or_overlap_at_once_are_told_at_once) {
   bodies *b = *state;
   cprox_pose away = cprox_pose_identity();
   away.position.x = 6;
-  cprox_translating x = {.from = cprox_at(b->body[2], cprox_pose_identity())};
-  cprox_translating y = {.from = cprox_at(b->body[3], away), .velocity = {1, 0, 0}};
+  cprox_translating x = {.from = cprox_obstacle_at(b->body[2], cprox_pose_identity())};
+  cprox_translating y = {.from = cprox_obstacle_at(b->body[3], away), .velocity = {1, 0, 0}};
   cprox_result r;
   assert_int_equal(cprox_translating_contact(x, y, 10, NULL, b->workspace, &r), CPROX_OK);
   assert_int_equal(r.verdict, CPROX_NO);
-  assert_int_equal(r.probes, 1);
+  assert_int_equal(r.distance_queries, 1);
   y.from.pose.position.x = 0.5;
   assert_true(cprox_translating_contact(x, y, 10, NULL, b->workspace, &r) >= 0);
   assert_int_equal(r.verdict, CPROX_YES);
-  assert_true(r.t == 0.0 && r.t_free == 0.0);
+  assert_true(r.t == 0.0 && r.t_contact_lower == 0.0);
   y.velocity.x = NAN;
   assert_int_equal(cprox_translating_contact(x, y, 10, NULL, b->workspace, &r), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(b->workspace), "a velocity is not finite");
+  assert_string_equal(cprox_workspace_error(b->workspace), "a velocity is not finite");
   y.velocity.x = 1;
   assert_int_equal(cprox_translating_distance(x, y, 0, NULL, b->workspace, &r), CPROX_INVALID);
   cprox_body *box = NULL;
   assert_int_equal(cprox_body_create_box(vec(1, 1, 1), b->workspace, &box), CPROX_OK);
   y.from.body = box;
   assert_int_equal(cprox_translating_distance(x, y, 1, NULL, b->workspace, &r), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(b->workspace), "b is a box, must be a superquadric or an implicit body");
+  assert_string_equal(cprox_workspace_error(b->workspace), "b is a box, must be a superquadric or an implicit body");
   assert_true(cprox_translating_contact(x, y, 1, NULL, b->workspace, &r) >= 0); /* any convex kind */
   cprox_body_free(box);
 }
@@ -163,8 +164,8 @@ CASE(scaled_by_the_growth_distance_bodies_touch) {
   for (int pair = 0; pair < 8; pair++) {
     const cprox_body *first = b->body[PAIRS[pair][0]], *second = b->body[PAIRS[pair][1]];
     for (size_t i = 0; i < test_cases(60); i++) {
-      const cprox_target x = cprox_at(first, implicit_random_pose(&r, 0, 1));
-      const cprox_target y = cprox_at(second, implicit_random_pose(&r, 0, 5));
+      const cprox_obstacle x = cprox_obstacle_at(first, implicit_random_pose(&r, 0, 1));
+      const cprox_obstacle y = cprox_obstacle_at(second, implicit_random_pose(&r, 0, 5));
       cprox_growth growth;
       assert_int_equal(cprox_growth_distance(x, y, NULL, b->workspace, &growth), CPROX_OK);
       assert_true(growth.lower <= growth.upper && growth.upper - growth.lower <= 1e-6 * growth.upper);
@@ -174,7 +175,8 @@ CASE(scaled_by_the_growth_distance_bodies_touch) {
         cprox_options options = cprox_options_default();
         options.epsilon = 1e-10;
         cprox_result found;
-        assert_true(cprox_pair(cprox_at(small, x.pose), cprox_at(other, y.pose), &options, b->workspace, &found) >= 0);
+        assert_true(cprox_pair(cprox_obstacle_at(small, x.pose), cprox_obstacle_at(other, y.pose), &options,
+                               b->workspace, &found) >= 0);
         if (side == 0)
           assert_true(found.upper > -1e-9);
         else
@@ -193,11 +195,12 @@ CASE(scaled_by_the_growth_distance_bodies_touch) {
 CASE(concentric_bodies_have_growth_distance_zero) {
   bodies *b = *state;
   cprox_growth growth;
-  const cprox_target x = cprox_at(b->body[2], cprox_pose_identity());
-  assert_int_equal(cprox_growth_distance(x, cprox_at(b->body[3], cprox_pose_identity()), NULL, b->workspace, &growth),
-                   CPROX_OK);
+  const cprox_obstacle x = cprox_obstacle_at(b->body[2], cprox_pose_identity());
+  assert_int_equal(
+      cprox_growth_distance(x, cprox_obstacle_at(b->body[3], cprox_pose_identity()), NULL, b->workspace, &growth),
+      CPROX_OK);
   assert_true(growth.lower == 0.0 && growth.upper <= 1e-9);
-  assert_int_equal(cprox_growth_distance(x, cprox_padded(x, 0.1), NULL, b->workspace, &growth), CPROX_INVALID);
+  assert_int_equal(cprox_growth_distance(x, cprox_with_margin(x, 0.1), NULL, b->workspace, &growth), CPROX_INVALID);
 }
 
 /* Seed 24, 20 maps a body, the deformation by a map and the body made anew under the same map answer the same; and the paper's
@@ -216,32 +219,34 @@ CASE(a_deformed_body_is_the_one_made_anew) {
       map.translation = rng_in_cube(&r, 2);
       cprox_body *anew = implicit_case_body(&c, &map), *deformed = NULL;
       assert_int_equal(cprox_body_create_deformed(b->body[object], &map, NULL, 0, b->workspace, &deformed), CPROX_OK);
-      const cprox_target other = cprox_at(b->body[3], implicit_random_pose(&r, 6, 12));
+      const cprox_obstacle other = cprox_obstacle_at(b->body[3], implicit_random_pose(&r, 6, 12));
       cprox_result x, y;
-      assert_int_equal(cprox_pair(cprox_at(anew, cprox_pose_identity()), other, &options, b->workspace, &x), CPROX_OK);
-      assert_int_equal(cprox_pair(cprox_at(deformed, cprox_pose_identity()), other, &options, b->workspace, &y),
+      assert_int_equal(cprox_pair(cprox_obstacle_at(anew, cprox_pose_identity()), other, &options, b->workspace, &x),
                        CPROX_OK);
+      assert_int_equal(
+          cprox_pair(cprox_obstacle_at(deformed, cprox_pose_identity()), other, &options, b->workspace, &y), CPROX_OK);
       assert_true(x.lower <= y.upper + 1e-12 && y.lower <= x.upper + 1e-12);
       cprox_body_free(anew);
       cprox_body_free(deformed);
     }
   }
   const double exponents[3] = {76.0 / 9, 71.0 / 5, 179.0 / 13}, bad[3] = {0.5, 2, 2};
-  const cprox_affine stretch = {.linear = {1, 0, 0, 0, 1 / 0.7, 0, 0, 0, 1}};
+  const cprox_affine interval = {.linear = {1, 0, 0, 0, 1 / 0.7, 0, 0, 0, 1}};
   cprox_body *third = NULL;
-  assert_int_equal(cprox_body_create_deformed(b->body[1], &stretch, exponents, 3, b->workspace, &third), CPROX_OK);
+  assert_int_equal(cprox_body_create_deformed(b->body[1], &interval, exponents, 3, b->workspace, &third), CPROX_OK);
   cprox_result x, y;
   cprox_pose far = cprox_pose_identity();
   far.position = vec(3, 2, 4);
-  const cprox_target other = cprox_at(b->body[2], far);
-  assert_int_equal(cprox_pair(cprox_at(third, cprox_pose_identity()), other, &options, b->workspace, &x), CPROX_OK);
-  assert_int_equal(cprox_pair(cprox_at(b->body[3], cprox_pose_identity()), other, &options, b->workspace, &y),
+  const cprox_obstacle other = cprox_obstacle_at(b->body[2], far);
+  assert_int_equal(cprox_pair(cprox_obstacle_at(third, cprox_pose_identity()), other, &options, b->workspace, &x),
+                   CPROX_OK);
+  assert_int_equal(cprox_pair(cprox_obstacle_at(b->body[3], cprox_pose_identity()), other, &options, b->workspace, &y),
                    CPROX_OK);
   assert_true(x.lower <= y.upper + 1e-12 && y.lower <= x.upper + 1e-12);
   cprox_body_free(third);
   third = NULL;
   assert_int_equal(cprox_body_create_deformed(b->body[1], NULL, bad, 3, b->workspace, &third), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(b->workspace), "the exponent is 0.5"));
+  assert_non_null(strstr(cprox_workspace_error(b->workspace), "the exponent is 0.5"));
   assert_int_equal(cprox_body_create_deformed(b->body[1], NULL, exponents, 2, b->workspace, &third), CPROX_INVALID);
   assert_null(third);
 }

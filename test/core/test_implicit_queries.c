@@ -66,8 +66,8 @@ CASE(pairs_of_twins_have_one_signed_distance) {
     const cprox_pose pose[2] = {rng_pose(&r, 1), rng_pose(&r, 2.5)};
     cprox_result found[4];
     for (int k = 0; k < 4; k++) {
-      const cprox_target a = cprox_at(k & 1 ? body[0] : known[0], pose[0]);
-      const cprox_target b = cprox_at(k & 2 ? body[1] : known[1], pose[1]);
+      const cprox_obstacle a = cprox_obstacle_at(k & 1 ? body[0] : known[0], pose[0]);
+      const cprox_obstacle b = cprox_obstacle_at(k & 2 ? body[1] : known[1], pose[1]);
       assert_true(cprox_pair(a, b, NULL, w, &found[k]) >= 0);
       for (int j = 0; j < k; j++) assert_agree(&found[j], &found[k]);
       if (found[k].lower > 0.0) assert_true(found[k].upper - found[k].lower <= 1.0001e-6);
@@ -88,8 +88,8 @@ CASE(other_kinds_are_measured_against_implicit_bodies) {
     for (size_t i = 0; i < test_cases(60); i++) {
       cprox_body *known, *planes;
       make_twins(1, random_size(&r), w, &known, &planes);
-      const cprox_target a = cprox_at(body, rng_pose(&r, 1)), b = {.body = known, .pose = rng_pose(&r, 5)};
-      cprox_target b2 = b;
+      const cprox_obstacle a = cprox_obstacle_at(body, rng_pose(&r, 1)), b = {.body = known, .pose = rng_pose(&r, 5)};
+      cprox_obstacle b2 = b;
       b2.body = planes;
       cprox_result x, y;
       assert_true(cprox_pair(a, b, NULL, w, &x) >= 0);
@@ -104,7 +104,7 @@ CASE(other_kinds_are_measured_against_implicit_bodies) {
 }
 
 /* Seed 33: a carried twin and its known kind along the same curve, against a twin and a known kind that stand; and the same in a
- * compound: distance, signed distance and first contact agree. */
+ * compound: distance, signed distance and time of contact agree. */
 CASE(a_carried_twin_is_measured_like_the_kind_it_equals) {
   cprox_workspace *w = *state;
   rng r = rng_seed(33);
@@ -122,24 +122,29 @@ CASE(a_carried_twin_is_measured_like_the_kind_it_equals) {
     assert_int_equal(cprox_curve_create_bezier(points, 4, 0, 1, w, &curve), CPROX_OK);
     const cprox_pose pose = rng_pose(&r, 2);
     cprox_result expected, found;
-    assert_true(cprox_distance(cprox_body_along(known[0], curve), cprox_at(known[1], pose), NULL, w, &expected) >= 0);
-    assert_true(cprox_distance(cprox_body_along(body[0], curve), cprox_at(body[1], pose), NULL, w, &found) >= 0);
+    assert_true(
+        cprox_distance(cprox_body_along(known[0], curve), cprox_obstacle_at(known[1], pose), NULL, w, &expected) >= 0);
+    assert_true(cprox_distance(cprox_body_along(body[0], curve), cprox_obstacle_at(body[1], pose), NULL, w, &found) >=
+                0);
     assert_agree(&expected, &found);
     assert_true(found.upper - found.lower <= 1.0001e-6);
-    assert_true(cprox_distance(cprox_body_along(body[0], curve), cprox_at(compound, pose), NULL, w, &found) >= 0);
+    assert_true(cprox_distance(cprox_body_along(body[0], curve), cprox_obstacle_at(compound, pose), NULL, w, &found) >=
+                0);
     assert_agree(&expected, &found);
     cprox_options deep = cprox_options_default();
     deep.signed_distance = true;
-    assert_true(cprox_distance(cprox_point_along(curve), cprox_at(known[1], pose), &deep, w, &expected) >= 0);
-    assert_true(cprox_distance(cprox_point_along(curve), cprox_at(body[1], pose), &deep, w, &found) >= 0);
+    assert_true(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(known[1], pose), &deep, w, &expected) >= 0);
+    assert_true(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body[1], pose), &deep, w, &found) >= 0);
     assert_agree(&expected, &found);
     cprox_result first, second;
-    assert_true(cprox_first_contact(cprox_point_along(curve), cprox_at(known[1], pose), NULL, w, &first) >= 0);
-    assert_true(cprox_first_contact(cprox_point_along(curve), cprox_at(body[1], pose), NULL, w, &second) >= 0);
+    assert_true(cprox_time_of_contact(cprox_point_along(curve), cprox_obstacle_at(known[1], pose), NULL, w, &first) >=
+                0);
+    assert_true(cprox_time_of_contact(cprox_point_along(curve), cprox_obstacle_at(body[1], pose), NULL, w, &second) >=
+                0);
     assert_true(first.verdict == second.verdict || first.verdict == CPROX_UNDECIDED ||
                 second.verdict == CPROX_UNDECIDED);
     if (first.verdict == CPROX_YES && second.verdict == CPROX_YES)
-      assert_true(second.t_free <= first.t && first.t_free <= second.t);
+      assert_true(second.t_contact_lower <= first.t && first.t_contact_lower <= second.t);
     cprox_curve_free(curve);
     cprox_body_free(compound);
     for (int k = 0; k < 2; k++) cprox_body_free(known[k]), cprox_body_free(body[k]);

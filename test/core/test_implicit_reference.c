@@ -10,13 +10,13 @@
 
 enum { TAG = 1, X_NAME = 2, X_DEFINITION = 4, Y_DEFINITION = 5, POSES = 6, LOWER = 20, UPPER = 21 };
 
-static cprox_target read_side(const csv_table *table, const csv_row *row, size_t definition, size_t pose) {
+static cprox_obstacle read_side(const csv_table *table, const csv_row *row, size_t definition, size_t pose) {
   implicit_case c;
   implicit_case_read(row->field[definition], &c);
   double p[7];
   for (size_t i = 0; i < 7; i++) p[i] = csv_number(table, row, pose + i);
-  return cprox_at(implicit_case_body(&c, NULL),
-                  (cprox_pose){.position = {p[4], p[5], p[6]}, .orientation = {p[0], p[1], p[2], p[3]}});
+  return cprox_obstacle_at(implicit_case_body(&c, NULL),
+                           (cprox_pose){.position = {p[4], p[5], p[6]}, .orientation = {p[0], p[1], p[2], p[3]}});
 }
 
 /* Every row of a file: the interval contains the reference, and is as narrow as asked, relative to distance and sizes. */
@@ -26,7 +26,7 @@ static void check_rows(const char *name, double relative) {
   size_t wrong = 0, wide = 0;
   for (size_t i = 1; i < table.n; i++) {
     const csv_row *row = &table.row[i];
-    cprox_target a = read_side(&table, row, X_DEFINITION, POSES), b = read_side(&table, row, Y_DEFINITION, POSES + 7);
+    cprox_obstacle a = read_side(&table, row, X_DEFINITION, POSES), b = read_side(&table, row, Y_DEFINITION, POSES + 7);
     const double lower = csv_number(&table, row, LOWER), upper = csv_number(&table, row, UPPER);
     cprox_options options = cprox_options_default();
     options.epsilon = relative * (upper + a.body->ball_radius + b.body->ball_radius);
@@ -35,7 +35,7 @@ static void check_rows(const char *name, double relative) {
     assert_true(status >= 0);
     const double least = lower - 1e-15 * upper, most = upper + 1e-15 * upper;
     const bool contains = fmax(r.lower, 0.0) <= most && fmax(r.upper, 0.0) >= least;
-    /* overlapping: how deep is another question */
+    /* overlapping: how deep is another query */
     const bool narrow = fmax(r.upper, 0.0) - fmax(r.lower, 0.0) <= 1.0001 * options.epsilon;
     if (!contains || !narrow)
       print_message("%s:%zu %s %s-%s: [%.17g, %.17g], width %.2g of %.2g asked, reference %.17g\n", name, row->line,

@@ -35,9 +35,9 @@ static void two_free(two *t) {
 }
 
 /* b posed in a's frame, both about their centres. */
-static implicit_question ask(const two *t, const cprox_pose *pose) {
+static implicit_query ask(const two *t, const cprox_pose *pose) {
   const frame f = frame_create(pose, vec(0, 0, 0));
-  implicit_question q = {.a = t->a->shape.implicit, .b = t->b->shape.implicit};
+  implicit_query q = {.a = t->a->shape.implicit, .b = t->b->shape.implicit};
   for (int i = 0; i < 9; i++) q.m[i] = f.r[i];
   q.t = vec_sub(frame_to_world(&f, t->b->centre), t->a->centre);
   return q;
@@ -49,8 +49,9 @@ static implicit_goal goal_of(const two *t, double relative, double distance) {
 
 static const int PAIRS[8][2] = {{1, 2}, {1, 3}, {2, 3}, {3, 4}, {2, 4}, {3, 5}, {5, 6}, {3, 6}};
 
-/* Seed 11 and the pair's number, 10,000 places at 1 … 8: none is left wider than 1e-8 of distance and sizes, whichever rung of
- * the ladder it takes; the support function search, where there is one, agrees on every tenth. */
+/* Seed 11 and the pair's number, 10,000 places at 1 … 8: none is left wider than 1e-8 of distance and sizes, whichever
+ * level of detail of the level-of-detail body it takes; the support function search, where there is one, agrees on
+ * every tenth. */
 CASE(every_random_place_is_certified_to_1e_8) {
   cprox_workspace *workspace = cprox_workspace_create();
   for (int pair = 0; pair < 8; pair++) {
@@ -61,7 +62,7 @@ CASE(every_random_place_is_certified_to_1e_8) {
     const size_t n = test_cases(10000);
     for (size_t i = 0; i < n; i++) {
       const cprox_pose pose = implicit_random_pose(&r, 1, 8);
-      const implicit_question q = ask(&t, &pose);
+      const implicit_query q = ask(&t, &pose);
       const implicit_goal goal = goal_of(&t, 1e-8, vec_norm(q.t));
       implicit_answer answer;
       implicit_solve(&q, &goal, NULL, t.memory, &answer);
@@ -74,15 +75,16 @@ CASE(every_random_place_is_certified_to_1e_8) {
       cprox_result other;
       cprox_options options = cprox_options_default();
       options.epsilon = goal.epsilon;
-      assert_true(cprox_pair(cprox_at(t.a, cprox_pose_identity()), cprox_at(t.b, pose), &options, workspace, &other) >=
-                  0);
+      assert_true(cprox_pair(cprox_obstacle_at(t.a, cprox_pose_identity()), cprox_obstacle_at(t.b, pose), &options,
+                             workspace, &other) >= 0);
       if (answer.overlap)
         assert_true(other.lower <= 0.0);
       else
         assert_true(answer.lower <= fmax(other.upper, 0.0) && fmax(other.lower, 0.0) <= answer.upper);
     }
-    print_message("objects %d and %d: %zu places, %zu overlap, %.1f steps, %zu by a later rung, %zu uncertified\n",
-                  PAIRS[pair][0], PAIRS[pair][1], n, overlaps, (double)steps / (double)n, later, left);
+    print_message(
+        "objects %d and %d: %zu places, %zu overlap, %.1f steps, %zu by a later level of detail, %zu uncertified\n",
+        PAIRS[pair][0], PAIRS[pair][1], n, overlaps, (double)steps / (double)n, later, left);
     assert_int_equal(left, 0);
     two_free(&t);
   }
@@ -100,7 +102,7 @@ CASE(a_warm_start_answers_what_a_cold_one_does) {
       cprox_pose pose = implicit_random_pose(&r, 2, 5);
       implicit_warm warm = {0};
       for (int k = 0; k < 20; k++) {
-        const implicit_question q = ask(&t, &pose);
+        const implicit_query q = ask(&t, &pose);
         const implicit_goal goal = goal_of(&t, 1e-8, vec_norm(q.t));
         implicit_answer cold, answer;
         implicit_solve(&q, &goal, NULL, t.memory, &cold);
@@ -143,7 +145,7 @@ CASE(many_constraints_take_hardly_more_steps) {
     t.memory = malloc(implicit_memory(t.a->shape.implicit, t.b->shape.implicit));
     for (int i = 0; i < 20; i++) {
       const cprox_pose pose = implicit_random_pose(&r, 2.5, 8);
-      const implicit_question q = ask(&t, &pose);
+      const implicit_query q = ask(&t, &pose);
       const implicit_goal goal = goal_of(&t, 1e-8, vec_norm(q.t));
       implicit_answer answer;
       implicit_solve(&q, &goal, NULL, t.memory, &answer);
@@ -184,7 +186,7 @@ CASE(intersections_of_superquadrics_are_certified) {
     t.memory = malloc(implicit_memory(t.a->shape.implicit, t.b->shape.implicit));
     for (int i = 0; i < 20; i++) {
       const cprox_pose pose = implicit_random_pose(&r, 2.5, 8);
-      const implicit_question q = ask(&t, &pose);
+      const implicit_query q = ask(&t, &pose);
       const implicit_goal goal = goal_of(&t, 1e-8, vec_norm(q.t));
       implicit_answer answer;
       implicit_solve(&q, &goal, NULL, t.memory, &answer);
@@ -195,7 +197,8 @@ CASE(intersections_of_superquadrics_are_certified) {
       const double h = shape->ops->support(shape, d, NULL, &at);
       assert_true(h - vec_dot(d, at) <= shape->slack);
       cprox_result other;
-      assert_true(cprox_pair(cprox_at(t.a, cprox_pose_identity()), cprox_at(t.b, pose), NULL, workspace, &other) >= 0);
+      assert_true(cprox_pair(cprox_obstacle_at(t.a, cprox_pose_identity()), cprox_obstacle_at(t.b, pose), NULL,
+                             workspace, &other) >= 0);
       if (!answer.overlap) assert_true(answer.lower <= other.upper && other.lower <= answer.upper);
     }
     two_free(&t);

@@ -22,7 +22,7 @@ static test_bezier bezier_make(const vec3 *points, size_t degree) {
   test_bezier b = {.degree = degree};
   memcpy(b.points, points, (degree + 1) * sizeof *points);
   if (cprox_curve_create_bezier(b.points, degree + 1, 0.0, 1.0, ws, &b.curve) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
+    fail_msg("%s", cprox_workspace_error(ws));
   return b;
 }
 
@@ -50,9 +50,10 @@ static long double least_near(const test_bezier *b, const test_mesh *mesh, const
 /* ---- distance --------------------------------------------------------------------------------------------------------- */
 
 /* 2,000 random queries (seed 51; CPROX_TEST_SCALE=50 asks 100,000) against soups with needles, points and repeated triangles, and
- * closed tori, at any pose and padding, offsets up to 1e6 m of pose and curve together. epsilon is 1e-12 at unit scale, where double
- * allows it. Wanted: lower <= the true distance anywhere on the curve, the true distance at t <= upper. No tolerance: rounding is the
- * interval's own affair; the reference's, some 40 roundings of 2^-64 of the sizes, is given away. */
+ * closed tori, at any pose and margin, offsets up to 1e6 m of pose and curve together. epsilon is 1e-12 at unit scale,
+ * where double allows it. Wanted: lower <= the true distance anywhere on the curve, the true distance at t <= upper. No
+ * tolerance: rounding is the interval's own affair; the reference's, some 40 roundings of 2^-64 of the sizes, is given
+ * away. */
 CASE(distance_holds_everywhere_and_at_its_witness) {
   rng r = rng_seed(51);
   const cprox_options options = accurate(1e-12);
@@ -73,15 +74,16 @@ CASE(distance_holds_everywhere_and_at_its_witness) {
       for (size_t k = 0; k <= degree; k++) points[k] = vec_add(points[k], offset);
     }
     const test_bezier b = bezier_make(points, degree);
-    const double radius = i % 4 ? 0.0 : rng_uniform(&r, 0.0, 0.3), padding = i % 6 ? 0.0 : 0.1;
+    const double radius = i % 4 ? 0.0 : rng_uniform(&r, 0.0, 0.3), margin = i % 6 ? 0.0 : 0.1;
     cprox_result result;
-    const cprox_status status = cprox_distance(cprox_tube_along(b.curve, radius),
-                                               cprox_padded(cprox_at(body, pose), padding), &options, ws, &result);
-    if (status < 0) fail_msg("case %zu: %s", i, cprox_workspace_reason(ws));
+    const cprox_status status =
+        cprox_distance(cprox_tube_along(b.curve, radius), cprox_with_margin(cprox_obstacle_at(body, pose), margin),
+                       &options, ws, &result);
+    if (status < 0) fail_msg("case %zu: %s", i, cprox_workspace_error(ws));
     if (status != CPROX_OK) unconverged++;
     if (status == CPROX_OK && result.upper - result.lower > 1e-12) fail_msg("case %zu: too wide", i);
 
-    const long double grown = (long double)radius + (long double)padding, give = i % 7 ? 1e-17L : 2e-12L;
+    const long double grown = (long double)radius + (long double)margin, give = i % 7 ? 1e-17L : 2e-12L;
     const long double at = fmaxl(distance_at(&b, &mesh, &pose, result.t) - grown, 0.0L);
     if (at > result.upper + give) fail_msg("case %zu: %Lg at t, above upper %g", i, at, result.upper);
     long double least = fmaxl(least_near(&b, &mesh, &pose, result.t, 1e-3L) - grown, 0.0L);
@@ -96,13 +98,15 @@ CASE(distance_holds_everywhere_and_at_its_witness) {
   if (unconverged > cases / 4) fail_msg("%zu of %zu did not converge", unconverged, cases);
 }
 
-/* ---- first contact ---------------------------------------------------------------------------------------------------- */
+/* ---- time of contact
+ * ---------------------------------------------------------------------------------------------------- */
 
 /* 240 runs (seed 53; CPROX_TEST_SCALE=15 makes 3,600) of points and tubes through thin plates and past them so that they graze, over a
- * torus, and through it; epsilon 1e-9. Never late: at 60 parameters before t_free, the last one 1e-9 before it, the distance in long
- * double is above 0. Not missed: at t_free it is at most epsilon, unless t_free is the end. Where contact is said to be proven, the
- * distance at t is at most rounding, 1e-13, or the curve has gone through. */
-CASE(first_contact_is_never_late_and_never_missed) {
+ * torus, and through it; epsilon 1e-9. Never late: at 60 parameters before t_contact_lower, the last one 1e-9 before
+ * it, the distance in long double is above 0. Not missed: at t_contact_lower it is at most epsilon, unless
+ * t_contact_lower is the end. Where contact is said to be proven, the distance at t is at most rounding, 1e-13, or the
+ * curve has gone through. */
+CASE(time_of_contact_is_never_late_and_never_missed) {
   rng r = rng_seed(53);
   const cprox_options options = accurate(1e-9);
   size_t hits = 0;
@@ -127,24 +131,26 @@ CASE(first_contact_is_never_late_and_never_missed) {
     const test_bezier b = bezier_make(points, i % 5 == 0 ? 2 : 3);
     cprox_result result;
     const cprox_status status =
-        cprox_first_contact(cprox_tube_along(b.curve, radius), cprox_at(body, pose), &options, ws, &result);
-    if (status != CPROX_OK) fail_msg("case %zu: %s: %s", i, cprox_status_name(status), cprox_workspace_reason(ws));
-    const bool inside_first = cprox_body_is_solid(body) && result.t_free == 0.0;
+        cprox_time_of_contact(cprox_tube_along(b.curve, radius), cprox_obstacle_at(body, pose), &options, ws, &result);
+    if (status != CPROX_OK) fail_msg("case %zu: %s: %s", i, cprox_status_name(status), cprox_workspace_error(ws));
+    const bool inside_first = cprox_body_is_solid(body) && result.t_contact_lower == 0.0;
     if (result.verdict != CPROX_NO) {
       hits++;
-      const long double there = distance_at(&b, &mesh, &pose, result.t_free) - (long double)radius;
-      if (there > 1e-9L && !inside_first) fail_msg("case %zu: %Lg away at t_free", i, there);
-    } else if (result.t_free != 1.0 || !(result.lower > 0.0)) {
-      fail_msg("case %zu: no contact, but free to %g and at least %g away", i, result.t_free, result.lower);
+      const long double there = distance_at(&b, &mesh, &pose, result.t_contact_lower) - (long double)radius;
+      if (there > 1e-9L && !inside_first) fail_msg("case %zu: %Lg away at t_contact_lower", i, there);
+    } else if (result.t_contact_lower != 1.0 || !(result.lower > 0.0)) {
+      fail_msg("case %zu: no contact, but free to %g and at least %g away", i, result.t_contact_lower, result.lower);
     }
     for (int k = 1; k <= 60; k++) {
-      const long double t = k == 60 ? (long double)result.t_free - 1e-9L
-                                    : (long double)result.t_free * (long double)rng_uniform(&r, 0.0, 1.0);
-      if (t < 0.0L || t >= (long double)result.t_free) continue;
+      const long double t = k == 60 ? (long double)result.t_contact_lower - 1e-9L
+                                    : (long double)result.t_contact_lower * (long double)rng_uniform(&r, 0.0, 1.0);
+      if (t < 0.0L || t >= (long double)result.t_contact_lower) continue;
       const long double before = distance_at(&b, &mesh, &pose, t) - (long double)radius;
-      if (before <= 0.0L) fail_msg("case %zu: late: %Lg at %.17Lg, free to %.17g", i, before, t, result.t_free);
+      if (before <= 0.0L)
+        fail_msg("case %zu: late: %Lg at %.17Lg, free to %.17g", i, before, t, result.t_contact_lower);
     }
-    if (result.verdict == CPROX_YES && result.t < result.t_free) fail_msg("case %zu: proven before it is free", i);
+    if (result.verdict == CPROX_YES && result.t < result.t_contact_lower)
+      fail_msg("case %zu: proven before it is free", i);
     cprox_curve_free(b.curve);
     cprox_body_free(body);
     mesh_free(&mesh);
@@ -163,11 +169,11 @@ CASE(a_point_through_a_surface_is_a_proven_collision) {
     const test_bezier b = bezier_make(points, 2);
     cprox_result result;
     assert_int_equal(
-        cprox_collision(cprox_point_along(b.curve), cprox_at(body, cprox_pose_identity()), NULL, ws, &result),
+        cprox_collision(cprox_point_along(b.curve), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws, &result),
         CPROX_OK);
     if (result.verdict != CPROX_YES)
       fail_msg("case %d: %s, [%g, %g]", i, cprox_verdict_name(result.verdict), result.lower, result.upper);
-    assert_int_equal(result.rung, CPROX_RUNG_MESH);
+    assert_int_equal(result.lod, CPROX_LOD_MESH);
     cprox_curve_free(b.curve);
   }
   cprox_body_free(body);
@@ -192,7 +198,7 @@ CASE(a_closed_mesh_is_solid_inside) {
     const vec3 points[2] = {p, vec_add(p, rng_in_cube(&r, 1e-12))};
     const test_bezier b = bezier_make(points, 1);
     cprox_result result;
-    cprox_collision(cprox_point_along(b.curve), cprox_at(solid, cprox_pose_identity()), NULL, ws, &result);
+    cprox_collision(cprox_point_along(b.curve), cprox_obstacle_at(solid, cprox_pose_identity()), NULL, ws, &result);
     if (wanted) assert_int_equal(result.verdict, CPROX_YES);
     if (mesh_distance(&mesh, ref_vec(p)) > 1e-5L && !wanted) assert_int_equal(result.verdict, CPROX_NO);
     cprox_curve_free(b.curve);
@@ -232,7 +238,8 @@ CASE(clouds_and_boxes_hold_too) {
     for (size_t k = 0; k < 5; k++) points[k] = rng_in_cube(&r, 1.5);
     const test_bezier b = bezier_make(points, 4);
     cprox_result result;
-    const cprox_status status = cprox_distance(cprox_point_along(b.curve), cprox_at(body, pose), &options, ws, &result);
+    const cprox_status status =
+        cprox_distance(cprox_point_along(b.curve), cprox_obstacle_at(body, pose), &options, ws, &result);
     if (status != CPROX_OK)
       fail_msg("case %zu: %s, [%.12g, %.12g], %u nodes", i, cprox_status_name(status), result.lower, result.upper,
                result.nodes);
@@ -272,8 +279,9 @@ CASE(pairs_answer_as_their_triangles_do) {
       assert_int_equal(cprox_body_create_box(vec(0.3, 0.2, 0.1), ws, &other), CPROX_OK);
     const cprox_pose at = rng_pose(&r, 1.0), there = rng_pose(&r, 1.5);
     cprox_result result;
-    const cprox_status status = cprox_pair(cprox_at(other, there), cprox_at(body, at), &options, ws, &result);
-    if (status < 0) fail_msg("case %zu: %s", i, cprox_workspace_reason(ws));
+    const cprox_status status =
+        cprox_pair(cprox_obstacle_at(other, there), cprox_obstacle_at(body, at), &options, ws, &result);
+    if (status < 0) fail_msg("case %zu: %s", i, cprox_workspace_error(ws));
     if (ball) {
       const long double d = mesh_distance(&mesh, ref_to_local(&at, ref_vec(there.position))) - (long double)radius;
       if (!(result.lower - 1e-15 <= (double)d && (double)d <= result.upper + 1e-15))
@@ -286,7 +294,7 @@ CASE(pairs_answer_as_their_triangles_do) {
         cprox_body *triangle = NULL;
         assert_int_equal(cprox_body_create_polytope(v, 3, ws, &triangle), CPROX_OK);
         cprox_result one;
-        cprox_pair(cprox_at(other, there), cprox_at(triangle, at), &options, ws, &one);
+        cprox_pair(cprox_obstacle_at(other, there), cprox_obstacle_at(triangle, at), &options, ws, &one);
         least = fmin(least, one.upper);
         cprox_body_free(triangle);
       }
@@ -305,7 +313,7 @@ CASE(pairs_answer_as_their_triangles_do) {
 
 static void expect_reason(cprox_status status, cprox_status wanted, const char *words) {
   assert_int_equal(status, wanted);
-  if (!strstr(cprox_workspace_reason(ws), words)) fail_msg("'%s' does not say '%s'", cprox_workspace_reason(ws), words);
+  if (!strstr(cprox_workspace_error(ws), words)) fail_msg("'%s' does not say '%s'", cprox_workspace_error(ws), words);
 }
 
 CASE(bad_input_is_refused_with_a_sentence) {
@@ -330,7 +338,7 @@ CASE(bad_input_is_refused_with_a_sentence) {
   cprox_result unused;
   assert_int_equal(cprox_body_create_boxes(low, top, 1, SIZE_MAX, ws, &boxes), CPROX_OK);
   assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
-  const cprox_target target = cprox_at(boxes, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(boxes, cprox_pose_identity());
   expect_reason(cprox_distance(cprox_body_along(ball, path.curve), target, NULL, ws, &unused), CPROX_INVALID,
                 "carried");
   expect_reason(cprox_distance(cprox_body_along(boxes, path.curve), target, NULL, ws, &unused), CPROX_INVALID,
@@ -354,8 +362,9 @@ CASE(bad_input_is_refused_with_a_sentence) {
   const vec3 line[2] = {{1, -1, 0}, {1, 1, 0}};
   const test_bezier b = bezier_make(line, 1);
   cprox_result result;
-  assert_int_equal(cprox_distance(cprox_point_along(b.curve), cprox_at(body, cprox_pose_identity()), NULL, ws, &result),
-                   CPROX_OK);
+  assert_int_equal(
+      cprox_distance(cprox_point_along(b.curve), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws, &result),
+      CPROX_OK);
   assert_true(result.lower <= 1.0 && 1.0 <= result.upper);
   cprox_body_free(body);
   cprox_curve_free(b.curve);
@@ -373,8 +382,9 @@ CASE(queries_do_not_allocate_once_the_workspace_has_grown) {
   for (int i = 0; i < 2; i++) {
     before = allocations_made();
     cprox_result result;
-    cprox_distance(cprox_tube_along(b.curve, 0.01), cprox_at(body, cprox_pose_identity()), NULL, ws, &result);
-    cprox_first_contact(cprox_tube_along(b.curve, 0.01), cprox_at(body, cprox_pose_identity()), NULL, ws, &result);
+    cprox_distance(cprox_tube_along(b.curve, 0.01), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws, &result);
+    cprox_time_of_contact(cprox_tube_along(b.curve, 0.01), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws,
+                          &result);
   }
   assert_int_equal(allocations_made(), before);
   cprox_curve_free(b.curve);

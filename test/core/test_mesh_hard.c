@@ -17,8 +17,8 @@ static cprox_result expect_distance(const char *name, const cprox_curve *curve, 
   cprox_options options = cprox_options_default();
   options.epsilon = epsilon;
   cprox_result r;
-  const cprox_status status = cprox_distance(cprox_point_along(curve), cprox_at(body, pose), &options, ws, &r);
-  if (status < 0) fail_msg("%s: %s", name, cprox_workspace_reason(ws));
+  const cprox_status status = cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, pose), &options, ws, &r);
+  if (status < 0) fail_msg("%s: %s", name, cprox_workspace_error(ws));
   if (!(r.lower <= truth + doubt && truth - doubt <= r.upper))
     fail_msg("%s: [%.17g, %.17g] without %.17g", name, r.lower, r.upper, truth);
   if (r.nodes > most) fail_msg("%s: %u intervals", name, r.nodes);
@@ -152,8 +152,8 @@ CASE(a_spline_of_a_thousand_pieces_is_answered) {
   cprox_curve *curve = NULL;
   assert_int_equal(cprox_curve_create_bspline(points, POINTS, 3, knots, POINTS + 4, 3.0, POINTS, ws, &curve), CPROX_OK);
   cprox_result r;
-  assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_at(body, cprox_pose_identity()), NULL, ws, &r),
-                   CPROX_OK);
+  assert_int_equal(
+      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws, &r), CPROX_OK);
   double least = INFINITY;
   for (int k = 0; k <= 20000; k++) {
     vec3 x;
@@ -183,7 +183,8 @@ CASE(far_away_the_interval_is_as_wide_as_it_must_be) {
       cprox_options options = cprox_options_default();
       options.epsilon = fine ? 1e-12 : 1e-6;
       cprox_result a;
-      const cprox_status status = cprox_distance(cprox_point_along(curve), cprox_at(body, pose), &options, ws, &a);
+      const cprox_status status =
+          cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, pose), &options, ws, &a);
       assert_true(status == CPROX_OK || (fine && status == CPROX_PRECISION));
       assert_true(a.upper - a.lower <= 1e-6);
       const long double there = mesh_distance(&mesh, ref_to_local(&pose, ref_bezier(points, 3, (long double)a.t, 0)));
@@ -208,7 +209,7 @@ CASE(tiny_epsilons_end_with_the_narrowest_interval) {
     options.epsilon = i % 2 ? 0.0 : 1e-15;
     cprox_result a;
     const cprox_status status =
-        cprox_distance(cprox_point_along(curve), cprox_at(body, cprox_pose_identity()), &options, ws, &a);
+        cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws, &a);
     assert_true(status == CPROX_OK || status == CPROX_PRECISION);
     if (a.nodes > 400 || a.upper - a.lower > 1e-12)
       fail_msg("case %d: %u intervals, %g wide", i, a.nodes, a.upper - a.lower);
@@ -228,11 +229,11 @@ CASE(a_budget_is_kept) {
   options.epsilon = 1e-9;
   cprox_result fine, coarse;
   options.max_nodes = 200000;
-  assert_true(cprox_distance(cprox_point_along(curve), cprox_at(body, cprox_pose_identity()), &options, ws, &fine) >=
-              0);
+  assert_true(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws,
+                             &fine) >= 0);
   options.max_nodes = 10;
   const cprox_status status =
-      cprox_distance(cprox_point_along(curve), cprox_at(body, cprox_pose_identity()), &options, ws, &coarse);
+      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws, &coarse);
   assert_true(coarse.nodes <= 10 && coarse.lower <= fine.upper && fine.lower <= coarse.upper);
   assert_true(status == CPROX_BUDGET || coarse.upper - coarse.lower <= 1e-9);
   cprox_curve_free(curve);
@@ -240,12 +241,13 @@ CASE(a_budget_is_kept) {
   mesh_free(&mesh);
 }
 
-/* ---- first contact ---------------------------------------------------------------------------------------------------- */
+/* ---- time of contact
+ * ---------------------------------------------------------------------------------------------------- */
 
 /* 40 quintics of a tube of 0.05 into a torus of 2 * 60 * 30 triangles (seed 47), to 1e-9: halving would need 30 intervals for the last
- * digits alone, cuts aimed at the contact need 12 on average. Never late: at t_free, nine tenths and half of it the tube is clear of
- * every triangle. */
-CASE(first_contact_takes_few_intervals) {
+ * digits alone, cuts aimed at the contact need 12 on average. Never late: at t_contact_lower, nine tenths and half of
+ * it the tube is clear of every triangle. */
+CASE(time_of_contact_takes_few_intervals) {
   test_mesh mesh = mesh_torus(60, 30, 1.0, 0.3, 0.02);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
   rng r = rng_seed(47);
@@ -259,13 +261,18 @@ CASE(first_contact_takes_few_intervals) {
     for (int k = 1; k < 6; k++) points[k] = vec_add(vec_scale(1.0 - 0.25 * k, points[0]), rng_in_cube(&r, 0.2));
     cprox_curve *curve = bezier(points, 6);
     cprox_result result;
-    cprox_first_contact(cprox_tube_along(curve, radius), cprox_at(body, cprox_pose_identity()), &options, ws, &result);
-    if (result.verdict == CPROX_YES && result.t_free > 0.0) {
+    cprox_time_of_contact(cprox_tube_along(curve, radius), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws,
+                          &result);
+    if (result.verdict == CPROX_YES && result.t_contact_lower > 0.0) {
       hits++;
       nodes += result.nodes;
       for (int k = 0; k < 3; k++) {
         vec3 at;
-        cprox_curve_evaluate(curve, result.t_free * (k == 0 ? 1.0 : k == 1 ? 0.9 : 0.5), NULL, &at, NULL, NULL);
+        cprox_curve_evaluate(curve,
+                             result.t_contact_lower * (k == 0   ? 1.0
+                                                       : k == 1 ? 0.9
+                                                                : 0.5),
+                             NULL, &at, NULL, NULL);
         const long double distance = mesh_distance(&mesh, (vec3l){at.x, at.y, at.z});
         if (!(distance > radius - 1e-13)) fail_msg("late: %.17Lg", distance);
       }

@@ -10,10 +10,10 @@
 
 /* ---- the options -------------------------------------------------------------------------------------------------------- */
 
-typedef enum option { NOTHING, SIGNED, CERTIFICATE, STOP, RELATIVE, RUNG, N_OPTIONS } option;
+typedef enum option { NOTHING, SIGNED, CERTIFICATE, STOP, RELATIVE, LOD, N_OPTIONS } option;
 
 static const char *const OPTION_NAMES[N_OPTIONS] = {"nothing", "signed_distance",  "certificate",
-                                                    "stop",    "relative_epsilon", "max_rung"};
+                                                    "stop",    "relative_epsilon", "max_lod"};
 
 static size_t stop_calls;
 
@@ -31,7 +31,7 @@ static cprox_options with(option o) {
   if (o == CERTIFICATE) options.certificate = proof;
   if (o == STOP) options.stop = count_and_go_on;
   if (o == RELATIVE) options.relative_epsilon = 0.5;
-  if (o == RUNG) options.max_rung = CPROX_RUNG_SPHERE;
+  if (o == LOD) options.max_lod = CPROX_LOD_SPHERE;
   return options;
 }
 
@@ -120,11 +120,12 @@ static cprox_mover mover_of(const world *w, mover_kind kind) {
   }
 }
 
-static cprox_target target_of(const world *w, target_kind kind, double height) {
+static cprox_obstacle target_of(const world *w, target_kind kind, double height) {
   const cprox_body *const bodies[] = {w->ball, w->box, w->plane, w->quadric, w->mesh, w->cloud};
-  cprox_target t = kind < LINE ? cprox_at(bodies[kind], cprox_pose_identity()) : cprox_curve_target(w->line, 0.05);
-  if (kind == CLOCK) t = cprox_on_clock(cprox_tube_along(w->line, 0.05));
-  if (kind == CLOCK_BODY) t = cprox_on_clock(cprox_body_along(w->box, w->line));
+  cprox_obstacle t =
+      kind < LINE ? cprox_obstacle_at(bodies[kind], cprox_pose_identity()) : cprox_obstacle_curve(w->line, 0.05);
+  if (kind == CLOCK) t = cprox_synchronized(cprox_tube_along(w->line, 0.05));
+  if (kind == CLOCK_BODY) t = cprox_synchronized(cprox_body_along(w->box, w->line));
   t.pose.position.z = -height;
   return t;
 }
@@ -134,65 +135,65 @@ static cprox_target target_of(const world *w, target_kind kind, double height) {
 /* What a query leaves behind: all that it writes, and the interval in it. */
 typedef struct reply {
   cprox_result result[4];
-  cprox_stretch stretch;
+  cprox_profile_interval interval;
   cprox_gradient gradient;
   cprox_growth growth;
   size_t count;
   double lower, upper; /* set by hand */
-  cprox_rung rung;
+  cprox_lod lod;
 } reply;
 
-typedef cprox_status (*query)(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r);
+typedef cprox_status (*query)(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r);
 
 static size_t targets_of(const cprox_mover *m) {
   return m->self ? 0 : 1;
 }
 
-static cprox_status distance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status distance(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return cprox_distance_all(m, &t, targets_of(&m), o, ws, r->result, NULL);
 }
 
-static cprox_status tolerance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status tolerance(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return cprox_tolerance_all(m, &t, targets_of(&m), 0.1, o, ws, r->result, NULL);
 }
 
-static cprox_status collision(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status collision(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return cprox_collision_all(m, &t, targets_of(&m), o, ws, r->result, NULL);
 }
 
-static cprox_status first_contact(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status time_of_contact(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
-  return cprox_first_contact_all(m, &t, targets_of(&m), o, ws, r->result);
+  return cprox_time_of_contact_all(m, &t, targets_of(&m), o, ws, r->result);
 }
 
-static cprox_status nearest(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status nearest(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return cprox_nearest(m, &t, targets_of(&m), 1, o, ws, r->result, &r->count);
 }
 
-static cprox_status within(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status within(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return cprox_within(m, &t, targets_of(&m), 9.0, o, ws, r->result, &r->count);
 }
 
-static cprox_status nearest_pairs(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status nearest_pairs(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return cprox_nearest_pairs(m, &t, targets_of(&m), 1, 9.0, o, ws, r->result, &r->count);
 }
 
-static cprox_status profile(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status profile(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   const double breaks[] = {0.0, 1.0};
-  const cprox_status status = cprox_profile(m, &t, targets_of(&m), breaks, 1, o, ws, &r->stretch);
-  if (status >= 0) r->result->lower = r->stretch.lower, r->result->upper = r->stretch.upper;
+  const cprox_status status = cprox_profile(m, &t, targets_of(&m), breaks, 1, o, ws, &r->interval);
+  if (status >= 0) r->result->lower = r->interval.lower, r->result->upper = r->interval.upper;
   return status;
 }
 
 /* Of the distance that was asked for with the same options, less the certificate. */
-static cprox_status gradient(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status gradient(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   cprox_options before = *o;
   before.certificate = NULL;
@@ -204,7 +205,7 @@ static cprox_status gradient(const world *w, cprox_mover m, cprox_target t, cons
   return told;
 }
 
-static cprox_status certify(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status certify(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   cprox_result found;
   cprox_status status = cprox_tolerance(m, t, 0.01, NULL, ws, &found);
@@ -216,45 +217,47 @@ static cprox_status certify(const world *w, cprox_mover m, cprox_target t, const
   return status;
 }
 
-static cprox_status of_set(const cprox_target *t, cprox_mover m, const cprox_options *o, int which, reply *r) {
+static cprox_status of_set(const cprox_obstacle *t, cprox_mover m, const cprox_options *o, int which, reply *r) {
   cprox_set *set = NULL;
   assert_int_equal(cprox_set_create(t, 1, ws, &set), CPROX_OK);
   const cprox_status status = which == 0   ? cprox_set_distance(set, m, o, ws, r->result)
                               : which == 1 ? cprox_set_tolerance(set, m, 0.1, o, ws, r->result)
                               : which == 2 ? cprox_set_collision(set, m, o, ws, r->result)
-                              : which == 3 ? cprox_set_first_contact(set, m, o, ws, r->result)
+                              : which == 3 ? cprox_set_time_of_contact(set, m, o, ws, r->result)
                                            : cprox_set_nearest(set, m, 1, o, ws, r->result, &r->count);
   cprox_set_free(set);
   return status;
 }
 
-static cprox_status set_distance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status set_distance(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return of_set(&t, m, o, 0, r);
 }
 
-static cprox_status set_tolerance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status set_tolerance(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return of_set(&t, m, o, 1, r);
 }
 
-static cprox_status set_collision(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status set_collision(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return of_set(&t, m, o, 2, r);
 }
 
-static cprox_status set_first_contact(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status set_time_of_contact(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o,
+                                        reply *r) {
   (void)w;
   return of_set(&t, m, o, 3, r);
 }
 
-static cprox_status set_nearest(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status set_nearest(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return of_set(&t, m, o, 4, r);
 }
 
 /* A mover that fails alone has a result: that counts as untouched. */
-static cprox_status of_batch(const cprox_target *t, const cprox_mover *m, const cprox_options *o, int which, reply *r) {
+static cprox_status of_batch(const cprox_obstacle *t, const cprox_mover *m, const cprox_options *o, int which,
+                             reply *r) {
   cprox_batch *batch = NULL;
   assert_int_equal(cprox_batch_create(t, 1, ws, &batch), CPROX_OK);
   const cprox_result before = *r->result;
@@ -266,63 +269,63 @@ static cprox_status of_batch(const cprox_target *t, const cprox_mover *m, const 
   return status;
 }
 
-static cprox_status batch_distance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status batch_distance(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return of_batch(&t, &m, o, 0, r);
 }
 
-static cprox_status batch_tolerance(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status batch_tolerance(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return of_batch(&t, &m, o, 1, r);
 }
 
-static cprox_status batch_collision(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status batch_collision(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   return of_batch(&t, &m, o, 2, r);
 }
 
 /* Standing and translating bodies: the mover's place is taken by a body. */
-static cprox_target own_body(const world *w) {
-  return cprox_at(w->quadric, cprox_pose_identity());
+static cprox_obstacle own_body(const world *w) {
+  return cprox_obstacle_at(w->quadric, cprox_pose_identity());
 }
 
-static cprox_status pair(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status pair(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)m;
   return cprox_pair(own_body(w), t, o, ws, r->result);
 }
 
-static cprox_status pair_of_parts(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status pair_of_parts(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)m;
   const cprox_body *const parts[2] = {w->quadric, w->ball};
   cprox_pose poses[2] = {cprox_pose_identity(), cprox_pose_identity()};
   poses[1].position.z = 2.0;
   cprox_body *two = NULL;
   assert_int_equal(cprox_body_create_compound(parts, poses, 2, ws, &two), CPROX_OK);
-  const cprox_status status = cprox_pair(cprox_at(two, cprox_pose_identity()), t, o, ws, r->result);
+  const cprox_status status = cprox_pair(cprox_obstacle_at(two, cprox_pose_identity()), t, o, ws, r->result);
   cprox_body_free(two);
   return status;
 }
 
-static cprox_status translating(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status translating(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)m;
   const cprox_translating a = {.from = own_body(w)}, b = {.from = t, .velocity = {0.1, 0, 0}};
   return cprox_translating_distance(a, b, 1.0, o, ws, r->result);
 }
 
-static cprox_status translating_contact(const world *w, cprox_mover m, cprox_target t, const cprox_options *o,
+static cprox_status translating_contact(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o,
                                         reply *r) {
   (void)m;
   const cprox_translating a = {.from = own_body(w)}, b = {.from = t, .velocity = {0.1, 0, 3.9}};
   return cprox_translating_contact(a, b, 1.0, o, ws, r->result);
 }
 
-static cprox_status growth(const world *w, cprox_mover m, cprox_target t, const cprox_options *o, reply *r) {
+static cprox_status growth(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)m;
   return cprox_growth_distance(own_body(w), t, o, ws, &r->growth);
 }
 
 enum {
-  SEARCH = 1 << STOP | 1 << RELATIVE | 1 << RUNG,
+  SEARCH = 1 << STOP | 1 << RELATIVE | 1 << LOD,
   TAKES_MOVERS = 1 << 20,
   TAKES_SELF = 1 << 21,
   IS_DISTANCE = 1 << 22, /* the interval is that of a distance */
@@ -338,17 +341,17 @@ static const row QUERIES[] = {
     {"distance", distance, SEARCH | 1 << CERTIFICATE | 1 << SIGNED | TAKES_MOVERS | TAKES_SELF | IS_DISTANCE},
     {"tolerance", tolerance, SEARCH | 1 << CERTIFICATE | TAKES_MOVERS | TAKES_SELF},
     {"collision", collision, SEARCH | 1 << CERTIFICATE | TAKES_MOVERS | TAKES_SELF},
-    {"first contact", first_contact, 1 << STOP | 1 << RUNG | TAKES_MOVERS | TAKES_SELF},
+    {"time of contact", time_of_contact, 1 << STOP | 1 << LOD | TAKES_MOVERS | TAKES_SELF},
     {"nearest", nearest, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
     {"within", within, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
     {"nearest pairs", nearest_pairs, SEARCH | TAKES_MOVERS | TAKES_SELF | IS_DISTANCE},
     {"profile", profile, SEARCH | 1 << SIGNED | TAKES_MOVERS | TAKES_SELF | IS_DISTANCE},
     {"gradient", gradient, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
-    {"certify", certify, 1 << RELATIVE | 1 << RUNG | TAKES_MOVERS},
+    {"certify", certify, 1 << RELATIVE | 1 << LOD | TAKES_MOVERS},
     {"set distance", set_distance, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
     {"set tolerance", set_tolerance, SEARCH | TAKES_MOVERS},
     {"set collision", set_collision, SEARCH | TAKES_MOVERS},
-    {"set first contact", set_first_contact, 1 << STOP | 1 << RUNG | TAKES_MOVERS},
+    {"set time of contact", set_time_of_contact, 1 << STOP | 1 << LOD | TAKES_MOVERS},
     {"set nearest", set_nearest, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
     {"batch distance", batch_distance, SEARCH | 1 << SIGNED | TAKES_MOVERS | IS_DISTANCE},
     {"batch tolerance", batch_tolerance, SEARCH | TAKES_MOVERS},
@@ -386,13 +389,13 @@ static void expect_effect(walk *all, size_t q, mover_kind mover, target_kind tar
   }
   if (o == RELATIVE && measured && (now->lower > before->upper || before->lower > now->upper))
     fail_msg("%s: [%g, %g], not [%g, %g]", what, now->lower, now->upper, before->lower, before->upper);
-  if (o == RUNG && measured && now->lower > before->upper) fail_msg("%s: a ball is farther than what is in it", what);
+  if (o == LOD && measured && now->lower > before->upper) fail_msg("%s: a ball is farther than what is in it", what);
 }
 
 static void walk_option(walk *all, size_t q, mover_kind mover, target_kind target, bool apart, option o,
                         const reply *plain, cprox_status base) {
   const cprox_mover m = mover_of(&all->w, mover);
-  const cprox_target t = target_of(&all->w, target, apart ? 4.0 : 0.0);
+  const cprox_obstacle t = target_of(&all->w, target, apart ? 4.0 : 0.0);
   const cprox_options options = with(o);
   reply r, untouched;
   memset(&r, 0x5a, sizeof r);
@@ -407,7 +410,7 @@ static void walk_option(walk *all, size_t q, mover_kind mover, target_kind targe
   const bool has = (QUERIES[q].has >> o & 1u) != 0 && !(o == SIGNED && robot);
   if (!has) {
     all->refused++;
-    const char *reason = cprox_workspace_reason(ws);
+    const char *reason = cprox_workspace_error(ws);
     if (status != CPROX_INVALID) fail_msg("%s: %s, and the option does not apply", what, cprox_status_name(status));
     if (base >= 0 && (!strstr(reason, OPTION_NAMES[o]) || !strstr(reason, "does not apply")))
       fail_msg("%s: '%s'", what, reason);
@@ -416,15 +419,16 @@ static void walk_option(walk *all, size_t q, mover_kind mover, target_kind targe
   }
   if (base < 0) {
     /* balls may be answered where bodies are not */
-    if (o != RUNG) assert_int_equal(status, base);
+    if (o != LOD) assert_int_equal(status, base);
     return;
   }
-  if (status < 0) fail_msg("%s: %s", what, cprox_workspace_reason(ws));
+  if (status < 0) fail_msg("%s: %s", what, cprox_workspace_error(ws));
   all->answered++;
   expect_effect(all, q, mover, target, apart, o, plain, &r, what);
 }
 
-/* 23 queries, 5 movers, 9 targets, apart or not, 5 options. What the plain question refuses is refused with the option, too. */
+/* 23 queries, 5 movers, 9 targets, apart or not, 5 options. What the plain query refuses is refused with the option,
+ * too. */
 CASE(options_have_their_effect_or_are_refused) {
   walk all = {.w = make_world()};
   for (size_t q = 0; q < N_QUERIES; q++) {
@@ -435,7 +439,7 @@ CASE(options_have_their_effect_or_are_refused) {
         for (int apart = 0; apart < 2; apart++) {
           const cprox_options options = cprox_options_default();
           reply plain = {0};
-          const cprox_target t = target_of(&all.w, target, apart ? 4.0 : 0.0);
+          const cprox_obstacle t = target_of(&all.w, target, apart ? 4.0 : 0.0);
           const cprox_status base = QUERIES[q].ask(&all.w, mover_of(&all.w, mover), t, &options, &plain);
           for (option o = SIGNED; o < N_OPTIONS; o++) walk_option(&all, q, mover, target, apart, o, &plain, base);
         }
@@ -464,7 +468,7 @@ CASE(what_belongs_to_robots_is_refused_with_curves) {
       if (i == 2) m.self = true;
       reply r;
       const cprox_options options = cprox_options_default();
-      const cprox_target t = target_of(&w, BALL, 4.0);
+      const cprox_obstacle t = target_of(&w, BALL, 4.0);
       m.self = false;
       cprox_mover asked = m;
       asked.self = i == 2;
@@ -486,7 +490,7 @@ CASE(gaps_refuse_delta_and_samples_together) {
   cprox_gap *gap = NULL;
   o.samples = 9, o.delta = 0.3;
   assert_int_equal(cprox_gap_create(ball, ball, &o, ws, &gap), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(ws), "delta is 0.3 and samples is 9"));
+  assert_non_null(strstr(cprox_workspace_error(ws), "delta is 0.3 and samples is 9"));
   o.delta = NAN;
   assert_int_equal(cprox_gap_create(ball, ball, &o, ws, &gap), CPROX_INVALID);
   o.delta = 0.0;
@@ -498,7 +502,7 @@ CASE(gaps_refuse_delta_and_samples_together) {
 /* Signed: of two bodies that the curve goes through the deeper one is the nearest, alone, in a set and in a batch. */
 CASE(the_deepest_is_the_nearest_where_distances_are_signed) {
   world w = make_world();
-  cprox_target targets[3] = {target_of(&w, BOX, 0.0), target_of(&w, BALL, 0.0), target_of(&w, BALL, 3.0)};
+  cprox_obstacle targets[3] = {target_of(&w, BOX, 0.0), target_of(&w, BALL, 0.0), target_of(&w, BALL, 3.0)};
   const cprox_options options = with(SIGNED);
   const cprox_mover m = cprox_point_along(w.way);
   cprox_set *set = NULL;
@@ -513,8 +517,8 @@ CASE(the_deepest_is_the_nearest_where_distances_are_signed) {
     assert_true(n == k && count == k);
     const int32_t order[3] = {1, 0, 2};
     for (size_t i = 0; i < k; i++) {
-      assert_int_equal(near[i].target_index, order[i]);
-      assert_int_equal(found[i].target_index, order[i]);
+      assert_int_equal(near[i].obstacle_index, order[i]);
+      assert_int_equal(found[i].obstacle_index, order[i]);
       assert_true(fabs(near[i].upper - one[order[i]].upper) <= 2e-6 && fabs(found[i].upper - near[i].upper) <= 2e-6);
     }
   }

@@ -54,7 +54,8 @@ static void check_apart(const sweep *w) {
     options.epsilon = floor;
     options.relative_epsilon = 1e-9;
     cprox_result result;
-    const cprox_status status = cprox_pair(cprox_at(a.body, pa), cprox_at(b.body, pb), &options, NULL, &result);
+    const cprox_status status =
+        cprox_pair(cprox_obstacle_at(a.body, pa), cprox_obstacle_at(b.body, pb), &options, NULL, &result);
     assert_true(status == result.status && status >= CPROX_OK);
     check_bracket(&a, &b, gap, tolerance, &result);
     undecided += status != CPROX_OK;
@@ -64,7 +65,7 @@ static void check_apart(const sweep *w) {
 
     /* the points attain upper, one on each body, and the normal points from b to a */
     if (status != CPROX_OVERLAP && gap > 1e-6 * scale) {
-      const vec3 apart = vec_sub(result.on_mover, result.on_target);
+      const vec3 apart = vec_sub(result.witness_mover, result.witness_obstacle);
       const double noise = floor + 1e-12 * vec_norm(pa.position);
       assert_true(fabs(vec_norm(apart) - result.upper) <= 1e-9 * result.upper + 2.0 * noise);
       if (status == CPROX_OK) assert_true(vec_dot(apart, result.normal) >= (1.0 - 1e-7) * result.upper - 2.0 * noise);
@@ -113,7 +114,8 @@ CASE(overlaps_are_never_called_apart) {
     pb.position = vec((double)x.x, (double)x.y, (double)x.z);
     const long double tolerance = ref_error(x, pb.position) + 1e-17L;
     cprox_result result;
-    assert_true(cprox_pair(cprox_at(a.body, pa), cprox_at(b.body, pb), NULL, NULL, &result) >= CPROX_OK);
+    assert_true(cprox_pair(cprox_obstacle_at(a.body, pa), cprox_obstacle_at(b.body, pb), NULL, NULL, &result) >=
+                CPROX_OK);
     if (!(result.lower <= tolerance && result.lower <= result.upper))
       fail_msg("%s and %s share a point: [%.17g, %.17g]", shape_name(&a), shape_name(&b), result.lower, result.upper);
     for (int k = 0; k < 4; k++) {
@@ -125,11 +127,11 @@ CASE(overlaps_are_never_called_apart) {
     }
     if (result.upper < 0.0) {
       /* the two points are the way out: as far apart as upper says, each on its own body */
-      const vec3 out = vec_sub(result.on_target, result.on_mover);
+      const vec3 out = vec_sub(result.witness_obstacle, result.witness_mover);
       if (!(fabs(vec_norm(out) + result.upper) < 1e-12))
         fail_msg("%s in %s: [%.17g, %.17g] %s, points %.17g apart, normal %g", shape_name(&a), shape_name(&b),
                  result.lower, result.upper, cprox_status_name(result.status), vec_norm(out), vec_norm(result.normal));
-      const vec3l u = ref_vec(rng_unit(&r)), p = ref_vec(result.on_mover), q = ref_vec(result.on_target);
+      const vec3l u = ref_vec(rng_unit(&r)), p = ref_vec(result.witness_mover), q = ref_vec(result.witness_obstacle);
       assert_true(ref_dot(u, ref_sub(p, shape_extreme(&a, &pa, u))) < 1e-12L);
       assert_true(ref_dot(u, ref_sub(q, shape_extreme(&b, &pb, u))) < 1e-12L);
       proven++;
@@ -177,7 +179,8 @@ CASE(aligned_boxes_need_no_tolerance) {
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-13;
     cprox_result result;
-    cprox_pair(cprox_at(body[0], cprox_pose_identity()), cprox_at(body[1], pose), &options, NULL, &result);
+    cprox_pair(cprox_obstacle_at(body[0], cprox_pose_identity()), cprox_obstacle_at(body[1], pose), &options, NULL,
+               &result);
     if (exact > 0 && !(result.lower <= exact && exact <= result.upper && result.status == CPROX_OK))
       fail_msg("[%.17g, %.17g], exact %.20Lg", result.lower, result.upper, exact);
     cprox_body_free(body[0]);
@@ -207,7 +210,7 @@ CASE(the_rounding_of_large_bodies_close_together_is_in_the_interval) {
       cprox_options options = cprox_options_default();
       options.epsilon = 0.0;
       cprox_result result;
-      cprox_pair(cprox_at(s[0].body, pa), cprox_at(s[1].body, pb), &options, NULL, &result);
+      cprox_pair(cprox_obstacle_at(s[0].body, pa), cprox_obstacle_at(s[1].body, pb), &options, NULL, &result);
       check_bracket(&s[0], &s[1], gap, tolerance, &result);
       asked++;
     }
@@ -232,7 +235,7 @@ CASE(a_common_offset_of_a_million_metres_costs_nothing) {
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-12;
     cprox_result result;
-    cprox_pair(cprox_at(a.body, pa), cprox_at(b.body, pb), &options, NULL, &result);
+    cprox_pair(cprox_obstacle_at(a.body, pa), cprox_obstacle_at(b.body, pb), &options, NULL, &result);
     check_bracket(&a, &b, 0.1, tolerance, &result);
     assert_true(result.upper - result.lower < 1e-11);
     cprox_body_free(a.body);
@@ -252,10 +255,12 @@ CASE(balls_have_their_exact_signed_distance) {
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-12;
     cprox_result ab, ba;
-    assert_int_equal(cprox_pair(cprox_at(a.body, pa), cprox_at(b.body, pb), &options, NULL, &ab), CPROX_OK);
-    assert_int_equal(cprox_pair(cprox_at(b.body, pb), cprox_at(a.body, pa), &options, NULL, &ba), CPROX_OK);
+    assert_int_equal(cprox_pair(cprox_obstacle_at(a.body, pa), cprox_obstacle_at(b.body, pb), &options, NULL, &ab),
+                     CPROX_OK);
+    assert_int_equal(cprox_pair(cprox_obstacle_at(b.body, pb), cprox_obstacle_at(a.body, pa), &options, NULL, &ba),
+                     CPROX_OK);
     assert_true(ab.lower <= ba.upper && ba.lower <= ab.upper);
-    assert_true(vec_norm(vec_sub(ab.on_mover, ba.on_target)) < 1e-12 &&
+    assert_true(vec_norm(vec_sub(ab.witness_mover, ba.witness_obstacle)) < 1e-12 &&
                 vec_norm(vec_add(ab.normal, ba.normal)) < 1e-12);
     for (int k = 0; k < 8; k++) { /* phi of any direction is a bound below the signed distance */
       const vec3l u = ref_vec(k == 0 ? ab.normal : rng_unit(&r));
@@ -285,13 +290,15 @@ CASE(a_halfspace_knows_the_signed_distance_of_everything) {
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-9;
     cprox_result hb, bh;
-    assert_int_equal(cprox_pair(cprox_at(h, ph), cprox_at(b.body, pb), &options, NULL, &hb), CPROX_OK);
-    assert_int_equal(cprox_pair(cprox_at(b.body, pb), cprox_at(h, ph), &options, NULL, &bh), CPROX_OK);
+    assert_int_equal(cprox_pair(cprox_obstacle_at(h, ph), cprox_obstacle_at(b.body, pb), &options, NULL, &hb),
+                     CPROX_OK);
+    assert_int_equal(cprox_pair(cprox_obstacle_at(b.body, pb), cprox_obstacle_at(h, ph), &options, NULL, &bh),
+                     CPROX_OK);
     if (!(hb.lower <= exact && exact <= hb.upper && bh.lower <= exact && exact <= bh.upper))
       fail_msg("%s: [%.17g, %.17g], exact %.20Lg", shape_name(&b), hb.lower, hb.upper, exact);
     assert_true(hb.upper - hb.lower < 1e-10 * (1.0 + vec_norm(vec_scale(offset / vec_norm(normal), normal))));
     /* from b's lowest point straight to the surface */
-    const vec3 step = vec_sub(hb.on_mover, hb.on_target);
+    const vec3 step = vec_sub(hb.witness_mover, hb.witness_obstacle);
     assert_true(vec_norm(vec_sub(step, vec_scale((double)exact, hb.normal))) < 1e-9 * (1.0 + fabs((double)exact)));
     assert_true(vec_norm(vec_add(hb.normal, bh.normal)) < 1e-15);
     cprox_body_free(h);
@@ -314,7 +321,8 @@ CASE(padding_is_taken_off_the_distance) {
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-9;
     cprox_result result;
-    const cprox_target ta = cprox_padded(cprox_at(a.body, pa), pad_a), tb = cprox_padded(cprox_at(b.body, pb), pad_b);
+    const cprox_obstacle ta = cprox_with_margin(cprox_obstacle_at(a.body, pa), pad_a),
+                         tb = cprox_with_margin(cprox_obstacle_at(b.body, pb), pad_b);
     cprox_pair(ta, tb, &options, NULL, &result);
     /* the cores are apart: the depth is exact as well */
     if (!(result.lower <= exact + tolerance && result.upper >= exact - tolerance))
@@ -346,18 +354,19 @@ CASE(a_compound_is_as_near_as_its_nearest_part) {
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-9;
     cprox_result whole, single, least = {.upper = INFINITY, .lower = INFINITY};
-    assert_int_equal(cprox_pair(cprox_at(a, away), cprox_at(b, cprox_pose_identity()), &options, NULL, &whole),
-                     CPROX_OK);
+    assert_int_equal(
+        cprox_pair(cprox_obstacle_at(a, away), cprox_obstacle_at(b, cprox_pose_identity()), &options, NULL, &whole),
+        CPROX_OK);
     for (int p = 0; p < 3; p++)
       for (int q = 0; q < 2; q++) {
-        const cprox_target ta = cprox_at(bodies[p], frame_compose(&away, &poses[p]));
-        cprox_pair(ta, cprox_at(bodies[3 + q], poses[3 + q]), &options, NULL, &single);
+        const cprox_obstacle ta = cprox_obstacle_at(bodies[p], frame_compose(&away, &poses[p]));
+        cprox_pair(ta, cprox_obstacle_at(bodies[3 + q], poses[3 + q]), &options, NULL, &single);
         if (single.upper >= least.upper) continue;
         least = single;
-        least.target_part = q;
+        least.obstacle_part = q;
       }
     assert_true(whole.lower <= least.upper && least.lower <= whole.upper + 1e-12);
-    assert_int_equal(whole.target_part, least.target_part);
+    assert_int_equal(whole.obstacle_part, least.obstacle_part);
     cprox_body_free(a);
     cprox_body_free(b);
     for (int k = 0; k < 5; k++) cprox_body_free(part[k].body);

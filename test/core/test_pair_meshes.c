@@ -23,7 +23,7 @@ static double by_triangles(const test_mesh *a, const cprox_pose *at, const test_
       cprox_result r;
       for (int c = 0; c < 3; c++) v[c] = b->vertices[b->triangles[k][c]];
       assert_int_equal(cprox_body_create_polytope(v, 3, ws, &two), CPROX_OK);
-      cprox_pair(cprox_at(one, *at), cprox_at(two, *there), options, ws, &r);
+      cprox_pair(cprox_obstacle_at(one, *at), cprox_obstacle_at(two, *there), options, ws, &r);
       least = fmin(least, r.upper);
       cprox_body_free(two);
     }
@@ -47,15 +47,16 @@ CASE(meshes_are_as_far_apart_as_their_nearest_triangles) {
     cprox_pose there = rng_pose(&r, 1.0);
     there.position = vec_add(there.position, vec(i % 4 ? 2.0 : 0.5, 0, 0));
     cprox_result result;
-    const cprox_status status = cprox_pair(cprox_at(x, at), cprox_at(y, there), &options, ws, &result);
-    if (status < 0) fail_msg("case %zu: %s", i, cprox_workspace_reason(ws));
+    const cprox_status status =
+        cprox_pair(cprox_obstacle_at(x, at), cprox_obstacle_at(y, there), &options, ws, &result);
+    if (status < 0) fail_msg("case %zu: %s", i, cprox_workspace_error(ws));
     const double wanted = by_triangles(&a, &at, &b, &there, &options);
     if (wanted > 1e-8) {
       apart++;
       assert_int_equal(status, CPROX_OK);
       if (fabs(result.upper - wanted) > 2e-9 || result.lower > wanted || result.upper - result.lower > 1e-9)
         fail_msg("case %zu: [%.12g, %.12g], but %.12g", i, result.lower, result.upper, wanted);
-      const vec3 way = vec_sub(result.on_mover, result.on_target);
+      const vec3 way = vec_sub(result.witness_mover, result.witness_obstacle);
       assert_true(fabs(vec_norm(way) - result.upper) < 1e-8);
       assert_true(vec_dot(way, result.normal) > 0.999 * vec_norm(way));
     } else {
@@ -70,8 +71,8 @@ CASE(meshes_are_as_far_apart_as_their_nearest_triangles) {
   assert_true(touching > 5 && apart > 5);
 }
 
-/* Tori of 2,000 triangles (seed 143), clouds and boxes against each other: the same both ways round, with padding, and no farther than at any
- * of 200 vertices. */
+/* Tori of 2,000 triangles (seed 143), clouds and boxes against each other: the same both ways round, with margin, and
+ * no farther than at any of 200 vertices. */
 CASE(large_meshes_clouds_and_boxes_too) {
   rng r = rng_seed(143);
   test_mesh torus = mesh_torus(40, 25, 1.0, 0.3, 0.1);
@@ -84,19 +85,19 @@ CASE(large_meshes_clouds_and_boxes_too) {
     const cprox_pose at = rng_pose(&r, 0.5);
     cprox_pose there = rng_pose(&r, 0.5);
     there.position.x += 4.5;
-    const cprox_target a = cprox_padded(cprox_at(bodies[i % 3], at), i % 2 ? 0.0 : 0.02),
-                       b = cprox_at(bodies[i / 3 % 3], there);
+    const cprox_obstacle a = cprox_with_margin(cprox_obstacle_at(bodies[i % 3], at), i % 2 ? 0.0 : 0.02),
+                         b = cprox_obstacle_at(bodies[i / 3 % 3], there);
     cprox_result one, two;
     assert_int_equal(cprox_pair(a, b, NULL, ws, &one), CPROX_OK);
     assert_int_equal(cprox_pair(b, a, NULL, ws, &two), CPROX_OK);
     assert_true(one.lower <= two.upper && two.lower <= one.upper && one.upper > 0.0);
-    assert_int_equal(one.rung, CPROX_RUNG_MESH);
+    assert_int_equal(one.lod, CPROX_LOD_MESH);
     const frame f = frame_create(&there, vec(0, 0, 0)), g = frame_create(&at, vec(0, 0, 0));
     for (int k = 0; k < 200; k++) {
       const vec3 v = i / 3 % 3 ? low[k] : torus.vertices[k];
       double unused = 0.0;
       const double d = cprox_body_nearest(a.body, frame_to_local(&g, frame_to_world(&f, v), &unused), NULL);
-      assert_true(one.lower <= d - a.padding + 1e-12);
+      assert_true(one.lower <= d - a.margin + 1e-12);
     }
   }
   for (int k = 0; k < 3; k++) cprox_body_free(bodies[k]);
@@ -111,11 +112,13 @@ CASE(one_inside_a_solid_overlaps_it) {
   const cprox_pose here = cprox_pose_identity();
   cprox_result r;
   for (int swapped = 0; swapped < 2; swapped++) {
-    const cprox_target a = cprox_at(swapped ? inner : solid, here), b = cprox_at(swapped ? solid : inner, here);
+    const cprox_obstacle a = cprox_obstacle_at(swapped ? inner : solid, here),
+                         b = cprox_obstacle_at(swapped ? solid : inner, here);
     assert_int_equal(cprox_pair(a, b, NULL, ws, &r), CPROX_OVERLAP);
     assert_true(r.upper <= 0.0);
   }
-  assert_int_equal(cprox_pair(cprox_at(surface, here), cprox_at(inner, here), NULL, ws, &r), CPROX_OK);
+  assert_int_equal(cprox_pair(cprox_obstacle_at(surface, here), cprox_obstacle_at(inner, here), NULL, ws, &r),
+                   CPROX_OK);
   assert_true(r.lower <= 0.9 && 0.9 <= r.upper);
   cprox_body_free(solid);
   cprox_body_free(surface);
@@ -158,8 +161,9 @@ static test_mesh any_mesh(rng *r, size_t kind) {
   }
 }
 
-/* 150 pairs (seed 147) of soups, tori and tubes of long and of small triangles, apart, close and crossing, with padding and without: both ways
- * round the same interval and the same cost, and the cost never rises with epsilon, absolute or relative. */
+/* 150 pairs (seed 147) of soups, tori and tubes of long and of small triangles, apart, close and crossing, with margin
+ * and without: both ways round the same interval and the same cost, and the cost never rises with epsilon, absolute or
+ * relative. */
 CASE(neither_order_nor_a_looser_epsilon_costs_more) {
   rng r = rng_seed(147);
   static const double EPSILON[][2] = {{0, 0},      {1e-9, 0},     {1e-6, 0}, {1e-6, 1e-3}, {1e-6, 0.1},
@@ -171,7 +175,8 @@ CASE(neither_order_nor_a_looser_epsilon_costs_more) {
     const cprox_pose at = rng_pose(&r, 0.2);
     cprox_pose there = rng_pose(&r, 0.2);
     there.position = vec_axpy(there.position, rng_uniform(&r, 0.5, 3.5), rng_unit(&r));
-    const cprox_target one = cprox_padded(cprox_at(x, at), i % 5 ? 0.0 : 0.01), two = cprox_at(y, there);
+    const cprox_obstacle one = cprox_with_margin(cprox_obstacle_at(x, at), i % 5 ? 0.0 : 0.01),
+                         two = cprox_obstacle_at(y, there);
     uint32_t nodes[sizeof EPSILON / sizeof *EPSILON];
     for (size_t e = 0; e < sizeof EPSILON / sizeof *EPSILON; e++) {
       cprox_options options = cprox_options_default();
@@ -179,8 +184,9 @@ CASE(neither_order_nor_a_looser_epsilon_costs_more) {
       cprox_result p, q;
       const cprox_status status = cprox_pair(one, two, &options, ws, &p);
       assert_int_equal(cprox_pair(two, one, &options, ws, &q), status);
-      if (status < 0) fail_msg("case %zu: %s", i, cprox_workspace_reason(ws));
-      if (a.m != b.m && (p.nodes != q.nodes || p.probes != q.probes || p.lower != q.lower || p.upper != q.upper))
+      if (status < 0) fail_msg("case %zu: %s", i, cprox_workspace_error(ws));
+      if (a.m != b.m &&
+          (p.nodes != q.nodes || p.distance_queries != q.distance_queries || p.lower != q.lower || p.upper != q.upper))
         fail_msg("case %zu: %u nodes and %u the other way round", i, p.nodes, q.nodes);
       nodes[e] = p.nodes;
       if (p.nodes > worst) worst = p.nodes;
@@ -213,12 +219,12 @@ CASE(a_coarse_mesh_and_a_fine_one_take_the_same_either_way) {
       cprox_pose there = rng_pose(&r, 0.0);
       const double turned = rng_uniform(&r, 0.0, 6.3), away = i % 2 ? 0.25 : 0.35;
       there.position = vec(away * cos(turned), away * sin(turned), rng_uniform(&r, -0.2, 0.2));
-      const cprox_target one = cprox_at(arm, at), two = cprox_at(sensor, there);
+      const cprox_obstacle one = cprox_obstacle_at(arm, at), two = cprox_obstacle_at(sensor, there);
       cprox_options options = cprox_options_default();
       cprox_result p, q;
       assert_int_equal(cprox_pair(one, two, &options, ws, &p), CPROX_OK);
       assert_int_equal(cprox_pair(two, one, &options, ws, &q), CPROX_OK);
-      assert_true(p.nodes == q.nodes && p.probes < 1000 && p.nodes < 10000);
+      assert_true(p.nodes == q.nodes && p.distance_queries < 1000 && p.nodes < 10000);
       options.max_nodes = 40;
       if (cprox_pair(one, two, &options, ws, &q) == CPROX_BUDGET)
         assert_true(q.lower >= 0.0 && q.lower <= p.upper && q.upper >= p.lower);
@@ -242,7 +248,7 @@ CASE(what_a_budget_leaves_open_is_bounded_by_what_is_meant) {
     const bool solid = i % 2;
     cprox_body *x = mesh_body(&a, solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE, ws);
     cprox_body *y = mesh_body(&b, CPROX_MESH_SURFACE, ws);
-    const cprox_target one = cprox_at(x, rng_pose(&r, 0.5)), two = cprox_at(y, rng_pose(&r, 0.5));
+    const cprox_obstacle one = cprox_obstacle_at(x, rng_pose(&r, 0.5)), two = cprox_obstacle_at(y, rng_pose(&r, 0.5));
     cprox_options options = cprox_options_default();
     options.max_nodes = 5 + (uint32_t)rng_index(&r, 60);
     cprox_result p, all;
@@ -274,9 +280,12 @@ CASE(a_search_through_meshes_can_be_stopped) {
   there.position.x = 4.0;
   cprox_options options = cprox_options_default();
   cprox_result p, q;
-  assert_int_equal(cprox_pair(cprox_at(x, cprox_pose_identity()), cprox_at(x, there), &options, ws, &p), CPROX_OK);
+  assert_int_equal(
+      cprox_pair(cprox_obstacle_at(x, cprox_pose_identity()), cprox_obstacle_at(x, there), &options, ws, &p), CPROX_OK);
   options.stop = at_once;
-  assert_int_equal(cprox_pair(cprox_at(x, cprox_pose_identity()), cprox_at(x, there), &options, ws, &q), CPROX_STOPPED);
+  assert_int_equal(
+      cprox_pair(cprox_obstacle_at(x, cprox_pose_identity()), cprox_obstacle_at(x, there), &options, ws, &q),
+      CPROX_STOPPED);
   assert_true(q.lower >= 0.0 && q.lower <= p.upper && q.upper >= p.lower && q.nodes < p.nodes);
   cprox_body_free(x);
   mesh_free(&a);

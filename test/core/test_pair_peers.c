@@ -53,7 +53,8 @@ CASE(libccd_gives_the_same_verdict_where_it_is_clear) {
       pb.position = vec((double)x.x, (double)x.y, (double)x.z);
     }
     cprox_result ours;
-    assert_true(cprox_pair(cprox_at(a.body, pa), cprox_at(b.body, pb), NULL, NULL, &ours) >= CPROX_OK);
+    assert_true(cprox_pair(cprox_obstacle_at(a.body, pa), cprox_obstacle_at(b.body, pb), NULL, NULL, &ours) >=
+                CPROX_OK);
     const bool overlap = ours.upper < 0.0;
     assert_true(overlap == (i % 2 == 0));
     if (ccd_says_overlap(&a, &pa, &b, &pb) != overlap)

@@ -113,8 +113,9 @@ static size_t check_rows(bool corners) {
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-9 * fmax(1.0, largest);
     cprox_result r;
-    const cprox_status status = cprox_pair(cprox_at(a.body, a.pose), cprox_at(b.body, b.pose), &options, workspace, &r);
-    if (status < CPROX_OK) fail_msg("%s: %s", row->field[0], cprox_workspace_reason(workspace));
+    const cprox_status status =
+        cprox_pair(cprox_obstacle_at(a.body, a.pose), cprox_obstacle_at(b.body, b.pose), &options, workspace, &r);
+    if (status < CPROX_OK) fail_msg("%s: %s", row->field[0], cprox_workspace_error(workspace));
     if (!(r.lower <= ref + tolerance && r.upper >= ref - tolerance))
       fail_msg("%s: [%.17g, %.17g], reference %.17g, tolerance %g, status %s", row->field[0], r.lower, r.upper, ref,
                tolerance, cprox_status_name(status));

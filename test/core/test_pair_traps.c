@@ -18,7 +18,7 @@ static cprox_result ask(const cprox_body *a, cprox_pose pa, const cprox_body *b,
   cprox_options options = cprox_options_default();
   options.epsilon = epsilon;
   cprox_result r;
-  assert_true(cprox_pair(cprox_at(a, pa), cprox_at(b, pb), &options, ws, &r) >= CPROX_OK);
+  assert_true(cprox_pair(cprox_obstacle_at(a, pa), cprox_obstacle_at(b, pb), &options, ws, &r) >= CPROX_OK);
   return r;
 }
 
@@ -192,7 +192,8 @@ CASE(the_status_is_that_of_the_interval) {
     options.max_nodes = 1 + (uint32_t)rng_index(&r, 8);
     options.epsilon = rng_log_uniform(&r, 1e-15, 1e-1);
     cprox_result result;
-    const cprox_status status = cprox_pair(cprox_at(a.body, pa), cprox_at(b.body, pb), &options, ws, &result);
+    const cprox_status status =
+        cprox_pair(cprox_obstacle_at(a.body, pa), cprox_obstacle_at(b.body, pb), &options, ws, &result);
     const double width = result.upper - result.lower;
     assert_true(result.lower <= gap + tolerance && result.upper >= gap - tolerance);
     assert_true(status != CPROX_OVERLAP && (status == CPROX_OK) == (width <= options.epsilon));
@@ -277,9 +278,10 @@ CASE(a_callback_that_breaks_its_promise_is_caught) {
       cprox_body *b = NULL;
       assert_int_equal(cprox_body_create_support(bad[i], NULL, vec(0, 0, 0), 1.0, 0.0, 0.0, ws, &b), CPROX_OK);
       cprox_result result = {.nodes = 77};
-      assert_int_equal(cprox_pair(cprox_at(others[k], at(3, 0, 0)), cprox_at(b, at(0, 0, 0)), NULL, ws, &result),
-                       CPROX_INVALID);
-      assert_string_equal(cprox_workspace_reason(ws),
+      assert_int_equal(
+          cprox_pair(cprox_obstacle_at(others[k], at(3, 0, 0)), cprox_obstacle_at(b, at(0, 0, 0)), NULL, ws, &result),
+          CPROX_INVALID);
+      assert_string_equal(cprox_workspace_error(ws),
                           "a support callback answered with a point that is not finite or outside its radius");
       assert_int_equal(result.nodes, 77);
       cprox_body_free(b);
@@ -293,7 +295,7 @@ CASE(a_callback_that_breaks_its_promise_is_caught) {
   do {                                                                       \
     cprox_result result = {.nodes = 77};                                     \
     assert_int_equal(cprox_pair(a, b, options, ws, &result), CPROX_INVALID); \
-    assert_string_equal(cprox_workspace_reason(ws), words);                  \
+    assert_string_equal(cprox_workspace_error(ws), words);                   \
     assert_int_equal(result.nodes, 77);                                      \
   } while (0)
 
@@ -303,16 +305,18 @@ CASE(unusable_arguments_are_refused_in_words) {
   const cprox_body *parts[2] = {a, h};
   const cprox_pose poses[2] = {at(0, 0, 0), at(0, 0, 0)};
   assert_int_equal(cprox_body_create_compound(parts, poses, 2, ws, &both), CPROX_OK);
-  const cprox_target ok = cprox_at(a, at(0, 0, 0));
-  cprox_target bad = ok;
+  const cprox_obstacle ok = cprox_obstacle_at(a, at(0, 0, 0));
+  cprox_obstacle bad = ok;
   bad.pose.orientation = (cprox_quat){0, 0, 0, 0};
   REFUSED(bad, ok, NULL, "a: the quaternion's norm is 0");
-  REFUSED(ok, cprox_at(a, at(NAN, 0, 0)), NULL, "b: the position is not finite");
-  REFUSED(ok, cprox_at(NULL, at(0, 0, 0)), NULL, "b: the body is NULL");
-  REFUSED(cprox_padded(ok, -1.0), ok, NULL, "a: padding is -1, must be >= 0 and finite");
-  REFUSED(ok, cprox_padded(ok, INFINITY), NULL, "b: padding is inf, must be >= 0 and finite");
-  REFUSED(cprox_at(h, at(0, 0, 0)), cprox_at(h, at(0, 0, 0)), NULL, "two halfspaces have no distance");
-  REFUSED(cprox_at(h, at(0, 0, 0)), cprox_at(both, at(0, 0, 0)), NULL, "two halfspaces have no distance");
+  REFUSED(ok, cprox_obstacle_at(a, at(NAN, 0, 0)), NULL, "b: the position is not finite");
+  REFUSED(ok, cprox_obstacle_at(NULL, at(0, 0, 0)), NULL, "b: the body is NULL");
+  REFUSED(cprox_with_margin(ok, -1.0), ok, NULL, "a: margin is -1, must be >= 0 and finite");
+  REFUSED(ok, cprox_with_margin(ok, INFINITY), NULL, "b: margin is inf, must be >= 0 and finite");
+  REFUSED(cprox_obstacle_at(h, at(0, 0, 0)), cprox_obstacle_at(h, at(0, 0, 0)), NULL,
+          "two halfspaces have no distance");
+  REFUSED(cprox_obstacle_at(h, at(0, 0, 0)), cprox_obstacle_at(both, at(0, 0, 0)), NULL,
+          "two halfspaces have no distance");
   cprox_options options = cprox_options_default();
   options.epsilon = NAN;
   REFUSED(ok, ok, &options, "epsilon is nan, must be finite and 0 or more");
@@ -320,7 +324,7 @@ CASE(unusable_arguments_are_refused_in_words) {
   options.max_nodes = 0;
   REFUSED(ok, ok, &options, "max_nodes is 0: a query needs a budget of at least 1 node");
   assert_int_equal(cprox_pair(ok, ok, NULL, ws, NULL), CPROX_INVALID);
-  assert_string_equal(cprox_workspace_reason(ws), "result is NULL: nowhere to put the answer");
+  assert_string_equal(cprox_workspace_error(ws), "result is NULL: nowhere to put the answer");
   cprox_body_free(both);
   cprox_body_free(a);
   cprox_body_free(h);

@@ -82,7 +82,7 @@ struct World {
   std::vector<cprox_curve *> curves;
   std::vector<cprox_mover> movers;
   std::vector<cprox_body *> bodies;
-  std::vector<cprox_target> targets;
+  std::vector<cprox_obstacle> targets;
 
   World() {
     for (int i = 0; i < 500; ++i) {
@@ -97,7 +97,7 @@ struct World {
       cprox_body *box = nullptr;
       assert_int_equal(cprox_body_create_box({0.1, 0.2, 0.3}, nullptr, &box), CPROX_OK);
       bodies.push_back(box);
-      targets.push_back(cprox_at(box, {{0.3 * i - 0.6, 0.2 * i - 0.4, 0.1 * i}, {1, 0.1 * i, 0, 0.2}}));
+      targets.push_back(cprox_obstacle_at(box, {{0.3 * i - 0.6, 0.2 * i - 0.4, 0.1 * i}, {1, 0.1 * i, 0, 0.2}}));
     }
   }
   World(const World &) = delete;
@@ -110,7 +110,7 @@ struct World {
 
 bool same(const cprox_result &a, const cprox_result &b) {
   return a.status == b.status && a.verdict == b.verdict && a.lower == b.lower && a.upper == b.upper && a.t == b.t &&
-         a.target_index == b.target_index && a.nodes == b.nodes && a.probes == b.probes;
+         a.obstacle_index == b.obstacle_index && a.nodes == b.nodes && a.distance_queries == b.distance_queries;
 }
 
 CASE(answers_are_the_same_for_one_to_eight_threads) {
@@ -129,11 +129,11 @@ CASE(answers_are_the_same_for_one_to_eight_threads) {
   assert_int_equal(distance.results[299].status, CPROX_OK);
   for (unsigned threads = 2; threads <= 8; ++threads) {
     Pool pool(threads);
-    for (int verb = 0; verb < 3; ++verb) {
-      const Batch::Answers &expected = verb == 0 ? distance : verb == 1 ? tolerance : collision;
-      const Batch::Answers got = verb == 0   ? batch.distance(world.movers, options, pool)
-                                 : verb == 1 ? batch.tolerance(world.movers, 0.05, options, pool)
-                                             : batch.collision(world.movers, options, pool);
+    for (int query_type = 0; query_type < 3; ++query_type) {
+      const Batch::Answers &expected = query_type == 0 ? distance : query_type == 1 ? tolerance : collision;
+      const Batch::Answers got = query_type == 0   ? batch.distance(world.movers, options, pool)
+                                 : query_type == 1 ? batch.tolerance(world.movers, 0.05, options, pool)
+                                                   : batch.collision(world.movers, options, pool);
       assert_int_equal(got.status, expected.status);
       assert_string_equal(got.reason.c_str(), expected.reason.c_str());
       for (std::size_t i = 0; i < world.movers.size(); ++i) assert_true(same(got.results[i], expected.results[i]));
@@ -143,8 +143,8 @@ CASE(answers_are_the_same_for_one_to_eight_threads) {
 
 CASE(unusable_targets_and_options_are_told) {
   World world;
-  std::vector<cprox_target> bad = world.targets;
-  bad[3].padding = -1;
+  std::vector<cprox_obstacle> bad = world.targets;
+  bad[3].margin = -1;
   bool told = false;
   try {
     const Batch batch(bad);

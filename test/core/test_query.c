@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The verbs as a caller meets them: intervals, verdicts, budgets, many targets, unusable arguments, memory, cost. */
+/* The queries as a caller meets them: intervals, verdicts, budgets, many targets, unusable arguments, memory, cost. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ static cprox_curve *segment(vec3 a, vec3 b) {
 }
 
 static cprox_body *usable(cprox_status status, cprox_body *body) {
-  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return body;
 }
 
@@ -34,8 +34,8 @@ static cprox_body *sphere(double radius) {
   return usable(status, body);
 }
 
-static cprox_target at(const cprox_body *body, double x, double y, double z) {
-  return cprox_at(body, (cprox_pose){.position = {x, y, z}, .orientation = {1, 0, 0, 0}});
+static cprox_obstacle at(const cprox_body *body, double x, double y, double z) {
+  return cprox_obstacle_at(body, (cprox_pose){.position = {x, y, z}, .orientation = {1, 0, 0, 0}});
 }
 
 static void assert_contains(const cprox_result *r, double truth, double doubt) {
@@ -51,14 +51,14 @@ CASE(a_segment_past_a_box_has_the_distance_of_its_nearest_end) {
   const cprox_options options = accurate(1e-9);
   cprox_result r;
   assert_int_equal(
-      cprox_distance(cprox_tube_along(curve, 0.25), cprox_padded(at(body, 0, 0, 0), 0.125), &options, ws, &r),
+      cprox_distance(cprox_tube_along(curve, 0.25), cprox_with_margin(at(body, 0, 0, 0), 0.125), &options, ws, &r),
       CPROX_OK);
   assert_contains(&r, 1.5 - 0.25 - 0.125, 0.0);
   assert_true(r.upper - r.lower <= 1e-9);
-  assert_float_equal(r.on_target.x, 0.625, 1e-12);
-  assert_float_equal(r.on_mover.x, 1.75, 1e-12);
+  assert_float_equal(r.witness_obstacle.x, 0.625, 1e-12);
+  assert_float_equal(r.witness_mover.x, 1.75, 1e-12);
   assert_float_equal(r.normal.x, 1.0, 1e-12);
-  assert_string_equal(cprox_workspace_reason(ws), "");
+  assert_string_equal(cprox_workspace_error(ws), "");
   cprox_body_free(body);
   cprox_curve_free(curve);
 }
@@ -71,7 +71,7 @@ CASE(a_turned_and_moved_body_is_measured_where_it_stands) {
                            .orientation = {3 * 0.7071067811865476, 3 * 0.7071067811865476, 0, 0}};
   const cprox_options options = accurate(1e-9);
   cprox_result r;
-  assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_at(body, pose), &options, ws, &r), CPROX_OK);
+  assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, pose), &options, ws, &r), CPROX_OK);
   assert_contains(&r, 1.0, 1e-14);
   assert_float_equal(r.t, 0.0, 1e-12);
   cprox_body_free(body);
@@ -91,7 +91,7 @@ CASE(a_curve_through_a_body_is_at_distance_0_and_collides) {
     assert_contains(&r, 0.0, 0.0);
     assert_int_equal(cprox_collision(cprox_point_along(curve), at(bodies[i], 0, 0, 0), NULL, ws, &r), CPROX_OK);
     assert_int_equal(r.verdict, CPROX_YES);
-    assert_true(vec_equal(r.on_mover, r.on_target));
+    assert_true(vec_equal(r.witness_mover, r.witness_obstacle));
     assert_int_equal(cprox_tolerance(cprox_point_along(curve), at(bodies[i], 0, 0, 0), 0.0, NULL, ws, &r), CPROX_OK);
     assert_int_equal(r.verdict, CPROX_NO);
     cprox_body_free(bodies[i]);
@@ -159,7 +159,7 @@ CASE(a_long_spline_is_searched_by_its_tree) {
   for (int i = 0; i < N + 4; i++) knots[i] = i;
   cprox_curve *curve = NULL;
   if (cprox_curve_create_bspline(points, N, 3, knots, N + 4, knots[3], knots[N], ws, &curve) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
+    fail_msg("%s", cprox_workspace_error(ws));
   cprox_body *body = box(0.02, 0.02, 0.02);
   const cprox_options options = accurate(1e-6);
   cprox_result r;
@@ -199,7 +199,7 @@ CASE(epsilon_of_any_size_ends_with_a_true_interval) {
     assert_int_equal(status, epsilons[i] < 1e-15 ? CPROX_PRECISION : CPROX_OK);
     assert_true(r.lower <= reference.upper && reference.lower <= r.upper);
     if (epsilons[i] < 1e-6) assert_true(r.upper - r.lower < 1e-13);
-    if (status == CPROX_PRECISION) assert_non_null(strstr(cprox_workspace_reason(ws), "epsilon"));
+    if (status == CPROX_PRECISION) assert_non_null(strstr(cprox_workspace_error(ws), "epsilon"));
   }
   cprox_body_free(body);
   cprox_curve_free(curve);
@@ -238,7 +238,7 @@ CASE(a_spent_budget_leaves_a_true_interval) {
     options.max_nodes = budget;
     cprox_result r;
     assert_int_equal(cprox_distance(cprox_point_along(c.curve), at(c.body, 0, 0, 0), &options, ws, &r), CPROX_BUDGET);
-    assert_non_null(strstr(cprox_workspace_reason(ws), "max_nodes"));
+    assert_non_null(strstr(cprox_workspace_error(ws), "max_nodes"));
     assert_true(r.nodes == budget && r.lower <= c.answer.upper && r.upper >= c.answer.lower);
     assert_true(r.upper - r.lower <= width);
     width = r.upper - r.lower;
@@ -260,7 +260,7 @@ CASE(a_stop_function_ends_the_search_with_a_true_interval) {
   assert_true(r.lower <= c.answer.upper && r.upper >= c.answer.lower && r.nodes <= 16);
   polls = 0;
   assert_int_equal(cprox_distance(cprox_point_along(c.curve), at(c.body, 0, 0, 0), &options, ws, &r), CPROX_STOPPED);
-  assert_true(r.lower <= c.answer.upper && r.upper == INFINITY && r.target_index == -1);
+  assert_true(r.lower <= c.answer.upper && r.upper == INFINITY && r.obstacle_index == -1);
   hard_case_free(&c);
 }
 
@@ -297,9 +297,10 @@ CASE(many_targets_are_answered_like_the_nearest_of_them) {
   const cprox_body *kinds[] = {ball, brick, pair};
   const cprox_options options = accurate(1e-9);
   for (size_t scene = 0; scene < test_cases(300); scene++) {
-    cprox_target targets[N];
+    cprox_obstacle targets[N];
     for (int i = 0; i < N; i++) {
-      targets[i] = cprox_padded(cprox_at(kinds[rng_index(&r, 3)], rng_pose(&r, 2.0)), rng_index(&r, 2) ? 0.0 : 0.02);
+      targets[i] = cprox_with_margin(cprox_obstacle_at(kinds[rng_index(&r, 3)], rng_pose(&r, 2.0)),
+                                     rng_index(&r, 2) ? 0.0 : 0.02);
     }
     vec3 points[6];
     for (int i = 0; i < 6; i++) points[i] = rng_in_cube(&r, 2.0);
@@ -313,12 +314,12 @@ CASE(many_targets_are_answered_like_the_nearest_of_them) {
     for (int i = 0; i < N; i++) {
       cprox_result one;
       assert_int_equal(cprox_distance(mover, targets[i], &options, ws, &one), CPROX_OK);
-      assert_true(one.lower == each[i].lower && one.upper == each[i].upper && each[i].target_index == i);
+      assert_true(one.lower == each[i].lower && one.upper == each[i].upper && each[i].obstacle_index == i);
       least = fmin(least, one.upper);
     }
     assert_true(all.upper == least);
     assert_true(nearest.lower <= all.upper && all.lower <= nearest.upper && nearest.upper - nearest.lower <= 1e-9);
-    assert_true(each[nearest.target_index].lower <= nearest.upper);
+    assert_true(each[nearest.obstacle_index].lower <= nearest.upper);
 
     cprox_result verdict;
     assert_int_equal(cprox_collision_all(mover, targets, N, &options, ws, &verdict, NULL), CPROX_OK);
@@ -344,7 +345,7 @@ CASE(nothing_to_measure_is_infinitely_far) {
   cprox_curve *curve = segment(vec(0, 0, 0), vec(1, 0, 0));
   cprox_result r;
   assert_int_equal(cprox_distance_all(cprox_point_along(curve), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
-  assert_true(r.lower == INFINITY && r.upper == INFINITY && r.target_index == -1);
+  assert_true(r.lower == INFINITY && r.upper == INFINITY && r.obstacle_index == -1);
   assert_int_equal(cprox_tolerance_all(cprox_point_along(curve), NULL, 0, 1.0, NULL, ws, &r, NULL), CPROX_OK);
   assert_int_equal(r.verdict, CPROX_YES);
   assert_int_equal(cprox_collision_all(cprox_point_along(curve), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
@@ -356,7 +357,7 @@ CASE(nothing_to_measure_is_infinitely_far) {
 
 static void expect_refusal(cprox_status status, const char *word, const cprox_result *r) {
   assert_int_equal(status, CPROX_INVALID);
-  if (!strstr(cprox_workspace_reason(ws), word)) fail_msg("'%s' does not say '%s'", cprox_workspace_reason(ws), word);
+  if (!strstr(cprox_workspace_error(ws), word)) fail_msg("'%s' does not say '%s'", cprox_workspace_error(ws), word);
   assert_true(r->lower == -7.0); /* untouched */
 }
 
@@ -364,7 +365,7 @@ CASE(unusable_arguments_are_refused_by_name) {
   cprox_curve *curve = segment(vec(0, 0, 0), vec(1, 0, 0));
   cprox_body *body = sphere(1.0);
   const cprox_mover mover = cprox_point_along(curve);
-  const cprox_target target = at(body, 5, 0, 0);
+  const cprox_obstacle target = at(body, 5, 0, 0);
   cprox_result r = {.lower = -7.0};
   cprox_options o = accurate(-1e-9);
   expect_refusal(cprox_distance(mover, target, &o, ws, &r), "epsilon", &r);
@@ -379,13 +380,13 @@ CASE(unusable_arguments_are_refused_by_name) {
   expect_refusal(cprox_distance(cprox_tube_along(curve, -1.0), target, NULL, ws, &r), "radius", &r);
   expect_refusal(cprox_distance(cprox_tube_along(curve, INFINITY), target, NULL, ws, &r), "radius", &r);
   expect_refusal(cprox_distance(cprox_point_along(NULL), target, NULL, ws, &r), "curve", &r);
-  expect_refusal(cprox_distance(mover, cprox_at(NULL, target.pose), NULL, ws, &r), "body", &r);
-  expect_refusal(cprox_distance(mover, cprox_padded(target, -1.0), NULL, ws, &r), "padding", &r);
-  cprox_target bad = target;
+  expect_refusal(cprox_distance(mover, cprox_obstacle_at(NULL, target.pose), NULL, ws, &r), "body", &r);
+  expect_refusal(cprox_distance(mover, cprox_with_margin(target, -1.0), NULL, ws, &r), "margin", &r);
+  cprox_obstacle bad = target;
   bad.pose.orientation = (cprox_quat){0, 0, 0, 0};
   expect_refusal(cprox_distance(mover, bad, NULL, ws, &r), "norm is 0", &r);
   bad = target, bad.pose.position.y = NAN;
-  expect_refusal(cprox_distance_all(mover, (cprox_target[]){target, bad}, 2, NULL, ws, &r, NULL), "target 1", &r);
+  expect_refusal(cprox_distance_all(mover, (cprox_obstacle[]){target, bad}, 2, NULL, ws, &r, NULL), "target 1", &r);
   cprox_body_free(body);
   cprox_curve_free(curve);
 }
@@ -419,8 +420,8 @@ CASE(a_second_query_of_a_size_allocates_nothing) {
   cprox_curve *curve = bezier(points, 16);
   cprox_body *body = NULL;
   usable(cprox_body_create_polytope(cloud, 64, ws, &body), NULL);
-  cprox_target targets[30];
-  for (int i = 0; i < 30; i++) targets[i] = cprox_at(body, rng_pose(&r, 2.0));
+  cprox_obstacle targets[30];
+  for (int i = 0; i < 30; i++) targets[i] = cprox_obstacle_at(body, rng_pose(&r, 2.0));
   size_t before = 0;
   for (int round = 0; round < 3; round++) {
     if (round == 1) before = allocations_made();
@@ -447,7 +448,7 @@ CASE(a_failed_allocation_is_a_status_and_the_next_query_answers) {
     if (status != CPROX_OK) {
       assert_int_equal(status, CPROX_MEMORY);
       assert_true(r.lower == -7.0);
-      assert_string_not_equal(cprox_workspace_reason(fresh), "");
+      assert_string_not_equal(cprox_workspace_error(fresh), "");
     }
     assert_int_equal(cprox_distance(cprox_point_along(curve), at(body, 0, 0, 0), NULL, fresh, &r), CPROX_OK);
     assert_contains(&r, 1.5, 0.0);
@@ -468,7 +469,7 @@ CASE(medians_stay_within_6_nodes_and_10_probes) {
   const size_t orders[] = {5, 10, 15};
   for (int kind = 0; kind < 3; kind++) {
     for (int k = 0; k < 3; k++) {
-      uint32_t nodes[PROBLEMS], probes[PROBLEMS];
+      uint32_t nodes[PROBLEMS], distance_queries[PROBLEMS];
       for (int i = 0; i < PROBLEMS; i++) {
         vec3 points[16], cloud[64];
         for (size_t j = 0; j <= orders[k]; j++) {
@@ -494,27 +495,27 @@ CASE(medians_stay_within_6_nodes_and_10_probes) {
         cprox_curve *curve = bezier(points, orders[k] + 1);
         const cprox_options options = accurate(1e-10);
         cprox_result result;
-        assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_at(body, pose), &options, ws, &result),
+        assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, pose), &options, ws, &result),
                          CPROX_OK);
-        nodes[i] = result.nodes, probes[i] = result.probes;
+        nodes[i] = result.nodes, distance_queries[i] = result.distance_queries;
         cprox_curve_free(curve);
         cprox_body_free(body);
       }
       qsort(nodes, PROBLEMS, sizeof *nodes, by_count);
-      qsort(probes, PROBLEMS, sizeof *probes, by_count);
-      print_message("%s, order %zu: median %u nodes, %u probes; 95 %%: %u, %u; most: %u, %u\n",
+      qsort(distance_queries, PROBLEMS, sizeof *distance_queries, by_count);
+      print_message("%s, order %zu: median %u nodes, %u distance queries; 95 %%: %u, %u; most: %u, %u\n",
                     kind == 0   ? "box"
                     : kind == 1 ? "20-gon"
                                 : "64-vertex polytope",
-                    orders[k], nodes[PROBLEMS / 2], probes[PROBLEMS / 2], nodes[PROBLEMS * 19 / 20],
-                    probes[PROBLEMS * 19 / 20], nodes[PROBLEMS - 1], probes[PROBLEMS - 1]);
-      assert_true(nodes[PROBLEMS / 2] <= 6 && probes[PROBLEMS / 2] <= 10);
+                    orders[k], nodes[PROBLEMS / 2], distance_queries[PROBLEMS / 2], nodes[PROBLEMS * 19 / 20],
+                    distance_queries[PROBLEMS * 19 / 20], nodes[PROBLEMS - 1], distance_queries[PROBLEMS - 1]);
+      assert_true(nodes[PROBLEMS / 2] <= 6 && distance_queries[PROBLEMS / 2] <= 10);
     }
   }
 }
 
 /* However early a search stops, its two points are those that attain upper: as far apart as it says, the one within the radius of the
- * curve's point, the other within the padding of the hull. 2^-44 of the sizes: roundings of points in double. */
+ * curve's point, the other within the margin of the hull. 2^-44 of the sizes: roundings of points in double. */
 CASE(witness_points_attain_upper_however_loose_epsilon_is) {
   rng r = rng_seed(29);
   const size_t cases = test_cases(2000);
@@ -525,20 +526,20 @@ CASE(witness_points_attain_upper_however_loose_epsilon_is) {
     cprox_curve *curve = bezier(points, 4);
     cprox_body *hull = NULL;
     assert_int_equal(cprox_body_create_polytope(vertices, 9, ws, &hull), CPROX_OK);
-    const double radius = rng_uniform(&r, 0.0, 0.5), padding = rng_uniform(&r, 0.0, 0.5);
+    const double radius = rng_uniform(&r, 0.0, 0.5), margin = rng_uniform(&r, 0.0, 0.5);
     const cprox_options options = accurate(rng_log_uniform(&r, 1e-3, 1e3));
     cprox_result result;
-    const cprox_target target = cprox_padded(cprox_at(hull, cprox_pose_identity()), padding);
+    const cprox_obstacle target = cprox_with_margin(cprox_obstacle_at(hull, cprox_pose_identity()), margin);
     assert_int_equal(cprox_distance(cprox_tube_along(curve, radius), target, &options, ws, &result), CPROX_OK);
 
     vec3 at;
     cprox_curve_evaluate(curve, result.t, ws, &at, NULL, NULL);
     const double room = 0x1p-44 * 8.0;
-    const vec3 on_target = result.on_target;
-    assert_true(vec_norm(vec_sub(result.on_mover, on_target)) <= result.upper + room);
-    assert_true(vec_norm(vec_sub(result.on_mover, at)) <= radius + room);
-    const vec3l p = {on_target.x, on_target.y, on_target.z};
-    assert_true((double)ref_point_hull(p, vertices, 9) <= padding + room);
+    const vec3 witness_obstacle = result.witness_obstacle;
+    assert_true(vec_norm(vec_sub(result.witness_mover, witness_obstacle)) <= result.upper + room);
+    assert_true(vec_norm(vec_sub(result.witness_mover, at)) <= radius + room);
+    const vec3l p = {witness_obstacle.x, witness_obstacle.y, witness_obstacle.z};
+    assert_true((double)ref_point_hull(p, vertices, 9) <= margin + room);
     cprox_curve_free(curve);
     cprox_body_free(hull);
   }

@@ -23,7 +23,7 @@ static cprox_body *body_of(const csv_curve_case *c, cprox_workspace *ws) {
   } else {
     status = cprox_body_create_polytope(c->vertices, c->n_vertices, ws, &body);
   }
-  if (status != CPROX_OK) fail_msg("%s: %s", c->id, cprox_workspace_reason(ws));
+  if (status != CPROX_OK) fail_msg("%s: %s", c->id, cprox_workspace_error(ws));
   return body;
 }
 
@@ -42,9 +42,9 @@ static void check_distance(const csv_curve_case *c, const cprox_curve *curve, co
   options.epsilon = epsilon;
   cprox_result r;
   const cprox_status status =
-      cprox_distance(cprox_point_along(curve), cprox_at(body, cprox_pose_identity()), &options, ws, &r);
+      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws, &r);
   if (status != CPROX_OK && status != CPROX_PRECISION)
-    fail_msg("%s: %s (%s), [%.17g, %.17g] after %u nodes", c->id, cprox_status_name(status), cprox_workspace_reason(ws),
+    fail_msg("%s: %s (%s), [%.17g, %.17g] after %u nodes", c->id, cprox_status_name(status), cprox_workspace_error(ws),
              r.lower, r.upper, r.nodes);
   /* the reference is rounded to 17 digits, its coordinates carried 64 bits, and its search stops within 1e-16 of a contact */
   const double doubt =
@@ -55,7 +55,7 @@ static void check_distance(const csv_curve_case *c, const cprox_curve *curve, co
     fail_msg("%s: [%.17g, %.17g] is wider than %g", c->id, r.lower, r.upper, epsilon);
 
   /* the witness points are as far apart as upper says */
-  const double apart = vec_norm(vec_sub(r.on_mover, r.on_target));
+  const double apart = vec_norm(vec_sub(r.witness_mover, r.witness_obstacle));
   if (fabs(apart - r.upper) > 1e-9 * fmax(1.0, largest_coordinate(c)))
     fail_msg("%s: the witness points are %.17g apart, upper is %.17g", c->id, apart, r.upper);
 }
@@ -65,7 +65,7 @@ static void check_verdicts(const csv_curve_case *c, const cprox_curve *curve, co
   cprox_options options = cprox_options_default();
   options.epsilon = epsilon;
   const cprox_mover mover = cprox_point_along(curve);
-  const cprox_target target = cprox_at(body, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(body, cprox_pose_identity());
   cprox_result r;
   assert_true(cprox_collision(mover, target, &options, ws, &r) >= 0);
   if (r.verdict == CPROX_YES && reference > 1e-15) fail_msg("%s: a collision at distance %g", c->id, reference);
@@ -96,7 +96,7 @@ static void check_file(const char *inputs, const char *references) {
     const double reference = csv_number(&ref, csv_find(&ref, c->id), 1);
     cprox_curve *curve = NULL;
     if (cprox_curve_create_bezier(c->points, c->n_points, 0.0, 1.0, ws, &curve) != CPROX_OK)
-      fail_msg("%s: %s", c->id, cprox_workspace_reason(ws));
+      fail_msg("%s: %s", c->id, cprox_workspace_error(ws));
     cprox_body *body = body_of(c, ws);
     const double scale = fmax(1.0, largest_coordinate(c));
     check_distance(c, curve, body, reference, 1e-9 * scale, ws);

@@ -54,7 +54,7 @@ static void check_distance(const cprox_curve *curve, int k, double reference, cp
   options.epsilon = 1e-12;
   cprox_result r;
   assert_int_equal(
-      cprox_distance(cprox_point_along(curve), cprox_at(obstacle[k], cprox_pose_identity()), &options, ws, &r),
+      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(obstacle[k], cprox_pose_identity()), &options, ws, &r),
       CPROX_OK);
   if (!(r.lower <= reference + 1e-10 && reference - 1e-10 <= r.upper))
     fail_msg("[%.17g, %.17g], the reference is %.17g", r.lower, r.upper, reference);
@@ -65,7 +65,7 @@ static unsigned class_of(const cprox_curve *curve, cprox_workspace *ws) {
   const cprox_mover mover = cprox_point_along(curve);
   unsigned worst = 1;
   for (int k = 0; k < 2; k++) {
-    const cprox_target target = cprox_at(obstacle[k], cprox_pose_identity());
+    const cprox_obstacle target = cprox_obstacle_at(obstacle[k], cprox_pose_identity());
     cprox_result r;
     assert_int_equal(cprox_tolerance(mover, target, DELTA, NULL, ws, &r), CPROX_OK);
     if (r.verdict == CPROX_YES) continue;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Robots among many targets that form a set: whatever the tree of their boxes leaves out, the answers are those of single targets,
- * one question each. Targets are boxes, balls, cylinders, compounds, surfaces, and among some a halfspace. */
+ * one query each. Targets are boxes, balls, cylinders, compounds, surfaces, and among some a halfspace. */
 #include <math.h>
 
 #include "broadphase/obstacle_set.h"
@@ -15,7 +15,7 @@ enum { MOST_TARGETS = 300, KINDS = 6, ROBOTS = 24 };
 
 typedef struct crowd {
   cprox_body *bodies[KINDS];
-  cprox_target targets[MOST_TARGETS];
+  cprox_obstacle targets[MOST_TARGETS];
   size_t n;
   cprox_set *set;
 } crowd;
@@ -48,10 +48,11 @@ static void make_crowd(rng *r, size_t n, double clear, double half, crowd *c) {
   for (size_t i = 0; i < n; i++) {
     cprox_pose pose = rng_pose(r, half);
     while (vec_norm(pose.position) < clear) pose = rng_pose(r, half);
-    c->targets[i] = cprox_at(c->bodies[rng_index(r, 5)], pose);
-    c->targets[i].padding = rng_index(r, 3) ? 0.0 : 0.03;
+    c->targets[i] = cprox_obstacle_at(c->bodies[rng_index(r, 5)], pose);
+    c->targets[i].margin = rng_index(r, 3) ? 0.0 : 0.03;
   }
-  if (rng_index(r, 2)) c->targets[rng_index(r, n)] = cprox_at(c->bodies[5], (cprox_pose){.orientation = {.w = 1}});
+  if (rng_index(r, 2))
+    c->targets[rng_index(r, n)] = cprox_obstacle_at(c->bodies[5], (cprox_pose){.orientation = {.w = 1}});
   assert_int_equal(cprox_set_create(c->targets, n, ws, &c->set), CPROX_OK);
 }
 
@@ -62,13 +63,12 @@ static void free_crowd(crowd *c) {
     if (i != 3) cprox_body_free(c->bodies[i]);
 }
 
-/* The least of what single questions say. */
+/* The least of what single queries say. */
 static cprox_result least_of(const crowd *c, cprox_mover mover, const cprox_options *o) {
   cprox_result least = {.lower = INFINITY, .upper = INFINITY};
   for (size_t i = 0; i < c->n; i++) {
     cprox_result one;
-    if (cprox_distance(mover, c->targets[i], o, ws, &one) < 0)
-      fail_msg("target %zu: %s", i, cprox_workspace_reason(ws));
+    if (cprox_distance(mover, c->targets[i], o, ws, &one) < 0) fail_msg("target %zu: %s", i, cprox_workspace_error(ws));
     least.lower = fmin(least.lower, one.lower), least.upper = fmin(least.upper, one.upper);
   }
   return least;
@@ -101,9 +101,9 @@ CASE(a_set_is_answered_as_its_targets_one_by_one) {
     assert_true(all.lower <= listed.upper && listed.lower <= all.upper);
 
     /* the target that is named is as near as is said */
-    assert_in_range(all.target_index, 0, c.n - 1);
+    assert_in_range(all.obstacle_index, 0, c.n - 1);
     cprox_result named;
-    cprox_distance(mover, c.targets[all.target_index], &o, ws, &named);
+    cprox_distance(mover, c.targets[all.obstacle_index], &o, ws, &named);
     assert_true(named.lower <= all.upper && named.upper >= all.lower);
 
     cprox_result verdict;
@@ -123,7 +123,7 @@ CASE(a_set_is_answered_as_its_targets_one_by_one) {
 }
 
 /* Never later than the earliest contact with a single target, and no earlier than epsilon away from one. */
-CASE(first_contact_with_a_set_is_the_earliest_of_its_targets) {
+CASE(time_of_contact_with_a_set_is_the_earliest_of_its_targets) {
   rng r = rng_seed(6602);
   for (size_t i = 0; i < test_cases(6); i++) {
     test_robot t;
@@ -136,14 +136,14 @@ CASE(first_contact_with_a_set_is_the_earliest_of_its_targets) {
     bool clear = true;
     for (size_t k = 0; k < c.n; k++) {
       cprox_result one;
-      cprox_first_contact(mover, c.targets[k], &o, ws, &one);
+      cprox_time_of_contact(mover, c.targets[k], &o, ws, &one);
       if (one.verdict == CPROX_YES) contact = fmin(contact, one.t);
-      free = fmin(free, one.t_free);
+      free = fmin(free, one.t_contact_lower);
       clear = clear && one.verdict == CPROX_NO;
     }
     cprox_result all;
-    cprox_set_first_contact(c.set, mover, &o, ws, &all);
-    assert_true(all.t_free <= contact);
+    cprox_set_time_of_contact(c.set, mover, &o, ws, &all);
+    assert_true(all.t_contact_lower <= contact);
     if (all.verdict == CPROX_YES) assert_true(all.t >= free);
     assert_int_equal(all.verdict == CPROX_NO, clear);
     free_crowd(&c);
@@ -176,7 +176,7 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
   rng r = rng_seed(6604);
   for (size_t round = 0; round < test_cases(200); round++) {
     const double own = rng_uniform(&r, 0.05, 0.2), other = rng_uniform(&r, 0.05, 0.2), way = rng_uniform(&r, 0.1, 2);
-    const double padding = round % 2 ? 0.03 : 0.0;
+    const double margin = round % 2 ? 0.03 : 0.0;
     const vec3 axis = vec(round % 3 == 0, round % 3 == 1, round % 3 == 2);
     cprox_body *moving = NULL, *ball = NULL;
     assert_int_equal(cprox_body_create_sphere(own, ws, &moving), CPROX_OK);
@@ -184,7 +184,7 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
     const cprox_pose origin = cprox_pose_identity();
     const cprox_link link = {
         .parent = -1, .type = CPROX_JOINT_PRISMATIC, .origin = origin, .axis = axis, .multiplier = 1.0};
-    const cprox_link_geometry geometry = {.body = moving, .pose = origin, .padding = padding};
+    const cprox_link_geometry geometry = {.body = moving, .pose = origin, .margin = margin};
     cprox_robot *robot = NULL;
     assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robot), CPROX_OK);
     const double begin = 0.0;
@@ -195,18 +195,18 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
                      CPROX_OK);
 
     /* ahead of where the ball ends */
-    cprox_target targets[BALLS];
+    cprox_obstacle targets[BALLS];
     double truth[BALLS];
     for (size_t i = 0; i < BALLS; i++) {
       cprox_pose pose = origin;
       const double at = way + 1.0 + 0.5 * (double)i;
       pose.position = vec_scale(at, axis);
-      targets[i] = cprox_at(ball, pose);
-      truth[i] = at - way - own - padding - other;
+      targets[i] = cprox_obstacle_at(ball, pose);
+      truth[i] = at - way - own - margin - other;
     }
     cprox_set *set = NULL;
     assert_int_equal(cprox_set_create(targets, BALLS, ws, &set), CPROX_OK);
-    question q = question_create(cprox_robot_along(motion, NULL, 0), targets, BALLS, -1.0, false, NULL, ws);
+    query q = query_create(cprox_robot_along(motion, NULL, 0), targets, BALLS, -1.0, false, NULL, ws);
     q.set = set;
     robot_scene scene;
     assert_true(robot_scene_begin(&scene, &q, 0, BALLS));
@@ -227,26 +227,27 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
 /* A robot that moves among targets ten times as many looks at few more of them. */
 CASE(the_work_hardly_grows_with_the_number_of_targets) {
   enum { MANY = 4000 };
-  static cprox_target targets[MANY];
+  static cprox_obstacle targets[MANY];
   rng r = rng_seed(6603);
   test_robot t;
   robot_make(&r, 0.5, &t);
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.02, ws, &ball), CPROX_OK);
-  uint32_t probes[2];
+  uint32_t distance_queries[2];
   for (int k = 0; k < 2; k++) {
     const size_t n = k ? MANY : MANY / 10;
     const double half = 3.0 * cbrt((double)n); /* as many in a place */
-    for (size_t i = 0; i < n; i++) targets[i] = cprox_at(ball, rng_pose(&r, half));
+    for (size_t i = 0; i < n; i++) targets[i] = cprox_obstacle_at(ball, rng_pose(&r, half));
     cprox_set *set = NULL;
     assert_int_equal(cprox_set_create(targets, n, ws, &set), CPROX_OK);
     cprox_result all;
     assert_int_equal(cprox_set_distance(set, cprox_robot_along(t.motion, NULL, 0), NULL, ws, &all), CPROX_OK);
-    probes[k] = all.probes + all.nodes;
+    distance_queries[k] = all.distance_queries + all.nodes;
     cprox_set_free(set);
   }
-  print_message("distances and nodes among %d targets: %u, among %d: %u\n", MANY / 10, probes[0], MANY, probes[1]);
-  assert_true(probes[1] <= 3 * probes[0]);
+  print_message("distances and nodes among %d targets: %u, among %d: %u\n", MANY / 10, distance_queries[0], MANY,
+                distance_queries[1]);
+  assert_true(distance_queries[1] <= 3 * distance_queries[0]);
   cprox_body_free(ball);
   robot_free(&t);
 }

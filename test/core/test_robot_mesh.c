@@ -13,11 +13,11 @@
 
 enum { POINTS = 4, SAMPLES = 40 };
 
-/* A robot of meshes: what its links carry, as surfaces and as ladders. */
+/* A robot of meshes: what its links carry, as surfaces and as level-of-detail bodies. */
 typedef struct mesh_robot {
   test_robot robot;
   test_mesh mesh[TEST_MAX_LINKS];
-  cprox_body *surface[TEST_MAX_LINKS], *hull[TEST_MAX_LINKS], *ladder[TEST_MAX_LINKS];
+  cprox_body *surface[TEST_MAX_LINKS], *hull[TEST_MAX_LINKS], *lod[TEST_MAX_LINKS];
 } mesh_robot;
 
 static test_mesh any_mesh(rng *r) {
@@ -38,8 +38,8 @@ static void mesh_robot_make(rng *r, mesh_robot *m) {
     m->mesh[i] = any_mesh(r);
     m->surface[i] = mesh_body(&m->mesh[i], CPROX_MESH_SURFACE, ws);
     m->hull[i] = hull_of(&m->mesh[i]);
-    m->ladder[i] = NULL;
-    assert_int_equal(cprox_body_create_ladder(m->hull[i], 0.0, m->surface[i], ws, &m->ladder[i]), CPROX_OK);
+    m->lod[i] = NULL;
+    assert_int_equal(cprox_body_create_lod(m->hull[i], 0.0, m->surface[i], ws, &m->lod[i]), CPROX_OK);
     cprox_body_free((cprox_body *)t->geometries[i].body);
     t->geometries[i].body = m->surface[i];
   }
@@ -53,7 +53,7 @@ static void carry(mesh_robot *m, cprox_body *const *bodies) {
 
 static void mesh_robot_free(mesh_robot *m) {
   for (size_t i = 0; i < m->robot.n_links; i++) {
-    cprox_body_free(m->ladder[i]);
+    cprox_body_free(m->lod[i]);
     cprox_body_free(m->hull[i]);
     mesh_free(&m->mesh[i]);
     m->robot.geometries[i].body = m->surface[i]; /* robot_free() takes these */
@@ -79,13 +79,13 @@ static long double distance_at(const mesh_robot *m, long double time, const vec3
   return least;
 }
 
-static cprox_result ask(const mesh_robot *m, const cprox_target *targets, size_t n) {
+static cprox_result ask(const mesh_robot *m, const cprox_obstacle *targets, size_t n) {
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-5;
   cprox_result r;
   const cprox_status status =
       cprox_distance_all(cprox_robot_along(m->robot.motion, NULL, 0), targets, n, &options, ws, &r, NULL);
-  if (status != CPROX_OK) fail_msg("%s: %s", cprox_status_name(status), cprox_workspace_reason(ws));
+  if (status != CPROX_OK) fail_msg("%s: %s", cprox_status_name(status), cprox_workspace_error(ws));
   return r;
 }
 
@@ -99,23 +99,23 @@ CASE(points_are_as_far_as_every_triangle_says) {
     for (int k = 0; k < POINTS; k++) points[k] = rng_in_cube(&r, 1.0);
     cprox_body *cloud = NULL;
     assert_int_equal(cprox_body_create_points(points, POINTS, 0.0, SIZE_MAX, ws, &cloud), CPROX_OK);
-    const cprox_target target = cprox_at(cloud, cprox_pose_identity());
+    const cprox_obstacle target = cprox_obstacle_at(cloud, cprox_pose_identity());
     const cprox_result d = ask(&m, &target, 1);
-    carry(&m, m.ladder);
-    const cprox_result by_ladder = ask(&m, &target, 1);
-    if (d.target_index >= 0) {
-      climbed += by_ladder.rung == CPROX_RUNG_MESH;
-      assert_true(by_ladder.lower <= d.upper && d.lower <= by_ladder.upper);
+    carry(&m, m.lod);
+    const cprox_result by_lod = ask(&m, &target, 1);
+    if (d.obstacle_index >= 0) {
+      climbed += by_lod.lod == CPROX_LOD_MESH;
+      assert_true(by_lod.lower <= d.upper && d.lower <= by_lod.upper);
       assert_true(fabsl(distance_at(&m, d.t, points) - d.upper) <= 1e-9L);
       cprox_result first, near, far;
       const cprox_mover mover = cprox_robot_along(m.robot.motion, NULL, 0);
-      assert_true(cprox_first_contact_all(mover, &target, 1, NULL, ws, &first) >= 0);
+      assert_true(cprox_time_of_contact_all(mover, &target, 1, NULL, ws, &first) >= 0);
       double t0, t1;
       cprox_motion_domain(m.robot.motion, &t0, &t1);
       for (int k = 0; k <= SAMPLES; k++) {
         const long double time = t0 + ((long double)t1 - t0) * k / SAMPLES, at = distance_at(&m, time, points);
         if (at < d.lower) fail_msg("robot %zu: %.12Lg at %.12Lg, lower is %.12g", i, at, time, d.lower);
-        assert_true(at > 0.0L || time >= first.t_free);
+        assert_true(at > 0.0L || time >= first.t_contact_lower);
       }
       if (d.lower > 0.0) {
         assert_true(cprox_tolerance_all(mover, &target, 1, 0.99 * d.lower, NULL, ws, &near, NULL) >= 0);
@@ -143,19 +143,19 @@ CASE(meshes_are_as_far_as_their_triangles_one_by_one) {
     mesh_robot_make(&r, &m);
     test_mesh standing = any_mesh(&r);
     cprox_pose pose = rng_pose(&r, 0.6);
-    cprox_body *surface = mesh_body(&standing, CPROX_MESH_SURFACE, ws), *hull = hull_of(&standing), *ladder = NULL;
-    assert_int_equal(cprox_body_create_ladder(hull, 0.0, surface, ws, &ladder), CPROX_OK);
-    static cprox_target triangles[MOST];
+    cprox_body *surface = mesh_body(&standing, CPROX_MESH_SURFACE, ws), *hull = hull_of(&standing), *lod = NULL;
+    assert_int_equal(cprox_body_create_lod(hull, 0.0, surface, ws, &lod), CPROX_OK);
+    static cprox_obstacle triangles[MOST];
     assert_true(standing.m < MOST);
     for (size_t k = 0; k < standing.m; k++) {
       vec3 v[3];
       for (int c = 0; c < 3; c++) v[c] = standing.vertices[standing.triangles[k][c]];
       cprox_body *triangle = NULL;
       assert_int_equal(cprox_body_create_polytope(v, 3, ws, &triangle), CPROX_OK);
-      triangles[k] = cprox_at(triangle, pose);
+      triangles[k] = cprox_obstacle_at(triangle, pose);
     }
-    carry(&m, m.ladder);
-    const cprox_target whole[] = {cprox_at(surface, pose), cprox_at(ladder, pose)};
+    carry(&m, m.lod);
+    const cprox_obstacle whole[] = {cprox_obstacle_at(surface, pose), cprox_obstacle_at(lod, pose)};
     const cprox_result one_by_one = ask(&m, triangles, standing.m);
     for (int k = 0; k < 2; k++) {
       const cprox_result d = ask(&m, &whole[k], 1);
@@ -164,7 +164,7 @@ CASE(meshes_are_as_far_as_their_triangles_one_by_one) {
                  one_by_one.upper);
     }
     for (size_t k = 0; k < standing.m; k++) cprox_body_free((cprox_body *)triangles[k].body);
-    cprox_body_free(ladder);
+    cprox_body_free(lod);
     cprox_body_free(hull);
     cprox_body_free(surface);
     mesh_free(&standing);
@@ -173,25 +173,25 @@ CASE(meshes_are_as_far_as_their_triangles_one_by_one) {
 }
 
 /* What stops at the hull says what a robot of hulls says. */
-CASE(the_highest_rung_may_be_the_hull_or_the_ball) {
+CASE(the_finest_lod_may_be_the_hull_or_the_ball) {
   rng r = rng_seed(7003);
   for (size_t i = 0; i < test_cases(20); i++) {
     mesh_robot m;
     mesh_robot_make(&r, &m);
     cprox_body *ball = NULL;
     assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
-    const cprox_target target = cprox_at(ball, rng_pose(&r, 1.0));
+    const cprox_obstacle target = cprox_obstacle_at(ball, rng_pose(&r, 1.0));
     cprox_result d[3];
-    carry(&m, m.ladder);
+    carry(&m, m.lod);
     const cprox_mover mover = cprox_robot_along(m.robot.motion, NULL, 0);
-    for (int rung = CPROX_RUNG_SPHERE; rung <= CPROX_RUNG_MESH; rung++) {
+    for (int lod = CPROX_LOD_SPHERE; lod <= CPROX_LOD_MESH; lod++) {
       cprox_options options = cprox_options_default();
-      options.max_rung = (cprox_rung)rung;
-      cprox_result *one = &d[rung - CPROX_RUNG_SPHERE];
+      options.max_lod = (cprox_lod)lod;
+      cprox_result *one = &d[lod - CPROX_LOD_SPHERE];
       assert_int_equal(cprox_distance_all(mover, &target, 1, &options, ws, one, NULL), CPROX_OK);
-      assert_true((int)one->rung <= rung);
+      assert_true((int)one->lod <= lod);
     }
-    if (d[0].target_index >= 0) assert_true(d[0].lower <= d[1].upper && d[1].lower <= d[2].upper);
+    if (d[0].obstacle_index >= 0) assert_true(d[0].lower <= d[1].upper && d[1].lower <= d[2].upper);
     carry(&m, m.hull);
     const cprox_result by_hull = ask(&m, &target, 1);
     assert_true(by_hull.lower <= d[1].upper && d[1].lower <= by_hull.upper);
@@ -238,7 +238,7 @@ CASE(meshes_of_real_robots_are_no_nearer_than_their_hulls) {
         const cprox_status status =
             cprox_distance_all(mover[m], c.targets, self ? 0 : c.n_targets, NULL, ws, &r[m], NULL);
         spent[m] = milliseconds() - spent[m];
-        if (status != CPROX_OK) fail_msg("%s: %s", c.name, cprox_workspace_reason(ws));
+        if (status != CPROX_OK) fail_msg("%s: %s", c.name, cprox_workspace_error(ws));
       }
       assert_true(r[0].lower <= r[1].upper && r[1].upper - r[1].lower <= 1e-6);
       farther += r[1].lower > r[0].upper + 1e-6;

@@ -11,7 +11,7 @@
 enum { CASES = 4, MOST_PAIRS = 700 };
 
 /* Every pair of the first real robots, then the same with fewer and nearer ones. */
-CASE(the_nearest_pairs_are_those_of_single_questions) {
+CASE(the_nearest_pairs_are_those_of_single_queries) {
   FILE *f = fopen(TEST_DATA_DIR "/motion/cases.txt", "r");
   assert_non_null(f);
   size_t n;
@@ -30,7 +30,7 @@ CASE(the_nearest_pairs_are_those_of_single_questions) {
       assert_true(count > 10 && count < MOST_PAIRS);
       if (self) assert_int_equal(count, c.n_self_pairs);
       for (size_t k = 0; k < count; k++) {
-        const cprox_robot_pair pair = {all[k].mover_part, all[k].target_index};
+        const cprox_robot_pair pair = {all[k].mover_part, all[k].obstacle_index};
         const cprox_mover alone = self ? cprox_robot_self(c.motion, &pair, 1) : cprox_robot_along(c.motion, &pair, 1);
         cprox_result r;
         assert_int_equal(cprox_distance_all(alone, c.targets, targets, NULL, ws, &r, NULL), CPROX_OK);
@@ -87,7 +87,7 @@ CASE(a_range_holds_all_values_and_is_reached) {
   }
 }
 
-CASE(what_is_no_question_about_pairs_gets_a_sentence) {
+CASE(what_is_no_query_about_pairs_gets_a_sentence) {
   rng r = rng_seed(3);
   test_robot t;
   robot_make(&r, 1.0, &t);

@@ -48,14 +48,14 @@ static cprox_result ask(const robot_case *c, const case_answer *a, double delta)
   cprox_result r;
   const cprox_status status = delta < 0.0 ? cprox_distance_all(mover, c->targets, n, NULL, ws, &r, NULL)
                                           : cprox_tolerance_all(mover, c->targets, n, delta, NULL, ws, &r, NULL);
-  if (status != CPROX_OK) fail_msg("%s: %s", c->name, cprox_workspace_reason(ws));
+  if (status != CPROX_OK) fail_msg("%s: %s", c->name, cprox_workspace_error(ws));
   return r;
 }
 
 CASE(saved_answers_are_found_again) {
   size_t n, counted = 0;
   FILE *f = open_cases(&n);
-  double nodes[REFERENCE_CASES], probes[REFERENCE_CASES];
+  double nodes[REFERENCE_CASES], distance_queries[REFERENCE_CASES];
   for (size_t i = 0; i < n; i++) {
     robot_case c;
     assert_true(robot_case_read(f, folder(), &c));
@@ -67,7 +67,7 @@ CASE(saved_answers_are_found_again) {
         fail_msg("%s: [%.10g, %.10g], saved [%.10g, %.10g], sampled %.10g", c.name, r.lower, r.upper, a->lower,
                  a->upper, a->sampled);
       if (a->lower == 0.0) continue;
-      nodes[counted] = r.nodes, probes[counted++] = r.probes;
+      nodes[counted] = r.nodes, distance_queries[counted++] = r.distance_queries;
 
       /* verdicts on either side of the distance */
       assert_int_equal(ask(&c, a, 0.99 * r.lower).verdict, CPROX_YES);
@@ -77,10 +77,10 @@ CASE(saved_answers_are_found_again) {
   }
   fclose(f);
   qsort(nodes, counted, sizeof *nodes, ascending);
-  qsort(probes, counted, sizeof *probes, ascending);
+  qsort(distance_queries, counted, sizeof *distance_queries, ascending);
   print_message("%zu answers: nodes %g in the median, %g at most; distances %g, %g\n", counted, nodes[counted / 2],
-                nodes[counted - 1], probes[counted / 2], probes[counted - 1]);
-  assert_true(nodes[counted / 2] <= 150 && probes[counted / 2] <= 200 && nodes[counted - 1] <= 600);
+                nodes[counted - 1], distance_queries[counted / 2], distance_queries[counted - 1]);
+  assert_true(nodes[counted / 2] <= 150 && distance_queries[counted / 2] <= 200 && nodes[counted - 1] <= 600);
 }
 
 /* The surface of a box as 12 triangles. */
@@ -114,7 +114,7 @@ CASE(surfaces_of_boxes_are_as_far_as_boxes) {
       }
       const cprox_result surface = ask(&c, &c.answers[0], -1.0);
       assert_true(surface.lower <= solid.upper && solid.lower <= surface.upper);
-      assert_int_equal(surface.rung, CPROX_RUNG_MESH);
+      assert_int_equal(surface.lod, CPROX_LOD_MESH);
       assert_int_equal(ask(&c, &c.answers[0], 0.99 * solid.lower).verdict, CPROX_YES);
       assert_int_equal(ask(&c, &c.answers[0], 1.01 * solid.upper).verdict, CPROX_NO);
     }
@@ -160,16 +160,16 @@ static long double distance_at(const test_robot *t, long double time, const vec3
   return least;
 }
 
-static void make_points(rng *r, vec3 *points, cprox_target *targets) {
+static void make_points(rng *r, vec3 *points, cprox_obstacle *targets) {
   for (size_t i = 0; i < TARGETS; i++) {
     cprox_body *body;
     points[i] = rng_in_cube(r, 2.0);
     assert_int_equal(cprox_body_create_point(points[i], ws, &body), CPROX_OK);
-    targets[i] = cprox_at(body, cprox_pose_identity());
+    targets[i] = cprox_obstacle_at(body, cprox_pose_identity());
   }
 }
 
-static void free_targets(cprox_target *targets) {
+static void free_targets(cprox_obstacle *targets) {
   for (size_t i = 0; i < TARGETS; i++) cprox_body_free((cprox_body *)targets[i].body);
 }
 
@@ -178,7 +178,7 @@ CASE(no_sample_is_nearer_than_lower) {
   for (size_t i = 0; i < test_cases(250); i++) {
     test_robot t;
     vec3 points[TARGETS];
-    cprox_target targets[TARGETS];
+    cprox_obstacle targets[TARGETS];
     robot_make(&r, rng_log_uniform(&r, 0.1, 2), &t);
     make_points(&r, points, targets);
     cprox_result d, first;
@@ -186,23 +186,23 @@ CASE(no_sample_is_nearer_than_lower) {
     options.epsilon = 1e-5;
     const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
     const cprox_status status = cprox_distance_all(mover, targets, TARGETS, &options, ws, &d, NULL);
-    if (status != CPROX_OK) fail_msg("robot %zu: %s", i, cprox_workspace_reason(ws));
-    if (d.target_index < 0) { /* nothing moves */
+    if (status != CPROX_OK) fail_msg("robot %zu: %s", i, cprox_workspace_error(ws));
+    if (d.obstacle_index < 0) { /* nothing moves */
       assert_true(isinf(d.lower));
     } else {
       double t0, t1;
       cprox_motion_domain(t.motion, &t0, &t1);
-      assert_true(cprox_first_contact_all(mover, targets, TARGETS, &options, ws, &first) >= 0);
+      assert_true(cprox_time_of_contact_all(mover, targets, TARGETS, &options, ws, &first) >= 0);
       assert_true(fabsl(distance_at(&t, d.t, points, TARGETS) - d.upper) <= 1e-9L);
       for (int k = 0; k <= SAMPLES; k++) {
         const long double time = t0 + ((long double)t1 - t0) * k / SAMPLES;
         const long double at = distance_at(&t, time, points, TARGETS);
         if (at < d.lower) fail_msg("robot %zu: %.12Lg at %.12Lg, lower is %.12g", i, at, time, d.lower);
-        if (at <= 0.0L && time < first.t_free)
-          fail_msg("robot %zu: contact at %.12Lg, late at %.12g", i, time, first.t_free);
+        if (at <= 0.0L && time < first.t_contact_lower)
+          fail_msg("robot %zu: contact at %.12Lg, late at %.12g", i, time, first.t_contact_lower);
       }
       if (d.lower > 0.0) assert_int_equal(first.verdict, CPROX_NO);
-      if (first.verdict == CPROX_YES) assert_true(first.t >= first.t_free && d.upper <= 0.0);
+      if (first.verdict == CPROX_YES) assert_true(first.t >= first.t_contact_lower && d.upper <= 0.0);
     }
     free_targets(targets);
     robot_free(&t);
@@ -213,7 +213,7 @@ CASE(no_sample_is_nearer_than_lower) {
 static double static_distance(const test_robot *t, double time, const cprox_robot_pair *pair) {
   double values[TEST_MAX_VARIABLES + 1];
   cprox_motion_evaluate(t->motion, time, values);
-  cprox_target side[2];
+  cprox_obstacle side[2];
   for (int k = 0; k < 2; k++) {
     const cprox_link_geometry *g = &t->geometries[k ? pair->other : pair->geometry];
     long double exact[TEST_MAX_VARIABLES + 1];
@@ -224,7 +224,7 @@ static double static_distance(const test_robot *t, double time, const cprox_robo
     const vec3l p = links[g->link].p;
     const cprox_pose link = {.position = {(double)p.x, (double)p.y, (double)p.z},
                              .orientation = {(double)q[3], (double)q[0], (double)q[1], (double)q[2]}};
-    side[k] = cprox_padded(cprox_at(g->body, frame_compose(&link, &g->pose)), g->padding);
+    side[k] = cprox_with_margin(cprox_obstacle_at(g->body, frame_compose(&link, &g->pose)), g->margin);
   }
   cprox_result r;
   assert_true(cprox_pair(side[0], side[1], NULL, ws, &r) >= 0);
@@ -242,7 +242,7 @@ CASE(the_robot_is_no_nearer_to_itself_than_lower) {
       if (!cprox_motion_relates_links(t.motion, (size_t)pair.geometry, (size_t)pair.other)) continue;
       cprox_result d;
       const cprox_status status = cprox_distance_all(cprox_robot_self(t.motion, &pair, 1), NULL, 0, NULL, ws, &d, NULL);
-      if (status < 0) fail_msg("robot %zu: %s", i, cprox_workspace_reason(ws));
+      if (status < 0) fail_msg("robot %zu: %s", i, cprox_workspace_error(ws));
       double t0, t1;
       cprox_motion_domain(t.motion, &t0, &t1);
       for (int k = 0; k <= SAMPLES; k++) {
@@ -257,34 +257,34 @@ CASE(the_robot_is_no_nearer_to_itself_than_lower) {
   assert_true(asked > test_cases(250));
 }
 
-CASE(a_profile_is_true_on_every_stretch) {
+CASE(a_profile_is_true_on_every_interval) {
   rng r = rng_seed(4413);
   for (size_t i = 0; i < test_cases(40); i++) {
-    enum { STRETCHES = 7 };
+    enum { INTERVALS = 7 };
     test_robot t;
     vec3 points[TARGETS];
-    cprox_target targets[TARGETS];
+    cprox_obstacle targets[TARGETS];
     robot_make(&r, 1.0, &t);
     make_points(&r, points, targets);
-    double t0, t1, breaks[STRETCHES + 1];
-    cprox_stretch stretches[STRETCHES];
+    double t0, t1, breaks[INTERVALS + 1];
+    cprox_profile_interval intervals[INTERVALS];
     cprox_motion_domain(t.motion, &t0, &t1);
-    for (int k = 0; k <= STRETCHES; k++) breaks[k] = k == STRETCHES ? t1 : t0 + (t1 - t0) * k / STRETCHES;
+    for (int k = 0; k <= INTERVALS; k++) breaks[k] = k == INTERVALS ? t1 : t0 + (t1 - t0) * k / INTERVALS;
     const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
     cprox_result whole, nearest[2];
     size_t count;
-    assert_int_equal(cprox_profile(mover, targets, TARGETS, breaks, STRETCHES, NULL, ws, stretches), CPROX_OK);
+    assert_int_equal(cprox_profile(mover, targets, TARGETS, breaks, INTERVALS, NULL, ws, intervals), CPROX_OK);
     assert_int_equal(cprox_distance_all(mover, targets, TARGETS, NULL, ws, &whole, NULL), CPROX_OK);
     assert_int_equal(cprox_nearest(mover, targets, TARGETS, 2, NULL, ws, nearest, &count), CPROX_OK);
     double least = INFINITY;
-    for (int k = 0; k < STRETCHES; k++) {
-      for (int s = 0; s <= 10 && stretches[k].target_index >= 0; s++) {
+    for (int k = 0; k < INTERVALS; k++) {
+      for (int s = 0; s <= 10 && intervals[k].obstacle_index >= 0; s++) {
         const long double time = breaks[k] + ((long double)breaks[k + 1] - breaks[k]) * s / 10;
-        assert_true(distance_at(&t, time, points, TARGETS) >= stretches[k].lower - 1e-14L);
+        assert_true(distance_at(&t, time, points, TARGETS) >= intervals[k].lower - 1e-14L);
       }
-      least = fmin(least, stretches[k].lower);
+      least = fmin(least, intervals[k].lower);
     }
-    if (whole.target_index >= 0) {
+    if (whole.obstacle_index >= 0) {
       assert_true(least <= whole.upper && whole.lower <= least + 1e-6);
       assert_true(count == 2 && nearest[0].lower <= whole.upper && whole.lower <= nearest[0].upper);
     }
@@ -295,10 +295,10 @@ CASE(a_profile_is_true_on_every_stretch) {
 
 /* ---- what is refused ------------------------------------------------------------------------------------------------------ */
 
-#define REFUSED(call, part)                                                                    \
-  do {                                                                                         \
-    assert_int_equal(call, CPROX_INVALID);                                                     \
-    if (!strstr(cprox_workspace_reason(ws), part)) fail_msg("%s", cprox_workspace_reason(ws)); \
+#define REFUSED(call, part)                                                                  \
+  do {                                                                                       \
+    assert_int_equal(call, CPROX_INVALID);                                                   \
+    if (!strstr(cprox_workspace_error(ws), part)) fail_msg("%s", cprox_workspace_error(ws)); \
   } while (0)
 
 CASE(bad_input_gets_a_sentence) {

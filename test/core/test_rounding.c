@@ -150,7 +150,7 @@ static obstacle obstacle_random(rng *r, double scale, cprox_workspace *ws) {
     case 2: status = cprox_body_create_capsule(2.0 * o.size.z, o.size.x, ws, &o.body); break;
     default: status = cprox_body_create_polytope(o.vertex, 8, ws, &o.body);
   }
-  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return o;
 }
 
@@ -323,7 +323,7 @@ CASE(a_compiled_series_is_within_its_error) {
     cprox_curve *curve = NULL;
     if (cprox_curve_create_trigonometric(c, 2 * degree + 1, t0, t0 + rng_uniform(&r, 1e-3, 1.0), ws, &curve) !=
         CPROX_OK)
-      fail_msg("%s", cprox_workspace_reason(ws));
+      fail_msg("%s", cprox_workspace_error(ws));
     for (int k = 0; k < 4; k++) {
       const size_t piece = rng_index(&r, curve->n_pieces);
       hold(&f, off_at(curve, piece, k < 2 ? 0.5 : random_parameter(&r), c, degree), curve->error[piece], "T6");

@@ -15,22 +15,22 @@ enum { KINDS = 9 };
 
 typedef struct scene {
   size_t n;
-  cprox_target *targets;
+  cprox_obstacle *targets;
   cprox_body *body[KINDS];
   cprox_curve *curve;
   test_mesh mesh;
 } scene;
 
-/* n targets of every kind in a cube of the half width: convex bodies, a mesh, a ladder, points, a compound, a curve, now and then padded;
- * with `all` a halfspace below, too. */
+/* n targets of every kind in a cube of the half width: convex bodies, a mesh, a level-of-detail body, points, a
+ * compound, a curve, now and then padded; with `all` a halfspace below, too. */
 static scene scene_make(rng *r, size_t n, double half, bool all) {
-  scene s = {.n = n, .targets = malloc(n * sizeof(cprox_target)), .mesh = mesh_torus(8, 6, 0.2, 0.05, 0.1)};
+  scene s = {.n = n, .targets = malloc(n * sizeof(cprox_obstacle)), .mesh = mesh_torus(8, 6, 0.2, 0.05, 0.1)};
   assert_int_equal(cprox_body_create_sphere(0.1, ws, &s.body[0]), CPROX_OK);
   assert_int_equal(cprox_body_create_box(vec(0.05, 0.4, 0.1), ws, &s.body[1]), CPROX_OK);
   assert_int_equal(cprox_body_create_capsule(0.3, 0.05, ws, &s.body[2]), CPROX_OK);
   s.body[3] = mesh_body(&s.mesh, CPROX_MESH_SURFACE, ws);
   assert_int_equal(cprox_body_create_polytope(s.mesh.vertices, s.mesh.n, ws, &s.body[4]), CPROX_OK);
-  assert_int_equal(cprox_body_create_ladder(s.body[4], 0.0, s.body[3], ws, &s.body[5]), CPROX_OK);
+  assert_int_equal(cprox_body_create_lod(s.body[4], 0.0, s.body[3], ws, &s.body[5]), CPROX_OK);
   vec3 points[20];
   for (int k = 0; k < 20; k++) points[k] = rng_in_cube(r, 0.2);
   assert_int_equal(cprox_body_create_points(points, 20, 0.01, SIZE_MAX, ws, &s.body[6]), CPROX_OK);
@@ -41,11 +41,11 @@ static scene scene_make(rng *r, size_t n, double half, bool all) {
   assert_int_equal(cprox_curve_create_bezier(points, 4, 0.0, 1.0, ws, &s.curve), CPROX_OK);
   for (size_t i = 0; i < n; i++) {
     const size_t kind = i % 9;
-    s.targets[i] = kind == 8 ? cprox_curve_target(s.curve, 0.02) : cprox_at(s.body[kind], rng_pose(r, half));
+    s.targets[i] = kind == 8 ? cprox_obstacle_curve(s.curve, 0.02) : cprox_obstacle_at(s.body[kind], rng_pose(r, half));
     if (kind == 8) s.targets[i].pose = rng_pose(r, half);
-    if (i % 4 == 0) s.targets[i].padding = 0.03;
+    if (i % 4 == 0) s.targets[i].margin = 0.03;
   }
-  if (all) s.targets[n / 2] = cprox_at(s.body[8], cprox_pose_identity());
+  if (all) s.targets[n / 2] = cprox_obstacle_at(s.body[8], cprox_pose_identity());
   return s;
 }
 
@@ -61,7 +61,7 @@ static void scene_free(scene *s) {
 
 static cprox_set *set_make(const scene *s) {
   cprox_set *set = NULL;
-  if (cprox_set_create(s->targets, s->n, ws, &set) != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (cprox_set_create(s->targets, s->n, ws, &set) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   assert_int_equal(cprox_set_size(set), s->n);
   return set;
 }
@@ -91,7 +91,7 @@ static void expect_overlap(const char *what, size_t i, const cprox_result *a, co
 }
 
 /* 300 movers (seed 91) through scenes of 1 to 120 targets of every kind: points, tubes, splines; signed and not. Verdicts are equal,
- * distances, k nearest and first contacts the same to epsilon. */
+ * distances, k nearest and times of contact the same to epsilon. */
 CASE(sets_answer_as_all_their_targets_do) {
   rng r = rng_seed(91);
   size_t hits = 0;
@@ -117,11 +117,11 @@ CASE(sets_answer_as_all_their_targets_do) {
     assert_true(cprox_set_tolerance(set, mover, delta, NULL, ws, &a) >= 0);
     assert_true(cprox_tolerance_all(mover, s.targets, s.n, delta, NULL, ws, &b, NULL) >= 0);
     assert_int_equal(a.verdict, b.verdict);
-    assert_true(cprox_set_first_contact(set, mover, NULL, ws, &a) >= 0);
-    assert_true(cprox_first_contact_all(mover, s.targets, s.n, NULL, ws, &b) >= 0);
+    assert_true(cprox_set_time_of_contact(set, mover, NULL, ws, &a) >= 0);
+    assert_true(cprox_time_of_contact_all(mover, s.targets, s.n, NULL, ws, &b) >= 0);
     assert_int_equal(a.verdict, b.verdict);
-    assert_true(fabs(a.t_free - b.t_free) < 1e-3);
-    expect_overlap("first contact", i, &a, &b);
+    assert_true(fabs(a.t_contact_lower - b.t_contact_lower) < 1e-3);
+    expect_overlap("time of contact", i, &a, &b);
     cprox_result near[3], all[3];
     size_t n, m;
     assert_true(cprox_set_nearest(set, mover, 3, NULL, ws, near, &n) >= 0);
@@ -139,8 +139,8 @@ CASE(sets_answer_as_all_their_targets_do) {
 CASE(carried_bodies_and_coarser_models_are_answered_as_without_a_set) {
   rng r = rng_seed(93);
   scene s = scene_make(&r, 180, 2.0, true);
-  cprox_target convex[60];
-  for (size_t k = 0; k < 60; k++) convex[k] = cprox_at(s.body[k % 3], rng_pose(&r, 2.0));
+  cprox_obstacle convex[60];
+  for (size_t k = 0; k < 60; k++) convex[k] = cprox_obstacle_at(s.body[k % 3], rng_pose(&r, 2.0));
   cprox_set *set = NULL, *mixed = set_make(&s);
   assert_int_equal(cprox_set_create(convex, 60, ws, &set), CPROX_OK);
   for (size_t i = 0; i < 40; i++) {
@@ -151,7 +151,7 @@ CASE(carried_bodies_and_coarser_models_are_answered_as_without_a_set) {
     expect_overlap("carried", i, &a, &b);
     assert_int_equal(cprox_set_distance(mixed, cprox_body_along(s.body[1], curve), NULL, ws, &a), CPROX_INVALID);
     cprox_options options = cprox_options_default();
-    options.max_rung = i % 2 ? CPROX_RUNG_SPHERE : CPROX_RUNG_HULL;
+    options.max_lod = i % 2 ? CPROX_LOD_SPHERE : CPROX_LOD_HULL;
     assert_true(cprox_set_distance(mixed, cprox_point_along(curve), &options, ws, &a) >= 0);
     assert_true(cprox_distance_all(cprox_point_along(curve), s.targets, s.n, &options, ws, &b, NULL) >= 0);
     expect_overlap("coarse", i, &a, &b);
@@ -197,7 +197,7 @@ CASE(queries_do_not_allocate_once_the_workspace_has_grown) {
     cprox_result a, near[5];
     size_t n;
     cprox_set_distance(set, cprox_point_along(curve), NULL, ws, &a);
-    cprox_set_first_contact(set, cprox_point_along(curve), NULL, ws, &a);
+    cprox_set_time_of_contact(set, cprox_point_along(curve), NULL, ws, &a);
     cprox_set_nearest(set, cprox_point_along(curve), 5, NULL, ws, near, &n);
   }
   assert_int_equal(allocations_made(), before);
@@ -212,16 +212,16 @@ CASE(bad_input_is_refused_and_nothing_is_far) {
   rng r = rng_seed(101);
   cprox_set *set = NULL;
   cprox_curve *curve = way(&r, 4, 1.0);
-  cprox_target nothing = {.pose = cprox_pose_identity()};
+  cprox_obstacle nothing = {.pose = cprox_pose_identity()};
   assert_int_equal(cprox_set_create(&nothing, 1, ws, &set), CPROX_INVALID);
-  assert_non_null(strstr(cprox_workspace_reason(ws), "target 0"));
+  assert_non_null(strstr(cprox_workspace_error(ws), "target 0"));
   assert_int_equal(cprox_set_create(NULL, 3, ws, &set), CPROX_INVALID);
   assert_null(set);
   cprox_result a;
   assert_int_equal(cprox_set_distance(NULL, cprox_point_along(curve), NULL, ws, &a), CPROX_INVALID);
   assert_int_equal(cprox_set_create(NULL, 0, ws, &set), CPROX_OK);
   assert_int_equal(cprox_set_distance(set, cprox_point_along(curve), NULL, ws, &a), CPROX_OK);
-  assert_true(isinf(a.lower) && a.target_index == -1);
+  assert_true(isinf(a.lower) && a.obstacle_index == -1);
   assert_int_equal(cprox_set_distance(set, cprox_point_along(NULL), NULL, ws, &a), CPROX_INVALID);
   cprox_set_free(set);
   cprox_curve_free(curve);

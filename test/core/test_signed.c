@@ -83,14 +83,15 @@ CASE(the_interval_contains_minus_the_deepest_overlap) {
     const size_t degree = 1 + rng_index(&r, 7);
     for (size_t i = 0; i <= degree; i++) points[i] = rng_in_cube(&r, 1.5);
     cprox_curve *curve = bezier(points, degree + 1);
-    const double radius = rng_index(&r, 2) ? 0.0 : 0.1, padding = rng_index(&r, 2) ? 0.0 : 0.05;
+    const double radius = rng_index(&r, 2) ? 0.0 : 0.1, margin = rng_index(&r, 2) ? 0.0 : 0.05;
     const cprox_options options = asked(rng_log_uniform(&r, 1e-12, 1e-3));
     cprox_result result;
-    const cprox_status status = cprox_distance(cprox_tube_along(curve, radius),
-                                               cprox_padded(cprox_at(p.body, p.pose), padding), &options, ws, &result);
+    const cprox_status status =
+        cprox_distance(cprox_tube_along(curve, radius), cprox_with_margin(cprox_obstacle_at(p.body, p.pose), margin),
+                       &options, ws, &result);
     assert_int_equal(status, CPROX_OK);
     assert_true(result.upper - result.lower <= options.epsilon);
-    const long double offset = (long double)radius + (long double)padding, hair = 1e-17L;
+    const long double offset = (long double)radius + (long double)margin, hair = 1e-17L;
     const long double here = truth(&p, ref_bezier(points, degree, result.t, 0)) - offset;
     assert_true((long double)result.upper >= here - hair);
     assert_true((long double)result.upper <= here + 1e-12L + (long double)options.epsilon);
@@ -99,7 +100,7 @@ CASE(the_interval_contains_minus_the_deepest_overlap) {
       assert_true((long double)result.lower <= truth(&p, ref_bezier(points, degree, t, 0)) - offset + hair);
     }
     /* the two ends of the way out */
-    const vec3 out = vec_sub(result.on_mover, result.on_target);
+    const vec3 out = vec_sub(result.witness_mover, result.witness_obstacle);
     assert_true(fabs(vec_norm(out) - fabs(result.upper)) < 1e-9 + options.epsilon);
     if (result.upper < -1e-6) {
       assert_true(vec_dot(out, result.normal) < 0.0);
@@ -113,10 +114,10 @@ CASE(the_interval_contains_minus_the_deepest_overlap) {
 
 /* ---- every kind -------------------------------------------------------------------------------------------------------------- */
 
-static cprox_result pair_at(const cprox_mover *mover, const cprox_target *target, double t) {
+static cprox_result pair_at(const cprox_mover *mover, const cprox_obstacle *target, double t) {
   cprox_body *point = NULL;
   assert_int_equal(cprox_body_create_point(vec(0, 0, 0), ws, &point), CPROX_OK);
-  cprox_target moved = {.body = mover->body ? mover->body : point, .padding = mover->radius};
+  cprox_obstacle moved = {.body = mover->body ? mover->body : point, .margin = mover->radius};
   moved.pose = cprox_pose_identity();
   assert_int_equal(cprox_curve_evaluate(mover->curve, t, ws, &moved.pose.position, NULL, NULL), CPROX_OK);
   cprox_options options = cprox_options_default();
@@ -142,7 +143,7 @@ CASE(every_kind_knows_how_deep_it_goes) {
         for (size_t i = 0; i <= degree; i++) points[i] = rng_in_cube(&r, 1.0);
         cprox_curve *curve = bezier(points, degree + 1);
         const cprox_mover mover = cprox_body_along(carried.body, curve);
-        const cprox_target target = cprox_at(standing.body, rng_pose(&r, 0.3));
+        const cprox_obstacle target = cprox_obstacle_at(standing.body, rng_pose(&r, 0.3));
         const cprox_options options = asked(1e-7);
         cprox_result result;
         const cprox_status status = cprox_distance(mover, target, &options, ws, &result);
@@ -176,13 +177,14 @@ CASE(a_compound_is_as_deep_as_its_deepest_part) {
   const cprox_options options = asked(1e-9);
   cprox_result result;
   assert_int_equal(
-      cprox_distance(cprox_point_along(curve), cprox_at(both, cprox_pose_identity()), &options, ws, &result), CPROX_OK);
-  assert_true(result.lower <= -0.75 && -0.75 <= result.upper && result.target_part == 1);
+      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(both, cprox_pose_identity()), &options, ws, &result),
+      CPROX_OK);
+  assert_true(result.lower <= -0.75 && -0.75 <= result.upper && result.obstacle_part == 1);
   cprox_result nearest, each[2];
-  const cprox_target targets[2] = {cprox_at(small, poses[0]), cprox_at(large, poses[1])};
+  const cprox_obstacle targets[2] = {cprox_obstacle_at(small, poses[0]), cprox_obstacle_at(large, poses[1])};
   assert_int_equal(cprox_distance_all(cprox_tube_along(curve, 0.1), targets, 2, &options, ws, &nearest, each),
                    CPROX_OK);
-  assert_true(each[0].lower <= -0.1 && -0.1 <= each[0].upper && nearest.target_index == 1);
+  assert_true(each[0].lower <= -0.1 && -0.1 <= each[0].upper && nearest.obstacle_index == 1);
   assert_true(nearest.lower <= -0.85 && -0.85 <= nearest.upper);
   assert_int_equal(cprox_distance_all(cprox_tube_along(curve, 0.1), targets, 2, &options, ws, &nearest, NULL),
                    CPROX_OK);
@@ -200,12 +202,12 @@ CASE(bodies_that_cannot_tell_their_depth_say_so) {
   assert_int_equal(cprox_body_create_boxes(low, high, 2, SIZE_MAX, ws, &cells), CPROX_OK);
   cprox_curve *through = bezier((vec3[]){{-3, 0, 0}, {3, 0.5, 0}}, 2),
               *past = bezier((vec3[]){{-3, 3, 0}, {3, 3, 0}}, 2);
-  const cprox_target target = cprox_at(cells, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(cells, cprox_pose_identity());
   const cprox_options options = asked(1e-9);
   cprox_result result;
   assert_int_equal(cprox_distance(cprox_point_along(through), target, &options, ws, &result), CPROX_OVERLAP);
   assert_true(result.lower <= -0.7 && result.upper <= 1e-12);
-  assert_string_not_equal(cprox_workspace_reason(ws), "");
+  assert_string_not_equal(cprox_workspace_error(ws), "");
   assert_int_equal(cprox_distance(cprox_point_along(past), target, &options, ws, &result), CPROX_OK);
   assert_true(result.lower <= 2.0 && 2.0 <= result.upper);
   cprox_body_free(cells);
@@ -220,7 +222,7 @@ CASE(tubes_that_cross_are_as_deep_as_their_radii) {
   const cprox_options options = asked(1e-9);
   cprox_result result;
   assert_int_equal(
-      cprox_distance(cprox_tube_along(first, 0.125), cprox_curve_target(second, 0.25), &options, ws, &result),
+      cprox_distance(cprox_tube_along(first, 0.125), cprox_obstacle_curve(second, 0.25), &options, ws, &result),
       CPROX_OK);
   assert_true(result.lower <= -0.375 && -0.375 <= result.upper && result.upper - result.lower <= 1e-9);
   cprox_curve_free(first);
@@ -249,7 +251,8 @@ CASE(medians_stay_within_60_nodes) {
       const cprox_options options = asked(1e-9);
       cprox_result result;
       assert_int_equal(
-          cprox_distance(cprox_point_along(curve), cprox_at(body, rng_pose(&r, 0.2)), &options, ws, &result), CPROX_OK);
+          cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, rng_pose(&r, 0.2)), &options, ws, &result),
+          CPROX_OK);
       if (result.upper < 0.0) nodes[k++] = result.nodes;
       cprox_body_free(body);
       cprox_curve_free(curve);

@@ -13,7 +13,7 @@ enum { THREADS = 4, ROUNDS = 50, TARGETS = 6, ANSWERS = 3 };
 
 typedef struct {
   const cprox_curve *curve;
-  cprox_target targets[TARGETS];
+  cprox_obstacle targets[TARGETS];
 } shared_world;
 
 typedef struct {
@@ -22,10 +22,11 @@ typedef struct {
   bool steady; /* every round gave the answers of the first */
 } client;
 
-/* Answers that were given are compared field by field: a struct's padding means nothing. */
+/* Answers that were given are compared field by field: a struct's margin means nothing. */
 static bool same(const cprox_result *a, const cprox_result *b) {
   return a->status == b->status && a->verdict == b->verdict && a->lower == b->lower && a->upper == b->upper &&
-         a->t == b->t && a->target_index == b->target_index && a->nodes == b->nodes && a->probes == b->probes;
+         a->t == b->t && a->obstacle_index == b->obstacle_index && a->nodes == b->nodes &&
+         a->distance_queries == b->distance_queries;
 }
 
 static void ask(const shared_world *world, cprox_workspace *workspace, cprox_result *results) {
@@ -73,13 +74,13 @@ CASE(threads_that_share_bodies_and_curves_get_the_answers_of_one_thread) {
   for (int i = 0; i < TARGETS; ++i) {
     cprox_pose pose = cprox_pose_identity();
     pose.position = (cprox_vec3){0.5 + 0.6 * i, 0.8, 0.7};
-    world.targets[i] = cprox_at(bodies[i], pose);
+    world.targets[i] = cprox_obstacle_at(bodies[i], pose);
   }
 
   /* What one thread answers, and what several answer at once. */
   cprox_result alone[ANSWERS];
   ask(&world, workspace, alone);
-  assert_true(alone[0].status == CPROX_OK && alone[0].target_index >= 0);
+  assert_true(alone[0].status == CPROX_OK && alone[0].obstacle_index >= 0);
   pthread_t threads[THREADS];
   client clients[THREADS];
   for (int i = 0; i < THREADS; ++i) {

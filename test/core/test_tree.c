@@ -66,7 +66,8 @@ CASE(nearest_is_that_of_all_elements_for_every_kernel) {
   }
 }
 
-/* Bounds over a stretch (seed 37): no element of a lane is nearer to a point of the stretch's hull than the lane's bound. */
+/* Bounds over a interval (seed 37): no element of a lane is nearer to a point of the interval's hull than the lane's
+ * bound. */
 CASE(bounds_hold_over_the_hull_and_agree_between_kernels) {
   static vec3 low[MOST], high[MOST];
   rng r = rng_seed(37);
@@ -74,29 +75,29 @@ CASE(bounds_hold_over_the_hull_and_agree_between_kernels) {
     test_mesh mesh = {0};
     const tree_kind kind = (tree_kind)(i % 3);
     tree *t = make(&r, kind, 40, TREE_BY_AREA, low, high, &mesh);
-    tree_stretch stretch = {.x = rng_in_cube(&r, 1.5),
-                            .beyond = i % 3 ? INFINITY : 0.3,
-                            .n = 4,
-                            .known = i % 2,
-                            .normal = rng_unit(&r),
-                            .along = INFINITY};
+    tree_segment interval = {.x = rng_in_cube(&r, 1.5),
+                             .beyond = i % 3 ? INFINITY : 0.3,
+                             .n = 4,
+                             .known = i % 2,
+                             .normal = rng_unit(&r),
+                             .along = INFINITY};
     vec3 hull = vec(0, 0, 0);
     double weights = 0.0;
     for (int k = 0; k < 4; k++) {
       const vec3 p = k == 0 ? vec(0, 0, 0) : rng_in_cube(&r, 0.3);
-      stretch.p[0][k] = p.x, stretch.p[1][k] = p.y, stretch.p[2][k] = p.z;
-      stretch.along = fmin(stretch.along, vec_dot(stretch.normal, p));
+      interval.p[0][k] = p.x, interval.p[1][k] = p.y, interval.p[2][k] = p.z;
+      interval.along = fmin(interval.along, vec_dot(interval.normal, p));
       const double w = rng_uniform(&r, 0.0, 1.0);
       hull = vec_axpy(hull, w, p), weights += w;
     }
-    const vec3 at = vec_axpy(stretch.x, 1.0 / weights, hull);
+    const vec3 at = vec_axpy(interval.x, 1.0 / weights, hull);
     for (uint32_t pack = 0; pack < t->n_packs; pack++) {
       tree_lanes lanes, other;
-      tree_kernel_at(0)->measure(t, pack | TREE_LEAF, TREE_ALL_LANES, &stretch, &lanes);
+      tree_kernel_at(0)->measure(t, pack | TREE_LEAF, TREE_ALL_LANES, &interval, &lanes);
       for (uint32_t l = 0; l < TREE_LANES; l++)
         assert_true(lanes.bound[l] <= distance_to(t, (tree_place){pack, l}, at) + 1e-14);
       for (int j = 1; j < tree_kernel_count(); j++) {
-        tree_kernel_at(j)->measure(t, pack | TREE_LEAF, TREE_ALL_LANES, &stretch, &other);
+        tree_kernel_at(j)->measure(t, pack | TREE_LEAF, TREE_ALL_LANES, &interval, &other);
         assert_memory_equal(lanes.bound, other.bound, sizeof lanes.bound);
       }
     }
@@ -114,9 +115,9 @@ static double least_below(const tree *t, uint32_t at, vec3 x) {
   return least;
 }
 
-/* A torus of 2 * 40 * 20 triangles (seed 41) and soups of 300, 60 of each, stretches up to 100 sizes away: nothing below a lane is
- * nearer to a point of the hull than the lane's bound, by its box and slab, but for the rounding that tree.h states. A slab never
- * makes a bound worse, and along a torus makes a third of them better. */
+/* A torus of 2 * 40 * 20 triangles (seed 41) and soups of 300, 60 of each, intervals up to 100 sizes away: nothing
+ * below a lane is nearer to a point of the hull than the lane's bound, by its box and slab, but for the rounding that
+ * tree.h states. A slab never makes a bound worse, and along a torus makes a third of them better. */
 CASE(bounds_of_nodes_hold_for_what_is_below_them) {
   rng r = rng_seed(41);
   size_t better = 0, all = 0;
@@ -130,22 +131,22 @@ CASE(bounds_of_nodes_hold_for_what_is_below_them) {
     tree *t = tree_create(&source, i % 4 < 2 ? TREE_BY_AREA : TREE_BY_MORTON);
     assert_non_null(t);
     const double far = i % 5 == 0 ? 100.0 : 1.5;
-    tree_stretch stretch = {.x = rng_in_cube(&r, far), .beyond = INFINITY, .n = 3, .known = true, .along = INFINITY};
-    stretch.normal = rng_unit(&r);
-    vec3 at = stretch.x;
+    tree_segment interval = {.x = rng_in_cube(&r, far), .beyond = INFINITY, .n = 3, .known = true, .along = INFINITY};
+    interval.normal = rng_unit(&r);
+    vec3 at = interval.x;
     for (int k = 0; k < 3; k++) {
       const vec3 p = k == 0 ? vec(0, 0, 0) : rng_in_cube(&r, 0.2);
-      stretch.p[0][k] = p.x, stretch.p[1][k] = p.y, stretch.p[2][k] = p.z;
-      stretch.along = fmin(stretch.along, vec_dot(stretch.normal, p));
+      interval.p[0][k] = p.x, interval.p[1][k] = p.y, interval.p[2][k] = p.z;
+      interval.along = fmin(interval.along, vec_dot(interval.normal, p));
       at = vec_axpy(at, k == 0 ? 0.0 : 0.5, p);
     }
-    const double rounding = TREE_ROUND * 1.2e-16 * (vec_norm(stretch.x) + t->scale + 1.0);
+    const double rounding = TREE_ROUND * 1.2e-16 * (vec_norm(interval.x) + t->scale + 1.0);
     tree boxed = *t;
     boxed.slabs = NULL;
     for (uint32_t node = 0; node < t->n_nodes; node++) {
       tree_lanes lanes, other, without;
-      tree_kernel_at(0)->measure(t, node, TREE_ALL_LANES, &stretch, &lanes);
-      tree_kernel_at(0)->measure(&boxed, node, TREE_ALL_LANES, &stretch, &without);
+      tree_kernel_at(0)->measure(t, node, TREE_ALL_LANES, &interval, &lanes);
+      tree_kernel_at(0)->measure(&boxed, node, TREE_ALL_LANES, &interval, &without);
       for (uint32_t l = 0; l < TREE_LANES; l++) {
         assert_true(lanes.bound[l] <= least_below(t, t->nodes[node].child[l], at) + rounding);
         assert_true(lanes.bound[l] >= without.bound[l]);
@@ -153,7 +154,7 @@ CASE(bounds_of_nodes_hold_for_what_is_below_them) {
         better += torus && lanes.bound[l] > without.bound[l];
       }
       for (int j = 1; j < tree_kernel_count(); j++) {
-        tree_kernel_at(j)->measure(t, node, TREE_ALL_LANES, &stretch, &other);
+        tree_kernel_at(j)->measure(t, node, TREE_ALL_LANES, &interval, &other);
         assert_memory_equal(lanes.bound, other.bound, sizeof lanes.bound);
       }
     }

@@ -10,16 +10,16 @@
 static const double WILD[] = {NAN, INFINITY, -INFINITY, 1e308, -1e308, 1e61};
 enum { N_WILD = sizeof WILD / sizeof *WILD };
 
-/* All arguments that questions may have. */
+/* All arguments that queries may have. */
 typedef struct arguments {
   cprox_mover mover;
-  cprox_target target, other;
+  cprox_obstacle target, other;
   cprox_options options;
   double delta, duration;
   vec3 velocity;
 } arguments;
 
-typedef cprox_status (*question)(const arguments *a);
+typedef cprox_status (*query)(const arguments *a);
 
 static cprox_result result;
 
@@ -32,8 +32,8 @@ static cprox_status ask_tolerance(const arguments *a) {
 static cprox_status ask_collision(const arguments *a) {
   return cprox_collision(a->mover, a->target, &a->options, ws, &result);
 }
-static cprox_status ask_first_contact(const arguments *a) {
-  return cprox_first_contact(a->mover, a->target, &a->options, ws, &result);
+static cprox_status ask_time_of_contact(const arguments *a) {
+  return cprox_time_of_contact(a->mover, a->target, &a->options, ws, &result);
 }
 static cprox_status ask_nearest(const arguments *a) {
   size_t count;
@@ -45,8 +45,8 @@ static cprox_status ask_within(const arguments *a) {
 }
 static cprox_status ask_profile(const arguments *a) {
   const double breaks[2] = {0.0, 1.0};
-  cprox_stretch stretch;
-  return cprox_profile(a->mover, &a->target, 1, breaks, 1, &a->options, ws, &stretch);
+  cprox_profile_interval interval;
+  return cprox_profile(a->mover, &a->target, 1, breaks, 1, &a->options, ws, &interval);
 }
 static cprox_status ask_pair(const arguments *a) {
   return cprox_pair(a->other, a->target, &a->options, ws, &result);
@@ -96,13 +96,13 @@ static cprox_status ask_growth(const arguments *a) {
 enum { OPTIONS = 1, MOVER = 2, TARGET = 4, DELTA = 8, WAY = 16 };
 static const struct {
   const char *name;
-  question ask;
+  query ask;
   int takes;
-} QUESTIONS[] = {
+} QUERIES[] = {
     {"distance", ask_distance, OPTIONS | MOVER | TARGET},
     {"tolerance", ask_tolerance, OPTIONS | MOVER | TARGET | DELTA},
     {"collision", ask_collision, OPTIONS | MOVER | TARGET},
-    {"first contact", ask_first_contact, OPTIONS | MOVER | TARGET},
+    {"time of contact", ask_time_of_contact, OPTIONS | MOVER | TARGET},
     {"nearest", ask_nearest, OPTIONS | MOVER | TARGET},
     {"within", ask_within, OPTIONS | MOVER | TARGET | DELTA},
     {"profile", ask_profile, OPTIONS | MOVER | TARGET},
@@ -117,7 +117,7 @@ static const struct {
     {"growth", ask_growth, OPTIONS | TARGET},
 };
 
-/* The numbers of the arguments, and which of them a question takes. */
+/* The numbers of the arguments, and which of them a query takes. */
 static size_t list_numbers(arguments *a, int takes, const char **name, double **number) {
   const struct {
     int of;
@@ -127,7 +127,7 @@ static size_t list_numbers(arguments *a, int takes, const char **name, double **
       {OPTIONS, "epsilon", &a->options.epsilon},
       {OPTIONS, "relative_epsilon", &a->options.relative_epsilon},
       {MOVER, "radius", &a->mover.radius},
-      {TARGET, "padding", &a->target.padding},
+      {TARGET, "margin", &a->target.margin},
       {TARGET, "position.x", &a->target.pose.position.x},
       {TARGET, "position.y", &a->target.pose.position.y},
       {TARGET, "position.z", &a->target.pose.position.z},
@@ -150,42 +150,42 @@ static size_t list_numbers(arguments *a, int takes, const char **name, double **
   return n;
 }
 
-static void check_question(arguments *a, size_t q) {
+static void check_query(arguments *a, size_t q) {
   const char *name[20];
   double *number[20];
-  const size_t n = list_numbers(a, QUESTIONS[q].takes, name, number);
+  const size_t n = list_numbers(a, QUERIES[q].takes, name, number);
   for (size_t i = 0; i < n; i++) {
     for (size_t k = 0; k < N_WILD; k++) {
       if (WILD[k] == 1e61 && strncmp(name[i], "orientation", 11) == 0) continue; /* quaternions may be that long */
       const double kept = *number[i];
       *number[i] = WILD[k];
-      const cprox_status status = QUESTIONS[q].ask(a);
-      if (status != CPROX_INVALID || cprox_workspace_reason(ws)[0] == '\0')
-        fail_msg("%s with %s = %g: %s, \"%s\"", QUESTIONS[q].name, name[i], WILD[k], cprox_status_name(status),
-                 cprox_workspace_reason(ws));
+      const cprox_status status = QUERIES[q].ask(a);
+      if (status != CPROX_INVALID || cprox_workspace_error(ws)[0] == '\0')
+        fail_msg("%s with %s = %g: %s, \"%s\"", QUERIES[q].name, name[i], WILD[k], cprox_status_name(status),
+                 cprox_workspace_error(ws));
       *number[i] = kept;
     }
   }
 }
 
-CASE(every_number_of_every_question_is_finite_or_refused) {
+CASE(every_number_of_every_query_is_finite_or_refused) {
   const vec3 ends[2] = {{3, 0, 0}, {3, 1, 0}};
   cprox_curve *curve = bezier(ends, 2);
   cprox_body *points = NULL, *ball = NULL;
   assert_int_equal(cprox_body_create_points(ends, 2, 0.1, SIZE_MAX, ws, &points), CPROX_OK);
   assert_int_equal(cprox_body_create_superquadric(vec(1, 1, 1), vec(2, 2, 2), ws, &ball), CPROX_OK);
-  for (size_t q = 0; q < sizeof QUESTIONS / sizeof *QUESTIONS; q++) {
-    const bool bodies = (QUESTIONS[q].takes & WAY) || QUESTIONS[q].ask == ask_growth;
+  for (size_t q = 0; q < sizeof QUERIES / sizeof *QUERIES; q++) {
+    const bool bodies = (QUERIES[q].takes & WAY) || QUERIES[q].ask == ask_growth;
     const cprox_body *targets[2] = {ball, points};
     for (int i = 0; i < (bodies ? 1 : 2); i++) {
       arguments a = {.mover = cprox_point_along(curve),
-                     .target = cprox_at(targets[i], cprox_pose_identity()),
-                     .other = cprox_at(ball, (cprox_pose){{5, 0, 0}, {1, 0, 0, 0}}),
+                     .target = cprox_obstacle_at(targets[i], cprox_pose_identity()),
+                     .other = cprox_obstacle_at(ball, (cprox_pose){{5, 0, 0}, {1, 0, 0, 0}}),
                      .options = cprox_options_default(),
                      .delta = 0.1,
                      .duration = 1.0,
                      .velocity = {1, 0, 0}};
-      check_question(&a, q);
+      check_query(&a, q);
     }
   }
   cprox_body_free(points);
@@ -206,7 +206,7 @@ CASE(the_widest_epsilon_is_answered) {
   for (int i = 0; i < 3; i++) {
     cprox_options options = accurate(widest[i]);
     options.relative_epsilon = i == 2 ? 1e60 : 0.0;
-    const cprox_target target = cprox_at(points, cprox_pose_identity());
+    const cprox_obstacle target = cprox_obstacle_at(points, cprox_pose_identity());
     assert_int_equal(cprox_distance(cprox_point_along(curve), target, &options, ws, &result), CPROX_OK);
     assert_true(0.0 <= result.lower && result.lower <= result.upper && result.upper < 4.0);
   }
@@ -245,7 +245,7 @@ CASE(every_number_of_a_robot_and_its_motion_is_finite_or_refused) {
                                 .origin = {{1, 0, 0}, {1, 0, 0, 0}},
                                 .axis = {0, 0, 1},
                                 .multiplier = 1.0},
-                       .geometry = {.body = ball, .pose = {{0, 1, 0}, {1, 0, 0, 0}}, .padding = 0.1},
+                       .geometry = {.body = ball, .pose = {{0, 1, 0}, {1, 0, 0, 0}}, .margin = 0.1},
                        .time = {0, 1},
                        .position = {0.5, 1}};
   assert_int_equal(make_robot(&a), CPROX_OK);
@@ -259,7 +259,7 @@ CASE(every_number_of_a_robot_and_its_motion_is_finite_or_refused) {
                        &a.link.offset,
                        &a.geometry.pose.position.z,
                        &a.geometry.pose.orientation.x,
-                       &a.geometry.padding,
+                       &a.geometry.margin,
                        &a.time[0],
                        &a.time[1],
                        &a.position[0],
@@ -274,8 +274,8 @@ CASE(every_number_of_a_robot_and_its_motion_is_finite_or_refused) {
       const double kept = *numbers[i];
       *numbers[i] = WILD[k];
       const cprox_status status = make_robot(&a);
-      if (status != CPROX_INVALID || cprox_workspace_reason(ws)[0] == '\0')
-        fail_msg("number %zu = %g: %s, \"%s\"", i, WILD[k], cprox_status_name(status), cprox_workspace_reason(ws));
+      if (status != CPROX_INVALID || cprox_workspace_error(ws)[0] == '\0')
+        fail_msg("number %zu = %g: %s, \"%s\"", i, WILD[k], cprox_status_name(status), cprox_workspace_error(ws));
       *numbers[i] = kept;
     }
   }

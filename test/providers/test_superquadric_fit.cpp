@@ -141,9 +141,9 @@ TEST(SuperquadricDistances, of_fitted_bodies_contain_the_true_distance) {
       ConstraintPlace place;
       place.a = random.pose(1.0), place.b = random.pose(1.0);
       constraint->evaluate(place, workspace, value);
-      const cprox_result truth =
-          curve_proximity::pair(cprox_at(pair.a.parts[0].body.get(), place.a),
-                                cprox_at(pair.b.parts[0].body.get(), place.b), cprox_options_default(), workspace);
+      const cprox_result truth = curve_proximity::pair(cprox_obstacle_at(pair.a.parts[0].body.get(), place.a),
+                                                       cprox_obstacle_at(pair.b.parts[0].body.get(), place.b),
+                                                       cprox_options_default(), workspace);
       ASSERT_LE(value.lower, truth.upper);
       ASSERT_GE(value.upper, truth.lower);
       overlapping += truth.upper < 0.0;

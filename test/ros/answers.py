@@ -57,10 +57,10 @@ class Answers(TestCase):
                          ('above', 'curve', 'above', 'ball', 'ok', '', ''))
         self.assertEqual(response.frame_id, 'world')
         self.assertAlmostEqual(row.t, 0.5, delta=1e-4)
-        for value, expected in ((row.point_a, (1, 0, 1)), (row.point_b, (1, 0, 0.25)), (row.normal, (0, 0, 1))):
+        for value, expected in ((row.witness_a, (1, 0, 1)), (row.witness_b, (1, 0, 0.25)), (row.normal, (0, 0, 1))):
             for got, want in zip((value.x, value.y, value.z), expected):
                 self.assertAlmostEqual(got, want, delta=2e-4)
-        self.assertGreater(row.probes, 0)
+        self.assertGreater(row.distance_queries, 0)
         self.assertGreater(row.microseconds, 0)
 
     def test_tolerance_is_granted_below_the_distance_and_denied_above(self):
@@ -304,7 +304,7 @@ class BadInput(TestCase):
                 odd = thing('odd', bodies=[Body(type='mesh', resource=resource)])
                 self.assertRefused(self.server.apply(odd), "'odd'", resource)
 
-    def test_questions_are_refused_with_a_reason(self):
+    def test_queries_are_refused_with_a_reason(self):
         for epsilon in (-1e-6, math.nan, math.inf):
             self.assertRefused(self.server.distance(ABOVE, epsilon=epsilon), 'epsilon')
         for delta in (-0.1, math.nan, math.inf):

@@ -29,7 +29,7 @@ class Batches(unittest.TestCase):
         self.server.replace(sphere('ball', 0.25), sphere('other', 0.1, (0, 3, 0)))
         curves = [bezier((-1, 0, 0.3 + 0.01 * i), (1, 0.1 * i, 1), id='c%d' % i) for i in range(300)]
         curves[7] = bezier((0, 0, 1), id='bad')
-        state, result = self.send(verb='distance', curves=curves)
+        state, result = self.send(query_type='distance', curves=curves)
         self.assertEqual(state, GoalStatus.SUCCEEDED)
         response = self.server.distance(curves)
         self.assertFalse(result.success)
@@ -44,7 +44,7 @@ class Batches(unittest.TestCase):
         ring, balls, _ = ring_and_shells(shells=1, n=3000)
         self.server.replace(*balls)
         ring.id = 'ring'
-        state, result = self.send(verb='distance', curves=[ring] * 60, epsilon=1e-12)
+        state, result = self.send(query_type='distance', curves=[ring] * 60, epsilon=1e-12)
         self.assertEqual(state, GoalStatus.SUCCEEDED)
         self.assertGreater(len(self.feedback), 0)
         done = [f.done for f in self.feedback]
@@ -58,7 +58,7 @@ class Batches(unittest.TestCase):
         self.server.replace(*balls)
         first = bezier((0, 0, 5), (1, 0, 5), id='first')
         self.feedback = []
-        self.client.send_goal(QueryGoal(verb='distance', curves=[first] + [ring] * 50, **fields),
+        self.client.send_goal(QueryGoal(query_type='distance', curves=[first] + [ring] * 50, **fields),
                               feedback_cb=self.feedback.append)
         self.assertTrue(until(lambda: self.feedback, 10))
         time.sleep(0.3)
@@ -77,14 +77,14 @@ class Batches(unittest.TestCase):
     def test_a_budget_ends_it_and_without_one_it_outlives_that_of_the_server(self):
         ring, balls, fields = ring_and_shells()
         self.server.replace(*balls)
-        state, result = self.send(verb='distance', curves=[ring], budget_ms=300, **fields)
+        state, result = self.send(query_type='distance', curves=[ring], budget_ms=300, **fields)
         self.assertEqual(state, GoalStatus.SUCCEEDED)
         self.assertIn('stopped', {row.status for row in result.results})
 
     def test_goals_that_make_no_sense_are_aborted_with_a_reason(self):
         line = bezier((0, 0, 1), (1, 0, 1))
-        for fields, word in ((dict(verb='guess', curves=[line]), 'guess'), (dict(verb='tolerance', delta=-1, curves=[line]), 'delta'),
-                             (dict(verb='distance', curves=[line], budget_ms=-1), 'budget_ms')):
+        for fields, word in ((dict(query_type='guess', curves=[line]), 'guess'), (dict(query_type='tolerance', delta=-1, curves=[line]), 'delta'),
+                             (dict(query_type='distance', curves=[line], budget_ms=-1), 'budget_ms')):
             state, result = self.send(**fields)
             self.assertEqual(state, GoalStatus.ABORTED, fields)
             self.assertFalse(result.success)

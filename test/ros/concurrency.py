@@ -40,7 +40,7 @@ class Concurrency(unittest.TestCase):
                 raise client.failure
             self.assertGreater(client.rounds, 20)
 
-    def test_each_client_gets_the_answer_to_its_own_question(self):
+    def test_each_client_gets_the_answer_to_its_own_query(self):
         Server().replace(sphere('ball', 0.25))
 
         def ask(height):

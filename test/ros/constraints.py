@@ -62,7 +62,7 @@ class Constraints(unittest.TestCase):
         self.assertAlmostEqual(row.gradient_radius, -1.0)
         self.assertAlmostEqual(row.gradient_b.linear.z, -1.0, delta=1e-6)
         self.assertAlmostEqual(row.gradient_a.linear.z, 1.0, delta=1e-6)
-        self.assertAlmostEqual(row.point_b.z, 0.25, delta=1e-6)
+        self.assertAlmostEqual(row.witness_b.z, 0.25, delta=1e-6)
 
     def test_a_body_rides_a_curve(self):
         row = self.row(a=box('', (0.2, 0.2, 0.4)), b=sphere('', 0.25, (1, 0, 0)), curve=bezier((-1, 0, 1), (3, 0, 1)),
@@ -108,7 +108,7 @@ class Constraints(unittest.TestCase):
         self.assertGreater(far.value, near.value)
         self.assertGreater(near.gradient_b.linear.x, 0.0)
         self.assertLess(near.gradient_a.linear.x, 0.0)
-        self.assertTrue(math.isnan(near.point_a.x))
+        self.assertTrue(math.isnan(near.witness_a.x))
 
     def test_a_provider_of_another_package_is_asked_like_ours(self):
         row = self.row(sphere('', 0.5, (0, 0, 0)), sphere('', 0.5, (0, 3, 0)), providers=['balls'])

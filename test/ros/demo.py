@@ -32,7 +32,7 @@ class Demo(unittest.TestCase):
         for a, b in zip(by_tf2.results, by_joints.results):
             self.assertAlmostEqual(a.upper, b.upper, delta=1e-5)
             if a.b.startswith('panda_'):
-                self.assertEqual(a.rung, 'mesh')
+                self.assertEqual(a.lod, 'mesh')
         nearest = min(by_tf2.results, key=lambda r: r.upper)
         one = self.server.distance(LINE).results[0]
         self.assertEqual(one.b, nearest.b)

@@ -213,7 +213,7 @@ def until(condition, seconds, step=0.02):
 
 
 def ring_and_shells(shells=200, n=20000):
-    """A question that keeps a processor busy for seconds: a spline all but at the same distance from concentric balls,
+    """A query that keeps a processor busy for seconds: a spline all but at the same distance from concentric balls,
     each asked for alone. Returns the curve, the balls, and the fields of the request."""
     ring = bspline([(math.cos(2 * math.pi * i / n), math.sin(2 * math.pi * i / n), 0) for i in range(n)], 3, id='ring')
     balls = [sphere('ball%03d' % i, 0.1 + 0.001 * i) for i in range(shells)]

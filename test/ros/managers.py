@@ -53,7 +53,7 @@ class Managers(unittest.TestCase):
         call = Call(lambda: server.distance(ring, **fields))
         client = actionlib.SimpleActionClient('/stopped_server/query', QueryAction)
         self.assertTrue(client.wait_for_server(rospy.Duration(10)))
-        client.send_goal(QueryGoal(verb='distance', curves=[ring] * 100, **fields))
+        client.send_goal(QueryGoal(query_type='distance', curves=[ring] * 100, **fields))
         topic = rospy.Publisher('/stopped_server/curve', Curve, queue_size=100)
         self.assertTrue(until(topic.get_num_connections, 10))
         for i in range(50):

@@ -67,7 +67,7 @@ class Markers(unittest.TestCase):
     def test_the_pair_is_the_answers_and_the_curve_has_the_colour_of_its_clearance(self):
         self.server.replace(sphere('ball', 0.25, (0.2, 0, 0.6)))
         row, = self.server.distance(LINE).results
-        ends = [row.point_a, row.point_b]
+        ends = [row.witness_a, row.witness_b]
         shown = self.shown(lambda s: any(m.points == ends for m in s['pairs']), 'pairs', 'labels', 'curves')
         line = next(m for m in shown['pairs'] if m.type == Marker.LINE_LIST)
         self.assertEqual(line.points, ends)
@@ -101,7 +101,7 @@ class Markers(unittest.TestCase):
         def holds(marker):
             points = coordinates(marker.points)
             return all(min(p[i] for p in points) <= x <= max(p[i] for p in points) for i, x in enumerate(
-                (exact.point_a.x, exact.point_a.y, exact.point_a.z)))
+                (exact.witness_a.x, exact.witness_a.y, exact.witness_a.z)))
         self.assertTrue(any(holds(marker) for marker in hulls))
         self.assertLess(len(hulls), 48)  # and not all of the curve
 

@@ -21,7 +21,7 @@ class PythonClient(unittest.TestCase):
     def setUp(self):
         self.client.clear()
 
-    def test_the_three_questions_have_answers(self):
+    def test_the_three_queries_have_answers(self):
         self.client.add(sphere('ball', 0.25, (1, 0, 0)), box('far', (1, 1, 1), (0, 9, 0)))
         row = self.client.distance(LINE, epsilon=1e-9)
         self.assertLessEqual(row.lower, 0.75)

@@ -99,7 +99,7 @@ class Topics(unittest.TestCase):
         answer = self.ask('curve', curve)
         self.assertTrue(answer.success, answer.message)
         self.assertEqual((answer.source, answer.id, answer.header.stamp), ('curve', 'one', rospy.Time(12, 34)))
-        self.assertEqual((answer.header.frame_id, answer.verb, answer.delta), ('world', 'tolerance', 0.05))
+        self.assertEqual((answer.header.frame_id, answer.query_type, answer.delta), ('world', 'tolerance', 0.05))
         self.assertEqual(answer.fingerprint, fingerprint(curve))
         row, = answer.results
         self.assertEqual((row.id, row.verdict), ('one', 'yes'))

@@ -95,7 +95,7 @@ class TestCase(unittest.TestCase):
         self.assertTrue(row, 'still %s' % self.answer())
         self.assertLessEqual(row[0].lower, distance + 1e-12)
         self.assertGreaterEqual(row[0].upper, distance - 1e-12)
-        self.assertEqual(row[0].rung, 'mesh')
+        self.assertEqual(row[0].lod, 'mesh')
 
     def assertTold(self, *words):
         """Soon one line of the log holds all the words."""
@@ -286,9 +286,9 @@ class Meshes(TestCase):
             self.server.replace(scene)
             hulls.replace(scene)
             row = self.server.collision(self.BETWEEN).results[0]
-            self.assertEqual((row.verdict, row.b, row.rung), ('no', 'bracket', 'mesh'))
+            self.assertEqual((row.verdict, row.b, row.lod), ('no', 'bracket', 'mesh'))
             row = hulls.collision(self.BETWEEN).results[0]
-            self.assertEqual((row.verdict, row.b, row.rung), ('yes', 'bracket', 'hull'))
+            self.assertEqual((row.verdict, row.b, row.lod), ('yes', 'bracket', 'hull'))
             self.assertIn('convex hull', row.message)
             row = self.answer(self.BETWEEN)
             self.assertLessEqual(row.lower, 0.6)

@@ -25,7 +25,7 @@ class WrongParameters(unittest.TestCase):
                  ('memory_limit_mb', -1), ('memory_limit_mb', 5), ('max_curves', 0), ('max_control_points', 'many'),
                  ('max_results', 0), ('fixed_frame', ''), ('fixed_frame', 3), ('urdf_dir', 1),
                  ('allow_missing_geometry', 'yes'), ('robot_description', '<robot/>'),
-                 ('robot_description', 'no_such_parameter'), ('verb', 'guess'), ('verb', 1), ('delta', -0.1),
+                 ('robot_description', 'no_such_parameter'), ('query_type', 'guess'), ('query_type', 1), ('delta', -0.1),
                  ('delta', 'wide'), ('self_collision', 'yes'), ('path_radius', -1.0), ('queue_size', 0), ('queue_size', 2.5),
                  ('scene_file', 7), ('scene_file', '/no/such/scene.yaml'), ('scene_file', ARM)]
         for name, value in cases:

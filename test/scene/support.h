@@ -125,7 +125,7 @@ inline CurveDescription randomBezier(Random &random, std::size_t degree, double 
 
 /* Runs a call that must fail and hands its sentence back. */
 template <typename Call>
-std::string reasonOf(Call call) {
+std::string errorOf(Call call) {
   try {
     call();
   } catch (const Error &error) {
@@ -140,11 +140,10 @@ inline void expectContains(const std::string &text, const std::string &part) {
   EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
 }
 
-/* The one answer to a question about everything, or what is named. */
-inline Answer askOne(const Scene &scene, const LinkPoses &links, const CurveDescription &curve,
-                     const Question &question) {
+/* The one answer to a query about everything, or what is named. */
+inline Answer askOne(const Scene &scene, const LinkPoses &links, const CurveDescription &curve, const Query &query) {
   Workspace workspace;
-  const std::vector<Answer> answers = ask(scene.snapshot(), links, curve, question, workspace);
+  const std::vector<Answer> answers = ask(scene.snapshot(), links, curve, query, workspace);
   EXPECT_EQ(answers.size(), 1u);
   return answers.empty() ? Answer() : answers.front();
 }

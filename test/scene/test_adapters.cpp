@@ -130,8 +130,8 @@ TEST(FclAdapter, halfspaces_are_the_same) {
 }
 
 TEST(FclAdapter, what_is_no_solid_convex_set_is_refused_by_name) {
-  expectContains(reasonOf([] { bodyFromFcl(fcl::Planed(fcl::Vector3d::UnitZ(), 0.0)); }), "plane");
-  expectContains(reasonOf([] { bodyFromFcl(fcl::Sphered(-1.0)); }), "radius");
+  expectContains(errorOf([] { bodyFromFcl(fcl::Planed(fcl::Vector3d::UnitZ(), 0.0)); }), "plane");
+  expectContains(errorOf([] { bodyFromFcl(fcl::Sphered(-1.0)); }), "radius");
 }
 
 namespace {
@@ -163,7 +163,7 @@ TEST(CcdAdapter, a_support_callback_is_the_shape_it_describes) {
     const BodyHandle body = makeSupport(&boxSupport, &box, box.pose.translation(), box.half.norm() * 1.001, 1e-14);
     const double y = random.uniform(-2, 2), z = random.uniform(-2, 2);
     const BodyHandle sphere = makeSphere(0.3), reference = makeBox(2.0 * box.half);
-    const cprox_target ball = at(sphere, translation(3.0, y, z));
+    const cprox_obstacle ball = at(sphere, translation(3.0, y, z));
     const cprox_result mine = pair(at(body), ball, cprox_options_default(), workspace);
     const cprox_result its = pair(at(reference, box.pose), ball, cprox_options_default(), workspace);
     EXPECT_LE(mine.lower, its.upper);
@@ -185,9 +185,9 @@ TEST(CcdAdapter, a_callback_that_writes_nothing_is_caught) {
   Workspace workspace;
   const int nothing = 0;
   const CompiledCurve curve = compile(line({1, 0, 0}, {2, 0, 0}));
-  EXPECT_FALSE(reasonOf([&] {
+  EXPECT_FALSE(errorOf([&] {
                  const BodyHandle body = makeSupport(&silentSupport, &nothing, Eigen::Vector3d::Zero(), 1.0);
                  distance(along(curve.curve), at(body), cprox_options_default(), workspace);
                }).empty());
-  EXPECT_FALSE(reasonOf([&] { makeSupport(nullptr, &nothing, Eigen::Vector3d::Zero(), 1.0); }).empty());
+  EXPECT_FALSE(errorOf([&] { makeSupport(nullptr, &nothing, Eigen::Vector3d::Zero(), 1.0); }).empty());
 }

@@ -54,7 +54,7 @@ struct Slider : ::testing::Test {
   }
 
   void expectNearest(const std::string &a, double distance) {
-    const Answer answer = askEnvironment(slide(0, 2), Question(), workspace).front();
+    const Answer answer = askEnvironment(slide(0, 2), Query(), workspace).front();
     EXPECT_EQ(answer.status, "ok") << answer.message;
     EXPECT_EQ(answer.a, a);
     EXPECT_NEAR(answer.result.upper, distance, 1e-6);
@@ -75,42 +75,42 @@ TEST_F(Slider, what_a_link_carries_rides_along_and_is_padded_with_it) {
 TEST_F(Slider, options_that_do_not_apply_to_a_robot_are_refused_and_named) {
   const RobotMotion motion = slide(0, 2);
   const auto expect = [&](const char *word, bool environment, bool self, bool distances, const auto &set) {
-    Question question;
-    set(question);
-    Answer answer = askEnvironment(motion, question, workspace).front();
+    Query query;
+    set(query);
+    Answer answer = askEnvironment(motion, query, workspace).front();
     EXPECT_EQ(answer.result.status >= 0, environment) << word << ": " << answer.message;
     if (!environment) expectContains(answer.message, word);
-    answer = askSelf(motion, question, workspace);
+    answer = askSelf(motion, query, workspace);
     EXPECT_EQ(answer.result.status >= 0, self) << word << ": " << answer.message;
     if (!self) expectContains(answer.message, word);
-    const auto pairs = [&] { nearestPairs(motion, false, {}, question, workspace); };
-    const auto profile = [&] { clearanceProfile(motion, false, {0, 1}, question, workspace); };
+    const auto pairs = [&] { nearestPairs(motion, false, {}, query, workspace); };
+    const auto profile = [&] { clearanceProfile(motion, false, {0, 1}, query, workspace); };
     if (distances) {
       EXPECT_NO_THROW(pairs()) << word;
       EXPECT_NO_THROW(profile()) << word;
     } else {
-      expectContains(test::reasonOf(pairs), word);
-      expectContains(test::reasonOf(profile), word);
+      expectContains(test::errorOf(pairs), word);
+      expectContains(test::errorOf(profile), word);
     }
   };
-  expect("nothing", true, true, true, [](Question &) {});
-  expect("signed_distance", false, false, false, [](Question &q) { q.options.signed_distance = true; });
-  expect("links", false, false, false, [](Question &q) { q.links = {"cart"}; });
-  expect("delta", false, false, false, [](Question &q) { q.delta = 0.1; });
-  expect("per_object", true, false, false, [](Question &q) { q.per_object = true; });
-  expect("objects", true, false, true, [](Question &q) { q.objects = {"wall"}; });
-  expect("verb", true, true, false, [](Question &q) { q.verb = Verb::COLLISION; });
+  expect("nothing", true, true, true, [](Query &) {});
+  expect("signed_distance", false, false, false, [](Query &q) { q.options.signed_distance = true; });
+  expect("links", false, false, false, [](Query &q) { q.links = {"cart"}; });
+  expect("delta", false, false, false, [](Query &q) { q.delta = 0.1; });
+  expect("per_object", true, false, false, [](Query &q) { q.per_object = true; });
+  expect("objects", true, false, true, [](Query &q) { q.objects = {"wall"}; });
+  expect("query_type", true, true, false, [](Query &q) { q.query_type = QueryType::COLLISION; });
 }
 
 TEST_F(Slider, a_curve_meets_what_a_link_carries_where_the_link_is) {
   ASSERT_TRUE(attach(attachment("held", "cart", {shape(ShapeType::SPHERE, {0.1})}, translation(0.4, 0, 0))).empty());
   LinkPoses poses = scene.snapshot()->robot()->linkPoses({{"slide", 1.0}});
-  Question question;
-  question.objects = {"held"};
-  const Answer answer = test::askOne(scene, poses, test::line({1.4, -1, 0.5}, {1.4, 1, 0.5}), question);
+  Query query;
+  query.objects = {"held"};
+  const Answer answer = test::askOne(scene, poses, test::line({1.4, -1, 0.5}, {1.4, 1, 0.5}), query);
   EXPECT_EQ(answer.b, "held");
   EXPECT_NEAR(answer.result.upper, 0.4, 1e-6);
-  expectContains(test::askOne(scene, {}, test::line({0, 0, 0}, {1, 0, 0}), question).message, "'cart'");
+  expectContains(test::askOne(scene, {}, test::line({0, 0, 0}, {1, 0, 0}), query).message, "'cart'");
 }
 
 TEST_F(Slider, an_object_of_the_scene_is_taken_up_and_put_down_where_it_is) {
@@ -142,7 +142,7 @@ TEST_F(Slider, what_is_carried_is_checked_against_links_that_one_joint_moves_unl
   t.joints = {"swing"};
   t.points = {{{0.0}, {}, {}, 0.0}, {{M_PI}, {}, {}, 1.0}}; /* the ball passes below the axis, above the cart */
   ASSERT_TRUE(attach(held).empty());
-  Answer answer = askSelf(RobotMotion(scene.snapshot(), t, {}), Question(), workspace);
+  Answer answer = askSelf(RobotMotion(scene.snapshot(), t, {}), Query(), workspace);
   EXPECT_EQ(answer.a, "cart");
   EXPECT_EQ(answer.b, "held");
   EXPECT_FALSE(answer.b_is_link);
@@ -151,7 +151,7 @@ TEST_F(Slider, what_is_carried_is_checked_against_links_that_one_joint_moves_unl
   held.touch_links = {"cart"};
   ASSERT_TRUE(attach(held).empty());
   const RobotMotion motion(scene.snapshot(), t, {});
-  answer = askSelf(motion, Question(), workspace);
+  answer = askSelf(motion, Query(), workspace);
   EXPECT_EQ(answer.b, "");
   std::string skipped;
   for (const std::string &sentence : motion.skipped()) skipped += sentence + "\n";

@@ -20,7 +20,7 @@ std::string link(const std::string &inside) {
 }
 
 std::string why(const std::string &xml, const RobotOptions &options = {}) {
-  return reasonOf([&] { Robot::fromUrdf(xml, options); });
+  return errorOf([&] { Robot::fromUrdf(xml, options); });
 }
 
 std::string whyLink(const std::string &inside) {

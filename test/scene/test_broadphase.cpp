@@ -69,11 +69,11 @@ TEST(Broadphase, never_changes_a_distance) {
     if (i % 2) d.radius = random.uniform(0.0, 0.3);
     const CompiledCurve curve = compile(d);
 
-    Question question;
-    const Answer answer = askOne(scene, {}, d, question);
+    Query query;
+    const Answer answer = askOne(scene, {}, d, query);
     ASSERT_GE(answer.result.status, 0) << answer.message;
     std::string nearest;
-    const cprox_result expected = byHand(*scene.snapshot(), curve, question.options, nearest);
+    const cprox_result expected = byHand(*scene.snapshot(), curve, query.options, nearest);
     EXPECT_LE(answer.result.lower, expected.upper) << i;
     EXPECT_GE(answer.result.upper, expected.lower) << i;
     if (answer.b != nearest) {
@@ -82,25 +82,25 @@ TEST(Broadphase, never_changes_a_distance) {
 
     // And the verdicts at limits around it.
     for (const double factor : {0.5, 0.99, 1.01, 2.0}) {
-      question.verb = Verb::TOLERANCE;
-      question.delta = expected.upper * factor;
-      const Answer verdict = askOne(scene, {}, d, question);
+      query.query_type = QueryType::TOLERANCE;
+      query.delta = expected.upper * factor;
+      const Answer verdict = askOne(scene, {}, d, query);
       ASSERT_GE(verdict.result.status, 0);
-      if (question.delta < expected.lower - 2e-6) {
+      if (query.delta < expected.lower - 2e-6) {
         EXPECT_EQ(verdict.result.verdict, CPROX_YES) << i;
       }
-      if (question.delta > expected.upper + 2e-6) {
+      if (query.delta > expected.upper + 2e-6) {
         EXPECT_EQ(verdict.result.verdict, CPROX_NO) << i;
       }
       EXPECT_LE(verdict.result.lower, expected.upper) << i;
       EXPECT_GE(verdict.result.upper, expected.lower) << i;
       if (verdict.result.verdict == CPROX_YES) {
-        EXPECT_GT(verdict.result.lower, question.delta);
+        EXPECT_GT(verdict.result.lower, query.delta);
       }
     }
-    question.verb = Verb::COLLISION;
-    question.delta = 0.0;
-    const Answer hit = askOne(scene, {}, d, question);
+    query.query_type = QueryType::COLLISION;
+    query.delta = 0.0;
+    const Answer hit = askOne(scene, {}, d, query);
     if (expected.lower > 2e-6) {
       EXPECT_EQ(hit.result.verdict, CPROX_NO) << i;
     }
@@ -127,17 +127,17 @@ TEST(Broadphase, forgets_neither_halfspaces_nor_links) {
     const LinkPoses poses = husky->linkPoses({}, random.pose(3.0));
     const CurveDescription d = randomBezier(random, 5, 4.0);
 
-    Question question;
-    question.per_object = true;
+    Query query;
+    query.per_object = true;
     double lower = INFINITY, upper = INFINITY;
-    const std::vector<Answer> each = ask(scene.snapshot(), poses, d, question, workspace);
+    const std::vector<Answer> each = ask(scene.snapshot(), poses, d, query, workspace);
     EXPECT_EQ(each.size(), 21u + 6u); // six of the Husky's links have geometry
     for (const Answer &a : each) {
       lower = std::min(lower, a.result.lower);
       upper = std::min(upper, a.result.upper);
     }
-    question.per_object = false;
-    const Answer all = askOne(scene, poses, d, question);
+    query.per_object = false;
+    const Answer all = askOne(scene, poses, d, query);
     EXPECT_LE(all.result.lower, upper);
     EXPECT_GE(all.result.upper, lower);
   }
@@ -169,6 +169,6 @@ TEST(Broadphase, objects_at_enormous_distances_are_found) {
         add("o" + std::to_string(k), {shape(ShapeType::SPHERE, {1.0})}, translation(1e200, k, 0)));
   }
   scene.apply(world);
-  const Answer far = askOne(scene, {}, line({0, 0, 0}, {1, 0, 0}), Question());
+  const Answer far = askOne(scene, {}, line({0, 0, 0}, {1, 0, 0}), Query());
   EXPECT_TRUE(far.result.status < 0 || far.result.upper >= 0.9e200) << far.message;
 }

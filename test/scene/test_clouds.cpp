@@ -28,7 +28,7 @@ ShapeDescription octree(const OctreeData &data) {
 }
 
 std::string refusal(const ShapeDescription &shape, const ResourceOptions &options = {}) {
-  return reasonOf([&] { makeGeometry(shape, options); });
+  return errorOf([&] { makeGeometry(shape, options); });
 }
 
 /* A tree with n cells of 1/8 m measured as occupied and as many as free, anywhere within 2 m of the origin. */
@@ -119,7 +119,7 @@ TEST(Clouds, are_as_far_away_as_their_nearest_point) {
     ASSERT_TRUE(apart.apply(change(alone)).empty());
     for (int k = 0; k < 20; ++k) {
       const CurveDescription curve = randomBezier(random, 4, 2.0);
-      expectSame(askOne(together, {}, curve, Question()), askOne(apart, {}, curve, Question()));
+      expectSame(askOne(together, {}, curve, Query()), askOne(apart, {}, curve, Query()));
     }
   }
 }
@@ -151,7 +151,7 @@ TEST(Octrees, are_as_far_away_as_their_nearest_occupied_cell) {
     ASSERT_TRUE(together.apply(change({add("map", {octree(serialised(tree, binary))})})).empty());
     for (int k = 0; k < 15; ++k) {
       const CurveDescription curve = randomBezier(random, 4, 3.0);
-      expectSame(askOne(together, {}, curve, Question()), askOne(apart, {}, curve, Question()));
+      expectSame(askOne(together, {}, curve, Query()), askOne(apart, {}, curve, Query()));
     }
   }
 }
@@ -164,7 +164,7 @@ TEST(Octrees, of_eight_equal_cells_are_one_cube) {
   tree.updateNode(1.25, 0.25, 0.25, false);
   Scene scene;
   ASSERT_TRUE(scene.apply(change({add("map", {octree(serialised(tree, false))})})).empty());
-  const Answer answer = askOne(scene, {}, line({3, 0.5, 0.5}, {3, 0.6, 0.5}), Question());
+  const Answer answer = askOne(scene, {}, line({3, 0.5, 0.5}, {3, 0.6, 0.5}), Query());
   EXPECT_LE(answer.result.lower, 2.0);
   EXPECT_GE(answer.result.upper, 2.0);
   const cprox_body *body = scene.snapshot()->objects().at("map")->shapes[0].geometry.body.get();
@@ -183,7 +183,7 @@ TEST(Octrees, count_the_unknown_as_they_are_told) {
     Scene scene;
     ASSERT_TRUE(scene.apply(change({add("map", {map})})).empty());
     const auto upper = [&](double x) {
-      return askOne(scene, {}, line({x, 0.1, 0.5}, {x, 0.2, 0.5}), Question()).result.upper;
+      return askOne(scene, {}, line({x, 0.1, 0.5}, {x, 0.2, 0.5}), Query()).result.upper;
     };
     EXPECT_NEAR(upper(0.125), 0.25, 2e-6);                                   // the occupied one
     EXPECT_NEAR(upper(0.6), occupied ? 0.25 : std::hypot(0.35, 0.25), 2e-6); // the unknown between them
@@ -208,7 +208,7 @@ TEST(Octrees, come_from_files_of_octomap) {
   ASSERT_TRUE(of_bt.apply(change({add("map", {octreeFile(bt.path())})})).empty());
   ASSERT_TRUE(of_ot.apply(change({add("map", {octreeFile(ot.path())})})).empty());
   const CurveDescription curve = randomBezier(random, 4, 3.0);
-  expectSame(askOne(of_bt, {}, curve, Question()), askOne(of_ot, {}, curve, Question()));
+  expectSame(askOne(of_bt, {}, curve, Query()), askOne(of_ot, {}, curve, Query()));
 }
 
 /* Every shorter length of a file is refused in one line that names it; so is every header that is none. */

@@ -6,7 +6,7 @@ using namespace curve_proximity;
 using namespace curve_proximity::test;
 
 TEST(CoreHpp, a_failure_is_an_error_with_the_cores_sentence) {
-  const std::string reason = reasonOf([] { makeSphere(-1.0); });
+  const std::string reason = errorOf([] { makeSphere(-1.0); });
   EXPECT_FALSE(reason.empty());
   expectContains(reason, "radius");
 }
@@ -34,8 +34,8 @@ TEST(CoreHpp, quaternions_need_no_norm_but_not_0) {
   EXPECT_NEAR(tiny.linear()(1, 0), 1.0, 1e-15); // a quarter turn about z
   const Eigen::Isometry3d huge = toIsometry({{0, 0, 0}, {1e300, 0, 0, 1e300}});
   EXPECT_NEAR(huge.linear()(1, 0), 1.0, 1e-15);
-  expectContains(reasonOf([] { toIsometry({{0, 0, 0}, {0, 0, 0, 0}}); }), "norm is 0");
-  expectContains(reasonOf([] { toIsometry({{0, 0, 0}, {0, NAN, 0, 1}}); }), "not finite");
+  expectContains(errorOf([] { toIsometry({{0, 0, 0}, {0, 0, 0, 0}}); }), "norm is 0");
+  expectContains(errorOf([] { toIsometry({{0, 0, 0}, {0, NAN, 0, 1}}); }), "not finite");
 }
 
 TEST(CoreHpp, a_compound_keeps_its_parts_alive) {
@@ -45,10 +45,10 @@ TEST(CoreHpp, a_compound_keeps_its_parts_alive) {
     compound = makeCompound({ball, ball}, {translation(-2, 0, 0), translation(2, 0, 0)});
   }
   EXPECT_NEAR(cprox_body_nearest(compound.get(), {2.0, 0.0, 1.5}, nullptr), 1.0, 1e-14);
-  expectContains(reasonOf([] { makeCompound({makeSphere(1.0)}, {}); }), "as many poses");
+  expectContains(errorOf([] { makeCompound({makeSphere(1.0)}, {}); }), "as many poses");
 }
 
-TEST(CoreHpp, the_verbs_answer_with_eigen_in_and_out) {
+TEST(CoreHpp, queries_answer_with_eigen_in_and_out) {
   Workspace workspace;
   const cprox_options options = cprox_options_default();
   Eigen::Matrix3Xd points(3, 3);
@@ -61,7 +61,7 @@ TEST(CoreHpp, the_verbs_answer_with_eigen_in_and_out) {
   EXPECT_EQ(r.status, CPROX_OK);
   EXPECT_LE(r.lower, 1.0);
   EXPECT_GE(r.upper, 1.0);
-  EXPECT_NEAR((toEigen(r.on_mover) - Eigen::Vector3d(0, 1.5, 0)).norm(), 0.0, 1e-2);
+  EXPECT_NEAR((toEigen(r.witness_mover) - Eigen::Vector3d(0, 1.5, 0)).norm(), 0.0, 1e-2);
   EXPECT_EQ(tolerance(along(curve), at(box), 0.99, options, workspace).verdict, CPROX_YES);
   EXPECT_EQ(tolerance(along(curve, 0.1), at(box), 0.99, options, workspace).verdict, CPROX_NO);
   EXPECT_EQ(collision(along(curve), at(box, translation(0, 1.25, 0)), options, workspace).verdict, CPROX_YES);
@@ -90,13 +90,13 @@ TEST(CoreHpp, a_spline_is_the_same_as_its_only_span) {
   }
 }
 
-TEST(CoreHpp, a_refused_question_throws_and_the_next_is_answered) {
+TEST(CoreHpp, a_refused_query_throws_and_the_next_is_answered) {
   Workspace workspace;
   const BodyHandle box = makeBox({1.0, 1.0, 1.0});
   const CurveHandle curve = makeBezier(Eigen::Matrix3Xd::Random(3, 4) + Eigen::Matrix3Xd::Constant(3, 4, 5.0));
   cprox_options options = cprox_options_default();
   options.epsilon = NAN;
-  expectContains(reasonOf([&] { distance(along(curve), at(box), options, workspace); }), "epsilon");
+  expectContains(errorOf([&] { distance(along(curve), at(box), options, workspace); }), "epsilon");
   EXPECT_GT(distance(along(curve), at(box), cprox_options_default(), workspace).lower, 0.0);
 }
 
@@ -150,12 +150,12 @@ TEST(CoreHpp, curves_of_functions_keep_them_and_say_what_went_wrong) {
   RectifiableCurve wrong;
   wrong.point = [](double t) -> Eigen::Vector3d { return t < 0.5 ? Eigen::Vector3d(t, 0, 0) : throw Error("no"); };
   wrong.length = [](double a, double b) { return b - a; };
-  expectContains(reasonOf([&] { makeRectifiable(wrong, 0.0, 1.0); }), "at t = 0.5 the curve's point is (nan");
+  expectContains(errorOf([&] { makeRectifiable(wrong, 0.0, 1.0); }), "at t = 0.5 the curve's point is (nan");
 
   SmoothCurve thrower;
   thrower.evaluate = [](double) -> std::array<Eigen::Vector3d, 3> { throw Error("mine"); };
   thrower.sixth = [](double, double) { return 0.0; };
-  EXPECT_EQ(reasonOf([&] { makeSmooth(thrower, 0.0, 1.0); }), "mine");
+  EXPECT_EQ(errorOf([&] { makeSmooth(thrower, 0.0, 1.0); }), "mine");
 }
 
 TEST(CoreHpp, involutes_and_pythagorean_curves_are_made) {
@@ -168,12 +168,12 @@ TEST(CoreHpp, involutes_and_pythagorean_curves_are_made) {
   const CurveHandle cubic = makePythagoreanHodograph({0, 0, 0}, {{1, 0, 0, 0}, {1, 0, 0, 1}});
   ASSERT_EQ(cprox_curve_evaluate(cubic.get(), 1.0, nullptr, &x, nullptr, nullptr), CPROX_OK);
   EXPECT_NEAR((toEigen(x) - Eigen::Vector3d(2.0 / 3.0, 1, 0)).norm(), 0.0, 1e-15);
-  expectContains(reasonOf([&] { makePiecewise({cubic, cubic}, {0.0, 1.0}); }), "n + 1");
+  expectContains(errorOf([&] { makePiecewise({cubic, cubic}, {0.0, 1.0}); }), "n + 1");
 }
 
 TEST(CoreHpp, a_set_answers_as_its_targets_do) {
   const BodyHandle ball = makeSphere(0.5), floor = makeHalfspace({0, 0, 1}, 3.0);
-  std::vector<cprox_target> targets{at(floor)};
+  std::vector<cprox_obstacle> targets{at(floor)};
   for (int i = 0; i < 40; ++i) targets.push_back(at(ball, Eigen::Isometry3d(Eigen::Translation3d(i, 0.1 * i, 2.0))));
   const Set set(targets);
   EXPECT_EQ(set.size(), 41u);
@@ -190,6 +190,6 @@ TEST(CoreHpp, a_set_answers_as_its_targets_do) {
   const std::vector<cprox_result> nearest = set.nearest(along(curve), 3, options, workspace);
   ASSERT_EQ(nearest.size(), 3u);
   EXPECT_LE(nearest[0].upper, nearest[2].upper);
-  EXPECT_EQ(nearest[0].target_index, all.target_index);
-  expectContains(reasonOf([&] { Set({cprox_target{}}); }), "target 0");
+  EXPECT_EQ(nearest[0].obstacle_index, all.obstacle_index);
+  expectContains(errorOf([&] { Set({cprox_obstacle{}}); }), "target 0");
 }

@@ -15,7 +15,7 @@ namespace {
 const std::string PANDA = TEST_DATA_DIR "/robots/panda";
 
 std::string refusal(const ShapeDescription &shape, const ResourceOptions &options = {}) {
-  return reasonOf([&] { makeGeometry(shape, options); });
+  return errorOf([&] { makeGeometry(shape, options); });
 }
 
 ShapeDescription meshFile(const std::string &resource) {

@@ -18,12 +18,12 @@
 namespace curve_proximity {
 namespace {
 
+using test::errorOf;
 using test::expectContains;
 using test::MeshFolder;
-using test::reasonOf;
 
 std::string why(const std::string &file) {
-  return reasonOf([&] { readMesh(file); });
+  return errorOf([&] { readMesh(file); });
 }
 
 void expectSame(const std::string &file) {
@@ -163,7 +163,7 @@ TEST(MeshProcess, whatever_the_program_does_is_an_error) {
   const auto by = [&](const std::string &script) {
     const std::string program = folder.write("reader", "#!/bin/sh\n" + script + "\n");
     chmod(program.c_str(), 0755);
-    return reasonOf([&] { readMeshBy(program, file); });
+    return errorOf([&] { readMeshBy(program, file); });
   };
   const std::size_t descriptors = openDescriptors();
   expectContains(by("kill -SEGV $$"), "crashes on it (Segmentation fault)");
@@ -179,7 +179,7 @@ TEST(MeshProcess, whatever_the_program_does_is_an_error) {
   expectContains(by(R"(printf 'm\377\377\377\377\377\377\377\377'; sleep 1)"), "without an answer");
   expectContains(by(R"(printf 'm\021\0\0\0\0\0\0\0\377\377\377\377\377\377\377\377\377\377\377\377\377\377\377\377.')"),
                  "without");
-  expectContains(reasonOf([&] { readMeshBy("/nowhere/reader", file); }), "'/nowhere/reader'");
+  expectContains(errorOf([&] { readMeshBy("/nowhere/reader", file); }), "'/nowhere/reader'");
   expectNothingLeft(descriptors);
 }
 
@@ -195,7 +195,7 @@ TEST(MeshProcess, one_that_says_nothing_is_ended) {
   close(ends[1]);
   const auto begin = std::chrono::steady_clock::now();
   const mesh_reader::Limits limits{1 << 20, 1, 0};
-  expectContains(reasonOf([&] { hearMesh(ends[0], id, limits); }), "it takes more than 0 s");
+  expectContains(errorOf([&] { hearMesh(ends[0], id, limits); }), "it takes more than 0 s");
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
   close(ends[0]);
   expectNothingLeft(descriptors);

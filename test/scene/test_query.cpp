@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Questions and answers: what is asked about, what comes back, what is refused. */
+/* Queries and answers: what is asked about, what comes back, what is refused. */
 #include <array>
 #include <cmath>
 #include <functional>
@@ -13,11 +13,11 @@ using namespace curve_proximity::test;
 
 namespace {
 
-Question questionOf(Verb verb, double delta = 0.0) {
-  Question question;
-  question.verb = verb;
-  question.delta = delta;
-  return question;
+Query queryOf(QueryType query_type, double delta = 0.0) {
+  Query query;
+  query.query_type = query_type;
+  query.delta = delta;
+  return query;
 }
 
 /* A ball of 0.5 at x = 3, a box of 1 at x = -4, both at y = z = 0. */
@@ -31,7 +31,7 @@ void fill(Scene &scene) {
 const CurveDescription UPRIGHT = line({0, 0, -1}, {0, 0, 1});
 
 std::string refusal(const CurveDescription &curve) {
-  return reasonOf([&] { compile(curve); });
+  return errorOf([&] { compile(curve); });
 }
 
 } // namespace
@@ -39,7 +39,7 @@ std::string refusal(const CurveDescription &curve) {
 TEST(Ask, the_nearest_object_is_named_with_both_points_and_the_parameter) {
   Scene scene;
   fill(scene);
-  const Answer answer = askOne(scene, {}, UPRIGHT, Question());
+  const Answer answer = askOne(scene, {}, UPRIGHT, Query());
   EXPECT_EQ(answer.status, "ok");
   EXPECT_EQ(answer.id, "line");
   EXPECT_EQ(answer.a, "line");
@@ -50,9 +50,9 @@ TEST(Ask, the_nearest_object_is_named_with_both_points_and_the_parameter) {
   EXPECT_LE(answer.result.lower, 2.5);
   EXPECT_GE(answer.result.upper, 2.5);
   EXPECT_LE(answer.result.upper - answer.result.lower, 1e-6);
-  EXPECT_EQ(answer.result.target_index, 0);
-  EXPECT_NEAR(answer.result.on_target.x, 2.5, 1e-5);
-  EXPECT_NEAR(answer.result.on_mover.x, 0.0, 1e-12);
+  EXPECT_EQ(answer.result.obstacle_index, 0);
+  EXPECT_NEAR(answer.result.witness_obstacle.x, 2.5, 1e-5);
+  EXPECT_NEAR(answer.result.witness_mover.x, 0.0, 1e-12);
   EXPECT_NEAR(answer.result.t, 0.5, 1e-2);
   EXPECT_NEAR(answer.result.normal.x, -1.0, 1e-5);
   EXPECT_GT(answer.microseconds, 0.0);
@@ -63,15 +63,15 @@ TEST(Ask, per_object_answers_for_each_by_its_nearest_shape) {
   fill(scene);
   scene.apply(
       change({operation(Operation::Kind::APPEND, "crate", {shape(ShapeType::SPHERE, {0.25}, translation(2, 0, 0))})}));
-  Question question;
-  question.per_object = true;
+  Query query;
+  query.per_object = true;
   Workspace workspace;
-  const std::vector<Answer> answers = ask(scene.snapshot(), {}, UPRIGHT, question, workspace);
+  const std::vector<Answer> answers = ask(scene.snapshot(), {}, UPRIGHT, query, workspace);
   ASSERT_EQ(answers.size(), 2u);
   EXPECT_EQ(answers[0].b, "ball");
   EXPECT_NEAR(answers[0].result.upper, 2.5, 1e-6);
   EXPECT_EQ(answers[1].b, "crate");
-  EXPECT_EQ(answers[1].result.target_index, 1); // the ball at x = -2
+  EXPECT_EQ(answers[1].result.obstacle_index, 1); // the ball at x = -2
   EXPECT_NEAR(answers[1].result.upper, 1.75, 1e-6);
 }
 
@@ -79,40 +79,40 @@ TEST(Ask, named_objects_alone_are_asked_about) {
   Scene scene(dataRobot("husky"));
   fill(scene);
   const LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
-  Question question;
-  EXPECT_EQ(askOne(scene, poses, UPRIGHT, question).b, "base_link");
-  question.objects = {"crate"};
-  EXPECT_EQ(askOne(scene, poses, UPRIGHT, question).b, "crate");
-  question.links = {"front_left_wheel_link"};
-  const Answer wheel = askOne(scene, poses, UPRIGHT, question);
+  Query query;
+  EXPECT_EQ(askOne(scene, poses, UPRIGHT, query).b, "base_link");
+  query.objects = {"crate"};
+  EXPECT_EQ(askOne(scene, poses, UPRIGHT, query).b, "crate");
+  query.links = {"front_left_wheel_link"};
+  const Answer wheel = askOne(scene, poses, UPRIGHT, query);
   EXPECT_EQ(wheel.b, "front_left_wheel_link");
   EXPECT_TRUE(wheel.b_is_link);
-  question.objects = {"crate", "table"};
-  const Answer refused = askOne(scene, poses, UPRIGHT, question);
+  query.objects = {"crate", "table"};
+  const Answer refused = askOne(scene, poses, UPRIGHT, query);
   EXPECT_EQ(refused.status, "invalid");
   expectContains(refused.message, "'table'");
-  question.objects = {};
-  question.links = {"tail"};
-  expectContains(askOne(scene, poses, UPRIGHT, question).message, "no link 'tail'");
-  question.links = {"base_footprint"};
-  expectContains(askOne(scene, poses, UPRIGHT, question).message, "no collision geometry");
+  query.objects = {};
+  query.links = {"tail"};
+  expectContains(askOne(scene, poses, UPRIGHT, query).message, "no link 'tail'");
+  query.links = {"base_footprint"};
+  expectContains(askOne(scene, poses, UPRIGHT, query).message, "no collision geometry");
 }
 
 TEST(Ask, a_link_whose_pose_is_unknown_never_reads_as_free) {
   Scene scene(dataRobot("husky"));
   LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
   poses.erase("front_left_wheel_link");
-  const Answer missing = askOne(scene, poses, UPRIGHT, Question());
+  const Answer missing = askOne(scene, poses, UPRIGHT, Query());
   EXPECT_EQ(missing.status, "invalid");
   expectContains(missing.message, "front_left_wheel_link");
-  Question question;
-  question.links = {"base_link"};
-  EXPECT_EQ(askOne(scene, poses, UPRIGHT, question).status, "ok");
+  Query query;
+  query.links = {"base_link"};
+  EXPECT_EQ(askOne(scene, poses, UPRIGHT, query).status, "ok");
   poses["base_link"].translation().x() = NAN;
-  expectContains(askOne(scene, poses, UPRIGHT, question).message, "base_link");
+  expectContains(askOne(scene, poses, UPRIGHT, query).message, "base_link");
   poses = {{"tail", Eigen::Isometry3d::Identity()}};
-  expectContains(askOne(scene, poses, UPRIGHT, Question()).message, "no link 'tail'");
-  expectContains(askOne(Scene(), poses, UPRIGHT, Question()).message, "no robot");
+  expectContains(askOne(scene, poses, UPRIGHT, Query()).message, "no link 'tail'");
+  expectContains(askOne(Scene(), poses, UPRIGHT, Query()).message, "no robot");
 }
 
 TEST(Ask, meshes_say_which_model_answered) {
@@ -120,15 +120,15 @@ TEST(Ask, meshes_say_which_model_answered) {
   const LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
   const char *words[] = {"bounding ball", "convex hull", "mesh"};
   double above = 0.0;
-  for (const cprox_rung rung : {CPROX_RUNG_SPHERE, CPROX_RUNG_HULL, CPROX_RUNG_MESH}) {
-    Question question;
-    question.options.max_rung = rung;
-    const Answer answer = askOne(scene, poses, line({1, 0, 0}, {1, 0, 1}), question);
+  for (const cprox_lod lod : {CPROX_LOD_SPHERE, CPROX_LOD_HULL, CPROX_LOD_MESH}) {
+    Query query;
+    query.options.max_lod = lod;
+    const Answer answer = askOne(scene, poses, line({1, 0, 0}, {1, 0, 1}), query);
     EXPECT_EQ(answer.status, "ok");
-    EXPECT_EQ(answer.by_hull, rung != CPROX_RUNG_MESH);
+    EXPECT_EQ(answer.by_hull, lod != CPROX_LOD_MESH);
     EXPECT_TRUE(answer.b_is_link);
-    EXPECT_EQ(answer.result.rung, rung);
-    expectContains(answer.message, words[rung - CPROX_RUNG_SPHERE]);
+    EXPECT_EQ(answer.result.lod, lod);
+    expectContains(answer.message, words[lod - CPROX_LOD_SPHERE]);
     EXPECT_GE(answer.result.upper, above); // a finer model is contained in the coarser ones
     above = answer.result.lower;
   }
@@ -144,18 +144,18 @@ TEST(Ask, a_curve_in_the_hull_of_a_mesh_is_clear_of_the_mesh) {
   Scene scene;
   ASSERT_TRUE(scene.apply(change({add("bracket", {bracket})})).empty());
   const CurveDescription between = line({0, -3, 0.6}, {0, 3, 0.6});
-  Question question;
-  question.verb = Verb::COLLISION;
-  Answer answer = askOne(scene, {}, between, question);
+  Query query;
+  query.query_type = QueryType::COLLISION;
+  Answer answer = askOne(scene, {}, between, query);
   EXPECT_EQ(answer.result.verdict, CPROX_NO);
-  EXPECT_EQ(answer.result.rung, CPROX_RUNG_MESH);
-  question.options.max_rung = CPROX_RUNG_HULL;
-  answer = askOne(scene, {}, between, question);
+  EXPECT_EQ(answer.result.lod, CPROX_LOD_MESH);
+  query.options.max_lod = CPROX_LOD_HULL;
+  answer = askOne(scene, {}, between, query);
   EXPECT_EQ(answer.result.verdict, CPROX_YES);
-  EXPECT_EQ(answer.result.rung, CPROX_RUNG_HULL);
+  EXPECT_EQ(answer.result.lod, CPROX_LOD_HULL);
 
-  question = Question();
-  answer = askOne(scene, {}, between, question);
+  query = Query();
+  answer = askOne(scene, {}, between, query);
   EXPECT_LE(answer.result.lower, 0.6);
   EXPECT_GE(answer.result.upper, 0.6);
   EXPECT_LE(answer.result.upper - answer.result.lower, 1.01e-6);
@@ -177,7 +177,7 @@ TEST(Ask, the_inside_of_a_mesh_counts_where_it_is_asked_for_and_closed) {
     shape.triangles.conservativeResize(3, triangles);
     Scene scene;
     EXPECT_TRUE(scene.apply(change({add("cube", {shape})})).empty());
-    return askOne(scene, {}, inside, Question());
+    return askOne(scene, {}, inside, Query());
   };
   EXPECT_NEAR(ask(false, 12).result.upper, 0.9, 1e-6);
   expectContains(ask(false, 12).message, "surface alone");
@@ -190,19 +190,19 @@ TEST(Ask, the_inside_of_a_mesh_counts_where_it_is_asked_for_and_closed) {
 TEST(Ask, with_nothing_to_measure_everything_is_far) {
   const Scene scene;
   for (const bool per_object : {false, true}) {
-    for (const Verb verb : {Verb::DISTANCE, Verb::TOLERANCE, Verb::COLLISION}) {
-      Question question = questionOf(verb, verb == Verb::TOLERANCE ? 1.0 : 0.0);
-      question.per_object = per_object;
-      const Answer answer = askOne(scene, {}, UPRIGHT, question);
+    for (const QueryType query_type : {QueryType::DISTANCE, QueryType::TOLERANCE, QueryType::COLLISION}) {
+      Query query = queryOf(query_type, query_type == QueryType::TOLERANCE ? 1.0 : 0.0);
+      query.per_object = per_object;
+      const Answer answer = askOne(scene, {}, UPRIGHT, query);
       EXPECT_EQ(answer.status, "ok");
       EXPECT_EQ(answer.b, "");
       EXPECT_EQ(answer.result.lower, INFINITY);
       EXPECT_EQ(answer.result.upper, INFINITY);
-      EXPECT_EQ(answer.result.target_index, -1);
-      if (verb == Verb::TOLERANCE) {
+      EXPECT_EQ(answer.result.obstacle_index, -1);
+      if (query_type == QueryType::TOLERANCE) {
         EXPECT_EQ(answer.result.verdict, CPROX_YES);
       }
-      if (verb == Verb::COLLISION) {
+      if (query_type == QueryType::COLLISION) {
         EXPECT_EQ(answer.result.verdict, CPROX_NO);
       }
     }
@@ -212,29 +212,29 @@ TEST(Ask, with_nothing_to_measure_everything_is_far) {
 TEST(Ask, verdicts_follow_from_the_distance) {
   Scene scene;
   fill(scene);
-  EXPECT_EQ(askOne(scene, {}, UPRIGHT, questionOf(Verb::TOLERANCE, 2.49)).result.verdict, CPROX_YES);
-  EXPECT_EQ(askOne(scene, {}, UPRIGHT, questionOf(Verb::TOLERANCE, 2.51)).result.verdict, CPROX_NO);
-  EXPECT_EQ(askOne(scene, {}, UPRIGHT, questionOf(Verb::COLLISION)).result.verdict, CPROX_NO);
-  const Answer hit = askOne(scene, {}, line({0, 0, 0}, {9, 0, 0}), questionOf(Verb::COLLISION));
+  EXPECT_EQ(askOne(scene, {}, UPRIGHT, queryOf(QueryType::TOLERANCE, 2.49)).result.verdict, CPROX_YES);
+  EXPECT_EQ(askOne(scene, {}, UPRIGHT, queryOf(QueryType::TOLERANCE, 2.51)).result.verdict, CPROX_NO);
+  EXPECT_EQ(askOne(scene, {}, UPRIGHT, queryOf(QueryType::COLLISION)).result.verdict, CPROX_NO);
+  const Answer hit = askOne(scene, {}, line({0, 0, 0}, {9, 0, 0}), queryOf(QueryType::COLLISION));
   EXPECT_EQ(hit.result.verdict, CPROX_YES);
   EXPECT_EQ(hit.b, "ball");
   EXPECT_EQ(hit.result.upper, 0.0);
   CurveDescription tube = UPRIGHT;
   tube.radius = 2.6;
-  EXPECT_EQ(askOne(scene, {}, tube, questionOf(Verb::COLLISION)).result.verdict, CPROX_YES);
+  EXPECT_EQ(askOne(scene, {}, tube, queryOf(QueryType::COLLISION)).result.verdict, CPROX_YES);
 }
 
 TEST(Ask, a_halfspace_is_seen_from_everywhere) {
   Scene scene;
   fill(scene);
   scene.apply(change({add("floor", {shape(ShapeType::HALFSPACE, {0, 0, 1, 2})})}));
-  const Answer answer = askOne(scene, {}, UPRIGHT, Question());
+  const Answer answer = askOne(scene, {}, UPRIGHT, Query());
   EXPECT_EQ(answer.b, "floor"); // z <= -2, 1 below the curve's end
   EXPECT_LE(answer.result.lower, 1.0);
   EXPECT_GE(answer.result.upper, 1.0);
 }
 
-TEST(Ask, bad_options_are_answers_and_the_next_question_is_answered) {
+TEST(Ask, bad_options_are_answers_and_the_next_query_is_answered) {
   Scene scene;
   fill(scene);
   std::vector<Operation> many;
@@ -243,26 +243,26 @@ TEST(Ask, bad_options_are_answers_and_the_next_question_is_answered) {
   Workspace workspace;
   for (const bool crowded : {false, true}) {
     if (crowded) scene.apply(change(many));
-    for (const Verb verb : {Verb::DISTANCE, Verb::TOLERANCE, Verb::COLLISION}) {
-      const auto expectRefused = [&](const Question &question, const std::string &word) {
-        const std::vector<Answer> answers = ask(scene.snapshot(), {}, UPRIGHT, question, workspace);
+    for (const QueryType query_type : {QueryType::DISTANCE, QueryType::TOLERANCE, QueryType::COLLISION}) {
+      const auto expectRefused = [&](const Query &query, const std::string &word) {
+        const std::vector<Answer> answers = ask(scene.snapshot(), {}, UPRIGHT, query, workspace);
         ASSERT_EQ(answers.size(), 1u);
         EXPECT_EQ(answers[0].status, "invalid");
         EXPECT_LT(answers[0].result.status, 0);
         expectContains(answers[0].message, word);
       };
-      Question question = questionOf(verb);
-      question.options.epsilon = NAN;
-      expectRefused(question, "epsilon");
-      question.options.epsilon = -1e-3;
-      expectRefused(question, "epsilon");
-      question = questionOf(verb);
-      question.options.max_nodes = 0;
-      expectRefused(question, "nodes");
-      if (verb == Verb::TOLERANCE) {
-        for (const double delta : {-0.1, static_cast<double>(NAN)}) expectRefused(questionOf(verb, delta), "delta");
+      Query query = queryOf(query_type);
+      query.options.epsilon = NAN;
+      expectRefused(query, "epsilon");
+      query.options.epsilon = -1e-3;
+      expectRefused(query, "epsilon");
+      query = queryOf(query_type);
+      query.options.max_nodes = 0;
+      expectRefused(query, "nodes");
+      if (query_type == QueryType::TOLERANCE) {
+        for (const double delta : {-0.1, static_cast<double>(NAN)}) expectRefused(queryOf(query_type, delta), "delta");
       }
-      EXPECT_EQ(ask(scene.snapshot(), {}, UPRIGHT, questionOf(verb), workspace).at(0).status, "ok");
+      EXPECT_EQ(ask(scene.snapshot(), {}, UPRIGHT, queryOf(query_type), workspace).at(0).status, "ok");
     }
   }
 }
@@ -273,10 +273,10 @@ TEST(Ask, a_small_budget_still_gives_a_true_interval) {
   Random random(61);
   for (int i = 0; i < 200; ++i) {
     const CurveDescription curve = randomBezier(random, 12, 6.0);
-    Question question;
-    const Answer full = askOne(scene, {}, curve, question);
-    question.options.max_nodes = 1;
-    const Answer poor = askOne(scene, {}, curve, question);
+    Query query;
+    const Answer full = askOne(scene, {}, curve, query);
+    query.options.max_nodes = 1;
+    const Answer poor = askOne(scene, {}, curve, query);
     EXPECT_LE(poor.result.lower, full.result.upper);
     EXPECT_GE(poor.result.upper, full.result.lower);
     if (poor.status != "ok") {
@@ -288,11 +288,11 @@ TEST(Ask, a_small_budget_still_gives_a_true_interval) {
 TEST(Ask, the_stop_function_ends_a_query) {
   Scene scene;
   fill(scene);
-  Question question;
-  question.options.epsilon = 0.0;
-  question.options.stop = [](void *) { return true; };
+  Query query;
+  query.options.epsilon = 0.0;
+  query.options.stop = [](void *) { return true; };
   Random random(62);
-  const Answer answer = askOne(scene, {}, randomBezier(random, 20, 6.0), question);
+  const Answer answer = askOne(scene, {}, randomBezier(random, 20, 6.0), query);
   EXPECT_GE(answer.result.status, 0);
   EXPECT_LE(answer.result.lower, answer.result.upper);
 }
@@ -336,7 +336,7 @@ TEST(Compile, a_bad_curve_is_an_answer) {
   Scene scene;
   CurveDescription curve = UPRIGHT;
   curve.basis = "fourier";
-  const Answer answer = askOne(scene, {}, curve, Question());
+  const Answer answer = askOne(scene, {}, curve, Query());
   EXPECT_EQ(answer.status, "invalid");
   EXPECT_EQ(answer.id, "line");
   EXPECT_EQ(answer.message, "basis 'fourier' is not available");
@@ -355,7 +355,7 @@ TEST(Compile, every_basis_describes_the_same_curve) {
     d.basis = basis;
     d.knots = knots;
     d.points = Eigen::Map<const Eigen::Matrix3Xd>(points.begin(), 3, static_cast<Eigen::Index>(points.size() / 3));
-    const Answer answer = askOne(scene, {}, d, Question());
+    const Answer answer = askOne(scene, {}, d, Query());
     EXPECT_EQ(answer.status, "ok") << basis << ": " << answer.message;
     EXPECT_LE(answer.result.lower, distance + 1e-13) << basis;
     EXPECT_GE(answer.result.upper, distance - 1e-13) << basis;
@@ -469,26 +469,26 @@ TEST(Compile, a_spline_of_100000_points_is_compiled_and_answered) {
   d.t1 = n - 3;
   Scene scene;
   fill(scene);
-  const Answer answer = askOne(scene, {}, d, Question());
+  const Answer answer = askOne(scene, {}, d, Query());
   EXPECT_EQ(answer.status, "ok");
   EXPECT_EQ(answer.b, "ball");
 }
 
 /* ---- what does not apply --------------------------------------------------------------------------------------------- */
 
-TEST(Options, what_does_not_apply_to_a_question_is_refused_and_named) {
+TEST(Options, what_does_not_apply_to_a_query_is_refused_and_named) {
   Scene scene;
   fill(scene);
   const CurveDescription curve = line({-3, 0, 3}, {3, 0.2, 3});
   const std::unique_ptr<cprox_certificate, void (*)(cprox_certificate *)> proof(cprox_certificate_create(),
                                                                                 cprox_certificate_free);
-  for (const Verb verb : {Verb::DISTANCE, Verb::TOLERANCE, Verb::COLLISION}) {
-    const auto expect = [&](const char *word, const std::function<void(Question &)> &set, bool applies) {
-      Question question;
-      question.verb = verb;
-      set(question);
+  for (const QueryType query_type : {QueryType::DISTANCE, QueryType::TOLERANCE, QueryType::COLLISION}) {
+    const auto expect = [&](const char *word, const std::function<void(Query &)> &set, bool applies) {
+      Query query;
+      query.query_type = query_type;
+      set(query);
       Workspace workspace;
-      const Answer answer = ask(scene.snapshot(), {}, curve, question, workspace).front();
+      const Answer answer = ask(scene.snapshot(), {}, curve, query, workspace).front();
       EXPECT_EQ(answer.result.status >= 0, applies) << word << ": " << answer.message;
       if (!applies) {
         EXPECT_NE(answer.message.find(word), std::string::npos) << answer.message;
@@ -496,23 +496,23 @@ TEST(Options, what_does_not_apply_to_a_question_is_refused_and_named) {
       }
     };
     expect(
-        "delta", [](Question &q) { q.delta = 0.1; }, verb == Verb::TOLERANCE);
+        "delta", [](Query &q) { q.delta = 0.1; }, query_type == QueryType::TOLERANCE);
     expect(
-        "signed_distance", [](Question &q) { q.options.signed_distance = true; }, verb == Verb::DISTANCE);
+        "signed_distance", [](Query &q) { q.options.signed_distance = true; }, query_type == QueryType::DISTANCE);
     expect(
-        "certificate", [&](Question &q) { q.options.certificate = proof.get(); }, true);
+        "certificate", [&](Query &q) { q.options.certificate = proof.get(); }, true);
     expect(
         "certificate",
-        [&](Question &q) {
+        [&](Query &q) {
           q.options.certificate = proof.get();
           q.per_object = true;
         },
         false);
     expect(
-        "relative_epsilon", [](Question &q) { q.options.relative_epsilon = 0.1; }, true);
+        "relative_epsilon", [](Query &q) { q.options.relative_epsilon = 0.1; }, true);
     expect(
-        "max_rung", [](Question &q) { q.options.max_rung = CPROX_RUNG_SPHERE; }, true);
+        "max_lod", [](Query &q) { q.options.max_lod = CPROX_LOD_SPHERE; }, true);
     expect(
-        "per_object", [](Question &q) { q.per_object = true; }, true);
+        "per_object", [](Query &q) { q.per_object = true; }, true);
   }
 }

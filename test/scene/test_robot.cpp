@@ -103,7 +103,7 @@ TEST(Robots, fingers_follow_each_other) {
   // A value for the follower beside its leader's is not looked at; without, nobody knows what is meant.
   const LinkPoses both = panda->linkPoses({{"panda_finger_joint1", 0.03}, {"panda_finger_joint2", 0.01}});
   EXPECT_EQ(apart(both.at("panda_rightfinger"), poses.at("panda_rightfinger")), 0.0);
-  expectContains(reasonOf([&] { panda->linkPoses({{"panda_finger_joint2", 0.01}}); }), "panda_finger_joint1");
+  expectContains(errorOf([&] { panda->linkPoses({{"panda_finger_joint2", 0.01}}); }), "panda_finger_joint1");
 }
 
 TEST(Joints, revolute_and_continuous_turn_about_their_axis) {
@@ -141,7 +141,7 @@ TEST(Joints, planar_ones_move_in_the_plane_across_their_axis) {
   EXPECT_NEAR(tip.translation().dot(Eigen::Vector3d(1, 2, 3)), 0.0, 1e-14);
   EXPECT_NEAR(tip.translation().norm(), std::sqrt(5.0), 1e-14);
   EXPECT_NEAR((tip.linear() * Eigen::Vector3d(1, 2, 3) - Eigen::Vector3d(1, 2, 3)).norm(), 0.0, 1e-14);
-  expectContains(reasonOf([&] { flat->linkPoses({{"j", 1.0}}); }), "j/theta");
+  expectContains(errorOf([&] { flat->linkPoses({{"j", 1.0}}); }), "j/theta");
 }
 
 TEST(Joints, floating_ones_go_anywhere) {
@@ -152,7 +152,7 @@ TEST(Joints, floating_ones_go_anywhere) {
   EXPECT_LE(apart(poses.at("tip"), translation(1, 2, 3) * turned(2 * std::atan2(0.6, 0.8), Eigen::Vector3d::UnitZ())),
             1e-15);
   EXPECT_LE(apart(robot->linkPoses({}).at("tip"), Eigen::Isometry3d::Identity()), 0.0);
-  expectContains(reasonOf([&] { robot->linkPoses({{"j/rot_w", 0.0}}); }), "joint 'j': the quaternion's norm is 0");
+  expectContains(errorOf([&] { robot->linkPoses({{"j/rot_w", 0.0}}); }), "joint 'j': the quaternion's norm is 0");
 }
 
 TEST(Joints, what_is_not_named_rests_at_0_or_mid_range) {
@@ -196,6 +196,6 @@ TEST(Joints, a_mimic_tag_on_a_fixed_joint_means_nothing) {
 
 TEST(Joints, unknown_names_and_values_that_are_no_numbers_are_refused) {
   const auto panda = dataRobot("panda");
-  expectContains(reasonOf([&] { panda->linkPoses({{"elbow", 0.0}}); }), "joint 'elbow' is no joint of robot 'panda'");
-  expectContains(reasonOf([&] { panda->linkPoses({{"panda_joint1", NAN}}); }), "panda_joint1");
+  expectContains(errorOf([&] { panda->linkPoses({{"elbow", 0.0}}); }), "joint 'elbow' is no joint of robot 'panda'");
+  expectContains(errorOf([&] { panda->linkPoses({{"panda_joint1", NAN}}); }), "panda_joint1");
 }

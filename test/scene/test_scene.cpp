@@ -17,10 +17,10 @@ const ShapeDescription BALL = shape(ShapeType::SPHERE, {0.5});
 
 /* How far an object is from a point, by a curve that hardly moves. */
 double distanceFrom(const Scene &scene, const Eigen::Vector3d &point, const std::string &object) {
-  Question question;
-  question.objects = {object};
-  question.options.epsilon = 1e-12;
-  const Answer answer = askOne(scene, {}, line(point, point), question);
+  Query query;
+  query.objects = {object};
+  query.options.epsilon = 1e-12;
+  const Answer answer = askOne(scene, {}, line(point, point), query);
   EXPECT_GE(answer.result.status, 0) << answer.message;
   return answer.result.upper;
 }
@@ -135,10 +135,10 @@ TEST(Scene, bad_objects_are_refused_whole_and_by_name) {
   expectContains(refused(scene, add("x", {BOX}, translation(NAN, 0, 0))), "pose is not finite");
   expectContains(refused(scene, add("x", {shape(ShapeType::BOX, {1, 1, 1}, translation(0, INFINITY, 0))})),
                  "pose is not finite");
-  Eigen::Isometry3d mirror = Eigen::Isometry3d::Identity(), stretch = mirror;
+  Eigen::Isometry3d mirror = Eigen::Isometry3d::Identity(), interval = mirror;
   mirror.linear()(0, 0) = -1.0;
-  stretch.linear() *= 1.001;
-  for (const Eigen::Isometry3d &pose : {mirror, stretch}) {
+  interval.linear() *= 1.001;
+  for (const Eigen::Isometry3d &pose : {mirror, interval}) {
     expectContains(refused(scene, add("x", {BOX}, pose)), "no rotation");
   }
   for (const double padding : {-0.1, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
@@ -190,10 +190,10 @@ TEST(Scene, links_are_padded_by_their_own_or_the_default_padding) {
   Scene scene(dataRobot("husky"));
   const LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
   const auto distanceTo = [&](const std::string &link) {
-    Question question;
-    question.links = {link};
-    question.options.epsilon = 1e-12;
-    return askOne(scene, poses, line({0, 0, 3}, {0, 0, 4}), question).result.upper;
+    Query query;
+    query.links = {link};
+    query.options.epsilon = 1e-12;
+    return askOne(scene, poses, line({0, 0, 3}, {0, 0, 4}), query).result.upper;
   };
   const double base = distanceTo("base_link"), wheel = distanceTo("front_left_wheel_link");
   SceneChange paddings;
@@ -251,7 +251,7 @@ TEST(Scene, a_snapshot_stays_as_it_was) {
   const SnapshotPtr old = scene.snapshot();
   apply(scene, {operation(Kind::MOVE, "o", {}, translation(9, 0, 0)), add("p", {BOX})});
   Workspace workspace;
-  const std::vector<Answer> answers = ask(old, {}, line({0, 0, 0}, {0, 0, 0}), Question(), workspace);
+  const std::vector<Answer> answers = ask(old, {}, line({0, 0, 0}, {0, 0, 0}), Query(), workspace);
   EXPECT_NEAR(answers.at(0).result.upper, 1.5, 1e-5);
   EXPECT_EQ(old->objects().size(), 1u);
 }

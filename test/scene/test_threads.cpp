@@ -10,7 +10,7 @@ using namespace curve_proximity::test;
 
 namespace {
 
-/* All objects of generation g stand at distance 1 + g from the line of questions, so that an answer tells of which
+/* All objects of generation g stand at distance 1 + g from the line of queries, so that an answer tells of which
  * snapshot it is. */
 SceneChange generation(int g) {
   SceneChange out;
@@ -40,7 +40,7 @@ TEST(Threads, every_answer_is_of_one_snapshot) {
         // One asks the first snapshot for ever, the others the newest.
         const SnapshotPtr snapshot = i == 0 ? first : scene.snapshot();
         const double expected = static_cast<double>(snapshot->version());
-        const std::vector<Answer> answers = ask(snapshot, {}, LINE, Question(), workspace);
+        const std::vector<Answer> answers = ask(snapshot, {}, LINE, Query(), workspace);
         const cprox_result &r = answers.at(0).result;
         if (r.status < 0 || r.lower > expected || r.upper < expected) ++wrong;
         ++answered;
@@ -75,15 +75,15 @@ TEST(Threads, one_set_of_targets_serves_many_curves_at_once) {
   Scene scene(dataRobot("panda"));
   scene.apply(generation(0));
   const LinkPoses poses = scene.snapshot()->robot()->linkPoses({});
-  const Question question;
-  const Targets targets(scene.snapshot(), poses, question);
+  const Query query;
+  const Targets targets(scene.snapshot(), poses, query);
   Random random(81);
   std::vector<CompiledCurve> curves;
   std::vector<double> expected;
   Workspace workspace;
   for (int i = 0; i < 50; ++i) {
     curves.push_back(compile(randomBezier(random, 6, 2.0)));
-    expected.push_back(ask(targets, curves.back(), question, workspace).at(0).result.upper);
+    expected.push_back(ask(targets, curves.back(), query, workspace).at(0).result.upper);
   }
   std::atomic<int> wrong{0};
   std::vector<std::thread> askers;
@@ -91,7 +91,7 @@ TEST(Threads, one_set_of_targets_serves_many_curves_at_once) {
     askers.emplace_back([&] {
       Workspace mine;
       for (std::size_t k = 0; k < curves.size(); ++k) {
-        if (ask(targets, curves[k], question, mine).at(0).result.upper != expected[k]) ++wrong;
+        if (ask(targets, curves[k], query, mine).at(0).result.upper != expected[k]) ++wrong;
       }
     });
   }

@@ -83,7 +83,7 @@ CPROX_API void cprox_workspace_free(cprox_workspace *workspace);
  *  ("knot 7 is 0.3, below knot 6 at 0.5"). "" where it did, with one exception: a query that was to leave a certificate
  *  and could not says why ("no certificate: target 0 ..."), after its own reason where there is one; its status and
  *  result are those of the same query without a certificate. Valid until the next call with this workspace. */
-CPROX_API const char *cprox_workspace_reason(const cprox_workspace *workspace);
+CPROX_API const char *cprox_workspace_error(const cprox_workspace *workspace);
 
 /** The bytes a workspace holds now. */
 CPROX_API size_t cprox_workspace_bytes(const cprox_workspace *workspace);

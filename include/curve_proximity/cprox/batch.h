@@ -23,7 +23,7 @@ typedef struct cprox_batch cprox_batch;
  *
  *  CPROX_INVALID for a target that is unusable, its number in the reason; CPROX_MEMORY. Cost: about fifty nearest-point
  *  queries for each convex part. */
-CPROX_API cprox_status cprox_batch_create(const cprox_target *targets, size_t n, cprox_workspace *workspace,
+CPROX_API cprox_status cprox_batch_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
                                           cprox_batch **batch);
 
 /** Frees a batch; NULL is allowed. No query may be using it. */
@@ -35,7 +35,8 @@ CPROX_API void cprox_batch_free(cprox_batch *batch);
  *  options   NULL: the default. A certificate is refused: ask the query of one mover for it.
  *  results   results[i] receives what cprox_distance_all() answers for movers[i]: the same guarantees, not the same
  *            digits. Signed distances are searched one mover at a time.
- *            The others are untouched. nodes and probes are 0 where balls and boxes round the parts settled it.
+ *            The others are untouched. nodes and distance queries are 0 where balls and boxes round the parts settled
+ *            it.
  *
  *  A mover that is unusable fails alone: its result has the negative status and the interval [0, infinity], all others
  *  are answered. Returns the first negative status, else the largest; the reason names the first mover that it belongs

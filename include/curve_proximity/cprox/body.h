@@ -35,7 +35,7 @@ typedef enum cprox_body_kind {
   CPROX_MESH,
   CPROX_POINTS,
   CPROX_OCTREE,
-  CPROX_LADDER
+  CPROX_LOD
 } cprox_body_kind;
 
 /** One point [m], finite. */
@@ -151,19 +151,20 @@ CPROX_API cprox_status cprox_body_update_points(const cprox_body *previous, cons
 CPROX_API cprox_status cprox_body_create_boxes(const cprox_vec3 *low, const cprox_vec3 *high, size_t n,
                                                size_t memory_limit, cprox_workspace *workspace, cprox_body **body);
 
-/** A ladder of models of one set: the mesh, and a convex hull of it that answers what does not need the mesh.
+/** A level-of-detail body of models of one set: the mesh, and a convex hull of it that answers what does not need the
+ *  mesh.
  *
  *  hull    convex: a polytope, or any other convex body but a halfspace.
  *  excess  [m] >= 0: no point of the mesh is farther than this from the hull. 0 for its convex hull, made of its own
  *          vertices. Checked along 26 directions only: a hull that leaves out more would make answers wrong.
  *  mesh    a mesh, points or boxes.
  *
- *  Both are kept by reference, stand in the frame of the ladder, and must outlive it. A ladder may be part of a
- *  compound. Queries climb from the hull to the mesh where the hull cannot decide; cprox_options.max_rung ends the
- *  climb before, and cprox_result.rung says how far it went. Its support, nearest point and bounding sphere are the
- *  mesh's. */
-CPROX_API cprox_status cprox_body_create_ladder(const cprox_body *hull, double excess, const cprox_body *mesh,
-                                                cprox_workspace *workspace, cprox_body **body);
+ *  Both are kept by reference, stand in the frame of the level-of-detail body, and must outlive it. A level-of-detail
+ *  body may be part of a compound. Queries climb from the hull to the mesh where the hull cannot decide;
+ *  cprox_options.max_lod ends the climb before, and cprox_result.level of detail says how far it went. Its support,
+ *  nearest point and bounding sphere are the mesh's. */
+CPROX_API cprox_status cprox_body_create_lod(const cprox_body *hull, double excess, const cprox_body *mesh,
+                                             cprox_workspace *workspace, cprox_body **body);
 
 /** Whether the inside belongs to the body: false for mesh surfaces only. */
 CPROX_API bool cprox_body_is_solid(const cprox_body *body);

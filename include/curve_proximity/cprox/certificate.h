@@ -4,7 +4,7 @@
  *  A certificate says one of two things about a mover and targets: "the distance is greater than delta everywhere",
  *  proven by a cover of the parameter range with a separating direction for each part; or "at this parameter the
  *  distance is at most delta", proven by a point of the target. The program cprox_check reads it together with the
- *  question and decides in arithmetic that does not round, or rounds outwards; it shares no line with this library.
+ *  query and decides in arithmetic that does not round, or rounds outwards; it shares no line with this library.
  *  doc/certificates.md has the format.
  */
 #ifndef CURVE_PROXIMITY_CPROX_CERTIFICATE_H
@@ -49,26 +49,26 @@ CPROX_API double cprox_certificate_delta(const cprox_certificate *certificate);
  *  options     max_nodes bounds the parts of the cover that are tried, for each target; NULL: the default.
  *  certificate receives the proof. It is empty (CPROX_CLAIM_NONE) where none was found, and where the call failed.
  *
- *  A mesh is known by the convex hull that it was made with (cprox_body_create_ladder), which contains it. `apart` is
+ *  A mesh is known by the convex hull that it was made with (cprox_body_create_lod), which contains it. `apart` is
  *  proven of the hull; `near` is never claimed of a mesh. Of a distance that a mesh answered, the claim is the distance
  *  to the hulls, where that is above 0.
  *
  *  A claim that is as tight as double arithmetic allows may be proven for a delta that is weaker by a few roundings;
  *  that of a distance (delta == answer->lower) by epsilon, where the curve bends round a target at a constant distance
  *  and planes cannot follow as closely as the search did. cprox_certificate_delta() tells. Touching a flat target
- *  without radius or padding cannot be proven.
+ *  without radius or margin cannot be proven.
  *
  *  Returns CPROX_OK        there is a proof
  *          CPROX_BUDGET    max_nodes were not enough
  *          CPROX_PRECISION the distance is too close to delta
  *          CPROX_INVALID   an argument is unusable, or of a kind that has no certificates: support callbacks,
  *                          superquadrics and other implicit bodies, points, octrees, meshes without a hull, carried
- *                          bodies, movers on one clock; or the nearest target is a mesh, and `near` was to be claimed
+ *                          bodies, movers synchronized; or the nearest target is a mesh, and `near` was to be claimed
  *          CPROX_MEMORY    an allocation failed
  *  with the reason in the workspace. Cost: a few times that of the query; memory is allocated for the certificate.
  *  Source: doc/certificates.md.
  */
-CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
+CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
                                      const cprox_result *answer, const cprox_options *options,
                                      cprox_workspace *workspace, cprox_certificate *certificate);
 
@@ -79,17 +79,17 @@ CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_target *targ
  *  Returns the length of the whole text without the 0; 0 for a kind that has no certificates, and for curves. Of meshes
  *  the hulls stand for them (`hull`), of which the checker accepts no `near`.
  */
-CPROX_API size_t cprox_target_describe(const cprox_target *target, char *text, size_t size);
+CPROX_API size_t cprox_obstacle_describe(const cprox_obstacle *target, char *text, size_t size);
 
-/** A robot along a motion as the checker reads it, with the pairs that the question is about: its targets are described
- *  before, by cprox_target_describe(). Of meshes the hulls stand for them: of those "near" is never claimed.
+/** A robot along a motion as the checker reads it, with the pairs that the query is about: its targets are described
+ *  before, by cprox_obstacle_describe(). Of meshes the hulls stand for them: of those "near" is never claimed.
  *
  *  id          one word.
  *  text, size  as above.
  *  Returns the length of the whole text without the 0; 0 for a mover that is no robot, for bodies of a kind that has no
  *  certificates, and where memory is out.
  */
-CPROX_API size_t cprox_mover_describe(const cprox_mover *mover, const cprox_target *targets, size_t n, const char *id,
+CPROX_API size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, const char *id,
                                       cprox_workspace *workspace, char *text, size_t size);
 
 #ifdef __cplusplus

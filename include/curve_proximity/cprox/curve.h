@@ -226,7 +226,7 @@ CPROX_API cprox_status cprox_curve_create_smooth(const cprox_smooth_curve *funct
                                                  cprox_workspace *workspace, cprox_curve **curve);
 
 /** A curve of finite length by functions of the caller's: its points, and how long its parts are at most. Every query
- *  with the curve calls them, from its own thread; they must give the same answer to the same question. */
+ *  with the curve calls them, from its own thread; they must give the same answer to the same query. */
 typedef struct cprox_rectifiable_curve {
   /** Writes psi(t) [m]. */
   void (*point)(void *user, double t, cprox_vec3 *point);

@@ -14,28 +14,28 @@ typedef struct cprox_gradient {
   /** false: the distance is not differentiable here, or cannot be told to be; the reason is in the workspace, the
    *  numbers are those of one of the minimisers or 0 */
   bool valid;
-  double t, t_target; /**< the minimiser, as exactly as double arithmetic finds it; t_target NaN for bodies */
+  double t, t_obstacle; /**< the minimiser, as exactly as double arithmetic finds it; t_obstacle NaN for bodies */
   /** by the mover's point at t. By a coefficient of the mover's curve: its weight at t (cprox_bezier_weights() and so
    *  on) times this */
   cprox_vec3 mover;
-  /** the same of a target that is a curve: by its point at t_target, in the target's frame; else 0 */
-  cprox_vec3 target_point;
+  /** the same of a target that is a curve: by its point at t_obstacle, in the target's frame; else 0 */
+  cprox_vec3 obstacle_point;
   cprox_vec3 position; /**< by the target's position, world axes */
   /** [m/rad] by a small rotation vector w that turns the target about its position, world axes: R becomes exp([w]) R */
   cprox_vec3 rotation;
-  double radius, padding; /**< by the mover's radius and the target's padding: -1 */
+  double radius, margin; /**< by the mover's radius and the target's margin: -1 */
   double t0, t1; /**< by the ends of the range, the curve itself going on as it is: 0 unless the minimiser is an end */
 } cprox_gradient;
 
 /** The gradient of cprox_distance(mover, target, options), given its result.
  *
  *  options   of that very call, less its certificate, which is refused here.
- *  result    of that very call; of a call with many targets, `target` is the one that result->target_index names.
+ *  result    of that very call; of a call with many targets, `target` is the one that result->obstacle_index names.
  *
  *  By Danskin's theorem the derivatives are those of the distance at the minimiser alone, if there is only one. So the
  *  whole curve is searched once more. valid is false
  *    where the distance elsewhere comes within min(epsilon, 1e-9 curve lengths) of the least, or is as small on a
- *    stretch of more than 1e-3 of the range about the minimiser (of 1e-6 where the distance grows like a square),
+ *    interval of more than 1e-3 of the range about the minimiser (of 1e-6 where the distance grows like a square),
  *    where two parts or two points of a target curve are equally near,
  *    where the nearest points are not the only ones (face on face, edge along a face, a cone's base): a turn of 1e-6
  *    rad to either side moves them by as much as one of 1e-4 rad,
@@ -46,7 +46,7 @@ typedef struct cprox_gradient {
  *  and for movers and targets of which no gradient is known (meshes, points, robots). *gradient is untouched then.
  *  Cost: about five distance queries, and for carried bodies four static pairs. Source: J. M. Danskin, The theory of
  *  max-min, 1967; doc/curve-bound.md. */
-CPROX_API cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, const cprox_options *options,
+CPROX_API cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                                const cprox_result *result, cprox_workspace *workspace,
                                                cprox_gradient *gradient);
 

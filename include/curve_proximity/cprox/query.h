@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The verbs: distance, tolerance, collision of what moves against what stands; static pairs.
+/** The queries: distance, tolerance, collision of what moves against what stands; static pairs.
  *
  *  Every answer is an interval [lower, upper] that contains the true value, rounding included, or a verdict that
  * follows from one. Numbers must be finite, and no length, position or accuracy may exceed 1e60 m, whose powers still
@@ -19,21 +19,21 @@ extern "C" {
 #endif
 
 /** A body or a curve somewhere: a value. What it names is kept by reference. */
-typedef struct cprox_target {
+typedef struct cprox_obstacle {
   const cprox_body *body; /**< or NULL, for a curve */
   cprox_pose pose;
-  double padding;           /**< [m] >= 0: the set of all points within this of the body or curve */
+  double margin;            /**< [m] >= 0: the set of all points within this of the body or curve */
   const cprox_curve *curve; /**< or NULL, for a body */
-  bool on_clock;            /**< the curve is at the mover's own parameter, and carries the body if there is one */
-} cprox_target;
+  bool synchronized;        /**< the curve is at the mover's own parameter, and carries the body if there is one */
+} cprox_obstacle;
 
-CPROX_API cprox_target cprox_at(const cprox_body *body, cprox_pose pose);
-CPROX_API cprox_target cprox_padded(cprox_target target, double padding);
+CPROX_API cprox_obstacle cprox_obstacle_at(const cprox_body *body, cprox_pose pose);
+CPROX_API cprox_obstacle cprox_with_margin(cprox_obstacle target, double margin);
 
 /** A curve that stands where it was made, as thick as a ball of the radius that rides it: [m] >= 0, 0 for a line. The
  *  mover and the target are each at any parameter of their own. Its pose may be changed like that of a body. Curves
  *  have no inside, so that two without radius that cross or touch are answered [0, upper] and undecided. */
-CPROX_API cprox_target cprox_curve_target(const cprox_curve *curve, double radius);
+CPROX_API cprox_obstacle cprox_obstacle_curve(const cprox_curve *curve, double radius);
 
 struct cprox_motion;
 struct cprox_robot_pair;
@@ -41,7 +41,7 @@ struct cprox_robot_pair;
 /** What moves: a value. The curve is kept by reference. */
 typedef struct cprox_mover {
   const cprox_curve *curve;
-  double radius; /**< [m] >= 0: a ball that rides the curve, 0 for a point; with a body, its padding */
+  double radius; /**< [m] >= 0: a ball that rides the curve, 0 for a point; with a body, its margin */
   /** what is carried along the curve without turning, its frame's origin on the curve and its axes those of the
    *  world; NULL: a point. Convex or a compound, no halfspace. Kept by reference. */
   const cprox_body *body;
@@ -54,7 +54,7 @@ typedef struct cprox_mover {
 CPROX_API cprox_mover cprox_point_along(const cprox_curve *curve);
 CPROX_API cprox_mover cprox_tube_along(const cprox_curve *curve, double radius);
 
-/** A body that is carried along the curve without turning. Every verb answers for it: the curve of its origin is held
+/** A body that is carried along the curve without turning. Every query answers for it: the curve of its origin is held
  *  against the Minkowski difference of the target and the body, doc/curve-bound.md. */
 CPROX_API cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve);
 
@@ -62,7 +62,7 @@ CPROX_API cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve
  *  other's way at different times. Both curves must have the same domain, else CPROX_INVALID. Either may carry a ball
  *  or a body. The pose that the target is given, identity at first, moves the other's curve and turns its body with
  *  it. */
-CPROX_API cprox_target cprox_on_clock(cprox_mover other);
+CPROX_API cprox_obstacle cprox_synchronized(cprox_mover other);
 
 /** What a query can leave behind as proof: see certificate.h. */
 typedef struct cprox_certificate cprox_certificate;
@@ -73,25 +73,20 @@ typedef enum cprox_verdict { CPROX_NO = 0, CPROX_YES = 1, CPROX_UNDECIDED = 2 } 
 CPROX_API const char *cprox_verdict_name(cprox_verdict verdict);
 
 /** The models of a body, from coarse to fine; in a result, the finest one that the answer needed. */
-typedef enum cprox_rung {
-  CPROX_RUNG_NONE = 0,
-  CPROX_RUNG_SPHERE = 1,
-  CPROX_RUNG_HULL = 2,
-  CPROX_RUNG_MESH = 3
-} cprox_rung;
+typedef enum cprox_lod { CPROX_LOD_NONE = 0, CPROX_LOD_SPHERE = 1, CPROX_LOD_HULL = 2, CPROX_LOD_MESH = 3 } cprox_lod;
 
 /** "none", "sphere", "hull", "mesh". Convex bodies are their own hull. */
-CPROX_API const char *cprox_rung_name(cprox_rung rung);
+CPROX_API const char *cprox_lod_name(cprox_lod lod);
 
 /** How a query is to be answered. Start from cprox_options_default().
  *
  *  Every query has epsilon and max_nodes. An option that is set and does not apply to the query is refused:
  *  CPROX_INVALID, and the reason names the option. What applies:
  *
- *    query                                     relative_epsilon  stop  max_rung  certificate  signed_distance
+ *    query                                     relative_epsilon  stop  max_lod  certificate  signed_distance
  *    distance                                  yes               yes   yes       yes          yes, not for robots
  *    tolerance, collision                      yes               yes   yes       yes          no
- *    first contact                             no                yes   yes       no           no
+ *    time of contact                             no                yes   yes       no           no
  *    nearest, within, profile, gradient        yes               yes   yes       no           yes, not for robots
  *    nearest pairs of a robot                  yes               yes   yes       no           no
  *    sets and batches                          as above, but no certificate
@@ -116,11 +111,11 @@ typedef struct cprox_options {
    *  beyond their radius. Meshes, points and octrees cannot tell: CPROX_OVERLAP, and lower only bounds it. Refused
    *  for robots: how deep they overlap is not measured. Default false: distances are 0 at least */
   bool signed_distance;
-  /** the finest model of targets that may answer, CPROX_RUNG_MESH (or NONE): any. HULL: ladders by their hulls.
-   *  SPHERE: all bodies by their bounding balls, but for points, octrees and halfspaces, which stay what they are. A
-   *  coarser model contains the body: lower and "clear" hold for the body itself as well, but upper, the witness and
-   *  "hit" are the model's */
-  cprox_rung max_rung;
+  /** the finest model of targets that may answer, CPROX_LOD_MESH (or NONE): any. HULL: level-of-detail bodies by their
+   *  hulls. SPHERE: all bodies by their bounding balls, but for points, octrees and halfspaces, which stay what they
+   *  are. A coarser model contains the body: lower and "clear" hold for the body itself as well, but upper, the witness
+   *  and "hit" are the model's */
+  cprox_lod max_lod;
 } cprox_options;
 
 CPROX_API cprox_options cprox_options_default(void);
@@ -131,20 +126,20 @@ typedef struct cprox_result {
    *  unsafe. distance: undecided, always */
   cprox_verdict verdict;
   /** [m] certified: lower <= true value <= upper. upper = infinity where bounding balls (in batches also boxes) alone
-   *  decided a verdict: then there is no witness, and target_index is -1 */
+   *  decided a verdict: then there is no witness, and obstacle_index is -1 */
   double lower, upper;
-  double t;        /**< where on the mover's curve upper was attained */
-  double t_target; /**< where on a target that is a curve; NaN for bodies */
-  /** [m] world frame, the two points that attain upper (surfaces, radius and padding included); equal where they
+  double t;          /**< where on the mover's curve upper was attained */
+  double t_obstacle; /**< where on a target that is a curve; NaN for bodies */
+  /** [m] world frame, the two points that attain upper (surfaces, radius and margin included); equal where they
    *  overlap, and either end of the way out for signed distances */
-  cprox_vec3 on_mover, on_target;
-  cprox_vec3 normal;    /**< unit, world frame, from target to mover; (0,0,0) where there is none */
-  int32_t target_index; /**< which target; which other geometry, where a robot is asked about itself; -1 for none */
-  int32_t target_part;  /**< which part of a compound; 0 otherwise */
-  int32_t mover_part;   /**< which part of a carried compound; which geometry of a robot, -1 for none; 0 otherwise */
-  cprox_rung rung;
-  uint32_t nodes, probes; /**< what it cost: intervals examined, nearest-point queries */
-  double t_free;          /**< first contact: no contact at any smaller parameter; other verbs: 0 */
+  cprox_vec3 witness_mover, witness_obstacle;
+  cprox_vec3 normal;      /**< unit, world frame, from target to mover; (0,0,0) where there is none */
+  int32_t obstacle_index; /**< which target; which other geometry, where a robot is asked about itself; -1 for none */
+  int32_t obstacle_part;  /**< which part of a compound; 0 otherwise */
+  int32_t mover_part;     /**< which part of a carried compound; which geometry of a robot, -1 for none; 0 otherwise */
+  cprox_lod lod;
+  uint32_t nodes, distance_queries; /**< what it cost: intervals examined, nearest-point queries */
+  double t_contact_lower;           /**< time of contact: no contact at any smaller parameter; other queries: 0 */
 } cprox_result;
 
 /** Distance between what moves and what stands, over the mover's whole parameter range.
@@ -156,14 +151,14 @@ typedef struct cprox_result {
  *          CPROX_BUDGET    max_nodes were not enough: the interval is true, only wider
  *          CPROX_PRECISION epsilon is below what double arithmetic can promise at this scale: likewise
  *          CPROX_STOPPED   options->stop said so: likewise
- *          CPROX_INVALID   an argument is unusable; cprox_workspace_reason() says which and why; *result is untouched
+ *          CPROX_INVALID   an argument is unusable; cprox_workspace_error() says which and why; *result is untouched
  *          CPROX_MEMORY    likewise
  *
  *  options NULL: the default. Cost: a few nearest-point queries and control-point sweeps; no allocation once the
  *  workspace has grown.
  *  Source: Lakshmanan et al. 2019, Algorithms 1 and 2, with the bounds of doc/curve-bound.md.
  */
-CPROX_API cprox_status cprox_distance(cprox_mover mover, cprox_target target, const cprox_options *options,
+CPROX_API cprox_status cprox_distance(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                       cprox_workspace *workspace, cprox_result *result);
 
 /** Is the mover farther than delta from the target everywhere? delta >= 0 [m].
@@ -171,7 +166,7 @@ CPROX_API cprox_status cprox_distance(cprox_mover mover, cprox_target target, co
  *  verdict yes: lower > delta. no: upper <= delta. undecided: the distance is within epsilon of delta, or the budget
  *  was too small. The interval is true, but only as narrow as the verdict needed. Returns as cprox_distance().
  *  Source: Lakshmanan et al. 2019, Algorithm 3. */
-CPROX_API cprox_status cprox_tolerance(cprox_mover mover, cprox_target target, double delta,
+CPROX_API cprox_status cprox_tolerance(cprox_mover mover, cprox_obstacle target, double delta,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result);
 
 /** Do mover and target touch or overlap anywhere?
@@ -179,65 +174,67 @@ CPROX_API cprox_status cprox_tolerance(cprox_mover mover, cprox_target target, d
  *  verdict yes: a common point is proven. no: lower > 0. undecided: closer than epsilon, neither proven.
  *  Returns as cprox_distance().
  *  Source: Lakshmanan et al. 2019, Algorithm 4. */
-CPROX_API cprox_status cprox_collision(cprox_mover mover, cprox_target target, const cprox_options *options,
+CPROX_API cprox_status cprox_collision(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                        cprox_workspace *workspace, cprox_result *result);
 
 /** The same against many targets: *nearest is the answer against their union.
  *
- *  targets   n of them; n = 0: CPROX_OK, lower = upper = infinity, target_index -1.
+ *  targets   n of them; n = 0: CPROX_OK, lower = upper = infinity, obstacle_index -1.
  *  each      NULL if not needed; else n results, one a target, each to the accuracy asked.
  *            A target that is unusable makes the call CPROX_INVALID; its number stands in the reason.
  *            Without `each` targets are searched nearest first and left as soon as they cannot be the nearest.
  */
-CPROX_API cprox_status cprox_distance_all(cprox_mover mover, const cprox_target *targets, size_t n,
+CPROX_API cprox_status cprox_distance_all(cprox_mover mover, const cprox_obstacle *targets, size_t n,
                                           const cprox_options *options, cprox_workspace *workspace,
                                           cprox_result *nearest, cprox_result *each);
-CPROX_API cprox_status cprox_tolerance_all(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
+CPROX_API cprox_status cprox_tolerance_all(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
                                            const cprox_options *options, cprox_workspace *workspace,
                                            cprox_result *nearest, cprox_result *each);
-CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_target *targets, size_t n,
+CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_obstacle *targets, size_t n,
                                            const cprox_options *options, cprox_workspace *workspace,
                                            cprox_result *nearest, cprox_result *each);
 
 /** Where, along its parameter, does the mover first touch the target? Never late.
  *
- *  t_free      no contact at any t < t_free, certified and rounded down. The distance at t_free is at most epsilon, or
- *              t_free is the end of the range.
- *  verdict     yes: they touch or overlap at t, proven: the first contact lies in [t_free, t]. no: they do not touch at
+ *  t_contact_lower      no contact at any t < t_contact_lower, certified and rounded down. The distance at
+ *  t_contact_lower is at most epsilon, or
+ *              t_contact_lower is the end of the range.
+ *  verdict     yes: they touch or overlap at t, proven: the time of contact lies in [t_contact_lower, t]. no: they do
+ *  not touch at
  *              all; lower > 0. undecided: closer than epsilon at t, the earliest such place that was measured; contact
  *              is not proven anywhere.
  *  lower, upper  of the distance over the whole range, as in cprox_collision(). upper is the distance of the two points
  *                at t:
  *              0 for yes, at most epsilon for undecided.
  *
- *  A ball round the target that is not to be entered is its padding. Returns as cprox_distance(); after CPROX_BUDGET,
- *  CPROX_STOPPED and CPROX_PRECISION t_free is true, but may lie before the place where the distance is epsilon.
- *  relative_epsilon is refused. Source: doc/first-contact.md. */
-CPROX_API cprox_status cprox_first_contact(cprox_mover mover, cprox_target target, const cprox_options *options,
-                                           cprox_workspace *workspace, cprox_result *result);
+ *  A ball round the target that is not to be entered is its margin. Returns as cprox_distance(); after CPROX_BUDGET,
+ *  CPROX_STOPPED and CPROX_PRECISION t_contact_lower is true, but may lie before the place where the distance is
+ *  epsilon. relative_epsilon is refused. Source: doc/time-of-contact.md. */
+CPROX_API cprox_status cprox_time_of_contact(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
+                                             cprox_workspace *workspace, cprox_result *result);
 
-/** The same with many targets: the first contact with any of them. n = 0: no contact. */
-CPROX_API cprox_status cprox_first_contact_all(cprox_mover mover, const cprox_target *targets, size_t n,
-                                               const cprox_options *options, cprox_workspace *workspace,
-                                               cprox_result *result);
+/** The same with many targets: the time of contact with any of them. n = 0: no contact. */
+CPROX_API cprox_status cprox_time_of_contact_all(cprox_mover mover, const cprox_obstacle *targets, size_t n,
+                                                 const cprox_options *options, cprox_workspace *workspace,
+                                                 cprox_result *result);
 
 /** Signed distance of two standing bodies.
  *
  *  Apart: lower <= distance <= upper, both witness points, the normal from b to a, CPROX_OK.
  *  Overlapping: the same, both bounds negative, minus the penetration depth: the shortest way by which a can leave b,
- *  along the normal; on_mover and on_target are the ends of that way, on either surface. How deep two implicit bodies
- *  without a support function of closed form overlap may stay open: then lower <= minus the depth, upper = 0,
- *  CPROX_OVERLAP. Meshes, points and boxes are held against convex bodies and each other; how deep they overlap is not
- *  measured: CPROX_OVERLAP. Of two of these the order does not matter, a looser epsilon never costs more, and after
- *  CPROX_BUDGET or CPROX_STOPPED lower is at least minus the paddings, but for solids and boxes that are not proven
- *  apart. A compound answers with the least over its parts. on_mover is the point on a, on_target that on b; nodes
- *  counts iterations (of meshes, points and boxes nodes of their trees, too), probes support evaluations. stop is asked
- *  between parts and in searches through two meshes.
+ *  along the normal; witness_mover and witness_obstacle are the ends of that way, on either surface. How deep two
+ *  implicit bodies without a support function of closed form overlap may stay open: then lower <= minus the depth,
+ *  upper = 0, CPROX_OVERLAP. Meshes, points and boxes are held against convex bodies and each other; how deep they
+ *  overlap is not measured: CPROX_OVERLAP. Of two of these the order does not matter, a looser epsilon never costs
+ *  more, and after CPROX_BUDGET or CPROX_STOPPED lower is at least minus the margins, but for solids and boxes that are
+ *  not proven apart. A compound answers with the least over its parts. witness_mover is the point on a,
+ *  witness_obstacle that on b; nodes counts iterations (of meshes, points and boxes nodes of their trees, too),
+ *  distance queries support evaluations. stop is asked between parts and in searches through two meshes.
  *  CPROX_INVALID for two halfspaces (they have no distance), for a curve, and for arguments that are unusable.
  *  Cost: a few support evaluations; no allocation.
  *  Source: doc/convex-pairs.md.
  */
-CPROX_API cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *options,
+CPROX_API cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
                                   cprox_workspace *workspace, cprox_result *result);
 
 #ifdef __cplusplus

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Robots: kinematic trees with bodies on their links, and motions of all their joints at once.
  *
- *  A motion becomes a mover (cprox_robot_along, cprox_robot_self), and every verb of query.h answers for it: t is the
- *  time of the motion [s], mover_part a geometry of the robot, target_index a target, or in a question about the robot
+ *  A motion becomes a mover (cprox_robot_along, cprox_robot_self), and every query of query.h answers for it: t is the
+ *  time of the motion [s], mover_part a geometry of the robot, obstacle_index a target, or in a query about the robot
  *  itself the other geometry. Robots and motions are immutable once made, shared by any number of threads. Constructors
  *  copy what they are given, but keep bodies by reference; they return CPROX_INVALID with a sentence in the workspace,
  *  or CPROX_MEMORY, and leave the handle untouched on failure. */
@@ -41,11 +41,12 @@ typedef struct cprox_link {
 
 /** A body on a link. */
 typedef struct cprox_link_geometry {
-  /** convex, a ladder, a mesh's surface, points, boxes, or a compound of these; no halfspace; kept by reference */
+  /** convex, a level-of-detail body, a mesh's surface, points, boxes, or a compound of these; no halfspace; kept by
+   *  reference */
   const cprox_body *body;
   cprox_pose pose; /**< in the link's frame */
   int32_t link;
-  double padding; /**< [m] >= 0 */
+  double margin; /**< [m] >= 0 */
 } cprox_link_geometry;
 
 /** A robot of n_links >= 1 links, parents first, and n_geometries bodies; its variables are numbered from 0 to
@@ -130,9 +131,9 @@ typedef struct cprox_robot_pair {
 } cprox_robot_pair;
 
 /** The robot along a motion. Targets are bodies; of meshes the surface counts, and solid
- *  ones are refused. Of ladders, on links and as targets, the mesh is asked where the hull cannot decide; result.rung
- *  says whether. pairs: those that are asked about, kept by reference, `other` being targets; NULL: all geometries of
- *  links that the motion moves, against all targets. */
+ *  ones are refused. Of level-of-detail bodies, on links and as targets, the mesh is asked where the hull cannot
+ *  decide; result.level of detail says whether. pairs: those that are asked about, kept by reference, `other` being
+ *  targets; NULL: all geometries of links that the motion moves, against all targets. */
 CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
 /** The robot along a motion against itself: ask without targets (cprox_distance_all(mover, NULL, 0, …)). pairs: those

@@ -17,7 +17,7 @@ typedef struct cprox_set cprox_set;
  *  outlive the set. Targets without bounds (halfspaces) and those on the mover's clock are allowed: they are asked
  *  every time.
  *  CPROX_INVALID where one is unusable, its number in the reason. Cost: n log n, and 6 support values a target. */
-CPROX_API cprox_status cprox_set_create(const cprox_target *targets, size_t n, cprox_workspace *workspace,
+CPROX_API cprox_status cprox_set_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
                                         cprox_set **set);
 
 /** NULL is allowed. No query may be using it. */
@@ -29,9 +29,9 @@ CPROX_API size_t cprox_set_size(const cprox_set *set);
 /** The bytes it takes, without the bodies and curves. */
 CPROX_API size_t cprox_set_bytes(const cprox_set *set);
 
-/** As cprox_distance_all(), cprox_tolerance_all(), cprox_collision_all() and cprox_first_contact_all() with the targets
- *  of the set: the answer against their union, result->target_index counting as they were given; robots, too. No
- *  certificates: CPROX_INVALID where one is asked for. */
+/** As cprox_distance_all(), cprox_tolerance_all(), cprox_collision_all() and cprox_time_of_contact_all() with the
+ *  targets of the set: the answer against their union, result->obstacle_index counting as they were given; robots, too.
+ *  No certificates: CPROX_INVALID where one is asked for. */
 CPROX_API cprox_status cprox_set_distance(const cprox_set *set, cprox_mover mover, const cprox_options *options,
                                           cprox_workspace *workspace, cprox_result *result);
 CPROX_API cprox_status cprox_set_tolerance(const cprox_set *set, cprox_mover mover, double delta,
@@ -39,8 +39,8 @@ CPROX_API cprox_status cprox_set_tolerance(const cprox_set *set, cprox_mover mov
                                            cprox_result *result);
 CPROX_API cprox_status cprox_set_collision(const cprox_set *set, cprox_mover mover, const cprox_options *options,
                                            cprox_workspace *workspace, cprox_result *result);
-CPROX_API cprox_status cprox_set_first_contact(const cprox_set *set, cprox_mover mover, const cprox_options *options,
-                                               cprox_workspace *workspace, cprox_result *result);
+CPROX_API cprox_status cprox_set_time_of_contact(const cprox_set *set, cprox_mover mover, const cprox_options *options,
+                                                 cprox_workspace *workspace, cprox_result *result);
 
 /** The k closest targets, as cprox_nearest() in clearance.h gives them: nearest receives min(k, size) results. */
 CPROX_API cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k,

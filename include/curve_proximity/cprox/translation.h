@@ -15,7 +15,7 @@ extern "C" {
 
 /** A body that starts at the target's pose and moves on at the velocity [m/s], world frame. */
 typedef struct cprox_translating {
-  cprox_target from;
+  cprox_obstacle from;
   cprox_vec3 velocity;
 } cprox_translating;
 
@@ -31,12 +31,13 @@ CPROX_API cprox_status cprox_translating_distance(cprox_translating a, cprox_tra
 
 /** When two convex bodies (no compounds) that translate first touch.
  *
- *  t_free   no contact at any time < t_free, certified
- *  verdict  yes: they touch or overlap at t, proven: the first contact lies in [t_free, t]. no: they do not touch up to
- *           the duration. undecided: contact is not proven; at t = t_free the distance is at most epsilon [m], unless
- *           the status says that the search fell short.
+ *  t_contact_lower   no contact at any time < t_contact_lower, certified
+ *  verdict  yes: they touch or overlap at t, proven: the time of contact lies in [t_contact_lower, t]. no: they do not
+ *  touch up to
+ *           the duration. undecided: contact is not proven; at t = t_contact_lower the distance is at most epsilon [m],
+ *           unless the status says that the search fell short.
  *  lower, upper, points: of the signed distance at t, as in cprox_pair(). Where contact is deep already at 0: t =
- *  t_free = 0. Returns as cprox_pair(). Cost: about four pairs. */
+ *  t_contact_lower = 0. Returns as cprox_pair(). Cost: about four pairs. */
 CPROX_API cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b, double duration,
                                                  const cprox_options *options, cprox_workspace *workspace,
                                                  cprox_result *result);
@@ -52,8 +53,8 @@ typedef struct cprox_growth {
 /** The growth distance of two superquadrics or implicit bodies, to a relative width of options->epsilon (default 1e-6).
  *
  *  It measures penetration where there is some: the bodies overlap if and only if it is below 1. The centre is that of
- *  cprox_body_bounding_sphere(); padding is not scaled and must be 0. Returns as cprox_pair(). */
-CPROX_API cprox_status cprox_growth_distance(cprox_target a, cprox_target b, const cprox_options *options,
+ *  cprox_body_bounding_sphere(); margin is not scaled and must be 0. Returns as cprox_pair(). */
+CPROX_API cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
                                              cprox_workspace *workspace, cprox_growth *growth);
 
 #ifdef __cplusplus

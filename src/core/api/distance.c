@@ -11,96 +11,98 @@
 enum { REASON = 256 };
 
 /* The proof that was asked for. That there is none changes nothing in the answer; the reason tells why, after that of the answer. */
-static void leave_certificate(const question *q, const cprox_result *answer) {
+static void leave_certificate(const query *q, const cprox_result *answer) {
   if (!q->options.certificate) return;
   char of_answer[REASON], of_proof[REASON];
-  snprintf(of_answer, sizeof of_answer, "%s", cprox_workspace_reason(q->workspace));
-  const double delta = question_wants_verdict(q) ? q->limit
-                       : answer->lower > 0.0     ? answer->lower
-                                                 : fmax(answer->upper, 0.0);
+  snprintf(of_answer, sizeof of_answer, "%s", cprox_workspace_error(q->workspace));
+  const double delta = query_wants_verdict(q) ? q->limit
+                       : answer->lower > 0.0  ? answer->lower
+                                              : fmax(answer->upper, 0.0);
   const cprox_status status =
       certify(&q->mover, q->targets, q->n, delta, answer, &q->options, q->workspace, q->options.certificate);
-  snprintf(of_proof, sizeof of_proof, "%s", cprox_workspace_reason(q->workspace));
+  snprintf(of_proof, sizeof of_proof, "%s", cprox_workspace_error(q->workspace));
   if (status == CPROX_OK)
     workspace_fail(q->workspace, answer->status, "%s", of_answer);
   else
     workspace_fail(q->workspace, answer->status, "%s%sno certificate: %s", of_answer, *of_answer ? "; " : "", of_proof);
 }
 
-static arguments_query query_of(const question *q) {
+static arguments_query query_of(const query *q) {
   const unsigned has = ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE;
-  if (!question_wants_verdict(q)) return (arguments_query){"distance", has | ARGUMENTS_SIGNED};
+  if (!query_wants_verdict(q)) return (arguments_query){"distance", has | ARGUMENTS_SIGNED};
   return (arguments_query){q->farther_is_yes ? "tolerance" : "collision", has};
 }
 
-static cprox_status ask_all(question *q, cprox_result *nearest, cprox_result *each) {
+static cprox_status ask_all(query *q, cprox_result *nearest, cprox_result *each) {
   workspace_clear(q->workspace);
   const cprox_status checked =
       arguments_check_query(&q->mover, q->targets, q->n, &q->options, query_of(q), q->workspace);
   if (checked != CPROX_OK) return checked;
-  question_ask_whole(q);
-  if (!each) return question_answer(q, 0, q->n, INFINITY, nearest);
+  query_ask_whole(q);
+  if (!each) return query_answer(q, 0, q->n, INFINITY, nearest);
 
   /* each target by itself; where the union falls short, it is for the one that is not known to be farther */
-  cprox_result all = question_nothing();
+  cprox_result all = query_nothing();
   cprox_status trouble = CPROX_OK;
   for (size_t i = 0; i < q->n; i++) {
     cprox_result one;
-    const cprox_status status = question_answer(q, i, i + 1, INFINITY, &one);
+    const cprox_status status = query_answer(q, i, i + 1, INFINITY, &one);
     if (status < 0) return status;
     if (!(one.lower >= all.lower)) trouble = status;
-    question_join(&all, &one);
-    if (one.target_index < 0) one.target_index = (int32_t)i;
+    query_join(&all, &one);
+    if (one.obstacle_index < 0) one.obstacle_index = (int32_t)i;
     each[i] = one;
   }
   workspace_clear(q->workspace);
   *nearest = all;
-  return question_conclude(q, INFINITY, trouble, nearest);
+  return query_conclude(q, INFINITY, trouble, nearest);
 }
 
-static cprox_status ask(question *q, cprox_result *nearest, cprox_result *each) {
+static cprox_status ask(query *q, cprox_result *nearest, cprox_result *each) {
   cprox_certificate_clear(q->options.certificate);
   const cprox_status status = ask_all(q, nearest, each);
   if (status >= 0) leave_certificate(q, nearest);
   return status;
 }
 
-/* ---- the verbs ---------------------------------------------------------------------------------------------------------- */
+/* ---- the queries ---------------------------------------------------------------------------------------------------------- */
 
-cprox_status cprox_distance_all(cprox_mover mover, const cprox_target *targets, size_t n, const cprox_options *options,
-                                cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {
-  question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+cprox_status cprox_distance_all(cprox_mover mover, const cprox_obstacle *targets, size_t n,
+                                const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
+                                cprox_result *each) {
+  query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   return ask(&q, nearest, each);
 }
 
-cprox_status cprox_tolerance_all(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
+cprox_status cprox_tolerance_all(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
                                  const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                                  cprox_result *each) {
   cprox_certificate_clear(options ? options->certificate : NULL);
   const cprox_status checked = arguments_check_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
-  question q = question_create(mover, targets, n, delta, true, options, workspace);
+  query q = query_create(mover, targets, n, delta, true, options, workspace);
   return ask(&q, nearest, each);
 }
 
-cprox_status cprox_collision_all(cprox_mover mover, const cprox_target *targets, size_t n, const cprox_options *options,
-                                 cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {
-  question q = question_create(mover, targets, n, 0.0, false, options, workspace);
+cprox_status cprox_collision_all(cprox_mover mover, const cprox_obstacle *targets, size_t n,
+                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
+                                 cprox_result *each) {
+  query q = query_create(mover, targets, n, 0.0, false, options, workspace);
   return ask(&q, nearest, each);
 }
 
-cprox_status cprox_distance(cprox_mover mover, cprox_target target, const cprox_options *options,
+cprox_status cprox_distance(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                             cprox_workspace *workspace, cprox_result *result) {
   return cprox_distance_all(mover, &target, 1, options, workspace, result, NULL);
 }
 
-cprox_status cprox_tolerance(cprox_mover mover, cprox_target target, double delta, const cprox_options *options,
+cprox_status cprox_tolerance(cprox_mover mover, cprox_obstacle target, double delta, const cprox_options *options,
                              cprox_workspace *workspace, cprox_result *result) {
   return cprox_tolerance_all(mover, &target, 1, delta, options, workspace, result, NULL);
 }
 
-cprox_status cprox_collision(cprox_mover mover, cprox_target target, const cprox_options *options,
+cprox_status cprox_collision(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                              cprox_workspace *workspace, cprox_result *result) {
   return cprox_collision_all(mover, &target, 1, options, workspace, result, NULL);
 }

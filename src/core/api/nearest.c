@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The k closest targets, and all targets within a distance: distance searches that end where a target is out of question. */
+/* The k closest targets, and all targets within a distance: distance searches that end where a target is out of query.
+ * */
 #include "curve_proximity/cprox/clearance.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@ static cprox_status worse(cprox_status a, cprox_status b) {
 }
 
 /* The targets by their nearest ball; part is not used. NULL where memory is out. */
-static candidate *rank_targets(const question *q) {
+static candidate *rank_targets(const query *q) {
   candidate *rank = workspace_reserve(q->workspace, WORKSPACE_RANKING, (q->n + 1) * sizeof *rank);
   if (!rank) return NULL;
   for (size_t i = 0; i < q->n; i++) {
@@ -30,20 +31,20 @@ static candidate *rank_targets(const question *q) {
   return rank;
 }
 
-cprox_status cprox_nearest(cprox_mover mover, const cprox_target *targets, size_t n, size_t k,
+cprox_status cprox_nearest(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k,
                            const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                            size_t *count) {
-  question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   workspace_clear(workspace);
   const arguments_query asked = {"the nearest targets", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
   const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
-  question_ask_whole(&q);
+  query_ask_whole(&q);
   const candidate *rank = rank_targets(&q);
   if (!rank) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of targets");
-  cprox_result *kept = question_reserve_results(&q, n);
+  cprox_result *kept = query_reserve_results(&q, n);
   if (!kept) return CPROX_MEMORY;
 
   size_t found = 0;
@@ -53,29 +54,29 @@ cprox_status cprox_nearest(cprox_mover mover, const cprox_target *targets, size_
     if (rank[i].lower > ceiling) break;
     cprox_result r;
     const size_t target = (size_t)rank[i].target;
-    const cprox_status status = question_answer(&q, target, target + 1, ceiling, &r);
+    const cprox_status status = query_answer(&q, target, target + 1, ceiling, &r);
     if (status < 0) return status;
     trouble = worse(trouble, status);
-    question_rank(kept, &found, k, &r);
+    query_rank(kept, &found, k, &r);
   }
   if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
   *count = found;
-  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
+  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", query_shortfall(trouble));
   return trouble;
 }
 
-cprox_status cprox_within(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
+cprox_status cprox_within(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
                           const cprox_options *options, cprox_workspace *workspace, cprox_result *near, size_t *count) {
   const cprox_status usable = arguments_check_delta(delta, workspace);
   if (usable != CPROX_OK) return usable;
-  question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   workspace_clear(workspace);
   const arguments_query asked = {"the targets within a distance", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
   const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
-  question_ask_whole(&q);
-  cprox_result *kept = question_reserve_results(&q, n);
+  query_ask_whole(&q);
+  cprox_result *kept = query_reserve_results(&q, n);
   if (!kept) return CPROX_MEMORY;
 
   /* a search that ends at the ceiling has a lower bound of at least ceiling - width: above delta */
@@ -85,16 +86,16 @@ cprox_status cprox_within(cprox_mover mover, const cprox_target *targets, size_t
   cprox_status trouble = CPROX_OK;
   for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
     cprox_result r;
-    const cprox_status status = question_answer(&q, i, i + 1, ceiling, &r);
+    const cprox_status status = query_answer(&q, i, i + 1, ceiling, &r);
     if (status < 0) return status;
     if (r.lower > delta) continue;
     trouble = worse(trouble, status);
-    if (r.target_index < 0) r.target_index = (int32_t)i;
+    if (r.obstacle_index < 0) r.obstacle_index = (int32_t)i;
     r.verdict = r.upper <= delta ? CPROX_YES : CPROX_UNDECIDED;
     kept[found++] = r;
   }
   if (found > 0) memcpy(near, kept, found * sizeof *kept);
   *count = found;
-  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
+  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", query_shortfall(trouble));
   return trouble;
 }

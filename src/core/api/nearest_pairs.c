@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The pairs of a robot that come closest: a search for each, which ends where the pair is out of question. */
+/* The pairs of a robot that come closest: a search for each, which ends where the pair is out of query. */
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@
 
 /* Lists the pairs of geometries, or of geometries and targets, that are asked about where none are given; counts them where there is
  * no room. The parts of a geometry stand together. */
-static size_t list_pairs(const question *q, cprox_robot_pair *pairs) {
+static size_t list_pairs(const query *q, cprox_robot_pair *pairs) {
   const cprox_motion *motion = q->mover.motion;
   const cprox_robot *robot = motion->robot;
   size_t n = 0;
@@ -40,7 +40,7 @@ static void insert(cprox_result *nearest, size_t *count, size_t k, const cprox_r
   nearest[i] = *r;
 }
 
-static cprox_status ask_pairs(question *q, const cprox_robot_pair *pairs, size_t n, size_t k, double delta,
+static cprox_status ask_pairs(query *q, const cprox_robot_pair *pairs, size_t n, size_t k, double delta,
                               cprox_result *nearest, size_t *count) {
   /* a search that ends at the ceiling has a lower bound of at least ceiling - width: above delta */
   const double width = fmax(q->options.epsilon, q->options.relative_epsilon * delta);
@@ -55,16 +55,16 @@ static cprox_status ask_pairs(question *q, const cprox_robot_pair *pairs, size_t
     if (status < 0) return status;
     if (r.lower > delta || (*count == k && r.upper >= nearest[k - 1].upper)) continue;
     if (status != CPROX_OK) trouble = status;
-    r.mover_part = pairs[i].geometry, r.target_index = pairs[i].other;
+    r.mover_part = pairs[i].geometry, r.obstacle_index = pairs[i].other;
     insert(nearest, count, k, &r);
   }
   return trouble;
 }
 
-cprox_status cprox_nearest_pairs(cprox_mover mover, const cprox_target *targets, size_t n, size_t k, double delta,
+cprox_status cprox_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k, double delta,
                                  const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                                  size_t *count) {
-  question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+  query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   workspace_clear(workspace);
   const arguments_query asked = {"the nearest pairs", ARGUMENTS_SEARCH};
   const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
@@ -74,7 +74,7 @@ cprox_status cprox_nearest_pairs(cprox_mover mover, const cprox_target *targets,
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one pair");
   if (!(delta >= 0.0))
     return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be 0 or more, or infinity", delta);
-  question_ask_whole(&q);
+  query_ask_whole(&q);
 
   const cprox_robot_pair *pairs = mover.pairs;
   size_t n_pairs = mover.n_pairs;
@@ -85,13 +85,13 @@ cprox_status cprox_nearest_pairs(cprox_mover mover, const cprox_target *targets,
     list_pairs(&q, listed);
     pairs = listed;
   }
-  cprox_result *kept = question_reserve_results(&q, n_pairs);
+  cprox_result *kept = query_reserve_results(&q, n_pairs);
   if (!kept) return CPROX_MEMORY;
   size_t found = 0;
   const cprox_status trouble = ask_pairs(&q, pairs, n_pairs, k, delta, kept, &found);
   if (trouble < 0) return trouble;
   if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
   *count = found;
-  if (trouble > CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
+  if (trouble > CPROX_OK) workspace_fail(workspace, trouble, "%s", query_shortfall(trouble));
   return trouble;
 }

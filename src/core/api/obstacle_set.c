@@ -12,11 +12,11 @@
 #include "solve/time_of_contact.h"
 
 /* The coarser a model, the farther it may reach out of the boxes. */
-static bool boxes_hold(const question *q) {
-  return q->options.max_rung == CPROX_RUNG_MESH;
+static bool boxes_hold(const query *q) {
+  return q->options.max_lod == CPROX_LOD_MESH;
 }
 
-static cprox_status begin(const cprox_set *set, question *q, arguments_query asked) {
+static cprox_status begin(const cprox_set *set, query *q, arguments_query asked) {
   cprox_workspace *workspace = q->workspace;
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
@@ -30,46 +30,46 @@ static cprox_status begin(const cprox_set *set, question *q, arguments_query ask
   q->targets = set->targets;
   q->n = set->n;
   if (q->mover.motion && !q->mover.pairs && boxes_hold(q)) q->set = set;
-  question_ask_whole(q);
+  query_ask_whole(q);
   return CPROX_OK;
 }
 
-static cprox_status out_of_memory(const question *q) {
+static cprox_status out_of_memory(const query *q) {
   return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
 }
 
-static cprox_status answer(const cprox_set *set, question *q, const char *name, cprox_result *result) {
-  const unsigned depths = question_wants_verdict(q) ? 0 : ARGUMENTS_SIGNED;
+static cprox_status answer(const cprox_set *set, query *q, const char *name, cprox_result *result) {
+  const unsigned depths = query_wants_verdict(q) ? 0 : ARGUMENTS_SIGNED;
   const cprox_status begun = begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | depths});
   if (begun != CPROX_OK) return begun;
-  if (q->mover.motion || !boxes_hold(q)) return question_answer(q, 0, q->n, INFINITY, result);
+  if (q->mover.motion || !boxes_hold(q)) return query_answer(q, 0, q->n, INFINITY, result);
   set_walk walk;
   if (!set_walk_begin(&walk, set, q)) return out_of_memory(q);
-  cprox_result all = question_nothing();
+  cprox_result all = query_nothing();
   cprox_status trouble = CPROX_OK;
   double rest = INFINITY;
   for (;;) {
     const bool answered = (!q->is_signed && all.upper <= fmax(q->limit, 0.0)) || trouble == CPROX_STOPPED;
-    const double most = answered ? -INFINITY : question_wants_verdict(q) ? q->limit : all.upper;
+    const double most = answered ? -INFINITY : query_wants_verdict(q) ? q->limit : all.upper;
     uint32_t target;
     if (!set_walk_next(&walk, most, &target, &rest)) return out_of_memory(q);
     if (target == UINT32_MAX || answered) break;
     cprox_result one = {0};
-    const cprox_status status = question_answer(q, target, (size_t)target + 1, all.upper, &one);
+    const cprox_status status = query_answer(q, target, (size_t)target + 1, all.upper, &one);
     if (status < 0) return status;
     if (status != CPROX_OK) trouble = status;
-    question_join(&all, &one);
+    query_join(&all, &one);
   }
   all.lower = fmin(all.lower, q->is_signed ? rest : fmax(rest, 0.0));
-  if (all.rung == CPROX_RUNG_NONE && q->n > 0) all.rung = CPROX_RUNG_SPHERE;
-  question_conclude(q, INFINITY, trouble, &all);
+  if (all.lod == CPROX_LOD_NONE && q->n > 0) all.lod = CPROX_LOD_SPHERE;
+  query_conclude(q, INFINITY, trouble, &all);
   *result = all;
   return all.status;
 }
 
 cprox_status cprox_set_distance(const cprox_set *set, cprox_mover mover, const cprox_options *options,
                                 cprox_workspace *workspace, cprox_result *result) {
-  question q = question_create(mover, NULL, 0, -1.0, false, options, workspace);
+  query q = query_create(mover, NULL, 0, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   return answer(set, &q, "the distance to a set", result);
 }
@@ -78,43 +78,43 @@ cprox_status cprox_set_tolerance(const cprox_set *set, cprox_mover mover, double
                                  cprox_workspace *workspace, cprox_result *result) {
   const cprox_status checked = arguments_check_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
-  question q = question_create(mover, NULL, 0, delta, true, options, workspace);
+  query q = query_create(mover, NULL, 0, delta, true, options, workspace);
   return answer(set, &q, "tolerance of a set", result);
 }
 
 cprox_status cprox_set_collision(const cprox_set *set, cprox_mover mover, const cprox_options *options,
                                  cprox_workspace *workspace, cprox_result *result) {
-  question q = question_create(mover, NULL, 0, 0.0, false, options, workspace);
+  query q = query_create(mover, NULL, 0, 0.0, false, options, workspace);
   return answer(set, &q, "collision with a set", result);
 }
 
-cprox_status cprox_set_first_contact(const cprox_set *set, cprox_mover mover, const cprox_options *options,
-                                     cprox_workspace *workspace, cprox_result *result) {
-  question q = question_create(mover, NULL, 0, 0.0, false, options, workspace);
+cprox_status cprox_set_time_of_contact(const cprox_set *set, cprox_mover mover, const cprox_options *options,
+                                       cprox_workspace *workspace, cprox_result *result) {
+  query q = query_create(mover, NULL, 0, 0.0, false, options, workspace);
   const cprox_status begun =
-      begin(set, &q, (arguments_query){"first contact with a set", ARGUMENTS_STOP | ARGUMENTS_RUNG});
+      begin(set, &q, (arguments_query){"time of contact with a set", ARGUMENTS_STOP | ARGUMENTS_LOD});
   if (begun != CPROX_OK) return begun;
-  if (q.set) return robot_first_contact(&q, result);
+  if (q.set) return robot_time_of_contact(&q, result);
   if (q.mover.motion || !boxes_hold(&q))
-    return cprox_first_contact_all(mover, set->targets, set->n, &q.options, workspace, result);
+    return cprox_time_of_contact_all(mover, set->targets, set->n, &q.options, workspace, result);
   set_walk walk;
   if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
-  first_contact met = first_contact_begin();
+  time_of_contact met = time_of_contact_begin();
   double rest;
   for (;;) {
     uint32_t target;
     if (!set_walk_next(&walk, 0.0, &target, &rest)) return out_of_memory(&q);
     if (target == UINT32_MAX) break;
-    const cprox_status status = first_contact_with(&met, &q, target, (size_t)target + 1);
+    const cprox_status status = time_of_contact_with(&met, &q, target, (size_t)target + 1);
     if (status < 0) return status;
   }
   met.lower = fmin(met.lower, rest);
-  return first_contact_conclude(&met, &q, result);
+  return time_of_contact_conclude(&met, &q, result);
 }
 
 cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k, const cprox_options *options,
                                cprox_workspace *workspace, cprox_result *nearest, size_t *count) {
-  question q = question_create(mover, NULL, 0, -1.0, false, options, workspace);
+  query q = query_create(mover, NULL, 0, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   const arguments_query asked = {"the nearest targets of a set", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
   const cprox_status begun = begin(set, &q, asked);
@@ -123,7 +123,7 @@ cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k
   if (q.mover.motion || !boxes_hold(&q))
     return cprox_nearest(mover, set->targets, set->n, k, &q.options, workspace, nearest, count);
   set_walk walk;
-  cprox_result *kept = question_reserve_results(&q, set->n);
+  cprox_result *kept = query_reserve_results(&q, set->n);
   if (!kept) return CPROX_MEMORY;
   if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
   size_t found = 0;
@@ -135,13 +135,13 @@ cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k
     if (!set_walk_next(&walk, ceiling, &target, &lower)) return out_of_memory(&q);
     if (target == UINT32_MAX) break;
     cprox_result r;
-    const cprox_status status = question_answer(&q, target, (size_t)target + 1, ceiling, &r);
+    const cprox_status status = query_answer(&q, target, (size_t)target + 1, ceiling, &r);
     if (status < 0) return status;
     if (trouble == CPROX_OK) trouble = status;
-    question_rank(kept, &found, k, &r);
+    query_rank(kept, &found, k, &r);
   }
   if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
   *count = found;
-  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
+  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", query_shortfall(trouble));
   return trouble;
 }

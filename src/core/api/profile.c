@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The clearance profile: the same question about one stretch of the curve after the other. */
+/* The clearance profile: the same query about one interval of the curve after the other. */
 #include <math.h>
 
 #include "base/rounding.h"
@@ -8,7 +8,7 @@
 #include "problem/validate.h"
 #include "solve/solve.h"
 
-static cprox_status check_breaks(const question *q, const double *breaks, size_t n, cprox_workspace *workspace) {
+static cprox_status check_breaks(const query *q, const double *breaks, size_t n, cprox_workspace *workspace) {
   const double t0 = q->t0, t1 = q->t1;
   for (size_t i = 0; i <= n; i++) {
     if (!(breaks[i] >= t0 && breaks[i] <= t1))
@@ -49,10 +49,10 @@ static double fraction_of(const cprox_curve *curve, size_t piece, double t) {
 }
 
 /* The least clearance over [t0, t1], a piece at a time. */
-static cprox_status measure(question *q, double t0, double t1, size_t *piece, cprox_stretch *stretch) {
+static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox_profile_interval *interval) {
   const cprox_curve *curve = q->mover.curve;
-  *stretch = (cprox_stretch){
-      .t0 = t0, .t1 = t1, .lower = INFINITY, .upper = INFINITY, .t = t0, .target_index = -1, .mover_part = -1};
+  *interval = (cprox_profile_interval){
+      .t0 = t0, .t1 = t1, .lower = INFINITY, .upper = INFINITY, .t = t0, .obstacle_index = -1, .mover_part = -1};
   cprox_status trouble = CPROX_OK;
   while (*piece + 1 < curve->n_pieces && curve->breaks[*piece + 1] <= t0) (*piece)++;
   for (size_t i = *piece; i < curve->n_pieces && curve->breaks[i] < t1; i++) {
@@ -64,58 +64,58 @@ static cprox_status measure(question *q, double t0, double t1, size_t *piece, cp
     q->t0 = from, q->t1 = to;
     q->reach = reach_of(curve, i, from, to, q->workspace);
     cprox_result r;
-    const cprox_status status = question_answer(q, 0, q->n, stretch->upper, &r);
+    const cprox_status status = query_answer(q, 0, q->n, interval->upper, &r);
     if (status < 0) return status;
     if (status != CPROX_OK) trouble = status;
-    stretch->lower = fmin(stretch->lower, r.lower);
-    if (r.upper < stretch->upper) {
-      stretch->upper = r.upper;
-      stretch->t = fmin(fmax(r.t, t0), t1);
-      stretch->target_index = r.target_index;
-      stretch->mover_part = r.mover_part;
+    interval->lower = fmin(interval->lower, r.lower);
+    if (r.upper < interval->upper) {
+      interval->upper = r.upper;
+      interval->t = fmin(fmax(r.t, t0), t1);
+      interval->obstacle_index = r.obstacle_index;
+      interval->mover_part = r.mover_part;
     }
   }
-  stretch->lower = fmin(stretch->lower, stretch->upper);
+  interval->lower = fmin(interval->lower, interval->upper);
   return trouble;
 }
 
 /* The same of a robot, whose search knows of segments itself. */
-static cprox_status measure_motion(question *q, double t0, double t1, cprox_stretch *stretch) {
+static cprox_status measure_motion(query *q, double t0, double t1, cprox_profile_interval *interval) {
   q->t0 = t0, q->t1 = t1;
   cprox_result r;
-  const cprox_status status = question_answer(q, 0, q->n, INFINITY, &r);
+  const cprox_status status = query_answer(q, 0, q->n, INFINITY, &r);
   if (status < 0) return status;
-  *stretch = (cprox_stretch){.t0 = t0,
-                             .t1 = t1,
-                             .lower = r.lower,
-                             .upper = r.upper,
-                             .t = r.target_index < 0 ? t0 : fmin(fmax(r.t, t0), t1),
-                             .target_index = r.target_index,
-                             .mover_part = r.mover_part};
+  *interval = (cprox_profile_interval){.t0 = t0,
+                                       .t1 = t1,
+                                       .lower = r.lower,
+                                       .upper = r.upper,
+                                       .t = r.obstacle_index < 0 ? t0 : fmin(fmax(r.t, t0), t1),
+                                       .obstacle_index = r.obstacle_index,
+                                       .mover_part = r.mover_part};
   return status;
 }
 
-cprox_status cprox_profile(cprox_mover mover, const cprox_target *targets, size_t n, const double *breaks,
-                           size_t n_stretches, const cprox_options *options, cprox_workspace *workspace,
-                           cprox_stretch *stretches) {
-  question q = question_create(mover, targets, n, -1.0, false, options, workspace);
+cprox_status cprox_profile(cprox_mover mover, const cprox_obstacle *targets, size_t n, const double *breaks,
+                           size_t n_intervals, const cprox_options *options, cprox_workspace *workspace,
+                           cprox_profile_interval *intervals) {
+  query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   workspace_clear(workspace);
   const arguments_query asked = {"a clearance profile", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
   cprox_status status = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
   if (status != CPROX_OK) return status;
-  question_ask_whole(&q);
-  status = check_breaks(&q, breaks, n_stretches, workspace);
+  query_ask_whole(&q);
+  status = check_breaks(&q, breaks, n_intervals, workspace);
   if (status != CPROX_OK) return status;
 
   size_t piece = 0;
   cprox_status trouble = CPROX_OK;
-  for (size_t i = 0; i < n_stretches; i++) {
-    status = mover.motion ? measure_motion(&q, breaks[i], breaks[i + 1], &stretches[i])
-                          : measure(&q, breaks[i], breaks[i + 1], &piece, &stretches[i]);
+  for (size_t i = 0; i < n_intervals; i++) {
+    status = mover.motion ? measure_motion(&q, breaks[i], breaks[i + 1], &intervals[i])
+                          : measure(&q, breaks[i], breaks[i + 1], &piece, &intervals[i]);
     if (status < 0) return status;
     if (status != CPROX_OK) trouble = status;
   }
-  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", question_shortfall(trouble));
+  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", query_shortfall(trouble));
   return trouble;
 }

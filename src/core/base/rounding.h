@@ -15,7 +15,7 @@
 /* A computed support value of a convex core in its own frame, for a direction of norm 1: per unit of its scale. */
 #define ROUND_SUPPORT 8.0
 
-/* No length that takes part in a question is longer [m]: the searches multiply up to four of them. */
+/* No length that takes part in a query is longer [m]: the searches multiply up to four of them. */
 #define LENGTH_MOST 1e60
 
 #endif

@@ -21,7 +21,7 @@ void cprox_workspace_free(cprox_workspace *workspace) {
   free(workspace);
 }
 
-const char *cprox_workspace_reason(const cprox_workspace *workspace) {
+const char *cprox_workspace_error(const cprox_workspace *workspace) {
   return workspace ? workspace->reason : "";
 }
 

@@ -18,41 +18,41 @@ static cprox_status report_hit(const batch_run *run, const batch_look *look, cpr
   const batch_hit *hit = &look->hit;
   const candidate *part = &run->batch->parts[hit->part];
   const double *breaks = run->q.mover.curve->breaks + hit->piece, radius = run->q.mover.radius;
-  const double padding = run->batch->cores[hit->part].padding;
+  const double margin = run->batch->cores[hit->part].margin;
   *r = (cprox_result){.lower = lesser(greater(look->beyond, 0.0), hit->upper),
                       .upper = hit->upper,
                       .t = breaks[0] + hit->s * (breaks[1] - breaks[0]),
-                      .t_target = NAN,
-                      .on_mover = hit->point,
-                      .on_target = hit->point,
-                      .target_index = part->target,
-                      .target_part = part->part,
-                      .rung = look->rung};
+                      .t_obstacle = NAN,
+                      .witness_mover = hit->point,
+                      .witness_obstacle = hit->point,
+                      .obstacle_index = part->target,
+                      .obstacle_part = part->part,
+                      .lod = look->lod};
 
   /* the nearest points of the padded part and the mover, or one of both */
-  if (hit->distance > padding) {
+  if (hit->distance > margin) {
     const vec3 between = vec_sub(hit->point, hit->surface);
     const double length = vec_norm(between);
     const vec3 normal = length > 0.0 ? vec_scale(1.0 / length, between) : vec(0, 0, 0);
-    r->on_mover = r->on_target = vec_axpy(hit->surface, padding, normal);
-    if (hit->distance > padding + radius) {
+    r->witness_mover = r->witness_obstacle = vec_axpy(hit->surface, margin, normal);
+    if (hit->distance > margin + radius) {
       r->normal = normal;
-      r->on_mover = vec_axpy(hit->point, -radius, normal);
+      r->witness_mover = vec_axpy(hit->point, -radius, normal);
     }
   }
-  r->verdict = question_verdict(&run->q, r);
+  r->verdict = query_verdict(&run->q, r);
   return CPROX_OK;
 }
 
 /* The union of what is near. */
 static cprox_status search_near(const batch_run *run, const batch_look *look, cprox_result *all) {
-  const question *q = &run->q;
+  const query *q = &run->q;
   cprox_status trouble = CPROX_OK;
-  *all = question_nothing();
+  *all = query_nothing();
   double rest = look->beyond; /* the least bound of what was not searched */
   for (size_t i = 0; i < look->n; i++) {
     const candidate *c = &run->near[i];
-    const bool too_far = !question_wants_verdict(q) && c->lower > all->upper;
+    const bool too_far = !query_wants_verdict(q) && c->lower > all->upper;
     if (too_far || all->upper <= fmax(q->limit, 0.0) || trouble == CPROX_STOPPED) {
       rest = fmin(rest, c->lower);
       continue;
@@ -61,18 +61,18 @@ static cprox_status search_near(const batch_run *run, const batch_look *look, cp
     const cprox_status status = candidate_search(q, c, all->upper, &one);
     if (status < 0) return status;
     if (status != CPROX_OK) trouble = status;
-    question_join(all, &one);
+    query_join(all, &one);
   }
-  if (look->n == 0 && run->batch->n > 0) all->rung = look->rung;
+  if (look->n == 0 && run->batch->n > 0) all->lod = look->lod;
   all->lower = fmin(all->lower, fmax(rest, 0.0));
-  return question_conclude(q, INFINITY, trouble, all);
+  return query_conclude(q, INFINITY, trouble, all);
 }
 
 static cprox_status answer_fast(batch_run *run, cprox_result *r) {
   batch_look look;
   batch_look_around(run, &look);
   if (look.is_hit) return report_hit(run, &look, r);
-  question_ask_whole(&run->q);
+  query_ask_whole(&run->q);
   run->degree = SIZE_MAX; /* a search has bases of its own */
   return search_near(run, &look, r);
 }
@@ -82,21 +82,21 @@ static cprox_status answer_fast(batch_run *run, cprox_result *r) {
 /* The short way is for points and balls along curves with control points. */
 static bool may_be_fast(const batch_run *run, const cprox_mover *mover) {
   return mover->curve && !mover->curve->arcs && !mover->body && !mover->motion && mover->radius >= 0.0 &&
-         mover->radius <= LENGTH_MOST && curve_is_in_reach(mover->curve) && !run->batch->on_clock &&
-         run->q.options.max_rung == CPROX_RUNG_MESH && !run->q.options.signed_distance && !mover->pairs &&
+         mover->radius <= LENGTH_MOST && curve_is_in_reach(mover->curve) && !run->batch->synchronized &&
+         run->q.options.max_lod == CPROX_LOD_MESH && !run->q.options.signed_distance && !mover->pairs &&
          mover->n_pairs == 0 && !mover->self;
 }
 
 static cprox_status answer_one(batch_run *run, const cprox_mover *mover, cprox_result *r) {
-  const question *q = &run->q;
-  const cprox_target *targets = run->batch->targets;
+  const query *q = &run->q;
+  const cprox_obstacle *targets = run->batch->targets;
   const size_t n = run->batch->n;
   workspace_clear(q->workspace);
   if (may_be_fast(run, mover)) {
     run->q.mover = *mover;
     return answer_fast(run, r);
   }
-  if (!question_wants_verdict(q)) return cprox_distance_all(*mover, targets, n, &q->options, q->workspace, r, NULL);
+  if (!query_wants_verdict(q)) return cprox_distance_all(*mover, targets, n, &q->options, q->workspace, r, NULL);
   if (!q->farther_is_yes) return cprox_collision_all(*mover, targets, n, &q->options, q->workspace, r, NULL);
   return cprox_tolerance_all(*mover, targets, n, q->limit, &q->options, q->workspace, r, NULL);
 }
@@ -111,7 +111,7 @@ static cprox_status check_call(const batch_run *run, const cprox_mover *movers, 
     return workspace_fail(workspace, CPROX_INVALID, "the range begins at mover %zu and ends at %zu", first, last);
   if (first < last && !movers) return workspace_fail(workspace, CPROX_INVALID, "movers is NULL");
   if (first < last && !results) return workspace_fail(workspace, CPROX_INVALID, "results is NULL");
-  const unsigned depths = question_wants_verdict(&run->q) ? 0 : ARGUMENTS_SIGNED;
+  const unsigned depths = query_wants_verdict(&run->q) ? 0 : ARGUMENTS_SIGNED;
   return arguments_check_options(&run->q.options, (arguments_query){"a batch", ARGUMENTS_SEARCH | depths}, workspace);
 }
 
@@ -125,7 +125,7 @@ static bool reserve(batch_run *run) {
   return run->lower && run->near && run->open;
 }
 
-static cprox_status answer_range(question q, const cprox_batch *batch, const cprox_mover *movers, size_t first,
+static cprox_status answer_range(query q, const cprox_batch *batch, const cprox_mover *movers, size_t first,
                                  size_t last, cprox_result *results) {
   batch_run run = {.batch = batch, .q = q, .degree = SIZE_MAX};
   const cprox_status checked = check_call(&run, movers, first, last, results);
@@ -141,12 +141,12 @@ static cprox_status answer_range(question q, const cprox_batch *batch, const cpr
     cprox_result *r = &results[i];
     const cprox_status status = answer_one(&run, &movers[i], r);
     if (status < 0) {
-      *r = question_nothing();
+      *r = query_nothing();
       r->status = status, r->lower = 0.0, r->verdict = CPROX_UNDECIDED;
     }
     if (worst >= 0 && (status < 0 || status > worst)) {
       worst = status;
-      snprintf(reason, sizeof reason, "mover %zu: %s", i, cprox_workspace_reason(q.workspace));
+      snprintf(reason, sizeof reason, "mover %zu: %s", i, cprox_workspace_error(q.workspace));
     }
   }
   workspace_clear(q.workspace);
@@ -155,7 +155,7 @@ static cprox_status answer_range(question q, const cprox_batch *batch, const cpr
 
 cprox_status cprox_batch_distance(const cprox_batch *batch, const cprox_mover *movers, size_t first, size_t last,
                                   const cprox_options *options, cprox_workspace *workspace, cprox_result *results) {
-  const question q = question_create((cprox_mover){0}, NULL, 0, -1.0, false, options, workspace);
+  const query q = query_create((cprox_mover){0}, NULL, 0, -1.0, false, options, workspace);
   return answer_range(q, batch, movers, first, last, results);
 }
 
@@ -165,12 +165,12 @@ cprox_status cprox_batch_tolerance(const cprox_batch *batch, const cprox_mover *
   if (!workspace) return CPROX_INVALID;
   const cprox_status checked = arguments_check_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
-  const question q = question_create((cprox_mover){0}, NULL, 0, delta, true, options, workspace);
+  const query q = query_create((cprox_mover){0}, NULL, 0, delta, true, options, workspace);
   return answer_range(q, batch, movers, first, last, results);
 }
 
 cprox_status cprox_batch_collision(const cprox_batch *batch, const cprox_mover *movers, size_t first, size_t last,
                                    const cprox_options *options, cprox_workspace *workspace, cprox_result *results) {
-  const question q = question_create((cprox_mover){0}, NULL, 0, 0.0, false, options, workspace);
+  const query q = query_create((cprox_mover){0}, NULL, 0, 0.0, false, options, workspace);
   return answer_range(q, batch, movers, first, last, results);
 }

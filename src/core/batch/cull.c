@@ -22,7 +22,7 @@ void batch_open_begin(batch_run *run) {
   batch_points_join(run);
   for (size_t i = 0; i < run->q.mover.curve->n_pieces; i++) {
     lanes_boxes(&run->chords[i], run->boxes + run->n_boxes);
-    run->n_boxes += STRETCHES;
+    run->n_boxes += PACKET_INTERVALS;
   }
   const double radius = run->q.mover.radius + run->beside;
   lanes_block_bounds(&batch->blocks, run->boxes, run->n_boxes, radius, run->slack, run->block_lower);

@@ -9,7 +9,7 @@
 typedef struct look {
   batch_run *run;
   const batch_core *core;
-  double margin; /* padding and the mover's radius */
+  double margin; /* margin and the mover's radius */
   double slack;  /* rounding */
   double limit;  /* points that are no farther are hits; < 0: none are looked for */
 } look;
@@ -94,7 +94,7 @@ bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c,
   enum { MOST_CUT = 6 }; /* a search is faster than more of these */
   const batch_core *core = &run->batch->cores[part];
   const uint32_t pieces = (uint32_t)run->q.mover.curve->n_pieces;
-  look l = {.run = run, .core = core, .margin = core->padding + run->q.mover.radius, .limit = -1.0};
+  look l = {.run = run, .core = core, .margin = core->margin + run->q.mover.radius, .limit = -1.0};
   l.slack = slack_of(run, core, l.margin);
   if (core->is_brick) l.limit = greater(run->q.limit, 0.0);
 
@@ -114,7 +114,7 @@ bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c,
   c->seed_piece = piece;
   c->seed_s = lesser(greater(s, 1e-3), 1.0 - 1e-3);
   *upper = core->is_brick ? distance + run->beside - l.margin + l.slack : INFINITY;
-  const double settles = question_wants_verdict(&run->q) ? most : 0.0; /* of distances only contact is */
+  const double settles = query_wants_verdict(&run->q) ? most : 0.0; /* of distances only contact is */
   if (c->lower > lesser(most, settles)) return false;
 
   /* the nearest chord's point, then each chord that is not too far */

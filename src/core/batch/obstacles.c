@@ -120,7 +120,7 @@ static void lay_brick(const placed_pair *p, batch_core *core) {
 
 /* ---- the batch ---------------------------------------------------------------------------------------------------------- */
 
-static size_t parts_of(const cprox_target *target) {
+static size_t parts_of(const cprox_obstacle *target) {
   return target->body && target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
 }
 
@@ -157,26 +157,26 @@ static cprox_batch *allocate(size_t n_targets, size_t n_parts) {
 }
 
 /* The balls of one part. What is on the mover's clock has none that would hold for every mover. */
-static void describe(cprox_batch *batch, const question *q, size_t k) {
+static void describe(cprox_batch *batch, const query *q, size_t k) {
   const candidate *c = &batch->parts[k];
-  const cprox_target *target = &batch->targets[c->target];
-  if (target->on_clock) return;
+  const cprox_obstacle *target = &batch->targets[c->target];
+  if (target->synchronized) return;
   double placing;
   const candidate_ball round = candidate_bounding_ball(q, c, &placing);
   batch->balls.x[k] = round.centre.x;
   batch->balls.y[k] = round.centre.y;
   batch->balls.z[k] = round.centre.z;
-  batch->balls.reach[k] = round.radius + target->padding;
+  batch->balls.reach[k] = round.radius + target->margin;
   batch->balls.sizes[k] = vec_norm(round.centre) + placing + batch->balls.reach[k];
   const placed_pair placed = placed_pair_resolve(q, c);
   batch->cores[k] = core_of(&placed, round);
   batch->cores[k].plane = target->pose.position.z;
-  batch->cores[k].padding = target->padding;
+  batch->cores[k].margin = target->margin;
   lay_brick(&placed, &batch->cores[k]);
 }
 
 /* All parts, those that stand together one after the other; what is everywhere comes last. False where memory is out. */
-static bool list_parts(cprox_batch *batch, const question *q) {
+static bool list_parts(cprox_batch *batch, const query *q) {
   batch_place *places = calloc(batch->balls.n + 1, sizeof *places);
   if (!places) return false;
   size_t bounded = 0, n = 0;
@@ -198,7 +198,7 @@ static bool list_parts(cprox_batch *batch, const question *q) {
   return true;
 }
 
-cprox_status cprox_batch_create(const cprox_target *targets, size_t n, cprox_workspace *workspace,
+cprox_status cprox_batch_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
                                 cprox_batch **batch) {
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
@@ -211,8 +211,8 @@ cprox_status cprox_batch_create(const cprox_target *targets, size_t n, cprox_wor
   cprox_batch *made = allocate(n, n_parts);
   if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", n);
   if (n > 0) memcpy(made->targets, targets, n * sizeof *targets);
-  for (size_t i = 0; i < n; i++) made->on_clock = made->on_clock || targets[i].on_clock;
-  const question q = {.targets = made->targets, .n = n};
+  for (size_t i = 0; i < n; i++) made->synchronized = made->synchronized || targets[i].synchronized;
+  const query q = {.targets = made->targets, .n = n};
   if (!list_parts(made, &q)) {
     cprox_batch_free(made);
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", n);

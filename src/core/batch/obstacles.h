@@ -7,14 +7,15 @@
 #include "curve_proximity/cprox/batch.h"
 #include "problem/candidates.h"
 
-/* A point in a target or near it, in the world, and balls about it: one inside the target, one round it. Padding is left out. */
+/* A point in a target or near it, in the world, and balls about it: one inside the target, one round it. Margin is left
+ * out. */
 typedef struct batch_core {
   vec3 centre;
   double inner; /* rounding included; < 0: there is no such ball */
   double outer;
-  bool flat;      /* the inner ball is a disc in the plane of constant z: it tells of curves in that plane only */
-  double plane;   /* this */
-  double padding; /* of the target, which the radii leave out */
+  bool flat;     /* the inner ball is a disc in the plane of constant z: it tells of curves in that plane only */
+  double plane;  /* this */
+  double margin; /* of the target, which the radii leave out */
 
   /* a box round the part, in the frame of its shape */
   bool has_brick, is_brick; /* there is one; the part is that box */
@@ -24,9 +25,9 @@ typedef struct batch_core {
 } batch_core;
 
 struct cprox_batch {
-  cprox_target *targets;
+  cprox_obstacle *targets;
   size_t n;
-  bool on_clock; /* some of them are: where they are depends on the mover */
+  bool synchronized; /* some of them are: where they are depends on the mover */
   /* one for each target that is a curve, one for each convex part of a body */
   candidate *parts;
   batch_core *cores;

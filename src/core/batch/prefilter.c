@@ -6,7 +6,7 @@
 #include "base/rounding.h"
 
 static double margin_of(const batch_run *run, size_t part) {
-  return run->batch->cores[part].padding + run->q.mover.radius;
+  return run->batch->cores[part].margin + run->q.mover.radius;
 }
 
 /* Placing the centre of a compound's part costs (26 + 16) u of its lengths, all of which are in the part's sizes, the rest 18 u. */
@@ -109,7 +109,7 @@ static double look_at(batch_run *run, candidate *c, size_t part, double most, ba
   if (run->batch->cores[part].has_brick && !(c->lower > most)) {
     look->is_hit = batch_look_at_brick(run, part, most, c, &by_brick, &look->hit);
     look->hit.part = part;
-    look->rung = CPROX_RUNG_HULL;
+    look->lod = CPROX_LOD_HULL;
   }
   return lesser(upper, by_brick);
 }
@@ -150,13 +150,13 @@ static void consider(batch_run *run, size_t k, double most, double *least_upper,
 }
 
 void batch_look_around(batch_run *run, batch_look *look) {
-  const question *q = &run->q;
-  const bool decides = question_wants_verdict(q);
+  const query *q = &run->q;
+  const bool decides = query_wants_verdict(q);
   const double most = decides ? q->limit : INFINITY;
   double least_upper = INFINITY;
   size_t promising = 0;
   look->n = 0;
-  look->rung = CPROX_RUNG_SPHERE;
+  look->lod = CPROX_LOD_SPHERE;
   run->short_enough = q->mover.curve->n_pieces <= BATCH_MOST_PIECES;
   run->measured = run->joined = false;
   run->cut = 0;

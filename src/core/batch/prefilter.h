@@ -12,18 +12,18 @@ enum {
 /* One call, and the mover that it is at. */
 typedef struct batch_run {
   const cprox_batch *batch;
-  question q;
+  query q;
   double *block_lower; /* of each block of parts, */
   double *lower;       /* of each part's ball, padded; not known in blocks that are beyond what matters */
   uint32_t *open;      /* the n_open parts whose bound does not settle them */
   size_t n_open;
-  bool short_enough;                              /* for points and chords */
-  lanes_box boxes[BATCH_MOST_PIECES * STRETCHES]; /* round stretches of the curve's chords: n_boxes, */
-  size_t n_boxes;                                 /* or 0, where the curve's capsule has to do */
-  candidate *near;                                /* what may matter to the mover */
-  const double *basis;                            /* of the degree, */
-  size_t degree;                                  /* this one; SIZE_MAX: of none */
-  bool measured;                                  /* `slack` is known */
+  bool short_enough;                                     /* for points and chords */
+  lanes_box boxes[BATCH_MOST_PIECES * PACKET_INTERVALS]; /* round intervals of the curve's chords: n_boxes, */
+  size_t n_boxes;                                        /* or 0, where the curve's capsule has to do */
+  candidate *near;                                       /* what may matter to the mover */
+  const double *basis;                                   /* of the degree, */
+  size_t degree;                                         /* this one; SIZE_MAX: of none */
+  bool measured;                                         /* `slack` is known */
   uint32_t cut; /* which halves of the pieces have points at equal parameters below: */
   bool joined;  /* and the chords between all of them are known */
   lanes_chords chords[BATCH_MOST_PIECES];
@@ -38,16 +38,16 @@ typedef struct batch_hit {
   uint32_t piece; /* the curve's point: at s of this, */
   double s;
   vec3 point;      /* here, */
-  double distance; /* so far from the part without its padding, 0 or less inside, */
+  double distance; /* so far from the part without its margin, 0 or less inside, */
   vec3 surface;    /* of which this point is that near */
 } batch_hit;
 
 typedef struct batch_look {
-  bool is_hit; /* that settles it: of what is below `beyond` and `rung` are known */
+  bool is_hit; /* that settles it: of what is below `beyond` and `level of detail` are known */
   batch_hit hit;
-  size_t n;        /* candidates in `near`: the one of the least upper bound first, the others nearest first */
-  double beyond;   /* the least lower bound of all others */
-  cprox_rung rung; /* what that took */
+  size_t n;      /* candidates in `near`: the one of the least upper bound first, the others nearest first */
+  double beyond; /* the least lower bound of all others */
+  cprox_lod lod; /* what that took */
 } batch_look;
 
 /* Looks at all parts from the curve of run->q.mover, a point or a ball with control points. Fills *look. */

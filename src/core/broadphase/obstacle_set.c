@@ -14,14 +14,14 @@
 #include "shape/body.h"
 
 /* The box of a target in the world, rounding included. False where it has none. */
-static bool box_of(const cprox_target *target, vec3 *low, vec3 *high) {
-  if (target->on_clock) return false;
-  const question q = {.targets = target, .n = 1};
+static bool box_of(const cprox_obstacle *target, vec3 *low, vec3 *high) {
+  if (target->synchronized) return false;
+  const query q = {.targets = target, .n = 1};
   const candidate c = {0};
   if (!target->body) {
     double sizes;
     const candidate_ball round = candidate_bounding_ball(&q, &c, &sizes);
-    const double r = round.radius + target->padding + 64.0 * ROUND_U * sizes;
+    const double r = round.radius + target->margin + 64.0 * ROUND_U * sizes;
     *low = vec_sub(round.centre, vec(r, r, r));
     *high = vec_add(round.centre, vec(r, r, r));
     return isfinite(r);
@@ -30,28 +30,28 @@ static bool box_of(const cprox_target *target, vec3 *low, vec3 *high) {
   if (!isfinite(body->ball_radius)) return false;
   const frame f = frame_create(&target->pose, vec(0, 0, 0));
   double reach[6];
-  const double sizes = vec_norm(body->ball_centre) + body->ball_radius + vec_norm(f.position) + target->padding;
+  const double sizes = vec_norm(body->ball_centre) + body->ball_radius + vec_norm(f.position) + target->margin;
   for (int k = 0; k < 6; k++) {
     const double sign = k < 3 ? 1.0 : -1.0;
     const vec3 d = vec(k % 3 == 0 ? sign : 0.0, k % 3 == 1 ? sign : 0.0, k % 3 == 2 ? sign : 0.0);
     const double h = cprox_body_support(body, frame_turn_to_local(&f, d), NULL);
-    reach[k] = h + vec_dot(d, f.position) + target->padding + body->shape.slack + 256.0 * ROUND_U * sizes;
+    reach[k] = h + vec_dot(d, f.position) + target->margin + body->shape.slack + 256.0 * ROUND_U * sizes;
   }
   *high = vec(reach[0], reach[1], reach[2]);
   *low = vec(-reach[3], -reach[4], -reach[5]);
   return vec_finite(*low) && vec_finite(*high);
 }
 
-static bool has_elements(const cprox_target *target) {
-  return target->body && model_has_tree(target->body, CPROX_RUNG_MESH);
+static bool has_elements(const cprox_obstacle *target) {
+  return target->body && model_has_tree(target->body, CPROX_LOD_MESH);
 }
 
 /* Boxes of targets that have one, the others apart. */
 static void sort_targets(cprox_set *set) {
   vec3 low = vec(INFINITY, INFINITY, INFINITY), high = vec(-INFINITY, -INFINITY, -INFINITY);
   for (size_t i = 0; i < set->n; i++) {
-    const cprox_target *target = &set->targets[i];
-    set->has_clock = set->has_clock || target->on_clock;
+    const cprox_obstacle *target = &set->targets[i];
+    set->has_clock = set->has_clock || target->synchronized;
     set->has_elements = set->has_elements || has_elements(target);
     set->has_curves = set->has_curves || !target->body;
     set->has_solids = set->has_solids || (target->body && part_model_is_solid(target->body));
@@ -83,7 +83,7 @@ static cprox_set *allocate(size_t n) {
   return NULL;
 }
 
-cprox_status cprox_set_create(const cprox_target *targets, size_t n, cprox_workspace *workspace, cprox_set **set) {
+cprox_status cprox_set_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace, cprox_set **set) {
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
   if (!set) return workspace_fail(workspace, CPROX_INVALID, "set is NULL: nowhere to put the handle");

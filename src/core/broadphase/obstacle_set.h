@@ -8,9 +8,9 @@
 #include "problem/candidates.h"
 
 struct cprox_set {
-  cprox_target *targets;
+  cprox_obstacle *targets;
   size_t n;
-  tree *boxes;         /* round the targets, padding included; NULL where none has bounds */
+  tree *boxes;         /* round the targets, margin included; NULL where none has bounds */
   vec3 *low, *high;    /* of the elements of the tree, about the centre */
   uint32_t *of_box;    /* whose box that is */
   uint32_t *unbounded; /* targets without a box */
@@ -28,15 +28,15 @@ typedef struct set_entry {
 
 typedef struct set_walk {
   const cprox_set *set;
-  const question *q;
-  tree_stretch stretch;
+  const query *q;
+  tree_segment segment;
   double offset, slack;
   size_t unbounded; /* how many of those were given out */
   size_t count;     /* of the heap in the workspace */
 } set_walk;
 
 /* False where memory is out, here as there. q has been asked about its whole curve. */
-bool set_walk_begin(set_walk *w, const cprox_set *set, const question *q);
+bool set_walk_begin(set_walk *w, const cprox_set *set, const query *q);
 
 /* The next target, if its lower bound is at most `most`; else *target is UINT32_MAX and *lower a bound of all that are left. */
 bool set_walk_next(set_walk *w, double most, uint32_t *target, double *lower);

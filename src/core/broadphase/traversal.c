@@ -65,17 +65,17 @@ static double capsules_to_box(const cprox_curve *curve, vec3 centre, vec3 low, v
 }
 
 /* How far what rides the curve reaches from it. */
-static double carried_reach(const question *q) {
+static double carried_reach(const query *q) {
   const cprox_body *body = q->mover.body;
   return q->mover.radius + (body ? vec_norm(body->ball_centre) + body->ball_radius : 0.0);
 }
 
-bool set_walk_begin(set_walk *w, const cprox_set *set, const question *q) {
+bool set_walk_begin(set_walk *w, const cprox_set *set, const query *q) {
   *w = (set_walk){.set = set, .q = q, .offset = carried_reach(q)};
   if (!set->boxes) return true;
   const cprox_curve *curve = q->mover.curve;
   const curve_capsule *all = &q->reach;
-  tree_stretch *s = &w->stretch;
+  tree_segment *s = &w->segment;
   s->x = vec_sub(vec_lerp(all->a, all->b, 0.5), set->centre);
   const size_t points = curve->n_pieces * (curve->degree + 1);
   const bool few = !curve->arcs && points <= TREE_MOST_POINTS;
@@ -99,7 +99,7 @@ bool set_walk_begin(set_walk *w, const cprox_set *set, const question *q) {
 static bool open_node(set_walk *w, const set_entry *entry) {
   const tree *t = w->set->boxes;
   tree_lanes lanes;
-  tree_measure(t, entry->at, TREE_ALL_LANES, &w->stretch, &lanes);
+  tree_measure(t, entry->at, TREE_ALL_LANES, &w->segment, &lanes);
   const bool leaf = (entry->at & TREE_LEAF) != 0;
   const uint32_t *ids = leaf ? t->ids + (size_t)(entry->at & ~TREE_LEAF) * TREE_LANES : NULL;
   for (uint32_t l = 0; l < TREE_LANES; l++) {

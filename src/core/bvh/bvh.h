@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Trees of boxes, eight lanes wide, over triangles, points or boxes: which element is nearest to a point, which ones matter to a
- * stretch of curve or to a convex shape. What an element means (a face, a ball, an occupied cell, a whole body) is the caller's
- * affair. doc/non-convex.md derives the bounds.
+ * segment of curve or to a convex shape. What an element means (a face, a ball, an occupied cell, a whole body) is the
+ * caller's affair. doc/non-convex.md derives the bounds.
  *
  * The layout is the same on every machine; the loops over lanes are compiled for several instruction sets and chosen when a tree
  * is made. They do the same operations in the same order, so that every machine gives the same answer. */
@@ -129,7 +129,8 @@ typedef struct tree_near {
 
 void tree_element_near(const tree *t, tree_place at, vec3 x, tree_near *near);
 
-/* ---- questions -------------------------------------------------------------------------------------------------------- */
+/* ---- queries --------------------------------------------------------------------------------------------------------
+ * */
 
 /* The element nearest to x. Elements at `bound` or farther are of no interest: infinity, where all are. */
 typedef struct tree_hit {
@@ -141,8 +142,8 @@ typedef struct tree_hit {
 
 tree_hit tree_nearest(const tree *t, vec3 x, double bound);
 
-/* A stretch of curve as the tree sees it: the hull of points, thickened by a radius. */
-typedef struct tree_stretch {
+/* A segment of curve as the tree sees it: the hull of points, thickened by a radius. */
+typedef struct tree_segment {
   vec3 x;                        /* where own normals are taken */
   size_t n;                      /* 1 … TREE_MOST_POINTS */
   double p[3][TREE_MOST_POINTS]; /* the points less x */
@@ -152,22 +153,22 @@ typedef struct tree_stretch {
   double along;  /* min normal·p, less the radius */
   bool stepping; /* x is the first point, and slopes are wanted */
   double beyond; /* lanes that are farther are of no interest: infinity, where all are */
-} tree_stretch;
+} tree_segment;
 
-/* What one node or pack says of a stretch, lane by lane. */
+/* What one node or pack says of a segment, lane by lane. */
 typedef struct tree_lanes {
-  _Alignas(64) double bound[TREE_LANES]; /* the lane is at least so far from the stretch */
+  _Alignas(64) double bound[TREE_LANES]; /* the lane is at least so far from the segment */
   double distance2[TREE_LANES];          /* squared, from x: attained by elements, a lower bound for boxes */
   double width2[TREE_LANES];             /* of a node's boxes: their diagonal, squared */
   double first[TREE_LANES];              /* stepping: the bound at the first point by the lane's own normal, */
-  double slope[TREE_LANES];              /* and how fast it can fall, per stretch */
+  double slope[TREE_LANES];              /* and how fast it can fall, per segment */
   uint32_t live;                         /* wanted lanes that are not beyond what is of interest, */
   double rest;                           /* and the least bound of those that are */
 } tree_lanes;
 
 /* `at` is a node, or a pack with TREE_LEAF; `wanted` has a bit for each lane that matters. Of a pack of which none comes within `beyond`
  * only the bounds are filled in, and distances are infinite. */
-void tree_measure(const tree *t, uint32_t at, uint32_t wanted, const tree_stretch *stretch, tree_lanes *lanes);
+void tree_measure(const tree *t, uint32_t at, uint32_t wanted, const tree_segment *segment, tree_lanes *lanes);
 
 /* Elements that could come nearer than `bound` to a convex shape in a ball, nearest first. The visitor measures one and may lower
  * the bound and tell a normal that the shape lies behind. */

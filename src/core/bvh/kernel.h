@@ -185,11 +185,11 @@ TREE_TARGET static inline void raise_by_slabs(const tree *t, uint32_t at, vec3 x
 }
 
 /* (min n·p - support)/|n| for each lane's own n; 0 where n has no direction. */
-TREE_TARGET static inline void bound_by_own(const normals *near, const tree_stretch *stretch, tree_lanes *lanes) {
+TREE_TARGET static inline void bound_by_own(const normals *near, const tree_segment *segment, tree_lanes *lanes) {
   _Alignas(64) double least[TREE_LANES];
   for (int l = 0; l < TREE_LANES; l++) least[l] = INFINITY;
-  for (size_t k = 0; k < stretch->n; k++) {
-    const double px = stretch->p[0][k], py = stretch->p[1][k], pz = stretch->p[2][k];
+  for (size_t k = 0; k < segment->n; k++) {
+    const double px = segment->p[0][k], py = segment->p[1][k], pz = segment->p[2][k];
 #pragma omp simd
     for (int l = 0; l < TREE_LANES; l++) {
       const double g = near->n[0][l] * px + near->n[1][l] * py + near->n[2][l] * pz;
@@ -200,19 +200,19 @@ TREE_TARGET static inline void bound_by_own(const normals *near, const tree_stre
   for (int l = 0; l < TREE_LANES; l++) {
     const double n2 = near->n[0][l] * near->n[0][l] + near->n[1][l] * near->n[1][l] + near->n[2][l] * near->n[2][l];
     const double length = sqrt(n2 > LEAST_LENGTH2 ? n2 : LEAST_LENGTH2);
-    const double bound = (least[l] - near->support[l]) / length - stretch->radius;
-    lanes->bound[l] = n2 > LEAST_LENGTH2 ? bound : -stretch->radius;
+    const double bound = (least[l] - near->support[l]) / length - segment->radius;
+    lanes->bound[l] = n2 > LEAST_LENGTH2 ? bound : -segment->radius;
     lanes->distance2[l] = near->d2[l];
   }
 }
 
 /* The same normals at the first point, and the line through there below all others. */
-TREE_TARGET static inline void find_slopes(const normals *near, const tree_stretch *stretch, tree_lanes *lanes) {
+TREE_TARGET static inline void find_slopes(const normals *near, const tree_segment *segment, tree_lanes *lanes) {
   _Alignas(64) double slope[TREE_LANES] = {0};
-  const double degree = (double)(stretch->n - 1);
-  for (size_t k = 1; k < stretch->n; k++) {
+  const double degree = (double)(segment->n - 1);
+  for (size_t k = 1; k < segment->n; k++) {
     const double f = degree / (double)k;
-    const double px = f * stretch->p[0][k], py = f * stretch->p[1][k], pz = f * stretch->p[2][k];
+    const double px = f * segment->p[0][k], py = f * segment->p[1][k], pz = f * segment->p[2][k];
 #pragma omp simd
     for (int l = 0; l < TREE_LANES; l++) {
       const double g = near->n[0][l] * px + near->n[1][l] * py + near->n[2][l] * pz;
@@ -234,47 +234,47 @@ TREE_TARGET static inline void raise(tree_lanes *lanes, const double bound[TREE_
 }
 
 TREE_TARGET static inline void bound_boxes_by_known(const double low[3][TREE_LANES], const double high[3][TREE_LANES],
-                                                    const tree_stretch *stretch, tree_lanes *lanes) {
+                                                    const tree_segment *segment, tree_lanes *lanes) {
   _Alignas(64) double bound[TREE_LANES];
-  const vec3 n = stretch->normal, x = stretch->x;
+  const vec3 n = segment->normal, x = segment->x;
   const double *sx = n.x > 0.0 ? high[0] : low[0], *sy = n.y > 0.0 ? high[1] : low[1],
                *sz = n.z > 0.0 ? high[2] : low[2];
 #pragma omp simd
   for (int l = 0; l < TREE_LANES; l++)
-    bound[l] = stretch->along - (n.x * (sx[l] - x.x) + n.y * (sy[l] - x.y) + n.z * (sz[l] - x.z));
+    bound[l] = segment->along - (n.x * (sx[l] - x.x) + n.y * (sy[l] - x.y) + n.z * (sz[l] - x.z));
   raise(lanes, bound);
 }
 
-TREE_TARGET static inline void bound_slabs_by_known(const tree *t, uint32_t at, const tree_stretch *stretch,
+TREE_TARGET static inline void bound_slabs_by_known(const tree *t, uint32_t at, const tree_segment *segment,
                                                     tree_lanes *lanes) {
   _Alignas(64) double bound[TREE_LANES];
   const tree_node *node = &t->nodes[at];
   const tree_slabs *slabs = &t->slabs[at];
-  const vec3 n = stretch->normal, x = stretch->x;
-  const double along = stretch->along - 2.0 * slab_rounding(t, x); /* |n| is 1: its parts add up to less than 2 */
+  const vec3 n = segment->normal, x = segment->x;
+  const double along = segment->along - 2.0 * slab_rounding(t, x); /* |n| is 1: its parts add up to less than 2 */
 #pragma omp simd
   for (int l = 0; l < TREE_LANES; l++) bound[l] = along - support_in_slab(node, slabs, l, x, n.x, n.y, n.z);
   raise(lanes, bound);
 }
 
-TREE_TARGET static inline void bound_corners_by_known(const double *pack, int corners, const tree_stretch *stretch,
+TREE_TARGET static inline void bound_corners_by_known(const double *pack, int corners, const tree_segment *segment,
                                                       tree_lanes *lanes) {
   _Alignas(64) double bound[TREE_LANES];
-  const vec3 n = stretch->normal, x = stretch->x;
+  const vec3 n = segment->normal, x = segment->x;
   for (int l = 0; l < TREE_LANES; l++) bound[l] = INFINITY;
   for (int j = 0; j < corners; j++) {
     const double *v = pack + 24 * j;
 #pragma omp simd
     for (int l = 0; l < TREE_LANES; l++) {
-      const double b = stretch->along - (n.x * (v[l] - x.x) + n.y * (v[8 + l] - x.y) + n.z * (v[16 + l] - x.z));
+      const double b = segment->along - (n.x * (v[l] - x.x) + n.y * (v[8 + l] - x.y) + n.z * (v[16 + l] - x.z));
       bound[l] = b < bound[l] ? b : bound[l];
     }
   }
   raise(lanes, bound);
 }
 
-TREE_TARGET static inline void sort_lanes(uint32_t wanted, const tree_stretch *stretch, tree_lanes *lanes) {
-  const double beyond = stretch->beyond;
+TREE_TARGET static inline void sort_lanes(uint32_t wanted, const tree_segment *segment, tree_lanes *lanes) {
+  const double beyond = segment->beyond;
   double rest = INFINITY;
   uint32_t live = 0;
 #pragma omp simd reduction(| : live)
@@ -290,46 +290,46 @@ TREE_TARGET static inline void sort_lanes(uint32_t wanted, const tree_stretch *s
 
 /* Whether none of the wanted lanes of a pack of triangles could matter, by their boxes and the normal from elsewhere: most packs of
  * a list are left that way, at a fifth of the cost. */
-TREE_TARGET static inline bool is_out_of_question(const double *pack, uint32_t wanted, const tree_stretch *stretch,
-                                                  tree_lanes *lanes) {
+TREE_TARGET static inline bool is_impossible(const double *pack, uint32_t wanted, const tree_segment *segment,
+                                             tree_lanes *lanes) {
   lane_boxes boxes;
   normals near;
   find_boxes(pack, &boxes);
-  near_boxes((const double(*)[TREE_LANES])boxes.low, (const double(*)[TREE_LANES])boxes.high, stretch->x, &near);
-  bound_by_own(&near, stretch, lanes);
-  if (stretch->known) bound_corners_by_known(pack, 3, stretch, lanes);
-  sort_lanes(wanted, stretch, lanes);
+  near_boxes((const double(*)[TREE_LANES])boxes.low, (const double(*)[TREE_LANES])boxes.high, segment->x, &near);
+  bound_by_own(&near, segment, lanes);
+  if (segment->known) bound_corners_by_known(pack, 3, segment, lanes);
+  sort_lanes(wanted, segment, lanes);
   if (lanes->live) return false;
   for (int l = 0; l < TREE_LANES; l++) lanes->distance2[l] = INFINITY;
   return true;
 }
 
-TREE_TARGET static void measure(const tree *t, uint32_t at, uint32_t wanted, const tree_stretch *stretch,
+TREE_TARGET static void measure(const tree *t, uint32_t at, uint32_t wanted, const tree_segment *segment,
                                 tree_lanes *lanes) {
   normals near;
   const bool leaf = (at & TREE_LEAF) != 0;
   const tree_node *node = leaf ? NULL : &t->nodes[at];
   const double *pack = leaf ? t->packs + (at & ~TREE_LEAF) * tree_pack_size(t->kind) : NULL;
-  if (leaf && t->kind == TREE_TRIANGLES && is_out_of_question(pack, wanted, stretch, lanes)) return;
+  if (leaf && t->kind == TREE_TRIANGLES && is_impossible(pack, wanted, segment, lanes)) return;
   if (leaf)
-    near_pack(t, pack, stretch->x, &near);
+    near_pack(t, pack, segment->x, &near);
   else
-    near_boxes(node->low, node->high, stretch->x, &near);
-  if (!leaf && t->slabs) narrow_by_slabs(t, at, stretch->x, &near);
-  bound_by_own(&near, stretch, lanes);
-  if (stretch->stepping) find_slopes(&near, stretch, lanes);
+    near_boxes(node->low, node->high, segment->x, &near);
+  if (!leaf && t->slabs) narrow_by_slabs(t, at, segment->x, &near);
+  bound_by_own(&near, segment, lanes);
+  if (segment->stepping) find_slopes(&near, segment, lanes);
 
-  if (stretch->known) {
-    if (!leaf && t->slabs) bound_slabs_by_known(t, at, stretch, lanes);
+  if (segment->known) {
+    if (!leaf && t->slabs) bound_slabs_by_known(t, at, segment, lanes);
     if (!leaf)
-      bound_boxes_by_known(node->low, node->high, stretch, lanes);
+      bound_boxes_by_known(node->low, node->high, segment, lanes);
     else if (t->kind == TREE_BOXES)
       bound_boxes_by_known((const double(*)[TREE_LANES])pack, (const double(*)[TREE_LANES])(pack + 3 * TREE_LANES),
-                           stretch, lanes);
+                           segment, lanes);
     else
-      bound_corners_by_known(pack, t->kind == TREE_TRIANGLES ? 3 : 1, stretch, lanes);
+      bound_corners_by_known(pack, t->kind == TREE_TRIANGLES ? 3 : 1, segment, lanes);
   }
-  sort_lanes(wanted, stretch, lanes);
+  sort_lanes(wanted, segment, lanes);
   if (leaf) return;
 #pragma omp simd
   for (int l = 0; l < TREE_LANES; l++) {

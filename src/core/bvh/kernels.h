@@ -6,7 +6,7 @@
 #include "bvh/bvh.h"
 
 typedef struct tree_kernel {
-  void (*measure)(const tree *t, uint32_t at, uint32_t wanted, const tree_stretch *stretch, tree_lanes *lanes);
+  void (*measure)(const tree *t, uint32_t at, uint32_t wanted, const tree_segment *segment, tree_lanes *lanes);
   tree_hit (*nearest)(const tree *t, vec3 x, double bound);
 } tree_kernel;
 

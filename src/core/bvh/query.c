@@ -13,8 +13,8 @@ tree_hit tree_nearest(const tree *t, vec3 x, double bound) {
   return t->kernel->nearest(t, x, bound);
 }
 
-void tree_measure(const tree *t, uint32_t at, uint32_t wanted, const tree_stretch *stretch, tree_lanes *lanes) {
-  t->kernel->measure(t, at, wanted, stretch, lanes);
+void tree_measure(const tree *t, uint32_t at, uint32_t wanted, const tree_segment *segment, tree_lanes *lanes) {
+  t->kernel->measure(t, at, wanted, segment, lanes);
 }
 
 /* ---- one element ------------------------------------------------------------------------------------------------------ */
@@ -108,17 +108,17 @@ typedef struct open_lane {
 void tree_seek(const tree *t, tree_seeker *seeker) {
   open_lane open[TREE_LANES * TREE_DEEPEST];
   size_t count = 0;
-  tree_stretch stretch = {.x = seeker->centre, .n = 1, .radius = seeker->radius};
-  stretch.p[0][0] = stretch.p[1][0] = stretch.p[2][0] = 0.0;
+  tree_segment segment = {.x = seeker->centre, .n = 1, .radius = seeker->radius};
+  segment.p[0][0] = segment.p[1][0] = segment.p[2][0] = 0.0;
   open[count++] = (open_lane){-INFINITY, 0};
   while (count > 0) {
     const open_lane top = open[--count];
     if (!(top.bound < seeker->bound)) continue;
     tree_lanes lanes;
-    stretch.known = seeker->known, stretch.normal = seeker->normal;
-    stretch.along = seeker->least - vec_dot(seeker->normal, seeker->centre);
-    stretch.beyond = seeker->bound;
-    tree_measure(t, top.at, TREE_ALL_LANES, &stretch, &lanes);
+    segment.known = seeker->known, segment.normal = seeker->normal;
+    segment.along = seeker->least - vec_dot(seeker->normal, seeker->centre);
+    segment.beyond = seeker->bound;
+    tree_measure(t, top.at, TREE_ALL_LANES, &segment, &lanes);
     const size_t floor = count;
     open_lane sorted[TREE_LANES];
     size_t n = 0;

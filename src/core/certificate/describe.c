@@ -74,17 +74,17 @@ void say_body(text *t, const cprox_body *body) {
   }
 }
 
-static void say_part(text *t, const cprox_target *target, const cprox_body *body, const cprox_pose *inner) {
-  say(t, "target %a %d", target->padding, inner ? 2 : 1);
+static void say_part(text *t, const cprox_obstacle *target, const cprox_body *body, const cprox_pose *inner) {
+  say(t, "target %a %d", target->margin, inner ? 2 : 1);
   say_pose(t, &target->pose);
   if (inner) say_pose(t, inner);
   say_body(t, body);
   say(t, "\n");
 }
 
-size_t cprox_target_describe(const cprox_target *target, char *out, size_t size) {
+size_t cprox_obstacle_describe(const cprox_obstacle *target, char *out, size_t size) {
   const cprox_body *body = target->body;
-  if (!body || target->on_clock || say_unknown(body)) return 0;
+  if (!body || target->synchronized || say_unknown(body)) return 0;
   text t = {.at = out, .size = out ? size : 0};
   if (body->kind != CPROX_COMPOUND) {
     say_part(&t, target, body, NULL);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Words of a question as the checker reads it; doc/certificates.md has the grammar. */
+/* Words of a query as the checker reads it; doc/certificates.md has the grammar. */
 #ifndef CPROX_CERTIFICATE_DESCRIBE_H
 #define CPROX_CERTIFICATE_DESCRIBE_H
 

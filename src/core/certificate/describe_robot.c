@@ -20,7 +20,7 @@ static void say_link(text *t, const cprox_link *link) {
 }
 
 static void say_part(text *t, const cprox_link_geometry *g, const cprox_body *body, const cprox_pose *inner) {
-  say(t, "part %d %a %d", (int)g->link, g->padding, inner ? 2 : 1);
+  say(t, "part %d %a %d", (int)g->link, g->margin, inner ? 2 : 1);
   say_pose(t, &g->pose);
   if (inner) say_pose(t, inner);
   say_body(t, body);
@@ -79,9 +79,9 @@ static void say_motion(text *t, const cprox_motion *motion) {
 
 /* ---- the whole ------------------------------------------------------------------------------------------------------------ */
 
-size_t cprox_mover_describe(const cprox_mover *mover, const cprox_target *targets, size_t n, const char *id,
+size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, const char *id,
                             cprox_workspace *workspace, char *out, size_t size) {
-  question q = question_create(*mover, targets, n, -1.0, false, NULL, workspace);
+  query q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);
   if (!mover->motion || certify_unknown_geometry(mover->motion->robot) < mover->motion->robot->n_geometries ||
       arguments_check_query(mover, targets, n, &q.options, (arguments_query){"a description", 0}, workspace) !=
           CPROX_OK)

@@ -15,14 +15,14 @@ static const double SLACKS = 32.0;
 
 /* Parts that move farther than their own size, and than this fraction of their distance, are not measured: halves tell more. */
 static const double BLUR = 0.25;
-#define SHORT_STRETCH 0x1p-8
+#define SHORT_INTERVAL 0x1p-8
 
 /* The normal that is not written is computed once here and once by the checker: it may differ by this, of the sizes. */
 #define UNSURE 0x1p-46
 
 typedef enum outcome { SETTLED, WRITTEN, OPEN, TOO_NEAR } outcome;
 
-/* A pair over the stretch at hand. */
+/* A pair over the interval at hand. */
 typedef struct view {
   robot_pair *pair;
   const robot_body *moving, *standing;
@@ -70,7 +70,7 @@ static outcome settle(const robot_cover *c, const view *v, double width, vec3 *w
   if (length > 0.0 && settles(c, v, out, unsure)) return SETTLED;
 
   const double size = fmax(v->moving->radius, BLUR * (length - v->moving->radius));
-  if (is_halfspace(v) || (v->motion->travel > size && width > SHORT_STRETCH)) return OPEN;
+  if (is_halfspace(v) || (v->motion->travel > size && width > SHORT_INTERVAL)) return OPEN;
   robot_gap gap;
   const robot_accuracy accuracy = {.floor = c->delta, .fraction = 0.01};
   robot_scene_measure(v->moving, v->standing, accuracy, &gap);
@@ -83,7 +83,8 @@ static int32_t *reserve(const robot_cover *c, size_t n) {
   return workspace_reserve(c->scene->q->workspace, WORKSPACE_COVER, (n + 1) * sizeof(int32_t));
 }
 
-/* The pairs that a stretch leaves open come to stand behind `to`; their number is *kept. Writes the head and the normals. */
+/* The pairs that a interval leaves open come to stand behind `to`; their number is *kept. Writes the head and the
+ * normals. */
 static cprox_status settle_pairs(robot_cover *c, size_t from, size_t to, double width, size_t *kept) {
   const size_t head = certificate_short(c->certificate, 0);
   unsigned count = 0;
@@ -109,7 +110,7 @@ static cprox_status settle_pairs(robot_cover *c, size_t from, size_t to, double 
   return CPROX_OK;
 }
 
-/* The stretch [a, b] of a segment and the pairs at from … to - 1 of the list. Its depth is that of halves of 1. */
+/* The interval [a, b] of a segment and the pairs at from … to - 1 of the list. Its depth is that of halves of 1. */
 static cprox_status lay(robot_cover *c, size_t segment, double a, double b, size_t from, size_t to) {
   if (c->budget == 0) return CPROX_BUDGET;
   c->budget--;

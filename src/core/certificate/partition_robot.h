@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Covers of a robot's motion by stretches, on each of which planes part the pairs that coarser stretches have left open: the
- * substance of a robot's certificate. Laid after the answer, as those of curves (cover.h). */
+/* Covers of a robot's motion by intervals, on each of which planes part the pairs that coarser intervals have left
+ * open: the substance of a robot's certificate. Laid after the answer, as those of curves (cover.h). */
 #ifndef CPROX_CERTIFICATE_PARTITION_ROBOT_H
 #define CPROX_CERTIFICATE_PARTITION_ROBOT_H
 
@@ -10,8 +10,8 @@
 typedef struct robot_cover {
   robot_scene *scene;
   double delta;
-  uint32_t budget; /* stretches that may be tried */
-  double shortest; /* stretches shorter than this part of a segment are given up */
+  uint32_t budget; /* intervals that may be tried */
+  double shortest; /* intervals shorter than this part of a segment are given up */
   cprox_certificate *certificate;
 } robot_cover;
 

@@ -17,7 +17,7 @@
 
 typedef struct task {
   const cprox_mover *mover;
-  const cprox_target *targets;
+  const cprox_obstacle *targets;
   size_t n;
   double delta;
   const cprox_result *answer;
@@ -28,7 +28,7 @@ typedef struct task {
   cprox_certificate *certificate;
 } task;
 
-static size_t parts_of(const cprox_target *target) {
+static size_t parts_of(const cprox_obstacle *target) {
   return target->body && target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
 }
 
@@ -48,7 +48,7 @@ static double sum_up(double a, double b) {
 
 /* The set that part of a target is, with the mover's ball, and what the answer knows of it. */
 static cover cover_of(const task *t, size_t target, size_t part, uint32_t width) {
-  const cprox_target *at = &t->targets[target];
+  const cprox_obstacle *at = &t->targets[target];
   cover c = {.curve = t->mover->curve,
              .set = {.body = at->body, .curve = at->curve, .pose = {&at->pose}, .poses = 1},
              .pose = at->pose,
@@ -58,7 +58,7 @@ static cover cover_of(const task *t, size_t target, size_t part, uint32_t width)
              .shortest = width == 4 ? SHORTEST_SINGLE : SHORTEST_DOUBLE,
              .workspace = t->workspace,
              .certificate = t->certificate};
-  c.set.offset = sum_up(t->mover->radius, at->padding);
+  c.set.offset = sum_up(t->mover->radius, at->margin);
   if (at->body && at->body->kind == CPROX_COMPOUND) {
     const body_part *inner = &at->body->parts[part];
     c.set.body = inner->body;
@@ -72,9 +72,9 @@ static cover cover_of(const task *t, size_t target, size_t part, uint32_t width)
     c.set.body = c.set.body->hull;
   }
   const cprox_result *r = t->answer;
-  if (r && r->target_index == (int32_t)target && r->target_part == (int32_t)part && isfinite(r->t)) {
+  if (r && r->obstacle_index == (int32_t)target && r->obstacle_part == (int32_t)part && isfinite(r->t)) {
     c.witness = count_at(c.curve, r->t);
-    if (at->curve && isfinite(r->t_target)) c.witness_on_set = count_at(at->curve, r->t_target);
+    if (at->curve && isfinite(r->t_obstacle)) c.witness_on_set = count_at(at->curve, r->t_obstacle);
     c.normal = r->normal;
   }
   return c;
@@ -118,10 +118,10 @@ static bool is_of_distance(const task *t) {
 static cprox_status certify_apart(const task *t) {
   cprox_status status = attempt(t, 4, t->delta);
   if (status > 0) status = attempt(t, 8, t->delta);
-  if (status <= 0 || !t->answer || t->answer->target_index < 0) return status;
+  if (status <= 0 || !t->answer || t->answer->obstacle_index < 0) return status;
 
   /* the search's own bounds, which know tangent balls, may be tighter than planes can be */
-  const cover c = cover_of(t, (size_t)t->answer->target_index, (size_t)t->answer->target_part, 8);
+  const cover c = cover_of(t, (size_t)t->answer->obstacle_index, (size_t)t->answer->obstacle_part, 8);
   const double rounding = LOWERED * ROUND_U * size_of_problem(t, &c);
   if (t->delta > rounding) status = attempt(t, 8, t->delta - rounding);
   const double given = fmax(t->epsilon, LOWERED * rounding);
@@ -132,13 +132,13 @@ static cprox_status certify_apart(const task *t) {
 /* The witness of the answer, or none. */
 static cprox_status certify_near(const task *t) {
   const cprox_result *r = t->answer;
-  if (r->target_index < 0 || (size_t)r->target_index >= t->n || !isfinite(r->t)) return CPROX_PRECISION;
-  size_t section = (size_t)r->target_part;
-  for (size_t i = 0; i < (size_t)r->target_index; i++) section += parts_of(&t->targets[i]);
-  cover c = cover_of(t, (size_t)r->target_index, (size_t)r->target_part, 8);
+  if (r->obstacle_index < 0 || (size_t)r->obstacle_index >= t->n || !isfinite(r->t)) return CPROX_PRECISION;
+  size_t section = (size_t)r->obstacle_part;
+  for (size_t i = 0; i < (size_t)r->obstacle_index; i++) section += parts_of(&t->targets[i]);
+  cover c = cover_of(t, (size_t)r->obstacle_index, (size_t)r->obstacle_part, 8);
   if (c.is_mesh)
     return workspace_fail(t->workspace, CPROX_INVALID,
-                          "target %d is a mesh: its convex hull cannot prove that it is near", (int)r->target_index);
+                          "target %d is a mesh: its convex hull cannot prove that it is near", (int)r->obstacle_index);
   c.delta = t->delta;
   certificate_begin(t->certificate, 8, CPROX_CLAIM_NEAR, t->delta, 1);
   return cover_near(&c, (uint32_t)section, r);
@@ -151,8 +151,8 @@ static cprox_status certify_curve(const task *t) {
   if (mover->curve->arcs)
     return workspace_fail(t->workspace, CPROX_INVALID, "curves known by their arc length have no certificates");
   for (size_t i = 0; i < t->n; i++) {
-    const cprox_target *target = &t->targets[i];
-    if (target->on_clock)
+    const cprox_obstacle *target = &t->targets[i];
+    if (target->synchronized)
       return workspace_fail(t->workspace, CPROX_INVALID, "target %zu is on the mover's clock: it has no certificates",
                             i);
     if (!target->body && target->curve->arcs)
@@ -187,12 +187,12 @@ static bool has_mesh(const task *t) {
 /* What the hulls of meshes can prove of their distance: that the hulls are as far apart as they are. */
 static cprox_status prove_of_hulls(const task *t) {
   cprox_options options = *t->options;
-  options.max_rung = CPROX_RUNG_HULL;
+  options.max_lod = CPROX_LOD_HULL;
   options.signed_distance = false;
-  question q = question_create(*t->mover, t->targets, t->n, -1.0, false, &options, t->workspace);
-  question_ask_whole(&q);
+  query q = query_create(*t->mover, t->targets, t->n, -1.0, false, &options, t->workspace);
+  query_ask_whole(&q);
   cprox_result hulls;
-  const cprox_status status = question_answer(&q, 0, q.n, INFINITY, &hulls);
+  const cprox_status status = query_answer(&q, 0, q.n, INFINITY, &hulls);
   if (status < 0) return status;
   if (!(hulls.lower > 0.0) || !isfinite(hulls.lower)) return CPROX_PRECISION;
   task coarse = *t;
@@ -201,7 +201,7 @@ static cprox_status prove_of_hulls(const task *t) {
   return prove(&coarse);
 }
 
-cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
+cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double delta,
                      const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                      cprox_certificate *certificate) {
   const task t = {.mover = mover,
@@ -217,7 +217,7 @@ cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size
   if (!isfinite(delta)) return workspace_fail(workspace, CPROX_INVALID, "there is nothing to measure");
   const bool by_mesh = is_of_distance(&t) && delta > 0.0 && has_mesh(&t);
   cprox_status status = CPROX_PRECISION;
-  if (!by_mesh || answer->rung != CPROX_RUNG_MESH) status = prove(&t);
+  if (!by_mesh || answer->lod != CPROX_LOD_MESH) status = prove(&t);
   if (status > 0 && by_mesh) status = prove_of_hulls(&t);
   if (status == CPROX_OK) {
     workspace_clear(workspace);
@@ -232,13 +232,13 @@ cprox_status certify(const cprox_mover *mover, const cprox_target *targets, size
                                      : "too close to delta for a certificate");
 }
 
-cprox_status cprox_certify(cprox_mover mover, const cprox_target *targets, size_t n, double delta,
+cprox_status cprox_certify(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate) {
   const cprox_options chosen = options ? *options : cprox_options_default();
   workspace_clear(workspace);
   cprox_certificate_clear(certificate);
-  const arguments_query asked = {"a certificate for an answer", ARGUMENTS_RELATIVE | ARGUMENTS_RUNG};
+  const arguments_query asked = {"a certificate for an answer", ARGUMENTS_RELATIVE | ARGUMENTS_LOD};
   cprox_status status = arguments_check_query(&mover, targets, n, &chosen, asked, workspace);
   if (status == CPROX_OK) status = arguments_check_delta(delta, workspace);
   if (status != CPROX_OK) return status;

@@ -73,7 +73,7 @@ static vec3 point_by(const cprox_curve *curve, double sigma, vec3 by) {
 }
 
 cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *answer) {
-  const vec3 world = point_by(c->curve, c->witness, answer->on_mover);
+  const vec3 world = point_by(c->curve, c->witness, answer->witness_mover);
   certificate_count(c->certificate, section);
   certificate_number(c->certificate, answer->t);
 
@@ -81,11 +81,11 @@ cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *an
   if (c->set.curve) {
     const frame f = frame_create(&c->pose, vec(0, 0, 0));
     const vec3 y = local_point(c, &f, world, &error);
-    const vec3 seen = frame_to_local(&f, answer->on_target, &error);
+    const vec3 seen = frame_to_local(&f, answer->witness_obstacle, &error);
     const vec3 z = point_by(c->set.curve, c->witness_on_set, seen);
     const double n = (double)c->set.curve->degree;
     error += cprox_curve_error(c->set.curve) + (6.0 * n + 20.0) * ROUND_U * vec_norm(z);
-    certificate_number(c->certificate, answer->t_target);
+    certificate_number(c->certificate, answer->t_obstacle);
     apart = vec_norm(vec_sub(y, z)) + error;
     size = vec_norm(y);
   } else {

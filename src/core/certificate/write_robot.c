@@ -11,7 +11,7 @@
 enum { MOST_PAIRS = 0xffff };
 
 /* CPROX_OK, or what it is that certificates do not know. */
-static cprox_status check_kinds(const cprox_robot *robot, const cprox_target *targets, size_t n,
+static cprox_status check_kinds(const cprox_robot *robot, const cprox_obstacle *targets, size_t n,
                                 cprox_workspace *workspace) {
   const size_t geometry = certify_unknown_geometry(robot);
   if (geometry < robot->n_geometries)
@@ -42,11 +42,11 @@ static cprox_status certify_apart(robot_scene *scene, double delta, const cprox_
   return status;
 }
 
-cprox_status certify_robot(const cprox_mover *mover, const cprox_target *targets, size_t n, double delta,
+cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double delta,
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate) {
-  question q = question_create(*mover, targets, n, delta, false, options, workspace);
-  q.options.max_rung = CPROX_RUNG_HULL;
+  query q = query_create(*mover, targets, n, delta, false, options, workspace);
+  q.options.max_lod = CPROX_LOD_HULL;
   const cprox_status known = check_kinds(mover->motion->robot, targets, n, workspace);
   if (known != CPROX_OK) return known;
   robot_scene scene;

@@ -40,7 +40,7 @@ static int32_t nearest_pair(robot_scene *s, const cprox_result *answer, robot_ga
   for (size_t i = 0; i < s->n_pairs; i++) {
     const robot_pair *pair = &s->pairs[i];
     const int32_t other = s->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
-    if (s->parts[pair->moving].body.index != answer->mover_part || other != answer->target_index) continue;
+    if (s->parts[pair->moving].body.index != answer->mover_part || other != answer->obstacle_index) continue;
     robot_gap gap;
     robot_scene_measure(robot_scene_moving(s, pair), robot_scene_standing(s, pair), (robot_accuracy){0}, &gap);
     if (gap.fault || (found >= 0 && gap.upper >= nearest->upper)) continue;
@@ -86,7 +86,7 @@ static vec3 write_point_of(const cprox_body *body, cprox_certificate *c, vec3 y)
 cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) {
   robot_scene *s = c->scene;
   const cprox_motion *m = s->motion;
-  if (answer->target_index < 0 || !isfinite(answer->t)) return CPROX_PRECISION;
+  if (answer->obstacle_index < 0 || !isfinite(answer->t)) return CPROX_PRECISION;
   size_t segment = 0;
   while (segment + 1 < m->n_segments && m->times[segment + 1] <= answer->t) segment++;
   const double u = (answer->t - m->times[segment]) / (m->times[segment + 1] - m->times[segment]);
@@ -102,7 +102,7 @@ cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) 
   if (!part || !other)
     return workspace_fail(
         s->q->workspace, CPROX_INVALID, "%s %d is a mesh: its convex hull cannot prove that it is near",
-        !part || s->self ? "geometry" : "target", (int)(part ? answer->target_index : answer->mover_part));
+        !part || s->self ? "geometry" : "target", (int)(part ? answer->obstacle_index : answer->mover_part));
 
   cprox_certificate *to = c->certificate;
   certificate_begin(to, 8, CPROX_CLAIM_NEAR, c->delta, (uint32_t)s->n_pairs);
@@ -118,8 +118,8 @@ cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) 
       cover_near_point(other, to, placement_turn_back(&standing->side.at, vec_sub(world, standing->side.at.p)), error);
 
   /* a claim that is too tight is lifted by what rounding may have cost */
-  const double paddings = moving->side.margin - part->shape.margin + standing->side.margin - other->shape.margin;
-  const double needed = apart > 0.0 ? apart + error - paddings : 0.0;
+  const double margins = moving->side.margin - part->shape.margin + standing->side.margin - other->shape.margin;
+  const double needed = apart > 0.0 ? apart + error - margins : 0.0;
   if (apart > 0.0 && needed > c->delta - error) {
     if (!(needed <= c->delta + LIFTED * error)) return CPROX_PRECISION;
     certificate_restate(to, fmax(c->delta, needed + error));

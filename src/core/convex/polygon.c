@@ -116,7 +116,7 @@ static polygon_place polygon_locate(const convex *shape, double px, double py) {
     square = lanes.square[l] < square ? lanes.square[l] : square;
   }
   if (!(square > FEATURE_LEAST_SQUARE && square < FEATURE_MOST_SQUARE)) return polygon_locate_any(shape, px, py);
-  /* the padding repeats the last edge */
+  /* the margin repeats the last edge */
   const int32_t last = shape->n - 1;
   const int32_t on = (int32_t)lanes.line[line] + line, at = (int32_t)lanes.edge[edge] + edge;
   polygon_place place = {.inside = height, .line = on < last ? on : last, .edge = at < last ? at : last};

@@ -34,7 +34,7 @@ int32_t vertices_extreme(const convex *shape, vec3 d, double *most) {
     }
   }
 
-  /* the first of the best, which is never the padding: that repeats the last vertex */
+  /* the first of the best, which is never the margin: that repeats the last vertex */
   const double half[2] = {greater(greater(best[0][0], best[0][1]), greater(best[0][2], best[0][3])),
                           greater(greater(best[1][0], best[1][1]), greater(best[1][2], best[1][3]))};
   const double farthest = greater(half[0], half[1]);

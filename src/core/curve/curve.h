@@ -103,7 +103,7 @@ void curve_blossom(const vec3 *d, const double *u, size_t p, double lo, double h
 void curve_bezier_evaluate(const double *x, const double *y, const double *z, size_t stride, size_t degree,
                            const double *binomial, double s, vec3 *value, vec3 *first, vec3 *second);
 
-/* Whether it keeps within what questions can hold. */
+/* Whether it keeps within what queries can hold. */
 static inline bool curve_is_in_reach(const cprox_curve *c) {
   const vec3 a = c->whole.a, b = c->whole.b;
   const double ends = fmax(fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z))), fmax(fabs(b.x), fmax(fabs(b.y), fabs(b.z))));

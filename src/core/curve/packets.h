@@ -15,7 +15,7 @@ enum { BLOCK = 4 };
 typedef struct lanes_balls {
   size_t n, padded;
   double *x, *y, *z;
-  double *reach; /* radius and padding */
+  double *reach; /* radius and margin */
   double *sizes; /* the sum of the lengths that entered, for rounding */
 } lanes_balls;
 
@@ -64,12 +64,12 @@ void lanes_join(lanes_chords *chords);
 /* The square distance of a point from the chords, and where it is attained: the first chord that has it, and s in [0, 1] of it. */
 double lanes_closest(const lanes_chords *chords, vec3 point, size_t *chord, double *s);
 
-/* The boxes round stretches of the chords. */
-enum { STRETCHES = 4, STRETCH = CHORDS / STRETCHES };
+/* The boxes round intervals of the chords. */
+enum { PACKET_INTERVALS = 4, INTERVAL = CHORDS / PACKET_INTERVALS };
 typedef struct lanes_box {
   vec3 low, high;
 } lanes_box;
-void lanes_boxes(const lanes_chords *chords, lanes_box boxes[STRETCHES]);
+void lanes_boxes(const lanes_chords *chords, lanes_box boxes[PACKET_INTERVALS]);
 
 /* Raises lower[k] to the distance of ball k, grown by `radius`, from the nearest of n boxes, where that is more; the points in the boxes are
  * known to `slack`, the rest of the rounding is included. */

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Balls and blocks of them against boxes round stretches of a curve. */
+/* Balls and blocks of them against boxes round intervals of a curve. */
 #include "base/rounding.h"
 #include "curve/packets.h"
 #include "simd/dispatch.h"
 
-void lanes_boxes(const lanes_chords *c, lanes_box boxes[STRETCHES]) {
-  for (size_t q = 0; q < STRETCHES; q++) {
-    const size_t first = q * STRETCH;
+void lanes_boxes(const lanes_chords *c, lanes_box boxes[PACKET_INTERVALS]) {
+  for (size_t q = 0; q < PACKET_INTERVALS; q++) {
+    const size_t first = q * INTERVAL;
     vec3 low = vec(c->x[first], c->y[first], c->z[first]), high = low;
-    for (size_t k = first + 1; k <= first + STRETCH; k++) {
+    for (size_t k = first + 1; k <= first + INTERVAL; k++) {
       low = vec(lesser(low.x, c->x[k]), lesser(low.y, c->y[k]), lesser(low.z, c->z[k]));
       high = vec(greater(high.x, c->x[k]), greater(high.y, c->y[k]), greater(high.z, c->z[k]));
     }

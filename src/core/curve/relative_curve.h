@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Two movers on one clock: where the first is, seen from the second, is a curve of the same parameter. */
+/* Two movers synchronized: where the first is, seen from the second, is a curve of the same parameter. */
 #ifndef CPROX_CURVE_RELATIVE_CURVE_H
 #define CPROX_CURVE_RELATIVE_CURVE_H
 

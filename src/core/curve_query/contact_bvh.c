@@ -3,7 +3,7 @@
 
 #include "base/rounding.h"
 
-/* Above 0, and no more: what a stretch that is known to be free is known to keep. */
+/* Above 0, and no more: what a segment that is known to be free is known to keep. */
 static const double BARELY = 1e-300;
 
 /* Pieces are cut no shorter than this to where contact is expected: where it does not come, little is lost. */
@@ -55,10 +55,10 @@ static void begin(contact_tree *c) {
   measure(c, hit.at, first, s, y, curve_side_point_error(&o->side));
 }
 
-/* Of a stretch seen from its first point, by its own parameter. */
-static vec3 first_velocity(const tree_stretch *stretch) {
-  if (stretch->n < 2) return vec(0, 0, 0);
-  return vec_scale((double)(stretch->n - 1), vec(stretch->p[0][1], stretch->p[1][1], stretch->p[2][1]));
+/* Of a segment seen from its first point, by its own parameter. */
+static vec3 first_velocity(const tree_segment *segment) {
+  if (segment->n < 2) return vec(0, 0, 0);
+  return vec_scale((double)(segment->n - 1), vec(segment->p[0][1], segment->p[1][1], segment->p[2][1]));
 }
 
 /* The list is gone through from the middle, and what remains from the left end, which says how far the way is free. */
@@ -66,29 +66,29 @@ static cprox_status probe_piece(contact_tree *c, search_node *node) {
   curve_tree_node *payload = curve_tree_own(node);
   curve_tree *o = &c->base;
   const curve_interval *at = &payload->at;
-  tree_stretch stretch;
+  tree_segment segment;
   double slack, least2;
   tree_place nearest = {0, 0};
-  stretch.stepping = false;
-  curve_tree_stretch(o, node, curve_side_point(&o->side, 0.5 * (at->a + at->b)), &stretch, &slack);
-  cprox_status status = curve_tree_filter(o, node, &stretch, slack, &nearest, &least2, NULL);
+  segment.stepping = false;
+  curve_tree_segment(o, node, curve_side_point(&o->side, 0.5 * (at->a + at->b)), &segment, &slack);
+  cprox_status status = curve_tree_filter(o, node, &segment, slack, &nearest, &least2, NULL);
   if (status < 0 || payload->list == payload->list_end) return status;
 
   const size_t stride = o->side.curve->degree + 1;
   const double *points = points_pool_at(&o->pool, (size_t)at->slot);
   const vec3 x = vec(points[0], points[stride], points[2 * stride]);
-  curve_tree_stretch(o, node, x, &stretch, &slack);
-  stretch.stepping = !o->side.curve->arcs;
+  curve_tree_segment(o, node, x, &segment, &slack);
+  segment.stepping = !o->side.curve->arcs;
   double share = INFINITY;
-  status = curve_tree_filter(o, node, &stretch, slack, &nearest, &least2, stretch.stepping ? &share : NULL);
+  status = curve_tree_filter(o, node, &segment, slack, &nearest, &least2, segment.stepping ? &share : NULL);
   if (status < 0) return status;
   if (isfinite(least2)) {
     const tree_sight sight = measure(c, nearest, curve_side_piece(&o->side, at), at->a, x, at->error);
-    const double speed = -vec_dot(sight.near.normal, first_velocity(&stretch));
+    const double speed = -vec_dot(sight.near.normal, first_velocity(&segment));
     const double way = sight.near.distance - o->offset;
     if (way > 0.0 && speed > 0.0) c->ahead = way / speed;
   }
-  if (!stretch.stepping) return CPROX_OK;
+  if (!segment.stepping) return CPROX_OK;
   c->share = share * (1.0 - 1e-12);
   if (c->share >= 1.0) node->lower = fmax(node->lower, BARELY);
   return CPROX_OK;
@@ -99,11 +99,11 @@ static cprox_status probe_range(contact_tree *c, search_node *node) {
   const curve_capsule capsule = curve_capsule_at(o->side.curve, curve_tree_own(node)->at.part);
   double unused = 0.0, slack, least2;
   const vec3 x = frame_to_local(&o->side.frame, vec_lerp(capsule.a, capsule.b, 0.5), &unused);
-  tree_stretch stretch;
+  tree_segment segment;
   tree_place nearest;
-  stretch.stepping = false;
-  curve_tree_stretch(o, node, x, &stretch, &slack);
-  return curve_tree_filter(o, node, &stretch, slack, &nearest, &least2, NULL);
+  segment.stepping = false;
+  curve_tree_segment(o, node, x, &segment, &slack);
+  return curve_tree_filter(o, node, &segment, slack, &nearest, &least2, NULL);
 }
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {
@@ -132,7 +132,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
 static int split(void *self, search_node *node, search_node *child) {
   curve_tree_node *payload = curve_tree_own(node);
-  enum { SHORTEST_STEP = 4 }; /* free stretches below 1/4 are not worth a cut of their own */
+  enum { SHORTEST_STEP = 4 }; /* free segments below 1/4 are not worth a cut of their own */
   contact_tree *c = self;
   curve_tree *o = &c->base;
   curve_interval *at = &payload->at, half[2];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The left-to-right oracle of a ball that rides a curve against a mesh, points or boxes: curve_tree with another place to measure and
- * to cut, as contact_convex is to curve_convex. doc/first-contact.md and doc/non-convex.md derive it. */
+ * to cut, as contact_convex is to curve_convex. doc/time-of-contact.md and doc/non-convex.md derive it. */
 #ifndef CPROX_CURVE_QUERY_CONTACT_BVH_H
 #define CPROX_CURVE_QUERY_CONTACT_BVH_H
 

@@ -86,7 +86,7 @@ static void begin_child(contact_convex *c, search_node *child, const search_node
 }
 
 static int split(void *self, search_node *node, search_node *child) {
-  enum { SHORTEST_STEP = 4 }; /* free stretches below 1/4 are not worth a cut of their own */
+  enum { SHORTEST_STEP = 4 }; /* free segments below 1/4 are not worth a cut of their own */
   contact_convex *c = self;
   curve_convex *o = &c->base;
   curve_interval *at = &curve_convex_own(node)->at, half[2];

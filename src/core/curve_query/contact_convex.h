@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The left-to-right oracle of a ball that rides a curve against a convex body: where do they first touch? It is curve_convex with
  * another place to measure, the left end of an interval, and another place to cut, the end of what that measurement proves
- * free. doc/first-contact.md derives it. */
+ * free. doc/time-of-contact.md derives it. */
 #ifndef CPROX_CURVE_QUERY_CONTACT_CONVEX_H
 #define CPROX_CURVE_QUERY_CONTACT_CONVEX_H
 

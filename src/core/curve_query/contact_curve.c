@@ -101,8 +101,9 @@ static double free_fraction(const contact_curve *c, const search_node *node) {
   return slope < 0.0 ? fmin(above / -slope, 1.0) : above > 0.0 ? 1.0 : 0.0;
 }
 
-/* The first curve where its left end's free stretch would end, were the second curve nowhere nearer than at its nearest point, less
- * some room for the second curve to come nearer after all; only what lies before is then worth cutting the second curve for. */
+/* The first curve where its left end's free segment would end, were the second curve nowhere nearer than at its nearest
+ * point, less some room for the second curve to come nearer after all; only what lies before is then worth cutting the
+ * second curve for. */
 static curve_curve_cuts choose_cuts(const contact_curve *c, const search_node *node) {
   const curve_curve_node *payload = curve_curve_known(node);
   const double room = 0.75, worthwhile = 0.25, inner = 0.05;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The left-to-right oracle of two balls on two curves: where along the first do they first touch, wherever the second one is? It is
  * curve_curve with another place to measure, the left end of the first curve's interval and the point of the second that is nearest
- * to it, and another place to cut. doc/first-contact.md derives it. */
+ * to it, and another place to cut. doc/time-of-contact.md derives it. */
 #ifndef CPROX_CURVE_QUERY_CONTACT_CURVE_H
 #define CPROX_CURVE_QUERY_CONTACT_CURVE_H
 

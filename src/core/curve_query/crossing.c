@@ -4,24 +4,25 @@
 #include "base/rounding.h"
 #include "curve/control.h"
 
-/* Stretches round the place that are tried, in pieces: from about as short as double allows, each 8 times the one before. */
+/* Intervals round the place that are tried, in pieces: from about as short as double allows, each 8 times the one
+ * before. */
 static const double FIRST_STEP = 1e-14;
 enum { STEPS = 15 };
 
 /* Some of a piece; its control points stand in the scratch slot. */
-typedef struct stretch {
+typedef struct segment {
   size_t piece;
   double from, to;
-} stretch;
+} segment;
 
-/* What is proven of a stretch: its place is covered by the body, and at which heights over the plane it begins and ends, each but for
- * the room. */
+/* What is proven of a segment: its place is covered by the body, and at which heights over the plane it begins and
+ * ends, each but for the room. */
 typedef struct passage {
   double first, last, room;
 } passage;
 
 /* Brings [from, to] of a piece into the scratch slot; returns how far the points are off. */
-static double cut_out(const crossing *o, const stretch *of) {
+static double cut_out(const crossing *o, const segment *of) {
   const size_t degree = o->side->curve->degree;
   curve_side_load(o->side, of->piece);
   double *rest = points_pool_at(o->side->pool, o->slot[0]), *left = points_pool_at(o->side->pool, o->slot[1]);
@@ -33,8 +34,8 @@ static double cut_out(const crossing *o, const stretch *of) {
   return error; /* from/to is rounded: what stands in `rest` is [from (1 + u), to] */
 }
 
-/* The stretch seen from the plane: false where it may leave what the body covers. */
-static bool passes_over(const crossing *o, const stretch *of, flat_region *region, passage *seen) {
+/* The segment seen from the plane: false where it may leave what the body covers. */
+static bool passes_over(const crossing *o, const segment *of, flat_region *region, passage *seen) {
   const flat_shape *flat = o->flat;
   const size_t n = o->side->curve->degree + 1;
   const double error = cut_out(o, of), size = o->side->root_magnitude + o->shape->scale;
@@ -50,18 +51,18 @@ static bool passes_over(const crossing *o, const stretch *of, flat_region *regio
   return flat_region_covers(o->shape, flat, region, x, y, n, seen->room);
 }
 
-/* [at - step, at + step] of a piece, into the piece before or behind it where that is longer: one stretch, or two. */
-static int stretches_about(const crossing *o, size_t piece, double at, double step, stretch part[2]) {
+/* [at - step, at + step] of a piece, into the piece before or behind it where that is longer: one segment, or two. */
+static int intervals_about(const crossing *o, size_t piece, double at, double step, segment part[2]) {
   const bool whole = !curve_side_is_piece(o->side, &o->side->part);
   const double a = whole ? 0.0 : o->side->part.a, b = whole ? 1.0 : o->side->part.b;
-  part[0] = (stretch){piece, greater(at - step, a), lesser(at + step, b)};
+  part[0] = (segment){piece, greater(at - step, a), lesser(at + step, b)};
   if (whole && at - step < 0.0 && piece > 0) {
     part[1] = part[0];
-    part[0] = (stretch){piece - 1, 1.0 - step, 1.0};
+    part[0] = (segment){piece - 1, 1.0 - step, 1.0};
     return 2;
   }
   if (whole && at + step > 1.0 && piece + 1 < o->side->curve->n_pieces) {
-    part[1] = (stretch){piece + 1, 0.0, step};
+    part[1] = (segment){piece + 1, 0.0, step};
     return 2;
   }
   return 1;
@@ -90,7 +91,7 @@ static double meet_plane(const crossing *o, double s) {
 }
 
 /* The ends on the two sides of the plane, farther from it than all corners of the region; and all between is over the body. */
-static bool passes_through(const crossing *o, const stretch part[2], int n, flat_region *region) {
+static bool passes_through(const crossing *o, const segment part[2], int n, flat_region *region) {
   double first = 0.0, last = 0.0, room = 0.0;
   for (int i = 0; i < n; i++) {
     passage seen;
@@ -103,12 +104,12 @@ static bool passes_through(const crossing *o, const stretch part[2], int n, flat
   return (first > room && last < -room) || (first < -room && last > room);
 }
 
-/* The point of the stretches at which the curve changes sides, by bisection. */
-static vec3 meeting_point(const crossing *o, const stretch part[2], int n) {
+/* The point of the segments at which the curve changes sides, by bisection. */
+static vec3 meeting_point(const crossing *o, const segment part[2], int n) {
   enum { BISECTIONS = 60 };
   curve_side_load(o->side, part[0].piece);
   const bool below = height_of(o, curve_side_point(o->side, part[0].from)) < 0.0;
-  stretch in = part[0];
+  segment in = part[0];
   if (n == 2 && (height_of(o, curve_side_point(o->side, in.to)) < 0.0) == below) {
     in = part[1];
     curve_side_load(o->side, in.piece);
@@ -120,12 +121,12 @@ static vec3 meeting_point(const crossing *o, const stretch part[2], int n) {
   return curve_side_point(o->side, in.to);
 }
 
-/* At a place in the plane of a piece: from the shortest stretch on that has its ends on both sides. */
+/* At a place in the plane of a piece: from the shortest segment on that has its ends on both sides. */
 static bool proves_at(const crossing *o, double at, flat_region *region, crossing_place *place) {
   for (int i = 0; i < STEPS; i++) {
     const double step = ldexp(FIRST_STEP, 3 * i);
-    stretch part[2];
-    const int n = stretches_about(o, place->piece, at, step, part);
+    segment part[2];
+    const int n = intervals_about(o, place->piece, at, step, part);
     if (!passes_through(o, part, n, region)) continue;
     place->meeting = meeting_point(o, part, n);
     place->piece = part[n - 1].piece, place->s = part[n - 1].to;

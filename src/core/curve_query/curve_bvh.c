@@ -10,8 +10,8 @@ enum { SLOT_ROOT, SLOT_SCRATCH, SLOT_SCRATCH_LEFT, SLOTS_RESERVED };
 
 enum { MOST_STEPS = 10, MOST_ELEMENTS = 8, LEAST_SEEDS = 5, MOST_SEEDS = 65, PIECES_A_SEED = 8 };
 
-/* Boxes whose diagonal is longer than these fractions of the stretch, squared, are opened at once: verdicts are settled by coarse ones
- * more often. */
+/* Boxes whose diagonal is longer than these fractions of the segment, squared, are opened at once: verdicts are settled
+ * by coarse ones more often. */
 static const double WIDE_DISTANCE2 = 0.5, WIDE_VERDICT2 = 2.0;
 
 /* An entry of a list: lanes of a node or a pack. */
@@ -32,7 +32,7 @@ static double measure_slack(const curve_tree *o, double error, double distance, 
 
 search_best curve_tree_measure(curve_tree *o, tree_place place, size_t piece, double s, vec3 y, double error,
                                tree_sight *sight) {
-  o->probes++;
+  o->distance_queries++;
   *sight = (tree_sight){.place = place, .y = y, .piece = piece, .s = s};
   tree_element_near(o->tree, place, y, &sight->near);
   const double slack = measure_slack(o, error, sight->near.distance, y);
@@ -207,7 +207,7 @@ static void seed_at(curve_tree *o, size_t piece, double s) {
   if (!vec_finite(y)) return;
   const double bound = fmin(o->best_bound.upper, o->asked.ceiling) + o->offset;
   const tree_hit hit = tree_nearest(o->tree, y, bound);
-  o->probes++;
+  o->distance_queries++;
   if (!hit.found) return;
   tree_sight sight;
   const search_best at = curve_tree_measure(o, hit.at, piece, s, y, error, &sight);
@@ -249,37 +249,37 @@ static tree_entry *list_reserve(const curve_tree *o, size_t n) {
   return workspace_reserve(o->workspace, WORKSPACE_LISTS, n * sizeof(tree_entry));
 }
 
-void curve_tree_stretch(const curve_tree *o, const search_node *node, vec3 x, tree_stretch *stretch, double *slack) {
-  stretch->x = x;
+void curve_tree_segment(const curve_tree *o, const search_node *node, vec3 x, tree_segment *segment, double *slack) {
+  segment->x = x;
   const curve_hull hull =
-      curve_side_hull(&o->side, &curve_tree_known(node)->at, x, stretch->p[0], stretch->p[1], stretch->p[2]);
-  stretch->n = hull.n;
-  stretch->radius = hull.radius;
-  stretch->known = o->found && vec_norm2(o->best.near.normal) > 0.5;
-  stretch->normal = o->best.near.normal;
+      curve_side_hull(&o->side, &curve_tree_known(node)->at, x, segment->p[0], segment->p[1], segment->p[2]);
+  segment->n = hull.n;
+  segment->radius = hull.radius;
+  segment->known = o->found && vec_norm2(o->best.near.normal) > 0.5;
+  segment->normal = o->best.near.normal;
   double reach2 = 0.0, along = INFINITY;
-  const vec3 n = stretch->normal;
+  const vec3 n = segment->normal;
   for (size_t k = 0; k < hull.n; k++) {
-    const vec3 p = vec(stretch->p[0][k], stretch->p[1][k], stretch->p[2][k]);
+    const vec3 p = vec(segment->p[0][k], segment->p[1][k], segment->p[2][k]);
     const double square = vec_norm2(p), g = vec_dot(n, p);
     reach2 = square > reach2 ? square : reach2;
     along = g < along ? g : along;
   }
-  stretch->along = along - hull.radius;
+  segment->along = along - hull.radius;
   const double sizes = vec_norm(x) + o->tree->scale + sqrt(reach2) + hull.radius + o->offset;
   *slack = ROUND_UP * (hull.error + TREE_ROUND * ROUND_U * sizes);
 }
 
-/* How wide the stretch is, squared. */
-static double width2_of(const tree_stretch *stretch) {
+/* How wide the segment is, squared. */
+static double width2_of(const tree_segment *segment) {
   double sum = 0.0;
   for (int k = 0; k < 3; k++) {
-    double low = stretch->p[k][0], high = low;
-    for (size_t i = 1; i < stretch->n; i++) {
-      low = fmin(low, stretch->p[k][i]);
-      high = fmax(high, stretch->p[k][i]);
+    double low = segment->p[k][0], high = low;
+    for (size_t i = 1; i < segment->n; i++) {
+      low = fmin(low, segment->p[k][i]);
+      high = fmax(high, segment->p[k][i]);
     }
-    const double extent = high - low + 2.0 * stretch->radius;
+    const double extent = high - low + 2.0 * segment->radius;
     sum += extent * extent;
   }
   return sum;
@@ -292,39 +292,39 @@ static double goal_of(const curve_tree *o) {
   return upper - search_width(&o->asked, upper);
 }
 
-/* How much of the stretch a lane leaves free, by the line through its first bound. */
+/* How much of the segment a lane leaves free, by the line through its first bound. */
 static double free_share(const tree_lanes *lanes, uint32_t l, double offset, double slack) {
   const double above = lanes->first[l] - offset - 4.0 * slack;
   if (!(above > 0.0)) return 0.0;
   return lanes->slope[l] < 0.0 ? above / -lanes->slope[l] : INFINITY;
 }
 
-/* Boxes that are wide against the stretch say little. Small ones serve as well as what is in them, but for the distances that only
- * elements attain: a box of one point would stay closed for ever. */
+/* Boxes that are wide against the segment say little. Small ones serve as well as what is in them, but for the
+ * distances that only elements attain: a box of one point would stay closed for ever. */
 static bool is_worth_opening(const tree_node *node, const tree_lanes *lanes, uint32_t l, double wide2, double best2) {
   if (lanes->width2[l] > wide2) return true;
   const bool last = (node->child[l] & TREE_LEAF) != 0 || 64.0 * lanes->width2[l] < wide2;
   return last && lanes->distance2[l] < best2;
 }
 
-cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_stretch *stretch, double slack,
+cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_segment *segment, double slack,
                                tree_place *nearest, double *least2, double *share) {
   curve_tree_node *payload = curve_tree_own(node);
   tree_entry open[TREE_LANES * TREE_DEEPEST];
   size_t count = 0, end = payload->list_end;
   const double taken = o->offset + slack,
-               wide2 = (o->asked.limit >= 0.0 ? WIDE_VERDICT2 : WIDE_DISTANCE2) * width2_of(stretch), goal = goal_of(o);
+               wide2 = (o->asked.limit >= 0.0 ? WIDE_VERDICT2 : WIDE_DISTANCE2) * width2_of(segment), goal = goal_of(o);
   const double best = fmax(o->best_bound.upper + o->offset, 0.0), best2 = best < 1e150 ? best * best : INFINITY;
   double kept = INFINITY, rest = payload->rest;
   *least2 = INFINITY;
   /* so much farther that what is left of it, less what was taken, is still above the goal */
-  stretch->beyond = goal + taken + 4.0 * ROUND_U * (fabs(goal) + taken);
+  segment->beyond = goal + taken + 4.0 * ROUND_U * (fabs(goal) + taken);
   tree_entry *list = list_reserve(o, end);
   for (size_t i = payload->list; count > 0 || i < payload->list_end;) {
     const tree_entry entry = count > 0 ? open[--count] : list[i++];
     const bool leaf = (entry.at & TREE_LEAF) != 0;
     tree_lanes lanes;
-    tree_measure(o->tree, entry.at, entry.lanes, stretch, &lanes);
+    tree_measure(o->tree, entry.at, entry.lanes, segment, &lanes);
 
     /* drop what cannot matter, look into what is wide, keep the rest */
     uint32_t kept_lanes = 0;
@@ -392,12 +392,12 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     double unused = 0.0;
     x = frame_to_local(&o->side.frame, vec_lerp(capsule.a, capsule.b, 0.5), &unused);
   }
-  tree_stretch stretch;
-  stretch.stepping = false;
+  tree_segment segment;
+  segment.stepping = false;
   double slack, least2;
   tree_place nearest = {0, 0};
-  curve_tree_stretch(o, node, x, &stretch, &slack);
-  const cprox_status status = curve_tree_filter(o, node, &stretch, slack, &nearest, &least2, NULL);
+  curve_tree_segment(o, node, x, &segment, &slack);
+  const cprox_status status = curve_tree_filter(o, node, &segment, slack, &nearest, &least2, NULL);
   if (status < 0) return status;
 
   /* the distance in the middle */

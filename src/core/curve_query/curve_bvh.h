@@ -41,7 +41,7 @@ typedef struct curve_tree {
   const cprox_body *body;
   const tree *tree;
   cprox_curve relative; /* where the other is on the mover's clock: the mover's curve, seen from there */
-  double offset;        /* padding, the ball's radius, and that of points */
+  double offset;        /* margin, the ball's radius, and that of points */
   search_goal asked;
   uint32_t polish_after; /* nodes before Newton is allowed to look for better points */
   double good_enough;    /* an upper bound at or below this needs no better one */
@@ -50,7 +50,7 @@ typedef struct curve_tree {
   tree_sight best;
   search_best best_bound;
   bool found, seeded;
-  uint32_t probes, nodes;
+  uint32_t distance_queries, nodes;
 
   /* memory */
   cprox_workspace *workspace;
@@ -72,14 +72,14 @@ search_oracle curve_tree_oracle(curve_tree *o);
 
 /* ---- for curve_query/contact_bvh.c ---- */
 
-/* Goes through a node's list, measured as the stretch says: keeps the lanes that may come below the goal, raises node->lower. The
- * nearest element that was met stands in *nearest, squared distance *least2, infinity for none. `share`, where not NULL, becomes
- * the least fraction of the stretch that every lane leaves free. */
-cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_stretch *stretch, double slack,
+/* Goes through a node's list, measured as the segment says: keeps the lanes that may come below the goal, raises
+ * node->lower. The nearest element that was met stands in *nearest, squared distance *least2, infinity for none.
+ * `share`, where not NULL, becomes the least fraction of the segment that every lane leaves free. */
+cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_segment *segment, double slack,
                                tree_place *nearest, double *least2, double *share);
 
-/* The stretch that a node is, seen from x; its rounding in *slack. */
-void curve_tree_stretch(const curve_tree *o, const search_node *node, vec3 x, tree_stretch *stretch, double *slack);
+/* The segment that a node is, seen from x; its rounding in *slack. */
+void curve_tree_segment(const curve_tree *o, const search_node *node, vec3 x, tree_segment *segment, double *slack);
 
 /* Measures an element at a curve point y = psi(s) of the piece, which is within `error` of the exact one. */
 search_best curve_tree_measure(curve_tree *o, tree_place place, size_t piece, double s, vec3 y, double error,

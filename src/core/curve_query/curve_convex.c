@@ -43,7 +43,7 @@ void curve_convex_bound(const curve_convex *o, search_node *node, const curve_si
   node->slack = slack;
 }
 
-/* Whether bounds need not rise any more: the question is settled, or the best point is as near as the answer needs. */
+/* Whether bounds need not rise any more: the query is settled, or the best point is as near as the answer needs. */
 static bool is_enough(const curve_convex *o, double lower) {
   return lower > o->goal || lower >= o->best_bound.upper - o->epsilon;
 }
@@ -107,7 +107,8 @@ static double filter(void *self, search_node *node, double goal) {
   return node->lower;
 }
 
-/* ---- probes ----------------------------------------------------------------------------------------------------------- */
+/* ---- distance queries
+ * ----------------------------------------------------------------------------------------------------------- */
 
 /* A distance from the core whose upper bound ends the search: its last digits are of no interest. */
 static double near_enough(const curve_convex *o, double rounding) {
@@ -151,7 +152,7 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
                                   search_best *bound) {
   const cprox_status usable = curve_side_status(&o->side);
   if (usable < 0) return usable;
-  o->probes++;
+  o->distance_queries++;
   sight->piece = piece, sight->s = s, sight->y = y;
   const double sizes = vec_norm(y) + o->shape->scale + o->shape->margin;
   const double rounding = error + o->shape->ops->near_rounding * ROUND_U * sizes + o->shape->slack;

@@ -39,7 +39,7 @@ typedef struct curve_convex {
   const convex *shape;
   convex joined;         /* where a body is carried: the shape that stands for both */
   cprox_curve relative;  /* where the other is on the mover's clock: the mover's curve, seen from there */
-  double offset;         /* padding of the body + radius of the ball */
+  double offset;         /* margin of the body + radius of the ball */
   uint32_t polish_after; /* nodes before Newton is allowed to look for better points */
   double good_enough;    /* an upper bound at or below this needs no polish */
   double epsilon;
@@ -53,7 +53,7 @@ typedef struct curve_convex {
   convex_cover cover;
   convex_hint hint, support_hint;
   double goal; /* what settles a node, as of the last one that was looked at */
-  uint32_t probes, nodes;
+  uint32_t distance_queries, nodes;
 
   /* memory */
   cprox_workspace *workspace;

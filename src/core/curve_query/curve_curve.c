@@ -95,7 +95,8 @@ static bool holds_best(const curve_curve *o, const search_node *node) {
   return s >= 0.0 && t >= 0.0 && (is_inner(s) || is_inner(t));
 }
 
-/* ---- probes ----------------------------------------------------------------------------------------------------------- */
+/* ---- distance queries
+ * ----------------------------------------------------------------------------------------------------------- */
 
 /* The same of a carried body at the first point. */
 static void measure_carried(curve_curve *o, curve_meeting *m, double error, search_best *bound) {
@@ -117,7 +118,7 @@ static void measure_carried(curve_curve *o, curve_meeting *m, double error, sear
 
 /* The distance between two points of the curves, each within its error of the exact one, is an upper bound. */
 void curve_curve_measure(curve_curve *o, curve_meeting *m, double error, search_best *bound) {
-  o->probes++;
+  o->distance_queries++;
   if (o->carries) {
     measure_carried(o, m, error, bound);
     return;

@@ -52,7 +52,7 @@ typedef struct curve_curve {
   vec3 last_normal;   /* of the last pair of chords, or of the last probe of a carried body */
   bool fault;         /* a support callback misbehaved */
   double goal;        /* what settles a node, as of the last one that was looked at */
-  uint32_t probes, nodes;
+  uint32_t distance_queries, nodes;
 
   /* memory */
   cprox_workspace *workspace;

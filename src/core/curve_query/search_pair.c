@@ -11,18 +11,18 @@
 enum { VERDICT_NODES_BEFORE_NEWTON = 4 };
 
 /* Easy verdicts are answered before Newton has paid for itself. */
-static uint32_t nodes_before_newton(const question *q) {
-  return question_wants_verdict(q) ? VERDICT_NODES_BEFORE_NEWTON : 0;
+static uint32_t nodes_before_newton(const query *q) {
+  return query_wants_verdict(q) ? VERDICT_NODES_BEFORE_NEWTON : 0;
 }
 
 /* An upper bound that needs no improvement. */
-static double good_enough(const question *q) {
+static double good_enough(const query *q) {
   if (q->is_signed) return -INFINITY;
-  return question_wants_verdict(q) ? q->limit : q->options.epsilon;
+  return query_wants_verdict(q) ? q->limit : q->options.epsilon;
 }
 
-static search_goal goal_of(const question *q, double ceiling) {
-  return (search_goal){.order = question_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST,
+static search_goal goal_of(const query *q, double ceiling) {
+  return (search_goal){.order = query_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST,
                        .limit = q->limit,
                        .is_signed = q->is_signed,
                        .ceiling = ceiling,
@@ -45,40 +45,40 @@ static vec3 witness_direction(vec3 centre, vec3 surface, vec3 normal) {
 
 /* The two surface points and their normal: where the ball of the mover and the padded target come closest, or one point of both
  * where they overlap; signed, the two ends of the way out. */
-static void report_points(const question *q, const placed_pair *p, vec3 centre, vec3 surface, vec3 normal, double apart,
+static void report_points(const query *q, const placed_pair *p, vec3 centre, vec3 surface, vec3 normal, double apart,
                           cprox_result *r) {
   const double margin = p->margin;
   if (apart > 0.0) normal = witness_direction(centre, surface, normal);
   r->normal = normal;
-  r->target_index = p->which.target, r->target_part = p->which.part;
+  r->obstacle_index = p->which.target, r->obstacle_part = p->which.part;
   if (q->is_signed || apart > margin + q->mover.radius) {
-    r->on_target = vec_axpy(surface, margin, normal);
-    r->on_mover = vec_axpy(centre, -q->mover.radius, normal);
+    r->witness_obstacle = vec_axpy(surface, margin, normal);
+    r->witness_mover = vec_axpy(centre, -q->mover.radius, normal);
   } else {
     /* the padded target's nearest point to the ball's centre */
-    r->on_mover = r->on_target = apart > margin ? vec_axpy(surface, margin, normal) : centre;
+    r->witness_mover = r->witness_obstacle = apart > margin ? vec_axpy(surface, margin, normal) : centre;
   }
 }
 
 /* The same where a body is carried, its curve at `centre`, or what stands is on the clock: asked of the pair that both make there. */
-static cprox_status report_pair(const question *q, const placed_pair *p, vec3 centre, const cprox_target *standing,
+static cprox_status report_pair(const query *q, const placed_pair *p, vec3 centre, const cprox_obstacle *standing,
                                 int32_t part, vec3 normal, cprox_result *r) {
-  const cprox_target moved = {.body = q->mover.body ? q->mover.body : &carried_point,
-                              .pose = {.position = centre, .orientation = {1, 0, 0, 0}},
-                              .padding = q->mover.radius};
+  const cprox_obstacle moved = {.body = q->mover.body ? q->mover.body : &carried_point,
+                                .pose = {.position = centre, .orientation = {1, 0, 0, 0}},
+                                .margin = q->mover.radius};
   pair_witness witness;
-  const cprox_status status = pair_witness_of(&moved, (size_t)p->which.mover_part, standing, (size_t)part, p->rung,
+  const cprox_status status = pair_witness_of(&moved, (size_t)p->which.mover_part, standing, (size_t)part, p->lod,
                                               q->is_signed, q->workspace, &witness);
   if (status < 0) return status;
   const bool normal_known = vec_norm2(normal) > 0.0;
   r->normal = normal_known ? normal : witness.normal;
-  r->target_index = p->which.target, r->target_part = p->which.part, r->mover_part = p->which.mover_part;
-  r->on_mover = witness.on_a, r->on_target = witness.on_b;
+  r->obstacle_index = p->which.target, r->obstacle_part = p->which.part, r->mover_part = p->which.mover_part;
+  r->witness_mover = witness.on_a, r->witness_obstacle = witness.on_b;
   return CPROX_OK;
 }
 
 /* A carried body and what stands make one shape. */
-static bool begin_carried(const question *q, const placed_pair *p, const cprox_curve *curve, curve_convex *o) {
+static bool begin_carried(const query *q, const placed_pair *p, const cprox_curve *curve, curve_convex *o) {
   carried_shape joined = {.placed = p->frame};
   if (!carried_join(p->shape, &p->pose, p->carried, &p->carried_pose, &joined)) return false;
   joined.shape.slack += p->position_error;
@@ -89,27 +89,27 @@ static bool begin_carried(const question *q, const placed_pair *p, const cprox_c
   return true;
 }
 
-/* The curve that the search runs along, about the obstacle: on one clock it is where the mover is, seen from the other. NULL where
- * memory is out. */
-static const cprox_curve *curve_about(const question *q, const placed_pair *p, cprox_curve *relative) {
-  const cprox_target *obstacle = p->obstacle;
-  if (!obstacle->on_clock) return q->mover.curve;
+/* The curve that the search runs along, about the obstacle: synchronized it is where the mover is, seen from the other.
+ * NULL where memory is out. */
+static const cprox_curve *curve_about(const query *q, const placed_pair *p, cprox_curve *relative) {
+  const cprox_obstacle *obstacle = p->obstacle;
+  if (!obstacle->synchronized) return q->mover.curve;
   const bool made =
       relative_create(q->mover.curve, obstacle->curve, &obstacle->pose, q->t0, q->t1, q->workspace, relative);
   return made ? relative : NULL;
 }
 
-/* The search owns the relative curve, which is all of it; of another curve it sees the part in question. */
-static void keep_curve(const question *q, const placed_pair *p, const cprox_curve *relative, cprox_curve *kept,
+/* The search owns the relative curve, which is all of it; of another curve it sees the part in query. */
+static void keep_curve(const query *q, const placed_pair *p, const cprox_curve *relative, cprox_curve *kept,
                        curve_side *side) {
   side->part = q->part;
-  if (!p->obstacle->on_clock) return;
+  if (!p->obstacle->synchronized) return;
   *kept = *relative;
   side->curve = kept;
   side->part = curve_side_whole();
 }
 
-bool placed_begin_convex(const question *q, const placed_pair *p, curve_convex *o) {
+bool placed_begin_convex(const query *q, const placed_pair *p, curve_convex *o) {
   cprox_curve relative;
   const cprox_curve *curve = curve_about(q, p, &relative);
   if (!curve) return false;
@@ -129,25 +129,25 @@ static vec3 normal_seen(const curve_convex *o) {
 }
 
 /* Where the other mover is at the parameter of the best sight, and this one from there. */
-static cprox_status report_clock(const question *q, const placed_pair *p, const curve_convex *o, vec3 apart,
+static cprox_status report_clock(const query *q, const placed_pair *p, const curve_convex *o, vec3 apart,
                                  cprox_result *r) {
-  cprox_target standing = *p->obstacle;
+  cprox_obstacle standing = *p->obstacle;
   const vec3 at = relative_point(standing.curve, r->t, o->best.s == 1.0, q->workspace);
   const frame f = frame_create(&standing.pose, vec(0, 0, 0));
   standing.pose.position = frame_to_world(&f, at);
   if (!standing.body) standing.body = &carried_point;
-  r->t_target = r->t;
+  r->t_obstacle = r->t;
   const vec3 centre = vec_add(standing.pose.position, apart);
   return report_pair(q, p, centre, &standing, p->which.part, normal_seen(o), r);
 }
 
-cprox_status placed_report_convex(const question *q, const placed_pair *p, const curve_convex *o, cprox_result *r) {
+cprox_status placed_report_convex(const query *q, const placed_pair *p, const curve_convex *o, cprox_result *r) {
   if (o->incumbent == 0) return CPROX_OK;
   const frame *f = &o->side.frame;
   const curve_sight *best = &o->best;
   r->t = curve_side_parameter(&o->side, best->piece, best->s);
-  const cprox_target *target = p->obstacle;
-  if (target->on_clock) return report_clock(q, p, o, frame_to_world(f, best->y), r);
+  const cprox_obstacle *target = p->obstacle;
+  if (target->synchronized) return report_clock(q, p, o, frame_to_world(f, best->y), r);
   if (q->mover.body) return report_pair(q, p, frame_to_world(f, best->y), target, p->which.part, normal_seen(o), r);
   report_points(q, p, frame_to_world(f, best->y), frame_to_world(f, best->near.point), normal_seen(o),
                 best->near.distance, r);
@@ -158,7 +158,7 @@ bool placed_is_tree(const placed_pair *p) {
   return p->shape && p->shape->tree;
 }
 
-bool placed_begin_tree(const question *q, const placed_pair *p, curve_tree *o) {
+bool placed_begin_tree(const query *q, const placed_pair *p, curve_tree *o) {
   cprox_curve relative;
   const cprox_curve *curve = curve_about(q, p, &relative);
   if (!curve || !curve_tree_begin(o, curve, p->shape, p->frame, p->offset, q->workspace)) return false;
@@ -166,18 +166,18 @@ bool placed_begin_tree(const question *q, const placed_pair *p, curve_tree *o) {
   return true;
 }
 
-void placed_report_tree(const question *q, const placed_pair *p, const curve_tree *o, cprox_result *r) {
+void placed_report_tree(const query *q, const placed_pair *p, const curve_tree *o, cprox_result *r) {
   if (!o->found) return;
   const frame *f = &o->side.frame;
   const tree_sight *best = &o->best;
   const double margin = o->body->shape.margin;
-  const cprox_target *target = p->obstacle;
+  const cprox_obstacle *target = p->obstacle;
   r->t = curve_side_parameter(&o->side, best->piece, best->s);
   vec3 shift = vec(0, 0, 0);
-  if (target->on_clock) {
+  if (target->synchronized) {
     const frame other = frame_create(&target->pose, vec(0, 0, 0));
     shift = frame_to_world(&other, relative_point(target->curve, r->t, best->s == 1.0, q->workspace));
-    r->t_target = r->t;
+    r->t_obstacle = r->t;
   }
   const vec3 centre = frame_to_world(f, best->y);
   const vec3 surface = frame_to_world(f, vec_axpy(best->near.point, margin, best->near.normal));
@@ -185,23 +185,23 @@ void placed_report_tree(const question *q, const placed_pair *p, const curve_tre
                 best->near.distance - margin, r);
 }
 
-bool placed_begin_curve(const question *q, const placed_pair *p, curve_curve *o) {
-  const cprox_target *other = p->obstacle;
+bool placed_begin_curve(const query *q, const placed_pair *p, curve_curve *o) {
+  const cprox_obstacle *other = p->obstacle;
   if (!curve_curve_begin(o, q->mover.curve, other->curve, &other->pose, p->offset, q->workspace)) return false;
   o->side[0].part = q->part;
   return !p->carried || curve_curve_carry(o, &other->pose, p->carried, &p->carried_pose);
 }
 
-cprox_status placed_report_curve(const question *q, const placed_pair *p, const curve_curve *o, cprox_result *r) {
+cprox_status placed_report_curve(const query *q, const placed_pair *p, const curve_curve *o, cprox_result *r) {
   if (o->incumbent == 0) return CPROX_OK;
   const frame *f = &o->side[0].frame;
   const curve_meeting *best = &o->best;
   r->t = curve_side_parameter(&o->side[0], best->piece[0], best->s[0]);
-  r->t_target = curve_side_parameter(&o->side[1], best->piece[1], best->s[1]);
+  r->t_obstacle = curve_side_parameter(&o->side[1], best->piece[1], best->s[1]);
   if (q->mover.body) {
     const vec3 at = frame_to_world(f, best->point[1]);
-    const cprox_target standing = {
-        .body = &carried_point, .pose = {.position = at, .orientation = {1, 0, 0, 0}}, .padding = p->obstacle->padding};
+    const cprox_obstacle standing = {
+        .body = &carried_point, .pose = {.position = at, .orientation = {1, 0, 0, 0}}, .margin = p->obstacle->margin};
     return report_pair(q, p, frame_to_world(f, best->point[0]), &standing, 0, frame_turn_to_world(f, best->normal), r);
   }
   report_points(q, p, frame_to_world(f, best->point[0]), frame_to_world(f, best->point[1]),
@@ -210,7 +210,7 @@ cprox_status placed_report_curve(const question *q, const placed_pair *p, const 
 }
 
 /* So near that only a proof of contact is better: the sides of a flat body may have one. */
-static bool proves_crossing(const question *q, curve_convex *o) {
+static bool proves_crossing(const query *q, curve_convex *o) {
   curve_sight sight = o->best;
   const double upper = o->best_bound.upper;
   if (q->limit != 0.0 || !(upper > 0.0 && upper <= q->options.epsilon) || !crossing_prove_convex(o, &sight))
@@ -219,8 +219,8 @@ static bool proves_crossing(const question *q, curve_convex *o) {
   return true;
 }
 
-static cprox_status search_convex(const question *q, const placed_pair *p, const search_goal *goal,
-                                  search_outcome *found, cprox_result *r) {
+static cprox_status search_convex(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
+                                  cprox_result *r) {
   curve_convex o;
   if (!placed_begin_convex(q, p, &o)) return CPROX_MEMORY;
   o.polish_after = nodes_before_newton(q);
@@ -236,20 +236,20 @@ static cprox_status search_convex(const question *q, const placed_pair *p, const
     rest.ceiling = lesser(rest.ceiling, o.best_bound.upper);
   }
   cprox_status status = CPROX_OK;
-  if (question_wants_verdict(q) && o.best_bound.upper <= q->limit)
+  if (query_wants_verdict(q) && o.best_bound.upper <= q->limit)
     found->lower = root.lower;
   else
     status = search_run(&rest, &oracle, root, q->workspace, found);
-  r->probes = o.probes;
+  r->distance_queries = o.distance_queries;
   const bool crosses = status >= 0 && proves_crossing(q, &o);
   found->best = o.best_bound;
   const cprox_status reported = status >= 0 ? placed_report_convex(q, p, &o, r) : status;
-  if (crosses) r->on_target = r->on_mover;
+  if (crosses) r->witness_obstacle = r->witness_mover;
   return reported < 0 ? reported : status;
 }
 
-static cprox_status search_curve(const question *q, const placed_pair *p, const search_goal *goal,
-                                 search_outcome *found, cprox_result *r) {
+static cprox_status search_curve(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
+                                 cprox_result *r) {
   curve_curve o;
   if (!placed_begin_curve(q, p, &o)) return CPROX_MEMORY;
   o.polish_after = nodes_before_newton(q);
@@ -258,12 +258,12 @@ static cprox_status search_curve(const question *q, const placed_pair *p, const 
   o.is_signed = q->is_signed;
   const search_oracle oracle = curve_curve_oracle(&o);
   const cprox_status status = search_run(goal, &oracle, curve_curve_root(&o), q->workspace, found);
-  r->probes = o.probes;
+  r->distance_queries = o.distance_queries;
   const cprox_status reported = status >= 0 ? placed_report_curve(q, p, &o, r) : status;
   return reported < 0 ? reported : status;
 }
 
-static cprox_status search_tree(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
+static cprox_status search_tree(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
                                 cprox_result *r) {
   curve_tree o;
   search_node root;
@@ -274,22 +274,22 @@ static cprox_status search_tree(const question *q, const placed_pair *p, const s
   o.good_enough = good_enough(q);
   const search_oracle oracle = curve_tree_oracle(&o);
   const cprox_status status = search_run(&o.asked, &oracle, root, q->workspace, found);
-  r->probes = o.probes;
+  r->distance_queries = o.distance_queries;
   if (status >= 0) placed_report_tree(q, p, &o, r);
   return status;
 }
 
 /* The one place that says which kernel answers. */
-static cprox_status search_any(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
+static cprox_status search_any(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
                                cprox_result *r) {
   if (placed_is_tree(p)) return search_tree(q, p, goal, found, r);
   return p->shape ? search_convex(q, p, goal, found, r) : search_curve(q, p, goal, found, r);
 }
 
 /* By the one model that the candidate names. */
-static cprox_status search_model(const question *q, const candidate *c, double ceiling, cprox_result *result) {
+static cprox_status search_model(const query *q, const candidate *c, double ceiling, cprox_result *result) {
   const placed_pair placed = placed_pair_resolve(q, c), *p = &placed;
-  cprox_result r = {.target_index = -1, .t_target = NAN, .rung = p->rung};
+  cprox_result r = {.obstacle_index = -1, .t_obstacle = NAN, .lod = p->lod};
   search_goal goal = goal_of(q, ceiling);
   const bool depth_unknown = q->is_signed && placed_is_tree(p);
   if (depth_unknown) goal.is_signed = false;
@@ -314,66 +314,67 @@ static cprox_status search_model(const question *q, const candidate *c, double c
   return r.status;
 }
 
-/* ---- ladders ---------------------------------------------------------------------------------------------------------- */
+/* ---- level-of-detail bodies
+ * ---------------------------------------------------------------------------------------------------------- */
 
-bool candidate_may_climb(const question *q, const candidate *c) {
+bool candidate_may_climb(const query *q, const candidate *c) {
   const cprox_body *body = q->targets[c->target].body;
-  if (!body || c->rung != CPROX_RUNG_NONE || q->options.max_rung != CPROX_RUNG_MESH) return false;
+  if (!body || c->lod != CPROX_LOD_NONE || q->options.max_lod != CPROX_LOD_MESH) return false;
   if (body->kind == CPROX_COMPOUND) body = body->parts[c->part].body;
-  return body->kind == CPROX_LADDER;
+  return body->kind == CPROX_LOD;
 }
 
-cprox_status candidate_measure_mesh(const question *q, const candidate *c, cprox_result *result) {
+cprox_status candidate_measure_mesh(const query *q, const candidate *c, cprox_result *result) {
   const placed_pair p = placed_pair_resolve(q, c);
   curve_tree o;
   if (!placed_begin_tree(q, &p, &o)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a curve");
   curve_tree_look(&o, result->t);
   if (curve_side_status(&o.side) < 0) return curve_side_status(&o.side);
-  result->probes += o.probes;
+  result->distance_queries += o.distance_queries;
   result->upper = fmax(o.best_bound.upper, 0.0);
   placed_report_tree(q, &p, &o, result);
   return CPROX_OK;
 }
 
-/* Whether the hull alone settles the question: it stays beyond the limit, or beyond what would be of interest. */
-static cprox_status search_hull(const question *q, const candidate *c, double ceiling, cprox_result *r, bool *settled) {
-  question of_hull = *q;
+/* Whether the hull alone settles the query: it stays beyond the limit, or beyond what would be of interest. */
+static cprox_status search_hull(const query *q, const candidate *c, double ceiling, cprox_result *r, bool *settled) {
+  query of_hull = *q;
   of_hull.is_signed = false;
-  if (!question_wants_verdict(q))
+  if (!query_wants_verdict(q))
     of_hull.limit = ceiling - fmax(q->options.epsilon, q->options.relative_epsilon * fabs(ceiling));
   *settled = false;
   *r = (cprox_result){.upper = INFINITY};
   if (!(of_hull.limit >= 0.0 && of_hull.limit < INFINITY)) return CPROX_OK;
   candidate hull = *c;
-  hull.rung = CPROX_RUNG_HULL;
+  hull.lod = CPROX_LOD_HULL;
   const cprox_status status = search_model(&of_hull, &hull, INFINITY, r);
   if (status < 0) return status;
   *settled = r->lower > of_hull.limit;
   r->status = CPROX_OK;
-  if (!*settled || !question_wants_verdict(q) || r->target_index < 0) {
+  if (!*settled || !query_wants_verdict(q) || r->obstacle_index < 0) {
     /* what the hull attains the mesh need not attain */
-    r->upper = INFINITY, r->target_index = -1;
+    r->upper = INFINITY, r->obstacle_index = -1;
     return CPROX_OK;
   }
   return candidate_measure_mesh(q, c, r);
 }
 
-cprox_status candidate_rank(const question *q, candidate *c, uint32_t *nodes, uint32_t *probes) {
+cprox_status candidate_rank(const query *q, candidate *c, uint32_t *nodes, uint32_t *distance_queries) {
   static const double CLOSE_ENOUGH = 0.01;
-  question of_hull = *q;
+  query of_hull = *q;
   of_hull.is_signed = false;
   of_hull.options.relative_epsilon = fmax(q->options.relative_epsilon, CLOSE_ENOUGH);
-  c->rung = CPROX_RUNG_HULL;
+  c->lod = CPROX_LOD_HULL;
   cprox_result r = {0};
   const cprox_status status = search_model(&of_hull, c, INFINITY, &r);
   if (status < 0) return status;
-  c->rung = CPROX_RUNG_MESH;
+  c->lod = CPROX_LOD_MESH;
   if (r.lower > 0.0) c->lower = fmax(c->lower, r.lower);
-  *nodes += r.nodes, *probes += r.probes;
+  *nodes += r.nodes, *distance_queries += r.distance_queries;
   return CPROX_OK;
 }
 
-cprox_status candidate_search(const question *q, const candidate *c, double ceiling, cprox_result *result) {
+cprox_status candidate_search(const query *q, const candidate *c, double ceiling, cprox_result *result) {
   if (!candidate_may_climb(q, c)) return search_model(q, c, ceiling, result);
   bool settled;
   cprox_result by_hull = {0};
@@ -386,6 +387,6 @@ cprox_status candidate_search(const question *q, const candidate *c, double ceil
   const cprox_status status = search_model(q, c, ceiling, result);
   if (status < 0) return status;
   if (by_hull.lower > 0.0) result->lower = fmin(fmax(result->lower, by_hull.lower), result->upper);
-  result->nodes += by_hull.nodes, result->probes += by_hull.probes;
+  result->nodes += by_hull.nodes, result->distance_queries += by_hull.distance_queries;
   return status;
 }

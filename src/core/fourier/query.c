@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The questions to a gap: poses in, verdict, value and gradients out. */
+/* The queries to a gap: poses in, verdict, value and gradients out. */
 #include "base/rounding.h"
 #include "fourier/gap.h"
 

@@ -252,9 +252,9 @@ static cprox_status find_box(const implicit *body, void *memory, cprox_workspace
   for (int i = 0; i < 6; i++) {
     const double side = i % 2 == 0 ? 1.0 : -1.0;
     const vec3 n = vec(i / 2 == 0 ? side : 0.0, i / 2 == 1 ? side : 0.0, i / 2 == 2 ? side : 0.0);
-    const implicit_question question = {.a = body, .far = true, .t = n};
+    const implicit_query query = {.a = body, .far = true, .t = n};
     implicit_answer answer;
-    implicit_solve(&question, &goal, NULL, memory, &answer);
+    implicit_solve(&query, &goal, NULL, memory, &answer);
     if (!(answer.upper < MOST_SIZE))
       return workspace_fail(workspace, CPROX_INVALID, "the body is unbounded, or larger than %g, along (%g, %g, %g)",
                             MOST_SIZE, n.x, n.y, n.z);

@@ -149,14 +149,14 @@ typedef struct implicit_warm {
 
 /* What is asked: the point x of a nearest to the point y0 (b NULL), or x of a and y of b with x - (M y + t) shortest, or
  * with b moving by `velocity` for a time in [0, duration]; or, `b` NULL and `far`, the x extreme along the unit vector t. */
-typedef struct implicit_question {
+typedef struct implicit_query {
   const implicit *a, *b;
   bool far, moving;
   double m[9]; /* a rotation, row-major */
   vec3 t;
   vec3 velocity;
   double duration;
-} implicit_question;
+} implicit_query;
 
 /* The interval asked for: epsilon or relative_epsilon times upper wide. */
 typedef struct implicit_goal {
@@ -174,7 +174,7 @@ typedef struct implicit_answer {
   double height;     /* h_a(-normal) from above: from the same multipliers as lower */
   double hessian[6]; /* a point: the distance's second derivative by it */
   uint32_t steps;    /* Newton steps, over all attempts */
-  int attempt;       /* which rung of the ladder of settings answered, 0 the first */
+  int attempt;       /* which level of detail of the level-of-detail body of settings answered, 0 the first */
 } implicit_answer;
 
 /* The nearest point of an orthogonal body to a point outside, in a fraction of the time; false where it could not be found
@@ -183,7 +183,7 @@ bool implicit_closed_nearest(const implicit *body, vec3 y, double width, implici
 
 /* Two closed bodies that stand apart, by their support functions; false where that stalls or there is no gap to be seen: then
  * implicit_solve() answers, from `warm`. What it found is true all the same, rounding included. */
-bool implicit_separate(const implicit_question *question, const implicit_goal *goal, implicit_warm *warm,
+bool implicit_separate(const implicit_query *query, const implicit_goal *goal, implicit_warm *warm,
                        implicit_answer *answer);
 
 /* Two unit vectors across the unit vector n. */
@@ -193,7 +193,7 @@ void implicit_across(vec3 n, vec3 *e, vec3 *f);
 size_t implicit_memory(const implicit *a, const implicit *b);
 
 /* Solves; warm NULL: from scratch. The answer is true whatever happens: only `certified` says whether it is narrow. */
-void implicit_solve(const implicit_question *question, const implicit_goal *goal, implicit_warm *warm, void *memory,
+void implicit_solve(const implicit_query *query, const implicit_goal *goal, implicit_warm *warm, void *memory,
                     implicit_answer *answer);
 
 #endif

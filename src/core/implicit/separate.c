@@ -19,7 +19,7 @@ static const double SEPARATE_FLAT = 30.0;
 static const double SEPARATE_CHANGE = 0.1;
 
 typedef struct climb {
-  const implicit_question *q;
+  const implicit_query *q;
   double mu[2]; /* where Newton's method for the supports ended */
   vec3 u;       /* from b to a: the direction looked along */
   double phi;
@@ -43,7 +43,7 @@ static vec3 unit(vec3 v) {
 }
 
 static void look(climb *c, vec3 u) {
-  const implicit_question *q = c->q;
+  const implicit_query *q = c->q;
   c->u = u;
   const double ha = implicit_closed_support(q->a, vec_neg(u), &c->mu[0], &c->x, c->h[0]);
   const double hb = implicit_closed_support(q->b, turn_back(q->m, u), &c->mu[1], &c->y, c->h[1]);
@@ -87,7 +87,7 @@ static vec3 of_hull(const simplex *hull, bool second) {
 }
 
 /* Where a stalled search leaves the interior point method to go on: its gap is what may still change. */
-static implicit_warm leave_off(const implicit_question *q, const implicit_answer *answer) {
+static implicit_warm leave_off(const implicit_query *q, const implicit_answer *answer) {
   if (!(answer->lower > 0.0) || !isfinite(answer->upper)) return (implicit_warm){.usable = false};
   const vec3 apart = vec_sub(answer->x, vec_add(turn(q->m, answer->y), q->t));
   const double change = SEPARATE_CHANGE * (answer->upper - answer->lower);
@@ -95,9 +95,9 @@ static implicit_warm leave_off(const implicit_question *q, const implicit_answer
       .usable = true, .x = answer->x, .y = answer->y, .apart = vec_axpy(apart, change, answer->normal)};
 }
 
-bool implicit_separate(const implicit_question *question, const implicit_goal *goal, implicit_warm *warm,
+bool implicit_separate(const implicit_query *query, const implicit_goal *goal, implicit_warm *warm,
                        implicit_answer *answer) {
-  const implicit_question *q = question;
+  const implicit_query *q = query;
   *answer = (implicit_answer){.lower = -INFINITY, .upper = INFINITY};
   *warm = (implicit_warm){.usable = false};
   const double far = vec_norm(q->t), reach = q->a->radius + q->b->radius;

@@ -14,11 +14,11 @@ typedef struct solve_settings {
   uint32_t steps;
 } solve_settings;
 
-static const solve_settings SOLVE_LADDER[] = {
+static const solve_settings SOLVE_SETTINGS[] = {
     {0.1, 0.01, 0.5, 0.1, INFINITY, 60}, {0.1, 0.1, 0.3, 0.1, INFINITY, 100}, {0.1, 0.1, 0.5, 0.1, 2.0, 100},
     {0.3, 0.3, 0.5, 1.0, INFINITY, 300}, {0.3, 0.3, 0.8, 0.01, 2.0, 300},
 };
-enum { SOLVE_RUNGS = sizeof SOLVE_LADDER / sizeof *SOLVE_LADDER };
+enum { SOLVE_SETTINGS_COUNT = sizeof SOLVE_SETTINGS / sizeof *SOLVE_SETTINGS };
 
 /* The time of a moving body, 0 <= tau <= duration, as two constraints more. */
 typedef struct solve_time {
@@ -26,7 +26,7 @@ typedef struct solve_time {
 } solve_time;
 
 typedef struct solve {
-  const implicit_question *q;
+  const implicit_query *q;
   implicit_answer *answer;
   int sides, n; /* bodies, variables */
   barrier side[2];
@@ -62,7 +62,7 @@ size_t implicit_memory(const implicit *a, const implicit *b) {
 /* ---- the problem ---- */
 
 static vec3 solve_apart(const solve *s) {
-  const implicit_question *q = s->q;
+  const implicit_query *q = s->q;
   if (q->far) return vec_neg(q->t);
   vec3 e = vec_sub(s->side[0].z, q->t);
   if (s->sides == 2) e = vec_sub(e, turn(q->m, s->side[1].z));
@@ -105,7 +105,7 @@ static void time_begin(solve *s, double mu) {
 
 /* From scratch: each body from its centre towards the other one. */
 static bool solve_begin(solve *s, const solve_settings *settings) {
-  const implicit_question *q = s->q;
+  const implicit_query *q = s->q;
   s->time = (solve_time){.tau = 0.5 * q->duration};
   vec3 towards = q->t;
   if (q->far) towards = vec_scale(2.0 * q->a->radius, q->t);
@@ -126,7 +126,7 @@ static bool solve_begin(solve *s, const solve_settings *settings) {
 
 /* From where a search like this one ended, drawn in towards the centres by as much as things have changed since. */
 static bool solve_begin_warm(solve *s, const implicit_warm *warm, const solve_settings *settings) {
-  const implicit_question *q = s->q;
+  const implicit_query *q = s->q;
   s->time = (solve_time){.tau = 0.5 * q->duration};
   s->side[0].z = warm->x;
   s->side[1].z = warm->y;
@@ -156,7 +156,7 @@ static void put3(double a[][SOLVE_MOST_VARIABLES], int at, const double h[6]) {
 
 /* The lower triangle of [[1 + Hx, -M], [-M', 1 + Hy]], bordered by the time's row, and minus the gradients. */
 static void solve_assemble(solve *s, double target) {
-  const implicit_question *q = s->q;
+  const implicit_query *q = s->q;
   const double curved = q->far ? 0.0 : 1.0;
   barrier_system system = {.h = {curved, 0, 0, curved, 0, curved}, .rhs = vec_neg(s->e)};
   barrier_assemble(&s->side[0], target, &system);
@@ -245,7 +245,7 @@ static double solve_asked(const solve *s, double d) {
 
 /* A lower bound along any direction: the bodies reach toward each other no farther than their heights. */
 static void certify_along(solve *s, vec3 n, double share, barrier_reading reading) {
-  const implicit_question *q = s->q;
+  const implicit_query *q = s->q;
   implicit_answer *answer = s->answer;
   const double ha = barrier_height(&s->side[0], n, share, reading);
   double apart = vec_dot(n, q->t), others = 0.0;
@@ -262,7 +262,7 @@ static void certify_along(solve *s, vec3 n, double share, barrier_reading readin
 
 /* From the points and multipliers at hand; keeps the best. True once it is as narrow as asked. */
 static bool solve_certify(solve *s, barrier_reading reading) {
-  const implicit_question *q = s->q;
+  const implicit_query *q = s->q;
   implicit_answer *answer = s->answer;
   const double d = solve_distance(s), share = solve_share(s);
   if (q->far) {
@@ -288,7 +288,7 @@ static bool solve_certify(solve *s, barrier_reading reading) {
 
 /* A common point: x, seen from b, is inside it too by more than rounding. */
 static bool solve_overlaps(solve *s) {
-  const implicit_question *q = s->q;
+  const implicit_query *q = s->q;
   if (s->sides != 2) return false;
   vec3 offset = q->t;
   if (q->moving) offset = vec_axpy(offset, s->time.tau, q->velocity);
@@ -311,7 +311,7 @@ static bool solve_overlaps(solve *s) {
 
 /* Bounds how far the objective (half the squared distance, or the height) is from its optimum, if the residuals are true. */
 static double solve_gap(solve *s, double *mu) {
-  const implicit_question *q = s->q;
+  const implicit_query *q = s->q;
   barrier_state a = barrier_look(&s->side[0]);
   vec3 residual = vec_add(s->e, a.force);
   double products = a.products, pairs = a.pairs, lifted = a.lifted;
@@ -432,7 +432,7 @@ static void solve_hessian(const solve *s) {
 }
 
 /* What rounding and the bodies' give take from an upper bound. */
-static double solve_floor(const implicit_question *q) {
+static double solve_floor(const implicit_query *q) {
   if (q->far) return q->a->give;
   const double sizes = q->a->radius + (q->b ? q->b->radius : 0.0) + vec_norm(q->t) +
                        (q->moving ? vec_norm(q->velocity) * q->duration : 0.0);
@@ -453,23 +453,24 @@ static void solve_place(solve *s, void *memory) {
   }
 }
 
-void implicit_solve(const implicit_question *question, const implicit_goal *goal, implicit_warm *warm, void *memory,
+void implicit_solve(const implicit_query *query, const implicit_goal *goal, implicit_warm *warm, void *memory,
                     implicit_answer *answer) {
-  const implicit_question *q = question;
+  const implicit_query *q = query;
   solve s = {.q = q, .answer = answer, .goal = goal, .sides = q->b ? 2 : 1};
   s.n = 3 * s.sides + (q->moving ? 1 : 0);
   s.reach = q->a->radius + (q->b ? q->b->radius : 0.0);
   s.floor = solve_floor(q);
-  *answer = (implicit_answer){.lower = q->far ? -INFINITY : -s.reach, .upper = INFINITY, .attempt = SOLVE_RUNGS};
+  *answer =
+      (implicit_answer){.lower = q->far ? -INFINITY : -s.reach, .upper = INFINITY, .attempt = SOLVE_SETTINGS_COUNT};
   solve_place(&s, memory);
 
   s.least = 4.0 * s.floor + 64.0 * ROUND_U * s.reach;
   const uint32_t most = goal->max_steps;
-  for (int rung = warm && warm->usable ? -1 : 0; rung < SOLVE_RUNGS && answer->steps < most; rung++) {
-    const solve_settings *settings = &SOLVE_LADDER[rung < 0 ? 0 : rung];
-    if (!(rung < 0 ? solve_begin_warm(&s, warm, settings) : solve_begin(&s, settings))) continue;
+  for (int attempt = warm && warm->usable ? -1 : 0; attempt < SOLVE_SETTINGS_COUNT && answer->steps < most; attempt++) {
+    const solve_settings *settings = &SOLVE_SETTINGS[attempt < 0 ? 0 : attempt];
+    if (!(attempt < 0 ? solve_begin_warm(&s, warm, settings) : solve_begin(&s, settings))) continue;
     if (!solve_run(&s, settings, most)) continue;
-    answer->attempt = rung < 0 ? 0 : rung;
+    answer->attempt = attempt < 0 ? 0 : attempt;
     answer->certified = true;
     break;
   }

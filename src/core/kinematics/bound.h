@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Lower bounds on the distance of a part of a robot over a stretch of its motion; doc/robot-bounds.md proves them. */
+/* Lower bounds on the distance of a part of a robot over a interval of its motion; doc/robot-bounds.md proves them. */
 #ifndef CPROX_KINEMATICS_BOUND_H
 #define CPROX_KINEMATICS_BOUND_H
 
@@ -41,7 +41,7 @@ double motion_ways(const cprox_motion *motion, const axis_state *axes, int32_t a
 typedef struct bound_side {
   const convex *shape;
   placement at;  /* of the shape's frame, world */
-  double margin; /* of the shape, and padding */
+  double margin; /* of the shape, and margin */
   double error;  /* every point is within this of where it is exactly */
 } bound_side;
 

@@ -40,7 +40,7 @@ typedef struct robot_link {
 
 /* A part of a geometry. */
 typedef struct robot_part {
-  part_model model; /* with the padding in its margins and its radius */
+  part_model model; /* with the margin in its margins and its radius */
   int32_t geometry, link, axis;
   placement at;   /* of the model's frame, in the axis's moved frame */
   uint32_t steps; /* transforms between the shape and the world */

@@ -7,7 +7,7 @@
 #include "shape/body.h"
 
 typedef struct part_model {
-  const convex *shape; /* of a ladder its hull, of a mesh, points or boxes a point */
+  const convex *shape; /* of a level-of-detail body its hull, of a mesh, points or boxes a point */
   vec3 centre;         /* of the shape, in the body's frame */
   double margin;       /* what thickens the shape, so that the body lies within */
   double radius;       /* of a ball about the centre that contains the body */

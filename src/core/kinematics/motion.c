@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A motion over a stretch of one of its segments: values, derivatives and their bounds, from Bernstein coefficients. */
+/* A motion over a interval of one of its segments: values, derivatives and their bounds, from Bernstein coefficients.
+ * */
 #include "kinematics/motion.h"
 
 #include <math.h>
@@ -129,7 +130,7 @@ static void differentiate(double *c, size_t degree) {
   for (size_t i = 0; i < degree; i++) c[i] = (double)degree * (c[i + 1] - c[i]);
 }
 
-/* The four coordinates of a ball's quaternion over the stretch, one a lane; returns the sum of their errors. */
+/* The four coordinates of a ball's quaternion over the interval, one a lane; returns the sum of their errors. */
 static double quaternion_over(const cprox_motion *m, size_t segment, int32_t variable, double a, double b,
                               double c[4][MOTION_MAX_DEGREE + 1]) {
   const size_t degree = m->degree[segment];
@@ -296,7 +297,8 @@ typedef struct value_range {
   double room;      /* what is beyond them by less is not looked for */
 } value_range;
 
-/* Takes in the values of a polynomial. Stretches whose coefficients promise more than is known are cut in halves, from left to right. */
+/* Takes in the values of a polynomial. Intervals whose coefficients promise more than is known are cut in halves, from
+ * left to right. */
 static void take_in(const double *root, size_t degree, value_range *range) {
   double stack[RANGE_HALVINGS + 1][MOTION_MAX_DEGREE + 1];
   int depths[RANGE_HALVINGS + 1], n = 1;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Joint splines: one Bézier polynomial a segment and variable that moves, and what a stretch of them says of every axis. */
+/* Joint splines: one Bézier polynomial a segment and variable that moves, and what a interval of them says of every
+ * axis. */
 #ifndef CPROX_KINEMATICS_MOTION_H
 #define CPROX_KINEMATICS_MOTION_H
 
@@ -27,9 +28,9 @@ struct cprox_motion {
   double *part_error; /* every point of a part is computed within this of where it is */
 };
 
-/* What a node, a stretch [a, b] of a segment, says of one axis. Derivatives are by the node's own u in [0, 1]; all bounds hold for
- * the exact motion, rounding included. `velocity` and `acceleration` are those at the middle, in world axes: angular for
- * revolute axes and balls, linear for prismatic ones. */
+/* What a node, a interval [a, b] of a segment, says of one axis. Derivatives are by the node's own u in [0, 1]; all
+ * bounds hold for the exact motion, rounding included. `velocity` and `acceleration` are those at the middle, in world
+ * axes: angular for revolute axes and balls, linear for prismatic ones. */
 typedef struct axis_state {
   axis_kind kind;
   placement frame; /* moved, at the middle */
@@ -41,7 +42,7 @@ typedef struct axis_state {
   double error;     /* of half the computed velocity and an eighth of the acceleration together */
 } axis_state;
 
-/* What the variables do over the stretch, all at once: rows of numbers, one for each variable that moves. */
+/* What the variables do over the interval, all at once: rows of numbers, one for each variable that moves. */
 typedef enum motion_row {
   MOTION_VALUE, /* in the middle, with two derivatives */
   MOTION_FIRST,
@@ -62,7 +63,7 @@ void motion_fill_rows(const cprox_motion *motion, size_t segment, double a, doub
 void motion_find_axis(const cprox_motion *motion, size_t segment, double a, double b, const double *rows, size_t axis,
                       axis_state *axes);
 
-/* The states of all axes over the stretch. */
+/* The states of all axes over the interval. */
 void motion_node(const cprox_motion *motion, size_t segment, double a, double b, double *rows, axis_state *axes);
 
 /* The moved frames of all axes at u of a segment; `values` has room for all variables. */

@@ -186,7 +186,7 @@ static void find_moving(cprox_motion *m, const motion_source *s) {
   m->n_moving = kept;
 }
 
-/* The least norm of a quaternion over the stretch, from below; 0 where it cannot be told from 0. */
+/* The least norm of a quaternion over the interval, from below; 0 where it cannot be told from 0. */
 static double least_norm(double c[4][MOTION_MAX_DEGREE + 1], size_t degree, double error, int depth) {
   double middle[4] = {0}, left[4][MOTION_MAX_DEGREE + 1], right[4][MOTION_MAX_DEGREE + 1];
   for (int k = 0; k < 4; k++) {

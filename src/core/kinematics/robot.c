@@ -57,15 +57,15 @@ static cprox_status check_geometry(const cprox_link_geometry *g, size_t i, size_
     return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: there is no link %d", i, (int)g->link);
   const char *fault = frame_pose_fault(&g->pose);
   if (fault) return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: %s", i, fault);
-  if (!(g->padding >= 0.0) || !isfinite(g->padding))
-    return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: padding is %g, must be finite and 0 or more", i,
-                          g->padding);
+  if (!(g->margin >= 0.0) || !isfinite(g->margin))
+    return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: margin is %g, must be finite and 0 or more", i,
+                          g->margin);
   if (!isfinite(g->body->ball_radius))
     return workspace_fail(workspace, CPROX_INVALID,
                           "geometry %zu: a halfspace, or a compound with one; must be bounded", i);
-  if (g->padding > LENGTH_MOST || !body_is_in_reach(g->body))
-    return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: the body or its padding reaches farther than %g m",
-                          i, LENGTH_MOST);
+  if (g->margin > LENGTH_MOST || !body_is_in_reach(g->body))
+    return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: the body or its margin reaches farther than %g m", i,
+                          LENGTH_MOST);
   if (part_model_is_solid(g->body))
     return workspace_fail(workspace, CPROX_INVALID,
                           "geometry %zu is a solid mesh: robots have surfaces; fill it with convex parts", i);
@@ -187,11 +187,11 @@ static size_t parts_of(const cprox_body *body) {
   return body->kind == CPROX_COMPOUND ? body->n_parts : 1;
 }
 
-static void add_part(cprox_robot *robot, const chain_end *at, const cprox_body *body, double padding, size_t geometry,
+static void add_part(cprox_robot *robot, const chain_end *at, const cprox_body *body, double margin, size_t geometry,
                      int32_t link) {
   part_model model = part_model_of(body);
   part_model_find_box(&model);
-  model.margin += padding, model.radius += padding, model.tree_margin += padding;
+  model.margin += margin, model.radius += margin, model.tree_margin += margin;
   const chain_end end =
       extend(at, &(cprox_pose){.position = model.centre, .orientation = {.w = 1.0}}); /* the shape's own origin */
   robot->parts[robot->n_parts++] = (robot_part){.model = model,
@@ -206,12 +206,12 @@ static void add_part(cprox_robot *robot, const chain_end *at, const cprox_body *
 static void add_geometry(cprox_robot *robot, const cprox_link_geometry *g, size_t i) {
   const chain_end link = link_end(&robot->links[g->link]), at = extend(&link, &g->pose);
   if (g->body->kind != CPROX_COMPOUND) {
-    add_part(robot, &at, g->body, g->padding, i, g->link);
+    add_part(robot, &at, g->body, g->margin, i, g->link);
     return;
   }
   for (size_t k = 0; k < g->body->n_parts; k++) {
     const chain_end part = extend(&at, &g->body->parts[k].pose);
-    add_part(robot, &part, g->body->parts[k].body, g->padding, i, g->link);
+    add_part(robot, &part, g->body->parts[k].body, g->margin, i, g->link);
   }
 }
 

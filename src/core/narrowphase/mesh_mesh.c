@@ -172,33 +172,33 @@ static double worth(const dual *d) {
   return d->best.upper - fmax(d->goal.epsilon, d->goal.relative_epsilon * fabs(d->best.upper));
 }
 
-/* What is in a lane of tree 1 - which, as a stretch in the frame of tree `which`. */
-static tree_stretch stretch_of(const dual *d, int which, dual_side other) {
+/* What is in a lane of tree 1 - which, as a segment in the frame of tree `which`. */
+static tree_segment interval_of(const dual *d, int which, dual_side other) {
   vec3 corner[8];
-  tree_stretch stretch = {.n = corners_of(tree_of(d, 1 - which), other, corner),
+  tree_segment segment = {.n = corners_of(tree_of(d, 1 - which), other, corner),
                           .beyond = d->best.upper + d->margins + d->rounding};
   vec3 low = across(d, 1 - which, corner[0]), high = low;
-  for (size_t k = 0; k < stretch.n; k++) {
+  for (size_t k = 0; k < segment.n; k++) {
     corner[k] = across(d, 1 - which, corner[k]);
     low = vec(fmin(low.x, corner[k].x), fmin(low.y, corner[k].y), fmin(low.z, corner[k].z));
     high = vec(fmax(high.x, corner[k].x), fmax(high.y, corner[k].y), fmax(high.z, corner[k].z));
   }
-  stretch.x = vec_axpy(vec_scale(0.5, low), 0.5, high);
-  for (size_t k = 0; k < stretch.n; k++) {
-    const vec3 q = vec_sub(corner[k], stretch.x);
-    stretch.p[0][k] = q.x, stretch.p[1][k] = q.y, stretch.p[2][k] = q.z;
+  segment.x = vec_axpy(vec_scale(0.5, low), 0.5, high);
+  for (size_t k = 0; k < segment.n; k++) {
+    const vec3 q = vec_sub(corner[k], segment.x);
+    segment.p[0][k] = q.x, segment.p[1][k] = q.y, segment.p[2][k] = q.z;
   }
-  return stretch;
+  return segment;
 }
 
 /* Lanes of a node or a pack of tree `which` against a box or an element of the other one: what of them may matter enters the heap, two elements
  * each by itself. What is left out does not depend on epsilon, and neither does the order in which all is looked at. */
 static void spread(dual *d, int which, uint32_t at, uint32_t wanted, dual_side other, double above) {
   const tree *t = tree_of(d, which);
-  const tree_stretch stretch = stretch_of(d, which, other);
+  const tree_segment segment = interval_of(d, which, other);
   const bool leaf = (at & TREE_LEAF) != 0;
   tree_lanes lanes;
-  tree_measure(t, at, wanted, &stretch, &lanes);
+  tree_measure(t, at, wanted, &segment, &lanes);
   d->lower = fmin(d->lower, fmax(lanes.rest - d->margins - d->rounding, above));
   d->best.steps++;
   dual_entry entry = {.lower = INFINITY, .far2 = INFINITY, .other = other, .at = at, .which = (uint8_t)which};
@@ -256,9 +256,9 @@ static void exchange(dual *d, const dual_entry *e) {
 static bool waits(dual *d, const dual_entry *e, dual_side own) {
   if (e->by_both) return false;
   const int which = 1 - e->which;
-  const tree_stretch stretch = stretch_of(d, which, own);
+  const tree_segment segment = interval_of(d, which, own);
   tree_lanes lanes;
-  tree_measure(tree_of(d, which), e->other.at, 1u << e->other.lane, &stretch, &lanes);
+  tree_measure(tree_of(d, which), e->other.at, 1u << e->other.lane, &segment, &lanes);
   d->best.steps++;
   dual_entry again = *e;
   again.lower = lanes.bound[e->other.lane] - d->margins - d->rounding;

@@ -18,21 +18,20 @@
 typedef struct pair_reply {
   pair_answer answer; /* points and normal in the world */
   int32_t part;       /* of b */
-  cprox_rung rung;
+  cprox_lod lod;
 } pair_reply;
 
 /* ---- arguments ---- */
 
-static cprox_status pair_check_target(const char *name, const cprox_target *target, cprox_workspace *workspace) {
+static cprox_status pair_check_target(const char *name, const cprox_obstacle *target, cprox_workspace *workspace) {
   if (target->curve) return workspace_fail(workspace, CPROX_INVALID, "%s is a curve: a pair is of two bodies", name);
   if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "%s: the body is NULL", name);
   const char *fault = frame_pose_fault(&target->pose);
   if (fault) return workspace_fail(workspace, CPROX_INVALID, "%s: %s", name, fault);
-  if (!(target->padding >= 0.0) || !isfinite(target->padding))
-    return workspace_fail(workspace, CPROX_INVALID, "%s: padding is %g, must be >= 0 and finite", name,
-                          target->padding);
-  if (target->padding > LENGTH_MOST)
-    return workspace_fail(workspace, CPROX_INVALID, "%s: padding is %g, must be at most %g", name, target->padding,
+  if (!(target->margin >= 0.0) || !isfinite(target->margin))
+    return workspace_fail(workspace, CPROX_INVALID, "%s: margin is %g, must be >= 0 and finite", name, target->margin);
+  if (target->margin > LENGTH_MOST)
+    return workspace_fail(workspace, CPROX_INVALID, "%s: margin is %g, must be at most %g", name, target->margin,
                           LENGTH_MOST);
   if (!body_is_in_reach(target->body))
     return workspace_fail(workspace, CPROX_INVALID, "%s: the body reaches farther than %g m", name, LENGTH_MOST);
@@ -99,16 +98,16 @@ static void pair_ball(const pair_side *a, const pair_side *b, const pair_placeme
   convex_near near;
   a->shape->ops->nearest(a->shape, place->t, NULL, &near);
   *answer = (pair_answer){.steps = 1, .supports = 1};
-  const double padding = a->margin - a->shape->margin; /* near has the shape's own in it */
-  const double distance = near.distance - padding - b->margin;
+  const double margin = a->margin - a->shape->margin; /* near has the shape's own in it */
+  const double distance = near.distance - margin - b->margin;
   answer->rounding = ROUND_UP * (ROUND_U * (a->shape->ops->near_rounding * (vec_norm(place->t) + a->shape->scale) +
                                             4.0 * (a->margin + b->margin)) +
                                  place->error);
   answer->lower = distance - answer->rounding;
   answer->upper = distance + answer->rounding;
-  answer->on_a = vec_axpy(near.point, padding, near.normal);
+  answer->on_a = vec_axpy(near.point, margin, near.normal);
   answer->on_b = vec_axpy(place->t, -b->margin, near.normal);
-  answer->common = near.distance > padding ? answer->on_a : place->t;
+  answer->common = near.distance > margin ? answer->on_a : place->t;
   answer->normal = vec_neg(near.normal);
 }
 
@@ -144,8 +143,8 @@ static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_pla
   const implicit *x = a->shape->implicit, *y = b->shape->implicit;
   void *memory = workspace_reserve(workspace, WORKSPACE_INTERIOR, implicit_memory(x, y));
   if (!memory) return false;
-  implicit_question question = {.a = x, .b = y, .t = place->t};
-  for (int i = 0; i < 9; i++) question.m[i] = place->r[i];
+  implicit_query query = {.a = x, .b = y, .t = place->t};
+  for (int i = 0; i < 9; i++) query.m[i] = place->r[i];
   const double rounding = ROUND_UP * place->error, margins = a->margin + b->margin;
   const implicit_goal inner = {.epsilon = fmax(goal->epsilon - 2.0 * rounding, 0.0),
                                .relative_epsilon = margins > 0.0 ? 0.0 : goal->relative_epsilon,
@@ -153,9 +152,9 @@ static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_pla
   implicit_answer found;
   uint32_t steps = 0;
   implicit_warm warm = {.usable = false};
-  if (!x->closed || !y->closed || !implicit_separate(&question, &inner, &warm, &found)) {
+  if (!x->closed || !y->closed || !implicit_separate(&query, &inner, &warm, &found)) {
     if (x->closed && y->closed) steps = found.steps;
-    implicit_solve(&question, &inner, &warm, memory, &found);
+    implicit_solve(&query, &inner, &warm, memory, &found);
   }
   if (found.overlap) {
     pair_separate(a->shape, a->margin, b->shape, b->margin, place, goal, answer);
@@ -235,8 +234,8 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
   return CPROX_OK;
 }
 
-cprox_status pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b,
-                             cprox_rung finest, bool depth, cprox_workspace *workspace, pair_witness *witness) {
+cprox_status pair_witness_of(const cprox_obstacle *a, size_t part_a, const cprox_obstacle *b, size_t part_b,
+                             cprox_lod finest, bool depth, cprox_workspace *workspace, pair_witness *witness) {
   const pair_side side_a = pair_place_model(a, part_a, finest), side_b = pair_place_model(b, part_b, finest);
   const pair_goal goal = {.relative_epsilon = depth ? 1e-10 : 1e-13, .max_steps = 400, .wants_depth = depth};
   pair_answer answer = {.upper = INFINITY};
@@ -247,24 +246,24 @@ cprox_status pair_witness_of(const cprox_target *a, size_t part_a, const cprox_t
   return CPROX_OK;
 }
 
-/* ---- the verb ---- */
+/* ---- the query ---- */
 
 /* What is asked of each pair of parts. */
 typedef struct pair_task {
-  const cprox_target *a, *b;
+  const cprox_obstacle *a, *b;
   const pair_goal *goal;
-  cprox_rung finest;
+  cprox_lod finest;
   const cprox_options *options;
   cprox_workspace *workspace;
 } pair_task;
 
-/* Parts i of a and j of b, by their finest models up to the rung. */
-static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cprox_rung finest, pair_reply *reply) {
+/* Parts i of a and j of b, by their finest models up to the level of detail. */
+static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cprox_lod finest, pair_reply *reply) {
   const pair_side a = pair_place_model(task->a, i, finest), b = pair_place_model(task->b, j, finest);
   if (!a.body->tree && !b.body->tree && a.shape->ops->kind == CPROX_HALFSPACE && b.shape->ops->kind == CPROX_HALFSPACE)
     return workspace_fail(task->workspace, CPROX_INVALID, "two halfspaces have no distance");
   *reply = (pair_reply){.answer = {.upper = INFINITY}, .part = (int32_t)j};
-  reply->rung = a.rung > b.rung ? a.rung : b.rung;
+  reply->lod = a.lod > b.lod ? a.lod : b.lod;
   const cprox_status status = pair_solve(&a, &b, task->goal, task->workspace, &reply->answer);
   if (status) return status;
   if (!reply->answer.fault) return CPROX_OK;
@@ -272,30 +271,30 @@ static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cp
                         "a support callback answered with a point that is not finite or outside its radius");
 }
 
-static bool pair_has_ladder(const pair_task *task, size_t i, size_t j) {
+static bool pair_has_lod(const pair_task *task, size_t i, size_t j) {
   const cprox_body *a = task->a->body, *b = task->b->body;
   if (a->kind == CPROX_COMPOUND) a = a->parts[i].body;
   if (b->kind == CPROX_COMPOUND) b = b->parts[j].body;
-  return a->kind == CPROX_LADDER || b->kind == CPROX_LADDER;
+  return a->kind == CPROX_LOD || b->kind == CPROX_LOD;
 }
 
 static void pair_join(pair_reply *all, const pair_reply *one) {
   const double lower = fmin(all->answer.lower, one->answer.lower);
   const uint32_t steps = all->answer.steps + one->answer.steps, supports = all->answer.supports + one->answer.supports;
-  const cprox_rung rung = all->rung > one->rung ? all->rung : one->rung;
+  const cprox_lod lod = all->lod > one->lod ? all->lod : one->lod;
   const bool exhausted = all->answer.exhausted || one->answer.exhausted;
   const bool stopped = all->answer.stopped || one->answer.stopped;
   if (one->answer.upper < all->answer.upper) *all = *one;
-  all->answer.lower = lower, all->answer.steps = steps, all->answer.supports = supports, all->rung = rung;
+  all->answer.lower = lower, all->answer.steps = steps, all->answer.supports = supports, all->lod = lod;
   all->answer.exhausted = exhausted, all->answer.stopped = stopped;
 }
 
 /* Whether the hulls of two parts are farther apart than the best so far: then they need not be looked into. */
 static cprox_status pair_ends_at_hulls(const pair_task *task, size_t i, size_t j, pair_reply *best, bool *ends) {
   *ends = false;
-  if (!pair_has_ladder(task, i, j) || !isfinite(best->answer.upper) || task->finest < CPROX_RUNG_MESH) return CPROX_OK;
+  if (!pair_has_lod(task, i, j) || !isfinite(best->answer.upper) || task->finest < CPROX_LOD_MESH) return CPROX_OK;
   pair_reply one = {.part = 0};
-  const cprox_status status = pair_of_models(task, i, j, CPROX_RUNG_HULL, &one);
+  const cprox_status status = pair_of_models(task, i, j, CPROX_LOD_HULL, &one);
   if (status) return status;
   *ends = one.answer.lower > best->answer.upper;
   one.answer.upper = INFINITY;
@@ -307,7 +306,7 @@ static cprox_status pair_ends_at_hulls(const pair_task *task, size_t i, size_t j
 /* No two parts overlap deeper than the balls round both bodies could. */
 static double pair_deepest(const pair_task *task) {
   const double balls = task->a->body->ball_radius + task->b->body->ball_radius;
-  return ROUND_UP * (balls + task->a->padding + task->b->padding);
+  return ROUND_UP * (balls + task->a->margin + task->b->margin);
 }
 
 static bool pair_is_stopped(const pair_task *task) {
@@ -345,15 +344,15 @@ static cprox_status pair_status(const pair_answer *answer, const cprox_options *
   return answer->exhausted ? CPROX_BUDGET : CPROX_PRECISION;
 }
 
-cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *options, cprox_workspace *workspace,
+cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options *options, cprox_workspace *workspace,
                         cprox_result *result) {
   workspace_clear(workspace);
   const cprox_options asked = options ? *options : cprox_options_default();
   cprox_status status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
-  const arguments_query query = {"a pair", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED}; /* depths are always measured */
-  if ((status = arguments_check_options(&asked, query, workspace)) ||
-      (status = pair_check_target("a", &a, workspace)) || (status = pair_check_target("b", &b, workspace)))
+  const arguments_query kind = {"a pair", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED}; /* depths are always measured */
+  if ((status = arguments_check_options(&asked, kind, workspace)) || (status = pair_check_target("a", &a, workspace)) ||
+      (status = pair_check_target("b", &b, workspace)))
     return status;
 
   const pair_goal goal = {.epsilon = asked.epsilon,
@@ -363,7 +362,7 @@ cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *opt
                           .stop_user = asked.stop_user,
                           .wants_depth = true};
   pair_reply best;
-  const cprox_rung finest = asked.max_rung == CPROX_RUNG_NONE ? CPROX_RUNG_MESH : asked.max_rung;
+  const cprox_lod finest = asked.max_lod == CPROX_LOD_NONE ? CPROX_LOD_MESH : asked.max_lod;
   const pair_task task = {.a = &a, .b = &b, .goal = &goal, .finest = finest, .options = &asked, .workspace = workspace};
   if ((status = pair_over_parts(&task, &best))) return status;
 
@@ -373,14 +372,14 @@ cprox_status cprox_pair(cprox_target a, cprox_target b, const cprox_options *opt
                            .verdict = CPROX_UNDECIDED,
                            .lower = answer->lower,
                            .upper = answer->upper,
-                           .t_target = NAN,
-                           .on_mover = answer->on_a,
-                           .on_target = answer->on_b,
+                           .t_obstacle = NAN,
+                           .witness_mover = answer->on_a,
+                           .witness_obstacle = answer->on_b,
                            .normal = answer->normal,
-                           .target_part = best.part,
-                           .rung = best.rung,
+                           .obstacle_part = best.part,
+                           .lod = best.lod,
                            .nodes = answer->steps,
-                           .probes = answer->supports};
+                           .distance_queries = answer->supports};
   if (status != CPROX_OK) workspace_fail(workspace, status, "%s", cprox_status_text(status));
   return status;
 }

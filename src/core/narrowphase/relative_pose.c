@@ -3,23 +3,23 @@
 
 #include "base/rounding.h"
 
-pair_side pair_place_model(const cprox_target *target, size_t part, cprox_rung finest) {
+pair_side pair_place_model(const cprox_obstacle *target, size_t part, cprox_lod finest) {
   cprox_pose inner, pose = target->pose;
   bool moved;
   const model m = model_of_part(target->body, part, finest, &inner, &moved);
-  pair_side side = {.body = m.body, .shape = &m.body->shape, .rung = m.rung};
+  pair_side side = {.body = m.body, .shape = &m.body->shape, .lod = m.lod};
   if (moved) {
     pose = frame_compose(&target->pose, &inner);
     const double turned = vec_norm(inner.position) + vec_norm(m.body->centre) + m.body->shape.scale;
     side.error = ROUND_U * (ROUND_ROTATION * turned + 3.0 * vec_norm(pose.position));
   }
   side.f = frame_create(&pose, m.body->centre);
-  side.margin = target->padding + m.excess + m.body->shape.margin;
+  side.margin = target->margin + m.excess + m.body->shape.margin;
   return side;
 }
 
-pair_side pair_place_side(const cprox_target *target, size_t part) {
-  return pair_place_model(target, part, CPROX_RUNG_MESH);
+pair_side pair_place_side(const cprox_obstacle *target, size_t part) {
+  return pair_place_model(target, part, CPROX_LOD_MESH);
 }
 
 pair_placement pair_place(const pair_side *a, const pair_side *b) {

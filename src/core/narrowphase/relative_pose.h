@@ -12,15 +12,15 @@
 typedef struct pair_side {
   const convex *shape;
   frame f;
-  double margin; /* the shape's own and the padding */
+  double margin; /* the shape's own and the margin */
   double error;  /* of the pose, where it had to be composed */
   const cprox_body *body;
-  cprox_rung rung;
+  cprox_lod lod;
 } pair_side;
 
-/* Part of a target, by the finest model up to the rung; of its finest one. */
-pair_side pair_place_model(const cprox_target *target, size_t part, cprox_rung finest);
-pair_side pair_place_side(const cprox_target *target, size_t part);
+/* Part of a target, by the finest model up to the level of detail; of its finest one. */
+pair_side pair_place_model(const cprox_obstacle *target, size_t part, cprox_lod finest);
+pair_side pair_place_side(const cprox_obstacle *target, size_t part);
 
 /* b in a's frame. Positions are subtracted first: what they share does not enter the rounding. */
 pair_placement pair_place(const pair_side *a, const pair_side *b);

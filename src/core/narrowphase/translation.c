@@ -15,7 +15,7 @@ enum { TRANSLATION_STEPS = 200 };
 
 /* ---- arguments ---- */
 
-static cprox_status check_body(const char *name, const cprox_target *target, bool implicit_only,
+static cprox_status check_body(const char *name, const cprox_obstacle *target, bool implicit_only,
                                cprox_workspace *workspace) {
   if (target->curve || !target->body) return workspace_fail(workspace, CPROX_INVALID, "%s is not a body", name);
   const cprox_body_kind kind = target->body->kind;
@@ -63,19 +63,19 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
                                         cprox_result *result) {
   workspace_clear(workspace);
   const cprox_options asked = options ? *options : cprox_options_default();
-  const arguments_query query = {"the distance of bodies that translate", ARGUMENTS_RELATIVE};
-  cprox_status status = check_motion(&a, &b, duration, true, &asked, query, workspace);
+  const arguments_query kind = {"the distance of bodies that translate", ARGUMENTS_RELATIVE};
+  cprox_status status = check_motion(&a, &b, duration, true, &asked, kind, workspace);
   if (status) return status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
 
   const pair_side x = pair_place_side(&a.from, 0), y = pair_place_side(&b.from, 0);
   const pair_placement place = pair_place(&x, &y);
-  implicit_question question = {
+  implicit_query query = {
       .a = x.shape->implicit, .b = y.shape->implicit, .moving = true, .t = place.t, .duration = duration};
-  for (int i = 0; i < 9; i++) question.m[i] = place.r[i];
+  for (int i = 0; i < 9; i++) query.m[i] = place.r[i];
   const vec3 relative = vec_sub(b.velocity, a.velocity);
-  question.velocity = frame_turn_to_local(&x.f, relative);
-  void *memory = workspace_reserve(workspace, WORKSPACE_INTERIOR, implicit_memory(question.a, question.b));
+  query.velocity = frame_turn_to_local(&x.f, relative);
+  void *memory = workspace_reserve(workspace, WORKSPACE_INTERIOR, implicit_memory(query.a, query.b));
   if (!memory) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of implicit bodies");
 
   const double way = vec_norm(relative) * duration, margins = x.margin + y.margin;
@@ -84,7 +84,7 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
                               .relative_epsilon = margins > 0.0 ? 0.0 : asked.relative_epsilon,
                               .max_steps = asked.max_nodes};
   implicit_answer found;
-  implicit_solve(&question, &goal, NULL, memory, &found);
+  implicit_solve(&query, &goal, NULL, memory, &found);
 
   /* the points, where the bodies are then: a has moved on as well */
   const vec3 moved = vec_scale(found.time, a.velocity);
@@ -95,11 +95,11 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
                            .lower = fmax(found.lower - margins - rounding, 0.0),
                            .upper = found.overlap ? 0.0 : fmax(found.upper - margins + rounding, 0.0),
                            .t = found.time,
-                           .t_target = NAN,
-                           .on_mover = vec_add(frame_to_world(&x.f, on_a), moved),
-                           .on_target = vec_add(frame_to_world(&x.f, on_b), moved),
+                           .t_obstacle = NAN,
+                           .witness_mover = vec_add(frame_to_world(&x.f, on_a), moved),
+                           .witness_obstacle = vec_add(frame_to_world(&x.f, on_b), moved),
                            .normal = frame_turn_to_world(&x.f, found.overlap ? vec(0, 0, 0) : found.normal),
-                           .rung = CPROX_RUNG_HULL,
+                           .lod = CPROX_LOD_HULL,
                            .nodes = found.steps};
   if (result->lower > 0.0) result->verdict = CPROX_NO;
   if (found.overlap || found.upper - margins + rounding <= 0.0) result->verdict = CPROX_YES;
@@ -111,12 +111,12 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
   return finish(status, workspace);
 }
 
-/* ---- first contact ---- */
+/* ---- time of contact ---- */
 
 /* An approach of b to a: where it is, how far it is proven to be free. */
 typedef struct approach {
-  cprox_target a, b; /* b at time 0 */
-  vec3 velocity;     /* of b, seen from a */
+  cprox_obstacle a, b; /* b at time 0 */
+  vec3 velocity;       /* of b, seen from a */
   double duration;
   double free_until;
   bool never;        /* they part from here on */
@@ -124,8 +124,8 @@ typedef struct approach {
   uint32_t pairs;
 } approach;
 
-static cprox_target approach_at(const approach *p, double t) {
-  cprox_target b = p->b;
+static cprox_obstacle approach_at(const approach *p, double t) {
+  cprox_obstacle b = p->b;
   b.pose.position = vec_axpy(b.pose.position, t, p->velocity);
   return b;
 }
@@ -196,8 +196,8 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   workspace_clear(workspace);
   const cprox_options asked = options ? *options : cprox_options_default();
-  const arguments_query query = {"contact of bodies that translate", ARGUMENTS_STOP};
-  cprox_status status = check_motion(&a, &b, duration, false, &asked, query, workspace);
+  const arguments_query kind = {"contact of bodies that translate", ARGUMENTS_STOP};
+  cprox_status status = check_motion(&a, &b, duration, false, &asked, kind, workspace);
   if (status) return status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
 
@@ -212,13 +212,13 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
   workspace_clear(workspace);
   const vec3 moved = vec_scale(at, a.velocity);
   *result = p.last;
-  result->t = at, result->t_free = p.free_until;
+  result->t = at, result->t_contact_lower = p.free_until;
   result->verdict = p.never ? CPROX_NO : p.last.upper <= 0.0 ? CPROX_YES : CPROX_UNDECIDED;
-  result->on_mover = vec_add(result->on_mover, moved);
-  result->on_target = vec_add(result->on_target, moved);
-  result->probes = p.pairs + 1;
+  result->witness_mover = vec_add(result->witness_mover, moved);
+  result->witness_obstacle = vec_add(result->witness_obstacle, moved);
+  result->distance_queries = p.pairs + 1;
   result->status = status;
-  if (p.never) result->t_free = duration;
+  if (p.never) result->t_contact_lower = duration;
   return finish(status, workspace);
 }
 
@@ -226,17 +226,17 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
 
 /* Both scaled by g about their centres touch where, unscaled, they would touch with the centres 1/g times as far apart: b
  * approaches along the line of the centres from where it is free for certain. */
-cprox_status cprox_growth_distance(cprox_target a, cprox_target b, const cprox_options *options,
+cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
                                    cprox_workspace *workspace, cprox_growth *growth) {
   workspace_clear(workspace);
   const cprox_options asked = options ? *options : cprox_options_default();
   const cprox_translating still_a = {.from = a}, still_b = {.from = b};
-  const arguments_query query = {"the growth distance", ARGUMENTS_STOP};
-  cprox_status status = check_motion(&still_a, &still_b, 1.0, true, &asked, query, workspace);
+  const arguments_query kind = {"the growth distance", ARGUMENTS_STOP};
+  cprox_status status = check_motion(&still_a, &still_b, 1.0, true, &asked, kind, workspace);
   if (status) return status;
   if (!growth) return workspace_fail(workspace, CPROX_INVALID, "growth is NULL: nowhere to put the answer");
-  if (a.padding > 0.0 || b.padding > 0.0)
-    return workspace_fail(workspace, CPROX_INVALID, "padding is not scaled: it must be 0");
+  if (a.margin > 0.0 || b.margin > 0.0)
+    return workspace_fail(workspace, CPROX_INVALID, "margin is not scaled: it must be 0");
 
   const frame fa = frame_create(&a.pose, a.body->centre), fb = frame_create(&b.pose, b.body->centre);
   const vec3 apart = vec_sub(frame_to_world(&fb, vec(0, 0, 0)), frame_to_world(&fa, vec(0, 0, 0)));

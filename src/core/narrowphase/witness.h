@@ -13,7 +13,7 @@ typedef struct pair_witness {
 } pair_witness;
 
 /* CPROX_OK, or a negative status with its reason in the workspace. Of these parts of the two (0 where the body is no compound), which are not both halfspaces. */
-cprox_status pair_witness_of(const cprox_target *a, size_t part_a, const cprox_target *b, size_t part_b,
-                             cprox_rung finest, bool depth, cprox_workspace *workspace, pair_witness *witness);
+cprox_status pair_witness_of(const cprox_obstacle *a, size_t part_a, const cprox_obstacle *b, size_t part_b,
+                             cprox_lod finest, bool depth, cprox_workspace *workspace, pair_witness *witness);
 
 #endif

@@ -26,7 +26,7 @@ static candidate_ball ball_of_curve(const cprox_curve *curve) {
 }
 
 /* Round one model of an obstacle, or where its curve carries that. */
-static candidate_ball bounding_ball_of(const cprox_target *obstacle, int32_t part, const placed_model *m,
+static candidate_ball bounding_ball_of(const cprox_obstacle *obstacle, int32_t part, const placed_model *m,
                                        double *sizes) {
   candidate_ball round = {0};
   *sizes = 0.0;
@@ -49,7 +49,7 @@ static candidate_ball bounding_ball_of(const cprox_target *obstacle, int32_t par
   return round;
 }
 
-candidate_ball candidate_bounding_ball(const question *q, const candidate *c, double *sizes) {
+candidate_ball candidate_bounding_ball(const query *q, const candidate *c, double *sizes) {
   const placed_model m = placed_model_of_obstacle(q, c);
   return bounding_ball_of(&q->targets[c->target], c->part, &m, sizes);
 }
@@ -63,8 +63,8 @@ static candidate_ball carried_ball(const placed_model *carried) {
 }
 
 /* The mover's capsule against the candidate's ball. */
-double candidate_ball_bound(const question *q, const candidate *c) {
-  const cprox_target *obstacle = &q->targets[c->target];
+double candidate_ball_bound(const query *q, const candidate *c) {
+  const cprox_obstacle *obstacle = &q->targets[c->target];
   const placed_models both = placed_models_resolve(q, c);
   double placing;
   const candidate_ball round = bounding_ball_of(obstacle, c->part, &both.obstacle, &placing);
@@ -72,7 +72,7 @@ double candidate_ball_bound(const question *q, const candidate *c) {
   const candidate_ball own = carried_ball(&both.carried);
   const vec3 centre = vec_sub(round.centre, own.centre);
   const curve_capsule *capsule = &q->reach;
-  const double offset = q->mover.radius + both.carried.excess + (obstacle->padding + both.obstacle.excess);
+  const double offset = q->mover.radius + both.carried.excess + (obstacle->margin + both.obstacle.excess);
   const double reach = capsule->radius + round.radius + own.radius + offset;
   /* rounding: the pose of the centre, the projection on the chord, the sums; doc/rounding.md */
   const double sizes =
@@ -96,7 +96,7 @@ static size_t parts_of(const cprox_body *body) {
   return body && body->kind == CPROX_COMPOUND ? body->n_parts : 1;
 }
 
-candidate *candidates_list(const question *q, size_t first, size_t last, bool ranked, size_t *count) {
+candidate *candidates_list(const query *q, size_t first, size_t last, bool ranked, size_t *count) {
   const size_t carried = parts_of(q->mover.body);
   size_t n = 0;
   for (size_t i = first; i < last; i++) n += parts_of(q->targets[i].body) * carried;

@@ -12,22 +12,23 @@ typedef struct candidate {
   int32_t target, part, mover_part;
   uint32_t seed_piece; /* where a search against a convex body begins to measure: */
   double seed_s;       /* s of that piece, inside (0, 1); 0: wherever it likes */
-  cprox_rung rung;     /* the model that is searched; CPROX_RUNG_NONE: the finest that the question allows */
+  cprox_lod lod;       /* the model that is searched; CPROX_LOD_NONE: the finest that the query allows */
 } candidate;
 
 /* The candidates of targets first … last - 1, nearest ball first, in the workspace. NULL where memory is out. `ranked` false: of a
  * single candidate nothing is asked, its bound is minus infinity. */
-candidate *candidates_list(const question *q, size_t first, size_t last, bool ranked, size_t *count);
+candidate *candidates_list(const query *q, size_t first, size_t last, bool ranked, size_t *count);
 
 /* What the balls of mover and candidate say: never above the true distance; minus infinity where there is no ball. */
-double candidate_ball_bound(const question *q, const candidate *c);
+double candidate_ball_bound(const query *q, const candidate *c);
 
-/* Round a candidate, in the world, without padding and but for rounding; *sizes becomes the sum of the lengths that entered. */
+/* Round a candidate, in the world, without margin and but for rounding; *sizes becomes the sum of the lengths that
+ * entered. */
 typedef struct candidate_ball {
   vec3 centre;
   double radius;
 } candidate_ball;
-candidate_ball candidate_bounding_ball(const question *q, const candidate *c, double *sizes);
+candidate_ball candidate_bounding_ball(const query *q, const candidate *c, double *sizes);
 
 /* Ascending by lower. */
 void candidates_sort(candidate *list, size_t n);

@@ -14,26 +14,26 @@ static bool has_ball(const cprox_body *body) {
   }
 }
 
-model model_of(const cprox_body *body, cprox_rung finest) {
-  if (finest == CPROX_RUNG_SPHERE && has_ball(body)) {
+model model_of(const cprox_body *body, cprox_lod finest) {
+  if (finest == CPROX_LOD_SPHERE && has_ball(body)) {
     /* the point that stands for the ball is placed by one more composition of poses */
     const double moved = ROUND_UP * ROUND_U * 2.0 * ROUND_ROTATION * (vec_norm(body->ball_centre) + body->ball_radius);
     return (model){.body = &carried_point,
                    .excess = body->ball_radius + moved,
                    .shift = body->ball_centre,
-                   .rung = CPROX_RUNG_SPHERE};
+                   .lod = CPROX_LOD_SPHERE};
   }
   model m = {.body = body};
-  if (body->kind == CPROX_LADDER) {
-    const bool by_hull = finest == CPROX_RUNG_SPHERE || finest == CPROX_RUNG_HULL;
+  if (body->kind == CPROX_LOD) {
+    const bool by_hull = finest == CPROX_LOD_SPHERE || finest == CPROX_LOD_HULL;
     m.body = by_hull ? body->hull : body->mesh;
     m.excess = by_hull ? body->excess : 0.0;
   }
-  m.rung = m.body->tree ? CPROX_RUNG_MESH : CPROX_RUNG_HULL;
+  m.lod = m.body->tree ? CPROX_LOD_MESH : CPROX_LOD_HULL;
   return m;
 }
 
-bool model_has_tree(const cprox_body *body, cprox_rung finest) {
+bool model_has_tree(const cprox_body *body, cprox_lod finest) {
   if (!body) return false;
   if (body->kind != CPROX_COMPOUND) return model_of(body, finest).body->tree != NULL;
   for (size_t i = 0; i < body->n_parts; i++)
@@ -41,7 +41,7 @@ bool model_has_tree(const cprox_body *body, cprox_rung finest) {
   return false;
 }
 
-model model_of_part(const cprox_body *body, size_t part, cprox_rung finest, cprox_pose *inner, bool *moved) {
+model model_of_part(const cprox_body *body, size_t part, cprox_lod finest, cprox_pose *inner, bool *moved) {
   const bool compound = body->kind == CPROX_COMPOUND;
   const model m = model_of(compound ? body->parts[part].body : body, finest);
   const bool shifted = vec_norm2(m.shift) > 0.0;

@@ -7,33 +7,33 @@
 #include "shape/body.h"
 
 /* Most bodies are their own model. */
-static inline placed_model model_at(const cprox_body *body, int32_t part, cprox_rung finest) {
-  placed_model m = {.body = body, .rung = body && body->tree ? CPROX_RUNG_MESH : CPROX_RUNG_HULL};
+static inline placed_model model_at(const cprox_body *body, int32_t part, cprox_lod finest) {
+  placed_model m = {.body = body, .lod = body && body->tree ? CPROX_LOD_MESH : CPROX_LOD_HULL};
   if (!body || model_is_body(body, finest)) return m;
   const model is = model_of_part(body, (size_t)part, finest, &m.inner, &m.moved);
-  m.body = is.body, m.excess = is.excess, m.rung = is.rung;
+  m.body = is.body, m.excess = is.excess, m.lod = is.lod;
   return m;
 }
 
 /* The pose of the obstacle, with its curve at the origin where it is on the mover's clock. */
-static cprox_pose obstacle_pose(const cprox_target *obstacle) {
+static cprox_pose obstacle_pose(const cprox_obstacle *obstacle) {
   cprox_pose pose = obstacle->pose;
-  if (obstacle->on_clock) pose.position = vec(0, 0, 0);
+  if (obstacle->synchronized) pose.position = vec(0, 0, 0);
   return pose;
 }
 
-placed_model placed_model_of_obstacle(const question *q, const candidate *c) {
-  const cprox_target *obstacle = &q->targets[c->target];
-  const cprox_body *body = obstacle->on_clock && !obstacle->body ? &carried_point : obstacle->body;
-  placed_model m = model_at(body, c->part, c->rung != CPROX_RUNG_NONE ? c->rung : q->options.max_rung);
+placed_model placed_model_of_obstacle(const query *q, const candidate *c) {
+  const cprox_obstacle *obstacle = &q->targets[c->target];
+  const cprox_body *body = obstacle->synchronized && !obstacle->body ? &carried_point : obstacle->body;
+  placed_model m = model_at(body, c->part, c->lod != CPROX_LOD_NONE ? c->lod : q->options.max_lod);
   m.pose = obstacle_pose(obstacle);
   if (m.moved) m.pose = frame_compose(&m.pose, &m.inner);
   return m;
 }
 
-placed_models placed_models_resolve(const question *q, const candidate *c) {
+placed_models placed_models_resolve(const query *q, const candidate *c) {
   placed_models both = {.obstacle = placed_model_of_obstacle(q, c)};
-  both.carried = model_at(q->mover.body, c->mover_part, both.obstacle.rung);
+  both.carried = model_at(q->mover.body, c->mover_part, both.obstacle.lod);
   both.carried.pose = both.carried.moved ? both.carried.inner : cprox_pose_identity();
   return both;
 }
@@ -46,17 +46,17 @@ static double position_error_of(const placed_model *m, const cprox_body *carried
   return ROUND_UP * ROUND_U * (2.0 * ROUND_ROTATION * turned + 3.0 * vec_norm(m->pose.position));
 }
 
-placed_pair placed_pair_resolve(const question *q, const candidate *c) {
+placed_pair placed_pair_resolve(const query *q, const candidate *c) {
   const placed_models both = placed_models_resolve(q, c);
   const placed_model *m = &both.obstacle;
   placed_pair p = {.which = *c,
                    .obstacle = &q->targets[c->target],
-                   .rung = m->rung,
+                   .lod = m->lod,
                    .shape = m->body,
                    .pose = m->pose,
                    .carried = both.carried.body,
                    .carried_pose = both.carried.pose};
-  p.margin = p.obstacle->padding + m->excess;
+  p.margin = p.obstacle->margin + m->excess;
   p.offset = q->mover.radius + both.carried.excess + p.margin;
   p.position_error = position_error_of(m, p.carried);
   if (!p.shape) return p;

@@ -8,8 +8,8 @@
 
 typedef struct placed_pair {
   candidate which; /* the indices, the bound by bounding spheres, and where the search begins */
-  const cprox_target *obstacle;
-  cprox_rung rung; /* of the models below */
+  const cprox_obstacle *obstacle;
+  cprox_lod lod; /* of the models below */
 
   /* The obstacle's model; NULL for a curve at a parameter of its own. An obstacle on the mover's clock has a shape, if only a point,
    * which stands where it would if its curve were at the origin. */
@@ -25,13 +25,13 @@ typedef struct placed_pair {
   double offset; /* all margins: the obstacle's, and that of what rides the curve */
 } placed_pair;
 
-placed_pair placed_pair_resolve(const question *q, const candidate *c);
+placed_pair placed_pair_resolve(const query *q, const candidate *c);
 
 /* One part of a body at a level of detail. */
 typedef struct placed_model {
   const cprox_body *body; /* NULL: none */
   double excess;          /* the part is within this of the model */
-  cprox_rung rung;
+  cprox_lod lod;
   cprox_pose pose;  /* of an obstacle: in the world; of what is carried: while the curve is at the origin */
   bool moved;       /* false: the model stands in the frame of the body, */
   cprox_pose inner; /* and this, its pose there, is not set */
@@ -42,9 +42,9 @@ typedef struct placed_models {
   placed_model obstacle, carried;
 } placed_models;
 
-placed_models placed_models_resolve(const question *q, const candidate *c);
+placed_models placed_models_resolve(const query *q, const candidate *c);
 
 /* That of the obstacle alone. */
-placed_model placed_model_of_obstacle(const question *q, const candidate *c);
+placed_model placed_model_of_obstacle(const query *q, const candidate *c);
 
 #endif

@@ -6,20 +6,20 @@
 #include "curve/subcurve.h"
 #include "curve_proximity/cprox/robot.h"
 
-question question_create(cprox_mover mover, const cprox_target *targets, size_t n, double limit, bool farther_is_yes,
-                         const cprox_options *options, cprox_workspace *workspace) {
-  question q = {.mover = mover,
-                .targets = targets,
-                .n = n,
-                .limit = limit,
-                .farther_is_yes = farther_is_yes,
-                .options = options ? *options : cprox_options_default(),
-                .workspace = workspace};
-  if (q.options.max_rung == CPROX_RUNG_NONE) q.options.max_rung = CPROX_RUNG_MESH;
+query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool farther_is_yes,
+                   const cprox_options *options, cprox_workspace *workspace) {
+  query q = {.mover = mover,
+             .targets = targets,
+             .n = n,
+             .limit = limit,
+             .farther_is_yes = farther_is_yes,
+             .options = options ? *options : cprox_options_default(),
+             .workspace = workspace};
+  if (q.options.max_lod == CPROX_LOD_NONE) q.options.max_lod = CPROX_LOD_MESH;
   return q;
 }
 
-void question_ask_whole(question *q) {
+void query_ask_whole(query *q) {
   if (q->mover.motion) {
     cprox_motion_domain(q->mover.motion, &q->t0, &q->t1);
     return;
@@ -29,20 +29,20 @@ void question_ask_whole(question *q) {
   cprox_curve_domain(q->mover.curve, &q->t0, &q->t1);
 }
 
-cprox_verdict question_verdict(const question *q, const cprox_result *r) {
-  if (!question_wants_verdict(q)) return CPROX_UNDECIDED;
+cprox_verdict query_verdict(const query *q, const cprox_result *r) {
+  if (!query_wants_verdict(q)) return CPROX_UNDECIDED;
   if (r->upper <= q->limit) return q->farther_is_yes ? CPROX_NO : CPROX_YES;
   if (r->lower > q->limit) return q->farther_is_yes ? CPROX_YES : CPROX_NO;
   return CPROX_UNDECIDED;
 }
 
-bool question_is_satisfied(const question *q, double ceiling, const cprox_result *r) {
-  if (question_wants_verdict(q) && question_verdict(q, r) != CPROX_UNDECIDED) return true;
+bool query_is_satisfied(const query *q, double ceiling, const cprox_result *r) {
+  if (query_wants_verdict(q) && query_verdict(q, r) != CPROX_UNDECIDED) return true;
   const double upper = lesser(r->upper, ceiling);
   return !(upper - r->lower > greater(q->options.relative_epsilon * fabs(upper), q->options.epsilon));
 }
 
-const char *question_shortfall(cprox_status status) {
+const char *query_shortfall(cprox_status status) {
   switch (status) {
     case CPROX_BUDGET: return "the budget of nodes ended the search: raise max_nodes or epsilon";
     case CPROX_PRECISION: return "epsilon is below what double arithmetic allows at this scale";
@@ -52,26 +52,26 @@ const char *question_shortfall(cprox_status status) {
   }
 }
 
-cprox_result question_nothing(void) {
-  return (cprox_result){.lower = INFINITY, .upper = INFINITY, .t_target = NAN, .target_index = -1};
+cprox_result query_nothing(void) {
+  return (cprox_result){.lower = INFINITY, .upper = INFINITY, .t_obstacle = NAN, .obstacle_index = -1};
 }
 
-void question_join(cprox_result *all, const cprox_result *one) {
+void query_join(cprox_result *all, const cprox_result *one) {
   const double lower = lesser(all->lower, one->lower);
-  const uint32_t nodes = all->nodes + one->nodes, probes = all->probes + one->probes;
-  const cprox_rung rung = all->rung > one->rung ? all->rung : one->rung;
-  if (one->upper < all->upper || all->target_index < 0) *all = *one;
-  all->lower = lower, all->nodes = nodes, all->probes = probes;
-  all->rung = rung;
+  const uint32_t nodes = all->nodes + one->nodes, distance_queries = all->distance_queries + one->distance_queries;
+  const cprox_lod lod = all->lod > one->lod ? all->lod : one->lod;
+  if (one->upper < all->upper || all->obstacle_index < 0) *all = *one;
+  all->lower = lower, all->nodes = nodes, all->distance_queries = distance_queries;
+  all->lod = lod;
 }
 
-cprox_result *question_reserve_results(const question *q, size_t n) {
+cprox_result *query_reserve_results(const query *q, size_t n) {
   cprox_result *results = workspace_reserve(q->workspace, WORKSPACE_NEAREST, (n + 1) * sizeof *results);
   if (!results) workspace_fail(q->workspace, CPROX_MEMORY, "no memory for %zu results", n);
   return results;
 }
 
-void question_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r) {
+void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r) {
   size_t i = *count;
   if (i == k) {
     if (!(r->upper < nearest[k - 1].upper)) return;
@@ -83,10 +83,10 @@ void question_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_r
   nearest[i] = *r;
 }
 
-cprox_status question_conclude(const question *q, double ceiling, cprox_status trouble, cprox_result *all) {
+cprox_status query_conclude(const query *q, double ceiling, cprox_status trouble, cprox_result *all) {
   all->lower = lesser(all->lower, all->upper);
-  all->status = question_is_satisfied(q, ceiling, all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
-  all->verdict = question_verdict(q, all);
-  if (all->status != CPROX_OK) workspace_fail(q->workspace, all->status, "%s", question_shortfall(all->status));
+  all->status = query_is_satisfied(q, ceiling, all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
+  all->verdict = query_verdict(q, all);
+  if (all->status != CPROX_OK) workspace_fail(q->workspace, all->status, "%s", query_shortfall(all->status));
   return all->status;
 }

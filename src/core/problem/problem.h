@@ -8,10 +8,10 @@
 #include "curve/subcurve.h"
 #include "curve_proximity/cprox/query.h"
 
-/* What every verb asks. */
-typedef struct question {
+/* What every query asks. */
+typedef struct query {
   cprox_mover mover;
-  const cprox_target *targets;
+  const cprox_obstacle *targets;
   size_t n;
   double limit;        /* verdicts: delta, 0 for collision; distance: -1 */
   bool is_signed;      /* distance: overlaps are measured, too */
@@ -22,43 +22,43 @@ typedef struct question {
   curve_capsule reach; /* contains that part */
   double t0, t1;       /* that part by the curve's parameter */
   const struct cprox_set
-      *set; /* a robot's question: the set that the targets are, by whose boxes they are found; or NULL */
-} question;
+      *set; /* a robot's query: the set that the targets are, by whose boxes they are found; or NULL */
+} query;
 
 /* Asks about the whole curve; the arguments must have been checked. */
-void question_ask_whole(question *q);
+void query_ask_whole(query *q);
 
-static inline bool question_wants_verdict(const question *q) {
+static inline bool query_wants_verdict(const query *q) {
   return q->limit >= 0.0;
 }
 
 /* options NULL: the default. Nothing is checked. */
-question question_create(cprox_mover mover, const cprox_target *targets, size_t n, double limit, bool farther_is_yes,
-                         const cprox_options *options, cprox_workspace *workspace);
+query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool farther_is_yes,
+                   const cprox_options *options, cprox_workspace *workspace);
 
 /* What a status above CPROX_OK means to the caller. */
-const char *question_shortfall(cprox_status status);
+const char *query_shortfall(cprox_status status);
 
 /* The verdict that the result's interval gives; undecided for distances. */
-cprox_verdict question_verdict(const question *q, const cprox_result *r);
+cprox_verdict query_verdict(const query *q, const cprox_result *r);
 
 /* Whether the interval is what was asked for, whatever happened on the way. */
-bool question_is_satisfied(const question *q, double ceiling, const cprox_result *r);
+bool query_is_satisfied(const query *q, double ceiling, const cprox_result *r);
 
 /* Against nothing: infinitely far. */
-cprox_result question_nothing(void);
+cprox_result query_nothing(void);
 
 /* Adds the answer against another set to the union's: the least of both ends, with the witness of the upper one. */
-void question_join(cprox_result *all, const cprox_result *one);
+void query_join(cprox_result *all, const cprox_result *one);
 
 /* Room in the workspace for the results of up to n targets, so that the caller's array is written only when the query has succeeded.
  * NULL where memory is out. */
-cprox_result *question_reserve_results(const question *q, size_t n);
+cprox_result *query_reserve_results(const query *q, size_t n);
 
 /* Puts a result where it belongs among the k nearest so far, ascending by upper. */
-void question_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r);
+void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r);
 
 /* The union is complete: its status (`trouble` is the last that a search had), verdict and reason. */
-cprox_status question_conclude(const question *q, double ceiling, cprox_status trouble, cprox_result *all);
+cprox_status query_conclude(const query *q, double ceiling, cprox_status trouble, cprox_result *all);
 
 #endif

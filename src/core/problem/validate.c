@@ -32,7 +32,7 @@ static cprox_status check_applies(const cprox_options *options, arguments_query 
        "ask about one mover by distance, tolerance or collision for that"},
       {ARGUMENTS_STOP, options->stop != NULL, "stop", "it is short and does not poll"},
       {ARGUMENTS_RELATIVE, options->relative_epsilon != 0.0, "relative_epsilon", "set epsilon alone"},
-      {ARGUMENTS_RUNG, options->max_rung != CPROX_RUNG_NONE && options->max_rung != CPROX_RUNG_MESH, "max_rung",
+      {ARGUMENTS_LOD, options->max_lod != CPROX_LOD_NONE && options->max_lod != CPROX_LOD_MESH, "max_lod",
        "bodies answer as they are"},
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
@@ -49,9 +49,9 @@ cprox_status arguments_check_options(const cprox_options *options, arguments_que
   if (status != CPROX_OK) return status;
   if (options->max_nodes == 0)
     return workspace_fail(workspace, CPROX_INVALID, "max_nodes is 0: a query needs a budget of at least 1 node");
-  if ((int)options->max_rung < CPROX_RUNG_NONE || options->max_rung > CPROX_RUNG_MESH)
-    return workspace_fail(workspace, CPROX_INVALID, "max_rung is %d, must be sphere, hull or mesh",
-                          (int)options->max_rung);
+  if ((int)options->max_lod < CPROX_LOD_NONE || options->max_lod > CPROX_LOD_MESH)
+    return workspace_fail(workspace, CPROX_INVALID, "max_lod is %d, must be sphere, hull or mesh",
+                          (int)options->max_lod);
   return check_applies(options, asked, workspace);
 }
 
@@ -59,21 +59,21 @@ cprox_status arguments_check_delta(double delta, cprox_workspace *workspace) {
   return arguments_check_length("delta", delta, workspace);
 }
 
-cprox_status arguments_check_target(const cprox_target *target, size_t index, cprox_workspace *workspace) {
+cprox_status arguments_check_target(const cprox_obstacle *target, size_t index, cprox_workspace *workspace) {
   if (!target->body && !target->curve)
     return workspace_fail(workspace, CPROX_INVALID, "target %zu has neither a body nor a curve", index);
-  if (target->on_clock && !target->curve)
+  if (target->synchronized && !target->curve)
     return workspace_fail(workspace, CPROX_INVALID, "target %zu is on the mover's clock, but has no curve", index);
-  if (target->body && target->curve && !target->on_clock)
+  if (target->body && target->curve && !target->synchronized)
     return workspace_fail(workspace, CPROX_INVALID, "target %zu has both a body and a curve", index);
   const char *fault = frame_pose_fault(&target->pose);
   if (fault) return workspace_fail(workspace, CPROX_INVALID, "target %zu: %s", index, fault);
-  if (!(target->padding >= 0.0 && isfinite(target->padding)))
-    return workspace_fail(workspace, CPROX_INVALID, "target %zu: padding is %g, must be finite and 0 or more", index,
-                          target->padding);
-  if (target->padding > LENGTH_MOST)
-    return workspace_fail(workspace, CPROX_INVALID, "target %zu: padding is %g, must be at most %g", index,
-                          target->padding, LENGTH_MOST);
+  if (!(target->margin >= 0.0 && isfinite(target->margin)))
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu: margin is %g, must be finite and 0 or more", index,
+                          target->margin);
+  if (target->margin > LENGTH_MOST)
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu: margin is %g, must be at most %g", index,
+                          target->margin, LENGTH_MOST);
   if (target->body && !body_is_in_reach(target->body))
     return workspace_fail(workspace, CPROX_INVALID, "target %zu: the body reaches farther than %g m", index,
                           LENGTH_MOST);
@@ -83,7 +83,7 @@ cprox_status arguments_check_target(const cprox_target *target, size_t index, cp
   return CPROX_OK;
 }
 
-cprox_status arguments_check_targets(const cprox_target *targets, size_t n, cprox_workspace *workspace) {
+cprox_status arguments_check_targets(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace) {
   if (n > 0 && !targets) return workspace_fail(workspace, CPROX_INVALID, "targets is NULL, but %zu are announced", n);
   if (n > INT32_MAX) return workspace_fail(workspace, CPROX_INVALID, "%zu targets are more than 2147483647", n);
   for (size_t i = 0; i < n; i++) {
@@ -93,10 +93,10 @@ cprox_status arguments_check_targets(const cprox_target *targets, size_t n, cpro
   return CPROX_OK;
 }
 
-/* What is on one clock must run over the same time. */
-static cprox_status check_clock(const cprox_curve *curve, const cprox_target *target, size_t index,
+/* What is synchronized must run over the same time. */
+static cprox_status check_clock(const cprox_curve *curve, const cprox_obstacle *target, size_t index,
                                 cprox_workspace *workspace) {
-  if (!target->on_clock) return CPROX_OK;
+  if (!target->synchronized) return CPROX_OK;
   if (curve->arcs || target->curve->arcs)
     return workspace_fail(
         workspace, CPROX_INVALID,
@@ -113,14 +113,14 @@ static cprox_status check_clock(const cprox_curve *curve, const cprox_target *ta
 }
 
 /* Convex parts without end have no Minkowski difference that a search could use. */
-static cprox_status check_carried(const cprox_body *body, cprox_rung finest, cprox_workspace *workspace) {
+static cprox_status check_carried(const cprox_body *body, cprox_lod finest, cprox_workspace *workspace) {
   if (!body) return CPROX_OK;
   if (!isfinite(body->ball_radius))
     return workspace_fail(workspace, CPROX_INVALID, "the mover's body is a halfspace or has one: it must be bounded");
   if (!body_is_in_reach(body))
     return workspace_fail(workspace, CPROX_INVALID, "the mover's body reaches farther than %g m", LENGTH_MOST);
   /* past some targets it goes by its hull even where balls are asked for */
-  if (model_has_tree(body, finest == CPROX_RUNG_SPHERE ? CPROX_RUNG_HULL : finest))
+  if (model_has_tree(body, finest == CPROX_LOD_SPHERE ? CPROX_LOD_HULL : finest))
     return workspace_fail(
         workspace, CPROX_INVALID,
         "the mover's body is a mesh, points or boxes, or has such a part: only convex parts are carried");
@@ -143,7 +143,7 @@ static cprox_status check_pairs(const cprox_mover *mover, size_t n, cprox_worksp
   return CPROX_OK;
 }
 
-static cprox_status check_robot(const cprox_mover *mover, const cprox_target *targets, size_t n,
+static cprox_status check_robot(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
                                 cprox_workspace *workspace) {
   if (mover->curve || mover->body || mover->radius != 0.0)
     return workspace_fail(workspace, CPROX_INVALID,
@@ -162,7 +162,7 @@ static cprox_status check_robot(const cprox_mover *mover, const cprox_target *ta
   return check_pairs(mover, n, workspace);
 }
 
-cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target *targets, size_t n,
+cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
                                    const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   if (!workspace) return CPROX_INVALID;
   if (!mover->curve && !mover->motion) return workspace_fail(workspace, CPROX_INVALID, "the mover has no curve");
@@ -178,7 +178,7 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target 
                           "signed_distance does not apply to robots: how deep they overlap is not measured");
   if (mover->curve && !curve_is_in_reach(mover->curve))
     return workspace_fail(workspace, CPROX_INVALID, "the mover's curve reaches farther than %g m", LENGTH_MOST);
-  const cprox_status carried = check_carried(mover->body, options->max_rung, workspace);
+  const cprox_status carried = check_carried(mover->body, options->max_lod, workspace);
   if (carried != CPROX_OK) return carried;
   const cprox_status standing = arguments_check_targets(targets, n, workspace);
   if (standing != CPROX_OK) return standing;
@@ -186,7 +186,7 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target 
   for (size_t i = 0; i < n; i++) {
     const cprox_status clock = check_clock(mover->curve, &targets[i], i, workspace);
     if (clock != CPROX_OK) return clock;
-    if (mover->body && model_has_tree(targets[i].body, options->max_rung))
+    if (mover->body && model_has_tree(targets[i].body, options->max_lod))
       return workspace_fail(workspace, CPROX_INVALID,
                             "target %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
                             "it, balls are (radius)",

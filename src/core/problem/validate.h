@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The arguments of the verbs: defaults, names, and the sentences for those that are unusable. */
+/* The arguments of the queries: defaults, names, and the sentences for those that are unusable. */
 #ifndef CPROX_PROBLEM_VALIDATE_H
 #define CPROX_PROBLEM_VALIDATE_H
 
@@ -11,8 +11,8 @@ typedef enum arguments_option {
   ARGUMENTS_CERTIFICATE = 2, /* certificate */
   ARGUMENTS_STOP = 4,        /* stop */
   ARGUMENTS_RELATIVE = 8,    /* relative_epsilon */
-  ARGUMENTS_RUNG = 16,       /* max_rung */
-  ARGUMENTS_SEARCH = ARGUMENTS_STOP | ARGUMENTS_RELATIVE | ARGUMENTS_RUNG
+  ARGUMENTS_LOD = 16,        /* max_lod */
+  ARGUMENTS_SEARCH = ARGUMENTS_STOP | ARGUMENTS_RELATIVE | ARGUMENTS_LOD
 } arguments_option;
 
 /* A query as its messages call it, and those of the options that it has: the others are refused where they are set. */
@@ -26,9 +26,9 @@ cprox_status arguments_check_options(const cprox_options *options, arguments_que
 /* Finite, 0 or more, and no longer than powers can hold. */
 cprox_status arguments_check_length(const char *name, double value, cprox_workspace *workspace);
 cprox_status arguments_check_delta(double delta, cprox_workspace *workspace);
-cprox_status arguments_check_target(const cprox_target *target, size_t index, cprox_workspace *workspace);
-cprox_status arguments_check_targets(const cprox_target *targets, size_t n, cprox_workspace *workspace);
-cprox_status arguments_check_query(const cprox_mover *mover, const cprox_target *targets, size_t n,
+cprox_status arguments_check_target(const cprox_obstacle *target, size_t index, cprox_workspace *workspace);
+cprox_status arguments_check_targets(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace);
+cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
                                    const cprox_options *options, arguments_query asked, cprox_workspace *workspace);
 
 #endif

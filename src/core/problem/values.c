@@ -2,21 +2,21 @@
 /* Movers, obstacles and options as values, and the names of enumerators. */
 #include "curve_proximity/cprox/robot.h"
 
-cprox_target cprox_at(const cprox_body *body, cprox_pose pose) {
-  return (cprox_target){.body = body, .pose = pose, .padding = 0.0};
+cprox_obstacle cprox_obstacle_at(const cprox_body *body, cprox_pose pose) {
+  return (cprox_obstacle){.body = body, .pose = pose, .margin = 0.0};
 }
 
-cprox_target cprox_padded(cprox_target target, double padding) {
-  target.padding = padding;
+cprox_obstacle cprox_with_margin(cprox_obstacle target, double margin) {
+  target.margin = margin;
   return target;
 }
 
-cprox_target cprox_curve_target(const cprox_curve *curve, double radius) {
-  return (cprox_target){.curve = curve, .pose = cprox_pose_identity(), .padding = radius};
+cprox_obstacle cprox_obstacle_curve(const cprox_curve *curve, double radius) {
+  return (cprox_obstacle){.curve = curve, .pose = cprox_pose_identity(), .margin = radius};
 }
 
 cprox_options cprox_options_default(void) {
-  return (cprox_options){.epsilon = 1e-6, .relative_epsilon = 0.0, .max_nodes = 20000, .max_rung = CPROX_RUNG_MESH};
+  return (cprox_options){.epsilon = 1e-6, .relative_epsilon = 0.0, .max_nodes = 20000, .max_lod = CPROX_LOD_MESH};
 }
 
 const char *cprox_verdict_name(cprox_verdict verdict) {
@@ -28,12 +28,12 @@ const char *cprox_verdict_name(cprox_verdict verdict) {
   return "unknown";
 }
 
-const char *cprox_rung_name(cprox_rung rung) {
-  switch (rung) {
-    case CPROX_RUNG_NONE: return "none";
-    case CPROX_RUNG_SPHERE: return "sphere";
-    case CPROX_RUNG_HULL: return "hull";
-    case CPROX_RUNG_MESH: return "mesh";
+const char *cprox_lod_name(cprox_lod lod) {
+  switch (lod) {
+    case CPROX_LOD_NONE: return "none";
+    case CPROX_LOD_SPHERE: return "sphere";
+    case CPROX_LOD_HULL: return "hull";
+    case CPROX_LOD_MESH: return "mesh";
   }
   return "unknown";
 }
@@ -46,12 +46,12 @@ cprox_mover cprox_tube_along(const cprox_curve *curve, double radius) {
   return (cprox_mover){.curve = curve, .radius = radius};
 }
 
-cprox_target cprox_on_clock(cprox_mover other) {
-  return (cprox_target){.body = other.body,
-                        .pose = cprox_pose_identity(),
-                        .padding = other.radius,
-                        .curve = other.curve,
-                        .on_clock = true};
+cprox_obstacle cprox_synchronized(cprox_mover other) {
+  return (cprox_obstacle){.body = other.body,
+                          .pose = cprox_pose_identity(),
+                          .margin = other.radius,
+                          .curve = other.curve,
+                          .synchronized = true};
 }
 
 cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve) {

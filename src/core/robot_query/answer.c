@@ -11,7 +11,7 @@
 /* ---- the search ----------------------------------------------------------------------------------------------------------- */
 
 /* Fractions are rounded outwards by a little more than a division can be off. */
-static bool root_of(const question *q, robot_search *o, search_node *root) {
+static bool root_of(const query *q, robot_search *o, search_node *root) {
   const cprox_motion *m = q->mover.motion;
   size_t first = 0, last = m->n_segments;
   while (first + 1 < last && m->times[first + 1] <= q->t0) first++;
@@ -22,7 +22,7 @@ static bool root_of(const question *q, robot_search *o, search_node *root) {
                            q->t1 >= m->times[last] ? 1.0 : fmin(u1 + 0x1p-50, 1.0), root);
 }
 
-static cprox_status run(const question *q, const search_goal *goal, robot_search *o, search_outcome *found) {
+static cprox_status run(const query *q, const search_goal *goal, robot_search *o, search_outcome *found) {
   robot_search_begin(o, goal);
   *found = (search_outcome){.lower = INFINITY, .free_until = INFINITY, .best = {.upper = INFINITY, .at = INFINITY}};
   if (o->scene.n_pairs == 0 && !q->set) return CPROX_OK;
@@ -34,7 +34,7 @@ static cprox_status run(const question *q, const search_goal *goal, robot_search
   return status;
 }
 
-static search_goal goal_of(const question *q, search_order order, double ceiling) {
+static search_goal goal_of(const query *q, search_order order, double ceiling) {
   return (search_goal){.order = order,
                        .limit = q->limit,
                        .ceiling = ceiling,
@@ -53,43 +53,44 @@ static void report(const robot_search *o, const robot_sight *sight, cprox_result
   const robot_scene *s = &o->scene;
   const robot_pair *pair = &s->pairs[sight->pair];
   r->t = motion_time(s->motion, sight->segment, sight->u);
-  r->on_mover = sight->gap.on_moving, r->on_target = sight->gap.on_standing, r->normal = sight->gap.normal;
+  r->witness_mover = sight->gap.on_moving, r->witness_obstacle = sight->gap.on_standing, r->normal = sight->gap.normal;
   r->mover_part = s->parts[pair->moving].body.index;
-  r->target_index = s->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
-  r->target_part = s->self ? 0 : s->obstacles[pair->standing].part;
+  r->obstacle_index = s->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
+  r->obstacle_part = s->self ? 0 : s->obstacles[pair->standing].part;
 }
 
-static cprox_rung rung_of(const robot_search *o) {
-  if (o->scene.n_pairs == 0) return CPROX_RUNG_NONE;
-  if (o->climbed) return CPROX_RUNG_MESH;
-  const bool by_balls = o->gaps + o->planes == 0 || o->scene.q->options.max_rung == CPROX_RUNG_SPHERE;
-  return by_balls ? CPROX_RUNG_SPHERE : CPROX_RUNG_HULL;
+static cprox_lod lod_of(const robot_search *o) {
+  if (o->scene.n_pairs == 0) return CPROX_LOD_NONE;
+  if (o->climbed) return CPROX_LOD_MESH;
+  const bool by_balls = o->gaps + o->planes == 0 || o->scene.q->options.max_lod == CPROX_LOD_SPHERE;
+  return by_balls ? CPROX_LOD_SPHERE : CPROX_LOD_HULL;
 }
 
-cprox_status robot_answer(const question *q, size_t first, size_t last, double ceiling, cprox_result *result) {
+cprox_status robot_answer(const query *q, size_t first, size_t last, double ceiling, cprox_result *result) {
   robot_search o;
   if (!robot_scene_begin(&o.scene, q, first, last))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
-  const search_goal goal = goal_of(q, question_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST, ceiling);
+  const search_goal goal = goal_of(q, query_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST, ceiling);
   search_outcome found;
   const cprox_status status = run(q, &goal, &o, &found);
   if (status < 0) return status;
 
-  cprox_result r = {.t_target = NAN, .target_index = -1, .mover_part = -1, .upper = o.best_bound.upper};
+  cprox_result r = {.t_obstacle = NAN, .obstacle_index = -1, .mover_part = -1, .upper = o.best_bound.upper};
   report(&o, &o.best, &r);
   r.lower = fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
-  r.nodes = found.nodes, r.probes = o.gaps;
-  r.rung = rung_of(&o);
-  r.status = question_is_satisfied(q, ceiling, &r) ? CPROX_OK : status != CPROX_OK ? status : CPROX_PRECISION;
-  r.verdict = question_verdict(q, &r);
-  if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", question_shortfall(r.status));
+  r.nodes = found.nodes, r.distance_queries = o.gaps;
+  r.lod = lod_of(&o);
+  r.status = query_is_satisfied(q, ceiling, &r) ? CPROX_OK : status != CPROX_OK ? status : CPROX_PRECISION;
+  r.verdict = query_verdict(q, &r);
+  if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", query_shortfall(r.status));
   *result = r;
   return r.status;
 }
 
-/* ---- first contact -------------------------------------------------------------------------------------------------------- */
+/* ---- time of contact
+ * -------------------------------------------------------------------------------------------------------- */
 
-cprox_status robot_first_contact(const question *q, cprox_result *result) {
+cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
   robot_search o;
   if (!robot_scene_begin(&o.scene, q, 0, q->n))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
@@ -102,19 +103,19 @@ cprox_status robot_first_contact(const question *q, cprox_result *result) {
 
   const bool touch = o.touch.pair >= 0, near = o.best_bound.upper <= q->options.epsilon;
   const robot_sight *sight = touch ? &o.touch : &o.best;
-  cprox_result r = {.t_target = NAN, .target_index = -1, .mover_part = -1};
+  cprox_result r = {.t_obstacle = NAN, .obstacle_index = -1, .mover_part = -1};
   report(&o, sight, &r);
   r.upper = sight->pair < 0 ? INFINITY : fmax(sight->gap.upper, 0.0);
   r.lower = touch ? 0.0 : fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
-  r.t_free = fmin(found.free_until, q->t1);
+  r.t_contact_lower = fmin(found.free_until, q->t1);
   r.verdict = touch ? CPROX_YES : isinf(found.free_until) ? CPROX_NO : CPROX_UNDECIDED;
   if (sight->pair < 0) r.t = NAN;
-  if (touch) r.t = fmax(r.t, r.t_free); /* one is rounded, the other rounded down */
-  r.nodes = found.nodes, r.probes = o.gaps;
-  r.rung = rung_of(&o);
+  if (touch) r.t = fmax(r.t, r.t_contact_lower); /* one is rounded, the other rounded down */
+  r.nodes = found.nodes, r.distance_queries = o.gaps;
+  r.lod = lod_of(&o);
   r.status = status;
   if (status == CPROX_OK && near && found.free_until < o.best_bound.at) r.status = CPROX_PRECISION;
-  if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", question_shortfall(r.status));
+  if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", query_shortfall(r.status));
   *result = r;
   return r.status;
 }

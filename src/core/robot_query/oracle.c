@@ -19,8 +19,8 @@ static const double EXCESS_FRACTION = 0.05;
 /* The first distances of a search need be no more exact than this. */
 static const double SEED_FRACTION = 0.02;
 
-/* Stretches that are shorter are measured even where a part moves farther than its own size. */
-#define SHORT_STRETCH 0x1p-8
+/* Intervals that are shorter are measured even where a part moves farther than its own size. */
+#define SHORT_INTERVAL 0x1p-8
 
 /* Parts that move farther than their own size, and than this fraction of their distance, are too blurred to be measured. */
 static const double BLUR = 0.5;
@@ -31,7 +31,7 @@ static const double FASTEST_DRIFT = 0.5;
 /* Where a plane in the middle asks for more pieces than this, no distance is measured. */
 static const double ENOUGH_PIECES = 3.0;
 
-#define SHORTEST_STRETCH 0x1p-46
+#define SHORTEST_INTERVAL 0x1p-46
 
 /* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
 
@@ -418,7 +418,7 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   const double travel = robot_scene_travel(&o->scene, pair, moving);
   entry->lower = greater(apart - travel, entry->lower);
   const double size = greater(BLUR * apart, moving->radius);
-  if (is_settled(o, entry->lower) || !(travel > size) || !(width_of(node) > SHORT_STRETCH)) return;
+  if (is_settled(o, entry->lower) || !(travel > size) || !(width_of(node) > SHORT_INTERVAL)) return;
   entry->blurred = true;
   want_pieces(o, travel / size);
 }
@@ -441,7 +441,7 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
 
     /* verdicts: a plane that parts the two in the middle says how short the pieces must be; no distance could say much more */
     const double pieces = o->limit >= 0.0 ? pieces_for(o, plane_middle(node, pair, moving, standing), bound) : 2.0;
-    if (pieces > ENOUGH_PIECES && width > SHORT_STRETCH) {
+    if (pieces > ENOUGH_PIECES && width > SHORT_INTERVAL) {
       want_pieces(o, pieces);
       return CPROX_OK;
     }
@@ -467,7 +467,7 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
     const cprox_status climbed = climb(o, &nearest, payload->first, u);
     if (climbed < 0) return climbed;
   }
-  if (is_settled(o, gap.lower) && width > SHORT_STRETCH) return CPROX_OK;
+  if (is_settled(o, gap.lower) && width > SHORT_INTERVAL) return CPROX_OK;
   return climb_pair(o, node, entry, &gap, travel);
 }
 
@@ -496,7 +496,7 @@ static cprox_status open_box(robot_search *o, const search_node *node, const lis
 static cprox_status open_crowd(robot_search *o, const search_node *node, const list_entry *entry) {
   const robot_pair any = {.moving = entry->part, .element = {-1, -1}};
   const double radius = robot_scene_moving(&o->scene, &any)->radius, travel = robot_scene_way(&o->scene, &any);
-  const bool is_short = !(width_of(node) > SHORT_STRETCH);
+  const bool is_short = !(width_of(node) > SHORT_INTERVAL);
   uint32_t stack[TREE_LANES * TREE_DEEPEST] = {entry->under};
   size_t n = 1;
   cprox_status status = CPROX_OK;
@@ -621,7 +621,7 @@ static int split(void *self, search_node *node, search_node *child) {
       child[k] = node_of(o, node, from, k == 0 ? a : 0.0, to, k + 1 == n ? b : 1.0);
     }
   } else {
-    if (!(b - a > SHORTEST_STRETCH)) return 0;
+    if (!(b - a > SHORTEST_INTERVAL)) return 0;
     n = o->pieces < 2.0 ? 2 : o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (int)ceil(o->pieces);
     for (int k = 0; k < n; k++) {
       const double from = k == 0 ? a : robot_known(&child[k - 1])->b, to = k + 1 == n ? b : a + (b - a) * (k + 1) / n;

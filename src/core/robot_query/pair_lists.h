@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The lists of pairs that are still of interest on a stretch of a motion. Children share their parent's list, so lists are counted
- * by their users; memory is the workspace's, in blocks of powers of two. */
+/* The lists of pairs that are still of interest on a segment of a motion. Children share their parent's list, so lists
+ * are counted by their users; memory is the workspace's, in blocks of powers of two. */
 #ifndef CPROX_ROBOT_QUERY_PAIR_LISTS_H
 #define CPROX_ROBOT_QUERY_PAIR_LISTS_H
 

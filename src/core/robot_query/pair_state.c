@@ -15,21 +15,21 @@ static bool is_halfspace(const robot_body *body) {
 
 /* ---- bodies --------------------------------------------------------------------------------------------------------------- */
 
-/* The finest model that the question allows. Clouds and octrees stay what they are, and so do halfspaces. */
-static part_model model_for(const question *q, part_model model) {
+/* The finest model that the query allows. Clouds and octrees stay what they are, and so do halfspaces. */
+static part_model model_for(const query *q, part_model model) {
   const bool many = model.tree && model.tree->kind != TREE_TRIANGLES && model.by_ball;
-  if (q->options.max_rung == CPROX_RUNG_MESH || many) return model;
-  if (model.tree && model.by_ball && q->options.max_rung == CPROX_RUNG_HULL) return model; /* it has no hull */
+  if (q->options.max_lod == CPROX_LOD_MESH || many) return model;
+  if (model.tree && model.by_ball && q->options.max_lod == CPROX_LOD_HULL) return model; /* it has no hull */
   model.tree = NULL;
   const bool endless = model.shape->ops->kind == CPROX_HALFSPACE;
-  return q->options.max_rung == CPROX_RUNG_SPHERE && !endless ? part_model_ball(&model) : model;
+  return q->options.max_lod == CPROX_LOD_SPHERE && !endless ? part_model_ball(&model) : model;
 }
 
 /* ---- obstacles ------------------------------------------------------------------------------------------------------------ */
 
 /* A part of a target; the frames of parts of unions are composed. */
-static robot_body obstacle_of(const question *q, size_t index, size_t part) {
-  const cprox_target *target = &q->targets[index];
+static robot_body obstacle_of(const query *q, size_t index, size_t part) {
+  const cprox_obstacle *target = &q->targets[index];
   const cprox_body *body = target->body;
   cprox_pose pose = target->pose;
   double error = 0.0;
@@ -44,11 +44,11 @@ static robot_body obstacle_of(const question *q, size_t index, size_t part) {
   part_model m = model_for(q, part_model_of(body));
   if (m.shape->ops->kind != CPROX_HALFSPACE) part_model_find_box(&m);
   const frame f = frame_create(&pose, m.centre);
-  robot_body placed = {.radius = m.radius + target->padding, .index = (int32_t)index, .part = (int32_t)part};
-  placed.side = (bound_side){.shape = m.shape, .margin = m.margin + target->padding};
+  robot_body placed = {.radius = m.radius + target->margin, .index = (int32_t)index, .part = (int32_t)part};
+  placed.side = (bound_side){.shape = m.shape, .margin = m.margin + target->margin};
   for (int i = 0; i < 9; i++) placed.side.at.r[i] = f.r[i];
   placed.side.at.p = frame_to_world(&f, vec(0, 0, 0));
-  placed.tree = m.tree, placed.tree_at = m.tree_at, placed.tree_margin = m.tree_margin + target->padding;
+  placed.tree = m.tree, placed.tree_at = m.tree_at, placed.tree_margin = m.tree_margin + target->margin;
   if (is_halfspace(&placed)) placed.radius = m.shape->scale + placed.side.margin;
   const double sizes = vec_norm(m.centre) + placed.radius;
   placed.side.error = ROUND_UP * (error + ROUND_U * (ROUND_ROTATION * sizes + 3.0 * vec_norm(placed.side.at.p)));
@@ -56,7 +56,7 @@ static robot_body obstacle_of(const question *q, size_t index, size_t part) {
   return placed;
 }
 
-size_t robot_scene_parts_of(const cprox_target *target) {
+size_t robot_scene_parts_of(const cprox_obstacle *target) {
   return target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
 }
 
@@ -71,7 +71,7 @@ int32_t robot_scene_add_obstacles(robot_scene *s, size_t target) {
   return (int32_t)(n - parts);
 }
 
-static robot_body part_body(const question *q, size_t i) {
+static robot_body part_body(const query *q, size_t i) {
   const cprox_motion *motion = q->mover.motion;
   const robot_part *part = &motion->robot->parts[i];
   const part_model m = model_for(q, part->model);
@@ -148,7 +148,7 @@ static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
 
 /* ---- beginning ------------------------------------------------------------------------------------------------------------ */
 
-bool robot_scene_begin(robot_scene *s, const question *q, size_t first, size_t last) {
+bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last) {
   *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = q->mover.self};
   const cprox_robot *robot = s->motion->robot;
   const size_t n_axes = robot->n_axes + 1;

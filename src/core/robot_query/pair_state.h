@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A question about a robot, made ready: what stands, the pairs, and where everything is over a node. */
+/* A query about a robot, made ready: what stands, the pairs, and where everything is over a node. */
 #ifndef CPROX_ROBOT_QUERY_PAIR_STATE_H
 #define CPROX_ROBOT_QUERY_PAIR_STATE_H
 
@@ -10,7 +10,7 @@
 /* A pair of a part of the robot that moves and what it is held against. */
 typedef struct robot_pair {
   int32_t moving;     /* which part of the robot */
-  int32_t standing;   /* which obstacle, or in a question about the robot itself which part */
+  int32_t standing;   /* which obstacle, or in a query about the robot itself which part */
   uint32_t shared;    /* of the robot itself: so many axes are above both sides */
   int32_t element[2]; /* of what the moving and the standing side are made of: -1: all of it, by its convex shape */
   /* the last separating direction, from what stands to what moves, in the frame of what stands, where it was found, and how fast
@@ -30,7 +30,7 @@ typedef struct part_state {
 } part_state;
 
 typedef struct robot_scene {
-  const question *q;
+  const query *q;
   const cprox_motion *motion;
   bool self;
   robot_body *obstacles;
@@ -54,14 +54,14 @@ typedef struct robot_scene {
 
 /* Makes the scene of targets first … last - 1 ready; false where memory is out. Of a set, only those without a box; the rest come as
  * they are needed. */
-bool robot_scene_begin(robot_scene *scene, const question *q, size_t first, size_t last);
+bool robot_scene_begin(robot_scene *scene, const query *q, size_t first, size_t last);
 
 /* Whether the robot's part is asked about at all. */
 bool robot_scene_asks(const robot_scene *scene, size_t part);
 
 /* The parts of a target are obstacles; adds them: the number of the first one, or -1 where memory is out. It may move all obstacles in
  * memory. */
-size_t robot_scene_parts_of(const cprox_target *target);
+size_t robot_scene_parts_of(const cprox_obstacle *target);
 int32_t robot_scene_add_obstacles(robot_scene *scene, size_t target);
 
 /* A new node. */

@@ -341,7 +341,7 @@ void cprox_body_free(cprox_body *body) {
   free(body);
 }
 
-/* ---- questions ---- */
+/* ---- queries ---- */
 
 cprox_body_kind cprox_body_get_kind(const cprox_body *body) {
   return body->kind;
@@ -366,7 +366,7 @@ const char *cprox_body_kind_name(cprox_body_kind kind) {
     case CPROX_MESH: return "mesh";
     case CPROX_POINTS: return "points";
     case CPROX_OCTREE: return "octree";
-    case CPROX_LADDER: return "ladder";
+    case CPROX_LOD: return "lod";
   }
   return "unknown";
 }

@@ -24,11 +24,11 @@ struct cprox_body {
   struct tree
       *tree; /* meshes, points, boxes: the elements, about `centre`; the shape has the margin and the scale alone */
   struct winding *winding;       /* solid meshes: what tells inside from outside */
-  const cprox_body *hull, *mesh; /* ladders: the two models, */
+  const cprox_body *hull, *mesh; /* level-of-detail bodies: the two models, */
   double excess;                 /* and how far the mesh may stick out of the hull */
 };
 
-/* Whether it keeps within what questions can hold; of a halfspace the distance of its plane counts. */
+/* Whether it keeps within what queries can hold; of a halfspace the distance of its plane counts. */
 static inline bool body_is_in_reach(const cprox_body *body) {
   const vec3 c = body->ball_centre;
   const double radius = isinf(body->ball_radius) ? body->shape.scale : body->ball_radius;

@@ -10,7 +10,7 @@ cprox_body *body_allocate(const convex_ops *ops, cprox_body_kind kind);
 
 cprox_status body_out_of_memory(cprox_workspace *workspace);
 
-/* The public questions, of a compound. */
+/* The public queries, of a compound. */
 double compound_support(const cprox_body *body, vec3 direction, vec3 *point);
 double compound_nearest(const cprox_body *body, vec3 point, vec3 *nearest);
 

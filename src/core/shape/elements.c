@@ -81,7 +81,8 @@ cprox_status elements_create(cprox_body_kind kind, tree_source *source, size_t n
   return CPROX_OK;
 }
 
-/* ---- questions -------------------------------------------------------------------------------------------------------- */
+/* ---- queries --------------------------------------------------------------------------------------------------------
+ * */
 
 bool cprox_body_is_solid(const cprox_body *body) {
   return body->mesh ? cprox_body_is_solid(body->mesh) : body->kind != CPROX_MESH || body->winding;

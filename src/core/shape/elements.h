@@ -17,7 +17,7 @@ cprox_status elements_check_count(const char *names, tree_kind kind, size_t n, s
 cprox_status elements_create(cprox_body_kind kind, tree_source *source, size_t n_points, tree_build build,
                              double margin, cprox_workspace *workspace, cprox_body **body);
 
-/* The public questions. */
+/* The public queries. */
 double elements_support(const cprox_body *body, vec3 direction, vec3 *point);
 double elements_nearest(const cprox_body *body, vec3 point, vec3 *nearest);
 

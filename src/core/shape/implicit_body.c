@@ -17,24 +17,24 @@ static const double IMPLICIT_EPSILON = 1e-12, IMPLICIT_RELATIVE = 1e-12, IMPLICI
 
 /* ---- the solver on the stack ---- */
 
-static void solve_small(const implicit_question *question, const implicit_goal *goal, implicit_answer *answer) {
+static void solve_small(const implicit_query *query, const implicit_goal *goal, implicit_answer *answer) {
   _Alignas(max_align_t) unsigned char memory[SMALL_BYTES];
-  implicit_solve(question, goal, NULL, memory, answer);
+  implicit_solve(query, goal, NULL, memory, answer);
 }
 
-static void solve_large(const implicit_question *question, const implicit_goal *goal, implicit_answer *answer) {
+static void solve_large(const implicit_query *query, const implicit_goal *goal, implicit_answer *answer) {
   _Alignas(max_align_t) unsigned char memory[LARGE_BYTES];
-  implicit_solve(question, goal, NULL, memory, answer);
+  implicit_solve(query, goal, NULL, memory, answer);
 }
 
-static void solve_on_stack(const implicit_question *question, const implicit_goal *goal, implicit_answer *answer) {
-  if (implicit_memory(question->a, NULL) <= SMALL_BYTES)
-    solve_small(question, goal, answer);
+static void solve_on_stack(const implicit_query *query, const implicit_goal *goal, implicit_answer *answer) {
+  if (implicit_memory(query->a, NULL) <= SMALL_BYTES)
+    solve_small(query, goal, answer);
   else
-    solve_large(question, goal, answer);
+    solve_large(query, goal, answer);
 }
 
-/* ---- the questions ---- */
+/* ---- the queries ---- */
 
 /* Inside, a ball is proven: the body holds the centre's ball of radius `inner`, drawn towards any point z of it by 1 - g the
  * ball of radius (1 - g) inner. */
@@ -53,12 +53,12 @@ static void implicit_nearest(const convex *shape, vec3 y, convex_hint *hint, con
     nearest_inside(shape, y, near);
     return;
   }
-  const implicit_question question = {.a = body, .t = y};
+  const implicit_query query = {.a = body, .t = y};
   const implicit_goal goal = {
       .epsilon = IMPLICIT_EPSILON * body->radius, .relative_epsilon = IMPLICIT_RELATIVE, .max_steps = 2000};
   implicit_answer answer;
   const double width = goal.epsilon + goal.relative_epsilon * vec_norm(y) + shape->slack;
-  if (!body->orthogonal || !implicit_closed_nearest(body, y, width, &answer)) solve_on_stack(&question, &goal, &answer);
+  if (!body->orthogonal || !implicit_closed_nearest(body, y, width, &answer)) solve_on_stack(&query, &goal, &answer);
   near->point = answer.x;
   near->distance = vec_norm(vec_sub(y, answer.x));
   near->normal = vec_neg(answer.normal);
@@ -97,10 +97,10 @@ static double open_support(const convex *shape, vec3 d, convex_hint *hint, vec3 
     const double aside = turn == 0 ? 0.0 : turn % 2 ? step : -step;
     const vec3 off = vec(turn <= 2 ? aside : 0.0, turn == 3 || turn == 4 ? aside : 0.0, turn > 4 ? aside : 0.0);
     const double moved = ROUND_UP * fabs(aside) * body->radius;
-    const implicit_question question = {.a = body, .far = true, .t = vec_add(unit, off)};
+    const implicit_query query = {.a = body, .far = true, .t = vec_add(unit, off)};
     const implicit_goal goal = {.epsilon = IMPLICIT_SUPPORT * body->radius, .max_steps = 2000};
     implicit_answer answer;
-    solve_on_stack(&question, &goal, &answer);
+    solve_on_stack(&query, &goal, &answer);
     if (!(answer.upper - answer.lower <= shape->slack - 2.0 * moved)) continue;
     if (at) *at = answer.x;
     return norm * (answer.upper + moved);

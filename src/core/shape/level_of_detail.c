@@ -24,8 +24,8 @@ static cprox_status check_cover(const cprox_body *hull, double excess, const cpr
   return CPROX_OK;
 }
 
-cprox_status cprox_body_create_ladder(const cprox_body *hull, double excess, const cprox_body *mesh,
-                                      cprox_workspace *workspace, cprox_body **body) {
+cprox_status cprox_body_create_lod(const cprox_body *hull, double excess, const cprox_body *mesh,
+                                   cprox_workspace *workspace, cprox_body **body) {
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   if (!hull || !mesh) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", hull ? "mesh" : "hull");
   if (!hull->shape.ops || !isfinite(hull->ball_radius))
@@ -41,7 +41,7 @@ cprox_status cprox_body_create_ladder(const cprox_body *hull, double excess, con
   const cprox_status covered = check_cover(hull, excess, mesh, workspace);
   if (covered != CPROX_OK) return covered;
 
-  cprox_body *made = body_allocate(NULL, CPROX_LADDER);
+  cprox_body *made = body_allocate(NULL, CPROX_LOD);
   if (!made) return body_out_of_memory(workspace);
   made->hull = hull;
   made->mesh = mesh;

@@ -140,7 +140,7 @@ static double clamp(double x, double least, double most) {
 
 /* Newton on |psi(t) - phi(u)|²/2 from a minimiser that is nearly one;
  * parameters at an end stay there. */
-static void refine_pair(const cprox_mover *mover, const cprox_target *target, cprox_workspace *workspace, double *t,
+static void refine_pair(const cprox_mover *mover, const cprox_obstacle *target, cprox_workspace *workspace, double *t,
                         double *u) {
   enum { MOST_STEPS = 12 };
   const frame f = frame_create(&target->pose, vec(0, 0, 0));
@@ -177,22 +177,22 @@ static void refine_pair(const cprox_mover *mover, const cprox_target *target, cp
 
 /* Whether the mover is farther than `distance` by more than epsilon in
  * [breaks[0], breaks[1]] and [breaks[2], breaks[3]]. */
-static cprox_status is_farther(cprox_mover mover, const cprox_target *target, const cprox_options *options,
+static cprox_status is_farther(cprox_mover mover, const cprox_obstacle *target, const cprox_options *options,
                                const double breaks[4], double distance, cprox_workspace *workspace, bool *farther) {
   *farther = true;
   for (int i = 0; i < 4 && *farther; i += 2) {
     if (!(breaks[i] < breaks[i + 1])) continue;
-    cprox_stretch stretch;
-    const cprox_status status = cprox_profile(mover, target, 1, &breaks[i], 1, options, workspace, &stretch);
+    cprox_profile_interval interval;
+    const cprox_status status = cprox_profile(mover, target, 1, &breaks[i], 1, options, workspace, &interval);
     if (status < 0) return status;
-    *farther = stretch.lower > distance + options->epsilon;
+    *farther = interval.lower > distance + options->epsilon;
   }
   return CPROX_OK;
 }
 
 /* Whether the mover is farther than `distance` wherever it is not near t, and
  * closer to t at least not as near. */
-static cprox_status is_alone(cprox_mover mover, const cprox_target *target, const cprox_options *options, double t,
+static cprox_status is_alone(cprox_mover mover, const cprox_obstacle *target, const cprox_options *options, double t,
                              double distance, cprox_workspace *workspace, bool *alone) {
   double t0, t1, outer = 0.0;
   cprox_curve_domain(mover.curve, &t0, &t1);
@@ -220,17 +220,17 @@ static cprox_status is_alone(cprox_mover mover, const cprox_target *target, cons
 
 /* What stands when the mover is stopped where psi is `at`, seen by a target
  * curve that moves instead. */
-static cprox_target stopped(const cprox_mover *mover, const cprox_target *target, vec3 at) {
+static cprox_obstacle stopped(const cprox_mover *mover, const cprox_obstacle *target, vec3 at) {
   const frame f = frame_create(&target->pose, vec(0, 0, 0));
   const cprox_quat q = target->pose.orientation;
   double unused = 0.0;
-  return (cprox_target){.body = mover->body ? mover->body : &carried_point,
-                        .pose = {.position = frame_to_local(&f, at, &unused), .orientation = {q.w, -q.x, -q.y, -q.z}},
-                        .padding = mover->radius};
+  return (cprox_obstacle){.body = mover->body ? mover->body : &carried_point,
+                          .pose = {.position = frame_to_local(&f, at, &unused), .orientation = {q.w, -q.x, -q.y, -q.z}},
+                          .margin = mover->radius};
 }
 
 /* Whether no other pair of parts is as near at the minimiser. */
-static cprox_status part_is_alone(const question *q, const placed_pair *best, double t, double distance, bool *alone) {
+static cprox_status part_is_alone(const query *q, const placed_pair *best, double t, double distance, bool *alone) {
   const cprox_body *standing = q->targets[0].body, *carried = q->mover.body;
   const size_t parts = standing && standing->kind == CPROX_COMPOUND ? standing->n_parts : 1;
   const size_t own = carried && carried->kind == CPROX_COMPOUND ? carried->n_parts : 1;
@@ -285,18 +285,18 @@ static cprox_status way_out_is_alone(curve_convex *o, const look *here, bool *al
 }
 
 /* The mover at t, and what stands, or is on its clock, where it is then. */
-static placed_bodies bodies_at(const question *q, const placed_pair *c, double t) {
+static placed_bodies bodies_at(const query *q, const placed_pair *c, double t) {
   placed_bodies p = {.b = q->targets[0],
                      .part_a = (size_t)c->which.mover_part,
                      .part_b = (size_t)c->which.part,
-                     .finest = q->options.max_rung,
+                     .finest = q->options.max_lod,
                      .depth = q->is_signed,
                      .workspace = q->workspace};
-  p.a = (cprox_target){.body = q->mover.body ? q->mover.body : &carried_point,
-                       .pose = {.orientation = {1, 0, 0, 0}},
-                       .padding = q->mover.radius};
+  p.a = (cprox_obstacle){.body = q->mover.body ? q->mover.body : &carried_point,
+                         .pose = {.orientation = {1, 0, 0, 0}},
+                         .margin = q->mover.radius};
   cprox_curve_evaluate(q->mover.curve, t, q->workspace, &p.a.pose.position, NULL, NULL);
-  if (!p.b.on_clock) return p;
+  if (!p.b.synchronized) return p;
   const frame f = frame_create(&p.b.pose, vec(0, 0, 0));
   p.b.pose.position = frame_to_world(&f, relative_point(p.b.curve, t, false, q->workspace));
   if (!p.b.body) p.b.body = &carried_point;
@@ -309,7 +309,7 @@ static bool is_round(const cprox_body *body) {
 
 /* A ball has one nearest point where it has one normal. Two other bodies may
  * meet along an edge or a face. */
-static cprox_status nearest_is_alone(const question *q, const placed_pair *c, double t, bool *alone) {
+static cprox_status nearest_is_alone(const query *q, const placed_pair *c, double t, bool *alone) {
   const cprox_body *standing = c->shape, *carried = c->carried;
   *alone = true;
   if (is_round(standing) || is_round(carried)) return CPROX_OK;
@@ -323,16 +323,16 @@ static cprox_status nearest_is_alone(const question *q, const placed_pair *c, do
  * -------------------------------------------------------------------------------------------------------------
  */
 
-static void fill(const cprox_target *target, vec3 n, vec3 on_target, cprox_gradient *g) {
+static void fill(const cprox_obstacle *target, vec3 n, vec3 witness_obstacle, cprox_gradient *g) {
   const frame f = frame_create(&target->pose, vec(0, 0, 0));
   g->mover = n;
   g->position = vec_neg(n);
-  g->rotation = vec_cross(n, vec_sub(on_target, target->pose.position));
-  g->target_point = target->curve ? frame_turn_to_local(&f, vec_neg(n)) : vec(0, 0, 0);
-  g->radius = g->padding = -1.0;
+  g->rotation = vec_cross(n, vec_sub(witness_obstacle, target->pose.position));
+  g->obstacle_point = target->curve ? frame_turn_to_local(&f, vec_neg(n)) : vec(0, 0, 0);
+  g->radius = g->margin = -1.0;
 }
 
-static cprox_status gradient_of_body(const question *q, const placed_pair *c, cprox_gradient *g) {
+static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox_gradient *g) {
   curve_convex o;
   if (!placed_begin_convex(q, c, &o)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a gradient");
   o.is_signed = q->is_signed;
@@ -348,11 +348,11 @@ static cprox_status gradient_of_body(const question *q, const placed_pair *c, cp
 
   /* the points, as the search would report them */
   curve_convex_adopt(&o, &here.sight, (search_best){.upper = distance});
-  cprox_result r = {.t_target = NAN};
+  cprox_result r = {.t_obstacle = NAN};
   status = placed_report_convex(q, c, &o, &r);
   if (status < 0) return status;
-  fill(&q->targets[0], r.normal, r.on_target, g);
-  if (q->targets[0].on_clock) g->t_target = g->t;
+  fill(&q->targets[0], r.normal, r.witness_obstacle, g);
+  if (q->targets[0].synchronized) g->t_obstacle = g->t;
   if (vec_norm2(r.normal) == 0.0) return invalid(q->workspace, g, "there is no normal");
   if (!q->is_signed && !(distance > here.slack)) return invalid(q->workspace, g, "the distance is 0");
 
@@ -374,27 +374,27 @@ static cprox_status gradient_of_body(const question *q, const placed_pair *c, cp
 }
 
 /* A carried body may leave the curve that crosses it by more than one side. */
-static cprox_status carried_way_out_is_alone(const question *q, const placed_pair *c, vec3 on_curve, double t,
+static cprox_status carried_way_out_is_alone(const query *q, const placed_pair *c, vec3 on_curve, double t,
                                              double distance, bool *alone) {
   *alone = true;
-  if (!q->mover.body || !(distance + q->mover.radius + q->targets[0].padding <= 0.0)) return CPROX_OK;
+  if (!q->mover.body || !(distance + q->mover.radius + q->targets[0].margin <= 0.0)) return CPROX_OK;
   placed_bodies p = bodies_at(q, c, t);
-  p.b = (cprox_target){.body = &carried_point, .pose = {on_curve, {1, 0, 0, 0}}, .padding = q->targets[0].padding};
+  p.b = (cprox_obstacle){.body = &carried_point, .pose = {on_curve, {1, 0, 0, 0}}, .margin = q->targets[0].margin};
   p.part_b = 0;
   p.size = q->mover.body->ball_radius;
   return ties_normal_is_alone(&p, alone);
 }
 
-static cprox_status gradient_of_curve(const question *q, const placed_pair *c, const cprox_result *result,
+static cprox_status gradient_of_curve(const query *q, const placed_pair *c, const cprox_result *result,
                                       cprox_gradient *g) {
-  const cprox_target *target = &q->targets[0];
-  if (!q->mover.body) refine_pair(&q->mover, target, q->workspace, &g->t, &g->t_target);
+  const cprox_obstacle *target = &q->targets[0];
+  if (!q->mover.body) refine_pair(&q->mover, target, q->workspace, &g->t, &g->t_obstacle);
   const frame f = frame_create(&target->pose, vec(0, 0, 0));
   curve_jet x, y;
   jet_of(q->mover.curve, NULL, g->t, q->workspace, &x);
-  jet_of(target->curve, &f, g->t_target, q->workspace, &y);
+  jet_of(target->curve, &f, g->t_obstacle, q->workspace, &y);
   vec3 n = vec_sub(x.x, y.x);
-  double distance = vec_norm(n) - q->mover.radius - target->padding;
+  double distance = vec_norm(n) - q->mover.radius - target->margin;
   n = vec_norm(n) > 0.0 ? vec_scale(1.0 / vec_norm(n), n) : n;
   if (q->mover.body) n = result->normal, distance = result->upper;
   fill(target, n, y.x, g);
@@ -412,18 +412,18 @@ static cprox_status gradient_of_curve(const question *q, const placed_pair *c, c
   status = is_alone(q->mover, target, &q->options, g->t, distance, q->workspace, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "the distance is as small elsewhere along the curve");
-  const cprox_target other = stopped(&q->mover, target, x.x);
-  const cprox_mover moved = cprox_tube_along(target->curve, target->padding);
-  status = is_alone(moved, &other, &q->options, g->t_target, distance, q->workspace, &alone);
+  const cprox_obstacle other = stopped(&q->mover, target, x.x);
+  const cprox_mover moved = cprox_tube_along(target->curve, target->margin);
+  status = is_alone(moved, &other, &q->options, g->t_obstacle, distance, q->workspace, &alone);
   if (status < 0) return status;
   if (!alone) return invalid(q->workspace, g, "another point of the target's curve is as near");
   g->valid = true;
   return CPROX_OK;
 }
 
-cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, const cprox_options *options,
+cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                      const cprox_result *result, cprox_workspace *workspace, cprox_gradient *gradient) {
-  question q = question_create(mover, &target, 1, -1.0, false, options, workspace);
+  query q = query_create(mover, &target, 1, -1.0, false, options, workspace);
   workspace_clear(workspace);
   if (mover.motion) return workspace_fail(workspace, CPROX_INVALID, "no gradient is known along a robot's motion");
   const arguments_query asked = {"a gradient", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
@@ -431,20 +431,20 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, con
   if (checked != CPROX_OK) return checked;
   if (!result || !gradient)
     return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", result ? "gradient" : "result");
-  const candidate c = {.part = result->target_part, .mover_part = result->mover_part};
-  if (result->target_index < 0 || !isfinite(result->upper))
+  const candidate c = {.part = result->obstacle_part, .mover_part = result->mover_part};
+  if (result->obstacle_index < 0 || !isfinite(result->upper))
     return workspace_fail(workspace, CPROX_INVALID, "the result has no witness: ask for a distance");
-  const bool many = model_has_tree(target.body, q.options.max_rung);
+  const bool many = model_has_tree(target.body, q.options.max_lod);
   if (mover.curve->arcs || (target.curve && target.curve->arcs) || many)
     return workspace_fail(workspace, CPROX_INVALID, "no gradient is known for %s",
                           many ? "meshes, points and boxes" : "a curve without derivatives");
-  question_ask_whole(&q);
+  query_ask_whole(&q);
   if (!(q.t0 <= result->t && result->t <= q.t1))
     return workspace_fail(workspace, CPROX_INVALID, "the result's t = %.17g is not on the mover's curve", result->t);
   if (target.body && target.body->kind == CPROX_COMPOUND &&
-      !(result->target_part >= 0 && (size_t)result->target_part < target.body->n_parts))
-    return workspace_fail(workspace, CPROX_INVALID, "the result's target_part %d is no part of the target",
-                          result->target_part);
+      !(result->obstacle_part >= 0 && (size_t)result->obstacle_part < target.body->n_parts))
+    return workspace_fail(workspace, CPROX_INVALID, "the result's obstacle_part %d is no part of the target",
+                          result->obstacle_part);
 
   /* the whole curve is searched as narrowly as other minimisers are to be told
    * apart */
@@ -453,13 +453,13 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_target target, con
   const double length = vec_norm(vec_sub(all->b, all->a)) + 2.0 * all->radius;
   q.options.epsilon = fmin(q.options.epsilon, APART * length);
   q.options.relative_epsilon = 0.0;
-  cprox_gradient g = {.t = result->t, .t_target = NAN};
+  cprox_gradient g = {.t = result->t, .t_obstacle = NAN};
   cprox_status status;
   const placed_pair placed = placed_pair_resolve(&q, &c);
   if (placed.shape) {
     status = gradient_of_body(&q, &placed, &g);
   } else {
-    g.t_target = result->t_target;
+    g.t_obstacle = result->t_obstacle;
     status = gradient_of_curve(&q, &placed, result, &g);
   }
   if (status == CPROX_OK) *gradient = g;

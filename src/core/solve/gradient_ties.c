@@ -17,7 +17,7 @@ bool ties_is_jump(double near, double far, double noise) {
   return near > noise && near > LEAST_LEFT * far;
 }
 
-static cprox_status witness_of(const placed_bodies *p, const cprox_target *a, const cprox_target *b,
+static cprox_status witness_of(const placed_bodies *p, const cprox_obstacle *a, const cprox_obstacle *b,
                                pair_witness *witness) {
   return pair_witness_of(a, p->part_a, b, p->part_b, p->finest, p->depth, p->workspace, witness);
 }
@@ -42,7 +42,7 @@ static cprox_status spread_of(const placed_bodies *p, const pair_witness *here, 
   for (int i = 0; i < 2; i++) {
     pair_witness seen[2];
     for (int k = 0; k < 2; k++) {
-      cprox_target b = p->b;
+      cprox_obstacle b = p->b;
       b.pose = turned_about(&p->b.pose, here->on_b, vec_scale(k ? turn : -turn, axis[i]));
       const cprox_status status = witness_of(p, &p->a, &b, &seen[k]);
       if (status < 0) return status;
@@ -69,7 +69,7 @@ static cprox_status lean_of(const placed_bodies *p, double step, double *lean) {
   for (int i = 0; i < 3; i++) {
     pair_witness seen[2];
     for (int k = 0; k < 2; k++) {
-      cprox_target a = p->a;
+      cprox_obstacle a = p->a;
       const double d = k ? step : -step;
       a.pose.position = vec_add(a.pose.position, vec(i == 0 ? d : 0.0, i == 1 ? d : 0.0, i == 2 ? d : 0.0));
       const cprox_status status = witness_of(p, &a, &p->b, &seen[k]);

@@ -7,9 +7,9 @@
 #include "curve_proximity/cprox/query.h"
 
 typedef struct placed_bodies {
-  cprox_target a, b;
+  cprox_obstacle a, b;
   size_t part_a, part_b;
-  cprox_rung finest;
+  cprox_lod finest;
   bool depth;  /* overlaps are measured */
   double size; /* [m] of the smaller one */
   cprox_workspace *workspace;

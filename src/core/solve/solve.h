@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* One question, one answer: the union of some of its targets, searched nearest ball first. */
+/* One query, one answer: the union of some of its targets, searched nearest ball first. */
 #ifndef CPROX_SOLVE_SOLVE_H
 #define CPROX_SOLVE_SOLVE_H
 
@@ -7,6 +7,6 @@
 
 /* The answer against the union of targets first … last - 1. Distances beyond `ceiling` are of no interest: the search ends when
  * lower has come that far, and upper is then infinity or any distance measured on the way. */
-cprox_status question_answer(const question *q, size_t first, size_t last, double ceiling, cprox_result *result);
+cprox_status query_answer(const query *q, size_t first, size_t last, double ceiling, cprox_result *result);
 
 #endif

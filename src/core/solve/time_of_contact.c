@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* First contact along the mover's parameter: never late. doc/first-contact.md derives it. */
+/* Time of contact along the mover's parameter: never late. doc/time-of-contact.md derives it. */
 #include <math.h>
 
 #include "curve_query/contact_bvh.h"
@@ -11,10 +11,10 @@
 #include "solve/time_of_contact.h"
 
 static cprox_result nothing(void) {
-  return (cprox_result){.lower = INFINITY, .upper = INFINITY, .t = INFINITY, .t_target = NAN, .target_index = -1};
+  return (cprox_result){.lower = INFINITY, .upper = INFINITY, .t = INFINITY, .t_obstacle = NAN, .obstacle_index = -1};
 }
 
-static search_goal goal_of(const question *q, double horizon) {
+static search_goal goal_of(const query *q, double horizon) {
   return (search_goal){.order = SEARCH_LEFT_TO_RIGHT,
                        .limit = 0.0,
                        .ceiling = INFINITY,
@@ -27,8 +27,8 @@ static search_goal goal_of(const question *q, double horizon) {
 
 /* ---- one candidate ---------------------------------------------------------------------------------------------------- */
 
-static cprox_status meet_convex(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
-                                first_contact *met) {
+static cprox_status meet_convex(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
+                                time_of_contact *met) {
   contact_convex state;
   curve_convex *o = &state.base;
   if (!placed_begin_convex(q, p, o)) return CPROX_MEMORY;
@@ -46,15 +46,15 @@ static cprox_status meet_convex(const question *q, const placed_pair *p, const s
     o->best = state.proven;
     reported = placed_report_convex(q, p, o, &met->touch);
     if (reported < 0) return reported;
-    met->touch.on_target = met->touch.on_mover;
+    met->touch.witness_obstacle = met->touch.witness_mover;
     met->touch.upper = state.proven_bound.upper;
   }
-  met->probes = o->probes;
+  met->distance_queries = o->distance_queries;
   return status;
 }
 
-static cprox_status meet_curve(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
-                               first_contact *met) {
+static cprox_status meet_curve(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
+                               time_of_contact *met) {
   contact_curve state;
   curve_curve *o = &state.base;
   if (!placed_begin_curve(q, p, o)) return CPROX_MEMORY;
@@ -73,12 +73,12 @@ static cprox_status meet_curve(const question *q, const placed_pair *p, const se
     if (reported < 0) return reported;
     met->touch.upper = state.proven_bound.upper;
   }
-  met->probes = o->probes;
+  met->distance_queries = o->distance_queries;
   return status;
 }
 
-static cprox_status meet_tree(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
-                              first_contact *met) {
+static cprox_status meet_tree(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
+                              time_of_contact *met) {
   contact_tree state;
   curve_tree *o = &state.base;
   search_node root;
@@ -98,29 +98,29 @@ static cprox_status meet_tree(const question *q, const placed_pair *p, const sea
     met->touch.upper = state.proven_bound.upper;
     if (state.proven_within) met->touch.t = state.proven_t;
   }
-  met->probes = o->probes;
+  met->distance_queries = o->distance_queries;
   return status;
 }
 
-static cprox_status meet_any(const question *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
-                             first_contact *met) {
+static cprox_status meet_any(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
+                             time_of_contact *met) {
   if (placed_is_tree(p)) return meet_tree(q, p, goal, found, met);
   return p->shape ? meet_convex(q, p, goal, found, met) : meet_curve(q, p, goal, found, met);
 }
 
 /* Contact is proven nowhere near the first place within epsilon; perhaps farther along. */
-static cprox_status prove_farther(const question *q, const candidate *c, first_contact *met) {
+static cprox_status prove_farther(const query *q, const candidate *c, time_of_contact *met) {
   cprox_result r;
   const cprox_status status = candidate_search(q, c, INFINITY, &r);
   if (status < 0) return status;
-  met->nodes += r.nodes, met->probes += r.probes;
+  met->nodes += r.nodes, met->distance_queries += r.distance_queries;
   if (r.upper <= 0.0 && r.t >= met->free_until) met->touch = r;
   return CPROX_OK;
 }
 
-static cprox_status meet_model(const question *q, const candidate *c, double horizon, first_contact *met) {
+static cprox_status meet_model(const query *q, const candidate *c, double horizon, time_of_contact *met) {
   const placed_pair p = placed_pair_resolve(q, c);
-  *met = (first_contact){.touch = nothing(), .near = nothing(), .rung = p.rung};
+  *met = (time_of_contact){.touch = nothing(), .near = nothing(), .lod = p.lod};
   const search_goal goal = goal_of(q, horizon);
   search_outcome found = {0};
   met->status = meet_any(q, &p, &goal, &found, met);
@@ -136,12 +136,12 @@ static cprox_status meet_model(const question *q, const candidate *c, double hor
   return near && !isfinite(met->touch.t) && !isfinite(horizon) ? prove_farther(q, c, met) : CPROX_OK;
 }
 
-/* By the hull of a ladder first: what does not touch that before the horizon does not touch the mesh. */
-static cprox_status meet(const question *q, const candidate *c, double horizon, first_contact *met) {
+/* By the hull of a level-of-detail body first: what does not touch that before the horizon does not touch the mesh. */
+static cprox_status meet(const query *q, const candidate *c, double horizon, time_of_contact *met) {
   if (!candidate_may_climb(q, c)) return meet_model(q, c, horizon, met);
   candidate model = *c;
-  model.rung = CPROX_RUNG_HULL;
-  first_contact by_hull;
+  model.lod = CPROX_LOD_HULL;
+  time_of_contact by_hull;
   cprox_status status = meet_model(q, &model, horizon, &by_hull);
   if (status < 0) return status;
   if (by_hull.free_until >= horizon) {
@@ -155,10 +155,10 @@ static cprox_status meet(const question *q, const candidate *c, double horizon, 
     status = candidate_measure_mesh(q, c, &met->near);
     return status;
   }
-  model.rung = CPROX_RUNG_MESH;
+  model.lod = CPROX_LOD_MESH;
   status = meet_model(q, &model, horizon, met);
   if (status < 0) return status;
-  met->nodes += by_hull.nodes, met->probes += by_hull.probes;
+  met->nodes += by_hull.nodes, met->distance_queries += by_hull.distance_queries;
   return status;
 }
 
@@ -170,46 +170,46 @@ static void merge_place(cprox_result *all, const cprox_result *one, double epsil
   if (has ? (!had || one->t < all->t) : (!had && one->upper < all->upper)) *all = *one;
 }
 
-static void merge(first_contact *all, const first_contact *one, double epsilon) {
+static void merge(time_of_contact *all, const time_of_contact *one, double epsilon) {
   all->free_until = fmin(all->free_until, one->free_until);
   all->lower = fmin(all->lower, one->lower);
   if (one->touch.t < all->touch.t) all->touch = one->touch;
   merge_place(&all->near, &one->near, epsilon);
-  all->nodes += one->nodes, all->probes += one->probes;
-  if (one->rung > all->rung) all->rung = one->rung;
+  all->nodes += one->nodes, all->distance_queries += one->distance_queries;
+  if (one->lod > all->lod) all->lod = one->lod;
   if (one->status != CPROX_OK) all->status = one->status;
 }
 
-cprox_status first_contact_conclude(const first_contact *all, const question *q, cprox_result *result) {
+cprox_status time_of_contact_conclude(const time_of_contact *all, const query *q, cprox_result *result) {
   double t0, t1;
   cprox_curve_domain(q->mover.curve, &t0, &t1);
   const bool touch = isfinite(all->touch.t), near = all->near.upper <= q->options.epsilon;
   cprox_result r = touch ? all->touch : all->near;
-  r.t_free = fmin(all->free_until, t1);
+  r.t_contact_lower = fmin(all->free_until, t1);
   r.lower = touch ? 0.0 : fmax(fmin(all->lower, r.upper), 0.0);
   r.upper = fmax(r.upper, 0.0);
   r.verdict = touch ? CPROX_YES : isinf(all->free_until) ? CPROX_NO : CPROX_UNDECIDED;
-  if (touch) r.t = fmax(r.t, r.t_free); /* one is rounded, the other rounded down */
-  if (!touch && !near) r.t = r.target_index < 0 ? NAN : r.t;
-  r.rung = all->rung != CPROX_RUNG_NONE ? all->rung : q->n > 0 ? CPROX_RUNG_SPHERE : CPROX_RUNG_NONE;
-  r.nodes = all->nodes, r.probes = all->probes;
+  if (touch) r.t = fmax(r.t, r.t_contact_lower); /* one is rounded, the other rounded down */
+  if (!touch && !near) r.t = r.obstacle_index < 0 ? NAN : r.t;
+  r.lod = all->lod != CPROX_LOD_NONE ? all->lod : q->n > 0 ? CPROX_LOD_SPHERE : CPROX_LOD_NONE;
+  r.nodes = all->nodes, r.distance_queries = all->distance_queries;
   r.status = all->status;
-  if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", question_shortfall(r.status));
+  if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", query_shortfall(r.status));
   *result = r;
   return r.status;
 }
 
-first_contact first_contact_begin(void) {
-  return (first_contact){.free_until = INFINITY, .lower = INFINITY, .touch = nothing(), .near = nothing()};
+time_of_contact time_of_contact_begin(void) {
+  return (time_of_contact){.free_until = INFINITY, .lower = INFINITY, .touch = nothing(), .near = nothing()};
 }
 
-cprox_status first_contact_with(first_contact *all, const question *q, size_t first, size_t last) {
+cprox_status time_of_contact_with(time_of_contact *all, const query *q, size_t first, size_t last) {
   size_t count = 0;
   const candidate *list = last > first ? candidates_list(q, first, last, true, &count) : NULL;
   if (last > first && !list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
   size_t i = 0;
   for (; i < count && list[i].lower <= 0.0 && all->status != CPROX_STOPPED; i++) {
-    first_contact one;
+    time_of_contact one;
     const cprox_status status = meet(q, &list[i], all->touch.t, &one);
     if (status < 0) return status;
     merge(all, &one, q->options.epsilon);

@@ -24,8 +24,7 @@ int workspace_teardown(void **state) {
 
 cprox_curve *bezier(const vec3 *points, size_t n) {
   cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
+  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }
 

@@ -67,7 +67,7 @@ cprox_body *implicit_case_body(const implicit_case *c, const cprox_affine *map) 
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_body *body = NULL;
   if (cprox_body_create_implicit(&c->description, map, workspace, &body) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(workspace));
+    fail_msg("%s", cprox_workspace_error(workspace));
   cprox_workspace_free(workspace);
   return body;
 }

@@ -99,7 +99,7 @@ cprox_body *mesh_body(const test_mesh *mesh, cprox_mesh_fill fill, cprox_workspa
   cprox_body *body = NULL;
   const cprox_status status = cprox_body_create_mesh(mesh->vertices, mesh->n, (const uint32_t(*)[3])mesh->triangles,
                                                      mesh->m, fill, SIZE_MAX, workspace, &body);
-  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(workspace));
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(workspace));
   return body;
 }
 

@@ -60,10 +60,10 @@ static bool read_geometry(FILE *f, robot_case *c, size_t i, cprox_link_geometry 
   c->links[i] = by_hull->link, c->poses[i] = by_hull->pose;
   *finer = *by_hull;
   if (!c->surfaces[i] || !c->bodies[i]) return c->bodies[i] != NULL;
-  cprox_body *ladder = NULL;
-  cprox_body_create_ladder(c->bodies[i], 0.0, c->surfaces[i], NULL, &ladder);
-  finer->body = c->ladders[i] = ladder;
-  return ladder != NULL;
+  cprox_body *lod = NULL;
+  cprox_body_create_lod(c->bodies[i], 0.0, c->surfaces[i], NULL, &lod);
+  finer->body = c->lods[i] = lod;
+  return lod != NULL;
 }
 
 /* Links, geometries, and which pairs of links are disabled. */
@@ -125,7 +125,7 @@ static bool read_scene(FILE *f, robot_case *c) {
     cprox_pose pose;
     if (fscanf(f, "%79s", id) != 1 || !read_pose(f, &pose)) return false;
     const cprox_body *surface;
-    c->targets[i] = cprox_at(read_body(f, &surface), pose);
+    c->targets[i] = cprox_obstacle_at(read_body(f, &surface), pose);
     if (!c->targets[i].body || surface) return false;
   }
   if (fscanf(f, "%zu", &c->n_answers) != 1 || c->n_answers > 2) return false;
@@ -168,7 +168,7 @@ void robot_case_free(robot_case *c) {
   cprox_robot_free(c->robot);
   cprox_robot_free(c->mesh_robot);
   for (size_t i = 0; i < c->n_geometries; i++) {
-    cprox_body_free((cprox_body *)c->ladders[i]);
+    cprox_body_free((cprox_body *)c->lods[i]);
     cprox_body_free((cprox_body *)c->surfaces[i]);
     cprox_body_free((cprox_body *)c->bodies[i]);
   }

@@ -26,16 +26,16 @@ typedef struct robot_case {
   char link_names[CASE_MAX_LINKS][40];
   cprox_robot *robot; /* meshes by their hulls */
   cprox_motion *motion;
-  cprox_robot *mesh_robot; /* meshes with their hulls, as ladders */
+  cprox_robot *mesh_robot; /* meshes with their hulls, as level-of-detail bodies */
   cprox_motion *mesh_motion;
   const cprox_body *bodies[CASE_MAX_GEOMETRIES];   /* hulls */
   const cprox_body *surfaces[CASE_MAX_GEOMETRIES]; /* NULL where there is no mesh; */
-  const cprox_body *ladders[CASE_MAX_GEOMETRIES];  /* likewise */
+  const cprox_body *lods[CASE_MAX_GEOMETRIES];     /* likewise */
   int32_t links[CASE_MAX_GEOMETRIES];              /* of the geometries, and where they stand there */
   cprox_pose poses[CASE_MAX_GEOMETRIES];
   cprox_link tree[CASE_MAX_LINKS];
   size_t n_links, n_geometries, n_variables;
-  cprox_target targets[CASE_MAX_OBJECTS];
+  cprox_obstacle targets[CASE_MAX_OBJECTS];
   size_t n_targets;
   cprox_robot_pair self_pairs[CASE_MAX_PAIRS];
   size_t n_self_pairs;

@@ -50,7 +50,7 @@ static void make_geometries(rng *r, test_robot *t) {
     for (size_t k = 0; k < TEST_VERTICES; k++) t->vertices[i][k] = rng_in_cube(r, 0.2);
     assert_int_equal(cprox_body_create_polytope(t->vertices[i], TEST_VERTICES, NULL, &body), CPROX_OK);
     t->geometries[i] =
-        (cprox_link_geometry){.body = body, .pose = rng_pose(r, 0.2), .link = (int32_t)i, .padding = t->margin};
+        (cprox_link_geometry){.body = body, .pose = rng_pose(r, 0.2), .link = (int32_t)i, .margin = t->margin};
   }
 }
 
@@ -88,7 +88,7 @@ static void tame_quaternions(test_robot *t) {
 static void build(test_robot *t) {
   cprox_workspace *ws = cprox_workspace_create();
   if (cprox_robot_create(t->links, t->n_links, t->geometries, t->n_links, t->n_variables, ws, &t->robot) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
+    fail_msg("%s", cprox_workspace_error(ws));
   cprox_status status;
   if (t->spline) {
     double control[TEST_MAX_WAYPOINTS * TEST_MAX_VARIABLES];
@@ -104,7 +104,7 @@ static void build(test_robot *t) {
     status = cprox_motion_create_waypoints(t->robot, t->variables, t->n_variables, points, t->n_points,
                                            t->interpolation, t->rest, ws, &t->motion);
   }
-  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   cprox_workspace_free(ws);
 }
 

@@ -14,7 +14,7 @@ typedef struct test_robot {
   cprox_link links[TEST_MAX_LINKS];
   cprox_link_geometry geometries[TEST_MAX_LINKS]; /* one a link */
   vec3 vertices[TEST_MAX_LINKS][TEST_VERTICES];   /* a geometry's, in its own frame */
-  double margin;                                  /* padding of all */
+  double margin;                                  /* margin of all */
   size_t n_links, n_variables;
   int32_t variables[TEST_MAX_VARIABLES];
   double rest[TEST_MAX_VARIABLES];

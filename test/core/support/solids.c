@@ -11,7 +11,7 @@
 #include "support/builders.h"
 
 #define MADE(call) \
-  if ((call) != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws))
+  if ((call) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws))
 
 bool solid_exists(test_solid_kind kind, int dimension) {
   return dimension == 3 || kind != SOLID_CYLINDER;
@@ -264,8 +264,8 @@ cprox_pose solid_pose(rng *r, int dimension, double half) {
 static double distance(const cprox_body *a, const cprox_pose *pa, const cprox_body *b, const cprox_pose *pb) {
   const cprox_options o = accurate(1e-9);
   cprox_result result;
-  if (cprox_pair(cprox_at(a, *pa), cprox_at(b, *pb), &o, ws, &result) < CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
+  if (cprox_pair(cprox_obstacle_at(a, *pa), cprox_obstacle_at(b, *pb), &o, ws, &result) < CPROX_OK)
+    fail_msg("%s", cprox_workspace_error(ws));
   return result.upper;
 }
 

@@ -30,7 +30,7 @@ superquadric superquadric_random(rng *r, double aspect) {
 
 cprox_body *superquadric_body(const superquadric *s, cprox_workspace *workspace) {
   cprox_body *body = NULL;
-  if (cprox_body_create_superquadric(s->a, s->p, workspace, &body)) fail_msg("%s", cprox_workspace_reason(workspace));
+  if (cprox_body_create_superquadric(s->a, s->p, workspace, &body)) fail_msg("%s", cprox_workspace_error(workspace));
   return body;
 }
 

@@ -37,8 +37,8 @@ class BallsConstraint : public Constraint {
     out.b.linear = -out.normal;
     out.b.angular = out.normal.cross(arm_b);
     out.has_points = true;
-    out.point_a = a.translation() + arm_a - radius_a_ * out.normal;
-    out.point_b = b.translation() + arm_b + radius_b_ * out.normal;
+    out.witness_a = a.translation() + arm_a - radius_a_ * out.normal;
+    out.witness_b = b.translation() + arm_b + radius_b_ * out.normal;
   }
 
  private:

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #define _POSIX_C_SOURCE 200809L
-#include "support/robot_questions.h"
+#include "support/robot_queries.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,33 +13,33 @@
 
 /* One that ends somewhere: a link's. */
 static cprox_body *bounded_body(rng *r, double scale, cprox_workspace *ws) {
-  cprox_body *body = question_body(r, scale, false, ws);
+  cprox_body *body = query_body(r, scale, false, ws);
   while (cprox_body_get_kind(body) == CPROX_HALFSPACE) {
     cprox_body_free(body);
-    body = question_body(r, scale, false, ws);
+    body = query_body(r, scale, false, ws);
   }
   return body;
 }
 
 /* One body, a mesh, or a union of two. */
-static cprox_body *one_or_two(robot_question *q, rng *r, bool bounded, double scale, bool meshes, cprox_workspace *ws) {
+static cprox_body *one_or_two(robot_query *q, rng *r, bool bounded, double scale, bool meshes, cprox_workspace *ws) {
   if (meshes && rng_index(r, 3) == 0) {
-    question_mesh *mesh = &q->mesh[q->n_meshes++];
-    *mesh = question_mesh_random(r, scale, CPROX_MESH_SURFACE, ws);
+    query_mesh *mesh = &q->mesh[q->n_meshes++];
+    *mesh = query_mesh_random(r, scale, CPROX_MESH_SURFACE, ws);
     return mesh->body;
   }
-  cprox_body *one = bounded ? bounded_body(r, scale, ws) : question_body(r, scale, false, ws), *both = NULL;
+  cprox_body *one = bounded ? bounded_body(r, scale, ws) : query_body(r, scale, false, ws), *both = NULL;
   if (rng_index(r, 5)) return one;
   cprox_body *parts[2] = {one, bounded_body(r, scale, ws)};
   const cprox_pose poses[2] = {rng_pose(r, scale), rng_pose(r, scale)};
   for (int i = 0; i < 2; i++) q->loose[q->n_loose++] = parts[i];
   if (cprox_body_create_compound((const cprox_body *const *)parts, poses, 2, ws, &both) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
+    fail_msg("%s", cprox_workspace_error(ws));
   return both;
 }
 
-void robot_question_random(robot_question *q, rng *r, double speed, double apart, bool meshes, cprox_workspace *ws) {
-  *q = (robot_question){.n = 1 + rng_index(r, ROBOT_QUESTION_TARGETS)};
+void robot_query_random(robot_query *q, rng *r, double speed, double apart, bool meshes, cprox_workspace *ws) {
+  *q = (robot_query){.n = 1 + rng_index(r, ROBOT_QUERY_TARGETS)};
   robot_make(r, speed, &q->robot);
   for (size_t i = 0; i < q->robot.n_links; i++) {
     if (rng_index(r, 2)) continue;
@@ -50,8 +50,8 @@ void robot_question_random(robot_question *q, rng *r, double speed, double apart
   for (size_t i = 0; i < q->n; i++) {
     cprox_pose at = rng_pose(r, 0.3);
     at.position = vec_axpy(at.position, apart, rng_unit(r));
-    q->targets[i] = cprox_at(one_or_two(q, r, false, 0.5, meshes, ws), at);
-    q->targets[i].padding = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0.0, 0.1);
+    q->targets[i] = cprox_obstacle_at(one_or_two(q, r, false, 0.5, meshes, ws), at);
+    q->targets[i].margin = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0.0, 0.1);
   }
   const bool self = rng_index(r, 3) == 0;
   q->mover = self ? cprox_robot_self(q->robot.motion, NULL, 0) : cprox_robot_along(q->robot.motion, NULL, 0);
@@ -60,30 +60,30 @@ void robot_question_random(robot_question *q, rng *r, double speed, double apart
   q->n = 0;
 }
 
-void robot_question_free(robot_question *q) {
+void robot_query_free(robot_query *q) {
   for (size_t i = 0; i < q->n; i++) cprox_body_free((cprox_body *)q->targets[i].body);
   robot_free(&q->robot);
   for (size_t i = 0; i < q->n_loose; i++) cprox_body_free(q->loose[i]);
   for (size_t i = 0; i < q->n_meshes; i++) {
     q->mesh[i].body = NULL; /* it went with its link or its target */
-    question_mesh_free(&q->mesh[i]);
+    query_mesh_free(&q->mesh[i]);
   }
 }
 
 /* ---- text ----------------------------------------------------------------------------------------------------------------- */
 
 /* A line a convex part, to be freed. */
-static char *lines_of(const cprox_target *target) {
-  const size_t length = cprox_target_describe(target, NULL, 0);
+static char *lines_of(const cprox_obstacle *target) {
+  const size_t length = cprox_obstacle_describe(target, NULL, 0);
   char *text = calloc(length + 1, 1);
-  cprox_target_describe(target, text, length + 1);
+  cprox_obstacle_describe(target, text, length + 1);
   return text;
 }
 
-void robot_write_targets(const cprox_target *targets, size_t n, FILE *out) {
-  char *lines[ROBOT_QUESTION_MOST];
+void robot_write_targets(const cprox_obstacle *targets, size_t n, FILE *out) {
+  char *lines[ROBOT_QUERY_MOST];
   size_t count = 0;
-  assert_true(n <= ROBOT_QUESTION_MOST);
+  assert_true(n <= ROBOT_QUERY_MOST);
   for (size_t i = 0; i < n; i++) {
     lines[i] = lines_of(&targets[i]);
     for (const char *at = lines[i]; (at = strchr(at, '\n')); at++) count++;
@@ -95,17 +95,17 @@ void robot_write_targets(const cprox_target *targets, size_t n, FILE *out) {
   }
 }
 
-void robot_write_mover(const cprox_mover *along, const cprox_target *targets, size_t n, const char *id,
+void robot_write_mover(const cprox_mover *along, const cprox_obstacle *targets, size_t n, const char *id,
                        cprox_workspace *ws, FILE *out) {
   const size_t length = cprox_mover_describe(along, targets, n, id, ws, NULL, 0);
-  if (length == 0) fail_msg("a robot is not described: %s", cprox_workspace_reason(ws));
+  if (length == 0) fail_msg("a robot is not described: %s", cprox_workspace_error(ws));
   char *text = calloc(length + 1, 1);
   cprox_mover_describe(along, targets, n, id, ws, text, length + 1);
   fputs(text, out);
   free(text);
 }
 
-robot_text robot_text_of(const cprox_mover *along, const cprox_target *targets, size_t n, cprox_workspace *ws) {
+robot_text robot_text_of(const cprox_mover *along, const cprox_obstacle *targets, size_t n, cprox_workspace *ws) {
   robot_text text = {.file = tmpfile()};
   robot_write_targets(targets, n, text.file);
   robot_write_mover(along, targets, n, "one", ws, text.file);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Random questions of every kind that certificates can be made for, and their text for the checkers. */
-#ifndef CHECK_TEST_QUESTIONS_H
-#define CHECK_TEST_QUESTIONS_H
+/* Random queries of every kind that certificates can be made for, and their text for the checkers. */
+#ifndef CHECK_TEST_QUERIES_H
+#define CHECK_TEST_QUERIES_H
 
 #include <stdio.h>
 
@@ -10,34 +10,34 @@
 #include "support/meshes.h"
 #include "support/random.h"
 
-enum { QUESTION_MAX_POINTS = 40, QUESTION_MAX_TARGETS = 3, QUESTION_MAX_BODIES = 12 };
+enum { QUERY_MAX_POINTS = 40, QUERY_MAX_TARGETS = 3, QUERY_MAX_BODIES = 12 };
 
 /* A curve as it was given. */
 typedef struct given_curve {
   const char *basis;
   size_t degree, n, n_knots;
   double t0, t1;
-  vec3 points[QUESTION_MAX_POINTS];
-  double knots[QUESTION_MAX_POINTS + 12];
+  vec3 points[QUERY_MAX_POINTS];
+  double knots[QUERY_MAX_POINTS + 12];
   cprox_curve *curve;
 } given_curve;
 
 /* A mesh that is not convex, with its hull: the body of both, the mesh, the hull; to be freed in this order. And its triangles. */
-typedef struct question_mesh {
+typedef struct query_mesh {
   cprox_body *body, *mesh, *hull;
   test_mesh surface;
-} question_mesh;
+} query_mesh;
 
 typedef struct asked {
   given_curve mover;
   double radius;
   size_t n;
-  cprox_target targets[QUESTION_MAX_TARGETS];
+  cprox_obstacle targets[QUERY_MAX_TARGETS];
   given_curve target_curve; /* of a target that is a curve, curve NULL: none */
-  cprox_body *bodies[QUESTION_MAX_BODIES];
+  cprox_body *bodies[QUERY_MAX_BODIES];
   size_t n_bodies;
-  question_mesh mesh[QUESTION_MAX_TARGETS]; /* of a target that is a mesh; body NULL: it is none */
-  double scale;                             /* of the sizes [m] */
+  query_mesh mesh[QUERY_MAX_TARGETS]; /* of a target that is a mesh; body NULL: it is none */
+  double scale;                       /* of the sizes [m] */
 } asked;
 
 /* What may be asked. */
@@ -49,10 +49,10 @@ typedef struct asked_kinds {
 } asked_kinds;
 
 /* Of any convex kind. */
-cprox_body *question_body(rng *r, double scale, bool polytope_only, cprox_workspace *ws);
+cprox_body *query_body(rng *r, double scale, bool polytope_only, cprox_workspace *ws);
 
-question_mesh question_mesh_random(rng *r, double scale, cprox_mesh_fill fill, cprox_workspace *ws);
-void question_mesh_free(question_mesh *mesh);
+query_mesh query_mesh_random(rng *r, double scale, cprox_mesh_fill fill, cprox_workspace *ws);
+void query_mesh_free(query_mesh *mesh);
 
 /* Fills q, which must stay where it is. Sizes around `scale`, everything `away` from the origin. */
 void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away, cprox_workspace *ws);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What the program does, a function a verb. Each returns the program's exit code and throws BadUsage with one line. */
-#ifndef CURVE_PROXIMITY_CLI_VERBS_H
-#define CURVE_PROXIMITY_CLI_VERBS_H
+/** What the program does, a function a command. Each returns the program's exit code and throws BadUsage with one line.
+ *  */
+#ifndef CURVE_PROXIMITY_CLI_COMMANDS_H
+#define CURVE_PROXIMITY_CLI_COMMANDS_H
 
 #include "arguments.h"
 #include "console.h"
@@ -23,7 +24,7 @@ int answerPairs(const Arguments &arguments, Console &console);
 /** constraints: values and gradients by a provider. */
 int answerConstraints(const Arguments &arguments, Console &console);
 
-/** check: what certificates prove about a question. */
+/** check: what certificates prove about a query. */
 int checkCertificates(const Arguments &arguments, Console &console);
 
 /** send: a scene file to a running node. */

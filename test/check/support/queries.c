@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #define _POSIX_C_SOURCE 200809L
-#include "support/questions.h"
+#include "support/queries.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -100,7 +100,7 @@ static void curve_random(given_curve *g, rng *r, bool bezier_only, double scale,
   g->t0 = rng_index(r, 2) ? 0.0 : rng_uniform(r, -2.0, 2.0);
   g->t1 = rng_index(r, 2) ? g->t0 + 1.0 : g->t0 + rng_uniform(r, 0.5, 3.0);
   const size_t choice = bezier_only ? 0 : rng_index(r, 7);
-  if (make[choice](g, r, scale, middle, ws) != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (make[choice](g, r, scale, middle, ws) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
 }
 
 static void curve_write(const given_curve *g, FILE *out) {
@@ -112,7 +112,7 @@ static void curve_write(const given_curve *g, FILE *out) {
 
 /* ---- bodies ------------------------------------------------------------------------------------------------------------- */
 
-cprox_body *question_body(rng *r, double scale, bool polytope_only, cprox_workspace *ws) {
+cprox_body *query_body(rng *r, double scale, bool polytope_only, cprox_workspace *ws) {
   const vec3 size = vec(rng_log_uniform(r, 0.05, 1.0) * scale, rng_log_uniform(r, 0.05, 1.0) * scale,
                         rng_log_uniform(r, 0.05, 1.0) * scale);
   vec3 vertex[12];
@@ -135,30 +135,30 @@ cprox_body *question_body(rng *r, double scale, bool polytope_only, cprox_worksp
       status = cprox_body_create_polygon(square, 4, ws, &body);
     }
   }
-  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return body;
 }
 
 /* A torus with bumps, or triangles anywhere; the hull may be smaller than it by what it is told to be. */
-question_mesh question_mesh_random(rng *r, double scale, cprox_mesh_fill fill, cprox_workspace *ws) {
+query_mesh query_mesh_random(rng *r, double scale, cprox_mesh_fill fill, cprox_workspace *ws) {
   const double size = rng_uniform(r, 0.2, 0.5) * scale;
   test_mesh mesh = fill == CPROX_MESH_SOLID || rng_index(r, 2) ? mesh_torus(6 + rng_index(r, 8), 4 + rng_index(r, 4),
                                                                             size, size * rng_uniform(r, 0.1, 0.5), 0.1)
                                                                : mesh_soup(r, 3 + rng_index(r, 20), 0.5 * size, size);
-  question_mesh made = {.mesh = mesh_body(&mesh, fill, ws), .surface = mesh};
+  query_mesh made = {.mesh = mesh_body(&mesh, fill, ws), .surface = mesh};
   const double excess = rng_index(r, 2) ? 0.0 : 0.01 * size;
   vec3 *inner = calloc(mesh.n, sizeof *inner);
   assert_non_null(inner);
   for (size_t i = 0; i < mesh.n; i++) inner[i] = vec_scale(1.0 - 0.2 * excess / size, mesh.vertices[i]);
   if (cprox_body_create_polytope(inner, mesh.n, ws, &made.hull) != CPROX_OK ||
-      cprox_body_create_ladder(made.hull, excess, made.mesh, ws, &made.body) != CPROX_OK)
-    fail_msg("%s", cprox_workspace_reason(ws));
+      cprox_body_create_lod(made.hull, excess, made.mesh, ws, &made.body) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_error(ws));
   free(inner);
   return made;
 }
 
 static cprox_body *body_random(asked *q, rng *r, bool polytope_only, cprox_workspace *ws) {
-  cprox_body *body = question_body(r, q->scale, polytope_only, ws);
+  cprox_body *body = query_body(r, q->scale, polytope_only, ws);
   q->bodies[q->n_bodies++] = body;
   return body;
 }
@@ -179,31 +179,31 @@ void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away
   const vec3 middle = rng_in_cube(r, away);
   curve_random(&q->mover, r, kinds.bezier_only, scale, middle, ws);
   q->radius = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0.0, 0.1 * scale);
-  q->n = kinds.polytope_only || kinds.curve_target ? 1 : 1 + rng_index(r, QUESTION_MAX_TARGETS);
+  q->n = kinds.polytope_only || kinds.curve_target ? 1 : 1 + rng_index(r, QUERY_MAX_TARGETS);
   for (size_t i = 0; i < q->n; i++) {
-    cprox_target *t = &q->targets[i];
+    cprox_obstacle *t = &q->targets[i];
     const vec3 beside = vec_scale(rng_uniform(r, 1.0, 4.0) * scale, rng_unit(r));
     if (kinds.curve_target) {
       curve_random(&q->target_curve, r, kinds.bezier_only, scale, middle, ws);
-      *t = cprox_curve_target(q->target_curve.curve, 0.0);
+      *t = cprox_obstacle_curve(q->target_curve.curve, 0.0);
       if (rng_index(r, 2)) t->pose = (cprox_pose){beside, {1, 0, 0, 0}};
       continue;
     }
     if (kinds.meshes && rng_index(r, 2)) {
-      q->mesh[i] = question_mesh_random(r, scale, rng_index(r, 3) ? CPROX_MESH_SURFACE : CPROX_MESH_SOLID, ws);
-      *t = cprox_at(q->mesh[i].body, (cprox_pose){vec_add(middle, beside), rng_quat(r)});
-      if (rng_index(r, 3) == 0) *t = cprox_padded(*t, 0.05 * scale);
+      q->mesh[i] = query_mesh_random(r, scale, rng_index(r, 3) ? CPROX_MESH_SURFACE : CPROX_MESH_SOLID, ws);
+      *t = cprox_obstacle_at(q->mesh[i].body, (cprox_pose){vec_add(middle, beside), rng_quat(r)});
+      if (rng_index(r, 3) == 0) *t = cprox_with_margin(*t, 0.05 * scale);
       continue;
     }
     const bool compound = !kinds.polytope_only && q->n_bodies == 0 && rng_index(r, 5) == 0;
     const cprox_body *body = compound ? compound_random(q, r, ws) : body_random(q, r, kinds.polytope_only, ws);
-    *t = cprox_at(body, (cprox_pose){vec_add(middle, beside), rng_quat(r)});
+    *t = cprox_obstacle_at(body, (cprox_pose){vec_add(middle, beside), rng_quat(r)});
     if (rng_index(r, 3) == 0) t->pose.orientation = (cprox_quat){1, 0, 0, 0};
-    if (rng_index(r, 3) == 0) *t = cprox_padded(*t, 0.05 * scale);
+    if (rng_index(r, 3) == 0) *t = cprox_with_margin(*t, 0.05 * scale);
   }
 }
 
-void question_mesh_free(question_mesh *mesh) {
+void query_mesh_free(query_mesh *mesh) {
   cprox_body_free(mesh->body);
   cprox_body_free(mesh->mesh);
   cprox_body_free(mesh->hull);
@@ -211,7 +211,7 @@ void question_mesh_free(question_mesh *mesh) {
 }
 
 void asked_free(asked *q) {
-  for (size_t i = 0; i < q->n; i++) question_mesh_free(&q->mesh[i]);
+  for (size_t i = 0; i < q->n; i++) query_mesh_free(&q->mesh[i]);
   for (size_t i = 0; i < q->n_bodies; i++) cprox_body_free(q->bodies[i]);
   cprox_curve_free(q->mover.curve);
   cprox_curve_free(q->target_curve.curve);
@@ -219,24 +219,24 @@ void asked_free(asked *q) {
 
 /* ---- text --------------------------------------------------------------------------------------------------------------- */
 
-static void write_target(const asked *q, const cprox_target *t, FILE *out) {
+static void write_target(const asked *q, const cprox_obstacle *t, FILE *out) {
   if (t->curve) {
     const cprox_quat o = t->pose.orientation;
-    fprintf(out, "target %a 1 %a %a %a %a %a %a %a curve", t->padding, t->pose.position.x, t->pose.position.y,
+    fprintf(out, "target %a 1 %a %a %a %a %a %a %a curve", t->margin, t->pose.position.x, t->pose.position.y,
             t->pose.position.z, o.w, o.x, o.y, o.z);
     curve_write(&q->target_curve, out);
     fputs("\n", out);
     return;
   }
-  const size_t size = cprox_target_describe(t, NULL, 0) + 1;
+  const size_t size = cprox_obstacle_describe(t, NULL, 0) + 1;
   char *text = malloc(size);
   assert_non_null(text);
-  cprox_target_describe(t, text, size);
+  cprox_obstacle_describe(t, text, size);
   fputs(text, out);
   free(text);
 }
 
-static size_t sections_of(const cprox_target *t) {
+static size_t sections_of(const cprox_obstacle *t) {
   return t->body && t->body->kind == CPROX_COMPOUND ? t->body->n_parts : 1;
 }
 

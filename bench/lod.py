@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The group `rungs`: how much each model of the scene's bodies settles, and what it costs: rungs.py [--quick] [--cprox PROGRAM]
+"""The group `lod`: how much each model of the scene's bodies settles, and what it costs: lod.py [--quick] [--cprox PROGRAM]
 
-Random curves (seed 1) through each scene of test/data with its robot, one answer for each curve and object or link. A row a scene, verb and
-rung: `nodes` is the number of answers that the rung gave, `probes` that of all, the times are those of its answers.
+Random curves (seed 1) through each scene of test/data with its robot, one answer for each curve and object or link. A row a scene, query and
+level of detail: `nodes` is the number of answers that the level of detail gave, `distance queries` that of all, the times are those of its answers.
 """
 import argparse
 import csv
@@ -17,8 +17,8 @@ PANDA, HUSKY, FANUC = (f'{DATA}/robots/{name}/{name}.urdf' for name in ('panda',
 SCENES = {'bookshelf_tall': ('mbm/bookshelf_tall_panda/scene0001.yaml', PANDA), 'cage': ('mbm/cage_panda/scene0001.yaml', PANDA),
           'table_pick': ('mbm/table_pick_panda/scene0001.yaml', PANDA),
           'fanuc_bookshelves': ('converted/fanuc_bookshelves.yaml', FANUC), 'husky_table': ('converted/husky_table.yaml', HUSKY)}
-VERBS = (('collision',), ('tolerance', '--delta', '0.05'), ('distance', '--epsilon', '1e-6'))
-RUNGS = ('sphere', 'hull', 'mesh')
+QUERY_TYPES = (('collision',), ('tolerance', '--delta', '0.05'), ('distance', '--epsilon', '1e-6'))
+LODS = ('sphere', 'hull', 'mesh')
 
 
 def curves(n, source):
@@ -28,9 +28,9 @@ def curves(n, source):
         yield ','.join([str(i), 'bezier', '5', '0', '1', '0.02', '6', *points])
 
 
-def answers_of(cprox, verb, rows, scene, robot):
+def answers_of(cprox, query_type, rows, scene, robot):
     """What the command line says of each curve and object or link, and how many of them failed."""
-    words = [cprox, *verb, '--per-object', '--curves', rows, '--scene', f'{DATA}/scenes/{scene}', '--robot', robot]
+    words = [cprox, *query_type, '--per-object', '--curves', rows, '--scene', f'{DATA}/scenes/{scene}', '--robot', robot]
     done = subprocess.run(words, stdout=subprocess.PIPE, check=True, text=True)
     answers = list(csv.DictReader(done.stdout.splitlines()))
     return answers, sum(row['status'] not in ('ok', 'undecided') for row in answers)
@@ -49,12 +49,12 @@ def main():
         rows.write('\n'.join(curves(20 if arguments.quick else 100, random.Random(1))) + '\n')
         rows.flush()
         for name, (scene, robot) in SCENES.items():
-            for verb in VERBS:
-                answers, failed = answers_of(arguments.cprox, verb, rows.name, scene, robot)
-                for rung in RUNGS:
-                    times = [float(row['microseconds']) for row in answers if row['rung'] == rung]
-                    print(f'rungs,{name} {verb[0]},curve_proximity {rung},{rung},{quantile(times, 0.5)},{quantile(times, 0.95)},'
-                          f'{len(times)},{len(answers)},,0,{failed if rung == RUNGS[0] else 0}', flush=True)
+            for query_type in QUERY_TYPES:
+                answers, failed = answers_of(arguments.cprox, query_type, rows.name, scene, robot)
+                for lod in LODS:
+                    times = [float(row['microseconds']) for row in answers if row['lod'] == lod]
+                    print(f'lod,{name} {query[0]},curve_proximity {level of detail},{level of detail},{quantile(times, 0.5)},{quantile(times, 0.95)},'
+                          f'{len(times)},{len(answers)},,0,{failed if level of detail == LODS[0] else 0}', flush=True)
 
 
 if __name__ == '__main__':

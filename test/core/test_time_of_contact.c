@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* First contact along the parameter: never late, as close as asked, proven where it is said to be. */
+/* Time of contact along the parameter: never late, as close as asked, proven where it is said to be. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -12,10 +12,10 @@
 
 /* ---- builders ---------------------------------------------------------------------------------------------------------- */
 
-static void ask(cprox_mover mover, cprox_target target, double epsilon, cprox_result *r) {
+static void ask(cprox_mover mover, cprox_obstacle target, double epsilon, cprox_result *r) {
   const cprox_options options = accurate(epsilon);
-  const cprox_status status = cprox_first_contact(mover, target, &options, ws, r);
-  if (status != CPROX_OK) fail_msg("%s: %s", cprox_status_name(status), cprox_workspace_reason(ws));
+  const cprox_status status = cprox_time_of_contact(mover, target, &options, ws, r);
+  if (status != CPROX_OK) fail_msg("%s: %s", cprox_status_name(status), cprox_workspace_error(ws));
   assert_int_equal(r->status, status);
 }
 
@@ -42,7 +42,7 @@ static void obstacle_make(rng *r, double thinness, obstacle *o) {
   if (o->kind == 0) status = cprox_body_create_sphere(o->radius, ws, &o->body);
   if (o->kind == 1) status = cprox_body_create_box(vec_scale(2.0, o->half), ws, &o->body);
   if (o->kind == 2) status = cprox_body_create_polytope(o->vertex, 8, ws, &o->body);
-  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_reason(ws));
+  if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
 }
 
 static long double obstacle_distance(const obstacle *o, vec3l world) {
@@ -54,14 +54,15 @@ static long double obstacle_distance(const obstacle *o, vec3l world) {
 
 /* ---- random curves and bodies -------------------------------------------------------------------------------------------- */
 
-/* 3000 random pairs, seed 1, degrees 1 to 9, points and tubes. Distances by long double at 60 parameters before t_free and at
- * t_free and t themselves; both sides of a comparison are within 1e-14 at this scale. */
-CASE(nothing_touches_before_t_free_and_t_free_is_within_epsilon_of_contact) {
+/* 3000 random pairs, seed 1, degrees 1 to 9, points and tubes. Distances by long double at 60 parameters before
+ * t_contact_lower and at t_contact_lower and t themselves; both sides of a comparison are within 1e-14 at this scale.
+ * */
+CASE(nothing_touches_before_t_contact_lower_and_it_is_within_epsilon_of_contact) {
   const double doubt = 1e-14;
   const size_t cases = test_cases(3000);
   rng r = rng_seed(1);
   size_t hits = 0, free_ones = 0, undecided = 0;
-  double nodes = 0.0, probes = 0.0;
+  double nodes = 0.0, distance_queries = 0.0;
   for (size_t i = 0; i < cases; i++) {
     obstacle o;
     obstacle_make(&r, rng_index(&r, 3) == 0 ? 1e-3 : 1.0, &o);
@@ -72,34 +73,36 @@ CASE(nothing_touches_before_t_free_and_t_free_is_within_epsilon_of_contact) {
     const double radius = rng_index(&r, 2) ? rng_uniform(&r, 0.0, 0.2) : 0.0;
     const double epsilon = rng_log_uniform(&r, 1e-12, 1e-3);
     cprox_result c;
-    ask(cprox_tube_along(curve, radius), cprox_at(o.body, o.pose), epsilon, &c);
+    ask(cprox_tube_along(curve, radius), cprox_obstacle_at(o.body, o.pose), epsilon, &c);
 
-    for (int k = 0; k < 60 && c.t_free > 0.0; k++) {
-      const long double t = (long double)c.t_free * k / 60.0L;
+    for (int k = 0; k < 60 && c.t_contact_lower > 0.0; k++) {
+      const long double t = (long double)c.t_contact_lower * k / 60.0L;
       const long double d = obstacle_distance(&o, ref_bezier(p, degree, t, 0)) - (long double)radius;
-      if (d < -(long double)doubt) fail_msg("case %zu: contact at %.17Lg, t_free %.17g", i, t, c.t_free);
+      if (d < -(long double)doubt)
+        fail_msg("case %zu: contact at %.17Lg, t_contact_lower %.17g", i, t, c.t_contact_lower);
     }
     const long double at_free =
-        obstacle_distance(&o, ref_bezier(p, degree, (long double)c.t_free, 0)) - (long double)radius;
+        obstacle_distance(&o, ref_bezier(p, degree, (long double)c.t_contact_lower, 0)) - (long double)radius;
     if (c.verdict == CPROX_NO) {
-      assert_true(c.t_free == 1.0 && c.lower > 0.0);
+      assert_true(c.t_contact_lower == 1.0 && c.lower > 0.0);
       assert_true(at_free > -(long double)doubt);
       free_ones++;
     } else {
-      if (at_free > (long double)(epsilon + doubt)) fail_msg("case %zu: at t_free the distance is %.3Lg", i, at_free);
-      assert_true(c.t_free <= c.t);
+      if (at_free > (long double)(epsilon + doubt))
+        fail_msg("case %zu: at t_contact_lower the distance is %.3Lg", i, at_free);
+      assert_true(c.t_contact_lower <= c.t);
       const long double at_hit =
           obstacle_distance(&o, ref_bezier(p, degree, (long double)c.t, 0)) - (long double)radius;
       if (c.verdict == CPROX_YES && at_hit > (long double)doubt)
         fail_msg("case %zu: no contact at t: %.3Lg", i, at_hit);
       hits += c.verdict == CPROX_YES, undecided += c.verdict == CPROX_UNDECIDED;
     }
-    nodes += c.nodes, probes += c.probes;
+    nodes += c.nodes, distance_queries += c.distance_queries;
     cprox_curve_free(curve);
     cprox_body_free(o.body);
   }
-  printf("%zu hits, %zu free, %zu undecided; nodes and probes a query: %.1f, %.1f\n", hits, free_ones, undecided,
-         nodes / (double)cases, probes / (double)cases);
+  printf("%zu hits, %zu free, %zu undecided; nodes and distance queries a query: %.1f, %.1f\n", hits, free_ones,
+         undecided, nodes / (double)cases, distance_queries / (double)cases);
   assert_true(hits * 5 > cases && free_ones * 10 > cases && undecided * 50 < cases);
 }
 
@@ -116,7 +119,8 @@ static long double descends_to(const vec3 *p, size_t degree, long double height)
 }
 
 /* 1200 curves that go down through a plate of 1e-9 to 1e-3, seed 2, the plate turned anyhow. Where the curve meets the upper
- * side is found by bisection: t_free is no later, and no earlier than where the curve is still epsilon above. */
+ * side is found by bisection: t_contact_lower is no later, and no earlier than where the curve is still epsilon above.
+ * */
 CASE(a_plate_is_neither_missed_nor_met_late) {
   const size_t cases = test_cases(1200);
   rng r = rng_seed(2);
@@ -136,13 +140,14 @@ CASE(a_plate_is_neither_missed_nor_met_late) {
     const double turn = rng_uniform(&r, -3, 3);
     const cprox_pose pose = {.orientation = {cos(turn), 0, 0, sin(turn)}};
     cprox_result c;
-    ask(cprox_tube_along(curve, radius), cprox_at(plate, pose), epsilon, &c);
+    ask(cprox_tube_along(curve, radius), cprox_obstacle_at(plate, pose), epsilon, &c);
     assert_int_equal(c.verdict, CPROX_YES);
     const long double top = (long double)half + (long double)radius;
     const long double contact = descends_to(p, degree, top), early = descends_to(p, degree, top + (long double)epsilon);
-    if ((long double)c.t_free > contact + 1e-14L)
-      fail_msg("case %zu: late by %.3Lg", i, (long double)c.t_free - contact);
-    if ((long double)c.t_free < early - 1e-14L) fail_msg("case %zu: early by %.3Lg", i, early - (long double)c.t_free);
+    if ((long double)c.t_contact_lower > contact + 1e-14L)
+      fail_msg("case %zu: late by %.3Lg", i, (long double)c.t_contact_lower - contact);
+    if ((long double)c.t_contact_lower < early - 1e-14L)
+      fail_msg("case %zu: early by %.3Lg", i, early - (long double)c.t_contact_lower);
     assert_true((long double)c.t >= contact - 1e-14L);
     cprox_curve_free(curve);
     cprox_body_free(plate);
@@ -164,10 +169,10 @@ CASE(grazes_are_told_from_misses) {
     const vec3 p[3] = {{-1, drift, top + 1}, {0, -drift, top - 1}, {1, drift, top + 1}};
     cprox_curve *curve = bezier(p, 3);
     cprox_result c;
-    ask(cprox_point_along(curve), cprox_at(ball, cprox_pose_identity()), epsilon, &c);
+    ask(cprox_point_along(curve), cprox_obstacle_at(ball, cprox_pose_identity()), epsilon, &c);
     if (c.verdict != (height > 0 ? CPROX_NO : CPROX_YES))
       fail_msg("case %zu: height %.3g answered %s", i, height, cprox_verdict_name(c.verdict));
-    if (height < 0) assert_true(c.t_free <= c.t && c.t_free < 0.5 && c.t <= 0.5 + 1e-9);
+    if (height < 0) assert_true(c.t_contact_lower <= c.t && c.t_contact_lower < 0.5 && c.t <= 0.5 + 1e-9);
     cprox_curve_free(curve);
   }
   cprox_body_free(ball);
@@ -180,20 +185,20 @@ CASE(the_earliest_of_many_targets_is_met) {
   cprox_curve *curve = bezier(p, 2);
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.5, ws, &ball), CPROX_OK);
-  cprox_target targets[4];
+  cprox_obstacle targets[4];
   const double x[4] = {8, 4, 6, 20};
   for (int i = 0; i < 4; i++)
-    targets[i] = cprox_at(ball, (cprox_pose){.position = {x[i], 0.1, 0}, .orientation = {1, 0, 0, 0}});
+    targets[i] = cprox_obstacle_at(ball, (cprox_pose){.position = {x[i], 0.1, 0}, .orientation = {1, 0, 0, 0}});
   const cprox_options options = accurate(1e-10);
   cprox_result c;
-  assert_int_equal(cprox_first_contact_all(cprox_point_along(curve), targets, 4, &options, ws, &c), CPROX_OK);
+  assert_int_equal(cprox_time_of_contact_all(cprox_point_along(curve), targets, 4, &options, ws, &c), CPROX_OK);
   assert_int_equal(c.verdict, CPROX_YES);
-  assert_int_equal(c.target_index, 1);
+  assert_int_equal(c.obstacle_index, 1);
   const double contact = (4.0 - sqrt(0.25 - 0.01)) / 10.0;
-  assert_true(c.t_free <= contact && contact <= c.t && c.t - c.t_free < 1e-9);
-  assert_int_equal(cprox_first_contact_all(cprox_point_along(curve), NULL, 0, &options, ws, &c), CPROX_OK);
+  assert_true(c.t_contact_lower <= contact && contact <= c.t && c.t - c.t_contact_lower < 1e-9);
+  assert_int_equal(cprox_time_of_contact_all(cprox_point_along(curve), NULL, 0, &options, ws, &c), CPROX_OK);
   assert_int_equal(c.verdict, CPROX_NO);
-  assert_float_equal(c.t_free, 1.0, 0.0);
+  assert_float_equal(c.t_contact_lower, 1.0, 0.0);
   cprox_body_free(ball);
   cprox_curve_free(curve);
 }
@@ -209,11 +214,12 @@ CASE(contact_on_a_late_piece_of_a_long_spline_is_found_there) {
   cprox_body *wall = NULL;
   assert_int_equal(cprox_body_create_box(vec(0.02, 4, 4), ws, &wall), CPROX_OK);
   cprox_result c;
-  ask(cprox_point_along(curve), cprox_at(wall, (cprox_pose){.position = {30.01, 0, 0}, .orientation = {1, 0, 0, 0}}),
-      1e-10, &c);
+  ask(cprox_point_along(curve),
+      cprox_obstacle_at(wall, (cprox_pose){.position = {30.01, 0, 0}, .orientation = {1, 0, 0, 0}}), 1e-10, &c);
   assert_int_equal(c.verdict, CPROX_YES);
   /* x(t) = 0.1 (t - 2) on a uniform cubic spline whose x are equally spaced */
-  assert_true(c.t_free <= 302.0 + 1e-11 && c.t_free > 302.0 - 1e-8 && c.t >= 302.0 - 1e-11 && c.t < 302.0 + 1e-7);
+  assert_true(c.t_contact_lower <= 302.0 + 1e-11 && c.t_contact_lower > 302.0 - 1e-8 && c.t >= 302.0 - 1e-11 &&
+              c.t < 302.0 + 1e-7);
   assert_true(c.nodes < 100);
   cprox_body_free(wall);
   cprox_curve_free(curve);
@@ -230,19 +236,20 @@ CASE(tubes_meet_no_later_than_they_touch) {
     cprox_curve *first = bezier(p, 4), *second = bezier(q, 4);
     const double epsilon = 1e-8;
     cprox_result c;
-    ask(cprox_tube_along(first, 0.1), cprox_curve_target(second, 0.15), epsilon, &c);
-    const double last = c.verdict == CPROX_NO ? 1.0 : c.t_free;
+    ask(cprox_tube_along(first, 0.1), cprox_obstacle_curve(second, 0.15), epsilon, &c);
+    const double last = c.verdict == CPROX_NO ? 1.0 : c.t_contact_lower;
     for (int k = 0; k <= 50 && last > 0.0; k++) {
       const vec3l x = ref_bezier(p, 3, (long double)last * k / 51.0L, 0);
       for (int m = 0; m <= 400; m++) {
         const long double d = ref_norm(ref_sub(x, ref_bezier(q, 3, m / 400.0L, 0)));
-        if (d < 0.25L - 1e-13L) fail_msg("case %zu: touches before t_free %.17g", i, c.t_free);
+        if (d < 0.25L - 1e-13L) fail_msg("case %zu: touches before t_contact_lower %.17g", i, c.t_contact_lower);
       }
     }
     if (c.verdict == CPROX_YES) {
-      const long double d = ref_norm(ref_sub(ref_bezier(p, 3, c.t, 0), ref_bezier(q, 3, c.t_target, 0)));
+      const long double d = ref_norm(ref_sub(ref_bezier(p, 3, c.t, 0), ref_bezier(q, 3, c.t_obstacle, 0)));
       assert_true(d <= 0.25L + 1e-13L);
-      if (c.t - c.t_free > 1e-5) fail_msg("case %zu: contact only at %.17g, free until %.17g", i, c.t, c.t_free);
+      if (c.t - c.t_contact_lower > 1e-5)
+        fail_msg("case %zu: contact only at %.17g, free until %.17g", i, c.t, c.t_contact_lower);
       hits++;
     }
     cprox_curve_free(first);
@@ -257,9 +264,9 @@ CASE(a_start_inside_is_contact_at_the_start) {
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.5, ws, &ball), CPROX_OK);
   cprox_result c;
-  ask(cprox_point_along(curve), cprox_at(ball, cprox_pose_identity()), 1e-9, &c);
+  ask(cprox_point_along(curve), cprox_obstacle_at(ball, cprox_pose_identity()), 1e-9, &c);
   assert_int_equal(c.verdict, CPROX_YES);
-  assert_true(c.t_free == 0.0 && c.t == 0.0 && c.lower == 0.0 && c.upper == 0.0);
+  assert_true(c.t_contact_lower == 0.0 && c.t == 0.0 && c.lower == 0.0 && c.upper == 0.0);
   cprox_body_free(ball);
   cprox_curve_free(curve);
 }
@@ -272,29 +279,30 @@ CASE(resting_contact_ends_within_the_budget) {
   for (int k = 0; k < 2; k++) {
     cprox_curve *curve = bezier(k == 0 ? slide : land, 3);
     cprox_result c;
-    ask(cprox_point_along(curve), cprox_at(box, cprox_pose_identity()), 1e-9, &c);
+    ask(cprox_point_along(curve), cprox_obstacle_at(box, cprox_pose_identity()), 1e-9, &c);
     assert_true(c.verdict != CPROX_NO);
     const double contact = k == 0 ? 1.0 / 3.0 : 1.0;
-    assert_true(c.t_free <= contact && c.t_free > contact - 1e-4 && c.nodes < 300);
+    assert_true(c.t_contact_lower <= contact && c.t_contact_lower > contact - 1e-4 && c.nodes < 300);
     cprox_curve_free(curve);
   }
   cprox_body_free(box);
 }
 
-CASE(out_of_budget_t_free_is_still_true) {
+CASE(out_of_budget_t_contact_lower_is_still_true) {
   const vec3 p[4] = {{-2, 0.1, 0}, {3, 2, 0}, {-3, -2, 0.5}, {2, 0.5, 0}};
   cprox_curve *curve = bezier(p, 4);
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.2, ws, &ball), CPROX_OK);
-  const cprox_target target = cprox_at(ball, (cprox_pose){.position = {0.1, 0, 0.2}, .orientation = {1, 0, 0, 0}});
+  const cprox_obstacle target =
+      cprox_obstacle_at(ball, (cprox_pose){.position = {0.1, 0, 0.2}, .orientation = {1, 0, 0, 0}});
   cprox_options options = accurate(1e-12);
   cprox_result whole, c;
-  assert_int_equal(cprox_first_contact(cprox_point_along(curve), target, &options, ws, &whole), CPROX_OK);
+  assert_int_equal(cprox_time_of_contact(cprox_point_along(curve), target, &options, ws, &whole), CPROX_OK);
   for (uint32_t n = 1; n < whole.nodes; n++) {
     options.max_nodes = n;
-    assert_int_equal(cprox_first_contact(cprox_point_along(curve), target, &options, ws, &c), CPROX_BUDGET);
-    assert_true(c.t_free <= whole.t);
-    assert_true(cprox_workspace_reason(ws)[0] != '\0');
+    assert_int_equal(cprox_time_of_contact(cprox_point_along(curve), target, &options, ws, &c), CPROX_BUDGET);
+    assert_true(c.t_contact_lower <= whole.t);
+    assert_true(cprox_workspace_error(ws)[0] != '\0');
   }
   cprox_body_free(ball);
   cprox_curve_free(curve);
