@@ -153,7 +153,7 @@ static void judge_values(const scene *s, const asked *q, bench_answer *a) {
     if (q->query_type == DISTANCE)
       a->upper = fmax(a->upper, fabs(q->values[i] - 0.5 * (t->lower + t->upper)));
     else
-      a->wrong += (q->values[i] == 1.0) == (t->verdict == (q->query_type == TOLERANCE ? CPROX_YES : CPROX_NO));
+      a->wrong += (q->values[i] == 1.0) == (t->verdict == CPROX_VERDICT_CLEAR);
   }
   a->lower = a->upper;
 }

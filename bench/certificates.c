@@ -32,7 +32,7 @@ static cprox_status ask(const query *q, cprox_certificate *proof, cprox_workspac
   const cprox_status status = cprox_tolerance_all(q->mover, q->targets, q->n, q->delta, &options, ws, &r, NULL);
   *a = (bench_answer){
       .lower = NAN, .upper = NAN, .nodes = r.nodes, .distance_queries = r.distance_queries, .failed = status < 0};
-  a->wrong = r.verdict == CPROX_NO;
+  a->wrong = r.verdict == CPROX_VERDICT_VIOLATED;
   return status;
 }
 

@@ -19,7 +19,7 @@ typedef struct asked {
 } asked;
 
 static void judge_verdict(const asked *q, cprox_verdict verdict, bench_answer *a) {
-  a->wrong = verdict != (q->factor < 1.0 ? CPROX_YES : CPROX_NO);
+  a->wrong = verdict != (q->factor < 1.0 ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED);
   a->lower = a->upper = NAN;
 }
 
@@ -45,7 +45,7 @@ static paper_query paper_query_of(const asked *q, size_t i) {
 static void take_paper(const asked *q, const paper_answer *r, bench_answer *a) {
   *a = (bench_answer){.lower = r->lower, .upper = r->upper, .nodes = r->nodes, .distance_queries = r->evaluations};
   a->failed = !r->ended;
-  if (q->factor > 0.0) judge_verdict(q, r->verdict ? CPROX_YES : CPROX_NO, a);
+  if (q->factor > 0.0) judge_verdict(q, r->verdict ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED, a);
 }
 
 /* ---- the methods ---------------------------------------------------------------------------------------------------------- */

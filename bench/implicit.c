@@ -161,7 +161,7 @@ static void time_of_contact(const void *problems, size_t i, void *state, bench_a
   const cprox_status status = cprox_translating_contact(x, y, s->duration, &options, s->workspace, &r);
   *a = (bench_answer){
       .lower = r.t_contact_lower, .upper = r.t, .nodes = r.distance_queries, .failed = status != CPROX_OK};
-  a->failed = a->failed || r.verdict != CPROX_YES;
+  a->failed = a->failed || r.verdict != CPROX_VERDICT_VIOLATED;
 }
 
 static void table_2(const bench_size *size, cprox_body *const *object, bench_state *s) {

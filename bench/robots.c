@@ -51,7 +51,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *answ
     status = cprox_tolerance_all(mover_of(p), p->c->targets, targets_of(p), s->factor * p->truth, &options,
                                  s->workspace, &r, NULL);
     *answer = (bench_answer){.lower = p->truth, .upper = p->truth};
-    answer->wrong = r.verdict != (s->factor < 1.0 ? CPROX_YES : CPROX_NO);
+    answer->wrong = r.verdict != (s->factor < 1.0 ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED);
   }
   answer->nodes = r.nodes, answer->distance_queries = r.distance_queries, answer->failed = status != CPROX_OK;
 }
@@ -189,7 +189,8 @@ static void ours_thin(const void *problems, size_t i, void *state, bench_answer 
   const cprox_status status = cprox_collision(mover, p->target, NULL, s->workspace, &r);
   *answer = (bench_answer){.nodes = r.nodes, .distance_queries = r.distance_queries, .failed = status < 0};
   if (s->step > 0.0 &&
-      r.verdict == CPROX_NO) { /* a sample that hits would give the lie to it; every eighth is looked at closer */
+      r.verdict ==
+          CPROX_VERDICT_CLEAR) { /* a sample that hits would give the lie to it; every eighth is looked at closer */
     const double step = i % 8 == 0 ? 0.3 * s->step : s->step;
     sampled_distance(&mover, &p->target, 1, step, true, s->workspace, &fine);
     answer->wrong = fine.upper <= 0.0;
@@ -206,7 +207,7 @@ static void sampled_thin(const void *problems, size_t i, void *state, bench_answ
   *answer = (bench_answer){.nodes = r.nodes, .distance_queries = r.distance_queries};
   if (r.upper <= 0.0) return;
   cprox_collision(mover, p->target, NULL, s->workspace, &certified); /* a hit with a witness that the samples missed */
-  answer->wrong = certified.verdict == CPROX_YES;
+  answer->wrong = certified.verdict == CPROX_VERDICT_VIOLATED;
 }
 
 static void thin_obstacles(const robot_case *cases, size_t n_cases, const bench_size *size, cprox_workspace *ws) {

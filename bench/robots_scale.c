@@ -51,7 +51,7 @@ static void by_list(const void *problems, size_t i, void *state, bench_answer *a
   }
   answer_with(cprox_tolerance_all(p->mover, p->targets, p->n, p->delta, &options, state, &r, NULL), &r, answer);
   answer->lower = answer->upper = NAN;
-  answer->wrong = r.verdict != CPROX_YES;
+  answer->wrong = r.verdict != CPROX_VERDICT_CLEAR;
 }
 
 static void sampled(const void *problems, size_t i, void *state, bench_answer *answer) {
@@ -110,7 +110,7 @@ static void obstacles(const robot_case *arm, const bench_size *size, cprox_works
       targets[n] = cprox_obstacle_at(boxes[rng_index(&r, 8)], rng_pose(&r, HALF));
       cprox_result clear;
       cprox_tolerance(mover, targets[n], CLEAR, NULL, ws, &clear);
-      n += clear.verdict == CPROX_YES;
+      n += clear.verdict == CPROX_VERDICT_CLEAR;
     }
     cprox_set *set = NULL;
     cprox_set_create(targets, n, ws, &set);

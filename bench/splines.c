@@ -191,7 +191,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.distance_queries};
   a->failed = status != CPROX_OK && status != CPROX_PRECISION;
   if (q->factor == 0.0) return;
-  a->wrong = r.verdict != (q->factor < 1.0 ? CPROX_YES : CPROX_NO);
+  a->wrong = r.verdict != (q->factor < 1.0 ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED);
   a->lower = a->upper = NAN;
 }
 

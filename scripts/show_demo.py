@@ -146,13 +146,13 @@ def ask_and_tell():
 
     print(f'\n2. Does it stay more than {1e3 * TOLERANCE:.0f} mm clear of everything?   rosservice call ~tolerance')
     clear, = ask('tolerance', curves=[tool_path()], joint_state=waiting, delta=TOLERANCE)
-    print('   ' + {'yes': 'Yes, everywhere along the path', 'no': f"No: {clear['b']} is closer at t = {float(clear['t']):.4f}"}
+    print('   ' + {'clear': 'Yes, everywhere along the path', 'violated': f"No: {clear['b']} is closer at t = {float(clear['t']):.4f}"}
           .get(clear['verdict'], 'Undecided, which counts as no') + f": {clear['nodes']} intervals settle it.")
 
     print('\n3. And while the arm reaches into the shelf: does the tool hit it?   rosservice call ~collision')
     hit, = ask('collision', curves=[tool_path()], joint_state=reaching)
-    print('   ' + {'yes': f"Yes: it hits {hit['b']} at t = {float(hit['t']):.4f}, near {at(hit['witness_a'])}.",
-                   'no': 'No: the whole path is free.'}.get(hit['verdict'], 'Undecided, which counts as a hit.'))
+    print('   ' + {'violated': f"Yes: it hits {hit['b']} at t = {float(hit['t']):.4f}, near {at(hit['witness_a'])}.",
+                   'clear': 'No: the whole path is free.'}.get(hit['verdict'], 'Undecided, which counts as a hit.'))
     return near
 
 

@@ -40,7 +40,7 @@ static void path_contact(const void *problems, size_t i, void *state, bench_answ
   options.epsilon = EPSILON;
   cprox_result r;
   ask_take(cprox_time_of_contact(cprox_tube_along(p->curve, BALL), p->target, &options, q->workspace, &r), &r, a);
-  a->wrong = (r.verdict == CPROX_YES) != p->touches;
+  a->wrong = (r.verdict == CPROX_VERDICT_VIOLATED) != p->touches;
   a->lower = a->upper = p->touches ? r.t_contact_lower * (PATH_POINTS - 1) : -1.0;
 }
 

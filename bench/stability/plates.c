@@ -117,8 +117,8 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   cprox_result r = {.status = CPROX_INVALID};
   cprox_collision(cprox_tube_along(p->curve, p->radius), p->target, NULL, ((const tools *)state)->workspace, &r);
   *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.nodes, .distance_queries = r.distance_queries};
-  a->wrong = r.verdict == CPROX_NO;
-  a->failed = r.verdict == CPROX_UNDECIDED;
+  a->wrong = r.verdict == CPROX_VERDICT_CLEAR;
+  a->failed = r.verdict == CPROX_VERDICT_UNDECIDED;
 }
 
 /* Never late, and not early by more than was asked. */
@@ -131,7 +131,7 @@ static void our_contact(const void *problems, size_t i, void *state, bench_answe
                         &r);
   *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.nodes, .distance_queries = r.distance_queries};
   a->failed = r.status != CPROX_OK;
-  a->wrong = !a->failed && (r.verdict != CPROX_YES || r.t_contact_lower > p->hit ||
+  a->wrong = !a->failed && (r.verdict != CPROX_VERDICT_VIOLATED || r.t_contact_lower > p->hit ||
                             distance_at(p, r.t_contact_lower) > p->radius + CONTACT + 1e-12);
 }
 

@@ -23,7 +23,7 @@ static void our_collision(const void *problems, size_t i, void *state, bench_ans
   cprox_result r = {.status = CPROX_INVALID};
   cprox_collision(worlds_mover(p), p->target, NULL, ((worlds_asked *)state)->ws, &r);
   worlds_take(&r, a);
-  a->wrong = (r.verdict == CPROX_YES) != p->hits;
+  a->wrong = (r.verdict == CPROX_VERDICT_VIOLATED) != p->hits;
 }
 
 static void our_time_of_contact(const void *problems, size_t i, void *state, bench_answer *a) {
@@ -32,7 +32,7 @@ static void our_time_of_contact(const void *problems, size_t i, void *state, ben
   cprox_result r = {.status = CPROX_INVALID};
   cprox_time_of_contact(worlds_mover(p), p->target, &o, ((worlds_asked *)state)->ws, &r);
   worlds_take(&r, a);
-  a->wrong = (r.verdict == CPROX_YES) != p->hits;
+  a->wrong = (r.verdict == CPROX_VERDICT_VIOLATED) != p->hits;
 }
 
 static void our_ball(const void *problems, size_t i, void *state, bench_answer *a) {
@@ -156,7 +156,7 @@ static size_t make_tubes(const worlds_scene *scene, rng *r, worlds_asked *q, siz
     worlds_curve_make(r, &p, scene->centre, scene->half, scene->scale);
     cprox_result result;
     worlds_check(cprox_collision(worlds_mover(&p), p.target, NULL, q->ws, &result), q->ws);
-    p.hits = result.verdict == CPROX_YES;
+    p.hits = result.verdict == CPROX_VERDICT_VIOLATED;
     size_t same = 0;
     for (size_t i = 0; i < found; i++) same += tubes[i].hits == p.hits;
     if (same < n)

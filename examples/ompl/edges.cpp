@@ -33,10 +33,10 @@ bool clearBetween(const Task &task, const std::vector<double> &from, const std::
   query.query_type = QueryType::TOLERANCE;
   query.delta = task.clearance;
   for (const Answer &answer : askEnvironment(motion, query, workspace)) {
-    if (answer.result.verdict != CPROX_YES) return false;
+    if (answer.result.verdict != CPROX_VERDICT_CLEAR) return false;
   }
   query.delta = 0.0;
-  return askSelf(motion, query, workspace).result.verdict == CPROX_YES;
+  return askSelf(motion, query, workspace).result.verdict == CPROX_VERDICT_CLEAR;
 }
 
 bool CertifiedMotionValidator::checkMotion(const ompl::base::State *from, const ompl::base::State *to) const {

@@ -561,7 +561,7 @@ class Set {
     return result;
   }
 
-  cprox_result firstContact(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
+  cprox_result timeOfContact(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
     cprox_result result{};
     require(cprox_set_time_of_contact(handle_.get(), mover, &options, workspace.get(), &result), workspace);
     return result;

@@ -44,7 +44,7 @@ struct Answer {
   /** As the core gives it; obstacle_index is the number of the shape in object b (or of the collision element in link
    *  b), -1 for none. lower and upper hold for the whole set that was asked about, the rounding of poses and hulls
    *  included (where the bodies as placed touch or overlap, upper is 0). Nothing to measure: status CPROX_OK,
-   *  lower = upper = infinity; for TOLERANCE verdict yes, for COLLISION no. Not answered: status < 0, and the rest
+   *  lower = upper = infinity; verdict clear for TOLERANCE and COLLISION. Not answered: status < 0, and the rest
    *  means nothing. */
   cprox_result result{};
 

@@ -77,6 +77,7 @@ Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Query 
   if (with_proof) row.proof = proofOf(proof);
   if (with_proof) out.certificate = recordOf(proof);
   out.text = resultsLine(row);
+  noteVerdict(row, out);
   return out;
 }
 
@@ -104,7 +105,7 @@ int answerAgainst(const Arguments &arguments, Console &console) {
   rows.write = [&](const std::string &text) { results.write(text); };
   if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };
   rows.portion = [&] { return first.portion(); };
-  return finish(runRows(arguments.threads, rows, console), console);
+  return finish(runRows(arguments.threads, rows, console), query.query_type, console);
 }
 
 } // namespace curve_proximity::cli

@@ -296,8 +296,8 @@ cprox distance  --curves CURVES.csv --scene SCENE.yaml [--robot URDF [--srdf SRD
 cprox distance  --curves A.csv --against B.csv    row i of A against row i of B, each anywhere on its curve
 cprox distance  --robot URDF [--srdf SRDF] --trajectory T.yaml [--scene SCENE.yaml] [--self]
                                         the robot along a joint trajectory: a row of kind environment, one of kind self
-cprox tolerance --delta D  (as above)   yes: farther than D everywhere
-cprox collision            (as above)   yes: they touch or overlap somewhere
+cprox tolerance --delta D  (as above)   verdict: clear (farther than D everywhere), violated or undecided
+cprox collision            (as above)   verdict: clear (no common point), violated (a common point) or undecided
 cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodies
 cprox constraints --provider NAME --in CASES.yaml [--scene SCENE.yaml] [--parameters "name: value, ..."]
                                         value and gradient of clearance constraints by a plugin
@@ -328,8 +328,8 @@ cprox check     FILE  (the inputs of the query)  what the certificates in FILE p
   --max-nodes N     budget of parameter intervals for each target (default 20000)
   --threads N       how many rows are worked on at once (default: the machine's cores); the answers do not depend on it
   --per-object      a row for each curve and object or link, not one for the nearest
-  --max-lod R      the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies by
-                    their bounding balls); a coarser one is never farther away.
+  --max-lod R       the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies
+                    by their bounding spheres); a coarser one is never farther away
   --skipped         tell on standard error what takes no part, and why
   --out FILE        the results, instead of standard output
   --node NAME       the node that 'send' talks to (default )" +
@@ -340,7 +340,9 @@ Results, a CSV row each: id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_
 t_b,lod. Of 'constraints': id,provider,status,value,lower,upper,valid,t, gradients ga_ and gb_ by a step of side a and b
 (v: position, w: turning), a_, b_ and n_ (nearest points, normal), g_radius,microseconds,n,g0x,g0y,g0z,... by the curve's points.
 Metres and radians. A row that fails is told on standard error and has the status 'invalid'.
-Ends with 0: every row is answered; 1: some are not; 2: the command line or an input file cannot be used.
+Exit code of tolerance and collision: 0 every verdict is clear; 1 one is violated; 2 the command line, an input file or
+a row cannot be used; 3 none is violated, one is undecided. So a shell can gate on it: undecided counts as unsafe.
+Of the other commands: 0 every row is answered; 1 some are not; 2 the command line or an input file cannot be used.
 )";
 }
 

@@ -45,6 +45,7 @@ Outcome answerCurve(const CsvRow &csv, const std::string &file, const Targets &t
       if (with_proof) out.certificate = recordOf(proof);
       if (!answer.unproven.empty()) out.unproven.push_back(place + ": no certificate: " + answer.unproven);
       out.text += resultsLine(row);
+      noteVerdict(row, out);
       if (status < 0) {
         const std::string against = answer.b.empty() ? "" : ": against '" + answer.b + "'";
         out.complaints.push_back(place + against + ": " + answer.message);
@@ -96,7 +97,7 @@ int answerCurves(const Arguments &arguments, Console &console) {
   rows.write = [&](const std::string &text) { results.write(text); };
   if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };
   rows.portion = [&] { return file.portion(); };
-  return finish(runRows(arguments.threads, rows, console), console);
+  return finish(runRows(arguments.threads, rows, console), query.query_type, console);
 }
 
 } // namespace curve_proximity::cli

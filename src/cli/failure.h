@@ -10,7 +10,14 @@ namespace curve_proximity::cli {
 using namespace yaml;
 
 /** What the program leaves behind, as the manual promises. BadUsage: main() prints the one line and ends with kBadUsage. */
-enum ExitCode { kAllAnswered = 0, kSomeRowsFailed = 1, kBadUsage = 2, kInterrupted = 130 };
+enum ExitCode {
+  kAllAnswered = 0,    /**< of tolerance and collision: every verdict is clear */
+  kSomeRowsFailed = 1, /**< of the commands without verdicts */
+  kSomeViolated = 1,   /**< of tolerance and collision: a verdict is violated */
+  kBadUsage = 2,       /**< of tolerance and collision also: a row has no answer */
+  kSomeUndecided = 3,  /**< of tolerance and collision: none is violated, a verdict is undecided */
+  kInterrupted = 130
+};
 
 } // namespace curve_proximity::cli
 #endif

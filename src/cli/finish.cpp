@@ -10,14 +10,23 @@ void tellSkipped(const std::vector<std::string> &sentences, Console &console) {
   if (sentences.empty()) console.say("skipped: nothing");
 }
 
-int finish(const Tally &tally, Console &console) {
+void noteVerdict(const ResultRow &row, Outcome &outcome) {
+  if (!row.has_verdict || row.result.status < 0) return;
+  outcome.violated = outcome.violated || row.result.verdict == CPROX_VERDICT_VIOLATED;
+  outcome.undecided = outcome.undecided || row.result.verdict == CPROX_VERDICT_UNDECIDED;
+}
+
+int finish(const Tally &tally, QueryType query_type, Console &console) {
   if (tally.failed) console.say(std::to_string(tally.failed) + " of " + std::to_string(tally.rows) + " rows failed");
   if (tally.unproven) console.say(std::to_string(tally.unproven) + " answers have no certificate (column proof: none)");
   if (tally.interrupted) {
     console.say("interrupted: the output holds the first " + std::to_string(tally.rows) + " rows of the input");
     return kInterrupted;
   }
-  return tally.failed ? kSomeRowsFailed : kAllAnswered;
+  if (query_type == QueryType::DISTANCE) return tally.failed ? kSomeRowsFailed : kAllAnswered;
+  if (tally.failed) return kBadUsage;
+  if (tally.violated) return kSomeViolated;
+  return tally.undecided ? kSomeUndecided : kAllAnswered;
 }
 
 } // namespace curve_proximity::cli

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "console.h"
+#include "results.h"
 #include "run.h"
 
 namespace curve_proximity::cli {
@@ -14,8 +15,13 @@ namespace curve_proximity::cli {
 /** --skipped: what takes no part. */
 void tellSkipped(const std::vector<std::string> &sentences, Console &console);
 
-/** The exit code that a run deserves; says how many rows failed, and that it was interrupted. */
-int finish(const Tally &tally, Console &console);
+/** Notes the verdict of a row of the results, so that finish() can count it. */
+void noteVerdict(const ResultRow &row, Outcome &outcome);
+
+/** The exit code that a run deserves; says how many rows failed, and that it was interrupted. A shell may gate on the
+ *  code of tolerance and collision: only 0 means that all is proven clear. A row without an answer (2) outweighs a
+ *  violated verdict (1), and that an undecided one (3). */
+int finish(const Tally &tally, QueryType query_type, Console &console);
 
 } // namespace curve_proximity::cli
 #endif

@@ -115,7 +115,7 @@ int answerPairs(const Arguments &arguments, Console &console) {
   rows.portion = [&]() -> std::optional<double> {
     return entries.empty() ? 1.0 : static_cast<double>(given) / static_cast<double>(entries.size());
   };
-  return finish(runRows(arguments.threads, rows, console), console);
+  return finish(runRows(arguments.threads, rows, console), QueryType::DISTANCE, console);
 }
 
 } // namespace curve_proximity::cli

@@ -107,6 +107,8 @@ class Run {
       lines += next.text;
       records += next.certificate;
       ++tally_.rows;
+      tally_.violated += next.violated ? 1 : 0;
+      tally_.undecided += next.undecided && !next.violated ? 1 : 0;
       tally_.failed += next.complaints.empty() ? 0 : 1;
       waiting_.erase(it);
       ++written_;

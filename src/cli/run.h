@@ -19,6 +19,8 @@ namespace curve_proximity::cli {
 struct Outcome {
   std::string text;                    /**< the lines of the results */
   std::string certificate;             /**< its record, where certificates are wanted */
+  bool violated = false;               /**< a verdict is violated */
+  bool undecided = false;              /**< a verdict is undecided */
   std::vector<std::string> complaints; /**< for standard error: why there is no answer */
   std::vector<std::string> unproven;   /**< likewise, of an answer: why the certificate that is wanted is empty */
   bool stopped = false;                /**< it was interrupted: it is not to be written */
@@ -39,6 +41,8 @@ struct Rows {
 struct Tally {
   std::size_t rows = 0, failed = 0; /**< rows of the input */
   std::size_t unproven = 0;         /**< answers without the certificate that was wanted */
+  std::size_t violated = 0;         /**< rows of the input with a violated verdict */
+  std::size_t undecided = 0;        /**< and without one, but with an undecided verdict */
   bool interrupted = false;
 };
 

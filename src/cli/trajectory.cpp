@@ -30,6 +30,7 @@ Outcome toOutcome(const std::vector<Answer> &answers, QueryType query_type, cons
     ResultRow row = toRow(answer, query_type);
     row.proof = proof;
     out.text += resultsLine(row);
+    noteVerdict(row, out);
     if (!answer.unproven.empty())
       out.unproven.push_back(file + ": " + answer.kind + ": no certificate: " + answer.unproven);
     if (answer.result.status < 0) out.complaints.push_back(file + ": " + answer.kind + ": " + answer.message);
@@ -101,7 +102,7 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   rows.write = [&](const std::string &text) { results.write(text); };
   if (certificates) rows.certify = [&](const std::string &records) { certificates->write(records); };
   rows.portion = [] { return std::optional<double>(); };
-  return finish(runRows(arguments.threads, rows, console), console);
+  return finish(runRows(arguments.threads, rows, console), query.query_type, console);
 }
 
 } // namespace curve_proximity::cli

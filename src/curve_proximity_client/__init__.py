@@ -84,16 +84,16 @@ class Client:
         return self._ask('distance', Distance, DistanceRequest, curves, fields)
 
     def tolerance(self, curves, delta, **fields):
-        """The same; verdict 'yes': farther than delta [m] everywhere."""
+        """The same; verdict 'clear': farther than delta [m] everywhere."""
         return self._ask('tolerance', Tolerance, ToleranceRequest, curves, dict(fields, delta=float(delta)))
 
     def collision(self, curves, **fields):
-        """The same; verdict 'yes': it touches something."""
+        """The same; verdict 'violated': it touches something."""
         return self._ask('collision', Collision, CollisionRequest, curves, fields)
 
     def is_clear(self, curve, delta, **fields):
         """True only where it is proven that the curve stays farther than delta [m] from everything."""
-        return self.tolerance(curve, delta, **fields).verdict == 'yes'
+        return self.tolerance(curve, delta, **fields).verdict == 'clear'
 
     def constraint(self, provider, b, a=None, curve=None):
         """Value and gradient of a provider of the node's ~constraint_providers: a ConstraintResult. b and a are objects, or names of

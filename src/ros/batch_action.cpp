@@ -27,7 +27,7 @@ class Feedback {
   bool update(const QueryResponse &response, std::size_t done) {
     for (; rows_ < response.results.size(); ++rows_) {
       const Proximity &row = response.results[rows_];
-      message_.undecided += row.verdict == cprox_verdict_name(CPROX_UNDECIDED);
+      message_.undecided += row.verdict == cprox_verdict_name(CPROX_VERDICT_UNDECIDED);
       message_.failed += row.lower != row.lower;
       if (!(row.upper < message_.upper)) continue;
       message_.lower = row.lower;

@@ -158,7 +158,8 @@ void addPair(Canvas &canvas, const Answer &answer) {
 
 bool isOpen(const Answer &answer, QueryType query_type) {
   const cprox_status status = answer.result.status;
-  const bool undecided = status >= 0 && query_type != QueryType::DISTANCE && answer.result.verdict == CPROX_UNDECIDED;
+  const bool undecided =
+      status >= 0 && query_type != QueryType::DISTANCE && answer.result.verdict == CPROX_VERDICT_UNDECIDED;
   return undecided || status == CPROX_BUDGET || status == CPROX_STOPPED;
 }
 

@@ -13,7 +13,7 @@ void Statistics::record(Clock::duration took, bool success, const std::vector<Pr
   const double place = std::floor(std::log2(std::max(1.0, us)) * static_cast<double>(PER_OCTAVE));
   std::uint64_t undecided = 0, failed = 0;
   for (const Proximity &row : results) {
-    undecided += row.verdict == cprox_verdict_name(CPROX_UNDECIDED);
+    undecided += row.verdict == cprox_verdict_name(CPROX_VERDICT_UNDECIDED);
     failed += row.lower != row.lower;
   }
 

@@ -47,7 +47,7 @@ bool isClear(const ProximityResults &results, double delta) {
   const bool tolerant = results.query_type == "tolerance" && results.delta >= delta;
   const bool apart = results.query_type == "collision" && delta == 0.0;
   return std::all_of(results.results.begin(), results.results.end(), [&](const Proximity &row) {
-    const bool settled = (tolerant && row.verdict == "yes") || (apart && row.verdict == "no");
+    const bool settled = (tolerant || apart) && row.verdict == "clear";
     return settled || row.lower > delta; // a row without an answer has NaN and no verdict
   });
 }

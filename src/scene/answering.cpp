@@ -10,10 +10,10 @@ namespace {
 /* The verdict once more, by the interval as it is now: it may only have become less certain. */
 void reviewVerdict(const Query &query, cprox_result &result) {
   const bool tolerance = query.query_type == QueryType::TOLERANCE;
-  const cprox_verdict apart = tolerance ? CPROX_YES : CPROX_NO;
   const double limit = tolerance ? query.delta : 0.0;
-  if (result.verdict == apart && !(result.lower > limit)) result.verdict = CPROX_UNDECIDED;
-  if (tolerance && result.verdict == CPROX_NO && !(result.upper <= limit)) result.verdict = CPROX_UNDECIDED;
+  if (result.verdict == CPROX_VERDICT_CLEAR && !(result.lower > limit)) result.verdict = CPROX_VERDICT_UNDECIDED;
+  if (tolerance && result.verdict == CPROX_VERDICT_VIOLATED && !(result.upper <= limit))
+    result.verdict = CPROX_VERDICT_UNDECIDED;
 }
 
 } // namespace
@@ -50,7 +50,7 @@ Answer refusal(const std::string &id, const std::string &kind, const std::string
   answer.id = id;
   answer.kind = kind;
   answer.result.status = CPROX_INVALID;
-  answer.result.verdict = CPROX_UNDECIDED;
+  answer.result.verdict = CPROX_VERDICT_UNDECIDED;
   answer.result.obstacle_index = -1;
   answer.status = cprox_status_name(CPROX_INVALID);
   answer.message = why;
@@ -93,9 +93,7 @@ void widen(const Query &query, double rounding, double left_out, cprox_result &r
 void answerNothing(const Query &query, cprox_result &result) {
   result.lower = result.upper = std::numeric_limits<double>::infinity();
   result.obstacle_index = -1;
-  result.verdict = query.query_type == QueryType::DISTANCE    ? CPROX_UNDECIDED
-                   : query.query_type == QueryType::TOLERANCE ? CPROX_YES
-                                                              : CPROX_NO;
+  result.verdict = query.query_type == QueryType::DISTANCE ? CPROX_VERDICT_UNDECIDED : CPROX_VERDICT_CLEAR;
 }
 
 } // namespace curve_proximity

@@ -179,9 +179,9 @@ static void check_carried(attack *t, rng *r, const overlap *o) {
   if (status >= 0)
     status = cprox_collision(carried ? cprox_body_along(turned, curve) : cprox_point_along(curve),
                              cprox_obstacle_at(o->a.body, o->pa), &options, t->ws, &result);
-  attack_check(t, status == CPROX_OK && result.verdict == CPROX_YES, "%s: [%.17g, %.17g] after %u nodes, status %s",
-               carried ? "carried" : "point", result.lower, result.upper, (unsigned)result.nodes,
-               cprox_status_name(status));
+  attack_check(t, status == CPROX_OK && result.verdict == CPROX_VERDICT_VIOLATED,
+               "%s: [%.17g, %.17g] after %u nodes, status %s", carried ? "carried" : "point", result.lower,
+               result.upper, (unsigned)result.nodes, cprox_status_name(status));
   cprox_curve_free(curve);
   cprox_body_free(turned);
 }

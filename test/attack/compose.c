@@ -169,17 +169,17 @@ static double some_delta(query *q, const cprox_result *x) {
 
 /* delta < 0: a collision. */
 static void check_verdict(query *q, const cprox_result *x, double delta) {
-  attack_count(q->a, x->verdict == CPROX_UNDECIDED ? "undecided" : x->verdict == CPROX_YES ? "yes" : "no");
+  attack_count(q->a, cprox_verdict_name(x->verdict));
   if (delta >= 0.0) {
-    if (x->verdict == CPROX_YES)
+    if (x->verdict == CPROX_VERDICT_CLEAR)
       attack_check(q->a, x->lower > delta, "%s: " RESULT " of %.17g", q->query, SHOWN(x), delta);
-    if (x->verdict == CPROX_NO)
+    if (x->verdict == CPROX_VERDICT_VIOLATED)
       attack_check(q->a, x->upper <= delta, "%s: " RESULT " of %.17g", q->query, SHOWN(x), delta);
   } else {
-    if (x->verdict == CPROX_NO) attack_check(q->a, x->lower > 0.0, "%s: " RESULT, q->query, SHOWN(x));
-    if (x->verdict == CPROX_YES) attack_check(q->a, x->lower == 0.0, "%s: " RESULT, q->query, SHOWN(x));
+    if (x->verdict == CPROX_VERDICT_CLEAR) attack_check(q->a, x->lower > 0.0, "%s: " RESULT, q->query, SHOWN(x));
+    if (x->verdict == CPROX_VERDICT_VIOLATED) attack_check(q->a, x->lower == 0.0, "%s: " RESULT, q->query, SHOWN(x));
   }
-  if (x->verdict == CPROX_UNDECIDED && x->status == CPROX_OK)
+  if (x->verdict == CPROX_VERDICT_UNDECIDED && x->status == CPROX_OK)
     attack_check(q->a, x->upper - x->lower <= width_asked(q, x->upper) * (1.0 + 1e-12),
                  "%s: " RESULT " of %.17g is undecided", q->query, SHOWN(x), delta);
 }
@@ -229,7 +229,7 @@ static void ask_time_of_contact(query *q) {
                                   ? cprox_time_of_contact(s->mover, s->targets[0], &q->options, q->a->ws, &x)
                                   : cprox_time_of_contact_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &x);
   if (!answered(q, status)) return;
-  attack_count(q->a, x.verdict == CPROX_UNDECIDED ? "undecided" : x.verdict == CPROX_YES ? "yes" : "no");
+  attack_count(q->a, cprox_verdict_name(x.verdict));
   attack_check(q->a, x.t_contact_lower >= s->path.t0 && x.t_contact_lower <= s->path.t1,
                "time of contact: t_contact_lower %.17g", x.t_contact_lower);
   attack_check(q->a, x.lower <= x.upper, "time of contact: " RESULT, SHOWN(&x));
@@ -244,8 +244,8 @@ static void ask_time_of_contact(query *q) {
     room = fmaxl(room, scene_witness_room(s, i));
     exact = exact && scene_is_exact(s, i);
   }
-  if (x.verdict == CPROX_NO) attack_check(q->a, x.lower > 0.0, "time of contact: " RESULT, SHOWN(&x));
-  if (x.verdict == CPROX_YES && exact)
+  if (x.verdict == CPROX_VERDICT_CLEAR) attack_check(q->a, x.lower > 0.0, "time of contact: " RESULT, SHOWN(&x));
+  if (x.verdict == CPROX_VERDICT_VIOLATED && exact)
     attack_check(q->a, x.t >= x.t_contact_lower && at_t <= room,
                  "time of contact: touching at %.17g, free before %.17g, but there it is %.3Lg", x.t, x.t_contact_lower,
                  at_t);
@@ -274,7 +274,7 @@ static void ask_profile(query *q) {
                             .t = p->t,
                             .t_obstacle = NAN,
                             .status = status,
-                            .verdict = CPROX_UNDECIDED};
+                            .verdict = CPROX_VERDICT_UNDECIDED};
     /* a jump at the end of a interval belongs to the next */
     const double end = k + 1 < INTERVALS ? p->t1 - scene_step(&s->path) : p->t1;
     for (size_t i = 0; i < s->n; i++) check_lower(q, i, &x, p->t0, end);
@@ -338,8 +338,8 @@ static void ask_within(query *q) {
     const bool named = found[i].obstacle_index >= 0 && (size_t)found[i].obstacle_index < s->n;
     if (!attack_check(q->a, named, "within: target %d", found[i].obstacle_index)) return;
     attack_check(q->a, found[i].lower <= delta, "within %.17g: " RESULT, delta, SHOWN(&found[i]));
-    attack_check(q->a, found[i].verdict != CPROX_YES || found[i].upper <= delta, "within %.17g: " RESULT, delta,
-                 SHOWN(&found[i]));
+    attack_check(q->a, found[i].verdict != CPROX_VERDICT_VIOLATED || found[i].upper <= delta, "within %.17g: " RESULT,
+                 delta, SHOWN(&found[i]));
     check_one(q, (size_t)found[i].obstacle_index, &found[i]);
   }
   check_left_out(q, found, count, delta);

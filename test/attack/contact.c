@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Time of contact: "yes" is a common point at t, and otherwise upper is the distance of the two points that are reported. The points are
+/* Time of contact: "violated" is a common point at t, and otherwise upper is the distance of the two points that are reported. The points are
  * held against the bodies where they are then, in long double; contact face on face is known in closed form. */
 #include <math.h>
 
@@ -40,20 +40,20 @@ static void check_words(attack *a, const cprox_result *x, double epsilon, const 
                         bool signed_too) {
   static const double ROOM = 1e-10; /* sizes are about 1, and points come from weighted sums and poses */
   attack_count(a, cprox_verdict_name(x->verdict));
-  attack_check(a, x->t_contact_lower <= x->t || x->verdict == CPROX_NO, "t_contact_lower %.17g, t %.17g",
+  attack_check(a, x->t_contact_lower <= x->t || x->verdict == CPROX_VERDICT_CLEAR, "t_contact_lower %.17g, t %.17g",
                x->t_contact_lower, x->t);
   if (x->obstacle_index < 0 || !isfinite(x->upper)) return;
   const double apart = vec_norm(vec_sub(x->witness_mover, x->witness_obstacle));
   const long double first = off(s[0], &pose[0], x->witness_mover), second = off(s[1], &pose[1], x->witness_obstacle);
   attack_check(a, first <= (long double)ROOM && second <= (long double)ROOM, "points off their bodies by %.3Lg, %.3Lg",
                first, second);
-  if (x->verdict == CPROX_YES)
+  if (x->verdict == CPROX_VERDICT_VIOLATED)
     attack_check(a, signed_too ? x->upper <= 0.0 : x->upper == 0.0 && apart <= ROOM,
                  "contact, but upper is %.17g and the points are %.17g apart", x->upper, apart);
   else
     attack_check(a, fabs(apart - x->upper) <= ROOM, "%s: upper is %.17g, but the points are %.17g apart",
                  cprox_verdict_name(x->verdict), x->upper, apart);
-  if (x->verdict == CPROX_UNDECIDED && x->status == CPROX_OK)
+  if (x->verdict == CPROX_VERDICT_UNDECIDED && x->status == CPROX_OK)
     attack_check(a, x->upper <= epsilon * 1.000001 + ROOM, "undecided, but upper is %.17g", x->upper);
 }
 
@@ -102,7 +102,7 @@ static void at_velocities(attack *a, rng *r, double epsilon) {
   cprox_result x;
   const cprox_status status = cprox_translating_contact(from[0], from[1], 2.0, &options, a->ws, &x);
   attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
-  if (!attack_failed(a) && x.verdict != CPROX_NO) {
+  if (!attack_failed(a) && x.verdict != CPROX_VERDICT_CLEAR) {
     cprox_pose pose[2];
     for (int i = 0; i < 2; i++) {
       pose[i] = from[i].from.pose;
@@ -154,7 +154,7 @@ static void screw(attack *a, rng *r, double epsilon) {
                                                     cprox_obstacle_at(s[1].body, pose[1]), &options, a->ws, &x);
   attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
   if (!attack_failed(a)) {
-    attack_check(a, x.verdict == CPROX_YES && x.t_contact_lower <= contact + 1e-12,
+    attack_check(a, x.verdict == CPROX_VERDICT_VIOLATED && x.t_contact_lower <= contact + 1e-12,
                  "%s, t_contact_lower %.17g, but they touch at %.17g", cprox_verdict_name(x.verdict), x.t_contact_lower,
                  contact);
     attack_check(a, x.t >= contact - 1e-12 && x.t <= contact + 1e-5, "contact at %.17g, proven at %.17g", contact, x.t);

@@ -180,9 +180,10 @@ static void check_contact(attack *a, const scene *c, const char *what, const cpr
                           size_t n, bool must) {
   const vec3l normal = normal_of(corner, n);
   attack_check(a, !must || x->lower <= 0.0, "%s: lower %.17g, but they meet at %.17g", what, x->lower, c->s);
-  attack_check(a, !must || x->verdict == CPROX_YES, "%s: %s, [%.17g, %.17g] at %.17g, but they meet at %.17g", what,
-               cprox_verdict_name(x->verdict), x->lower, x->upper, x->t, c->s);
-  if (x->verdict != CPROX_YES) return;
+  attack_check(a, !must || x->verdict == CPROX_VERDICT_VIOLATED,
+               "%s: %s, [%.17g, %.17g] at %.17g, but they meet at %.17g", what, cprox_verdict_name(x->verdict),
+               x->lower, x->upper, x->t, c->s);
+  if (x->verdict != CPROX_VERDICT_VIOLATED) return;
   long double root = 0.0L;
   if (!attack_check(a, root_near(c, normal, corner[0], (long double)x->t, &root), "%s: no contact near %.17g", what,
                     x->t))
@@ -212,14 +213,16 @@ static void ask(attack *a, rng *r, const scene *c, bool must) {
   cprox_status status = cprox_collision(mover, target, &options, a->ws, &x);
   attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
   if (!attack_failed(a)) check_contact(a, c, "collision", &x, corner, n, must);
-  attack_count(a, x.verdict == CPROX_YES ? "met" : x.verdict == CPROX_NO ? "clear" : "undecided");
+  attack_count(a, x.verdict == CPROX_VERDICT_VIOLATED ? "met"
+                  : x.verdict == CPROX_VERDICT_CLEAR  ? "clear"
+                                                      : "undecided");
   attack_check(a, x.nodes <= 1000, "collision took %u nodes", x.nodes);
 
   status = cprox_time_of_contact(mover, target, &options, a->ws, &x);
   attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));
   attack_check(a, !must || x.t_contact_lower <= c->s + 1e-14, "free until %.17g, but they meet at %.17g",
                x.t_contact_lower, c->s);
-  if (attack_failed(a) || x.verdict != CPROX_YES) return;
+  if (attack_failed(a) || x.verdict != CPROX_VERDICT_VIOLATED) return;
   check_contact(a, c, "time of contact", &x, corner, n, must);
   long double root = 0.0L;
   if (root_near(c, normal_of(corner, n), corner[0], (long double)x.t, &root))

@@ -192,7 +192,7 @@ static void check_curve(attack *t, rng *r, const hull *h, vec3 p, quad wanted) {
   if (status >= 0)
     status = cprox_collision(cprox_point_along(curve), cprox_obstacle_at(h->body, cprox_pose_identity()), &options,
                              t->ws, &result);
-  attack_check(t, status == CPROX_OK && result.verdict == CPROX_YES,
+  attack_check(t, status == CPROX_OK && result.verdict == CPROX_VERDICT_VIOLATED,
                "curve: [%.17g, %.17g] after %u nodes, depth %.17g", result.lower, result.upper, (unsigned)result.nodes,
                (double)-wanted);
   cprox_curve_free(curve);

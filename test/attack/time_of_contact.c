@@ -48,7 +48,7 @@ static void check(attack *a, const meeting *m, const char *what, cprox_status st
                "%.17g, epsilon %g",
                what, r->t_contact_lower, (long double)r->t_contact_lower - begin - part * length, m->t0, m->t1, m->from,
                m->to, m->radius, m->options.epsilon);
-  attack_check(a, r->verdict != CPROX_YES || r->t_contact_lower <= r->t,
+  attack_check(a, r->verdict != CPROX_VERDICT_VIOLATED || r->t_contact_lower <= r->t,
                "%s: t_contact_lower %.17g is after t %.17g, where contact is proven", what, r->t_contact_lower, r->t);
 }
 

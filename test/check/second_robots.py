@@ -95,7 +95,7 @@ class Body:
     """PADDING P POSE×P KIND SIZES"""
 
     def __init__(self, words):
-        self.margin = words.number()
+        self.own_margin = words.number()
         self.pose = Pose()
         for _ in range(words.count()):
             x = words.numbers(7)
@@ -109,7 +109,7 @@ class Body:
 
     def margin(self):
         """Of a ball that is added to the rest."""
-        return self.margin + {'sphere': lambda s: s[0], 'capsule': lambda s: s[1], 'hull': lambda s: s[0]}.get(self.kind, lambda s: 0.0)(self.size)
+        return self.own_margin + {'sphere': lambda s: s[0], 'capsule': lambda s: s[1], 'hull': lambda s: s[0]}.get(self.kind, lambda s: 0.0)(self.size)
 
     def farthest(self, d):
         """The point of the rest that is farthest along d, in the body's own frame."""

@@ -28,11 +28,11 @@ class Against(Case):
         self.assertAlmostEqual(float(answer.row('a')['upper']), 1.25, places=9)
 
     def verdicts_are_given(self):
-        self.assertEqual(self.against('tolerance', [LINE], [ABOVE], '--delta', '1.99').row('line')['verdict'], 'yes')
-        self.assertEqual(self.against('tolerance', [LINE], [ABOVE], '--delta', '2.01').row('line')['verdict'], 'no')
+        self.assertEqual(self.against('tolerance', [LINE], [ABOVE], '--delta', '1.99').row('line')['verdict'], 'clear')
+        self.assertEqual(self.against('tolerance', [LINE], [ABOVE], '--delta', '2.01').row('line')['verdict'], 'violated')
         thick = bezier('thick', (0, 0, 0), (4, 0, 0), radius=2.5)
-        self.assertEqual(self.against('collision', [thick], [ABOVE]).row('thick')['verdict'], 'yes')
-        self.assertEqual(self.against('collision', [LINE], [ABOVE]).row('line')['verdict'], 'no')
+        self.assertEqual(self.against('collision', [thick], [ABOVE]).row('thick')['verdict'], 'violated')
+        self.assertEqual(self.against('collision', [LINE], [ABOVE]).row('line')['verdict'], 'clear')
 
     def a_bad_row_of_either_file_is_told_and_the_others_are_answered(self):
         answer = self.against('distance', [LINE, 'bad,bezier,1,0,1,0,2,0,0,0,1,1', LINE], [ABOVE, ABOVE, 'worse,bezier,9'])

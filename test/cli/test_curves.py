@@ -61,21 +61,33 @@ class Answers(Case):
         for name in 'plgc':
             self.assertAnswer(answer.row(name), 2.0)
 
-    def tolerance_yes_means_clear(self):
-        for delta, verdict in (('1.9', 'yes'), ('2.1', 'no'), ('0', 'yes')):
+    def the_exit_code_tells_the_verdict(self):
+        """0: all clear; 1: a verdict is violated; 2: a row has no answer; 3: undecided. The first of 2, 1, 3 that applies."""
+        far = bezier('far', (-1, 0, 40), (1, 0, 40))
+        bad = 'bad,bezier,1,0,1,0,2,0,0'
+        box = BOX_SCENE
+        for curves, delta, code in (([PASSING, far], '1.9', 0), ([PASSING, far], '2.1', 1), ([far, bad], '1.9', 2),
+                                    ([PASSING, bad], '2.1', 2), ([PASSING], '2', 3), ([PASSING, far], '2', 3)):
+            answer = self.ask('tolerance', curves, box, '--delta', delta)
+            self.assertEqual(answer.code, code, (curves, delta, answer.out, answer.err))
+        self.assertEqual(self.ask('collision', [PASSING, far], box).code, 0)
+        self.assertEqual(self.ask('distance', [far, bad], box).code, 1)
+
+    def a_tolerance_is_clear_or_violated(self):
+        for delta, verdict in (('1.9', 'clear'), ('2.1', 'violated'), ('0', 'clear')):
             row = self.ask('tolerance', [PASSING], BOX_SCENE, '--delta', delta).row('passing')
             self.assertEqual((row['status'], row['verdict']), ('ok', verdict), row)
             self.assertLessEqual(float(row['lower']), 2.0)
             self.assertGreaterEqual(float(row['upper']), 2.0)
 
-    def collision_yes_means_hit_and_touching_is_one(self):
+    def a_hit_violates_a_collision_and_touching_is_never_clear(self):
         curves = [PASSING, bezier('through', (-3, 0, 0), (3, 0.5, 0)), bezier('inside', (0, 0, 0), (0.5, 0, 0)),
                   bezier('touching', (1, -4, 0), (1, 4, 0))]
         answer = self.ask('collision', curves, BOX_SCENE)
-        self.assertEqual(answer.row('passing')['verdict'], 'no')
-        self.assertEqual(answer.row('through')['verdict'], 'yes')
-        self.assertEqual(answer.row('inside')['verdict'], 'yes')
-        self.assertIn(answer.row('touching')['verdict'], ('yes', 'undecided'))
+        self.assertEqual(answer.row('passing')['verdict'], 'clear')
+        self.assertEqual(answer.row('through')['verdict'], 'violated')
+        self.assertEqual(answer.row('inside')['verdict'], 'violated')
+        self.assertIn(answer.row('touching')['verdict'], ('violated', 'undecided'))
         self.assertEqual(float(answer.row('touching')['lower']), 0.0)
 
     def the_nearest_object_is_named_and_ids_with_commas_are_quoted(self):
@@ -99,8 +111,8 @@ class Answers(Case):
             self.assertEqual((row['status'], row['lower'], row['upper'], row['b']), ('ok', 'inf', 'inf', ''))
             self.assertEqual([row[name] for name in ('t', 'a_x', 'b_z')], ['', '', ''])
             self.assertEqual(answer.code, 0)
-        self.assertEqual(self.ask('tolerance', [PASSING], '{}', '--delta', '5').row('passing')['verdict'], 'yes')
-        self.assertEqual(self.ask('collision', [PASSING], '{}').row('passing')['verdict'], 'no')
+        self.assertEqual(self.ask('tolerance', [PASSING], '{}', '--delta', '5').row('passing')['verdict'], 'clear')
+        self.assertEqual(self.ask('collision', [PASSING], '{}').row('passing')['verdict'], 'clear')
 
     def a_budget_that_is_too_small_leaves_a_true_interval(self):
         # a wiggle about a sphere's equal-distance circle: one node cannot be enough for 1e-12

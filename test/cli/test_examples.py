@@ -23,9 +23,9 @@ class Ompl(Case):
         out = os.path.join(self.folder, 'path.yaml')
         self.assertRegex(self.plan(2, out), re.compile(r'^2 of 2 paths proven clear', re.M))
         asked = ('--robot', PANDA[0], '--srdf', PANDA[1], '--scene', SHELF, '--trajectory', out)
-        self.assertEqual([row['verdict'] for row in cprox('tolerance', '--delta', '0.001', *asked).rows], ['yes'])
+        self.assertEqual([row['verdict'] for row in cprox('tolerance', '--delta', '0.001', *asked).rows], ['clear'])
         self.assertEqual([(row['kind'], row['verdict']) for row in cprox('collision', *asked, '--self').rows],
-                         [('environment', 'no'), ('self', 'no')])
+                         [('environment', 'clear'), ('self', 'clear')])
 
     def what_cannot_be_read_is_named(self):
         done = subprocess.run([os.environ['CPROX_EXAMPLE_OMPL'], *PANDA, '/nowhere.yaml', INTO_SHELF],

@@ -35,8 +35,8 @@ class Planar(Case):
         self.assertAnswer(answer.row('inside'), 0)
         self.assertAnswer(answer.row('beside'), 1)
         self.assertAnswer(answer.row('above'), 0.25)
-        self.assertEqual(self.ask('collision', [inside], scene(square())).row('inside')['verdict'], 'yes')
-        self.assertEqual(self.ask('collision', [beside], scene(square())).row('beside')['verdict'], 'no')
+        self.assertEqual(self.ask('collision', [inside], scene(square())).row('inside')['verdict'], 'violated')
+        self.assertEqual(self.ask('collision', [beside], scene(square())).row('beside')['verdict'], 'clear')
         row = self.ask('distance', [inside], scene(square()), '--signed').row('inside')
         self.assertAnswer(row, -21 / 22)  # deepest where it is as far from the upper as from the left edge
 
@@ -92,7 +92,7 @@ class Planar(Case):
         spent = sum(row['status'] != 'ok' for row in far.rows + hit.rows + exact.rows)
         self.assertEqual(spent, 0)
         for (_, _, one, two, kind), t, c, d in zip(rows, far.rows, hit.rows, exact.rows):
-            self.assertEqual((t['verdict'], c['verdict']), ('yes' if kind == '1' else 'no', 'yes' if kind == '3' else 'no'), t)
+            self.assertEqual((t['verdict'], c['verdict']), ('clear' if kind == '1' else 'violated', 'violated' if kind == '3' else 'clear'), t)
             least = min(float(one), float(two))
             self.assertLessEqual(float(d['lower']), least + 1e-10, d)
             self.assertGreaterEqual(float(d['upper']), least - 1e-10, d)

@@ -52,10 +52,10 @@ class Trajectory(Case):
         self.assertAlmostEqual(float(row['b_x']), 3.0, places=5)
 
     def verdicts_are_given(self):
-        self.assertEqual(self.robot('tolerance', SLIDE, '--delta', '0.89').row('go')['verdict'], 'yes')
-        self.assertEqual(self.robot('tolerance', SLIDE, '--delta', '0.91').row('go')['verdict'], 'no')
-        self.assertEqual(self.robot('collision', SLIDE).row('go')['verdict'], 'no')
-        self.assertEqual(self.robot('collision', SLIDE.replace('[2]', '[3]')).row('go')['verdict'], 'yes')
+        self.assertEqual(self.robot('tolerance', SLIDE, '--delta', '0.89').row('go')['verdict'], 'clear')
+        self.assertEqual(self.robot('tolerance', SLIDE, '--delta', '0.91').row('go')['verdict'], 'violated')
+        self.assertEqual(self.robot('collision', SLIDE).row('go')['verdict'], 'clear')
+        self.assertEqual(self.robot('collision', SLIDE.replace('[2]', '[3]')).row('go')['verdict'], 'violated')
 
     def certificates_are_proven_by_the_checker_and_by_no_other_query(self):
         file = os.path.join(self.folder, 'proof.cpc')

@@ -177,8 +177,8 @@ CASE(answers_agree_with_those_of_one_mover) {
         /* plain evaluation is within 1e-12 at this scale */
         const double sampled = sampled_distance(&s, i);
         assert_true(one->lower <= sampled + 1e-12);
-        if (v == TOLERANCE && one->verdict == CPROX_YES) assert_true(sampled > DELTA - 1e-12);
-        if (v == COLLISION && one->verdict == CPROX_NO) assert_true(sampled > 0.0);
+        if (v == TOLERANCE && one->verdict == CPROX_VERDICT_CLEAR) assert_true(sampled > DELTA - 1e-12);
+        if (v == COLLISION && one->verdict == CPROX_VERDICT_CLEAR) assert_true(sampled > 0.0);
       }
     }
     cprox_batch_free(batch);
@@ -243,7 +243,7 @@ CASE(a_disc_tells_nothing_of_curves_off_its_plane) {
     assert_int_equal(cprox_batch_distance(batch, &mover, 0, 1, NULL, workspace, &r), CPROX_OK);
     assert_true(r.lower <= distance[i] && distance[i] <= r.upper && r.upper - r.lower <= 1e-6);
     assert_int_equal(cprox_batch_collision(batch, &mover, 0, 1, NULL, workspace, &r), CPROX_OK);
-    assert_int_equal(r.verdict, i == 2 ? CPROX_YES : CPROX_NO);
+    assert_int_equal(r.verdict, i == 2 ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR);
     cprox_curve_free(curve);
   }
   cprox_batch_free(batch);
@@ -289,7 +289,7 @@ CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
       assert_true((long double)answers[k].lower <= truth + 1e-12L);
       assert_true(truth - 1e-12L <= (long double)answers[k].upper);
     }
-    settled_by_points += answers[1].distance_queries == 0 && answers[1].verdict == CPROX_NO;
+    settled_by_points += answers[1].distance_queries == 0 && answers[1].verdict == CPROX_VERDICT_VIOLATED;
     cprox_curve_free(curve);
     cprox_batch_free(batch);
     cprox_body_free(body);
@@ -737,7 +737,7 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
       assert_int_equal(one.verdict, alone.verdict);
       assert_true(one.lower <= alone.upper && alone.lower <= one.upper && one.lower <= one.upper);
       searched += one.nodes > 0 && (v != DISTANCE || one.upper == 0.0);
-      if (v == DISTANCE ? one.upper > 0.0 : one.verdict != (v == TOLERANCE ? CPROX_NO : CPROX_YES)) continue;
+      if (v == DISTANCE ? one.upper > 0.0 : one.verdict != CPROX_VERDICT_VIOLATED) continue;
       hits++;
       cprox_vec3 at;
       cprox_curve_evaluate(curve, one.t, NULL, &at, NULL, NULL);
@@ -816,7 +816,7 @@ CASE(unusable_calls_are_refused_with_a_sentence) {
   assert_int_equal(cprox_curve_create_bezier(points, 2, 0, 1, workspace, &curve), CPROX_OK);
   const cprox_mover mover = cprox_point_along(curve);
   assert_int_equal(cprox_batch_tolerance(batch, &mover, 0, 1, 0.1, NULL, workspace, &result), CPROX_OK);
-  assert_true(result.lower == INFINITY && result.verdict == CPROX_YES && result.obstacle_index == -1);
+  assert_true(result.lower == INFINITY && result.verdict == CPROX_VERDICT_CLEAR && result.obstacle_index == -1);
   assert_int_equal(cprox_batch_distance(batch, &mover, 0, 0, NULL, workspace, NULL), CPROX_OK);
 
   assert_int_equal(cprox_batch_distance(batch, &mover, 1, 0, NULL, workspace, &result), CPROX_INVALID);

@@ -210,11 +210,11 @@ CASE(every_kind_is_carried_past_every_kind) {
         /* verdicts agree */
         if (result.upper > 0.01) {
           assert_int_equal(cprox_tolerance(mover, target, 0.99 * result.lower, NULL, ws, &verdict), CPROX_OK);
-          assert_int_equal(verdict.verdict, CPROX_YES);
+          assert_int_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
           assert_int_equal(cprox_tolerance(mover, target, 1.01 * result.upper, NULL, ws, &verdict), CPROX_OK);
-          assert_int_equal(verdict.verdict, CPROX_NO);
+          assert_int_equal(verdict.verdict, CPROX_VERDICT_VIOLATED);
           assert_int_equal(cprox_collision(mover, target, NULL, ws, &verdict), CPROX_OK);
-          assert_int_equal(verdict.verdict, CPROX_NO);
+          assert_int_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
         }
         cprox_body_free(halfspace);
         cprox_body_free(carried.body);

@@ -103,7 +103,7 @@ CASE(within_lists_exactly_those_within) {
       assert_int_equal(cprox_distance(w.mover, w.target[j], &options, ws, &one), CPROX_OK);
       if (next < count && near[next].obstacle_index == (int32_t)j) {
         assert_true(one.lower <= delta + 1e-7);
-        assert_true(near[next].verdict == CPROX_UNDECIDED ||
+        assert_true(near[next].verdict == CPROX_VERDICT_UNDECIDED ||
                     (one.lower <= delta && near[next].upper - near[next].lower <= 1e-7));
         next++, listed++;
       } else {

@@ -37,10 +37,10 @@ static void check_case(const char *id, const cprox_curve *a, const cprox_curve *
   assert_true(other.lower <= r.upper && r.lower <= other.upper);
   if (reference < 1e-6) {
     assert_true(cprox_collision(cprox_point_along(a), cprox_obstacle_curve(b, 0.0), &options, ws, &other) >= 0);
-    assert_true(other.verdict != CPROX_NO || other.lower <= reference);
+    assert_true(other.verdict != CPROX_VERDICT_CLEAR || other.lower <= reference);
     assert_int_equal(cprox_collision(cprox_tube_along(a, 1e-3), cprox_obstacle_curve(b, 1e-3), &options, ws, &other),
                      CPROX_OK);
-    assert_int_equal(other.verdict, CPROX_YES);
+    assert_int_equal(other.verdict, CPROX_VERDICT_VIOLATED);
     return;
   }
   const double radius = 0.25 * reference;
@@ -48,13 +48,13 @@ static void check_case(const char *id, const cprox_curve *a, const cprox_curve *
                    CPROX_OK);
   assert_true(other.lower <= 0.5 * reference + doubt && other.upper >= 0.5 * reference - doubt);
   assert_int_equal(cprox_collision(cprox_point_along(a), cprox_obstacle_curve(b, 0.0), &options, ws, &other), CPROX_OK);
-  assert_int_equal(other.verdict, CPROX_NO);
+  assert_int_equal(other.verdict, CPROX_VERDICT_CLEAR);
   const double factors[] = {0.5, 0.99, 1.01, 1.5};
   for (int k = 0; k < 4; k++) {
     const cprox_mover mover = cprox_point_along(a);
     assert_int_equal(cprox_tolerance(mover, cprox_obstacle_curve(b, 0.0), factors[k] * reference, &options, ws, &other),
                      CPROX_OK);
-    assert_int_equal(other.verdict, factors[k] < 1.0 ? CPROX_YES : CPROX_NO);
+    assert_int_equal(other.verdict, factors[k] < 1.0 ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED);
   }
 }
 
@@ -170,8 +170,8 @@ static cprox_result ask(const vec3 *a, size_t na, const vec3 *b, size_t nb, doub
   assert_true(cprox_distance(cprox_point_along(first), cprox_obstacle_curve(second, 0.0), &options, ws, &r) >= 0);
   assert_true(cprox_collision(cprox_point_along(first), cprox_obstacle_curve(second, 0.0), &options, ws, &verdict) >=
               0);
-  if (r.upper <= epsilon) assert_int_not_equal(verdict.verdict, CPROX_NO);
-  if (r.lower > 0.0) assert_int_equal(verdict.verdict, CPROX_NO);
+  if (r.upper <= epsilon) assert_int_not_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
+  if (r.lower > 0.0) assert_int_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
   if (r.nodes > most_nodes || verdict.nodes > most_nodes) fail_msg("%u and %u nodes", r.nodes, verdict.nodes);
   cprox_curve_free(first);
   cprox_curve_free(second);
@@ -327,7 +327,7 @@ CASE(verdicts_about_pieces_take_few_nodes) {
     if (distance.lower > 0.02) {
       assert_int_equal(cprox_tolerance(mover, target, 1.1 * distance.upper, NULL, ws, &violated), CPROX_OK);
       assert_int_equal(cprox_tolerance(mover, target, 0.9 * distance.lower, NULL, ws, &clear), CPROX_OK);
-      assert_true(violated.verdict == CPROX_NO && clear.verdict == CPROX_YES);
+      assert_true(violated.verdict == CPROX_VERDICT_VIOLATED && clear.verdict == CPROX_VERDICT_CLEAR);
       asked++;
       seen_at_once += violated.nodes == 1;
       settled_soon += clear.nodes <= 4;

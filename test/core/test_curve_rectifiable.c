@@ -214,9 +214,9 @@ static void check_body(bezier *b, bool with_velocity, const cprox_obstacle *targ
     const double delta = of_points.lower * (k ? 1.01 : 0.99);
     cprox_result verdict;
     assert_true(cprox_tolerance(cprox_tube_along(arcs, radius), *target, delta, &options, ws, &verdict) >= 0);
-    if (verdict.verdict == CPROX_YES) assert_true(delta < of_points.upper);
-    if (verdict.verdict == CPROX_NO) assert_true(delta >= of_points.lower);
-    assert_true(verdict.verdict != CPROX_UNDECIDED || 0.01 * of_points.lower < 2.0 * epsilon);
+    if (verdict.verdict == CPROX_VERDICT_CLEAR) assert_true(delta < of_points.upper);
+    if (verdict.verdict == CPROX_VERDICT_VIOLATED) assert_true(delta >= of_points.lower);
+    assert_true(verdict.verdict != CPROX_VERDICT_UNDECIDED || 0.01 * of_points.lower < 2.0 * epsilon);
   }
   cprox_curve_free(points);
   cprox_curve_free(arcs);
@@ -268,12 +268,12 @@ CASE(times_of_contact_and_profiles_agree) {
     if (cprox_time_of_contact(cprox_point_along(arcs), target, &options, ws, &of_arcs) < 0)
       fail_msg("%s", cprox_workspace_error(ws));
     assert_true(cprox_time_of_contact(cprox_point_along(points), target, &options, ws, &of_points) >= 0);
-    if (of_points.verdict == CPROX_YES) {
+    if (of_points.verdict == CPROX_VERDICT_VIOLATED) {
       hits++;
       assert_true(of_arcs.t_contact_lower <= of_points.t);
     }
-    if (of_arcs.verdict == CPROX_YES) assert_true(of_points.t_contact_lower <= of_arcs.t);
-    if (of_arcs.verdict == CPROX_NO) assert_true(of_points.verdict != CPROX_YES);
+    if (of_arcs.verdict == CPROX_VERDICT_VIOLATED) assert_true(of_points.t_contact_lower <= of_arcs.t);
+    if (of_arcs.verdict == CPROX_VERDICT_CLEAR) assert_true(of_points.verdict != CPROX_VERDICT_VIOLATED);
 
     cprox_profile_interval by_arc[7], by_point[7];
     double breaks[8] = {0.0};

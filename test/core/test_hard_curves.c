@@ -51,8 +51,9 @@ static void check_verdict(cprox_mover mover, cprox_obstacle target, double truth
   options.epsilon = 1e-9;
   cprox_result r;
   assert_true(cprox_tolerance(mover, target, delta, &options, ws, &r) >= 0 && r.nodes <= options.max_nodes);
-  if (r.verdict == CPROX_YES && !(truth + DOUBT > delta)) fail_msg("clear of %g, but %g away", delta, truth);
-  if (r.verdict == CPROX_NO && !(truth - DOUBT <= delta)) fail_msg("within %g, but %g away", delta, truth);
+  if (r.verdict == CPROX_VERDICT_CLEAR && !(truth + DOUBT > delta)) fail_msg("clear of %g, but %g away", delta, truth);
+  if (r.verdict == CPROX_VERDICT_VIOLATED && !(truth - DOUBT <= delta))
+    fail_msg("within %g, but %g away", delta, truth);
 }
 
 /* Asks everything of a case; frees the curves. */
@@ -76,7 +77,7 @@ static void is_at(double truth, cprox_curve *curve, cprox_obstacle target, cprox
   for (int k = 0; k < 4; k++) check_verdict(mover, target, truth, deltas[k]);
   cprox_result r;
   assert_true(cprox_collision(mover, target, NULL, ws, &r) >= 0);
-  assert_true(r.verdict != (truth > DOUBT ? CPROX_YES : CPROX_NO));
+  assert_true(r.verdict != (truth > DOUBT ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR));
   cprox_curve_free(curve);
   cprox_curve_free(second);
 }

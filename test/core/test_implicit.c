@@ -326,8 +326,8 @@ CASE(a_curve_sees_the_same_distance_as_from_the_kind_it_equals) {
     assert_true(found.lower <= expected.upper && expected.lower <= found.upper);
     cprox_result verdict;
     cprox_collision(cprox_point_along(curve), cprox_obstacle_at(body, pose), NULL, w, &verdict);
-    if (expected.upper == 0.0) assert_int_equal(verdict.verdict, CPROX_YES);
-    if (expected.lower > 1e-5) assert_int_equal(verdict.verdict, CPROX_NO);
+    if (expected.upper == 0.0) assert_int_equal(verdict.verdict, CPROX_VERDICT_VIOLATED);
+    if (expected.lower > 1e-5) assert_int_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
     cprox_curve_free(curve);
     cprox_body_free(known);
     cprox_body_free(body);

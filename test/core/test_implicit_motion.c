@@ -69,7 +69,7 @@ CASE(the_least_distance_over_a_time_is_below_that_at_every_time) {
       assert_true(found.t >= 0.0 && found.t <= 2.0);
       const cprox_result there = pair_at(b, x, y, found.t, 1e-8);
       assert_true(fmax(there.lower, 0.0) <= found.upper);
-      if (found.verdict != CPROX_YES) {
+      if (found.verdict != CPROX_VERDICT_VIOLATED) {
         const double gap = vec_norm(vec_sub(found.witness_mover, found.witness_obstacle));
         assert_true(fabs(gap - found.upper) <= 1e-9);
       }
@@ -100,15 +100,15 @@ CASE(time_of_contact_is_never_late_and_never_undecided) {
       cprox_result found, least;
       const cprox_status status = cprox_translating_contact(x, y, 2.0, &options, b->workspace, &found);
       assert_int_equal(status, CPROX_OK);
-      assert_int_not_equal(found.verdict, CPROX_UNDECIDED);
+      assert_int_not_equal(found.verdict, CPROX_VERDICT_UNDECIDED);
       assert_int_equal(cprox_translating_distance(x, y, 2.0, &options, b->workspace, &least), CPROX_OK);
       pairs += found.distance_queries;
-      contacts += found.verdict == CPROX_YES;
-      if (found.verdict == CPROX_YES)
+      contacts += found.verdict == CPROX_VERDICT_VIOLATED;
+      if (found.verdict == CPROX_VERDICT_VIOLATED)
         assert_true(least.lower <= options.epsilon);
       else
         assert_true(least.upper > 0.0);
-      if (found.verdict == CPROX_YES && found.t > 0.0) {
+      if (found.verdict == CPROX_VERDICT_VIOLATED && found.t > 0.0) {
         assert_true(found.upper <= 0.0 && found.t_contact_lower <= found.t);
         assert_true(pair_at(b, x, y, found.t_contact_lower, 0.01 * options.epsilon).lower <= options.epsilon);
         for (int k = 1; k <= 8; k++) /* free before */
@@ -129,11 +129,11 @@ CASE(bodies_that_part_or_overlap_at_once_are_told_at_once) {
   cprox_translating y = {.from = cprox_obstacle_at(b->body[3], away), .velocity = {1, 0, 0}};
   cprox_result r;
   assert_int_equal(cprox_translating_contact(x, y, 10, NULL, b->workspace, &r), CPROX_OK);
-  assert_int_equal(r.verdict, CPROX_NO);
+  assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
   assert_int_equal(r.distance_queries, 1);
   y.from.pose.position.x = 0.5;
   assert_true(cprox_translating_contact(x, y, 10, NULL, b->workspace, &r) >= 0);
-  assert_int_equal(r.verdict, CPROX_YES);
+  assert_int_equal(r.verdict, CPROX_VERDICT_VIOLATED);
   assert_true(r.t == 0.0 && r.t_contact_lower == 0.0);
   y.velocity.x = NAN;
   assert_int_equal(cprox_translating_contact(x, y, 10, NULL, b->workspace, &r), CPROX_INVALID);

@@ -141,9 +141,9 @@ CASE(a_carried_twin_is_measured_like_the_kind_it_equals) {
                 0);
     assert_true(cprox_time_of_contact(cprox_point_along(curve), cprox_obstacle_at(body[1], pose), NULL, w, &second) >=
                 0);
-    assert_true(first.verdict == second.verdict || first.verdict == CPROX_UNDECIDED ||
-                second.verdict == CPROX_UNDECIDED);
-    if (first.verdict == CPROX_YES && second.verdict == CPROX_YES)
+    assert_true(first.verdict == second.verdict || first.verdict == CPROX_VERDICT_UNDECIDED ||
+                second.verdict == CPROX_VERDICT_UNDECIDED);
+    if (first.verdict == CPROX_VERDICT_VIOLATED && second.verdict == CPROX_VERDICT_VIOLATED)
       assert_true(second.t_contact_lower <= first.t && first.t_contact_lower <= second.t);
     cprox_curve_free(curve);
     cprox_body_free(compound);

@@ -135,7 +135,7 @@ CASE(verdicts_are_those_of_the_mesh) {
     assert_int_equal(cprox_tolerance(mover, mesh, delta, NULL, ws, &b), CPROX_OK);
     assert_int_equal(cprox_tolerance(mover, hull, delta, NULL, ws, &h), CPROX_OK);
     assert_int_equal(a.verdict, b.verdict);
-    if (h.verdict == CPROX_YES) assert_true(a.lod <= CPROX_LOD_HULL);
+    if (h.verdict == CPROX_VERDICT_CLEAR) assert_true(a.lod <= CPROX_LOD_HULL);
     by_hull += a.lod == CPROX_LOD_HULL, by_mesh += a.lod == CPROX_LOD_MESH;
     /* the witness is the mesh's own */
     cprox_result all;
@@ -169,15 +169,15 @@ CASE(a_curve_through_the_hull_but_clear_of_the_mesh_is_clear) {
     const cprox_options coarse = up_to(CPROX_LOD_HULL, 1e-6);
     cprox_result r;
     assert_int_equal(cprox_collision(cprox_point_along(curve), target, &coarse, ws, &r), CPROX_OK);
-    assert_int_equal(r.verdict, CPROX_YES);
+    assert_int_equal(r.verdict, CPROX_VERDICT_VIOLATED);
     assert_int_equal(r.lod, CPROX_LOD_HULL);
     assert_int_equal(cprox_collision(cprox_point_along(curve), target, NULL, ws, &r), CPROX_OK);
-    assert_int_equal(r.verdict, CPROX_NO);
+    assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
     assert_int_equal(r.lod, CPROX_LOD_MESH);
     assert_int_equal(cprox_time_of_contact(cprox_point_along(curve), target, NULL, ws, &r), CPROX_OK);
-    assert_int_equal(r.verdict, CPROX_NO);
+    assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
     assert_int_equal(cprox_tolerance(cprox_point_along(curve), target, clear[i] * 0.9, NULL, ws, &r), CPROX_OK);
-    assert_int_equal(r.verdict, CPROX_YES);
+    assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
     cprox_curve_free(curve);
     lod_free(&lods[i]);
   }

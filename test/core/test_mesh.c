@@ -134,7 +134,7 @@ CASE(time_of_contact_is_never_late_and_never_missed) {
         cprox_time_of_contact(cprox_tube_along(b.curve, radius), cprox_obstacle_at(body, pose), &options, ws, &result);
     if (status != CPROX_OK) fail_msg("case %zu: %s: %s", i, cprox_status_name(status), cprox_workspace_error(ws));
     const bool inside_first = cprox_body_is_solid(body) && result.t_contact_lower == 0.0;
-    if (result.verdict != CPROX_NO) {
+    if (result.verdict != CPROX_VERDICT_CLEAR) {
       hits++;
       const long double there = distance_at(&b, &mesh, &pose, result.t_contact_lower) - (long double)radius;
       if (there > 1e-9L && !inside_first) fail_msg("case %zu: %Lg away at t_contact_lower", i, there);
@@ -149,7 +149,7 @@ CASE(time_of_contact_is_never_late_and_never_missed) {
       if (before <= 0.0L)
         fail_msg("case %zu: late: %Lg at %.17Lg, free to %.17g", i, before, t, result.t_contact_lower);
     }
-    if (result.verdict == CPROX_YES && result.t < result.t_contact_lower)
+    if (result.verdict == CPROX_VERDICT_VIOLATED && result.t < result.t_contact_lower)
       fail_msg("case %zu: proven before it is free", i);
     cprox_curve_free(b.curve);
     cprox_body_free(body);
@@ -171,7 +171,7 @@ CASE(a_point_through_a_surface_is_a_proven_collision) {
     assert_int_equal(
         cprox_collision(cprox_point_along(b.curve), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws, &result),
         CPROX_OK);
-    if (result.verdict != CPROX_YES)
+    if (result.verdict != CPROX_VERDICT_VIOLATED)
       fail_msg("case %d: %s, [%g, %g]", i, cprox_verdict_name(result.verdict), result.lower, result.upper);
     assert_int_equal(result.lod, CPROX_LOD_MESH);
     cprox_curve_free(b.curve);
@@ -199,8 +199,8 @@ CASE(a_closed_mesh_is_solid_inside) {
     const test_bezier b = bezier_make(points, 1);
     cprox_result result;
     cprox_collision(cprox_point_along(b.curve), cprox_obstacle_at(solid, cprox_pose_identity()), NULL, ws, &result);
-    if (wanted) assert_int_equal(result.verdict, CPROX_YES);
-    if (mesh_distance(&mesh, ref_vec(p)) > 1e-5L && !wanted) assert_int_equal(result.verdict, CPROX_NO);
+    if (wanted) assert_int_equal(result.verdict, CPROX_VERDICT_VIOLATED);
+    if (mesh_distance(&mesh, ref_vec(p)) > 1e-5L && !wanted) assert_int_equal(result.verdict, CPROX_VERDICT_CLEAR);
     cprox_curve_free(b.curve);
   }
   assert_true(inside > 30);

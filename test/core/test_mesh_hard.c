@@ -263,7 +263,7 @@ CASE(time_of_contact_takes_few_intervals) {
     cprox_result result;
     cprox_time_of_contact(cprox_tube_along(curve, radius), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws,
                           &result);
-    if (result.verdict == CPROX_YES && result.t_contact_lower > 0.0) {
+    if (result.verdict == CPROX_VERDICT_VIOLATED && result.t_contact_lower > 0.0) {
       hits++;
       nodes += result.nodes;
       for (int k = 0; k < 3; k++) {

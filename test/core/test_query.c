@@ -90,10 +90,10 @@ CASE(a_curve_through_a_body_is_at_distance_0_and_collides) {
     assert_int_equal(cprox_distance(cprox_point_along(curve), at(bodies[i], 0, 0, 0), NULL, ws, &r), CPROX_OK);
     assert_contains(&r, 0.0, 0.0);
     assert_int_equal(cprox_collision(cprox_point_along(curve), at(bodies[i], 0, 0, 0), NULL, ws, &r), CPROX_OK);
-    assert_int_equal(r.verdict, CPROX_YES);
+    assert_int_equal(r.verdict, CPROX_VERDICT_VIOLATED);
     assert_true(vec_equal(r.witness_mover, r.witness_obstacle));
     assert_int_equal(cprox_tolerance(cprox_point_along(curve), at(bodies[i], 0, 0, 0), 0.0, NULL, ws, &r), CPROX_OK);
-    assert_int_equal(r.verdict, CPROX_NO);
+    assert_int_equal(r.verdict, CPROX_VERDICT_VIOLATED);
     cprox_body_free(bodies[i]);
   }
   cprox_curve_free(curve);
@@ -106,9 +106,9 @@ CASE(a_planar_curve_through_a_polygon_collides) {
   usable(cprox_body_create_polygon(square, 4, ws, &polygon), NULL);
   cprox_result r;
   assert_int_equal(cprox_collision(cprox_point_along(curve), at(polygon, 0.5, 0, 0), NULL, ws, &r), CPROX_OK);
-  assert_int_equal(r.verdict, CPROX_YES);
+  assert_int_equal(r.verdict, CPROX_VERDICT_VIOLATED);
   assert_int_equal(cprox_collision(cprox_point_along(curve), at(polygon, 0, 0, 1e-3), NULL, ws, &r), CPROX_OK);
-  assert_int_equal(r.verdict, CPROX_NO);
+  assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
   assert_int_equal(cprox_distance(cprox_point_along(curve), at(polygon, 0, 0, 1e-3), NULL, ws, &r), CPROX_OK);
   assert_contains(&r, 1e-3, 1e-18);
   cprox_body_free(polygon);
@@ -126,10 +126,10 @@ CASE(touching_is_never_called_free) {
     const cprox_mover mover = cprox_tube_along(curves[i], radii[i]);
     cprox_result r;
     assert_true(cprox_collision(mover, at(body, 0, 0, 0), NULL, ws, &r) >= 0);
-    assert_int_not_equal(r.verdict, CPROX_NO);
+    assert_int_not_equal(r.verdict, CPROX_VERDICT_CLEAR);
     assert_contains(&r, 0.0, 0.0);
     assert_true(cprox_tolerance(mover, at(body, 0, 0, 0), 0.0, NULL, ws, &r) >= 0);
-    assert_int_not_equal(r.verdict, CPROX_YES);
+    assert_int_not_equal(r.verdict, CPROX_VERDICT_CLEAR);
     cprox_curve_free(curves[i]);
   }
   cprox_body_free(body);
@@ -323,16 +323,16 @@ CASE(many_targets_are_answered_like_the_nearest_of_them) {
 
     cprox_result verdict;
     assert_int_equal(cprox_collision_all(mover, targets, N, &options, ws, &verdict, NULL), CPROX_OK);
-    assert_int_equal(verdict.verdict, least > 0.0 ? CPROX_NO : CPROX_YES);
+    assert_int_equal(verdict.verdict, least > 0.0 ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED);
     if (least > 1e-6) {
       assert_int_equal(cprox_tolerance_all(mover, targets, N, 0.999 * least, &options, ws, &verdict, NULL), CPROX_OK);
-      assert_int_equal(verdict.verdict, CPROX_YES);
+      assert_int_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
       assert_int_equal(cprox_tolerance_all(mover, targets, N, 1.001 * least, &options, ws, &verdict, NULL), CPROX_OK);
-      assert_int_equal(verdict.verdict, CPROX_NO);
+      assert_int_equal(verdict.verdict, CPROX_VERDICT_VIOLATED);
       /* a verdict that ends the search early still bounds the targets it did not look at */
       assert_int_equal(cprox_tolerance_all(mover, targets, N, 4.0 * least + 1.0, &options, ws, &verdict, NULL),
                        CPROX_OK);
-      assert_true(verdict.verdict == CPROX_NO && verdict.lower <= least);
+      assert_true(verdict.verdict == CPROX_VERDICT_VIOLATED && verdict.lower <= least);
     }
     cprox_curve_free(curve);
   }
@@ -347,9 +347,9 @@ CASE(nothing_to_measure_is_infinitely_far) {
   assert_int_equal(cprox_distance_all(cprox_point_along(curve), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
   assert_true(r.lower == INFINITY && r.upper == INFINITY && r.obstacle_index == -1);
   assert_int_equal(cprox_tolerance_all(cprox_point_along(curve), NULL, 0, 1.0, NULL, ws, &r, NULL), CPROX_OK);
-  assert_int_equal(r.verdict, CPROX_YES);
+  assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
   assert_int_equal(cprox_collision_all(cprox_point_along(curve), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
-  assert_int_equal(r.verdict, CPROX_NO);
+  assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
   cprox_curve_free(curve);
 }
 

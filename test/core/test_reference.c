@@ -68,9 +68,10 @@ static void check_verdicts(const csv_curve_case *c, const cprox_curve *curve, co
   const cprox_obstacle target = cprox_obstacle_at(body, cprox_pose_identity());
   cprox_result r;
   assert_true(cprox_collision(mover, target, &options, ws, &r) >= 0);
-  if (r.verdict == CPROX_YES && reference > 1e-15) fail_msg("%s: a collision at distance %g", c->id, reference);
-  if (reference > epsilon) assert_int_equal(r.verdict, CPROX_NO);
-  if (reference < 1e-2 * epsilon && r.verdict == CPROX_NO && r.lower > reference)
+  if (r.verdict == CPROX_VERDICT_VIOLATED && reference > 1e-15)
+    fail_msg("%s: a collision at distance %g", c->id, reference);
+  if (reference > epsilon) assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
+  if (reference < 1e-2 * epsilon && r.verdict == CPROX_VERDICT_CLEAR && r.lower > reference)
     fail_msg("%s: free at contact", c->id);
   if (reference <= 10.0 * epsilon) return;
 
@@ -78,10 +79,11 @@ static void check_verdicts(const csv_curve_case *c, const cprox_curve *curve, co
   const double clear[] = {0.5, 0.99, 1.0 - 1e-6}, violated[] = {1.0 + 1e-6, 1.01, 1.5};
   for (int k = 0; k < 3; k++) {
     assert_true(cprox_tolerance(mover, target, clear[k] * reference, &options, ws, &r) >= 0);
-    if (r.verdict != CPROX_YES && (1.0 - clear[k]) * reference > epsilon)
+    if (r.verdict != CPROX_VERDICT_CLEAR && (1.0 - clear[k]) * reference > epsilon)
       fail_msg("%s: tolerance %s at %g of the distance", c->id, cprox_verdict_name(r.verdict), clear[k]);
     assert_true(cprox_tolerance(mover, target, violated[k] * reference, &options, ws, &r) >= 0);
-    if (r.verdict == CPROX_YES || (r.verdict != CPROX_NO && (violated[k] - 1.0) * reference > epsilon))
+    if (r.verdict == CPROX_VERDICT_CLEAR ||
+        (r.verdict != CPROX_VERDICT_VIOLATED && (violated[k] - 1.0) * reference > epsilon))
       fail_msg("%s: tolerance %s at %g of the distance", c->id, cprox_verdict_name(r.verdict), violated[k]);
   }
 }

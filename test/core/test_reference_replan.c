@@ -68,10 +68,10 @@ static unsigned class_of(const cprox_curve *curve, cprox_workspace *ws) {
     const cprox_obstacle target = cprox_obstacle_at(obstacle[k], cprox_pose_identity());
     cprox_result r;
     assert_int_equal(cprox_tolerance(mover, target, DELTA, NULL, ws, &r), CPROX_OK);
-    if (r.verdict == CPROX_YES) continue;
-    assert_int_equal(r.verdict, CPROX_NO);
+    if (r.verdict == CPROX_VERDICT_CLEAR) continue;
+    assert_int_equal(r.verdict, CPROX_VERDICT_VIOLATED);
     assert_int_equal(cprox_collision(mover, target, NULL, ws, &r), CPROX_OK);
-    const unsigned here = r.verdict == CPROX_YES ? 3 : 2;
+    const unsigned here = r.verdict == CPROX_VERDICT_VIOLATED ? 3 : 2;
     worst = here > worst ? here : worst;
   }
   return worst;

@@ -108,13 +108,13 @@ CASE(a_set_is_answered_as_its_targets_one_by_one) {
 
     cprox_result verdict;
     cprox_set_collision(c.set, mover, NULL, ws, &verdict);
-    assert_int_equal(verdict.verdict, one.upper <= 0.0 ? CPROX_YES : CPROX_NO);
+    assert_int_equal(verdict.verdict, one.upper <= 0.0 ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR);
     touching += one.upper <= 0.0, apart += one.lower > 0.0;
     if (one.lower > 0.0) {
       cprox_set_tolerance(c.set, mover, 0.99 * one.lower, NULL, ws, &verdict);
-      assert_int_equal(verdict.verdict, CPROX_YES);
+      assert_int_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
       cprox_set_tolerance(c.set, mover, 1.01 * one.upper, NULL, ws, &verdict);
-      assert_int_equal(verdict.verdict, CPROX_NO);
+      assert_int_equal(verdict.verdict, CPROX_VERDICT_VIOLATED);
     }
     free_crowd(&c);
     robot_free(&t);
@@ -137,15 +137,15 @@ CASE(time_of_contact_with_a_set_is_the_earliest_of_its_targets) {
     for (size_t k = 0; k < c.n; k++) {
       cprox_result one;
       cprox_time_of_contact(mover, c.targets[k], &o, ws, &one);
-      if (one.verdict == CPROX_YES) contact = fmin(contact, one.t);
+      if (one.verdict == CPROX_VERDICT_VIOLATED) contact = fmin(contact, one.t);
       free = fmin(free, one.t_contact_lower);
-      clear = clear && one.verdict == CPROX_NO;
+      clear = clear && one.verdict == CPROX_VERDICT_CLEAR;
     }
     cprox_result all;
     cprox_set_time_of_contact(c.set, mover, &o, ws, &all);
     assert_true(all.t_contact_lower <= contact);
-    if (all.verdict == CPROX_YES) assert_true(all.t >= free);
-    assert_int_equal(all.verdict == CPROX_NO, clear);
+    if (all.verdict == CPROX_VERDICT_VIOLATED) assert_true(all.t >= free);
+    assert_int_equal(all.verdict == CPROX_VERDICT_CLEAR, clear);
     free_crowd(&c);
     robot_free(&t);
   }

@@ -120,7 +120,8 @@ CASE(points_are_as_far_as_every_triangle_says) {
       if (d.lower > 0.0) {
         assert_true(cprox_tolerance_all(mover, &target, 1, 0.99 * d.lower, NULL, ws, &near, NULL) >= 0);
         assert_true(cprox_tolerance_all(mover, &target, 1, 1.01 * d.upper, NULL, ws, &far, NULL) >= 0);
-        assert_true(near.verdict == CPROX_YES && far.verdict == CPROX_NO && first.verdict == CPROX_NO);
+        assert_true(near.verdict == CPROX_VERDICT_CLEAR && far.verdict == CPROX_VERDICT_VIOLATED &&
+                    first.verdict == CPROX_VERDICT_CLEAR);
       }
 
       /* the hulls are no farther */
@@ -248,7 +249,7 @@ CASE(meshes_of_real_robots_are_no_nearer_than_their_hulls) {
         const size_t targets = self ? 0 : c.n_targets;
         assert_true(cprox_tolerance_all(mover[1], c.targets, targets, 0.99 * r[1].lower, NULL, ws, &near, NULL) >= 0);
         assert_true(cprox_tolerance_all(mover[1], c.targets, targets, 1.01 * r[1].upper, NULL, ws, &far, NULL) >= 0);
-        assert_true(near.verdict == CPROX_YES && far.verdict == CPROX_NO);
+        assert_true(near.verdict == CPROX_VERDICT_CLEAR && far.verdict == CPROX_VERDICT_VIOLATED);
       }
     }
     robot_case_free(&c);

@@ -70,8 +70,8 @@ CASE(saved_answers_are_found_again) {
       nodes[counted] = r.nodes, distance_queries[counted++] = r.distance_queries;
 
       /* verdicts on either side of the distance */
-      assert_int_equal(ask(&c, a, 0.99 * r.lower).verdict, CPROX_YES);
-      assert_int_equal(ask(&c, a, 1.01 * r.upper).verdict, CPROX_NO);
+      assert_int_equal(ask(&c, a, 0.99 * r.lower).verdict, CPROX_VERDICT_CLEAR);
+      assert_int_equal(ask(&c, a, 1.01 * r.upper).verdict, CPROX_VERDICT_VIOLATED);
     }
     robot_case_free(&c);
   }
@@ -115,8 +115,8 @@ CASE(surfaces_of_boxes_are_as_far_as_boxes) {
       const cprox_result surface = ask(&c, &c.answers[0], -1.0);
       assert_true(surface.lower <= solid.upper && solid.lower <= surface.upper);
       assert_int_equal(surface.lod, CPROX_LOD_MESH);
-      assert_int_equal(ask(&c, &c.answers[0], 0.99 * solid.lower).verdict, CPROX_YES);
-      assert_int_equal(ask(&c, &c.answers[0], 1.01 * solid.upper).verdict, CPROX_NO);
+      assert_int_equal(ask(&c, &c.answers[0], 0.99 * solid.lower).verdict, CPROX_VERDICT_CLEAR);
+      assert_int_equal(ask(&c, &c.answers[0], 1.01 * solid.upper).verdict, CPROX_VERDICT_VIOLATED);
     }
     robot_case_free(&c);
   }
@@ -201,8 +201,8 @@ CASE(no_sample_is_nearer_than_lower) {
         if (at <= 0.0L && time < first.t_contact_lower)
           fail_msg("robot %zu: contact at %.12Lg, late at %.12g", i, time, first.t_contact_lower);
       }
-      if (d.lower > 0.0) assert_int_equal(first.verdict, CPROX_NO);
-      if (first.verdict == CPROX_YES) assert_true(first.t >= first.t_contact_lower && d.upper <= 0.0);
+      if (d.lower > 0.0) assert_int_equal(first.verdict, CPROX_VERDICT_CLEAR);
+      if (first.verdict == CPROX_VERDICT_VIOLATED) assert_true(first.t >= first.t_contact_lower && d.upper <= 0.0);
     }
     free_targets(targets);
     robot_free(&t);

@@ -112,7 +112,7 @@ CASE(sets_answer_as_all_their_targets_do) {
     assert_true(cprox_set_collision(set, mover, NULL, ws, &a) >= 0);
     assert_true(cprox_collision_all(mover, s.targets, s.n, NULL, ws, &b, NULL) >= 0);
     assert_int_equal(a.verdict, b.verdict);
-    hits += a.verdict == CPROX_YES;
+    hits += a.verdict == CPROX_VERDICT_VIOLATED;
     const double delta = rng_uniform(&r, 0.0, 0.3);
     assert_true(cprox_set_tolerance(set, mover, delta, NULL, ws, &a) >= 0);
     assert_true(cprox_tolerance_all(mover, s.targets, s.n, delta, NULL, ws, &b, NULL) >= 0);

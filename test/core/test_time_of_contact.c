@@ -83,7 +83,7 @@ CASE(nothing_touches_before_t_contact_lower_and_it_is_within_epsilon_of_contact)
     }
     const long double at_free =
         obstacle_distance(&o, ref_bezier(p, degree, (long double)c.t_contact_lower, 0)) - (long double)radius;
-    if (c.verdict == CPROX_NO) {
+    if (c.verdict == CPROX_VERDICT_CLEAR) {
       assert_true(c.t_contact_lower == 1.0 && c.lower > 0.0);
       assert_true(at_free > -(long double)doubt);
       free_ones++;
@@ -93,9 +93,9 @@ CASE(nothing_touches_before_t_contact_lower_and_it_is_within_epsilon_of_contact)
       assert_true(c.t_contact_lower <= c.t);
       const long double at_hit =
           obstacle_distance(&o, ref_bezier(p, degree, (long double)c.t, 0)) - (long double)radius;
-      if (c.verdict == CPROX_YES && at_hit > (long double)doubt)
+      if (c.verdict == CPROX_VERDICT_VIOLATED && at_hit > (long double)doubt)
         fail_msg("case %zu: no contact at t: %.3Lg", i, at_hit);
-      hits += c.verdict == CPROX_YES, undecided += c.verdict == CPROX_UNDECIDED;
+      hits += c.verdict == CPROX_VERDICT_VIOLATED, undecided += c.verdict == CPROX_VERDICT_UNDECIDED;
     }
     nodes += c.nodes, distance_queries += c.distance_queries;
     cprox_curve_free(curve);
@@ -141,7 +141,7 @@ CASE(a_plate_is_neither_missed_nor_met_late) {
     const cprox_pose pose = {.orientation = {cos(turn), 0, 0, sin(turn)}};
     cprox_result c;
     ask(cprox_tube_along(curve, radius), cprox_obstacle_at(plate, pose), epsilon, &c);
-    assert_int_equal(c.verdict, CPROX_YES);
+    assert_int_equal(c.verdict, CPROX_VERDICT_VIOLATED);
     const long double top = (long double)half + (long double)radius;
     const long double contact = descends_to(p, degree, top), early = descends_to(p, degree, top + (long double)epsilon);
     if ((long double)c.t_contact_lower > contact + 1e-14L)
@@ -170,7 +170,7 @@ CASE(grazes_are_told_from_misses) {
     cprox_curve *curve = bezier(p, 3);
     cprox_result c;
     ask(cprox_point_along(curve), cprox_obstacle_at(ball, cprox_pose_identity()), epsilon, &c);
-    if (c.verdict != (height > 0 ? CPROX_NO : CPROX_YES))
+    if (c.verdict != (height > 0 ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED))
       fail_msg("case %zu: height %.3g answered %s", i, height, cprox_verdict_name(c.verdict));
     if (height < 0) assert_true(c.t_contact_lower <= c.t && c.t_contact_lower < 0.5 && c.t <= 0.5 + 1e-9);
     cprox_curve_free(curve);
@@ -192,12 +192,12 @@ CASE(the_earliest_of_many_targets_is_met) {
   const cprox_options options = accurate(1e-10);
   cprox_result c;
   assert_int_equal(cprox_time_of_contact_all(cprox_point_along(curve), targets, 4, &options, ws, &c), CPROX_OK);
-  assert_int_equal(c.verdict, CPROX_YES);
+  assert_int_equal(c.verdict, CPROX_VERDICT_VIOLATED);
   assert_int_equal(c.obstacle_index, 1);
   const double contact = (4.0 - sqrt(0.25 - 0.01)) / 10.0;
   assert_true(c.t_contact_lower <= contact && contact <= c.t && c.t - c.t_contact_lower < 1e-9);
   assert_int_equal(cprox_time_of_contact_all(cprox_point_along(curve), NULL, 0, &options, ws, &c), CPROX_OK);
-  assert_int_equal(c.verdict, CPROX_NO);
+  assert_int_equal(c.verdict, CPROX_VERDICT_CLEAR);
   assert_float_equal(c.t_contact_lower, 1.0, 0.0);
   cprox_body_free(ball);
   cprox_curve_free(curve);
@@ -216,7 +216,7 @@ CASE(contact_on_a_late_piece_of_a_long_spline_is_found_there) {
   cprox_result c;
   ask(cprox_point_along(curve),
       cprox_obstacle_at(wall, (cprox_pose){.position = {30.01, 0, 0}, .orientation = {1, 0, 0, 0}}), 1e-10, &c);
-  assert_int_equal(c.verdict, CPROX_YES);
+  assert_int_equal(c.verdict, CPROX_VERDICT_VIOLATED);
   /* x(t) = 0.1 (t - 2) on a uniform cubic spline whose x are equally spaced */
   assert_true(c.t_contact_lower <= 302.0 + 1e-11 && c.t_contact_lower > 302.0 - 1e-8 && c.t >= 302.0 - 1e-11 &&
               c.t < 302.0 + 1e-7);
@@ -237,7 +237,7 @@ CASE(tubes_meet_no_later_than_they_touch) {
     const double epsilon = 1e-8;
     cprox_result c;
     ask(cprox_tube_along(first, 0.1), cprox_obstacle_curve(second, 0.15), epsilon, &c);
-    const double last = c.verdict == CPROX_NO ? 1.0 : c.t_contact_lower;
+    const double last = c.verdict == CPROX_VERDICT_CLEAR ? 1.0 : c.t_contact_lower;
     for (int k = 0; k <= 50 && last > 0.0; k++) {
       const vec3l x = ref_bezier(p, 3, (long double)last * k / 51.0L, 0);
       for (int m = 0; m <= 400; m++) {
@@ -245,7 +245,7 @@ CASE(tubes_meet_no_later_than_they_touch) {
         if (d < 0.25L - 1e-13L) fail_msg("case %zu: touches before t_contact_lower %.17g", i, c.t_contact_lower);
       }
     }
-    if (c.verdict == CPROX_YES) {
+    if (c.verdict == CPROX_VERDICT_VIOLATED) {
       const long double d = ref_norm(ref_sub(ref_bezier(p, 3, c.t, 0), ref_bezier(q, 3, c.t_obstacle, 0)));
       assert_true(d <= 0.25L + 1e-13L);
       if (c.t - c.t_contact_lower > 1e-5)
@@ -265,7 +265,7 @@ CASE(a_start_inside_is_contact_at_the_start) {
   assert_int_equal(cprox_body_create_sphere(0.5, ws, &ball), CPROX_OK);
   cprox_result c;
   ask(cprox_point_along(curve), cprox_obstacle_at(ball, cprox_pose_identity()), 1e-9, &c);
-  assert_int_equal(c.verdict, CPROX_YES);
+  assert_int_equal(c.verdict, CPROX_VERDICT_VIOLATED);
   assert_true(c.t_contact_lower == 0.0 && c.t == 0.0 && c.lower == 0.0 && c.upper == 0.0);
   cprox_body_free(ball);
   cprox_curve_free(curve);
@@ -280,7 +280,7 @@ CASE(resting_contact_ends_within_the_budget) {
     cprox_curve *curve = bezier(k == 0 ? slide : land, 3);
     cprox_result c;
     ask(cprox_point_along(curve), cprox_obstacle_at(box, cprox_pose_identity()), 1e-9, &c);
-    assert_true(c.verdict != CPROX_NO);
+    assert_true(c.verdict != CPROX_VERDICT_CLEAR);
     const double contact = k == 0 ? 1.0 / 3.0 : 1.0;
     assert_true(c.t_contact_lower <= contact && c.t_contact_lower > contact - 1e-4 && c.nodes < 300);
     cprox_curve_free(curve);

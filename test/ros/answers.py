@@ -65,16 +65,16 @@ class Answers(TestCase):
 
     def test_tolerance_is_granted_below_the_distance_and_denied_above(self):
         self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
-        self.assertEqual(self.row(self.server.tolerance(ABOVE, 0.7499)).verdict, 'yes')
-        self.assertEqual(self.row(self.server.tolerance(ABOVE, 0.7501)).verdict, 'no')
-        self.assertIn(self.row(self.server.tolerance(ABOVE, 0.75)).verdict, ('no', 'undecided'))
+        self.assertEqual(self.row(self.server.tolerance(ABOVE, 0.7499)).verdict, 'clear')
+        self.assertEqual(self.row(self.server.tolerance(ABOVE, 0.7501)).verdict, 'violated')
+        self.assertIn(self.row(self.server.tolerance(ABOVE, 0.75)).verdict, ('violated', 'undecided'))
 
     def test_collision_tells_a_hit_from_a_miss(self):
         self.server.replace(sphere('ball', 0.25, (1, 0, 0)))
-        self.assertEqual(self.row(self.server.collision(ABOVE)).verdict, 'no')
+        self.assertEqual(self.row(self.server.collision(ABOVE)).verdict, 'clear')
         through = bezier((0, 0, 0.1), (2, 0, 0.1))
         hit = self.row(self.server.collision(through))
-        self.assertEqual((hit.verdict, hit.lower, hit.b), ('yes', 0.0, 'ball'))
+        self.assertEqual((hit.verdict, hit.lower, hit.b), ('violated', 0.0, 'ball'))
         self.assertEqual(self.row(self.server.distance(through)).upper, 0.0)
 
     def test_every_kind_of_shape_is_measured(self):
@@ -102,8 +102,8 @@ class Answers(TestCase):
     def test_a_polygon_has_an_inside_to_curves_in_its_plane(self):
         self.server.replace(body('square', 'polygon', vertices=[(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]))
         inside, beside = bezier((-0.5, 0, 0), (0.5, 0.1, 0)), bezier((2, -3, 0), (2, 3, 0))
-        self.assertEqual(self.row(self.server.collision(inside)).verdict, 'yes')
-        self.assertEqual(self.row(self.server.collision(beside)).verdict, 'no')
+        self.assertEqual(self.row(self.server.collision(inside)).verdict, 'violated')
+        self.assertEqual(self.row(self.server.collision(beside)).verdict, 'clear')
         self.assertContains(self.distance(beside), 1.0)
 
     def test_the_first_papers_replanning_curves_are_all_decided(self):
@@ -121,7 +121,7 @@ class Answers(TestCase):
         self.assertEqual((len(far.results), len(hit.results)), (1000, 1000))
         for (identifier, _, _, _, kind), clear, touch in zip(rows, far.results, hit.results):
             self.assertEqual((clear.id, clear.verdict, touch.verdict),
-                             (identifier, 'yes' if kind == '1' else 'no', 'yes' if kind == '3' else 'no'))
+                             (identifier, 'clear' if kind == '1' else 'violated', 'violated' if kind == '3' else 'clear'))
 
     def test_what_does_not_apply_is_refused_and_named(self):
         self.server.replace(sphere('ball', 0.25, (1, 0, 0)))

@@ -19,12 +19,12 @@ class Pipeline(unittest.TestCase):
         self.assertTrue(until(lambda: len(passed) >= 2, 30), results[-1:])
         environment, itself = results[-1].results
         self.assertEqual((environment.kind, environment.verdict, itself.kind, itself.verdict),
-                         ('environment', 'yes', 'self', 'yes'))
+                         ('environment', 'clear', 'self', 'clear'))
         self.assertEqual(passed[-1].joint_names[0], 'panda_joint1')
 
         server = Server()
         self.assertTrue(server.apply(box('wall', (0.2, 0.2, 0.2), (0.31, 0, 0.6))).success)
-        self.assertTrue(until(lambda: results[-1].results[0].verdict == 'no', 10), results[-1].results[0])
+        self.assertTrue(until(lambda: results[-1].results[0].verdict == 'violated', 10), results[-1].results[0])
         time.sleep(0.5)
         before = len(passed)
         time.sleep(1.0)

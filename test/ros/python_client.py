@@ -27,10 +27,10 @@ class PythonClient(unittest.TestCase):
         self.assertLessEqual(row.lower, 0.75)
         self.assertGreaterEqual(row.upper, 0.75)
         self.assertEqual((row.id, row.b), ('line', 'ball'))
-        self.assertEqual(self.client.tolerance(LINE, 0.7).verdict, 'yes')
+        self.assertEqual(self.client.tolerance(LINE, 0.7).verdict, 'clear')
         self.assertTrue(self.client.is_clear(LINE, 0.74))
         self.assertFalse(self.client.is_clear(LINE, 0.75))
-        self.assertEqual(self.client.collision(LINE).verdict, 'no')
+        self.assertEqual(self.client.collision(LINE).verdict, 'clear')
         both = self.client.distance([LINE, bspline([(0, 5, 0), (0, 6, 0), (0, 7, 0), (0, 8, 0)])])
         self.assertEqual([r.b for r in both], ['ball', 'far'])
 

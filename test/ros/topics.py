@@ -102,7 +102,7 @@ class Topics(unittest.TestCase):
         self.assertEqual((answer.header.frame_id, answer.query_type, answer.delta), ('world', 'tolerance', 0.05))
         self.assertEqual(answer.fingerprint, fingerprint(curve))
         row, = answer.results
-        self.assertEqual((row.id, row.verdict), ('one', 'yes'))
+        self.assertEqual((row.id, row.verdict), ('one', 'clear'))
         self.assertLessEqual(row.lower, 0.75)
 
     def test_the_gate_lets_pass_what_is_clear_and_nothing_else(self):
@@ -123,12 +123,12 @@ class Topics(unittest.TestCase):
         self.server.replace(sphere('ball', 0.25))
         straight = path((-1, 0, 1), (0.5, 0, 1), (0.5, 0, 1), (1, 0, 1))
         row, = self.ask('path', straight).results
-        self.assertEqual(row.verdict, 'yes')
+        self.assertEqual(row.verdict, 'clear')
         self.assertEqual(row.id, 'path')
         # Against points just off the spline's own: the natural spline through (0, 0), (1, 1), (2, 0) is z = 3x/2 - x^3/2 over
         # the first chord, by its symmetry; delta is 0.05 and the radius 0.1.
         bend = path((0, 0, 0), (1, 0, 1), (2, 0, 0))
-        for offset, verdict in ((0.16, 'yes'), (0.14, 'no')):
+        for offset, verdict in ((0.16, 'clear'), (0.14, 'violated')):
             self.server.replace(sphere('point', 1e-9, (0.5, offset, 1.5 * 0.5 - 0.5 * 0.5**3)))
             row, = self.ask('path', bend).results
             self.assertEqual(row.verdict, verdict, offset)
@@ -146,8 +146,8 @@ class Topics(unittest.TestCase):
 
     def test_one_pose_is_a_point(self):
         self.server.replace(sphere('ball', 0.25))
-        self.assertEqual(self.ask('path', path((0, 0, 1))).results[0].verdict, 'yes')
-        self.assertEqual(self.ask('path', path((0, 0, 0.3))).results[0].verdict, 'no')
+        self.assertEqual(self.ask('path', path((0, 0, 1))).results[0].verdict, 'clear')
+        self.assertEqual(self.ask('path', path((0, 0, 0.3))).results[0].verdict, 'violated')
 
     def test_joint_trajectories_move_the_robot(self):
         # The arm stands 10 m above the ball.
@@ -156,7 +156,7 @@ class Topics(unittest.TestCase):
         answer = self.ask('trajectory', joint_trajectory(joints, [0.0], [1.0]))
         self.assertTrue(answer.success, answer.message)
         self.assertEqual(answer.results[0].kind, 'environment')
-        self.assertEqual(answer.results[0].verdict, 'yes')
+        self.assertEqual(answer.results[0].verdict, 'clear')
         for message, word in ((joint_trajectory(['none'], [0.0], [1.0]), 'none'), (JointTrajectory(), 'no joints')):
             answer = self.ask('trajectory', message)
             self.assertFalse(answer.success)
@@ -167,9 +167,9 @@ class Topics(unittest.TestCase):
         self.server.replace(sphere('ball', 0.25))
         answer = self.ask('multi_dof_trajectory', free_flight('drone', (-1, 0, 1), (0, 0, 1), (1, 0, 1)))
         self.assertTrue(answer.success, answer.message)
-        self.assertEqual((answer.results[0].id, answer.results[0].verdict), ('drone', 'yes'))
+        self.assertEqual((answer.results[0].id, answer.results[0].verdict), ('drone', 'clear'))
         answer = self.ask('multi_dof_trajectory', free_flight('drone', (-1, 0, 0), (1, 0, 0)))
-        self.assertEqual(answer.results[0].verdict, 'no')
+        self.assertEqual(answer.results[0].verdict, 'violated')
         answer = self.ask('multi_dof_trajectory', free_flight('drone', (0, 0, 0), (1, 0, 0), times=[1, 1]))
         self.assertIn('time', answer.message)
         self.assertEqual(self.settled(), 1)

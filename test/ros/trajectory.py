@@ -114,9 +114,9 @@ class Trajectory(unittest.TestCase):
         self.server.replace(sphere('ball', 0.1, (0.75, 0.1, 0.6)))
         path = trajectory(READY, [0.5] + READY[1:])
         distance = self.rows(self.server.distance([], trajectory=path))['environment'].upper
-        self.assertEqual(self.rows(self.server.tolerance([], 0.99 * distance, trajectory=path))['environment'].verdict, 'yes')
-        self.assertEqual(self.rows(self.server.tolerance([], 1.01 * distance, trajectory=path))['environment'].verdict, 'no')
-        self.assertEqual(self.rows(self.server.collision([], trajectory=path))['environment'].verdict, 'no')
+        self.assertEqual(self.rows(self.server.tolerance([], 0.99 * distance, trajectory=path))['environment'].verdict, 'clear')
+        self.assertEqual(self.rows(self.server.tolerance([], 1.01 * distance, trajectory=path))['environment'].verdict, 'violated')
+        self.assertEqual(self.rows(self.server.collision([], trajectory=path))['environment'].verdict, 'clear')
 
     def test_the_way_from_the_present_state_counts(self):
         # the trajectory begins at one second, on the far side of a ball that only the way there meets
@@ -125,8 +125,8 @@ class Trajectory(unittest.TestCase):
         for row in path.points:
             row.time_from_start += rospy.Duration(1)
         now = joints(**dict(zip(ARM, [-1.5] + READY[1:])))
-        self.assertEqual(self.rows(self.server.collision([], trajectory=path))['environment'].verdict, 'no')
-        self.assertEqual(self.rows(self.server.collision([], trajectory=path, joint_state=now))['environment'].verdict, 'yes')
+        self.assertEqual(self.rows(self.server.collision([], trajectory=path))['environment'].verdict, 'clear')
+        self.assertEqual(self.rows(self.server.collision([], trajectory=path, joint_state=now))['environment'].verdict, 'violated')
 
     def test_what_is_wrong_is_told_and_the_node_goes_on(self):
         good = trajectory(READY, [0.5] + READY[1:])

@@ -286,15 +286,15 @@ class Meshes(TestCase):
             self.server.replace(scene)
             hulls.replace(scene)
             row = self.server.collision(self.BETWEEN).results[0]
-            self.assertEqual((row.verdict, row.b, row.lod), ('no', 'bracket', 'mesh'))
+            self.assertEqual((row.verdict, row.b, row.lod), ('clear', 'bracket', 'mesh'))
             row = hulls.collision(self.BETWEEN).results[0]
-            self.assertEqual((row.verdict, row.b, row.lod), ('yes', 'bracket', 'hull'))
+            self.assertEqual((row.verdict, row.b, row.lod), ('violated', 'bracket', 'hull'))
             self.assertIn('convex hull', row.message)
             row = self.answer(self.BETWEEN)
             self.assertLessEqual(row.lower, 0.6)
             self.assertGreaterEqual(row.upper, 0.6)
             self.assertIn('surface alone', row.message)
-            self.assertEqual(self.server.tolerance(self.BETWEEN, 0.59).results[0].verdict, 'yes')
+            self.assertEqual(self.server.tolerance(self.BETWEEN, 0.59).results[0].verdict, 'clear')
 
     def test_a_mesh_that_is_to_be_solid_and_is_not_closed_says_so(self):
         self.server.replace(self.bracket(solid=True))

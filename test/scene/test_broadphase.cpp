@@ -87,14 +87,14 @@ TEST(Broadphase, never_changes_a_distance) {
       const Answer verdict = askOne(scene, {}, d, query);
       ASSERT_GE(verdict.result.status, 0);
       if (query.delta < expected.lower - 2e-6) {
-        EXPECT_EQ(verdict.result.verdict, CPROX_YES) << i;
+        EXPECT_EQ(verdict.result.verdict, CPROX_VERDICT_CLEAR) << i;
       }
       if (query.delta > expected.upper + 2e-6) {
-        EXPECT_EQ(verdict.result.verdict, CPROX_NO) << i;
+        EXPECT_EQ(verdict.result.verdict, CPROX_VERDICT_VIOLATED) << i;
       }
       EXPECT_LE(verdict.result.lower, expected.upper) << i;
       EXPECT_GE(verdict.result.upper, expected.lower) << i;
-      if (verdict.result.verdict == CPROX_YES) {
+      if (verdict.result.verdict == CPROX_VERDICT_CLEAR) {
         EXPECT_GT(verdict.result.lower, query.delta);
       }
     }
@@ -102,11 +102,11 @@ TEST(Broadphase, never_changes_a_distance) {
     query.delta = 0.0;
     const Answer hit = askOne(scene, {}, d, query);
     if (expected.lower > 2e-6) {
-      EXPECT_EQ(hit.result.verdict, CPROX_NO) << i;
+      EXPECT_EQ(hit.result.verdict, CPROX_VERDICT_CLEAR) << i;
     }
     EXPECT_LE(hit.result.lower, expected.upper) << i;
     EXPECT_GE(hit.result.upper, expected.lower) << i;
-    if (hit.result.verdict == CPROX_NO) {
+    if (hit.result.verdict == CPROX_VERDICT_CLEAR) {
       EXPECT_GT(hit.result.lower, 0.0);
     }
   }

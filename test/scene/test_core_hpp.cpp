@@ -62,11 +62,12 @@ TEST(CoreHpp, queries_answer_with_eigen_in_and_out) {
   EXPECT_LE(r.lower, 1.0);
   EXPECT_GE(r.upper, 1.0);
   EXPECT_NEAR((toEigen(r.witness_mover) - Eigen::Vector3d(0, 1.5, 0)).norm(), 0.0, 1e-2);
-  EXPECT_EQ(tolerance(along(curve), at(box), 0.99, options, workspace).verdict, CPROX_YES);
-  EXPECT_EQ(tolerance(along(curve, 0.1), at(box), 0.99, options, workspace).verdict, CPROX_NO);
-  EXPECT_EQ(collision(along(curve), at(box, translation(0, 1.25, 0)), options, workspace).verdict, CPROX_YES);
+  EXPECT_EQ(tolerance(along(curve), at(box), 0.99, options, workspace).verdict, CPROX_VERDICT_CLEAR);
+  EXPECT_EQ(tolerance(along(curve, 0.1), at(box), 0.99, options, workspace).verdict, CPROX_VERDICT_VIOLATED);
+  EXPECT_EQ(collision(along(curve), at(box, translation(0, 1.25, 0)), options, workspace).verdict,
+            CPROX_VERDICT_VIOLATED);
   EXPECT_EQ(collision(along(curve), at(box, Eigen::Isometry3d::Identity(), 1.1), options, workspace).verdict,
-            CPROX_YES);
+            CPROX_VERDICT_VIOLATED);
 
   // Planar polygons and standing pairs.
   Eigen::Matrix2Xd triangle(2, 3);
@@ -184,9 +185,9 @@ TEST(CoreHpp, a_set_answers_as_its_targets_do) {
   ASSERT_EQ(cprox_distance_all(along(curve), targets.data(), targets.size(), &options, workspace.get(), &all, nullptr),
             CPROX_OK);
   EXPECT_NEAR(set.distance(along(curve), options, workspace).upper, all.upper, 1e-6);
-  EXPECT_EQ(set.collision(along(curve), options, workspace).verdict, CPROX_NO);
-  EXPECT_EQ(set.tolerance(along(curve), 1.0, options, workspace).verdict, CPROX_YES);
-  EXPECT_EQ(set.firstContact(along(curve, 1.6), options, workspace).verdict, CPROX_YES);
+  EXPECT_EQ(set.collision(along(curve), options, workspace).verdict, CPROX_VERDICT_CLEAR);
+  EXPECT_EQ(set.tolerance(along(curve), 1.0, options, workspace).verdict, CPROX_VERDICT_CLEAR);
+  EXPECT_EQ(set.timeOfContact(along(curve, 1.6), options, workspace).verdict, CPROX_VERDICT_VIOLATED);
   const std::vector<cprox_result> nearest = set.nearest(along(curve), 3, options, workspace);
   ASSERT_EQ(nearest.size(), 3u);
   EXPECT_LE(nearest[0].upper, nearest[2].upper);

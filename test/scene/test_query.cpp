@@ -147,11 +147,11 @@ TEST(Ask, a_curve_in_the_hull_of_a_mesh_is_clear_of_the_mesh) {
   Query query;
   query.query_type = QueryType::COLLISION;
   Answer answer = askOne(scene, {}, between, query);
-  EXPECT_EQ(answer.result.verdict, CPROX_NO);
+  EXPECT_EQ(answer.result.verdict, CPROX_VERDICT_CLEAR);
   EXPECT_EQ(answer.result.lod, CPROX_LOD_MESH);
   query.options.max_lod = CPROX_LOD_HULL;
   answer = askOne(scene, {}, between, query);
-  EXPECT_EQ(answer.result.verdict, CPROX_YES);
+  EXPECT_EQ(answer.result.verdict, CPROX_VERDICT_VIOLATED);
   EXPECT_EQ(answer.result.lod, CPROX_LOD_HULL);
 
   query = Query();
@@ -200,10 +200,10 @@ TEST(Ask, with_nothing_to_measure_everything_is_far) {
       EXPECT_EQ(answer.result.upper, INFINITY);
       EXPECT_EQ(answer.result.obstacle_index, -1);
       if (query_type == QueryType::TOLERANCE) {
-        EXPECT_EQ(answer.result.verdict, CPROX_YES);
+        EXPECT_EQ(answer.result.verdict, CPROX_VERDICT_CLEAR);
       }
       if (query_type == QueryType::COLLISION) {
-        EXPECT_EQ(answer.result.verdict, CPROX_NO);
+        EXPECT_EQ(answer.result.verdict, CPROX_VERDICT_CLEAR);
       }
     }
   }
@@ -212,16 +212,16 @@ TEST(Ask, with_nothing_to_measure_everything_is_far) {
 TEST(Ask, verdicts_follow_from_the_distance) {
   Scene scene;
   fill(scene);
-  EXPECT_EQ(askOne(scene, {}, UPRIGHT, queryOf(QueryType::TOLERANCE, 2.49)).result.verdict, CPROX_YES);
-  EXPECT_EQ(askOne(scene, {}, UPRIGHT, queryOf(QueryType::TOLERANCE, 2.51)).result.verdict, CPROX_NO);
-  EXPECT_EQ(askOne(scene, {}, UPRIGHT, queryOf(QueryType::COLLISION)).result.verdict, CPROX_NO);
+  EXPECT_EQ(askOne(scene, {}, UPRIGHT, queryOf(QueryType::TOLERANCE, 2.49)).result.verdict, CPROX_VERDICT_CLEAR);
+  EXPECT_EQ(askOne(scene, {}, UPRIGHT, queryOf(QueryType::TOLERANCE, 2.51)).result.verdict, CPROX_VERDICT_VIOLATED);
+  EXPECT_EQ(askOne(scene, {}, UPRIGHT, queryOf(QueryType::COLLISION)).result.verdict, CPROX_VERDICT_CLEAR);
   const Answer hit = askOne(scene, {}, line({0, 0, 0}, {9, 0, 0}), queryOf(QueryType::COLLISION));
-  EXPECT_EQ(hit.result.verdict, CPROX_YES);
+  EXPECT_EQ(hit.result.verdict, CPROX_VERDICT_VIOLATED);
   EXPECT_EQ(hit.b, "ball");
   EXPECT_EQ(hit.result.upper, 0.0);
   CurveDescription tube = UPRIGHT;
   tube.radius = 2.6;
-  EXPECT_EQ(askOne(scene, {}, tube, queryOf(QueryType::COLLISION)).result.verdict, CPROX_YES);
+  EXPECT_EQ(askOne(scene, {}, tube, queryOf(QueryType::COLLISION)).result.verdict, CPROX_VERDICT_VIOLATED);
 }
 
 TEST(Ask, a_halfspace_is_seen_from_everywhere) {
@@ -492,7 +492,7 @@ TEST(Options, what_does_not_apply_to_a_query_is_refused_and_named) {
       EXPECT_EQ(answer.result.status >= 0, applies) << word << ": " << answer.message;
       if (!applies) {
         EXPECT_NE(answer.message.find(word), std::string::npos) << answer.message;
-        EXPECT_EQ(answer.result.verdict, CPROX_UNDECIDED); // never one that reads as clear
+        EXPECT_EQ(answer.result.verdict, CPROX_VERDICT_UNDECIDED); // never one that reads as clear
       }
     };
     expect(

@@ -67,9 +67,17 @@ CPROX_API cprox_obstacle cprox_synchronized(cprox_mover other);
 /** What a query can leave behind as proof: see certificate.h. */
 typedef struct cprox_certificate cprox_certificate;
 
-typedef enum cprox_verdict { CPROX_NO = 0, CPROX_YES = 1, CPROX_UNDECIDED = 2 } cprox_verdict;
+/** What is proven about a clearance limit: Δ of a tolerance, 0 of a collision. One polarity for every query. */
+typedef enum cprox_verdict {
+  /** farther than the limit everywhere */
+  CPROX_VERDICT_CLEAR = 0,
+  /** a point at most as far as the limit; for a collision a common point */
+  CPROX_VERDICT_VIOLATED = 1,
+  /** neither is proven: count it as unsafe */
+  CPROX_VERDICT_UNDECIDED = 2
+} cprox_verdict;
 
-/** "no", "yes", "undecided". */
+/** "clear", "violated", "undecided". Never NULL. */
 CPROX_API const char *cprox_verdict_name(cprox_verdict verdict);
 
 /** The models of a body, from coarse to fine; in a result, the finest one that the answer needed. */
@@ -163,15 +171,15 @@ CPROX_API cprox_status cprox_distance(cprox_mover mover, cprox_obstacle target, 
 
 /** Is the mover farther than delta from the target everywhere? delta >= 0 [m].
  *
- *  verdict yes: lower > delta. no: upper <= delta. undecided: the distance is within epsilon of delta, or the budget
- *  was too small. The interval is true, but only as narrow as the verdict needed. Returns as cprox_distance().
+ *  verdict clear: lower > delta. violated: upper <= delta. undecided: the distance is within epsilon of delta, or the
+ *  budget was too small. The interval is true, but only as narrow as the verdict needed. Returns as cprox_distance().
  *  Source: Lakshmanan et al. 2019, Algorithm 3. */
 CPROX_API cprox_status cprox_tolerance(cprox_mover mover, cprox_obstacle target, double delta,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result);
 
 /** Do mover and target touch or overlap anywhere?
  *
- *  verdict yes: a common point is proven. no: lower > 0. undecided: closer than epsilon, neither proven.
+ *  verdict clear: lower > 0. violated: a common point is proven. undecided: closer than epsilon, neither is proven.
  *  Returns as cprox_distance().
  *  Source: Lakshmanan et al. 2019, Algorithm 4. */
 CPROX_API cprox_status cprox_collision(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
@@ -196,16 +204,14 @@ CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_obstac
 
 /** Where, along its parameter, does the mover first touch the target? Never late.
  *
- *  t_contact_lower      no contact at any t < t_contact_lower, certified and rounded down. The distance at
- *  t_contact_lower is at most epsilon, or
- *              t_contact_lower is the end of the range.
- *  verdict     yes: they touch or overlap at t, proven: the time of contact lies in [t_contact_lower, t]. no: they do
- *  not touch at
- *              all; lower > 0. undecided: closer than epsilon at t, the earliest such place that was measured; contact
- *              is not proven anywhere.
- *  lower, upper  of the distance over the whole range, as in cprox_collision(). upper is the distance of the two points
- *                at t:
- *              0 for yes, at most epsilon for undecided.
+ *  t_contact_lower  no contact at any t < t_contact_lower, certified and rounded down. The distance there is at most
+ *                   epsilon, or it is the end of the range.
+ *  verdict          violated: a common point at t is proven, the time of contact lies in [t_contact_lower, t].
+ *                   clear: they do not touch at all, lower > 0.
+ *                   undecided: closer than epsilon at t, the earliest such place that was measured; contact is not
+ *                   proven anywhere.
+ *  lower, upper     of the distance over the whole range, as in cprox_collision(). upper is the distance of the two
+ *                   witness points at t: 0 for violated, at most epsilon for undecided.
  *
  *  A ball round the target that is not to be entered is its margin. Returns as cprox_distance(); after CPROX_BUDGET,
  *  CPROX_STOPPED and CPROX_PRECISION t_contact_lower is true, but may lie before the place where the distance is

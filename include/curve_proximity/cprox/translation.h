@@ -22,7 +22,7 @@ typedef struct cprox_translating {
 /** The least distance over the times 0 … duration [s], duration > 0, of two superquadrics or implicit bodies.
  *
  *  lower <= the least distance <= upper; t: when upper was attained; the points stand where the bodies are then. 0
- *  where they touch or overlap at some time: verdict yes where a common point is proven, no where lower > 0.
+ *  where they touch or overlap at some time: verdict violated where a common point is proven, clear where lower > 0.
  *  Returns as cprox_pair(), and CPROX_INVALID for other kinds of bodies. Cost: one interior point search; no allocation
  *  once the workspace has grown. */
 CPROX_API cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b, double duration,
@@ -31,11 +31,10 @@ CPROX_API cprox_status cprox_translating_distance(cprox_translating a, cprox_tra
 
 /** When two convex bodies (no compounds) that translate first touch.
  *
- *  t_contact_lower   no contact at any time < t_contact_lower, certified
- *  verdict  yes: they touch or overlap at t, proven: the time of contact lies in [t_contact_lower, t]. no: they do not
- *  touch up to
- *           the duration. undecided: contact is not proven; at t = t_contact_lower the distance is at most epsilon [m],
- *           unless the status says that the search fell short.
+ *  t_contact_lower  no contact at any time < t_contact_lower, certified
+ *  verdict          violated: a common point at t is proven, the time of contact lies in [t_contact_lower, t].
+ *                   clear: they do not touch up to the duration. undecided: contact is not proven; at
+ *                   t = t_contact_lower the distance is at most epsilon [m], unless the status is not CPROX_OK.
  *  lower, upper, points: of the signed distance at t, as in cprox_pair(). Where contact is deep already at 0: t =
  *  t_contact_lower = 0. Returns as cprox_pair(). Cost: about four pairs. */
 CPROX_API cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b, double duration,

@@ -30,7 +30,7 @@ static void leave_certificate(const query *q, const cprox_result *answer) {
 static arguments_query query_of(const query *q) {
   const unsigned has = ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE;
   if (!query_wants_verdict(q)) return (arguments_query){"distance", has | ARGUMENTS_SIGNED};
-  return (arguments_query){q->farther_is_yes ? "tolerance" : "collision", has};
+  return (arguments_query){q->is_tolerance ? "tolerance" : "collision", has};
 }
 
 static cprox_status ask_all(query *q, cprox_result *nearest, cprox_result *each) {

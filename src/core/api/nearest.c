@@ -91,7 +91,7 @@ cprox_status cprox_within(cprox_mover mover, const cprox_obstacle *targets, size
     if (r.lower > delta) continue;
     trouble = worse(trouble, status);
     if (r.obstacle_index < 0) r.obstacle_index = (int32_t)i;
-    r.verdict = r.upper <= delta ? CPROX_YES : CPROX_UNDECIDED;
+    r.verdict = r.upper <= delta ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_UNDECIDED;
     kept[found++] = r;
   }
   if (found > 0) memcpy(near, kept, found * sizeof *kept);

@@ -97,7 +97,7 @@ static cprox_status answer_one(batch_run *run, const cprox_mover *mover, cprox_r
     return answer_fast(run, r);
   }
   if (!query_wants_verdict(q)) return cprox_distance_all(*mover, targets, n, &q->options, q->workspace, r, NULL);
-  if (!q->farther_is_yes) return cprox_collision_all(*mover, targets, n, &q->options, q->workspace, r, NULL);
+  if (!q->is_tolerance) return cprox_collision_all(*mover, targets, n, &q->options, q->workspace, r, NULL);
   return cprox_tolerance_all(*mover, targets, n, q->limit, &q->options, q->workspace, r, NULL);
 }
 
@@ -142,7 +142,7 @@ static cprox_status answer_range(query q, const cprox_batch *batch, const cprox_
     const cprox_status status = answer_one(&run, &movers[i], r);
     if (status < 0) {
       *r = query_nothing();
-      r->status = status, r->lower = 0.0, r->verdict = CPROX_UNDECIDED;
+      r->status = status, r->lower = 0.0, r->verdict = CPROX_VERDICT_UNDECIDED;
     }
     if (worst >= 0 && (status < 0 || status > worst)) {
       worst = status;

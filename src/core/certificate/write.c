@@ -112,7 +112,7 @@ static cprox_status attempt(const task *t, uint32_t width, double delta) {
 
 /* Is the claim the lower bound of a distance? A verdict's limit may not be lowered but for rounding. */
 static bool is_of_distance(const task *t) {
-  return t->answer && t->answer->verdict == CPROX_UNDECIDED && t->delta == t->answer->lower;
+  return t->answer && t->answer->verdict == CPROX_VERDICT_UNDECIDED && t->delta == t->answer->lower;
 }
 
 static cprox_status certify_apart(const task *t) {

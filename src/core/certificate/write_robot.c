@@ -37,7 +37,7 @@ static cprox_status certify_apart(robot_scene *scene, double delta, const cprox_
                                   uint32_t budget, cprox_certificate *c) {
   cprox_status status = attempt(scene, 4, delta, budget, c);
   if (status > 0) status = attempt(scene, 8, delta, budget, c);
-  const bool distance = answer && answer->verdict == CPROX_UNDECIDED && delta == answer->lower;
+  const bool distance = answer && answer->verdict == CPROX_VERDICT_UNDECIDED && delta == answer->lower;
   if (status > 0 && distance && delta > epsilon) status = attempt(scene, 4, delta - epsilon, budget, c);
   return status;
 }
@@ -55,7 +55,7 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
     return workspace_fail(workspace, CPROX_INVALID, "%zu pairs are too many for a certificate", scene.n_pairs);
   const double epsilon = answer ? fmax(options->epsilon, options->relative_epsilon * answer->upper) : 0.0;
   const robot_cover near = {.scene = &scene, .delta = delta, .certificate = certificate};
-  const bool distance = answer && answer->verdict == CPROX_UNDECIDED && delta == answer->lower && delta > 0.0;
+  const bool distance = answer && answer->verdict == CPROX_VERDICT_UNDECIDED && delta == answer->lower && delta > 0.0;
   if (answer && answer->upper <= delta) {
     const cprox_status status = cover_robot_near(&near, answer);
     if (status == CPROX_OK || status == CPROX_MEMORY || !distance) return status;

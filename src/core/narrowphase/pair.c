@@ -369,7 +369,7 @@ cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options 
   const pair_answer *answer = &best.answer;
   status = pair_status(answer, &asked);
   *result = (cprox_result){.status = status,
-                           .verdict = CPROX_UNDECIDED,
+                           .verdict = CPROX_VERDICT_UNDECIDED,
                            .lower = answer->lower,
                            .upper = answer->upper,
                            .t_obstacle = NAN,

@@ -91,7 +91,7 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
   const vec3 on_a = vec_axpy(found.x, -x.margin, found.normal);
   vec3 on_b = vec_axpy(found.x, y.margin - found.upper, found.normal);
   if (found.overlap) on_b = on_a;
-  *result = (cprox_result){.verdict = CPROX_UNDECIDED,
+  *result = (cprox_result){.verdict = CPROX_VERDICT_UNDECIDED,
                            .lower = fmax(found.lower - margins - rounding, 0.0),
                            .upper = found.overlap ? 0.0 : fmax(found.upper - margins + rounding, 0.0),
                            .t = found.time,
@@ -101,8 +101,8 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
                            .normal = frame_turn_to_world(&x.f, found.overlap ? vec(0, 0, 0) : found.normal),
                            .lod = CPROX_LOD_HULL,
                            .nodes = found.steps};
-  if (result->lower > 0.0) result->verdict = CPROX_NO;
-  if (found.overlap || found.upper - margins + rounding <= 0.0) result->verdict = CPROX_YES;
+  if (result->lower > 0.0) result->verdict = CPROX_VERDICT_CLEAR;
+  if (found.overlap || found.upper - margins + rounding <= 0.0) result->verdict = CPROX_VERDICT_VIOLATED;
   const double width = result->upper - result->lower;
   status = width <= fmax(asked.epsilon, asked.relative_epsilon * result->upper) ? CPROX_OK
            : found.steps >= asked.max_nodes                                     ? CPROX_BUDGET
@@ -213,7 +213,9 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
   const vec3 moved = vec_scale(at, a.velocity);
   *result = p.last;
   result->t = at, result->t_contact_lower = p.free_until;
-  result->verdict = p.never ? CPROX_NO : p.last.upper <= 0.0 ? CPROX_YES : CPROX_UNDECIDED;
+  result->verdict = p.never               ? CPROX_VERDICT_CLEAR
+                    : p.last.upper <= 0.0 ? CPROX_VERDICT_VIOLATED
+                                          : CPROX_VERDICT_UNDECIDED;
   result->witness_mover = vec_add(result->witness_mover, moved);
   result->witness_obstacle = vec_add(result->witness_obstacle, moved);
   result->distance_queries = p.pairs + 1;

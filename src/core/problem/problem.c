@@ -6,13 +6,13 @@
 #include "curve/subcurve.h"
 #include "curve_proximity/cprox/robot.h"
 
-query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool farther_is_yes,
+query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool is_tolerance,
                    const cprox_options *options, cprox_workspace *workspace) {
   query q = {.mover = mover,
              .targets = targets,
              .n = n,
              .limit = limit,
-             .farther_is_yes = farther_is_yes,
+             .is_tolerance = is_tolerance,
              .options = options ? *options : cprox_options_default(),
              .workspace = workspace};
   if (q.options.max_lod == CPROX_LOD_NONE) q.options.max_lod = CPROX_LOD_MESH;
@@ -30,14 +30,14 @@ void query_ask_whole(query *q) {
 }
 
 cprox_verdict query_verdict(const query *q, const cprox_result *r) {
-  if (!query_wants_verdict(q)) return CPROX_UNDECIDED;
-  if (r->upper <= q->limit) return q->farther_is_yes ? CPROX_NO : CPROX_YES;
-  if (r->lower > q->limit) return q->farther_is_yes ? CPROX_YES : CPROX_NO;
-  return CPROX_UNDECIDED;
+  if (!query_wants_verdict(q)) return CPROX_VERDICT_UNDECIDED;
+  if (r->upper <= q->limit) return CPROX_VERDICT_VIOLATED;
+  if (r->lower > q->limit) return CPROX_VERDICT_CLEAR;
+  return CPROX_VERDICT_UNDECIDED;
 }
 
 bool query_is_satisfied(const query *q, double ceiling, const cprox_result *r) {
-  if (query_wants_verdict(q) && query_verdict(q, r) != CPROX_UNDECIDED) return true;
+  if (query_wants_verdict(q) && query_verdict(q, r) != CPROX_VERDICT_UNDECIDED) return true;
   const double upper = lesser(r->upper, ceiling);
   return !(upper - r->lower > greater(q->options.relative_epsilon * fabs(upper), q->options.epsilon));
 }

@@ -13,9 +13,9 @@ typedef struct query {
   cprox_mover mover;
   const cprox_obstacle *targets;
   size_t n;
-  double limit;        /* verdicts: delta, 0 for collision; distance: -1 */
-  bool is_signed;      /* distance: overlaps are measured, too */
-  bool farther_is_yes; /* tolerance's yes is collision's no */
+  double limit;      /* verdicts: delta, 0 for collision; distance: -1 */
+  bool is_signed;    /* distance: overlaps are measured, too */
+  bool is_tolerance; /* and not a collision: for messages */
   cprox_options options;
   cprox_workspace *workspace;
   curve_interval part; /* of the mover's curve: the whole of it, or some of one piece */
@@ -33,7 +33,7 @@ static inline bool query_wants_verdict(const query *q) {
 }
 
 /* options NULL: the default. Nothing is checked. */
-query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool farther_is_yes,
+query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool is_tolerance,
                    const cprox_options *options, cprox_workspace *workspace);
 
 /* What a status above CPROX_OK means to the caller. */

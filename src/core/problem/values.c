@@ -21,9 +21,9 @@ cprox_options cprox_options_default(void) {
 
 const char *cprox_verdict_name(cprox_verdict verdict) {
   switch (verdict) {
-    case CPROX_NO: return "no";
-    case CPROX_YES: return "yes";
-    case CPROX_UNDECIDED: return "undecided";
+    case CPROX_VERDICT_CLEAR: return "clear";
+    case CPROX_VERDICT_VIOLATED: return "violated";
+    case CPROX_VERDICT_UNDECIDED: return "undecided";
   }
   return "unknown";
 }

@@ -108,7 +108,7 @@ cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
   r.upper = sight->pair < 0 ? INFINITY : fmax(sight->gap.upper, 0.0);
   r.lower = touch ? 0.0 : fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
   r.t_contact_lower = fmin(found.free_until, q->t1);
-  r.verdict = touch ? CPROX_YES : isinf(found.free_until) ? CPROX_NO : CPROX_UNDECIDED;
+  r.verdict = touch ? CPROX_VERDICT_VIOLATED : isinf(found.free_until) ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_UNDECIDED;
   if (sight->pair < 0) r.t = NAN;
   if (touch) r.t = fmax(r.t, r.t_contact_lower); /* one is rounded, the other rounded down */
   r.nodes = found.nodes, r.distance_queries = o.gaps;

@@ -188,7 +188,7 @@ cprox_status time_of_contact_conclude(const time_of_contact *all, const query *q
   r.t_contact_lower = fmin(all->free_until, t1);
   r.lower = touch ? 0.0 : fmax(fmin(all->lower, r.upper), 0.0);
   r.upper = fmax(r.upper, 0.0);
-  r.verdict = touch ? CPROX_YES : isinf(all->free_until) ? CPROX_NO : CPROX_UNDECIDED;
+  r.verdict = touch ? CPROX_VERDICT_VIOLATED : isinf(all->free_until) ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_UNDECIDED;
   if (touch) r.t = fmax(r.t, r.t_contact_lower); /* one is rounded, the other rounded down */
   if (!touch && !near) r.t = r.obstacle_index < 0 ? NAN : r.t;
   r.lod = all->lod != CPROX_LOD_NONE ? all->lod : q->n > 0 ? CPROX_LOD_SPHERE : CPROX_LOD_NONE;
