@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/frame.h"
 
+#include "base/rotation.h"
 #include "base/rounding.h"
 
 cprox_pose cprox_pose_identity(void) {
@@ -55,17 +56,11 @@ frame frame_create_within(const cprox_pose *outer, const cprox_pose *inner, vec3
 }
 
 vec3 frame_turn_to_local(const frame *f, vec3 v) {
-  if (!f->rotated) return v;
-  const double *r = f->r;
-  return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
-             r[2] * v.x + r[5] * v.y + r[8] * v.z);
+  return f->rotated ? rotate_back(f->r, v) : v;
 }
 
 vec3 frame_turn_to_world(const frame *f, vec3 v) {
-  if (!f->rotated) return v;
-  const double *r = f->r;
-  return vec(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
-             r[6] * v.x + r[7] * v.y + r[8] * v.z);
+  return f->rotated ? rotate(f->r, v) : v;
 }
 
 static bool is_zero(vec3 v) {

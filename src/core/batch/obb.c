@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/rotation.h"
 #include "base/rounding.h"
 
 /* One look at a brick: what a bound of chords is worth for the mover. */
@@ -25,19 +26,12 @@ static double slack_of(const batch_run *run, const batch_core *core, double marg
 
 /* The part is a brick: how far a point is from it, and which point of it is nearest. */
 static double from_brick(const lanes_brick *b, vec3 x, vec3 *surface) {
-  const double *r = b->r;
-  const vec3 v = vec_sub(x, b->position);
-  const vec3 y = vec_sub(vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
-                             r[2] * v.x + r[5] * v.y + r[8] * v.z),
-                         b->centre);
+  const vec3 y = vec_sub(rotate_back(b->r, vec_sub(x, b->position)), b->centre);
   const vec3 h = b->half;
   const vec3 on =
       vec(lesser(greater(y.x, -h.x), h.x), lesser(greater(y.y, -h.y), h.y), lesser(greater(y.z, -h.z), h.z));
   const vec3 local = vec_add(on, b->centre);
-  *surface =
-      vec_add(vec(r[0] * local.x + r[1] * local.y + r[2] * local.z, r[3] * local.x + r[4] * local.y + r[5] * local.z,
-                  r[6] * local.x + r[7] * local.y + r[8] * local.z),
-              b->position);
+  *surface = vec_add(rotate(b->r, local), b->position);
   return vec_norm(vec_sub(y, on));
 }
 

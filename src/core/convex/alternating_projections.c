@@ -3,8 +3,8 @@
  * with the sign turned), x how far to go along each. All in a's frame but where it says otherwise. */
 #include "convex/alternating_projections.h"
 
+#include "base/rotation.h"
 #include "convex/feature.h"
-#include "convex/turn.h"
 
 enum { APPROACH_ROUNDS = 10, APPROACH_MOST = 4 };
 
@@ -29,7 +29,7 @@ typedef struct approach_pair {
 
 static void approach_add_tangents(const convex_foot *foot, const double *r, approach_pair *p) {
   for (int i = 0; i < foot->tangents && i < 2; i++) {
-    p->m[p->n] = r ? vec_neg(turn(r, foot->e[i])) : foot->e[i];
+    p->m[p->n] = r ? vec_neg(rotate(r, foot->e[i])) : foot->e[i];
     p->bent[p->n++] = 1.0 / foot->along[i] - 1.0;
   }
 }
@@ -39,8 +39,8 @@ static void approach_project(const approach_task *task, vec3 y, approach_pair *p
   const double *r = task->r;
   const vec3 t = task->t;
   task->a->ops->project(task->a, y, &p->a);
-  task->b->ops->project(task->b, turn_back(r, vec_sub(p->a.point, t)), &p->b);
-  p->v = vec_sub(p->a.point, vec_add(turn(r, p->b.point), t));
+  task->b->ops->project(task->b, rotate_back(r, vec_sub(p->a.point, t)), &p->b);
+  p->v = vec_sub(p->a.point, vec_add(rotate(r, p->b.point), t));
   p->distance = vec_norm(p->v);
   p->n = 0;
   approach_add_tangents(&p->a, NULL, p);
@@ -143,8 +143,8 @@ static void approach_describe(const approach_task *task, const approach_pair *p,
 static simplex_vertex approach_look(const approach_task *task, vec3 u, approach_answer *answer) {
   simplex_vertex x = {.id = -1};
   task->a->ops->support(task->a, vec_neg(u), NULL, &x.a);
-  task->b->ops->support(task->b, turn_back(task->r, u), NULL, &x.b);
-  x.w = vec_sub(x.a, vec_add(turn(task->r, x.b), task->t));
+  task->b->ops->support(task->b, rotate_back(task->r, u), NULL, &x.b);
+  x.w = vec_sub(x.a, vec_add(rotate(task->r, x.b), task->t));
   const double phi = vec_dot(u, x.w);
   answer->looks++;
   if (phi > answer->lower) {
@@ -199,9 +199,9 @@ static bool smooth_step(const approach_task *task, const simplex_vertex *x, vec3
   const double *r = task->r;
   double ha[6], hb[6];
   feature_tangents(u, e, f);
-  const vec3 eb = turn_back(r, *e), fb = turn_back(r, *f);
+  const vec3 eb = rotate_back(r, *e), fb = rotate_back(r, *f);
   task->a->ops->curvature(task->a, vec_neg(u), x->a, ha);
-  task->b->ops->curvature(task->b, turn_back(r, u), x->b, hb);
+  task->b->ops->curvature(task->b, rotate_back(r, u), x->b, hb);
   const double ee = feature_quadratic(ha, *e, *e) + feature_quadratic(hb, eb, eb) + d;
   const double ef = feature_quadratic(ha, *e, *f) + feature_quadratic(hb, eb, fb);
   const double ff = feature_quadratic(ha, *f, *f) + feature_quadratic(hb, fb, fb) + d, det = ee * ff - ef * ef;

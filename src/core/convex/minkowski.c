@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "convex/minkowski.h"
 
+#include "base/rotation.h"
 #include "base/rounding.h"
 #include "convex/depth.h"
 #include "convex/feature.h"
 #include "convex/pair.h"
-#include "convex/turn.h"
 
 enum { MOST_STEPS = 256 };
 
@@ -18,8 +18,8 @@ static double difference_support(const convex *shape, vec3 d, convex_hint *hint,
   (void)hint;
   vec3 b, k;
   const double standing = shape->standing->ops->support(shape->standing, d, NULL, &b);
-  const double carried = shape->carried->ops->support(shape->carried, vec_neg(turn_back(shape->r, d)), NULL, &k);
-  if (at) *at = vec_sub(b, turn(shape->r, k));
+  const double carried = shape->carried->ops->support(shape->carried, vec_neg(rotate_back(shape->r, d)), NULL, &k);
+  if (at) *at = vec_sub(b, rotate(shape->r, k));
   return standing + carried;
 }
 
@@ -33,7 +33,7 @@ static bool has_closed_form(const convex *shape) {
 static void turn_hessian(const double *r, const double h[6], double turned[6]) {
   const vec3 row[3] = {vec(h[0], h[1], h[2]), vec(h[1], h[3], h[4]), vec(h[2], h[4], h[5])};
   vec3 half[3]; /* the columns of r H */
-  for (int j = 0; j < 3; j++) half[j] = turn(r, row[j]);
+  for (int j = 0; j < 3; j++) half[j] = rotate(r, row[j]);
   for (int i = 0, k = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
       const double hx[3] = {half[0].x, half[0].y, half[0].z}, hy[3] = {half[1].x, half[1].y, half[1].z},
@@ -46,14 +46,14 @@ static void turn_hessian(const double *r, const double h[6], double turned[6]) {
 static void nearest_of_ball(const convex *shape, vec3 y, convex_near *near) {
   const double *r = shape->r, radius = shape->standing->margin;
   convex_near seen;
-  shape->carried->ops->nearest(shape->carried, vec_neg(turn_back(r, y)), NULL, &seen);
+  shape->carried->ops->nearest(shape->carried, vec_neg(rotate_back(r, y)), NULL, &seen);
   *near = seen;
   near->distance = seen.distance - radius;
-  near->normal = vec_neg(turn(r, seen.normal));
+  near->normal = vec_neg(rotate(r, seen.normal));
   near->point = vec_axpy(y, -near->distance, near->normal);
-  near->origin = vec_neg(turn(r, seen.origin));
+  near->origin = vec_neg(rotate(r, seen.origin));
   near->offset = seen.offset + radius;
-  for (int i = 0; i < 2; i++) near->e[i] = turn(r, seen.e[i]);
+  for (int i = 0; i < 2; i++) near->e[i] = rotate(r, seen.e[i]);
   if (!seen.flat) turn_hessian(r, seen.hessian, near->hessian);
 }
 
@@ -91,7 +91,7 @@ const convex_ops convex_difference = {
 static bool make_halfspace(const convex *standing, const convex *carried, const double r[9], double turning,
                            convex *difference) {
   const vec3 n = vec(standing->size[0], standing->size[1], standing->size[2]);
-  const double reach = carried->ops->support(carried, vec_neg(turn_back(r, n)), NULL, NULL) + carried->margin;
+  const double reach = carried->ops->support(carried, vec_neg(rotate_back(r, n)), NULL, NULL) + carried->margin;
   *difference = *standing;
   difference->size[3] -= reach;
   difference->scale = fabs(difference->size[3]);

@@ -4,12 +4,12 @@
  * that the simplex suggests, or, where the shapes are curved, Newton's method on phi. */
 #include "convex/pair.h"
 
+#include "base/rotation.h"
 #include "base/rounding.h"
 #include "convex/alternating_projections.h"
 #include "convex/epa.h"
 #include "convex/feature.h"
 #include "convex/simplex.h"
-#include "convex/turn.h"
 
 enum {
   PAIR_MAX_STEPS = 256,
@@ -56,14 +56,14 @@ typedef struct pair {
 
 /* b is kept in its own frame. */
 static vec3 pair_difference(const pair *p, vec3 a, vec3 b) {
-  return vec_sub(a, vec_add(turn(p->r, b), p->t));
+  return vec_sub(a, vec_add(rotate(p->r, b), p->t));
 }
 
 /* The point of M that is least along u. */
 static simplex_vertex pair_extreme(pair *p, vec3 u) {
   simplex_vertex x = {.id = -1};
   const double ha = p->a->ops->support(p->a, vec_neg(u), NULL, &x.a);
-  const double hb = p->b->ops->support(p->b, turn_back(p->r, u), NULL, &x.b);
+  const double hb = p->b->ops->support(p->b, rotate_back(p->r, u), NULL, &x.b);
   if (isnan(ha) || isnan(hb)) p->fault = true;
   x.w = pair_difference(p, x.a, x.b);
   p->supports++;
@@ -120,7 +120,7 @@ static void pieces_add_curvature(pair_pieces *pieces, double weight, const doubl
 /* The simplex's vertices moved to where u finds them on their pieces; those that fall together are one. e and f NULL: their
  * curvature is not asked for. */
 static pair_pieces pair_follow(const pair *p, vec3 u, const vec3 *e, const vec3 *f) {
-  const vec3 da = vec_neg(u), db = turn_back(p->r, u);
+  const vec3 da = vec_neg(u), db = rotate_back(p->r, u);
   const double same = 1e-12 * (p->a->scale + p->b->scale);
   pair_pieces pieces = {0};
   for (int i = 0; i < p->s.n; i++) {
@@ -133,7 +133,7 @@ static pair_pieces pair_follow(const pair *p, vec3 u, const vec3 *e, const vec3 
     }
     if (piece_follow(p->b, db, &y.b) && e) {
       p->b->ops->curvature(p->b, db, y.b, h);
-      pieces_add_curvature(&pieces, weight, h, turn_back(p->r, *e), turn_back(p->r, *f));
+      pieces_add_curvature(&pieces, weight, h, rotate_back(p->r, *e), rotate_back(p->r, *f));
     }
     y.w = pair_difference(p, y.a, y.b);
     int twin = 0;
@@ -331,7 +331,7 @@ static void pair_core_points(const pair *p, vec3 *a, vec3 *b) {
     *a = vec_axpy(*a, p->s.weight[i], p->s.vertex[i].a);
     *b = vec_axpy(*b, p->s.weight[i], p->s.vertex[i].b);
   }
-  *b = vec_add(turn(p->r, *b), p->t);
+  *b = vec_add(rotate(p->r, *b), p->t);
 }
 
 /* Those points, and the margins beyond them. */

@@ -12,7 +12,7 @@ static void box_boundary(const piece *p, int dimension, points *out) {
   for (int i = 0; i < 8; i++) {
     const vec3 own = vec(i & 1 ? p->size[0] : -p->size[0], i & 2 ? p->size[1] : -p->size[1],
                          dimension == 2 ? 0.0 : (i & 4 ? p->size[2] : -p->size[2]));
-    c[i] = vec_add(p->centre, turn_apply(p->turn, own));
+    c[i] = vec_add(p->centre, rotate(p->turn, own));
   }
   if (dimension == 2) {
     const int order[4] = {0, 1, 3, 2};

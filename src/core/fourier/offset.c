@@ -109,7 +109,7 @@ static bool offset_grid(const piece *p, int dimension, double rho, piece *out, d
   const int64_t wx = nx + 2 * m[0], wy = ny + 2 * m[1], wz = nz + 2 * m[2];
   if ((double)wx * (double)wy * (double)wz > 4e9) return false;
   out->counts[0] = (uint32_t)wx, out->counts[1] = (uint32_t)wy, out->counts[2] = (uint32_t)wz;
-  out->centre = vec_sub(p->centre, turn_apply(p->turn, vec_scale(cell, vec((double)m[0], (double)m[1], (double)m[2]))));
+  out->centre = vec_sub(p->centre, rotate(p->turn, vec_scale(cell, vec((double)m[0], (double)m[1], (double)m[2]))));
   out->cells = calloc((size_t)(wx * wy * wz), 1);
   uint32_t *room = calloc((size_t)(nx * ny * nz + wz + wx * (wy + ny) * nz), sizeof *room);
   if (out->cells && room) spread_grid(p, m, rho, out, room, room + nx * ny * nz + wz, room + nx * ny * nz);

@@ -89,7 +89,7 @@ static double cap_polytope(vec3 faces[CAP_FACES][3]) {
                                {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   const frame tilt = frame_create(&(cprox_pose){.orientation = {1.0, 0.2137, 0.3571, 0.1193}}, vec(0, 0, 0));
   vec3 unit[12];
-  for (int i = 0; i < 12; i++) unit[i] = vec_scale(1.0 / vec_norm(v[i]), turn_apply(tilt.r, v[i]));
+  for (int i = 0; i < 12; i++) unit[i] = vec_scale(1.0 / vec_norm(v[i]), rotate(tilt.r, v[i]));
 
   double least = 1.0;
   for (int i = 0; i < 20; i++) {

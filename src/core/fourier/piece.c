@@ -29,7 +29,7 @@ static void *duplicate(const void *from, size_t count, size_t size, bool *ok) {
 }
 
 static void move_points(vec3 *points, size_t n, const double turn[9], vec3 shift) {
-  for (size_t i = 0; points && i < n; i++) points[i] = vec_add(turn_apply(turn, points[i]), shift);
+  for (size_t i = 0; points && i < n; i++) points[i] = vec_add(rotate(turn, points[i]), shift);
 }
 
 bool piece_copy(const piece *p, const double turn[9], vec3 shift, piece *copy) {
@@ -46,13 +46,13 @@ bool piece_copy(const piece *p, const double turn[9], vec3 shift, piece *copy) {
     return false;
   }
 
-  turn_compose(turn, p->turn, copy->turn);
-  copy->centre = vec_add(turn_apply(turn, p->centre), shift);
+  rotation_compose(turn, p->turn, copy->turn);
+  copy->centre = vec_add(rotate(turn, p->centre), shift);
   move_points(copy->corner, copy->n_corners, turn, shift);
   move_points(copy->vertex, copy->n_vertices, turn, shift);
   for (size_t i = 0; i < copy->n_planes; i++) {
     double *plane = copy->plane[i];
-    const vec3 normal = turn_apply(turn, vec(plane[0], plane[1], plane[2]));
+    const vec3 normal = rotate(turn, vec(plane[0], plane[1], plane[2]));
     plane[0] = normal.x, plane[1] = normal.y, plane[2] = normal.z;
     plane[3] += vec_dot(normal, shift);
   }
@@ -115,7 +115,7 @@ static vec3 own_half(const piece *p, int dimension) {
 }
 
 static vec3 own_middle(const piece *p, int dimension) {
-  return p->kind == PIECE_GRID ? vec_add(p->centre, turn_apply(p->turn, own_half(p, dimension))) : p->centre;
+  return p->kind == PIECE_GRID ? vec_add(p->centre, rotate(p->turn, own_half(p, dimension))) : p->centre;
 }
 
 double piece_radius_about(const piece *p, int dimension, vec3 point) {
@@ -125,7 +125,7 @@ double piece_radius_about(const piece *p, int dimension, vec3 point) {
     return most + (p->kind == PIECE_SWEEP ? p->size[0] : 0.0);
   }
   const vec3 half = own_half(p, dimension);
-  const vec3 at = turn_back(p->turn, vec_sub(own_middle(p, dimension), point));
+  const vec3 at = rotate_back(p->turn, vec_sub(own_middle(p, dimension), point));
   const vec3 away = vec(fabs(at.x), fabs(at.y), fabs(at.z));
   switch (p->kind) {
     case PIECE_ELLIPSOID: return vec_norm(away) + fmax(half.x, fmax(half.y, half.z));

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "base/frame.h"
+#include "base/rotation.h"
 #include "fourier/wave.h"
 
 /* In the order of what turning one costs. */
@@ -71,22 +72,6 @@ double piece_error_scale(const piece *p, int dimension, double q);
 /* A piece without clipping whose function is at least 1 on every point within rho of p: corners and sizes only. *reach
  * grows to how far beyond p it goes at most. False where memory is out. */
 bool piece_offset(const piece *p, int dimension, double rho, piece *out, double *reach);
-
-static inline vec3 turn_apply(const double r[9], vec3 v) {
-  return vec(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
-             r[6] * v.x + r[7] * v.y + r[8] * v.z);
-}
-
-static inline vec3 turn_back(const double r[9], vec3 v) {
-  return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
-             r[2] * v.x + r[5] * v.y + r[8] * v.z);
-}
-
-/* a b */
-static inline void turn_compose(const double a[9], const double b[9], double out[9]) {
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) out[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
-}
 
 static inline double ball_measure(int dimension, double r) {
   return dimension == 2 ? 3.14159265358979323846 * r * r : 4.18879020478639098462 * r * r * r;

@@ -261,7 +261,7 @@ void piece_spectrum(const piece *p, int dimension, vec3 q, bool gradient, wave_j
     return;
   }
 
-  const vec3 own = turn_back(p->turn, q);
+  const vec3 own = rotate_back(p->turn, q);
   if (p->kind == PIECE_GRID) {
     grid(p, dimension, own, jet);
   } else {
@@ -271,6 +271,6 @@ void piece_spectrum(const piece *p, int dimension, vec3 q, bool gradient, wave_j
                                                       : capsule(p, dimension, own);
     jet->value.re = real.value, jet->re = real.gradient;
   }
-  jet->re = turn_apply(p->turn, jet->re), jet->im = turn_apply(p->turn, jet->im);
+  jet->re = rotate(p->turn, jet->re), jet->im = rotate(p->turn, jet->im);
   shift(q, p->centre, jet);
 }

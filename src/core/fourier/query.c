@@ -35,8 +35,8 @@ static relative relate(const cprox_gap *gap, const cprox_pose *a, const cprox_po
     for (int j = 0; j < 3; j++)
       r.turn[3 * i + j] =
           r.fixed.r[i] * r.turned.r[j] + r.fixed.r[3 + i] * r.turned.r[3 + j] + r.fixed.r[6 + i] * r.turned.r[6 + j];
-  const vec3 origin = turn_back(r.fixed.r, vec_sub(r.turned.position, r.fixed.position));
-  r.x = vec_sub(vec_add(origin, turn_apply(r.turn, r.turned_centre)), r.fixed_centre);
+  const vec3 origin = rotate_back(r.fixed.r, vec_sub(r.turned.position, r.fixed.position));
+  r.x = vec_sub(vec_add(origin, rotate(r.turn, r.turned_centre)), r.fixed_centre);
   return r;
 }
 
@@ -45,9 +45,9 @@ static relative relate(const cprox_gap *gap, const cprox_pose *a, const cprox_po
 static void spread_gradients(const cprox_gap *gap, const relative *r, vec3 by_x, vec3 moment,
                              cprox_gap_result *result) {
   /* about the turned body's origin, in the fixed frame */
-  const vec3 arm = turn_apply(r->turn, r->turned_centre);
+  const vec3 arm = rotate(r->turn, r->turned_centre);
   const vec3 torque = vec_add(moment, vec_cross(arm, by_x));
-  const vec3 position = turn_apply(r->fixed.r, by_x), rotation = turn_back(r->turn, torque);
+  const vec3 position = rotate(r->fixed.r, by_x), rotation = rotate_back(r->turn, torque);
   /* turning the fixed body by w moves the turned one, seen from it, by -w about its own origin */
   const vec3 origin = vec_add(vec_sub(r->x, arm), r->fixed_centre);
   const vec3 reaction = vec_neg(vec_add(torque, vec_cross(origin, by_x)));
@@ -121,7 +121,7 @@ static cprox_status ask(const cprox_gap *gap, const cprox_pose *a, const cprox_p
   else
     out.verdict = decide(out.value, out.error);
   const frame first = gap->info.turned_first ? r.turned : r.fixed;
-  out.position = turn_back(first.r, out.position_b);
+  out.position = rotate_back(first.r, out.position_b);
   out.rotation = out.rotation_b;
   *result = out;
   return status;

@@ -341,12 +341,12 @@ INLINE void polygon_lanes(const turned_piece *t, const block *b, bool gradient, 
 /* Any other kind, one frequency after the other. */
 static void plain_lanes(const gap_job *job, const turned_piece *t, lanes *o) {
   for (int l = 0; l < LANES; l++) {
-    const vec3 q = turn_back(job->turn, vec(o->qx[l], o->qy, o->qz));
+    const vec3 q = rotate_back(job->turn, vec(o->qx[l], o->qy, o->qz));
     wave_jet jet;
     piece_spectrum(t->p, job->gap->info.dimension, q, job->gradient, &jet);
     o->re[l] += jet.value.re, o->im[l] += jet.value.im;
     if (!job->gradient) continue;
-    const vec3 re = turn_apply(job->turn, vec_cross(jet.re, q)), im = turn_apply(job->turn, vec_cross(jet.im, q));
+    const vec3 re = rotate(job->turn, vec_cross(jet.re, q)), im = rotate(job->turn, vec_cross(jet.im, q));
     o->kre[0][l] += re.x, o->kre[1][l] += re.y, o->kre[2][l] += re.z;
     o->kim[0][l] += im.x, o->kim[1][l] += im.y, o->kim[2][l] += im.z;
   }
@@ -470,10 +470,10 @@ INLINE void sum_kinds(gap_job *job, const ready *r) {
 static void prepare_piece(const gap_job *job, const piece *p, turned_piece *t, double **tables) {
   const int dimension = job->gap->info.dimension;
   double own[9];
-  turn_compose(job->turn, p->turn, own);
+  rotation_compose(job->turn, p->turn, own);
   t->p = p;
   t->measure = piece_measure(p, dimension);
-  t->centre = turn_apply(job->turn, p->centre);
+  t->centre = rotate(job->turn, p->centre);
   const bool symmetric = p->kind == PIECE_BOX || (p->kind == PIECE_ELLIPSOID && dimension == 3);
   t->centred = symmetric && vec_norm2(p->centre) == 0.0;
   for (int j = 0; j < 3; j++) t->axis[j] = vec(own[j], own[3 + j], own[6 + j]);
@@ -481,7 +481,7 @@ static void prepare_piece(const gap_job *job, const piece *p, turned_piece *t, d
     for (int j = 0; j < 3; j++) t->phases[j] = make_phase(job, tables, vec_scale(p->size[j], t->axis[j]));
   if (symmetric) t->phases[3] = make_phase(job, tables, t->centre);
   for (size_t e = 0; p->kind == PIECE_POLYGON && e < p->n_corners; e++) {
-    const vec3 a = turn_apply(job->turn, p->corner[e]), b = turn_apply(job->turn, p->corner[(e + 1) % p->n_corners]);
+    const vec3 a = rotate(job->turn, p->corner[e]), b = rotate(job->turn, p->corner[(e + 1) % p->n_corners]);
     t->ends[2 * e] = vec_scale(0.5, vec_add(a, b));
     t->ends[2 * e + 1] = vec_scale(0.5, vec_sub(b, a));
     for (size_t j = 2 * e; j < 2 * e + 2; j++) t->edges[j] = make_phase(job, tables, t->ends[j]);

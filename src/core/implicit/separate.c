@@ -3,6 +3,7 @@
  * method on the sphere. Where that overshoots, as it does on flats, the next direction is that of the nearest point of the hull of
  * what was seen (Gilbert, Johnson, Keerthi 1988). A third of the work of the interior point method where it converges; where it stalls
  * it says so soon, and the interior point method goes on from there. */
+#include "base/rotation.h"
 #include "base/rounding.h"
 #include "convex/simplex.h"
 #include "implicit/implicit.h"
@@ -28,16 +29,6 @@ typedef struct climb {
   vec3 e, f;        /* across u */
 } climb;
 
-static vec3 turn(const double *m, vec3 v) {
-  return vec(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
-             m[6] * v.x + m[7] * v.y + m[8] * v.z);
-}
-
-static vec3 turn_back(const double *m, vec3 v) {
-  return vec(m[0] * v.x + m[3] * v.y + m[6] * v.z, m[1] * v.x + m[4] * v.y + m[7] * v.z,
-             m[2] * v.x + m[5] * v.y + m[8] * v.z);
-}
-
 static vec3 unit(vec3 v) {
   return vec_scale(1.0 / vec_norm(v), v);
 }
@@ -46,9 +37,9 @@ static void look(climb *c, vec3 u) {
   const implicit_query *q = c->q;
   c->u = u;
   const double ha = implicit_closed_support(q->a, vec_neg(u), &c->mu[0], &c->x, c->h[0]);
-  const double hb = implicit_closed_support(q->b, turn_back(q->m, u), &c->mu[1], &c->y, c->h[1]);
+  const double hb = implicit_closed_support(q->b, rotate_back(q->m, u), &c->mu[1], &c->y, c->h[1]);
   c->phi = -ha - hb - vec_dot(u, q->t);
-  c->apart = vec_sub(c->x, vec_add(turn(q->m, c->y), q->t));
+  c->apart = vec_sub(c->x, vec_add(rotate(q->m, c->y), q->t));
 }
 
 static double form(const double h[6], vec3 x, vec3 y) {
@@ -60,7 +51,7 @@ static double form(const double h[6], vec3 x, vec3 y) {
 static bool newton(climb *c, double distance, double step[2]) {
   implicit_across(c->u, &c->e, &c->f);
   const double *m = c->q->m;
-  const vec3 e = turn_back(m, c->e), f = turn_back(m, c->f);
+  const vec3 e = rotate_back(m, c->e), f = rotate_back(m, c->f);
   const double d = 0.5 * (fmax(c->phi, 0.0) + distance);
   const double ee = form(c->h[0], c->e, c->e) + form(c->h[1], e, e) + d;
   const double ef = form(c->h[0], c->e, c->f) + form(c->h[1], e, f);
@@ -89,7 +80,7 @@ static vec3 of_hull(const simplex *hull, bool second) {
 /* Where a stalled search leaves the interior point method to go on: its gap is what may still change. */
 static implicit_warm leave_off(const implicit_query *q, const implicit_answer *answer) {
   if (!(answer->lower > 0.0) || !isfinite(answer->upper)) return (implicit_warm){.usable = false};
-  const vec3 apart = vec_sub(answer->x, vec_add(turn(q->m, answer->y), q->t));
+  const vec3 apart = vec_sub(answer->x, vec_add(rotate(q->m, answer->y), q->t));
   const double change = SEPARATE_CHANGE * (answer->upper - answer->lower);
   return (implicit_warm){
       .usable = true, .x = answer->x, .y = answer->y, .apart = vec_axpy(apart, change, answer->normal)};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The feasible primal-dual interior point method over one or two bodies (doc/implicit.md), until the certificate is as
  * narrow as asked; what one set of settings cannot finish, the next one tries. */
+#include "base/rotation.h"
 #include "base/rounding.h"
 #include "implicit/barrier.h"
 
@@ -40,16 +41,6 @@ typedef struct solve {
   double rhs[SOLVE_MOST_VARIABLES];
 } solve;
 
-static vec3 turn(const double *m, vec3 v) {
-  return vec(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
-             m[6] * v.x + m[7] * v.y + m[8] * v.z);
-}
-
-static vec3 turn_back(const double *m, vec3 v) {
-  return vec(m[0] * v.x + m[3] * v.y + m[6] * v.z, m[1] * v.x + m[4] * v.y + m[7] * v.z,
-             m[2] * v.x + m[5] * v.y + m[8] * v.z);
-}
-
 size_t implicit_memory(const implicit *a, const implicit *b) {
   size_t rows = (size_t)implicit_count(a), terms = (size_t)a->n_terms;
   if (b) {
@@ -65,7 +56,7 @@ static vec3 solve_apart(const solve *s) {
   const implicit_query *q = s->q;
   if (q->far) return vec_neg(q->t);
   vec3 e = vec_sub(s->side[0].z, q->t);
-  if (s->sides == 2) e = vec_sub(e, turn(q->m, s->side[1].z));
+  if (s->sides == 2) e = vec_sub(e, rotate(q->m, s->side[1].z));
   if (q->moving) e = vec_axpy(e, -s->time.tau, q->velocity);
   return e;
 }
@@ -110,7 +101,7 @@ static bool solve_begin(solve *s, const solve_settings *settings) {
   vec3 towards = q->t;
   if (q->far) towards = vec_scale(2.0 * q->a->radius, q->t);
   if (q->moving) towards = vec_axpy(towards, s->time.tau, q->velocity);
-  const vec3 back = s->sides == 2 ? vec_neg(turn_back(q->m, towards)) : vec(0, 0, 0);
+  const vec3 back = s->sides == 2 ? vec_neg(rotate_back(q->m, towards)) : vec(0, 0, 0);
 
   /* mu rests on the distance of the starting points */
   if (!solve_begin_side(&s->side[0], towards, settings->start, 1.0, settings->lift_below)) return false;
@@ -164,7 +155,7 @@ static void solve_assemble(solve *s, double target) {
   s->rhs[0] = system.rhs.x, s->rhs[1] = system.rhs.y, s->rhs[2] = system.rhs.z;
   if (s->sides == 1) return;
 
-  system = (barrier_system){.h = {1, 0, 0, 1, 0, 1}, .rhs = turn_back(q->m, s->e)};
+  system = (barrier_system){.h = {1, 0, 0, 1, 0, 1}, .rhs = rotate_back(q->m, s->e)};
   barrier_assemble(&s->side[1], target, &system);
   put3(s->matrix, 3, system.h);
   s->rhs[3] = system.rhs.x, s->rhs[4] = system.rhs.y, s->rhs[5] = system.rhs.z;
@@ -172,7 +163,7 @@ static void solve_assemble(solve *s, double target) {
     for (int j = 0; j < 3; j++) s->matrix[3 + i][j] = -q->m[3 * j + i];
   if (!q->moving) return;
 
-  const vec3 v = q->velocity, back = turn_back(q->m, v);
+  const vec3 v = q->velocity, back = rotate_back(q->m, v);
   const solve_time *t = &s->time;
   const double row[6] = {-v.x, -v.y, -v.z, back.x, back.y, back.z};
   for (int j = 0; j < 6; j++) s->matrix[6][j] = row[j];
@@ -250,7 +241,7 @@ static void certify_along(solve *s, vec3 n, double share, barrier_reading readin
   const double ha = barrier_height(&s->side[0], n, share, reading);
   double apart = vec_dot(n, q->t), others = 0.0;
   if (q->moving) apart += fmin(0.0, vec_dot(n, q->velocity) * q->duration);
-  if (s->sides == 2) others = barrier_height(&s->side[1], vec_neg(turn_back(q->m, n)), share, reading);
+  if (s->sides == 2) others = barrier_height(&s->side[1], vec_neg(rotate_back(q->m, n)), share, reading);
   const double sizes = vec_norm(q->t) + fabs(ha) + fabs(others) + (s->sides == 2 ? q->b->radius : 0.0) +
                        (q->moving ? vec_norm(q->velocity) * q->duration : 0.0);
   const double lower = apart - ha - others - ROUND_UP * 8.0 * ROUND_U * sizes;
@@ -292,9 +283,9 @@ static bool solve_overlaps(solve *s) {
   if (s->sides != 2) return false;
   vec3 offset = q->t;
   if (q->moving) offset = vec_axpy(offset, s->time.tau, q->velocity);
-  const vec3 x = vec_scale(0.5, vec_add(s->side[0].z, vec_add(turn(q->m, s->side[1].z), offset)));
+  const vec3 x = vec_scale(0.5, vec_add(s->side[0].z, vec_add(rotate(q->m, s->side[1].z), offset)));
   /* drawn towards each centre's opposite by the floor, it would still be inside */
-  const vec3 y = turn_back(q->m, vec_sub(x, offset));
+  const vec3 y = rotate_back(q->m, vec_sub(x, offset));
   const double grow_a = 1.0 + s->floor / q->a->inner, grow_b = 1.0 + s->floor / q->b->inner;
   if (!(implicit_value(q->a, vec_scale(grow_a, x)) < 0.0 && implicit_value(q->b, vec_scale(grow_b, y)) < 0.0))
     return false;
@@ -318,7 +309,7 @@ static double solve_gap(solve *s, double *mu) {
   double gap = vec_norm(residual) * q->a->radius;
   if (s->sides == 2) {
     const barrier_state b = barrier_look(&s->side[1]);
-    residual = vec_sub(b.force, turn_back(q->m, s->e));
+    residual = vec_sub(b.force, rotate_back(q->m, s->e));
     gap += vec_norm(residual) * q->b->radius;
     products += b.products;
     pairs += b.pairs;

@@ -5,6 +5,7 @@
 #ifndef CPROX_KINEMATICS_JOINT_TREE_H
 #define CPROX_KINEMATICS_JOINT_TREE_H
 
+#include "base/rotation.h"
 #include "curve_proximity/cprox/robot.h"
 #include "kinematics/link_model.h"
 #include "shape/body.h"
@@ -60,15 +61,11 @@ struct cprox_robot {
 #define ROUND_JOINT 104.0
 
 static inline vec3 placement_turn(const placement *at, vec3 v) {
-  const double *r = at->r;
-  return vec(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
-             r[6] * v.x + r[7] * v.y + r[8] * v.z);
+  return rotate(at->r, v);
 }
 
 static inline vec3 placement_turn_back(const placement *at, vec3 v) {
-  const double *r = at->r;
-  return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
-             r[2] * v.x + r[5] * v.y + r[8] * v.z);
+  return rotate_back(at->r, v);
 }
 
 static inline vec3 placement_apply(const placement *at, vec3 v) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "narrowphase/convex_mesh.h"
 
+#include "base/rotation.h"
 #include "base/rounding.h"
 #include "bvh/bvh.h"
 #include "bvh/winding.h"
@@ -15,16 +16,6 @@ typedef struct search {
   pair_answer best;
   double lower;
 } search;
-
-static vec3 turn(const double r[9], vec3 v) {
-  return vec(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
-             r[6] * v.x + r[7] * v.y + r[8] * v.z);
-}
-
-static vec3 turn_back(const double r[9], vec3 v) {
-  return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
-             r[2] * v.x + r[5] * v.y + r[8] * v.z);
-}
 
 /* What an element may leave of what all of them may. */
 static const double FINER = 1.0 / 16.0;
@@ -114,7 +105,7 @@ static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
   if (!(vec_norm2(answer.normal) > 0.5)) return;
   const vec3 n = vec_neg(answer.normal);
   const convex *k = s->convex_side->shape;
-  const double reach = k->ops->support(k, turn_back(s->place->r, answer.normal), NULL, NULL);
+  const double reach = k->ops->support(k, rotate_back(s->place->r, answer.normal), NULL, NULL);
   seeker->known = true;
   seeker->normal = n;
   seeker->least = vec_dot(n, s->place->t) - reach;
@@ -163,7 +154,7 @@ static void any_convex(search *s, pair_answer *answer) {
   vec3 at;
   if (!body->winding || !(answer->lower + margins(s) > rounding)) return;
   k->ops->support(k, vec(1, 0, 0), NULL, &at);
-  const vec3 inner = vec_add(turn(s->place->r, at), s->place->t);
+  const vec3 inner = vec_add(rotate(s->place->r, at), s->place->t);
   if (winding_is_inside(body->winding, body->tree, inner)) overlap(s, inner, answer);
 }
 

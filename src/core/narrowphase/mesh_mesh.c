@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "narrowphase/mesh_mesh.h"
 
+#include "base/rotation.h"
 #include "base/rounding.h"
 #include "bvh/bvh.h"
 #include "bvh/winding.h"
@@ -36,24 +37,14 @@ typedef struct dual {
   bool out_of_memory;
 } dual;
 
-static vec3 turn(const double r[9], vec3 v) {
-  return vec(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
-             r[6] * v.x + r[7] * v.y + r[8] * v.z);
-}
-
-static vec3 turn_back(const double r[9], vec3 v) {
-  return vec(r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
-             r[2] * v.x + r[5] * v.y + r[8] * v.z);
-}
-
 static const tree *tree_of(const dual *d, int which) {
   return d->side[which]->body->tree;
 }
 
 /* A point of one tree's frame, seen in the other's. */
 static vec3 across(const dual *d, int from, vec3 p) {
-  if (from == 1) return vec_add(turn(d->place->r, p), d->place->t);
-  return turn_back(d->place->r, vec_sub(p, d->place->t));
+  if (from == 1) return vec_add(rotate(d->place->r, p), d->place->t);
+  return rotate_back(d->place->r, vec_sub(p, d->place->t));
 }
 
 /* ---- the heap --------------------------------------------------------------------------------------------------------- */
@@ -102,7 +93,7 @@ static void measure(dual *d, tree_place at, tree_place there) {
   const vec3 own = pair_element_shape(tree_of(d, 0), at, vertices[0], &shape[0]);
   const vec3 other = pair_element_shape(tree_of(d, 1), there, vertices[1], &shape[1]);
   pair_placement place = *d->place;
-  const vec3 turned = turn(place.r, other);
+  const vec3 turned = rotate(place.r, other);
   place.t = vec_sub(vec_add(place.t, turned), own);
   place.error +=
       ROUND_UP * ROUND_U *

@@ -2,6 +2,7 @@
 /* Static pairs: every pair of convex parts by the cheapest way that knows it exactly, the nearest wins. */
 #include "convex/pair.h"
 
+#include "base/rotation.h"
 #include "base/rounding.h"
 #include "base/workspace.h"
 #include "convex/feature.h"
@@ -54,9 +55,7 @@ static vec3 pair_to_world(const pair_side *a, vec3 p) {
 static void pair_halfspace(const pair_side *a, const pair_side *b, const pair_placement *place, pair_answer *answer) {
   const convex *h = a->shape;
   const vec3 n = vec(h->size[0], h->size[1], h->size[2]);
-  const vec3 down = vec(-(place->r[0] * n.x + place->r[3] * n.y + place->r[6] * n.z),
-                        -(place->r[1] * n.x + place->r[4] * n.y + place->r[7] * n.z),
-                        -(place->r[2] * n.x + place->r[5] * n.y + place->r[8] * n.z));
+  const vec3 down = vec_neg(rotate_back(place->r, n));
   vec3 at;
   *answer = (pair_answer){.steps = 1, .supports = 1};
   const double lowest = -b->shape->ops->support(b->shape, down, NULL, &at);
@@ -70,10 +69,7 @@ static void pair_halfspace(const pair_side *a, const pair_side *b, const pair_pl
   answer->lower = distance - answer->rounding;
   answer->upper = distance + answer->rounding;
 
-  const double *r = place->r;
-  const vec3 turned = vec(r[0] * at.x + r[1] * at.y + r[2] * at.z, r[3] * at.x + r[4] * at.y + r[5] * at.z,
-                          r[6] * at.x + r[7] * at.y + r[8] * at.z);
-  answer->on_b = answer->common = vec_axpy(vec_add(turned, place->t), -b->margin, n);
+  answer->on_b = answer->common = vec_axpy(vec_add(rotate(place->r, at), place->t), -b->margin, n);
   answer->on_a = vec_axpy(answer->on_b, -distance, n);
   answer->normal = vec_neg(n);
 }
@@ -164,11 +160,7 @@ static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_pla
   pair_take(&found, a, b, rounding, answer);
   if (!found.overlap) {
     /* y in a's frame, its margin towards a */
-    const double *r = place->r;
-    const vec3 turned = vec(r[0] * found.y.x + r[1] * found.y.y + r[2] * found.y.z,
-                            r[3] * found.y.x + r[4] * found.y.y + r[5] * found.y.z,
-                            r[6] * found.y.x + r[7] * found.y.y + r[8] * found.y.z);
-    answer->on_b = vec_axpy(vec_add(turned, place->t), b->margin, answer->normal);
+    answer->on_b = vec_axpy(vec_add(rotate(place->r, found.y), place->t), b->margin, answer->normal);
   }
   return true;
 }
