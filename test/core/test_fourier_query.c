@@ -160,7 +160,7 @@ CASE(early_exit_and_lanes_change_no_verdict) {
     make_pair(i / 2, s);
     const int dimension = s[0]->dimension;
     cprox_gap *gap = gap_of(s[0], s[1], i % 2 ? CPROX_GAP_TUNED : CPROX_GAP_CERTIFIED, samples_of(i / 2, 33));
-    const gap_lanes widest = gap->lanes;
+    const simd_level widest = gap->simd;
     for (size_t k = 0; k < cases_of(i / 2, 200); k++) {
       const cprox_pose p[2] = {random_pose(&r, dimension, 0.9), random_pose(&r, dimension, 0.9)};
       cprox_gap_result fast, full, other;
@@ -172,11 +172,11 @@ CASE(early_exit_and_lanes_change_no_verdict) {
       assert_true(fabs(fast.value - full.value) <= fast.error + full.error || full.verdict == CPROX_GAP_FAR);
       fewer += fast.terms < full.terms;
       all += full.terms > 0;
-      for (gap_lanes w = GAP_LANES_128; w < widest; w++) {
-        gap->lanes = w;
+      for (simd_level w = SIMD_BASE; w < widest; w++) {
+        gap->simd = w;
         MADE(cprox_gap_evaluate(gap, &p[0], &p[1], ws, &other));
         assert_memory_equal(&other, &full, sizeof full);
-        gap->lanes = widest;
+        gap->simd = widest;
       }
     }
     cprox_gap_free(gap);

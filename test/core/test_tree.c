@@ -49,7 +49,7 @@ CASE(nearest_is_that_of_all_elements_for_every_kernel) {
       for (uint32_t e = 0; e < t->n_packs * TREE_LANES; e++)
         least = fmin(least, distance_to(t, (tree_place){e / TREE_LANES, e % TREE_LANES}, x));
       tree_hit first = {0};
-      for (int j = 0; j < tree_kernel_count(); j++) {
+      for (simd_level j = SIMD_BASE; j <= simd_of_machine(); j++) {
         const tree_hit hit = tree_kernel_at(j)->nearest(t, x, INFINITY);
         const double rounding = TREE_ROUND * 1.2e-16 * (vec_norm(x) + t->scale + hit.upper);
         assert_true(hit.found && hit.lower - rounding <= least && least <= hit.upper + rounding);
@@ -93,10 +93,10 @@ CASE(bounds_hold_over_the_hull_and_agree_between_kernels) {
     const vec3 at = vec_axpy(interval.x, 1.0 / weights, hull);
     for (uint32_t pack = 0; pack < t->n_packs; pack++) {
       tree_lanes lanes, other;
-      tree_kernel_at(0)->measure(t, pack | TREE_LEAF, TREE_ALL_LANES, &interval, &lanes);
+      tree_kernel_at(SIMD_BASE)->measure(t, pack | TREE_LEAF, TREE_ALL_LANES, &interval, &lanes);
       for (uint32_t l = 0; l < TREE_LANES; l++)
         assert_true(lanes.bound[l] <= distance_to(t, (tree_place){pack, l}, at) + 1e-14);
-      for (int j = 1; j < tree_kernel_count(); j++) {
+      for (simd_level j = SIMD_AVX2; j <= simd_of_machine(); j++) {
         tree_kernel_at(j)->measure(t, pack | TREE_LEAF, TREE_ALL_LANES, &interval, &other);
         assert_memory_equal(lanes.bound, other.bound, sizeof lanes.bound);
       }
@@ -145,15 +145,15 @@ CASE(bounds_of_nodes_hold_for_what_is_below_them) {
     boxed.slabs = NULL;
     for (uint32_t node = 0; node < t->n_nodes; node++) {
       tree_lanes lanes, other, without;
-      tree_kernel_at(0)->measure(t, node, TREE_ALL_LANES, &interval, &lanes);
-      tree_kernel_at(0)->measure(&boxed, node, TREE_ALL_LANES, &interval, &without);
+      tree_kernel_at(SIMD_BASE)->measure(t, node, TREE_ALL_LANES, &interval, &lanes);
+      tree_kernel_at(SIMD_BASE)->measure(&boxed, node, TREE_ALL_LANES, &interval, &without);
       for (uint32_t l = 0; l < TREE_LANES; l++) {
         assert_true(lanes.bound[l] <= least_below(t, t->nodes[node].child[l], at) + rounding);
         assert_true(lanes.bound[l] >= without.bound[l]);
         all += torus;
         better += torus && lanes.bound[l] > without.bound[l];
       }
-      for (int j = 1; j < tree_kernel_count(); j++) {
+      for (simd_level j = SIMD_AVX2; j <= simd_of_machine(); j++) {
         tree_kernel_at(j)->measure(t, node, TREE_ALL_LANES, &interval, &other);
         assert_memory_equal(lanes.bound, other.bound, sizeof lanes.bound);
       }

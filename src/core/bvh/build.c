@@ -39,6 +39,6 @@ tree *tree_create(const tree_source *source, tree_build build) {
     tree_free(t);
     return NULL;
   }
-  t->kernel = tree_kernel_at(tree_kernel_count() - 1);
+  t->kernel = tree_kernel_at(simd_of_machine());
   return t;
 }

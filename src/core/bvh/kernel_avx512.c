@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "bvh/kernels.h"
 
-#if defined(__x86_64__)
-#define TREE_TARGET __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")))
+#ifdef SIMD_HAS_LEVELS
+#define TREE_TARGET SIMD_TARGET_AVX512
 #define TREE_KERNEL tree_kernel_avx512
 #include "bvh/kernel.h"
 #endif

@@ -51,7 +51,7 @@ typedef struct polygon_lanes {
   double height[LANES], line[LANES], square[LANES], edge[LANES];
 } polygon_lanes;
 
-LANES_DISPATCHED
+SIMD_CLONES
 static void polygon_look(const convex *shape, double px, double py, polygon_lanes *best) {
   const int32_t stride = shape->padded;
   polygon_lanes b;

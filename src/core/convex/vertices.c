@@ -11,7 +11,7 @@ typedef int64_t choice __attribute__((vector_size(32)));
 
 enum { WIDTH = 4, LANES = 8 }; /* the arrays are padded to a multiple of LANES */
 
-LANES_DISPATCHED
+SIMD_CLONES
 int32_t vertices_extreme(const convex *shape, vec3 d, double *most) {
   const lanes dx = {d.x, d.x, d.x, d.x}, dy = {d.y, d.y, d.y, d.y}, dz = {d.z, d.z, d.z, d.z};
   const double *x = shape->x, *y = shape->y, *z = shape->z;

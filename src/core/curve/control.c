@@ -27,7 +27,7 @@ static inline void split_few(double *left, double *right, size_t degree, double 
   }
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 static double least_of_many(const double *points, size_t degree, vec3 n) {
   const double *x = points, *y = points + degree + 1, *z = y + degree + 1;
   double least = INFINITY;
@@ -56,7 +56,7 @@ size_t control_lowest(const double *points, size_t degree, vec3 n) {
   return lowest;
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 double control_magnitude(const double *points, size_t degree) {
   const double *x = points, *y = points + degree + 1, *z = y + degree + 1;
   double most = 0.0;
@@ -68,7 +68,7 @@ double control_magnitude(const double *points, size_t degree) {
   return sqrt(most);
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 static void split_many(double *left, double *right, size_t degree, double s) {
   const double r = 1.0 - s;
   for (int k = 0; k < 3; k++) {
@@ -94,7 +94,7 @@ double control_split(double *left, double *right, size_t degree, double s, doubl
   return ROUND_UP * levels * ROUND_U * 1.7320508075688774 * magnitude;
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 double control_distance_from(const double *points, size_t degree, const double *square, vec3 centre, const vec3 *axis,
                              double *scratch) {
   const double *restrict x = points, *restrict y = points + degree + 1, *restrict z = y + degree + 1;

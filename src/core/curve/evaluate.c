@@ -32,7 +32,7 @@ void curve_fill_tables(size_t degree, double *tables) {
 
 /* With m = n - 2, the last three de Casteljau points are Q_j = sum_k B_k^m(s) P_(k+j), j = 0, 1, 2: nine sums of m + 1 products, four
  * terms at a time. */
-LANES_DISPATCHED
+SIMD_CLONES
 static void last_three(const double *x, const double *y, const double *z, size_t m, const double *binomial, double s,
                        vec3 q[3]) {
   /* powers of r = 1 - s; the last group may begin before the array's first */

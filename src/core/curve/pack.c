@@ -3,7 +3,7 @@
 
 #include "simd/dispatch.h"
 
-LANES_DISPATCHED
+SIMD_CLONES
 void curve_pack_reach(const curve_pack *pack, vec3 n, vec3 from, double least[CURVE_PACK]) {
   const double *restrict ax = pack->ax, *restrict ay = pack->ay, *restrict az = pack->az;
   const double *restrict bx = pack->bx, *restrict by = pack->by, *restrict bz = pack->bz;
@@ -16,7 +16,7 @@ void curve_pack_reach(const curve_pack *pack, vec3 n, vec3 from, double least[CU
   }
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 void curve_pack_distance(const curve_pack *pack, vec3 from, vec3 to, double distance[CURVE_PACK],
                          double along[CURVE_PACK]) {
   const double *restrict ax = pack->ax, *restrict ay = pack->ay, *restrict az = pack->az;

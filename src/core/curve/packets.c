@@ -9,7 +9,7 @@ enum { SAMPLES = CHORDS + LANES };
 /* Below this the square of a length may have lost its digits, and its reciprocal overflows. */
 static const double LEAST_SQUARE = 1e-280;
 
-LANES_DISPATCHED
+SIMD_CLONES
 void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, double radius, double *lower) {
   const double *restrict x = balls->x, *restrict y = balls->y, *restrict z = balls->z;
   const double *restrict reach = balls->reach, *restrict sizes = balls->sizes;
@@ -103,7 +103,7 @@ static inline double least_of(const double square[LANES], uint32_t *which) {
   return best[0];
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 double lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, uint32_t first, vec3 from,
                     lanes_chords *chords, uint32_t *nearest) {
   /* begun by their first terms: so many sums stay in registers */
@@ -147,7 +147,7 @@ double lanes_points(const double *basis, const vec3 *points, size_t degree, bool
   return least_of(square, nearest);
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 void lanes_join(lanes_chords *chords) {
 #pragma omp simd
   for (int k = 0; k < CHORDS; k++) {
@@ -160,7 +160,7 @@ void lanes_join(lanes_chords *chords) {
   }
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 double lanes_nearest_point(const lanes_chords *c, uint32_t first, vec3 from, uint32_t *nearest) {
   double square[LANES];
   const double *restrict x = c->x + first, *restrict y = c->y + first, *restrict z = c->z + first;
@@ -172,7 +172,7 @@ double lanes_nearest_point(const lanes_chords *c, uint32_t first, vec3 from, uin
   return least_of(square, nearest);
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 double lanes_first_look(const double *basis, const double *x, const double *y, const double *z, size_t degree) {
   /* begun by their first terms: so many sums stay in registers */
   double px[CHORDS], py[CHORDS], pz[CHORDS], square[CHORDS + 1];
@@ -228,7 +228,7 @@ static inline void sample(const double *basis, const double *points, size_t degr
     for (size_t k = CHORDS; k < SAMPLES; k++) at[c][k] = points[c * (degree + 1) + degree];
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 void lanes_first_pair(const lanes_piece *first, const lanes_piece *second, double s[2]) {
   double p[3][SAMPLES], q[3][SAMPLES], least[LANES], which[LANES];
   sample(first->basis, first->points, first->degree, p);
@@ -255,7 +255,7 @@ void lanes_first_pair(const lanes_piece *first, const lanes_piece *second, doubl
   s[1] = j < CHORDS ? (double)j / CHORDS : 1.0;
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 double lanes_closest(const lanes_chords *c, vec3 point, size_t *chord, double *along) {
   double square[CHORDS], at[CHORDS];
 #pragma omp simd

@@ -16,7 +16,7 @@ void lanes_boxes(const lanes_chords *c, lanes_box boxes[PACKET_INTERVALS]) {
   }
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n, double radius, double slack,
                       double *lower) {
   const double *restrict x = balls->x, *restrict y = balls->y, *restrict z = balls->z;
@@ -49,7 +49,7 @@ void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n
   }
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 void lanes_block_bounds(const lanes_blocks *blocks, const lanes_box *boxes, size_t n, double radius, double slack,
                         double *lower) {
   const double *restrict low_x = blocks->low[0], *restrict low_y = blocks->low[1], *restrict low_z = blocks->low[2];

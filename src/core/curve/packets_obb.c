@@ -9,7 +9,7 @@ enum { STEPS = 2 };
 /* Squares below this may have lost their digits. */
 static const double LEAST_SQUARE = 1e-280;
 
-LANES_DISPATCHED
+SIMD_CLONES
 double lanes_least(const double *values, uint32_t *which) {
   double best[LANES];
 #pragma omp simd
@@ -27,7 +27,7 @@ static inline double held(double x, double half) {
   return x > half ? half : x;
 }
 
-LANES_DISPATCHED
+SIMD_CLONES
 void lanes_see_brick(const lanes_chords *c, const lanes_brick *brick, lanes_sight *sight) {
   const double *r = brick->r;
   const vec3 at = brick->position, m = brick->centre, h = brick->half;

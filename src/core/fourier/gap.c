@@ -255,7 +255,7 @@ cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, siz
     cprox_gap_free(made);
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a gap of n = %d", 2 * plan->N + 1);
   }
-  made->lanes = gap_lanes_of_machine();
+  made->simd = simd_of_machine();
   made->info.terms = count_terms(made);
   made->info.bytes = sizeof *made + made->n_blocks * (sizeof *made->blocks + (2 * LANES + 1) * sizeof *made->c);
   *gap = made;

@@ -5,6 +5,7 @@
 
 #include "fourier/kernel.h"
 #include "fourier/solid.h"
+#include "simd/dispatch.h"
 
 /* Lattice points with one k_y, k_z and LANES consecutive k_x are summed side by side. */
 enum { LANES = 8 };
@@ -23,9 +24,6 @@ typedef struct gap_plan {
   bool turned_first; /* whether the first solid is the one to turn; the lattice lies in the other's frame */
 } gap_plan;
 
-/* How wide the machine adds; results are the same bit for bit. */
-typedef enum gap_lanes { GAP_LANES_128, GAP_LANES_256, GAP_LANES_512 } gap_lanes;
-
 struct cprox_gap {
   cprox_gap_info info;
   double inverse;     /* of the threshold times L^d: the sum times this is the value */
@@ -38,10 +36,10 @@ struct cprox_gap {
   cprox_solid *turned;       /* offset, about its centre; NULL: a ball, folded into the coefficients */
   int N;
   size_t n_blocks;
-  block *blocks; /* by descending energy of the coefficients */
-  double *c;     /* 2 LANES a block: real parts, imaginary parts */
-  double *tail;  /* n_blocks + 1: 2 sqrt(sum over the blocks from here on of |C|²) */
-  gap_lanes lanes;
+  block *blocks;   /* by descending energy of the coefficients */
+  double *c;       /* 2 LANES a block: real parts, imaginary parts */
+  double *tail;    /* n_blocks + 1: 2 sqrt(sum over the blocks from here on of |C|²) */
+  simd_level simd; /* how wide sums are computed; results are the same bit for bit */
 };
 
 /* One sum: what goes in, and what comes out. */
@@ -60,7 +58,6 @@ typedef struct gap_job {
 /* Bytes of scratch memory a sum needs. */
 size_t gap_scratch_size(const cprox_gap *gap);
 
-gap_lanes gap_lanes_of_machine(void);
 void gap_sum(gap_job *job);
 
 /* Makes a gap of solids that are offset and centred already (both are taken over, also on failure). radius and centre: those of

@@ -5,9 +5,6 @@
 
 #define TAU 6.28318530717958647693
 
-#if defined(__GNUC__) && defined(__x86_64__)
-#define HAVE_TARGETS 1
-#endif
 #define INLINE static inline __attribute__((always_inline))
 
 /* Blocks between two looks at whether the sum may stop. */
@@ -522,35 +519,27 @@ static ready prepare(const gap_job *job) {
   return r;
 }
 
-#ifdef HAVE_TARGETS
-__attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512"))) static void sum_512(gap_job *job,
-                                                                                                 const ready *r) {
+#ifdef SIMD_HAS_LEVELS
+SIMD_TARGET_AVX512 static void sum_512(gap_job *job, const ready *r) {
   sum_kinds(job, r);
 }
-__attribute__((target("avx2"))) static void sum_256(gap_job *job, const ready *r) {
+
+SIMD_TARGET_AVX2 static void sum_256(gap_job *job, const ready *r) {
   sum_kinds(job, r);
 }
 #endif
+
 static void sum_128(gap_job *job, const ready *r) {
   sum_kinds(job, r);
 }
 
 void gap_sum(gap_job *job) {
   const ready r = prepare(job);
-  switch (job->gap->lanes) {
-#ifdef HAVE_TARGETS
-    case GAP_LANES_512: sum_512(job, &r); break;
-    case GAP_LANES_256: sum_256(job, &r); break;
+  switch (job->gap->simd) {
+#ifdef SIMD_HAS_LEVELS
+    case SIMD_AVX512: sum_512(job, &r); break;
+    case SIMD_AVX2: sum_256(job, &r); break;
 #endif
     default: sum_128(job, &r);
   }
-}
-
-gap_lanes gap_lanes_of_machine(void) {
-#ifdef HAVE_TARGETS
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-    return GAP_LANES_512;
-  if (__builtin_cpu_supports("avx2")) return GAP_LANES_256;
-#endif
-  return GAP_LANES_128;
 }

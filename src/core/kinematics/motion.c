@@ -62,7 +62,7 @@ static inline void lanes_differentiate(lane_row *c, size_t degree, double factor
 }
 
 /* `error` is that of the coefficients; row k begins at out + k * stride. */
-LANES_DISPATCHED
+SIMD_CLONES
 static void fill_lanes(lane_row *c, size_t degree, double a, double b, const double *error, double *out,
                        size_t stride) {
   const double n = (double)degree;

@@ -79,7 +79,7 @@ int32_t crowd_pairs(robot_scene *s, int32_t part, uint32_t box, size_t *count) {
 /* ---- boxes ------------------------------------------------------------------------------------------------------------------ */
 
 /* Of a point from eight boxes: their least coordinates, then their greatest, a row for each axis. */
-LANES_DISPATCHED
+SIMD_CLONES
 static void from_boxes(const double *rows, vec3 p, double *distance) {
   const double *restrict r = rows;
   double *restrict out = distance;
