@@ -49,28 +49,12 @@ static search_node frontier_pop(frontier *f) {
   return top;
 }
 
-double search_width(const search_goal *goal, double upper) {
-  return greater(goal->epsilon, goal->relative_epsilon * fabs(upper));
-}
-
 static double known_upper(const search_goal *goal, const search_best *best) {
   return lesser(best->upper, goal->ceiling);
 }
 
-/* The lower bound from which on a node needs no more work. */
-static double settling_bound(const search_goal *goal, const search_best *best) {
-  if (goal->limit >= 0.0) return goal->limit;
-  const double upper = known_upper(goal, best);
-  return upper - search_width(goal, upper);
-}
-
-static bool is_settled(const search_goal *goal, const search_best *best, const search_node *node) {
-  const double bound = settling_bound(goal, best);
-  return goal->limit >= 0.0 ? node->lower > bound : node->lower >= bound;
-}
-
 /* Neither above the limit nor able to say more: closer to the best point than epsilon (verdicts) or than rounding. */
-static bool is_stuck(const search_goal *goal, const search_best *best, const search_node *node) {
+static bool is_unresolved(const search_goal *goal, const search_best *best, const search_node *node) {
   const double gap = known_upper(goal, best) - node->lower;
   const double floor = 2.0 * (node->slack + best->slack);
   return gap <= floor || (goal->limit >= 0.0 && gap <= goal->epsilon);
@@ -87,40 +71,40 @@ static double horizon(const search_goal *goal, const search_best *best) {
   return best->upper <= goal->limit + goal->epsilon ? lesser(best->at, goal->horizon) : goal->horizon;
 }
 
-typedef enum node_fate { NODE_OPEN, NODE_SETTLED, NODE_STUCK, NODE_BEYOND } node_fate;
+typedef enum node_state { NODE_OPEN, NODE_PRUNED, NODE_UNRESOLVED, NODE_BEYOND } node_state;
 
-static node_fate fate_of(const search_goal *goal, const search_best *best, const search_node *node) {
-  if (is_settled(goal, best, node)) return NODE_SETTLED;
+static node_state state_of(const search_goal *goal, const search_best *best, const search_node *node) {
+  if (search_is_pruned(goal, best->upper, node->lower)) return NODE_PRUNED;
   if (goal->order == SEARCH_LEFT_TO_RIGHT) return node->start >= horizon(goal, best) ? NODE_BEYOND : NODE_OPEN;
-  return is_stuck(goal, best, node) ? NODE_STUCK : NODE_OPEN;
+  return is_unresolved(goal, best, node) ? NODE_UNRESOLVED : NODE_OPEN;
 }
 
 /* A child that is settled at birth leaves at once. */
 static bool enter(const search_goal *goal, const search_oracle *oracle, const search_node *child, frontier *open,
                   search_outcome *outcome) {
-  if (!is_settled(goal, &outcome->best, child)) return frontier_push(open, child);
+  if (!search_is_pruned(goal, outcome->best.upper, child->lower)) return frontier_push(open, child);
   outcome->lower = lesser(child->lower, outcome->lower);
   oracle->release(oracle->self, child);
   return true;
 }
 
-/* One node: re-bound, probe, re-bound, split. Sets *fate to why it left the search, or NODE_OPEN if its children entered it. */
+/* One node: re-bound, probe, re-bound, split. Sets *state to why it left the search, or NODE_OPEN if its children entered it. */
 static cprox_status work_on(const search_goal *goal, const search_oracle *oracle, search_node *node, frontier *open,
-                            search_outcome *outcome, node_fate *fate) {
+                            search_outcome *outcome, node_state *state) {
   outcome->nodes++;
 
   /* measure, unless the best point lies inside */
   const cprox_status probed = oracle->probe(oracle->self, node, &outcome->best);
   if (probed < 0) return probed;
-  *fate = fate_of(goal, &outcome->best, node);
-  if (*fate != NODE_OPEN || is_answered(goal, &outcome->best)) return CPROX_OK;
+  *state = state_of(goal, &outcome->best, node);
+  if (*state != NODE_OPEN || is_answered(goal, &outcome->best)) return CPROX_OK;
 
   /* cut at the best point where it lies inside, else in the middle */
   search_node child[SEARCH_MAX_CHILDREN];
   const int children = oracle->split(oracle->self, node, child);
   if (children < 0) return (cprox_status)children;
   if (children == 0) {
-    *fate = NODE_STUCK;
+    *state = NODE_UNRESOLVED;
     return CPROX_OK;
   }
 
@@ -146,35 +130,36 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
     search_node node = frontier_pop(&open);
 
     /* what is known already may settle it, or make another node the more promising one */
-    const bool settled_all = best_first && is_settled(goal, &outcome->best, &node); /* the others lie higher still */
-    if (fate_of(goal, &outcome->best, &node) == NODE_OPEN) {
-      const double bound = oracle->filter(oracle->self, &node, settling_bound(goal, &outcome->best));
+    const bool pruned_all =
+        best_first && search_is_pruned(goal, outcome->best.upper, node.lower); /* the others lie higher still */
+    if (state_of(goal, &outcome->best, &node) == NODE_OPEN) {
+      const double bound = oracle->filter(oracle->self, &node, search_pruning_bound(goal, outcome->best.upper));
       if (bound > node.lower) node.lower = bound;
     }
-    node_fate fate = fate_of(goal, &outcome->best, &node);
-    if (fate == NODE_OPEN && best_first && open.count > 0 && node.lower > open.nodes[0].lower) {
+    node_state state = state_of(goal, &outcome->best, &node);
+    if (state == NODE_OPEN && best_first && open.count > 0 && node.lower > open.nodes[0].lower) {
       if (!frontier_push(&open, &node)) return CPROX_MEMORY;
       continue;
     }
 
-    if (fate == NODE_OPEN) {
+    if (state == NODE_OPEN) {
       const bool poll = goal->stop && outcome->nodes % STOP_POLL_INTERVAL == 0;
       if (poll && goal->stop(goal->stop_user)) {
         status = CPROX_STOPPED;
       } else if (outcome->nodes >= goal->max_nodes) {
         status = CPROX_BUDGET;
       } else {
-        const cprox_status worked = work_on(goal, oracle, &node, &open, outcome, &fate);
+        const cprox_status worked = work_on(goal, oracle, &node, &open, outcome, &state);
         if (worked < 0) return worked;
-        if (fate == NODE_OPEN && !is_answered(goal, &outcome->best)) continue;
+        if (state == NODE_OPEN && !is_answered(goal, &outcome->best)) continue;
       }
     }
 
     /* the node leaves */
     outcome->lower = lesser(node.lower, outcome->lower);
-    if (fate != NODE_SETTLED) outcome->free_until = lesser(outcome->free_until, node.start);
+    if (state != NODE_PRUNED) outcome->free_until = lesser(outcome->free_until, node.start);
     oracle->release(oracle->self, &node);
-    if (status != CPROX_OK || settled_all || is_answered(goal, &outcome->best)) break;
+    if (status != CPROX_OK || pruned_all || is_answered(goal, &outcome->best)) break;
   }
 
   /* what is still open counts too */

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/vec.h"
 #include "curve_proximity/cprox/base.h"
 
 /* What an oracle knows of a node: the parameters that it covers, and what is left to look at. The engine copies it and never looks
@@ -79,7 +80,21 @@ typedef struct search_outcome {
 } search_outcome;
 
 /* The width that the goal allows at this upper bound. */
-double search_width(const search_goal *goal, double upper);
+static inline double search_width(const search_goal *goal, double upper) {
+  return greater(goal->epsilon, goal->relative_epsilon * fabs(upper));
+}
+
+/* The lower bound from which on a node needs no more work, the best point being `upper` away. */
+static inline double search_pruning_bound(const search_goal *goal, double upper) {
+  if (goal->limit >= 0.0) return goal->limit;
+  const double known = lesser(upper, goal->ceiling);
+  return known - search_width(goal, known);
+}
+
+/* Whether a lower bound says that. */
+static inline bool search_is_pruned(const search_goal *goal, double upper, double lower) {
+  return goal->limit >= 0.0 ? lower > goal->limit : lower >= search_pruning_bound(goal, upper);
+}
 
 /* Searches from the root on; *outcome is always filled, and true, when the status is not negative. */
 cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root,

@@ -237,8 +237,7 @@ size_t cprox_curve_pieces(const cprox_curve *curve) {
   return curve->n_pieces;
 }
 
-/* The last piece that begins at or before t, for t inside the domain; at t1 the last one. */
-static size_t piece_at(const cprox_curve *c, double t) {
+size_t curve_piece_at(const cprox_curve *c, double t) {
   size_t first = 0, end = c->n_pieces;
   while (end - first > 1) {
     const size_t middle = first + (end - first) / 2;
@@ -287,7 +286,7 @@ cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, cprox_work
     return workspace_fail(workspace, CPROX_INVALID, "t = %.17g is outside the curve's range [%.17g, %.17g]", t, t0, t1);
   if (curve->arcs) return evaluate_arcs(curve, t, workspace, point, derivative, second_derivative);
 
-  const size_t i = piece_at(curve, t);
+  const size_t i = curve_piece_at(curve, t);
   const double left = curve->breaks[i], right = curve->breaks[i + 1], length = right - left;
   const double s = local_parameter(left, t, right);
   const vec3 *p = curve_piece(curve, i);
@@ -312,7 +311,7 @@ cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, doub
   if (!(t0 <= a && b <= t1))
     return workspace_fail(workspace, CPROX_INVALID, "[%.17g, %.17g] leaves the curve's range [%.17g, %.17g]", a, b, t0,
                           t1);
-  const size_t i = piece_at(curve, a), degree = curve->degree;
+  const size_t i = curve_piece_at(curve, a), degree = curve->degree;
   const double left = curve->breaks[i], right = curve->breaks[i + 1];
   if (b > right)
     return workspace_fail(workspace, CPROX_INVALID, "two pieces join at %.17g, inside [%.17g, %.17g]", right, a, b);

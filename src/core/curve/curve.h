@@ -52,6 +52,9 @@ static inline const vec3 *curve_piece(const cprox_curve *c, size_t i) {
   return c->points + i * (c->degree + 1);
 }
 
+/* The last piece that begins at or before t, for t inside the domain; at its end the last one. */
+size_t curve_piece_at(const cprox_curve *c, double t);
+
 static inline curve_capsule curve_capsule_at(const cprox_curve *c, size_t node) {
   if (node == 1) return c->whole;
   const curve_pack *p = &c->packs[node / CURVE_PACK];

@@ -7,21 +7,6 @@
 
 enum { MOST_POINTS = CPROX_MAX_DEGREE + 1 };
 
-/* ---- the joints ------------------------------------------------------------------------------------------------------- */
-
-/* The piece that goes on from t. */
-static size_t piece_from(const cprox_curve *c, double t) {
-  size_t first = 0, end = c->n_pieces;
-  while (end - first > 1) {
-    const size_t middle = first + (end - first) / 2;
-    if (c->breaks[middle] <= t)
-      first = middle;
-    else
-      end = middle;
-  }
-  return first;
-}
-
 /* ---- one piece -------------------------------------------------------------------------------------------------------- */
 
 /* Control points about a common base, and how far the exact piece may be from them. */
@@ -112,7 +97,7 @@ static bool lay_out(size_t degree, size_t n_pieces, cprox_workspace *workspace, 
 
 bool relative_create(const cprox_curve *first, const cprox_curve *second, const cprox_pose *pose, double t0, double t1,
                      cprox_workspace *workspace, cprox_curve *relative) {
-  size_t i = piece_from(first, t0), j = piece_from(second, t0), n_pieces = 1;
+  size_t i = curve_piece_at(first, t0), j = curve_piece_at(second, t0), n_pieces = 1;
 
   /* every joint of either begins a piece */
   size_t a = i, b = j;
@@ -152,7 +137,7 @@ bool relative_create(const cprox_curve *first, const cprox_curve *second, const 
 }
 
 vec3 relative_point(const cprox_curve *curve, double t, bool from_left, cprox_workspace *workspace) {
-  const size_t i = piece_from(curve, t);
+  const size_t i = curve_piece_at(curve, t);
   if (from_left && i > 0 && curve->breaks[i] == t) return curve_piece(curve, i - 1)[curve->degree];
   vec3 point = vec(0, 0, 0);
   cprox_curve_evaluate(curve, t, workspace, &point, NULL, NULL);

@@ -285,13 +285,6 @@ static double width2_of(const tree_segment *segment) {
   return sum;
 }
 
-/* What settles a node: as in branch_and_bound/search.c, with the best point of this very moment. */
-static double goal_of(const curve_tree *o) {
-  if (o->asked.limit >= 0.0) return o->asked.limit;
-  const double upper = fmin(o->best_bound.upper, o->asked.ceiling);
-  return upper - search_width(&o->asked, upper);
-}
-
 /* How much of the segment a lane leaves free, by the line through its first bound. */
 static double free_share(const tree_lanes *lanes, uint32_t l, double offset, double slack) {
   const double above = lanes->first[l] - offset - 4.0 * slack;
@@ -313,7 +306,8 @@ cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_segment *s
   tree_entry open[TREE_LANES * TREE_DEEPEST];
   size_t count = 0, end = payload->list_end;
   const double taken = o->offset + slack,
-               wide2 = (o->asked.limit >= 0.0 ? WIDE_VERDICT2 : WIDE_DISTANCE2) * width2_of(segment), goal = goal_of(o);
+               wide2 = (o->asked.limit >= 0.0 ? WIDE_VERDICT2 : WIDE_DISTANCE2) * width2_of(segment),
+               goal = search_pruning_bound(&o->asked, o->best_bound.upper);
   const double best = fmax(o->best_bound.upper + o->offset, 0.0), best2 = best < 1e150 ? best * best : INFINITY;
   double kept = INFINITY, rest = payload->rest;
   *least2 = INFINITY;

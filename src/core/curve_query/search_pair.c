@@ -21,19 +21,6 @@ static double good_enough(const query *q) {
   return query_wants_verdict(q) ? q->limit : q->options.epsilon;
 }
 
-static search_goal goal_of(const query *q, double ceiling) {
-  return (search_goal){.order = query_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST,
-                       .limit = q->limit,
-                       .is_signed = q->is_signed,
-                       .ceiling = ceiling,
-                       .horizon = INFINITY,
-                       .epsilon = q->options.epsilon,
-                       .relative_epsilon = q->options.relative_epsilon,
-                       .max_nodes = q->options.max_nodes,
-                       .stop = q->options.stop,
-                       .stop_user = q->options.stop_user};
-}
-
 /* The direction from a surface point to the moving object's centre. The normal is that of the best lower bound: a search that stops
  * early, because its upper bound is good enough, leaves another direction between the two points that attain that upper bound. */
 static vec3 witness_direction(vec3 centre, vec3 surface, vec3 normal) {
@@ -290,7 +277,7 @@ static cprox_status search_any(const query *q, const placed_pair *p, const searc
 static cprox_status search_model(const query *q, const candidate *c, double ceiling, cprox_result *result) {
   const placed_pair placed = placed_pair_resolve(q, c), *p = &placed;
   cprox_result r = {.obstacle_index = -1, .t_obstacle = NAN, .lod = p->lod};
-  search_goal goal = goal_of(q, ceiling);
+  search_goal goal = query_goal(q, query_order(q), ceiling);
   const bool depth_unknown = q->is_signed && placed_is_tree(p);
   if (depth_unknown) goal.is_signed = false;
   search_outcome found = {0};

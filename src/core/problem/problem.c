@@ -29,6 +29,19 @@ void query_ask_whole(query *q) {
   cprox_curve_domain(q->mover.curve, &q->t0, &q->t1);
 }
 
+search_goal query_goal(const query *q, search_order order, double ceiling) {
+  return (search_goal){.order = order,
+                       .limit = q->limit,
+                       .is_signed = q->is_signed,
+                       .ceiling = ceiling,
+                       .horizon = INFINITY,
+                       .epsilon = q->options.epsilon,
+                       .relative_epsilon = q->options.relative_epsilon,
+                       .max_nodes = q->options.max_nodes,
+                       .stop = q->options.stop,
+                       .stop_user = q->options.stop_user};
+}
+
 cprox_verdict query_verdict(const query *q, const cprox_result *r) {
   if (!query_wants_verdict(q)) return CPROX_VERDICT_UNDECIDED;
   if (r->upper <= q->limit) return CPROX_VERDICT_VIOLATED;

@@ -32,6 +32,14 @@ static inline bool query_wants_verdict(const query *q) {
   return q->limit >= 0.0;
 }
 
+/* When a search in this order has what is asked for; `ceiling`: an upper bound known from elsewhere, or infinity. */
+search_goal query_goal(const query *q, search_order order, double ceiling);
+
+/* The order in which distances, or verdicts, are searched. */
+static inline search_order query_order(const query *q) {
+  return query_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST;
+}
+
 /* options NULL: the default. Nothing is checked. */
 query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool is_tolerance,
                    const cprox_options *options, cprox_workspace *workspace);

@@ -34,18 +34,6 @@ static cprox_status run(const query *q, const search_goal *goal, robot_search *o
   return status;
 }
 
-static search_goal goal_of(const query *q, search_order order, double ceiling) {
-  return (search_goal){.order = order,
-                       .limit = q->limit,
-                       .ceiling = ceiling,
-                       .horizon = INFINITY,
-                       .epsilon = q->options.epsilon,
-                       .relative_epsilon = q->options.relative_epsilon,
-                       .max_nodes = q->options.max_nodes,
-                       .stop = q->options.stop,
-                       .stop_user = q->options.stop_user};
-}
-
 /* ---- what was found ------------------------------------------------------------------------------------------------------- */
 
 static void report(const robot_search *o, const robot_sight *sight, cprox_result *r) {
@@ -70,7 +58,7 @@ cprox_status robot_answer(const query *q, size_t first, size_t last, double ceil
   robot_search o;
   if (!robot_scene_begin(&o.scene, q, first, last))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
-  const search_goal goal = goal_of(q, query_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST, ceiling);
+  const search_goal goal = query_goal(q, query_order(q), ceiling);
   search_outcome found;
   const cprox_status status = run(q, &goal, &o, &found);
   if (status < 0) return status;
@@ -94,7 +82,7 @@ cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
   robot_search o;
   if (!robot_scene_begin(&o.scene, q, 0, q->n))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
-  const search_goal goal = goal_of(q, SEARCH_LEFT_TO_RIGHT, INFINITY);
+  const search_goal goal = query_goal(q, SEARCH_LEFT_TO_RIGHT, INFINITY);
   search_outcome found;
   const cprox_status status = run(q, &goal, &o, &found);
   if (status < 0) return status;

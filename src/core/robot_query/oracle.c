@@ -90,17 +90,19 @@ bool robot_search_root(robot_search *o, size_t first, double u0, size_t last, do
 
 /* ---- measuring ------------------------------------------------------------------------------------------------------------ */
 
-/* The lower bound from which on a pair needs no more work. */
-static double settling_bound(const robot_search *o) {
-  if (o->limit >= 0.0) return o->limit;
-  const double upper = lesser(o->best_bound.upper, o->ceiling);
-  return upper - greater(o->epsilon, o->relative_epsilon * upper);
+/* The lower bound from which on a pair needs no more work, and whether one says that. */
+static double pruning_bound(const robot_search *o) {
+  return search_pruning_bound(&o->goal, o->best_bound.upper);
+}
+
+static bool is_pruned(const robot_search *o, double lower) {
+  return search_is_pruned(&o->goal, o->best_bound.upper, lower);
 }
 
 /* Distances: the least one. Left to right: the earliest one within epsilon of contact, and until there is one, the least. */
 static bool is_better(const robot_search *o, double upper, double at) {
-  if (o->order != SEARCH_LEFT_TO_RIGHT) return upper < o->best_bound.upper;
-  const double near = o->limit + o->epsilon;
+  if (o->goal.order != SEARCH_LEFT_TO_RIGHT) return upper < o->best_bound.upper;
+  const double near = o->goal.limit + o->goal.epsilon;
   if (o->best_bound.upper <= near) return upper <= near && at < o->best_bound.at;
   return upper < o->best_bound.upper;
 }
@@ -122,7 +124,7 @@ static void keep_sight(robot_search *o, int32_t index, size_t segment, double u,
     o->best = sight;
     o->best_bound = (search_best){.upper = upper, .slack = gap->slack, .at = at};
   }
-  if (upper <= o->limit && at < o->touch_at) {
+  if (upper <= o->goal.limit && at < o->touch_at) {
     o->touch = sight;
     o->touch_at = at;
   }
@@ -159,7 +161,7 @@ static robot_climb climb_from(robot_search *o, int32_t index, const robot_gap *h
                        .pair = index,
                        .reach = fmin(reach, most + room),
                        .room = room,
-                       .accuracy = GAP_FRACTION * o->epsilon,
+                       .accuracy = GAP_FRACTION * o->goal.epsilon,
                        .normal = hulls->upper > 0.0 ? hulls->normal : vec(0, 0, 0)};
 }
 
@@ -176,10 +178,10 @@ static cprox_status climb(robot_search *o, robot_climb *c, size_t segment, doubl
 /* The distance of a pair, elements and all, as far as it can be less than the best. */
 static cprox_status measure_whole(robot_search *o, int32_t index, size_t segment, double u) {
   robot_gap gap;
-  const double floor = fmax(o->limit, 0.0);
-  const cprox_status status =
-      measure(o, index, segment, u,
-              (robot_accuracy){.epsilon = GAP_FRACTION * o->epsilon, .floor = floor, .fraction = SEED_FRACTION}, &gap);
+  const double floor = fmax(o->goal.limit, 0.0);
+  const cprox_status status = measure(
+      o, index, segment, u,
+      (robot_accuracy){.epsilon = GAP_FRACTION * o->goal.epsilon, .floor = floor, .fraction = SEED_FRACTION}, &gap);
   const robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   if (status < 0 || is_convex(moving, standing) || gap.lower >= o->best_bound.upper) return status;
@@ -256,7 +258,7 @@ static cprox_status seed(robot_search *o, const search_node *node) {
     if (i == places - 2) segment = first, u = payload->a;
     if (i == places - 1) segment = last - 1, u = payload->b;
     robot_scene_enter(&o->scene, segment, u, u);
-    const double most = o->limit >= 0.0 ? lesser(o->best_bound.upper, o->limit) : o->best_bound.upper;
+    const double most = o->goal.limit >= 0.0 ? lesser(o->best_bound.upper, o->goal.limit) : o->best_bound.upper;
     nearest_pair nearest = {.apart = most, .pair = -1};
     for (size_t k = 0; k < n; k++) {
       const list_entry entry = lists_at(&o->lists, list)[k];
@@ -267,7 +269,7 @@ static cprox_status seed(robot_search *o, const search_node *node) {
     if (nearest.pair < 0) continue;
     const cprox_status status = measure_whole(o, nearest.pair, segment, u);
     if (status < 0) return status;
-    if (o->limit >= 0.0 && o->best_bound.upper <= o->limit) return CPROX_OK;
+    if (o->goal.limit >= 0.0 && o->best_bound.upper <= o->goal.limit) return CPROX_OK;
   }
   return CPROX_OK;
 }
@@ -332,12 +334,8 @@ static void want_pieces(robot_search *o, double pieces) {
 /* A pair that is `middle` apart in the middle, of which the whole node says `bound`: what is lost shrinks as the square of the length
  * on the piece that is nearest; on others it may shrink slower, but there is more to lose. */
 static double pieces_for(const robot_search *o, double middle, double bound) {
-  const double goal = settling_bound(o);
+  const double goal = pruning_bound(o);
   return middle > goal ? sqrt(1.05 * (middle - bound) / (middle - goal)) : 2.0;
-}
-
-static bool is_settled(const robot_search *o, double lower) {
-  return o->limit >= 0.0 ? lower > o->limit : lower >= settling_bound(o);
 }
 
 /* The plane of the distance just measured, turning as its feature does. */
@@ -347,7 +345,7 @@ static double bound_by_gap(robot_search *o, const search_node *node, robot_pair 
   const double width = width_of(node);
   const vec3 drift = vec_scale(1.0 / width, robot_scene_drift(gap, moving, standing, motion));
   pair->drift = placement_turn_back(&standing->side.at, drift);
-  return bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
+  return bound_by_normal(o, node, pair, moving, standing, motion, pruning_bound(o), slack);
 }
 
 static bool keep_entry(robot_search *o, const list_entry *entry) {
@@ -369,9 +367,9 @@ static cprox_status enlist(robot_search *o, search_node *node, const robot_pair 
   keep_normal(&pair, standing, robot_known(node)->first, u, &found->gap);
   list_entry entry = {.lower = found->gap.lower - motion->travel};
   double slack = moving->side.error + standing->side.error;
-  if (!is_settled(o, entry.lower) && pair.normal_known && found->gap.upper > 0.0)
+  if (!is_pruned(o, entry.lower) && pair.normal_known && found->gap.upper > 0.0)
     entry.lower = fmax(entry.lower, bound_by_gap(o, node, &pair, moving, standing, motion, &found->gap, &slack));
-  if (is_settled(o, entry.lower)) {
+  if (is_pruned(o, entry.lower)) {
     o->dropped = fmin(o->dropped, entry.lower);
     return CPROX_OK;
   }
@@ -387,7 +385,7 @@ static cprox_status climb_pair(robot_search *o, search_node *node, list_entry *e
                                double travel) {
   const double u = middle_of(node);
   const double spare = 4.0 * hulls->slack;
-  robot_climb c = climb_from(o, entry->pair, hulls, settling_bound(o) + travel + spare, travel + spare);
+  robot_climb c = climb_from(o, entry->pair, hulls, pruning_bound(o) + travel + spare, travel + spare);
   c.listing = true;
   const cprox_status status = climb(o, &c, robot_known(node)->first, u);
   if (status < 0 || c.too_many) return status;
@@ -410,15 +408,15 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   if (pair->element[0] < 0 && pair->element[1] < 0) {
     way = robot_scene_way(&o->scene, pair);
     entry->lower = greater(robot_scene_balls(moving, standing) - way, entry->lower);
-    if (is_settled(o, entry->lower)) return;
+    if (is_pruned(o, entry->lower)) return;
   }
   const double apart = robot_scene_apart(moving, standing);
   entry->lower = greater(apart - way, entry->lower);
-  if (is_settled(o, entry->lower)) return;
+  if (is_pruned(o, entry->lower)) return;
   const double travel = robot_scene_travel(&o->scene, pair, moving);
   entry->lower = greater(apart - travel, entry->lower);
   const double size = greater(BLUR * apart, moving->radius);
-  if (is_settled(o, entry->lower) || !(travel > size) || !(width_of(node) > SHORT_INTERVAL)) return;
+  if (is_pruned(o, entry->lower) || !(travel > size) || !(width_of(node) > SHORT_INTERVAL)) return;
   entry->blurred = true;
   want_pieces(o, travel / size);
 }
@@ -435,12 +433,12 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
 
   if (!pair->normal_known) keep_guess(node, pair, moving, standing);
   if (pair->normal_known) {
-    const double bound = bound_by_normal(o, node, pair, moving, standing, motion, settling_bound(o), slack);
+    const double bound = bound_by_normal(o, node, pair, moving, standing, motion, pruning_bound(o), slack);
     entry->lower = fmax(entry->lower, bound);
-    if (is_settled(o, entry->lower)) return CPROX_OK;
+    if (is_pruned(o, entry->lower)) return CPROX_OK;
 
     /* verdicts: a plane that parts the two in the middle says how short the pieces must be; no distance could say much more */
-    const double pieces = o->limit >= 0.0 ? pieces_for(o, plane_middle(node, pair, moving, standing), bound) : 2.0;
+    const double pieces = o->goal.limit >= 0.0 ? pieces_for(o, plane_middle(node, pair, moving, standing), bound) : 2.0;
     if (pieces > ENOUGH_PIECES && width > SHORT_INTERVAL) {
       want_pieces(o, pieces);
       return CPROX_OK;
@@ -451,28 +449,28 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   if (o->cut) return CPROX_OK;
   robot_gap gap;
   const double u = middle_of(node);
-  const robot_accuracy accuracy = {GAP_FRACTION * o->epsilon, settling_bound(o), EXCESS_FRACTION,
+  const robot_accuracy accuracy = {GAP_FRACTION * o->goal.epsilon, pruning_bound(o), EXCESS_FRACTION,
                                    known_normal(node, pair)};
   const cprox_status status = measure(o, entry->pair, payload->first, u, accuracy, &gap);
   if (status < 0) return status;
   entry->lower = fmax(entry->lower, gap.lower - travel);
   if (pair->normal_known && gap.upper > 0.0)
     entry->lower = fmax(entry->lower, bound_by_gap(o, node, pair, moving, standing, motion, &gap, slack));
-  if (!is_settled(o, entry->lower)) want_pieces(o, pieces_for(o, gap.lower, entry->lower));
-  if (is_convex(moving, standing) || is_settled(o, entry->lower)) return CPROX_OK;
+  if (!is_pruned(o, entry->lower)) want_pieces(o, pieces_for(o, gap.lower, entry->lower));
+  if (is_convex(moving, standing) || is_pruned(o, entry->lower)) return CPROX_OK;
 
   /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
-  if (o->limit < 0.0 && gap.lower < o->best_bound.upper) {
+  if (o->goal.limit < 0.0 && gap.lower < o->best_bound.upper) {
     robot_climb nearest = climb_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
     const cprox_status climbed = climb(o, &nearest, payload->first, u);
     if (climbed < 0) return climbed;
   }
-  if (is_settled(o, gap.lower) && width > SHORT_INTERVAL) return CPROX_OK;
+  if (is_pruned(o, gap.lower) && width > SHORT_INTERVAL) return CPROX_OK;
   return climb_pair(o, node, entry, &gap, travel);
 }
 
 static cprox_status keep_open(robot_search *o, const list_entry *entry) {
-  if (!is_settled(o, entry->lower)) return keep_entry(o, entry) ? CPROX_OK : no_memory_for_pairs(o);
+  if (!is_pruned(o, entry->lower)) return keep_entry(o, entry) ? CPROX_OK : no_memory_for_pairs(o);
   o->dropped = lesser(entry->lower, o->dropped);
   return CPROX_OK;
 }
@@ -510,7 +508,7 @@ static cprox_status open_crowd(robot_search *o, const search_node *node, const l
       lane.lower = greater(lanes.lower[l], entry->lower), lane.under = lanes.under[l];
       const double size = greater(BLUR * lanes.apart[l], radius);
       lane.blurred = travel > size && !is_short;
-      if (is_settled(o, lane.lower)) {
+      if (is_pruned(o, lane.lower)) {
         o->dropped = lesser(lane.lower, o->dropped);
       } else if (at & TREE_LEAF) {
         status = open_box(o, node, &lane);
@@ -532,10 +530,10 @@ static cprox_status bound_roughly(robot_search *o, const search_node *node) {
   cprox_status status = CPROX_OK;
   for (size_t i = 0; i < n && status == CPROX_OK; i++) {
     list_entry entry = lists_at(&o->lists, list)[i];
-    if (!is_settled(o, entry.lower) && entry.pair < 0) {
+    if (!is_pruned(o, entry.lower) && entry.pair < 0) {
       status = open_crowd(o, node, &entry);
     } else {
-      if (!is_settled(o, entry.lower)) bound_pair_roughly(o, node, &entry);
+      if (!is_pruned(o, entry.lower)) bound_pair_roughly(o, node, &entry);
       status = keep_open(o, &entry);
     }
   }
@@ -561,11 +559,11 @@ static cprox_status bound_node(robot_search *o, search_node *node) {
   for (size_t i = 0; i < n; i++) {
     list_entry entry = o->next[i];
     double slack = 0.0;
-    if (!is_settled(o, entry.lower) && !entry.blurred) {
+    if (!is_pruned(o, entry.lower) && !entry.blurred) {
       const cprox_status status = bound_pair(o, node, &entry, &slack);
       if (status < 0) return status;
     }
-    if (is_settled(o, entry.lower)) {
+    if (is_pruned(o, entry.lower)) {
       o->dropped = lesser(entry.lower, o->dropped);
       continue;
     }
@@ -601,7 +599,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     o->seeded = true;
     status = seed(o, node);
   }
-  const bool answered = o->order != SEARCH_LEFT_TO_RIGHT && o->best_bound.upper <= fmax(o->limit, 0.0);
+  const bool answered = o->goal.order != SEARCH_LEFT_TO_RIGHT && o->best_bound.upper <= fmax(o->goal.limit, 0.0);
   if (status == CPROX_OK && !answered && payload->first + 1 == payload->last) status = bound_node(o, node);
   *best = o->best_bound;
   return status;
@@ -638,9 +636,7 @@ static void release(void *self, const search_node *node) {
 }
 
 void robot_search_begin(robot_search *o, const search_goal *goal) {
-  o->order = goal->order;
-  o->limit = goal->limit, o->epsilon = goal->epsilon, o->relative_epsilon = goal->relative_epsilon;
-  o->ceiling = goal->ceiling;
+  o->goal = *goal;
   o->best = o->touch = (robot_sight){.pair = -1};
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
   o->dropped = o->touch_at = INFINITY;
@@ -663,12 +659,12 @@ static cprox_status look_at(robot_search *o, int32_t pair, double t, double *upp
   /* what was found stays the best, whatever is seen here */
   const robot_sight best = o->best;
   const search_best bound = o->best_bound;
-  const double epsilon = o->epsilon;
+  const double epsilon = o->goal.epsilon;
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
-  o->epsilon = 0.0;
+  o->goal.epsilon = 0.0;
   const cprox_status status = measure_whole(o, pair, segment, u);
   *upper = o->best_bound.upper;
-  o->best = best, o->best_bound = bound, o->epsilon = epsilon;
+  o->best = best, o->best_bound = bound, o->goal.epsilon = epsilon;
   return status;
 }
 
@@ -695,7 +691,7 @@ cprox_status robot_search_prove(robot_search *o, double end) {
   enum { MOST_STEPS = 24, MOST_CUTS = 40 };
   const double begin = o->best_bound.at, range = end - begin;
   const int32_t pair = o->best.pair;
-  if (pair < 0 || !(o->best_bound.upper <= o->epsilon) || !(o->best_bound.upper > 0.0) || !(range > 0.0))
+  if (pair < 0 || !(o->best_bound.upper <= o->goal.epsilon) || !(o->best_bound.upper > 0.0) || !(range > 0.0))
     return CPROX_OK;
   double known = o->touch_at, unused;
   cprox_status status = prove_by_speed(o, pair, begin, 1e-6 * range, end);

@@ -20,8 +20,7 @@ typedef struct robot_sight {
 typedef struct robot_search {
   robot_scene scene;
   robot_lists lists;
-  search_order order;
-  double limit, epsilon, relative_epsilon, ceiling;
+  search_goal goal;
 
   /* what is known */
   robot_sight best;

@@ -14,17 +14,6 @@ static cprox_result nothing(void) {
   return (cprox_result){.lower = INFINITY, .upper = INFINITY, .t = INFINITY, .t_obstacle = NAN, .obstacle_index = -1};
 }
 
-static search_goal goal_of(const query *q, double horizon) {
-  return (search_goal){.order = SEARCH_LEFT_TO_RIGHT,
-                       .limit = 0.0,
-                       .ceiling = INFINITY,
-                       .horizon = horizon,
-                       .epsilon = q->options.epsilon,
-                       .max_nodes = q->options.max_nodes,
-                       .stop = q->options.stop,
-                       .stop_user = q->options.stop_user};
-}
-
 /* ---- one candidate ---------------------------------------------------------------------------------------------------- */
 
 static cprox_status meet_convex(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
@@ -121,7 +110,8 @@ static cprox_status prove_farther(const query *q, const candidate *c, time_of_co
 static cprox_status meet_model(const query *q, const candidate *c, double horizon, time_of_contact *met) {
   const placed_pair p = placed_pair_resolve(q, c);
   *met = (time_of_contact){.touch = nothing(), .near = nothing(), .lod = p.lod};
-  const search_goal goal = goal_of(q, horizon);
+  search_goal goal = query_goal(q, SEARCH_LEFT_TO_RIGHT, INFINITY);
+  goal.horizon = horizon;
   search_outcome found = {0};
   met->status = meet_any(q, &p, &goal, &found, met);
   if (met->status == CPROX_MEMORY)
