@@ -546,7 +546,7 @@ CASE(bricks_bound_chords_from_below) {
     memcpy(brick.r, f.r, sizeof brick.r);
     brick.half = vec(rng_uniform(&r, 0, 0.5), rng_uniform(&r, 0, 0.5), round % 5 ? rng_uniform(&r, 0, 0.5) : 0.0);
     if (round % 7 == 0) brick.half = vec(0, 0, 0);
-    lanes_sight sight;
+    lanes_sample sight;
     lanes_see_brick(&chords, &brick, &sight);
     const long double allowed = 128 * 0x1p-53L * (long double)(far + 4.0);
     for (size_t k = 0; k < CHORDS; k++) {

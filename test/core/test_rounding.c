@@ -235,7 +235,7 @@ static void attack(problem *p, rng *r, fraction *lower, fraction *upper) {
   search_node node = curve_convex_root(c);
   assert_true(curve_side_materialise(&c->side, &curve_convex_own(&node)->at));
   const double s = random_parameter(r);
-  curve_sight sight;
+  curve_sample sight;
   search_best best;
   curve_convex_measure(c, 0, s, curve_side_point(&c->side, s), curve_side_point_error(&c->side), &sight, &best);
 

@@ -73,14 +73,14 @@ static bool cut_chord(batch_run *run, uint32_t piece, uint32_t k, lanes_chords *
 static bool look_closer(look *l, uint32_t piece, uint32_t k, double *lower, batch_hit *hit) {
   lanes_chords fine;
   if (!cut_chord(l->run, piece, k, &fine)) return false;
-  lanes_sight sight;
-  lanes_see_brick(&fine, &l->core->brick, &sight);
+  lanes_sample sample;
+  lanes_see_brick(&fine, &l->core->brick, &sample);
   const double beside = l->run->beside * (1.0 / (CHORDS * CHORDS));
   uint32_t nearest, unused;
-  *lower = greater(*lower, lanes_least(sight.lower, &unused) - beside - l->margin - l->slack);
+  *lower = greater(*lower, lanes_least(sample.lower, &unused) - beside - l->margin - l->slack);
   if (!(l->limit >= 0.0)) return false;
-  const double square = lanes_least(sight.square, &nearest);
-  const double s = ((double)k + ((double)nearest + sight.s[nearest]) / CHORDS) / CHORDS;
+  const double square = lanes_least(sample.square, &nearest);
+  const double s = ((double)k + ((double)nearest + sample.s[nearest]) / CHORDS) / CHORDS;
   return sqrt(square) - beside - l->margin <= l->limit && hits_at(l, piece, s, hit);
 }
 
@@ -93,15 +93,15 @@ bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c,
   if (core->is_brick) l.limit = greater(run->q.limit, 0.0);
 
   /* all chords */
-  lanes_sight sight[BATCH_MOST_PIECES];
+  lanes_sample sample[BATCH_MOST_PIECES];
   double lower = INFINITY, square = INFINITY, s = 0.0;
   uint32_t piece = 0;
   for (uint32_t i = 0; i < pieces; i++) {
-    lanes_see_brick(&run->chords[i], &core->brick, &sight[i]);
+    lanes_see_brick(&run->chords[i], &core->brick, &sample[i]);
     uint32_t k, unused;
-    const double least = lanes_least(sight[i].square, &k);
-    if (least < square) square = least, piece = i, s = ((double)k + sight[i].s[k]) / CHORDS;
-    lower = lesser(lower, lanes_least(sight[i].lower, &unused));
+    const double least = lanes_least(sample[i].square, &k);
+    if (least < square) square = least, piece = i, s = ((double)k + sample[i].s[k]) / CHORDS;
+    lower = lesser(lower, lanes_least(sample[i].lower, &unused));
   }
   const double off = run->beside + l.margin + l.slack, distance = sqrt(square);
   c->lower = greater(c->lower, lower - off);
@@ -117,7 +117,7 @@ bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c,
   lower = INFINITY;
   for (uint32_t i = 0; i < pieces; i++) {
     for (uint32_t k = 0; k < CHORDS; k++) {
-      double bound = sight[i].lower[k] - off;
+      double bound = sample[i].lower[k] - off;
       if (bound <= settles && cut++ < MOST_CUT && look_closer(&l, i, k, &bound, hit)) return true;
       lower = lesser(lower, bound);
     }

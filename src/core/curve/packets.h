@@ -83,15 +83,15 @@ typedef struct lanes_brick {
 } lanes_brick;
 
 /* What a brick is to each chord, but for rounding: */
-typedef struct lanes_sight {
+typedef struct lanes_sample {
   double lower[CHORDS];  /* the chord is at least so far away, */
   double square[CHORDS]; /* and the square distance of one point of it */
   double s[CHORDS];      /* is this: that of s in [0, 1] */
-} lanes_sight;
+} lanes_sample;
 /* The least of CHORDS numbers, and the first that is it. */
 double lanes_least(const double *values, uint32_t *which);
 
-void lanes_see_brick(const lanes_chords *chords, const lanes_brick *brick, lanes_sight *sight);
+void lanes_see_brick(const lanes_chords *chords, const lanes_brick *brick, lanes_sample *sample);
 
 /* Boxes round the balls of blocks, one array a number, padded likewise. */
 typedef struct lanes_blocks {

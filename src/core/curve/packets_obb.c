@@ -28,11 +28,11 @@ static inline double held(double x, double half) {
 }
 
 SIMD_CLONES
-void lanes_see_brick(const lanes_chords *c, const lanes_brick *brick, lanes_sight *sight) {
+void lanes_see_brick(const lanes_chords *c, const lanes_brick *brick, lanes_sample *sample) {
   const double *r = brick->r;
   const vec3 at = brick->position, m = brick->centre, h = brick->half;
   double px[CHORDS], py[CHORDS], pz[CHORDS], dx[CHORDS], dy[CHORDS], dz[CHORDS];
-  double *restrict s = sight->s, *restrict lower = sight->lower, *restrict square = sight->square;
+  double *restrict s = sample->s, *restrict lower = sample->lower, *restrict square = sample->square;
 
   /* into the box's frame; begin nearest to its middle */
 #pragma omp simd

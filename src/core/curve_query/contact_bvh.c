@@ -12,40 +12,40 @@ static const double SHORTEST_AIM = 1.0 / 32.0;
 /* ---- measuring -------------------------------------------------------------------------------------------------------- */
 
 /* The nearer one; once there is contact, the earlier one. */
-static void consider(contact_tree *c, const tree_sight *sight, const search_best *bound) {
+static void consider(contact_tree *c, const tree_sample *sample, const search_best *bound) {
   curve_tree *o = &c->base;
   const search_best *best = &o->best_bound;
   if (bound->upper <= 0.0 && bound->at < c->proven_bound.at) {
-    c->proven = *sight;
+    c->proven = *sample;
     c->proven_bound = *bound;
   }
   const double contact = o->asked.epsilon;
   const bool better =
       best->upper > contact ? bound->upper < best->upper : bound->upper <= contact && bound->at < best->at;
   if (!better) return;
-  o->best = *sight;
+  o->best = *sample;
   o->best_bound = *bound;
   o->found = true;
 }
 
-static tree_sight measure(contact_tree *c, tree_place place, size_t piece, double s, vec3 y, double error) {
-  tree_sight sight;
-  search_best bound = curve_tree_measure(&c->base, place, piece, s, y, error, &sight);
+static tree_sample measure(contact_tree *c, tree_place place, size_t piece, double s, vec3 y, double error) {
+  tree_sample sample;
+  search_best bound = curve_tree_measure(&c->base, place, piece, s, y, error, &sample);
   bound.at = curve_side_parameter_below(&c->base.side, piece, s);
-  consider(c, &sight, &bound);
-  return sight;
+  consider(c, &sample, &bound);
+  return sample;
 }
 
 /* Where the curve begins: inside of a solid, or somewhere from which a witness is taken. */
 static void begin(contact_tree *c) {
   curve_tree *o = &c->base;
-  tree_sight sight;
+  tree_sample sample;
   const curve_interval *part = &o->side.part;
   const bool piece = curve_side_is_piece(&o->side, part);
   const size_t first = piece ? curve_side_piece(&o->side, part) : 0;
   const double s = piece ? part->a : 0.0;
-  if (curve_tree_begins_inside(o, &sight)) {
-    consider(c, &sight, &(search_best){.upper = -o->offset, .at = curve_side_parameter_below(&o->side, first, s)});
+  if (curve_tree_begins_inside(o, &sample)) {
+    consider(c, &sample, &(search_best){.upper = -o->offset, .at = curve_side_parameter_below(&o->side, first, s)});
     return;
   }
   curve_side_load(&o->side, first);
@@ -83,9 +83,9 @@ static cprox_status probe_piece(contact_tree *c, search_node *node) {
   status = curve_tree_filter(o, node, &segment, slack, &nearest, &least2, segment.stepping ? &share : NULL);
   if (status < 0) return status;
   if (isfinite(least2)) {
-    const tree_sight sight = measure(c, nearest, curve_side_piece(&o->side, at), at->a, x, at->error);
-    const double speed = -vec_dot(sight.near.normal, first_velocity(&segment));
-    const double way = sight.near.distance - o->offset;
+    const tree_sample sample = measure(c, nearest, curve_side_piece(&o->side, at), at->a, x, at->error);
+    const double speed = -vec_dot(sample.near.normal, first_velocity(&segment));
+    const double way = sample.near.distance - o->offset;
     if (way > 0.0 && speed > 0.0) c->ahead = way / speed;
   }
   if (!segment.stepping) return CPROX_OK;
@@ -180,14 +180,14 @@ search_oracle contact_tree_oracle(contact_tree *c) {
   return oracle;
 }
 
-/* How fast the curve approaches the element of a sight, by the piece's own parameter; <= 0: it does not. */
-static double approach(curve_tree *o, const tree_sight *sight) {
-  curve_side_load(&o->side, sight->piece);
+/* How fast the curve approaches the element of a sample, by the piece's own parameter; <= 0: it does not. */
+static double approach(curve_tree *o, const tree_sample *sample) {
+  curve_side_load(&o->side, sample->piece);
   const size_t degree = o->side.curve->degree;
   const double *x = points_pool_at(&o->pool, o->side.root_slot), *y = x + degree + 1, *z = y + degree + 1;
   vec3 velocity;
-  curve_bezier_evaluate(x, y, z, 1, degree, o->side.curve->binomial, sight->s, NULL, &velocity, NULL);
-  return -vec_dot(sight->near.normal, velocity);
+  curve_bezier_evaluate(x, y, z, 1, degree, o->side.curve->binomial, sample->s, NULL, &velocity, NULL);
+  return -vec_dot(sample->near.normal, velocity);
 }
 
 void contact_tree_prove(contact_tree *c) {
@@ -198,31 +198,31 @@ void contact_tree_prove(contact_tree *c) {
 
   /* into the ball round the nearest element, as deep as rounding could hide it */
   const double found_at = c->proven_bound.at;
-  tree_sight sight = o->best;
+  tree_sample sample = o->best;
   search_best bound = o->best_bound;
   for (int i = 0; i < MOST_STEPS && c->proven_bound.at == found_at; i++) {
-    const double speed = approach(o, &sight);
+    const double speed = approach(o, &sample);
     if (!(speed > 0.0)) break;
-    double next = sight.s + (bound.upper + 2.0 * bound.slack) / speed;
-    size_t piece = sight.piece;
+    double next = sample.s + (bound.upper + 2.0 * bound.slack) / speed;
+    size_t piece = sample.piece;
     if (next >= 1.0 && piece + 1 < o->side.curve->n_pieces) piece++, next = 0.0;
-    if (piece == sight.piece && !(next > sight.s)) break;
+    if (piece == sample.piece && !(next > sample.s)) break;
     curve_side_load(&o->side, piece);
     next = fmin(next, 1.0);
     const vec3 y = curve_side_point(&o->side, next);
-    bound = curve_tree_measure(o, sight.place, piece, next, y, curve_side_point_error(&o->side), &sight);
+    bound = curve_tree_measure(o, sample.place, piece, next, y, curve_side_point_error(&o->side), &sample);
     bound.at = curve_side_parameter_below(&o->side, piece, next);
-    consider(c, &sight, &bound);
+    consider(c, &sample, &bound);
   }
   if (c->proven_bound.at < found_at || o->offset > 0.0) return;
 
   /* without a radius: through the surface */
   double until;
-  sight = o->best;
-  if (!curve_tree_meets(o, &sight, &until)) return;
-  bound = (search_best){.upper = 0.0, .at = curve_side_parameter_below(&o->side, sight.piece, until)};
+  sample = o->best;
+  if (!curve_tree_meets(o, &sample, &until)) return;
+  bound = (search_best){.upper = 0.0, .at = curve_side_parameter_below(&o->side, sample.piece, until)};
   const double before = c->proven_bound.at;
-  consider(c, &sight, &bound);
+  consider(c, &sample, &bound);
   c->proven_within = c->proven_bound.at < before;
-  c->proven_t = curve_side_parameter(&o->side, sight.piece, until);
+  c->proven_t = curve_side_parameter(&o->side, sample.piece, until);
 }

@@ -7,10 +7,10 @@
 #include "curve_query/curve_bvh.h"
 
 typedef struct contact_tree {
-  curve_tree base;   /* its best sight is the leftmost within epsilon; while there is none, the nearest */
-  tree_sight proven; /* the leftmost sight at which they certainly touch */
+  curve_tree base;    /* its best sample is the leftmost within epsilon; while there is none, the nearest */
+  tree_sample proven; /* the leftmost sample at which they certainly touch */
   search_best proven_bound;
-  bool proven_within; /* contact is proven between the sight and */
+  bool proven_within; /* contact is proven between the sample and */
   double proven_t;    /* this parameter */
   double share;       /* how much of the node that was probed last is free, */
   double

@@ -16,7 +16,7 @@ static bool is_better(const contact_convex *c, const search_best *bound) {
   return bound->upper <= c->epsilon && bound->at < best->at;
 }
 
-/* Measures at a point of the curve; the sight stands in base.last. */
+/* Measures at a point of the curve; the sample stands in base.last. */
 static cprox_status measure(contact_convex *c, size_t piece, double s, vec3 y, double error, search_best *bound) {
   curve_convex *o = &c->base;
   const cprox_status status = curve_convex_measure(o, piece, s, y, error, &o->last, bound);
@@ -127,14 +127,14 @@ search_oracle contact_convex_oracle(contact_convex *c) {
   return oracle;
 }
 
-/* How fast the curve goes into the body at a sight, by the piece's own parameter; <= 0: it does not. */
-static double inward_speed(curve_convex *o, const curve_sight *sight) {
-  curve_side_load(&o->side, sight->piece);
+/* How fast the curve goes into the body at a sample, by the piece's own parameter; <= 0: it does not. */
+static double inward_speed(curve_convex *o, const curve_sample *sample) {
+  curve_side_load(&o->side, sample->piece);
   const size_t degree = o->side.curve->degree;
   const double *x = points_pool_at(&o->pool, o->side.root_slot), *y = x + degree + 1, *z = y + degree + 1;
   vec3 velocity;
-  curve_bezier_evaluate(x, y, z, 1, degree, o->side.curve->binomial, sight->s, NULL, &velocity, NULL);
-  return -vec_dot(sight->normal, velocity);
+  curve_bezier_evaluate(x, y, z, 1, degree, o->side.curve->binomial, sample->s, NULL, &velocity, NULL);
+  return -vec_dot(sample->normal, velocity);
 }
 
 cprox_status contact_convex_prove(contact_convex *c) {
@@ -145,25 +145,25 @@ cprox_status contact_convex_prove(contact_convex *c) {
 
   /* Newton's method on the distance, aimed as deep below the surface as rounding could hide it */
   const double found_at = c->proven_bound.at;
-  curve_sight sight = o->best;
+  curve_sample sample = o->best;
   for (int i = 0; i < MOST_STEPS && c->proven_bound.at == found_at; i++) {
-    const double inward = inward_speed(o, &sight);
+    const double inward = inward_speed(o, &sample);
     if (!(inward > 0.0)) break;
-    double next = sight.s + (bound.upper + 2.0 * bound.slack) / inward;
-    size_t piece = sight.piece;
+    double next = sample.s + (bound.upper + 2.0 * bound.slack) / inward;
+    size_t piece = sample.piece;
     if (next >= 1.0 && piece + 1 < o->side.curve->n_pieces) piece++, next = 0.0;
-    if (piece == sight.piece && !(next > sight.s)) break;
+    if (piece == sample.piece && !(next > sample.s)) break;
     curve_side_load(&o->side, piece);
     next = fmin(next, 1.0);
     const cprox_status status =
         measure(c, piece, next, curve_side_point(&o->side, next), curve_side_point_error(&o->side), &bound);
     if (status < 0) return status;
-    sight = o->last;
+    sample = o->last;
   }
-  if (c->proven_bound.at < found_at || !crossing_prove_convex(o, &sight)) return CPROX_OK;
+  if (c->proven_bound.at < found_at || !crossing_prove_convex(o, &sample)) return CPROX_OK;
 
   /* through a flat body, which nothing lies below the surface of */
-  bound = (search_best){.upper = 0.0, .at = curve_side_parameter(&o->side, sight.piece, sight.s)};
-  if (bound.at < found_at) c->proven = sight, c->proven_bound = bound;
+  bound = (search_best){.upper = 0.0, .at = curve_side_parameter(&o->side, sample.piece, sample.s)};
+  if (bound.at < found_at) c->proven = sample, c->proven_bound = bound;
   return CPROX_OK;
 }

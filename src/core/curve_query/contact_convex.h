@@ -8,9 +8,9 @@
 #include "curve_query/curve_convex.h"
 
 typedef struct contact_convex {
-  curve_convex base;  /* its best sight is the leftmost within epsilon; while there is none, the nearest */
-  double epsilon;     /* distances up to this are contact */
-  curve_sight proven; /* the leftmost sight at which they certainly touch */
+  curve_convex base;   /* its best sample is the leftmost within epsilon; while there is none, the nearest */
+  double epsilon;      /* distances up to this are contact */
+  curve_sample proven; /* the leftmost sample at which they certainly touch */
   search_best proven_bound;
 } contact_convex;
 

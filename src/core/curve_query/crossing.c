@@ -157,13 +157,13 @@ bool crossing_prove(const crossing *o, crossing_place *place) {
   return false;
 }
 
-bool crossing_prove_convex(curve_convex *o, curve_sight *sight) {
+bool crossing_prove_convex(curve_convex *o, curve_sample *sample) {
   if (!curve_convex_is_flat(o)) return false;
   const crossing of = {&o->side, o->shape, &o->flat, {CURVE_CONVEX_SCRATCH, CURVE_CONVEX_LEFT}};
-  crossing_place place = {.piece = sight->piece, .s = sight->s};
+  crossing_place place = {.piece = sample->piece, .s = sample->s};
   if (!crossing_prove(&of, &place)) return false;
-  sight->piece = place.piece, sight->s = place.s;
-  sight->y = sight->near.point = place.meeting;
-  sight->near.distance = 0.0;
+  sample->piece = place.piece, sample->s = place.s;
+  sample->y = sample->near.point = place.meeting;
+  sample->near.distance = 0.0;
   return true;
 }

@@ -25,7 +25,7 @@ typedef struct crossing_place {
  * is where it meets the plane, as far as Newton's method finds that. */
 bool crossing_prove(const crossing *of, crossing_place *place);
 
-/* The same near a sight, which becomes that of the place. False also of shapes that have an inside. */
-bool crossing_prove_convex(curve_convex *o, curve_sight *sight);
+/* The same near a sample, which becomes that of the place. False also of shapes that have an inside. */
+bool crossing_prove_convex(curve_convex *o, curve_sample *sample);
 
 #endif

@@ -31,17 +31,17 @@ static double measure_slack(const curve_tree *o, double error, double distance, 
 }
 
 search_best curve_tree_measure(curve_tree *o, tree_place place, size_t piece, double s, vec3 y, double error,
-                               tree_sight *sight) {
+                               tree_sample *sample) {
   o->distance_queries++;
-  *sight = (tree_sight){.place = place, .y = y, .piece = piece, .s = s};
-  tree_element_near(o->tree, place, y, &sight->near);
-  const double slack = measure_slack(o, error, sight->near.distance, y);
-  return (search_best){.upper = sight->near.distance - o->offset + slack, .slack = slack};
+  *sample = (tree_sample){.place = place, .y = y, .piece = piece, .s = s};
+  tree_element_near(o->tree, place, y, &sample->near);
+  const double slack = measure_slack(o, error, sample->near.distance, y);
+  return (search_best){.upper = sample->near.distance - o->offset + slack, .slack = slack};
 }
 
-static bool adopt_better(curve_tree *o, const tree_sight *sight, const search_best *bound) {
+static bool adopt_better(curve_tree *o, const tree_sample *sample, const search_best *bound) {
   if (!(bound->upper < o->best_bound.upper)) return false;
-  o->best = *sight;
+  o->best = *sample;
   o->best_bound = *bound;
   o->found = true;
   return true;
@@ -49,9 +49,9 @@ static bool adopt_better(curve_tree *o, const tree_sight *sight, const search_be
 
 /* ---- better points ---------------------------------------------------------------------------------------------------- */
 
-/* One step of Newton's method on the distance to the feature that is nearest at a sight. */
-static double newton_step(const tree_sight *sight, vec3 d1, vec3 d2) {
-  const tree_near *near = &sight->near;
+/* One step of Newton's method on the distance to the feature that is nearest at a sample. */
+static double newton_step(const tree_sample *sample, vec3 d1, vec3 d2) {
+  const tree_near *near = &sample->near;
   const double slope = vec_dot(near->normal, d1);
   double across2 = vec_norm2(d1) - slope * slope;
   for (int k = 0; k < near->tangents; k++) {
@@ -72,15 +72,15 @@ static void polish_element(curve_tree *o) {
   const size_t degree = o->side.curve->degree;
   const double *x = points_pool_at(&o->pool, SLOT_ROOT), *y = x + degree + 1, *z = y + degree + 1;
   const double error = curve_side_point_error(&o->side), *binomial = o->side.curve->binomial;
-  tree_sight sight = o->best;
+  tree_sample sample = o->best;
   vec3 at, d1, d2;
-  curve_bezier_evaluate(x, y, z, 1, degree, binomial, sight.s, &at, &d1, &d2);
-  for (int i = 0; i < MOST_STEPS && sight.near.distance > 0.0; i++) {
-    const double next = fmin(fmax(sight.s + newton_step(&sight, d1, d2), o->side.part.a), o->side.part.b);
-    if (!(fabs(next - sight.s) > 1e-16)) return;
+  curve_bezier_evaluate(x, y, z, 1, degree, binomial, sample.s, &at, &d1, &d2);
+  for (int i = 0; i < MOST_STEPS && sample.near.distance > 0.0; i++) {
+    const double next = fmin(fmax(sample.s + newton_step(&sample, d1, d2), o->side.part.a), o->side.part.b);
+    if (!(fabs(next - sample.s) > 1e-16)) return;
     curve_bezier_evaluate(x, y, z, 1, degree, binomial, next, &at, &d1, &d2);
-    const search_best bound = curve_tree_measure(o, sight.place, sight.piece, next, at, error, &sight);
-    if (!adopt_better(o, &sight, &bound) && i > 1) return;
+    const search_best bound = curve_tree_measure(o, sample.place, sample.piece, next, at, error, &sample);
+    if (!adopt_better(o, &sample, &bound) && i > 1) return;
   }
 }
 
@@ -90,22 +90,22 @@ static void polish(curve_tree *o) {
   const double error = curve_side_point_error(&o->side);
   for (int i = 0; i < MOST_ELEMENTS; i++) {
     polish_element(o);
-    const tree_sight *best = &o->best;
+    const tree_sample *best = &o->best;
     const tree_hit hit = tree_nearest(o->tree, best->y, best->near.distance);
     if (!hit.found || (hit.at.pack == best->place.pack && hit.at.lane == best->place.lane)) return;
-    tree_sight sight;
-    const search_best bound = curve_tree_measure(o, hit.at, best->piece, best->s, best->y, error, &sight);
-    if (!adopt_better(o, &sight, &bound)) return;
+    tree_sample sample;
+    const search_best bound = curve_tree_measure(o, hit.at, best->piece, best->s, best->y, error, &sample);
+    if (!adopt_better(o, &sample, &bound)) return;
   }
 }
 
 /* ---- proof of contact ------------------------------------------------------------------------------------------------- */
 
-/* Through the triangle of a sight, which moves to where that is, or to where the curve meets its plane. */
-static bool goes_through_triangle(curve_tree *o, tree_sight *sight) {
+/* Through the triangle of a sample, which moves to where that is, or to where the curve meets its plane. */
+static bool goes_through_triangle(curve_tree *o, tree_sample *sample) {
   vec3 v[3];
   double x[8], y[8], z[8], scale = 0.0;
-  tree_corners(o->tree, sight->place, v);
+  tree_corners(o->tree, sample->place, v);
   for (int i = 0; i < 8; i++) {
     const vec3 corner = v[i < 3 ? i : 2];
     x[i] = corner.x, y[i] = corner.y, z[i] = corner.z;
@@ -116,28 +116,28 @@ static bool goes_through_triangle(curve_tree *o, tree_sight *sight) {
   flat_shape flat;
   flat_describe(&triangle, &flat);
   const crossing of = {&o->side, &triangle, &flat, {SLOT_SCRATCH, SLOT_SCRATCH_LEFT}};
-  crossing_place place = {.piece = sight->piece, .s = sight->s};
+  crossing_place place = {.piece = sample->piece, .s = sample->s};
   const bool proven = crossing_prove(&of, &place);
-  sight->piece = place.piece, sight->s = place.s;
+  sample->piece = place.piece, sample->s = place.s;
   if (!proven) return false;
-  sight->y = sight->near.point = place.meeting;
-  sight->near.distance = 0.0;
+  sample->y = sample->near.point = place.meeting;
+  sample->near.distance = 0.0;
   return true;
 }
 
-/* Through the triangle of a sight, or through the one that is nearest where the curve meets the plane of that. */
-static bool goes_through(curve_tree *o, tree_sight *sight) {
+/* Through the triangle of a sample, or through the one that is nearest where the curve meets the plane of that. */
+static bool goes_through(curve_tree *o, tree_sample *sample) {
   enum { MOST_TRIANGLES = 4 };
-  const tree_sight before = *sight;
+  const tree_sample before = *sample;
   for (int i = 0; i < MOST_TRIANGLES; i++) {
-    curve_side_load(&o->side, sight->piece);
-    if (goes_through_triangle(o, sight)) return true;
-    curve_side_load(&o->side, sight->piece);
-    const tree_hit hit = tree_nearest(o->tree, curve_side_point(&o->side, sight->s), INFINITY);
-    if (!hit.found || (hit.at.pack == sight->place.pack && hit.at.lane == sight->place.lane)) break;
-    sight->place = hit.at;
+    curve_side_load(&o->side, sample->piece);
+    if (goes_through_triangle(o, sample)) return true;
+    curve_side_load(&o->side, sample->piece);
+    const tree_hit hit = tree_nearest(o->tree, curve_side_point(&o->side, sample->s), INFINITY);
+    if (!hit.found || (hit.at.pack == sample->place.pack && hit.at.lane == sample->place.lane)) break;
+    sample->place = hit.at;
   }
-  *sight = before;
+  *sample = before;
   return false;
 }
 
@@ -148,27 +148,27 @@ static bool is_inside(const curve_tree *o, vec3 y, double error) {
   return hit.lower > measure_slack(o, error, hit.upper, y);
 }
 
-bool curve_tree_meets(curve_tree *o, tree_sight *sight, double *until) {
+bool curve_tree_meets(curve_tree *o, tree_sample *sample, double *until) {
   if (o->tree->kind != TREE_TRIANGLES || o->side.curve->arcs) return false;
-  curve_side_load(&o->side, sight->piece);
-  if (goes_through(o, sight)) {
-    *until = sight->s;
+  curve_side_load(&o->side, sample->piece);
+  if (goes_through(o, sample)) {
+    *until = sample->s;
     return true;
   }
   if (!o->body->winding) return false;
 
   /* a little farther along, or a little before, it is inside */
   enum { MOST_WIDTHS = 12 };
-  curve_side_load(&o->side, sight->piece);
+  curve_side_load(&o->side, sample->piece);
   const double error = curve_side_point_error(&o->side);
   double step = 1e-12;
   for (int i = 0; i < MOST_WIDTHS && step < 0.1; i++, step *= 10.0) {
     for (int k = 0; k < 2; k++) {
-      const double s = k == 0 ? fmax(sight->s - step, o->side.part.a) : fmin(sight->s + step, o->side.part.b);
+      const double s = k == 0 ? fmax(sample->s - step, o->side.part.a) : fmin(sample->s + step, o->side.part.b);
       const vec3 y = curve_side_point(&o->side, s);
       if (!is_inside(o, y, error)) continue;
-      curve_tree_measure(o, sight->place, sight->piece, s, y, error, sight);
-      sight->inside = true;
+      curve_tree_measure(o, sample->place, sample->piece, s, y, error, sample);
+      sample->inside = true;
       *until = s;
       return true;
     }
@@ -176,7 +176,7 @@ bool curve_tree_meets(curve_tree *o, tree_sight *sight, double *until) {
   return false;
 }
 
-bool curve_tree_begins_inside(curve_tree *o, tree_sight *sight) {
+bool curve_tree_begins_inside(curve_tree *o, tree_sample *sample) {
   if (!o->body->winding) return false;
   const curve_interval *part = &o->side.part;
   const bool piece = curve_side_is_piece(&o->side, part);
@@ -184,18 +184,18 @@ bool curve_tree_begins_inside(curve_tree *o, tree_sight *sight) {
   const double s = piece ? part->a : 0.0;
   const vec3 y = curve_side_point(&o->side, s);
   if (!vec_finite(y) || !is_inside(o, y, curve_side_point_error(&o->side))) return false;
-  *sight = (tree_sight){.y = y, .piece = o->side.root_piece, .s = s, .inside = true, .near = {.point = y}};
+  *sample = (tree_sample){.y = y, .piece = o->side.root_piece, .s = s, .inside = true, .near = {.point = y}};
   return true;
 }
 
 /* Nothing to subtract, and nearer than asked: only a proof of contact is better. */
 static void prove_contact(curve_tree *o) {
   if (o->asked.limit != 0.0 || !(o->best_bound.upper > 0.0)) return;
-  tree_sight sight = o->best;
+  tree_sample sample = o->best;
   double until;
-  if (!curve_tree_meets(o, &sight, &until)) return;
+  if (!curve_tree_meets(o, &sample, &until)) return;
   const search_best met = {.upper = 0.0, .slack = o->best_bound.slack};
-  adopt_better(o, &sight, &met);
+  adopt_better(o, &sample, &met);
 }
 
 /* ---- seeds ------------------------------------------------------------------------------------------------------------ */
@@ -209,9 +209,9 @@ static void seed_at(curve_tree *o, size_t piece, double s) {
   const tree_hit hit = tree_nearest(o->tree, y, bound);
   o->distance_queries++;
   if (!hit.found) return;
-  tree_sight sight;
-  const search_best at = curve_tree_measure(o, hit.at, piece, s, y, error, &sight);
-  adopt_better(o, &sight, &at);
+  tree_sample sample;
+  const search_best at = curve_tree_measure(o, hit.at, piece, s, y, error, &sample);
+  adopt_better(o, &sample, &at);
 }
 
 void curve_tree_look(curve_tree *o, double t) {
@@ -223,9 +223,9 @@ void curve_tree_look(curve_tree *o, double t) {
 
 /* Distances begin with a few points along the curve, verdicts with its ends. */
 static void seed(curve_tree *o) {
-  tree_sight sight;
-  if (curve_tree_begins_inside(o, &sight)) {
-    adopt_better(o, &sight, &(search_best){.upper = -o->offset, .slack = 0.0});
+  tree_sample sample;
+  if (curve_tree_begins_inside(o, &sample)) {
+    adopt_better(o, &sample, &(search_best){.upper = -o->offset, .slack = 0.0});
     return;
   }
   const curve_interval *part = &o->side.part;
@@ -396,10 +396,10 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
   /* the distance in the middle */
   if (piece && sqrt(least2) - o->offset < o->best_bound.upper) {
-    tree_sight sight;
+    tree_sample sample;
     const search_best bound =
-        curve_tree_measure(o, nearest, curve_side_piece(&o->side, at), s, x, curve_side_point_error(&o->side), &sight);
-    if (adopt_better(o, &sight, &bound) && bound.upper > o->good_enough && o->nodes > o->polish_after) polish(o);
+        curve_tree_measure(o, nearest, curve_side_piece(&o->side, at), s, x, curve_side_point_error(&o->side), &sample);
+    if (adopt_better(o, &sample, &bound) && bound.upper > o->good_enough && o->nodes > o->polish_after) polish(o);
     if (o->best_bound.upper <= o->asked.epsilon) prove_contact(o);
   }
   *best = o->best_bound;

@@ -26,14 +26,14 @@ static inline curve_tree_node *curve_tree_own(search_node *node) {
 }
 
 /* The nearest point of one element, and where on the curve it was seen. */
-typedef struct tree_sight {
+typedef struct tree_sample {
   tree_place place;
   tree_near near;
   vec3 y; /* the curve's point, local */
   size_t piece;
   double s;
   bool inside; /* the curve's point lies inside a solid */
-} tree_sight;
+} tree_sample;
 
 typedef struct curve_tree {
   /* the problem */
@@ -47,7 +47,7 @@ typedef struct curve_tree {
   double good_enough;    /* an upper bound at or below this needs no better one */
 
   /* what is known */
-  tree_sight best;
+  tree_sample best;
   search_best best_bound;
   bool found, seeded;
   uint32_t distance_queries, nodes;
@@ -83,13 +83,13 @@ void curve_tree_segment(const curve_tree *o, const search_node *node, vec3 x, tr
 
 /* Measures an element at a curve point y = psi(s) of the piece, which is within `error` of the exact one. */
 search_best curve_tree_measure(curve_tree *o, tree_place place, size_t piece, double s, vec3 y, double error,
-                               tree_sight *sight);
+                               tree_sample *sample);
 
-/* Whether the curve certainly meets the body near a sight: it goes through the triangle before *until, or is inside of a solid there,
- * to where the sight moves. */
-bool curve_tree_meets(curve_tree *o, tree_sight *sight, double *until);
+/* Whether the curve certainly meets the body near a sample: it goes through the triangle before *until, or is inside of a solid there,
+ * to where the sample moves. */
+bool curve_tree_meets(curve_tree *o, tree_sample *sample, double *until);
 
-/* Whether it begins inside of a solid, for a search that has not begun; the sight is filled then. */
-bool curve_tree_begins_inside(curve_tree *o, tree_sight *sight);
+/* Whether it begins inside of a solid, for a search that has not begun; the sample is filled then. */
+bool curve_tree_begins_inside(curve_tree *o, tree_sample *sample);
 
 #endif

@@ -34,10 +34,10 @@ static double bound_slack(const curve_convex *o, double error, double magnitude,
 }
 
 /* Weak duality: along any unit n the body reaches no farther than h(n), so min n·P - h(n) is a lower bound. */
-void curve_convex_bound(const curve_convex *o, search_node *node, const curve_sight *sight) {
-  if (!isfinite(sight->support)) return;
-  const curve_reach reach = curve_side_reach(&o->side, &curve_convex_own(node)->at, sight->normal);
-  const double bound = reach.least - sight->support;
+void curve_convex_bound(const curve_convex *o, search_node *node, const curve_sample *sample) {
+  if (!isfinite(sample->support)) return;
+  const curve_reach reach = curve_side_reach(&o->side, &curve_convex_own(node)->at, sample->normal);
+  const double bound = reach.least - sample->support;
   const double slack = bound_slack(o, reach.error, reach.magnitude, bound);
   node->lower = greater(bound - slack, node->lower);
   node->slack = slack;
@@ -48,7 +48,7 @@ static bool is_enough(const curve_convex *o, double lower) {
   return lower > o->goal || lower >= o->best_bound.upper - o->epsilon;
 }
 
-/* The ball or cylinder that touches the body at the best sight; found when it is first wanted. */
+/* The ball or cylinder that touches the body at the best sample; found when it is first wanted. */
 static bool know_cover(curve_convex *o) {
   if (!o->cover_known) {
     const convex_ops *ops = o->shape->ops;
@@ -148,22 +148,22 @@ static vec3 touching_normal(curve_convex *o, vec3 y, vec3 seen, double rounding)
   return best;
 }
 
-cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sight *sight,
+cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sample *sample,
                                   search_best *bound) {
   const cprox_status usable = curve_side_status(&o->side);
   if (usable < 0) return usable;
   o->distance_queries++;
-  sight->piece = piece, sight->s = s, sight->y = y;
+  sample->piece = piece, sample->s = s, sample->y = y;
   const double sizes = vec_norm(y) + o->shape->scale + o->shape->margin;
   const double rounding = error + o->shape->ops->near_rounding * ROUND_U * sizes + o->shape->slack;
   o->hint.near_enough = near_enough(o, rounding);
   if (piece_is_planar(o))
-    convex_polygon_nearest_in_plane(o->shape, y, &sight->near);
+    convex_polygon_nearest_in_plane(o->shape, y, &sample->near);
   else
-    o->shape->ops->nearest(o->shape, y, &o->hint, &sight->near);
-  if (o->is_signed && sight->near.distance <= 0.0 && vec_norm2(sight->near.normal) == 0.0)
-    depth_of_point(o->shape, y, 0.1 * o->epsilon, &sight->near);
-  const double d = sight->near.distance;
+    o->shape->ops->nearest(o->shape, y, &o->hint, &sample->near);
+  if (o->is_signed && sample->near.distance <= 0.0 && vec_norm2(sample->near.normal) == 0.0)
+    depth_of_point(o->shape, y, 0.1 * o->epsilon, &sample->near);
+  const double d = sample->near.distance;
   if (isnan(d))
     return workspace_fail(o->workspace, CPROX_INVALID, "the support callback did not return a point of its body");
 
@@ -172,24 +172,24 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
   bound->upper = d - o->offset + bound->slack;
 
   /* any direction near the normal will do for the lower bounds, as long as its length is 1 */
-  sight->normal = sight->near.normal;
+  sample->normal = sample->near.normal;
   const bool touching = fabs(d) <= rounding && bound->upper > greater(o->good_enough, 0.0) && !piece_is_planar(o);
-  if (touching) sight->normal = touching_normal(o, y, sight->normal, rounding);
-  const double length2 = vec_norm2(sight->normal);
+  if (touching) sample->normal = touching_normal(o, y, sample->normal, rounding);
+  const double length2 = vec_norm2(sample->normal);
   if (fabs(length2 - 1.0) > 4.0 * ROUND_U && length2 > 0.0)
-    sight->normal = vec_scale(1.0 / sqrt(length2), sight->normal);
-  sight->support = INFINITY;
+    sample->normal = vec_scale(1.0 / sqrt(length2), sample->normal);
+  sample->support = INFINITY;
   if (length2 > 0.0) {
-    const double height = sight->near.height_known && !touching
-                              ? sight->near.height
-                              : o->shape->ops->support(o->shape, sight->normal, &o->support_hint, NULL);
-    sight->support = height + o->shape->margin + o->offset;
+    const double height = sample->near.height_known && !touching
+                              ? sample->near.height
+                              : o->shape->ops->support(o->shape, sample->normal, &o->support_hint, NULL);
+    sample->support = height + o->shape->margin + o->offset;
   }
   return CPROX_OK;
 }
 
-void curve_convex_adopt(curve_convex *o, const curve_sight *sight, search_best bound) {
-  o->best = *sight;
+void curve_convex_adopt(curve_convex *o, const curve_sample *sample, search_best bound) {
+  o->best = *sample;
   o->best_bound = bound;
   o->incumbent++;
   o->cover_known = false;
@@ -344,13 +344,13 @@ static int add_child(curve_convex *o, const search_node *node, const curve_inter
   return n + 1;
 }
 
-/* Raises all of them by the normal of a sight. */
-static void bound_fan(const curve_convex *o, search_node *child, size_t n, const curve_sight *sight) {
-  if (!isfinite(sight->support)) return;
+/* Raises all of them by the normal of a sample. */
+static void bound_fan(const curve_convex *o, search_node *child, size_t n, const curve_sample *sample) {
+  if (!isfinite(sample->support)) return;
   double least[CURVE_PACK];
-  const curve_reach reach = curve_side_fan_reach(&o->side, &curve_convex_own(&child[0])->at, sight->normal, least);
+  const curve_reach reach = curve_side_fan_reach(&o->side, &curve_convex_own(&child[0])->at, sample->normal, least);
   for (size_t k = 0; k < n; k++) {
-    const double bound = least[k] - sight->support;
+    const double bound = least[k] - sample->support;
     const double slack = bound_slack(o, reach.error, reach.magnitude, bound);
     child[k].lower = greater(bound - slack, child[k].lower);
     child[k].slack = slack;

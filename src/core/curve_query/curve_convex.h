@@ -24,14 +24,14 @@ static inline curve_convex_node *curve_convex_own(search_node *node) {
 }
 
 /* A surface point of the body, the direction away from it, and where on the curve it was seen. */
-typedef struct curve_sight {
+typedef struct curve_sample {
   convex_near near;
   vec3 y;         /* the curve's point, local */
   vec3 normal;    /* unit within 4 u */
   double support; /* h(normal) of body, margin and offset */
   size_t piece;
   double s;
-} curve_sight;
+} curve_sample;
 
 typedef struct curve_convex {
   /* the problem */
@@ -46,9 +46,9 @@ typedef struct curve_convex {
   bool is_signed; /* depths are measured */
 
   /* what is known */
-  curve_sight best, last; /* of the least upper bound; of the last probe */
+  curve_sample best, last; /* of the least upper bound; of the last probe */
   search_best best_bound;
-  uint32_t incumbent; /* counts the best sights; 0: none */
+  uint32_t incumbent; /* counts the best samples; 0: none */
   bool cover_known, cover_usable;
   convex_cover cover;
   convex_hint hint, support_hint;
@@ -81,17 +81,17 @@ cprox_status curve_convex_seed(curve_convex *o, size_t piece, double s, search_n
 /* The functions of the contract in branch_and_bound/search.h, self being the curve_convex. */
 search_oracle curve_convex_oracle(curve_convex *o);
 
-/* Raises node->lower by the normal of a sight. */
-void curve_convex_bound(const curve_convex *o, search_node *node, const curve_sight *sight);
+/* Raises node->lower by the normal of a sample. */
+void curve_convex_bound(const curve_convex *o, search_node *node, const curve_sample *sample);
 
 /* For curve_query/newton_convex.c: measures at a curve point y = psi(s) of the piece, which is within `error` of the exact one; */
-cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sight *sight,
+cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sample *sample,
                                   search_best *bound);
 
 /* whether the shape has no inside: o->flat says where it lies; */
 bool curve_convex_is_flat(curve_convex *o);
 
-/* makes a sight the best one. */
-void curve_convex_adopt(curve_convex *o, const curve_sight *sight, search_best bound);
+/* makes a sample the best one. */
+void curve_convex_adopt(curve_convex *o, const curve_sample *sample, search_best bound);
 
 #endif

@@ -11,7 +11,7 @@ curve_jet polish_jet(const curve_convex *o, const double *points, double s) {
   return j;
 }
 
-/* From the feature that was nearest at the sight, across its tangents. */
+/* From the feature that was nearest at the sample, across its tangents. */
 static vec3 across(const convex_near *near, vec3 x) {
   vec3 w = vec_sub(x, near->origin);
   for (int k = 0; k < near->tangents; k++) w = vec_axpy(w, -vec_dot(near->e[k], w), near->e[k]);
@@ -24,19 +24,19 @@ static vec3 symmetric_times(const double h[6], vec3 v) {
 }
 
 /* The distance to that feature: of a plane the signed height over it, so that the deepest point is found where the curve goes through;
- * of a curved one d + n·w + w·H w/2, w = psi - y, its second order about the sight. */
-static double distance_at(const curve_sight *sight, vec3 x) {
-  const convex_near *near = &sight->near;
+ * of a curved one d + n·w + w·H w/2, w = psi - y, its second order about the sample. */
+static double distance_at(const curve_sample *sample, vec3 x) {
+  const convex_near *near = &sample->near;
   if (near->flat && near->tangents == 2) return vec_dot(near->normal, vec_sub(x, near->origin)) - near->offset;
   if (near->flat) return vec_norm(across(near, x)) - near->offset;
-  const vec3 w = vec_sub(x, sight->y);
+  const vec3 w = vec_sub(x, sample->y);
   return near->distance + vec_dot(near->normal, w) + 0.5 * vec_dot(w, symmetric_times(near->hessian, w));
 }
 
 /* First and second derivative by s of what is least where that is: of a vertex or an edge half the square, |w|²/2, whose derivatives
  * w·psi' and |w'|² + w·psi'' take no root and divide by nothing. */
-static void slopes_at(const curve_sight *sight, const curve_jet *j, double *slope, double *bend) {
-  const convex_near *near = &sight->near;
+static void slopes_at(const curve_sample *sample, const curve_jet *j, double *slope, double *bend) {
+  const convex_near *near = &sample->near;
   if (near->flat && near->tangents < 2) {
     const vec3 w = across(near, j->x);
     double across2 = vec_norm2(j->d1);
@@ -51,7 +51,7 @@ static void slopes_at(const curve_sight *sight, const curve_jet *j, double *slop
   vec3 gradient = near->normal;
   *bend = 0.0;
   if (!near->flat) {
-    gradient = vec_add(gradient, symmetric_times(near->hessian, vec_sub(j->x, sight->y)));
+    gradient = vec_add(gradient, symmetric_times(near->hessian, vec_sub(j->x, sample->y)));
     *bend = vec_dot(j->d1, symmetric_times(near->hessian, j->d1));
   }
   *slope = vec_dot(gradient, j->d1);
@@ -62,13 +62,13 @@ static double clamp(double x, double least, double most) {
   return x < least ? least : x > most ? most : x;
 }
 
-/* Newton's method from the sight's s, where *j is the jet; it becomes that at the point returned. */
-static double descend(const curve_convex *o, const double *points, const curve_sight *sight, double step,
+/* Newton's method from the sample's s, where *j is the jet; it becomes that at the point returned. */
+static double descend(const curve_convex *o, const double *points, const curve_sample *sample, double step,
                       curve_jet *j) {
-  double s = sight->s;
+  double s = sample->s;
   for (int i = 0; i < MAX_STEPS; i++) {
     double slope, bend;
-    slopes_at(sight, j, &slope, &bend);
+    slopes_at(sample, j, &slope, &bend);
     if (!(isfinite(slope) && isfinite(bend))) break;
     const double wanted = bend > 0.0 ? -slope / bend : (slope > 0.0 ? -step : step);
     const double next = clamp(clamp(s + wanted, s - step, s + step), o->side.part.a, o->side.part.b);
@@ -85,27 +85,27 @@ static double descend(const curve_convex *o, const double *points, const curve_s
 cprox_status polish(curve_convex *o, const double *points, curve_jet *j, double step) {
   if (o->side.curve->arcs) return CPROX_OK; /* no derivatives to go by */
   const double error = curve_side_point_error(&o->side);
-  curve_sight sights[2];
-  const curve_sight *from = &o->best;
+  curve_sample samples[2];
+  const curve_sample *from = &o->best;
   for (int round = 0; round < MAX_ROUNDS; round++) {
     const double s = descend(o, points, from, step, j);
     if (s == from->s) return CPROX_OK;
     const double predicted = distance_at(from, j->x);
 
     /* only a measured distance counts */
-    curve_sight *sight = &sights[round % 2];
+    curve_sample *sample = &samples[round % 2];
     search_best bound = {.upper = INFINITY};
-    const cprox_status status = curve_convex_measure(o, from->piece, s, j->x, error, sight, &bound);
+    const cprox_status status = curve_convex_measure(o, from->piece, s, j->x, error, sample, &bound);
     if (status < 0) return status;
     const bool better = bound.upper < o->best_bound.upper;
-    if (better) curve_convex_adopt(o, sight, bound);
+    if (better) curve_convex_adopt(o, sample, bound);
     if (o->best_bound.upper <= o->good_enough) return CPROX_OK;
 
     /* the feature held on to is the nearest one here too: nothing more to find */
-    const bool same_feature = fabs(sight->near.distance - predicted) <= bound.slack + 1e-3 * o->epsilon;
+    const bool same_feature = fabs(sample->near.distance - predicted) <= bound.slack + 1e-3 * o->epsilon;
     if (same_feature || (!better && round > 0)) return CPROX_OK;
     step *= 0.5;
-    from = sight;
+    from = sample;
   }
   return CPROX_OK;
 }

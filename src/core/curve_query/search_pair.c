@@ -109,13 +109,13 @@ bool placed_begin_convex(const query *q, const placed_pair *p, curve_convex *o) 
   return true;
 }
 
-/* That of the best sight in the world; none where it is only one to bound by. */
+/* That of the best sample in the world; none where it is only one to bound by. */
 static vec3 normal_seen(const curve_convex *o) {
   if (vec_norm2(o->best.near.normal) == 0.0) return vec(0, 0, 0);
   return frame_turn_to_world(&o->side.frame, o->best.normal);
 }
 
-/* Where the other mover is at the parameter of the best sight, and this one from there. */
+/* Where the other mover is at the parameter of the best sample, and this one from there. */
 static cprox_status report_clock(const query *q, const placed_pair *p, const curve_convex *o, vec3 apart,
                                  cprox_result *r) {
   cprox_obstacle standing = *p->obstacle;
@@ -131,7 +131,7 @@ static cprox_status report_clock(const query *q, const placed_pair *p, const cur
 cprox_status placed_report_convex(const query *q, const placed_pair *p, const curve_convex *o, cprox_result *r) {
   if (o->incumbent == 0) return CPROX_OK;
   const frame *f = &o->side.frame;
-  const curve_sight *best = &o->best;
+  const curve_sample *best = &o->best;
   r->t = curve_side_parameter(&o->side, best->piece, best->s);
   const cprox_obstacle *target = p->obstacle;
   if (target->synchronized) return report_clock(q, p, o, frame_to_world(f, best->y), r);
@@ -156,7 +156,7 @@ bool placed_begin_tree(const query *q, const placed_pair *p, curve_tree *o) {
 void placed_report_tree(const query *q, const placed_pair *p, const curve_tree *o, cprox_result *r) {
   if (!o->found) return;
   const frame *f = &o->side.frame;
-  const tree_sight *best = &o->best;
+  const tree_sample *best = &o->best;
   const double margin = o->body->shape.margin;
   const cprox_obstacle *target = p->obstacle;
   r->t = curve_side_parameter(&o->side, best->piece, best->s);
@@ -198,11 +198,11 @@ cprox_status placed_report_curve(const query *q, const placed_pair *p, const cur
 
 /* So near that only a proof of contact is better: the sides of a flat body may have one. */
 static bool proves_crossing(const query *q, curve_convex *o) {
-  curve_sight sight = o->best;
+  curve_sample sample = o->best;
   const double upper = o->best_bound.upper;
-  if (q->limit != 0.0 || !(upper > 0.0 && upper <= q->options.epsilon) || !crossing_prove_convex(o, &sight))
+  if (q->limit != 0.0 || !(upper > 0.0 && upper <= q->options.epsilon) || !crossing_prove_convex(o, &sample))
     return false;
-  curve_convex_adopt(o, &sight, (search_best){.upper = 0.0, .slack = o->best_bound.slack});
+  curve_convex_adopt(o, &sample, (search_best){.upper = 0.0, .slack = o->best_bound.slack});
   return true;
 }
 

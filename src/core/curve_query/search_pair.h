@@ -27,7 +27,7 @@ cprox_status candidate_measure_mesh(const query *q, const candidate *c, cprox_re
 /* The oracle of a pair with a convex shape, ready to search; false where memory is out. */
 bool placed_begin_convex(const query *q, const placed_pair *p, curve_convex *o);
 
-/* Parameter, points and normal of its best sight, if it has one. CPROX_OK, or a negative status. */
+/* Parameter, points and normal of its best sample, if it has one. CPROX_OK, or a negative status. */
 cprox_status placed_report_convex(const query *q, const placed_pair *p, const curve_convex *o, cprox_result *r);
 
 /* The same of an obstacle made of many elements: a mesh, points, boxes. */

@@ -36,12 +36,13 @@ static cprox_status run(const query *q, const search_goal *goal, robot_search *o
 
 /* ---- what was found ------------------------------------------------------------------------------------------------------- */
 
-static void report(const robot_search *o, const robot_sight *sight, cprox_result *r) {
-  if (sight->pair < 0) return;
+static void report(const robot_search *o, const robot_sample *sample, cprox_result *r) {
+  if (sample->pair < 0) return;
   const robot_scene *s = &o->scene;
-  const robot_pair *pair = &s->pairs[sight->pair];
-  r->t = motion_time(s->motion, sight->segment, sight->u);
-  r->witness_mover = sight->gap.on_moving, r->witness_obstacle = sight->gap.on_standing, r->normal = sight->gap.normal;
+  const robot_pair *pair = &s->pairs[sample->pair];
+  r->t = motion_time(s->motion, sample->segment, sample->u);
+  r->witness_mover = sample->gap.on_moving, r->witness_obstacle = sample->gap.on_standing,
+  r->normal = sample->gap.normal;
   r->mover_part = s->parts[pair->moving].body.index;
   r->obstacle_index = s->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
   r->obstacle_part = s->self ? 0 : s->obstacles[pair->standing].part;
@@ -90,14 +91,14 @@ cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
   if (proved < 0) return proved;
 
   const bool touch = o.touch.pair >= 0, near = o.best_bound.upper <= q->options.epsilon;
-  const robot_sight *sight = touch ? &o.touch : &o.best;
+  const robot_sample *sample = touch ? &o.touch : &o.best;
   cprox_result r = {.t_obstacle = NAN, .obstacle_index = -1, .mover_part = -1};
-  report(&o, sight, &r);
-  r.upper = sight->pair < 0 ? INFINITY : fmax(sight->gap.upper, 0.0);
+  report(&o, sample, &r);
+  r.upper = sample->pair < 0 ? INFINITY : fmax(sample->gap.upper, 0.0);
   r.lower = touch ? 0.0 : fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
   r.t_contact_lower = fmin(found.free_until, q->t1);
   r.verdict = touch ? CPROX_VERDICT_VIOLATED : isinf(found.free_until) ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_UNDECIDED;
-  if (sight->pair < 0) r.t = NAN;
+  if (sample->pair < 0) r.t = NAN;
   if (touch) r.t = fmax(r.t, r.t_contact_lower); /* one is rounded, the other rounded down */
   r.nodes = found.nodes, r.distance_queries = o.gaps;
   r.lod = lod_of(&o);

@@ -117,15 +117,15 @@ static cprox_status refuse_callback(const robot_search *o) {
 }
 
 /* What was measured may be the least so far, or a contact. */
-static void keep_sight(robot_search *o, int32_t index, size_t segment, double u, const robot_gap *gap) {
+static void keep_sample(robot_search *o, int32_t index, size_t segment, double u, const robot_gap *gap) {
   const double upper = fmax(gap->upper, 0.0), at = motion_time_below(o->scene.motion, segment, u);
-  const robot_sight sight = {.gap = *gap, .pair = index, .segment = segment, .u = u};
+  const robot_sample sample = {.gap = *gap, .pair = index, .segment = segment, .u = u};
   if (is_better(o, upper, at)) {
-    o->best = sight;
+    o->best = sample;
     o->best_bound = (search_best){.upper = upper, .slack = gap->slack, .at = at};
   }
   if (upper <= o->goal.limit && at < o->touch_at) {
-    o->touch = sight;
+    o->touch = sample;
     o->touch_at = at;
   }
 }
@@ -147,7 +147,7 @@ static cprox_status measure(robot_search *o, int32_t index, size_t segment, doub
   o->gaps++;
   if (gap->fault) return refuse_callback(o);
   keep_normal(pair, standing, segment, u, gap);
-  if (is_convex(moving, standing)) keep_sight(o, index, segment, u, gap);
+  if (is_convex(moving, standing)) keep_sample(o, index, segment, u, gap);
   return CPROX_OK;
 }
 
@@ -171,7 +171,7 @@ static cprox_status climb(robot_search *o, robot_climb *c, size_t segment, doubl
   o->climbed = true;
   if (c->fault) return refuse_callback(o);
   if (c->no_memory) return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
-  if (c->nearest.gap.upper < INFINITY) keep_sight(o, c->pair, segment, u, &c->nearest.gap);
+  if (c->nearest.gap.upper < INFINITY) keep_sample(o, c->pair, segment, u, &c->nearest.gap);
   return CPROX_OK;
 }
 
@@ -637,7 +637,7 @@ static void release(void *self, const search_node *node) {
 
 void robot_search_begin(robot_search *o, const search_goal *goal) {
   o->goal = *goal;
-  o->best = o->touch = (robot_sight){.pair = -1};
+  o->best = o->touch = (robot_sample){.pair = -1};
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
   o->dropped = o->touch_at = INFINITY;
   o->seeded = o->climbed = false;
@@ -657,7 +657,7 @@ static cprox_status look_at(robot_search *o, int32_t pair, double t, double *upp
   robot_scene_enter(&o->scene, segment, u, u);
 
   /* what was found stays the best, whatever is seen here */
-  const robot_sight best = o->best;
+  const robot_sample best = o->best;
   const search_best bound = o->best_bound;
   const double epsilon = o->goal.epsilon;
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};

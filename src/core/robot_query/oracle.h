@@ -10,12 +10,12 @@
 #include "robot_query/refine.h"
 
 /* Where the least distance was measured. */
-typedef struct robot_sight {
+typedef struct robot_sample {
   robot_gap gap;
   int32_t pair; /* -1: nothing was measured */
   size_t segment;
   double u;
-} robot_sight;
+} robot_sample;
 
 typedef struct robot_search {
   robot_scene scene;
@@ -23,10 +23,10 @@ typedef struct robot_search {
   search_goal goal;
 
   /* what is known */
-  robot_sight best;
+  robot_sample best;
   search_best best_bound;
-  double dropped;    /* the least lower bound of pairs that were dropped from a list */
-  robot_sight touch; /* left to right: the earliest place where contact is proven */
+  double dropped;     /* the least lower bound of pairs that were dropped from a list */
+  robot_sample touch; /* left to right: the earliest place where contact is proven */
   double touch_at;
   bool seeded;
   uint32_t gaps, planes; /* distances measured, plane bounds asked for */

@@ -41,7 +41,7 @@ static cprox_status invalid(cprox_workspace *workspace, cprox_gradient *g, const
 
 /* The distance at t, and how fast it changes along the curve. */
 typedef struct look {
-  curve_sight sight;
+  curve_sample sample;
   double slope;
   double slack; /* of the distance */
 } look;
@@ -58,8 +58,8 @@ static cprox_status look_at(curve_convex *o, double t, bool from_left, look *see
   curve_bezier_evaluate(x, y, z, 1, c->degree, c->binomial, s, &at, &velocity, NULL);
   search_best bound;
   const cprox_status status =
-      curve_convex_measure(o, piece, s, at, curve_side_point_error(&o->side), &seen->sight, &bound);
-  seen->slope = vec_dot(seen->sight.normal, velocity) / length;
+      curve_convex_measure(o, piece, s, at, curve_side_point_error(&o->side), &seen->sample, &bound);
+  seen->slope = vec_dot(seen->sample.normal, velocity) / length;
   seen->slack = bound.slack;
   return status;
 }
@@ -246,7 +246,7 @@ static cprox_status part_is_alone(const query *q, const placed_pair *best, doubl
     look seen;
     const cprox_status status = look_at(&o, t, false, &seen);
     if (status < 0) return status;
-    *alone = seen.sight.near.distance - o.offset > distance + 2.0 * q->options.epsilon;
+    *alone = seen.sample.near.distance - o.offset > distance + 2.0 * q->options.epsilon;
   }
   return CPROX_OK;
 }
@@ -256,12 +256,12 @@ static cprox_status part_is_alone(const query *q, const placed_pair *best, doubl
 static cprox_status lean_of(curve_convex *o, const look *here, double step, double *lean) {
   *lean = 0.0;
   for (int i = 0; i < 3; i++) {
-    curve_sight seen[2];
+    curve_sample seen[2];
     for (int k = 0; k < 2; k++) {
       const double d = k ? step : -step;
-      const vec3 y = vec_add(here->sight.y, vec(i == 0 ? d : 0.0, i == 1 ? d : 0.0, i == 2 ? d : 0.0));
+      const vec3 y = vec_add(here->sample.y, vec(i == 0 ? d : 0.0, i == 1 ? d : 0.0, i == 2 ? d : 0.0));
       search_best bound;
-      const cprox_status status = curve_convex_measure(o, here->sight.piece, here->sight.s, y, 0.0, &seen[k], &bound);
+      const cprox_status status = curve_convex_measure(o, here->sample.piece, here->sample.s, y, 0.0, &seen[k], &bound);
       if (status < 0) return status;
     }
     *lean = fmax(vec_norm(vec_sub(seen[1].normal, seen[0].normal)), *lean);
@@ -275,7 +275,7 @@ static cprox_status way_out_is_alone(curve_convex *o, const look *here, bool *al
   static const double NOISE = 2e-5; /* normals of carried bodies are known to
                                        the root of what depths are */
   *alone = true;
-  if (here->sight.near.distance > 2.0 * here->slack) return CPROX_OK;
+  if (here->sample.near.distance > 2.0 * here->slack) return CPROX_OK;
   const double size = o->shape->scale + o->shape->margin;
   double near, far = 0.0;
   cprox_status status = lean_of(o, here, TIES_NEAR * size, &near);
@@ -342,12 +342,12 @@ static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox
   look here = {.slope = 0.0};
   if (status == CPROX_OK) status = look_at(&o, g->t, end > 0, &here);
   if (status < 0) return status;
-  const double distance = here.sight.near.distance - o.offset;
+  const double distance = here.sample.near.distance - o.offset;
   if (end < 0) g->t0 = here.slope;
   if (end > 0) g->t1 = here.slope;
 
   /* the points, as the search would report them */
-  curve_convex_adopt(&o, &here.sight, (search_best){.upper = distance});
+  curve_convex_adopt(&o, &here.sample, (search_best){.upper = distance});
   cprox_result r = {.t_obstacle = NAN};
   status = placed_report_convex(q, c, &o, &r);
   if (status < 0) return status;
