@@ -505,8 +505,8 @@ CASE(chords_are_cut_again_where_the_piece_goes) {
   cprox_workspace_free(workspace);
 }
 
-/* The distance of a point of the chord from the brick, in long double; the frame's matrix is taken as it is, which a rotation is but for 20 u. */
-static long double from_brick(const lanes_brick *b, const lanes_chords *c, size_t k, long double s) {
+/* The distance of a point of the chord from the obb, in long double; the frame's matrix is taken as it is, which a rotation is but for 20 u. */
+static long double from_brick(const lanes_obb *b, const lanes_chords *c, size_t k, long double s) {
   const long double v[3] = {(long double)c->x[k] + s * (long double)c->dx[k] - (long double)b->position.x,
                             (long double)c->y[k] + s * (long double)c->dy[k] - (long double)b->position.y,
                             (long double)c->z[k] + s * (long double)c->dz[k] - (long double)b->position.z};
@@ -542,26 +542,26 @@ CASE(bricks_bound_chords_from_below) {
     lanes_join(&chords);
     const cprox_pose pose = rng_pose(&r, 1.0);
     const frame f = frame_create(&pose, vec(0, 0, 0));
-    lanes_brick brick = {.position = vec_add(offset, pose.position), .centre = rng_in_cube(&r, 0.2)};
-    memcpy(brick.r, f.r, sizeof brick.r);
-    brick.half = vec(rng_uniform(&r, 0, 0.5), rng_uniform(&r, 0, 0.5), round % 5 ? rng_uniform(&r, 0, 0.5) : 0.0);
-    if (round % 7 == 0) brick.half = vec(0, 0, 0);
+    lanes_obb obb = {.position = vec_add(offset, pose.position), .centre = rng_in_cube(&r, 0.2)};
+    memcpy(obb.r, f.r, sizeof obb.r);
+    obb.half = vec(rng_uniform(&r, 0, 0.5), rng_uniform(&r, 0, 0.5), round % 5 ? rng_uniform(&r, 0, 0.5) : 0.0);
+    if (round % 7 == 0) obb.half = vec(0, 0, 0);
     lanes_sample sight;
-    lanes_see_brick(&chords, &brick, &sight);
+    lanes_see_obb(&chords, &obb, &sight);
     const long double allowed = 128 * 0x1p-53L * (long double)(far + 4.0);
     for (size_t k = 0; k < CHORDS; k++) {
       long double a = 0.0L, b = 1.0L;
       for (int step = 0; step < 60; step++) {
         const long double left = b - 0.6180339887498949L * (b - a), right = a + 0.6180339887498949L * (b - a);
-        if (from_brick(&brick, &chords, k, left) <= from_brick(&brick, &chords, k, right))
+        if (from_brick(&obb, &chords, k, left) <= from_brick(&obb, &chords, k, right))
           b = right;
         else
           a = left;
       }
-      const long double least = from_brick(&brick, &chords, k, 0.5L * (a + b));
+      const long double least = from_brick(&obb, &chords, k, 0.5L * (a + b));
       assert_true((long double)sight.lower[k] <= least + 1e-12L + allowed);
       assert_true(sight.lower[k] >= 0.0 && sight.s[k] >= 0.0 && sight.s[k] <= 1.0);
-      const long double at = from_brick(&brick, &chords, k, (long double)sight.s[k]);
+      const long double at = from_brick(&obb, &chords, k, (long double)sight.s[k]);
       assert_true(fabsl(at - sqrtl((long double)sight.square[k])) <= allowed);
       apart += least > 1e-6L;
       tight += least > 1e-6L && (long double)sight.lower[k] >= 0.95L * least;
@@ -571,7 +571,7 @@ CASE(bricks_bound_chords_from_below) {
   cprox_workspace_free(workspace);
 }
 
-/* Seed 23, 20 scenes: a brick holds the points of its part that lie farthest in 100 directions, and each of its faces has one of them within a
+/* Seed 23, 20 scenes: a obb holds the points of its part that lie farthest in 100 directions, and each of its faces has one of them within a
  * third of its width; 1e-12 is the rounding of the poses here, amply. */
 CASE(bricks_hold_their_parts) {
   rng r = rng_seed(23);
@@ -585,23 +585,23 @@ CASE(bricks_hold_their_parts) {
     const query q = {.targets = s.targets, .n = s.n_targets};
     for (size_t k = 0; k < batch->balls.n; k++) {
       const batch_core *core = &batch->cores[k];
-      if (!core->has_brick) continue;
+      if (!core->has_obb) continue;
       bricks++;
       const placed_pair placed = placed_pair_resolve(&q, &batch->parts[k]);
       const cprox_body *body = placed.shape;
       const frame f = placed.frame;
-      const frame own = {.position = core->brick.position, .centre = core->brick.centre, .rotated = true};
-      frame brick = own;
-      memcpy(brick.r, core->brick.r, sizeof brick.r);
+      const frame own = {.position = core->obb.position, .centre = core->obb.centre, .rotated = true};
+      frame obb = own;
+      memcpy(obb.r, core->obb.r, sizeof obb.r);
       double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
-      const double half[3] = {core->brick.half.x, core->brick.half.y, core->brick.half.z};
+      const double half[3] = {core->obb.half.x, core->obb.half.y, core->obb.half.z};
       for (int i = 0; i < 106; i++) {
         vec3 d = rng_unit(&r), at;
         if (i < 6) d = vec(i / 2 == 0, i / 2 == 1, i / 2 == 2);
         if (i < 6 && i % 2) d = vec_neg(d);
         body->shape.ops->support(&body->shape, d, NULL, &at);
         double error = 0.0;
-        const vec3 y = frame_to_local(&brick, frame_to_world(&f, vec_axpy(at, body->shape.margin, d)), &error);
+        const vec3 y = frame_to_local(&obb, frame_to_world(&f, vec_axpy(at, body->shape.margin, d)), &error);
         const double inside[3] = {y.x, y.y, y.z};
         for (int j = 0; j < 3; j++) {
           assert_true(fabs(inside[j]) <= half[j] + 1e-12);

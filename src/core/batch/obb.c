@@ -6,7 +6,7 @@
 #include "base/rotation.h"
 #include "base/rounding.h"
 
-/* One look at a brick: what a bound of chords is worth for the mover. */
+/* One look at a obb: what a bound of chords is worth for the mover. */
 typedef struct look {
   batch_run *run;
   const batch_core *core;
@@ -18,14 +18,14 @@ typedef struct look {
 /* 28 (|p| + |c|) u to bring a point into the frame, p its place from the frame's, c its centre; 56 |p| u for the chord's direction, and
  * 10 u of all sizes for the bound and the margin. */
 static double slack_of(const batch_run *run, const batch_core *core, double margin) {
-  const double sizes = run->q.mover.curve->largest + core->brick_sizes + margin;
-  return ROUND_UP * (run->slack + (128.0 + core->brick_turned) * ROUND_U * sizes + core->brick_misplaced);
+  const double sizes = run->q.mover.curve->largest + core->obb_sizes + margin;
+  return ROUND_UP * (run->slack + (128.0 + core->obb_turned) * ROUND_U * sizes + core->obb_misplaced);
 }
 
 /* ---- points ------------------------------------------------------------------------------------------------------------- */
 
-/* The part is a brick: how far a point is from it, and which point of it is nearest. */
-static double from_brick(const lanes_brick *b, vec3 x, vec3 *surface) {
+/* The part is a obb: how far a point is from it, and which point of it is nearest. */
+static double from_obb(const lanes_obb *b, vec3 x, vec3 *surface) {
   const vec3 y = vec_sub(rotate_back(b->r, vec_sub(x, b->position)), b->centre);
   const vec3 h = b->half;
   const vec3 on =
@@ -42,7 +42,7 @@ static bool hits_at(const look *l, uint32_t piece, double s, batch_hit *hit) {
   vec3 at;
   curve_bezier_evaluate(&points->x, &points->y, &points->z, 3, curve->degree, curve->binomial, s, &at, NULL, NULL);
   vec3 surface;
-  const double distance = from_brick(&l->core->brick, at, &surface);
+  const double distance = from_obb(&l->core->obb, at, &surface);
   const double upper = distance - l->margin + l->slack;
   if (upper > l->limit) return false;
   hit->upper = greater(upper, 0.0);
@@ -74,7 +74,7 @@ static bool look_closer(look *l, uint32_t piece, uint32_t k, double *lower, batc
   lanes_chords fine;
   if (!cut_chord(l->run, piece, k, &fine)) return false;
   lanes_sample sample;
-  lanes_see_brick(&fine, &l->core->brick, &sample);
+  lanes_see_obb(&fine, &l->core->obb, &sample);
   const double beside = l->run->beside * (1.0 / (CHORDS * CHORDS));
   uint32_t nearest, unused;
   *lower = greater(*lower, lanes_least(sample.lower, &unused) - beside - l->margin - l->slack);
@@ -84,20 +84,20 @@ static bool look_closer(look *l, uint32_t piece, uint32_t k, double *lower, batc
   return sqrt(square) - beside - l->margin <= l->limit && hits_at(l, piece, s, hit);
 }
 
-bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit) {
+bool batch_look_at_obb(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit) {
   enum { MOST_CUT = 6 }; /* a search is faster than more of these */
   const batch_core *core = &run->batch->cores[part];
   const uint32_t pieces = (uint32_t)run->q.mover.curve->n_pieces;
   look l = {.run = run, .core = core, .margin = core->margin + run->q.mover.radius, .limit = -1.0};
   l.slack = slack_of(run, core, l.margin);
-  if (core->is_brick) l.limit = greater(run->q.limit, 0.0);
+  if (core->is_obb) l.limit = greater(run->q.limit, 0.0);
 
   /* all chords */
   lanes_sample sample[BATCH_MOST_PIECES];
   double lower = INFINITY, square = INFINITY, s = 0.0;
   uint32_t piece = 0;
   for (uint32_t i = 0; i < pieces; i++) {
-    lanes_see_brick(&run->chords[i], &core->brick, &sample[i]);
+    lanes_see_obb(&run->chords[i], &core->obb, &sample[i]);
     uint32_t k, unused;
     const double least = lanes_least(sample[i].square, &k);
     if (least < square) square = least, piece = i, s = ((double)k + sample[i].s[k]) / CHORDS;
@@ -107,7 +107,7 @@ bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c,
   c->lower = greater(c->lower, lower - off);
   c->seed_piece = piece;
   c->seed_s = lesser(greater(s, 1e-3), 1.0 - 1e-3);
-  *upper = core->is_brick ? distance + run->beside - l.margin + l.slack : INFINITY;
+  *upper = core->is_obb ? distance + run->beside - l.margin + l.slack : INFINITY;
   const double settles = query_wants_verdict(&run->q) ? most : 0.0; /* of distances only contact is */
   if (c->lower > lesser(most, settles)) return false;
 

@@ -88,7 +88,7 @@ static batch_core core_of(const placed_pair *p, candidate_ball round) {
   return core;
 }
 
-/* ---- bricks ------------------------------------------------------------------------------------------------------------- */
+/* ---- OBBs ------------------------------------------------------------------------------------------------------------- */
 
 /* How far the shape reaches both ways along an axis of its frame, which stands in its middle; rounding included. */
 static double half_along(const convex *shape, vec3 axis) {
@@ -98,24 +98,23 @@ static double half_along(const convex *shape, vec3 axis) {
 }
 
 /* A ball says more of a sphere than any box. */
-static void lay_brick(const placed_pair *p, batch_core *core) {
+static void lay_obb(const placed_pair *p, batch_core *core) {
   const cprox_body *body = p->shape;
   if (!body || !has_depth(body) || body->kind == CPROX_SPHERE) return;
   const convex *shape = &body->shape;
   const frame f = p->frame;
-  lanes_brick *brick = &core->brick;
-  memcpy(brick->r, f.r, sizeof brick->r);
-  brick->position = f.position;
-  brick->centre = f.centre;
-  core->has_brick = true;
-  core->is_brick = body->kind == CPROX_BOX;
-  brick->half = vec(shape->size[0], shape->size[1], shape->size[2]);
-  if (!core->is_brick)
-    brick->half =
-        vec(half_along(shape, vec(1, 0, 0)), half_along(shape, vec(0, 1, 0)), half_along(shape, vec(0, 0, 1)));
-  core->brick_sizes = vec_norm(f.position) + vec_norm(f.centre) + vec_norm(brick->half);
-  core->brick_turned = f.misturned;
-  core->brick_misplaced = f.misplaced;
+  lanes_obb *obb = &core->obb;
+  memcpy(obb->r, f.r, sizeof obb->r);
+  obb->position = f.position;
+  obb->centre = f.centre;
+  core->has_obb = true;
+  core->is_obb = body->kind == CPROX_BOX;
+  obb->half = vec(shape->size[0], shape->size[1], shape->size[2]);
+  if (!core->is_obb)
+    obb->half = vec(half_along(shape, vec(1, 0, 0)), half_along(shape, vec(0, 1, 0)), half_along(shape, vec(0, 0, 1)));
+  core->obb_sizes = vec_norm(f.position) + vec_norm(f.centre) + vec_norm(obb->half);
+  core->obb_turned = f.misturned;
+  core->obb_misplaced = f.misplaced;
 }
 
 /* ---- the batch ---------------------------------------------------------------------------------------------------------- */
@@ -172,7 +171,7 @@ static void describe(cprox_batch *batch, const query *q, size_t k) {
   batch->cores[k] = core_of(&placed, round);
   batch->cores[k].plane = target->pose.position.z;
   batch->cores[k].margin = target->margin;
-  lay_brick(&placed, &batch->cores[k]);
+  lay_obb(&placed, &batch->cores[k]);
 }
 
 /* All parts, those that stand together one after the other; what is everywhere comes last. False where memory is out. */

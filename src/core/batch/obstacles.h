@@ -18,10 +18,10 @@ typedef struct batch_core {
   double margin; /* of the target, which the radii leave out */
 
   /* a box round the part, in the frame of its shape */
-  bool has_brick, is_brick; /* there is one; the part is that box */
-  lanes_brick brick;
-  double brick_sizes; /* the sum of the lengths that entered, for rounding: this times brick_turned u, */
-  double brick_turned, brick_misplaced; /* and this [m] are what placing it may be off */
+  bool has_obb, is_obb; /* there is one; the part is that box */
+  lanes_obb obb;
+  double obb_sizes;                 /* the sum of the lengths that entered, for rounding: this times obb_turned u, */
+  double obb_turned, obb_misplaced; /* and this [m] are what placing it may be off */
 } batch_core;
 
 struct cprox_batch {

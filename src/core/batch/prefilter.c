@@ -23,9 +23,9 @@ static bool has_inner_ball(const batch_run *run, size_t part) {
   return core->inner >= 0.0 && (!core->flat || (curve->flat && curve->points[0].z == core->plane));
 }
 
-/* A brick that is seen from chords is met there. */
+/* A obb that is seen from chords is met there. */
 static bool may_hit(const batch_run *run, size_t part, double limit) {
-  return !(run->lower[part] > limit) && has_inner_ball(run, part) && !(run->joined && run->batch->cores[part].is_brick);
+  return !(run->lower[part] > limit) && has_inner_ball(run, part) && !(run->joined && run->batch->cores[part].is_obb);
 }
 
 /* A point of half a piece that is within the limit of the part's inner ball. */
@@ -103,15 +103,15 @@ static double look_at_balls(const batch_run *run, candidate *c, size_t part) {
   return distance + (has_inner_ball(run, part) ? -core->inner : core->outer) - margin + slack;
 }
 
-/* What balls leave open the brick may settle. */
+/* What balls leave open the obb may settle. */
 static double look_at(batch_run *run, candidate *c, size_t part, double most, batch_look *look) {
-  double upper = look_at_balls(run, c, part), by_brick = INFINITY;
-  if (run->batch->cores[part].has_brick && !(c->lower > most)) {
-    look->is_hit = batch_look_at_brick(run, part, most, c, &by_brick, &look->hit);
+  double upper = look_at_balls(run, c, part), by_obb = INFINITY;
+  if (run->batch->cores[part].has_obb && !(c->lower > most)) {
+    look->is_hit = batch_look_at_obb(run, part, most, c, &by_obb, &look->hit);
     look->hit.part = part;
     look->lod = CPROX_LOD_HULL;
   }
-  return lesser(upper, by_brick);
+  return lesser(upper, by_obb);
 }
 
 /* The promising candidate first, the others nearest first. Those that a later one has ruled out leave: farther than the first one is,

@@ -67,6 +67,6 @@ void batch_points_join(batch_run *run);
 
 /* What the box round a part says of the curve, whose chords are joined. Raises c->lower, to more than `most` where that can be shown, says
  * where a search should begin, and sets *upper to an upper bound or infinity. True where it finds a hit: contact, or what violates the limit. */
-bool batch_look_at_brick(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit);
+bool batch_look_at_obb(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit);
 
 #endif

@@ -77,12 +77,12 @@ void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n
                       double *lower);
 
 /* A box that stands anywhere: the points x with |r^T (x - position) - centre| <= half, each coordinate by itself; r is row-major. */
-typedef struct lanes_brick {
+typedef struct lanes_obb {
   double r[9];
   vec3 position, centre, half;
-} lanes_brick;
+} lanes_obb;
 
-/* What a brick is to each chord, but for rounding: */
+/* What a obb is to each chord, but for rounding: */
 typedef struct lanes_sample {
   double lower[CHORDS];  /* the chord is at least so far away, */
   double square[CHORDS]; /* and the square distance of one point of it */
@@ -91,7 +91,7 @@ typedef struct lanes_sample {
 /* The least of CHORDS numbers, and the first that is it. */
 double lanes_least(const double *values, uint32_t *which);
 
-void lanes_see_brick(const lanes_chords *chords, const lanes_brick *brick, lanes_sample *sample);
+void lanes_see_obb(const lanes_chords *chords, const lanes_obb *obb, lanes_sample *sample);
 
 /* Boxes round the balls of blocks, one array a number, padded likewise. */
 typedef struct lanes_blocks {

@@ -28,9 +28,9 @@ static inline double held(double x, double half) {
 }
 
 SIMD_CLONES
-void lanes_see_brick(const lanes_chords *c, const lanes_brick *brick, lanes_sample *sample) {
-  const double *r = brick->r;
-  const vec3 at = brick->position, m = brick->centre, h = brick->half;
+void lanes_see_obb(const lanes_chords *c, const lanes_obb *obb, lanes_sample *sample) {
+  const double *r = obb->r;
+  const vec3 at = obb->position, m = obb->centre, h = obb->half;
   double px[CHORDS], py[CHORDS], pz[CHORDS], dx[CHORDS], dy[CHORDS], dz[CHORDS];
   double *restrict s = sample->s, *restrict lower = sample->lower, *restrict square = sample->square;
 
