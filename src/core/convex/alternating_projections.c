@@ -162,7 +162,7 @@ void approach_search(const approach_task *task, approach_answer *answer) {
   for (int round = 0; round < APPROACH_ROUNDS && answer->looks + 1 < task->goal->max_steps; round++) {
     approach_pair p;
     approach_project(task, y, &p);
-    answer->met = p.distance <= task->hair;
+    answer->met = p.distance <= task->contact_tolerance;
     if (answer->met) return;
     if (!(p.distance < answer->distance)) {
       if (!newton) return;
@@ -220,7 +220,7 @@ void approach_smooth(const approach_task *task, vec3 u, approach_answer *answer)
       answer->distance = distance;
       answer->pair = x;
     }
-    if (distance <= task->hair) return;
+    if (distance <= task->contact_tolerance) return;
     answer->reached = pair_is_reached(task->goal, task->margins, task->rounding, answer->lower, answer->distance);
     if (answer->reached) return;
     double delta[2];

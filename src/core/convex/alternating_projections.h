@@ -13,13 +13,13 @@ typedef struct approach_task {
   vec3 t;
   const pair_goal *goal;
   double margins, rounding;
-  double hair;           /* cores nearer than this are left to others */
-  pair_feature *feature; /* set where the projections get as close as the goal asks; NULL: not wanted */
+  double contact_tolerance; /* cores nearer than this are left to others */
+  pair_feature *feature;    /* set where the projections get as close as the goal asks; NULL: not wanted */
 } approach_task;
 
 typedef struct approach_answer {
   bool reached;        /* the bounds are as close as the goal asks */
-  bool met;            /* the projections found a point of both cores but for a hair */
+  bool met;            /* the projections found a point of both cores within the contact tolerance */
   simplex_vertex pair; /* w = a - b the shortest so far, of a point of each core */
   double distance;     /* |w| */
   vec3 u;              /* the best direction, and its phi; (0,0,0) and -infinity where none was tried */

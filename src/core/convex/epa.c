@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 #include "base/rounding.h"
+#include "convex/double_double.h"
 #include "convex/feature.h"
-#include "convex/twofold.h"
 
 enum {
   MOST_STEPS = 400,
@@ -88,7 +88,7 @@ static bool is_sliver(vec3 cross, vec3 ab, vec3 ac) {
  * better one. */
 static void facet_try_sliver(const surface *s, facet *f) {
   const vec3 a = s->vertex[f->vertex[0]].w, b = s->vertex[f->vertex[1]].w, c = s->vertex[f->vertex[2]].w;
-  const vec3 ab = vec_sub(b, a), ac = vec_sub(c, a), cross = twofold_cross(a, b, c);
+  const vec3 ab = vec_sub(b, a), ac = vec_sub(c, a), cross = double_double_cross(a, b, c);
   vec3 n;
   feature_unit(cross, &n);
   facet_try(s, f, n);
@@ -270,7 +270,7 @@ static bool surface_begin(surface *s, const simplex_vertex *vertex, const shell 
     const int *corner = form->corner[i];
     const vec3 a = vertex[corner[0]].w, ab = vec_sub(vertex[corner[1]].w, a), ac = vec_sub(vertex[corner[2]].w, a);
     vec3 n, cross = vec_cross(ab, ac);
-    if (is_sliver(cross, ab, ac)) cross = twofold_cross(a, vertex[corner[1]].w, vertex[corner[2]].w);
+    if (is_sliver(cross, ab, ac)) cross = double_double_cross(a, vertex[corner[1]].w, vertex[corner[2]].w);
     feature_unit(cross, &n);
     if (!(vec_dot(n, a) > rounding)) return false;
     for (int k = 0; k < form->n_vertices && form->n_vertices > 4; k++)

@@ -62,7 +62,7 @@ static int32_t profile_nearest(const profile *p) {
   return best;
 }
 
-/* A hair off the axis, so that the extreme points of an end lie in the half plane like all the others. */
+/* A little off the axis, so that the extreme points of an end lie in the half plane like all the others. */
 static const double TILT = 1e-8;
 
 /* The lowest, the widest and the highest point. */

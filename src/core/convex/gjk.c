@@ -8,7 +8,7 @@
 
 enum { GJK_MAX_STEPS = 200, GJK_MAX_IDLE = 8 };
 
-/* Depths below this, in hairs, are not searched for beyond the simplices. */
+/* Depths below this, in contact tolerances, are not searched for beyond the simplices. */
 static const double GJK_SHALLOW = 128.0;
 
 /* A simplex that holds y so much less deep than the shape may hold it says too little. */
@@ -59,24 +59,24 @@ static vec3 gjk_point(const simplex *s) {
 typedef struct gjk {
   const convex *shape;
   vec3 y;
-  double hair;        /* distances closer than this are the same */
-  double near_enough; /* the hint's */
+  double contact_tolerance; /* distances that differ by less are the same */
+  double near_enough;       /* the hint's */
   simplex s;
   simplex_nearest nearest;
   double least; /* the shortest distance so far */
-  int idle;     /* steps since that got shorter by more than a hair */
+  int idle;     /* steps since that got shorter by more than the tolerance */
   double lower; /* the best lower bound, the direction that gave it, and the core's height along that */
   vec3 normal;
   double height;
 } gjk;
 
-/* Takes a grown simplex over. One that is nearer by less than a hair may still face a better way: some of those are let
+/* Takes a grown simplex over. One that is nearer by less than the tolerance may still face a better way: some of those are let
  * pass, since at a flat corner every step is that short. */
 static bool gjk_accept(gjk *g, simplex *grown) {
   simplex_nearest found;
   simplex_reduce(grown, &found);
-  if (!found.inside && !(found.distance < g->least + g->hair)) return false;
-  g->idle = found.inside || found.distance < g->least - g->hair ? 0 : g->idle + 1;
+  if (!found.inside && !(found.distance < g->least + g->contact_tolerance)) return false;
+  g->idle = found.inside || found.distance < g->least - g->contact_tolerance ? 0 : g->idle + 1;
   if (g->idle > GJK_MAX_IDLE) return false;
   g->least = fmin(g->least, found.distance);
   g->s = *grown;
@@ -110,7 +110,8 @@ static bool gjk_step(gjk *g) {
   vec3 along;
   feature_unit(g->nearest.v, &along);
   if (vec_norm2(normal) > 0.0 && gjk_look(g, normal)) return true;
-  if (!(g->nearest.distance - g->lower > 2.0 * g->hair)) return false; /* the bounds have met, or the callback failed */
+  if (!(g->nearest.distance - g->lower > 2.0 * g->contact_tolerance))
+    return false; /* the bounds have met, or the callback failed */
   return vec_norm2(along) > 0.0 && !vec_equal(along, normal) && gjk_look(g, along);
 }
 
@@ -131,13 +132,13 @@ static void gjk_search(gjk *g) {
   gjk before;
   for (int i = 0; i < GJK_MAX_STEPS && !g->nearest.inside; i++) {
     /* y on a feature of the simplex: on the surface, or deep inside by chance */
-    if (g->nearest.distance <= g->hair) {
+    if (g->nearest.distance <= g->contact_tolerance) {
       if (restarted) break;
       restarted = true;
       before = *g;
       gjk_restart(g);
-    } else if ((i > 0 && g->nearest.distance <= g->near_enough) || !(g->nearest.distance - g->lower > 2.0 * g->hair) ||
-               !gjk_step(g)) {
+    } else if ((i > 0 && g->nearest.distance <= g->near_enough) ||
+               !(g->nearest.distance - g->lower > 2.0 * g->contact_tolerance) || !gjk_step(g)) {
       break;
     }
   }
@@ -147,16 +148,16 @@ static void gjk_search(gjk *g) {
 /* Whether y may be deep inside although the simplices do not tell: it lies on planes through vertices, or so near to them that what is
  * proven is less than its rounding. */
 static bool gjk_is_open(const gjk *g) {
-  const double shallow = GJK_SHALLOW * g->hair;
+  const double shallow = GJK_SHALLOW * g->contact_tolerance;
   if (g->nearest.inside)
     return g->nearest.depth <= fmax(shallow, GJK_THIN * fmin(-g->lower, g->shape->scale)) && g->lower < -2.0 * shallow;
   if (g->near_enough > 0.0 && g->nearest.distance <= g->near_enough) return false;
-  return g->lower < -2.0 * shallow && g->nearest.distance - g->lower > 2.0 * g->hair;
+  return g->lower < -2.0 * shallow && g->nearest.distance - g->lower > 2.0 * g->contact_tolerance;
 }
 
 void gjk_nearest(const convex *shape, vec3 y, convex_hint *hint, gjk_answer *answer) {
   gjk g = {.shape = shape, .y = y, .least = INFINITY, .lower = -INFINITY};
-  g.hair = 4.0 * ROUND_U * (vec_norm(y) + shape->scale);
+  g.contact_tolerance = 4.0 * ROUND_U * (vec_norm(y) + shape->scale);
   simplex start;
   gjk_start(shape, y, hint, &start);
   g.near_enough = hint ? hint->near_enough : 0.0;

@@ -39,16 +39,16 @@ typedef struct pair {
   const double *r;
   vec3 t;
   bool curved, fault;
-  bool met;        /* the cores have a point in common but for a hair */
-  double rounding; /* of either bound */
-  double hair;     /* distances closer than this are the same */
+  bool met;                 /* the cores have a point in common within the tolerance */
+  double rounding;          /* of either bound */
+  double contact_tolerance; /* distances that differ by less are the same */
   uint32_t steps, supports;
 
   /* the primal side: the simplex and its nearest point to 0 */
   simplex s;
   simplex_nearest nearest;
   double least; /* the shortest distance so far */
-  int idle;     /* simplices since that got shorter by more than a hair */
+  int idle;     /* simplices since that got shorter by more than the tolerance */
   /* the dual side: the best direction and its phi */
   vec3 u;
   double lower;
@@ -76,13 +76,13 @@ static void pair_raise_lower(pair *p, vec3 u, double phi) {
   p->u = u;
 }
 
-/* Takes a grown simplex over if it is nearer than the one at hand; as far away within a hair will do for a while, since at a
+/* Takes a grown simplex over if it is nearer than the one at hand; as far away within the tolerance will do for a while, since at a
  * flat corner no step is longer. */
 static bool pair_accept(pair *p, simplex *grown) {
   simplex_nearest found;
   simplex_reduce(grown, &found);
-  if (!found.inside && !(found.distance < p->least + p->hair)) return false;
-  p->idle = found.inside || found.distance < p->least - p->hair ? 0 : p->idle + 1;
+  if (!found.inside && !(found.distance < p->least + p->contact_tolerance)) return false;
+  p->idle = found.inside || found.distance < p->least - p->contact_tolerance ? 0 : p->idle + 1;
   if (p->idle > PAIR_MAX_IDLE) return false;
   p->least = fmin(p->least, found.distance);
   p->s = *grown;
@@ -278,7 +278,7 @@ static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) 
     if (pair_is_reached(goal, margins, p->rounding, p->lower, p->nearest.distance)) return;
 
     /* 0 on a feature of the simplex: they touch, or overlap with 0 there by chance */
-    if (p->nearest.distance <= p->hair) {
+    if (p->nearest.distance <= p->contact_tolerance) {
       if (restarted) return;
       restarted = true;
       pair_restart(p);
@@ -511,7 +511,7 @@ static bool pair_approach(pair *p, double margins, const pair_goal *goal, vec3 s
   *found = (approach_answer){.reached = false};
   if (!smooth && (!p->a->ops->project || !p->b->ops->project)) return false;
   const approach_task task = {
-      p->a, p->b, p->r, p->t, goal, margins, p->rounding, p->hair, goal->wants_feature ? feature : NULL};
+      p->a, p->b, p->r, p->t, goal, margins, p->rounding, p->contact_tolerance, goal->wants_feature ? feature : NULL};
   if (smooth)
     approach_smooth(&task, start, found);
   else
@@ -551,7 +551,7 @@ static bool pair_is_open(const pair *p, double margins, const pair_goal *goal) {
 static void pair_go_inside(pair *p, double margin_a, double margin_b, double size, const pair_goal *goal,
                            pair_answer *answer) {
   const double margins = margin_a + margin_b;
-  const bool on = p->nearest.inside || p->nearest.distance <= p->hair;
+  const bool on = p->nearest.inside || p->nearest.distance <= p->contact_tolerance;
   const bool open = pair_is_open(p, margins, goal);
   if (!on && !open) return;
   if (goal->wants_depth)
@@ -580,8 +580,8 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   const double margins = margin_a + margin_b, distance = vec_norm(p.t);
   const double size = a->scale + b->scale + distance + margins;
   p.rounding = ROUND_UP * (PAIR_ROUNDING * ROUND_U * size + placement->error + 2.0 * (a->slack + b->slack));
-  p.hair = 4.0 * ROUND_U * size;
-  if (goal->plain) p.rounding = p.hair + 2.0 * (a->slack + b->slack);
+  p.contact_tolerance = 4.0 * ROUND_U * size;
+  if (goal->plain) p.rounding = p.contact_tolerance + 2.0 * (a->slack + b->slack);
 
   /* from what is known on, or the line of the centres */
   vec3 u = goal->start;

@@ -4,8 +4,8 @@
 #include "convex/simplex.h"
 
 #include "base/rounding.h"
+#include "convex/double_double.h"
 #include "convex/feature.h"
-#include "convex/twofold.h"
 
 const vec3 simplex_spread[4] = {{0.46, 0.71, 0.53}, {0.62, -0.49, -0.61}, {-0.73, 0.41, -0.55}, {-0.35, -0.63, 0.69}};
 
@@ -80,7 +80,7 @@ static face face_of(const simplex *s, const int index[3]) {
   face f = {.normal = vec_cross(edge[p], edge[q]), .corner = index[longest], .noise = 4.0 * ROUND_U * size};
   f.length = vec_norm(f.normal);
   if (f.length >= FACE_SLIVER * size) return f;
-  f.normal = twofold_cross(s->vertex[index[longest]].w, s->vertex[index[p]].w, s->vertex[index[q]].w);
+  f.normal = double_double_cross(s->vertex[index[longest]].w, s->vertex[index[p]].w, s->vertex[index[q]].w);
   f.length = vec_norm(f.normal);
   f.sliver = true;
   f.noise = 4.0 * ROUND_U * f.length + 64.0 * ROUND_U * ROUND_U * size;
