@@ -155,8 +155,8 @@ CASE(time_of_contact_with_a_set_is_the_earliest_of_its_targets) {
  * way and not less, boxes touch the balls where it comes from, so that a bound with any of the terms missing is too high. 1e-12 is the
  * rounding of the truth, which is told by hand; boxes are widened by 1e-9 of what they are made of. */
 static double lanes_below(robot_scene *scene, uint32_t at, double travel, const double *truth, size_t *seen) {
-  crowd_lanes lanes;
-  crowd_measure(scene, 0, at, travel, &lanes);
+  cluster_lanes lanes;
+  cluster_measure(scene, 0, at, travel, &lanes);
   double least = INFINITY;
   for (uint32_t l = 0; l < TREE_LANES; l++) {
     if (!(lanes.live >> l & 1u)) continue;

@@ -141,7 +141,7 @@ vec3 curve_side_chord_from_origin(const curve_side *side, const curve_interval *
 }
 
 /* How many levels at a time a range falls: three, which is a pack, but so that the last step is no small one. */
-static int fan_levels(const cprox_curve *c, size_t node) {
+static int child_levels(const cprox_curve *c, size_t node) {
   const int left = __builtin_clzll(node) - __builtin_clzll(c->n_leaves);
   return left == 4 ? 2 : left < 3 ? left : 3;
 }
@@ -157,7 +157,7 @@ size_t curve_side_nearest_piece(const curve_side *side, const curve_interval *ra
   size_t node = range->part;
   while (node < c->n_leaves) {
     double distance[CURVE_PACK], along[CURVE_PACK];
-    const int levels = fan_levels(c, node);
+    const int levels = child_levels(c, node);
     node <<= levels;
     distances_of_pack(side, node, distance, along);
     size_t nearest = node % CURVE_PACK;
@@ -334,9 +334,9 @@ static curve_reach range_reach(const curve_side *side, const curve_interval *at,
                        .magnitude = side->range_magnitude};
 }
 
-size_t curve_side_fan(const curve_side *side, const curve_interval *range, curve_interval part[CURVE_PACK]) {
+size_t curve_side_children(const curve_side *side, const curve_interval *range, curve_interval part[CURVE_PACK]) {
   const cprox_curve *c = side->curve;
-  const int levels = fan_levels(c, range->part);
+  const int levels = child_levels(c, range->part);
   const size_t first = (size_t)range->part << levels, lane = first % CURVE_PACK;
   const double *radius = c->packs[first / CURVE_PACK].radius + lane;
   size_t n = 0;
@@ -347,8 +347,8 @@ size_t curve_side_fan(const curve_side *side, const curve_interval *range, curve
   return n;
 }
 
-curve_reach curve_side_fan_reach(const curve_side *side, const curve_interval *first, vec3 n,
-                                 double least[CURVE_PACK]) {
+curve_reach curve_side_children_reach(const curve_side *side, const curve_interval *first, vec3 n,
+                                      double least[CURVE_PACK]) {
   const size_t lane = first->part % CURVE_PACK;
   double all[CURVE_PACK];
   curve_pack_reach(&side->curve->packs[first->part / CURVE_PACK], frame_turn_to_world(&side->frame, n),
@@ -376,7 +376,8 @@ curve_reach curve_side_reach(const curve_side *side, const curve_interval *at, v
   return range_reach(side, at, n);
 }
 
-curve_reach curve_side_fan_distance(const curve_side *side, const curve_interval *first, double least[CURVE_PACK]) {
+curve_reach curve_side_children_distance(const curve_side *side, const curve_interval *first,
+                                         double least[CURVE_PACK]) {
   const size_t lane = first->part % CURVE_PACK;
   const double *radius = side->curve->packs[first->part / CURVE_PACK].radius;
   double distance[CURVE_PACK], unused[CURVE_PACK];

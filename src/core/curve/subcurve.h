@@ -86,13 +86,14 @@ typedef struct curve_reach {
 
 /* A range falls into 2, 4 or 8 ranges or pieces that lie in one pack of the tree, fewer where there are no pieces: their number, and
  * where they are. */
-size_t curve_side_fan(const curve_side *side, const curve_interval *range, curve_interval part[CURVE_PACK]);
+size_t curve_side_children(const curve_side *side, const curve_interval *range, curve_interval part[CURVE_PACK]);
 
 /* What each of them reaches, the first being given: least[k] of part k, the rest of the answer being that of all. */
-curve_reach curve_side_fan_reach(const curve_side *side, const curve_interval *first, vec3 n, double least[CURVE_PACK]);
+curve_reach curve_side_children_reach(const curve_side *side, const curve_interval *first, vec3 n,
+                                      double least[CURVE_PACK]);
 
 /* How far each of them is from the frame's origin, likewise; the products lose 64 u of the magnitude. */
-curve_reach curve_side_fan_distance(const curve_side *side, const curve_interval *first, double least[CURVE_PACK]);
+curve_reach curve_side_children_distance(const curve_side *side, const curve_interval *first, double least[CURVE_PACK]);
 
 /* n: unit within 4 u. A piece with points of its own must be the loaded one. */
 curve_reach curve_side_reach(const curve_side *side, const curve_interval *at, vec3 n);

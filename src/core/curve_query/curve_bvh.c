@@ -68,7 +68,7 @@ static double newton_step(const tree_sample *sample, vec3 d1, vec3 d2) {
 }
 
 /* Newton's method along the loaded piece from the best point, with its element held fixed. */
-static void polish_element(curve_tree *o) {
+static void refine_on_element(curve_tree *o) {
   const size_t degree = o->side.curve->degree;
   const double *x = points_pool_at(&o->pool, SLOT_ROOT), *y = x + degree + 1, *z = y + degree + 1;
   const double error = curve_side_point_error(&o->side), *binomial = o->side.curve->binomial;
@@ -85,11 +85,11 @@ static void polish_element(curve_tree *o) {
 }
 
 /* On fine meshes the best point of one element lies over the next one: whose turn it is then. */
-static void polish(curve_tree *o) {
+static void refine_witness(curve_tree *o) {
   if (o->side.curve->arcs) return;
   const double error = curve_side_point_error(&o->side);
   for (int i = 0; i < MOST_ELEMENTS; i++) {
-    polish_element(o);
+    refine_on_element(o);
     const tree_sample *best = &o->best;
     const tree_hit hit = tree_nearest(o->tree, best->y, best->near.distance);
     if (!hit.found || (hit.at.pack == best->place.pack && hit.at.lane == best->place.lane)) return;
@@ -240,7 +240,7 @@ static void seed(curve_tree *o) {
   }
   if (!o->found || verdict) return;
   curve_side_load(&o->side, o->best.piece);
-  polish(o);
+  refine_witness(o);
 }
 
 /* ---- lists ------------------------------------------------------------------------------------------------------------ */
@@ -399,7 +399,8 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     tree_sample sample;
     const search_best bound =
         curve_tree_measure(o, nearest, curve_side_piece(&o->side, at), s, x, curve_side_point_error(&o->side), &sample);
-    if (adopt_better(o, &sample, &bound) && bound.upper > o->good_enough && o->nodes > o->polish_after) polish(o);
+    if (adopt_better(o, &sample, &bound) && bound.upper > o->good_enough && o->nodes > o->newton_after)
+      refine_witness(o);
     if (o->best_bound.upper <= o->asked.epsilon) prove_contact(o);
   }
   *best = o->best_bound;

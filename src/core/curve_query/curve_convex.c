@@ -100,7 +100,7 @@ static double filter(void *self, search_node *node, double goal) {
     payload->seen = o->incumbent;
   }
   if (payload->at.slot >= 0 && node->lower < goal && payload->seen_ball != o->incumbent &&
-      o->nodes >= o->polish_after && know_cover(o) && (cover_is_the_body(o) || holds_best(o, node))) {
+      o->nodes >= o->newton_after && know_cover(o) && (cover_is_the_body(o) || holds_best(o, node))) {
     bound_by_cover(o, node);
     payload->seen_ball = o->incumbent;
   }
@@ -202,14 +202,14 @@ static cprox_status probe_at(curve_convex *o, size_t piece, double s, double ste
   if (o->side.curve->arcs)
     jet.x = curve_side_point(&o->side, s); /* it has no derivatives */
   else
-    jet = polish_jet(o, points, s);
+    jet = newton_jet(o, points, s);
   search_best bound = {.upper = INFINITY};
   const cprox_status status =
       curve_convex_measure(o, piece, s, jet.x, curve_side_point_error(&o->side), &o->last, &bound);
   if (status < 0 || bound.upper >= o->best_bound.upper) return status;
   curve_convex_adopt(o, &o->last, bound);
-  const bool worthwhile = bound.upper > o->good_enough && o->nodes > o->polish_after;
-  return worthwhile ? polish(o, points, &jet, step) : CPROX_OK;
+  const bool worthwhile = bound.upper > o->good_enough && o->nodes > o->newton_after;
+  return worthwhile ? newton_refine(o, points, &jet, step) : CPROX_OK;
 }
 
 /* From the frame's origin, about which the body stands, towards the chord of a range: a normal that is had without a measurement.
@@ -317,7 +317,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   const bool decisive = o->goal < o->best_bound.upper - 2.0 * o->epsilon;
   if (piece && !decisive && best_inside(o, node) >= 0.0) return CPROX_OK;
 
-  /* the probe's own normal, and the best one if it is another: one step further is the best of a probe that was not polished */
+  /* the probe's own normal, and the best one if it is another: one step further is the best of a probe that was not refined */
   curve_convex_bound(o, node, &o->last);
   if (payload->seen != o->incumbent &&
       !(o->incumbent == before + 1 && o->last.s == o->best.s && o->last.piece == o->best.piece))
@@ -345,10 +345,11 @@ static int add_child(curve_convex *o, const search_node *node, const curve_inter
 }
 
 /* Raises all of them by the normal of a sample. */
-static void bound_fan(const curve_convex *o, search_node *child, size_t n, const curve_sample *sample) {
+static void bound_range_children(const curve_convex *o, search_node *child, size_t n, const curve_sample *sample) {
   if (!isfinite(sample->support)) return;
   double least[CURVE_PACK];
-  const curve_reach reach = curve_side_fan_reach(&o->side, &curve_convex_own(&child[0])->at, sample->normal, least);
+  const curve_reach reach =
+      curve_side_children_reach(&o->side, &curve_convex_own(&child[0])->at, sample->normal, least);
   for (size_t k = 0; k < n; k++) {
     const double bound = least[k] - sample->support;
     const double slack = bound_slack(o, reach.error, reach.magnitude, bound);
@@ -358,11 +359,11 @@ static void bound_fan(const curve_convex *o, search_node *child, size_t n, const
 }
 
 /* And by the ball about the frame's origin that the body lies in: each from its own side, as no one plane sees them. */
-static void bound_fan_by_ball(const curve_convex *o, search_node *child, size_t n) {
+static void bound_range_children_by_ball(const curve_convex *o, search_node *child, size_t n) {
   const convex *shape = o->shape;
   if (shape->ops->kind == CPROX_HALFSPACE) return;
   double least[CURVE_PACK];
-  const curve_reach reach = curve_side_fan_distance(&o->side, &curve_convex_own(&child[0])->at, least);
+  const curve_reach reach = curve_side_children_distance(&o->side, &curve_convex_own(&child[0])->at, least);
   const double radius = shape->scale + o->offset;
   const double slack = ROUND_UP * (reach.error + 64.0 * ROUND_U * (reach.magnitude + radius) + shape->slack);
   for (size_t k = 0; k < n; k++) child[k].lower = greater(least[k] - radius - slack, child[k].lower);
@@ -379,16 +380,16 @@ static bool is_open(const curve_convex *o, const search_node *child, size_t n) {
  * best normal may settle, and what that leaves the one from the body's middle. */
 static int split_range(curve_convex *o, const search_node *node, search_node *child) {
   curve_interval part[CURVE_PACK];
-  const size_t n = curve_side_fan(&o->side, &curve_convex_known(node)->at, part);
+  const size_t n = curve_side_children(&o->side, &curve_convex_known(node)->at, part);
   for (size_t k = 0; k < n; k++) {
     child[k] = *node;
     curve_convex_own(&child[k])->at = part[k];
     curve_convex_own(&child[k])->seen_ball = 0;
     curve_convex_own(&child[k])->seen = o->incumbent;
   }
-  bound_fan_by_ball(o, child, n);
-  if (is_open(o, child, n)) bound_fan(o, child, n, &o->best);
-  if (is_open(o, child, n) && look_from_origin(o, node)) bound_fan(o, child, n, &o->last);
+  bound_range_children_by_ball(o, child, n);
+  if (is_open(o, child, n)) bound_range_children(o, child, n, &o->best);
+  if (is_open(o, child, n) && look_from_origin(o, node)) bound_range_children(o, child, n, &o->last);
   return (int)n;
 }
 

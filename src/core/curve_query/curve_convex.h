@@ -40,8 +40,8 @@ typedef struct curve_convex {
   convex joined;         /* where a body is carried: the shape that stands for both */
   cprox_curve relative;  /* where the other is on the mover's clock: the mover's curve, seen from there */
   double offset;         /* margin of the body + radius of the ball */
-  uint32_t polish_after; /* nodes before Newton is allowed to look for better points */
-  double good_enough;    /* an upper bound at or below this needs no polish */
+  uint32_t newton_after; /* nodes before Newton is allowed to look for better points */
+  double good_enough;    /* an upper bound at or below this needs no refinement */
   double epsilon;
   bool is_signed; /* depths are measured */
 

@@ -171,7 +171,7 @@ static double point_near(curve_side *side, const curve_interval *at, double f, v
 }
 
 /* The better of the best meeting and the one that Newton finds from it. */
-static void polish(curve_curve *o, double step) {
+static void refine_meeting(curve_curve *o, double step) {
   curve_meeting m = o->best;
   if (!meeting_descend(o->side, o->carries ? &o->shift : NULL, &m, step)) return;
   consider(o, &m, curve_side_point_error(&o->side[0]) + curve_side_point_error(&o->side[1]));
@@ -225,10 +225,10 @@ static bool first_look(const curve_curve *o, const search_node *node, double fra
 
 /* Distances are to be had exactly; verdicts are, where the best meeting is so near the limit that they may hang on the last digits, or
  * where they do not come easily. */
-static bool is_worth_polishing(const curve_curve *o) {
+static bool is_worth_refining(const curve_curve *o) {
   static const double NEAR = 1.05;
   const double upper = o->best_bound.upper;
-  return upper > o->good_enough && (o->nodes > o->polish_after || upper < NEAR * o->good_enough);
+  return upper > o->good_enough && (o->nodes > o->newton_after || upper < NEAR * o->good_enough);
 }
 
 /* Measures near those fractions of the node's intervals, and goes on from there. The normal seen there is the one to go by where there
@@ -249,7 +249,7 @@ static cprox_status measure_node(curve_curve *o, search_node *node, const double
   }
   if (o->carries) curve_curve_bound(o, node, m.normal);
   const double step = 0.25 * fmax(payload->side[0].b - payload->side[0].a, payload->side[1].b - payload->side[1].a);
-  if (pieces && o->incumbent != before && is_worth_polishing(o)) polish(o, step);
+  if (pieces && o->incumbent != before && is_worth_refining(o)) refine_meeting(o, step);
   return CPROX_OK;
 }
 

@@ -3,7 +3,7 @@
 
 enum { MAX_ROUNDS = 6, MAX_STEPS = 8 };
 
-curve_jet polish_jet(const curve_convex *o, const double *points, double s) {
+curve_jet newton_jet(const curve_convex *o, const double *points, double s) {
   const size_t degree = o->side.curve->degree;
   curve_jet j;
   curve_bezier_evaluate(points, points + degree + 1, points + 2 * (degree + 1), 1, degree, o->side.curve->binomial, s,
@@ -75,14 +75,14 @@ static double descend(const curve_convex *o, const double *points, const curve_s
     const double moved = fabs(next - s);
     if (moved < 1e-15) break;
     s = next;
-    *j = polish_jet(o, points, s);
+    *j = newton_jet(o, points, s);
     /* quadratic convergence: what such a step leaves is below rounding */
     if (moved < 1e-9) break;
   }
   return s;
 }
 
-cprox_status polish(curve_convex *o, const double *points, curve_jet *j, double step) {
+cprox_status newton_refine(curve_convex *o, const double *points, curve_jet *j, double step) {
   if (o->side.curve->arcs) return CPROX_OK; /* no derivatives to go by */
   const double error = curve_side_point_error(&o->side);
   curve_sample samples[2];

@@ -11,10 +11,10 @@ typedef struct curve_jet {
 } curve_jet;
 
 /* At s of the loaded root piece `points`. */
-curve_jet polish_jet(const curve_convex *o, const double *points, double s);
+curve_jet newton_jet(const curve_convex *o, const double *points, double s);
 
 /* Improves o->best, which must lie on the loaded root piece `points`, in steps of at most `step` of the piece's parameter.
  * It only ever replaces the best point by a measured better one: where Newton fails, nothing is lost. *jet is the one there. */
-cprox_status polish(curve_convex *o, const double *points, curve_jet *jet, double step);
+cprox_status newton_refine(curve_convex *o, const double *points, curve_jet *jet, double step);
 
 #endif

@@ -210,7 +210,7 @@ static cprox_status search_convex(const query *q, const placed_pair *p, const se
                                   cprox_result *r) {
   curve_convex o;
   if (!placed_begin_convex(q, p, &o)) return CPROX_MEMORY;
-  o.polish_after = nodes_before_newton(q);
+  o.newton_after = nodes_before_newton(q);
   o.good_enough = good_enough(q);
   o.epsilon = q->options.epsilon;
   o.is_signed = q->is_signed;
@@ -239,7 +239,7 @@ static cprox_status search_curve(const query *q, const placed_pair *p, const sea
                                  cprox_result *r) {
   curve_curve o;
   if (!placed_begin_curve(q, p, &o)) return CPROX_MEMORY;
-  o.polish_after = nodes_before_newton(q);
+  o.newton_after = nodes_before_newton(q);
   o.good_enough = good_enough(q);
   o.epsilon = q->options.epsilon;
   o.is_signed = q->is_signed;
@@ -257,7 +257,7 @@ static cprox_status search_tree(const query *q, const placed_pair *p, const sear
   if (!placed_begin_tree(q, p, &o) || !curve_tree_root(&o, &root)) return CPROX_MEMORY;
   o.asked = *goal;
   o.asked.order = SEARCH_DEPTH_FIRST; /* lists of elements are kept on a stack */
-  o.polish_after = nodes_before_newton(q);
+  o.newton_after = nodes_before_newton(q);
   o.good_enough = good_enough(q);
   const search_oracle oracle = curve_tree_oracle(&o);
   const cprox_status status = search_run(&o.asked, &oracle, root, q->workspace, found);

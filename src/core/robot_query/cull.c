@@ -12,53 +12,54 @@
 /* ---- which pairs there are already ------------------------------------------------------------------------------------------ */
 
 /* Of a part and a target their first pair, of the part -1 the target's first obstacle. An open table, at most half full. */
-struct crowd_slot {
+struct cluster_slot {
   int32_t part, first; /* first < 0: nothing is here */
   uint32_t target;
 };
 
 enum { FIRST_ROOM = 64 };
 
-static struct crowd_slot *slot_of(struct crowd_slot *table, size_t room, int32_t part, uint32_t target) {
+static struct cluster_slot *slot_of(struct cluster_slot *table, size_t room, int32_t part, uint32_t target) {
   const uint64_t key = ((uint64_t)(uint32_t)part << 32 | target) * 0x9e3779b97f4a7c15u;
   size_t i = (size_t)(key >> 32) & (room - 1);
   while (table[i].first >= 0 && (table[i].part != part || table[i].target != target)) i = (i + 1) & (room - 1);
   return &table[i];
 }
 
-static void empty(struct crowd_slot *table, size_t room) {
+static void empty(struct cluster_slot *table, size_t room) {
   for (size_t i = 0; i < room; i++) table[i].first = -1;
 }
 
 /* Room for one more; the larger table is made behind the old one, then takes its place. */
 static bool make_room(robot_scene *s) {
-  const size_t old = s->crowd_room, room = old ? 2 * old : FIRST_ROOM;
-  if (old && 2 * s->crowd_count < old) return true;
-  struct crowd_slot *table = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_CROWD, (old + room) * sizeof *table);
+  const size_t old = s->cluster_room, room = old ? 2 * old : FIRST_ROOM;
+  if (old && 2 * s->cluster_count < old) return true;
+  struct cluster_slot *table =
+      workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_CLUSTER, (old + room) * sizeof *table);
   if (!table) return false;
   empty(table + old, room);
   for (size_t i = 0; i < old; i++)
     if (table[i].first >= 0) *slot_of(table + old, room, table[i].part, table[i].target) = table[i];
   memmove(table, table + old, room * sizeof *table);
-  s->crowd_table = table;
-  s->crowd_room = room;
+  s->cluster_table = table;
+  s->cluster_room = room;
   return true;
 }
 
 static void note(robot_scene *s, int32_t part, uint32_t target, int32_t first) {
-  *slot_of(s->crowd_table, s->crowd_room, part, target) =
-      (struct crowd_slot){.part = part, .first = first, .target = target};
-  s->crowd_count++;
+  *slot_of(s->cluster_table, s->cluster_room, part, target) =
+      (struct cluster_slot){.part = part, .first = first, .target = target};
+  s->cluster_count++;
 }
 
-int32_t crowd_pairs(robot_scene *s, int32_t part, uint32_t box, size_t *count) {
+int32_t cluster_pairs(robot_scene *s, int32_t part, uint32_t box, size_t *count) {
   const uint32_t target = s->q->set->of_box[box];
   *count = robot_scene_parts_of(&s->q->targets[target]);
   if (!make_room(s)) return -1;
-  const int32_t known = slot_of(s->crowd_table, s->crowd_room, part, target)->first;
+  const int32_t known = slot_of(s->cluster_table, s->cluster_room, part, target)->first;
   if (known >= 0) return known;
 
-  int32_t obstacle = slot_of(s->crowd_table, s->crowd_room, -1, target)->first;
+  int32_t obstacle = slot_of(s->cluster_table, s->cluster_room, -1, target)->first;
   if (obstacle < 0) {
     obstacle = robot_scene_add_obstacles(s, target);
     if (obstacle < 0) return -1;
@@ -93,7 +94,7 @@ static void from_boxes(const double *rows, vec3 p, double *distance) {
   }
 }
 
-void crowd_measure(robot_scene *s, int32_t part, uint32_t at, double travel, crowd_lanes *lanes) {
+void cluster_measure(robot_scene *s, int32_t part, uint32_t at, double travel, cluster_lanes *lanes) {
   const cprox_set *set = s->q->set;
   const tree *t = set->boxes;
   const robot_pair any = {.moving = part, .element = {-1, -1}};

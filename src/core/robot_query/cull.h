@@ -8,18 +8,18 @@
 #include "robot_query/pair_state.h"
 
 /* What the lanes of a node of the tree, or of a pack (TREE_LEAF), are away from a part. */
-typedef struct crowd_lanes {
+typedef struct cluster_lanes {
   uint32_t live;              /* a bit for each lane in use */
   double lower[TREE_LANES];   /* anywhere in the node at hand, rounding included */
   double apart[TREE_LANES];   /* in its middle, as robot_scene_apart() has it */
   uint32_t under[TREE_LANES]; /* of a node: what the lane leads to; of a pack: the number of a box */
-} crowd_lanes;
+} cluster_lanes;
 
 /* travel: of the part over the node at hand. */
-void crowd_measure(robot_scene *scene, int32_t part, uint32_t at, double travel, crowd_lanes *lanes);
+void cluster_measure(robot_scene *scene, int32_t part, uint32_t at, double travel, cluster_lanes *lanes);
 
 /* The pairs of a part and the target in a box, one for each part of that: the first one's number, -1 where memory is out. They may move
  * all pairs and obstacles in memory. */
-int32_t crowd_pairs(robot_scene *scene, int32_t part, uint32_t box, size_t *count);
+int32_t cluster_pairs(robot_scene *scene, int32_t part, uint32_t box, size_t *count);
 
 #endif

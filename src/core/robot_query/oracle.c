@@ -204,13 +204,13 @@ static void try_pair(robot_search *o, int32_t index, nearest_pair *nearest) {
 }
 
 /* What is to be opened, the nearest on top. */
-typedef struct crowd_stack {
+typedef struct cluster_stack {
   uint32_t at[TREE_LANES * TREE_DEEPEST];
   double apart[TREE_LANES * TREE_DEEPEST];
   size_t count;
-} crowd_stack;
+} cluster_stack;
 
-static void push_nearest_last(crowd_stack *stack, const crowd_lanes *lanes, double most) {
+static void push_nearest_last(cluster_stack *stack, const cluster_lanes *lanes, double most) {
   const size_t first = stack->count;
   for (uint32_t l = 0; l < TREE_LANES; l++) {
     if (!(lanes->live >> l & 1u) || !(lanes->apart[l] < most)) continue;
@@ -226,18 +226,18 @@ static cprox_status no_memory_for_pairs(const robot_search *o) {
 }
 
 /* The same of all that is under a node of the set's tree. */
-static cprox_status try_crowd(robot_search *o, const list_entry *entry, nearest_pair *nearest) {
-  crowd_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
+static cprox_status try_cluster(robot_search *o, const list_entry *entry, nearest_pair *nearest) {
+  cluster_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
   while (stack.count > 0) {
     const uint32_t at = stack.at[--stack.count];
     if (stack.apart[stack.count] >= nearest->apart) continue;
-    crowd_lanes lanes;
-    crowd_measure(&o->scene, entry->part, at, 0.0, &lanes);
+    cluster_lanes lanes;
+    cluster_measure(&o->scene, entry->part, at, 0.0, &lanes);
     if (!(at & TREE_LEAF)) push_nearest_last(&stack, &lanes, nearest->apart);
     for (uint32_t l = 0; (at & TREE_LEAF) && l < TREE_LANES; l++) {
       if (!(lanes.live >> l & 1u) || !(lanes.apart[l] < nearest->apart)) continue;
       size_t count;
-      const int32_t pairs = crowd_pairs(&o->scene, entry->part, lanes.under[l], &count);
+      const int32_t pairs = cluster_pairs(&o->scene, entry->part, lanes.under[l], &count);
       if (pairs < 0) return no_memory_for_pairs(o);
       for (size_t k = 0; k < count; k++) try_pair(o, pairs + (int32_t)k, nearest);
     }
@@ -262,7 +262,7 @@ static cprox_status seed(robot_search *o, const search_node *node) {
     nearest_pair nearest = {.apart = most, .pair = -1};
     for (size_t k = 0; k < n; k++) {
       const list_entry entry = lists_at(&o->lists, list)[k];
-      const cprox_status status = entry.pair < 0 ? try_crowd(o, &entry, &nearest) : CPROX_OK;
+      const cprox_status status = entry.pair < 0 ? try_cluster(o, &entry, &nearest) : CPROX_OK;
       if (status < 0) return status;
       if (entry.pair >= 0) try_pair(o, entry.pair, &nearest);
     }
@@ -478,7 +478,7 @@ static cprox_status keep_open(robot_search *o, const list_entry *entry) {
 /* The pairs of a part and the target in a box of the set's tree. */
 static cprox_status open_box(robot_search *o, const search_node *node, const list_entry *entry) {
   size_t count;
-  const int32_t pairs = crowd_pairs(&o->scene, entry->part, entry->under, &count);
+  const int32_t pairs = cluster_pairs(&o->scene, entry->part, entry->under, &count);
   if (pairs < 0) return no_memory_for_pairs(o);
   cprox_status status = CPROX_OK;
   for (size_t k = 0; k < count && status == CPROX_OK; k++) {
@@ -491,7 +491,7 @@ static cprox_status open_box(robot_search *o, const search_node *node, const lis
 
 /* What is under a node of the set's tree and within reach of a part: pairs, or, where the part travels too far for these to be measured,
  * nodes that hold them. */
-static cprox_status open_crowd(robot_search *o, const search_node *node, const list_entry *entry) {
+static cprox_status open_cluster(robot_search *o, const search_node *node, const list_entry *entry) {
   const robot_pair any = {.moving = entry->part, .element = {-1, -1}};
   const double radius = robot_scene_moving(&o->scene, &any)->radius, travel = robot_scene_way(&o->scene, &any);
   const bool is_short = !(width_of(node) > SHORT_INTERVAL);
@@ -500,8 +500,8 @@ static cprox_status open_crowd(robot_search *o, const search_node *node, const l
   cprox_status status = CPROX_OK;
   while (n > 0 && status == CPROX_OK) {
     const uint32_t at = stack[--n];
-    crowd_lanes lanes;
-    crowd_measure(&o->scene, entry->part, at, travel, &lanes);
+    cluster_lanes lanes;
+    cluster_measure(&o->scene, entry->part, at, travel, &lanes);
     for (uint32_t l = 0; l < TREE_LANES && status == CPROX_OK; l++) {
       if (!(lanes.live >> l & 1u)) continue;
       list_entry lane = *entry;
@@ -531,7 +531,7 @@ static cprox_status bound_roughly(robot_search *o, const search_node *node) {
   for (size_t i = 0; i < n && status == CPROX_OK; i++) {
     list_entry entry = lists_at(&o->lists, list)[i];
     if (!is_pruned(o, entry.lower) && entry.pair < 0) {
-      status = open_crowd(o, node, &entry);
+      status = open_cluster(o, node, &entry);
     } else {
       if (!is_pruned(o, entry.lower)) bound_pair_roughly(o, node, &entry);
       status = keep_open(o, &entry);

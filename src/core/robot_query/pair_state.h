@@ -44,8 +44,8 @@ typedef struct robot_scene {
   chain_axis *chain;
   robot_pair *pairs;
   size_t n_pairs, n_obstacles;
-  struct crowd_slot *crowd_table; /* which targets of the set have obstacles and pairs (robot_query/cull.c) */
-  size_t crowd_room, crowd_count;
+  struct cluster_slot *cluster_table; /* which targets of the set have obstacles and pairs (robot_query/cull.c) */
+  size_t cluster_room, cluster_count;
   robot_element element[2]; /* those of the pair that was placed last: moving, standing */
   uint32_t node;            /* counts the nodes, so that states know whether they are of the present one */
   size_t segment;
