@@ -54,7 +54,7 @@ static interval pop(search *s) {
   return top;
 }
 
-/* How far the part can get along the way: the variation of each axis times a lever that holds everywhere. */
+/* How far the part can get along the way: the variation of each axis times a lever_arm that holds everywhere. */
 static double way_of(search *s, const robot_pair *pair, const axis_state *axes, chain_axis *chain) {
   const cprox_robot *robot = s->scene.motion->robot;
   const robot_part *part = &robot->parts[pair->moving];
@@ -65,9 +65,9 @@ static double way_of(search *s, const robot_pair *pair, const axis_state *axes, 
   double way = 0.0;
   for (size_t i = 0; i < n; i++) {
     const robot_axis *axis = &robot->axes[chain[i].axis];
-    double lever = part->reach - axis->reach;
-    if (chain[i].sign < 0.0) lever += standing; /* passed upwards: the part beyond hangs on it, too */
-    way += axes[chain[i].axis].variation * (axis->kind == AXIS_PRISMATIC ? 1.0 : lever);
+    double lever_arm = part->reach - axis->reach;
+    if (chain[i].sign < 0.0) lever_arm += standing; /* passed upwards: the part beyond hangs on it, too */
+    way += axes[chain[i].axis].variation * (axis->kind == AXIS_PRISMATIC ? 1.0 : lever_arm);
   }
   return way;
 }

@@ -14,7 +14,7 @@ enum { MOST_WRITTEN = 0x7fff };
 static const double SLACKS = 32.0;
 
 /* Parts that move farther than their own size, and than this fraction of their distance, are not measured: halves tell more. */
-static const double BLUR = 0.25;
+static const double MOST_DISPLACEMENT = 0.25;
 #define SHORT_INTERVAL 0x1p-8
 
 /* The normal that is not written is computed once here and once by the checker: it may differ by this, of the sizes. */
@@ -69,7 +69,7 @@ static outcome settle(const robot_cover *c, const view *v, double width, vec3 *w
   const double length = vec_norm(out), unsure = is_halfspace(v) ? 0.0 : UNSURE * (vec_norm(y) + vec_norm(h)) / length;
   if (length > 0.0 && settles(c, v, out, unsure)) return SETTLED;
 
-  const double size = fmax(v->moving->radius, BLUR * (length - v->moving->radius));
+  const double size = fmax(v->moving->radius, MOST_DISPLACEMENT * (length - v->moving->radius));
   if (is_halfspace(v) || (v->motion->travel > size && width > SHORT_INTERVAL)) return OPEN;
   robot_gap gap;
   const robot_accuracy accuracy = {.floor = c->delta, .fraction = 0.01};

@@ -304,7 +304,7 @@ static cprox_status search_model(const query *q, const candidate *c, double ceil
 /* ---- level-of-detail bodies
  * ---------------------------------------------------------------------------------------------------------- */
 
-bool candidate_may_climb(const query *q, const candidate *c) {
+bool candidate_may_refine(const query *q, const candidate *c) {
   const cprox_body *body = q->targets[c->target].body;
   if (!body || c->lod != CPROX_LOD_NONE || q->options.max_lod != CPROX_LOD_MESH) return false;
   if (body->kind == CPROX_COMPOUND) body = body->parts[c->part].body;
@@ -362,7 +362,7 @@ cprox_status candidate_rank(const query *q, candidate *c, uint32_t *nodes, uint3
 }
 
 cprox_status candidate_search(const query *q, const candidate *c, double ceiling, cprox_result *result) {
-  if (!candidate_may_climb(q, c)) return search_model(q, c, ceiling, result);
+  if (!candidate_may_refine(q, c)) return search_model(q, c, ceiling, result);
   bool settled;
   cprox_result by_hull = {0};
   const cprox_status looked = search_hull(q, c, ceiling, &by_hull, &settled);

@@ -14,7 +14,7 @@
 cprox_status candidate_search(const query *q, const candidate *c, double ceiling, cprox_result *result);
 
 /* Whether it has a hull that could spare the search of its mesh. */
-bool candidate_may_climb(const query *q, const candidate *c);
+bool candidate_may_refine(const query *q, const candidate *c);
 
 /* Where nothing is known yet, the hull says how far a level-of-detail body is at least, to one part in a hundred:
  * raises c->lower, and from then on it is the mesh that is searched. */

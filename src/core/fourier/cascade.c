@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Certified gaps of one pair from coarse to fine: a coarse "clear" is final, so that only "may collide" climbs. */
+/* Certified gaps of one pair from coarse to fine: a coarse "clear" is final, so that only "may collide" goes on. */
 #include <stdlib.h>
 
 #include "fourier/gap.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Two closed bodies by their support functions: phi(u) = min of u·(x - y) over both, a lower bound for any unit u, climbed by Newton's
+/* Two closed bodies by their support functions: phi(u) = min of u·(x - y) over both, a lower bound for any unit u, refined by Newton's
  * method on the sphere. Where that overshoots, as it does on flats, the next direction is that of the nearest point of the hull of
  * what was seen (Gilbert, Johnson, Keerthi 1988). A third of the work of the interior point method where it converges; where it stalls
  * it says so soon, and the interior point method goes on from there. */
@@ -10,16 +10,16 @@
 
 enum { SEPARATE_STEPS = 20 };
 
-/* A climb whose gap shrinks less in two steps has stalled. */
+/* An ascent whose gap shrinks less in two steps has stalled. */
 static const double SEPARATE_GAIN = 0.25;
 
-/* Between two bodies that are nearly polyhedra the climb stalls: it is not tried. */
+/* Between two bodies that are nearly polyhedra the ascent stalls: it is not tried. */
 static const double SEPARATE_FLAT = 30.0;
 
 /* How much of the gap the points are expected to move. */
 static const double SEPARATE_CHANGE = 0.1;
 
-typedef struct climb {
+typedef struct ascent {
   const implicit_query *q;
   double mu[2]; /* where Newton's method for the supports ended */
   vec3 u;       /* from b to a: the direction looked along */
@@ -27,13 +27,13 @@ typedef struct climb {
   vec3 x, y, apart; /* the supports, in a's and b's frame, and x - (M y + t) */
   double h[2][6];   /* their derivatives */
   vec3 e, f;        /* across u */
-} climb;
+} ascent;
 
 static vec3 unit(vec3 v) {
   return vec_scale(1.0 / vec_norm(v), v);
 }
 
-static void look(climb *c, vec3 u) {
+static void look(ascent *c, vec3 u) {
   const implicit_query *q = c->q;
   c->u = u;
   const double ha = implicit_closed_support(q->a, vec_neg(u), &c->mu[0], &c->x, c->h[0]);
@@ -48,7 +48,7 @@ static double form(const double h[6], vec3 x, vec3 y) {
 }
 
 /* Newton's step in the tangent plane: (K + d) step = tangential part of x - y, K the sum of both derivatives. */
-static bool newton(climb *c, double distance, double step[2]) {
+static bool newton(ascent *c, double distance, double step[2]) {
   implicit_across(c->u, &c->e, &c->f);
   const double *m = c->q->m;
   const vec3 e = rotate_back(m, c->e), f = rotate_back(m, c->f);
@@ -96,7 +96,7 @@ bool implicit_separate(const implicit_query *query, const implicit_goal *goal, i
   /* the supports' own error, twice for the two ends, and that of turning and adding */
   const double rounding = q->a->give + q->b->give + ROUND_UP * 64.0 * ROUND_U * (reach + far);
 
-  climb c = {.q = q};
+  ascent c = {.q = q};
   simplex hull = {.n = 0};
   vec3 next = vec_scale(-1.0 / far, q->t);
   double before[2] = {INFINITY, INFINITY};

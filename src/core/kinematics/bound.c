@@ -29,19 +29,19 @@ static bool turns(const axis_state *axis) {
   return axis->kind != AXIS_PRISMATIC;
 }
 
-static double lever(const axis_state *axis, vec3 centre) {
+static double lever_arm(const axis_state *axis, vec3 centre) {
   const vec3 from = vec_sub(centre, axis->frame.p);
   return axis->kind == AXIS_BALL ? vec_norm(from) : vec_norm(vec_cross(axis->z, from));
 }
 
 /* Returns the travel. r_k in the middle, then the greatest over the node: what is tipside shifts the part under the axis. */
-static double find_levers(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
-                          double *levers) {
+static double find_lever_arms(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
+                              double *lever_arms) {
   double tipside = 0.0;
   for (size_t i = n; i-- > 0;) {
     const axis_state *axis = &axes[chain[i].axis];
-    const double at_middle = turns(axis) ? ROUND_UP * (lever(axis, centre) + radius) : 1.0;
-    levers[i] = turns(axis) ? at_middle + tipside : 1.0;
+    const double at_middle = turns(axis) ? ROUND_UP * (lever_arm(axis, centre) + radius) : 1.0;
+    lever_arms[i] = turns(axis) ? at_middle + tipside : 1.0;
     tipside += axis->shift * at_middle;
   }
   return ROUND_UP * tipside;
@@ -56,7 +56,7 @@ double motion_travel(const cprox_motion *motion, const axis_state *axes, int32_t
     int32_t *later = from > to ? &from : &to;
     const axis_state *axis = &axes[*later];
     if (motion->axis_moves[*later])
-      travel += axis->shift * (turns(axis) ? ROUND_UP * (lever(axis, centre) + radius) : 1.0);
+      travel += axis->shift * (turns(axis) ? ROUND_UP * (lever_arm(axis, centre) + radius) : 1.0);
     *later = robot[*later].parent;
   }
   return ROUND_UP * travel;
@@ -69,7 +69,7 @@ double motion_ways(const cprox_motion *motion, const axis_state *axes, int32_t a
   for (; axis >= 0; axis = motion->robot->axes[axis].parent) {
     const axis_state *state = &axes[axis];
     if (motion->axis_moves[axis])
-      way += state->shift * (turns(state) ? ROUND_UP * (lever(state, centre) + radius) : 1.0);
+      way += state->shift * (turns(state) ? ROUND_UP * (lever_arm(state, centre) + radius) : 1.0);
     if (ways) ways[--depth] = ROUND_UP * way;
   }
   return ROUND_UP * way;
@@ -96,13 +96,13 @@ static void find_rates(const axis_state *axes, const chain_axis *chain, size_t n
 }
 
 /* A1 = sum r w, A2, A3. */
-static void find_derivative_bounds(const axis_state *axes, const chain_axis *chain, size_t n, const double *levers,
+static void find_derivative_bounds(const axis_state *axes, const chain_axis *chain, size_t n, const double *lever_arms,
                                    chain_motion *m) {
   double s = 0.0, a = 0.0; /* of the turning axes so far */
   m->rate = m->second = m->third = m->error = 0.0;
   for (size_t i = 0; i < n; i++) {
     const axis_state *axis = &axes[chain[i].axis];
-    const double r = levers[i], w = axis->w;
+    const double r = lever_arms[i], w = axis->w;
     m->rate += r * w;
     m->error += r * axis->error;
     if (turns(axis)) {
@@ -119,7 +119,7 @@ static void find_derivative_bounds(const axis_state *axes, const chain_axis *cha
 
 void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
                     double *scratch, chain_motion *m) {
-  m->travel = find_levers(axes, chain, n, centre, radius, scratch);
+  m->travel = find_lever_arms(axes, chain, n, centre, radius, scratch);
   find_rates(axes, chain, n, centre, m);
   find_derivative_bounds(axes, chain, n, scratch, m);
 }

@@ -244,7 +244,7 @@ static cprox_status finish_axes(cprox_motion *m, const motion_source *s) {
   return CPROX_OK;
 }
 
-/* Transforms that are off by ROUND_JOINT a joint, and values that are off by theirs, about levers of at most the reach. */
+/* Transforms that are off by ROUND_JOINT a joint, and values that are off by theirs, about lever arms of at most the reach. */
 static cprox_status finish_parts(cprox_motion *m, cprox_workspace *workspace) {
   for (size_t p = 0; p < m->robot->n_parts; p++) {
     const robot_part *part = &m->robot->parts[p];

@@ -22,8 +22,8 @@ static const double SEED_FRACTION = 0.02;
 /* Intervals that are shorter are measured even where a part moves farther than its own size. */
 #define SHORT_INTERVAL 0x1p-8
 
-/* Parts that move farther than their own size, and than this fraction of their distance, are too blurred to be measured. */
-static const double BLUR = 0.5;
+/* Parts that move farther than their own size, and than this fraction of their distance, are split before they are measured. */
+static const double MOST_DISPLACEMENT = 0.5;
 
 /* Normals that turn faster than this over a node are taken to stand still. */
 static const double FASTEST_DRIFT = 0.5;
@@ -152,23 +152,24 @@ static cprox_status measure(robot_search *o, int32_t index, size_t segment, doub
 }
 
 /* Sets out from what is known of the hulls. No element is farther from the other side than the hulls' distance and their sizes. */
-static robot_climb climb_from(robot_search *o, int32_t index, const robot_gap *hulls, double reach, double room) {
+static robot_refinement refinement_from(robot_search *o, int32_t index, const robot_gap *hulls, double reach,
+                                        double room) {
   const robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   const double most = fmax(hulls->upper, 0.0) + (moving->tree ? 4.0 * moving->radius : 0.0) +
                       (standing->tree ? 4.0 * standing->radius : 0.0);
-  return (robot_climb){.scene = &o->scene,
-                       .pair = index,
-                       .reach = fmin(reach, most + room),
-                       .room = room,
-                       .accuracy = GAP_FRACTION * o->goal.epsilon,
-                       .normal = hulls->upper > 0.0 ? hulls->normal : vec(0, 0, 0)};
+  return (robot_refinement){.scene = &o->scene,
+                            .pair = index,
+                            .reach = fmin(reach, most + room),
+                            .room = room,
+                            .accuracy = GAP_FRACTION * o->goal.epsilon,
+                            .normal = hulls->upper > 0.0 ? hulls->normal : vec(0, 0, 0)};
 }
 
-static cprox_status climb(robot_search *o, robot_climb *c, size_t segment, double u) {
-  robot_climb_run(c);
+static cprox_status refine_elements(robot_search *o, robot_refinement *c, size_t segment, double u) {
+  robot_refinement_run(c);
   o->gaps += c->gaps;
-  o->climbed = true;
+  o->refined = true;
   if (c->fault) return refuse_callback(o);
   if (c->no_memory) return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
   if (c->nearest.gap.upper < INFINITY) keep_sample(o, c->pair, segment, u, &c->nearest.gap);
@@ -185,8 +186,8 @@ static cprox_status measure_whole(robot_search *o, int32_t index, size_t segment
   const robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   if (status < 0 || is_convex(moving, standing) || gap.lower >= o->best_bound.upper) return status;
-  robot_climb c = climb_from(o, index, &gap, o->best_bound.upper, 0.0);
-  return climb(o, &c, segment, u);
+  robot_refinement c = refinement_from(o, index, &gap, o->best_bound.upper, 0.0);
+  return refine_elements(o, &c, segment, u);
 }
 
 /* The pair that comes closest by balls and boxes. */
@@ -381,13 +382,13 @@ static cprox_status enlist(robot_search *o, search_node *node, const robot_pair 
 }
 
 /* The hulls do not settle it: what of their elements comes near enough takes the place of the pair. */
-static cprox_status climb_pair(robot_search *o, search_node *node, list_entry *entry, const robot_gap *hulls,
-                               double travel) {
+static cprox_status refine_pair_elements(robot_search *o, search_node *node, list_entry *entry, const robot_gap *hulls,
+                                         double travel) {
   const double u = middle_of(node);
   const double spare = 4.0 * hulls->slack;
-  robot_climb c = climb_from(o, entry->pair, hulls, pruning_bound(o) + travel + spare, travel + spare);
+  robot_refinement c = refinement_from(o, entry->pair, hulls, pruning_bound(o) + travel + spare, travel + spare);
   c.listing = true;
-  const cprox_status status = climb(o, &c, robot_known(node)->first, u);
+  const cprox_status status = refine_elements(o, &c, robot_known(node)->first, u);
   if (status < 0 || c.too_many) return status;
   entry->lower = fmax(entry->lower, c.rest - travel - hulls->slack);
   const robot_pair whole = o->scene.pairs[entry->pair];
@@ -403,7 +404,7 @@ static cprox_status climb_pair(robot_search *o, search_node *node, list_entry *e
 static void bound_pair_roughly(robot_search *o, const search_node *node, list_entry *entry) {
   const robot_pair *pair = &o->scene.pairs[entry->pair];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  entry->blurred = false;
+  entry->needs_split = false;
   double way = INFINITY;
   if (pair->element[0] < 0 && pair->element[1] < 0) {
     way = robot_scene_way(&o->scene, pair);
@@ -415,9 +416,9 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   if (is_pruned(o, entry->lower)) return;
   const double travel = robot_scene_travel(&o->scene, pair, moving);
   entry->lower = greater(apart - travel, entry->lower);
-  const double size = greater(BLUR * apart, moving->radius);
+  const double size = greater(MOST_DISPLACEMENT * apart, moving->radius);
   if (is_pruned(o, entry->lower) || !(travel > size) || !(width_of(node) > SHORT_INTERVAL)) return;
-  entry->blurred = true;
+  entry->needs_split = true;
   want_pieces(o, travel / size);
 }
 
@@ -461,12 +462,12 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
 
   /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
   if (o->goal.limit < 0.0 && gap.lower < o->best_bound.upper) {
-    robot_climb nearest = climb_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
-    const cprox_status climbed = climb(o, &nearest, payload->first, u);
-    if (climbed < 0) return climbed;
+    robot_refinement nearest = refinement_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
+    const cprox_status refined = refine_elements(o, &nearest, payload->first, u);
+    if (refined < 0) return refined;
   }
   if (is_pruned(o, gap.lower) && width > SHORT_INTERVAL) return CPROX_OK;
-  return climb_pair(o, node, entry, &gap, travel);
+  return refine_pair_elements(o, node, entry, &gap, travel);
 }
 
 static cprox_status keep_open(robot_search *o, const list_entry *entry) {
@@ -506,13 +507,13 @@ static cprox_status open_cluster(robot_search *o, const search_node *node, const
       if (!(lanes.live >> l & 1u)) continue;
       list_entry lane = *entry;
       lane.lower = greater(lanes.lower[l], entry->lower), lane.under = lanes.under[l];
-      const double size = greater(BLUR * lanes.apart[l], radius);
-      lane.blurred = travel > size && !is_short;
+      const double size = greater(MOST_DISPLACEMENT * lanes.apart[l], radius);
+      lane.needs_split = travel > size && !is_short;
       if (is_pruned(o, lane.lower)) {
         o->dropped = lesser(lane.lower, o->dropped);
       } else if (at & TREE_LEAF) {
         status = open_box(o, node, &lane);
-      } else if (lane.blurred) {
+      } else if (lane.needs_split) {
         want_pieces(o, travel / size);
         status = keep_open(o, &lane);
       } else {
@@ -559,7 +560,7 @@ static cprox_status bound_node(robot_search *o, search_node *node) {
   for (size_t i = 0; i < n; i++) {
     list_entry entry = o->next[i];
     double slack = 0.0;
-    if (!is_pruned(o, entry.lower) && !entry.blurred) {
+    if (!is_pruned(o, entry.lower) && !entry.needs_split) {
       const cprox_status status = bound_pair(o, node, &entry, &slack);
       if (status < 0) return status;
     }
@@ -640,7 +641,7 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   o->best = o->touch = (robot_sample){.pair = -1};
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
   o->dropped = o->touch_at = INFINITY;
-  o->seeded = o->climbed = false;
+  o->seeded = o->refined = false;
   o->gaps = o->planes = 0;
   lists_begin(&o->lists, o->scene.q->workspace);
 }

@@ -30,7 +30,7 @@ typedef struct robot_search {
   double touch_at;
   bool seeded;
   uint32_t gaps, planes; /* distances measured, plane bounds asked for */
-  bool climbed;          /* elements of meshes were looked at */
+  bool refined;          /* elements of meshes were looked at */
   double pieces;         /* into so many the node at hand is best cut */
   list_entry *next;      /* what the node at hand keeps, in the workspace */
   size_t n_next;

@@ -14,23 +14,23 @@ enum { MOVING, STANDING };
 /* Through one side's tree, with the other side as what its elements are near to. */
 typedef struct descent {
   tree_seeker seeker; /* first: the seeker that a visitor gets is the descent */
-  robot_climb *climb;
+  robot_refinement *refinement;
   const robot_body *side[2];
   int32_t code[2];
   int through;      /* whose tree it is */
   double allowance; /* what the tree's own bounds may be off by, and the elements' margin */
 } descent;
 
-static void give_up(robot_climb *c) {
+static void give_up(robot_refinement *c) {
   c->reach = -INFINITY;
 }
 
-static void fail(robot_climb *c) {
+static void fail(robot_refinement *c) {
   c->fault = true;
   give_up(c);
 }
 
-static void keep(robot_climb *c, const int32_t code[2], const robot_gap *gap) {
+static void keep(robot_refinement *c, const int32_t code[2], const robot_gap *gap) {
   const robot_found found = {.element = {code[0], code[1]}, .gap = *gap};
   if (gap->upper < c->nearest.gap.upper) c->nearest = found;
   c->reach = fmin(c->reach, fmax(gap->upper, 0.0) + c->room);
@@ -44,7 +44,7 @@ static void keep(robot_climb *c, const int32_t code[2], const robot_gap *gap) {
 }
 
 /* Two convex sides: elements, or what has none. */
-static void measure(robot_climb *c, const robot_body *const side[2], const int32_t code[2]) {
+static void measure(robot_refinement *c, const robot_body *const side[2], const int32_t code[2]) {
   if (robot_scene_apart(side[MOVING], side[STANDING]) >= c->reach) return;
   robot_gap gap;
   robot_scene_measure(side[MOVING], side[STANDING], (robot_accuracy){.epsilon = c->accuracy}, &gap);
@@ -55,11 +55,11 @@ static void measure(robot_climb *c, const robot_body *const side[2], const int32
     keep(c, code, &gap);
 }
 
-static void descend(robot_climb *c, const robot_body *const side[2], const int32_t code[2], int through);
+static void descend(robot_refinement *c, const robot_body *const side[2], const int32_t code[2], int through);
 
 /* One element and the convex shape of the other side: where these are within reach, the other side's tree. Their own plane tells most of
  * its elements apart. */
-static void descend_under(robot_climb *c, const robot_body *const side[2], const int32_t code[2], int through) {
+static void descend_under(robot_refinement *c, const robot_body *const side[2], const int32_t code[2], int through) {
   if (robot_scene_apart(side[MOVING], side[STANDING]) >= c->reach) return;
   robot_gap gap;
   robot_scene_measure(side[MOVING], side[STANDING], (robot_accuracy){.epsilon = c->accuracy}, &gap);
@@ -79,7 +79,7 @@ static void descend_under(robot_climb *c, const robot_body *const side[2], const
 static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
   (void)element;
   descent *d = (descent *)(void *)seeker;
-  robot_climb *c = d->climb;
+  robot_refinement *c = d->refinement;
   int32_t code[2] = {d->code[0], d->code[1]};
   code[d->through] = robot_element_code(at);
   const robot_body *side[2] = {d->side[0], d->side[1]};
@@ -93,9 +93,9 @@ static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
 }
 
 /* The other side, seen from the tree: its ball, and behind which plane it lies. */
-static void descend(robot_climb *c, const robot_body *const side[2], const int32_t code[2], int through) {
+static void descend(robot_refinement *c, const robot_body *const side[2], const int32_t code[2], int through) {
   const robot_body *own = side[through], *shape = side[1 - through];
-  descent d = {.climb = c, .side = {side[0], side[1]}, .code = {code[0], code[1]}, .through = through};
+  descent d = {.refinement = c, .side = {side[0], side[1]}, .code = {code[0], code[1]}, .through = through};
   const vec3 apart = vec_sub(shape->side.at.p, own->side.at.p);
   d.seeker.visit = visit;
   d.seeker.centre = vec_sub(placement_turn_back(&own->side.at, apart), own->tree_at);
@@ -122,7 +122,7 @@ static void descend(robot_climb *c, const robot_body *const side[2], const int32
 }
 
 /* The standing side's elements first, where both have some: each of them is small. */
-void robot_climb_run(robot_climb *c) {
+void robot_refinement_run(robot_refinement *c) {
   robot_scene *s = c->scene;
   c->n_found = 0, c->gaps = 0;
   c->too_many = c->fault = c->no_memory = false;

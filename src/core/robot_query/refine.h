@@ -11,7 +11,7 @@ typedef struct robot_found {
   robot_gap gap;
 } robot_found;
 
-typedef struct robot_climb {
+typedef struct robot_refinement {
   robot_scene *scene;
   int32_t pair; /* of whole sides, of which one at least is made of elements */
   double
@@ -28,8 +28,8 @@ typedef struct robot_climb {
   double rest; /* in the middle of the node every pair of elements that was not found is at least so far apart */
   bool too_many, fault, no_memory;
   uint32_t gaps;
-} robot_climb;
+} robot_refinement;
 
-void robot_climb_run(robot_climb *climb);
+void robot_refinement_run(robot_refinement *refinement);
 
 #endif

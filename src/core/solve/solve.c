@@ -34,7 +34,7 @@ cprox_status query_answer(const query *q, size_t first, size_t last, double ceil
 
     /* with nothing to compare with, a mesh waits until it is the nearest by its hull */
     const bool unknown = !query_wants_verdict(q) && isinf(lesser(all.upper, ceiling));
-    if (unknown && i + 1 < n && candidate_may_climb(q, &list[i])) {
+    if (unknown && i + 1 < n && candidate_may_refine(q, &list[i])) {
       const cprox_status ranked = candidate_rank(q, &list[i], &all.nodes, &all.distance_queries);
       if (ranked < 0) return ranked;
       sort_again(list, i, n);

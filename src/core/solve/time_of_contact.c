@@ -128,7 +128,7 @@ static cprox_status meet_model(const query *q, const candidate *c, double horizo
 
 /* By the hull of a level-of-detail body first: what does not touch that before the horizon does not touch the mesh. */
 static cprox_status meet(const query *q, const candidate *c, double horizon, time_of_contact *met) {
-  if (!candidate_may_climb(q, c)) return meet_model(q, c, horizon, met);
+  if (!candidate_may_refine(q, c)) return meet_model(q, c, horizon, met);
   candidate model = *c;
   model.lod = CPROX_LOD_HULL;
   time_of_contact by_hull;
