@@ -18,7 +18,7 @@ typedef struct watched {
 /* What a pair must be beyond to be left alone: the search's own rule. */
 static bool needs_no_work(const robot_search *o, double lower) {
   if (o->limit >= 0.0) return lower > o->limit;
-  const double upper = fmin(o->best_bound.upper, o->ceiling);
+  const double upper = fmin(o->best_bound.upper, o->cutoff);
   return lower >= upper - fmax(o->epsilon, o->relative_epsilon * upper);
 }
 
@@ -68,8 +68,8 @@ static bool watch(const robot_case *c, bool self, double delta, double epsilon, 
   watched w = {.looks = 0};
   const search_goal goal = {.order = delta < 0.0 ? SEARCH_BEST_FIRST : SEARCH_DEPTH_FIRST,
                             .limit = delta,
-                            .ceiling = INFINITY,
-                            .horizon = INFINITY,
+                            .cutoff = INFINITY,
+                            .time_cutoff = INFINITY,
                             .epsilon = epsilon,
                             .relative_epsilon = options.relative_epsilon,
                             .max_nodes = options.max_nodes};

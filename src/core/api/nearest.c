@@ -50,11 +50,11 @@ cprox_status cprox_nearest(cprox_mover mover, const cprox_obstacle *targets, siz
   size_t found = 0;
   cprox_status trouble = CPROX_OK;
   for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
-    const double ceiling = found == k ? kept[k - 1].upper : INFINITY;
-    if (rank[i].lower > ceiling) break;
+    const double cutoff = found == k ? kept[k - 1].upper : INFINITY;
+    if (rank[i].lower > cutoff) break;
     cprox_result r;
     const size_t target = (size_t)rank[i].target;
-    const cprox_status status = query_answer(&q, target, target + 1, ceiling, &r);
+    const cprox_status status = query_answer(&q, target, target + 1, cutoff, &r);
     if (status < 0) return status;
     trouble = worse(trouble, status);
     query_rank(kept, &found, k, &r);
@@ -79,14 +79,14 @@ cprox_status cprox_within(cprox_mover mover, const cprox_obstacle *targets, size
   cprox_result *kept = query_reserve_results(&q, n);
   if (!kept) return CPROX_MEMORY;
 
-  /* a search that ends at the ceiling has a lower bound of at least ceiling - width: above delta */
+  /* a search that ends at the cutoff has a lower bound of at least cutoff - width: above delta */
   const double width = fmax(q.options.epsilon, q.options.relative_epsilon * delta);
-  const double ceiling = (delta + 2.0 * width) * (1.0 + 4.0 * (q.options.relative_epsilon + 1e-15));
+  const double cutoff = (delta + 2.0 * width) * (1.0 + 4.0 * (q.options.relative_epsilon + 1e-15));
   size_t found = 0;
   cprox_status trouble = CPROX_OK;
   for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
     cprox_result r;
-    const cprox_status status = query_answer(&q, i, i + 1, ceiling, &r);
+    const cprox_status status = query_answer(&q, i, i + 1, cutoff, &r);
     if (status < 0) return status;
     if (r.lower > delta) continue;
     trouble = worse(trouble, status);

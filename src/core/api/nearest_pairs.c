@@ -42,16 +42,16 @@ static void insert(cprox_result *nearest, size_t *count, size_t k, const cprox_r
 
 static cprox_status ask_pairs(query *q, const cprox_robot_pair *pairs, size_t n, size_t k, double delta,
                               cprox_result *nearest, size_t *count) {
-  /* a search that ends at the ceiling has a lower bound of at least ceiling - width: above delta */
+  /* a search that ends at the cutoff has a lower bound of at least cutoff - width: above delta */
   const double width = fmax(q->options.epsilon, q->options.relative_epsilon * delta);
   const double within = (delta + 2.0 * width) * (1.0 + 4.0 * (q->options.relative_epsilon + 1e-15));
   cprox_status trouble = CPROX_OK;
   for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
-    const double ceiling = *count == k ? fmin(nearest[k - 1].upper, within) : within;
+    const double cutoff = *count == k ? fmin(nearest[k - 1].upper, within) : within;
     q->mover.pairs = &pairs[i], q->mover.n_pairs = 1;
     const size_t first = q->mover.self ? 0 : (size_t)pairs[i].other, last = q->mover.self ? 0 : first + 1;
     cprox_result r;
-    const cprox_status status = robot_answer(q, first, last, ceiling, &r);
+    const cprox_status status = robot_answer(q, first, last, cutoff, &r);
     if (status < 0) return status;
     if (r.lower > delta || (*count == k && r.upper >= nearest[k - 1].upper)) continue;
     if (status != CPROX_OK) trouble = status;

@@ -129,13 +129,13 @@ cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k
   size_t found = 0;
   cprox_status trouble = CPROX_OK;
   while (trouble != CPROX_STOPPED) {
-    const double ceiling = found == k ? kept[k - 1].upper : INFINITY;
+    const double cutoff = found == k ? kept[k - 1].upper : INFINITY;
     uint32_t target;
     double lower;
-    if (!set_walk_next(&walk, ceiling, &target, &lower)) return out_of_memory(&q);
+    if (!set_walk_next(&walk, cutoff, &target, &lower)) return out_of_memory(&q);
     if (target == UINT32_MAX) break;
     cprox_result r;
-    const cprox_status status = query_answer(&q, target, (size_t)target + 1, ceiling, &r);
+    const cprox_status status = query_answer(&q, target, (size_t)target + 1, cutoff, &r);
     if (status < 0) return status;
     if (trouble == CPROX_OK) trouble = status;
     query_rank(kept, &found, k, &r);

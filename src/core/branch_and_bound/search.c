@@ -50,7 +50,7 @@ static search_node frontier_pop(frontier *f) {
 }
 
 static double known_upper(const search_goal *goal, const search_best *best) {
-  return lesser(best->upper, goal->ceiling);
+  return lesser(best->upper, goal->cutoff);
 }
 
 /* Neither above the limit nor able to say more: closer to the best point than epsilon (verdicts) or than rounding. */
@@ -67,15 +67,15 @@ static bool is_answered(const search_goal *goal, const search_best *best) {
 }
 
 /* Left to right: from here on nothing is asked any more, since contact came before. */
-static double horizon(const search_goal *goal, const search_best *best) {
-  return best->upper <= goal->limit + goal->epsilon ? lesser(best->at, goal->horizon) : goal->horizon;
+static double time_cutoff(const search_goal *goal, const search_best *best) {
+  return best->upper <= goal->limit + goal->epsilon ? lesser(best->at, goal->time_cutoff) : goal->time_cutoff;
 }
 
 typedef enum node_state { NODE_OPEN, NODE_PRUNED, NODE_UNRESOLVED, NODE_BEYOND } node_state;
 
 static node_state state_of(const search_goal *goal, const search_best *best, const search_node *node) {
   if (search_is_pruned(goal, best->upper, node->lower)) return NODE_PRUNED;
-  if (goal->order == SEARCH_LEFT_TO_RIGHT) return node->start >= horizon(goal, best) ? NODE_BEYOND : NODE_OPEN;
+  if (goal->order == SEARCH_LEFT_TO_RIGHT) return node->start >= time_cutoff(goal, best) ? NODE_BEYOND : NODE_OPEN;
   return is_unresolved(goal, best, node) ? NODE_UNRESOLVED : NODE_OPEN;
 }
 
@@ -168,7 +168,7 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
     outcome->free_until = lesser(outcome->free_until, open.nodes[i].start);
   }
   if (goal->order == SEARCH_LEFT_TO_RIGHT)
-    outcome->free_until = lesser(outcome->free_until, horizon(goal, &outcome->best));
+    outcome->free_until = lesser(outcome->free_until, time_cutoff(goal, &outcome->best));
   if (status == CPROX_OK && goal->limit < 0.0) {
     const double upper = known_upper(goal, &outcome->best);
     const double left = outcome->lower;

@@ -62,10 +62,10 @@ typedef enum search_order { SEARCH_BEST_FIRST, SEARCH_DEPTH_FIRST, SEARCH_LEFT_T
  * width; a verdict search (limit >= 0) on nodes that could come as close as the limit. */
 typedef struct search_goal {
   search_order order;
-  double limit;   /* verdicts: delta; distance: -1 */
-  bool is_signed; /* distance: bounds below 0 are not as good as 0 */
-  double ceiling; /* distance: an upper bound known from elsewhere, or infinity */
-  double horizon; /* left to right: parameters from here on are of no interest; infinity: all are */
+  double limit;       /* verdicts: delta; distance: -1 */
+  bool is_signed;     /* distance: bounds below 0 are not as good as 0 */
+  double cutoff;      /* distance: an upper bound known from elsewhere, or infinity */
+  double time_cutoff; /* left to right: parameters from here on are of no interest; infinity: all are */
   double epsilon, relative_epsilon;
   uint32_t max_nodes;
   bool (*stop)(void *user);
@@ -87,7 +87,7 @@ static inline double search_width(const search_goal *goal, double upper) {
 /* The lower bound from which on a node needs no more work, the best point being `upper` away. */
 static inline double search_pruning_bound(const search_goal *goal, double upper) {
   if (goal->limit >= 0.0) return goal->limit;
-  const double known = lesser(upper, goal->ceiling);
+  const double known = lesser(upper, goal->cutoff);
   return known - search_width(goal, known);
 }
 

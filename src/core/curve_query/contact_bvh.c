@@ -85,8 +85,8 @@ static cprox_status probe_piece(contact_tree *c, search_node *node) {
   if (isfinite(least2)) {
     const tree_sample sample = measure(c, nearest, curve_side_piece(&o->side, at), at->a, x, at->error);
     const double speed = -vec_dot(sample.near.normal, first_velocity(&segment));
-    const double way = sample.near.distance - o->offset;
-    if (way > 0.0 && speed > 0.0) c->ahead = way / speed;
+    const double clearance = sample.near.distance - o->offset;
+    if (clearance > 0.0 && speed > 0.0) c->ahead = clearance / speed;
   }
   if (!segment.stepping) return CPROX_OK;
   c->share = share * (1.0 - 1e-12);

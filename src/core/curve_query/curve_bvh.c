@@ -205,7 +205,7 @@ static void seed_at(curve_tree *o, size_t piece, double s) {
   const vec3 y = curve_side_point(&o->side, s);
   const double error = curve_side_point_error(&o->side);
   if (!vec_finite(y)) return;
-  const double bound = fmin(o->best_bound.upper, o->asked.ceiling) + o->offset;
+  const double bound = fmin(o->best_bound.upper, o->asked.cutoff) + o->offset;
   const tree_hit hit = tree_nearest(o->tree, y, bound);
   o->distance_queries++;
   if (!hit.found) return;
@@ -453,7 +453,7 @@ bool curve_tree_begin(curve_tree *o, const cprox_curve *curve, const cprox_body 
   *o = (curve_tree){.body = body,
                     .tree = body->tree,
                     .offset = offset + body->shape.margin,
-                    .asked = {.limit = -1.0, .ceiling = INFINITY},
+                    .asked = {.limit = -1.0, .cutoff = INFINITY},
                     .good_enough = -INFINITY,
                     .workspace = workspace};
   o->best_bound.upper = INFINITY;

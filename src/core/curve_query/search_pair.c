@@ -220,7 +220,7 @@ static cprox_status search_convex(const query *q, const placed_pair *p, const se
   if (p->which.seed_s > 0.0) {
     const cprox_status seeded = curve_convex_seed(&o, p->which.seed_piece, p->which.seed_s, &root);
     if (seeded < 0) return seeded;
-    rest.ceiling = lesser(rest.ceiling, o.best_bound.upper);
+    rest.cutoff = lesser(rest.cutoff, o.best_bound.upper);
   }
   cprox_status status = CPROX_OK;
   if (query_wants_verdict(q) && o.best_bound.upper <= q->limit)
@@ -274,10 +274,10 @@ static cprox_status search_any(const query *q, const placed_pair *p, const searc
 }
 
 /* By the one model that the candidate names. */
-static cprox_status search_model(const query *q, const candidate *c, double ceiling, cprox_result *result) {
+static cprox_status search_model(const query *q, const candidate *c, double cutoff, cprox_result *result) {
   const placed_pair placed = placed_pair_resolve(q, c), *p = &placed;
   cprox_result r = {.obstacle_index = -1, .t_obstacle = NAN, .lod = p->lod};
-  search_goal goal = query_goal(q, query_order(q), ceiling);
+  search_goal goal = query_goal(q, query_order(q), cutoff);
   const bool depth_unknown = q->is_signed && placed_is_tree(p);
   if (depth_unknown) goal.is_signed = false;
   search_outcome found = {0};
@@ -324,11 +324,11 @@ cprox_status candidate_measure_mesh(const query *q, const candidate *c, cprox_re
 }
 
 /* Whether the hull alone settles the query: it stays beyond the limit, or beyond what would be of interest. */
-static cprox_status search_hull(const query *q, const candidate *c, double ceiling, cprox_result *r, bool *settled) {
+static cprox_status search_hull(const query *q, const candidate *c, double cutoff, cprox_result *r, bool *settled) {
   query of_hull = *q;
   of_hull.is_signed = false;
   if (!query_wants_verdict(q))
-    of_hull.limit = ceiling - fmax(q->options.epsilon, q->options.relative_epsilon * fabs(ceiling));
+    of_hull.limit = cutoff - fmax(q->options.epsilon, q->options.relative_epsilon * fabs(cutoff));
   *settled = false;
   *r = (cprox_result){.upper = INFINITY};
   if (!(of_hull.limit >= 0.0 && of_hull.limit < INFINITY)) return CPROX_OK;
@@ -361,17 +361,17 @@ cprox_status candidate_rank(const query *q, candidate *c, uint32_t *nodes, uint3
   return CPROX_OK;
 }
 
-cprox_status candidate_search(const query *q, const candidate *c, double ceiling, cprox_result *result) {
-  if (!candidate_may_refine(q, c)) return search_model(q, c, ceiling, result);
+cprox_status candidate_search(const query *q, const candidate *c, double cutoff, cprox_result *result) {
+  if (!candidate_may_refine(q, c)) return search_model(q, c, cutoff, result);
   bool settled;
   cprox_result by_hull = {0};
-  const cprox_status looked = search_hull(q, c, ceiling, &by_hull, &settled);
+  const cprox_status looked = search_hull(q, c, cutoff, &by_hull, &settled);
   if (looked < 0) return looked;
   if (settled) {
     *result = by_hull;
     return CPROX_OK;
   }
-  const cprox_status status = search_model(q, c, ceiling, result);
+  const cprox_status status = search_model(q, c, cutoff, result);
   if (status < 0) return status;
   if (by_hull.lower > 0.0) result->lower = fmin(fmax(result->lower, by_hull.lower), result->upper);
   result->nodes += by_hull.nodes, result->distance_queries += by_hull.distance_queries;

@@ -8,10 +8,10 @@
 #include "curve_query/curve_curve.h"
 #include "problem/placed_pair.h"
 
-/* Searches one candidate; *result holds its own interval and the witness. `ceiling`: an upper bound known from others.
- * A level-of-detail body is searched by its hull first where that may do, unless the candidate says which level of
+/* Searches one candidate; *result holds its own interval and the witness. `cutoff`: an upper bound known from others. A
+ * level-of-detail body is searched by its hull first where that may do, unless the candidate says which level of
  * detail. */
-cprox_status candidate_search(const query *q, const candidate *c, double ceiling, cprox_result *result);
+cprox_status candidate_search(const query *q, const candidate *c, double cutoff, cprox_result *result);
 
 /* Whether it has a hull that could spare the search of its mesh. */
 bool candidate_may_refine(const query *q, const candidate *c);

@@ -142,14 +142,14 @@ static bool usable(vec3 d) {
 
 /* What rounding can take from a plane bound, without the size of the bound itself. */
 static double plane_slack(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 apart,
-                          double drift, uint32_t steps) {
+                          double normal_rate, uint32_t steps) {
   const double joints = ROUND_JOINT * (double)steps + 32.0;
   const double sizes =
       vec_norm(apart) + moving->shape->scale + moving->margin + standing->shape->scale + standing->margin;
-  const double turned = (1.0 + drift) * (1.0 + 0.5 * m->rate + 0.125 * m->second);
+  const double turned = (1.0 + normal_rate) * (1.0 + 0.5 * m->rate + 0.125 * m->second);
   const double rounding =
-      12.0 * sizes * turned + (1.0 + drift) * joints * (0.5 * m->rate + 0.25 * m->second + m->third / 24.0);
-  return ROUND_UP * ((1.0 + drift) * (moving->error + standing->error + m->error) + ROUND_U * rounding +
+      12.0 * sizes * turned + (1.0 + normal_rate) * joints * (0.5 * m->rate + 0.25 * m->second + m->third / 24.0);
+  return ROUND_UP * ((1.0 + normal_rate) * (moving->error + standing->error + m->error) + ROUND_U * rounding +
                      (moving->shape->slack + standing->shape->slack) * turned);
 }
 
@@ -163,14 +163,14 @@ static double least_quotient(double a, double b, double k) {
 }
 
 double motion_plane_bound(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 n,
-                          vec3 drift, const double heights[2], uint32_t steps, double goal, double *slack) {
+                          vec3 normal_rate, const double heights[2], uint32_t steps, double goal, double *slack) {
   const vec3 apart = vec_sub(moving->at.p, standing->at.p);
-  const double speed = vec_norm(drift), k = 0.25 * speed * speed;
+  const double speed = vec_norm(normal_rate), k = 0.25 * speed * speed;
   *slack = plane_slack(m, moving, standing, apart, speed, steps);
 
   /* second order: the ends of tau, the node's half-width being 1/2 */
-  const vec3 turn = vec_add(vec_cross(n, m->omega), drift);
-  const double along = vec_dot(n, m->v) + vec_dot(drift, apart), start = vec_dot(n, apart);
+  const vec3 turn = vec_add(vec_cross(n, m->omega), normal_rate);
+  const double along = vec_dot(n, m->v) + vec_dot(normal_rate, apart), start = vec_dot(n, apart);
   double first[2], least = INFINITY;
   for (int end = 0; end < 2; end++) {
     const double tau = end == 0 ? -0.5 : 0.5;
@@ -188,8 +188,8 @@ double motion_plane_bound(const chain_motion *m, const bound_side *moving, const
   const double speed_squared = vec_norm2(m->omega);
   const vec3 bend =
       vec_add(vec_cross(n, m->alpha), vec_axpy(vec_scale(vec_dot(n, m->omega), m->omega), -speed_squared, n));
-  const vec3 bent = vec_axpy(vec_scale(0.125, bend), 0.25, vec_cross(drift, m->omega));
-  const double curve = 0.125 * vec_dot(n, m->a) + 0.25 * vec_dot(drift, m->v);
+  const vec3 bent = vec_axpy(vec_scale(0.125, bend), 0.25, vec_cross(normal_rate, m->omega));
+  const double curve = 0.125 * vec_dot(n, m->a) + 0.25 * vec_dot(normal_rate, m->v);
   const double rest = m->third / 48.0 + speed * m->second / 16.0 + rounding;
   double third = INFINITY;
   for (int end = 0; end < 2; end++) {

@@ -49,9 +49,10 @@ typedef struct bound_side {
 double bound_height(const bound_side *side, vec3 n);
 
 /* The best of the bounds of second and third order by a plane that turns: at tau in [-1/2, 1/2] of the node its normal is
- * n + tau drift, n unit within 4 u, drift orthogonal to it within 8 u |drift|, from the standing side to the moving one. heights are
- * those of the standing side along n - drift/2 and n + drift/2. `goal`: what would be enough. steps: transforms in the chain. */
+ * n + tau normal_rate, from the standing side to the moving one. n is unit within 4 u, normal_rate is orthogonal to it within
+ * 8 u |normal_rate|. heights are those of the standing side along n - normal_rate/2 and n + normal_rate/2. `goal`: what would be
+ * enough. steps: transforms in the chain. */
 double motion_plane_bound(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 n,
-                          vec3 drift, const double heights[2], uint32_t steps, double goal, double *slack);
+                          vec3 normal_rate, const double heights[2], uint32_t steps, double goal, double *slack);
 
 #endif

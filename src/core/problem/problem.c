@@ -29,12 +29,12 @@ void query_ask_whole(query *q) {
   cprox_curve_domain(q->mover.curve, &q->t0, &q->t1);
 }
 
-search_goal query_goal(const query *q, search_order order, double ceiling) {
+search_goal query_goal(const query *q, search_order order, double cutoff) {
   return (search_goal){.order = order,
                        .limit = q->limit,
                        .is_signed = q->is_signed,
-                       .ceiling = ceiling,
-                       .horizon = INFINITY,
+                       .cutoff = cutoff,
+                       .time_cutoff = INFINITY,
                        .epsilon = q->options.epsilon,
                        .relative_epsilon = q->options.relative_epsilon,
                        .max_nodes = q->options.max_nodes,
@@ -49,9 +49,9 @@ cprox_verdict query_verdict(const query *q, const cprox_result *r) {
   return CPROX_VERDICT_UNDECIDED;
 }
 
-bool query_is_satisfied(const query *q, double ceiling, const cprox_result *r) {
+bool query_is_satisfied(const query *q, double cutoff, const cprox_result *r) {
   if (query_wants_verdict(q) && query_verdict(q, r) != CPROX_VERDICT_UNDECIDED) return true;
-  const double upper = lesser(r->upper, ceiling);
+  const double upper = lesser(r->upper, cutoff);
   return !(upper - r->lower > greater(q->options.relative_epsilon * fabs(upper), q->options.epsilon));
 }
 
@@ -96,9 +96,9 @@ void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_resu
   nearest[i] = *r;
 }
 
-cprox_status query_conclude(const query *q, double ceiling, cprox_status trouble, cprox_result *all) {
+cprox_status query_conclude(const query *q, double cutoff, cprox_status trouble, cprox_result *all) {
   all->lower = lesser(all->lower, all->upper);
-  all->status = query_is_satisfied(q, ceiling, all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
+  all->status = query_is_satisfied(q, cutoff, all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
   all->verdict = query_verdict(q, all);
   if (all->status != CPROX_OK) workspace_fail(q->workspace, all->status, "%s", query_shortfall(all->status));
   return all->status;

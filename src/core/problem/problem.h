@@ -32,8 +32,8 @@ static inline bool query_wants_verdict(const query *q) {
   return q->limit >= 0.0;
 }
 
-/* When a search in this order has what is asked for; `ceiling`: an upper bound known from elsewhere, or infinity. */
-search_goal query_goal(const query *q, search_order order, double ceiling);
+/* When a search in this order has what is asked for; `cutoff`: an upper bound known from elsewhere, or infinity. */
+search_goal query_goal(const query *q, search_order order, double cutoff);
 
 /* The order in which distances, or verdicts, are searched. */
 static inline search_order query_order(const query *q) {
@@ -51,7 +51,7 @@ const char *query_shortfall(cprox_status status);
 cprox_verdict query_verdict(const query *q, const cprox_result *r);
 
 /* Whether the interval is what was asked for, whatever happened on the way. */
-bool query_is_satisfied(const query *q, double ceiling, const cprox_result *r);
+bool query_is_satisfied(const query *q, double cutoff, const cprox_result *r);
 
 /* Against nothing: infinitely far. */
 cprox_result query_nothing(void);
@@ -67,6 +67,6 @@ cprox_result *query_reserve_results(const query *q, size_t n);
 void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r);
 
 /* The union is complete: its status (`trouble` is the last that a search had), verdict and reason. */
-cprox_status query_conclude(const query *q, double ceiling, cprox_status trouble, cprox_result *all);
+cprox_status query_conclude(const query *q, double cutoff, cprox_status trouble, cprox_result *all);
 
 #endif

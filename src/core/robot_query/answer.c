@@ -55,11 +55,11 @@ static cprox_lod lod_of(const robot_search *o) {
   return by_balls ? CPROX_LOD_SPHERE : CPROX_LOD_HULL;
 }
 
-cprox_status robot_answer(const query *q, size_t first, size_t last, double ceiling, cprox_result *result) {
+cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
   robot_search o;
   if (!robot_scene_begin(&o.scene, q, first, last))
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
-  const search_goal goal = query_goal(q, query_order(q), ceiling);
+  const search_goal goal = query_goal(q, query_order(q), cutoff);
   search_outcome found;
   const cprox_status status = run(q, &goal, &o, &found);
   if (status < 0) return status;
@@ -69,7 +69,7 @@ cprox_status robot_answer(const query *q, size_t first, size_t last, double ceil
   r.lower = fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
   r.nodes = found.nodes, r.distance_queries = o.gaps;
   r.lod = lod_of(&o);
-  r.status = query_is_satisfied(q, ceiling, &r) ? CPROX_OK : status != CPROX_OK ? status : CPROX_PRECISION;
+  r.status = query_is_satisfied(q, cutoff, &r) ? CPROX_OK : status != CPROX_OK ? status : CPROX_PRECISION;
   r.verdict = query_verdict(q, &r);
   if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", query_shortfall(r.status));
   *result = r;

@@ -7,7 +7,7 @@
 
 /* Distance and verdicts over [q->t0, q->t1], as query_answer() has them. In a query about the robot itself there are no
  * targets. */
-cprox_status robot_answer(const query *q, size_t first, size_t last, double ceiling, cprox_result *result);
+cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result);
 
 /* Time of contact over the whole motion. */
 cprox_status robot_time_of_contact(const query *q, cprox_result *result);

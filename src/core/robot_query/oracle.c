@@ -26,7 +26,7 @@ static const double SEED_FRACTION = 0.02;
 static const double MOST_DISPLACEMENT = 0.5;
 
 /* Normals that turn faster than this over a node are taken to stand still. */
-static const double FASTEST_DRIFT = 0.5;
+static const double FASTEST_NORMAL_RATE = 0.5;
 
 /* Where a plane in the middle asks for more pieces than this, no distance is measured. */
 static const double ENOUGH_PIECES = 3.0;
@@ -133,7 +133,7 @@ static void keep_sample(robot_search *o, int32_t index, size_t segment, double u
 static void keep_normal(robot_pair *pair, const robot_body *standing, size_t segment, double u, const robot_gap *gap) {
   if (!(vec_norm2(gap->normal) > 0.0)) return;
   pair->normal = placement_turn_back(&standing->side.at, gap->normal);
-  pair->drift = vec(0, 0, 0);
+  pair->normal_rate = vec(0, 0, 0);
   pair->segment = segment, pair->u = u;
   pair->normal_known = true;
 }
@@ -282,7 +282,7 @@ static vec3 known_normal(const search_node *node, const robot_pair *pair) {
   if (!pair->normal_known) return vec(0, 0, 0);
   const double middle = middle_of(node);
   const double away = pair->segment == robot_known(node)->first ? middle - pair->u : 0.0;
-  const vec3 n = vec_axpy(pair->normal, away, pair->drift);
+  const vec3 n = vec_axpy(pair->normal, away, pair->normal_rate);
   return vec_scale(1.0 / vec_norm(n), n);
 }
 
@@ -296,7 +296,7 @@ static void keep_guess(const search_node *node, robot_pair *pair, const robot_bo
                        const robot_body *standing) {
   const vec3 guess = robot_scene_guess(moving, standing);
   if (!(vec_norm2(guess) > 0.0)) return;
-  pair->normal = guess, pair->drift = vec(0, 0, 0);
+  pair->normal = guess, pair->normal_rate = vec(0, 0, 0);
   pair->segment = robot_known(node)->first, pair->u = middle_of(node);
   pair->normal_known = true;
 }
@@ -316,15 +316,15 @@ static double bound_by_normal(robot_search *o, const search_node *node, const ro
   const double width = width_of(node);
   const bool same_segment = pair->segment == robot_known(node)->first;
   const vec3 n = normal_in_middle(node, pair, standing);
-  vec3 drift = placement_turn(&standing->side.at, vec_scale(same_segment ? width : 0.0, pair->drift));
-  drift = vec_axpy(drift, -vec_dot(drift, n), n);
-  if (!(vec_norm2(drift) < FASTEST_DRIFT * FASTEST_DRIFT)) drift = vec(0, 0, 0);
+  vec3 normal_rate = placement_turn(&standing->side.at, vec_scale(same_segment ? width : 0.0, pair->normal_rate));
+  normal_rate = vec_axpy(normal_rate, -vec_dot(normal_rate, n), n);
+  if (!(vec_norm2(normal_rate) < FASTEST_NORMAL_RATE * FASTEST_NORMAL_RATE)) normal_rate = vec(0, 0, 0);
   double heights[2];
-  heights[0] = robot_scene_height(standing, vec_axpy(n, -0.5, drift));
-  heights[1] = vec_norm2(drift) > 0.0 ? robot_scene_height(standing, vec_axpy(n, 0.5, drift)) : heights[0];
+  heights[0] = robot_scene_height(standing, vec_axpy(n, -0.5, normal_rate));
+  heights[1] = vec_norm2(normal_rate) > 0.0 ? robot_scene_height(standing, vec_axpy(n, 0.5, normal_rate)) : heights[0];
   o->planes++;
-  return motion_plane_bound(motion, &moving->side, &standing->side, n, drift, heights, moving->steps + standing->steps,
-                            goal, slack);
+  return motion_plane_bound(motion, &moving->side, &standing->side, n, normal_rate, heights,
+                            moving->steps + standing->steps, goal, slack);
 }
 
 /* What a cut into so many pieces would do for one pair counts for the node. */
@@ -344,8 +344,8 @@ static double bound_by_gap(robot_search *o, const search_node *node, robot_pair 
                            const robot_body *standing, const chain_motion *motion, const robot_gap *gap,
                            double *slack) {
   const double width = width_of(node);
-  const vec3 drift = vec_scale(1.0 / width, robot_scene_drift(gap, moving, standing, motion));
-  pair->drift = placement_turn_back(&standing->side.at, drift);
+  const vec3 normal_rate = vec_scale(1.0 / width, robot_scene_normal_rate(gap, moving, standing, motion));
+  pair->normal_rate = placement_turn_back(&standing->side.at, normal_rate);
   return bound_by_normal(o, node, pair, moving, standing, motion, pruning_bound(o), slack);
 }
 

@@ -422,13 +422,13 @@ static vec3 direction_of(const vec3 *w, int n, vec3 like) {
   return vec_scale((vec_dot(v, like) < 0.0 ? -1.0 : 1.0) / length, v);
 }
 
-static vec3 orthogonal_part(vec3 drift, vec3 normal) {
-  return vec_finite(drift) ? vec_axpy(drift, -vec_dot(drift, normal), normal) : vec(0, 0, 0);
+static vec3 orthogonal_part(vec3 normal_rate, vec3 normal) {
+  return vec_finite(normal_rate) ? vec_axpy(normal_rate, -vec_dot(normal_rate, normal), normal) : vec(0, 0, 0);
 }
 
 /* As if what moves were only shifted, as fast as its nearest point moves. */
-static vec3 drift_of_curved(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
-                            const chain_motion *motion) {
+static vec3 normal_rate_of_curved(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
+                                  const chain_motion *motion) {
   const vec3 from = vec_sub(gap->on_moving, moving->side.at.p);
   const vec3 v = placement_turn_back(&standing->side.at, vec_add(motion->v, vec_cross(motion->omega, from)));
   const double *h = gap->hessian;
@@ -437,12 +437,12 @@ static vec3 drift_of_curved(const robot_gap *gap, const robot_body *moving, cons
   return orthogonal_part(placement_turn(&standing->side.at, turned), gap->normal);
 }
 
-/* By a difference quotient: any drift is allowed, this one is near the best. */
-vec3 robot_scene_drift(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
-                       const chain_motion *motion) {
+/* By a difference quotient: any rate of the normal is allowed, this one is near the best. */
+vec3 robot_scene_normal_rate(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
+                             const chain_motion *motion) {
   static const double STEP = 1e-5;
   vec3 n[2];
-  if (gap->n < 1) return drift_of_curved(gap, moving, standing, motion);
+  if (gap->n < 1) return normal_rate_of_curved(gap, moving, standing, motion);
   for (int k = 0; k < 2; k++) {
     vec3 w[3];
     for (int i = 0; i < gap->n; i++) {

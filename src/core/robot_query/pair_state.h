@@ -15,7 +15,7 @@ typedef struct robot_pair {
   int32_t element[2]; /* of what the moving and the standing side are made of: -1: all of it, by its convex shape */
   /* the last separating direction, from what stands to what moves, in the frame of what stands, where it was found, and how fast
    * it turned there, by u of the segment */
-  vec3 normal, drift;
+  vec3 normal, normal_rate;
   size_t segment;
   double u;
   bool normal_known;
@@ -110,8 +110,8 @@ void robot_scene_measure(const robot_body *moving, const robot_body *standing, r
 vec3 robot_scene_guess(const robot_body *moving, const robot_body *standing);
 
 /* How fast the normal turns where what moves does so as `motion` says, by u of the node; orthogonal to it. */
-vec3 robot_scene_drift(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
-                       const chain_motion *motion);
+vec3 robot_scene_normal_rate(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
+                             const chain_motion *motion);
 
 /* Along a normal of the world: the height of what stands, as bound_height(), exact for halfspaces. */
 double robot_scene_height(const robot_body *standing, vec3 normal);

@@ -13,13 +13,13 @@ static void sort_again(candidate *list, size_t i, size_t n) {
   list[i] = moved;
 }
 
-cprox_status query_answer(const query *q, size_t first, size_t last, double ceiling, cprox_result *result) {
-  if (q->mover.motion) return robot_answer(q, first, last, ceiling, result);
+cprox_status query_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
+  if (q->mover.motion) return robot_answer(q, first, last, cutoff, result);
   size_t n = 0;
   candidate *list = NULL;
   if (last > first) {
     /* a distance from one thing alone is searched whatever its ball says */
-    list = candidates_list(q, first, last, query_wants_verdict(q) || isfinite(ceiling), &n);
+    list = candidates_list(q, first, last, query_wants_verdict(q) || isfinite(cutoff), &n);
     if (!list) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
   }
 
@@ -28,12 +28,12 @@ cprox_status query_answer(const query *q, size_t first, size_t last, double ceil
   size_t i = 0;
   while (i < n) {
     /* sorted: when one ball is too far to matter, so are the rest */
-    const bool too_far = query_wants_verdict(q) ? list[i].lower > q->limit : list[i].lower > lesser(all.upper, ceiling);
+    const bool too_far = query_wants_verdict(q) ? list[i].lower > q->limit : list[i].lower > lesser(all.upper, cutoff);
     const bool answered = !q->is_signed && all.upper <= greater(q->limit, 0.0);
     if (too_far || answered || trouble == CPROX_STOPPED) break;
 
     /* with nothing to compare with, a mesh waits until it is the nearest by its hull */
-    const bool unknown = !query_wants_verdict(q) && isinf(lesser(all.upper, ceiling));
+    const bool unknown = !query_wants_verdict(q) && isinf(lesser(all.upper, cutoff));
     if (unknown && i + 1 < n && candidate_may_refine(q, &list[i])) {
       const cprox_status ranked = candidate_rank(q, &list[i], &all.nodes, &all.distance_queries);
       if (ranked < 0) return ranked;
@@ -41,7 +41,7 @@ cprox_status query_answer(const query *q, size_t first, size_t last, double ceil
       continue;
     }
     cprox_result one;
-    const cprox_status status = candidate_search(q, &list[i++], lesser(all.upper, ceiling), &one);
+    const cprox_status status = candidate_search(q, &list[i++], lesser(all.upper, cutoff), &one);
     if (status < 0) return status;
     if (status != CPROX_OK) trouble = status;
     query_join(&all, &one);
@@ -50,7 +50,7 @@ cprox_status query_answer(const query *q, size_t first, size_t last, double ceil
   /* the rest is at least as far as the first ball of it */
   if (i < n) all.lower = fmin(all.lower, q->is_signed ? list[i].lower : fmax(list[i].lower, 0.0));
   if (i == 0 && n > 0) all.lod = CPROX_LOD_SPHERE;
-  query_conclude(q, ceiling, trouble, &all);
+  query_conclude(q, cutoff, trouble, &all);
   *result = all;
   return all.status;
 }

@@ -31,7 +31,7 @@ static cprox_status meet_convex(const query *q, const placed_pair *p, const sear
   met->near_at = o->best_bound.at;
   const cprox_status proved = contact_convex_prove(&state);
   if (proved < 0) return proved;
-  if (state.proven_bound.at < goal->horizon) {
+  if (state.proven_bound.at < goal->time_cutoff) {
     o->best = state.proven;
     reported = placed_report_convex(q, p, o, &met->touch);
     if (reported < 0) return reported;
@@ -56,7 +56,7 @@ static cprox_status meet_curve(const query *q, const placed_pair *p, const searc
   met->near.upper = o->best_bound.upper;
   met->near_at = o->best_bound.at;
   contact_curve_prove(&state);
-  if (state.proven_bound.at < goal->horizon) {
+  if (state.proven_bound.at < goal->time_cutoff) {
     o->best = state.proven;
     reported = placed_report_curve(q, p, o, &met->touch);
     if (reported < 0) return reported;
@@ -81,7 +81,7 @@ static cprox_status meet_tree(const query *q, const placed_pair *p, const search
   met->near.upper = o->best_bound.upper;
   met->near_at = o->best_bound.at;
   contact_tree_prove(&state);
-  if (state.proven_bound.at < goal->horizon) {
+  if (state.proven_bound.at < goal->time_cutoff) {
     o->best = state.proven;
     placed_report_tree(q, p, o, &met->touch);
     met->touch.upper = state.proven_bound.upper;
@@ -107,11 +107,11 @@ static cprox_status prove_farther(const query *q, const candidate *c, time_of_co
   return CPROX_OK;
 }
 
-static cprox_status meet_model(const query *q, const candidate *c, double horizon, time_of_contact *met) {
+static cprox_status meet_model(const query *q, const candidate *c, double time_cutoff, time_of_contact *met) {
   const placed_pair p = placed_pair_resolve(q, c);
   *met = (time_of_contact){.touch = nothing(), .near = nothing(), .lod = p.lod};
   search_goal goal = query_goal(q, SEARCH_LEFT_TO_RIGHT, INFINITY);
-  goal.horizon = horizon;
+  goal.time_cutoff = time_cutoff;
   search_outcome found = {0};
   met->status = meet_any(q, &p, &goal, &found, met);
   if (met->status == CPROX_MEMORY)
@@ -121,20 +121,20 @@ static cprox_status meet_model(const query *q, const candidate *c, double horizo
   met->free_until = found.free_until;
   met->lower = fmax(found.lower, c->lower);
   const bool near = met->near.upper <= q->options.epsilon;
-  const double end = near ? fmin(met->near_at, horizon) : horizon;
+  const double end = near ? fmin(met->near_at, time_cutoff) : time_cutoff;
   if (met->status == CPROX_OK && met->free_until < end) met->status = CPROX_PRECISION;
-  return near && !isfinite(met->touch.t) && !isfinite(horizon) ? prove_farther(q, c, met) : CPROX_OK;
+  return near && !isfinite(met->touch.t) && !isfinite(time_cutoff) ? prove_farther(q, c, met) : CPROX_OK;
 }
 
-/* By the hull of a level-of-detail body first: what does not touch that before the horizon does not touch the mesh. */
-static cprox_status meet(const query *q, const candidate *c, double horizon, time_of_contact *met) {
-  if (!candidate_may_refine(q, c)) return meet_model(q, c, horizon, met);
+/* By the hull of a level-of-detail body first: what does not touch that before the cutoff does not touch the mesh. */
+static cprox_status meet(const query *q, const candidate *c, double time_cutoff, time_of_contact *met) {
+  if (!candidate_may_refine(q, c)) return meet_model(q, c, time_cutoff, met);
   candidate model = *c;
   model.lod = CPROX_LOD_HULL;
   time_of_contact by_hull;
-  cprox_status status = meet_model(q, &model, horizon, &by_hull);
+  cprox_status status = meet_model(q, &model, time_cutoff, &by_hull);
   if (status < 0) return status;
-  if (by_hull.free_until >= horizon) {
+  if (by_hull.free_until >= time_cutoff) {
     /* what is near the hull need not be near the mesh */
     const double t = by_hull.near.t;
     *met = by_hull;
@@ -146,7 +146,7 @@ static cprox_status meet(const query *q, const candidate *c, double horizon, tim
     return status;
   }
   model.lod = CPROX_LOD_MESH;
-  status = meet_model(q, &model, horizon, met);
+  status = meet_model(q, &model, time_cutoff, met);
   if (status < 0) return status;
   met->nodes += by_hull.nodes, met->distance_queries += by_hull.distance_queries;
   return status;
