@@ -15,13 +15,6 @@ typedef struct watched {
   uint64_t looks;
 } watched;
 
-/* What a pair must be beyond to be left alone: the search's own rule. */
-static bool needs_no_work(const robot_search *o, double lower) {
-  if (o->limit >= 0.0) return lower > o->limit;
-  const double upper = fmin(o->best_bound.upper, o->cutoff);
-  return lower >= upper - fmax(o->epsilon, o->relative_epsilon * upper);
-}
-
 static double filter(void *self, search_node *node, double goal) {
   watched *w = self;
   return w->oracle.filter(w->oracle.self, node, goal);
@@ -31,10 +24,11 @@ static double filter(void *self, search_node *node, double goal) {
 static cprox_status probe(void *self, search_node *node, search_best *best) {
   watched *w = self;
   const robot_search *o = &w->search;
-  if (node->side[0].part + 1 == node->side[1].part) {
-    const list_entry *entry = lists_at(&o->lists, node->side[0].slot);
-    const size_t n = lists_count(&o->lists, node->side[0].slot);
-    for (size_t i = 0; i < n; i++) w->looks += !needs_no_work(o, entry[i].lower);
+  const robot_node *payload = robot_known(node);
+  if (payload->first + 1 == payload->last) {
+    const list_entry *entry = lists_at(&o->lists, payload->list);
+    const size_t n = lists_count(&o->lists, payload->list);
+    for (size_t i = 0; i < n; i++) w->looks += !search_is_pruned(&o->goal, o->best_bound.upper, entry[i].lower);
   }
   return w->oracle.probe(w->oracle.self, node, best);
 }
@@ -78,8 +72,9 @@ static bool watch(const robot_case *c, bool self, double delta, double epsilon, 
   w.oracle = robot_search_oracle(&w.search);
   const search_oracle outer = {.self = &w, .filter = filter, .probe = probe, .split = split, .release = release};
   search_outcome found;
-  const search_node root = robot_search_root(&w.search, 0, 0.0, c->motion->n_segments, 1.0);
-  if (root.side[0].slot < 0 || search_run(&goal, &outer, root, ws, &found) != CPROX_OK) return false;
+  search_node root;
+  if (!robot_search_root(&w.search, 0, 0.0, c->motion->n_segments, 1.0, &root)) return false;
+  if (search_run(&goal, &outer, root, ws, &found) != CPROX_OK) return false;
   *looks += w.looks, *measured += w.search.gaps;
   return found.nodes == r.nodes && w.search.gaps == r.distance_queries;
 }

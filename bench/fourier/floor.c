@@ -72,9 +72,9 @@ WIDTH_256 static table_answer sum_256(const table_floor *f) {
 }
 
 static table_answer sum_floor(const table_floor *f) {
-  switch (f->gap->lanes) {
-    case GAP_LANES_512: return sum_512(f);
-    case GAP_LANES_256: return sum_256(f);
+  switch (f->gap->simd) {
+    case SIMD_AVX512: return sum_512(f);
+    case SIMD_AVX2: return sum_256(f);
     default: return sum_blocks(f);
   }
 }

@@ -179,7 +179,7 @@ INLINE table_answer sum_terms(const table *t, const double turn[9], vec3 x, int 
   vec3 position = vec(0, 0, 0), rotation = position;
   for (size_t i = 0; i < t->n_terms; i++) {
     const term *k = &t->terms[i];
-    const vec3 at = turn_back(turn, vec(k->k[0], k->k[1], k->k[2])); /* in steps of the lattice */
+    const vec3 at = rotate_back(turn, vec(k->k[0], k->k[1], k->k[2])); /* in steps of the lattice */
     double a, b, jet[2][4] = {{0}};
     turn_term(&p, k, &a, &b);
     if (kind == FORMULA) {
@@ -221,9 +221,9 @@ static table_answer sum_128(const table *t, const double turn[9], vec3 x) {
 }
 
 table_answer table_look_up(const table *t, const double turn[9], vec3 x) {
-  switch (gap_lanes_of_machine()) {
-    case GAP_LANES_512: return sum_512(t, turn, x);
-    case GAP_LANES_256: return sum_256(t, turn, x);
+  switch (simd_of_machine()) {
+    case SIMD_AVX512: return sum_512(t, turn, x);
+    case SIMD_AVX2: return sum_256(t, turn, x);
     default: return sum_128(t, turn, x);
   }
 }

@@ -141,13 +141,13 @@ static void bound_centrally(search *s, interval *node, int order) {
     const robot_body *moving = robot_scene_moving(&s->scene, pair), *standing = robot_scene_standing(&s->scene, pair);
     chain_motion own;
     const chain_motion *motion = robot_scene_motion(&s->scene, pair, moving, &own);
-    e.lower = fmax(e.lower, robot_scene_apart(moving, standing) - motion->travel);
+    e.lower = fmax(e.lower, robot_scene_apart(moving, standing) - motion->displacement);
     if (!(e.lower > s->upper - s->epsilon)) {
       robot_gap gap;
       robot_scene_measure(moving, standing, (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);
       s->distance_queries++;
       s->upper = fmin(s->upper, fmax(gap.upper, 0.0));
-      e.lower = fmax(e.lower, gap.lower - motion->travel);
+      e.lower = fmax(e.lower, gap.lower - motion->displacement);
       if (order > 2 && gap.lower > 0.0) {
         const double height = robot_scene_height(standing, gap.normal), heights[2] = {height, height};
         double slack;
@@ -186,7 +186,7 @@ static void add(search *s, size_t segment, double a, double b, const interval *p
 static bool begin(search *s, query *q, const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
                   double epsilon, cprox_workspace *workspace) {
   *q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);
-  robot_ask_whole(q);
+  query_ask_whole(q);
   *s = (search){.upper = INFINITY, .dropped = INFINITY, .epsilon = epsilon};
   return robot_scene_begin(&s->scene, q, 0, n);
 }

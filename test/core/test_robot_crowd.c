@@ -214,7 +214,7 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
     const robot_pair any = {.moving = 0, .element = {-1, -1}};
     size_t seen = 0;
     robot_scene_moving(&scene, &any);
-    lanes_below(&scene, 0, robot_scene_way(&scene, &any), truth, &seen);
+    lanes_below(&scene, 0, robot_scene_coarse_displacement(&scene, &any), truth, &seen);
     assert_int_equal(seen, BALLS);
     cprox_set_free(set);
     cprox_motion_free(motion);

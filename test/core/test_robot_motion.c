@@ -185,8 +185,9 @@ CASE(no_point_is_nearer_than_the_bounds_say) {
           if (height < claim.both || height < claim.second)
             fail_msg("robot %zu case %d: height %.17Lg below the bounds %.17g, %.17g", i, k, height, claim.second,
                      claim.both);
-          if (way > claim.motion.travel + 1e-15L)
-            fail_msg("robot %zu case %d: travels %.17Lg, said to be at most %.17g", i, k, way, claim.motion.travel);
+          if (way > claim.motion.displacement + 1e-15L)
+            fail_msg("robot %zu case %d: travels %.17Lg, said to be at most %.17g", i, k, way,
+                     claim.motion.displacement);
         }
       }
     }
@@ -271,7 +272,7 @@ CASE(bounds_are_of_their_order) {
         seen_vertices(&t, &c, c.a + ((long double)c.b - c.a) * s / 200, &middle, seen);
         for (size_t v = 0; v < TEST_VERTICES; v++) least = fminl(least, ref_dot(ref_vec(n), seen[v]) - t.margin);
       }
-      gap[k][0] = claim.motion.travel;
+      gap[k][0] = claim.motion.displacement;
       gap[k][1] = claim.motion.second;
       gap[k][2] = claim.motion.third;
       assert_true((double)least - claim.both <= 0.25 * claim.motion.second + 1e-11);

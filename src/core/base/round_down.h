@@ -10,10 +10,10 @@
 static inline double round_down_between(double t0, double t1, double s) {
   if (s == 0.0) return t0;
   if (s == 1.0) return t1;
-  const dd length = dd_sum(t1, -t0), way = dd_product(s, length.high), t = dd_sum(t0, way.high);
-  const double more = s * length.low, bound = 4.0 * ROUND_U * (fabs(t.low) + fabs(way.low) + fabs(more));
+  const dd length = dd_sum(t1, -t0), coarse = dd_product(s, length.high), t = dd_sum(t0, coarse.high);
+  const double more = s * length.low, bound = 4.0 * ROUND_U * (fabs(t.low) + fabs(coarse.low) + fabs(more));
   /* at most what the rounding of t left out */
-  const double rest = t.low + way.low + more - bound;
+  const double rest = t.low + coarse.low + more - bound;
   if (rest >= 0.0) return t.high;
   return fmax(t0, nextafter(t.high + rest, -INFINITY));
 }

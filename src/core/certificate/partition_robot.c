@@ -50,7 +50,7 @@ static bool settles(const robot_cover *c, const view *v, vec3 own, double unsure
                                           v->moving->steps + v->standing->steps, INFINITY, &slack);
   const double sizes = vec_norm(apart) + v->moving->radius;
   const double needed = c->delta + SLACKS * slack + unsure * sizes;
-  return middle - v->motion->travel > needed || bound > needed;
+  return middle - v->motion->displacement > needed || bound > needed;
 }
 
 static outcome settle(const robot_cover *c, const view *v, double width, vec3 *written) {
@@ -70,7 +70,7 @@ static outcome settle(const robot_cover *c, const view *v, double width, vec3 *w
   if (length > 0.0 && settles(c, v, out, unsure)) return SETTLED;
 
   const double size = fmax(v->moving->radius, MOST_DISPLACEMENT * (length - v->moving->radius));
-  if (is_halfspace(v) || (v->motion->travel > size && width > SHORT_INTERVAL)) return OPEN;
+  if (is_halfspace(v) || (v->motion->displacement > size && width > SHORT_INTERVAL)) return OPEN;
   robot_gap gap;
   const robot_accuracy accuracy = {.floor = c->delta, .fraction = 0.01};
   robot_scene_measure(v->moving, v->standing, accuracy, &gap);

@@ -34,7 +34,7 @@ static double lever_arm(const axis_state *axis, vec3 centre) {
   return axis->kind == AXIS_BALL ? vec_norm(from) : vec_norm(vec_cross(axis->z, from));
 }
 
-/* Returns the travel. r_k in the middle, then the greatest over the node: what is tipside shifts the part under the axis. */
+/* Returns the displacement bound. r_k in the middle, then the greatest over the node: what is tipside shifts the part under the axis. */
 static double find_lever_arms(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
                               double *lever_arms) {
   double tipside = 0.0;
@@ -48,31 +48,31 @@ static double find_lever_arms(const axis_state *axes, const chain_axis *chain, s
 }
 
 /* A sum over the chain in any order: up from both ends, always from the later axis, to the one above both. */
-double motion_travel(const cprox_motion *motion, const axis_state *axes, int32_t from, int32_t to, vec3 centre,
-                     double radius) {
+double motion_displacement(const cprox_motion *motion, const axis_state *axes, int32_t from, int32_t to, vec3 centre,
+                           double radius) {
   const robot_axis *robot = motion->robot->axes;
-  double travel = 0.0;
+  double displacement = 0.0;
   while (from != to) {
     int32_t *later = from > to ? &from : &to;
     const axis_state *axis = &axes[*later];
     if (motion->axis_moves[*later])
-      travel += axis->shift * (turns(axis) ? ROUND_UP * (lever_arm(axis, centre) + radius) : 1.0);
+      displacement += axis->shift * (turns(axis) ? ROUND_UP * (lever_arm(axis, centre) + radius) : 1.0);
     *later = robot[*later].parent;
   }
-  return ROUND_UP * travel;
+  return ROUND_UP * displacement;
 }
 
-double motion_ways(const cprox_motion *motion, const axis_state *axes, int32_t axis, size_t depth, vec3 centre,
-                   double radius, double *ways) {
-  double way = 0.0;
-  if (ways) ways[depth] = 0.0;
+double motion_displacements(const cprox_motion *motion, const axis_state *axes, int32_t axis, size_t depth, vec3 centre,
+                            double radius, double *displacements) {
+  double displacement = 0.0;
+  if (displacements) displacements[depth] = 0.0;
   for (; axis >= 0; axis = motion->robot->axes[axis].parent) {
     const axis_state *state = &axes[axis];
     if (motion->axis_moves[axis])
-      way += state->shift * (turns(state) ? ROUND_UP * (lever_arm(state, centre) + radius) : 1.0);
-    if (ways) ways[--depth] = ROUND_UP * way;
+      displacement += state->shift * (turns(state) ? ROUND_UP * (lever_arm(state, centre) + radius) : 1.0);
+    if (displacements) displacements[--depth] = ROUND_UP * displacement;
   }
-  return ROUND_UP * way;
+  return ROUND_UP * displacement;
 }
 
 /* Velocity and acceleration of the centre, from the base to the tip. */
@@ -119,7 +119,7 @@ static void find_derivative_bounds(const axis_state *axes, const chain_axis *cha
 
 void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
                     double *scratch, chain_motion *m) {
-  m->travel = find_lever_arms(axes, chain, n, centre, radius, scratch);
+  m->displacement = find_lever_arms(axes, chain, n, centre, radius, scratch);
   find_rates(axes, chain, n, centre, m);
   find_derivative_bounds(axes, chain, n, scratch, m);
 }

@@ -17,7 +17,7 @@ size_t motion_chain(const cprox_motion *motion, int32_t from, int32_t to, chain_
 /* How a part moves over a node, seen from where its chain begins; directions are those of the world in the middle of the node. */
 typedef struct chain_motion {
   vec3 v, omega, a, alpha; /* velocity of the part's centre, angular velocity, their derivatives, in the middle */
-  double travel;           /* no point of the part comes farther than this from where it is in the middle */
+  double displacement;     /* no point of the part comes farther than this from where it is in the middle */
   double rate;             /* bounds on the first, second and third derivative of any point's position */
   double second, third;
   double error; /* of what is computed with v, omega, a and alpha over the node */
@@ -28,14 +28,14 @@ typedef struct chain_motion {
 void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
                     double *scratch, chain_motion *m);
 
-/* The travel alone, by the chain of motion_chain(). */
-double motion_travel(const cprox_motion *motion, const axis_state *axes, int32_t from, int32_t to, vec3 centre,
-                     double radius);
+/* The displacement bound alone, by the chain of motion_chain(). */
+double motion_displacement(const cprox_motion *motion, const axis_state *axes, int32_t from, int32_t to, vec3 centre,
+                           double radius);
 
-/* How far a part on the axis travels as each axis above it sees it, and the world: ways[k] of the k-th from the world, which is 0, up to
- * `depth`, its own. Returns the first; ways may be NULL. */
-double motion_ways(const cprox_motion *motion, const axis_state *axes, int32_t axis, size_t depth, vec3 centre,
-                   double radius, double *ways);
+/* How far a part on the axis moves as each axis above it sees it, and the world: displacements[k] of the k-th from the world, which is 0, up to
+ * `depth`, its own. Returns the first; displacements may be NULL. */
+double motion_displacements(const cprox_motion *motion, const axis_state *axes, int32_t axis, size_t depth, vec3 centre,
+                            double radius, double *displacements);
 
 /* The two sides of a pair in the middle of the node. */
 typedef struct bound_side {

@@ -78,8 +78,8 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
   void *memory = workspace_reserve(workspace, WORKSPACE_INTERIOR, implicit_memory(query.a, query.b));
   if (!memory) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a pair of implicit bodies");
 
-  const double way = vec_norm(relative) * duration, margins = x.margin + y.margin;
-  const double rounding = ROUND_UP * (place.error + (ROUND_ROTATION + 4.0) * ROUND_U * way);
+  const double displacement = vec_norm(relative) * duration, margins = x.margin + y.margin;
+  const double rounding = ROUND_UP * (place.error + (ROUND_ROTATION + 4.0) * ROUND_U * displacement);
   const implicit_goal goal = {.epsilon = fmax(asked.epsilon - 2.0 * rounding, 0.0),
                               .relative_epsilon = margins > 0.0 ? 0.0 : asked.relative_epsilon,
                               .max_steps = asked.max_nodes};

@@ -94,7 +94,7 @@ static void from_boxes(const double *rows, vec3 p, double *distance) {
   }
 }
 
-void cluster_measure(robot_scene *s, int32_t part, uint32_t at, double travel, cluster_lanes *lanes) {
+void cluster_measure(robot_scene *s, int32_t part, uint32_t at, double displacement, cluster_lanes *lanes) {
   const cprox_set *set = s->q->set;
   const tree *t = set->boxes;
   const robot_pair any = {.moving = part, .element = {-1, -1}};
@@ -109,7 +109,7 @@ void cluster_measure(robot_scene *s, int32_t part, uint32_t at, double travel, c
   lanes->live = leaf ? 0 : t->nodes[at].lanes;
   for (uint32_t l = 0; l < TREE_LANES; l++) {
     lanes->apart[l] -= off;
-    lanes->lower[l] = lanes->apart[l] - travel;
+    lanes->lower[l] = lanes->apart[l] - displacement;
     lanes->under[l] = leaf ? tree_element(t, (tree_place){pack, l}) : t->nodes[at].child[l];
     if (leaf && (l == 0 || lanes->under[l] != lanes->under[l - 1])) lanes->live |= 1u << l;
   }

@@ -15,8 +15,8 @@ typedef struct cluster_lanes {
   uint32_t under[TREE_LANES]; /* of a node: what the lane leads to; of a pack: the number of a box */
 } cluster_lanes;
 
-/* travel: of the part over the node at hand. */
-void cluster_measure(robot_scene *scene, int32_t part, uint32_t at, double travel, cluster_lanes *lanes);
+/* displacement: of the part over the node at hand. */
+void cluster_measure(robot_scene *scene, int32_t part, uint32_t at, double displacement, cluster_lanes *lanes);
 
 /* The pairs of a part and the target in a box, one for each part of that: the first one's number, -1 where memory is out. They may move
  * all pairs and obstacles in memory. */

@@ -35,22 +35,6 @@ static const double ENOUGH_PIECES = 3.0;
 
 /* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
 
-/* The payload of a node: from u = a of segment `first` to u = b of segment last - 1, and the list of its pairs. */
-typedef struct robot_node {
-  double a, b;
-  uint32_t first, last;
-  int32_t list;
-} robot_node;
-
-static const robot_node *robot_known(const search_node *node) {
-  _Static_assert(sizeof(robot_node) <= sizeof(search_payload), "a node's payload holds it");
-  return (const robot_node *)node->payload.bytes;
-}
-
-static robot_node *robot_own(search_node *node) {
-  return (robot_node *)node->payload.bytes;
-}
-
 static double middle_of(const search_node *node) {
   const robot_node *payload = robot_known(node);
   return 0.5 * (payload->a + payload->b);
@@ -366,7 +350,7 @@ static cprox_status enlist(robot_search *o, search_node *node, const robot_pair 
   chain_motion own;
   const chain_motion *motion = robot_scene_motion(&o->scene, &pair, moving, &own);
   keep_normal(&pair, standing, robot_known(node)->first, u, &found->gap);
-  list_entry entry = {.lower = found->gap.lower - motion->travel};
+  list_entry entry = {.lower = found->gap.lower - motion->displacement};
   double slack = moving->side.error + standing->side.error;
   if (!is_pruned(o, entry.lower) && pair.normal_known && found->gap.upper > 0.0)
     entry.lower = fmax(entry.lower, bound_by_gap(o, node, &pair, moving, standing, motion, &found->gap, &slack));
@@ -383,14 +367,15 @@ static cprox_status enlist(robot_search *o, search_node *node, const robot_pair 
 
 /* The hulls do not settle it: what of their elements comes near enough takes the place of the pair. */
 static cprox_status refine_pair_elements(robot_search *o, search_node *node, list_entry *entry, const robot_gap *hulls,
-                                         double travel) {
+                                         double displacement) {
   const double u = middle_of(node);
   const double spare = 4.0 * hulls->slack;
-  robot_refinement c = refinement_from(o, entry->pair, hulls, pruning_bound(o) + travel + spare, travel + spare);
+  robot_refinement c =
+      refinement_from(o, entry->pair, hulls, pruning_bound(o) + displacement + spare, displacement + spare);
   c.listing = true;
   const cprox_status status = refine_elements(o, &c, robot_known(node)->first, u);
   if (status < 0 || c.too_many) return status;
-  entry->lower = fmax(entry->lower, c.rest - travel - hulls->slack);
+  entry->lower = fmax(entry->lower, c.rest - displacement - hulls->slack);
   const robot_pair whole = o->scene.pairs[entry->pair];
   for (size_t i = 0; i < c.n_found; i++) {
     const cprox_status listed = enlist(o, node, &whole, &c.found[i]);
@@ -399,27 +384,27 @@ static cprox_status refine_pair_elements(robot_search *o, search_node *node, lis
   return CPROX_OK;
 }
 
-/* Raises the bound of one pair over the node that the scene is at by balls and boxes. A part that travels too far to be measured wants
+/* Raises the bound of one pair over the node that the scene is at by balls and boxes. A part that moves too far to be measured wants
  * the node cut. */
 static void bound_pair_roughly(robot_search *o, const search_node *node, list_entry *entry) {
   const robot_pair *pair = &o->scene.pairs[entry->pair];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   entry->needs_split = false;
-  double way = INFINITY;
+  double coarse = INFINITY;
   if (pair->element[0] < 0 && pair->element[1] < 0) {
-    way = robot_scene_way(&o->scene, pair);
-    entry->lower = greater(robot_scene_balls(moving, standing) - way, entry->lower);
+    coarse = robot_scene_coarse_displacement(&o->scene, pair);
+    entry->lower = greater(robot_scene_balls(moving, standing) - coarse, entry->lower);
     if (is_pruned(o, entry->lower)) return;
   }
   const double apart = robot_scene_apart(moving, standing);
-  entry->lower = greater(apart - way, entry->lower);
+  entry->lower = greater(apart - coarse, entry->lower);
   if (is_pruned(o, entry->lower)) return;
-  const double travel = robot_scene_travel(&o->scene, pair, moving);
-  entry->lower = greater(apart - travel, entry->lower);
+  const double displacement = robot_scene_displacement(&o->scene, pair, moving);
+  entry->lower = greater(apart - displacement, entry->lower);
   const double size = greater(MOST_DISPLACEMENT * apart, moving->radius);
-  if (is_pruned(o, entry->lower) || !(travel > size) || !(width_of(node) > SHORT_INTERVAL)) return;
+  if (is_pruned(o, entry->lower) || !(displacement > size) || !(width_of(node) > SHORT_INTERVAL)) return;
   entry->needs_split = true;
-  want_pieces(o, travel / size);
+  want_pieces(o, displacement / size);
 }
 
 /* The same by planes and distances, the cheapest way that settles it. */
@@ -430,7 +415,7 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   *slack = moving->side.error + standing->side.error;
   chain_motion own;
   const chain_motion *motion = robot_scene_motion(&o->scene, pair, moving, &own);
-  const double travel = motion->travel, width = width_of(node);
+  const double displacement = motion->displacement, width = width_of(node);
 
   if (!pair->normal_known) keep_guess(node, pair, moving, standing);
   if (pair->normal_known) {
@@ -454,7 +439,7 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
                                    known_normal(node, pair)};
   const cprox_status status = measure(o, entry->pair, payload->first, u, accuracy, &gap);
   if (status < 0) return status;
-  entry->lower = fmax(entry->lower, gap.lower - travel);
+  entry->lower = fmax(entry->lower, gap.lower - displacement);
   if (pair->normal_known && gap.upper > 0.0)
     entry->lower = fmax(entry->lower, bound_by_gap(o, node, pair, moving, standing, motion, &gap, slack));
   if (!is_pruned(o, entry->lower)) want_pieces(o, pieces_for(o, gap.lower, entry->lower));
@@ -467,7 +452,7 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
     if (refined < 0) return refined;
   }
   if (is_pruned(o, gap.lower) && width > SHORT_INTERVAL) return CPROX_OK;
-  return refine_pair_elements(o, node, entry, &gap, travel);
+  return refine_pair_elements(o, node, entry, &gap, displacement);
 }
 
 static cprox_status keep_open(robot_search *o, const list_entry *entry) {
@@ -490,11 +475,12 @@ static cprox_status open_box(robot_search *o, const search_node *node, const lis
   return status;
 }
 
-/* What is under a node of the set's tree and within reach of a part: pairs, or, where the part travels too far for these to be measured,
+/* What is under a node of the set's tree and within reach of a part: pairs, or, where the part moves too far for these to be measured,
  * nodes that hold them. */
 static cprox_status open_cluster(robot_search *o, const search_node *node, const list_entry *entry) {
   const robot_pair any = {.moving = entry->part, .element = {-1, -1}};
-  const double radius = robot_scene_moving(&o->scene, &any)->radius, travel = robot_scene_way(&o->scene, &any);
+  const double radius = robot_scene_moving(&o->scene, &any)->radius,
+               displacement = robot_scene_coarse_displacement(&o->scene, &any);
   const bool is_short = !(width_of(node) > SHORT_INTERVAL);
   uint32_t stack[TREE_LANES * TREE_DEEPEST] = {entry->under};
   size_t n = 1;
@@ -502,19 +488,19 @@ static cprox_status open_cluster(robot_search *o, const search_node *node, const
   while (n > 0 && status == CPROX_OK) {
     const uint32_t at = stack[--n];
     cluster_lanes lanes;
-    cluster_measure(&o->scene, entry->part, at, travel, &lanes);
+    cluster_measure(&o->scene, entry->part, at, displacement, &lanes);
     for (uint32_t l = 0; l < TREE_LANES && status == CPROX_OK; l++) {
       if (!(lanes.live >> l & 1u)) continue;
       list_entry lane = *entry;
       lane.lower = greater(lanes.lower[l], entry->lower), lane.under = lanes.under[l];
       const double size = greater(MOST_DISPLACEMENT * lanes.apart[l], radius);
-      lane.needs_split = travel > size && !is_short;
+      lane.needs_split = displacement > size && !is_short;
       if (is_pruned(o, lane.lower)) {
         o->dropped = lesser(lane.lower, o->dropped);
       } else if (at & TREE_LEAF) {
         status = open_box(o, node, &lane);
       } else if (lane.needs_split) {
-        want_pieces(o, travel / size);
+        want_pieces(o, displacement / size);
         status = keep_open(o, &lane);
       } else {
         stack[n++] = lane.under;

@@ -9,6 +9,22 @@
 #include "robot_query/pair_state.h"
 #include "robot_query/refine.h"
 
+/* The payload of a node: from u = a of segment `first` to u = b of segment last - 1, and the list of its pairs. */
+typedef struct robot_node {
+  double a, b;
+  uint32_t first, last;
+  int32_t list;
+} robot_node;
+
+static inline const robot_node *robot_known(const search_node *node) {
+  _Static_assert(sizeof(robot_node) <= sizeof(search_payload), "a node's payload holds it");
+  return (const robot_node *)node->payload.bytes;
+}
+
+static inline robot_node *robot_own(search_node *node) {
+  return (robot_node *)node->payload.bytes;
+}
+
 /* Where the least distance was measured. */
 typedef struct robot_sample {
   robot_gap gap;

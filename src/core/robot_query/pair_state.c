@@ -7,7 +7,7 @@
 #include "broadphase/obstacle_set.h"
 #include "convex/pair.h"
 
-enum { GAP_STEPS = 128, MOST_WAYS = 1 << 18 };
+enum { GAP_STEPS = 128, MOST_DISPLACEMENTS = 1 << 18 };
 
 static bool is_halfspace(const robot_body *body) {
   return body->side.shape->ops->kind == CPROX_HALFSPACE;
@@ -93,7 +93,7 @@ static size_t depth_of(const cprox_robot *robot, int32_t axis) {
 
 static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing) {
   robot_pair pair = {.moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}};
-  if (!s->ways) return pair;
+  if (!s->displacements) return pair;
   const cprox_robot *robot = s->motion->robot;
   const int32_t common = robot_common_axis(robot, robot->parts[moving].axis, robot->parts[standing].axis);
   pair.shared = (uint32_t)depth_of(robot, common);
@@ -157,11 +157,12 @@ bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last
     const size_t depth = depth_of(robot, robot->parts[i].axis);
     deepest = depth > deepest ? depth : deepest;
   }
-  s->n_ways = deepest + 1;
-  const size_t all_ways = s->self && s->n_ways * robot->n_parts <= MOST_WAYS ? s->n_ways * robot->n_parts : 0;
+  s->n_displacements = deepest + 1;
+  const size_t all_displacements =
+      s->self && s->n_displacements * robot->n_parts <= MOST_DISPLACEMENTS ? s->n_displacements * robot->n_parts : 0;
   const size_t bytes = (robot->n_parts + 1) * sizeof *s->parts +
                        n_axes * (sizeof *s->axes + sizeof *s->chain + sizeof *s->scratch + sizeof *s->axis_placed) +
-                       (motion_rows_size(s->motion) + all_ways) * sizeof *s->rows;
+                       (motion_rows_size(s->motion) + all_displacements) * sizeof *s->rows;
   char *memory = workspace_reserve(q->workspace, WORKSPACE_ROBOT, bytes);
   if (!memory) return false;
   s->parts = (part_state *)(void *)memory;
@@ -169,8 +170,8 @@ bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last
   s->chain = (chain_axis *)(void *)(s->axes + n_axes);
   s->rows = (double *)(void *)(s->chain + n_axes);
   s->scratch = s->rows + motion_rows_size(s->motion);
-  s->ways = all_ways ? s->scratch + n_axes : NULL;
-  s->axis_placed = (uint32_t *)(void *)(s->scratch + n_axes + all_ways);
+  s->displacements = all_displacements ? s->scratch + n_axes : NULL;
+  s->axis_placed = (uint32_t *)(void *)(s->scratch + n_axes + all_displacements);
   for (size_t i = 0; i < n_axes; i++) s->axis_placed[i] = 0;
 
   const size_t listed = q->set ? q->set->n_unbounded : last - first;
@@ -249,32 +250,33 @@ static void find_motion(robot_scene *s, const robot_pair *pair, const robot_body
   motion_of_part(s->axes, s->chain, n, body->side.at.p, body->radius + body->side.error, s->scratch, m);
 }
 
-/* How far a whole part travels, seen from the world; its ways are known then. */
-static double travel_of_part(robot_scene *s, int32_t index) {
+/* How far a whole part moves, seen from the world; its displacements are known then. */
+static double displacement_of_part(robot_scene *s, int32_t index) {
   part_state *state = place(s, index);
-  if (state->travelled == s->node) return state->travel;
+  if (state->displaced == s->node) return state->displacement;
   const robot_body *body = &state->body;
   const int32_t axis = s->motion->robot->parts[index].axis;
-  double *ways = s->ways ? s->ways + (size_t)index * s->n_ways : NULL;
-  state->travelled = s->node;
-  state->travel = motion_ways(s->motion, s->axes, axis, ways ? depth_of(s->motion->robot, axis) : 0, body->side.at.p,
-                              body->radius + body->side.error, ways);
-  return state->travel;
+  double *displacements = s->displacements ? s->displacements + (size_t)index * s->n_displacements : NULL;
+  state->displaced = s->node;
+  state->displacement =
+      motion_displacements(s->motion, s->axes, axis, displacements ? depth_of(s->motion->robot, axis) : 0,
+                           body->side.at.p, body->radius + body->side.error, displacements);
+  return state->displacement;
 }
 
-double robot_scene_way(robot_scene *s, const robot_pair *pair) {
-  const double way = travel_of_part(s, pair->moving);
-  if (!s->self) return way;
-  const double other = travel_of_part(s, pair->standing);
-  if (!s->ways) return way + other;
-  return s->ways[(size_t)pair->moving * s->n_ways + pair->shared] +
-         s->ways[(size_t)pair->standing * s->n_ways + pair->shared];
+double robot_scene_coarse_displacement(robot_scene *s, const robot_pair *pair) {
+  const double coarse = displacement_of_part(s, pair->moving);
+  if (!s->self) return coarse;
+  const double other = displacement_of_part(s, pair->standing);
+  if (!s->displacements) return coarse + other;
+  return s->displacements[(size_t)pair->moving * s->n_displacements + pair->shared] +
+         s->displacements[(size_t)pair->standing * s->n_displacements + pair->shared];
 }
 
-double robot_scene_travel(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
-  if (!s->self && pair->element[0] < 0) return travel_of_part(s, pair->moving);
-  return motion_travel(s->motion, s->axes, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis,
-                       moving->side.at.p, moving->radius + moving->side.error);
+double robot_scene_displacement(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
+  if (!s->self && pair->element[0] < 0) return displacement_of_part(s, pair->moving);
+  return motion_displacement(s->motion, s->axes, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis,
+                             moving->side.at.p, moving->radius + moving->side.error);
 }
 
 const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, const robot_body *moving,

@@ -23,9 +23,9 @@ typedef struct robot_pair {
 
 /* A part over the node at hand. */
 typedef struct part_state {
-  uint32_t placed, travelled, moved; /* the node for which `body.side.at`, `travel` and `motion` were found */
+  uint32_t placed, displaced, moved; /* the node for which `body.side.at`, `displacement` and `motion` were found */
   robot_body body;
-  double travel;       /* that of the motion */
+  double displacement; /* that of the motion */
   chain_motion motion; /* seen from the world */
 } part_state;
 
@@ -39,8 +39,8 @@ typedef struct robot_scene {
   uint32_t *axis_placed; /* which have its number here */
   double *rows, *scratch;
   double *
-      ways; /* of each part over the node at hand, as motion_ways() has them, so many a part; NULL where those would be too many */
-  size_t n_ways;
+      displacements; /* of each part over the node at hand, as motion_displacements() has them, so many a part; NULL where those would be too many */
+  size_t n_displacements;
   chain_axis *chain;
   robot_pair *pairs;
   size_t n_pairs, n_obstacles;
@@ -70,13 +70,13 @@ void robot_scene_enter(robot_scene *scene, size_t segment, double a, double b);
 /* One more pair; its number, or -1 where memory is out. It may move all pairs in memory. */
 int32_t robot_scene_add_pair(robot_scene *scene, const robot_pair *pair);
 
-/* The two sides of a pair in the middle of the node, how far the one travels as the other sees it, and how it moves. Of pairs of
+/* The two sides of a pair in the middle of the node, how far the one moves as the other sees it, and how it moves. Of pairs of
  * elements, only those of one pair at a time. */
 const robot_body *robot_scene_moving(robot_scene *scene, const robot_pair *pair);
 const robot_body *robot_scene_standing(robot_scene *scene, const robot_pair *pair);
-/* robot_scene_way(): how far both sides travel together, as the axis above both sees it: quicker. */
-double robot_scene_way(robot_scene *scene, const robot_pair *pair);
-double robot_scene_travel(robot_scene *scene, const robot_pair *pair, const robot_body *moving);
+/* robot_scene_coarse_displacement(): how far both sides move together, as the axis above both sees it: quicker. */
+double robot_scene_coarse_displacement(robot_scene *scene, const robot_pair *pair);
+double robot_scene_displacement(robot_scene *scene, const robot_pair *pair, const robot_body *moving);
 const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, const robot_body *moving,
                                        chain_motion *own);
 
