@@ -505,8 +505,8 @@ CASE(chords_are_cut_again_where_the_piece_goes) {
   cprox_workspace_free(workspace);
 }
 
-/* The distance of a point of the chord from the obb, in long double; the frame's matrix is taken as it is, which a rotation is but for 20 u. */
-static long double from_brick(const lanes_obb *b, const lanes_chords *c, size_t k, long double s) {
+/* The distance of a point of the chord from the OBB, in long double; the frame's matrix is taken as it is, which a rotation is but for 20 u. */
+static long double from_obb(const lanes_obb *b, const lanes_chords *c, size_t k, long double s) {
   const long double v[3] = {(long double)c->x[k] + s * (long double)c->dx[k] - (long double)b->position.x,
                             (long double)c->y[k] + s * (long double)c->dy[k] - (long double)b->position.y,
                             (long double)c->z[k] + s * (long double)c->dz[k] - (long double)b->position.z};
@@ -522,9 +522,9 @@ static long double from_brick(const lanes_obb *b, const lanes_chords *c, size_t 
   return sqrtl(square);
 }
 
-/* Seed 21, 1000 bricks anywhere, also flat ones and points, 1 to 1e6 m away: the bound of a chord is not above its distance, which is convex along the
+/* Seed 21, 1000 OBBs anywhere, also flat ones and points, 1 to 1e6 m away: the bound of a chord is not above its distance, which is convex along the
  * chord and found by golden section to 1e-12 of it; it is the distance to 5 % and less for nine chords in ten that are apart; the point is where it says. */
-CASE(bricks_bound_chords_from_below) {
+CASE(obbs_bound_chords_from_below) {
   rng r = rng_seed(21);
   cprox_workspace *workspace = cprox_workspace_create();
   size_t apart = 0, tight = 0;
@@ -553,15 +553,15 @@ CASE(bricks_bound_chords_from_below) {
       long double a = 0.0L, b = 1.0L;
       for (int step = 0; step < 60; step++) {
         const long double left = b - 0.6180339887498949L * (b - a), right = a + 0.6180339887498949L * (b - a);
-        if (from_brick(&obb, &chords, k, left) <= from_brick(&obb, &chords, k, right))
+        if (from_obb(&obb, &chords, k, left) <= from_obb(&obb, &chords, k, right))
           b = right;
         else
           a = left;
       }
-      const long double least = from_brick(&obb, &chords, k, 0.5L * (a + b));
+      const long double least = from_obb(&obb, &chords, k, 0.5L * (a + b));
       assert_true((long double)sight.lower[k] <= least + 1e-12L + allowed);
       assert_true(sight.lower[k] >= 0.0 && sight.s[k] >= 0.0 && sight.s[k] <= 1.0);
-      const long double at = from_brick(&obb, &chords, k, (long double)sight.s[k]);
+      const long double at = from_obb(&obb, &chords, k, (long double)sight.s[k]);
       assert_true(fabsl(at - sqrtl((long double)sight.square[k])) <= allowed);
       apart += least > 1e-6L;
       tight += least > 1e-6L && (long double)sight.lower[k] >= 0.95L * least;
@@ -571,12 +571,12 @@ CASE(bricks_bound_chords_from_below) {
   cprox_workspace_free(workspace);
 }
 
-/* Seed 23, 20 scenes: a obb holds the points of its part that lie farthest in 100 directions, and each of its faces has one of them within a
+/* Seed 23, 20 scenes: an OBB holds the points of its part that lie farthest in 100 directions, and each of its faces has one of them within a
  * third of its width; 1e-12 is the rounding of the poses here, amply. */
-CASE(bricks_hold_their_parts) {
+CASE(obbs_hold_their_parts) {
   rng r = rng_seed(23);
   cprox_workspace *workspace = cprox_workspace_create();
-  size_t bricks = 0;
+  size_t obbs = 0;
   for (size_t round = 0; round < test_cases(20); round++) {
     scene s = {0};
     scene_targets(&r, round % 4 == 3, workspace, &s);
@@ -586,7 +586,7 @@ CASE(bricks_hold_their_parts) {
     for (size_t k = 0; k < batch->balls.n; k++) {
       const batch_core *core = &batch->cores[k];
       if (!core->has_obb) continue;
-      bricks++;
+      obbs++;
       const placed_pair placed = placed_pair_resolve(&q, &batch->parts[k]);
       const cprox_body *body = placed.shape;
       const frame f = placed.frame;
@@ -613,7 +613,7 @@ CASE(bricks_hold_their_parts) {
     cprox_batch_free(batch);
     scene_free(&s);
   }
-  assert_true(bricks > 0);
+  assert_true(obbs > 0);
   cprox_workspace_free(workspace);
 }
 

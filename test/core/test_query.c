@@ -289,12 +289,12 @@ CASE(what_is_stopped_before_it_began_knows_what_the_balls_say) {
 CASE(many_targets_are_answered_like_the_nearest_of_them) {
   rng r = rng_seed(5);
   enum { N = 30 };
-  cprox_body *ball = sphere(0.05), *obb = box(0.1, 0.2, 0.3), *pair = NULL;
-  const cprox_body *parts[] = {ball, obb};
+  cprox_body *ball = sphere(0.05), *brick = box(0.1, 0.2, 0.3), *pair = NULL;
+  const cprox_body *parts[] = {ball, brick};
   const cprox_pose poses[] = {{.position = {0.2, 0, 0}, .orientation = {1, 0, 0, 0}},
                               {.position = {-0.2, 0, 0}, .orientation = {1, 1, 0, 0}}};
   usable(cprox_body_create_compound(parts, poses, 2, ws, &pair), NULL);
-  const cprox_body *kinds[] = {ball, obb, pair};
+  const cprox_body *kinds[] = {ball, brick, pair};
   const cprox_options options = accurate(1e-9);
   for (size_t scene = 0; scene < test_cases(300); scene++) {
     cprox_obstacle targets[N];
@@ -338,7 +338,7 @@ CASE(many_targets_are_answered_like_the_nearest_of_them) {
   }
   cprox_body_free(pair);
   cprox_body_free(ball);
-  cprox_body_free(obb);
+  cprox_body_free(brick);
 }
 
 CASE(nothing_to_measure_is_infinitely_far) {
