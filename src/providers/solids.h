@@ -10,9 +10,11 @@ namespace curve_proximity {
 
 using SolidHandle = std::shared_ptr<const cprox_solid>;
 
-/** The union of a side's parts, each a solid that holds the shape: spheres, boxes, ellipsoids, cylinders, capsules, cones (as a
- *  pyramid round them), polytopes, closed meshes given by vertices and triangles. In the plane: spheres, boxes, ellipsoids and
- *  polygons and polytopes at z = 0. Throws Error, which names the type, for other shapes and for padding. dimension: 2 or 3. */
+/** The union of a side's parts, each as a solid that contains the shape.
+ *
+ *  In space: spheres, boxes, ellipsoids, cylinders, capsules, cones (as an enclosing pyramid), polytopes, closed meshes
+ *  given by vertices and triangles. In the plane: spheres, boxes, ellipsoids, and polygons and polytopes at z = 0.
+ *  Throws Error that names the type of any other shape, and for padding. dimension: 2 or 3. */
 SolidHandle makeSolid(const ConstraintBody &side, int dimension);
 
 } // namespace curve_proximity
