@@ -282,7 +282,8 @@ CASE(a_callback_that_breaks_its_promise_is_caught) {
           cprox_pair(cprox_obstacle_at(others[k], at(3, 0, 0)), cprox_obstacle_at(b, at(0, 0, 0)), NULL, ws, &result),
           CPROX_INVALID);
       assert_string_equal(cprox_workspace_error(ws),
-                          "a support callback answered with a point that is not finite or outside its radius");
+                          "a support callback or an implicit body's solver answered with a point that is not finite or "
+                          "outside its radius");
       assert_int_equal(result.nodes, 77);
       cprox_body_free(b);
     }

@@ -117,6 +117,10 @@ struct convex {
   struct implicit *implicit; /* superquadrics and implicit bodies: the constraints, about the shape's origin */
 };
 
+/* The error where a support function answered NaN: a callback, or an implicit body whose solver failed. */
+#define CONVEX_NO_SUPPORT \
+  "a support callback or an implicit body's solver answered with a point that is not finite or outside its radius"
+
 extern const convex_ops convex_point, convex_sphere, convex_box, convex_capsule, convex_cylinder, convex_cone,
     convex_ellipsoid, convex_halfspace, convex_polytope, convex_polygon, convex_support_callback, convex_difference;
 

@@ -164,8 +164,7 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
   if (o->is_signed && sample->near.distance <= 0.0 && vec_norm2(sample->near.normal) == 0.0)
     depth_of_point(o->shape, y, 0.1 * o->epsilon, &sample->near);
   const double d = sample->near.distance;
-  if (isnan(d))
-    return workspace_fail(o->workspace, CPROX_INVALID, "the support callback did not return a point of its body");
+  if (isnan(d)) return workspace_fail(o->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
 
   /* the surface point is attained, so the distance to it is an upper bound but for rounding */
   bound->slack = ROUND_UP * (rounding + 2.0 * ROUND_U * (fabs(d) + o->offset));

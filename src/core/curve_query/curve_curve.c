@@ -241,8 +241,7 @@ static cprox_status measure_node(curve_curve *o, search_node *node, const double
   const uint32_t before = o->incumbent;
   consider(o, &m, error);
   if (curve_side_status(&o->side[0]) < 0) return curve_side_status(&o->side[0]); /* both sides keep it in one place */
-  if (o->fault)
-    return workspace_fail(o->workspace, CPROX_INVALID, "the support callback did not return a point of its body");
+  if (o->fault) return workspace_fail(o->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
   if (o->carries || looked) {
     load_pieces(o, node);
     o->last_normal = m.normal;

@@ -6,7 +6,8 @@
 /* A slack may not fall below this fraction of itself in one step. */
 static const double BARRIER_LEAST = 0.005;
 
-static void add_outer(double h[6], double scale, vec3 a) {
+static void add_outer(const barrier *b, double h[6], double scale, vec3 a) {
+  a = barrier_seen(b, a);
   const vec3 s = vec_scale(scale, a);
   h[0] += s.x * a.x;
   h[1] += s.x * a.y;
@@ -14,6 +15,22 @@ static void add_outer(double h[6], double scale, vec3 a) {
   h[3] += s.y * a.y;
   h[4] += s.y * a.z;
   h[5] += s.z * a.z;
+}
+
+/* Adds scale times the symmetric matrix q. */
+static void add_matrix(const barrier *b, double h[6], double scale, const double q[6]) {
+  if (!b->axes) {
+    for (int i = 0; i < 6; i++) h[i] += scale * q[i];
+    return;
+  }
+  vec3 turned[3];
+  for (int i = 0; i < 3; i++) {
+    const vec3 a = b->axes[i];
+    turned[i] = barrier_seen(b, vec(q[0] * a.x + q[1] * a.y + q[2] * a.z, q[1] * a.x + q[3] * a.y + q[4] * a.z,
+                                    q[2] * a.x + q[4] * a.y + q[5] * a.z));
+  }
+  const double seen[6] = {turned[0].x, turned[0].y, turned[0].z, turned[1].y, turned[1].z, turned[2].z};
+  for (int i = 0; i < 6; i++) h[i] += scale * seen[i];
 }
 
 /* ---- start ---- */
@@ -104,14 +121,14 @@ barrier_state barrier_look(const barrier *b) {
 /* ---- Newton's system ---- */
 
 /* The part of one term: what it adds to the row's reduced gradient, 1/omega and beta, and to the system. */
-static void term_assemble(barrier_term *w, const implicit_term *term, double target, const barrier_row *row,
-                          double *over, double *beta, vec3 *reduced, barrier_system *system) {
+static void term_assemble(const barrier *side, barrier_term *w, const implicit_term *term, double target,
+                          const barrier_row *row, double *over, double *beta, vec3 *reduced, barrier_system *system) {
   if (!w->lifted) {
     const double u = fabs(w->u), power = implicit_raise(term, u);
     const double slope = u > 0.0 ? term->p * power / w->u : 0.0;
     const double bend = u > 0.0 ? term->p * (term->p - 1.0) * power / (u * u) : term->p == 2.0 ? 2.0 : 0.0;
     *reduced = vec_axpy(*reduced, slope, term->a);
-    add_outer(system->h, row->l * bend, term->a);
+    add_outer(side, system->h, row->l * bend, term->a);
     system->rhs = vec_axpy(system->rhs, -row->l * slope, term->a);
     return;
   }
@@ -127,7 +144,7 @@ static void term_assemble(barrier_term *w, const implicit_term *term, double tar
   *over += 1.0 / d;
   *beta += w->rho / d;
   *reduced = vec_axpy(*reduced, e / d, term->a);
-  add_outer(system->h, ((a + b) * c + 4.0 * a * b * g1 * g1) / d, term->a);
+  add_outer(side, system->h, ((a + b) * c + 4.0 * a * b * g1 * g1) / d, term->a);
   system->rhs = vec_axpy(system->rhs, -((w->l[0] - w->l[1]) + (w->k[0] - w->k[1]) - e * w->rho / d), term->a);
 }
 
@@ -142,16 +159,15 @@ void barrier_assemble(barrier *b, double target, barrier_system *system) {
       const implicit_power *power = &body->power[k - first_power];
       reduced = vec(0, 0, 0);
       for (int32_t i = power->first; i < power->first + power->n; i++)
-        term_assemble(&b->term[i], &body->term[i], target, row, &over, &beta, &reduced, system);
+        term_assemble(b, &b->term[i], &body->term[i], target, row, &over, &beta, &reduced, system);
     } else {
       system->rhs = vec_axpy(system->rhs, -row->l, row->g);
-      if (k >= body->n_planes)
-        for (int i = 0; i < 6; i++) system->h[i] += 2.0 * row->l * body->quadric[k - body->n_planes].q[i];
+      if (k >= body->n_planes) add_matrix(b, system->h, 2.0 * row->l, body->quadric[k - body->n_planes].q);
     }
     row->omega = 1.0 / over;
     row->beta = beta;
     row->reduced = reduced;
-    add_outer(system->h, row->omega, reduced);
+    add_outer(b, system->h, row->omega, reduced);
     system->rhs = vec_axpy(system->rhs, -row->omega * beta, reduced);
   }
 }
@@ -167,7 +183,7 @@ void barrier_step(barrier *b, double target, double *primal, double *dual) {
   const int32_t first_power = body->n_planes + body->n_quadrics, n = implicit_count(body);
   for (int32_t k = 0; k < n; k++) {
     barrier_row *row = &b->row[k];
-    row->dl = row->omega * (vec_dot(row->reduced, b->dz) + row->beta);
+    row->dl = row->omega * (vec_dot(barrier_seen(b, row->reduced), b->along) + row->beta);
     row->ds = -(row->l * row->s - target + row->s * row->dl) / row->l;
     limit(row->s, row->ds, primal);
     limit(row->l, row->dl, dual);
@@ -175,7 +191,7 @@ void barrier_step(barrier *b, double target, double *primal, double *dual) {
     const implicit_power *power = &body->power[k - first_power];
     for (int32_t i = power->first; i < power->first + power->n; i++) {
       barrier_term *w = &b->term[i];
-      w->du = vec_dot(body->term[i].a, b->dz);
+      w->du = vec_dot(barrier_seen(b, body->term[i].a), b->along);
       if (!w->lifted) continue;
       w->dt = (w->rho + w->e * w->du - row->dl) / w->d;
       w->ds[0] = w->g1 * w->dt - w->du;

@@ -32,10 +32,18 @@ typedef struct barrier {
   barrier_row *row;   /* planes, quadrics, powers */
   barrier_term *term; /* all terms of the powers */
   vec3 z, dz;         /* the point, strictly inside, and its step */
+  const vec3 *axes;   /* three orthonormal ones that Newton's system is seen along; NULL: the coordinates' */
+  vec3 along;         /* the step along them */
   vec3 next;          /* the trial point */
 } barrier;
 
-/* A symmetric matrix (xx, xy, xz, yy, yz, zz) and a vector that bodies add to. */
+/* A vector along the barrier's axes. */
+static inline vec3 barrier_seen(const barrier *b, vec3 v) {
+  const vec3 *a = b->axes;
+  return a ? vec(vec_dot(a[0], v), vec_dot(a[1], v), vec_dot(a[2], v)) : v;
+}
+
+/* A symmetric matrix (xx, xy, xz, yy, yz, zz), along the barrier's axes, and a vector that bodies add to. */
 typedef struct barrier_system {
   double h[6];
   vec3 rhs;
@@ -58,7 +66,7 @@ barrier_state barrier_look(const barrier *b);
 /* Adds the body's part of Newton's system for the target product `target` of slack and multiplier. */
 void barrier_assemble(barrier *b, double target, barrier_system *system);
 
-/* All steps from dz, and how long primal and dual ones may be before a slack or a multiplier is 0. */
+/* All steps from dz and along, and how long primal and dual ones may be before a slack or a multiplier is 0. */
 void barrier_step(barrier *b, double target, double *primal, double *dual);
 
 /* Tries the primal step of the length: false where a slack would fall below a fraction of what it is. */

@@ -247,7 +247,7 @@ static cprox_status fail_interior(cprox_workspace *workspace) {
 /* Looks along the axes: the box, and the mean of the points found, which is a better centre than any of them. */
 static cprox_status find_box(const implicit *body, void *memory, cprox_workspace *workspace, vec3 *mean,
                              double box[6]) {
-  const implicit_goal goal = {.relative_epsilon = 1e-3, .max_steps = 1000};
+  const implicit_goal goal = {.relative_epsilon = 1e-3, .max_steps = 1000, .coarse = true};
   *mean = vec(0, 0, 0);
   for (int i = 0; i < 6; i++) {
     const double side = i % 2 == 0 ? 1.0 : -1.0;

@@ -162,6 +162,7 @@ typedef struct implicit_query {
 typedef struct implicit_goal {
   double epsilon, relative_epsilon;
   uint32_t max_steps;
+  bool coarse; /* far: no accuracy near rounding is needed, and the body may be unbounded */
 } implicit_goal;
 
 typedef struct implicit_answer {

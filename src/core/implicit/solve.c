@@ -37,6 +37,7 @@ typedef struct solve {
   double reach, scale;
   double floor; /* what rounding takes from the upper bound */
   double least; /* no interval can be asked to be narrower */
+  vec3 axes[3]; /* far: those that matrix and rhs are seen along */
   double matrix[SOLVE_MOST_VARIABLES][SOLVE_MOST_VARIABLES];
   double rhs[SOLVE_MOST_VARIABLES];
 } solve;
@@ -145,12 +146,74 @@ static void put3(double a[][SOLVE_MOST_VARIABLES], int at, const double h[6]) {
   a[at + 2][at + 2] = h[5];
 }
 
+/* One rotation of Jacobi's method, in the plane of axes i and j. */
+static void jacobi_turn(double h[3][3], vec3 axes[3], int i, int j) {
+  if (h[i][j] == 0.0) return;
+  const double theta = 0.5 * (h[j][j] - h[i][i]) / h[i][j];
+  const double t = (theta >= 0.0 ? 1.0 : -1.0) / (fabs(theta) + sqrt(1.0 + theta * theta));
+  const double c = 1.0 / sqrt(1.0 + t * t), sine = t * c;
+  const int k = 3 - i - j;
+  const double hik = h[i][k], hjk = h[j][k];
+  h[i][i] -= t * h[i][j];
+  h[j][j] += t * h[i][j];
+  h[i][j] = h[j][i] = 0.0;
+  h[i][k] = h[k][i] = c * hik - sine * hjk;
+  h[j][k] = h[k][j] = sine * hik + c * hjk;
+  const vec3 a = axes[i];
+  axes[i] = vec_axpy(vec_scale(c, a), -sine, axes[j]);
+  axes[j] = vec_axpy(vec_scale(c, axes[j]), sine, a);
+}
+
+static vec3 back_from_axes(const barrier *b) {
+  const vec3 *axes = b->axes, v = b->along;
+  return axes ? vec_axpy(vec_axpy(vec_scale(v.x, axes[0]), v.y, axes[1]), v.z, axes[2]) : v;
+}
+
+/* Of so small a part of the diagonal a Cholesky pivot is half rounding. */
+static const double SOLVE_STEEP = 1e-8;
+
+/* Is a part of the matrix lost beside the rest of it? */
+static bool is_steep(const double m[6]) {
+  const double first = m[0], l = m[1] / first, n = m[2] / first, second = m[3] - l * m[1], k = m[4] - n * m[1];
+  const double third = m[5] - n * m[2] - k * k / second;
+  return !(second > SOLVE_STEEP * m[3] && third > SOLVE_STEEP * m[5]);
+}
+
+/* Along a normal of a face or an edge, exactly or nearly, the extreme points are many. Towards the end the matrix is 1e20 times as steep
+ * across the edge as along it, and in coordinates the latter part is lost in rounding. Along the matrix's own axes it is not: the
+ * steep constraints have nothing but rounding there. */
+static void see_along_its_axes(solve *s, double target, barrier_system *system) {
+  enum { SWEEPS = 4 };
+  const double *m = system->h;
+  double h[3][3] = {{m[0], m[1], m[2]}, {m[1], m[3], m[4]}, {m[2], m[4], m[5]}};
+  s->axes[0] = vec(1, 0, 0), s->axes[1] = vec(0, 1, 0), s->axes[2] = vec(0, 0, 1);
+  for (int i = 0; i < SWEEPS; i++) {
+    jacobi_turn(h, s->axes, 0, 1);
+    jacobi_turn(h, s->axes, 0, 2);
+    jacobi_turn(h, s->axes, 1, 2);
+  }
+  for (int i = 0; i < 3; i++) /* the steepest first, so that Cholesky's factor keeps the others */
+    for (int j = i + 1; j < 3; j++)
+      if (h[j][j] > h[i][i]) {
+        const vec3 axis = s->axes[i];
+        const double value = h[i][i];
+        s->axes[i] = s->axes[j], s->axes[j] = axis;
+        h[i][i] = h[j][j], h[j][j] = value;
+      }
+  *system = (barrier_system){.rhs = vec_neg(s->e)};
+  s->side[0].axes = s->axes;
+  barrier_assemble(&s->side[0], target, system);
+  system->rhs = barrier_seen(&s->side[0], system->rhs);
+}
+
 /* The lower triangle of [[1 + Hx, -M], [-M', 1 + Hy]], bordered by the time's row, and minus the gradients. */
 static void solve_assemble(solve *s, double target) {
   const implicit_query *q = s->q;
   const double curved = q->far ? 0.0 : 1.0;
   barrier_system system = {.h = {curved, 0, 0, curved, 0, curved}, .rhs = vec_neg(s->e)};
+  s->side[0].axes = NULL;
   barrier_assemble(&s->side[0], target, &system);
+  if (q->far && !s->goal->coarse && is_steep(system.h)) see_along_its_axes(s, target, &system);
   put3(s->matrix, 0, system.h);
   s->rhs[0] = system.rhs.x, s->rhs[1] = system.rhs.y, s->rhs[2] = system.rhs.z;
   if (s->sides == 1) return;
@@ -335,7 +398,8 @@ static double solve_step(solve *s, double target) {
 
   double primal = 1.0 / 0.99, dual = 1.0 / 0.99;
   for (int i = 0; i < s->sides; i++) {
-    s->side[i].dz = vec(b[3 * i], b[3 * i + 1], b[3 * i + 2]);
+    s->side[i].along = vec(b[3 * i], b[3 * i + 1], b[3 * i + 2]);
+    s->side[i].dz = back_from_axes(&s->side[i]);
     if (!vec_finite(s->side[i].dz)) return 0.0;
     barrier_step(&s->side[i], target, &primal, &dual);
   }

@@ -259,8 +259,7 @@ static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cp
   const cprox_status status = pair_solve(&a, &b, task->goal, task->workspace, &reply->answer);
   if (status) return status;
   if (!reply->answer.fault) return CPROX_OK;
-  return workspace_fail(task->workspace, CPROX_INVALID,
-                        "a support callback answered with a point that is not finite or outside its radius");
+  return workspace_fail(task->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
 }
 
 static bool pair_has_lod(const pair_task *task, size_t i, size_t j) {

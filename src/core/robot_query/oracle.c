@@ -96,8 +96,7 @@ static bool is_convex(const robot_body *moving, const robot_body *standing) {
 }
 
 static cprox_status refuse_callback(const robot_search *o) {
-  return workspace_fail(o->scene.q->workspace, CPROX_INVALID,
-                        "a support callback answered with a point that is not finite or outside its radius");
+  return workspace_fail(o->scene.q->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
 }
 
 /* What was measured may be the least so far, or a contact. */
