@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The queries as a caller meets them: intervals, verdicts, budgets, many targets, unusable arguments, memory, cost. */
+#include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "base/vec.h"
 #include "curve_proximity/cprox.h"
+#include "problem/problem.h"
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/counting.h"
@@ -542,6 +547,26 @@ CASE(witness_points_attain_upper_however_loose_epsilon_is) {
     assert_true((double)ref_point_hull(p, vertices, 9) <= margin + room);
     cprox_curve_free(curve);
     cprox_body_free(hull);
+  }
+}
+
+/* Bounds that contradict each other end the program where CPROX_CHECKED is on, as in every build of tests; bounds that do not, pass. */
+CASE(bounds_that_contradict_each_other_are_not_hidden) {
+  const query q = {.limit = -1.0, .options = cprox_options_default(), .workspace = ws};
+  for (int contradict = 0; contradict < 2; contradict++) {
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+      signal(SIGABRT, SIG_DFL);
+      cprox_result r = {.lower = contradict ? 1.5 : 0.5, .upper = 1.0};
+      if (!freopen("/dev/null", "w", stderr)) _exit(2);
+      query_conclude(&q, INFINITY, CPROX_OK, &r);
+      _exit(0);
+    }
+    int ended = 0;
+    assert_int_equal(waitpid(child, &ended, 0), child);
+    assert_true(contradict ? WIFSIGNALED(ended) && WTERMSIG(ended) == SIGABRT
+                           : WIFEXITED(ended) && WEXITSTATUS(ended) == 0);
   }
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "narrowphase/mesh_mesh.h"
 
+#include "base/check.h"
 #include "base/rotation.h"
 #include "base/rounding.h"
 #include "bvh/bvh.h"
@@ -356,6 +357,7 @@ static void conclude(const dual *d, pair_answer *answer) {
     return;
   }
   answer->rounding = fmax(answer->rounding, d->rounding);
+  CORE_CHECK(!(d->lower > answer->upper), "lower %.17g, upper %.17g", d->lower, answer->upper);
   answer->lower = fmin(d->lower, answer->upper);
   const bool apart = answer->lower + d->margins > d->rounding;
   if ((answer->exhausted || answer->stopped) && !apart) answer->lower = fmin(least_unseen(d), answer->upper);

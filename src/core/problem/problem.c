@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/check.h"
 #include "curve/subcurve.h"
 #include "curve_proximity/cprox/robot.h"
 
@@ -97,6 +98,8 @@ void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_resu
 }
 
 cprox_status query_conclude(const query *q, double cutoff, cprox_status trouble, cprox_result *all) {
+  /* each bound is proven, so that they contradict each other only where a proof is wrong */
+  CORE_CHECK(!(all->lower > all->upper), "lower %.17g, upper %.17g", all->lower, all->upper);
   all->lower = lesser(all->lower, all->upper);
   all->status = query_is_satisfied(q, cutoff, all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
   all->verdict = query_verdict(q, all);

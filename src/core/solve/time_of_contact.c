@@ -2,6 +2,7 @@
 /* Time of contact along the mover's parameter: never late. doc/time-of-contact.md derives it. */
 #include <math.h>
 
+#include "base/check.h"
 #include "curve_query/contact_bvh.h"
 #include "curve_query/contact_convex.h"
 #include "curve_query/contact_curve.h"
@@ -175,6 +176,7 @@ cprox_status time_of_contact_conclude(const time_of_contact *all, const query *q
   cprox_curve_domain(q->mover.curve, &t0, &t1);
   const bool touch = isfinite(all->touch.t), near = all->near.upper <= q->options.epsilon;
   cprox_result r = touch ? all->touch : all->near;
+  CORE_CHECK(touch || !(all->lower > r.upper), "lower %.17g, upper %.17g", all->lower, r.upper);
   r.t_contact_lower = fmin(all->free_until, t1);
   r.lower = touch ? 0.0 : fmax(fmin(all->lower, r.upper), 0.0);
   r.upper = fmax(r.upper, 0.0);
