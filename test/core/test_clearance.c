@@ -4,10 +4,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/round_down.h"
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/counting.h"
+#include "support/quad.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -180,6 +182,53 @@ CASE(intervals_may_begin_and_end_inside_pieces) {
   }
   cprox_body_free(floor);
   cprox_curve_free(curve);
+}
+
+/* 10^6 parameters of pieces anywhere, as short as a few doubles, seed 8: in 113 bits (or long double's 64) the fractions of a section
+ * lie on the far sides of the parameter, and within 16 roundings of it. */
+CASE(the_fractions_of_a_section_are_rounded_outward) {
+  rng r = rng_seed(8);
+  for (size_t i = 0, cases = test_cases(1000000); i < cases; i++) {
+    const double t0 = rng_index(&r, 4) ? rng_uniform(&r, -2.0, 2.0) : rng_uniform(&r, 1.6e9, 1.7e9);
+    const double t1 = fmax(t0 + rng_log_uniform(&r, 1e-12, 1e3), nextafter(nextafter(t0, INFINITY), INFINITY));
+    const double t = fmin(fmax(t0 + rng_uniform(&r, 0.0, 1.0) * (t1 - t0), nextafter(t0, INFINITY)), nextafter(t1, t0));
+    const quad length = (quad)t1 - (quad)t0, way = (quad)t - (quad)t0;
+    const double below = round_fraction_below(t0, t1, t), above = round_fraction_above(t0, t1, t);
+    assert_true((quad)below * length <= way && (quad)above * length >= way);
+    assert_true(above - below <= 16.0 * 0x1p-53 * above + 2e-300);
+  }
+  assert_true(round_fraction_below(1.0, 2.0, 1.0) == 0.0 && round_fraction_above(1.0, 2.0, 2.0) == 1.0);
+}
+
+/* 2000 curves, seed 9, cut at a parameter where a point stands on the curve: neither of the intervals that share the
+ * cut is free. */
+CASE(both_stretches_at_a_break_see_the_point_at_the_break) {
+  rng r = rng_seed(9);
+  for (size_t i = 0, cases = test_cases(2000); i < cases; i++) {
+    vec3 p[8];
+    const size_t degree = 1 + rng_index(&r, 7);
+    for (size_t k = 0; k <= degree; k++) p[k] = rng_in_cube(&r, 2.0);
+    const double t0 = rng_uniform(&r, -1.0, 1.0), t1 = t0 + rng_log_uniform(&r, 1e-3, 1e3);
+    cprox_curve *curve = NULL;
+    assert_int_equal(cprox_curve_create_bezier(p, degree + 1, t0, t1, ws, &curve), CPROX_OK);
+    const double cut = t0 + rng_uniform(&r, 0.01, 0.99) * (t1 - t0);
+    const long double s = ((long double)cut - t0) / ((long double)t1 - t0);
+    const vec3l at = ref_bezier(p, degree, s, 0);
+    cprox_body *point = NULL;
+    const vec3 rounded = vec((double)at.x, (double)at.y, (double)at.z);
+    assert_int_equal(cprox_body_create_point(rounded, ws, &point), CPROX_OK);
+    const cprox_obstacle target = cprox_obstacle_at(point, cprox_pose_identity());
+    cprox_options options = cprox_options_default();
+    options.epsilon = 0.0;
+    cprox_profile_interval interval[2];
+    assert_true(
+        cprox_profile(cprox_point_along(curve), &target, 1, (double[]){t0, cut, t1}, 2, &options, ws, interval) >= 0);
+    for (int k = 0; k < 2; k++)
+      if (!(interval[k].lower <= 4.0 * 0x1p-53 * vec_norm(rounded) && interval[k].upper <= 1e-12))
+        fail_msg("case %zu, interval %d: [%.17g, %.17g]", i, k, interval[k].lower, interval[k].upper);
+    cprox_body_free(point);
+    cprox_curve_free(curve);
+  }
 }
 
 CASE(unusable_arguments_are_named) {

@@ -2,6 +2,8 @@
 /* The clearance profile: the same query about one interval of the curve after the other. */
 #include <math.h>
 
+#include "base/check.h"
+#include "base/round_down.h"
 #include "base/rounding.h"
 #include "curve/subcurve.h"
 #include "curve_proximity/cprox/clearance.h"
@@ -21,7 +23,7 @@ static cprox_status check_breaks(const query *q, const double *breaks, size_t n,
   return CPROX_OK;
 }
 
-/* The capsule round the control points of [t0, t1] of one piece, or of the whole piece where there are none. */
+/* The capsule round the control points of [t0, t1] of one piece, and a little more, or of the whole piece where there are none. */
 static curve_capsule reach_of(const cprox_curve *curve, size_t piece, double t0, double t1,
                               cprox_workspace *workspace) {
   vec3 p[CPROX_MAX_DEGREE + 1];
@@ -38,14 +40,28 @@ static curve_capsule reach_of(const cprox_curve *curve, size_t piece, double t0,
     largest = fmax(largest, vec_norm(curve_piece(curve, piece)[i]));
   }
   const double degree = (double)curve->degree;
-  c.radius = ROUND_UP * (c.radius + curve->error[piece] + (12.0 * degree + 40.0) * ROUND_U * largest);
+  c.radius = ROUND_UP * (c.radius + curve->error[piece] + (44.0 * degree + 40.0) * ROUND_U * largest);
   return c;
 }
 
-/* Where t lies in a piece, as a fraction of it. */
-static double fraction_of(const cprox_curve *curve, size_t piece, double t) {
-  const double a = curve->breaks[piece], b = curve->breaks[piece + 1];
-  return fmin(fmax((t - a) / (b - a), 0.0), 1.0);
+/* What the section's ends lie farther out than asked, as a fraction of the piece. */
+static const double SECTION_OUTWARD = 10.0 * ROUND_U;
+
+/* The part of a piece between two of its parameters, rounded outward: so that sections which share an end leave nothing out. */
+static curve_interval section_between(const cprox_curve *curve, size_t piece, double t0, double t1) {
+  const double from = curve->breaks[piece], to = curve->breaks[piece + 1];
+  const double a =
+      fmin(round_fraction_below(from, to, t0), 1.0 - 0x1p-52);            /* at least one double before the end, and */
+  const double b = fmax(round_fraction_above(from, to, t1), a + 0x1p-52); /* one after the beginning */
+  return curve_side_section(curve, piece, a, b);
+}
+
+/* A point that is farther out than asked may be that much nearer: the curve is no faster than the ends of its hodograph. */
+static double outward_travel(const cprox_curve *curve, size_t piece) {
+  const vec3 *p = curve_piece(curve, piece);
+  double longest = 0.0;
+  for (size_t i = 1; i <= curve->degree; i++) longest = fmax(longest, vec_norm(vec_sub(p[i], p[i - 1])));
+  return ROUND_UP * SECTION_OUTWARD * (double)curve->degree * longest;
 }
 
 /* The least clearance over [t0, t1], a piece at a time. */
@@ -58,9 +74,7 @@ static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox
   for (size_t i = *piece; i < curve->n_pieces && curve->breaks[i] < t1; i++) {
     const double from = fmax(t0, curve->breaks[i]), to = fmin(t1, curve->breaks[i + 1]);
     if (!(from < to)) continue;
-    const double a = fmin(fraction_of(curve, i, from), 1.0 - 0x1p-52); /* at least one double before the end, and */
-    const double b = fmax(fraction_of(curve, i, to), a + 0x1p-52);     /* one after the beginning */
-    q->part = curve_side_section(curve, i, a, b);
+    q->part = section_between(curve, i, from, to);
     q->t0 = from, q->t1 = to;
     q->reach = reach_of(curve, i, from, to, q->workspace);
     cprox_result r;
@@ -68,6 +82,7 @@ static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox
     if (status < 0) return status;
     if (status != CPROX_OK) trouble = status;
     interval->lower = fmin(interval->lower, r.lower);
+    r.upper += outward_travel(curve, i);
     if (r.upper < interval->upper) {
       interval->upper = r.upper;
       interval->t = fmin(fmax(r.t, t0), t1);
@@ -75,7 +90,7 @@ static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox
       interval->mover_part = r.mover_part;
     }
   }
-  interval->lower = fmin(interval->lower, interval->upper);
+  CORE_CHECK(!(interval->lower > interval->upper), "lower %.17g, upper %.17g", interval->lower, interval->upper);
   return trouble;
 }
 
