@@ -242,6 +242,66 @@ CASE(perfect_symmetry_has_no_gradient) {
   cprox_solid_free(s);
 }
 
+/* The slope of the value to one side, of order 4. */
+static double one_sided_slope(const cprox_gap *gap, const cprox_pose *a, const cprox_pose *b, int axis, double h) {
+  static const double WEIGHT[5] = {-25.0, 48.0, -36.0, 16.0, -3.0};
+  double slope = 0.0;
+  for (int j = 0; j < 5; j++) {
+    cprox_pose q = nudged(*b, axis, j * h);
+    cprox_gap_result y;
+    MADE(cprox_gap_evaluate(gap, a, &q, ws, &y));
+    slope += WEIGHT[j] * y.value / (12.0 * h);
+  }
+  return slope;
+}
+
+/* Where a distance has a kink, a gap has none: it is an integral, a sum of waves in every mode. Boxes face on face, nearly corner on corner,
+ * corner on face, at one place, and a ball midway between two: the slopes to both sides are the gradient, within 1e-6 of the largest. */
+CASE(ties_of_nearest_points_are_no_kinks) {
+  size_t sloping = 0;
+  for (int dimension = 2; dimension <= 3; dimension++) {
+    cprox_solid *box, *ball, *balls;
+    MADE(cprox_solid_create_box(dimension, vec(1, 1, 1), ws, &box));
+    MADE(cprox_solid_create_ball(dimension, 0.3, ws, &ball));
+    const cprox_pose left = planar(-0.6, 0, 0), right = planar(0.6, 0, 0);
+    MADE(cprox_solid_create_union((const cprox_solid *const[]){ball, ball}, (const cprox_pose[]){left, right}, 2, ws,
+                                  &balls));
+    const cprox_pose placed[] = {planar(1, 0, 0),
+                                 planar(0.9, 0, 0),
+                                 planar(0.98, 0.98, 0),
+                                 planar(0.95, 0.95, 0),
+                                 planar(1.2, 0, 0.7853981633974483),
+                                 planar(0, 0, 0)};
+    const size_t n = sizeof placed / sizeof *placed;
+    for (int mode = CPROX_GAP_CERTIFIED; mode <= CPROX_GAP_SIGNAL; mode++)
+      for (size_t k = 0; k <= n; k++) {
+        cprox_gap *gap =
+            k < n ? gap_of(box, box, (cprox_gap_mode)mode, 9) : gap_of(balls, ball, (cprox_gap_mode)mode, 9);
+        const cprox_gap_info info = cprox_gap_get_info(gap);
+        const cprox_pose a = planar(0, 0, 0), b = k < n ? placed[k] : planar(0, 0.05, 0);
+        const double h = 2e-3 * info.period / info.samples;
+        cprox_gap_result x;
+        MADE(cprox_gap_evaluate(gap, &a, &b, ws, &x));
+        assert_true(x.verdict != CPROX_GAP_FAR);
+        const double size = fmax(fmax(vec_norm(x.position_b), vec_norm(x.rotation_b)), fmax(1.0, fabs(x.value)));
+        for (int axis = 0; axis < 6; axis++) {
+          if (dimension == 2 && axis > 1 && axis < 5) continue;
+          const double got = component(x.position_b, x.rotation_b, axis);
+          const double ahead = one_sided_slope(gap, &a, &b, axis, h), behind = one_sided_slope(gap, &a, &b, axis, -h);
+          if (!(fabs(got - ahead) <= 1e-6 * size && fabs(got - behind) <= 1e-6 * size))
+            fail_msg("dimension %d, mode %d, place %zu, axis %d: %.12g, to the sides %.12g and %.12g", dimension, mode,
+                     k, axis, got, behind, ahead);
+          sloping += fabs(got) > 0.1;
+        }
+        cprox_gap_free(gap);
+      }
+    cprox_solid_free(box);
+    cprox_solid_free(ball);
+    cprox_solid_free(balls);
+  }
+  assert_true(sloping > 30);
+}
+
 /* At touch V/t is far larger face to face than corner to corner: a value is no distance. */
 CASE(level_sets_are_not_equidistant) {
   cprox_solid *s;
