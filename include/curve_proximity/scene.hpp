@@ -60,7 +60,8 @@ struct Attachment {
 
 /** A change of the scene. What is left empty stays as it was. */
 struct SceneChange {
-  bool clear = false; /**< first away with all objects, carried ones too, allowed pairs, link paddings and scales */
+  bool clear = false; /**< first away with all objects, carried ones too, allowed pairs but the scene's first ones, link
+                           paddings and scales */
   std::vector<Operation> operations;          /**< applied in order */
   std::vector<Attachment> attachments;        /**< after the operations, in order */
   std::map<std::string, double> link_padding; /**< [m] >= 0, by link */
@@ -190,8 +191,11 @@ using SnapshotPtr = std::shared_ptr<const Snapshot>;
  */
 class Scene {
  public:
-  /** robot may be null. resources: where the objects' mesh files are looked for. */
-  explicit Scene(std::shared_ptr<const Robot> robot = nullptr, ResourceOptions resources = {});
+  /** robot may be null. resources: where the objects' mesh files are looked for. allowed: entries of the allowed
+   *  collision matrix that stand there from the beginning, and again after a change that clears the scene
+   *  (allowedPairs() of an SRDF). Throws Error for one without a first name. */
+  explicit Scene(std::shared_ptr<const Robot> robot = nullptr, ResourceOptions resources = {},
+                 const std::vector<AllowedPair> &allowed = {});
 
   /** The scene as it is now. */
   SnapshotPtr snapshot() const;
@@ -209,6 +213,7 @@ class Scene {
 
  private:
   const ResourceOptions resources_;
+  const std::shared_ptr<const std::vector<AllowedPair>> first_allowed_;
   std::mutex changing_;        /* held while a change is in the making */
   mutable std::mutex current_; /* held for a moment, to read or set the pointer */
   SnapshotPtr snapshot_;

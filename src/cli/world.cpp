@@ -163,7 +163,7 @@ World readWorld(const Arguments &arguments, Warnings &warnings) {
   ResourceOptions resources;
   resources.base_dir = folderOf(arguments.scene);
   resources.find_package = packageFinder(resources.base_dir);
-  Scene scene(robot.robot, resources);
+  Scene scene(robot.robot, resources, allowedPairs(robot.srdf));
   try {
     apply(scene, changeOf(file, frames, robot, warnings));
   } catch (const BadUsage &e) {

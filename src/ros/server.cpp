@@ -50,8 +50,8 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       handle_(onQueue(handle, queue_)),
       control_handle_(onQueue(handle, control_queue_)),
       frames_(parameters_.fixed_frame, parameters_.tf_timeout, stop_),
-      scene_(loadRobot(handle, parameters_), resourceOptions("", parameters_.max_shape_mb)),
       srdf_(loadSrdf(handle, parameters_)),
+      scene_(loadRobot(handle, parameters_), resourceOptions("", parameters_.max_shape_mb), allowedPairs(srdf_)),
       queries_(parameters_, tuning_, scene_, srdf_, frames_, statistics_, stop_),
       constraints_(parameters_, scene_, frames_, stop_) {
   loadScene();

@@ -80,8 +80,8 @@ class ProximityServer {
   ros::CallbackQueue queue_, control_queue_; /* of requests; of what watches over them, with a thread of its own */
   ros::NodeHandle handle_, control_handle_;  /* their callbacks go to these queues */
   Frames frames_;
-  Scene scene_;
   const Srdf srdf_;
+  Scene scene_;
   Queries queries_;
   Constraints constraints_;
   std::unique_ptr<MarkerPublisher> markers_;

@@ -298,8 +298,11 @@ void Snapshot::scaleLinks(const std::map<std::string, double> &scales, const Res
 
 /* ---- Scene --------------------------------------------------------------------------------------------------------- */
 
-Scene::Scene(std::shared_ptr<const Robot> robot, ResourceOptions resources) : resources_(std::move(resources)) {
+Scene::Scene(std::shared_ptr<const Robot> robot, ResourceOptions resources, const std::vector<AllowedPair> &allowed)
+    : resources_(std::move(resources)),
+      first_allowed_(std::make_shared<const std::vector<AllowedPair>>(mergeAllowed({}, allowed))) {
   const std::shared_ptr<Snapshot> first(new Snapshot);
+  first->allowed_ = first_allowed_;
   first->robot_ = std::move(robot);
   first->world_ = std::make_unique<const World>(first->objects_);
   snapshot_ = first;
@@ -317,7 +320,7 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
   ++next->version_;
   if (change.clear) {
     next->objects_.clear();
-    next->allowed_ = std::make_shared<const std::vector<AllowedPair>>();
+    next->allowed_ = first_allowed_;
     next->attached_.clear();
     next->link_padding_.clear();
     next->default_link_padding_ = 0.0;

@@ -31,6 +31,15 @@ VirtualJoint readVirtualJoint(const XMLElement &element) {
   return joint;
 }
 
+using LinkPairs = std::vector<std::array<std::string, 2>>;
+
+LinkPairs readPairs(const XMLElement &robot, const char *name) {
+  LinkPairs out;
+  for (const XMLElement *e = robot.FirstChildElement(name); e; e = e->NextSiblingElement(name))
+    out.push_back({required(*e, "link1"), required(*e, "link2")});
+  return out;
+}
+
 } // namespace
 
 Srdf parseSrdf(const std::string &xml) {
@@ -45,10 +54,19 @@ Srdf parseSrdf(const std::string &xml) {
   for (const XMLElement *e = robot->FirstChildElement("virtual_joint"); e; e = e->NextSiblingElement("virtual_joint")) {
     out.virtual_joints.push_back(readVirtualJoint(*e));
   }
-  const char *disable = "disable_collisions";
-  for (const XMLElement *e = robot->FirstChildElement(disable); e; e = e->NextSiblingElement(disable)) {
-    out.disabled.push_back({required(*e, "link1"), required(*e, "link2")});
+  out.disabled = readPairs(*robot, "disable_collisions");
+  out.enabled = readPairs(*robot, "enable_collisions");
+  const char *all = "disable_default_collisions";
+  for (const XMLElement *e = robot->FirstChildElement(all); e; e = e->NextSiblingElement(all)) {
+    out.disabled_by_default.push_back(required(*e, "link"));
   }
+  return out;
+}
+
+std::vector<AllowedPair> allowedPairs(const Srdf &srdf) {
+  std::vector<AllowedPair> out;
+  for (const std::string &link : srdf.disabled_by_default) out.push_back({link, "", true});
+  for (const auto &[a, b] : srdf.enabled) out.push_back({a, b, false});
   return out;
 }
 

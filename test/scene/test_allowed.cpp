@@ -9,6 +9,7 @@
 #include <set>
 
 #include <curve_proximity/motion.hpp>
+#include <curve_proximity/srdf.hpp>
 
 #include "support.h"
 #include "yaml/failure.h"
@@ -177,6 +178,81 @@ TEST(Allowed, pairs_of_every_kind_are_left_out_by_the_matrix_and_by_nothing_else
       });
       EXPECT_EQ(out, allowedByTheText(pair, a, b)) << names[0] << " " << names[1];
     });
+  }
+}
+
+/* ---- what an SRDF says ---------------------------------------------------------------------------------------------- */
+
+/* The cart's and the hand's pairs that are asked about, of a scene of a wall and a held object. */
+struct Asked {
+  bool cart_wall, hand_wall, held_wall, cart_hand, held_hand;
+  bool operator==(const Asked &o) const {
+    return cart_wall == o.cart_wall && hand_wall == o.hand_wall && held_wall == o.held_wall &&
+           cart_hand == o.cart_hand && held_hand == o.held_hand;
+  }
+};
+
+Asked askedOf(const std::string &inside, const std::vector<AllowedPair> &said = {}, bool clear = false) {
+  const Srdf srdf = parseSrdf("<robot name='r'>" + inside + "</robot>");
+  Scene scene(Robot::fromUrdf(SLIDER), {}, allowedPairs(srdf));
+  if (clear) {
+    SceneChange away;
+    away.clear = true;
+    away.allowed = {{"cart", "", false}};
+    EXPECT_TRUE(scene.apply(away).empty());
+    away.allowed.clear();
+    EXPECT_TRUE(scene.apply(away).empty());
+  }
+  SceneChange change = test::change({add("wall", {shape(ShapeType::BOX, {1, 4, 4})}, translation(3.5, 0, 0))});
+  Attachment held;
+  held.link = "cart";
+  held.object = add("held", {shape(ShapeType::SPHERE, {0.1})}, translation(0.5, 0, 0)).object;
+  change.attachments.push_back(held);
+  change.allowed = said;
+  EXPECT_TRUE(scene.apply(change).empty());
+  TrajectoryDescription t;
+  t.id = "go";
+  t.joints = {"slide", "swing"};
+  t.points = {{{0, 0}, {}, {}, 0.0}, {{1, 1}, {}, {}, 1.0}};
+  const RobotMotion motion(scene.snapshot(), t, {}, srdf.disabled);
+  const auto asked = [&](const std::string &a, const std::string &b) {
+    return std::none_of(motion.skipped().begin(), motion.skipped().end(), [&](const std::string &sentence) {
+      return sentence.find("'" + a + "'") != std::string::npos && sentence.find("'" + b + "'") != std::string::npos;
+    });
+  };
+  return {asked("cart", "wall"), asked("hand", "wall"), asked("held", "wall"), asked("cart", "hand"),
+          asked("held", "hand")};
+}
+
+/* As MoveIt enters them: a default of the link, which meets objects too; an entry beats it; disable_collisions beats all. */
+TEST(Allowed, links_that_an_srdf_disables_by_default_may_touch_everything_but_what_it_enables) {
+  const std::string by_default = "<disable_default_collisions link='hand'/>",
+                    enable = "<enable_collisions link1='hand' link2='cart'/>",
+                    disable = "<disable_collisions link1='cart' link2='hand' reason='Never'/>";
+  EXPECT_EQ(askedOf(""), (Asked{true, true, true, true, true}));
+  EXPECT_EQ(askedOf(enable), (Asked{true, true, true, true, true}));
+  EXPECT_EQ(askedOf(by_default), (Asked{true, false, true, false, false}));
+  EXPECT_EQ(askedOf(by_default + enable), (Asked{true, false, true, true, false}));
+  EXPECT_EQ(askedOf(enable + by_default), (Asked{true, false, true, true, false}));
+  EXPECT_EQ(askedOf(by_default + enable + disable), (Asked{true, false, true, false, false}));
+  /* the scene's own word comes later: an entry, a default of the other name, a default of the same one */
+  EXPECT_EQ(askedOf(by_default, {{"hand", "wall", false}}), (Asked{true, true, true, false, false}));
+  EXPECT_EQ(askedOf(by_default, {{"wall", "", false}}), (Asked{true, true, true, false, false}));
+  EXPECT_EQ(askedOf(by_default, {{"hand", "", false}}), (Asked{true, true, true, true, true}));
+  /* and is gone where the scene was cleared, the SRDF's is not */
+  EXPECT_EQ(askedOf(by_default + enable, {}, true), (Asked{true, false, true, true, false}));
+}
+
+TEST(Allowed, elements_of_an_srdf_without_their_links_are_refused_by_name) {
+  const std::vector<std::string> elements = {"disable_default_collisions link='' ", "enable_collisions link1='a'",
+                                             "enable_collisions link2='a'"};
+  for (const std::string &element : elements) {
+    try {
+      parseSrdf("<robot name='r'><" + element + "/></robot>");
+      ADD_FAILURE() << element;
+    } catch (const Error &error) {
+      expectContains(error.what(), "<" + element.substr(0, element.find(' ')) + "> has no link");
+    }
   }
 }
 
