@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A convex shape of one's own, given by a libccd support callback, as a body.
+/** Bodies from libccd support callbacks.
  *
  *  Header-only over libcprox and libccd's header: libccd itself is not called and need not be linked. */
 #ifndef CURVE_PROXIMITY_CCD_HPP
@@ -17,7 +17,7 @@ namespace curve_proximity {
 
 namespace detail {
 
-/** What the C callback is handed: libccd's callback and its object. */
+/** The user pointer of the C callback: libccd's callback and its object. */
 struct CcdShape {
   ccd_support_fn support;
   const void *object;
@@ -34,16 +34,19 @@ inline void ccdSupport(const void *shape, const double direction[3], double poin
 
 } // namespace detail
 
-/** The convex shape that `support` describes, in the frame of its answers (libccd's callbacks usually answer in the
- *  world's: then the body's pose is the identity).
+/** Makes the convex body that the support function `support` describes.
  *
- *  object   handed to the callback, kept by reference: must outlive the body.
- *  centre   a point of the shape [m]; radius: every point of the shape is within it of the centre [m], > 0.
- *  slack    how far the callback's answers may be from the shape and from its maximum [m], >= 0. Where libccd was built
- *           on float, what float rounding can do to directions and answers is added.
- *  margin   [m] >= 0, a ball added to the shape.
+ *  The body's frame is the frame in which the callback answers. libccd's callbacks usually answer in the world frame;
+ *  then the body's pose is the identity.
  *
- *  Throws Error as cprox_body_create_support() refuses. Thread safety: as the callback's. */
+ *  object   is passed to the callback. The body keeps a reference, so the object must outlive the body.
+ *  centre   a point of the shape [m].
+ *  radius   every point of the shape is within this distance of the centre [m], > 0.
+ *  slack    the support error: how far an answer may be from the shape and from the true maximum [m], >= 0. If libccd
+ *           was built with float, the rounding of float directions and answers is added.
+ *  margin   a ball of this radius is added to the shape [m], >= 0.
+ *
+ *  Throws Error where cprox_body_create_support() fails. Thread safety: that of the callback. */
 inline BodyHandle makeSupport(ccd_support_fn support, const void *object, const Eigen::Vector3d &centre, double radius,
                               double slack = 0.0, double margin = 0.0) {
   if (!support) throw Error("the support callback is null");

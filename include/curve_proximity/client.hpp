@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A caller of the server's services that outlives the server's restarts. */
+/** A service client that reconnects after the server restarts. */
 #ifndef CURVE_PROXIMITY_CLIENT_HPP
 #define CURVE_PROXIMITY_CLIENT_HPP
 
@@ -13,17 +13,21 @@
 
 namespace curve_proximity {
 
-/** Calls one service over a persistent connection: about a tenth of the cost of a connection a call. Such a handle
- *  stays failed once its server has gone, and a loop that just tries again spins through millions of failures a second;
- *  this one looks the service up again, with pauses that double from 10 ms to 500 ms. For one thread. */
+/** Calls one service over a persistent connection.
+ *
+ *  A persistent connection costs about a tenth of a new connection per call. ROS does not reconnect a persistent
+ *  connection. This class looks the service up again after a failure, with pauses that double from 10 ms to 500 ms.
+ *  For one thread. */
 template <class Service>
 class PersistentClient {
  public:
-  /** name: of the service, as for ros::NodeHandle::serviceClient(). */
+  /** name: the service's name, as for ros::NodeHandle::serviceClient(). */
   PersistentClient(const ros::NodeHandle &handle, const std::string &name) : handle_(handle), name_(name) {}
 
-  /** Calls until the server has answered or the patience [s], counted on the steady clock, is over: then false. A call
-   *  whose answer was lost is made again, so it may reach the server twice: queries and ~apply_scene can bear that. */
+  /** Calls the service until it answers. Returns false after `patience` seconds of the steady clock.
+   *
+   *  A call with a lost answer is repeated, so a request may reach the server twice. Queries and ~apply_scene give the
+   *  same result then. */
   bool call(Service &service, double patience) {
     const auto deadline =
         std::chrono::steady_clock::now() +
@@ -42,7 +46,7 @@ class PersistentClient {
     }
   }
 
-  /** How often the service has been looked up. */
+  /** The number of lookups so far. */
   unsigned lookups() const {
     return lookups_;
   }

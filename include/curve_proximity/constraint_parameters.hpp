@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Typed parameters by name, as a constraint provider is given them: from the parameter server, from YAML, from C++. */
+/** Typed parameters of constraint providers, from the parameter server, from YAML or from C++. */
 #ifndef CURVE_PROXIMITY_CONSTRAINT_PARAMETERS_HPP
 #define CURVE_PROXIMITY_CONSTRAINT_PARAMETERS_HPP
 
@@ -17,17 +17,22 @@
 
 namespace curve_proximity {
 
-/** Whole numbers stand for numbers too; a list holds numbers alone. */
+/** The value of a parameter. An int is accepted where a double is expected. A list contains numbers only. */
 using ParameterValue = std::variant<bool, int, double, std::string, std::vector<double>>;
+
+/** Parameters by name. */
 using ParameterMap = std::map<std::string, ParameterValue>;
 
-/** Reads a map once. Each function gives the named value, or `otherwise` where it is not there, and throws Error,
- *  naming the parameter and what is expected, for a wrong type or value. end() refuses what nobody has asked for. */
+/** Reads a parameter map and checks types and ranges.
+ *
+ *  Each function returns the value of a parameter, or `otherwise` if the parameter is missing. It throws Error for a
+ *  wrong type or value; the message names the parameter and what is expected. end() refuses unknown parameters. */
 class ParameterReader {
  public:
+  /** map: kept by reference. */
   explicit ParameterReader(const ParameterMap &map) : map_(map) {}
 
-  /** A finite number, least < value (or = where `open` is false) and value <= most. */
+  /** A finite number with least <= value <= most; with `open`, least < value. */
   double number(const std::string &name, double otherwise, double least, bool open = false,
                 double most = std::numeric_limits<double>::infinity()) {
     const ParameterValue *given = find(name);
@@ -46,7 +51,7 @@ class ParameterReader {
     return value;
   }
 
-  /** A whole number, least <= value <= most. */
+  /** An integer with least <= value <= most. */
   int count(const std::string &name, int otherwise, int least, int most) {
     const ParameterValue *given = find(name);
     if (!given) return otherwise;
@@ -56,6 +61,7 @@ class ParameterReader {
     return *value;
   }
 
+  /** true or false. */
   bool truth(const std::string &name, bool otherwise) {
     const ParameterValue *given = find(name);
     if (!given) return otherwise;
@@ -77,7 +83,7 @@ class ParameterReader {
     wrong(name, (value ? "'" + *value + "' is" : std::string("this is")) + " none of " + list);
   }
 
-  /** Throws Error for a name that has not been asked for: a misspelt one would leave a default in force. */
+  /** Throws Error if the map contains a parameter that was not read, such as a misspelt one. */
   void end() const {
     for (const auto &entry : map_)
       if (!known_.count(entry.first)) wrong(entry.first, "there is no such parameter");

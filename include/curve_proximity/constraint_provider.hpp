@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Constraints for planners and optimisers: a clearance as a number that is positive where all is well, and how it
- *  changes.
+/** Clearance constraints for planners and optimisers: a value that is >= 0 where the constraint holds, and its
+ *  gradient.
  *
- *  A provider is a pluginlib plugin whose base class is curve_proximity::ConstraintProvider; one example stands in
- *  test/install/example_provider, signs, units, frames and thread rules on one page in doc/constraint-providers.md.
+ *  A provider is a pluginlib plugin with the base class curve_proximity::ConstraintProvider. An example is
+ *  test/install/example_provider. doc/constraint-providers.md lists signs, units, frames and thread rules.
  *  Nothing here needs ROS. Metres, radians, right-handed frames. */
 #ifndef CURVE_PROXIMITY_CONSTRAINT_PROVIDER_HPP
 #define CURVE_PROXIMITY_CONSTRAINT_PROVIDER_HPP
@@ -25,87 +25,92 @@ namespace curve_proximity {
 
 /** One side of a constraint: convex parts that move together, in the side's own frame. */
 struct ConstraintBody {
+  /** One convex shape. */
   struct Part {
-    ShapeDescription shape; /**< as described; shape.pose: where it stands in the side's frame */
-    BodyHandle body;        /**< made of it, in the shape's frame; never null */
+    ShapeDescription shape; /**< the description; shape.pose is its pose in the side's frame */
+    BodyHandle body;        /**< the body, in the shape's frame; never null */
     double excess = 0.0;    /**< [m] no point of the shape is farther from the body than this (mesh hulls) */
   };
-  std::vector<Part> parts;
-  double padding = 0.0; /**< [m] >= 0: all points within this of the parts */
+  std::vector<Part> parts; /**< the side is their union */
+  double padding = 0.0;    /**< [m] >= 0, a ball that is added to the parts */
 };
 
-/** Two sides that are held against each other. */
+/** The two sides of a constraint. */
 struct ConstraintPair {
-  ConstraintBody a, b;
+  ConstraintBody a; /**< the first side */
+  ConstraintBody b; /**< the second side */
 
-  /** false: both stand where an evaluation's poses say. true: a rides the curve of each evaluation without turning, its
-   *  origin on the curve; a without parts is the curve's ball alone. */
+  /** false: each evaluation gives the poses of both sides. true: each evaluation gives a curve. Side a then moves along
+   *  the curve without turning, with its origin on the curve. Without parts, a is the curve's ball alone. */
   bool along_curve = false;
 };
 
-/** A curve made ready: of compile() or makeConstraintCurve(). */
+/** A compiled curve with its description, from compile() or makeConstraintCurve(). */
 struct ConstraintCurve {
-  CurveDescription description;
-  CurveHandle curve;
+  CurveDescription description; /**< as given */
+  CurveHandle curve;            /**< compiled */
 };
 
-/** Where the two sides stand, in the fixed frame. A value: what it names is kept by reference. */
+/** The poses of both sides, or a curve and the pose of b, in the fixed frame. The curve is kept by reference. */
 struct ConstraintPlace {
-  cprox_pose a = cprox_pose_identity(); /**< of a pair along a curve the identity: a's place is the curve's */
-  cprox_pose b = cprox_pose_identity();
-  const ConstraintCurve *curve = nullptr; /**< of a pair along a curve, and of no other */
+  cprox_pose a = cprox_pose_identity();   /**< of side a; along a curve: the identity */
+  cprox_pose b = cprox_pose_identity();   /**< of side b */
+  const ConstraintCurve *curve = nullptr; /**< set if and only if the pair is along a curve */
 };
 
 /* ---- what a constraint answers ----------------------------------------------------------------------------------- */
 
-/** How a value changes when one side moves rigidly by a small step: d value = linear·v + angular·w, for the step
- *  position += v, R <- exp([w]) R: axes of the fixed frame, turning about the side's own origin. Of a pair along a
- *  curve, side a is the curve: it turns about the origin of the fixed frame, and what rides it does not turn. */
+/** Derivative of a value by a small rigid step of one side: d value = linear·v + angular·w.
+ *
+ *  The step is position += v, R <- exp([w]) R, with the axes of the fixed frame, turning about the side's own origin.
+ *  Along a curve, side a is the curve. It turns about the origin of the fixed frame; a carried body does not turn. */
 struct ConstraintGradient {
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();  /**< [unit of value/m] */
   Eigen::Vector3d angular = Eigen::Vector3d::Zero(); /**< [unit of value/rad] */
 };
 
-/** One answer. Its vectors keep their memory from evaluation to evaluation. */
+/** The result of an evaluation. Its vectors keep their memory between evaluations. */
 struct ConstraintValue {
-  cprox_status status = CPROX_OK; /**< never negative: what has no answer is an Error */
-  double value = 0.0;   /**< >= 0: the constraint holds. [m] for distances; other units are the provider's to say */
+  cprox_status status = CPROX_OK; /**< never negative: a failure throws Error */
+  double value = 0.0;   /**< >= 0 where the constraint holds. [m] for distances; else as the provider states */
   bool bounded = false; /**< lower and upper are proven: lower <= true value <= upper */
-  double lower = 0.0, upper = 0.0;
+  double lower = 0.0;   /**< if bounded: <= true value */
+  double upper = 0.0;   /**< if bounded: >= true value */
 
-  bool valid = false;      /**< false: the value is not differentiable here, or cannot be told to be */
-  std::string reason;      /**< why not, in a few words */
-  ConstraintGradient a, b; /**< where valid is false: those of one of the minimisers, or 0 */
-  /** by the curve's control points or coefficients, a column each; of other pairs 0 columns */
+  bool valid = false;   /**< the gradient exists; false: not differentiable here, or not shown to be */
+  std::string reason;   /**< why valid is false, in a few words */
+  ConstraintGradient a; /**< by side a; if valid is false: that of one of the minimisers, or 0 */
+  ConstraintGradient b; /**< by side b, likewise */
+  /** Gradient by the curve's control points or coefficients, one a column; 0 columns without a curve. */
   Eigen::Matrix3Xd points;
-  double radius = 0.0;                                 /**< by the curve's radius (of other pairs 0) */
-  double t = std::numeric_limits<double>::quiet_NaN(); /**< the curve's parameter where the value is attained */
-  bool has_points = false;                             /**< witness_a, witness_b and normal are set */
-  Eigen::Vector3d witness_a = Eigen::Vector3d::Zero(); /**< [m] the nearest points, in the fixed frame */
-  Eigen::Vector3d witness_b = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero(); /**< unit, from b to a */
+  double radius = 0.0;                                 /**< gradient by the curve's radius; 0 without a curve */
+  double t = std::numeric_limits<double>::quiet_NaN(); /**< the curve's parameter at which the value is attained */
+  bool has_points = false;                             /**< the witness points and the normal are set */
+  Eigen::Vector3d witness_a = Eigen::Vector3d::Zero(); /**< [m] witness point of a, fixed frame */
+  Eigen::Vector3d witness_b = Eigen::Vector3d::Zero(); /**< [m] witness point of b, fixed frame */
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    /**< unit, from b to a */
 };
 
 /* ---- providers --------------------------------------------------------------------------------------------------- */
 
-/** A pair made ready for any number of evaluations. Immutable: any number of threads may evaluate at once, each with
- *  its own workspace and its own value. It must not outlive its provider. */
+/** A prepared pair for any number of evaluations. It must not outlive its provider.
+ *
+ *  Immutable: any number of threads may evaluate at once, each with its own workspace and its own value. */
 class Constraint {
  public:
   virtual ~Constraint() = default;
 
-  /** Value and gradient where the two sides stand so. Throws Error, one line that says what is wrong with the place;
-   *  the value is then unspecified. Allocates nothing once workspace and value have grown. */
+  /** Computes value and gradient. Throws Error with one line that says what is wrong with the place; the value is then
+   *  unspecified. Allocates nothing once workspace and value have grown. */
   virtual void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &value) const = 0;
 };
 
-/** Raised with every change of what plugin and loader share that no size shows: the order of virtual functions, what a
- *  field means. */
+/** The version of the plugin interface. It is raised when the order of virtual functions or the meaning of a member
+ *  changes. */
 constexpr std::uint64_t PROVIDER_VERSION = 1;
 
-/** What a plugin and whoever loads it must have in common, as one number: the version, the size of all that they hand
- *  each other, and how Eigen and the standard library were set up (-mavx alone changes how Eigen's memory is given
- *  back). */
+/** One number that a plugin and its loader must have in common: the interface version, the sizes of all shared types,
+ *  and Eigen's alignment (-mavx changes how Eigen frees memory). */
 constexpr std::uint64_t providerLayout() {
   std::uint64_t layout = PROVIDER_VERSION;
   for (const std::size_t part :
@@ -118,28 +123,31 @@ constexpr std::uint64_t providerLayout() {
   return layout;
 }
 
-/** The base class of the plugins, under its name ConstraintProvider. What is shared is part of its type: pluginlib
- *  finds no plugin in a library that was built against other headers, so that none of its functions is ever called. */
+/** The base class of plugins; use it as ConstraintProvider.
+ *
+ *  The layout number is part of the type, so pluginlib finds no plugin in a library that was built against other
+ *  headers, and calls none of its functions. */
 template <std::uint64_t Layout>
 class LayoutProvider {
  public:
   virtual ~LayoutProvider() = default;
 
-  /** Called once, before all else. Throws Error for parameters that are wrong, and names them (ParameterReader
-   *  does). */
+  /** Called once, before all other functions. Throws Error that names wrong parameters (see ParameterReader). */
   virtual void initialise(const ParameterMap &parameters) = 0;
 
-  /** Makes a pair ready. What costs more than one evaluation belongs in here. Throws Error: a shape that this provider
-   *  cannot answer for, named by its type. Any number of threads at once. */
+  /** Prepares a pair. Costly work that many evaluations share belongs here. Throws Error that names a shape which the
+   *  provider does not support. Any number of threads at once. */
   virtual std::unique_ptr<const Constraint> prepare(const ConstraintPair &pair) const = 0;
 
-  /** Both in one step, for a pair that is asked about once. */
+  /** prepare() and Constraint::evaluate() in one step, for a pair that is evaluated once. */
   ConstraintValue evaluate(const ConstraintPair &pair, const ConstraintPlace &place, Workspace &workspace) const {
     ConstraintValue value;
     prepare(pair)->evaluate(place, workspace, value);
     return value;
   }
 };
+
+/** The base class of constraint provider plugins. */
 using ConstraintProvider = LayoutProvider<providerLayout()>;
 
 /* ---- for plugins ------------------------------------------------------------------------------------------------- */
@@ -163,7 +171,7 @@ inline void curveWeights(const CurveDescription &curve, double t, double *weight
     throw Error("no weights are known of the basis '" + curve.basis + "'");
 }
 
-/** The side as one body: that of its only part where it stands at the side's origin, else a compound of all. */
+/** The side as one body: its only part if that stands at the side's origin, otherwise a compound of all parts. */
 inline BodyHandle joinedBody(const ConstraintBody &side) {
   if (side.parts.empty()) throw Error("the side has no shape");
   const ConstraintBody::Part &first = side.parts.front();
@@ -184,7 +192,7 @@ inline double excessOf(const ConstraintBody &side) {
   return excess;
 }
 
-/** Throws Error where the place does not suit the pair. */
+/** Throws Error if the pair is along a curve and the place has none, or the reverse. */
 inline void requirePlace(const ConstraintPair &pair, const ConstraintPlace &place) {
   if (pair.along_curve && !place.curve) throw Error("the pair is along a curve, and there is none");
   if (!pair.along_curve && place.curve) throw Error("there is a curve, and the pair is not along one");

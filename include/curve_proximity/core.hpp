@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The C library in C++: handles that free themselves, failures as exceptions, Eigen types in and out.
+/** The C library in C++: owning handles, exceptions, Eigen types.
  *
- *  Header-only over libcprox: no ROS, no other library of this package. Metres and radians throughout. Bodies and
+ *  Header-only over libcprox, without ROS. Metres and radians throughout. Bodies and
  *  curves are immutable and may be shared by any number of threads; a Workspace belongs to one thread at a time. */
 #ifndef CURVE_PROXIMITY_CORE_HPP
 #define CURVE_PROXIMITY_CORE_HPP
@@ -24,15 +24,16 @@
 
 namespace curve_proximity {
 
-/** A body in its own frame; freed with its last owner. Never null where a maker below returned it. */
+/** A body in its own frame, with shared ownership. Never null when a function below returned it. */
 using BodyHandle = std::shared_ptr<const cprox_body>;
 
-/** A compiled curve; freed with its last owner. */
+/** A compiled curve, with shared ownership. */
 using CurveHandle = std::shared_ptr<const cprox_curve>;
 
-/** A call that could not be answered; what() is one line for a person: what is wrong, and where. */
+/** A failed call. what() is one line that says what is wrong, and where. */
 class Error : public std::runtime_error {
  public:
+  /** reason: the error message. */
   explicit Error(const std::string &reason, cprox_status status = CPROX_INVALID)
       : std::runtime_error(reason), status_(status) {}
 
@@ -45,7 +46,7 @@ class Error : public std::runtime_error {
   cprox_status status_;
 };
 
-/** All memory that queries need. One a thread; movable, not copyable. Throws Error where memory is out. */
+/** All memory that queries of one thread need. Movable, not copyable. The constructor throws Error if memory is out. */
 class Workspace {
  public:
   Workspace() : handle_(cprox_workspace_create()) {
@@ -71,7 +72,7 @@ class Workspace {
   std::unique_ptr<cprox_workspace, Free> handle_;
 };
 
-/** Throws an Error with the workspace's reason if the status says that there is no answer; returns it otherwise. */
+/** Throws Error with the workspace's error message if the status is negative; otherwise returns the status. */
 inline cprox_status require(cprox_status status, const Workspace &workspace) {
   if (status >= 0) return status;
   const std::string reason = workspace.reason();
@@ -80,10 +81,12 @@ inline cprox_status require(cprox_status status, const Workspace &workspace) {
 
 /* ---- Eigen and C ------------------------------------------------------------------------------------------------ */
 
+/** From Eigen to C. */
 inline cprox_vec3 toVec3(const Eigen::Vector3d &v) {
   return {v.x(), v.y(), v.z()};
 }
 
+/** From C to Eigen. */
 inline Eigen::Vector3d toEigen(const cprox_vec3 &v) {
   return {v.x, v.y, v.z};
 }
@@ -109,7 +112,7 @@ inline Eigen::Isometry3d toIsometry(const cprox_pose &pose) {
   return transform;
 }
 
-/** The columns of a matrix as the C library takes them. */
+/** The columns of a matrix as C vectors. */
 inline std::vector<cprox_vec3> toVec3s(const Eigen::Matrix3Xd &points) {
   std::vector<cprox_vec3> out(static_cast<std::size_t>(points.cols()));
   for (Eigen::Index i = 0; i < points.cols(); ++i) out[static_cast<std::size_t>(i)] = toVec3(points.col(i));
@@ -152,50 +155,54 @@ CurveHandle makeCurve(Create create, Keep keep = nullptr) {
 
 } // namespace detail
 
+/** A point. */
 inline BodyHandle makePoint(const Eigen::Vector3d &point) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_point(toVec3(point), w, b); });
 }
 
+/** A sphere about the origin; radius > 0 [m]. */
 inline BodyHandle makeSphere(double radius) {
   return detail::makeBody([&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_sphere(radius, w, b); });
 }
 
-/** size: full edge lengths. */
+/** A box about the origin; size: full edge lengths [m]. */
 inline BodyHandle makeBox(const Eigen::Vector3d &size) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_box(toVec3(size), w, b); });
 }
 
-/** height: between the centres of the hemispheres. */
+/** A capsule along z about the origin; height: between the centres of the hemispheres [m]. */
 inline BodyHandle makeCapsule(double height, double radius) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_capsule(height, radius, w, b); });
 }
 
+/** A cylinder along z about the origin. */
 inline BodyHandle makeCylinder(double height, double radius) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_cylinder(height, radius, w, b); });
 }
 
-/** Apex at +z, about mid-height. */
+/** A cone along z about mid-height, with the apex at +z. */
 inline BodyHandle makeCone(double height, double radius) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_cone(height, radius, w, b); });
 }
 
+/** An ellipsoid about the origin. */
 inline BodyHandle makeEllipsoid(const Eigen::Vector3d &semi_axes) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_ellipsoid(toVec3(semi_axes), w, b); });
 }
 
-/** normal·x + offset <= 0. */
+/** The halfspace normal·x + offset <= 0. */
 inline BodyHandle makeHalfspace(const Eigen::Vector3d &normal, double offset) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_halfspace(toVec3(normal), offset, w, b); });
 }
 
-/** sum |x_i/semi_axes_i|^exponents_i <= 1. */
+/** A superquadric: the sum of |x_i/semi_axes_i|^exponents_i is <= 1. */
 inline BodyHandle makeSuperquadric(const Eigen::Vector3d &semi_axes, const Eigen::Vector3d &exponents) {
   return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
     return cprox_body_create_superquadric(toVec3(semi_axes), toVec3(exponents), w, b);
@@ -221,7 +228,7 @@ inline BodyHandle makeImplicit(const std::vector<std::vector<std::array<double, 
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_implicit(&description, nullptr, w, b); });
 }
 
-/** The convex hull of the columns, in any order and of any dimension. */
+/** The convex hull of points, one a column, in any order and of any dimension. */
 inline BodyHandle makePolytope(const Eigen::Matrix3Xd &vertices) {
   const std::vector<cprox_vec3> points = toVec3s(vertices);
   return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
@@ -229,7 +236,7 @@ inline BodyHandle makePolytope(const Eigen::Matrix3Xd &vertices) {
   });
 }
 
-/** Points, each a ball of the radius >= 0. memory_limit: the most bytes that the body may take. */
+/** A point cloud: a ball of the radius >= 0 about each column. memory_limit: the largest size of the body in bytes. */
 inline BodyHandle makePoints(const Eigen::Matrix3Xd &points, double radius = 0.0,
                              std::size_t memory_limit = std::numeric_limits<std::size_t>::max()) {
   return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
@@ -238,7 +245,7 @@ inline BodyHandle makePoints(const Eigen::Matrix3Xd &points, double radius = 0.0
   });
 }
 
-/** Boxes along the axes, from low.col(i) to high.col(i), each solid; as many columns in both. */
+/** Solid axis-aligned boxes from low.col(i) to high.col(i). Both matrices have as many columns. */
 inline BodyHandle makeBoxes(const Eigen::Matrix3Xd &low, const Eigen::Matrix3Xd &high,
                             std::size_t memory_limit = std::numeric_limits<std::size_t>::max()) {
   if (low.cols() != high.cols()) throw Error("boxes need as many low corners as high ones");
@@ -248,7 +255,7 @@ inline BodyHandle makeBoxes(const Eigen::Matrix3Xd &low, const Eigen::Matrix3Xd 
   });
 }
 
-/** A triangle mesh, a column of `triangles` three indices of columns of `vertices`, from 0. */
+/** A triangle mesh. Each column of `triangles` holds three column indices of `vertices`, from 0. */
 inline BodyHandle makeMesh(const Eigen::Matrix3Xd &vertices, const Eigen::Matrix<int, 3, Eigen::Dynamic> &triangles,
                            cprox_mesh_fill fill = CPROX_MESH_SURFACE,
                            std::size_t memory_limit = std::numeric_limits<std::size_t>::max()) {
@@ -261,15 +268,15 @@ inline BodyHandle makeMesh(const Eigen::Matrix3Xd &vertices, const Eigen::Matrix
   });
 }
 
-/** A mesh, points or boxes with a convex hull that answers what does not need them; it keeps both alive. excess [m] >=
- *  0: no point of the mesh is farther than this from the hull. */
+/** A mesh, point cloud or set of boxes with its convex hull as a fast first test. It keeps both alive.
+ *  excess: no point of the mesh is farther than this from the hull [m], >= 0. */
 inline BodyHandle makeLod(const BodyHandle &hull, double excess, const BodyHandle &mesh) {
   return detail::makeBody(
       [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_lod(hull.get(), excess, mesh.get(), w, b); },
       std::make_pair(hull, mesh));
 }
 
-/** A planar convex polygon at z = 0; a column a vertex, in order. */
+/** A planar convex polygon at z = 0; the vertices are columns, in order. */
 inline BodyHandle makePolygon(const Eigen::Matrix2Xd &vertices) {
   std::vector<std::array<double, 2>> points(static_cast<std::size_t>(vertices.cols()));
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -281,7 +288,7 @@ inline BodyHandle makePolygon(const Eigen::Matrix2Xd &vertices) {
   });
 }
 
-/** The union of convex bodies, each at its pose; it keeps its parts alive. As many poses as parts. */
+/** The union of convex bodies, each at its pose. It keeps its parts alive. There are as many poses as parts. */
 inline BodyHandle makeCompound(const std::vector<BodyHandle> &parts, const std::vector<Eigen::Isometry3d> &poses) {
   if (parts.size() != poses.size()) throw Error("a compound needs as many poses as parts");
   std::vector<const cprox_body *> handles;
@@ -392,16 +399,15 @@ inline CurveHandle makePiecewise(const std::vector<CurveHandle> &curves, const s
   });
 }
 
-/** A smooth curve by functions, as cprox_smooth_curve: value and two derivatives, a bound of the sixth, errors,
- *  accuracy. */
+/** A smooth curve given by functions, as cprox_smooth_curve. */
 struct SmoothCurve {
-  std::function<std::array<Eigen::Vector3d, 3>(double)> evaluate;
-  std::function<double(double, double)> sixth;
-  std::array<double, 3> error = {{0.0, 0.0, 0.0}};
-  double accuracy = 1e-12;
+  std::function<std::array<Eigen::Vector3d, 3>(double)> evaluate; /**< value and two derivatives at t */
+  std::function<double(double, double)> sixth;                    /**< bound of the sixth derivative on [a, b] */
+  std::array<double, 3> error = {{0.0, 0.0, 0.0}};                /**< errors of value and derivatives */
+  double accuracy = 1e-12;                                        /**< [m] of the compiled curve */
 };
 
-/** Compiles it; what the functions throw is thrown on. */
+/** Compiles a smooth curve. Exceptions of the functions are rethrown. */
 inline CurveHandle makeSmooth(const SmoothCurve &functions, double t0, double t1) {
   if (!functions.evaluate || !functions.sixth) throw Error("a smooth curve needs both its functions");
   struct Call {
@@ -439,16 +445,19 @@ inline CurveHandle makeSmooth(const SmoothCurve &functions, double t0, double t1
   }
 }
 
-/** A curve by its points and the lengths of its parts, as cprox_rectifiable_curve; `length` or `velocity` may be empty.
- *  Queries call the functions from their own threads; one that throws ends the query with an Error that says where. */
+/** A curve given by points and arc lengths, as cprox_rectifiable_curve; `length` or `velocity` may be empty.
+ *
+ *  Queries call the functions from their own threads. An exception ends the query with an Error that says where. */
 struct RectifiableCurve {
-  std::function<Eigen::Vector3d(double)> point;
-  std::function<double(double, double)> length;
-  std::function<Eigen::Vector3d(double)> velocity;
-  double error = 0.0, velocity_error = 0.0, quadrature_error = 0.0;
+  std::function<Eigen::Vector3d(double)> point;    /**< the point at t */
+  std::function<double(double, double)> length;    /**< an upper bound of the arc length of [a, b] */
+  std::function<Eigen::Vector3d(double)> velocity; /**< the derivative at t */
+  double error = 0.0;                              /**< [m] of a point */
+  double velocity_error = 0.0;                     /**< [m/unit of t] of a velocity */
+  double quadrature_error = 0.0;                   /**< relative error of the quadrature of the arc length */
 };
 
-/** The functions live as long as the curve. */
+/** Makes a curve from points and arc lengths. The functions live as long as the curve. */
 inline CurveHandle makeRectifiable(RectifiableCurve functions, double t0, double t1) {
   const auto keep = std::make_shared<RectifiableCurve>(std::move(functions));
   cprox_rectifiable_curve c{};
@@ -487,7 +496,7 @@ inline CurveHandle makeRectifiable(RectifiableCurve functions, double t0, double
 /* ---- the queries: as in cprox/query.h, throwing Error where there is no answer -------------------------------------
  * */
 
-/** A body somewhere: kept by reference, so the BodyHandle must outlive the target. margin >= 0 [m]. */
+/** A body at a pose. The body is kept by reference, so the BodyHandle must outlive the result. margin >= 0 [m]. */
 inline cprox_obstacle at(const BodyHandle &body, const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity(),
                          double margin = 0.0) {
   return cprox_with_margin(cprox_obstacle_at(body.get(), toPose(pose)), margin);
@@ -501,6 +510,7 @@ inline cprox_mover along(const CurveHandle &curve, double radius = 0.0) {
 }
 cprox_mover along(CurveHandle &&curve, double radius = 0.0) = delete;
 
+/** The least distance, as cprox_distance(). */
 inline cprox_result distance(const cprox_mover &mover, const cprox_obstacle &target, const cprox_options &options,
                              Workspace &workspace) {
   cprox_result result{};
@@ -508,6 +518,7 @@ inline cprox_result distance(const cprox_mover &mover, const cprox_obstacle &tar
   return result;
 }
 
+/** The tolerance verdict, as cprox_tolerance(). */
 inline cprox_result tolerance(const cprox_mover &mover, const cprox_obstacle &target, double delta,
                               const cprox_options &options, Workspace &workspace) {
   cprox_result result{};
@@ -515,6 +526,7 @@ inline cprox_result tolerance(const cprox_mover &mover, const cprox_obstacle &ta
   return result;
 }
 
+/** The collision verdict, as cprox_collision(). */
 inline cprox_result collision(const cprox_mover &mover, const cprox_obstacle &target, const cprox_options &options,
                               Workspace &workspace) {
   cprox_result result{};
@@ -522,6 +534,7 @@ inline cprox_result collision(const cprox_mover &mover, const cprox_obstacle &ta
   return result;
 }
 
+/** The signed distance of a static pair, as cprox_pair(). */
 inline cprox_result pair(const cprox_obstacle &a, const cprox_obstacle &b, const cprox_options &options,
                          Workspace &workspace) {
   cprox_result result{};
@@ -541,13 +554,14 @@ class Set {
     handle_.reset(made);
   }
 
+  /** The least distance to all of them. */
   cprox_result distance(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
     cprox_result result{};
     require(cprox_set_distance(handle_.get(), mover, &options, workspace.get(), &result), workspace);
     return result;
   }
 
-  /** delta >= 0 [m]. */
+  /** The tolerance verdict; delta >= 0 [m]. */
   cprox_result tolerance(const cprox_mover &mover, double delta, const cprox_options &options,
                          Workspace &workspace) const {
     cprox_result result{};
@@ -555,19 +569,21 @@ class Set {
     return result;
   }
 
+  /** The collision verdict. */
   cprox_result collision(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
     cprox_result result{};
     require(cprox_set_collision(handle_.get(), mover, &options, workspace.get(), &result), workspace);
     return result;
   }
 
+  /** The time of contact. */
   cprox_result timeOfContact(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
     cprox_result result{};
     require(cprox_set_time_of_contact(handle_.get(), mover, &options, workspace.get(), &result), workspace);
     return result;
   }
 
-  /** The k >= 1 closest, ascending. */
+  /** The k >= 1 nearest, in ascending order. */
   std::vector<cprox_result> nearest(const cprox_mover &mover, std::size_t k, const cprox_options &options,
                                     Workspace &workspace) const {
     std::vector<cprox_result> results(std::min(k, size()));
@@ -577,6 +593,7 @@ class Set {
     return results;
   }
 
+  /** How many there are. */
   std::size_t size() const {
     return cprox_set_size(handle_.get());
   }

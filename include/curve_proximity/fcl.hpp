@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** fcl::CollisionObject as a body and a pose, for those whose world is already FCL's.
+/** Bodies and poses from FCL's collision objects.
  *
- *  Header-only over libcprox and FCL (0.5, 0.6, 0.7). FCL computes nothing here: it is read. */
+ *  Header-only over libcprox and FCL (0.5, 0.6, 0.7). FCL's data is read; no FCL algorithm is called. */
 #ifndef CURVE_PROXIMITY_FCL_HPP
 #define CURVE_PROXIMITY_FCL_HPP
 
@@ -105,8 +105,7 @@ BodyHandle hullFromFclBvh(const fcl_types::Geometry &geometry) {
 
 /** The body of an FCL geometry, in the geometry's frame. A BVH (mesh or point cloud) becomes its convex hull.
  *
- *  Throws Error for what is no compact convex set or halfspace (planes, octrees, geometries of one's own) and for sizes
- *  that a maker of core.hpp refuses. */
+ *  Throws Error for planes, octrees and user-defined geometries, and for sizes that core.hpp refuses. */
 inline BodyHandle bodyFromFcl(const detail::fcl_types::Geometry &geometry) {
   namespace types = detail::fcl_types;
   switch (geometry.getNodeType()) {
@@ -150,13 +149,13 @@ inline BodyHandle bodyFromFcl(const detail::fcl_types::Geometry &geometry) {
   }
 }
 
-/** A body and where it stands. */
+/** A body with its pose. */
 struct PosedBody {
-  BodyHandle body;
+  BodyHandle body;                                        /**< in its own frame */
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the world */
 };
 
-/** The body and the pose of an FCL object, as it is now: later changes of the object are not followed. */
+/** The body and the current pose of an FCL object. Later changes of the object have no effect. */
 inline PosedBody fromFcl(const detail::fcl_types::Object &object) {
   PosedBody out;
   out.body = bodyFromFcl(*object.collisionGeometry());

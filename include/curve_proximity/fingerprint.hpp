@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Which answer belongs to which message: stamps may be 0 or equal, contents are not. */
+/** Identifies messages by their content: stamps may be 0 or equal. */
 #ifndef CURVE_PROXIMITY_FINGERPRINT_HPP
 #define CURVE_PROXIMITY_FINGERPRINT_HPP
 
@@ -12,10 +12,12 @@
 
 namespace curve_proximity {
 
-/** 64 bits of a message that begins with a Header: of its serialised bytes, with the header's seq as 0, since roscpp
- *  sets it anew at each hop over a wire. h = 0xcbf29ce484222325 ^ length; then for each eight bytes, little-endian, the
- *  last ones filled up with 0: h = (h ^ word) 0x9e3779b97f4a7c15 mod 2^64; h = h ^ (h >> 29).
- *  It tells messages apart that differ by chance, not those of an adversary. Cost: about a nanosecond a byte. */
+/** A 64-bit hash of a message that begins with a Header.
+ *
+ *  The hash covers the serialised bytes with header.seq set to 0, because roscpp changes seq at each hop. It begins
+ *  with h = 0xcbf29ce484222325 ^ length. For each eight bytes (little-endian, the last word filled with 0)
+ *  h = (h ^ word) 0x9e3779b97f4a7c15 mod 2^64, then h = h ^ (h >> 29). It is no protection against an adversary.
+ *  Cost: about a nanosecond a byte. */
 template <class Message>
 std::uint64_t fingerprint(const Message &message) {
   const std::uint32_t length = ros::serialization::serializationLength(message);

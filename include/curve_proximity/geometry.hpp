@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** From descriptions to what queries take: bodies, and mesh files. */
+/** Makes bodies from descriptions; reads mesh and octree files. */
 #ifndef CURVE_PROXIMITY_GEOMETRY_HPP
 #define CURVE_PROXIMITY_GEOMETRY_HPP
 
@@ -13,39 +13,39 @@
 
 namespace curve_proximity {
 
-/** Where files of meshes and octrees are looked for, and how large what they hold may be. */
+/** Where mesh and octree files are searched, and how much memory a body may take. */
 struct ResourceOptions {
-  /** The folder to which paths without a scheme are relative; empty: only absolute paths are accepted. */
+  /** The folder of paths without a scheme. If empty, only absolute paths are accepted. */
   std::string base_dir;
 
-  /** The folder of a ROS package, "" if there is none of that name (ros::package::getPath has this shape). Empty: then
+  /** Returns the folder of a ROS package, "" for an unknown package, as ros::package::getPath() does. If empty,
    *  package:// is an error. Called from the thread that makes the body. */
   std::function<std::string(const std::string &package)> find_package;
 
-  /** [bytes] The most that the body of one mesh, set of points or octree may take. */
+  /** [bytes] The largest size of the body of one mesh, point cloud or octree. */
   std::size_t memory_limit = std::numeric_limits<std::size_t>::max();
 };
 
-/** The file that a URI means: package://NAME/path, file:///path, an absolute path, or a path relative to base_dir.
- *  Throws Error, naming `what` it is for ("mesh", "octree") and the URI, for http and other schemes, an unknown
- *  package, and a file that is not there, is no regular file or is empty. */
+/** The file of a URI: package://NAME/path, file:///path, an absolute path, or a path relative to base_dir.
+ *
+ *  Throws Error for other schemes, an unknown package, and a file that is missing, not regular or empty. The message
+ *  names `what` ("mesh", "octree") and the URI. */
 std::string resolveResource(const std::string &uri, const ResourceOptions &options, const std::string &what = "mesh");
 
-/** A body made of a description. */
+/** A body made from a description. */
 struct Geometry {
-  BodyHandle
-      body; /**< of a mesh a level-of-detail body: its convex hull, and its triangles where the hull cannot decide */
-  BodyHandle hull;     /**< of a mesh its convex hull alone, else the body */
-  BodyHandle surface;  /**< the body without its inside, where it is a mesh that has one; else the body */
-  double excess = 0.0; /**< [m] how far points of the shape may be outside the body, as whoever moved it knows */
-  /** [m] of a mesh: no point of it is farther than this from `hull` (vertices that the hull computation dropped; at
-   *  the scale of rounding). The body knows it */
+  BodyHandle body;     /**< of a mesh: with its convex hull as a coarser level of detail */
+  BodyHandle hull;     /**< the convex hull of a mesh; otherwise the body */
+  BodyHandle surface;  /**< a solid mesh without its interior; otherwise the body */
+  double excess = 0.0; /**< [m] how far points of the shape may be outside the body; set by the caller */
+  /** [m] No point of the mesh is farther than this from `hull`: the hull computation drops vertices at the scale of
+   *  rounding. The body takes it into account. */
   double hull_excess = 0.0;
-  bool is_mesh = false;
-  bool is_open = false; /**< a mesh that was to be solid, but is not closed: its surface alone counts */
+  bool is_mesh = false; /**< the shape is a MESH */
+  bool is_open = false; /**< `solid` was requested, but the mesh is not closed: only its surface counts */
 };
 
-/** Checks the description once and makes its body, in the shape's own frame (shape.pose is left to the caller).
+/** Checks a description and makes its body, in the shape's own frame; shape.pose is not used.
  *
  *  Throws Error: dimensions that are too few or too many, not finite or not positive ("cylinder needs 2 dimensions
  *  [height, radius], got 1"); vertices that are missing or not finite; a mesh without triangles or with an index out of
@@ -56,15 +56,16 @@ struct Geometry {
  *  Thread safety: any number of threads. */
 Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options = {});
 
-/** Boxes along the axes, a column each [m]. */
+/** Axis-aligned boxes [m]. */
 struct Boxes {
-  Eigen::Matrix3Xd low, high;
+  Eigen::Matrix3Xd low;  /**< the least corners, one a column */
+  Eigen::Matrix3Xd high; /**< the greatest corners, as many columns */
 };
 
-/** The boxes that the body of an OCTREE is made of, in the shape's own frame. Throws as makeGeometry() does. */
+/** The boxes of an OCTREE's body, in the shape's own frame. Throws as makeGeometry() does. */
 Boxes octreeBoxes(const ShapeDescription &shape, const ResourceOptions &options = {});
 
-/** Whether nothing of an octree can be held against, which makeGeometry() refuses. Throws as that does. */
+/** True if the octree has no occupied cell; makeGeometry() refuses it then. Throws as makeGeometry() does. */
 bool isEmpty(const OctreeData &octree, bool unknown_is_occupied);
 
 } // namespace curve_proximity

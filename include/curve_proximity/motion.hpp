@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A robot along a joint trajectory, asked about the scene and about itself. */
+/** Queries of a robot along a joint trajectory, against the scene and against itself. */
 #ifndef CURVE_PROXIMITY_MOTION_HPP
 #define CURVE_PROXIMITY_MOTION_HPP
 
@@ -17,9 +17,8 @@ namespace curve_proximity {
 /** The robot of a snapshot along a trajectory. Immutable; shared by any number of threads. */
 class RobotMotion {
  public:
-  /** snapshot    is kept: its robot, paddings, objects and allowed pairs are what is asked about.
-   *  trajectory  its fixed_joints are not looked at: the caller puts them into `rest`, in the order of precedence that
-   *              it has.
+  /** snapshot    is kept: queries use its robot, paddings, objects and allowed pairs.
+   *  trajectory  its fixed_joints are ignored: the caller merges them into `rest`.
    *  rest        values of joints that the trajectory does not move; others are at 0, or at mid-range where 0 is
    *              outside their limits. Names that the robot does not have are an error.
    *  base        where the root link, or the parent frame of its virtual joint, stands in the fixed frame.
@@ -32,23 +31,26 @@ class RobotMotion {
               const std::vector<std::array<std::string, 2>> &disabled = {},
               const Eigen::Isometry3d &base = Eigen::Isometry3d::Identity());
   ~RobotMotion();
+  /** Moves. */
   RobotMotion(RobotMotion &&) noexcept;
+  /** Moves. */
   RobotMotion &operator=(RobotMotion &&) noexcept;
 
   /** The trajectory's first and last time [s]. */
   std::array<double, 2> domain() const;
 
-  /** Where every link is at a time. */
+  /** Forward kinematics: the poses of all links at the time t [s]. */
   LinkPoses linkPoses(double t) const;
 
-  /** What takes no part, and why: a sentence each. */
+  /** Geometry that is not checked, with the cause, one message each. */
   const std::vector<std::string> &skipped() const;
 
-  /** Joints that the trajectory takes beyond their limits: a sentence each. They are answered as they are, and every
-   *  answer's message says it too. */
+  /** Joints that exceed their limits, one message each. Limits are not enforced; every answer's message repeats this.
+   *  */
   const std::vector<std::string> &warnings() const;
 
   struct Data;
+  /** Internal. */
   const Data &data() const {
     return *data_;
   }
@@ -82,10 +84,10 @@ std::string describeQuery(const RobotMotion &motion, bool self, const Query &que
 /** What has no certificates, with its kind: a sentence each. Where there is any, no answer can be proven. */
 std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Query &query);
 
-/** How many pairs are asked about at most, and how close they must come. */
+/** Limits of nearestPairs(). */
 struct PairLimits {
-  std::size_t count = 10;
-  double within = std::numeric_limits<double>::infinity(); /**< [m] >= 0 */
+  std::size_t count = 10;                                  /**< at most so many pairs */
+  double within = std::numeric_limits<double>::infinity(); /**< [m] >= 0, only pairs that come this near */
 };
 
 /** The pairs that come closest, nearest first: of a link or carried object and an object (query.objects: only
@@ -94,13 +96,15 @@ struct PairLimits {
 std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits, const Query &query,
                                  Workspace &workspace);
 
-/** The clearance of a robot on one interval of its trajectory. */
+/** The clearance of a robot on one parameter interval of its trajectory. */
 struct ClearanceInterval {
-  double t0 = 0.0, t1 = 0.0; /**< [s] */
-  double lower = 0.0,
-         upper = 0.0; /**< [m] contain the least distance over the interval; infinity: nothing to measure */
+  double t0 = 0.0;    /**< [s] begin */
+  double t1 = 0.0;    /**< [s] end */
+  double lower = 0.0; /**< [m] the least distance is at least this; infinity: nothing to measure */
+  double upper = 0.0; /**< [m] and at most this */
   double t = 0.0;     /**< [s] where upper was attained */
-  std::string a, b;   /**< of whom: empty where nothing was measured */
+  std::string a;      /**< link or attached object; empty if nothing was measured */
+  std::string b;      /**< object or second link */
 };
 
 /** The swept clearance: the least distance of the robot to the objects (query.objects: only these), or with `self`

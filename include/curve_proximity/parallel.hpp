@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Threads for batches: a pool whose threads wait for ranges, and many movers against the same targets over it.
+/** A thread pool, and batch queries that run on it.
  *
- *  Header-only over libcprox and the standard library's threads. The core starts none: a batch call takes a range and a
- *  workspace. */
+ *  Header-only over libcprox and the standard library's threads. The core starts no threads. */
 #ifndef CURVE_PROXIMITY_PARALLEL_HPP
 #define CURVE_PROXIMITY_PARALLEL_HPP
 
@@ -24,13 +23,13 @@
 
 namespace curve_proximity {
 
-/** Threads that wait for work, each with a workspace that stays warm. */
+/** A pool of threads, each with its own workspace. */
 class Pool {
  public:
-  /** Answers 0 … n-1 in ranges: [first, last) is this call's, and the workspace this thread's. */
+  /** Processes the items [first, last) with the workspace of the calling thread. */
   using Work = std::function<void(std::size_t first, std::size_t last, Workspace &workspace)>;
 
-  /** threads  in all, the one that calls run() among them; 0: as many as the machine runs at once. */
+  /** threads: the number of threads, the caller of run() included; 0: as many as the machine has. */
   explicit Pool(unsigned threads = 0) {
     if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
     try {
@@ -49,14 +48,14 @@ class Pool {
   Pool(const Pool &) = delete;
   Pool &operator=(const Pool &) = delete;
 
-  /** The threads that work on a run. */
+  /** The number of threads, the caller of run() included. */
   unsigned threads() const {
     return static_cast<unsigned>(threads_.size()) + 1;
   }
 
-  /** Calls work for ranges of at most `grain` >= 1 that together are 0 … n-1, in any order and at once; returns when
-   *  all are done. After an exception the ranges that have not begun are left out, and the first one is thrown on. One
-   *  run at a time: a second thread that calls this waits for the first. */
+  /** Splits 0 … n-1 into ranges of at most `grain` >= 1, calls `work` for each range in parallel, and returns when all
+   *  are done. The order is undefined. After an exception no further range is started, and the first exception is
+   *  rethrown. Only one run at a time: a second caller waits. */
   void run(std::size_t n, std::size_t grain, const Work &work) {
     const std::lock_guard<std::mutex> alone(runs_);
     {
@@ -81,8 +80,7 @@ class Pool {
   }
 
  private:
-  /** POSIX's. Before 2.41 glibc's condition variables may lose a wake-up (its bug 25847), and one was seen to wait for
-   *  ever where it should end, with all threads joined. */
+  /** A POSIX semaphore. Condition variables of glibc before 2.41 may lose a wake-up (glibc bug 25847). */
   class Semaphore {
    public:
     Semaphore() {
@@ -105,7 +103,7 @@ class Pool {
     sem_t semaphore_;
   };
 
-  /** Whoever wakes for a run that is over already finds no ranges. */
+  /** The loop of a pool thread. A thread that wakes after the end of a run finds no ranges. */
   void serve(Workspace &workspace) {
     for (;;) {
       wake_.wait();
@@ -169,11 +167,11 @@ class Pool {
 /** Targets that many movers are held against: cprox_batch over a pool. Immutable, shared by any number of threads. */
 class Batch {
  public:
-  /** What cprox_batch_distance() and its like say; the same for every number of threads. */
+  /** The results; they do not depend on the number of threads. */
   struct Answers {
     std::vector<cprox_result> results; /**< one a mover */
     cprox_status status = CPROX_OK;    /**< the first negative one of them, else the largest */
-    std::string reason;                /**< which mover that was, and why; "" for CPROX_OK */
+    std::string reason;                /**< the error message, with the number of the mover; "" for CPROX_OK */
   };
 
   /** What the targets name must outlive the batch. Throws Error as cprox_batch_create() fails. */
@@ -184,6 +182,7 @@ class Batch {
     handle_.reset(made);
   }
 
+  /** The distance of each mover. */
   Answers distance(const std::vector<cprox_mover> &movers, const cprox_options &options, Pool &pool) const {
     return ask(movers, pool,
                [&](std::size_t first, std::size_t last, cprox_workspace *workspace, cprox_result *results) {
@@ -191,7 +190,7 @@ class Batch {
                });
   }
 
-  /** delta >= 0 [m]. */
+  /** The tolerance verdict of each mover; delta >= 0 [m]. */
   Answers tolerance(const std::vector<cprox_mover> &movers, double delta, const cprox_options &options,
                     Pool &pool) const {
     return ask(
@@ -200,6 +199,7 @@ class Batch {
         });
   }
 
+  /** The collision verdict of each mover. */
   Answers collision(const std::vector<cprox_mover> &movers, const cprox_options &options, Pool &pool) const {
     return ask(movers, pool,
                [&](std::size_t first, std::size_t last, cprox_workspace *workspace, cprox_result *results) {

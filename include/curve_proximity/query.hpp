@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Curves against a snapshot of the scene: the code beneath both the node and the command line. */
+/** Queries of curves against a snapshot of the scene, for the node and the command line. */
 #ifndef CURVE_PROXIMITY_QUERY_HPP
 #define CURVE_PROXIMITY_QUERY_HPP
 
@@ -15,31 +15,33 @@
 
 namespace curve_proximity {
 
+/** The type of a query. */
 enum class QueryType { DISTANCE, TOLERANCE, COLLISION };
 
-/** What is asked. What does not apply is refused, never ignored: delta but to TOLERANCE; per_object together with a
- *  certificate; and of options what the table at cprox_options says. */
+/** A query. Members that do not apply are refused, never ignored: delta other than for TOLERANCE, per_object together
+ *  with a certificate, and the options that the table at cprox_options excludes. */
 struct Query {
-  QueryType query_type = QueryType::DISTANCE;
-  double delta = 0.0; /**< [m] >= 0: of TOLERANCE, else 0 */
+  QueryType query_type = QueryType::DISTANCE; /**< what to compute */
+  double delta = 0.0;                         /**< [m] >= 0 for TOLERANCE, otherwise 0 */
 
-  /** Epsilon, budget, stop function. `certificate` receives the proof of the answer, about everything that is asked
-   *  about, or is left empty: then Answer::unproven says why. It changes nothing in the answer. */
+  /** Epsilon, budget, stop function. `certificate` receives the proof of the result for all obstacles. It stays empty
+   *  if there is no proof; Answer::unproven then says why. A certificate does not change the result. */
   cprox_options options = cprox_options_default();
-  bool per_object = false; /**< one answer for each object and each link (for its nearest shape), else one in all */
+  bool per_object = false; /**< one answer per object and per link; otherwise one in all */
 
-  /** What the curve is measured against: everything where both lists are empty, else only what they name (objects
-   *  alone: no links). A name that is not in the snapshot, and a link without geometry, is an error that names it. */
-  std::vector<std::string> objects, links;
+  /** The objects to test. If `objects` and `links` are both empty, everything is tested; otherwise only what they
+   *  name. An unknown name, or a link without geometry, is an error that names it. */
+  std::vector<std::string> objects;
+  std::vector<std::string> links; /**< the links to test */
 };
 
 /** "sphere", "hull" or "mesh" for options.max_lod; nothing for any other word. */
 std::optional<cprox_lod> lodFromName(const std::string &name);
 
-/** One answer: a row of the results. */
+/** The result for one curve, or for one curve and object. */
 struct Answer {
   std::string id;             /**< the curve's */
-  std::string kind = "curve"; /**< what was asked about */
+  std::string kind = "curve"; /**< "curve", "environment" or "self" */
 
   /** As the core gives it; obstacle_index is the number of the shape in object b (or of the collision element in link
    *  b), -1 for none. lower and upper hold for the whole set that was asked about, the rounding of poses and hulls
@@ -48,23 +50,23 @@ struct Answer {
    *  means nothing. */
   cprox_result result{};
 
-  std::string a;          /**< what moved: the curve's id */
+  std::string a;          /**< the moving object: the curve's id */
   std::string b;          /**< the nearest object or link; empty where there is none */
   bool b_is_link = false; /**< b names a link of the robot */
-  /** the nearest shape is a mesh, and its convex hull or bounding ball, which contains it, answered for it: as
-   *  options.max_lod asked, or because it is solid and the robot moves */
+  /** The nearest shape is a mesh that was replaced by its convex hull or bounding ball: because options.max_lod
+   *  says so, or because it is solid and the robot moves. */
   bool by_hull = false;
   double microseconds = 0; /**< steady clock, around the search of this curve (per object: of this object) */
   std::string status;      /**< cprox_status_name(result.status) */
-  std::string message;     /**< for a person: why there is no answer, or what is special about it; often empty */
-  std::string unproven;    /**< for a person: why the certificate that was asked for is empty; else empty */
+  std::string message;     /**< the error message, or a remark; often empty */
+  std::string unproven;    /**< why a requested certificate is empty; else empty */
 };
 
-/** A curve made ready for any number of queries, by any number of threads. */
+/** A compiled curve for any number of queries by any number of threads. */
 struct CompiledCurve {
-  std::string id;
-  CurveHandle curve;
-  double radius = 0.0; /**< [m] */
+  std::string id;      /**< of the description */
+  CurveHandle curve;   /**< compiled */
+  double radius = 0.0; /**< [m] of the ball along the curve */
 
   /** Boxes that together contain the curve (the radius left out), rounding included. */
   std::vector<Eigen::AlignedBox3d> boxes;
@@ -74,8 +76,7 @@ struct CompiledCurve {
  *  a degree that does not fit, knots that descend or are too few, t0 >= t1, a radius that is negative or not finite. */
 CompiledCurve compile(const CurveDescription &curve);
 
-/** The objects and links that a query is about, resolved once for all its curves. Immutable; shared by any number of
- *  threads. */
+/** The objects and links of a query, resolved once for all its curves. Immutable; shared by any number of threads. */
 class Targets {
  public:
   /** snapshot  is kept.
@@ -86,10 +87,13 @@ class Targets {
    *  robot, poses that are not finite. */
   Targets(SnapshotPtr snapshot, const LinkPoses &links, const Query &query);
   ~Targets();
+  /** Moves. */
   Targets(Targets &&) noexcept;
+  /** Moves. */
   Targets &operator=(Targets &&) noexcept;
 
   struct Data;
+  /** Internal. */
   const Data &data() const {
     return *data_;
   }
@@ -98,28 +102,28 @@ class Targets {
   std::unique_ptr<const Data> data_;
 };
 
-/** Everything that a query is about, as the core takes it; valid as long as `targets` is. Certificates are about
- *  these: where things stand, in doubles, when rounding before the core is done. */
+/** All obstacles of a query in the core's form; valid as long as `targets` is. Certificates refer to them: to their
+ *  poses in doubles, after the rounding outside the core. */
 std::vector<cprox_obstacle> coreTargets(const Targets &targets);
 
-/** Which of them an answer names; -1 for none. */
+/** The index of the obstacle that an answer names; -1 for none. */
 std::int32_t coreTargetOf(const Targets &targets, const Answer &answer);
 
-/** The same as the program cprox_check reads it (doc/certificates.md), a line a convex part with the name of its owner;
- *  meshes by their convex hulls. Empty where something is of a kind that has no certificates. */
+/** The obstacles as text for the program cprox_check (doc/certificates.md): one line per convex part with the name of
+ *  its owner; meshes as their convex hulls. Empty if a kind of body has no certificates. */
 std::string describeTargets(const Targets &targets);
 
-/** What has no certificates, with its kind: a sentence each. Where there is any, no answer can be proven. */
+/** The bodies that have no certificates, one message each. If there is one, no result can be proven. */
 std::vector<std::string> unprovable(const Targets &targets);
 
-/** Answers a query for one curve: one answer, or with per_object one for each object and link in the order of their
- *  names (objects first; none at all: one answer with b empty).
+/** Answers a query for one curve. With per_object there is one answer per object and link in the order of their names,
+ *  objects first (without any: one answer with b empty); otherwise one answer.
  *
- *  Never throws for what the core finds wrong (an epsilon that is NaN, a budget of 0, a delta below 0): such answers
- *  have result.status < 0, status and message say why. Any number of threads, each with its own workspace. */
+ *  Errors that the core finds (epsilon is NaN, a budget of 0, delta < 0) do not throw: result.status is < 0, and status
+ *  and message say why. Any number of threads, each with its own workspace. */
 std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace);
 
-/** The same in one step; what compile() and Targets find wrong becomes the one answer, "invalid" with the reason. */
+/** The same in one step. An error of compile() or Targets becomes the only answer, with status "invalid". */
 std::vector<Answer> ask(const SnapshotPtr &snapshot, const LinkPoses &links, const CurveDescription &curve,
                         const Query &query, Workspace &workspace);
 

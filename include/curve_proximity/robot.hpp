@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A robot from its URDF: all collision elements of all links as bodies, and where the links are for given joints. */
+/** A robot from its URDF: the collision elements of all links as bodies, and forward kinematics. */
 #ifndef CURVE_PROXIMITY_ROBOT_HPP
 #define CURVE_PROXIMITY_ROBOT_HPP
 
@@ -21,35 +21,41 @@ using JointPositions = std::map<std::string, double>;
 /** The pose of each link's frame in the fixed frame, by link name. */
 using LinkPoses = std::map<std::string, Eigen::Isometry3d>;
 
+/** How a URDF is read. */
 struct RobotOptions {
   ResourceOptions resources; /**< resources.base_dir: the folder of the URDF (`urdf_dir`) */
 
-  /** Collision elements that are unusable are left out with a warning rather than refused. */
+  /** Unusable collision elements are skipped with a warning instead of an error. */
   bool allow_missing_geometry = false;
 };
 
 /** One collision element of a link. */
 struct LinkGeometry {
-  Geometry geometry;
+  Geometry geometry;                                      /**< the body */
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity(); /**< in the link's frame */
-  ShapeDescription description;                           /**< what it was made of (its pose included) */
+  ShapeDescription description;                           /**< its description, pose included */
 };
 
-/** Immutable once made; shared by any number of threads. */
+/** A robot model. Immutable; shared by any number of threads. */
 class Robot {
  public:
+  /** The type of a joint; a continuous joint is REVOLUTE without limits. */
   enum class JointType { FIXED, REVOLUTE, PRISMATIC, PLANAR, FLOATING };
 
+  /** A joint of the URDF. */
   struct Joint {
-    std::string name;
-    JointType type = JointType::FIXED;
-    std::string parent, child;                                /**< links */
-    Eigen::Isometry3d origin = Eigen::Isometry3d::Identity(); /**< of the joint's frame in the parent's */
+    std::string name;                                         /**< as in the URDF */
+    JointType type = JointType::FIXED;                        /**< its kind of motion */
+    std::string parent;                                       /**< the link above */
+    std::string child;                                        /**< the link below */
+    Eigen::Isometry3d origin = Eigen::Isometry3d::Identity(); /**< of the joint's frame in the parent's frame */
     Eigen::Vector3d axis = Eigen::Vector3d::UnitX();          /**< unit; planar: the plane's normal */
-    double lower = -INFINITY, upper = INFINITY;               /**< limits, where the URDF has them */
-    double rest = 0.0;                                        /**< the value where none is given */
-    std::string leader;                                       /**< of a mimic joint, never a mimic itself; else empty */
-    double multiplier = 1.0, offset = 0.0;                    /**< of a mimic joint */
+    double lower = -INFINITY;                                 /**< lower limit, if the URDF has one */
+    double upper = INFINITY;                                  /**< upper limit, if the URDF has one */
+    double rest = 0.0;                                        /**< the value if none is given */
+    std::string leader;      /**< of a mimic joint: the joint it follows, never a mimic; else empty */
+    double multiplier = 1.0; /**< of a mimic joint */
+    double offset = 0.0;     /**< of a mimic joint */
   };
 
   /** Reads a URDF.
@@ -62,15 +68,17 @@ class Robot {
    *  Cost: milliseconds, and about 2 ms a mesh file. */
   static std::shared_ptr<const Robot> fromUrdf(const std::string &xml, const RobotOptions &options = {});
 
+  /** The robot's name. */
   const std::string &name() const {
     return name_;
   }
 
-  /** Where its mesh files were looked for. */
+  /** Where mesh files were searched. */
   const ResourceOptions &resources() const {
     return resources_;
   }
 
+  /** The name of the root link. */
   const std::string &rootLink() const {
     return root_link_;
   }
@@ -85,31 +93,29 @@ class Robot {
     return joints_;
   }
 
-  /** What was left out under allow_missing_geometry, a sentence each. */
+  /** The collision elements that allow_missing_geometry skipped, one message each. */
   const std::vector<std::string> &warnings() const {
     return warnings_;
   }
 
-  /** The names that linkPoses() accepts: movable joints, mimics among them, and the parts of planar and floating ones.
-   */
+  /** The names that linkPoses() accepts: movable joints (mimics included) and the variables of planar and floating
+   *  joints. */
   const std::vector<std::string> &variables() const {
     return variables_;
   }
 
-  /** Is there a joint of that name, fixed ones included, or a part of one (NAME/x)? */
+  /** True if a joint (fixed ones included) or a joint's variable (NAME/x) has that name. */
   bool hasJoint(const std::string &name) const;
 
-  /** Where every link is.
+  /** Forward kinematics: the pose of every link.
    *
-   *  positions  joints that are not named are at 0, or at mid-range where 0 is outside their limits; values beyond the
-   *             limits are taken as they are. Mimic joints follow their leader; a value given for one counts only if
-   *             its leader has one too, and then is not looked at. Fixed joints may be named; their value is not looked
-   *             at.
+   *  positions  a joint without a value is at 0, or at mid-range if 0 is outside its limits. Limits are not enforced.
+   *             Mimic joints follow their leader; a value for a mimic joint is ignored, and is an error if its leader
+   *             has none. Values of fixed joints are ignored.
    *  base       the pose of the root link in the fixed frame.
    *
-   *  Throws Error for a name that is no joint of this robot, a value that is not finite, a follower without its leader,
-   *  a quaternion of norm 0.
-   *  Rounding: within 1e-15 of the chain's length a joint. */
+   *  Throws Error for an unknown joint, a value that is not finite, a mimic joint's value without its leader's, and a
+   *  quaternion of norm 0. Rounding: within 1e-15 of the chain's length per joint. */
   LinkPoses linkPoses(const JointPositions &positions,
                       const Eigen::Isometry3d &base = Eigen::Isometry3d::Identity()) const;
 

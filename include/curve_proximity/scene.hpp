@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The world that queries are asked about: a scene that changes, and immutable snapshots of it.
+/** A scene of objects, links and attached objects, and immutable snapshots of it.
  *
- *  A query works on a Snapshot, so that queries and changes never wait for each other. Everything stands in one fixed
- *  frame; callers bring poses to it before they call. */
+ *  A query works on a Snapshot, so queries and changes never wait for each other. All poses are in one fixed frame;
+ *  callers convert poses first. */
 #ifndef CURVE_PROXIMITY_SCENE_HPP
 #define CURVE_PROXIMITY_SCENE_HPP
 
@@ -25,43 +25,43 @@ class World;
 
 /** One change of one object. */
 struct Operation {
-  /** ADD     a new object, or in the place of the one with that id.
-   *  APPEND  further shapes for an object (relative to the object's pose; operation.object.pose must be that pose or
-   *          the identity); without such an object the same as ADD.
-   *  MOVE    a new pose for an object; shapes given with it are an error.
-   *  REMOVE  away with an object; with an empty id, with all.
-   *  The object's padding is set by ADD; by APPEND and MOVE only where it is not 0. */
+  /** ADD     adds an object, or replaces the object with that id.
+   *  APPEND  adds shapes to an object (relative to the object's pose; operation.object.pose must be that pose or the
+   *          identity). Without such an object it is ADD.
+   *  MOVE    sets the pose of an object; shapes are an error.
+   *  REMOVE  removes an object; with an empty id, all objects.
+   *  ADD sets the object's padding; APPEND and MOVE set it only if it is not 0. */
   enum class Kind { ADD, APPEND, MOVE, REMOVE };
-  Kind kind = Kind::ADD;
-  ObjectDescription object; /**< MOVE and REMOVE use its id (and pose) only */
+  Kind kind = Kind::ADD;    /**< what to do */
+  ObjectDescription object; /**< MOVE uses its id and pose, REMOVE its id */
 };
 
-/** Whether two of objects and links may touch (see Snapshot::mayTouch()); b empty: the default of a. */
+/** An entry of the allowed collision matrix (see Snapshot::mayTouch()). */
 struct AllowedPair {
-  std::string a, b;
-  bool allowed = true;
+  std::string a;       /**< an object or a link */
+  std::string b;       /**< another one; empty: the entry is the default of a */
+  bool allowed = true; /**< they may touch */
 };
 
-/** One change of what the robot carries. */
+/** Attaches an object to a link, or detaches it. */
 struct Attachment {
-  /** ATTACH  a link carries an object from now on: `object`, its pose in the link's frame, in the place of one of that
-   *  id in the
-   *          scene or on any link; without shapes the object of the scene of that id, which stays where it is at
-   *          link_pose.
-   *  DETACH  the object of that id stands in the scene from now on, where it is at link_pose; with an empty id, all
-   *          that the link carries; with an empty link too, everything. */
+  /** ATTACH  attaches `object` to a link; its pose is in the link's frame. It replaces an object of that id in the
+   *          scene or on any link. Without shapes, the scene's object of that id is attached where it stands.
+   *  DETACH  puts the attached object of that id into the scene, where it stands. With an empty id, all objects of the
+   *          link; with an empty link too, all attached objects. */
   enum class Kind { ATTACH, DETACH };
-  Kind kind = Kind::ATTACH;
-  std::string link;
-  std::vector<std::string> touch_links; /**< links that the object may touch, beside the one that carries it */
-  ObjectDescription object;
-  std::map<std::string, Eigen::Isometry3d> link_poses; /**< where links are in the fixed frame: those that are needed */
+  Kind kind = Kind::ATTACH;                            /**< what to do */
+  std::string link;                                    /**< the link */
+  std::vector<std::string> touch_links;                /**< further links that the object may touch */
+  ObjectDescription object;                            /**< the object, or only its id */
+  std::map<std::string, Eigen::Isometry3d> link_poses; /**< the needed links in the fixed frame */
 };
 
-/** A change of the scene. What is left empty stays as it was. */
+/** A change of the scene. Empty members change nothing. */
 struct SceneChange {
-  bool clear = false; /**< first away with all objects, carried ones too, allowed pairs but the scene's first ones, link
-                           paddings and scales */
+  /** First removes all objects (attached too), link paddings and scales, and all allowed pairs but those that the scene
+   *  began with. */
+  bool clear = false;
   std::vector<Operation> operations;          /**< applied in order */
   std::vector<Attachment> attachments;        /**< after the operations, in order */
   std::map<std::string, double> link_padding; /**< [m] >= 0, by link */
@@ -70,71 +70,71 @@ struct SceneChange {
   std::vector<AllowedPair> allowed;           /**< each replaces the entry of the same two names, in either order */
 };
 
-/** A body where it stands in the fixed frame. */
+/** A body at its pose in the fixed frame. */
 struct PlacedShape {
-  cprox_obstacle target{};  /**< padding included; the body is owned by whoever owns this */
-  cprox_obstacle hull{};    /**< the same; a mesh by its convex hull */
-  cprox_obstacle surface{}; /**< the same; a mesh that has an inside without it */
+  cprox_obstacle target{};  /**< padding included; the body belongs to the owner of this struct */
+  cprox_obstacle hull{};    /**< the same, with a mesh's convex hull */
+  cprox_obstacle surface{}; /**< the same, with a solid mesh as a surface */
   double hull_excess = 0.0; /**< [m] how far points of the shape may be outside `hull`, beside rounding */
   Eigen::AlignedBox3d box;  /**< [m] contains the padded body, rounding included; infinite for a halfspace */
   double rounding = 0.0;    /**< [m] how far the rounding of poses can have moved a point of it */
-  double turning = 0.0;     /**< of a halfspace: the same for each metre that a point is away from target.pose */
-  bool is_mesh = false;
-  bool is_open = false; /**< a mesh that was to be solid, but is not closed */
+  double turning = 0.0;     /**< of a halfspace: the same per metre of distance from target.pose */
+  bool is_mesh = false;     /**< the shape is a mesh */
+  bool is_open = false;     /**< `solid` was requested, but the mesh is not closed */
 };
 
 /** One shape of an object. */
 struct ObjectShape {
-  Geometry geometry;
-  PlacedShape placed;
+  Geometry geometry;  /**< in the shape's frame */
+  PlacedShape placed; /**< in the fixed frame */
 };
 
-/** An object as the scene holds it. */
+/** An object of the scene. */
 struct SceneObject {
-  ObjectDescription description;   /**< as given, pose and padding brought up to date */
+  ObjectDescription description;   /**< as given, with the current pose and padding */
   std::vector<ObjectShape> shapes; /**< as many as description.shapes */
 };
 
-/** An object that a link carries. */
+/** An object that is attached to a link. */
 struct AttachedObject {
-  std::string link;
-  std::vector<std::string> touch_links;
-  ObjectDescription description;    /**< as given; its pose is in the link's frame */
-  std::vector<LinkGeometry> shapes; /**< in the link's frame, at the link's scale */
+  std::string link;                     /**< the link */
+  std::vector<std::string> touch_links; /**< further links that it may touch */
+  ObjectDescription description;        /**< as given; its pose is in the link's frame */
+  std::vector<LinkGeometry> shapes;     /**< in the link's frame, at the link's scale */
 };
 
-/** The scene at one moment: immutable, read by any number of threads. */
+/** The scene at one moment. Immutable; any number of threads may read it. */
 class Snapshot {
  public:
   ~Snapshot();
 
-  /** Counts the changes of its scene, from 0. */
+  /** The number of changes of the scene before this snapshot. */
   std::uint64_t version() const {
     return version_;
   }
 
-  /** By id. */
+  /** The objects by id. */
   const std::map<std::string, std::shared_ptr<const SceneObject>> &objects() const {
     return objects_;
   }
 
-  /** Null where the scene has no robot. */
+  /** The robot; null if the scene has none. */
   const std::shared_ptr<const Robot> &robot() const {
     return robot_;
   }
 
-  /** What links carry, by id; no object has the same id. It moves with its link, and is enlarged as the link is. */
+  /** Attached objects by id; no object of the scene has the same id. They have the padding and scale of their link. */
   const std::map<std::string, std::shared_ptr<const AttachedObject>> &attached() const {
     return attached_;
   }
 
-  /** [m] The padding of a carried object: its own and its link's. */
+  /** [m] The padding of an attached object: its own plus its link's. */
   double attachedPadding(const AttachedObject &object) const {
     return object.description.padding + linkPadding(object.link);
   }
 
-  /** The collision elements of a link of the robot at its scale. A scale enlarges each of them, of any type, about its
-   *  own origin; a mesh about the mean of its vertices, as MoveIt does. */
+  /** The collision elements of a link at the link's scale. A scale enlarges each element about its own origin, a mesh
+   *  about the mean of its vertices, as in MoveIt. */
   const std::vector<LinkGeometry> &linkGeometry(const std::string &link) const;
 
   /** The scales that are not 1, by link. */
@@ -144,25 +144,26 @@ class Snapshot {
 
   /** [m] The padding of a link: its own, else the default. */
   double linkPadding(const std::string &link) const;
+  /** [m] The paddings of links that have their own. */
   const std::map<std::string, double> &linkPaddings() const {
     return link_padding_;
   }
+  /** [m] The padding of all other links. */
   double defaultLinkPadding() const {
     return default_link_padding_;
   }
 
-  /** The allowed collision matrix: an entry for each pair of names, `false` ones too. Sorted by name; a <= b, or b
-   *  empty. */
+  /** The entries of the allowed collision matrix, `false` ones included. Sorted by name; a <= b, or b is empty. */
   const std::vector<AllowedPair> &allowed() const {
     return *allowed_;
   }
 
-  /** Whether the allowed collision matrix lets two of objects and links touch, as moveit_msgs/AllowedCollisionMatrix
-   *  says: the entry of the pair wins. Without one, the default of either name counts; where both names have a default,
-   *  both must be true. Without entry and default the answer is false. Cost: a search in allowed(). */
+  /** True if the allowed collision matrix lets two objects or links touch. The rules are those of
+   *  moveit_msgs/AllowedCollisionMatrix: the entry of the pair wins. Without an entry the default of either name
+   *  counts; if both names have a default, both must be true. Otherwise false. Cost: a search in allowed(). */
   bool mayTouch(const std::string &a, const std::string &b) const;
 
-  /** The objects' shapes with the tree over them (a part of the library, not of its interface). */
+  /** The shapes of the objects with their broadphase. Internal. */
   const World &world() const {
     return *world_;
   }
@@ -184,31 +185,32 @@ class Snapshot {
   std::unique_ptr<const World> world_;
 };
 
+/** A shared snapshot. */
 using SnapshotPtr = std::shared_ptr<const Snapshot>;
 
-/** Thread safety: any number of threads; changes wait for each other, snapshot() never waits for a change in the
- *  making.
- */
+/** A scene that changes.
+ *
+ *  Thread safety: any number of threads. Changes wait for each other; snapshot() never waits for a change. */
 class Scene {
  public:
-  /** robot may be null. resources: where the objects' mesh files are looked for. allowed: entries of the allowed
-   *  collision matrix that stand there from the beginning, and again after a change that clears the scene
-   *  (allowedPairs() of an SRDF). Throws Error for one without a first name. */
+  /** robot may be null. resources: where the objects' mesh files are searched. allowed: entries of the allowed collision
+   *  matrix from the beginning, and again after a change that clears the scene (allowedPairs() of an SRDF). Throws Error
+   *  for an entry without a first name. */
   explicit Scene(std::shared_ptr<const Robot> robot = nullptr, ResourceOptions resources = {},
                  const std::vector<AllowedPair> &allowed = {});
 
-  /** The scene as it is now. */
+  /** The current scene. */
   SnapshotPtr snapshot() const;
 
-  /** Applies a change; what can be applied becomes visible at once, as one new snapshot.
+  /** Applies a change as one new snapshot.
    *
-   *  All or nothing for each operation and attachment, and for the link paddings, scales and allowed pairs each: what
-   *  is faulty leaves the scene as it was and is told in a sentence that names it ("object 'box1': cylinder needs 2
-   *  dimensions [height, radius], got 1"). Returns these sentences in the order of the change; none: all was applied.
-   *  An unknown id on MOVE or REMOVE, an object without an id or with that of a carried one, poses and paddings that
-   *  are not finite, a padding < 0, an unknown link, an allowed pair without a first name and a halfspace that is to be
-   *  carried are faults. Cost: microseconds an object that stays, more for those that are made; bodies that stay are
-   *  shared. */
+   *  Each operation, each attachment, the link paddings, the scales and the allowed pairs are applied all or nothing. A
+   *  faulty one changes nothing and gives an error message ("object 'box1': cylinder needs 2 dimensions
+   *  [height, radius], got 1"). Returns the messages in the order of the change; empty: all was applied.
+   *
+   *  Errors are: an unknown id on MOVE or REMOVE; an object without an id, or with that of an attached object; poses or
+   *  paddings that are not finite; a padding < 0; an unknown link; an allowed pair without a first name; a halfspace to
+   *  attach. Cost: microseconds per unchanged object, whose bodies are shared; more for new objects. */
   std::vector<std::string> apply(const SceneChange &change);
 
  private:

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What an SRDF says that matters here: how the robot stands in the world, and which links need no check against each
- *  other. */
+/** Reads virtual joints and disabled pairs of links from an SRDF. */
 #ifndef CURVE_PROXIMITY_SRDF_HPP
 #define CURVE_PROXIMITY_SRDF_HPP
 
@@ -14,19 +13,24 @@ namespace curve_proximity {
 
 /** The joint between the fixed frame and the robot's root link. */
 struct VirtualJoint {
-  std::string name, type; /**< type: fixed, planar or floating */
-  std::string parent_frame, child_link;
+  std::string name;         /**< of the joint */
+  std::string type;         /**< fixed, planar or floating */
+  std::string parent_frame; /**< the fixed frame, or a frame in it */
+  std::string child_link;   /**< the robot's root link */
 };
 
+/** The elements of an SRDF that this package uses. */
 struct Srdf {
-  std::vector<VirtualJoint> virtual_joints;
+  std::vector<VirtualJoint> virtual_joints;         /**< in the order of the file */
   std::vector<std::array<std::string, 2>> disabled; /**< pairs of links that are not checked against each other */
   std::vector<std::string> disabled_by_default;     /**< links that are checked against nothing … */
   std::vector<std::array<std::string, 2>> enabled;  /**< … but these */
 };
 
-/** Reads an SRDF. Throws Error, naming the element: XML that is none, no <robot>, a virtual joint of an unknown type,
- *  elements that lack an attribute. Elements that say nothing of the above are not looked at. */
+/** Reads an SRDF. Other elements are ignored.
+ *
+ *  Throws Error for malformed XML, a missing element `robot`, a virtual joint of an unknown type and a missing
+ *  attribute. The message names the element. */
 Srdf parseSrdf(const std::string &xml);
 
 /** What the SRDF says of links by default, as MoveIt enters it into the allowed collision matrix: `true` as the default

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A joint trajectory as plain data: the common language of trajectory_msgs/JointTrajectory and of T.yaml. */
+/** A joint trajectory as plain data, from trajectory_msgs/JointTrajectory or from a YAML file. */
 #ifndef CURVE_PROXIMITY_TRAJECTORY_HPP
 #define CURVE_PROXIMITY_TRAJECTORY_HPP
 
@@ -11,41 +11,41 @@
 
 namespace curve_proximity {
 
-/** How the joints move between two points: as joint_trajectory_controller does. */
+/** The interpolation between two points, as in joint_trajectory_controller. */
 enum class Interpolation {
-  /** by what both points of a segment carry: positions only: linear; velocities too: cubic; accelerations too:
-   *  quintic */
-  BY_POINTS,
-  LINEAR,
-  CUBIC,
-  QUINTIC
+  BY_POINTS, /**< by the data of both points: positions: linear; velocities too: cubic; accelerations too: quintic */
+  LINEAR,    /**< positions */
+  CUBIC,     /**< positions and velocities */
+  QUINTIC    /**< positions, velocities and accelerations */
 };
 
+/** A waypoint. */
 struct TrajectoryPoint {
-  std::vector<double> positions;                 /**< radians or metres, one a joint */
-  std::vector<double> velocities, accelerations; /**< one a joint, or none at all */
-  double time = 0.0;                             /**< seconds from the start, ascending */
+  std::vector<double> positions;     /**< [rad] or [m], one a joint */
+  std::vector<double> velocities;    /**< one a joint, or empty */
+  std::vector<double> accelerations; /**< one a joint, or empty */
+  double time = 0.0;                 /**< [s] from the start, ascending */
 };
 
+/** Waypoints of named joints. */
 struct TrajectoryDescription {
-  std::string id;
-  std::vector<std::string> joints;
-  std::vector<TrajectoryPoint> points;
-  Interpolation interpolation = Interpolation::BY_POINTS;
+  std::string id;                                         /**< names the trajectory in results */
+  std::vector<std::string> joints;                        /**< the joints that move */
+  std::vector<TrajectoryPoint> points;                    /**< at least one */
+  Interpolation interpolation = Interpolation::BY_POINTS; /**< between the points */
 
-  JointPositions fixed_joints;    /**< joints that stand still at a value of their own */
-  std::vector<VirtualJoint> base; /**< the joint above the root link, where the trajectory names it: none or one */
-  /** the names of its parts (planar: x, y, theta; floating: x, y, z and the quaternion's x, y, z, w); empty: as
-   *  MoveIt names them, NAME/x … */
+  JointPositions fixed_joints;    /**< joints with a constant value */
+  std::vector<VirtualJoint> base; /**< the joint above the root link, if the trajectory names it: none or one */
+  /** The names of the base joint's variables (planar: x, y, theta; floating: x, y, z and the quaternion's x, y, z, w).
+   *  Empty: MoveIt's names, NAME/x … */
   std::vector<std::string> base_joints;
 };
 
-/** Gives a trajectory that names parts of one of these joints (NAME/x …) and no base of its own that joint as its
- *  base. */
+/** If the trajectory names variables of one of these joints (NAME/x …) and has no base, that joint becomes its base. */
 void adoptBase(const std::vector<VirtualJoint> &joints, TrajectoryDescription &trajectory);
 
-/** Throws Error, naming point and joint: no joints or points, a name twice, counts that differ, numbers that are not
- *  finite, times that do not ascend, an interpolation for which points lack velocities or accelerations. */
+/** Checks a trajectory. Throws Error for missing joints or points, a name twice, counts that differ, numbers that are
+ *  not finite, times that do not ascend, and missing velocities or accelerations. The message names point and joint. */
 void checkTrajectory(const TrajectoryDescription &trajectory);
 
 } // namespace curve_proximity
