@@ -389,7 +389,7 @@ static bool surface_expand(surface *s, const expand_set *set, const expand_goal 
     /* the set's plane above the facet that is nearest to 0 */
     const simplex_vertex x = farthest_from(set, s->shift, f->normal);
     depth->steps++;
-    const double reach = vec_dot(f->normal, x.w);
+    const double reach = vec_dot(f->normal, x.w) + x.behind;
     if (isnan(reach)) return false;
     if (reach < depth->most) {
       depth->most = reach;

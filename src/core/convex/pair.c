@@ -59,13 +59,21 @@ static vec3 pair_difference(const pair *p, vec3 a, vec3 b) {
   return vec_sub(a, vec_add(rotate(p->r, b), p->t));
 }
 
+/* What a support point fails to reach of the support value along d. An implicit shape's value is a bound from above; its point is one
+ * of the body, and may stay behind where exponents are near 1. */
+static double missed(const convex *shape, double value, vec3 d, vec3 at) {
+  return shape->implicit ? fmax(value - vec_dot(d, at), 0.0) : 0.0;
+}
+
 /* The point of M that is least along u. */
 static simplex_vertex pair_extreme(pair *p, vec3 u) {
   simplex_vertex x = {.id = -1};
-  const double ha = p->a->ops->support(p->a, vec_neg(u), NULL, &x.a);
-  const double hb = p->b->ops->support(p->b, rotate_back(p->r, u), NULL, &x.b);
+  const vec3 da = vec_neg(u), db = rotate_back(p->r, u);
+  const double ha = p->a->ops->support(p->a, da, NULL, &x.a);
+  const double hb = p->b->ops->support(p->b, db, NULL, &x.b);
   if (isnan(ha) || isnan(hb)) p->fault = true;
   x.w = pair_difference(p, x.a, x.b);
+  x.behind = missed(p->a, ha, da, x.a) + missed(p->b, hb, db, x.b);
   p->supports++;
   return x;
 }
@@ -214,7 +222,7 @@ bool pair_is_reached(const pair_goal *goal, double margins, double rounding, dou
 static bool pair_look(pair *p, vec3 u, bool follow) {
   const simplex_vertex x = pair_extreme(p, u);
   const double lower = p->lower;
-  pair_raise_lower(p, u, vec_dot(u, x.w));
+  pair_raise_lower(p, u, vec_dot(u, x.w) - x.behind);
   bool nearer = false;
   if (follow) {
     const pair_pieces pieces = pair_follow(p, u, NULL, NULL);
@@ -250,7 +258,7 @@ static void pair_restart(pair *p) {
     vec3 u;
     feature_unit(simplex_spread[i], &u);
     const simplex_vertex x = pair_extreme(p, u);
-    pair_raise_lower(p, u, vec_dot(u, x.w));
+    pair_raise_lower(p, u, vec_dot(u, x.w) - x.behind);
     if (!simplex_has(&s, x.w)) s.vertex[s.n++] = x;
   }
   p->least = INFINITY;
@@ -268,7 +276,7 @@ static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) 
   p->s.n = 1;
   p->s.vertex[0] = pair_extreme(p, u);
   p->u = u;
-  p->lower = vec_dot(u, p->s.vertex[0].w);
+  p->lower = vec_dot(u, p->s.vertex[0].w) - p->s.vertex[0].behind;
   p->idle = 0;
   simplex_reduce(&p->s, &p->nearest);
   p->least = p->nearest.distance;
@@ -319,7 +327,8 @@ static void pair_draw_apart(pair *p, double size, const pair_goal *goal) {
     p->fault = q.fault;
 
     const double before = p->lower;
-    pair_raise_lower(p, q.u, vec_dot(q.u, pair_extreme(p, q.u).w));
+    const simplex_vertex x = pair_extreme(p, q.u);
+    pair_raise_lower(p, q.u, vec_dot(q.u, x.w) - x.behind);
     if (!(p->lower > 0.99 * before)) return;
   }
 }
