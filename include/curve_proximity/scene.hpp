@@ -193,9 +193,9 @@ using SnapshotPtr = std::shared_ptr<const Snapshot>;
  *  Thread safety: any number of threads. Changes wait for each other; snapshot() never waits for a change. */
 class Scene {
  public:
-  /** robot may be null. resources: where the objects' mesh files are searched. allowed: entries of the allowed collision
-   *  matrix from the beginning, and again after a change that clears the scene (allowedPairs() of an SRDF). Throws Error
-   *  for an entry without a first name. */
+  /** robot may be null. resources: where the objects' mesh files are searched. allowed: entries of the allowed
+   *  collision matrix from the beginning, and again after a change that clears the scene (allowedPairs() of an SRDF).
+   *  Throws Error for an entry without a first name. */
   explicit Scene(std::shared_ptr<const Robot> robot = nullptr, ResourceOptions resources = {},
                  const std::vector<AllowedPair> &allowed = {});
 

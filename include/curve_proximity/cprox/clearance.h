@@ -27,7 +27,8 @@ CPROX_API cprox_status cprox_nearest(cprox_mover mover, const cprox_obstacle *ta
 
 /** All targets that come within delta >= 0 [m].
  *
- *  near      room for n results; receives those with lower <= delta, in the order of the targets. verdict violated: upper <=
+ *  near      room for n results; receives those with lower <= delta, in the order of the targets. verdict violated:
+ *  upper <=
  *            delta, and then upper - lower <= epsilon. undecided: neither was proven.
  *            Every target that is not among them is farther than delta everywhere.
  *  count     receives their number.
