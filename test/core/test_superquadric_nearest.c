@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Nearest points of superquadrics against intervals in long double that rest on a point of the body and a tangent plane of it. */
+/* Nearest points and distances of superquadrics against intervals in long double that rest on a point of the body and a tangent plane. */
 #include <math.h>
 
 #include "shape/body.h"
