@@ -9,6 +9,7 @@
 #include "curve_proximity/cprox.h"
 #include "paper/paper.h"
 #include "peers/sampling.h"
+#include "support/make_curve.h"
 #include "support/measure.h"
 #include "support/random.h"
 
@@ -64,7 +65,7 @@ static void make_curves(rng *r, scene *s) {
     p[0] = vec(-0.2, 0.5, z), p[1] = vec(0, 0.5, z), p[4] = vec(1, 0.5, z), p[5] = vec(1.2, 0.5, z);
     for (int k = 2; k < 4; k++)
       p[k] = vec(rng_uniform(r, 0, 1), rng_uniform(r, 0, 1), s->planar ? 0 : rng_uniform(r, 0, 1));
-    check(cprox_curve_create_bezier(p, POINTS, 0, 1, NULL, &s->curves[i]));
+    check(curve_from(describe_bezier(p, POINTS, 0, 1), NULL, &s->curves[i]));
     s->movers[i] = cprox_tube_along(s->curves[i], s->radius);
     paper_bezier_make(p, POINTS - 1, &s->bezier[i]);
   }

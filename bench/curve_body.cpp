@@ -54,7 +54,9 @@ class Problems {
       q = inCube();
       if (obstacle == kPolygon) q.z = 0;
     }
-    check(cprox_curve_create_bezier(points.data(), points.size(), 0, 1, nullptr, &p->curve));
+    cprox_curve_description bezier{};
+    bezier.kind = CPROX_CURVE_BEZIER, bezier.points = points.data(), bezier.n = points.size(), bezier.t1 = 1.0;
+    check(cprox_curve_create(&bezier, nullptr, &p->curve));
     cprox_pose pose = {inCube(), {uniform(-1, 1), 0, 0, uniform(-1, 1)}};
     if (obstacle == kPolygon) {
       pose.position.z = 0;

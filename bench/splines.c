@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/make_curve.h"
 #include "support/measure.h"
 #include "support/problems.h"
 #include "support/samples.h"
@@ -119,8 +120,9 @@ static void make_spline(rng *r, bool planar, size_t segments, cprox_workspace *w
   static double knots[MOST_SEGMENTS + 7];
   walk(r, planar, points, segments + 3);
   for (size_t i = 0; i < segments + 7; i++) knots[i] = (double)i - 3.0;
-  check(cprox_curve_create_bspline(points, segments + 3, 3, knots, segments + 7, 0.0, (double)segments, ws, &p->curve),
-        ws);
+  check(
+      curve_from(describe_bspline(points, segments + 3, 3, knots, segments + 7, 0.0, (double)segments), ws, &p->curve),
+      ws);
   p->segments = segments;
   p->segment = calloc(segments, sizeof *p->segment);
   p->before = calloc(segments + 1, sizeof *p->before);
@@ -143,7 +145,7 @@ static void make_series(rng *r, bool planar, cprox_workspace *ws, problem *p) {
     p->series[k] = vec_scale(0.4 / (double)((k + 1) / 2), rng_in_cube(r, 1.0));
     if (planar) p->series[k].z = 0.0;
   }
-  check(cprox_curve_create_trigonometric(p->series, TERMS, 0.0, 6.283185307179586, ws, &p->curve), ws);
+  check(curve_from(describe_trigonometric(p->series, TERMS, 0.0, 6.283185307179586), ws, &p->curve), ws);
   square_speed(p);
   p->paper = (paper_curve){0.0, 6.283185307179586, planar, p, series_point, series_energy};
 }

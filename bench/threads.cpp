@@ -42,7 +42,9 @@ struct Scene {
       for (cprox_vec3 &x : p) x = {unit(engine), unit(engine), unit(engine)};
       p[0] = {-0.2, 0.5, 0.5}, p[5] = {1.2, 0.5, 0.5};
       curves.push_back(nullptr);
-      cprox_curve_create_bezier(p, 6, 0.0, 1.0, nullptr, &curves.back());
+      cprox_curve_description bezier{};
+      bezier.kind = CPROX_CURVE_BEZIER, bezier.points = p, bezier.n = 6, bezier.t1 = 1.0;
+      cprox_curve_create(&bezier, nullptr, &curves.back());
       movers.push_back(cprox_tube_along(curves.back(), kTube));
     }
     for (std::size_t i = 0; i < kBoxes; ++i) {

@@ -5,12 +5,13 @@
 
 int main(void) {
   const cprox_vec3 points[4] = {{-1.0, 0.0, 0.6}, {-0.2, 0.5, 0.4}, {0.3, -0.4, 0.9}, {1.0, 0.2, 0.5}};
+  const cprox_curve_description bezier = {.kind = CPROX_CURVE_BEZIER, .points = points, .n = 4, .t1 = 1.0};
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_curve *path = NULL;
   cprox_body *box = NULL;
   cprox_result r;
 
-  if (cprox_curve_create_bezier(points, 4, 0.0, 1.0, workspace, &path) < 0 ||
+  if (cprox_curve_create(&bezier, workspace, &path) < 0 ||
       cprox_body_create_box((cprox_vec3){0.5, 0.5, 0.5}, workspace, &box) < 0 ||
       cprox_distance(cprox_tube_along(path, 0.02), cprox_obstacle_at(box, cprox_pose_identity()), NULL, workspace, &r) <
           0) {

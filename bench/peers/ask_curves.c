@@ -7,6 +7,7 @@
 
 #include "peers/ask.h"
 #include "peers/libraries.h"
+#include "support/make_curve.h"
 #include "support/problems.h"
 
 enum { MOST_SPLINE_POINTS = 23 };
@@ -126,8 +127,9 @@ void ask_splines_and_splines(const bench_size *size, asked *q) {
     for (int k = 0; k < 2; k++) {
       vec3 points[MOST_SPLINE_POINTS];
       for (size_t j = 0; j < MOST_SPLINE_POINTS; j++) points[j] = vec_add(vec(1.1 * k, 0, 0), rng_in_cube(&r, 0.5));
-      ask_check(cprox_curve_create_bspline(points, MOST_SPLINE_POINTS, 3, knots, MOST_SPLINE_POINTS + 4, 3.0,
-                                           MOST_SPLINE_POINTS, q->workspace, &curve[k]),
+      ask_check(curve_from(describe_bspline(points, MOST_SPLINE_POINTS, 3, knots, MOST_SPLINE_POINTS + 4, 3.0,
+                                            MOST_SPLINE_POINTS),
+                           q->workspace, &curve[k]),
                 q->workspace);
       libraries_make(points, MOST_SPLINE_POINTS, 3, knots, queries[i].own[k]);
     }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "peers/ask.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 
 enum { PATH_POINTS = 101, PATH_DEGREE = 5 };
@@ -88,7 +89,7 @@ static bool make_path(rng *r, solid_kind kind, bool touching, cprox_workspace *w
   for (size_t i = 0; i <= PATH_DEGREE; i++) control[i] = rng_in_cube(r, 1.5);
   const solid s = solid_random(r, kind);
   *p = (path){.curve = NULL};
-  ask_check(cprox_curve_create_bezier(control, PATH_DEGREE + 1, 0.0, 1.0, ws, &p->curve), ws);
+  ask_check(curve_from(describe_bezier(control, PATH_DEGREE + 1, 0.0, 1.0), ws, &p->curve), ws);
   ask_check(solid_body(&s, ws, &p->body), ws);
   p->target =
       cprox_obstacle_at(p->body, (cprox_pose){{s.position[0], s.position[1], s.position[2]},

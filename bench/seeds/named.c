@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "named.h"
+#include "support/make_curve.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -61,7 +62,7 @@ static void finish_series(named_curve *c, vec3 centre, double size) {
   for (size_t k = 0; k < 2 * c->harmonics + 1; k++) c->coefficient[k] = vec_scale(size, c->coefficient[k]);
   c->coefficient[0] = vec_add(c->coefficient[0], centre);
   square_of_derivative(c);
-  check(cprox_curve_create_trigonometric(c->coefficient, 2 * c->harmonics + 1, 0.0, 2.0 * PI, NULL, &c->curve));
+  check(curve_from(describe_trigonometric(c->coefficient, 2 * c->harmonics + 1, 0.0, 2.0 * PI), NULL, &c->curve));
   c->paper = (paper_curve){.t1 = 2.0 * PI, .planar = true, .self = c, .point = series_point, .energy = series_energy};
 }
 
@@ -112,7 +113,7 @@ static double involute_energy(const void *self, double t) {
 
 void named_involute(vec3 centre, double t1, named_curve *c) {
   *c = (named_curve){.centre = centre};
-  check(cprox_curve_create_involute(centre, 1.0, 0.0, 0.0, t1, NULL, &c->curve));
+  check(curve_from(describe_involute(centre, 1.0, 0.0, 0.0, t1), NULL, &c->curve));
   c->paper = (paper_curve){.t1 = t1, .planar = true, .self = c, .point = involute_point, .energy = involute_energy};
 }
 
@@ -130,7 +131,7 @@ static double unit_energy(const void *self, double t) {
 
 void named_spiral(vec3 centre, named_curve *c) {
   *c = (named_curve){.centre = centre};
-  check(cprox_curve_create_clothoid(centre, 0.0, 0.0, 1.0, -2.0 * PI, 2.0 * PI, NULL, &c->curve));
+  check(curve_from(describe_clothoid(centre, 0.0, 0.0, 1.0, -2.0 * PI, 2.0 * PI), NULL, &c->curve));
   c->paper = (paper_curve){
       .t0 = -2.0 * PI, .t1 = 2.0 * PI, .planar = true, .self = c, .point = compiled_point, .energy = unit_energy};
 }

@@ -6,6 +6,7 @@
 
 #include "peers/libraries.h"
 #include "stability/hard.h"
+#include "support/make_curve.h"
 
 static const double EPSILON = 1e-9;
 
@@ -103,9 +104,10 @@ static void by_library(const void *problems, size_t i, void *state, bench_answer
 /* ---- one family --------------------------------------------------------------------------------------------------------------------- */
 
 static void finish(hard *h) {
-  cprox_status status = cprox_curve_create_bezier(h->points, h->degree + 1, 0.0, 1.0, NULL, &h->curve);
+  cprox_status status = curve_from(describe_bezier(h->points, h->degree + 1, 0.0, 1.0), NULL, &h->curve);
   if (status >= 0 && h->n > 0) status = cprox_body_create_polytope(h->vertex, h->n, NULL, &h->body);
-  if (status >= 0 && h->n == 0) status = cprox_curve_create_bezier(h->other, h->degree + 1, 0.0, 1.0, NULL, &h->second);
+  if (status >= 0 && h->n == 0)
+    status = curve_from(describe_bezier(h->other, h->degree + 1, 0.0, 1.0), NULL, &h->second);
   if (status < 0) exit(1);
   paper_bezier_make(h->points, h->degree, &h->bezier[0]);
   if (h->n == 0) paper_bezier_make(h->other, h->degree, &h->bezier[1]);

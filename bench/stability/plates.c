@@ -9,6 +9,7 @@
 #include "base/frame.h"
 #include "peers/curve_peers.h"
 #include "stability/hard.h"
+#include "support/make_curve.h"
 
 enum { DEGREE = 5, FINE = 1000, COARSE = 100, WITNESSES = 20000 };
 static const double CONTACT = 1e-6;
@@ -83,7 +84,7 @@ static bool draw(rng *r, const kind *k, cprox_workspace *ws, pass *p) {
   const double size[3] = {rng_uniform(r, 0.4, 1.0), rng_uniform(r, 0.4, 1.0),
                           k->graze > 0.0 ? rng_uniform(r, 0.1, 0.5) : k->thickness};
   const cprox_pose pose = rng_pose(r, 0.3);
-  if (cprox_curve_create_bezier(control, DEGREE + 1, 0.0, 1.0, ws, &p->curve) != CPROX_OK ||
+  if (curve_from(describe_bezier(control, DEGREE + 1, 0.0, 1.0), ws, &p->curve) != CPROX_OK ||
       cprox_body_create_box(vec(size[0], size[1], size[2]), ws, &p->body) != CPROX_OK)
     exit(1);
   p->target = cprox_obstacle_at(p->body, pose);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "support/make_curve.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -107,7 +108,7 @@ static bool make_problem(rng *r, obstacle_kind kind, size_t degree, cprox_worksp
   p->degree = degree;
   make_points(r, degree, planar, p->points);
   obstacle_make(r, kind, &p->obstacle);
-  check(cprox_curve_create_bezier(p->points, degree + 1, 0.0, 1.0, NULL, &p->curve));
+  check(curve_from(describe_bezier(p->points, degree + 1, 0.0, 1.0), NULL, &p->curve));
   p->target = cprox_obstacle_at(p->obstacle.body, cprox_pose_identity());
   cprox_result result;
   check(cprox_distance(cprox_point_along(p->curve), p->target, NULL, ws, &result));
@@ -202,7 +203,7 @@ curve_pair *curve_pairs_make(size_t degree, bool planar, size_t n) {
       make_points(&r, degree, planar, p->points[k]);
       if (k == 1)
         for (size_t j = 0; j <= degree; j++) p->points[k][j] = vec_add(p->points[k][j], vec(0.8, 0.3, 0.0));
-      check(cprox_curve_create_bezier(p->points[k], degree + 1, 0.0, 1.0, NULL, &p->curve[k]));
+      check(curve_from(describe_bezier(p->points[k], degree + 1, 0.0, 1.0), NULL, &p->curve[k]));
       paper_bezier_make(p->points[k], degree, &p->bezier[k]);
       p->paper[k] = paper_bezier_curve(&p->bezier[k], planar);
     }

@@ -16,7 +16,7 @@ typedef struct effort {
 
 static void take_points(const cprox_curve *curve, size_t n, vec3 *points) {
   double t0, t1;
-  cprox_curve_domain(curve, &t0, &t1);
+  t0 = cprox_curve_get_info(curve).t0, t1 = cprox_curve_get_info(curve).t1;
   for (size_t i = 0; i <= n; i++) {
     const double t = i == n ? t1 : t0 + (t1 - t0) * (double)i / (double)n;
     cprox_curve_evaluate(curve, t, NULL, &points[i], NULL, NULL);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "support/make_curve.h"
 #include "worlds/worlds.h"
 
 void worlds_check(cprox_status status, const cprox_workspace *ws) {
@@ -25,7 +26,7 @@ void worlds_curve_make(rng *r, worlds_problem *p, vec3 centre, vec3 half, double
   const vec3 step = vec_scale(scale / 5.0, rng_unit(r));
   for (int k = 1; k < WORLDS_POINTS; k++)
     p->points[k] = vec_add(vec_add(p->points[k - 1], step), rng_in_cube(r, 0.15 * scale));
-  if (cprox_curve_create_bezier(p->points, WORLDS_POINTS, 0.0, 1.0, NULL, &p->curve) != CPROX_OK) exit(1);
+  if (curve_from(describe_bezier(p->points, WORLDS_POINTS, 0.0, 1.0), NULL, &p->curve) != CPROX_OK) exit(1);
 }
 
 cprox_mover worlds_mover(const worlds_problem *p) {

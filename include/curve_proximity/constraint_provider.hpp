@@ -13,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <curve_proximity/constraint_parameters.hpp>
@@ -154,21 +155,17 @@ using ConstraintProvider = LayoutProvider<providerLayout()>;
 
 /** The weight of each control point or coefficient in the curve's point at t; n = description.points.cols() of them. */
 inline void curveWeights(const CurveDescription &curve, double t, double *weights) {
-  const auto n = static_cast<std::size_t>(curve.points.cols());
-  if (curve.basis == "bezier")
-    cprox_bezier_weights(n, curve.t0, curve.t1, t, weights);
-  else if (curve.basis == "bspline")
-    cprox_bspline_weights(n, curve.degree, curve.knots.data(), t, weights);
-  else if (curve.basis == "polynomial")
-    cprox_polynomial_weights(n, t, weights);
-  else if (curve.basis == "legendre")
-    cprox_legendre_weights(n, curve.t0, curve.t1, t, weights);
-  else if (curve.basis == "lagrange")
-    cprox_lagrange_weights(curve.knots.data(), n, t, weights);
-  else if (curve.basis == "trigonometric")
-    cprox_trigonometric_weights(n, t, weights);
-  else
-    throw Error("no weights are known of the basis '" + curve.basis + "'");
+  static constexpr std::pair<const char *, cprox_curve_kind> kinds[] = {
+      {"bezier", CPROX_CURVE_BEZIER},         {"bspline", CPROX_CURVE_BSPLINE},
+      {"polynomial", CPROX_CURVE_POLYNOMIAL}, {"legendre", CPROX_CURVE_LEGENDRE},
+      {"lagrange", CPROX_CURVE_LAGRANGE},     {"trigonometric", CPROX_CURVE_TRIGONOMETRIC}};
+  for (const auto &[name, kind] : kinds) {
+    if (curve.basis != name) continue;
+    cprox_curve_description d = detail::describe(kind, curve.points, curve.t0, curve.t1);
+    d.degree = curve.degree, d.knots = curve.knots.data(), d.n_knots = curve.knots.size();
+    if (cprox_curve_weights(&d, t, weights) == CPROX_OK) return;
+  }
+  throw Error("no weights are known of the basis '" + curve.basis + "'");
 }
 
 /** The side as one body: its only part if that stands at the side's origin, otherwise a compound of all parts. */

@@ -141,16 +141,30 @@ BodyHandle makeBody(Create create, Keep keep = nullptr) {
   });
 }
 
-/** The same of a curve. */
-template <typename Create, typename Keep = std::nullptr_t>
-CurveHandle makeCurve(Create create, Keep keep = nullptr) {
+/** Makes the curve of a description and takes the handle over. `keep` lives as long as the curve. */
+template <typename Keep = std::nullptr_t>
+CurveHandle makeCurve(const cprox_curve_description &description, Keep keep = nullptr) {
   Workspace workspace;
   cprox_curve *curve = nullptr;
-  require(create(workspace.get(), &curve), workspace);
+  require(cprox_curve_create(&description, workspace.get(), &curve), workspace);
   return CurveHandle(curve, [keep](const cprox_curve *c) {
     (void)keep;
     cprox_curve_free(const_cast<cprox_curve *>(c));
   });
+}
+
+/** The description of a kind over [t0, t1], without its other members. */
+inline cprox_curve_description describe(cprox_curve_kind kind, double t0, double t1) {
+  cprox_curve_description d{};
+  d.kind = kind, d.t0 = t0, d.t1 = t1;
+  return d;
+}
+
+/** The same with points or coefficients, which stay the matrix's. */
+inline cprox_curve_description describe(cprox_curve_kind kind, const Eigen::Matrix3Xd &points, double t0, double t1) {
+  cprox_curve_description d = describe(kind, t0, t1);
+  d.points = columns(points), d.n = static_cast<std::size_t>(points.cols());
+  return d;
 }
 
 } // namespace detail
@@ -304,76 +318,62 @@ inline BodyHandle makeCompound(const std::vector<BodyHandle> &parts, const std::
 
 /** A Bézier curve on [t0, t1]; a column a control point. */
 inline CurveHandle makeBezier(const Eigen::Matrix3Xd &points, double t0 = 0.0, double t1 = 1.0) {
-  const std::vector<cprox_vec3> p = toVec3s(points);
-  return detail::makeCurve(
-      [&](cprox_workspace *w, cprox_curve **c) { return cprox_curve_create_bezier(p.data(), p.size(), t0, t1, w, c); });
+  return detail::makeCurve(detail::describe(CPROX_CURVE_BEZIER, points, t0, t1));
 }
 
 /** A B-spline curve on [t0, t1]; a column a control point, points.cols() + degree + 1 knots. */
 inline CurveHandle makeBspline(const Eigen::Matrix3Xd &points, std::size_t degree, const std::vector<double> &knots,
                                double t0, double t1) {
-  const std::vector<cprox_vec3> p = toVec3s(points);
-  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
-    return cprox_curve_create_bspline(p.data(), p.size(), degree, knots.data(), knots.size(), t0, t1, w, c);
-  });
+  cprox_curve_description d = detail::describe(CPROX_CURVE_BSPLINE, points, t0, t1);
+  d.degree = degree, d.knots = knots.data(), d.n_knots = knots.size();
+  return detail::makeCurve(d);
 }
 
 /** sum of coefficients.col(k) t^k on [t0, t1]. */
 inline CurveHandle makePolynomial(const Eigen::Matrix3Xd &coefficients, double t0, double t1) {
-  const std::vector<cprox_vec3> c = toVec3s(coefficients);
-  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **curve) {
-    return cprox_curve_create_polynomial(c.data(), c.size(), t0, t1, w, curve);
-  });
+  return detail::makeCurve(detail::describe(CPROX_CURVE_POLYNOMIAL, coefficients, t0, t1));
 }
 
 /** sum of coefficients.col(k) P_k((2t - t0 - t1)/(t1 - t0)). */
 inline CurveHandle makeLegendre(const Eigen::Matrix3Xd &coefficients, double t0, double t1) {
-  const std::vector<cprox_vec3> c = toVec3s(coefficients);
-  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **curve) {
-    return cprox_curve_create_legendre(c.data(), c.size(), t0, t1, w, curve);
-  });
+  return detail::makeCurve(detail::describe(CPROX_CURVE_LEGENDRE, coefficients, t0, t1));
 }
 
 /** The polynomial through points.col(i) at nodes[i], restricted to [t0, t1]. */
 inline CurveHandle makeLagrange(const Eigen::Matrix3Xd &points, const std::vector<double> &nodes, double t0,
                                 double t1) {
-  const std::vector<cprox_vec3> p = toVec3s(points);
-  if (p.size() != nodes.size()) throw Error("a lagrange curve needs as many nodes as points");
-  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **curve) {
-    return cprox_curve_create_lagrange(p.data(), nodes.data(), p.size(), t0, t1, w, curve);
-  });
+  cprox_curve_description d = detail::describe(CPROX_CURVE_LAGRANGE, points, t0, t1);
+  d.knots = nodes.data(), d.n_knots = nodes.size();
+  return detail::makeCurve(d);
 }
 
 /** A trigonometric series; the columns belong to 1, cos t, sin t, cos 2t, sin 2t, … */
 inline CurveHandle makeTrigonometric(const Eigen::Matrix3Xd &coefficients, double t0, double t1) {
-  const std::vector<cprox_vec3> c = toVec3s(coefficients);
-  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **curve) {
-    return cprox_curve_create_trigonometric(c.data(), c.size(), t0, t1, w, curve);
-  });
+  return detail::makeCurve(detail::describe(CPROX_CURVE_TRIGONOMETRIC, coefficients, t0, t1));
 }
 
 /** A clothoid: at `start` with the heading and curvature at t = 0, t being arc length. */
 inline CurveHandle makeClothoid(const Eigen::Vector3d &start, double heading, double curvature, double curvature_rate,
                                 double t0, double t1) {
-  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
-    return cprox_curve_create_clothoid(toVec3(start), heading, curvature, curvature_rate, t0, t1, w, c);
-  });
+  cprox_curve_description d = detail::describe(CPROX_CURVE_CLOTHOID, t0, t1);
+  d.start = toVec3(start), d.heading = heading, d.curvature = curvature, d.curvature_rate = curvature_rate;
+  return detail::makeCurve(d);
 }
 
-/** A Dubins path over [0, its length]; *path, if given, receives what it consists of. */
+/** A Dubins path over [0, its length]; cprox_curve_info.dubins says what it consists of. */
 inline CurveHandle makeDubins(const Eigen::Vector3d &start, double start_heading, const Eigen::Vector3d &end,
-                              double end_heading, double radius, cprox_dubins_word word = CPROX_DUBINS_SHORTEST,
-                              cprox_dubins_path *path = nullptr) {
-  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
-    return cprox_curve_create_dubins(toVec3(start), start_heading, toVec3(end), end_heading, radius, word, w, path, c);
-  });
+                              double end_heading, double radius, cprox_dubins_word word = CPROX_DUBINS_SHORTEST) {
+  cprox_curve_description d = detail::describe(CPROX_CURVE_DUBINS, 0.0, 0.0);
+  d.start = toVec3(start), d.heading = start_heading, d.end = toVec3(end), d.end_heading = end_heading;
+  d.radius = radius, d.word = word;
+  return detail::makeCurve(d);
 }
 
 /** The involute of a circle; it leaves the circle at t = 0 in the direction of the angle. */
 inline CurveHandle makeInvolute(const Eigen::Vector3d &centre, double radius, double angle, double t0, double t1) {
-  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
-    return cprox_curve_create_involute(toVec3(centre), radius, angle, t0, t1, w, c);
-  });
+  cprox_curve_description d = detail::describe(CPROX_CURVE_INVOLUTE, t0, t1);
+  d.start = toVec3(centre), d.radius = radius, d.heading = angle;
+  return detail::makeCurve(d);
 }
 
 /** A Pythagorean-hodograph curve by the Bernstein coefficients of its preimage; planar ones have x = y = 0. */
@@ -382,21 +382,20 @@ inline CurveHandle makePythagoreanHodograph(const Eigen::Vector3d &start,
                                             double t1 = 1.0) {
   std::vector<cprox_quat> a;
   for (const Eigen::Quaterniond &q : preimage) a.push_back({q.w(), q.x(), q.y(), q.z()});
-  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
-    return cprox_curve_create_pythagorean_hodograph(toVec3(start), a.data(), a.size(), t0, t1, w, c);
-  });
+  cprox_curve_description d = detail::describe(CPROX_CURVE_PYTHAGOREAN_HODOGRAPH, t0, t1);
+  d.start = toVec3(start), d.preimage = a.data(), d.n = a.size();
+  return detail::makeCurve(d);
 }
 
 /** Curves end to end. `ends`: empty, for their own ranges, or one more than there are curves. */
 inline CurveHandle makePiecewise(const std::vector<CurveHandle> &curves, const std::vector<double> &ends = {},
                                  double gap = 0.0) {
-  if (!ends.empty() && ends.size() != curves.size() + 1) throw Error("n curves have n + 1 ends of their ranges");
   std::vector<const cprox_curve *> handles;
   for (const CurveHandle &curve : curves) handles.push_back(curve.get());
-  return detail::makeCurve([&](cprox_workspace *w, cprox_curve **c) {
-    return cprox_curve_create_piecewise(handles.data(), handles.size(), ends.empty() ? nullptr : ends.data(), gap, w,
-                                        c);
-  });
+  cprox_curve_description d = detail::describe(CPROX_CURVE_PIECEWISE, 0.0, 0.0);
+  d.curves = handles.data(), d.n = handles.size(), d.gap = gap;
+  d.knots = ends.empty() ? nullptr : ends.data(), d.n_knots = ends.size();
+  return detail::makeCurve(d);
 }
 
 /** A smooth curve given by functions, as cprox_smooth_curve. */
@@ -436,9 +435,10 @@ inline CurveHandle makeSmooth(const SmoothCurve &functions, double t0, double t1
   c.user = &call;
   for (std::size_t k = 0; k < 3; ++k) c.error[k] = functions.error[k];
   c.accuracy = functions.accuracy;
+  cprox_curve_description d = detail::describe(CPROX_CURVE_SMOOTH, t0, t1);
+  d.smooth = &c;
   try {
-    return detail::makeCurve(
-        [&](cprox_workspace *w, cprox_curve **curve) { return cprox_curve_create_smooth(&c, t0, t1, w, curve); });
+    return detail::makeCurve(d);
   } catch (const Error &) {
     if (call.thrown) std::rethrow_exception(call.thrown);
     throw;
@@ -488,9 +488,9 @@ inline CurveHandle makeRectifiable(RectifiableCurve functions, double t0, double
   }
   c.user = keep.get();
   c.error = keep->error, c.velocity_error = keep->velocity_error, c.quadrature_error = keep->quadrature_error;
-  return detail::makeCurve(
-      [&](cprox_workspace *w, cprox_curve **curve) { return cprox_curve_create_rectifiable(&c, t0, t1, w, curve); },
-      keep);
+  cprox_curve_description d = detail::describe(CPROX_CURVE_RECTIFIABLE, t0, t1);
+  d.rectifiable = &c;
+  return detail::makeCurve(d, keep);
 }
 
 /* ---- the queries: as in cprox/query.h, throwing Error where there is no answer -------------------------------------

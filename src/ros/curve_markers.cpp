@@ -37,13 +37,14 @@ std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> framesAlong(const std::
 
 /** Appends the control points of [a, b], where joints of pieces lie inside those of halves without one. What is left about a joint
  *  after so many halvings is too short to be seen. */
-void addControlPoints(const cprox_curve *curve, double a, double b, int halvings, std::vector<cprox_vec3> &points) {
-  std::vector<cprox_vec3> own(cprox_curve_degree(curve) + 1);
+void addControlPoints(const cprox_curve *curve, double a, double b, int halvings, std::size_t degree,
+                      std::vector<cprox_vec3> &points) {
+  std::vector<cprox_vec3> own(degree + 1);
   if (cprox_curve_control_points(curve, a, b, nullptr, own.data()) == CPROX_OK) {
     points.insert(points.end(), own.begin(), own.end());
   } else if (halvings > 0) {
-    addControlPoints(curve, a, 0.5 * (a + b), halvings - 1, points);
-    addControlPoints(curve, 0.5 * (a + b), b, halvings - 1, points);
+    addControlPoints(curve, a, 0.5 * (a + b), halvings - 1, degree, points);
+    addControlPoints(curve, 0.5 * (a + b), b, halvings - 1, degree, points);
   }
 }
 
@@ -108,8 +109,8 @@ void addTube(Canvas &canvas, const std::string &space, const std::vector<Eigen::
 }
 
 void addCurve(Canvas &canvas, const CompiledCurve &curve, const PlacedBodies &placed, std::size_t samples) {
-  double t0 = 0.0, t1 = 0.0;
-  cprox_curve_domain(curve.curve.get(), &t0, &t1);
+  const cprox_curve_info info = cprox_curve_get_info(curve.curve.get());
+  const double t0 = info.t0, t1 = info.t1;
   std::vector<Eigen::Vector3d> points;
   std::vector<std_msgs::ColorRGBA> tints;
   for (std::size_t i = 0; i < samples; ++i) {
@@ -165,14 +166,14 @@ bool isOpen(const Answer &answer, QueryType query_type) {
 
 void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &line, const Answer &answer) {
   const cprox_curve *curve = line.curve.curve.get();
-  const std::size_t degree = cprox_curve_degree(curve);
+  const cprox_curve_info info = cprox_curve_get_info(curve);
+  const std::size_t degree = info.degree;
   if (degree == 0) return; // known by its arc length: it has no control points
   constexpr std::size_t INTERVALS = 48;
   constexpr std::uint32_t NODES = 4; /* for each of them and each target */
   const Targets all(drawing.snapshot, drawing.links, Query{});
   const std::vector<cprox_obstacle> targets = coreTargets(all);
-  double t0 = 0.0, t1 = 0.0;
-  cprox_curve_domain(curve, &t0, &t1);
+  const double t0 = info.t0, t1 = info.t1;
   std::vector<double> breaks(INTERVALS + 1);
   for (std::size_t i = 0; i <= INTERVALS; ++i)
     breaks[i] = i == INTERVALS ? t1 : t0 + (t1 - t0) * static_cast<double>(i) / INTERVALS;
@@ -189,7 +190,7 @@ void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &l
     // Nearer than the best point that is known: the least distance may be here.
     if (interval.lower > answer.result.upper) continue;
     std::vector<cprox_vec3> points;
-    addControlPoints(curve, interval.t0, interval.t1, HALVINGS, points);
+    addControlPoints(curve, interval.t0, interval.t1, HALVINGS, degree, points);
     addHull(canvas, points, line.curve.radius);
   }
 }

@@ -17,9 +17,8 @@ constexpr std::size_t MOST_BOXES = 32;
 constexpr double BOX_MARGIN = 1e-12;
 
 Eigen::AlignedBox3d bounds(const cprox_curve *curve) {
-  cprox_vec3 lowest, highest;
-  cprox_curve_bounds(curve, &lowest, &highest);
-  return {toEigen(lowest), toEigen(highest)};
+  const cprox_curve_info info = cprox_curve_get_info(curve);
+  return {toEigen(info.lowest), toEigen(info.highest)};
 }
 
 /* The two halves of a Bézier curve of n control points, by de Casteljau's averages: the left one takes the curve's place. */
@@ -37,11 +36,12 @@ void halve(cprox_vec3 *left, cprox_vec3 *right, std::size_t n) {
 /* Cuts each of the intervals between the breaks into `parts`, a power of two; empty where the intervals are too short to cut. */
 std::vector<Eigen::AlignedBox3d> cutBoxes(const cprox_curve *curve, const std::vector<double> &breaks,
                                           std::size_t parts) {
-  const Eigen::AlignedBox3d whole = bounds(curve);
+  const cprox_curve_info info = cprox_curve_get_info(curve);
+  const Eigen::AlignedBox3d whole(toEigen(info.lowest), toEigen(info.highest));
   const double size = whole.min().cwiseAbs().cwiseMax(whole.max().cwiseAbs()).maxCoeff();
-  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(BOX_MARGIN * size + cprox_curve_error(curve));
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(BOX_MARGIN * size + info.error);
 
-  const std::size_t n = cprox_curve_degree(curve) + 1;
+  const std::size_t n = info.degree + 1;
   std::vector<cprox_vec3> points(parts * n); // of one part after the other
   std::vector<Eigen::AlignedBox3d> boxes;
   boxes.reserve(parts * (breaks.size() - 1));
@@ -64,7 +64,7 @@ std::vector<Eigen::AlignedBox3d> cutBoxes(const cprox_curve *curve, const std::v
 
 /* Boxes of a curve whose pieces are not the description's: each a few pieces, a single piece cut. */
 std::vector<Eigen::AlignedBox3d> pieceBoxes(const CurveDescription &description, const cprox_curve *curve) {
-  const std::size_t n = cprox_curve_pieces(curve);
+  const std::size_t n = cprox_curve_get_info(curve).n_pieces;
   if (n == 1) return cutBoxes(curve, {description.t0, description.t1}, BOXES);
   std::vector<Eigen::AlignedBox3d> boxes(std::min(n, MOST_BOXES));
   for (std::size_t i = 0; i < n; ++i) {

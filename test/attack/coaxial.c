@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "attack.h"
+#include "support/make_curve.h"
 #include "support/reference.h"
 #include "support/shapes.h"
 
@@ -105,7 +106,7 @@ static cprox_status ask_carried(const coaxial *c, double length, cprox_workspace
   cprox_curve *curve = NULL;
   const vec3 points[2] = {c->pb.position, vec_add(c->pb.position, vec(0, 0, length))};
   cprox_status status = cprox_body_create_compound(&part, &still, 1, ws, &turned);
-  if (status >= 0) status = cprox_curve_create_bezier(points, 2, 0.0, 1.0, ws, &curve);
+  if (status >= 0) status = curve_from(describe_bezier(points, 2, 0.0, 1.0), ws, &curve);
   options->signed_distance = true;
   options->max_nodes = 50; /* each may take as long as a pair; what is left open is true as well */
   if (status >= 0)

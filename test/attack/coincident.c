@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "attack.h"
+#include "support/make_curve.h"
 #include "support/reference.h"
 #include "support/shapes.h"
 
@@ -170,7 +171,7 @@ static void check_carried(attack *t, rng *r, const overlap *o) {
   cprox_body *turned = NULL;
   cprox_curve *curve = NULL;
   cprox_status status = cprox_body_create_compound(&part, &still, 1, t->ws, &turned);
-  if (status >= 0) status = cprox_curve_create_bezier(points, 3, 0.0, 1.0, t->ws, &curve);
+  if (status >= 0) status = curve_from(describe_bezier(points, 3, 0.0, 1.0), t->ws, &curve);
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-9 * o->size;
   options.max_nodes = 2000;

@@ -28,8 +28,8 @@ static bool numbers_are_sound(query *q, const cprox_result *x, size_t targets) {
   const bool numbers = x->lower <= x->upper && !isnan(x->t) && isfinite(x->t_contact_lower) && vec_finite(x->normal) &&
                        (isinf(x->upper) || (vec_finite(x->witness_mover) && vec_finite(x->witness_obstacle)));
   attack_check(q->a, numbers, "%s: " RESULT " is not sound", q->query, SHOWN(x));
-  const size_t most =
-      (targets + 1) * ((size_t)q->options.max_nodes + 2) + cprox_curve_pieces(q->s.path.curve) * (targets + 1);
+  const size_t most = (targets + 1) * ((size_t)q->options.max_nodes + 2) +
+                      cprox_curve_get_info(q->s.path.curve).n_pieces * (targets + 1);
   return attack_check(q->a, x->nodes <= most, "%s: %u intervals with a budget of %u", q->query, x->nodes,
                       q->options.max_nodes);
 }
@@ -215,7 +215,7 @@ static void check_not_late(query *q, const cprox_result *x) {
   for (size_t i = 0; i < s->n; i++) {
     double where;
     const long double least = scene_least(s, i, q->r, before, t0, before, &where);
-    attack_check(q->a, least >= -scene_room(s, i) - 4.0L * cprox_curve_error(s->path.curve),
+    attack_check(q->a, least >= -scene_room(s, i) - 4.0L * cprox_curve_get_info(s->path.curve).error,
                  "time of contact: none before %.17g, but at %.17g they overlap by %.3Lg (obstacle %zu: %s)",
                  x->t_contact_lower, where, -least, i, s->obstacles[i].body.name);
   }

@@ -6,6 +6,7 @@
 #include "attack.h"
 #include "curve_proximity/cprox/robot.h"
 #include "curve_proximity/cprox/translation.h"
+#include "support/make_curve.h"
 #include "support/reference.h"
 
 /* A point or a box or a hull, its distance from a point known to 1e-18 of the sizes. */
@@ -68,7 +69,7 @@ static void along_curve(attack *a, rng *r, double epsilon) {
   const size_t n = 2 + rng_index(r, 4);
   for (size_t i = 0; i < n; i++) points[i] = rng_in_cube(r, 2.0);
   cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, a->ws, &curve) != CPROX_OK)
+  if (curve_from(describe_bezier(points, n, 0.0, 1.0), a->ws, &curve) != CPROX_OK)
     attack_fail(a, "%s", cprox_workspace_error(a->ws));
   cprox_options options = cprox_options_default();
   options.epsilon = epsilon;

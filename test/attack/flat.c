@@ -6,6 +6,7 @@
 
 #include "attack.h"
 #include "base/frame.h"
+#include "support/make_curve.h"
 #include "support/reference.h"
 
 enum { MOST_CORNERS = 9, MOST_POINTS = 6 };
@@ -86,8 +87,8 @@ static cprox_curve *make_curve(attack *a, const scene *c, const vec3 *points) {
   const size_t n = c->degree + 1;
   for (size_t i = 0; i < n + 2; i++) knots[i] = (double)i - 1.0;
   const cprox_status status =
-      c->splines ? cprox_curve_create_bspline(points, n, 1, knots, n + 2, 0.0, (double)(n - 1), a->ws, &curve)
-                 : cprox_curve_create_bezier(points, n, 0.0, 1.0, a->ws, &curve);
+      c->splines ? curve_from(describe_bspline(points, n, 1, knots, n + 2, 0.0, (double)(n - 1)), a->ws, &curve)
+                 : curve_from(describe_bezier(points, n, 0.0, 1.0), a->ws, &curve);
   if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_error(a->ws));
   return curve;
 }
@@ -241,7 +242,7 @@ static void slide(attack *a, rng *r) {
   cprox_body *body = NULL;
   cprox_curve *curve = NULL;
   if (cprox_body_create_polytope(corner, solid ? 4 : 3, a->ws, &body) != CPROX_OK ||
-      cprox_curve_create_bezier(points, n, 0.0, 1.0, a->ws, &curve) != CPROX_OK)
+      curve_from(describe_bezier(points, n, 0.0, 1.0), a->ws, &curve) != CPROX_OK)
     attack_fail(a, "%s", cprox_workspace_error(a->ws));
   const cprox_obstacle target = cprox_obstacle_at(body, cprox_pose_identity());
   cprox_options options = cprox_options_default();

@@ -7,6 +7,7 @@
 
 #include "attack.h"
 #include "base/rounding.h"
+#include "support/make_curve.h"
 #include "support/quad.h"
 #include "support/reference.h"
 
@@ -184,7 +185,7 @@ static void check_curve(attack *t, rng *r, const hull *h, vec3 p, quad wanted) {
   const vec3 along = vec_scale(4.0 * h->size, rng_index(r, 2) ? rng_unit(r) : vec(0, 0, 1));
   const vec3 points[3] = {vec_sub(p, along), p, vec_add(p, along)};
   cprox_curve *curve = NULL;
-  cprox_status status = cprox_curve_create_bezier(points, 3, 0.0, 1.0, t->ws, &curve);
+  cprox_status status = curve_from(describe_bezier(points, 3, 0.0, 1.0), t->ws, &curve);
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-9 * h->size;
   options.max_nodes = 2000;

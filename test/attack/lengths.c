@@ -7,6 +7,7 @@
 
 #include "attack.h"
 #include "support/builders.h"
+#include "support/make_curve.h"
 #include "support/reference.h"
 
 enum { KINDS = 13 };
@@ -93,7 +94,7 @@ static bool setting_make(attack *a, rng *r, setting *s) {
                      is_usual(s->margin) && is_usual(s->radius) && is_usual(s->delta) &&
                      vec_norm(s->a.pose.position) < 2e3;
   const bool made = make(a, r, &s->a) >= 0 && make(a, r, &s->b) >= 0 &&
-                    cprox_curve_create_bezier(s->ends, 2, 0.0, 1.0, a->ws, &s->curve) >= 0;
+                    curve_from(describe_bezier(s->ends, 2, 0.0, 1.0), a->ws, &s->curve) >= 0;
   attack_check(a, made || !usual, "usual sizes are refused: %s", cprox_workspace_error(a->ws));
   return made;
 }
@@ -209,7 +210,7 @@ static void ask_pair(attack *a, setting *s) {
 static void ask_curves(attack *a, rng *r, setting *s) {
   const vec3 ends[2] = {s->b.pose.position, vec_add(s->b.pose.position, rng_in_cube(r, s->b.size))};
   cprox_curve *other = NULL;
-  if (cprox_curve_create_bezier(ends, 2, 0.0, 1.0, a->ws, &other) < 0) return;
+  if (curve_from(describe_bezier(ends, 2, 0.0, 1.0), a->ws, &other) < 0) return;
   const truth t = truth_of(s, true, (long double)s->radius + (long double)s->margin);
   cprox_result result = {0};
   check(a, s, "curve",
@@ -253,8 +254,8 @@ static void ask_in_other_units(attack *a, rng *r) {
   bool made = make(a, r, &s.a) >= 0 && make(a, r, &s.b) >= 0;
   *r = before;
   made = made && make(a, r, &o.a) >= 0 && make(a, r, &o.b) >= 0 &&
-         cprox_curve_create_bezier(s.ends, 2, 0.0, 1.0, a->ws, &s.curve) >= 0 &&
-         cprox_curve_create_bezier(o.ends, 2, 0.0, 1.0, a->ws, &o.curve) >= 0;
+         curve_from(describe_bezier(s.ends, 2, 0.0, 1.0), a->ws, &s.curve) >= 0 &&
+         curve_from(describe_bezier(o.ends, 2, 0.0, 1.0), a->ws, &o.curve) >= 0;
   attack_check(a, made, "refused: %s", cprox_workspace_error(a->ws));
   const cprox_obstacle b = cprox_with_margin(cprox_obstacle_at(s.b.body, s.b.pose), s.margin),
                        ob = cprox_with_margin(cprox_obstacle_at(o.b.body, o.b.pose), o.margin);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "paths.h"
+#include "support/make_curve.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -262,14 +263,14 @@ static cprox_status make_helix(attack *a, rng *r, double scale, vec3 origin, boo
   const double error = helix_error(p), w = p->numbers[1];
   if (p->family == PATH_RECTIFIABLE) {
     const cprox_rectifiable_curve functions = {.point = helix_point, .length = helix_length, .user = p, .error = error};
-    return cprox_curve_create_rectifiable(&functions, p->t0, p->t1, a->ws, &p->curve);
+    return curve_from(describe_rectifiable(&functions, p->t0, p->t1), a->ws, &p->curve);
   }
   const cprox_smooth_curve functions = {.evaluate = helix_jet,
                                         .sixth = helix_sixth,
                                         .user = p,
                                         .error = {error, 8.0 * error * w, 8.0 * error * w * w},
                                         .accuracy = 1e-10 * scale};
-  return cprox_curve_create_smooth(&functions, p->t0, p->t1, a->ws, &p->curve);
+  return curve_from(describe_smooth(&functions, p->t0, p->t1), a->ws, &p->curve);
 }
 
 static cprox_status make_planar(attack *a, rng *r, double scale, vec3 origin, bool planar, random_path *p) {
@@ -279,9 +280,12 @@ static cprox_status make_planar(attack *a, rng *r, double scale, vec3 origin, bo
     p->numbers[3] = scale * rng_log_uniform(r, 0.05, 0.5);
     p->points[1] = vec(origin.x + rng_uniform(r, -scale, scale), origin.y + rng_uniform(r, -scale, scale), origin.z);
     const cprox_status status =
-        cprox_curve_create_dubins(origin, p->numbers[0], p->points[1], rng_uniform(r, -4.0, 4.0), p->numbers[3],
-                                  CPROX_DUBINS_SHORTEST, a->ws, &p->word, &p->curve);
-    if (status == CPROX_OK) cprox_curve_domain(p->curve, &p->t0, &p->t1);
+        curve_from(describe_dubins(origin, p->numbers[0], p->points[1], rng_uniform(r, -4.0, 4.0), p->numbers[3],
+                                   CPROX_DUBINS_SHORTEST),
+                   a->ws, &p->curve);
+    if (status != CPROX_OK) return status;
+    const cprox_curve_info info = cprox_curve_get_info(p->curve);
+    p->t0 = info.t0, p->t1 = info.t1, p->word = info.dubins;
     return status;
   }
   if (p->family == PATH_INVOLUTE) {
@@ -289,15 +293,15 @@ static cprox_status make_planar(attack *a, rng *r, double scale, vec3 origin, bo
     p->numbers[4] = rng_uniform(r, -4.0, 4.0);
     p->t0 = rng_uniform(r, -4.0, 3.0);
     p->t1 = p->t0 + rng_log_uniform(r, 1e-2, 4.0);
-    return cprox_curve_create_involute(origin, p->numbers[3], p->numbers[4], p->t0, p->t1, a->ws, &p->curve);
+    return curve_from(describe_involute(origin, p->numbers[3], p->numbers[4], p->t0, p->t1), a->ws, &p->curve);
   }
   if (p->family == PATH_CLOTHOID) {
     p->t1 = scale * rng_log_uniform(r, 0.1, 3.0);
     p->t0 = rng_index(r, 2) ? 0.0 : p->t1 * rng_uniform(r, -1.0, 0.9);
     p->numbers[1] = rng_index(r, 4) ? rng_uniform(r, -2.0, 2.0) / scale : 0.0;
     p->numbers[2] = rng_index(r, 4) ? rng_uniform(r, -1.0, 1.0) / (scale * scale) : 0.0;
-    return cprox_curve_create_clothoid(origin, p->numbers[0], p->numbers[1], p->numbers[2], p->t0, p->t1, a->ws,
-                                       &p->curve);
+    return curve_from(describe_clothoid(origin, p->numbers[0], p->numbers[1], p->numbers[2], p->t0, p->t1), a->ws,
+                      &p->curve);
   }
   /* Pythagorean hodographs; in the plane with preimages (a, 0, 0, b) */
   p->n = 1 + rng_index(r, 5);
@@ -307,7 +311,7 @@ static cprox_status make_planar(attack *a, rng *r, double scale, vec3 origin, bo
                                   size * rng_uniform(r, -1, 1), size * rng_uniform(r, -1, 1)};
     if (planar) p->preimage[i].x = p->preimage[i].y = 0.0;
   }
-  return cprox_curve_create_pythagorean_hodograph(origin, p->preimage, p->n, p->t0, p->t1, a->ws, &p->curve);
+  return curve_from(describe_pythagorean_hodograph(origin, p->preimage, p->n, p->t0, p->t1), a->ws, &p->curve);
 }
 
 static cprox_status make_piecewise(attack *a, rng *r, double scale, vec3 origin, bool planar, random_path *p) {
@@ -323,7 +327,7 @@ static cprox_status make_piecewise(attack *a, rng *r, double scale, vec3 origin,
     if (!curves[i]) return CPROX_INVALID;
     p->extent = fmax(p->extent, p->parts[i]->extent);
   }
-  return cprox_curve_create_piecewise(curves, p->n, p->break_at, INFINITY, a->ws, &p->curve);
+  return curve_from(describe_piecewise(curves, p->n, p->break_at, INFINITY), a->ws, &p->curve);
 }
 
 bool path_has_range(path_family family) {
@@ -336,27 +340,27 @@ static cprox_status make(attack *a, rng *r, double scale, vec3 origin, bool plan
   switch (p->family) {
     case PATH_BEZIER:
       make_points(r, 2, PATH_POINTS, scale, origin, planar, p);
-      return cprox_curve_create_bezier(p->points, p->n, p->t0, p->t1, a->ws, &p->curve);
+      return curve_from(describe_bezier(p->points, p->n, p->t0, p->t1), a->ws, &p->curve);
     case PATH_BSPLINE:
       make_bspline(r, scale, origin, planar, p);
-      return cprox_curve_create_bspline(p->points, p->n, p->degree, numbers, p->n + p->degree + 1, p->t0, p->t1, a->ws,
-                                        &p->curve);
+      return curve_from(describe_bspline(p->points, p->n, p->degree, numbers, p->n + p->degree + 1, p->t0, p->t1),
+                        a->ws, &p->curve);
     case PATH_POLYNOMIAL:
       make_coefficients(r, 1 + rng_index(r, 9), scale, origin, planar, p);
       for (size_t k = 1; k < p->n; k++) p->points[k] = vec_scale(pow(far, -(double)k), p->points[k]);
-      return cprox_curve_create_polynomial(p->points, p->n, p->t0, p->t1, a->ws, &p->curve);
+      return curve_from(describe_polynomial(p->points, p->n, p->t0, p->t1), a->ws, &p->curve);
     case PATH_LEGENDRE:
       make_coefficients(r, 1 + rng_index(r, PATH_POINTS), scale, origin, planar, p);
-      return cprox_curve_create_legendre(p->points, p->n, p->t0, p->t1, a->ws, &p->curve);
+      return curve_from(describe_legendre(p->points, p->n, p->t0, p->t1), a->ws, &p->curve);
     case PATH_LAGRANGE:
       make_points(r, 1, 8, scale, origin, planar, p);
       for (size_t i = 0; i < p->n; i++)
         numbers[i] =
             p->n == 1 ? p->t0 : p->t0 + (p->t1 - p->t0) * ((double)i + rng_uniform(r, 0.0, 0.3)) / (double)(p->n - 1);
-      return cprox_curve_create_lagrange(p->points, numbers, p->n, p->t0, p->t1, a->ws, &p->curve);
+      return curve_from(describe_lagrange(p->points, numbers, p->n, p->t0, p->t1), a->ws, &p->curve);
     case PATH_TRIGONOMETRIC:
       make_coefficients(r, 3 + 2 * rng_index(r, 4), scale, origin, planar, p);
-      return cprox_curve_create_trigonometric(p->points, p->n, p->t0, p->t1, a->ws, &p->curve);
+      return curve_from(describe_trigonometric(p->points, p->n, p->t0, p->t1), a->ws, &p->curve);
     case PATH_SMOOTH:
     case PATH_RECTIFIABLE: return make_helix(a, r, scale, origin, planar, p);
     case PATH_PIECEWISE: return make_piecewise(a, r, scale, origin, planar, p);

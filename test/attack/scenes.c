@@ -126,8 +126,9 @@ double scene_step(const random_path *p) {
 /* Points in double, poses of double, curves as far from their pieces as they say, parameters of double. */
 long double scene_witness_room(const scene *s, size_t i) {
   const obstacle *o = &s->obstacles[i];
-  long double room = 0x1p-46L * reach(s, i) + 4.0L * scene_room(s, i) + 2.0L * cprox_curve_error(s->path.curve);
-  if (o->curved) room += 2.0L * cprox_curve_error(o->path.curve);
+  long double room =
+      0x1p-46L * reach(s, i) + 4.0L * scene_room(s, i) + 2.0L * cprox_curve_get_info(s->path.curve).error;
+  if (o->curved) room += 2.0L * cprox_curve_get_info(o->path.curve).error;
   return room + 1e-11L * s->scale;
 }
 

@@ -7,6 +7,7 @@
 
 #include "scenes.h"
 #include "support/counting.h"
+#include "support/make_curve.h"
 
 enum { MOST = 2000, POINTS = 8 };
 
@@ -121,19 +122,19 @@ static cprox_status make_curve(size_t which, const material *m, cprox_workspace 
   const cprox_curve *lines[2] = {m->line, m->line};
   const double ends[3] = {0, 1, 2};
   switch (which) {
-    case 0: return cprox_curve_create_bezier(m->points, POINTS, 0, 1, ws, c);
-    case 1: return cprox_curve_create_bspline(m->points, POINTS, 3, m->knots, POINTS + 4, 3, POINTS, ws, c);
-    case 2: return cprox_curve_create_polynomial(m->points, POINTS, 0, 1, ws, c);
-    case 3: return cprox_curve_create_legendre(m->points, POINTS, 0, 1, ws, c);
-    case 4: return cprox_curve_create_lagrange(m->points, m->knots, POINTS, 0, 3, ws, c);
-    case 5: return cprox_curve_create_trigonometric(m->points, POINTS - 1, 0, 6, ws, c);
-    case 6: return cprox_curve_create_clothoid(m->points[0], 0, 1, 1, 0, 2, ws, c);
-    case 7: return cprox_curve_create_dubins(vec(0, 0, 0), 0, vec(3, 1, 0), 1, 0.5, CPROX_DUBINS_SHORTEST, ws, NULL, c);
-    case 8: return cprox_curve_create_involute(m->points[0], 1, 0, 0, 3, ws, c);
-    case 9: return cprox_curve_create_pythagorean_hodograph(m->points[0], preimage, 3, 0, 1, ws, c);
-    case 10: return cprox_curve_create_smooth(&smooth, 0, 1, ws, c);
-    case 11: return cprox_curve_create_rectifiable(&by_length, 0, 1, ws, c);
-    default: return cprox_curve_create_piecewise(lines, 2, ends, INFINITY, ws, c);
+    case 0: return curve_from(describe_bezier(m->points, POINTS, 0, 1), ws, c);
+    case 1: return curve_from(describe_bspline(m->points, POINTS, 3, m->knots, POINTS + 4, 3, POINTS), ws, c);
+    case 2: return curve_from(describe_polynomial(m->points, POINTS, 0, 1), ws, c);
+    case 3: return curve_from(describe_legendre(m->points, POINTS, 0, 1), ws, c);
+    case 4: return curve_from(describe_lagrange(m->points, m->knots, POINTS, 0, 3), ws, c);
+    case 5: return curve_from(describe_trigonometric(m->points, POINTS - 1, 0, 6), ws, c);
+    case 6: return curve_from(describe_clothoid(m->points[0], 0, 1, 1, 0, 2), ws, c);
+    case 7: return curve_from(describe_dubins(vec(0, 0, 0), 0, vec(3, 1, 0), 1, 0.5, CPROX_DUBINS_SHORTEST), ws, c);
+    case 8: return curve_from(describe_involute(m->points[0], 1, 0, 0, 3), ws, c);
+    case 9: return curve_from(describe_pythagorean_hodograph(m->points[0], preimage, 3, 0, 1), ws, c);
+    case 10: return curve_from(describe_smooth(&smooth, 0, 1), ws, c);
+    case 11: return curve_from(describe_rectifiable(&by_length, 0, 1), ws, c);
+    default: return curve_from(describe_piecewise(lines, 2, ends, INFINITY), ws, c);
   }
 }
 
@@ -206,7 +207,7 @@ static bool make_material(attack *a, rng *r, material *m) {
                          a->ws, &m->mesh);
   cprox_body_create_superquadric(vec(1, 2, 3), vec(2, 3, 4), a->ws, &m->quadric);
   cprox_body_create_points(m->points, POINTS, 0.0, SIZE_MAX, a->ws, &m->cloud);
-  cprox_curve_create_bezier(ends, 2, 0, 1, a->ws, &m->line);
+  curve_from(describe_bezier(ends, 2, 0, 1), a->ws, &m->line);
   return m->ball && m->hull && m->mesh && m->quadric && m->cloud && m->line;
 }
 

@@ -6,6 +6,7 @@
 
 #include "attack.h"
 #include "support/builders.h"
+#include "support/make_curve.h"
 #include "support/superquadrics.h"
 
 typedef struct scene {
@@ -84,7 +85,7 @@ static void ask_line(attack *a, rng *r, bool compound) {
   }
   const cprox_body *body = compound ? c.compound : c.body;
   cprox_curve *curve = NULL;
-  cprox_curve_create_bezier(c.ends, 2, 0.0, 1.0, a->ws, &curve);
+  curve_from(describe_bezier(c.ends, 2, 0.0, 1.0), a->ws, &curve);
   static const double epsilons[] = {0.0, 1e-9, 1e-6, 1e-2};
   cprox_options options = accurate(epsilons[rng_index(r, 4)]);
   options.max_nodes = 100;

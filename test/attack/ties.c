@@ -6,6 +6,7 @@
 
 #include "attack.h"
 #include "base/frame.h"
+#include "support/make_curve.h"
 
 enum { POINTS = 6 };
 
@@ -27,8 +28,8 @@ static cprox_curve *make_curve(attack *a, const problem *p, const vec3 *points) 
   double knots[POINTS + 2];
   for (size_t i = 0; i < p->n + 2; i++) knots[i] = ((double)i - 1.0) / (double)(p->n - 1);
   const cprox_status status =
-      p->splines ? cprox_curve_create_bspline(points, p->n, 1, knots, p->n + 2, 0.0, knots[p->n], a->ws, &curve)
-                 : cprox_curve_create_bezier(points, p->n, 0.0, 1.0, a->ws, &curve);
+      p->splines ? curve_from(describe_bspline(points, p->n, 1, knots, p->n + 2, 0.0, knots[p->n]), a->ws, &curve)
+                 : curve_from(describe_bezier(points, p->n, 0.0, 1.0), a->ws, &curve);
   if (status != CPROX_OK) attack_fail(a, "%s", cprox_workspace_error(a->ws));
   return curve;
 }
@@ -78,9 +79,9 @@ static double derivative(const problem *p, const cprox_gradient *g, const step *
   double w[POINTS], knots[POINTS + 2], sum = vec_dot(g->position, d->position) + vec_dot(g->rotation, d->turn);
   for (size_t i = 0; i < p->n + 2; i++) knots[i] = ((double)i - 1.0) / (double)(p->n - 1);
   if (p->splines)
-    cprox_bspline_weights(p->n, 1, knots, g->t, w);
+    curve_weights(describe_bspline(NULL, p->n, 1, knots, p->n + 1 + 1, 0.0, 1.0), g->t, w);
   else
-    cprox_bezier_weights(p->n, 0.0, 1.0, g->t, w);
+    curve_weights(describe_bezier(NULL, p->n, 0.0, 1.0), g->t, w);
   for (size_t i = 0; i < p->n; i++) sum += w[i] * vec_dot(g->mover, d->points[i]);
   return sum;
 }

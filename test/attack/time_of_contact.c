@@ -7,6 +7,7 @@
 
 #include "attack.h"
 #include "support/builders.h"
+#include "support/make_curve.h"
 #include "support/reference.h"
 
 typedef struct meeting {
@@ -63,7 +64,7 @@ static void one_case(attack *a, rng *r) {
   if (kind == 0) {
     const vec3 ends[2] = {{m.from, 0, 0}, {m.to, 0, 0}};
     cprox_curve *curve = NULL;
-    cprox_curve_create_bezier(ends, 2, m.t0, m.t1, a->ws, &curve);
+    curve_from(describe_bezier(ends, 2, m.t0, m.t1), a->ws, &curve);
     check(a, &m, "curve", cprox_time_of_contact(cprox_tube_along(curve, m.radius), target, &m.options, a->ws, &result),
           &result);
     cprox_curve_free(curve);

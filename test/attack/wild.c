@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "attack.h"
+#include "support/make_curve.h"
 
 enum { POINTS = 6 };
 
@@ -251,9 +252,9 @@ static void make_by_function(wild *w, size_t which, double t0, double t1) {
       .point = point_of_line, .length = length_of_line, .user = line[which], .error = 1e-12 * size(w)};
   cprox_curve **curve = &w->curve[which];
   if (rng_index(w->r, 2))
-    made(w, "smooth", cprox_curve_create_smooth(&smooth, t0, t1, w->ws, curve), curve);
+    made(w, "smooth", curve_from(describe_smooth(&smooth, t0, t1), w->ws, curve), curve);
   else
-    made(w, "rectifiable", cprox_curve_create_rectifiable(&by_length, t0, t1, w->ws, curve), curve);
+    made(w, "rectifiable", curve_from(describe_rectifiable(&by_length, t0, t1), w->ws, curve), curve);
 }
 
 static void make_curve(wild *w, size_t which) {
@@ -267,44 +268,47 @@ static void make_curve(wild *w, size_t which) {
   for (size_t i = 0; i < 4 * POINTS; i++) numbers[i] = rng_index(w->r, 100) ? (double)i : number(w);
   double t0 = rng_index(w->r, 3) ? 0.0 : number(w), t1 = rng_index(w->r, 3) ? 1.0 : number(w);
   switch (rng_index(w->r, 12)) {
-    case 0: made(w, "bezier", cprox_curve_create_bezier(n ? points : NULL, n, t0, t1, w->ws, curve), curve); break;
+    case 0: made(w, "bezier", curve_from(describe_bezier(n ? points : NULL, n, t0, t1), w->ws, curve), curve); break;
     case 1:
       if (rng_index(w->r, 4)) t0 = (double)degree, t1 = (double)n;
       made(w, "bspline",
-           cprox_curve_create_bspline(n ? points : NULL, n, degree, numbers, n + degree + 1, t0, t1, w->ws, curve),
+           curve_from(describe_bspline(n ? points : NULL, n, degree, numbers, n + degree + 1, t0, t1), w->ws, curve),
            curve);
       break;
     case 2:
-      made(w, "polynomial", cprox_curve_create_polynomial(n ? points : NULL, n, t0, t1, w->ws, curve), curve);
+      made(w, "polynomial", curve_from(describe_polynomial(n ? points : NULL, n, t0, t1), w->ws, curve), curve);
       break;
-    case 3: made(w, "legendre", cprox_curve_create_legendre(n ? points : NULL, n, t0, t1, w->ws, curve), curve); break;
+    case 3:
+      made(w, "legendre", curve_from(describe_legendre(n ? points : NULL, n, t0, t1), w->ws, curve), curve);
+      break;
     case 4:
-      made(w, "lagrange", cprox_curve_create_lagrange(n ? points : NULL, n ? numbers : NULL, n, t0, t1, w->ws, curve),
+      made(w, "lagrange", curve_from(describe_lagrange(n ? points : NULL, n ? numbers : NULL, n, t0, t1), w->ws, curve),
            curve);
       break;
     case 5:
-      made(w, "trigonometric", cprox_curve_create_trigonometric(n ? points : NULL, n, t0, t1, w->ws, curve), curve);
+      made(w, "trigonometric", curve_from(describe_trigonometric(n ? points : NULL, n, t0, t1), w->ws, curve), curve);
       break;
     case 6:
-      made(w, "clothoid", cprox_curve_create_clothoid(points[0], number(w), number(w), number(w), t0, t1, w->ws, curve),
-           curve);
+      made(w, "clothoid",
+           curve_from(describe_clothoid(points[0], number(w), number(w), number(w), t0, t1), w->ws, curve), curve);
       break;
     case 7: {
       const cprox_dubins_word word =
           rng_index(w->r, 10) ? (cprox_dubins_word)rng_index(w->r, 7) : (cprox_dubins_word)99;
       vec3 start = point(w), end = point(w);
       if (rng_index(w->r, 8)) end.z = start.z;
-      made(w, "dubins", cprox_curve_create_dubins(start, number(w), end, number(w), size(w), word, w->ws, NULL, curve),
+      made(w, "dubins", curve_from(describe_dubins(start, number(w), end, number(w), size(w), word), w->ws, curve),
            curve);
       break;
     }
     case 8:
-      made(w, "involute", cprox_curve_create_involute(point(w), size(w), number(w), t0, t1, w->ws, curve), curve);
+      made(w, "involute", curve_from(describe_involute(point(w), size(w), number(w), t0, t1), w->ws, curve), curve);
       break;
     case 9:
-      made(w, "pythagorean",
-           cprox_curve_create_pythagorean_hodograph(point(w), preimage, rng_index(w->r, POINTS), t0, t1, w->ws, curve),
-           curve);
+      made(
+          w, "pythagorean",
+          curve_from(describe_pythagorean_hodograph(point(w), preimage, rng_index(w->r, POINTS), t0, t1), w->ws, curve),
+          curve);
       break;
     default: make_by_function(w, which, t0, t1); break;
   }
@@ -317,7 +321,7 @@ static void chain(wild *w) {
   const double ends[3] = {0.0, rng_index(w->r, 4) ? 0.5 : number(w), 1.0};
   const double gap = rng_index(w->r, 2) ? INFINITY : number(w);
   made(w, "piecewise",
-       cprox_curve_create_piecewise(curves, rng_index(w->r, 3), rng_index(w->r, 3) ? ends : NULL, gap, w->ws, &both),
+       curve_from(describe_piecewise(curves, rng_index(w->r, 3), rng_index(w->r, 3) ? ends : NULL, gap), w->ws, &both),
        &both);
   vec3 at;
   if (both) check_status(w, "evaluate", cprox_curve_evaluate(both, number(w), w->a->ws, &at, NULL, NULL), w->a->ws);
@@ -486,7 +490,7 @@ static void one_case(attack *a, rng *r) {
   }
   /* one curve at least, so that there is something to ask */
   const vec3 ends[2] = {vec(-1, 0.5, 2), vec(1, 0, 2)};
-  if (!w.curve[0]) cprox_curve_create_bezier(ends, 2, 0.0, 1.0, a->ws, &w.curve[0]);
+  if (!w.curve[0]) curve_from(describe_bezier(ends, 2, 0.0, 1.0), a->ws, &w.curve[0]);
   join(&w);
   chain(&w);
   for (int k = 0; k < 3; k++) ask(&w);

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 
 #include "curve_proximity/cprox.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -78,7 +79,7 @@ static bool make_problem(sample_problem *p, rng *r, cprox_workspace *ws) {
   }
   p->offset = rng_index(r, 2) ? 0.0 : rng_uniform(r, 0.0, 0.1 * p->scale);
   make_body(p, r, ws);
-  return p->body && cprox_curve_create_bezier(p->points, p->degree + 1, 0.0, 1.0, ws, &p->curve) == CPROX_OK;
+  return p->body && curve_from(describe_bezier(p->points, p->degree + 1, 0.0, 1.0), ws, &p->curve) == CPROX_OK;
 }
 
 static void free_problem(sample_problem *p) {

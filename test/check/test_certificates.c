@@ -100,7 +100,7 @@ static double seen(const asked *q, size_t target, cprox_workspace *ws) {
   const query_mesh *mesh = &q->mesh[target];
   const cprox_obstacle *t = &q->targets[target];
   double least = INFINITY, t0, t1;
-  cprox_curve_domain(q->mover.curve, &t0, &t1);
+  t0 = cprox_curve_get_info(q->mover.curve).t0, t1 = cprox_curve_get_info(q->mover.curve).t1;
   for (int i = 0; i <= SAMPLES; i++) {
     vec3 p;
     const double at = fmin(t0 + (t1 - t0) * i / SAMPLES, t1);

@@ -12,7 +12,7 @@
 static double sampled_distance(const batch_scene *s, size_t i) {
   enum { STEPS = 200 };
   double least = INFINITY, t0, t1;
-  cprox_curve_domain(s->curves[i], &t0, &t1);
+  t0 = cprox_curve_get_info(s->curves[i]).t0, t1 = cprox_curve_get_info(s->curves[i]).t1;
   for (int k = 0; k <= STEPS; k++) {
     cprox_vec3 at;
     cprox_curve_evaluate(s->curves[i], t0 + (t1 - t0) * k / STEPS, NULL, &at, NULL, NULL);
@@ -119,7 +119,7 @@ CASE(a_disc_tells_nothing_of_curves_off_its_plane) {
   const double distance[3] = {0.05, 0.05, 0.0};
   for (int i = 0; i < 3; i++) {
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_bezier(points[i], 3, 0, 1, workspace, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_bezier(points[i], 3, 0, 1), workspace, &curve), CPROX_OK);
     const cprox_mover mover = cprox_point_along(curve);
     cprox_result r;
     assert_int_equal(cprox_batch_distance(batch, &mover, 0, 1, NULL, workspace, &r), CPROX_OK);
@@ -158,7 +158,7 @@ CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
     const vec3 out = rng_unit(&r), at = vec((double)centre.x, (double)centre.y, (double)centre.z);
     const vec3 near = vec_axpy(at, rng_uniform(&r, 1.1, 2.0), out), ends[2] = {near, vec_axpy(near, 1.0, out)};
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_bezier(ends, 2, 0, 1, workspace, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_bezier(ends, 2, 0, 1), workspace, &curve), CPROX_OK);
     const long double truth = ref_point_segment(centre, ref_vec(ends[0]), ref_vec(ends[1])) - 1.0L;
     const cprox_mover mover = cprox_point_along(curve);
     cprox_options options = cprox_options_default();
@@ -202,7 +202,7 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
     const vec3 p[6] = {vec(-0.7, 0, 0),      vec(-0.5, 0, 0), rng_in_cube(&r, 0.5),
                        rng_in_cube(&r, 0.5), vec(0.5, 0, 0),  vec(0.7, 0, 0)};
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_bezier(p, 6, 0, 1, workspace, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_bezier(p, 6, 0, 1), workspace, &curve), CPROX_OK);
     const cprox_mover mover = cprox_tube_along(curve, i % 3 ? 0.005 : 0.0);
     for (int v = DISTANCE; v < QUERY_TYPES; v++) {
       const double delta = v == TOLERANCE ? 0.01 : 0.0;

@@ -5,6 +5,7 @@
 #include "curve/curve.h"
 #include "curve_query/curve_convex.h"
 #include "support/cases.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -42,12 +43,12 @@ static vec3 on_grid(vec3 p, double step) {
 /* A spline whose knots have the multiplicity of the degree: its de Boor points are those of its pieces. */
 static cprox_status make_curve(problem *p, cprox_workspace *ws) {
   const size_t n = p->pieces * p->degree + 1;
-  if (p->pieces == 1) return cprox_curve_create_bezier(p->points, n, 0.0, 1.0, ws, &p->curve);
+  if (p->pieces == 1) return curve_from(describe_bezier(p->points, n, 0.0, 1.0), ws, &p->curve);
   double knots[MAX_POINTS + LOW_DEGREE + 1];
   for (size_t i = 0; i < n + p->degree + 1; i++)
     knots[i] = i == 0 ? 0.0 : fmin((double)((i - 1) / p->degree), (double)p->pieces);
-  return cprox_curve_create_bspline(p->points, n, p->degree, knots, n + p->degree + 1, 0.0, (double)p->pieces, ws,
-                                    &p->curve);
+  return curve_from(describe_bspline(p->points, n, p->degree, knots, n + p->degree + 1, 0.0, (double)p->pieces), ws,
+                    &p->curve);
 }
 
 /* A walk, or points all over the place. */

@@ -29,7 +29,7 @@ typedef struct world {
 static world world_make(rng *r) {
   world w = {.degree = 1 + rng_index(r, 7), .n = 1 + rng_index(r, MOST_TARGETS)};
   for (size_t i = 0; i <= w.degree; i++) w.points[i] = rng_in_cube(r, 2.0);
-  assert_int_equal(cprox_curve_create_bezier(w.points, w.degree + 1, 0.0, 1.0, ws, &w.curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(w.points, w.degree + 1, 0.0, 1.0), ws, &w.curve), CPROX_OK);
   for (size_t i = 0; i < w.n; i++) {
     w.half[i] = rng_uniform(r, 0.02, 0.4);
     const double edge = 2.0 * w.half[i];
@@ -166,7 +166,7 @@ CASE(intervals_may_begin_and_end_inside_pieces) {
   for (int i = 0; i < N + 4; i++) knots[i] = i;
   for (int i = 0; i <= INTERVALS; i++) breaks[i] = 3.0 + 60.0 * i / INTERVALS;
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_bspline(p, N, 3, knots, N + 4, 3, N, ws, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bspline(p, N, 3, knots, N + 4, 3, N), ws, &curve), CPROX_OK);
   cprox_body *floor = NULL;
   assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 0, ws, &floor), CPROX_OK);
   const cprox_obstacle target = cprox_obstacle_at(floor, cprox_pose_identity());

@@ -9,13 +9,14 @@
 #include "support/cases.h"
 #include "support/counting.h"
 #include "support/curves.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
 
 static cprox_curve *bezier_on(const vec3 *points, size_t n, double t0, double t1) {
   cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, t0, t1, ws, &curve) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
+  if (curve_from(describe_bezier(points, n, t0, t1), ws, &curve) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }
 
@@ -134,7 +135,7 @@ static cprox_curve *spline(rng *r, size_t n, size_t degree, double t1) {
   }
   if (rng_index(r, 2) && degree > 1 && n > degree + 2) knots[degree + 2] = knots[degree + 1]; /* a double knot */
   cprox_curve *curve = NULL;
-  if (cprox_curve_create_bspline(points, n, degree, knots, n + degree + 1, 0.0, t1, ws, &curve) != CPROX_OK)
+  if (curve_from(describe_bspline(points, n, degree, knots, n + degree + 1, 0.0, t1), ws, &curve) != CPROX_OK)
     fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }

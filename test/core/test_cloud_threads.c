@@ -7,6 +7,7 @@
 
 #include "curve_proximity/cprox.h"
 #include "support/cases.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 
 static cprox_body *cloud(const vec3 *points, size_t n, cprox_workspace *ws) {
@@ -20,7 +21,7 @@ static cprox_curve *random_curve(rng *r) {
   vec3 points[4];
   cprox_curve *curve = NULL;
   for (int k = 0; k < 4; k++) points[k] = rng_in_cube(r, 1.0);
-  assert_int_equal(cprox_curve_create_bezier(points, 4, 0.0, 1.0, NULL, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(points, 4, 0.0, 1.0), NULL, &curve), CPROX_OK);
   return curve;
 }
 
@@ -134,7 +135,7 @@ static void *reader(void *argument) {
   cprox_workspace *ws = cprox_workspace_create();
   const vec3 line[2] = {{-1, 0, 5}, {1, 0, 5}};
   cprox_curve *curve = NULL;
-  size_t wrong = cprox_curve_create_bezier(line, 2, 0.0, 1.0, ws, &curve) != CPROX_OK;
+  size_t wrong = curve_from(describe_bezier(line, 2, 0.0, 1.0), ws, &curve) != CPROX_OK;
   for (bool ended = false; !ended && !wrong;) {
     pthread_mutex_lock(&b->mutex);
     const int mine = b->newest;

@@ -5,6 +5,7 @@
 #include "curve/curve.h"
 #include "support/cases.h"
 #include "support/curves.h"
+#include "support/make_curve.h"
 #include "support/reference.h"
 
 #define U 0x1p-53
@@ -12,7 +13,7 @@
 static cprox_curve *compile(const test_spline *s) {
   cprox_curve *c = NULL;
   assert_int_equal(
-      cprox_curve_create_bspline(s->points, s->n_points, s->degree, s->knots, s->n_knots, s->t0, s->t1, NULL, &c),
+      curve_from(describe_bspline(s->points, s->n_points, s->degree, s->knots, s->n_knots, s->t0, s->t1), NULL, &c),
       CPROX_OK);
   return c;
 }
@@ -69,7 +70,7 @@ CASE(pieces_cover_the_range_exactly) {
     const test_spline s = random_spline(&r, random_degree(&r));
     cprox_curve *c = compile(&s);
     double t0, t1;
-    cprox_curve_domain(c, &t0, &t1);
+    t0 = cprox_curve_get_info(c).t0, t1 = cprox_curve_get_info(c).t1;
     assert_true(t0 == s.t0 && t1 == s.t1);
     for (size_t k = 0; k < c->n_pieces; k++) {
       assert_true(c->breaks[k] < c->breaks[k + 1]);
@@ -162,14 +163,14 @@ CASE(a_curve_that_jumps_keeps_both_sides) {
   const vec3 p[4] = {{0, 0, 0}, {1, 0, 0}, {5, 0, 0}, {6, 0, 0}};
   const double knots[6] = {0, 0, 1, 1, 2, 2};
   cprox_curve *c = NULL;
-  assert_int_equal(cprox_curve_create_bspline(p, 4, 1, knots, 6, 0.0, 2.0, NULL, &c), CPROX_OK);
+  assert_int_equal(curve_from(describe_bspline(p, 4, 1, knots, 6, 0.0, 2.0), NULL, &c), CPROX_OK);
   assert_int_equal(c->n_pieces, 2);
   assert_true(curve_piece(c, 0)[1].x == 1.0 && curve_piece(c, 1)[0].x == 5.0);
   vec3 at;
   assert_int_equal(cprox_curve_evaluate(c, 1.0, NULL, &at, NULL, NULL), CPROX_OK);
   assert_true(at.x == 5.0);
   vec3 low, high;
-  cprox_curve_bounds(c, &low, &high);
+  low = cprox_curve_get_info(c).lowest, high = cprox_curve_get_info(c).highest;
   assert_true(low.x <= 0.0 && low.x > -1e-14 && high.x >= 6.0 && high.x < 6.0 + 1e-14);
   cprox_curve_free(c);
 }
@@ -185,8 +186,9 @@ CASE(a_hundred_thousand_control_points_are_taken) {
   for (size_t i = 0; i < n; i++) p[i] = vec((double)i * 1e-3, sin((double)i * 0.01), 0.0);
   for (size_t i = 0; i < n + degree + 1; i++) knots[i] = (double)i;
   cprox_curve *c = NULL;
-  assert_int_equal(cprox_curve_create_bspline(p, n, degree, knots, n + degree + 1, 3.0, (double)n, NULL, &c), CPROX_OK);
-  assert_int_equal(cprox_curve_pieces(c), n - degree);
+  assert_int_equal(curve_from(describe_bspline(p, n, degree, knots, n + degree + 1, 3.0, (double)n), NULL, &c),
+                   CPROX_OK);
+  assert_int_equal(cprox_curve_get_info(c).n_pieces, n - degree);
   vec3 at;
   assert_int_equal(cprox_curve_evaluate(c, (double)n - 0.5, NULL, &at, NULL, NULL), CPROX_OK);
   const vec3l exact = ref_bspline(p, degree, knots, n - 1, (long double)n - 0.5L, 0);

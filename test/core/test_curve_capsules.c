@@ -6,6 +6,7 @@
 #include "curve/pack.h"
 #include "support/cases.h"
 #include "support/curves.h"
+#include "support/make_curve.h"
 #include "support/reference.h"
 
 /* The pieces [first, end) below a node of the heap. */
@@ -57,12 +58,13 @@ CASE(every_capsule_contains_its_part_of_the_curve) {
     const test_spline s = random_spline(&r, 1 + rng_index(&r, rng_index(&r, 8) ? 8 : 60));
     cprox_curve *c = NULL;
     assert_int_equal(
-        cprox_curve_create_bspline(s.points, s.n_points, s.degree, s.knots, s.n_knots, s.t0, s.t1, NULL, &c), CPROX_OK);
+        curve_from(describe_bspline(s.points, s.n_points, s.degree, s.knots, s.n_knots, s.t0, s.t1), NULL, &c),
+        CPROX_OK);
     check_tree(c, &s);
 
     /* the box of the whole curve likewise; t1 belongs to the span before it */
     vec3 low, high;
-    cprox_curve_bounds(c, &low, &high);
+    low = cprox_curve_get_info(c).lowest, high = cprox_curve_get_info(c).highest;
     for (size_t k = 0; k <= 20; k++) {
       const double t = fmin(s.t0 + (double)k / 20.0 * (s.t1 - s.t0), s.t1);
       size_t span = s.degree;
@@ -118,7 +120,8 @@ CASE(packs_reach_no_farther_than_what_they_contain) {
     const test_spline s = random_spline(&r, 1 + rng_index(&r, 8));
     cprox_curve *c = NULL;
     assert_int_equal(
-        cprox_curve_create_bspline(s.points, s.n_points, s.degree, s.knots, s.n_knots, s.t0, s.t1, NULL, &c), CPROX_OK);
+        curve_from(describe_bspline(s.points, s.n_points, s.degree, s.knots, s.n_knots, s.t0, s.t1), NULL, &c),
+        CPROX_OK);
     check_packs(c, &r);
     cprox_curve_free(c);
   }
@@ -135,7 +138,7 @@ CASE(closed_curves_are_contained) {
     if (rng_index(&r, 2)) p[degree].x = nextafter(p[0].x, INFINITY);
     if (rng_index(&r, 4) == 0) p[degree].y += rng_log_uniform(&r, 1e-300, 1e-10);
     cprox_curve *c = NULL;
-    assert_int_equal(cprox_curve_create_bezier(p, degree + 1, 0.0, 1.0, NULL, &c), CPROX_OK);
+    assert_int_equal(curve_from(describe_bezier(p, degree + 1, 0.0, 1.0), NULL, &c), CPROX_OK);
     check_tree(c, NULL);
     cprox_curve_free(c);
   }
@@ -151,7 +154,7 @@ CASE(degenerate_curves_are_contained) {
                                {{-size, size, 0}, {1, 1, 1}, {0, 0, size}, {size, size, size}}};
     for (size_t k = 0; k < 4; k++) {
       cprox_curve *c = NULL;
-      assert_int_equal(cprox_curve_create_bezier(curves[k], 4, 0.0, 1.0, NULL, &c), CPROX_OK);
+      assert_int_equal(curve_from(describe_bezier(curves[k], 4, 0.0, 1.0), NULL, &c), CPROX_OK);
       check_tree(c, NULL);
       assert_true(isfinite(curve_capsule_at(c, 1).radius));
       cprox_curve_free(c);
@@ -171,10 +174,10 @@ CASE(capsules_are_no_wider_than_they_need_be) {
   }
   for (size_t i = 0; i < 71; i++) knots[i] = (double)i;
   cprox_curve *c = NULL;
-  assert_int_equal(cprox_curve_create_bspline(straight, 67, 3, knots, 71, 3.0, 67.0, NULL, &c), CPROX_OK);
+  assert_int_equal(curve_from(describe_bspline(straight, 67, 3, knots, 71, 3.0, 67.0), NULL, &c), CPROX_OK);
   assert_true(curve_capsule_at(c, 1).radius < 2e-8); /* six levels of 2^-53 · 2e6, and 1e-9 of the leaf's */
   cprox_curve_free(c);
-  assert_int_equal(cprox_curve_create_bspline(arc, 67, 3, knots, 71, 3.0, 67.0, NULL, &c), CPROX_OK);
+  assert_int_equal(curve_from(describe_bspline(arc, 67, 3, knots, 71, 3.0, 67.0), NULL, &c), CPROX_OK);
   assert_true(curve_capsule_at(c, 1).radius >= 0.99 && curve_capsule_at(c, 1).radius < 2.0);
   assert_true(curve_capsule_at(c, 64).radius < 1e-3);
   cprox_curve_free(c);

@@ -8,6 +8,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/csv.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -239,7 +240,7 @@ CASE(long_splines_are_searched_by_their_trees) {
   }
   cprox_curve *curve[2] = {NULL, NULL};
   for (int k = 0; k < 2; k++)
-    assert_int_equal(cprox_curve_create_bspline(points[k], N, 3, knots, N + 4, knots[3], knots[N], ws, &curve[k]),
+    assert_int_equal(curve_from(describe_bspline(points[k], N, 3, knots, N + 4, knots[3], knots[N]), ws, &curve[k]),
                      CPROX_OK);
   cprox_result r;
   assert_int_equal(cprox_distance(cprox_point_along(curve[0]), cprox_obstacle_curve(curve[1], 0.0), NULL, ws, &r),

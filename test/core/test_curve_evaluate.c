@@ -4,13 +4,14 @@
 #include "curve/curve.h"
 #include "support/cases.h"
 #include "support/curves.h"
+#include "support/make_curve.h"
 #include "support/reference.h"
 
 #define U 0x1p-53
 
 static cprox_curve *bezier(const vec3 *p, size_t degree, double t0, double t1) {
   cprox_curve *c = NULL;
-  assert_int_equal(cprox_curve_create_bezier(p, degree + 1, t0, t1, NULL, &c), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(p, degree + 1, t0, t1), NULL, &c), CPROX_OK);
   return c;
 }
 
@@ -144,16 +145,16 @@ CASE(the_whole_range_gives_the_control_points_back) {
     for (size_t k = 0; k <= degree; k++) assert_true(vec_equal(p[k], part[k]));
 
     /* and the box of a Bézier curve is that of its points, exactly */
-    cprox_curve_bounds(c, &low, &high);
+    low = cprox_curve_get_info(c).lowest, high = cprox_curve_get_info(c).highest;
     double least = p[0].x, most = p[0].x;
     for (size_t k = 1; k <= degree; k++) least = fmin(least, p[k].x), most = fmax(most, p[k].x);
     assert_true(low.x == least && high.x == most);
 
     double t0, t1;
-    cprox_curve_domain(c, &t0, &t1);
+    t0 = cprox_curve_get_info(c).t0, t1 = cprox_curve_get_info(c).t1;
     assert_true(t0 == 0.3 && t1 == 0.7);
-    assert_int_equal(cprox_curve_degree(c), degree);
-    assert_int_equal(cprox_curve_pieces(c), 1);
+    assert_int_equal(cprox_curve_get_info(c).degree, degree);
+    assert_int_equal(cprox_curve_get_info(c).n_pieces, 1);
     cprox_curve_free(c);
   }
 }

@@ -6,6 +6,7 @@
 #include "curve/curve.h"
 #include "support/cases.h"
 #include "support/counting.h"
+#include "support/make_curve.h"
 
 static cprox_workspace *workspace;
 
@@ -27,8 +28,8 @@ static void refused(cprox_status status, const cprox_curve *curve, const char *r
 static void bezier_refused(const vec3 *points, size_t n, double t0, double t1, const char *reason) {
   cprox_curve *curve = (cprox_curve *)workspace;
   const size_t live = allocations_live();
-  refused(cprox_curve_create_bezier(points, n, t0, t1, workspace, &curve), curve, reason);
-  assert_int_equal(cprox_curve_create_bezier(points, n, t0, t1, NULL, &curve), CPROX_INVALID);
+  refused(curve_from(describe_bezier(points, n, t0, t1), workspace, &curve), curve, reason);
+  assert_int_equal(curve_from(describe_bezier(points, n, t0, t1), NULL, &curve), CPROX_INVALID);
   assert_int_equal(allocations_live(), live);
 }
 
@@ -36,9 +37,9 @@ static void bspline_refused(const good_spline *s, size_t n, size_t degree, size_
                             const char *reason) {
   cprox_curve *curve = (cprox_curve *)workspace;
   const size_t live = allocations_live();
-  refused(cprox_curve_create_bspline(s->points, n, degree, s->knots, n_knots, t0, t1, workspace, &curve), curve,
+  refused(curve_from(describe_bspline(s->points, n, degree, s->knots, n_knots, t0, t1), workspace, &curve), curve,
           reason);
-  assert_int_equal(cprox_curve_create_bspline(s->points, n, degree, s->knots, n_knots, t0, t1, NULL, &curve),
+  assert_int_equal(curve_from(describe_bspline(s->points, n, degree, s->knots, n_knots, t0, t1), NULL, &curve),
                    CPROX_INVALID);
   assert_int_equal(allocations_live(), live);
 }
@@ -98,16 +99,17 @@ CASE(bad_degrees_and_knots_are_refused) {
   for (size_t i = 0; i < 8; i++) s.knots[i] = 0.5;
   bspline_refused(&s, 5, 2, 8, 0, 1, "the spline's domain is empty: knots 2 to 5 are all 0.5");
   cprox_curve *curve = (cprox_curve *)workspace;
-  refused(cprox_curve_create_bspline(good.points, 5, 2, NULL, 8, 0, 1, workspace, &curve), curve, "the knots are NULL");
-  refused(cprox_curve_create_bspline(good.points, 5, 2, NULL, 0, 0, 1, workspace, &curve), curve,
+  refused(curve_from(describe_bspline(good.points, 5, 2, NULL, 8, 0, 1), workspace, &curve), curve,
+          "the knots are NULL");
+  refused(curve_from(describe_bspline(good.points, 5, 2, NULL, 0, 0, 1), workspace, &curve), curve,
           "5 control points of degree 2 need 8 knots, got 0");
 }
 
 static void polynomial_refused(const vec3 *c, size_t n, double t0, double t1, const char *reason) {
   cprox_curve *curve = (cprox_curve *)workspace;
   const size_t live = allocations_live();
-  refused(cprox_curve_create_polynomial(c, n, t0, t1, workspace, &curve), curve, reason);
-  assert_int_equal(cprox_curve_create_polynomial(c, n, t0, t1, NULL, &curve), CPROX_INVALID);
+  refused(curve_from(describe_polynomial(c, n, t0, t1), workspace, &curve), curve, reason);
+  assert_int_equal(curve_from(describe_polynomial(c, n, t0, t1), NULL, &curve), CPROX_INVALID);
   assert_int_equal(allocations_live(), live);
 }
 
@@ -132,25 +134,25 @@ CASE(bad_legendre_series_are_refused) {
   cprox_curve *curve = (cprox_curve *)workspace;
   const size_t live = allocations_live();
   vec3 c[62] = {{1, 2, 3}, {4, 5, 6}, {9e149, 0, 0}, {9e149, 0, 0}};
-  refused(cprox_curve_create_legendre(c, 0, 0, 1, workspace, &curve), curve,
+  refused(curve_from(describe_legendre(c, 0, 0, 1), workspace, &curve), curve,
           "there is no coefficient; a curve needs at least 1");
-  refused(cprox_curve_create_legendre(c, 62, 0, 1, workspace, &curve), curve, "there are 62 coefficients, above 61");
-  refused(cprox_curve_create_legendre(NULL, 2, 0, 1, workspace, &curve), curve, "the coefficients are NULL");
-  refused(cprox_curve_create_legendre(c, 2, 2, 1, workspace, &curve), curve, "t0 = 2 is not below t1 = 1");
-  refused(cprox_curve_create_legendre(c, 4, 0, 1, workspace, &curve), curve,
+  refused(curve_from(describe_legendre(c, 62, 0, 1), workspace, &curve), curve, "there are 62 coefficients, above 61");
+  refused(curve_from(describe_legendre(NULL, 2, 0, 1), workspace, &curve), curve, "the coefficients are NULL");
+  refused(curve_from(describe_legendre(c, 2, 2, 1), workspace, &curve), curve, "t0 = 2 is not below t1 = 1");
+  refused(curve_from(describe_legendre(c, 4, 0, 1), workspace, &curve), curve,
           "on [0, 1] the curve goes beyond 1e+150 m");
   c[1].z = INFINITY;
-  refused(cprox_curve_create_legendre(c, 2, 0, 1, workspace, &curve), curve,
+  refused(curve_from(describe_legendre(c, 2, 0, 1), workspace, &curve), curve,
           "coefficient 1 is (4, 5, inf), not finite");
-  refused(cprox_curve_create_legendre(c, 2, 0, 1, workspace, NULL), curve, "the pointer for the new curve is NULL");
+  refused(curve_from(describe_legendre(c, 2, 0, 1), workspace, NULL), curve, "the pointer for the new curve is NULL");
   assert_int_equal(allocations_live(), live);
 }
 
 static void lagrange_refused(const vec3 *y, const double *x, size_t n, const char *reason) {
   cprox_curve *curve = (cprox_curve *)workspace;
   const size_t live = allocations_live();
-  refused(cprox_curve_create_lagrange(y, x, n, 0, 1, workspace, &curve), curve, reason);
-  assert_int_equal(cprox_curve_create_lagrange(y, x, n, 0, 1, NULL, &curve), CPROX_INVALID);
+  refused(curve_from(describe_lagrange(y, x, n, 0, 1), workspace, &curve), curve, reason);
+  assert_int_equal(curve_from(describe_lagrange(y, x, n, 0, 1), NULL, &curve), CPROX_INVALID);
   assert_int_equal(allocations_live(), live);
 }
 
@@ -174,22 +176,24 @@ CASE(bad_nodes_and_values_are_refused) {
   y[2].x = NAN;
   lagrange_refused(y, x, 3, "point 2 is (nan, 8, 9), not finite");
   cprox_curve *curve = (cprox_curve *)workspace;
-  refused(cprox_curve_create_lagrange(y, x, 2, 1, 1, workspace, &curve), curve, "t0 = 1 is not below t1 = 1");
-  refused(cprox_curve_create_lagrange(y, x, 2, 0, 1, workspace, NULL), curve, "the pointer for the new curve is NULL");
+  refused(curve_from(describe_lagrange(y, x, 2, 1, 1), workspace, &curve), curve, "t0 = 1 is not below t1 = 1");
+  refused(curve_from(describe_lagrange(y, x, 2, 0, 1), workspace, NULL), curve,
+          "the pointer for the new curve is NULL");
 }
 
 CASE(a_missing_result_pointer_is_refused) {
-  assert_int_equal(cprox_curve_create_bezier(good.points, 5, 0, 1, workspace, NULL), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_bezier(good.points, 5, 0, 1), workspace, NULL), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(workspace), "the pointer for the new curve is NULL");
-  assert_int_equal(cprox_curve_create_polynomial(good.points, 5, 0, 1, workspace, NULL), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_polynomial(good.points, 5, 0, 1), workspace, NULL), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(workspace), "the pointer for the new curve is NULL");
-  assert_int_equal(cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, NULL), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_bspline(good.points, 5, 2, good.knots, 8, 0, 1), workspace, NULL),
+                   CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(workspace), "the pointer for the new curve is NULL");
 }
 
 CASE(queries_outside_the_range_are_refused) {
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bspline(good.points, 5, 2, good.knots, 8, 0, 1), workspace, &curve), CPROX_OK);
   assert_string_equal(cprox_workspace_error(workspace), "");
   vec3 p = {7, 7, 7}, part[3] = {{7, 7, 7}};
   const double outside[4] = {-1e-9, 1.5, NAN, INFINITY};
@@ -229,13 +233,13 @@ CASE(memory_that_is_out_leaks_nothing) {
     for (; status != CPROX_OK; successes++) {
       cprox_curve *curve = (cprox_curve *)workspace;
       allocations_fail_after(successes);
-      status = kind == 0   ? cprox_curve_create_bezier(good.points, 2, 0, 1, workspace, &curve)
-               : kind == 1 ? cprox_curve_create_bezier(good.points, 5, 0, 1, workspace, &curve)
-               : kind == 2 ? cprox_curve_create_polynomial(good.points, 5, 0, 1, workspace, &curve)
-               : kind == 3 ? cprox_curve_create_legendre(good.points, 5, 0, 1, workspace, &curve)
-               : kind == 4 ? cprox_curve_create_lagrange(good.points, good.knots + 2, 4, 0, 1, workspace, &curve)
-               : kind == 5 ? cprox_curve_create_trigonometric(good.points, 5, 0, 1, workspace, &curve)
-                           : cprox_curve_create_bspline(good.points, 5, 2, good.knots, 8, 0, 1, workspace, &curve);
+      status = kind == 0   ? curve_from(describe_bezier(good.points, 2, 0, 1), workspace, &curve)
+               : kind == 1 ? curve_from(describe_bezier(good.points, 5, 0, 1), workspace, &curve)
+               : kind == 2 ? curve_from(describe_polynomial(good.points, 5, 0, 1), workspace, &curve)
+               : kind == 3 ? curve_from(describe_legendre(good.points, 5, 0, 1), workspace, &curve)
+               : kind == 4 ? curve_from(describe_lagrange(good.points, good.knots + 2, 4, 0, 1), workspace, &curve)
+               : kind == 5 ? curve_from(describe_trigonometric(good.points, 5, 0, 1), workspace, &curve)
+                           : curve_from(describe_bspline(good.points, 5, 2, good.knots, 8, 0, 1), workspace, &curve);
       allocations_allow();
       if (status == CPROX_OK) {
         cprox_curve_free(curve);

@@ -7,6 +7,7 @@
 #include "curve_proximity/cprox.h"
 #include "support/cases.h"
 #include "support/csv.h"
+#include "support/make_curve.h"
 
 #define MOST_DEGREE 6
 
@@ -62,7 +63,7 @@ static series placed(series s, double angle, double x, double y) {
 
 static cprox_curve *compile(series s) {
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_trigonometric(s.c, 2 * MOST_DEGREE + 1, 0.0, 6.283185307179586, NULL, &curve),
+  assert_int_equal(curve_from(describe_trigonometric(s.c, 2 * MOST_DEGREE + 1, 0.0, 6.283185307179586), NULL, &curve),
                    CPROX_OK);
   return curve;
 }
@@ -132,7 +133,7 @@ CASE(a_fish_against_lissajous_curves) {
 CASE(an_euler_spiral_against_a_polygon) {
   cprox_curve *curve = NULL;
   assert_int_equal(
-      cprox_curve_create_clothoid(vec(0, 0, 0), 0.0, 0.0, 8.0, -3.141592653589793, 3.141592653589793, NULL, &curve),
+      curve_from(describe_clothoid(vec(0, 0, 0), 0.0, 0.0, 8.0, -3.141592653589793, 3.141592653589793), NULL, &curve),
       CPROX_OK);
   check_polygon("c_euler_poly_table", curve);
 }
@@ -151,14 +152,14 @@ CASE(bezier_curves_with_names) {
     csv_points(&in, row, 5 + 2 * n, 2, m, second);
     cprox_curve *curve = NULL, *other = NULL;
     cprox_body *body = NULL;
-    assert_int_equal(cprox_curve_create_bezier(first, n, 0, 1, NULL, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_bezier(first, n, 0, 1), NULL, &curve), CPROX_OK);
     if (polygon) {
       double xy[64][2];
       for (size_t k = 0; k < m; k++) xy[k][0] = second[k].x, xy[k][1] = second[k].y;
       assert_int_equal(cprox_body_create_polygon((const double(*)[2])xy, m, NULL, &body), CPROX_OK);
       check(id, curve, cprox_obstacle_at(body, cprox_pose_identity()));
     } else {
-      assert_int_equal(cprox_curve_create_bezier(second, m, 0, 1, NULL, &other), CPROX_OK);
+      assert_int_equal(curve_from(describe_bezier(second, m, 0, 1), NULL, &other), CPROX_OK);
       check(id, curve, cprox_obstacle_curve(other, 0.0));
     }
     cprox_body_free(body);
@@ -170,7 +171,7 @@ CASE(bezier_curves_with_names) {
 
 static cprox_curve *involute(double turned, double x, double y) {
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_involute(vec(x, y, 0), 0.035, turned, 0.0, 10.0, NULL, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_involute(vec(x, y, 0), 0.035, turned, 0.0, 10.0), NULL, &curve), CPROX_OK);
   return curve;
 }
 

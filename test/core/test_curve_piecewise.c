@@ -3,6 +3,7 @@
 #include "base/rounding.h"
 #include "support/cases.h"
 #include "support/curves.h"
+#include "support/make_curve.h"
 #include "support/quad.h"
 
 static cprox_curve *random_curve(rng *r, double t0) {
@@ -12,17 +13,18 @@ static cprox_curve *random_curve(rng *r, double t0) {
   vec3 p[61];
   switch (rng_index(r, 4)) {
     case 0:
-      status = cprox_curve_create_clothoid(rng_in_cube(r, scale), rng_uniform(r, -3, 3), rng_uniform(r, -2, 2),
-                                           rng_uniform(r, -2, 2), t0, t1, NULL, &c);
+      status = curve_from(describe_clothoid(rng_in_cube(r, scale), rng_uniform(r, -3, 3), rng_uniform(r, -2, 2),
+                                            rng_uniform(r, -2, 2), t0, t1),
+                          NULL, &c);
       break;
     case 1:
       for (int i = 0; i < 3; i++) p[i] = rng_in_cube(r, scale);
-      status = cprox_curve_create_trigonometric(p, 3, t0, t1, NULL, &c);
+      status = curve_from(describe_trigonometric(p, 3, t0, t1), NULL, &c);
       break;
     default: {
       const size_t degree = random_degree(r);
       random_points(r, degree + 1, p);
-      status = cprox_curve_create_bezier(p, degree + 1, t0, t1, NULL, &c);
+      status = curve_from(describe_bezier(p, degree + 1, t0, t1), NULL, &c);
     }
   }
   assert_int_equal(status, CPROX_OK);
@@ -56,7 +58,7 @@ CASE(the_whole_is_its_parts) {
       ends[k + 1] = ends[k] + rng_log_uniform(&r, 1e-2, 3.0);
     }
     assert_int_equal(
-        cprox_curve_create_piecewise((const cprox_curve *const *)part, n, own ? NULL : ends, INFINITY, NULL, &whole),
+        curve_from(describe_piecewise((const cprox_curve *const *)part, n, own ? NULL : ends, INFINITY), NULL, &whole),
         CPROX_OK);
     size_t first = 0, last = 0;
     for (size_t k = 0; k < n; k++, first = last) {
@@ -96,10 +98,10 @@ CASE(the_whole_is_its_parts) {
 CASE(a_jump_is_not_bridged) {
   const vec3 a[2] = {{0, 0, 0}, {1, 0, 0}}, b[2] = {{1, 2, 0}, {2, 2, 0}};
   cprox_curve *part[2] = {NULL, NULL}, *whole = NULL;
-  assert_int_equal(cprox_curve_create_bezier(a, 2, 0, 1, NULL, &part[0]), CPROX_OK);
-  assert_int_equal(cprox_curve_create_bezier(b, 2, 0, 1, NULL, &part[1]), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(a, 2, 0, 1), NULL, &part[0]), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(b, 2, 0, 1), NULL, &part[1]), CPROX_OK);
   const double ends[3] = {0, 1, 3};
-  assert_int_equal(cprox_curve_create_piecewise((const cprox_curve *const *)part, 2, ends, INFINITY, NULL, &whole),
+  assert_int_equal(curve_from(describe_piecewise((const cprox_curve *const *)part, 2, ends, INFINITY), NULL, &whole),
                    CPROX_OK);
   vec3 x;
   assert_int_equal(cprox_curve_evaluate(whole, 2.0, NULL, &x, NULL, NULL), CPROX_OK);
@@ -114,7 +116,7 @@ CASE(a_jump_is_not_bridged) {
 static void refused(const cprox_curve *const *curves, size_t n, const double *ends, double gap, const char *reason) {
   cprox_workspace *ws = cprox_workspace_create();
   cprox_curve *c = NULL;
-  assert_int_equal(cprox_curve_create_piecewise(curves, n, ends, gap, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_piecewise(curves, n, ends, gap), ws, &c), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), reason);
   assert_null(c);
   cprox_workspace_free(ws);
@@ -123,8 +125,8 @@ static void refused(const cprox_curve *const *curves, size_t n, const double *en
 CASE(bad_pieces_are_refused) {
   const vec3 a[2] = {{0, 0, 0}, {1, 0, 0}}, b[2] = {{1, 2, 0}, {2, 2, 0}};
   cprox_curve *part[3] = {NULL, NULL, NULL};
-  assert_int_equal(cprox_curve_create_bezier(a, 2, 0, 1, NULL, &part[0]), CPROX_OK);
-  assert_int_equal(cprox_curve_create_bezier(b, 2, 1, 2, NULL, &part[1]), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(a, 2, 0, 1), NULL, &part[0]), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(b, 2, 1, 2), NULL, &part[1]), CPROX_OK);
   const cprox_curve *const *curves = (const cprox_curve *const *)part;
   refused(curves, 0, NULL, 0, "there is no curve to put end to end");
   refused(NULL, 2, NULL, 0, "the curves are NULL");

@@ -8,6 +8,7 @@
 #include "curve/compile.h"
 #include "support/cases.h"
 #include "support/curves.h"
+#include "support/make_curve.h"
 #include "support/quad.h"
 #include "support/reference.h"
 
@@ -132,7 +133,7 @@ CASE(clothoids_are_within_their_error) {
     const double t0 = rng_index(&r, 3) ? scale * rng_uniform(&r, -2.0, 1.0) : 0.0;
     const double t1 = t0 + scale * rng_log_uniform(&r, 1e-4, 2.0);
     cprox_curve *c = NULL;
-    assert_int_equal(cprox_curve_create_clothoid(start, heading, curvature, rate, t0, t1, NULL, &c), CPROX_OK);
+    assert_int_equal(curve_from(describe_clothoid(start, heading, curvature, rate, t0, t1), NULL, &c), CPROX_OK);
     pieces += c->n_pieces;
 
     double t[POINTS];
@@ -161,7 +162,7 @@ CASE(involutes_are_within_their_error) {
     const double t0 = rng_index(&r, 3) ? rng_uniform(&r, -30.0, 30.0) : 0.0;
     const double t1 = t0 + rng_log_uniform(&r, 1e-4, 20.0);
     cprox_curve *c = NULL;
-    assert_int_equal(cprox_curve_create_involute(centre, radius, turned, t0, t1, NULL, &c), CPROX_OK);
+    assert_int_equal(curve_from(describe_involute(centre, radius, turned, t0, t1), NULL, &c), CPROX_OK);
     double t[POINTS];
     parameters(c, &r, t);
     for (int k = 0; k < POINTS; k++) {
@@ -238,13 +239,13 @@ CASE(dubins_paths_are_within_their_error_and_reach_their_end) {
     const poses p = random_poses(&r);
     const cprox_dubins_word word = (cprox_dubins_word)rng_index(&r, 7);
     cprox_curve *c = NULL;
-    cprox_dubins_path path;
     const cprox_status status =
-        cprox_curve_create_dubins(p.start, p.heading[0], p.end, p.heading[1], p.radius, word, NULL, &path, &c);
+        curve_from(describe_dubins(p.start, p.heading[0], p.end, p.heading[1], p.radius, word), NULL, &c);
     if (status != CPROX_OK) {
       missing++;
       continue;
     }
+    const cprox_dubins_path path = cprox_curve_get_info(c).dubins;
     of_word[path.word]++;
     assert_true(c->breaks[0] == 0.0 && c->breaks[c->n_pieces] == path.ends[2]);
 
@@ -283,10 +284,10 @@ CASE(the_shortest_word_is_the_shortest) {
     double least = INFINITY, shortest = 0.0;
     for (int word = 6; word >= 0; word--) {
       cprox_curve *c = NULL;
-      cprox_dubins_path path;
-      if (cprox_curve_create_dubins(p.start, p.heading[0], p.end, p.heading[1], p.radius, (cprox_dubins_word)word, NULL,
-                                    &path, &c) != CPROX_OK)
+      if (curve_from(describe_dubins(p.start, p.heading[0], p.end, p.heading[1], p.radius, (cprox_dubins_word)word),
+                     NULL, &c) != CPROX_OK)
         continue;
+      const cprox_dubins_path path = cprox_curve_get_info(c).dubins;
       if (word == 0)
         shortest = path.ends[2];
       else
@@ -299,17 +300,18 @@ CASE(the_shortest_word_is_the_shortest) {
     const double heading = rng_uniform(&r, -7.0, 7.0), turned = rng_uniform(&r, 0.01, 3.0), half = 0.5 * turned;
     const double side = k % 2 ? 1.0 : -1.0, chord = 2.0 * sin(half), along = heading + side * half;
     cprox_curve *c = NULL;
-    cprox_dubins_path path;
     /* an arc of radius 1, then a line of length 3 */
-    assert_int_equal(cprox_curve_create_dubins(vec(0, 0, 0), heading, vec(chord * cos(along), chord * sin(along), 0),
-                                               heading + side * turned, 1.0, CPROX_DUBINS_SHORTEST, NULL, &path, &c),
+    assert_int_equal(curve_from(describe_dubins(vec(0, 0, 0), heading, vec(chord * cos(along), chord * sin(along), 0),
+                                                heading + side * turned, 1.0, CPROX_DUBINS_SHORTEST),
+                                NULL, &c),
                      CPROX_OK);
-    assert_true(fabs(path.ends[2] - turned) < 1e-13);
+    assert_true(fabs(cprox_curve_get_info(c).dubins.ends[2] - turned) < 1e-13);
     cprox_curve_free(c);
-    assert_int_equal(cprox_curve_create_dubins(vec(5, 0, 0), heading, vec(5 + 3 * cos(heading), 3 * sin(heading), 0),
-                                               heading, 1.0, CPROX_DUBINS_SHORTEST, NULL, &path, &c),
+    assert_int_equal(curve_from(describe_dubins(vec(5, 0, 0), heading, vec(5 + 3 * cos(heading), 3 * sin(heading), 0),
+                                                heading, 1.0, CPROX_DUBINS_SHORTEST),
+                                NULL, &c),
                      CPROX_OK);
-    assert_true(fabs(path.ends[2] - 3.0) < 1e-13);
+    assert_true(fabs(cprox_curve_get_info(c).dubins.ends[2] - 3.0) < 1e-13);
     cprox_curve_free(c);
   }
 }
@@ -325,24 +327,24 @@ CASE(bad_clothoids_and_involutes_are_refused) {
   cprox_workspace *ws = cprox_workspace_create();
   cprox_curve *c = NULL;
   const vec3 o = {0, 0, 0};
-  refused(cprox_curve_create_clothoid(vec(NAN, 0, 0), 0, 0, 0, 0, 1, ws, &c), ws,
+  refused(curve_from(describe_clothoid(vec(NAN, 0, 0), 0, 0, 0, 0, 1), ws, &c), ws,
           "start point 0 is (nan, 0, 0), not finite");
-  refused(cprox_curve_create_clothoid(o, NAN, 0, 0, 0, 1, ws, &c), ws,
+  refused(curve_from(describe_clothoid(o, NAN, 0, 0, 0, 1), ws, &c), ws,
           "heading nan, curvature 0 and its rate 0 are not all finite");
-  refused(cprox_curve_create_clothoid(o, 0, 0, 0, 1, 1, ws, &c), ws, "t0 = 1 is not below t1 = 1");
-  refused(cprox_curve_create_clothoid(o, 0, 1, 0, 0, 1e13, ws, &c), ws,
+  refused(curve_from(describe_clothoid(o, 0, 0, 0, 1, 1), ws, &c), ws, "t0 = 1 is not below t1 = 1");
+  refused(curve_from(describe_clothoid(o, 0, 1, 0, 0, 1e13), ws, &c), ws,
           "the clothoid turns by up to 1e+13 rad, more than 1e+12");
-  refused(cprox_curve_create_clothoid(o, 0, 1, 0, 1e9, 1e9 + 1, ws, &c), ws,
+  refused(curve_from(describe_clothoid(o, 0, 1, 0, 1e9, 1e9 + 1), ws, &c), ws,
           "the clothoid turns too often between t = 0 and 1000000000");
-  refused(cprox_curve_create_clothoid(o, 0, 0, 0, 0, 1, ws, NULL), ws, "the pointer for the new curve is NULL");
-  assert_int_equal(cprox_curve_create_clothoid(o, 0, 1, 0, 0, 1e8, ws, &c), CPROX_INVALID);
+  refused(curve_from(describe_clothoid(o, 0, 0, 0, 0, 1), ws, NULL), ws, "the pointer for the new curve is NULL");
+  assert_int_equal(curve_from(describe_clothoid(o, 0, 1, 0, 0, 1e8), ws, &c), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(ws), "would need more than 65536 pieces"));
-  refused(cprox_curve_create_involute(o, 0, 0, 0, 1, ws, &c), ws,
+  refused(curve_from(describe_involute(o, 0, 0, 0, 1), ws, &c), ws,
           "the radius is 0; an involute's is above 0 and at most 1e+75 m");
-  refused(cprox_curve_create_involute(o, NAN, 0, 0, 1, ws, &c), ws,
+  refused(curve_from(describe_involute(o, NAN, 0, 0, 1), ws, &c), ws,
           "the radius is nan; an involute's is above 0 and at most 1e+75 m");
-  refused(cprox_curve_create_involute(o, 1, INFINITY, 0, 1, ws, &c), ws, "the angle is inf, not finite");
-  refused(cprox_curve_create_involute(vec(0, INFINITY, 0), 1, 0, 0, 1, ws, &c), ws,
+  refused(curve_from(describe_involute(o, 1, INFINITY, 0, 1), ws, &c), ws, "the angle is inf, not finite");
+  refused(curve_from(describe_involute(vec(0, INFINITY, 0), 1, 0, 0, 1), ws, &c), ws,
           "centre 0 is (0, inf, 0), not finite");
   assert_null(c);
   cprox_workspace_free(ws);
@@ -363,27 +365,27 @@ CASE(bad_dubins_paths_are_refused) {
   cprox_curve *c = NULL;
   const vec3 o = {0, 0, 0}, e = {1, 0, 0};
   const cprox_dubins_word any = CPROX_DUBINS_SHORTEST;
-  refused(cprox_curve_create_dubins(o, 0, e, 0, 0, any, ws, NULL, &c), ws,
+  refused(curve_from(describe_dubins(o, 0, e, 0, 0, any), ws, &c), ws,
           "the turning radius is 0; it must be above 0 and finite");
-  refused(cprox_curve_create_dubins(o, 0, e, 0, -1, any, ws, NULL, &c), ws,
+  refused(curve_from(describe_dubins(o, 0, e, 0, -1, any), ws, &c), ws,
           "the turning radius is -1; it must be above 0 and finite");
-  refused(cprox_curve_create_dubins(o, 0, e, 0, NAN, any, ws, NULL, &c), ws,
+  refused(curve_from(describe_dubins(o, 0, e, 0, NAN, any), ws, &c), ws,
           "the turning radius is nan; it must be above 0 and finite");
-  refused(cprox_curve_create_dubins(o, NAN, e, 0, 1, any, ws, NULL, &c), ws,
+  refused(curve_from(describe_dubins(o, NAN, e, 0, 1, any), ws, &c), ws,
           "a heading, nan or 0, is not finite or beyond 1e+06 rad");
-  refused(cprox_curve_create_dubins(o, 0, vec(1, NAN, 0), 0, 1, any, ws, NULL, &c), ws,
+  refused(curve_from(describe_dubins(o, 0, vec(1, NAN, 0), 0, 1, any), ws, &c), ws,
           "end point 0 is (1, nan, 0), not finite");
-  refused(cprox_curve_create_dubins(o, 0, vec(1, 0, 2), 0, 1, any, ws, NULL, &c), ws,
+  refused(curve_from(describe_dubins(o, 0, vec(1, 0, 2), 0, 1, any), ws, &c), ws,
           "the path starts at z = 0 and ends at z = 2; it is planar");
-  refused(cprox_curve_create_dubins(o, 0, o, 0, 1, any, ws, NULL, &c), ws,
+  refused(curve_from(describe_dubins(o, 0, o, 0, 1, any), ws, &c), ws,
           "start and end pose are the same: the path has no length");
-  refused(cprox_curve_create_dubins(o, 0, e, 0, 1e-13, any, ws, NULL, &c), ws,
+  refused(curve_from(describe_dubins(o, 0, e, 0, 1e-13, any), ws, &c), ws,
           "the poses are 1 m apart, more than 1e+12 turning radii of 1e-13 m");
-  refused(cprox_curve_create_dubins(o, 0, vec(9, 0, 0), 0, 1, CPROX_DUBINS_LRL, ws, NULL, &c), ws,
+  refused(curve_from(describe_dubins(o, 0, vec(9, 0, 0), 0, 1, CPROX_DUBINS_LRL), ws, &c), ws,
           "the poses are too far apart for a path of this word");
-  refused(cprox_curve_create_dubins(o, 0, vec(0, 0.5, 0), 0, 1, CPROX_DUBINS_LSR, ws, NULL, &c), ws,
+  refused(curve_from(describe_dubins(o, 0, vec(0, 0.5, 0), 0, 1, CPROX_DUBINS_LSR), ws, &c), ws,
           "the poses are too near each other for a path of this word");
-  refused(cprox_curve_create_dubins(o, 0, e, 0, 1, (cprox_dubins_word)7, ws, NULL, &c), ws,
+  refused(curve_from(describe_dubins(o, 0, e, 0, 1, (cprox_dubins_word)7), ws, &c), ws,
           "7 is no word of a Dubins path");
   assert_null(c);
   cprox_workspace_free(ws);

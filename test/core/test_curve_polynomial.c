@@ -2,6 +2,7 @@
 /* Polynomials given by powers, by Legendre coefficients and by values, each against its own definition in 113 bits. */
 #include "support/cases.h"
 #include "support/curves.h"
+#include "support/make_curve.h"
 #include "support/quad.h"
 #include "support/reference.h"
 
@@ -92,7 +93,7 @@ CASE(polynomials_are_within_their_error) {
     random_range(&r, &d.t0, &d.t1);
     random_powers(&r, &d, c);
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_polynomial(c, d.n, d.t0, d.t1, NULL, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_polynomial(c, d.n, d.t0, d.t1), NULL, &curve), CPROX_OK);
     stays_within_its_error(curve, &d, by_powers, &r, &all);
 
     double size = 0.0, terms = 0.0, most = 0.0;
@@ -101,7 +102,7 @@ CASE(polynomials_are_within_their_error) {
       size = fmax(size, quad_distance(p, (quad3){{0, 0, 0}}));
       most = fmax(most, terms);
     }
-    if (d.n <= 21 && most < 1e10 * size) assert_true(cprox_curve_error(curve) <= 5.0 * U * size + 1e-149);
+    if (d.n <= 21 && most < 1e10 * size) assert_true(cprox_curve_get_info(curve).error <= 5.0 * U * size + 1e-149);
     cprox_curve_free(curve);
   }
   print_message("powers: largest error %.2f of its bound; %zu pieces, %zu at most\n", all.largest, all.pieces,
@@ -146,9 +147,9 @@ CASE(legendre_series_are_within_their_error) {
       sum += vec_norm(c[k]);
     }
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_legendre(c, d.n, d.t0, d.t1, NULL, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_legendre(c, d.n, d.t0, d.t1), NULL, &curve), CPROX_OK);
     stays_within_its_error(curve, &d, by_legendre, &r, &all);
-    assert_true(cprox_curve_error(curve) <= (d.n <= 41 ? 5.0 * U : 2e-12) * sum + 1e-149);
+    assert_true(cprox_curve_get_info(curve).error <= (d.n <= 41 ? 5.0 * U : 2e-12) * sum + 1e-149);
     cprox_curve_free(curve);
   }
   print_message("Legendre: largest error %.2f of its bound; %zu pieces, %zu at most\n", all.largest, all.pieces,
@@ -235,9 +236,9 @@ CASE(lagrange_curves_are_within_their_error) {
       if (low < high) d.t0 = low, d.t1 = high;
     }
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_lagrange(y, x, d.n, d.t0, d.t1, NULL, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_lagrange(y, x, d.n, d.t0, d.t1), NULL, &curve), CPROX_OK);
     stays_within_its_error(curve, &d, by_values, &r, &all);
-    const double ratio = cprox_curve_error(curve) / (U * largest_sum(&d) + 1e-149);
+    const double ratio = cprox_curve_get_info(curve).error / (U * largest_sum(&d) + 1e-149);
     if (kind == 0 && d.n <= 21) worst_even = fmax(worst_even, ratio);
     if (kind == 1) worst_chebyshev = fmax(worst_chebyshev, ratio);
     cprox_curve_free(curve);
@@ -254,17 +255,17 @@ CASE(lagrange_curves_are_within_their_error) {
 CASE(a_constant_stands_still) {
   const vec3 p = {0.1, -0.2, 1e6};
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_polynomial(&p, 1, -3.0, 5.0, NULL, &curve), CPROX_OK);
-  assert_int_equal(cprox_curve_degree(curve), 1);
+  assert_int_equal(curve_from(describe_polynomial(&p, 1, -3.0, 5.0), NULL, &curve), CPROX_OK);
+  assert_int_equal(cprox_curve_get_info(curve).degree, 1);
   for (size_t j = 0; j < 2; j++) assert_memory_equal(&curve_piece(curve, 0)[j], &p, sizeof p);
   cprox_curve_free(curve);
 
-  assert_int_equal(cprox_curve_create_legendre(&p, 1, -3.0, 5.0, NULL, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_legendre(&p, 1, -3.0, 5.0), NULL, &curve), CPROX_OK);
   for (size_t j = 0; j < 2; j++) assert_memory_equal(&curve_piece(curve, 0)[j], &p, sizeof p);
   cprox_curve_free(curve);
 
   const double node = 7.0;
-  assert_int_equal(cprox_curve_create_lagrange(&p, &node, 1, -3.0, 5.0, NULL, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_lagrange(&p, &node, 1, -3.0, 5.0), NULL, &curve), CPROX_OK);
   for (size_t j = 0; j < 2; j++) assert_memory_equal(&curve_piece(curve, 0)[j], &p, sizeof p);
   cprox_curve_free(curve);
 }

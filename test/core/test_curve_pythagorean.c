@@ -3,6 +3,7 @@
  * integrated term by term. */
 #include "support/cases.h"
 #include "support/curves.h"
+#include "support/make_curve.h"
 #include "support/quad.h"
 
 enum { MOST = 30 };
@@ -83,8 +84,8 @@ CASE(every_piece_is_within_its_error_of_the_integral) {
     const vec3 start = rng_index(&r, 2) ? vec(0, 0, 0) : rng_in_cube(&r, rng_log_uniform(&r, 1e-6, 1e6));
     const double t0 = rng_uniform(&r, -5, 5), t1 = t0 + rng_log_uniform(&r, 1e-3, 10.0);
     cprox_curve *c = NULL;
-    assert_int_equal(cprox_curve_create_pythagorean_hodograph(start, a, n, t0, t1, NULL, &c), CPROX_OK);
-    assert_int_equal(cprox_curve_degree(c), 2 * n - 1);
+    assert_int_equal(curve_from(describe_pythagorean_hodograph(start, a, n, t0, t1), NULL, &c), CPROX_OK);
+    assert_int_equal(cprox_curve_get_info(c).degree, 2 * n - 1);
     const powers p = powers_of(a, n);
     for (int k = 0; k < 12; k++) {
       const double t = quad_parameter(c, &r);
@@ -107,7 +108,7 @@ CASE(every_piece_is_within_its_error_of_the_integral) {
 CASE(a_planar_cubic_is_the_known_one) {
   const cprox_quat a[2] = {{1, 0, 0, 0}, {1, 0, 0, 1}};
   cprox_curve *c = NULL;
-  assert_int_equal(cprox_curve_create_pythagorean_hodograph(vec(0, 0, 0), a, 2, 0, 1, NULL, &c), CPROX_OK);
+  assert_int_equal(curve_from(describe_pythagorean_hodograph(vec(0, 0, 0), a, 2, 0, 1), NULL, &c), CPROX_OK);
   for (double s = 0.0; s <= 1.0; s += 0.125) {
     vec3 x, v;
     assert_int_equal(cprox_curve_evaluate(c, s, NULL, &x, &v, NULL), CPROX_OK);
@@ -129,15 +130,15 @@ CASE(bad_preimages_are_refused) {
              {NULL, 3, "the preimage is NULL"},
              {a, 31, "the preimage has 31 coefficients, above 30"}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    assert_int_equal(cprox_curve_create_pythagorean_hodograph(vec(0, 0, 0), bad[i].a, bad[i].n, 0, 1, ws, &c),
+    assert_int_equal(curve_from(describe_pythagorean_hodograph(vec(0, 0, 0), bad[i].a, bad[i].n, 0, 1), ws, &c),
                      CPROX_INVALID);
     assert_string_equal(cprox_workspace_error(ws), bad[i].reason);
   }
   a[2].y = NAN;
-  assert_int_equal(cprox_curve_create_pythagorean_hodograph(vec(0, 0, 0), a, 3, 0, 1, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_pythagorean_hodograph(vec(0, 0, 0), a, 3, 0, 1), ws, &c), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws),
                       "coefficient 2 of the preimage is (0, 0, nan, 0), not finite or longer than 1e+75");
-  assert_int_equal(cprox_curve_create_pythagorean_hodograph(vec(0, NAN, 0), a, 2, 0, 1, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_pythagorean_hodograph(vec(0, NAN, 0), a, 2, 0, 1), ws, &c), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "start point 0 is (0, nan, 0), not finite");
   assert_null(c);
   cprox_workspace_free(ws);

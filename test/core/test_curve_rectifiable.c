@@ -8,6 +8,7 @@
 #include "curve_proximity/cprox.h"
 #include "support/cases.h"
 #include "support/curves.h"
+#include "support/make_curve.h"
 #include "support/reference.h"
 
 /* ---- a Bézier curve on [0, 1] as a caller's functions ---- */
@@ -76,7 +77,7 @@ static cprox_rectifiable_curve functions(bezier *b) {
 static cprox_curve *by_arcs(bezier *b) {
   const cprox_rectifiable_curve f = functions(b);
   cprox_curve *c = NULL;
-  assert_int_equal(cprox_curve_create_rectifiable(&f, 0.0, 1.0, NULL, &c), CPROX_OK);
+  assert_int_equal(curve_from(describe_rectifiable(&f, 0.0, 1.0), NULL, &c), CPROX_OK);
   return c;
 }
 
@@ -87,13 +88,13 @@ static cprox_curve *by_velocity(bezier *b) {
   f.velocity = velocity;
   f.velocity_error = 40.0 * ROUND_U * (b->scale + b->far);
   cprox_curve *c = NULL;
-  assert_int_equal(cprox_curve_create_rectifiable(&f, 0.0, 1.0, NULL, &c), CPROX_OK);
+  assert_int_equal(curve_from(describe_rectifiable(&f, 0.0, 1.0), NULL, &c), CPROX_OK);
   return c;
 }
 
 static cprox_curve *by_points(const bezier *b) {
   cprox_curve *c = NULL;
-  assert_int_equal(cprox_curve_create_bezier(b->p, b->degree + 1, 0.0, 1.0, NULL, &c), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(b->p, b->degree + 1, 0.0, 1.0), NULL, &c), CPROX_OK);
   return c;
 }
 
@@ -332,13 +333,13 @@ CASE(what_contradicts_itself_is_refused_at_once) {
   bezier b = random_bezier(&r);
   b.nan_from = 0.7;
   cprox_rectifiable_curve f = functions(&b);
-  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_rectifiable(&f, 0, 1), ws, &c), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(ws), "at t = 0.703125 the curve's point is ("));
   b.nan_from = INFINITY, b.short_below = 1.0, b.short_by = 0.9;
-  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_rectifiable(&f, 0, 1), ws, &c), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(ws), "between t = 0 and 0.015625 the arc length is said to be at most"));
   b.short_by = NAN;
-  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_rectifiable(&f, 0, 1), ws, &c), CPROX_INVALID);
   assert_string_equal(
       cprox_workspace_error(ws),
       "between t = 0 and 0.015625 the bound of the arc length is nan; it must be at least 0 and finite");
@@ -346,19 +347,19 @@ CASE(what_contradicts_itself_is_refused_at_once) {
 
   const cprox_rectifiable_curve good = f;
   f.point = NULL;
-  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_rectifiable(&f, 0, 1), ws, &c), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "the function point is NULL");
   f = good, f.length = NULL;
-  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_rectifiable(&f, 0, 1), ws, &c), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "the functions length and velocity are both NULL; one is needed");
   f = good, f.error = NAN;
-  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_rectifiable(&f, 0, 1), ws, &c), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "error is nan; it must be at least 0 and finite");
   f = good, f.length = NULL, f.velocity = velocity, f.quadrature_error = -1.0;
-  assert_int_equal(cprox_curve_create_rectifiable(&f, 0, 1, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_rectifiable(&f, 0, 1), ws, &c), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "quadrature_error is -1; it must be at least 0 and finite");
-  assert_int_equal(cprox_curve_create_rectifiable(&good, 1, 1, ws, &c), CPROX_INVALID);
-  assert_int_equal(cprox_curve_create_rectifiable(NULL, 0, 1, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_rectifiable(&good, 1, 1), ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_rectifiable(NULL, 0, 1), ws, &c), CPROX_INVALID);
   assert_null(c);
   cprox_workspace_free(ws);
 }
@@ -417,8 +418,8 @@ CASE(it_says_what_it_is) {
   bezier b = random_bezier(&r);
   cprox_workspace *ws = cprox_workspace_create();
   cprox_curve *c = by_arcs(&b), *v = by_velocity(&b), *whole = NULL;
-  assert_int_equal(cprox_curve_degree(c), 0);
-  assert_true(cprox_curve_error(c) == 2.0 * ROUND_U);
+  assert_int_equal(cprox_curve_get_info(c).degree, 0);
+  assert_true(cprox_curve_get_info(c).error == 2.0 * ROUND_U);
   vec3 x, d, p[4];
   assert_int_equal(cprox_curve_evaluate(c, 0.25, ws, &x, NULL, NULL), CPROX_OK);
   vec3 should;
@@ -434,9 +435,9 @@ CASE(it_says_what_it_is) {
   assert_int_equal(cprox_curve_control_points(c, 0, 0.001, ws, p), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "a curve known by its arc length has no control points");
   const cprox_curve *one[1] = {c};
-  assert_int_equal(cprox_curve_create_piecewise(one, 1, NULL, 0.0, ws, &whole), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_piecewise(one, 1, NULL, 0.0), ws, &whole), CPROX_INVALID);
   vec3 low, high;
-  cprox_curve_bounds(c, &low, &high);
+  low = cprox_curve_get_info(c).lowest, high = cprox_curve_get_info(c).highest;
   for (double t = 0.0; t <= 1.0; t += 1.0 / 256.0) {
     point(&b, t, &x);
     assert_true(low.x <= x.x && low.y <= x.y && low.z <= x.z && x.x <= high.x && x.y <= high.y && x.z <= high.z);

@@ -6,6 +6,7 @@
 #include "base/rounding.h"
 #include "support/cases.h"
 #include "support/curves.h"
+#include "support/make_curve.h"
 #include "support/quad.h"
 
 /* Long double's unit roundoff. */
@@ -74,7 +75,7 @@ CASE(every_piece_is_within_its_error) {
     const double t0 = rng_log_uniform(&r, 1e-3, 2.0), t1 = t0 + rng_log_uniform(&r, 1e-3, 3.0);
     const cprox_smooth_curve given = functions(&f, t0, t1);
     cprox_curve *c = NULL;
-    assert_int_equal(cprox_curve_create_smooth(&given, t0, t1, NULL, &c), CPROX_OK);
+    assert_int_equal(curve_from(describe_smooth(&given, t0, t1), NULL, &c), CPROX_OK);
     pieces += c->n_pieces;
     for (int k = 0; k < 50; k++) {
       double t = quad_parameter(c, &r);
@@ -103,7 +104,7 @@ CASE(pieces_are_as_long_as_the_bound_allows_where_they_are) {
   cprox_smooth_curve given = functions(&f, 1e-3, 1.0);
   given.accuracy = 1e-12;
   cprox_curve *c = NULL;
-  assert_int_equal(cprox_curve_create_smooth(&given, 1e-3, 1.0, NULL, &c), CPROX_OK);
+  assert_int_equal(curve_from(describe_smooth(&given, 1e-3, 1.0), NULL, &c), CPROX_OK);
   const double first = c->breaks[1] - c->breaks[0], last = c->breaks[c->n_pieces] - c->breaks[c->n_pieces - 1];
   print_message("%zu pieces from %g to %g long\n", c->n_pieces, first, last);
   assert_true(last > 300.0 * first);
@@ -116,7 +117,7 @@ static void refused(blend f, double t1, const char *reason) {
   const cprox_smooth_curve given = functions(&f, 0.5, t1);
   cprox_workspace *ws = cprox_workspace_create();
   cprox_curve *c = NULL;
-  assert_int_equal(cprox_curve_create_smooth(&given, 0.5, t1, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_smooth(&given, 0.5, t1), ws, &c), CPROX_INVALID);
   if (!strstr(cprox_workspace_error(ws), reason)) fail_msg("\"%s\", not \"%s\"", cprox_workspace_error(ws), reason);
   assert_null(c);
   cprox_workspace_free(ws);
@@ -155,10 +156,10 @@ CASE(functions_that_are_missing_are_refused) {
       "the function evaluate is NULL", "the function sixth is NULL", "error[1] is -1; it must be at least 0 and finite",
       "error[2] is nan; it must be at least 0 and finite", "the accuracy is 0; it must be above 0 and finite"};
   for (int i = 0; i < 5; i++) {
-    assert_int_equal(cprox_curve_create_smooth(&bad[i], 1, 2, ws, &c), CPROX_INVALID);
+    assert_int_equal(curve_from(describe_smooth(&bad[i], 1, 2), ws, &c), CPROX_INVALID);
     assert_string_equal(cprox_workspace_error(ws), reason[i]);
   }
-  assert_int_equal(cprox_curve_create_smooth(NULL, 1, 2, ws, &c), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_smooth(NULL, 1, 2), ws, &c), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "the curve's functions are NULL");
   assert_null(c);
   cprox_workspace_free(ws);

@@ -4,6 +4,7 @@
 
 #include "support/cases.h"
 #include "support/curves.h"
+#include "support/make_curve.h"
 #include "support/quad.h"
 #include "support/reference.h"
 
@@ -45,7 +46,7 @@ CASE(every_piece_is_within_its_error_of_the_series) {
     const double t0 = rng_index(&r, 4) ? rng_uniform(&r, -7.0, 7.0) : rng_awkward(&r, 100.0);
     const double t1 = t0 + rng_log_uniform(&r, 1e-6, 7.0);
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_trigonometric(c, 2 * degree + 1, t0, t1, NULL, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_trigonometric(c, 2 * degree + 1, t0, t1), NULL, &curve), CPROX_OK);
     pieces += curve->n_pieces;
     for (int k = 0; k < 40; k++) {
       double t = quad_parameter(curve, &r), reference;
@@ -78,7 +79,7 @@ CASE(parameters_far_from_zero_cost_nothing) {
     vec3 c[15];
     for (size_t k = 0; k <= 2 * degree; k++) c[k] = k == 0 ? vec(0, 0, 0) : rng_in_cube(&r, 1.0);
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_trigonometric(c, 2 * degree + 1, t0, t0 + 0.1, NULL, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_trigonometric(c, 2 * degree + 1, t0, t0 + 0.1), NULL, &curve), CPROX_OK);
     for (int k = 0; k < 2; k++) {
       const size_t piece = k == 0 ? 0 : curve->n_pieces - 1;
       const double t = curve->breaks[k == 0 ? 0 : curve->n_pieces];
@@ -95,11 +96,12 @@ CASE(parameters_far_from_zero_cost_nothing) {
 CASE(a_circle_takes_about_a_hundred_pieces) {
   const vec3 c[3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_trigonometric(c, 3, 0, 6.283185307179586, NULL, &curve), CPROX_OK);
-  print_message("a circle takes %zu pieces, error %g of its radius\n", curve->n_pieces, 0.5 * cprox_curve_error(curve));
-  assert_true(cprox_curve_error(curve) < 2.0 * 1.1e-13);
+  assert_int_equal(curve_from(describe_trigonometric(c, 3, 0, 6.283185307179586), NULL, &curve), CPROX_OK);
+  print_message("a circle takes %zu pieces, error %g of its radius\n", curve->n_pieces,
+                0.5 * cprox_curve_get_info(curve).error);
+  assert_true(cprox_curve_get_info(curve).error < 2.0 * 1.1e-13);
   assert_in_range(curve->n_pieces, 100, 160);
-  assert_int_equal(cprox_curve_degree(curve), 5);
+  assert_int_equal(cprox_curve_get_info(curve).degree, 5);
   cprox_curve_free(curve);
 }
 
@@ -107,7 +109,7 @@ CASE(a_circle_takes_about_a_hundred_pieces) {
 CASE(a_series_of_zeros_stands_still) {
   const vec3 c[5] = {{1, 2, 3}};
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_trigonometric(c, 5, 0, 6.0, NULL, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_trigonometric(c, 5, 0, 6.0), NULL, &curve), CPROX_OK);
   for (size_t i = 0; i < curve->n_pieces; i++)
     for (size_t j = 0; j < 6; j++) assert_memory_equal(&curve_piece(curve, i)[j], &c[0], sizeof c[0]);
   cprox_curve_free(curve);
@@ -116,9 +118,9 @@ CASE(a_series_of_zeros_stands_still) {
 static void refused(const vec3 *c, size_t n, double t0, double t1, const char *reason) {
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_trigonometric(c, n, t0, t1, workspace, &curve), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_trigonometric(c, n, t0, t1), workspace, &curve), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(workspace), reason);
-  assert_int_equal(cprox_curve_create_trigonometric(c, n, t0, t1, NULL, &curve), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_trigonometric(c, n, t0, t1), NULL, &curve), CPROX_INVALID);
   assert_null(curve);
   cprox_workspace_free(workspace);
 }
@@ -136,9 +138,9 @@ CASE(bad_series_are_refused) {
           "at t = 1e+16 the curve needs pieces of 0, shorter than the steps of double arithmetic");
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_trigonometric(c, 3, 0, 1e9, workspace, &curve), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_trigonometric(c, 3, 0, 1e9), workspace, &curve), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(workspace), "pieces of the series, above 65536"));
-  assert_int_equal(cprox_curve_create_trigonometric(c, 3, 0, 1, workspace, NULL), CPROX_INVALID);
+  assert_int_equal(curve_from(describe_trigonometric(c, 3, 0, 1), workspace, NULL), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(workspace), "the pointer for the new curve is NULL");
   cprox_workspace_free(workspace);
   c[2].x = 1e80;

@@ -6,6 +6,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/counting.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 
 #define MADE(call) assert_int_equal(call, CPROX_OK)
@@ -420,7 +421,7 @@ CASE(a_region_localises_the_test) {
 static cprox_curve *wave_curve(void) {
   const cprox_vec3 p[5] = {{-1, 0, 0}, {-0.5, 1.2, 0}, {0, -1.5, 0}, {0.6, 1.4, 0}, {1, 0, 0}};
   cprox_curve *c;
-  MADE(cprox_curve_create_bezier(p, 5, 0, 1, ws, &c));
+  MADE(curve_from(describe_bezier(p, 5, 0, 1), ws, &c));
   return c;
 }
 

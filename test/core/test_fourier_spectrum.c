@@ -8,6 +8,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/counting.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 
 #define MADE(call) assert_int_equal(call, CPROX_OK)
@@ -45,7 +46,7 @@ static cprox_solid *grid(int dimension) {
 static cprox_solid *sweep(int dimension) {
   const cprox_vec3 p[4] = {{-0.5, 0, 0}, {0.2, 0.9, 0}, {0.4, -0.7, dimension == 2 ? 0 : 0.8}, {0.6, 0.3, 0}};
   cprox_curve *c;
-  MADE(cprox_curve_create_bezier(p, 4, 0, 1, ws, &c));
+  MADE(curve_from(describe_bezier(p, 4, 0, 1), ws, &c));
   cprox_solid *s;
   MADE(cprox_solid_create_sweep(dimension, c, 0.1, 0.01, ws, &s));
   cprox_curve_free(c);

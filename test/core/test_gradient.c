@@ -5,6 +5,7 @@
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
@@ -29,9 +30,10 @@ typedef struct problem {
 
 static cprox_curve *make(const problem *p, const vec3 *points) {
   cprox_curve *curve = NULL;
-  const cprox_status status = p->spline ? cprox_curve_create_bspline(points, POINTS, DEGREE, p->knots,
-                                                                     POINTS + DEGREE + 1, p->t0, p->t1, ws, &curve)
-                                        : cprox_curve_create_bezier(points, POINTS, 0.0, 1.0, ws, &curve);
+  const cprox_status status =
+      p->spline ? curve_from(describe_bspline(points, POINTS, DEGREE, p->knots, POINTS + DEGREE + 1, p->t0, p->t1), ws,
+                             &curve)
+                : curve_from(describe_bezier(points, POINTS, 0.0, 1.0), ws, &curve);
   if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }
@@ -99,9 +101,9 @@ static problem moved(problem p, const step *d, double h) {
 
 static void weights_at(const problem *p, double t, double *weights) {
   if (p->spline)
-    cprox_bspline_weights(POINTS, DEGREE, p->knots, t, weights);
+    curve_weights(describe_bspline(NULL, POINTS, DEGREE, p->knots, POINTS + DEGREE + 1, 0.0, 1.0), t, weights);
   else
-    cprox_bezier_weights(POINTS, 0.0, 1.0, t, weights);
+    curve_weights(describe_bezier(NULL, POINTS, 0.0, 1.0), t, weights);
 }
 
 /* The derivative along the step, by the gradient. */
@@ -316,22 +318,29 @@ CASE(weighted_coefficients_make_the_point) {
     if (n > 3 && rng_index(&r, 2)) knots[3] = knots[2]; /* a double knot at the beginning */
     cprox_curve *curve = NULL;
     cprox_status status = CPROX_INVALID;
-    if (basis == 0) status = cprox_curve_create_bezier(c, n, t0, t1, ws, &curve), cprox_bezier_weights(n, t0, t1, t, w);
+    if (basis == 0)
+      status = curve_from(describe_bezier(c, n, t0, t1), ws, &curve),
+      curve_weights(describe_bezier(NULL, n, t0, t1), t, w);
     if (basis == 1) {
-      status = cprox_curve_create_bspline(c, n, 2, knots, n + 3, fmax(t0, knots[2]), fmin(t1, knots[n]), ws, &curve);
-      cprox_bspline_weights(n, 2, knots, fmin(fmax(t, knots[2]), knots[n]), w);
+      status = curve_from(describe_bspline(c, n, 2, knots, n + 3, fmax(t0, knots[2]), fmin(t1, knots[n])), ws, &curve);
+      curve_weights(describe_bspline(NULL, n, 2, knots, n + 2 + 1, 0.0, 1.0), fmin(fmax(t, knots[2]), knots[n]), w);
     }
-    if (basis == 2) status = cprox_curve_create_polynomial(c, n, t0, t1, ws, &curve), cprox_polynomial_weights(n, t, w);
+    if (basis == 2)
+      status = curve_from(describe_polynomial(c, n, t0, t1), ws, &curve),
+      curve_weights(describe_polynomial(NULL, n, 0.0, 1.0), t, w);
     if (basis == 3)
-      status = cprox_curve_create_legendre(c, n, t0, t1, ws, &curve), cprox_legendre_weights(n, t0, t1, t, w);
+      status = curve_from(describe_legendre(c, n, t0, t1), ws, &curve),
+      curve_weights(describe_legendre(NULL, n, t0, t1), t, w);
     if (basis == 4)
-      status = cprox_curve_create_lagrange(c, nodes, n, t0, t1, ws, &curve), cprox_lagrange_weights(nodes, n, t, w);
+      status = curve_from(describe_lagrange(c, nodes, n, t0, t1), ws, &curve),
+      curve_weights(describe_lagrange(NULL, nodes, n, 0.0, 1.0), t, w);
     if (basis == 5)
-      status = cprox_curve_create_trigonometric(c, n, t0, t1, ws, &curve), cprox_trigonometric_weights(n, t, w);
+      status = curve_from(describe_trigonometric(c, n, t0, t1), ws, &curve),
+      curve_weights(describe_trigonometric(NULL, n, 0.0, 1.0), t, w);
     if (status != CPROX_OK) fail_msg("basis %zu: %s", basis, cprox_workspace_error(ws));
     vec3 at, sum = vec(0, 0, 0);
     double u0, u1;
-    cprox_curve_domain(curve, &u0, &u1);
+    u0 = cprox_curve_get_info(curve).t0, u1 = cprox_curve_get_info(curve).t1;
     assert_int_equal(cprox_curve_evaluate(curve, fmin(fmax(t, u0), u1), ws, &at, NULL, NULL), CPROX_OK);
     for (size_t i = 0; i < n; i++) sum = vec_axpy(sum, w[i], c[i]);
     if (!(vec_norm(vec_sub(at, sum)) < 1e-11))

@@ -5,6 +5,7 @@
 
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/make_curve.h"
 
 #define DOUBT 1e-12
 #define TURN 6.283185307179586
@@ -32,14 +33,14 @@ static cprox_curve *graph(double a, double c, size_t power) {
   coefficients[1].x = a;
   coefficients[power].z += 1.0;
   cprox_curve *curve = NULL;
-  if (cprox_curve_create_polynomial(coefficients, power + 1, -1.0, 1.0, ws, &curve))
+  if (curve_from(describe_polynomial(coefficients, power + 1, -1.0, 1.0), ws, &curve))
     fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }
 
 static cprox_curve *circle(double radius, double t1) {
   cprox_curve *curve = NULL;
-  if (cprox_curve_create_trigonometric((vec3[]){{0, 0, 0}, {radius, 0, 0}, {0, radius, 0}}, 3, 0.0, t1, ws, &curve))
+  if (curve_from(describe_trigonometric((vec3[]){{0, 0, 0}, {radius, 0, 0}, {0, radius, 0}}, 3, 0.0, t1), ws, &curve))
     fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }
@@ -116,8 +117,9 @@ CASE(a_cusp_towards_a_face_and_towards_a_point) {
   /* (t³, 0, c + t²) */
   for (int k = 0; k < 2; k++) {
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_polynomial((vec3[]){{0, 0, k ? 0.25 : 1.25}, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}},
-                                                   4, -1.0, 1.0, ws, &curve),
+    assert_int_equal(curve_from(describe_polynomial((vec3[]){{0, 0, k ? 0.25 : 1.25}, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}},
+                                                    4, -1.0, 1.0),
+                                ws, &curve),
                      CPROX_OK);
     if (k)
       point_is_at(0.25, curve);
@@ -173,7 +175,7 @@ CASE(repeated_control_points_and_knots) {
                          {2, 0, 3},  {3, 0, 4},  {3, 0, 5},    {3, 0, 6}};
   const double knots[] = {0, 0, 0, 0, 1, 1, 1, 2, 2, 3, 3, 3, 3};
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_bspline(points, 9, 3, knots, 13, 0.0, 3.0, ws, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bspline(points, 9, 3, knots, 13, 0.0, 3.0), ws, &curve), CPROX_OK);
   box_is_at(1.0, curve);
 }
 

@@ -10,6 +10,7 @@
 #include "shape/body.h"
 #include "support/cases.h"
 #include "support/implicits.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 
 static int make_workspace(void **state) {
@@ -314,7 +315,7 @@ CASE(a_curve_sees_the_same_distance_as_from_the_kind_it_equals) {
     cprox_vec3 points[6];
     for (int i = 0; i < 6; i++) points[i] = rng_in_cube(&r, 4);
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_bezier(points, 6, 0, 1, w, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_bezier(points, 6, 0, 1), w, &curve), CPROX_OK);
     const cprox_pose pose = rng_pose(&r, 2);
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-9;

@@ -7,6 +7,7 @@
 #include "shape/body.h"
 #include "support/cases.h"
 #include "support/implicits.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 
 static int make_workspace(void **state) {
@@ -119,7 +120,7 @@ CASE(a_carried_twin_is_measured_like_the_kind_it_equals) {
     cprox_vec3 points[4];
     for (int k = 0; k < 4; k++) points[k] = rng_in_cube(&r, 6);
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_bezier(points, 4, 0, 1, w, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_bezier(points, 4, 0, 1), w, &curve), CPROX_OK);
     const cprox_pose pose = rng_pose(&r, 2);
     cprox_result expected, found;
     assert_true(

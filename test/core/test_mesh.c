@@ -8,6 +8,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/counting.h"
+#include "support/make_curve.h"
 #include "support/meshes.h"
 
 /* ---- builders --------------------------------------------------------------------------------------------------------- */
@@ -21,7 +22,7 @@ typedef struct test_bezier {
 static test_bezier bezier_make(const vec3 *points, size_t degree) {
   test_bezier b = {.degree = degree};
   memcpy(b.points, points, (degree + 1) * sizeof *points);
-  if (cprox_curve_create_bezier(b.points, degree + 1, 0.0, 1.0, ws, &b.curve) != CPROX_OK)
+  if (curve_from(describe_bezier(b.points, degree + 1, 0.0, 1.0), ws, &b.curve) != CPROX_OK)
     fail_msg("%s", cprox_workspace_error(ws));
   return b;
 }

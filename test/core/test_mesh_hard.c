@@ -8,6 +8,7 @@
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/make_curve.h"
 #include "support/meshes.h"
 
 /* The distance at epsilon, which must hold `truth` (itself within `doubt`) and take at most so many intervals; converged, unless the
@@ -102,7 +103,7 @@ CASE(concentric_curves_end_within_the_budget) {
 
   const cprox_vec3 terms[3] = {{0, 0, 0.01}, {1, 0, 0}, {0, 1, 0}};
   cprox_curve *arc = NULL;
-  assert_int_equal(cprox_curve_create_trigonometric(terms, 3, 0.0, 3.0, ws, &arc), CPROX_OK);
+  assert_int_equal(curve_from(describe_trigonometric(terms, 3, 0.0, 3.0), ws, &arc), CPROX_OK);
   expect_distance("arc", arc, body, cprox_pose_identity(), 1e-6, 0.5, 1e-9, 1300);
   cprox_curve_free(along);
   cprox_curve_free(arc);
@@ -150,7 +151,8 @@ CASE(a_spline_of_a_thousand_pieces_is_answered) {
   }
   for (int k = 0; k < POINTS + 4; k++) knots[k] = k;
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_bspline(points, POINTS, 3, knots, POINTS + 4, 3.0, POINTS, ws, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bspline(points, POINTS, 3, knots, POINTS + 4, 3.0, POINTS), ws, &curve),
+                   CPROX_OK);
   cprox_result r;
   assert_int_equal(
       cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws, &r), CPROX_OK);

@@ -89,7 +89,9 @@ struct World {
       cprox_vec3 points[4];
       for (int k = 0; k < 4; ++k) points[k] = {std::sin(3.0 * i + k), std::cos(5.0 * i - 2 * k), std::sin(7.0 * i * k)};
       cprox_curve *curve = nullptr;
-      assert_int_equal(cprox_curve_create_bezier(points, 4, 0, 1, nullptr, &curve), CPROX_OK);
+      cprox_curve_description bezier{};
+      bezier.kind = CPROX_CURVE_BEZIER, bezier.points = points, bezier.n = 4, bezier.t1 = 1.0;
+      assert_int_equal(cprox_curve_create(&bezier, nullptr, &curve), CPROX_OK);
       curves.push_back(curve);
       movers.push_back(cprox_point_along(curve));
     }

@@ -13,6 +13,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/counting.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -163,7 +164,7 @@ CASE(a_long_spline_is_searched_by_its_tree) {
   }
   for (int i = 0; i < N + 4; i++) knots[i] = i;
   cprox_curve *curve = NULL;
-  if (cprox_curve_create_bspline(points, N, 3, knots, N + 4, knots[3], knots[N], ws, &curve) != CPROX_OK)
+  if (curve_from(describe_bspline(points, N, 3, knots, N + 4, knots[3], knots[N]), ws, &curve) != CPROX_OK)
     fail_msg("%s", cprox_workspace_error(ws));
   cprox_body *body = box(0.02, 0.02, 0.02);
   const cprox_options options = accurate(1e-6);

@@ -8,6 +8,7 @@
 #include "curve_proximity/cprox.h"
 #include "support/cases.h"
 #include "support/csv.h"
+#include "support/make_curve.h"
 
 /* The body of a case: one vertex is a point, vertices in the plane a polygon (two a segment), in space a polytope. */
 static cprox_body *body_of(const csv_curve_case *c, cprox_workspace *ws) {
@@ -97,7 +98,7 @@ static void check_file(const char *inputs, const char *references) {
     csv_curve_case_read(&in, &in.row[i], c);
     const double reference = csv_number(&ref, csv_find(&ref, c->id), 1);
     cprox_curve *curve = NULL;
-    if (cprox_curve_create_bezier(c->points, c->n_points, 0.0, 1.0, ws, &curve) != CPROX_OK)
+    if (curve_from(describe_bezier(c->points, c->n_points, 0.0, 1.0), ws, &curve) != CPROX_OK)
       fail_msg("%s: %s", c->id, cprox_workspace_error(ws));
     cprox_body *body = body_of(c, ws);
     const double scale = fmax(1.0, largest_coordinate(c));

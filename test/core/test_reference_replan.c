@@ -6,6 +6,7 @@
 #include "curve_proximity/cprox.h"
 #include "support/cases.h"
 #include "support/csv.h"
+#include "support/make_curve.h"
 
 #define DELTA 0.03
 
@@ -44,7 +45,7 @@ static cprox_curve *curve_of(const csv_row *row) {
   }
   assert_true(*at == '\0');
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_bezier(p, 6, 0.0, 1.0, NULL, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(p, 6, 0.0, 1.0), NULL, &curve), CPROX_OK);
   return curve;
 }
 

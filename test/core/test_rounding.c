@@ -10,6 +10,7 @@
 #include "support/cases.h"
 #include "support/curves.h"
 #include "support/exact.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 
 enum { CASES = 20000, SIGHTS = 4, MAX_DEGREE = 12, ENOUGH = 5000 };
@@ -212,7 +213,7 @@ static void problem_random(problem *p, rng *r, cprox_workspace *ws) {
   p->pose.position = vec_add(p->pose.position, away);
   if (bare || rng_index(r, 2)) p->pose.orientation = (cprox_quat){1, 0, 0, 0};
   p->offset = bare || rng_index(r, 2) ? 0.0 : 0.1 * scale;
-  assert_int_equal(cprox_curve_create_bezier(p->points, p->degree + 1, 0.0, 1.0, ws, &p->curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(p->points, p->degree + 1, 0.0, 1.0), ws, &p->curve), CPROX_OK);
   assert_true(
       curve_convex_begin(&p->c, p->curve, &p->o.body->shape, frame_create(&p->pose, p->o.body->centre), p->offset, ws));
 }
@@ -321,7 +322,7 @@ CASE(a_compiled_series_is_within_its_error) {
     if (rng_index(&r, 2)) c[0] = vec(0, 0, 0);
     const double t0 = rng_uniform(&r, -10.0, 10.0);
     cprox_curve *curve = NULL;
-    if (cprox_curve_create_trigonometric(c, 2 * degree + 1, t0, t0 + rng_uniform(&r, 1e-3, 1.0), ws, &curve) !=
+    if (curve_from(describe_trigonometric(c, 2 * degree + 1, t0, t0 + rng_uniform(&r, 1e-3, 1.0)), ws, &curve) !=
         CPROX_OK)
       fail_msg("%s", cprox_workspace_error(ws));
     for (int k = 0; k < 4; k++) {

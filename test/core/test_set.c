@@ -7,6 +7,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/counting.h"
+#include "support/make_curve.h"
 #include "support/meshes.h"
 
 /* ---- scenes ----------------------------------------------------------------------------------------------------------- */
@@ -38,7 +39,7 @@ static scene scene_make(rng *r, size_t n, double half, bool all) {
   const cprox_pose poses[2] = {rng_pose(r, 0.2), rng_pose(r, 0.2)};
   assert_int_equal(cprox_body_create_compound(parts, poses, 2, ws, &s.body[7]), CPROX_OK);
   assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 2.0 * half, ws, &s.body[8]), CPROX_OK);
-  assert_int_equal(cprox_curve_create_bezier(points, 4, 0.0, 1.0, ws, &s.curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(points, 4, 0.0, 1.0), ws, &s.curve), CPROX_OK);
   for (size_t i = 0; i < n; i++) {
     const size_t kind = i % 9;
     s.targets[i] = kind == 8 ? cprox_obstacle_curve(s.curve, 0.02) : cprox_obstacle_at(s.body[kind], rng_pose(r, half));
@@ -74,11 +75,11 @@ static cprox_curve *way(rng *r, size_t n, double half) {
   points[0] = rng_in_cube(r, half);
   for (size_t k = 1; k < n; k++) points[k] = vec_add(points[k - 1], rng_in_cube(r, 0.3 * half));
   if (n <= 5) {
-    assert_int_equal(cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_bezier(points, n, 0.0, 1.0), ws, &curve), CPROX_OK);
     return curve;
   }
   for (size_t k = 0; k < n + 4; k++) knots[k] = (double)k;
-  assert_int_equal(cprox_curve_create_bspline(points, n, 3, knots, n + 4, 3.0, (double)n, ws, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bspline(points, n, 3, knots, n + 4, 3.0, (double)n), ws, &curve), CPROX_OK);
   return curve;
 }
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "support/cases.h"
+#include "support/make_curve.h"
 
 enum { THREADS = 4, ROUNDS = 50, TARGETS = 6, ANSWERS = 3 };
 
@@ -60,7 +61,7 @@ CASE(threads_that_share_bodies_and_curves_get_the_answers_of_one_thread) {
   for (int i = 0; i < 24; ++i) points[i] = (cprox_vec3){0.2 * i, 0.6 * sin(0.9 * i), 0.4 * cos(0.7 * i)};
   for (int i = 0; i < 28; ++i) knots[i] = (double)i;
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_bspline(points, 24, 3, knots, 28, 3.0, 24.0, workspace, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bspline(points, 24, 3, knots, 28, 3.0, 24.0), workspace, &curve), CPROX_OK);
   const cprox_vec3 corners[5] = {
       {0.0, 0.0, 0.3}, {0.2, 0.0, 0.0}, {0.0, 0.2, 0.0}, {-0.2, -0.1, 0.0}, {0.1, -0.2, 0.1}};
   cprox_body *bodies[TARGETS] = {0};

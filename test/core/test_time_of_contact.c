@@ -7,6 +7,7 @@
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/make_curve.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -210,7 +211,7 @@ CASE(contact_on_a_late_piece_of_a_long_spline_is_found_there) {
   for (int i = 0; i < N; i++) p[i] = vec(0.1 * i, 0.05 * sin(0.3 * i), 0.0);
   for (int i = 0; i < N + 4; i++) knots[i] = i;
   cprox_curve *curve = NULL;
-  assert_int_equal(cprox_curve_create_bspline(p, N, 3, knots, N + 4, 3, N, ws, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bspline(p, N, 3, knots, N + 4, 3, N), ws, &curve), CPROX_OK);
   cprox_body *wall = NULL;
   assert_int_equal(cprox_body_create_box(vec(0.02, 4, 4), ws, &wall), CPROX_OK);
   cprox_result c;

@@ -15,8 +15,8 @@ typedef struct cprox_gradient {
    *  numbers are those of one of the minimisers or 0 */
   bool valid;
   double t, t_obstacle; /**< the minimiser, as exactly as double arithmetic finds it; t_obstacle NaN for bodies */
-  /** by the mover's point at t. By a coefficient of the mover's curve: its weight at t (cprox_bezier_weights() and so
-   *  on) times this */
+  /** by the mover's point at t. By a coefficient of the mover's curve: its weight at t (cprox_curve_weights())
+   *  times this */
   cprox_vec3 mover;
   /** the same of a target that is a curve: by its point at t_obstacle, in the target's frame; else 0 */
   cprox_vec3 obstacle_point;
@@ -49,16 +49,6 @@ typedef struct cprox_gradient {
 CPROX_API cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                                const cprox_result *result, cprox_workspace *workspace,
                                                cprox_gradient *gradient);
-
-/** psi(t) = sum of weights[i] times coefficient i, for each basis as its constructor has it; weights receives as many
- *  numbers as there are coefficients. Arguments as there, unchecked. Accuracy: a few n 2^-53 of the sum of
- *  |weights|. */
-CPROX_API void cprox_bezier_weights(size_t n_points, double t0, double t1, double t, double *weights);
-CPROX_API void cprox_bspline_weights(size_t n_points, size_t degree, const double *knots, double t, double *weights);
-CPROX_API void cprox_polynomial_weights(size_t n_coefficients, double t, double *weights);
-CPROX_API void cprox_legendre_weights(size_t n_coefficients, double t0, double t1, double t, double *weights);
-CPROX_API void cprox_lagrange_weights(const double *nodes, size_t n_points, double t, double *weights);
-CPROX_API void cprox_trigonometric_weights(size_t n_coefficients, double t, double *weights);
 
 #ifdef __cplusplus
 }

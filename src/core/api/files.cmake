@@ -6,5 +6,4 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/obstacle_set.c
   ${CMAKE_CURRENT_LIST_DIR}/profile.c
   ${CMAKE_CURRENT_LIST_DIR}/time_of_contact.c
-  ${CMAKE_CURRENT_LIST_DIR}/weights.c
 )

@@ -13,7 +13,7 @@ static vec3 local_point(const cover *c, const frame *f, vec3 world, double *erro
   double turned = 0.0;
   const vec3 y = frame_to_local(f, world, &turned);
   const double n = (double)c->curve->degree;
-  *error = turned + cprox_curve_error(c->curve) + (6.0 * n + 20.0) * ROUND_U * vec_norm(world);
+  *error = turned + curve_error(c->curve) + (6.0 * n + 20.0) * ROUND_U * vec_norm(world);
   return y;
 }
 
@@ -84,7 +84,7 @@ cprox_status cover_near(const cover *c, uint32_t section, const cprox_result *an
     const vec3 seen = frame_to_local(&f, answer->witness_obstacle, &error);
     const vec3 z = point_by(c->set.curve, c->witness_on_set, seen);
     const double n = (double)c->set.curve->degree;
-    error += cprox_curve_error(c->set.curve) + (6.0 * n + 20.0) * ROUND_U * vec_norm(z);
+    error += curve_error(c->set.curve) + (6.0 * n + 20.0) * ROUND_U * vec_norm(z);
     certificate_number(c->certificate, answer->t_obstacle);
     apart = vec_norm(vec_sub(y, z)) + error;
     size = vec_norm(y);

@@ -5,14 +5,14 @@
 #include "base/workspace.h"
 #include "curve/curve.h"
 
-cprox_status cprox_curve_create_bezier(const cprox_vec3 *points, size_t n_points, double t0, double t1,
-                                       cprox_workspace *workspace, cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status != CPROX_OK) return status;
+cprox_status curve_create_bezier(const cprox_curve_description *d, cprox_workspace *workspace, cprox_curve **curve) {
+  const cprox_vec3 *points = d->points;
+  const size_t n_points = d->n;
+  const double t0 = d->t0, t1 = d->t1;
   if (n_points > CPROX_MAX_DEGREE + 1)
     return workspace_fail(workspace, CPROX_INVALID, "a Bézier curve has at most %d control points (degree %d), got %zu",
                           CPROX_MAX_DEGREE + 1, CPROX_MAX_DEGREE, n_points);
-  status = curve_check_points(points, n_points, workspace);
+  cprox_status status = curve_check_points(points, n_points, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;
 

@@ -71,11 +71,12 @@ static double convert_span(const vec3 *control, const double *knots, size_t degr
   return ROUND_UP * ROUND_U * ((5.0 * p + 1.0) * size + largest_norm(bezier, degree + 1));
 }
 
-cprox_status cprox_curve_create_bspline(const cprox_vec3 *points, size_t n_points, size_t degree, const double *knots,
-                                        size_t n_knots, double t0, double t1, cprox_workspace *workspace,
-                                        cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status == CPROX_OK) status = curve_check_points(points, n_points, workspace);
+cprox_status curve_create_bspline(const cprox_curve_description *d, cprox_workspace *workspace, cprox_curve **curve) {
+  const cprox_vec3 *points = d->points;
+  const double *knots = d->knots;
+  const size_t n_points = d->n, degree = d->degree, n_knots = d->n_knots;
+  const double t0 = d->t0, t1 = d->t1;
+  cprox_status status = curve_check_points(points, n_points, workspace);
   if (status == CPROX_OK) status = check_knots(knots, n_points, degree, n_knots, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;

@@ -21,10 +21,11 @@ static cprox_status check_clothoid(vec3 start, double heading, double curvature,
   return CPROX_OK;
 }
 
-cprox_status cprox_curve_create_clothoid(cprox_vec3 start, double heading, double curvature, double curvature_rate,
-                                         double t0, double t1, cprox_workspace *workspace, cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
+cprox_status curve_create_clothoid(const cprox_curve_description *d, cprox_workspace *workspace, cprox_curve **curve) {
+  const cprox_vec3 start = d->start;
+  const double heading = d->heading, curvature = d->curvature, curvature_rate = d->curvature_rate;
+  const double t0 = d->t0, t1 = d->t1;
+  cprox_status status = curve_check_range(t0, t1, workspace);
   const double most = fmax(fabs(t0), fabs(t1));
   if (status == CPROX_OK) status = check_clothoid(start, heading, curvature, curvature_rate, most, workspace);
   if (status != CPROX_OK) return status;

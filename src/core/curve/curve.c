@@ -53,12 +53,6 @@ static cprox_status check_finite(const char *name, const vec3 *values, size_t n,
   return CPROX_OK;
 }
 
-cprox_status curve_check_handle(cprox_curve **curve, cprox_workspace *workspace) {
-  workspace_clear(workspace);
-  if (curve) return CPROX_OK;
-  return workspace_fail(workspace, CPROX_INVALID, "the pointer for the new curve is NULL");
-}
-
 cprox_status curve_check_points(const vec3 *points, size_t n, cprox_workspace *workspace) {
   if (n < 2) return workspace_fail(workspace, CPROX_INVALID, "a curve needs at least 2 control points, got %zu", n);
   if (!points) return workspace_fail(workspace, CPROX_INVALID, "the control points are NULL");
@@ -81,10 +75,8 @@ cprox_status curve_check_range(double t0, double t1, cprox_workspace *workspace)
   return CPROX_OK;
 }
 
-cprox_status curve_check_sum(const vec3 *coefficients, size_t n, double t0, double t1, cprox_workspace *workspace,
-                             cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status == CPROX_OK) status = curve_check_values("coefficient", coefficients, n, CPROX_MAX_DEGREE + 1, workspace);
+cprox_status curve_check_sum(const vec3 *coefficients, size_t n, double t0, double t1, cprox_workspace *workspace) {
+  const cprox_status status = curve_check_values("coefficient", coefficients, n, CPROX_MAX_DEGREE + 1, workspace);
   return status == CPROX_OK ? curve_check_range(t0, t1, workspace) : status;
 }
 
@@ -224,19 +216,6 @@ void curve_blossom(const vec3 *d, const double *u, size_t p, double lo, double h
 
 /* ---- what users ask a curve ---- */
 
-void cprox_curve_domain(const cprox_curve *curve, double *t0, double *t1) {
-  *t0 = curve->breaks[0];
-  *t1 = curve->breaks[curve->n_pieces];
-}
-
-size_t cprox_curve_degree(const cprox_curve *curve) {
-  return curve->arcs ? 0 : curve->degree;
-}
-
-size_t cprox_curve_pieces(const cprox_curve *curve) {
-  return curve->n_pieces;
-}
-
 size_t curve_piece_at(const cprox_curve *c, double t) {
   size_t first = 0, end = c->n_pieces;
   while (end - first > 1) {
@@ -326,13 +305,6 @@ cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, doub
   return CPROX_OK;
 }
 
-double cprox_curve_error(const cprox_curve *curve) {
-  if (curve->arcs) return curve->arcs->error;
-  double largest = 0.0;
-  for (size_t i = 0; i < curve->n_pieces; i++) largest = fmax(largest, curve->error[i]);
-  return largest;
-}
-
 void cprox_curve_piece_bounds(const cprox_curve *curve, size_t piece, cprox_vec3 *lowest, cprox_vec3 *highest) {
   *lowest = vec(INFINITY, INFINITY, INFINITY);
   *highest = vec(-INFINITY, -INFINITY, -INFINITY);
@@ -351,12 +323,19 @@ void cprox_curve_piece_bounds(const cprox_curve *curve, size_t piece, cprox_vec3
   }
 }
 
-void cprox_curve_bounds(const cprox_curve *curve, cprox_vec3 *lowest, cprox_vec3 *highest) {
-  cprox_curve_piece_bounds(curve, 0, lowest, highest);
+cprox_curve_info cprox_curve_get_info(const cprox_curve *curve) {
+  cprox_curve_info info = {.kind = curve->kind,
+                           .degree = curve->arcs ? 0 : curve->degree,
+                           .n_pieces = curve->n_pieces,
+                           .error = curve_error(curve),
+                           .dubins = curve->dubins};
+  curve_domain(curve, &info.t0, &info.t1);
+  cprox_curve_piece_bounds(curve, 0, &info.lowest, &info.highest);
   for (size_t i = 1; i < curve->n_pieces; i++) {
     vec3 low, high;
     cprox_curve_piece_bounds(curve, i, &low, &high);
-    *lowest = vec(fmin(lowest->x, low.x), fmin(lowest->y, low.y), fmin(lowest->z, low.z));
-    *highest = vec(fmax(highest->x, high.x), fmax(highest->y, high.y), fmax(highest->z, high.z));
+    info.lowest = vec(fmin(info.lowest.x, low.x), fmin(info.lowest.y, low.y), fmin(info.lowest.z, low.z));
+    info.highest = vec(fmax(info.highest.x, high.x), fmax(info.highest.y, high.y), fmax(info.highest.z, high.z));
   }
+  return info;
 }

@@ -24,6 +24,8 @@ typedef struct curve_pack {
 } curve_pack;
 
 struct cprox_curve {
+  cprox_curve_kind kind;
+  cprox_dubins_path dubins; /* zeros for other kinds */
   size_t degree;
   size_t n_pieces;
   double *breaks; /* n_pieces + 1 parameters, ascending; piece i covers [breaks[i], breaks[i+1]] */
@@ -77,18 +79,29 @@ void curve_fill_tables(size_t degree, double *tables);
 /* Builds the capsules and tables over pieces that are filled in. */
 void curve_finish(cprox_curve *c);
 
-/* Checks that constructors share: CPROX_OK, or CPROX_INVALID with the sentence set. The pointer for the new curve, first of all: the
- * reason of the call before is forgotten. The points: at least 2, finite,
+/* The constructors, one a kind: each reads and checks the members of the description that its kind has. *curve is
+ * untouched on failure. create.c lists them. */
+typedef cprox_status curve_constructor(const cprox_curve_description *d, cprox_workspace *workspace,
+                                       cprox_curve **curve);
+curve_constructor curve_create_bezier, curve_create_bspline, curve_create_polynomial, curve_create_legendre,
+    curve_create_lagrange, curve_create_trigonometric, curve_create_clothoid, curve_create_dubins,
+    curve_create_involute, curve_create_pythagorean_hodograph, curve_create_piecewise, curve_create_smooth,
+    curve_create_rectifiable;
+
+/* The weights of a kind's coefficients at t, as many as there are coefficients; the description is not checked. */
+typedef void curve_weighting(const cprox_curve_description *d, double t, double *weights);
+curve_weighting curve_weights_bezier, curve_weights_bspline, curve_weights_polynomial, curve_weights_legendre,
+    curve_weights_lagrange, curve_weights_trigonometric;
+
+/* Checks that constructors share: CPROX_OK, or CPROX_INVALID with the message set. The points: at least 2, finite,
  * small enough that their squares do not overflow. The range: finite, t0 < t1. */
-cprox_status curve_check_handle(cprox_curve **curve, cprox_workspace *workspace);
 cprox_status curve_check_points(const vec3 *points, size_t n, cprox_workspace *workspace);
 /* 1 … most vectors that are no points of the curve, under a name of their own ("coefficient"). */
 cprox_status curve_check_values(const char *name, const vec3 *values, size_t n, size_t most,
                                 cprox_workspace *workspace);
 cprox_status curve_check_range(double t0, double t1, cprox_workspace *workspace);
 /* All of it for a sum of coefficients times functions of t. */
-cprox_status curve_check_sum(const vec3 *coefficients, size_t n, double t0, double t1, cprox_workspace *workspace,
-                             cprox_curve **curve);
+cprox_status curve_check_sum(const vec3 *coefficients, size_t n, double t0, double t1, cprox_workspace *workspace);
 
 /* The largest magnitude of a coordinate, a knot or a parameter. */
 #define CURVE_LARGEST 1e150
@@ -105,6 +118,17 @@ void curve_blossom(const vec3 *d, const double *u, size_t p, double lo, double h
  * one. */
 void curve_bezier_evaluate(const double *x, const double *y, const double *z, size_t stride, size_t degree,
                            const double *binomial, double s, vec3 *value, vec3 *first, vec3 *second);
+
+/* The ends of the parameter range. */
+static inline void curve_domain(const cprox_curve *c, double *t0, double *t1) {
+  *t0 = c->breaks[0];
+  *t1 = c->breaks[c->n_pieces];
+}
+
+/* How far the curve as it was given may be from its computed pieces; of one known by its arc length: from its points. */
+static inline double curve_error(const cprox_curve *c) {
+  return c->arcs ? c->arcs->error : c->worst;
+}
 
 /* Whether it keeps within what queries can hold. */
 static inline bool curve_is_in_reach(const cprox_curve *c) {

@@ -129,14 +129,13 @@ static cprox_status compile_path(vec3 start, double heading, double radius, cons
   return compile_finish(&pieces, curve);
 }
 
-cprox_status cprox_curve_create_dubins(cprox_vec3 start, double start_heading, cprox_vec3 end, double end_heading,
-                                       double radius, cprox_dubins_word word, cprox_workspace *workspace,
-                                       cprox_dubins_path *path, cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status != CPROX_OK) return status;
+cprox_status curve_create_dubins(const cprox_curve_description *d, cprox_workspace *workspace, cprox_curve **curve) {
+  const cprox_vec3 start = d->start, end = d->end;
+  const double start_heading = d->heading, end_heading = d->end_heading, radius = d->radius;
+  const cprox_dubins_word word = d->word;
   if (word < CPROX_DUBINS_SHORTEST || word > CPROX_DUBINS_LRL)
     return workspace_fail(workspace, CPROX_INVALID, "%d is no word of a Dubins path", (int)word);
-  status = check_poses(start, start_heading, end, end_heading, radius, workspace);
+  const cprox_status status = check_poses(start, start_heading, end, end_heading, radius, workspace);
   if (status != CPROX_OK) return status;
 
   const double dx = end.x - start.x, dy = end.y - start.y, line = atan2(dy, dx);
@@ -156,6 +155,6 @@ cprox_status cprox_curve_create_dubins(cprox_vec3 start, double start_heading, c
     return workspace_fail(workspace, CPROX_INVALID, "start and end pose are the same: the path has no length");
 
   const cprox_status made = compile_path(start, start_heading, radius, &found, workspace, curve);
-  if (made == CPROX_OK && path) *path = found;
+  if (made == CPROX_OK) (*curve)->dubins = found;
   return made;
 }

@@ -6,6 +6,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/compile.c
   ${CMAKE_CURRENT_LIST_DIR}/control.c
   ${CMAKE_CURRENT_LIST_DIR}/convert.c
+  ${CMAKE_CURRENT_LIST_DIR}/create.c
   ${CMAKE_CURRENT_LIST_DIR}/curve.c
   ${CMAKE_CURRENT_LIST_DIR}/dubins.c
   ${CMAKE_CURRENT_LIST_DIR}/evaluate.c
@@ -25,4 +26,5 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/smooth.c
   ${CMAKE_CURRENT_LIST_DIR}/subcurve.c
   ${CMAKE_CURRENT_LIST_DIR}/trigonometric.c
+  ${CMAKE_CURRENT_LIST_DIR}/weights.c
 )

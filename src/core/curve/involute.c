@@ -30,10 +30,11 @@ static double sixth_derivative(void *self, double a, double b) {
   return ROUND_UP * c->radius * sqrt(t * t + 25.0);
 }
 
-cprox_status cprox_curve_create_involute(cprox_vec3 centre, double radius, double turned, double t0, double t1,
-                                         cprox_workspace *workspace, cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status == CPROX_OK) status = curve_check_values("centre", &centre, 1, 1, workspace);
+cprox_status curve_create_involute(const cprox_curve_description *d, cprox_workspace *workspace, cprox_curve **curve) {
+  const cprox_vec3 centre = d->start;
+  const double radius = d->radius, turned = d->heading;
+  const double t0 = d->t0, t1 = d->t1;
+  cprox_status status = curve_check_values("centre", &centre, 1, 1, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;
   if (!(radius > 0.0 && radius <= sqrt(CURVE_LARGEST)))

@@ -108,14 +108,18 @@ static size_t cut_range(double t0, double t1, size_t n_pieces, double *ends) {
 static cprox_status stand_still(const vec3 *point, double t0, double t1, cprox_workspace *workspace,
                                 cprox_curve **curve) {
   const vec3 both[2] = {point[0], point[0]};
-  return cprox_curve_create_bezier(both, 2, t0, t1, workspace, curve);
+  return curve_create_bezier(&(cprox_curve_description){.points = both, .n = 2, .t0 = t0, .t1 = t1}, workspace, curve);
 }
 
-cprox_status cprox_curve_create_lagrange(const cprox_vec3 *points, const double *nodes, size_t n_points, double t0,
-                                         double t1, cprox_workspace *workspace, cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status == CPROX_OK) status = curve_check_values("point", points, n_points, CPROX_MAX_DEGREE + 1, workspace);
+cprox_status curve_create_lagrange(const cprox_curve_description *d, cprox_workspace *workspace, cprox_curve **curve) {
+  const cprox_vec3 *points = d->points;
+  const double *nodes = d->knots;
+  const size_t n_points = d->n;
+  const double t0 = d->t0, t1 = d->t1;
+  cprox_status status = curve_check_values("point", points, n_points, CPROX_MAX_DEGREE + 1, workspace);
   if (status == CPROX_OK && !nodes) return workspace_fail(workspace, CPROX_INVALID, "the nodes are NULL");
+  if (status == CPROX_OK && d->n_knots != n_points)
+    return workspace_fail(workspace, CPROX_INVALID, "%zu points need as many nodes, got %zu", n_points, d->n_knots);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;
 

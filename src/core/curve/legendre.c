@@ -23,9 +23,11 @@ static void add_term(dd *b, size_t k, double c) {
     b[i] = dd_add(b[i], dd_scale(dd_from_count(convert_binomial(k, i)), (k - i) % 2 ? -c : c));
 }
 
-cprox_status cprox_curve_create_legendre(const cprox_vec3 *coefficients, size_t n_coefficients, double t0, double t1,
-                                         cprox_workspace *workspace, cprox_curve **curve) {
-  const cprox_status status = curve_check_sum(coefficients, n_coefficients, t0, t1, workspace, curve);
+cprox_status curve_create_legendre(const cprox_curve_description *d, cprox_workspace *workspace, cprox_curve **curve) {
+  const cprox_vec3 *coefficients = d->points;
+  const size_t n_coefficients = d->n;
+  const double t0 = d->t0, t1 = d->t1;
+  const cprox_status status = curve_check_sum(coefficients, n_coefficients, t0, t1, workspace);
   if (status != CPROX_OK) return status;
 
   /* a constant is a line that stands still */

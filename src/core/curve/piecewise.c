@@ -128,10 +128,15 @@ static cprox_status append(cprox_curve *whole, size_t first, const cprox_curve *
   return CPROX_OK;
 }
 
-cprox_status cprox_curve_create_piecewise(const cprox_curve *const *curves, size_t n_curves, const double *ends,
-                                          double gap, cprox_workspace *workspace, cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status == CPROX_OK) status = check_curves(curves, n_curves, ends, gap, workspace);
+cprox_status curve_create_piecewise(const cprox_curve_description *d, cprox_workspace *workspace, cprox_curve **curve) {
+  const cprox_curve *const *curves = d->curves;
+  const double *ends = d->knots;
+  const size_t n_curves = d->n;
+  const double gap = d->gap;
+  if (ends && d->n_knots != n_curves + 1)
+    return workspace_fail(workspace, CPROX_INVALID, "%zu curves need n + 1 = %zu ends of their ranges, got %zu",
+                          n_curves, n_curves + 1, d->n_knots);
+  cprox_status status = check_curves(curves, n_curves, ends, gap, workspace);
   for (size_t i = 1; i < n_curves && status == CPROX_OK; i++) status = check_joint(curves, i, !ends, gap, workspace);
   if (status != CPROX_OK) return status;
 

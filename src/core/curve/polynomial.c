@@ -33,9 +33,12 @@ static double sum_of_sizes(const double *c, size_t n, double t) {
   return sum;
 }
 
-cprox_status cprox_curve_create_polynomial(const cprox_vec3 *coefficients, size_t n_coefficients, double t0, double t1,
-                                           cprox_workspace *workspace, cprox_curve **curve) {
-  const cprox_status status = curve_check_sum(coefficients, n_coefficients, t0, t1, workspace, curve);
+cprox_status curve_create_polynomial(const cprox_curve_description *d, cprox_workspace *workspace,
+                                     cprox_curve **curve) {
+  const cprox_vec3 *coefficients = d->points;
+  const size_t n_coefficients = d->n;
+  const double t0 = d->t0, t1 = d->t1;
+  const cprox_status status = curve_check_sum(coefficients, n_coefficients, t0, t1, workspace);
   if (status != CPROX_OK) return status;
 
   /* a constant is a line that stands still */
@@ -51,7 +54,7 @@ cprox_status cprox_curve_create_polynomial(const cprox_vec3 *coefficients, size_
   double size[3];
   for (int k = 0; k < 3; k++) {
     double c[CPROX_MAX_DEGREE + 1] = {0.0};
-    dd d[CPROX_MAX_DEGREE + 1];
+    dd de_boor[CPROX_MAX_DEGREE + 1];
     for (size_t i = 0; i <= n; i++) {
       if (i < n_coefficients) c[i] = ldexp(convert_coordinate(coefficients[i], k), (int)i * exponent);
       if (!(fabs(c[i]) <= CURVE_LARGEST)) {
@@ -60,9 +63,9 @@ cprox_status cprox_curve_create_polynomial(const cprox_vec3 *coefficients, size_
                               "coefficient %zu is too large for |t| up to %g: its term may exceed %g m", i,
                               fmax(fabs(t0), fabs(t1)), CURVE_LARGEST);
       }
-      d[i] = dd_divide(dd_from(c[i]), dd_from_count(convert_binomial(n, i)));
+      de_boor[i] = dd_divide(dd_from(c[i]), dd_from_count(convert_binomial(n, i)));
     }
-    blossom(d, n, lo, hi, piece->control, k);
+    blossom(de_boor, n, lo, hi, piece->control, k);
     size[k] = sum_of_sizes(c, n, fmax(fabs(lo), fabs(hi)));
   }
   const double steps = DD_DIVIDE + (double)n * (DD_SCALE + DD_ADD);

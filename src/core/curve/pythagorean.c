@@ -63,11 +63,13 @@ static convert_point hodograph(const cprox_quat *preimage, size_t m, size_t k, d
   return sum;
 }
 
-cprox_status cprox_curve_create_pythagorean_hodograph(cprox_vec3 start, const cprox_quat *preimage, size_t n_preimage,
-                                                      double t0, double t1, cprox_workspace *workspace,
-                                                      cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status == CPROX_OK) status = curve_check_values("start point", &start, 1, 1, workspace);
+cprox_status curve_create_pythagorean_hodograph(const cprox_curve_description *d, cprox_workspace *workspace,
+                                                cprox_curve **curve) {
+  const cprox_vec3 start = d->start;
+  const cprox_quat *preimage = d->preimage;
+  const size_t n_preimage = d->n;
+  const double t0 = d->t0, t1 = d->t1;
+  cprox_status status = curve_check_values("start point", &start, 1, 1, workspace);
   if (status == CPROX_OK) status = check_preimage(preimage, n_preimage, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;

@@ -128,10 +128,11 @@ static cprox_status fill_pieces(cprox_curve *c, cprox_workspace *workspace) {
   return status;
 }
 
-cprox_status cprox_curve_create_rectifiable(const cprox_rectifiable_curve *functions, double t0, double t1,
-                                            cprox_workspace *workspace, cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status == CPROX_OK) status = check_functions(functions, workspace);
+cprox_status curve_create_rectifiable(const cprox_curve_description *d, cprox_workspace *workspace,
+                                      cprox_curve **curve) {
+  const cprox_rectifiable_curve *functions = d->rectifiable;
+  const double t0 = d->t0, t1 = d->t1;
+  cprox_status status = check_functions(functions, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;
 

@@ -45,10 +45,10 @@ static cprox_status check_smooth(const cprox_smooth_curve *given, cprox_workspac
   return CPROX_OK;
 }
 
-cprox_status cprox_curve_create_smooth(const cprox_smooth_curve *functions, double t0, double t1,
-                                       cprox_workspace *workspace, cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status == CPROX_OK) status = check_smooth(functions, workspace);
+cprox_status curve_create_smooth(const cprox_curve_description *d, cprox_workspace *workspace, cprox_curve **curve) {
+  const cprox_smooth_curve *functions = d->smooth;
+  const double t0 = d->t0, t1 = d->t1;
+  cprox_status status = check_smooth(functions, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;
 

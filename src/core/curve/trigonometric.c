@@ -95,10 +95,12 @@ static cprox_status check_series(const vec3 *coefficients, size_t n, cprox_works
   return CPROX_OK;
 }
 
-cprox_status cprox_curve_create_trigonometric(const cprox_vec3 *coefficients, size_t n_coefficients, double t0,
-                                              double t1, cprox_workspace *workspace, cprox_curve **curve) {
-  cprox_status status = curve_check_handle(curve, workspace);
-  if (status == CPROX_OK) status = check_series(coefficients, n_coefficients, workspace);
+cprox_status curve_create_trigonometric(const cprox_curve_description *d, cprox_workspace *workspace,
+                                        cprox_curve **curve) {
+  const cprox_vec3 *coefficients = d->points;
+  const size_t n_coefficients = d->n;
+  const double t0 = d->t0, t1 = d->t1;
+  cprox_status status = check_series(coefficients, n_coefficients, workspace);
   if (status == CPROX_OK) status = curve_check_range(t0, t1, workspace);
   if (status != CPROX_OK) return status;
 

@@ -27,7 +27,7 @@ void query_ask_whole(query *q) {
   }
   q->part = curve_side_whole();
   q->reach = q->mover.curve->whole;
-  cprox_curve_domain(q->mover.curve, &q->t0, &q->t1);
+  curve_domain(q->mover.curve, &q->t0, &q->t1);
 }
 
 search_goal query_goal(const query *q, search_order order, double cutoff) {

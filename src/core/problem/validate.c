@@ -102,8 +102,8 @@ static cprox_status check_clock(const cprox_curve *curve, const cprox_obstacle *
         workspace, CPROX_INVALID,
         "target %zu is on the mover's clock, but of one of the two curves only the arc length is known", index);
   double t0, t1, u0, u1;
-  cprox_curve_domain(curve, &t0, &t1);
-  cprox_curve_domain(target->curve, &u0, &u1);
+  curve_domain(curve, &t0, &t1);
+  curve_domain(target->curve, &u0, &u1);
   if (t0 == u0 && t1 == u1) return CPROX_OK;
   return workspace_fail(
       workspace, CPROX_INVALID,

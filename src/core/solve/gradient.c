@@ -145,8 +145,8 @@ static void refine_pair(const cprox_mover *mover, const cprox_obstacle *target, 
   enum { MOST_STEPS = 12 };
   const frame f = frame_create(&target->pose, vec(0, 0, 0));
   double t0, t1, u0, u1;
-  cprox_curve_domain(mover->curve, &t0, &t1);
-  cprox_curve_domain(target->curve, &u0, &u1);
+  curve_domain(mover->curve, &t0, &t1);
+  curve_domain(target->curve, &u0, &u1);
   for (int i = 0; i < MOST_STEPS; i++) {
     curve_jet x, y;
     jet_of(mover->curve, NULL, *t, workspace, &x);
@@ -195,7 +195,7 @@ static cprox_status is_farther(cprox_mover mover, const cprox_obstacle *target, 
 static cprox_status is_alone(cprox_mover mover, const cprox_obstacle *target, const cprox_options *options, double t,
                              double distance, cprox_workspace *workspace, bool *alone) {
   double t0, t1, outer = 0.0;
-  cprox_curve_domain(mover.curve, &t0, &t1);
+  curve_domain(mover.curve, &t0, &t1);
   *alone = false;
   for (size_t k = 0; k < sizeof NEIGHBOURHOOD / sizeof *NEIGHBOURHOOD && !*alone; k++) {
     outer = NEIGHBOURHOOD[k] * (t1 - t0);
@@ -399,7 +399,7 @@ static cprox_status gradient_of_curve(const query *q, const placed_pair *c, cons
   if (q->mover.body) n = result->normal, distance = result->upper;
   fill(target, n, y.x, g);
   double t0, t1;
-  cprox_curve_domain(q->mover.curve, &t0, &t1);
+  curve_domain(q->mover.curve, &t0, &t1);
   if (g->t == t0) g->t0 = fmax(vec_dot(n, x.d1), 0.0);
   if (g->t == t1) g->t1 = fmin(vec_dot(n, x.d1), 0.0);
   if (vec_norm2(n) == 0.0) return invalid(q->workspace, g, "there is no normal");

@@ -173,7 +173,7 @@ static void merge(time_of_contact *all, const time_of_contact *one, double epsil
 
 cprox_status time_of_contact_conclude(const time_of_contact *all, const query *q, cprox_result *result) {
   double t0, t1;
-  cprox_curve_domain(q->mover.curve, &t0, &t1);
+  curve_domain(q->mover.curve, &t0, &t1);
   const bool touch = isfinite(all->touch.t), near = all->near.upper <= q->options.epsilon;
   cprox_result r = touch ? all->touch : all->near;
   CORE_CHECK(touch || !(all->lower > r.upper), "lower %.17g, upper %.17g", all->lower, r.upper);
@@ -208,6 +208,6 @@ cprox_status time_of_contact_with(time_of_contact *all, const query *q, size_t f
   }
   /* the rest is too far to touch, unless the caller stopped */
   if (i < count) all->lower = fmin(all->lower, list[i].lower);
-  if (i < count && list[i].lower <= 0.0) cprox_curve_domain(q->mover.curve, &all->free_until, &(double){0.0});
+  if (i < count && list[i].lower <= 0.0) curve_domain(q->mover.curve, &all->free_until, &(double){0.0});
   return CPROX_OK;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #define _POSIX_C_SOURCE 200809L
 #include "support/queries.h"
+#include "support/make_curve.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,7 +30,7 @@ static cprox_status make_bezier(given_curve *g, rng *r, double scale, vec3 middl
   g->basis = "bezier";
   g->degree = 1 + rng_index(r, rng_index(r, 4) ? 6 : 12);
   points_random(g, r, g->degree + 1, scale, middle);
-  return cprox_curve_create_bezier(g->points, g->n, g->t0, g->t1, ws, &g->curve);
+  return curve_from(describe_bezier(g->points, g->n, g->t0, g->t1), ws, &g->curve);
 }
 
 static cprox_status make_bspline(given_curve *g, rng *r, double scale, vec3 middle, cprox_workspace *ws) {
@@ -45,7 +46,7 @@ static cprox_status make_bspline(given_curve *g, rng *r, double scale, vec3 midd
   g->t0 = g->knots[g->degree];
   g->t1 = g->knots[g->n];
   if (rng_index(r, 3) == 0) g->t1 = g->t0 + 0.7 * (g->t1 - g->t0);
-  return cprox_curve_create_bspline(g->points, g->n, g->degree, g->knots, g->n_knots, g->t0, g->t1, ws, &g->curve);
+  return curve_from(describe_bspline(g->points, g->n, g->degree, g->knots, g->n_knots, g->t0, g->t1), ws, &g->curve);
 }
 
 /* The higher terms are small, so that the curve is not. */
@@ -63,7 +64,7 @@ static cprox_status make_polynomial(given_curve *g, rng *r, double scale, vec3 m
   g->degree = 1 + rng_index(r, 8);
   g->n = g->degree + 1;
   terms_random(g, r, scale, middle, 0.5);
-  return cprox_curve_create_polynomial(g->points, g->n, g->t0, g->t1, ws, &g->curve);
+  return curve_from(describe_polynomial(g->points, g->n, g->t0, g->t1), ws, &g->curve);
 }
 
 static cprox_status make_legendre(given_curve *g, rng *r, double scale, vec3 middle, cprox_workspace *ws) {
@@ -71,7 +72,7 @@ static cprox_status make_legendre(given_curve *g, rng *r, double scale, vec3 mid
   g->degree = 1 + rng_index(r, 14);
   g->n = g->degree + 1;
   terms_random(g, r, scale, middle, 0.8);
-  return cprox_curve_create_legendre(g->points, g->n, g->t0, g->t1, ws, &g->curve);
+  return curve_from(describe_legendre(g->points, g->n, g->t0, g->t1), ws, &g->curve);
 }
 
 static cprox_status make_lagrange(given_curve *g, rng *r, double scale, vec3 middle, cprox_workspace *ws) {
@@ -81,7 +82,7 @@ static cprox_status make_lagrange(given_curve *g, rng *r, double scale, vec3 mid
   g->n_knots = g->n;
   for (size_t i = 0; i < g->n; i++)
     g->knots[i] = g->t0 + (g->t1 - g->t0) * ((double)i + rng_uniform(r, -0.3, 0.3)) / (double)g->degree;
-  return cprox_curve_create_lagrange(g->points, g->knots, g->n, g->t0, g->t1, ws, &g->curve);
+  return curve_from(describe_lagrange(g->points, g->knots, g->n, g->t0, g->t1), ws, &g->curve);
 }
 
 static cprox_status make_trigonometric(given_curve *g, rng *r, double scale, vec3 middle, cprox_workspace *ws) {
@@ -90,7 +91,7 @@ static cprox_status make_trigonometric(given_curve *g, rng *r, double scale, vec
   g->n = 2 * g->degree + 1;
   g->t1 = g->t0 + rng_uniform(r, 0.2, 1.5);
   terms_random(g, r, scale, middle, 0.7);
-  return cprox_curve_create_trigonometric(g->points, g->n, g->t0, g->t1, ws, &g->curve);
+  return curve_from(describe_trigonometric(g->points, g->n, g->t0, g->t1), ws, &g->curve);
 }
 
 static void curve_random(given_curve *g, rng *r, bool bezier_only, double scale, vec3 middle, cprox_workspace *ws) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "support/builders.h"
+#include "support/make_curve.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,7 +25,8 @@ int workspace_teardown(void **state) {
 
 cprox_curve *bezier(const vec3 *points, size_t n) {
   cprox_curve *curve = NULL;
-  if (cprox_curve_create_bezier(points, n, 0.0, 1.0, ws, &curve) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
+  if (curve_from(describe_bezier(points, n, 0.0, 1.0), ws, &curve) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_error(ws));
   return curve;
 }
 

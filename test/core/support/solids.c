@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "support/solids.h"
+#include "support/make_curve.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -174,7 +175,7 @@ static void make_path(rng *r, test_solid *s, vec3 size, cprox_pose *poses) {
   }
   cprox_curve *curve;
   const double knots[6] = {0, 0, 1, 2, 3, 3};
-  MADE(cprox_curve_create_bspline(p, 4, 1, knots, 6, 0, 3, ws, &curve));
+  MADE(curve_from(describe_bspline(p, 4, 1, knots, 6, 0, 3), ws, &curve));
   MADE(cprox_solid_create_sweep(s->dimension, curve, radius, 1e-6 * radius, ws, &s->solid));
   cprox_curve_free(curve);
 }

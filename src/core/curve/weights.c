@@ -2,10 +2,12 @@
 /* The weights of a curve's coefficients at one parameter, a function a basis. */
 #include <math.h>
 
-#include "curve_proximity/cprox/gradient.h"
+#include "curve/curve.h"
 
 /* De Casteljau on the weights: degree by degree, each weight passes on to its two successors. */
-void cprox_bezier_weights(size_t n_points, double t0, double t1, double t, double *weights) {
+void curve_weights_bezier(const cprox_curve_description *d, double t, double *weights) {
+  const size_t n_points = d->n;
+  const double t0 = d->t0, t1 = d->t1;
   const double after = (t - t0) / (t1 - t0), before = (t1 - t) / (t1 - t0);
   weights[0] = 1.0;
   for (size_t n = 1; n < n_points; n++) {
@@ -16,7 +18,9 @@ void cprox_bezier_weights(size_t n_points, double t0, double t1, double t, doubl
 }
 
 /* Cox and de Boor's recurrence on the degree + 1 functions that live at t. */
-void cprox_bspline_weights(size_t n_points, size_t degree, const double *knots, double t, double *weights) {
+void curve_weights_bspline(const cprox_curve_description *d, double t, double *weights) {
+  const size_t n_points = d->n, degree = d->degree;
+  const double *knots = d->knots;
   /* the span that t belongs to: the last one that begins at or before it and has a length */
   size_t span = degree;
   for (size_t i = degree; i < n_points; i++)
@@ -36,12 +40,15 @@ void cprox_bspline_weights(size_t n_points, size_t degree, const double *knots, 
   }
 }
 
-void cprox_polynomial_weights(size_t n_coefficients, double t, double *weights) {
+void curve_weights_polynomial(const cprox_curve_description *d, double t, double *weights) {
+  const size_t n_coefficients = d->n;
   for (size_t i = 0; i < n_coefficients; i++) weights[i] = i == 0 ? 1.0 : t * weights[i - 1];
 }
 
 /* (k + 1) P_(k+1) = (2k + 1) x P_k - k P_(k-1) */
-void cprox_legendre_weights(size_t n_coefficients, double t0, double t1, double t, double *weights) {
+void curve_weights_legendre(const cprox_curve_description *d, double t, double *weights) {
+  const size_t n_coefficients = d->n;
+  const double t0 = d->t0, t1 = d->t1;
   const double x = ((t - t0) - (t1 - t)) / (t1 - t0);
   for (size_t i = 0; i < n_coefficients; i++) {
     const double k = (double)i - 1.0;
@@ -49,7 +56,9 @@ void cprox_legendre_weights(size_t n_coefficients, double t0, double t1, double 
   }
 }
 
-void cprox_lagrange_weights(const double *nodes, size_t n_points, double t, double *weights) {
+void curve_weights_lagrange(const cprox_curve_description *d, double t, double *weights) {
+  const size_t n_points = d->n;
+  const double *nodes = d->knots;
   for (size_t i = 0; i < n_points; i++) {
     weights[i] = 1.0;
     for (size_t k = 0; k < n_points; k++)
@@ -58,7 +67,8 @@ void cprox_lagrange_weights(const double *nodes, size_t n_points, double t, doub
 }
 
 /* 1, cos t, sin t, cos 2t, … */
-void cprox_trigonometric_weights(size_t n_coefficients, double t, double *weights) {
+void curve_weights_trigonometric(const cprox_curve_description *d, double t, double *weights) {
+  const size_t n_coefficients = d->n;
   for (size_t i = 0; i < n_coefficients; i++) {
     const size_t multiple = (i + 1) / 2;
     const double angle = (double)multiple * t;
