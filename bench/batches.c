@@ -9,6 +9,7 @@
 #include "curve_proximity/cprox.h"
 #include "paper/paper.h"
 #include "peers/sampling.h"
+#include "solve/list.h"
 #include "support/make_curve.h"
 #include "support/measure.h"
 #include "support/random.h"
@@ -29,7 +30,7 @@ typedef struct scene {
   vec3 vertex[2][SIDES], half[MAX_OBSTACLES];
   cprox_body *bodies[MAX_OBSTACLES];
   cprox_obstacle targets[MAX_OBSTACLES];
-  cprox_batch *batch;
+  cprox_obstacles *batch;
   sampling *sampling;
   cprox_result truth[3][CURVES]; /* certified, by query */
 } scene;
@@ -110,14 +111,14 @@ static scene *scene_make(uint64_t seed, bool planar, size_t n, asked *q) {
     make_polygons(s);
   else
     make_boxes(&r, s);
-  check(cprox_batch_create(s->targets, n, q->workspace, &s->batch));
+  check(cprox_obstacles_create(s->targets, n, CPROX_INDEX_BATCH, q->workspace, &s->batch));
   cprox_options options = cprox_options_default();
   options.epsilon = EPSILON;
   for (size_t i = 0; i < CURVES; i++) {
     cprox_workspace *w = q->workspace;
-    cprox_distance_all(s->movers[i], s->targets, n, &options, w, &s->truth[DISTANCE][i], NULL);
-    cprox_tolerance_all(s->movers[i], s->targets, n, DELTA, &options, w, &s->truth[TOLERANCE][i], NULL);
-    cprox_collision_all(s->movers[i], s->targets, n, &options, w, &s->truth[COLLISION][i], NULL);
+    list_distance(s->movers[i], s->targets, n, &options, w, &s->truth[DISTANCE][i], NULL);
+    list_tolerance(s->movers[i], s->targets, n, DELTA, &options, w, &s->truth[TOLERANCE][i], NULL);
+    list_collision(s->movers[i], s->targets, n, &options, w, &s->truth[COLLISION][i], NULL);
   }
   return s;
 }
@@ -125,7 +126,7 @@ static scene *scene_make(uint64_t seed, bool planar, size_t n, asked *q) {
 static void scene_free(scene *s) {
   for (size_t i = 0; i < CURVES; i++) cprox_curve_free(s->curves[i]);
   for (size_t k = 0; k < s->n; k++) cprox_body_free(s->bodies[k]);
-  cprox_batch_free(s->batch);
+  cprox_obstacles_free(s->batch);
   sampling_free(s->sampling);
   free(s);
 }
@@ -167,10 +168,12 @@ static void batch(const void *problems, size_t i, void *state, bench_answer *a) 
   const asked *q = own->asked;
   cprox_options o = cprox_options_default();
   o.epsilon = EPSILON;
-  if (q->query_type == DISTANCE) cprox_batch_distance(s->batch, s->movers, 0, CURVES, &o, q->workspace, q->results);
+  if (q->query_type == DISTANCE)
+    cprox_obstacles_distance_batch(s->batch, s->movers, 0, CURVES, &o, q->workspace, q->results);
   if (q->query_type == TOLERANCE)
-    cprox_batch_tolerance(s->batch, s->movers, 0, CURVES, DELTA, &o, q->workspace, q->results);
-  if (q->query_type == COLLISION) cprox_batch_collision(s->batch, s->movers, 0, CURVES, &o, q->workspace, q->results);
+    cprox_obstacles_tolerance_batch(s->batch, s->movers, 0, CURVES, DELTA, &o, q->workspace, q->results);
+  if (q->query_type == COLLISION)
+    cprox_obstacles_collision_batch(s->batch, s->movers, 0, CURVES, &o, q->workspace, q->results);
   if (!own->known[i][q->query_type]) judge_results(s, q, &own->answer[i][q->query_type]);
   own->known[i][q->query_type] = true;
   *a = own->answer[i][q->query_type];
@@ -184,10 +187,9 @@ static void one_by_one(const void *problems, size_t i, void *state, bench_answer
   o.epsilon = EPSILON;
   for (size_t k = 0; k < CURVES; k++) {
     cprox_result *r = &q->results[k];
-    if (q->query_type == DISTANCE) cprox_distance_all(s->movers[k], s->targets, s->n, &o, q->workspace, r, NULL);
-    if (q->query_type == TOLERANCE)
-      cprox_tolerance_all(s->movers[k], s->targets, s->n, DELTA, &o, q->workspace, r, NULL);
-    if (q->query_type == COLLISION) cprox_collision_all(s->movers[k], s->targets, s->n, &o, q->workspace, r, NULL);
+    if (q->query_type == DISTANCE) list_distance(s->movers[k], s->targets, s->n, &o, q->workspace, r, NULL);
+    if (q->query_type == TOLERANCE) list_tolerance(s->movers[k], s->targets, s->n, DELTA, &o, q->workspace, r, NULL);
+    if (q->query_type == COLLISION) list_collision(s->movers[k], s->targets, s->n, &o, q->workspace, r, NULL);
   }
   if (!own->known[i][q->query_type]) judge_results(s, q, &own->answer[i][q->query_type]);
   own->known[i][q->query_type] = true;

@@ -8,7 +8,9 @@
 
 #include "check.h"
 #include "curve_proximity/cprox.h"
+#include "solve/list.h"
 #include "support/measure.h"
+#include "support/of_list.h"
 #include "support/problems.h"
 #include "support/robot_case.h"
 
@@ -29,7 +31,7 @@ static cprox_status ask(const query *q, cprox_certificate *proof, cprox_workspac
   cprox_options options = cprox_options_default();
   options.certificate = proof;
   cprox_result r = {.status = CPROX_INVALID};
-  const cprox_status status = cprox_tolerance_all(q->mover, q->targets, q->n, q->delta, &options, ws, &r, NULL);
+  const cprox_status status = list_tolerance(q->mover, q->targets, q->n, q->delta, &options, ws, &r, NULL);
   *a = (bench_answer){
       .lower = NAN, .upper = NAN, .nodes = r.nodes, .distance_queries = r.distance_queries, .failed = status < 0};
   a->wrong = r.verdict == CPROX_VERDICT_VIOLATED;
@@ -136,10 +138,10 @@ static void robots(const bench_size *size, cprox_workspace *ws) {
       query *q = &queries[n++];
       *q = (query){.mover = cprox_robot_along(c->motion, NULL, 0), .targets = c->targets, .n = c->n_targets};
       q->delta = 0.9 * c->answers[k].lower;
-      const size_t most = cprox_mover_describe(&q->mover, q->targets, q->n, "m", ws, NULL, 0) + 1;
+      const size_t most = describe_mover_of_list(&q->mover, q->targets, q->n, "m", ws, NULL, 0) + 1;
       char *text = calloc(most, 1);
       if (!text) exit(1);
-      cprox_mover_describe(&q->mover, q->targets, q->n, "m", ws, text, most);
+      describe_mover_of_list(&q->mover, q->targets, q->n, "m", ws, text, most);
       give_to_checker(q, text);
       break;
     }

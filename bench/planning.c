@@ -9,6 +9,7 @@
 
 #include "curve_proximity/cprox.h"
 #include "peers/robot_states.h"
+#include "solve/list.h"
 #include "support/measure.h"
 
 /* MoveIt's longest valid segment: this fraction of the joint space's extent, which is the sum of the Panda's seven ranges [rad]. */
@@ -49,10 +50,10 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *answ
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-3;
   cprox_result scene, self;
-  const cprox_status a = cprox_distance_all(cprox_robot_along(motion, NULL, 0), p->c.targets, p->c.n_targets, &options,
-                                            s->workspace, &scene, NULL);
-  const cprox_status b = cprox_distance_all(cprox_robot_self(motion, p->c.self_pairs, p->c.n_self_pairs), NULL, 0,
-                                            &options, s->workspace, &self, NULL);
+  const cprox_status a = list_distance(cprox_robot_along(motion, NULL, 0), p->c.targets, p->c.n_targets, &options,
+                                       s->workspace, &scene, NULL);
+  const cprox_status b = list_distance(cprox_robot_self(motion, p->c.self_pairs, p->c.n_self_pairs), NULL, 0, &options,
+                                       s->workspace, &self, NULL);
   *answer = (bench_answer){.lower = scene.lower,
                            .upper = scene.upper,
                            .nodes = scene.nodes + self.nodes,

@@ -9,6 +9,7 @@
 #include "peers/robot_states.h"
 #include "peers/two_ended.h"
 #include "robots.h"
+#include "solve/list.h"
 #include "support/measure.h"
 #include "support/random.h"
 #include "support/robot_case.h"
@@ -45,11 +46,11 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *answ
   cprox_result r;
   cprox_status status;
   if (s->factor < 0.0) {
-    status = cprox_distance_all(mover_of(p), p->c->targets, targets_of(p), &options, s->workspace, &r, NULL);
+    status = list_distance(mover_of(p), p->c->targets, targets_of(p), &options, s->workspace, &r, NULL);
     *answer = (bench_answer){.lower = r.lower, .upper = r.upper};
   } else {
-    status = cprox_tolerance_all(mover_of(p), p->c->targets, targets_of(p), s->factor * p->truth, &options,
-                                 s->workspace, &r, NULL);
+    status = list_tolerance(mover_of(p), p->c->targets, targets_of(p), s->factor * p->truth, &options, s->workspace, &r,
+                            NULL);
     *answer = (bench_answer){.lower = p->truth, .upper = p->truth};
     answer->wrong = r.verdict != (s->factor < 1.0 ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED);
   }

@@ -7,6 +7,7 @@
 
 #include "robot_query/oracle.h"
 #include "robots.h"
+#include "solve/list.h"
 #include "solve/solve.h"
 
 typedef struct watched {
@@ -53,9 +54,9 @@ static bool watch(const robot_case *c, bool self, double delta, double epsilon, 
   options.epsilon = epsilon;
   cprox_result r;
   if (delta < 0.0)
-    cprox_distance_all(mover, c->targets, n, &options, ws, &r, NULL);
+    list_distance(mover, c->targets, n, &options, ws, &r, NULL);
   else
-    cprox_tolerance_all(mover, c->targets, n, delta, &options, ws, &r, NULL);
+    list_tolerance(mover, c->targets, n, delta, &options, ws, &r, NULL);
 
   query q = query_create(mover, c->targets, n, delta, true, &options, ws);
   query_ask_whole(&q);

@@ -9,6 +9,7 @@
 #include "curve_proximity/cprox.h"
 #include "peers/two_ended.h"
 #include "robots.h"
+#include "solve/list.h"
 #include "support/random.h"
 
 static const double EPSILON = 1e-4, STEP = 0.05;
@@ -17,7 +18,7 @@ typedef struct problem {
   cprox_mover mover;
   const cprox_obstacle *targets;
   size_t n;
-  const cprox_set *set;
+  const cprox_obstacles *set;
   double delta;   /* verdicts; below 0: a distance */
   double epsilon; /* 0: EPSILON */
 } problem;
@@ -33,7 +34,7 @@ static void by_set(const void *problems, size_t i, void *state, bench_answer *an
   cprox_options options = cprox_options_default();
   options.epsilon = EPSILON;
   cprox_result r;
-  answer_with(cprox_set_distance(p->set, p->mover, &options, state, &r), &r, answer);
+  answer_with(cprox_obstacles_distance(p->set, p->mover, &options, state, &r, NULL), &r, answer);
 }
 
 static double epsilon_of(const problem *p) {
@@ -46,10 +47,10 @@ static void by_list(const void *problems, size_t i, void *state, bench_answer *a
   options.epsilon = epsilon_of(p);
   cprox_result r;
   if (p->delta < 0.0) {
-    answer_with(cprox_distance_all(p->mover, p->targets, p->n, &options, state, &r, NULL), &r, answer);
+    answer_with(list_distance(p->mover, p->targets, p->n, &options, state, &r, NULL), &r, answer);
     return;
   }
-  answer_with(cprox_tolerance_all(p->mover, p->targets, p->n, p->delta, &options, state, &r, NULL), &r, answer);
+  answer_with(list_tolerance(p->mover, p->targets, p->n, p->delta, &options, state, &r, NULL), &r, answer);
   answer->lower = answer->upper = NAN;
   answer->wrong = r.verdict != CPROX_VERDICT_CLEAR;
 }
@@ -78,7 +79,7 @@ static double truth_of(const problem *p, cprox_workspace *ws) {
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-7;
   cprox_result r;
-  cprox_distance_all(p->mover, p->targets, p->n, &options, ws, &r, NULL);
+  list_distance(p->mover, p->targets, p->n, &options, ws, &r, NULL);
   return 0.5 * (r.lower + r.upper);
 }
 
@@ -112,15 +113,15 @@ static void obstacles(const robot_case *arm, const bench_size *size, cprox_works
       cprox_tolerance(mover, targets[n], CLEAR, NULL, ws, &clear);
       n += clear.verdict == CPROX_VERDICT_CLEAR;
     }
-    cprox_set *set = NULL;
-    cprox_set_create(targets, n, ws, &set);
+    cprox_obstacles *set = NULL;
+    cprox_obstacles_create(targets, n, CPROX_INDEX_BVH, ws, &set);
     const problem p = {.mover = mover, .targets = targets, .n = n, .set = set, .delta = -1.0};
     char parameter[40];
     snprintf(parameter, sizeof parameter, "obstacles %zu", n);
     const bench_method methods[] = {
         {"curve_proximity", by_set, ws}, {"as a list", by_list, ws}, {"sampling .05", sampled, ws}};
     measure("growth obstacles", parameter, &p, size, methods, 3, ws);
-    cprox_set_free(set);
+    cprox_obstacles_free(set);
   }
   for (int i = 0; i < 8; i++) cprox_body_free(boxes[i]);
   free(targets);

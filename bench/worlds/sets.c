@@ -4,13 +4,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "solve/list.h"
 #include "worlds/worlds.h"
 
 static void of_set(const void *problems, size_t i, void *state, bench_answer *a) {
   const worlds_problem *p = (const worlds_problem *)problems + i;
   const cprox_options o = worlds_options(WORLDS_EPSILON);
   cprox_result r = {.status = CPROX_INVALID};
-  cprox_set_distance(p->set, worlds_mover(p), &o, ((worlds_asked *)state)->ws, &r);
+  cprox_obstacles_distance(p->set, worlds_mover(p), &o, ((worlds_asked *)state)->ws, &r, NULL);
   worlds_take(&r, a);
 }
 
@@ -18,7 +19,7 @@ static void of_all(const void *problems, size_t i, void *state, bench_answer *a)
   const worlds_problem *p = (const worlds_problem *)problems + i;
   const cprox_options o = worlds_options(WORLDS_EPSILON);
   cprox_result r = {.status = CPROX_INVALID};
-  cprox_distance_all(worlds_mover(p), p->targets, p->n_targets, &o, ((worlds_asked *)state)->ws, &r, NULL);
+  list_distance(worlds_mover(p), p->targets, p->n_targets, &o, ((worlds_asked *)state)->ws, &r, NULL);
   worlds_take(&r, a);
 }
 
@@ -34,8 +35,8 @@ void worlds_ask_sets(const bench_size *size, worlds_asked *q) {
     const double half = 0.5 * cbrt((double)n);
     cprox_obstacle *targets = worlds_get(n * sizeof *targets);
     for (size_t i = 0; i < n; i++) targets[i] = cprox_obstacle_at(body, rng_pose(&r, half));
-    cprox_set *set = NULL;
-    worlds_check(cprox_set_create(targets, n, q->ws, &set), q->ws);
+    cprox_obstacles *set = NULL;
+    worlds_check(cprox_obstacles_create(targets, n, CPROX_INDEX_BVH, q->ws, &set), q->ws);
     worlds_problem *problems = worlds_get(m * sizeof *problems);
     double *truth = worlds_get(m * sizeof *truth);
     for (size_t i = 0; i < m; i++) {
@@ -44,7 +45,7 @@ void worlds_ask_sets(const bench_size *size, worlds_asked *q) {
       worlds_curve_make(&r, &problems[i], vec(0, 0, 0), vec(inner, inner, inner), 1.0);
       cprox_result result;
       const cprox_options fine = worlds_options(1e-12);
-      worlds_check(cprox_distance_all(worlds_mover(&problems[i]), targets, n, &fine, q->ws, &result, NULL), q->ws);
+      worlds_check(list_distance(worlds_mover(&problems[i]), targets, n, &fine, q->ws, &result, NULL), q->ws);
       truth[i] = 0.5 * (result.lower + result.upper);
     }
     char parameter[32];
@@ -59,7 +60,7 @@ void worlds_ask_sets(const bench_size *size, worlds_asked *q) {
     const bench_method methods[2] = {{"curve_proximity", of_set, q}, {"all targets", of_all, q}};
     bench_measure(&w, size, methods, 2);
     for (size_t i = 0; i < m; i++) cprox_curve_free(problems[i].curve);
-    cprox_set_free(set);
+    cprox_obstacles_free(set);
     free(targets), free(problems), free(truth);
   }
   cprox_body_free(body);

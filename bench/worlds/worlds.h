@@ -19,7 +19,7 @@ typedef struct worlds_problem {
   cprox_pose middle;
   double radius;
   cprox_obstacle target;
-  const cprox_set *set;
+  const cprox_obstacles *set;
   const cprox_obstacle *targets;
   size_t n_targets;
   const world_peer *peer;

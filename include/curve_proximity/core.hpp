@@ -542,22 +542,40 @@ inline cprox_result pair(const cprox_obstacle &a, const cprox_obstacle &b, const
   return result;
 }
 
-/** cprox_set: many targets in one tree; a mover tests itself once against it. Any number of threads may ask, each with
- *  its own workspace. Functions throw Error where there is no answer. */
-class Set {
+namespace detail {
+struct FreeObstacles {
+  void operator()(cprox_obstacles *handle) const {
+    cprox_obstacles_free(handle);
+  }
+};
+} // namespace detail
+
+/** The C handle of many obstacles, freed with its owner. */
+using ObstaclesHandle = std::unique_ptr<cprox_obstacles, detail::FreeObstacles>;
+
+/** cprox_obstacles_create() without an exception: *handle is untouched on failure, and the workspace says why. */
+inline cprox_status makeObstacles(const std::vector<cprox_obstacle> &targets, cprox_obstacle_index index,
+                                  Workspace &workspace, ObstaclesHandle &handle) {
+  cprox_obstacles *made = nullptr;
+  const cprox_status status = cprox_obstacles_create(targets.data(), targets.size(), index, workspace.get(), &made);
+  if (status == CPROX_OK) handle.reset(made);
+  return status;
+}
+
+/** Many obstacles behind one handle: cprox_obstacles. Any number of threads may ask, each with its own workspace.
+ *  Functions throw Error where there is no answer. */
+class Obstacles {
  public:
-  /** What the targets name must outlive the set. */
-  explicit Set(const std::vector<cprox_obstacle> &targets) {
-    const Workspace workspace;
-    cprox_set *made = nullptr;
-    require(cprox_set_create(targets.data(), targets.size(), workspace.get(), &made), workspace);
-    handle_.reset(made);
+  /** What the targets name must outlive this object. */
+  explicit Obstacles(const std::vector<cprox_obstacle> &targets, cprox_obstacle_index index = CPROX_INDEX_BVH) {
+    Workspace workspace;
+    require(makeObstacles(targets, index, workspace, handle_), workspace);
   }
 
   /** The least distance to all of them. */
   cprox_result distance(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
     cprox_result result{};
-    require(cprox_set_distance(handle_.get(), mover, &options, workspace.get(), &result), workspace);
+    require(cprox_obstacles_distance(handle_.get(), mover, &options, workspace.get(), &result, nullptr), workspace);
     return result;
   }
 
@@ -565,21 +583,22 @@ class Set {
   cprox_result tolerance(const cprox_mover &mover, double delta, const cprox_options &options,
                          Workspace &workspace) const {
     cprox_result result{};
-    require(cprox_set_tolerance(handle_.get(), mover, delta, &options, workspace.get(), &result), workspace);
+    require(cprox_obstacles_tolerance(handle_.get(), mover, delta, &options, workspace.get(), &result, nullptr),
+            workspace);
     return result;
   }
 
   /** The collision verdict. */
   cprox_result collision(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
     cprox_result result{};
-    require(cprox_set_collision(handle_.get(), mover, &options, workspace.get(), &result), workspace);
+    require(cprox_obstacles_collision(handle_.get(), mover, &options, workspace.get(), &result, nullptr), workspace);
     return result;
   }
 
   /** The time of contact. */
   cprox_result timeOfContact(const cprox_mover &mover, const cprox_options &options, Workspace &workspace) const {
     cprox_result result{};
-    require(cprox_set_time_of_contact(handle_.get(), mover, &options, workspace.get(), &result), workspace);
+    require(cprox_obstacles_time_of_contact(handle_.get(), mover, &options, workspace.get(), &result), workspace);
     return result;
   }
 
@@ -588,28 +607,24 @@ class Set {
                                     Workspace &workspace) const {
     std::vector<cprox_result> results(std::min(k, size()));
     std::size_t count = 0;
-    require(cprox_set_nearest(handle_.get(), mover, k, &options, workspace.get(), results.data(), &count), workspace);
+    require(cprox_obstacles_nearest(handle_.get(), mover, k, &options, workspace.get(), results.data(), &count),
+            workspace);
     results.resize(count);
     return results;
   }
 
   /** How many there are. */
   std::size_t size() const {
-    return cprox_set_size(handle_.get());
+    return cprox_obstacles_size(handle_.get());
   }
 
   /** The C handle, owned by this object. */
-  const cprox_set *get() const {
+  const cprox_obstacles *get() const {
     return handle_.get();
   }
 
  private:
-  struct Free {
-    void operator()(cprox_set *handle) const {
-      cprox_set_free(handle);
-    }
-  };
-  std::unique_ptr<cprox_set, Free> handle_;
+  ObstaclesHandle handle_;
 };
 
 } // namespace curve_proximity

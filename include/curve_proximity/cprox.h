@@ -8,17 +8,15 @@
 #define CURVE_PROXIMITY_CPROX_H
 
 #include <curve_proximity/cprox/base.h>
-#include <curve_proximity/cprox/batch.h>
 #include <curve_proximity/cprox/body.h>
 #include <curve_proximity/cprox/certificate.h>
-#include <curve_proximity/cprox/clearance.h>
 #include <curve_proximity/cprox/curve.h>
 #include <curve_proximity/cprox/fourier.h>
 #include <curve_proximity/cprox/gradient.h>
 #include <curve_proximity/cprox/implicit.h>
+#include <curve_proximity/cprox/obstacles.h>
 #include <curve_proximity/cprox/query.h>
 #include <curve_proximity/cprox/robot.h>
-#include <curve_proximity/cprox/set.h>
 #include <curve_proximity/cprox/translation.h>
 
 #endif

@@ -164,7 +164,8 @@ class Pool {
   std::vector<std::thread> threads_;
 };
 
-/** Targets that many movers are held against: cprox_batch over a pool. Immutable, shared by any number of threads. */
+/** Obstacles that many movers are tested against: cprox_obstacles_distance_batch() and its like over a pool. Immutable,
+ *  shared by any number of threads. */
 class Batch {
  public:
   /** The results; they do not depend on the number of threads. */
@@ -174,42 +175,40 @@ class Batch {
     std::string reason;                /**< the error message, with the number of the mover; "" for CPROX_OK */
   };
 
-  /** What the targets name must outlive the batch. Throws Error as cprox_batch_create() fails. */
-  explicit Batch(const std::vector<cprox_obstacle> &targets) {
-    const Workspace workspace;
-    cprox_batch *made = nullptr;
-    require(cprox_batch_create(targets.data(), targets.size(), workspace.get(), &made), workspace);
-    handle_.reset(made);
-  }
+  /** What the targets name must outlive the batch. Throws Error as cprox_obstacles_create() fails. */
+  explicit Batch(const std::vector<cprox_obstacle> &targets) : obstacles_(targets, CPROX_INDEX_BATCH) {}
 
   /** The distance of each mover. */
   Answers distance(const std::vector<cprox_mover> &movers, const cprox_options &options, Pool &pool) const {
     return ask(movers, pool,
                [&](std::size_t first, std::size_t last, cprox_workspace *workspace, cprox_result *results) {
-                 return cprox_batch_distance(handle_.get(), movers.data(), first, last, &options, workspace, results);
+                 return cprox_obstacles_distance_batch(obstacles_.get(), movers.data(), first, last, &options,
+                                                       workspace, results);
                });
   }
 
   /** The tolerance verdict of each mover; delta >= 0 [m]. */
   Answers tolerance(const std::vector<cprox_mover> &movers, double delta, const cprox_options &options,
                     Pool &pool) const {
-    return ask(
-        movers, pool, [&](std::size_t first, std::size_t last, cprox_workspace *workspace, cprox_result *results) {
-          return cprox_batch_tolerance(handle_.get(), movers.data(), first, last, delta, &options, workspace, results);
-        });
+    return ask(movers, pool,
+               [&](std::size_t first, std::size_t last, cprox_workspace *workspace, cprox_result *results) {
+                 return cprox_obstacles_tolerance_batch(obstacles_.get(), movers.data(), first, last, delta, &options,
+                                                        workspace, results);
+               });
   }
 
   /** The collision verdict of each mover. */
   Answers collision(const std::vector<cprox_mover> &movers, const cprox_options &options, Pool &pool) const {
     return ask(movers, pool,
                [&](std::size_t first, std::size_t last, cprox_workspace *workspace, cprox_result *results) {
-                 return cprox_batch_collision(handle_.get(), movers.data(), first, last, &options, workspace, results);
+                 return cprox_obstacles_collision_batch(obstacles_.get(), movers.data(), first, last, &options,
+                                                        workspace, results);
                });
   }
 
   /** The C handle, owned by this object. */
-  const cprox_batch *get() const {
-    return handle_.get();
+  const cprox_obstacles *get() const {
+    return obstacles_.get();
   }
 
  private:
@@ -237,12 +236,7 @@ class Batch {
     return answers;
   }
 
-  struct Free {
-    void operator()(cprox_batch *handle) const {
-      cprox_batch_free(handle);
-    }
-  };
-  std::unique_ptr<cprox_batch, Free> handle_;
+  Obstacles obstacles_;
 };
 
 } // namespace curve_proximity

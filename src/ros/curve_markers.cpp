@@ -183,8 +183,10 @@ void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &l
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-4;
   options.max_nodes = NODES;
-  if (cprox_profile(cprox_tube_along(curve, line.curve.radius), targets.data(), targets.size(), breaks.data(),
-                    INTERVALS, &options, workspace.get(), intervals.data()) < 0)
+  ObstaclesHandle obstacles;
+  if (makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles) < 0 ||
+      cprox_obstacles_profile(obstacles.get(), cprox_tube_along(curve, line.curve.radius), breaks.data(), INTERVALS,
+                              &options, workspace.get(), intervals.data()) < 0)
     return;
   for (const cprox_profile_interval &interval : intervals) {
     // Nearer than the best point that is known: the least distance may be here.

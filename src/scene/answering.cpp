@@ -64,15 +64,17 @@ cprox_options withoutRounding(cprox_options options, double rounding) {
 
 cprox_status askCore(const Query &query, const cprox_options &options, const cprox_mover &mover,
                      const std::vector<cprox_obstacle> &targets, Workspace &workspace, cprox_result &result) {
+  ObstaclesHandle obstacles;
+  const cprox_status made = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
+  if (made < 0) return made;
   cprox_workspace *w = workspace.get();
   switch (query.query_type) {
-    case QueryType::DISTANCE:
-      return cprox_distance_all(mover, targets.data(), targets.size(), &options, w, &result, nullptr);
+    case QueryType::DISTANCE: return cprox_obstacles_distance(obstacles.get(), mover, &options, w, &result, nullptr);
     case QueryType::TOLERANCE:
-      return cprox_tolerance_all(mover, targets.data(), targets.size(), query.delta, &options, w, &result, nullptr);
+      return cprox_obstacles_tolerance(obstacles.get(), mover, query.delta, &options, w, &result, nullptr);
     case QueryType::COLLISION: break;
   }
-  return cprox_collision_all(mover, targets.data(), targets.size(), &options, w, &result, nullptr);
+  return cprox_obstacles_collision(obstacles.get(), mover, &options, w, &result, nullptr);
 }
 
 void widen(const Query &query, double rounding, double left_out, cprox_result &result) {

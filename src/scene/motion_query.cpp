@@ -211,9 +211,9 @@ std::string describeQuery(const RobotMotion &motion, bool self, const Query &que
   const std::string id = wordOf(motion.data().id + (self ? ".self" : ".environment"));
   Workspace workspace;
   const cprox_mover mover = asked.mover();
+  const Obstacles obstacles(asked.proven, CPROX_INDEX_NONE);
   const auto describe = [&](char *text, std::size_t size) {
-    return cprox_mover_describe(&mover, asked.proven.data(), asked.proven.size(), id.c_str(), workspace.get(), text,
-                                size);
+    return cprox_mover_describe(&mover, obstacles.get(), id.c_str(), workspace.get(), text, size);
   };
   std::string robot(describe(nullptr, 0) + 1, '\0');
   if (describe(robot.data(), robot.size()) == 0) return {};
@@ -244,9 +244,9 @@ std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const Pai
   const cprox_options options = withoutRounding(query.options, asked.rounding);
   std::vector<cprox_result> results(std::min(limits.count, asked.pairs.size()));
   std::size_t count = 0;
-  const cprox_status status =
-      cprox_nearest_pairs(asked.mover(), asked.targets.data(), asked.targets.size(), limits.count, limits.within,
-                          &options, workspace.get(), results.data(), &count);
+  const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+  const cprox_status status = cprox_obstacles_nearest_pairs(obstacles.get(), asked.mover(), limits.count, limits.within,
+                                                            &options, workspace.get(), results.data(), &count);
   if (status < 0) throw Error(workspace.reason(), status);
   std::vector<Answer> answers;
   for (std::size_t i = 0; i < count; ++i) answers.push_back(toAnswer(asked, results[i], query, workspace, start));
@@ -263,8 +263,9 @@ std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool 
     intervals[i] = {breaks[i], breaks[i + 1], INFINITE, INFINITE, breaks[i], -1, -1};
   if (!asked.pairs.empty()) {
     const cprox_options options = withoutRounding(query.options, asked.rounding);
-    const cprox_status status = cprox_profile(asked.mover(), asked.targets.data(), asked.targets.size(), breaks.data(),
-                                              intervals.size(), &options, workspace.get(), intervals.data());
+    const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
+    const cprox_status status = cprox_obstacles_profile(obstacles.get(), asked.mover(), breaks.data(), intervals.size(),
+                                                        &options, workspace.get(), intervals.data());
     if (status < 0) throw Error(workspace.reason(), status);
   }
   std::vector<ClearanceInterval> out;

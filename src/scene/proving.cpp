@@ -37,8 +37,10 @@ void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<
   options.certificate = nullptr;
   options.signed_distance = false;
   options.stop = nullptr;
-  const cprox_status status =
-      cprox_certify(mover, targets.data(), targets.size(), delta, &result, &options, workspace.get(), certificate);
+  ObstaclesHandle obstacles;
+  cprox_status status = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
+  if (status == CPROX_OK)
+    status = cprox_certify(mover, obstacles.get(), delta, &result, &options, workspace.get(), certificate);
   if (status != CPROX_OK) answer.unproven = workspace.reason();
 }
 

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "scenes.h"
+#include "support/of_list.h"
 
 typedef struct query {
   attack *a;
@@ -140,7 +141,7 @@ static void ask_distance(query *q) {
   const scene *s = &q->s;
   const bool all = s->n > 1 || rng_index(q->r, 2), separately = rng_index(q->r, 2);
   const cprox_status status =
-      all ? cprox_distance_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &x, separately ? each : NULL)
+      all ? distance_of_list(s->mover, s->targets, s->n, &q->options, q->a->ws, &x, separately ? each : NULL)
           : cprox_distance(s->mover, s->targets[0], &q->options, q->a->ws, &x);
   if (!answered(q, status)) return;
   if (all)
@@ -187,10 +188,10 @@ static void check_verdict(query *q, const cprox_result *x, double delta) {
 static void ask_tolerance(query *q) {
   const scene *s = &q->s;
   cprox_result x, before;
-  if (!answered(q, cprox_distance_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &before, NULL))) return;
+  if (!answered(q, distance_of_list(s->mover, s->targets, s->n, &q->options, q->a->ws, &before, NULL))) return;
   const double delta = some_delta(q, &before);
   if (isinf(delta)) return;
-  if (!answered(q, cprox_tolerance_all(s->mover, s->targets, s->n, delta, &q->options, q->a->ws, &x, NULL))) return;
+  if (!answered(q, tolerance_of_list(s->mover, s->targets, s->n, delta, &q->options, q->a->ws, &x, NULL))) return;
   check_all(q, &x);
   check_verdict(q, &x, delta);
   attack_check(q->a, x.lower <= before.upper && before.lower <= x.upper, "tolerance: [%.17g, %.17g] and [%.17g, %.17g]",
@@ -200,7 +201,7 @@ static void ask_tolerance(query *q) {
 static void ask_collision(query *q) {
   const scene *s = &q->s;
   cprox_result x;
-  if (!answered(q, cprox_collision_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &x, NULL))) return;
+  if (!answered(q, collision_of_list(s->mover, s->targets, s->n, &q->options, q->a->ws, &x, NULL))) return;
   check_all(q, &x);
   check_verdict(q, &x, -1.0);
 }
@@ -227,7 +228,7 @@ static void ask_time_of_contact(query *q) {
   q->options.relative_epsilon = 0.0; /* it does not apply */
   const cprox_status status = s->n == 1 && rng_index(q->r, 2)
                                   ? cprox_time_of_contact(s->mover, s->targets[0], &q->options, q->a->ws, &x)
-                                  : cprox_time_of_contact_all(s->mover, s->targets, s->n, &q->options, q->a->ws, &x);
+                                  : time_of_contact_of_list(s->mover, s->targets, s->n, &q->options, q->a->ws, &x);
   if (!answered(q, status)) return;
   attack_count(q->a, cprox_verdict_name(x.verdict));
   attack_check(q->a, x.t_contact_lower >= s->path.t0 && x.t_contact_lower <= s->path.t1,
@@ -263,7 +264,7 @@ static void ask_profile(query *q) {
   for (int k = 0; k <= INTERVALS; k++)
     breaks[k] = k == INTERVALS ? s->path.t1 : s->path.t0 + (s->path.t1 - s->path.t0) * k / INTERVALS;
   const cprox_status status =
-      cprox_profile(s->mover, s->targets, s->n, breaks, INTERVALS, &q->options, q->a->ws, intervals);
+      profile_of_list(s->mover, s->targets, s->n, breaks, INTERVALS, &q->options, q->a->ws, intervals);
   if (!answered(q, status)) return;
   for (int k = 0; k < INTERVALS; k++) {
     const cprox_profile_interval *p = &intervals[k];
@@ -314,7 +315,7 @@ static void ask_nearest(query *q) {
   cprox_result found[SCENE_OBSTACLES];
   size_t count = 0;
   const size_t k = 1 + rng_index(q->r, s->n);
-  const cprox_status status = cprox_nearest(s->mover, s->targets, s->n, k, &q->options, q->a->ws, found, &count);
+  const cprox_status status = nearest_of_list(s->mover, s->targets, s->n, k, &q->options, q->a->ws, found, &count);
   if (!answered(q, status)) return;
   if (!attack_check(q->a, count == k, "nearest: %zu results for k = %zu", count, k)) return;
   for (size_t i = 0; i < count; i++) {
@@ -332,7 +333,7 @@ static void ask_within(query *q) {
   cprox_result found[SCENE_OBSTACLES];
   size_t count = 0;
   const double delta = rng_index(q->r, 4) ? s->scale * rng_log_uniform(q->r, 1e-2, 10.0) : 0.0;
-  const cprox_status status = cprox_within(s->mover, s->targets, s->n, delta, &q->options, q->a->ws, found, &count);
+  const cprox_status status = within_of_list(s->mover, s->targets, s->n, delta, &q->options, q->a->ws, found, &count);
   if (!answered(q, status)) return;
   for (size_t i = 0; i < count && i < SCENE_OBSTACLES; i++) {
     const bool named = found[i].obstacle_index >= 0 && (size_t)found[i].obstacle_index < s->n;
@@ -347,13 +348,13 @@ static void ask_within(query *q) {
 
 static void ask_set(query *q) {
   const scene *s = &q->s;
-  cprox_set *set = NULL;
+  cprox_obstacles *set = NULL;
   cprox_result x;
-  if (!answered(q, cprox_set_create(s->targets, s->n, q->a->ws, &set))) return;
-  cprox_status status = cprox_set_distance(set, s->mover, &q->options, q->a->ws, &x);
+  if (!answered(q, cprox_obstacles_create(s->targets, s->n, CPROX_INDEX_BVH, q->a->ws, &set))) return;
+  cprox_status status = cprox_obstacles_distance(set, s->mover, &q->options, q->a->ws, &x, NULL);
   const size_t which = rng_index(q->r, 3);
-  if (which == 1) status = cprox_set_tolerance(set, s->mover, s->scale, &q->options, q->a->ws, &x);
-  if (which == 2) status = cprox_set_collision(set, s->mover, &q->options, q->a->ws, &x);
+  if (which == 1) status = cprox_obstacles_tolerance(set, s->mover, s->scale, &q->options, q->a->ws, &x, NULL);
+  if (which == 2) status = cprox_obstacles_collision(set, s->mover, &q->options, q->a->ws, &x, NULL);
   if (answered(q, status)) {
     check_all(q, &x);
     if (which == 0)
@@ -361,20 +362,20 @@ static void ask_set(query *q) {
     else
       check_verdict(q, &x, which == 1 ? s->scale : -1.0);
   }
-  cprox_set_free(set);
+  cprox_obstacles_free(set);
 }
 
 static void ask_batch(query *q) {
   const scene *s = &q->s;
-  cprox_batch *batch = NULL;
+  cprox_obstacles *batch = NULL;
   cprox_result x[2];
   const cprox_mover movers[2] = {s->mover, s->mover};
-  if (!answered(q, cprox_batch_create(s->targets, s->n, q->a->ws, &batch))) return;
+  if (!answered(q, cprox_obstacles_create(s->targets, s->n, CPROX_INDEX_BATCH, q->a->ws, &batch))) return;
   const size_t which = rng_index(q->r, 3);
   cprox_status status = CPROX_OK;
-  if (which == 0) status = cprox_batch_distance(batch, movers, 0, 2, &q->options, q->a->ws, x);
-  if (which == 1) status = cprox_batch_tolerance(batch, movers, 0, 2, s->scale, &q->options, q->a->ws, x);
-  if (which == 2) status = cprox_batch_collision(batch, movers, 0, 2, &q->options, q->a->ws, x);
+  if (which == 0) status = cprox_obstacles_distance_batch(batch, movers, 0, 2, &q->options, q->a->ws, x);
+  if (which == 1) status = cprox_obstacles_tolerance_batch(batch, movers, 0, 2, s->scale, &q->options, q->a->ws, x);
+  if (which == 2) status = cprox_obstacles_collision_batch(batch, movers, 0, 2, &q->options, q->a->ws, x);
   if (answered(q, status)) {
     check_all(q, &x[0]);
     attack_check(q->a, x[0].lower == x[1].lower && x[0].upper == x[1].upper,
@@ -385,7 +386,7 @@ static void ask_batch(query *q) {
     else
       check_verdict(q, &x[0], which == 1 ? s->scale : -1.0);
   }
-  cprox_batch_free(batch);
+  cprox_obstacles_free(batch);
 }
 
 static void ask_signed(query *q) {

@@ -158,14 +158,14 @@ static void ask_moving(attack *a, rng *r, setting *s) {
   check(a, s, "collision", cprox_collision(mover, target, &s->options, a->ws, &result), &result, t);
   check(a, s, "time of contact", cprox_time_of_contact(mover, target, &s->options, a->ws, &result), &result, t);
 
-  cprox_set *set = NULL;
-  if (cprox_set_create(&target, 1, a->ws, &set) >= 0)
-    check(a, s, "set", cprox_set_distance(set, mover, &s->options, a->ws, &result), &result, t);
-  cprox_set_free(set);
-  cprox_batch *batch = NULL;
-  if (cprox_batch_create(&target, 1, a->ws, &batch) >= 0)
-    check(a, s, "batch", cprox_batch_distance(batch, &mover, 0, 1, &s->options, a->ws, &result), &result, t);
-  cprox_batch_free(batch);
+  cprox_obstacles *set = NULL;
+  if (cprox_obstacles_create(&target, 1, CPROX_INDEX_BVH, a->ws, &set) >= 0)
+    check(a, s, "set", cprox_obstacles_distance(set, mover, &s->options, a->ws, &result, NULL), &result, t);
+  cprox_obstacles_free(set);
+  cprox_obstacles *batch = NULL;
+  if (cprox_obstacles_create(&target, 1, CPROX_INDEX_BATCH, a->ws, &batch) >= 0)
+    check(a, s, "batch", cprox_obstacles_distance_batch(batch, &mover, 0, 1, &s->options, a->ws, &result), &result, t);
+  cprox_obstacles_free(batch);
 }
 
 /* A ball or a body on a link that slides along the line. */

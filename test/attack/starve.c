@@ -8,6 +8,7 @@
 #include "scenes.h"
 #include "support/counting.h"
 #include "support/make_curve.h"
+#include "support/of_list.h"
 
 enum { MOST = 2000, POINTS = 8 };
 
@@ -25,8 +26,8 @@ typedef union handle {
   void *any;
   cprox_body *body;
   cprox_curve *curve;
-  cprox_set *set;
-  cprox_batch *batch;
+  cprox_obstacles *set;
+  cprox_obstacles *batch;
   cprox_solid *solid;
 } handle;
 
@@ -72,11 +73,11 @@ static void free_solid(void *x) {
 }
 
 static void free_set(void *x) {
-  cprox_set_free(x);
+  cprox_obstacles_free(x);
 }
 
 static void free_batch(void *x) {
-  cprox_batch_free(x);
+  cprox_obstacles_free(x);
 }
 
 enum { N_BODIES = 19, N_CURVES = 13, N_OTHERS = 9 };
@@ -142,8 +143,8 @@ static cprox_status make_other(size_t which, const material *m, cprox_workspace 
   const cprox_obstacle targets[2] = {cprox_obstacle_at(m->hull, cprox_pose_identity()),
                                      cprox_obstacle_at(m->mesh, cprox_pose_identity())};
   switch (which) {
-    case 0: return cprox_set_create(targets, 2, ws, &h->set);
-    case 1: return cprox_batch_create(targets, 2, ws, &h->batch);
+    case 0: return cprox_obstacles_create(targets, 2, CPROX_INDEX_BVH, ws, &h->set);
+    case 1: return cprox_obstacles_create(targets, 2, CPROX_INDEX_BATCH, ws, &h->batch);
     case 2: return cprox_solid_create_ball(3, 1.0, ws, &h->solid);
     case 3: return cprox_solid_create_box(2, vec(1, 2, 3), ws, &h->solid);
     case 4: return cprox_solid_create_ellipsoid(3, vec(1, 2, 3), ws, &h->solid);
@@ -230,17 +231,17 @@ static cprox_status ask(const scene *s, size_t query, const cprox_options *o, cp
   cprox_options with = *o;
   switch (query) {
     case 0: return cprox_distance(s->mover, s->targets[0], o, ws, x);
-    case 1: return cprox_tolerance_all(s->mover, s->targets, s->n, s->scale, o, ws, x, NULL);
-    case 2: return cprox_collision_all(s->mover, s->targets, s->n, o, ws, x, NULL);
-    case 3: return cprox_time_of_contact_all(s->mover, s->targets, s->n, o, ws, x);
-    case 4: return cprox_nearest(s->mover, s->targets, s->n, 1, o, ws, x, &count);
-    case 5: return cprox_distance_all(s->mover, s->targets, s->n, o, ws, x, NULL);
+    case 1: return tolerance_of_list(s->mover, s->targets, s->n, s->scale, o, ws, x, NULL);
+    case 2: return collision_of_list(s->mover, s->targets, s->n, o, ws, x, NULL);
+    case 3: return time_of_contact_of_list(s->mover, s->targets, s->n, o, ws, x);
+    case 4: return nearest_of_list(s->mover, s->targets, s->n, 1, o, ws, x, &count);
+    case 5: return distance_of_list(s->mover, s->targets, s->n, o, ws, x, NULL);
     case 6: with.signed_distance = true; return cprox_distance(s->mover, s->targets[0], &with, ws, x);
     case 7: {
       cprox_certificate *certificate = cprox_certificate_create();
       with.certificate = certificate;
       const cprox_status status =
-          certificate ? cprox_distance_all(s->mover, s->targets, s->n, &with, ws, x, NULL) : CPROX_MEMORY;
+          certificate ? distance_of_list(s->mover, s->targets, s->n, &with, ws, x, NULL) : CPROX_MEMORY;
       cprox_certificate_free(certificate);
       return status;
     }

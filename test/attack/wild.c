@@ -10,6 +10,7 @@
 
 #include "attack.h"
 #include "support/make_curve.h"
+#include "support/of_list.h"
 
 enum { POINTS = 6 };
 
@@ -384,33 +385,33 @@ static void ask_many(wild *w, cprox_mover mover, const cprox_obstacle *targets, 
   cprox_status status;
   switch (rng_index(w->r, 5)) {
     case 0:
-      status = cprox_nearest(mover, targets, n, rng_index(w->r, 4), o, w->a->ws, many, &found);
+      status = nearest_of_list(mover, targets, n, rng_index(w->r, 4), o, w->a->ws, many, &found);
       asked(w, "nearest", status, status < 0 || found ? many : (memset(x, 0, sizeof *x), x));
       break;
     case 1:
-      status = cprox_within(mover, targets, n, size(w), o, w->a->ws, many, &found);
+      status = within_of_list(mover, targets, n, size(w), o, w->a->ws, many, &found);
       asked(w, "within", status, status < 0 || found ? many : (memset(x, 0, sizeof *x), x));
       break;
     case 2:
-      check_status(w, "profile", cprox_profile(mover, targets, n, breaks, rng_index(w->r, 3), o, w->a->ws, intervals),
+      check_status(w, "profile", profile_of_list(mover, targets, n, breaks, rng_index(w->r, 3), o, w->a->ws, intervals),
                    w->a->ws);
       break;
     case 3: {
-      cprox_set *set = NULL;
-      status = cprox_set_create(targets, n, w->a->ws, &set);
+      cprox_obstacles *set = NULL;
+      status = cprox_obstacles_create(targets, n, CPROX_INDEX_BVH, w->a->ws, &set);
       made(w, "set", status, &set);
-      if (set) asked(w, "set distance", cprox_set_distance(set, mover, o, w->a->ws, x), x);
-      cprox_set_free(set);
+      if (set) asked(w, "set distance", cprox_obstacles_distance(set, mover, o, w->a->ws, x, NULL), x);
+      cprox_obstacles_free(set);
       break;
     }
     default: {
-      cprox_batch *batch = NULL;
-      status = cprox_batch_create(targets, n, w->a->ws, &batch);
+      cprox_obstacles *batch = NULL;
+      status = cprox_obstacles_create(targets, n, CPROX_INDEX_BATCH, w->a->ws, &batch);
       made(w, "batch", status, &batch);
       if (batch)
-        check_status(w, "batch distance", cprox_batch_distance(batch, &mover, 0, rng_index(w->r, 2), o, w->a->ws, x),
-                     w->a->ws);
-      cprox_batch_free(batch);
+        check_status(w, "batch distance",
+                     cprox_obstacles_distance_batch(batch, &mover, 0, rng_index(w->r, 2), o, w->a->ws, x), w->a->ws);
+      cprox_obstacles_free(batch);
     }
   }
 }
@@ -433,10 +434,10 @@ static void ask_certified(wild *w, cprox_mover mover, const cprox_obstacle *targ
   cprox_certificate *certificate = cprox_certificate_create();
   char text[300];
   o->certificate = rng_index(w->r, 2) ? certificate : NULL;
-  const cprox_status status = cprox_distance_all(mover, targets, n, o, w->a->ws, x, NULL);
+  const cprox_status status = distance_of_list(mover, targets, n, o, w->a->ws, x, NULL);
   asked(w, "certified distance", status, x);
   if (status >= 0)
-    check_status(w, "certify", cprox_certify(mover, targets, n, size(w), x, o, w->a->ws, certificate), w->a->ws);
+    check_status(w, "certify", certify_of_list(mover, targets, n, size(w), x, o, w->a->ws, certificate), w->a->ws);
   for (size_t i = 0; i < n; i++)
     if (targets[i].body || targets[i].curve) cprox_obstacle_describe(&targets[i], text, rng_index(w->r, sizeof text));
   cprox_certificate_free(certificate);
@@ -456,13 +457,13 @@ static void ask(wild *w) {
     case 0: asked(w, "distance", cprox_distance(mover, targets[0], given, w->a->ws, &x), &x); break;
     case 1: asked(w, "tolerance", cprox_tolerance(mover, targets[0], size(w), given, w->a->ws, &x), &x); break;
     case 2:
-      asked(w, "collision", cprox_collision_all(mover, n ? targets : NULL, n, given, w->a->ws, &x, NULL), &x);
+      asked(w, "collision", collision_of_list(mover, n ? targets : NULL, n, given, w->a->ws, &x, NULL), &x);
       break;
     case 3:
-      asked(w, "time of contact", cprox_time_of_contact_all(mover, n ? targets : NULL, n, given, w->a->ws, &x), &x);
+      asked(w, "time of contact", time_of_contact_of_list(mover, n ? targets : NULL, n, given, w->a->ws, &x), &x);
       break;
     case 4:
-      asked(w, "distance of all", cprox_distance_all(mover, n ? targets : NULL, n, given, w->a->ws, &x, NULL), &x);
+      asked(w, "distance of all", distance_of_list(mover, n ? targets : NULL, n, given, w->a->ws, &x, NULL), &x);
       break;
     case 5: {
       const cprox_status status = cprox_distance(mover, targets[0], given, w->a->ws, &x);

@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "support/of_list.h"
 #include "support/robot_queries.h"
 #include "support/tampering.h"
 
@@ -27,12 +28,12 @@ static bool ask(const robot_query *q, rng *r, cprox_workspace *ws, cprox_certifi
   cprox_options options = cprox_options_default();
   options.epsilon = 1e-9;
   cprox_result result;
-  if (cprox_distance_all(q->mover, q->targets, q->n, &options, ws, &result, NULL) < 0) return false;
+  if (distance_of_list(q->mover, q->targets, q->n, &options, ws, &result, NULL) < 0) return false;
   interval[0] = result.lower, interval[1] = result.upper;
   if (!genuine || !isfinite(result.upper)) return isfinite(result.upper);
   const double delta = rng_index(r, 3) ? result.upper * rng_uniform(r, 0.3, 1.2) : fmax(result.lower - 1e-6, 0.0);
-  if (cprox_tolerance_all(q->mover, q->targets, q->n, delta, &options, ws, &result, NULL) < 0) return false;
-  if (cprox_certify(q->mover, q->targets, q->n, delta, &result, &options, ws, c) != CPROX_OK) return false;
+  if (tolerance_of_list(q->mover, q->targets, q->n, delta, &options, ws, &result, NULL) < 0) return false;
+  if (certify_of_list(q->mover, q->targets, q->n, delta, &result, &options, ws, c) != CPROX_OK) return false;
   genuine->n = cprox_certificate_size(c);
   if (genuine->n == 0 || genuine->n + 16 > MOST_BYTES) return false;
   memset(genuine->at, 0, sizeof genuine->at);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "support/cases.h"
+#include "support/of_list.h"
 #include "support/queries.h"
 #include "support/tampering.h"
 
@@ -19,8 +20,8 @@ typedef struct tally {
 static cprox_status ask(const asked *q, double delta, const cprox_options *options, cprox_workspace *ws,
                         cprox_result *result) {
   const cprox_mover along = cprox_tube_along(q->mover.curve, q->radius);
-  return delta < 0.0 ? cprox_distance_all(along, q->targets, q->n, options, ws, result, NULL)
-                     : cprox_tolerance_all(along, q->targets, q->n, delta, options, ws, result, NULL);
+  return delta < 0.0 ? distance_of_list(along, q->targets, q->n, options, ws, result, NULL)
+                     : tolerance_of_list(along, q->targets, q->n, delta, options, ws, result, NULL);
 }
 
 /* Asks the distance and two tolerances about it; every certificate is checked. */

@@ -8,6 +8,7 @@
 
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/of_list.h"
 #include "support/robot_case.h"
 #include "support/robot_queries.h"
 
@@ -82,8 +83,8 @@ static void ask_thrice(const cprox_mover *along, const cprox_obstacle *targets, 
   for (int i = 0; i < 3; i++) {
     cprox_result r;
     const double delta = SHARE[i] * distance;
-    const cprox_status status = i == 0 ? cprox_distance_all(*along, targets, n, &options, ws, &r, NULL)
-                                       : cprox_tolerance_all(*along, targets, n, delta, &options, ws, &r, NULL);
+    const cprox_status status = i == 0 ? distance_of_list(*along, targets, n, &options, ws, &r, NULL)
+                                       : tolerance_of_list(*along, targets, n, delta, &options, ws, &r, NULL);
     assert_true(status >= 0);
     if (i == 0) distance = r.lower;
     if (!isfinite(distance)) return;
@@ -151,9 +152,9 @@ CASE(meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are) {
     robot_query_random(&q, &r, rng_log_uniform(&r, 0.02, 1.0), rng_uniform(&r, 0.3, 2.0), true, ws);
     cprox_options options = accurate(1e-5);
     cprox_result plain, with;
-    assert_true(cprox_distance_all(q.mover, q.targets, q.n, &options, ws, &plain, NULL) >= 0);
+    assert_true(distance_of_list(q.mover, q.targets, q.n, &options, ws, &plain, NULL) >= 0);
     options.certificate = c;
-    assert_true(cprox_distance_all(q.mover, q.targets, q.n, &options, ws, &with, NULL) >= 0);
+    assert_true(distance_of_list(q.mover, q.targets, q.n, &options, ws, &with, NULL) >= 0);
     assert_true(with.status == plain.status && with.lower == plain.lower && with.upper == plain.upper);
     assert_true(with.t == plain.t && with.lod == plain.lod && with.nodes == plain.nodes);
     none += cprox_certificate_size(c) == 0;

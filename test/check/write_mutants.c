@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "support/of_list.h"
 #include "support/queries.h"
 #include "support/tampering.h"
 
@@ -33,12 +34,12 @@ static bool ask(const asked *q, rng *r, cprox_workspace *ws, cprox_certificate *
   options.epsilon = 1e-12 * q->scale;
   options.certificate = c;
   cprox_result result;
-  if (cprox_distance_all(along, q->targets, q->n, &options, ws, &result, NULL) < 0) return false;
+  if (distance_of_list(along, q->targets, q->n, &options, ws, &result, NULL) < 0) return false;
   interval[0] = result.lower;
   interval[1] = result.upper;
   if (rng_index(r, 2)) {
     const double delta = result.lower * rng_uniform(r, 0.3, 1.3);
-    if (cprox_tolerance_all(along, q->targets, q->n, delta, &options, ws, &result, NULL) < 0) return false;
+    if (tolerance_of_list(along, q->targets, q->n, delta, &options, ws, &result, NULL) < 0) return false;
   }
   genuine->n = cprox_certificate_size(c);
   if (genuine->n == 0 || genuine->n + 16 > MOST_BYTES) return false;

@@ -6,6 +6,8 @@
 #include "shape/body.h"
 #include "support/batch_scene.h"
 #include "support/cases.h"
+#include "support/make_curve.h"
+#include "support/of_list.h"
 #include "support/reference.h"
 
 /* The least distance over many parameters, by the plain nearest-point function of bodies: an upper bound on the truth. */
@@ -40,8 +42,8 @@ CASE(answers_agree_with_those_of_one_mover) {
     batch_scene_targets(&r, planar, workspace, &s);
     batch_scene_movers(&r, planar, workspace, &s);
     if (round % 4 >= 2) s.n_targets = 1 + rng_index(&r, TARGETS - 2); /* sparse: more verdicts are "clear" */
-    cprox_batch *batch = NULL;
-    assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
+    cprox_obstacles *batch = NULL;
+    assert_int_equal(cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
     for (int v = 0; v < QUERY_TYPES; v++) {
       cprox_result results[MOVERS];
       assert_int_equal(batch_ask((query_type)v, batch, &s, 0, MOVERS, workspace, results), CPROX_OK);
@@ -63,7 +65,7 @@ CASE(answers_agree_with_those_of_one_mover) {
         if (v == COLLISION && one->verdict == CPROX_VERDICT_CLEAR) assert_true(sampled > 0.0);
       }
     }
-    cprox_batch_free(batch);
+    cprox_obstacles_free(batch);
     batch_scene_free(&s);
   }
   /* both ways of answering are exercised */
@@ -79,8 +81,8 @@ CASE(witnesses_lie_where_they_say) {
   batch_scene s = {0};
   batch_scene_targets(&r, false, workspace, &s);
   batch_scene_movers(&r, false, workspace, &s);
-  cprox_batch *batch = NULL;
-  assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
+  cprox_obstacles *batch = NULL;
+  assert_int_equal(cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   for (int v = 0; v < QUERY_TYPES; v++) {
     cprox_result results[MOVERS];
     batch_ask((query_type)v, batch, &s, 0, MOVERS, workspace, results);
@@ -99,7 +101,7 @@ CASE(witnesses_lie_where_they_say) {
       assert_true(cprox_body_nearest(target->body, local, NULL) <= target->margin + 1e-9);
     }
   }
-  cprox_batch_free(batch);
+  cprox_obstacles_free(batch);
   batch_scene_free(&s);
   cprox_workspace_free(workspace);
 }
@@ -111,8 +113,8 @@ CASE(a_disc_tells_nothing_of_curves_off_its_plane) {
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_polygon(square, 4, workspace, &body), CPROX_OK);
   const cprox_obstacle target = cprox_obstacle_at(body, cprox_pose_identity());
-  cprox_batch *batch = NULL;
-  assert_int_equal(cprox_batch_create(&target, 1, workspace, &batch), CPROX_OK);
+  cprox_obstacles *batch = NULL;
+  assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   const cprox_vec3 points[3][3] = {{{-1, 0, 0.05}, {0, 0.1, 0.05}, {1, 0, 0.05}},
                                    {{-0.2, 0, 0.05}, {0, 0.1, 0.1}, {0.2, 0, 0.1}},
                                    {{-1, 0, 0}, {0, 0.1, 0}, {1, 0, 0}}};
@@ -122,13 +124,13 @@ CASE(a_disc_tells_nothing_of_curves_off_its_plane) {
     assert_int_equal(curve_from(describe_bezier(points[i], 3, 0, 1), workspace, &curve), CPROX_OK);
     const cprox_mover mover = cprox_point_along(curve);
     cprox_result r;
-    assert_int_equal(cprox_batch_distance(batch, &mover, 0, 1, NULL, workspace, &r), CPROX_OK);
+    assert_int_equal(cprox_obstacles_distance_batch(batch, &mover, 0, 1, NULL, workspace, &r), CPROX_OK);
     assert_true(r.lower <= distance[i] && distance[i] <= r.upper && r.upper - r.lower <= 1e-6);
-    assert_int_equal(cprox_batch_collision(batch, &mover, 0, 1, NULL, workspace, &r), CPROX_OK);
+    assert_int_equal(cprox_obstacles_collision_batch(batch, &mover, 0, 1, NULL, workspace, &r), CPROX_OK);
     assert_int_equal(r.verdict, i == 2 ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR);
     cprox_curve_free(curve);
   }
-  cprox_batch_free(batch);
+  cprox_obstacles_free(batch);
   cprox_body_free(body);
   cprox_workspace_free(workspace);
 }
@@ -151,8 +153,8 @@ CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
     cprox_body *body = NULL;
     assert_int_equal(cprox_body_create_compound(&part, &inner, 1, workspace, &body), CPROX_OK);
     const cprox_obstacle target = cprox_obstacle_at(body, outer);
-    cprox_batch *batch = NULL;
-    assert_int_equal(cprox_batch_create(&target, 1, workspace, &batch), CPROX_OK);
+    cprox_obstacles *batch = NULL;
+    assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
 
     /* a segment that begins where it is nearest */
     const vec3 out = rng_unit(&r), at = vec((double)centre.x, (double)centre.y, (double)centre.z);
@@ -165,15 +167,15 @@ CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
     options.epsilon = 0.0;
     cprox_result answers[2];
     const double delta = (double)truth + rng_uniform(&r, -1e-8, 1e-8);
-    cprox_batch_distance(batch, &mover, 0, 1, &options, workspace, &answers[0]);
-    cprox_batch_tolerance(batch, &mover, 0, 1, delta, &options, workspace, &answers[1]);
+    cprox_obstacles_distance_batch(batch, &mover, 0, 1, &options, workspace, &answers[0]);
+    cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, delta, &options, workspace, &answers[1]);
     for (int k = 0; k < 2; k++) {
       assert_true((long double)answers[k].lower <= truth + 1e-12L);
       assert_true(truth - 1e-12L <= (long double)answers[k].upper);
     }
     settled_by_points += answers[1].distance_queries == 0 && answers[1].verdict == CPROX_VERDICT_VIOLATED;
     cprox_curve_free(curve);
-    cprox_batch_free(batch);
+    cprox_obstacles_free(batch);
     cprox_body_free(body);
   }
   assert_true(settled_by_points > 0);
@@ -195,8 +197,8 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
     targets[k] = cprox_obstacle_at(bodies[k], rng_pose(&r, 0.5));
     if (k % 4 == 0) targets[k].margin = 0.004;
   }
-  cprox_batch *batch = NULL;
-  assert_int_equal(cprox_batch_create(targets, BOXES, workspace, &batch), CPROX_OK);
+  cprox_obstacles *batch = NULL;
+  assert_int_equal(cprox_obstacles_create(targets, BOXES, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   size_t searched = 0, hits = 0;
   for (size_t i = 0; i < CURVES; i++) {
     const vec3 p[6] = {vec(-0.7, 0, 0),      vec(-0.5, 0, 0), rng_in_cube(&r, 0.5),
@@ -208,15 +210,15 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
       const double delta = v == TOLERANCE ? 0.01 : 0.0;
       cprox_result one, alone;
       if (v == DISTANCE) {
-        cprox_batch_distance(batch, &mover, 0, 1, NULL, workspace, &one);
-        cprox_distance_all(mover, targets, BOXES, NULL, workspace, &alone, NULL);
+        cprox_obstacles_distance_batch(batch, &mover, 0, 1, NULL, workspace, &one);
+        distance_of_list(mover, targets, BOXES, NULL, workspace, &alone, NULL);
         assert_true(one.upper - one.lower <= 1e-6);
       } else if (v == TOLERANCE) {
-        cprox_batch_tolerance(batch, &mover, 0, 1, delta, NULL, workspace, &one);
-        cprox_tolerance_all(mover, targets, BOXES, delta, NULL, workspace, &alone, NULL);
+        cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, delta, NULL, workspace, &one);
+        tolerance_of_list(mover, targets, BOXES, delta, NULL, workspace, &alone, NULL);
       } else {
-        cprox_batch_collision(batch, &mover, 0, 1, NULL, workspace, &one);
-        cprox_collision_all(mover, targets, BOXES, NULL, workspace, &alone, NULL);
+        cprox_obstacles_collision_batch(batch, &mover, 0, 1, NULL, workspace, &one);
+        collision_of_list(mover, targets, BOXES, NULL, workspace, &alone, NULL);
       }
       assert_int_equal(one.verdict, alone.verdict);
       assert_true(one.lower <= alone.upper && alone.lower <= one.upper && one.lower <= one.upper);
@@ -239,7 +241,7 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
   }
   assert_true(hits > CURVES / 2 && hits < 2 * CURVES);
   assert_true(searched <= 3 * CURVES / 50);
-  cprox_batch_free(batch);
+  cprox_obstacles_free(batch);
   for (size_t k = 0; k < BOXES; k++) cprox_body_free(bodies[k]);
   cprox_workspace_free(workspace);
 }

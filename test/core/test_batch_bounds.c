@@ -239,8 +239,8 @@ CASE(obbs_hold_their_parts) {
   for (size_t round = 0; round < test_cases(20); round++) {
     batch_scene s = {0};
     batch_scene_targets(&r, round % 4 == 3, workspace, &s);
-    cprox_batch *batch = NULL;
-    assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
+    obstacle_batch *batch = NULL;
+    assert_int_equal(obstacle_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
     const query q = {.targets = s.targets, .n = s.n_targets};
     for (size_t k = 0; k < batch->balls.n; k++) {
       const batch_core *core = &batch->cores[k];
@@ -269,7 +269,7 @@ CASE(obbs_hold_their_parts) {
       }
       for (int j = 0; j < 3; j++) assert_true(most[j] >= half[j] / 3 - 1e-12 && least[j] <= -half[j] / 3 + 1e-12);
     }
-    cprox_batch_free(batch);
+    obstacle_batch_free(batch);
     batch_scene_free(&s);
   }
   assert_true(obbs > 0);
@@ -299,8 +299,8 @@ CASE(blocks_hold_each_part_once_and_bound_it) {
       targets[i] = cprox_obstacle_at(i % 40 == 20 ? half : i % 4 == 1 ? pair : box, pose);
       targets[i].margin = i % 3 == 0 ? 0.1 : 0.0;
     }
-    cprox_batch *batch = NULL;
-    assert_int_equal(cprox_batch_create(targets, n, workspace, &batch), CPROX_OK);
+    obstacle_batch *batch = NULL;
+    assert_int_equal(obstacle_batch_create(targets, n, workspace, &batch), CPROX_OK);
     int met[N][2] = {{0}};
     for (size_t k = 0; k < batch->balls.n; k++) met[batch->parts[k].target][batch->parts[k].part]++;
     for (size_t i = 0; i < n; i++) assert_true(met[i][0] == 1 && met[i][1] == (targets[i].body == pair));
@@ -346,7 +346,7 @@ CASE(blocks_hold_each_part_once_and_bound_it) {
       const long double below = sqrtl(least) - (long double)radius - (long double)lower[b];
       assert_true(below >= 0.0L && below <= 160 * 0x1p-53L * (sqrtl(least) + 1.0L + (long double)blocks->sizes[b]));
     }
-    cprox_batch_free(batch);
+    obstacle_batch_free(batch);
     cprox_body_free(pair);
     cprox_body_free(box);
     cprox_body_free(half);

@@ -7,6 +7,7 @@
 #include "support/batch_scene.h"
 #include "support/cases.h"
 #include "support/counting.h"
+#include "support/make_curve.h"
 
 CASE(a_mover_that_is_unusable_fails_alone) {
   rng r = rng_seed(16);
@@ -14,13 +15,13 @@ CASE(a_mover_that_is_unusable_fails_alone) {
   batch_scene s = {0};
   batch_scene_targets(&r, false, workspace, &s);
   batch_scene_movers(&r, false, workspace, &s);
-  cprox_batch *batch = NULL;
-  assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
+  cprox_obstacles *batch = NULL;
+  assert_int_equal(cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   cprox_result good[MOVERS], results[MOVERS];
-  assert_int_equal(cprox_batch_distance(batch, s.movers, 0, MOVERS, NULL, workspace, good), CPROX_OK);
+  assert_int_equal(cprox_obstacles_distance_batch(batch, s.movers, 0, MOVERS, NULL, workspace, good), CPROX_OK);
   s.movers[5].radius = NAN;
   s.movers[9].curve = NULL;
-  assert_int_equal(cprox_batch_distance(batch, s.movers, 0, MOVERS, NULL, workspace, results), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_distance_batch(batch, s.movers, 0, MOVERS, NULL, workspace, results), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(workspace), "mover 5: radius is nan"));
   for (size_t i = 0; i < MOVERS; i++) {
     const bool bad = i == 5 || i == 9;
@@ -32,7 +33,7 @@ CASE(a_mover_that_is_unusable_fails_alone) {
   memset(results, 0x5a, sizeof results);
   cprox_result untouched;
   memset(&untouched, 0x5a, sizeof untouched);
-  assert_int_equal(cprox_batch_distance(batch, s.movers, 20, 30, NULL, workspace, results), CPROX_OK);
+  assert_int_equal(cprox_obstacles_distance_batch(batch, s.movers, 20, 30, NULL, workspace, results), CPROX_OK);
   assert_string_equal(cprox_workspace_error(workspace), "");
   for (size_t i = 0; i < MOVERS; i++) {
     if (i >= 20 && i < 30)
@@ -40,7 +41,7 @@ CASE(a_mover_that_is_unusable_fails_alone) {
     else
       assert_memory_equal(&results[i], &untouched, sizeof untouched);
   }
-  cprox_batch_free(batch);
+  cprox_obstacles_free(batch);
   batch_scene_free(&s);
   cprox_workspace_free(workspace);
 }
@@ -48,35 +49,35 @@ CASE(a_mover_that_is_unusable_fails_alone) {
 CASE(unusable_calls_are_refused_with_a_sentence) {
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_result result;
-  cprox_batch *batch = NULL;
+  cprox_obstacles *batch = NULL;
   const cprox_obstacle nothing = {0};
-  assert_int_equal(cprox_batch_create(&nothing, 1, workspace, &batch), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_create(&nothing, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_INVALID);
   assert_null(batch);
   assert_non_null(strstr(cprox_workspace_error(workspace), "target 0"));
-  assert_int_equal(cprox_batch_create(NULL, 3, workspace, &batch), CPROX_INVALID);
-  assert_int_equal(cprox_batch_create(NULL, 0, NULL, &batch), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_create(NULL, 3, CPROX_INDEX_BATCH, workspace, &batch), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_create(NULL, 0, CPROX_INDEX_BATCH, NULL, &batch), CPROX_INVALID);
 
-  assert_int_equal(cprox_batch_create(NULL, 0, workspace, &batch), CPROX_OK);
+  assert_int_equal(cprox_obstacles_create(NULL, 0, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   cprox_curve *curve = NULL;
   const cprox_vec3 points[2] = {{0, 0, 0}, {1, 0, 0}};
-  assert_int_equal(cprox_curve_create_bezier(points, 2, 0, 1, workspace, &curve), CPROX_OK);
+  assert_int_equal(curve_from(describe_bezier(points, 2, 0, 1), workspace, &curve), CPROX_OK);
   const cprox_mover mover = cprox_point_along(curve);
-  assert_int_equal(cprox_batch_tolerance(batch, &mover, 0, 1, 0.1, NULL, workspace, &result), CPROX_OK);
+  assert_int_equal(cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, 0.1, NULL, workspace, &result), CPROX_OK);
   assert_true(result.lower == INFINITY && result.verdict == CPROX_VERDICT_CLEAR && result.obstacle_index == -1);
-  assert_int_equal(cprox_batch_distance(batch, &mover, 0, 0, NULL, workspace, NULL), CPROX_OK);
+  assert_int_equal(cprox_obstacles_distance_batch(batch, &mover, 0, 0, NULL, workspace, NULL), CPROX_OK);
 
-  assert_int_equal(cprox_batch_distance(batch, &mover, 1, 0, NULL, workspace, &result), CPROX_INVALID);
-  assert_int_equal(cprox_batch_distance(NULL, &mover, 0, 1, NULL, workspace, &result), CPROX_INVALID);
-  assert_int_equal(cprox_batch_distance(batch, NULL, 0, 1, NULL, workspace, &result), CPROX_INVALID);
-  assert_int_equal(cprox_batch_distance(batch, &mover, 0, 1, NULL, workspace, NULL), CPROX_INVALID);
-  assert_int_equal(cprox_batch_distance(batch, &mover, 0, 1, NULL, NULL, &result), CPROX_INVALID);
-  assert_int_equal(cprox_batch_tolerance(batch, &mover, 0, 1, -1, NULL, workspace, &result), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_distance_batch(batch, &mover, 1, 0, NULL, workspace, &result), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_distance_batch(NULL, &mover, 0, 1, NULL, workspace, &result), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_distance_batch(batch, NULL, 0, 1, NULL, workspace, &result), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_distance_batch(batch, &mover, 0, 1, NULL, workspace, NULL), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_distance_batch(batch, &mover, 0, 1, NULL, NULL, &result), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, -1, NULL, workspace, &result), CPROX_INVALID);
   cprox_options options = cprox_options_default();
   options.epsilon = NAN;
-  assert_int_equal(cprox_batch_collision(batch, &mover, 0, 1, &options, workspace, &result), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_collision_batch(batch, &mover, 0, 1, &options, workspace, &result), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(workspace), "epsilon"));
-  cprox_batch_free(batch);
-  cprox_batch_free(NULL);
+  cprox_obstacles_free(batch);
+  cprox_obstacles_free(NULL);
   cprox_curve_free(curve);
   cprox_workspace_free(workspace);
 }
@@ -88,21 +89,21 @@ CASE(a_warm_workspace_allocates_nothing_and_no_memory_is_reported) {
   batch_scene_targets(&r, true, workspace, &s);
   batch_scene_movers(&r, true, workspace, &s);
   for (size_t k = 0; k < 5; k++) {
-    cprox_batch *none = NULL;
+    cprox_obstacles *none = NULL;
     allocations_fail_after(k);
-    const cprox_status status = cprox_batch_create(s.targets, s.n_targets, workspace, &none);
+    const cprox_status status = cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &none);
     allocations_allow();
     assert_int_equal(status, CPROX_MEMORY);
     assert_null(none);
   }
-  cprox_batch *batch = NULL;
-  assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
+  cprox_obstacles *batch = NULL;
+  assert_int_equal(cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   cprox_result results[MOVERS];
   for (int v = 0; v < QUERY_TYPES; v++) batch_ask((query_type)v, batch, &s, 0, MOVERS, workspace, results);
   const size_t before = allocations_made();
   for (int v = 0; v < QUERY_TYPES; v++) batch_ask((query_type)v, batch, &s, 0, MOVERS, workspace, results);
   assert_int_equal(allocations_made(), before);
-  cprox_batch_free(batch);
+  cprox_obstacles_free(batch);
   batch_scene_free(&s);
   cprox_workspace_free(workspace);
 }

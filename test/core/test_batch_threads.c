@@ -8,7 +8,7 @@
 #include "support/cases.h"
 
 typedef struct worker {
-  const cprox_batch *batch;
+  const cprox_obstacles *batch;
   const batch_scene *scene;
   query_type query_type;
   size_t first, last;
@@ -31,8 +31,8 @@ CASE(results_are_the_same_for_every_split_and_number_of_threads) {
     batch_scene s = {0};
     batch_scene_targets(&r, planar, workspace, &s);
     batch_scene_movers(&r, planar, workspace, &s);
-    cprox_batch *batch = NULL;
-    assert_int_equal(cprox_batch_create(s.targets, s.n_targets, workspace, &batch), CPROX_OK);
+    cprox_obstacles *batch = NULL;
+    assert_int_equal(cprox_obstacles_create(s.targets, s.n_targets, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
     for (int v = 0; v < QUERY_TYPES; v++) {
       cprox_result whole[MOVERS], split[MOVERS];
       batch_ask((query_type)v, batch, &s, 0, MOVERS, workspace, whole);
@@ -51,7 +51,7 @@ CASE(results_are_the_same_for_every_split_and_number_of_threads) {
         for (size_t i = 0; i < MOVERS; i++) assert_true(same_answer(&whole[i], &split[i]));
       }
     }
-    cprox_batch_free(batch);
+    cprox_obstacles_free(batch);
     batch_scene_free(&s);
   }
   cprox_workspace_free(workspace);

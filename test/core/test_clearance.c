@@ -9,6 +9,8 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/counting.h"
+#include "support/make_curve.h"
+#include "support/of_list.h"
 #include "support/quad.h"
 #include "support/random.h"
 #include "support/reference.h"
@@ -77,7 +79,7 @@ CASE(the_k_nearest_are_the_least_of_all_distances) {
     const size_t k = 1 + rng_index(&r, 6);
     cprox_result nearest[6];
     size_t count = 99;
-    assert_int_equal(cprox_nearest(w.mover, w.target, w.n, k, &options, ws, nearest, &count), CPROX_OK);
+    assert_int_equal(nearest_of_list(w.mover, w.target, w.n, k, &options, ws, nearest, &count), CPROX_OK);
     assert_int_equal(count, k < w.n ? k : w.n);
     for (size_t j = 0; j < count; j++) {
       assert_true(fabs(nearest[j].upper - all[j]) <= 1e-9);
@@ -99,7 +101,7 @@ CASE(within_lists_exactly_those_within) {
     const double delta = rng_index(&r, 4) ? rng_uniform(&r, 0.0, 2.0) : 0.0;
     cprox_result near[MOST_TARGETS];
     size_t count = 99, next = 0;
-    assert_int_equal(cprox_within(w.mover, w.target, w.n, delta, &options, ws, near, &count), CPROX_OK);
+    assert_int_equal(within_of_list(w.mover, w.target, w.n, delta, &options, ws, near, &count), CPROX_OK);
     for (size_t j = 0; j < w.n; j++) {
       cprox_result one;
       assert_int_equal(cprox_distance(w.mover, w.target[j], &options, ws, &one), CPROX_OK);
@@ -134,7 +136,7 @@ CASE(a_profile_holds_on_every_interval_and_adds_up_to_the_whole) {
     breaks[n] = 1.0;
     qsort(breaks, n + 1, sizeof *breaks, ascending);
     cprox_profile_interval interval[12];
-    const cprox_status status = cprox_profile(w.mover, w.target, w.n, breaks, n, &options, ws, interval);
+    const cprox_status status = profile_of_list(w.mover, w.target, w.n, breaks, n, &options, ws, interval);
     if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
     double least = INFINITY;
     for (size_t k = 0; k < n; k++) {
@@ -151,7 +153,7 @@ CASE(a_profile_holds_on_every_interval_and_adds_up_to_the_whole) {
       least = fmin(least, interval[k].upper);
     }
     cprox_result whole;
-    assert_int_equal(cprox_distance_all(w.mover, w.target, w.n, &options, ws, &whole, NULL), CPROX_OK);
+    assert_int_equal(distance_of_list(w.mover, w.target, w.n, &options, ws, &whole, NULL), CPROX_OK);
     assert_true(least >= whole.lower && least <= whole.upper + 1e-8);
     world_free(&w);
   }
@@ -172,7 +174,7 @@ CASE(intervals_may_begin_and_end_inside_pieces) {
   const cprox_obstacle target = cprox_obstacle_at(floor, cprox_pose_identity());
   cprox_profile_interval interval[INTERVALS];
   const cprox_options options = cprox_options_default();
-  assert_int_equal(cprox_profile(cprox_point_along(curve), &target, 1, breaks, INTERVALS, &options, ws, interval),
+  assert_int_equal(profile_of_list(cprox_point_along(curve), &target, 1, breaks, INTERVALS, &options, ws, interval),
                    CPROX_OK);
   for (int i = 0; i < INTERVALS; i++) {
     /* z(t) = 1 + 0.1 (t - 2) */
@@ -210,7 +212,7 @@ CASE(both_stretches_at_a_break_see_the_point_at_the_break) {
     for (size_t k = 0; k <= degree; k++) p[k] = rng_in_cube(&r, 2.0);
     const double t0 = rng_uniform(&r, -1.0, 1.0), t1 = t0 + rng_log_uniform(&r, 1e-3, 1e3);
     cprox_curve *curve = NULL;
-    assert_int_equal(cprox_curve_create_bezier(p, degree + 1, t0, t1, ws, &curve), CPROX_OK);
+    assert_int_equal(curve_from(describe_bezier(p, degree + 1, t0, t1), ws, &curve), CPROX_OK);
     const double cut = t0 + rng_uniform(&r, 0.01, 0.99) * (t1 - t0);
     const long double s = ((long double)cut - t0) / ((long double)t1 - t0);
     const vec3l at = ref_bezier(p, degree, s, 0);
@@ -222,7 +224,7 @@ CASE(both_stretches_at_a_break_see_the_point_at_the_break) {
     options.epsilon = 0.0;
     cprox_profile_interval interval[2];
     assert_true(
-        cprox_profile(cprox_point_along(curve), &target, 1, (double[]){t0, cut, t1}, 2, &options, ws, interval) >= 0);
+        profile_of_list(cprox_point_along(curve), &target, 1, (double[]){t0, cut, t1}, 2, &options, ws, interval) >= 0);
     for (int k = 0; k < 2; k++)
       if (!(interval[k].lower <= 4.0 * 0x1p-53 * vec_norm(rounded) && interval[k].upper <= 1e-12))
         fail_msg("case %zu, interval %d: [%.17g, %.17g]", i, k, interval[k].lower, interval[k].upper);
@@ -237,15 +239,15 @@ CASE(unusable_arguments_are_named) {
   cprox_result result[MOST_TARGETS];
   cprox_profile_interval interval[2];
   size_t count = 7;
-  assert_int_equal(cprox_nearest(w.mover, w.target, w.n, 0, NULL, ws, result, &count), CPROX_INVALID);
+  assert_int_equal(nearest_of_list(w.mover, w.target, w.n, 0, NULL, ws, result, &count), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "k is 0: ask for at least one target");
-  assert_int_equal(cprox_within(w.mover, w.target, w.n, -1.0, NULL, ws, result, &count), CPROX_INVALID);
+  assert_int_equal(within_of_list(w.mover, w.target, w.n, -1.0, NULL, ws, result, &count), CPROX_INVALID);
   assert_int_equal(count, 7);
-  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 0.5, 0.5}, 2, NULL, ws, interval),
+  assert_int_equal(profile_of_list(w.mover, w.target, w.n, (double[]){0, 0.5, 0.5}, 2, NULL, ws, interval),
                    CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "break 2 is 0.5, not above break 1 at 0.5");
-  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 1.5}, 1, NULL, ws, interval), CPROX_INVALID);
-  assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, NAN}, 1, NULL, ws, interval), CPROX_INVALID);
+  assert_int_equal(profile_of_list(w.mover, w.target, w.n, (double[]){0, 1.5}, 1, NULL, ws, interval), CPROX_INVALID);
+  assert_int_equal(profile_of_list(w.mover, w.target, w.n, (double[]){0, NAN}, 1, NULL, ws, interval), CPROX_INVALID);
   world_free(&w);
 }
 
@@ -255,9 +257,9 @@ CASE(with_no_targets_everything_is_infinitely_far) {
   cprox_result result[1];
   cprox_profile_interval interval[1];
   size_t count = 7;
-  assert_int_equal(cprox_nearest(w.mover, NULL, 0, 3, NULL, ws, result, &count), CPROX_OK);
+  assert_int_equal(nearest_of_list(w.mover, NULL, 0, 3, NULL, ws, result, &count), CPROX_OK);
   assert_int_equal(count, 0);
-  assert_int_equal(cprox_profile(w.mover, NULL, 0, (double[]){0, 1}, 1, NULL, ws, interval), CPROX_OK);
+  assert_int_equal(profile_of_list(w.mover, NULL, 0, (double[]){0, 1}, 1, NULL, ws, interval), CPROX_OK);
   assert_true(isinf(interval[0].lower) && isinf(interval[0].upper) && interval[0].obstacle_index == -1);
   world_free(&w);
 }
@@ -268,15 +270,18 @@ CASE(nothing_is_allocated_once_the_workspace_has_grown) {
   cprox_result result[MOST_TARGETS], first;
   cprox_profile_interval interval[4];
   size_t count, before = 0;
+  cprox_obstacles *all = NULL;
+  assert_int_equal(cprox_obstacles_create(w.target, w.n, CPROX_INDEX_NONE, ws, &all), CPROX_OK);
   for (int round = 0; round < 3; round++) {
-    assert_int_equal(cprox_nearest(w.mover, w.target, w.n, 3, NULL, ws, result, &count), CPROX_OK);
-    assert_int_equal(cprox_within(w.mover, w.target, w.n, 1.0, NULL, ws, result, &count), CPROX_OK);
-    assert_int_equal(cprox_profile(w.mover, w.target, w.n, (double[]){0, 0.2, 0.7, 1}, 3, NULL, ws, interval),
+    assert_int_equal(cprox_obstacles_nearest(all, w.mover, 3, NULL, ws, result, &count), CPROX_OK);
+    assert_int_equal(cprox_obstacles_within(all, w.mover, 1.0, NULL, ws, result, &count), CPROX_OK);
+    assert_int_equal(cprox_obstacles_profile(all, w.mover, (double[]){0, 0.2, 0.7, 1}, 3, NULL, ws, interval),
                      CPROX_OK);
-    assert_int_equal(cprox_time_of_contact_all(w.mover, w.target, w.n, NULL, ws, &first), CPROX_OK);
+    assert_int_equal(cprox_obstacles_time_of_contact(all, w.mover, NULL, ws, &first), CPROX_OK);
     if (round == 1) before = allocations_made();
   }
   assert_int_equal(allocations_made(), before);
+  cprox_obstacles_free(all);
   world_free(&w);
 }
 

@@ -10,6 +10,7 @@
 #include "support/counting.h"
 #include "support/curves.h"
 #include "support/make_curve.h"
+#include "support/of_list.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
@@ -236,11 +237,14 @@ CASE(clocks_stand_among_other_targets_and_allocate_once) {
   targets[8] = cprox_obstacle_at(box, rng_pose(&r, 2.0));
   cprox_result nearest, each[9];
   size_t before = 0;
+  cprox_obstacles *all = NULL;
+  assert_int_equal(cprox_obstacles_create(targets, 9, CPROX_INDEX_NONE, ws, &all), CPROX_OK);
   for (int round = 0; round < 2; round++) {
     before = allocations_made();
-    assert_int_equal(cprox_distance_all(cprox_tube_along(curve, 0.01), targets, 9, NULL, ws, &nearest, each), CPROX_OK);
+    assert_int_equal(cprox_obstacles_distance(all, cprox_tube_along(curve, 0.01), NULL, ws, &nearest, each), CPROX_OK);
   }
   assert_int_equal(allocations_made(), before);
+  cprox_obstacles_free(all);
   double least = 1e9;
   for (int i = 0; i < 9; i++) least = fmin(least, each[i].upper);
   assert_true(nearest.upper == least);

@@ -9,6 +9,7 @@
 #include "support/cases.h"
 #include "support/csv.h"
 #include "support/make_curve.h"
+#include "support/of_list.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -266,7 +267,7 @@ CASE(long_splines_are_searched_by_their_trees) {
   const cprox_pose far = {.position = {-50, 0, 0}, .orientation = {1, 0, 0, 0}};
   const cprox_obstacle targets[] = {cprox_obstacle_at(ball, far), cprox_obstacle_curve(curve[1], 0.0)};
   cprox_result all;
-  assert_int_equal(cprox_distance_all(cprox_point_along(curve[0]), targets, 2, NULL, ws, &all, NULL), CPROX_OK);
+  assert_int_equal(distance_of_list(cprox_point_along(curve[0]), targets, 2, NULL, ws, &all, NULL), CPROX_OK);
   assert_true(all.obstacle_index == 1 && all.lower <= r.upper && r.lower <= all.upper);
   cprox_body_free(ball);
   for (int k = 0; k < 2; k++) cprox_curve_free(curve[k]);

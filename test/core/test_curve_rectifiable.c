@@ -9,6 +9,7 @@
 #include "support/cases.h"
 #include "support/curves.h"
 #include "support/make_curve.h"
+#include "support/of_list.h"
 #include "support/reference.h"
 
 /* ---- a Bézier curve on [0, 1] as a caller's functions ---- */
@@ -279,8 +280,8 @@ CASE(times_of_contact_and_profiles_agree) {
     cprox_profile_interval by_arc[7], by_point[7];
     double breaks[8] = {0.0};
     for (int k = 0; k < 7; k++) breaks[k + 1] = (k + rng_uniform(&r, 0.5, 1.0)) / 7.0;
-    assert_true(cprox_profile(cprox_point_along(arcs), &target, 1, breaks, 7, &options, ws, by_arc) >= 0);
-    assert_true(cprox_profile(cprox_point_along(points), &target, 1, breaks, 7, &options, ws, by_point) >= 0);
+    assert_true(profile_of_list(cprox_point_along(arcs), &target, 1, breaks, 7, &options, ws, by_arc) >= 0);
+    assert_true(profile_of_list(cprox_point_along(points), &target, 1, breaks, 7, &options, ws, by_point) >= 0);
     for (int k = 0; k < 7; k++)
       assert_true(by_arc[k].lower <= by_point[k].upper && by_point[k].lower <= by_arc[k].upper);
     cprox_body_free(body);

@@ -7,6 +7,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/meshes.h"
+#include "support/of_list.h"
 
 /* ---- builders --------------------------------------------------------------------------------------------------------- */
 
@@ -210,10 +211,10 @@ CASE(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best) {
     const vec3 way[2] = {vec_add(there, rng_in_cube(&r, 0.2)), vec_add(there, rng_in_cube(&r, 0.2))};
     cprox_curve *curve = i % 2 ? bezier(way, 2) : random_curve(&r, 2.5);
     cprox_result a, b, c, d;
-    assert_int_equal(cprox_distance_all(cprox_point_along(curve), lods, N + 1, NULL, ws, &a, NULL), CPROX_OK);
+    assert_int_equal(distance_of_list(cprox_point_along(curve), lods, N + 1, NULL, ws, &a, NULL), CPROX_OK);
     assert_int_equal(cprox_distance(cprox_point_along(curve), lods[N], NULL, ws, &b), CPROX_OK);
-    assert_int_equal(cprox_distance_all(cprox_point_along(curve), hulls, N, NULL, ws, &c, NULL), CPROX_OK);
-    assert_int_equal(cprox_distance_all(cprox_point_along(curve), meshes, N, NULL, ws, &d, NULL), CPROX_OK);
+    assert_int_equal(distance_of_list(cprox_point_along(curve), hulls, N, NULL, ws, &c, NULL), CPROX_OK);
+    assert_int_equal(distance_of_list(cprox_point_along(curve), meshes, N, NULL, ws, &d, NULL), CPROX_OK);
     const double upper = fmin(d.upper, b.upper), lower = fmin(d.lower, b.lower);
     assert_true(a.lower <= upper && lower <= a.upper && a.upper - a.lower <= 1e-6);
     if (0.99 * c.lower > b.upper + 1e-6) {
@@ -231,19 +232,19 @@ CASE(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best) {
     cprox_curve *curve = random_curve(&r, 1.0);
     cprox_result near[3], near_mesh[3];
     size_t n, m;
-    assert_int_equal(cprox_nearest(cprox_point_along(curve), lods, N, 3, NULL, ws, near, &n), CPROX_OK);
-    assert_int_equal(cprox_nearest(cprox_point_along(curve), meshes, N, 3, NULL, ws, near_mesh, &m), CPROX_OK);
+    assert_int_equal(nearest_of_list(cprox_point_along(curve), lods, N, 3, NULL, ws, near, &n), CPROX_OK);
+    assert_int_equal(nearest_of_list(cprox_point_along(curve), meshes, N, 3, NULL, ws, near_mesh, &m), CPROX_OK);
     assert_int_equal(n, 3);
     for (int k = 0; k < 3; k++) assert_true(fabs(near[k].upper - near_mesh[k].upper) <= 2e-6);
     cprox_result within[N], within_mesh[N];
-    assert_int_equal(cprox_within(cprox_point_along(curve), lods, N, 0.3, NULL, ws, within, &n), CPROX_OK);
-    assert_int_equal(cprox_within(cprox_point_along(curve), meshes, N, 0.3, NULL, ws, within_mesh, &m), CPROX_OK);
+    assert_int_equal(within_of_list(cprox_point_along(curve), lods, N, 0.3, NULL, ws, within, &n), CPROX_OK);
+    assert_int_equal(within_of_list(cprox_point_along(curve), meshes, N, 0.3, NULL, ws, within_mesh, &m), CPROX_OK);
     assert_int_equal(n, m);
     for (size_t k = 0; k < n; k++) assert_int_equal(within[k].obstacle_index, within_mesh[k].obstacle_index);
     const double breaks[3] = {0.0, 0.3, 1.0};
     cprox_profile_interval p[2], q[2];
-    assert_int_equal(cprox_profile(cprox_point_along(curve), lods, N, breaks, 2, NULL, ws, p), CPROX_OK);
-    assert_int_equal(cprox_profile(cprox_point_along(curve), meshes, N, breaks, 2, NULL, ws, q), CPROX_OK);
+    assert_int_equal(profile_of_list(cprox_point_along(curve), lods, N, breaks, 2, NULL, ws, p), CPROX_OK);
+    assert_int_equal(profile_of_list(cprox_point_along(curve), meshes, N, breaks, 2, NULL, ws, q), CPROX_OK);
     for (int k = 0; k < 2; k++) assert_true(p[k].lower <= q[k].upper && q[k].lower <= p[k].upper);
     cprox_curve_free(curve);
   }
@@ -265,7 +266,7 @@ CASE(a_mesh_waits_until_it_is_the_nearest_by_its_hull) {
                                cprox_obstacle_at(box, cprox_pose_identity())};
   targets[1].pose.position = vec(1.2, 0.9, 0.0);
   cprox_result r;
-  assert_int_equal(cprox_distance_all(cprox_point_along(curve), targets, 2, NULL, ws, &r, NULL), CPROX_OK);
+  assert_int_equal(distance_of_list(cprox_point_along(curve), targets, 2, NULL, ws, &r, NULL), CPROX_OK);
   assert_true(r.lower <= 0.25 && 0.25 <= r.upper);
   assert_int_equal(r.obstacle_index, 1);
   assert_int_equal(r.lod, CPROX_LOD_HULL);
@@ -363,9 +364,9 @@ CASE(bad_input_is_refused_with_a_sentence) {
 
 static cprox_status ask_all(int query_type, cprox_mover mover, const cprox_obstacle *targets, size_t n,
                             const cprox_options *options, cprox_result *all, cprox_result *each) {
-  if (query_type == 0) return cprox_distance_all(mover, targets, n, options, ws, all, each);
-  if (query_type == 1) return cprox_tolerance_all(mover, targets, n, 0.3, options, ws, all, each);
-  return cprox_collision_all(mover, targets, n, options, ws, all, each);
+  if (query_type == 0) return distance_of_list(mover, targets, n, options, ws, all, each);
+  if (query_type == 1) return tolerance_of_list(mover, targets, n, 0.3, options, ws, all, each);
+  return collision_of_list(mover, targets, n, options, ws, all, each);
 }
 
 /* Whether an interval is what the options or the verdict ask for. */

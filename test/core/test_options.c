@@ -7,6 +7,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/meshes.h"
+#include "support/of_list.h"
 
 /* ---- the options -------------------------------------------------------------------------------------------------------- */
 
@@ -151,43 +152,43 @@ static size_t targets_of(const cprox_mover *m) {
 
 static cprox_status distance(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
-  return cprox_distance_all(m, &t, targets_of(&m), o, ws, r->result, NULL);
+  return distance_of_list(m, &t, targets_of(&m), o, ws, r->result, NULL);
 }
 
 static cprox_status tolerance(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
-  return cprox_tolerance_all(m, &t, targets_of(&m), 0.1, o, ws, r->result, NULL);
+  return tolerance_of_list(m, &t, targets_of(&m), 0.1, o, ws, r->result, NULL);
 }
 
 static cprox_status collision(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
-  return cprox_collision_all(m, &t, targets_of(&m), o, ws, r->result, NULL);
+  return collision_of_list(m, &t, targets_of(&m), o, ws, r->result, NULL);
 }
 
 static cprox_status time_of_contact(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
-  return cprox_time_of_contact_all(m, &t, targets_of(&m), o, ws, r->result);
+  return time_of_contact_of_list(m, &t, targets_of(&m), o, ws, r->result);
 }
 
 static cprox_status nearest(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
-  return cprox_nearest(m, &t, targets_of(&m), 1, o, ws, r->result, &r->count);
+  return nearest_of_list(m, &t, targets_of(&m), 1, o, ws, r->result, &r->count);
 }
 
 static cprox_status within(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
-  return cprox_within(m, &t, targets_of(&m), 9.0, o, ws, r->result, &r->count);
+  return within_of_list(m, &t, targets_of(&m), 9.0, o, ws, r->result, &r->count);
 }
 
 static cprox_status nearest_pairs(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
-  return cprox_nearest_pairs(m, &t, targets_of(&m), 1, 9.0, o, ws, r->result, &r->count);
+  return nearest_pairs_of_list(m, &t, targets_of(&m), 1, 9.0, o, ws, r->result, &r->count);
 }
 
 static cprox_status profile(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)w;
   const double breaks[] = {0.0, 1.0};
-  const cprox_status status = cprox_profile(m, &t, targets_of(&m), breaks, 1, o, ws, &r->interval);
+  const cprox_status status = profile_of_list(m, &t, targets_of(&m), breaks, 1, o, ws, &r->interval);
   if (status >= 0) r->result->lower = r->interval.lower, r->result->upper = r->interval.upper;
   return status;
 }
@@ -211,21 +212,21 @@ static cprox_status certify(const world *w, cprox_mover m, cprox_obstacle t, con
   cprox_status status = cprox_tolerance(m, t, 0.01, NULL, ws, &found);
   if (status < 0) return status;
   cprox_certificate *own = cprox_certificate_create();
-  status = cprox_certify(m, &t, 1, 0.01, &found, o, ws, own);
+  status = certify_of_list(m, &t, 1, 0.01, &found, o, ws, own);
   cprox_certificate_free(own);
   if (status >= 0) *r->result = found;
   return status;
 }
 
 static cprox_status of_set(const cprox_obstacle *t, cprox_mover m, const cprox_options *o, int which, reply *r) {
-  cprox_set *set = NULL;
-  assert_int_equal(cprox_set_create(t, 1, ws, &set), CPROX_OK);
-  const cprox_status status = which == 0   ? cprox_set_distance(set, m, o, ws, r->result)
-                              : which == 1 ? cprox_set_tolerance(set, m, 0.1, o, ws, r->result)
-                              : which == 2 ? cprox_set_collision(set, m, o, ws, r->result)
-                              : which == 3 ? cprox_set_time_of_contact(set, m, o, ws, r->result)
-                                           : cprox_set_nearest(set, m, 1, o, ws, r->result, &r->count);
-  cprox_set_free(set);
+  cprox_obstacles *set = NULL;
+  assert_int_equal(cprox_obstacles_create(t, 1, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
+  const cprox_status status = which == 0   ? cprox_obstacles_distance(set, m, o, ws, r->result, NULL)
+                              : which == 1 ? cprox_obstacles_tolerance(set, m, 0.1, o, ws, r->result, NULL)
+                              : which == 2 ? cprox_obstacles_collision(set, m, o, ws, r->result, NULL)
+                              : which == 3 ? cprox_obstacles_time_of_contact(set, m, o, ws, r->result)
+                                           : cprox_obstacles_nearest(set, m, 1, o, ws, r->result, &r->count);
+  cprox_obstacles_free(set);
   return status;
 }
 
@@ -258,13 +259,13 @@ static cprox_status set_nearest(const world *w, cprox_mover m, cprox_obstacle t,
 /* A mover that fails alone has a result: that counts as untouched. */
 static cprox_status of_batch(const cprox_obstacle *t, const cprox_mover *m, const cprox_options *o, int which,
                              reply *r) {
-  cprox_batch *batch = NULL;
-  assert_int_equal(cprox_batch_create(t, 1, ws, &batch), CPROX_OK);
+  cprox_obstacles *batch = NULL;
+  assert_int_equal(cprox_obstacles_create(t, 1, CPROX_INDEX_BATCH, ws, &batch), CPROX_OK);
   const cprox_result before = *r->result;
-  const cprox_status status = which == 0   ? cprox_batch_distance(batch, m, 0, 1, o, ws, r->result)
-                              : which == 1 ? cprox_batch_tolerance(batch, m, 0, 1, 0.1, o, ws, r->result)
-                                           : cprox_batch_collision(batch, m, 0, 1, o, ws, r->result);
-  cprox_batch_free(batch);
+  const cprox_status status = which == 0   ? cprox_obstacles_distance_batch(batch, m, 0, 1, o, ws, r->result)
+                              : which == 1 ? cprox_obstacles_tolerance_batch(batch, m, 0, 1, 0.1, o, ws, r->result)
+                                           : cprox_obstacles_collision_batch(batch, m, 0, 1, o, ws, r->result);
+  cprox_obstacles_free(batch);
   if (status < 0) memcpy(r->result, &before, sizeof before);
   return status;
 }
@@ -505,15 +506,15 @@ CASE(the_deepest_is_the_nearest_where_distances_are_signed) {
   cprox_obstacle targets[3] = {target_of(&w, BOX, 0.0), target_of(&w, BALL, 0.0), target_of(&w, BALL, 3.0)};
   const cprox_options options = with(SIGNED);
   const cprox_mover m = cprox_point_along(w.way);
-  cprox_set *set = NULL;
-  assert_int_equal(cprox_set_create(targets, 3, ws, &set), CPROX_OK);
+  cprox_obstacles *set = NULL;
+  assert_int_equal(cprox_obstacles_create(targets, 3, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
   cprox_result one[3], near[3], found[3];
   size_t n, count;
   for (size_t i = 0; i < 3; i++) assert_int_equal(cprox_distance(m, targets[i], &options, ws, &one[i]), CPROX_OK);
   assert_true(one[1].upper < one[0].upper && one[0].upper < -0.1);
   for (size_t k = 1; k <= 3; k++) {
-    assert_int_equal(cprox_nearest(m, targets, 3, k, &options, ws, near, &n), CPROX_OK);
-    assert_int_equal(cprox_set_nearest(set, m, k, &options, ws, found, &count), CPROX_OK);
+    assert_int_equal(nearest_of_list(m, targets, 3, k, &options, ws, near, &n), CPROX_OK);
+    assert_int_equal(cprox_obstacles_nearest(set, m, k, &options, ws, found, &count), CPROX_OK);
     assert_true(n == k && count == k);
     const int32_t order[3] = {1, 0, 2};
     for (size_t i = 0; i < k; i++) {
@@ -522,9 +523,9 @@ CASE(the_deepest_is_the_nearest_where_distances_are_signed) {
       assert_true(fabs(near[i].upper - one[order[i]].upper) <= 2e-6 && fabs(found[i].upper - near[i].upper) <= 2e-6);
     }
   }
-  assert_int_equal(cprox_within(m, targets, 3, 0.0, &options, ws, near, &n), CPROX_OK);
+  assert_int_equal(within_of_list(m, targets, 3, 0.0, &options, ws, near, &n), CPROX_OK);
   assert_true(n == 2 && near[0].upper < -0.1 && near[0].upper - near[0].lower <= 1e-6);
-  cprox_set_free(set);
+  cprox_obstacles_free(set);
   free_world(&w);
 }
 

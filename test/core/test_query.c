@@ -14,6 +14,7 @@
 #include "support/cases.h"
 #include "support/counting.h"
 #include "support/make_curve.h"
+#include "support/of_list.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -314,8 +315,8 @@ CASE(many_targets_are_answered_like_the_nearest_of_them) {
     const cprox_mover mover = cprox_tube_along(curve, 0.01);
 
     cprox_result each[N], nearest, all;
-    assert_int_equal(cprox_distance_all(mover, targets, N, &options, ws, &nearest, NULL), CPROX_OK);
-    assert_int_equal(cprox_distance_all(mover, targets, N, &options, ws, &all, each), CPROX_OK);
+    assert_int_equal(distance_of_list(mover, targets, N, &options, ws, &nearest, NULL), CPROX_OK);
+    assert_int_equal(distance_of_list(mover, targets, N, &options, ws, &all, each), CPROX_OK);
     double least = INFINITY;
     for (int i = 0; i < N; i++) {
       cprox_result one;
@@ -328,16 +329,15 @@ CASE(many_targets_are_answered_like_the_nearest_of_them) {
     assert_true(each[nearest.obstacle_index].lower <= nearest.upper);
 
     cprox_result verdict;
-    assert_int_equal(cprox_collision_all(mover, targets, N, &options, ws, &verdict, NULL), CPROX_OK);
+    assert_int_equal(collision_of_list(mover, targets, N, &options, ws, &verdict, NULL), CPROX_OK);
     assert_int_equal(verdict.verdict, least > 0.0 ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED);
     if (least > 1e-6) {
-      assert_int_equal(cprox_tolerance_all(mover, targets, N, 0.999 * least, &options, ws, &verdict, NULL), CPROX_OK);
+      assert_int_equal(tolerance_of_list(mover, targets, N, 0.999 * least, &options, ws, &verdict, NULL), CPROX_OK);
       assert_int_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
-      assert_int_equal(cprox_tolerance_all(mover, targets, N, 1.001 * least, &options, ws, &verdict, NULL), CPROX_OK);
+      assert_int_equal(tolerance_of_list(mover, targets, N, 1.001 * least, &options, ws, &verdict, NULL), CPROX_OK);
       assert_int_equal(verdict.verdict, CPROX_VERDICT_VIOLATED);
       /* a verdict that ends the search early still bounds the targets it did not look at */
-      assert_int_equal(cprox_tolerance_all(mover, targets, N, 4.0 * least + 1.0, &options, ws, &verdict, NULL),
-                       CPROX_OK);
+      assert_int_equal(tolerance_of_list(mover, targets, N, 4.0 * least + 1.0, &options, ws, &verdict, NULL), CPROX_OK);
       assert_true(verdict.verdict == CPROX_VERDICT_VIOLATED && verdict.lower <= least);
     }
     cprox_curve_free(curve);
@@ -350,11 +350,11 @@ CASE(many_targets_are_answered_like_the_nearest_of_them) {
 CASE(nothing_to_measure_is_infinitely_far) {
   cprox_curve *curve = segment(vec(0, 0, 0), vec(1, 0, 0));
   cprox_result r;
-  assert_int_equal(cprox_distance_all(cprox_point_along(curve), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
+  assert_int_equal(distance_of_list(cprox_point_along(curve), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
   assert_true(r.lower == INFINITY && r.upper == INFINITY && r.obstacle_index == -1);
-  assert_int_equal(cprox_tolerance_all(cprox_point_along(curve), NULL, 0, 1.0, NULL, ws, &r, NULL), CPROX_OK);
+  assert_int_equal(tolerance_of_list(cprox_point_along(curve), NULL, 0, 1.0, NULL, ws, &r, NULL), CPROX_OK);
   assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
-  assert_int_equal(cprox_collision_all(cprox_point_along(curve), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
+  assert_int_equal(collision_of_list(cprox_point_along(curve), NULL, 0, NULL, ws, &r, NULL), CPROX_OK);
   assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
   cprox_curve_free(curve);
 }
@@ -392,7 +392,7 @@ CASE(unusable_arguments_are_refused_by_name) {
   bad.pose.orientation = (cprox_quat){0, 0, 0, 0};
   expect_refusal(cprox_distance(mover, bad, NULL, ws, &r), "norm is 0", &r);
   bad = target, bad.pose.position.y = NAN;
-  expect_refusal(cprox_distance_all(mover, (cprox_obstacle[]){target, bad}, 2, NULL, ws, &r, NULL), "target 1", &r);
+  expect_refusal(distance_of_list(mover, (cprox_obstacle[]){target, bad}, 2, NULL, ws, &r, NULL), "target 1", &r);
   cprox_body_free(body);
   cprox_curve_free(curve);
 }
@@ -428,16 +428,19 @@ CASE(a_second_query_of_a_size_allocates_nothing) {
   usable(cprox_body_create_polytope(cloud, 64, ws, &body), NULL);
   cprox_obstacle targets[30];
   for (int i = 0; i < 30; i++) targets[i] = cprox_obstacle_at(body, rng_pose(&r, 2.0));
+  cprox_obstacles *all = NULL;
+  usable(cprox_obstacles_create(targets, 30, CPROX_INDEX_NONE, ws, &all), NULL);
   size_t before = 0;
   for (int round = 0; round < 3; round++) {
     if (round == 1) before = allocations_made();
     cprox_result one;
     const cprox_options options = accurate(1e-12);
-    assert_true(cprox_distance_all(cprox_point_along(curve), targets, 30, &options, ws, &one, NULL) >= 0);
-    assert_true(cprox_tolerance_all(cprox_point_along(curve), targets, 30, 0.1, &options, ws, &one, NULL) >= 0);
-    assert_true(cprox_collision_all(cprox_point_along(curve), targets, 30, &options, ws, &one, NULL) >= 0);
+    assert_true(cprox_obstacles_distance(all, cprox_point_along(curve), &options, ws, &one, NULL) >= 0);
+    assert_true(cprox_obstacles_tolerance(all, cprox_point_along(curve), 0.1, &options, ws, &one, NULL) >= 0);
+    assert_true(cprox_obstacles_collision(all, cprox_point_along(curve), &options, ws, &one, NULL) >= 0);
   }
   assert_int_equal(allocations_made(), before);
+  cprox_obstacles_free(all);
   cprox_body_free(body);
   cprox_curve_free(curve);
 }

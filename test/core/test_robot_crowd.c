@@ -5,10 +5,12 @@
 
 #include "broadphase/obstacle_set.h"
 #include "curve_proximity/cprox.h"
+#include "problem/obstacles.h"
 #include "robot_query/cull.h"
 #include "solve/solve.h"
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/of_list.h"
 #include "support/robots.h"
 
 enum { MOST_TARGETS = 300, KINDS = 6, ROBOTS = 24 };
@@ -17,7 +19,7 @@ typedef struct crowd {
   cprox_body *bodies[KINDS];
   cprox_obstacle targets[MOST_TARGETS];
   size_t n;
-  cprox_set *set;
+  cprox_obstacles *set;
 } crowd;
 
 static cprox_body *surface(rng *r) {
@@ -53,11 +55,11 @@ static void make_crowd(rng *r, size_t n, double clear, double half, crowd *c) {
   }
   if (rng_index(r, 2))
     c->targets[rng_index(r, n)] = cprox_obstacle_at(c->bodies[5], (cprox_pose){.orientation = {.w = 1}});
-  assert_int_equal(cprox_set_create(c->targets, n, ws, &c->set), CPROX_OK);
+  assert_int_equal(cprox_obstacles_create(c->targets, n, CPROX_INDEX_BVH, ws, &c->set), CPROX_OK);
 }
 
 static void free_crowd(crowd *c) {
-  cprox_set_free(c->set);
+  cprox_obstacles_free(c->set);
   cprox_body_free(c->bodies[3]); /* first what is made of others */
   for (int i = 0; i < KINDS; i++)
     if (i != 3) cprox_body_free(c->bodies[i]);
@@ -87,7 +89,7 @@ CASE(a_set_is_answered_as_its_targets_one_by_one) {
     const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
     const cprox_result one = least_of(&c, mover, &o);
     cprox_result all, listed;
-    assert_int_equal(cprox_set_distance(c.set, mover, &o, ws, &all), CPROX_OK);
+    assert_int_equal(cprox_obstacles_distance(c.set, mover, &o, ws, &all, NULL), CPROX_OK);
     if (isinf(one.lower)) assert_true(isinf(all.lower)); /* nothing of it moves */
     if (isfinite(one.lower) &&
         !(all.lower <= one.upper && all.upper >= one.lower && all.upper - all.lower <= o.epsilon))
@@ -97,7 +99,7 @@ CASE(a_set_is_answered_as_its_targets_one_by_one) {
       robot_free(&t);
       continue;
     }
-    assert_int_equal(cprox_distance_all(mover, c.targets, c.n, &o, ws, &listed, NULL), CPROX_OK);
+    assert_int_equal(distance_of_list(mover, c.targets, c.n, &o, ws, &listed, NULL), CPROX_OK);
     assert_true(all.lower <= listed.upper && listed.lower <= all.upper);
 
     /* the target that is named is as near as is said */
@@ -107,13 +109,13 @@ CASE(a_set_is_answered_as_its_targets_one_by_one) {
     assert_true(named.lower <= all.upper && named.upper >= all.lower);
 
     cprox_result verdict;
-    cprox_set_collision(c.set, mover, NULL, ws, &verdict);
+    cprox_obstacles_collision(c.set, mover, NULL, ws, &verdict, NULL);
     assert_int_equal(verdict.verdict, one.upper <= 0.0 ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR);
     touching += one.upper <= 0.0, apart += one.lower > 0.0;
     if (one.lower > 0.0) {
-      cprox_set_tolerance(c.set, mover, 0.99 * one.lower, NULL, ws, &verdict);
+      cprox_obstacles_tolerance(c.set, mover, 0.99 * one.lower, NULL, ws, &verdict, NULL);
       assert_int_equal(verdict.verdict, CPROX_VERDICT_CLEAR);
-      cprox_set_tolerance(c.set, mover, 1.01 * one.upper, NULL, ws, &verdict);
+      cprox_obstacles_tolerance(c.set, mover, 1.01 * one.upper, NULL, ws, &verdict, NULL);
       assert_int_equal(verdict.verdict, CPROX_VERDICT_VIOLATED);
     }
     free_crowd(&c);
@@ -142,7 +144,7 @@ CASE(time_of_contact_with_a_set_is_the_earliest_of_its_targets) {
       clear = clear && one.verdict == CPROX_VERDICT_CLEAR;
     }
     cprox_result all;
-    cprox_set_time_of_contact(c.set, mover, &o, ws, &all);
+    cprox_obstacles_time_of_contact(c.set, mover, &o, ws, &all);
     assert_true(all.t_contact_lower <= contact);
     if (all.verdict == CPROX_VERDICT_VIOLATED) assert_true(all.t >= free);
     assert_int_equal(all.verdict == CPROX_VERDICT_CLEAR, clear);
@@ -204,10 +206,10 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
       targets[i] = cprox_obstacle_at(ball, pose);
       truth[i] = at - way - own - margin - other;
     }
-    cprox_set *set = NULL;
-    assert_int_equal(cprox_set_create(targets, BALLS, ws, &set), CPROX_OK);
+    cprox_obstacles *set = NULL;
+    assert_int_equal(cprox_obstacles_create(targets, BALLS, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
     query q = query_create(cprox_robot_along(motion, NULL, 0), targets, BALLS, -1.0, false, NULL, ws);
-    q.set = set;
+    q.set = set->bvh;
     robot_scene scene;
     assert_true(robot_scene_begin(&scene, &q, 0, BALLS));
     robot_scene_enter(&scene, 0, 0.0, 1.0);
@@ -216,7 +218,7 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
     robot_scene_moving(&scene, &any);
     lanes_below(&scene, 0, robot_scene_coarse_displacement(&scene, &any), truth, &seen);
     assert_int_equal(seen, BALLS);
-    cprox_set_free(set);
+    cprox_obstacles_free(set);
     cprox_motion_free(motion);
     cprox_robot_free(robot);
     cprox_body_free(moving);
@@ -238,12 +240,13 @@ CASE(the_work_hardly_grows_with_the_number_of_targets) {
     const size_t n = k ? MANY : MANY / 10;
     const double half = 3.0 * cbrt((double)n); /* as many in a place */
     for (size_t i = 0; i < n; i++) targets[i] = cprox_obstacle_at(ball, rng_pose(&r, half));
-    cprox_set *set = NULL;
-    assert_int_equal(cprox_set_create(targets, n, ws, &set), CPROX_OK);
+    cprox_obstacles *set = NULL;
+    assert_int_equal(cprox_obstacles_create(targets, n, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
     cprox_result all;
-    assert_int_equal(cprox_set_distance(set, cprox_robot_along(t.motion, NULL, 0), NULL, ws, &all), CPROX_OK);
+    assert_int_equal(cprox_obstacles_distance(set, cprox_robot_along(t.motion, NULL, 0), NULL, ws, &all, NULL),
+                     CPROX_OK);
     distance_queries[k] = all.distance_queries + all.nodes;
-    cprox_set_free(set);
+    cprox_obstacles_free(set);
   }
   print_message("distances and nodes among %d targets: %u, among %d: %u\n", MANY / 10, distance_queries[0], MANY,
                 distance_queries[1]);

@@ -8,6 +8,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/meshes.h"
+#include "support/of_list.h"
 #include "support/robot_case.h"
 #include "support/robots.h"
 
@@ -84,7 +85,7 @@ static cprox_result ask(const mesh_robot *m, const cprox_obstacle *targets, size
   options.epsilon = 1e-5;
   cprox_result r;
   const cprox_status status =
-      cprox_distance_all(cprox_robot_along(m->robot.motion, NULL, 0), targets, n, &options, ws, &r, NULL);
+      distance_of_list(cprox_robot_along(m->robot.motion, NULL, 0), targets, n, &options, ws, &r, NULL);
   if (status != CPROX_OK) fail_msg("%s: %s", cprox_status_name(status), cprox_workspace_error(ws));
   return r;
 }
@@ -109,7 +110,7 @@ CASE(points_are_as_far_as_every_triangle_says) {
       assert_true(fabsl(distance_at(&m, d.t, points) - d.upper) <= 1e-9L);
       cprox_result first, near, far;
       const cprox_mover mover = cprox_robot_along(m.robot.motion, NULL, 0);
-      assert_true(cprox_time_of_contact_all(mover, &target, 1, NULL, ws, &first) >= 0);
+      assert_true(time_of_contact_of_list(mover, &target, 1, NULL, ws, &first) >= 0);
       double t0, t1;
       cprox_motion_domain(m.robot.motion, &t0, &t1);
       for (int k = 0; k <= SAMPLES; k++) {
@@ -118,8 +119,8 @@ CASE(points_are_as_far_as_every_triangle_says) {
         assert_true(at > 0.0L || time >= first.t_contact_lower);
       }
       if (d.lower > 0.0) {
-        assert_true(cprox_tolerance_all(mover, &target, 1, 0.99 * d.lower, NULL, ws, &near, NULL) >= 0);
-        assert_true(cprox_tolerance_all(mover, &target, 1, 1.01 * d.upper, NULL, ws, &far, NULL) >= 0);
+        assert_true(tolerance_of_list(mover, &target, 1, 0.99 * d.lower, NULL, ws, &near, NULL) >= 0);
+        assert_true(tolerance_of_list(mover, &target, 1, 1.01 * d.upper, NULL, ws, &far, NULL) >= 0);
         assert_true(near.verdict == CPROX_VERDICT_CLEAR && far.verdict == CPROX_VERDICT_VIOLATED &&
                     first.verdict == CPROX_VERDICT_CLEAR);
       }
@@ -189,7 +190,7 @@ CASE(the_finest_lod_may_be_the_hull_or_the_ball) {
       cprox_options options = cprox_options_default();
       options.max_lod = (cprox_lod)lod;
       cprox_result *one = &d[lod - CPROX_LOD_SPHERE];
-      assert_int_equal(cprox_distance_all(mover, &target, 1, &options, ws, one, NULL), CPROX_OK);
+      assert_int_equal(distance_of_list(mover, &target, 1, &options, ws, one, NULL), CPROX_OK);
       assert_true((int)one->lod <= lod);
     }
     if (d[0].obstacle_index >= 0) assert_true(d[0].lower <= d[1].upper && d[1].lower <= d[2].upper);
@@ -237,7 +238,7 @@ CASE(meshes_of_real_robots_are_no_nearer_than_their_hulls) {
       for (int m = 0; m < 2; m++) {
         spent[m] = milliseconds();
         const cprox_status status =
-            cprox_distance_all(mover[m], c.targets, self ? 0 : c.n_targets, NULL, ws, &r[m], NULL);
+            distance_of_list(mover[m], c.targets, self ? 0 : c.n_targets, NULL, ws, &r[m], NULL);
         spent[m] = milliseconds() - spent[m];
         if (status != CPROX_OK) fail_msg("%s: %s", c.name, cprox_workspace_error(ws));
       }
@@ -247,8 +248,8 @@ CASE(meshes_of_real_robots_are_no_nearer_than_their_hulls) {
       if (r[1].lower > 0.0) {
         cprox_result near, far;
         const size_t targets = self ? 0 : c.n_targets;
-        assert_true(cprox_tolerance_all(mover[1], c.targets, targets, 0.99 * r[1].lower, NULL, ws, &near, NULL) >= 0);
-        assert_true(cprox_tolerance_all(mover[1], c.targets, targets, 1.01 * r[1].upper, NULL, ws, &far, NULL) >= 0);
+        assert_true(tolerance_of_list(mover[1], c.targets, targets, 0.99 * r[1].lower, NULL, ws, &near, NULL) >= 0);
+        assert_true(tolerance_of_list(mover[1], c.targets, targets, 1.01 * r[1].upper, NULL, ws, &far, NULL) >= 0);
         assert_true(near.verdict == CPROX_VERDICT_CLEAR && far.verdict == CPROX_VERDICT_VIOLATED);
       }
     }

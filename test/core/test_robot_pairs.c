@@ -5,6 +5,7 @@
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/of_list.h"
 #include "support/robot_case.h"
 #include "support/robots.h"
 
@@ -25,7 +26,7 @@ CASE(the_nearest_pairs_are_those_of_single_queries) {
           self ? cprox_robot_self(c.motion, c.self_pairs, c.n_self_pairs) : cprox_robot_along(c.motion, NULL, 0);
       const size_t targets = self ? 0 : c.n_targets;
       size_t count, fewer;
-      assert_int_equal(cprox_nearest_pairs(mover, c.targets, targets, MOST_PAIRS, INFINITY, NULL, ws, all, &count),
+      assert_int_equal(nearest_pairs_of_list(mover, c.targets, targets, MOST_PAIRS, INFINITY, NULL, ws, all, &count),
                        CPROX_OK);
       assert_true(count > 10 && count < MOST_PAIRS);
       if (self) assert_int_equal(count, c.n_self_pairs);
@@ -33,20 +34,20 @@ CASE(the_nearest_pairs_are_those_of_single_queries) {
         const cprox_robot_pair pair = {all[k].mover_part, all[k].obstacle_index};
         const cprox_mover alone = self ? cprox_robot_self(c.motion, &pair, 1) : cprox_robot_along(c.motion, &pair, 1);
         cprox_result r;
-        assert_int_equal(cprox_distance_all(alone, c.targets, targets, NULL, ws, &r, NULL), CPROX_OK);
+        assert_int_equal(distance_of_list(alone, c.targets, targets, NULL, ws, &r, NULL), CPROX_OK);
         assert_true(r.lower <= all[k].upper && all[k].lower <= r.upper);
         assert_true(k == 0 || all[k - 1].upper <= all[k].upper);
       }
       cprox_result whole;
-      assert_int_equal(cprox_distance_all(mover, c.targets, targets, NULL, ws, &whole, NULL), CPROX_OK);
+      assert_int_equal(distance_of_list(mover, c.targets, targets, NULL, ws, &whole, NULL), CPROX_OK);
       assert_true(whole.lower <= all[0].upper && all[0].lower <= whole.upper);
 
       /* the best three, and those within what the third is at */
-      assert_int_equal(cprox_nearest_pairs(mover, c.targets, targets, 3, INFINITY, NULL, ws, few, &fewer), CPROX_OK);
+      assert_int_equal(nearest_pairs_of_list(mover, c.targets, targets, 3, INFINITY, NULL, ws, few, &fewer), CPROX_OK);
       assert_int_equal(fewer, 3);
       for (size_t k = 0; k < 3; k++) assert_true(few[k].lower <= all[k].upper + 1e-6 && all[k].lower <= few[k].upper);
       const double delta = 1.001 * all[5].upper + 1e-5;
-      assert_int_equal(cprox_nearest_pairs(mover, c.targets, targets, MOST_PAIRS, delta, NULL, ws, few, &fewer),
+      assert_int_equal(nearest_pairs_of_list(mover, c.targets, targets, MOST_PAIRS, delta, NULL, ws, few, &fewer),
                        CPROX_OK);
       size_t within = 0;
       for (size_t k = 0; k < count; k++) within += all[k].upper <= delta;
@@ -94,9 +95,9 @@ CASE(what_is_no_query_about_pairs_gets_a_sentence) {
   cprox_result result;
   size_t count;
   const cprox_mover mover = cprox_robot_self(t.motion, NULL, 0);
-  assert_int_equal(cprox_nearest_pairs(mover, NULL, 0, 0, 1.0, NULL, ws, &result, &count), CPROX_INVALID);
-  assert_int_equal(cprox_nearest_pairs(mover, NULL, 0, 1, NAN, NULL, ws, &result, &count), CPROX_INVALID);
-  assert_int_equal(cprox_nearest_pairs(mover, NULL, 0, 1, -1.0, NULL, ws, &result, &count), CPROX_INVALID);
+  assert_int_equal(nearest_pairs_of_list(mover, NULL, 0, 0, 1.0, NULL, ws, &result, &count), CPROX_INVALID);
+  assert_int_equal(nearest_pairs_of_list(mover, NULL, 0, 1, NAN, NULL, ws, &result, &count), CPROX_INVALID);
+  assert_int_equal(nearest_pairs_of_list(mover, NULL, 0, 1, -1.0, NULL, ws, &result, &count), CPROX_INVALID);
   robot_free(&t);
 }
 

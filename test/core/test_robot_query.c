@@ -10,6 +10,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/counting.h"
+#include "support/of_list.h"
 #include "support/robot_case.h"
 #include "support/robots.h"
 
@@ -46,8 +47,8 @@ static cprox_result ask(const robot_case *c, const case_answer *a, double delta)
   const cprox_mover mover = mover_of(c, a);
   const size_t n = a->self ? 0 : c->n_targets;
   cprox_result r;
-  const cprox_status status = delta < 0.0 ? cprox_distance_all(mover, c->targets, n, NULL, ws, &r, NULL)
-                                          : cprox_tolerance_all(mover, c->targets, n, delta, NULL, ws, &r, NULL);
+  const cprox_status status = delta < 0.0 ? distance_of_list(mover, c->targets, n, NULL, ws, &r, NULL)
+                                          : tolerance_of_list(mover, c->targets, n, delta, NULL, ws, &r, NULL);
   if (status != CPROX_OK) fail_msg("%s: %s", c->name, cprox_workspace_error(ws));
   return r;
 }
@@ -130,10 +131,19 @@ CASE(nothing_is_allocated_once_the_workspace_has_grown) {
   robot_case c;
   assert_true(robot_case_read(f, folder(), &c));
   fclose(f);
-  for (size_t k = 0; k < c.n_answers; k++) ask(&c, &c.answers[k], -1.0);
-  const size_t before = allocations_made();
-  for (size_t k = 0; k < c.n_answers; k++) ask(&c, &c.answers[k], -1.0);
+  cprox_obstacles *all = NULL;
+  assert_int_equal(cprox_obstacles_create(c.targets, c.n_targets, CPROX_INDEX_NONE, ws, &all), CPROX_OK);
+  size_t before = 0;
+  for (int round = 0; round < 2; round++) {
+    before = allocations_made();
+    for (size_t k = 0; k < c.n_answers; k++) {
+      const case_answer *a = &c.answers[k];
+      cprox_result r;
+      assert_int_equal(cprox_obstacles_distance(a->self ? NULL : all, mover_of(&c, a), NULL, ws, &r, NULL), CPROX_OK);
+    }
+  }
   assert_int_equal(allocations_made(), before);
+  cprox_obstacles_free(all);
   robot_case_free(&c);
 }
 
@@ -185,14 +195,14 @@ CASE(no_sample_is_nearer_than_lower) {
     cprox_options options = cprox_options_default();
     options.epsilon = 1e-5;
     const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
-    const cprox_status status = cprox_distance_all(mover, targets, TARGETS, &options, ws, &d, NULL);
+    const cprox_status status = distance_of_list(mover, targets, TARGETS, &options, ws, &d, NULL);
     if (status != CPROX_OK) fail_msg("robot %zu: %s", i, cprox_workspace_error(ws));
     if (d.obstacle_index < 0) { /* nothing moves */
       assert_true(isinf(d.lower));
     } else {
       double t0, t1;
       cprox_motion_domain(t.motion, &t0, &t1);
-      assert_true(cprox_time_of_contact_all(mover, targets, TARGETS, &options, ws, &first) >= 0);
+      assert_true(time_of_contact_of_list(mover, targets, TARGETS, &options, ws, &first) >= 0);
       assert_true(fabsl(distance_at(&t, d.t, points, TARGETS) - d.upper) <= 1e-9L);
       for (int k = 0; k <= SAMPLES; k++) {
         const long double time = t0 + ((long double)t1 - t0) * k / SAMPLES;
@@ -241,7 +251,7 @@ CASE(the_robot_is_no_nearer_to_itself_than_lower) {
       const cprox_robot_pair pair = {a, (int32_t)rng_index(&r, (size_t)a)};
       if (!cprox_motion_relates_links(t.motion, (size_t)pair.geometry, (size_t)pair.other)) continue;
       cprox_result d;
-      const cprox_status status = cprox_distance_all(cprox_robot_self(t.motion, &pair, 1), NULL, 0, NULL, ws, &d, NULL);
+      const cprox_status status = distance_of_list(cprox_robot_self(t.motion, &pair, 1), NULL, 0, NULL, ws, &d, NULL);
       if (status < 0) fail_msg("robot %zu: %s", i, cprox_workspace_error(ws));
       double t0, t1;
       cprox_motion_domain(t.motion, &t0, &t1);
@@ -273,9 +283,9 @@ CASE(a_profile_is_true_on_every_interval) {
     const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
     cprox_result whole, nearest[2];
     size_t count;
-    assert_int_equal(cprox_profile(mover, targets, TARGETS, breaks, INTERVALS, NULL, ws, intervals), CPROX_OK);
-    assert_int_equal(cprox_distance_all(mover, targets, TARGETS, NULL, ws, &whole, NULL), CPROX_OK);
-    assert_int_equal(cprox_nearest(mover, targets, TARGETS, 2, NULL, ws, nearest, &count), CPROX_OK);
+    assert_int_equal(profile_of_list(mover, targets, TARGETS, breaks, INTERVALS, NULL, ws, intervals), CPROX_OK);
+    assert_int_equal(distance_of_list(mover, targets, TARGETS, NULL, ws, &whole, NULL), CPROX_OK);
+    assert_int_equal(nearest_of_list(mover, targets, TARGETS, 2, NULL, ws, nearest, &count), CPROX_OK);
     double least = INFINITY;
     for (int k = 0; k < INTERVALS; k++) {
       for (int s = 0; s <= 10 && intervals[k].obstacle_index >= 0; s++) {
@@ -347,8 +357,8 @@ CASE(bad_input_gets_a_sentence) {
 
   const cprox_robot_pair pair = {0, 9}, far = {99, 0};
   cprox_result result;
-  REFUSED(cprox_distance_all(cprox_robot_self(t.motion, &pair, 1), NULL, 0, NULL, ws, &result, NULL), "no geometry 9");
-  REFUSED(cprox_distance_all(cprox_robot_self(t.motion, &far, 1), NULL, 0, NULL, ws, &result, NULL), "no geometry 99");
+  REFUSED(distance_of_list(cprox_robot_self(t.motion, &pair, 1), NULL, 0, NULL, ws, &result, NULL), "no geometry 9");
+  REFUSED(distance_of_list(cprox_robot_self(t.motion, &far, 1), NULL, 0, NULL, ws, &result, NULL), "no geometry 99");
   cprox_robot_free(flying);
   cprox_robot_free(robot);
   robot_free(&t);

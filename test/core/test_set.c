@@ -9,6 +9,7 @@
 #include "support/counting.h"
 #include "support/make_curve.h"
 #include "support/meshes.h"
+#include "support/of_list.h"
 
 /* ---- scenes ----------------------------------------------------------------------------------------------------------- */
 
@@ -60,10 +61,11 @@ static void scene_free(scene *s) {
   mesh_free(&s->mesh);
 }
 
-static cprox_set *set_make(const scene *s) {
-  cprox_set *set = NULL;
-  if (cprox_set_create(s->targets, s->n, ws, &set) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
-  assert_int_equal(cprox_set_size(set), s->n);
+static cprox_obstacles *set_make(const scene *s) {
+  cprox_obstacles *set = NULL;
+  if (cprox_obstacles_create(s->targets, s->n, CPROX_INDEX_BVH, ws, &set) != CPROX_OK)
+    fail_msg("%s", cprox_workspace_error(ws));
+  assert_int_equal(cprox_obstacles_size(set), s->n);
   return set;
 }
 
@@ -99,38 +101,38 @@ CASE(sets_answer_as_all_their_targets_do) {
   const size_t cases = test_cases(300);
   for (size_t i = 0; i < cases; i++) {
     scene s = scene_make(&r, 1 + rng_index(&r, 120), 2.0, i % 3 == 0);
-    cprox_set *set = set_make(&s);
+    cprox_obstacles *set = set_make(&s);
     cprox_curve *curve = way(&r, i % 2 ? 4 : 6 + rng_index(&r, 30), 1.5);
     const cprox_mover mover = cprox_tube_along(curve, i % 3 ? 0.0 : 0.04);
     cprox_options options = cprox_options_default();
     options.signed_distance = i % 5 == 4;
     cprox_result a, b;
-    const cprox_status status = cprox_set_distance(set, mover, &options, ws, &a);
-    assert_true(status >= 0 && cprox_distance_all(mover, s.targets, s.n, &options, ws, &b, NULL) >= 0);
+    const cprox_status status = cprox_obstacles_distance(set, mover, &options, ws, &a, NULL);
+    assert_true(status >= 0 && distance_of_list(mover, s.targets, s.n, &options, ws, &b, NULL) >= 0);
     expect_overlap("distance", i, &a, &b);
     if (status == CPROX_OK) assert_true(a.upper - a.lower <= 1e-6);
     options.signed_distance = false;
-    assert_true(cprox_set_collision(set, mover, NULL, ws, &a) >= 0);
-    assert_true(cprox_collision_all(mover, s.targets, s.n, NULL, ws, &b, NULL) >= 0);
+    assert_true(cprox_obstacles_collision(set, mover, NULL, ws, &a, NULL) >= 0);
+    assert_true(collision_of_list(mover, s.targets, s.n, NULL, ws, &b, NULL) >= 0);
     assert_int_equal(a.verdict, b.verdict);
     hits += a.verdict == CPROX_VERDICT_VIOLATED;
     const double delta = rng_uniform(&r, 0.0, 0.3);
-    assert_true(cprox_set_tolerance(set, mover, delta, NULL, ws, &a) >= 0);
-    assert_true(cprox_tolerance_all(mover, s.targets, s.n, delta, NULL, ws, &b, NULL) >= 0);
+    assert_true(cprox_obstacles_tolerance(set, mover, delta, NULL, ws, &a, NULL) >= 0);
+    assert_true(tolerance_of_list(mover, s.targets, s.n, delta, NULL, ws, &b, NULL) >= 0);
     assert_int_equal(a.verdict, b.verdict);
-    assert_true(cprox_set_time_of_contact(set, mover, NULL, ws, &a) >= 0);
-    assert_true(cprox_time_of_contact_all(mover, s.targets, s.n, NULL, ws, &b) >= 0);
+    assert_true(cprox_obstacles_time_of_contact(set, mover, NULL, ws, &a) >= 0);
+    assert_true(time_of_contact_of_list(mover, s.targets, s.n, NULL, ws, &b) >= 0);
     assert_int_equal(a.verdict, b.verdict);
     assert_true(fabs(a.t_contact_lower - b.t_contact_lower) < 1e-3);
     expect_overlap("time of contact", i, &a, &b);
     cprox_result near[3], all[3];
     size_t n, m;
-    assert_true(cprox_set_nearest(set, mover, 3, NULL, ws, near, &n) >= 0);
-    assert_true(cprox_nearest(mover, s.targets, s.n, 3, NULL, ws, all, &m) >= 0);
+    assert_true(cprox_obstacles_nearest(set, mover, 3, NULL, ws, near, &n) >= 0);
+    assert_true(nearest_of_list(mover, s.targets, s.n, 3, NULL, ws, all, &m) >= 0);
     assert_int_equal(n, m);
     for (size_t k = 0; k < n; k++) assert_true(fabs(near[k].upper - all[k].upper) <= 2e-6);
     cprox_curve_free(curve);
-    cprox_set_free(set);
+    cprox_obstacles_free(set);
     scene_free(&s);
   }
   assert_true(hits > cases / 10 && hits < cases);
@@ -142,24 +144,25 @@ CASE(carried_bodies_and_coarser_models_are_answered_as_without_a_set) {
   scene s = scene_make(&r, 180, 2.0, true);
   cprox_obstacle convex[60];
   for (size_t k = 0; k < 60; k++) convex[k] = cprox_obstacle_at(s.body[k % 3], rng_pose(&r, 2.0));
-  cprox_set *set = NULL, *mixed = set_make(&s);
-  assert_int_equal(cprox_set_create(convex, 60, ws, &set), CPROX_OK);
+  cprox_obstacles *set = NULL, *mixed = set_make(&s);
+  assert_int_equal(cprox_obstacles_create(convex, 60, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
   for (size_t i = 0; i < 40; i++) {
     cprox_curve *curve = way(&r, i % 2 ? 4 : 12, 1.5);
     cprox_result a, b;
-    assert_int_equal(cprox_set_distance(set, cprox_body_along(s.body[1], curve), NULL, ws, &a), CPROX_OK);
-    assert_int_equal(cprox_distance_all(cprox_body_along(s.body[1], curve), convex, 60, NULL, ws, &b, NULL), CPROX_OK);
+    assert_int_equal(cprox_obstacles_distance(set, cprox_body_along(s.body[1], curve), NULL, ws, &a, NULL), CPROX_OK);
+    assert_int_equal(distance_of_list(cprox_body_along(s.body[1], curve), convex, 60, NULL, ws, &b, NULL), CPROX_OK);
     expect_overlap("carried", i, &a, &b);
-    assert_int_equal(cprox_set_distance(mixed, cprox_body_along(s.body[1], curve), NULL, ws, &a), CPROX_INVALID);
+    assert_int_equal(cprox_obstacles_distance(mixed, cprox_body_along(s.body[1], curve), NULL, ws, &a, NULL),
+                     CPROX_INVALID);
     cprox_options options = cprox_options_default();
     options.max_lod = i % 2 ? CPROX_LOD_SPHERE : CPROX_LOD_HULL;
-    assert_true(cprox_set_distance(mixed, cprox_point_along(curve), &options, ws, &a) >= 0);
-    assert_true(cprox_distance_all(cprox_point_along(curve), s.targets, s.n, &options, ws, &b, NULL) >= 0);
+    assert_true(cprox_obstacles_distance(mixed, cprox_point_along(curve), &options, ws, &a, NULL) >= 0);
+    assert_true(distance_of_list(cprox_point_along(curve), s.targets, s.n, &options, ws, &b, NULL) >= 0);
     expect_overlap("coarse", i, &a, &b);
     cprox_curve_free(curve);
   }
-  cprox_set_free(set);
-  cprox_set_free(mixed);
+  cprox_obstacles_free(set);
+  cprox_obstacles_free(mixed);
   scene_free(&s);
 }
 
@@ -172,16 +175,15 @@ CASE(what_is_searched_does_not_grow_with_the_set) {
   uint32_t nodes[2] = {0};
   for (int k = 0; k < 2; k++) {
     scene s = scene_make(&r, k ? 6400 : 100, k ? 8.0 : 2.0, false);
-    cprox_set *set = set_make(&s);
+    cprox_obstacles *set = set_make(&s);
     for (int i = 0; i < 50; i++) {
       cprox_curve *curve = way(&r, 4, 1.0);
       cprox_result a;
-      assert_int_equal(cprox_set_distance(set, cprox_point_along(curve), NULL, ws, &a), CPROX_OK);
+      assert_int_equal(cprox_obstacles_distance(set, cprox_point_along(curve), NULL, ws, &a, NULL), CPROX_OK);
       nodes[k] += a.nodes;
       cprox_curve_free(curve);
     }
-    assert_true(cprox_set_bytes(set) < s.n * 600);
-    cprox_set_free(set);
+    cprox_obstacles_free(set);
     scene_free(&s);
   }
   if (nodes[1] > 2 * nodes[0]) fail_msg("%u intervals with 100 targets, %u with 6400", nodes[0], nodes[1]);
@@ -190,20 +192,20 @@ CASE(what_is_searched_does_not_grow_with_the_set) {
 CASE(queries_do_not_allocate_once_the_workspace_has_grown) {
   rng r = rng_seed(99);
   scene s = scene_make(&r, 300, 2.0, true);
-  cprox_set *set = set_make(&s);
+  cprox_obstacles *set = set_make(&s);
   cprox_curve *curve = way(&r, 4, 1.5);
   size_t before = 0;
   for (int i = 0; i < 2; i++) {
     before = allocations_made();
     cprox_result a, near[5];
     size_t n;
-    cprox_set_distance(set, cprox_point_along(curve), NULL, ws, &a);
-    cprox_set_time_of_contact(set, cprox_point_along(curve), NULL, ws, &a);
-    cprox_set_nearest(set, cprox_point_along(curve), 5, NULL, ws, near, &n);
+    cprox_obstacles_distance(set, cprox_point_along(curve), NULL, ws, &a, NULL);
+    cprox_obstacles_time_of_contact(set, cprox_point_along(curve), NULL, ws, &a);
+    cprox_obstacles_nearest(set, cprox_point_along(curve), 5, NULL, ws, near, &n);
   }
   assert_int_equal(allocations_made(), before);
   cprox_curve_free(curve);
-  cprox_set_free(set);
+  cprox_obstacles_free(set);
   scene_free(&s);
 }
 
@@ -211,20 +213,23 @@ CASE(queries_do_not_allocate_once_the_workspace_has_grown) {
 
 CASE(bad_input_is_refused_and_nothing_is_far) {
   rng r = rng_seed(101);
-  cprox_set *set = NULL;
+  cprox_obstacles *set = NULL;
   cprox_curve *curve = way(&r, 4, 1.0);
   cprox_obstacle nothing = {.pose = cprox_pose_identity()};
-  assert_int_equal(cprox_set_create(&nothing, 1, ws, &set), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_create(&nothing, 1, CPROX_INDEX_BVH, ws, &set), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(ws), "target 0"));
-  assert_int_equal(cprox_set_create(NULL, 3, ws, &set), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_create(NULL, 3, CPROX_INDEX_BVH, ws, &set), CPROX_INVALID);
   assert_null(set);
   cprox_result a;
-  assert_int_equal(cprox_set_distance(NULL, cprox_point_along(curve), NULL, ws, &a), CPROX_INVALID);
-  assert_int_equal(cprox_set_create(NULL, 0, ws, &set), CPROX_OK);
-  assert_int_equal(cprox_set_distance(set, cprox_point_along(curve), NULL, ws, &a), CPROX_OK);
+  assert_int_equal(cprox_obstacles_create(NULL, 0, (cprox_obstacle_index)7, ws, &set), CPROX_INVALID);
+  assert_non_null(strstr(cprox_workspace_error(ws), "7 is no kind of index"));
+  assert_int_equal(cprox_obstacles_distance(NULL, cprox_point_along(curve), NULL, ws, &a, NULL), CPROX_OK);
+  assert_true(isinf(a.lower) && a.obstacle_index == -1 && cprox_obstacles_size(NULL) == 0);
+  assert_int_equal(cprox_obstacles_create(NULL, 0, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
+  assert_int_equal(cprox_obstacles_distance(set, cprox_point_along(curve), NULL, ws, &a, NULL), CPROX_OK);
   assert_true(isinf(a.lower) && a.obstacle_index == -1);
-  assert_int_equal(cprox_set_distance(set, cprox_point_along(NULL), NULL, ws, &a), CPROX_INVALID);
-  cprox_set_free(set);
+  assert_int_equal(cprox_obstacles_distance(set, cprox_point_along(NULL), NULL, ws, &a, NULL), CPROX_INVALID);
+  cprox_obstacles_free(set);
   cprox_curve_free(curve);
 }
 

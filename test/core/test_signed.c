@@ -7,6 +7,7 @@
 #include "curve_proximity/cprox.h"
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/of_list.h"
 #include "support/random.h"
 #include "support/reference.h"
 #include "support/shapes.h"
@@ -182,12 +183,10 @@ CASE(a_compound_is_as_deep_as_its_deepest_part) {
   assert_true(result.lower <= -0.75 && -0.75 <= result.upper && result.obstacle_part == 1);
   cprox_result nearest, each[2];
   const cprox_obstacle targets[2] = {cprox_obstacle_at(small, poses[0]), cprox_obstacle_at(large, poses[1])};
-  assert_int_equal(cprox_distance_all(cprox_tube_along(curve, 0.1), targets, 2, &options, ws, &nearest, each),
-                   CPROX_OK);
+  assert_int_equal(distance_of_list(cprox_tube_along(curve, 0.1), targets, 2, &options, ws, &nearest, each), CPROX_OK);
   assert_true(each[0].lower <= -0.1 && -0.1 <= each[0].upper && nearest.obstacle_index == 1);
   assert_true(nearest.lower <= -0.85 && -0.85 <= nearest.upper);
-  assert_int_equal(cprox_distance_all(cprox_tube_along(curve, 0.1), targets, 2, &options, ws, &nearest, NULL),
-                   CPROX_OK);
+  assert_int_equal(distance_of_list(cprox_tube_along(curve, 0.1), targets, 2, &options, ws, &nearest, NULL), CPROX_OK);
   assert_true(nearest.lower <= -0.85 && -0.85 <= nearest.upper);
   cprox_body_free(both);
   cprox_body_free(small);

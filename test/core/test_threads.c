@@ -9,6 +9,7 @@
 
 #include "support/cases.h"
 #include "support/make_curve.h"
+#include "support/of_list.h"
 
 enum { THREADS = 4, ROUNDS = 50, TARGETS = 6, ANSWERS = 3 };
 
@@ -33,9 +34,9 @@ static bool same(const cprox_result *a, const cprox_result *b) {
 static void ask(const shared_world *world, cprox_workspace *workspace, cprox_result *results) {
   const cprox_mover tube = cprox_tube_along(world->curve, 0.01);
   memset(results, 0, ANSWERS * sizeof *results);
-  cprox_distance_all(tube, world->targets, TARGETS, NULL, workspace, &results[0], NULL);
-  cprox_tolerance_all(tube, world->targets, TARGETS, 0.05, NULL, workspace, &results[1], NULL);
-  cprox_collision_all(tube, world->targets, TARGETS, NULL, workspace, &results[2], NULL);
+  distance_of_list(tube, world->targets, TARGETS, NULL, workspace, &results[0], NULL);
+  tolerance_of_list(tube, world->targets, TARGETS, 0.05, NULL, workspace, &results[1], NULL);
+  collision_of_list(tube, world->targets, TARGETS, NULL, workspace, &results[2], NULL);
 }
 
 static void *run(void *argument) {

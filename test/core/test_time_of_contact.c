@@ -8,6 +8,7 @@
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/make_curve.h"
+#include "support/of_list.h"
 #include "support/random.h"
 #include "support/reference.h"
 
@@ -192,12 +193,12 @@ CASE(the_earliest_of_many_targets_is_met) {
     targets[i] = cprox_obstacle_at(ball, (cprox_pose){.position = {x[i], 0.1, 0}, .orientation = {1, 0, 0, 0}});
   const cprox_options options = accurate(1e-10);
   cprox_result c;
-  assert_int_equal(cprox_time_of_contact_all(cprox_point_along(curve), targets, 4, &options, ws, &c), CPROX_OK);
+  assert_int_equal(time_of_contact_of_list(cprox_point_along(curve), targets, 4, &options, ws, &c), CPROX_OK);
   assert_int_equal(c.verdict, CPROX_VERDICT_VIOLATED);
   assert_int_equal(c.obstacle_index, 1);
   const double contact = (4.0 - sqrt(0.25 - 0.01)) / 10.0;
   assert_true(c.t_contact_lower <= contact && contact <= c.t && c.t - c.t_contact_lower < 1e-9);
-  assert_int_equal(cprox_time_of_contact_all(cprox_point_along(curve), NULL, 0, &options, ws, &c), CPROX_OK);
+  assert_int_equal(time_of_contact_of_list(cprox_point_along(curve), NULL, 0, &options, ws, &c), CPROX_OK);
   assert_int_equal(c.verdict, CPROX_VERDICT_CLEAR);
   assert_float_equal(c.t_contact_lower, 1.0, 0.0);
   cprox_body_free(ball);

@@ -6,6 +6,7 @@
 
 #include "support/builders.h"
 #include "support/cases.h"
+#include "support/of_list.h"
 
 static const double WILD[] = {NAN, INFINITY, -INFINITY, 1e308, -1e308, 1e61};
 enum { N_WILD = sizeof WILD / sizeof *WILD };
@@ -37,16 +38,16 @@ static cprox_status ask_time_of_contact(const arguments *a) {
 }
 static cprox_status ask_nearest(const arguments *a) {
   size_t count;
-  return cprox_nearest(a->mover, &a->target, 1, 1, &a->options, ws, &result, &count);
+  return nearest_of_list(a->mover, &a->target, 1, 1, &a->options, ws, &result, &count);
 }
 static cprox_status ask_within(const arguments *a) {
   size_t count;
-  return cprox_within(a->mover, &a->target, 1, a->delta, &a->options, ws, &result, &count);
+  return within_of_list(a->mover, &a->target, 1, a->delta, &a->options, ws, &result, &count);
 }
 static cprox_status ask_profile(const arguments *a) {
   const double breaks[2] = {0.0, 1.0};
   cprox_profile_interval interval;
-  return cprox_profile(a->mover, &a->target, 1, breaks, 1, &a->options, ws, &interval);
+  return profile_of_list(a->mover, &a->target, 1, breaks, 1, &a->options, ws, &interval);
 }
 static cprox_status ask_pair(const arguments *a) {
   return cprox_pair(a->other, a->target, &a->options, ws, &result);
@@ -55,17 +56,17 @@ static cprox_status ask_pair_swapped(const arguments *a) {
   return cprox_pair(a->target, a->other, &a->options, ws, &result);
 }
 static cprox_status ask_set(const arguments *a) {
-  cprox_set *set = NULL;
-  cprox_status status = cprox_set_create(&a->target, 1, ws, &set);
-  if (status >= 0) status = cprox_set_tolerance(set, a->mover, a->delta, &a->options, ws, &result);
-  cprox_set_free(set);
+  cprox_obstacles *set = NULL;
+  cprox_status status = cprox_obstacles_create(&a->target, 1, CPROX_INDEX_BVH, ws, &set);
+  if (status >= 0) status = cprox_obstacles_tolerance(set, a->mover, a->delta, &a->options, ws, &result, NULL);
+  cprox_obstacles_free(set);
   return status;
 }
 static cprox_status ask_batch(const arguments *a) {
-  cprox_batch *batch = NULL;
-  cprox_status status = cprox_batch_create(&a->target, 1, ws, &batch);
-  if (status >= 0) status = cprox_batch_tolerance(batch, &a->mover, 0, 1, a->delta, &a->options, ws, &result);
-  cprox_batch_free(batch);
+  cprox_obstacles *batch = NULL;
+  cprox_status status = cprox_obstacles_create(&a->target, 1, CPROX_INDEX_BATCH, ws, &batch);
+  if (status >= 0) status = cprox_obstacles_tolerance_batch(batch, &a->mover, 0, 1, a->delta, &a->options, ws, &result);
+  cprox_obstacles_free(batch);
   return status;
 }
 static cprox_status ask_gradient(const arguments *a) {
@@ -76,7 +77,7 @@ static cprox_status ask_gradient(const arguments *a) {
 static cprox_status ask_certificate(const arguments *a) {
   cprox_certificate *certificate = cprox_certificate_create();
   const cprox_result answer = {.upper = 1.0, .lower = 1.0};
-  const cprox_status status = cprox_certify(a->mover, &a->target, 1, a->delta, &answer, &a->options, ws, certificate);
+  const cprox_status status = certify_of_list(a->mover, &a->target, 1, a->delta, &answer, &a->options, ws, certificate);
   cprox_certificate_free(certificate);
   return status;
 }

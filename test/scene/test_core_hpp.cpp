@@ -176,14 +176,12 @@ TEST(CoreHpp, a_set_answers_as_its_targets_do) {
   const BodyHandle ball = makeSphere(0.5), floor = makeHalfspace({0, 0, 1}, 3.0);
   std::vector<cprox_obstacle> targets{at(floor)};
   for (int i = 0; i < 40; ++i) targets.push_back(at(ball, Eigen::Isometry3d(Eigen::Translation3d(i, 0.1 * i, 2.0))));
-  const Set set(targets);
+  const Obstacles set(targets), list(targets, CPROX_INDEX_NONE);
   EXPECT_EQ(set.size(), 41u);
   const CurveHandle curve = makeBezier((Eigen::Matrix3Xd(3, 2) << 5, 9, 0, 0, 0, 0).finished());
   Workspace workspace;
   const cprox_options options = cprox_options_default();
-  cprox_result all;
-  ASSERT_EQ(cprox_distance_all(along(curve), targets.data(), targets.size(), &options, workspace.get(), &all, nullptr),
-            CPROX_OK);
+  const cprox_result all = list.distance(along(curve), options, workspace);
   EXPECT_NEAR(set.distance(along(curve), options, workspace).upper, all.upper, 1e-6);
   EXPECT_EQ(set.collision(along(curve), options, workspace).verdict, CPROX_VERDICT_CLEAR);
   EXPECT_EQ(set.tolerance(along(curve), 1.0, options, workspace).verdict, CPROX_VERDICT_CLEAR);
@@ -192,5 +190,5 @@ TEST(CoreHpp, a_set_answers_as_its_targets_do) {
   ASSERT_EQ(nearest.size(), 3u);
   EXPECT_LE(nearest[0].upper, nearest[2].upper);
   EXPECT_EQ(nearest[0].obstacle_index, all.obstacle_index);
-  expectContains(errorOf([&] { Set({cprox_obstacle{}}); }), "target 0");
+  expectContains(errorOf([&] { Obstacles({cprox_obstacle{}}); }), "target 0");
 }

@@ -10,7 +10,7 @@
 #ifndef CURVE_PROXIMITY_CPROX_CERTIFICATE_H
 #define CURVE_PROXIMITY_CPROX_CERTIFICATE_H
 
-#include <curve_proximity/cprox/query.h>
+#include <curve_proximity/cprox/obstacles.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -68,7 +68,7 @@ CPROX_API double cprox_certificate_delta(const cprox_certificate *certificate);
  *  with the reason in the workspace. Cost: a few times that of the query; memory is allocated for the certificate.
  *  Source: doc/certificates.md.
  */
-CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
+CPROX_API cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *obstacles, double delta,
                                      const cprox_result *answer, const cprox_options *options,
                                      cprox_workspace *workspace, cprox_certificate *certificate);
 
@@ -89,7 +89,7 @@ CPROX_API size_t cprox_obstacle_describe(const cprox_obstacle *target, char *tex
  *  Returns the length of the whole text without the 0; 0 for a mover that is no robot, for bodies of a kind that has no
  *  certificates, and where memory is out.
  */
-CPROX_API size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, const char *id,
+CPROX_API size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obstacles, const char *id,
                                       cprox_workspace *workspace, char *text, size_t size);
 
 #ifdef __cplusplus

@@ -153,11 +153,11 @@ typedef enum cprox_curve_kind {
    *  t0, t1         the parameter range.
    *
    *  A part of the curve lies in the ellipsoid whose foci are the ends of the part and whose axis is its length.
-   *  Queries bound distances by these ellipsoids and need about ten times as many nodes. The degree is 0, there are no
-   *  control points and no second derivative. Intervals are as true as the functions. Queries, and the constructor at 65
-   *  parameters, detect a point that is not finite and two points that are farther apart than the length between them:
-   *  CPROX_INVALID, with the parameter. They cannot detect a length that is too small and yet longer than the chord.
-   *  Source: A. Lakshmanan et al. 2019, Lemma 1 and Theorem 1; doc/rounding.md, "Ellipsoids". */
+   *  Queries bound distances by these ellipsoids and need about ten times as many nodes. The degree is 0. There are no
+   *  control points and no second derivative. Intervals are as true as the functions. Queries, and the constructor at
+   *  65 parameters, detect a point that is not finite, and two points that are farther apart than the length between
+   *  them: CPROX_INVALID, with the parameter. They cannot detect a length that is too small and yet longer than the
+   *  chord. Source: A. Lakshmanan et al. 2019, Lemma 1 and Theorem 1; doc/rounding.md, "Ellipsoids". */
   CPROX_CURVE_RECTIFIABLE
 } cprox_curve_kind;
 

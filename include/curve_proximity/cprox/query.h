@@ -97,7 +97,7 @@ CPROX_API const char *cprox_lod_name(cprox_lod lod);
  *    time of contact                             no                yes   yes       no           no
  *    nearest, within, profile, gradient        yes               yes   yes       no           yes, not for robots
  *    nearest pairs of a robot                  yes               yes   yes       no           no
- *    sets and batches                          as above, but no certificate
+ *    CPROX_INDEX_BVH, and batches              as above, but no certificate
  *    pair                                      yes               yes   yes       no           yes: always signed
  *    translating distance                      yes               no    no        no           no
  *    translating contact, growth distance      no                yes   no        no           no
@@ -185,23 +185,6 @@ CPROX_API cprox_status cprox_tolerance(cprox_mover mover, cprox_obstacle target,
 CPROX_API cprox_status cprox_collision(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                        cprox_workspace *workspace, cprox_result *result);
 
-/** The same against many targets: *nearest is the answer against their union.
- *
- *  targets   n of them; n = 0: CPROX_OK, lower = upper = infinity, obstacle_index -1.
- *  each      NULL if not needed; else n results, one a target, each to the accuracy asked.
- *            A target that is unusable makes the call CPROX_INVALID; its number stands in the reason.
- *            Without `each` targets are searched nearest first and left as soon as they cannot be the nearest.
- */
-CPROX_API cprox_status cprox_distance_all(cprox_mover mover, const cprox_obstacle *targets, size_t n,
-                                          const cprox_options *options, cprox_workspace *workspace,
-                                          cprox_result *nearest, cprox_result *each);
-CPROX_API cprox_status cprox_tolerance_all(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
-                                           const cprox_options *options, cprox_workspace *workspace,
-                                           cprox_result *nearest, cprox_result *each);
-CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_obstacle *targets, size_t n,
-                                           const cprox_options *options, cprox_workspace *workspace,
-                                           cprox_result *nearest, cprox_result *each);
-
 /** Where, along its parameter, does the mover first touch the target? Never late.
  *
  *  t_contact_lower  no contact at any t < t_contact_lower, certified and rounded down. The distance there is at most
@@ -218,11 +201,6 @@ CPROX_API cprox_status cprox_collision_all(cprox_mover mover, const cprox_obstac
  *  epsilon. relative_epsilon is refused. Source: doc/time-of-contact.md. */
 CPROX_API cprox_status cprox_time_of_contact(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                              cprox_workspace *workspace, cprox_result *result);
-
-/** The same with many targets: the time of contact with any of them. n = 0: no contact. */
-CPROX_API cprox_status cprox_time_of_contact_all(cprox_mover mover, const cprox_obstacle *targets, size_t n,
-                                                 const cprox_options *options, cprox_workspace *workspace,
-                                                 cprox_result *result);
 
 /** Signed distance of two standing bodies.
  *

@@ -136,8 +136,8 @@ typedef struct cprox_robot_pair {
  *  targets; NULL: all geometries of links that the motion moves, against all targets. */
 CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
-/** The robot along a motion against itself: ask without targets (cprox_distance_all(mover, NULL, 0, …)). pairs: those
- *  that are asked about, kept by reference, `other` being geometries; NULL: all on links that
+/** The robot along a motion against itself: its queries have no obstacles (cprox_obstacles_distance(NULL, mover, …)).
+ *  pairs: those that are asked about, kept by reference, `other` being geometries; NULL: all on links that
  *  cprox_motion_relates_links(). */
 CPROX_API cprox_mover cprox_robot_self(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 

@@ -6,6 +6,7 @@
 #include "base/workspace.h"
 #include "certificate/write.h"
 #include "problem/validate.h"
+#include "solve/list.h"
 #include "solve/solve.h"
 
 enum { REASON = 256 };
@@ -67,17 +68,16 @@ static cprox_status ask(query *q, cprox_result *nearest, cprox_result *each) {
 
 /* ---- the queries ---------------------------------------------------------------------------------------------------------- */
 
-cprox_status cprox_distance_all(cprox_mover mover, const cprox_obstacle *targets, size_t n,
-                                const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
-                                cprox_result *each) {
+cprox_status list_distance(cprox_mover mover, const cprox_obstacle *targets, size_t n, const cprox_options *options,
+                           cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   return ask(&q, nearest, each);
 }
 
-cprox_status cprox_tolerance_all(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
-                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
-                                 cprox_result *each) {
+cprox_status list_tolerance(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
+                            const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
+                            cprox_result *each) {
   cprox_certificate_clear(options ? options->certificate : NULL);
   const cprox_status checked = arguments_check_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
@@ -85,24 +85,23 @@ cprox_status cprox_tolerance_all(cprox_mover mover, const cprox_obstacle *target
   return ask(&q, nearest, each);
 }
 
-cprox_status cprox_collision_all(cprox_mover mover, const cprox_obstacle *targets, size_t n,
-                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
-                                 cprox_result *each) {
+cprox_status list_collision(cprox_mover mover, const cprox_obstacle *targets, size_t n, const cprox_options *options,
+                            cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {
   query q = query_create(mover, targets, n, 0.0, false, options, workspace);
   return ask(&q, nearest, each);
 }
 
 cprox_status cprox_distance(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                             cprox_workspace *workspace, cprox_result *result) {
-  return cprox_distance_all(mover, &target, 1, options, workspace, result, NULL);
+  return list_distance(mover, &target, 1, options, workspace, result, NULL);
 }
 
 cprox_status cprox_tolerance(cprox_mover mover, cprox_obstacle target, double delta, const cprox_options *options,
                              cprox_workspace *workspace, cprox_result *result) {
-  return cprox_tolerance_all(mover, &target, 1, delta, options, workspace, result, NULL);
+  return list_tolerance(mover, &target, 1, delta, options, workspace, result, NULL);
 }
 
 cprox_status cprox_collision(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                              cprox_workspace *workspace, cprox_result *result) {
-  return cprox_collision_all(mover, &target, 1, options, workspace, result, NULL);
+  return list_collision(mover, &target, 1, options, workspace, result, NULL);
 }

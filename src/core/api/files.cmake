@@ -1,9 +1,10 @@
 # The files of this room. A new file is one line here.
 target_sources(cprox_objects PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/bvh.c
   ${CMAKE_CURRENT_LIST_DIR}/distance.c
   ${CMAKE_CURRENT_LIST_DIR}/nearest.c
   ${CMAKE_CURRENT_LIST_DIR}/nearest_pairs.c
-  ${CMAKE_CURRENT_LIST_DIR}/obstacle_set.c
+  ${CMAKE_CURRENT_LIST_DIR}/obstacles.c
   ${CMAKE_CURRENT_LIST_DIR}/profile.c
   ${CMAKE_CURRENT_LIST_DIR}/time_of_contact.c
 )

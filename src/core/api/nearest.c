@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The k closest targets, and all targets within a distance: distance searches that end where a target is out of query.
  * */
-#include "curve_proximity/cprox/clearance.h"
-
 #include <math.h>
 #include <string.h>
 
 #include "problem/validate.h"
+#include "solve/list.h"
 #include "solve/solve.h"
 
 static cprox_status worse(cprox_status a, cprox_status b) {
@@ -31,9 +30,9 @@ static candidate *rank_targets(const query *q) {
   return rank;
 }
 
-cprox_status cprox_nearest(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k,
-                           const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
-                           size_t *count) {
+cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k,
+                          const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
+                          size_t *count) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   workspace_clear(workspace);
@@ -65,8 +64,8 @@ cprox_status cprox_nearest(cprox_mover mover, const cprox_obstacle *targets, siz
   return trouble;
 }
 
-cprox_status cprox_within(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
-                          const cprox_options *options, cprox_workspace *workspace, cprox_result *near, size_t *count) {
+cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
+                         const cprox_options *options, cprox_workspace *workspace, cprox_result *near, size_t *count) {
   const cprox_status usable = arguments_check_delta(delta, workspace);
   if (usable != CPROX_OK) return usable;
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);

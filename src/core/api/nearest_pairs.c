@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "base/workspace.h"
-#include "curve_proximity/cprox/clearance.h"
 #include "kinematics/motion.h"
 #include "problem/validate.h"
 #include "robot_query/answer.h"
+#include "solve/list.h"
 #include "solve/solve.h"
 
 /* Lists the pairs of geometries, or of geometries and targets, that are asked about where none are given; counts them where there is
@@ -61,9 +61,9 @@ static cprox_status ask_pairs(query *q, const cprox_robot_pair *pairs, size_t n,
   return trouble;
 }
 
-cprox_status cprox_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k, double delta,
-                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
-                                 size_t *count) {
+cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k, double delta,
+                                const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
+                                size_t *count) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   workspace_clear(workspace);
   const arguments_query asked = {"the nearest pairs", ARGUMENTS_SEARCH};

@@ -6,8 +6,8 @@
 #include "base/round_down.h"
 #include "base/rounding.h"
 #include "curve/subcurve.h"
-#include "curve_proximity/cprox/clearance.h"
 #include "problem/validate.h"
+#include "solve/list.h"
 #include "solve/solve.h"
 
 static cprox_status check_breaks(const query *q, const double *breaks, size_t n, cprox_workspace *workspace) {
@@ -110,9 +110,9 @@ static cprox_status measure_motion(query *q, double t0, double t1, cprox_profile
   return status;
 }
 
-cprox_status cprox_profile(cprox_mover mover, const cprox_obstacle *targets, size_t n, const double *breaks,
-                           size_t n_intervals, const cprox_options *options, cprox_workspace *workspace,
-                           cprox_profile_interval *intervals) {
+cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size_t n, const double *breaks,
+                          size_t n_intervals, const cprox_options *options, cprox_workspace *workspace,
+                          cprox_profile_interval *intervals) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   workspace_clear(workspace);

@@ -4,9 +4,10 @@
 #include "base/workspace.h"
 #include "problem/validate.h"
 #include "robot_query/answer.h"
+#include "solve/list.h"
 
-cprox_status cprox_time_of_contact_all(cprox_mover mover, const cprox_obstacle *targets, size_t n,
-                                       const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
+cprox_status list_time_of_contact(cprox_mover mover, const cprox_obstacle *targets, size_t n,
+                                  const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   query q = query_create(mover, targets, n, 0.0, false, options, workspace);
   workspace_clear(workspace);
   const arguments_query asked = {"time of contact", ARGUMENTS_STOP | ARGUMENTS_LOD};
@@ -21,5 +22,5 @@ cprox_status cprox_time_of_contact_all(cprox_mover mover, const cprox_obstacle *
 
 cprox_status cprox_time_of_contact(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                    cprox_workspace *workspace, cprox_result *result) {
-  return cprox_time_of_contact_all(mover, &target, 1, options, workspace, result);
+  return list_time_of_contact(mover, &target, 1, options, workspace, result);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Many movers against the same targets. doc/batches.md says what is done for each. */
-#include "curve_proximity/cprox/batch.h"
+#include "batch/batch.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,6 +9,7 @@
 #include "batch/prefilter.h"
 #include "curve_query/search_pair.h"
 #include "problem/validate.h"
+#include "solve/list.h"
 #include "solve/solve.h"
 
 /* ---- one mover ---------------------------------------------------------------------------------------------------------- */
@@ -96,9 +97,9 @@ static cprox_status answer_one(batch_run *run, const cprox_mover *mover, cprox_r
     run->q.mover = *mover;
     return answer_fast(run, r);
   }
-  if (!query_wants_verdict(q)) return cprox_distance_all(*mover, targets, n, &q->options, q->workspace, r, NULL);
-  if (!q->is_tolerance) return cprox_collision_all(*mover, targets, n, &q->options, q->workspace, r, NULL);
-  return cprox_tolerance_all(*mover, targets, n, q->limit, &q->options, q->workspace, r, NULL);
+  if (!query_wants_verdict(q)) return list_distance(*mover, targets, n, &q->options, q->workspace, r, NULL);
+  if (!q->is_tolerance) return list_collision(*mover, targets, n, &q->options, q->workspace, r, NULL);
+  return list_tolerance(*mover, targets, n, q->limit, &q->options, q->workspace, r, NULL);
 }
 
 static cprox_status check_call(const batch_run *run, const cprox_mover *movers, size_t first, size_t last,
@@ -106,7 +107,6 @@ static cprox_status check_call(const batch_run *run, const cprox_mover *movers, 
   cprox_workspace *workspace = run->q.workspace;
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
-  if (!run->batch) return workspace_fail(workspace, CPROX_INVALID, "batch is NULL");
   if (first > last)
     return workspace_fail(workspace, CPROX_INVALID, "the range begins at mover %zu and ends at %zu", first, last);
   if (first < last && !movers) return workspace_fail(workspace, CPROX_INVALID, "movers is NULL");
@@ -125,7 +125,7 @@ static bool reserve(batch_run *run) {
   return run->lower && run->near && run->open;
 }
 
-static cprox_status answer_range(query q, const cprox_batch *batch, const cprox_mover *movers, size_t first,
+static cprox_status answer_range(query q, const obstacle_batch *batch, const cprox_mover *movers, size_t first,
                                  size_t last, cprox_result *results) {
   batch_run run = {.batch = batch, .q = q, .degree = SIZE_MAX};
   const cprox_status checked = check_call(&run, movers, first, last, results);
@@ -153,15 +153,15 @@ static cprox_status answer_range(query q, const cprox_batch *batch, const cprox_
   return worst == CPROX_OK ? CPROX_OK : workspace_fail(q.workspace, worst, "%s", reason);
 }
 
-cprox_status cprox_batch_distance(const cprox_batch *batch, const cprox_mover *movers, size_t first, size_t last,
-                                  const cprox_options *options, cprox_workspace *workspace, cprox_result *results) {
+cprox_status batch_distance(const obstacle_batch *batch, const cprox_mover *movers, size_t first, size_t last,
+                            const cprox_options *options, cprox_workspace *workspace, cprox_result *results) {
   const query q = query_create((cprox_mover){0}, NULL, 0, -1.0, false, options, workspace);
   return answer_range(q, batch, movers, first, last, results);
 }
 
-cprox_status cprox_batch_tolerance(const cprox_batch *batch, const cprox_mover *movers, size_t first, size_t last,
-                                   double delta, const cprox_options *options, cprox_workspace *workspace,
-                                   cprox_result *results) {
+cprox_status batch_tolerance(const obstacle_batch *batch, const cprox_mover *movers, size_t first, size_t last,
+                             double delta, const cprox_options *options, cprox_workspace *workspace,
+                             cprox_result *results) {
   if (!workspace) return CPROX_INVALID;
   const cprox_status checked = arguments_check_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
@@ -169,8 +169,8 @@ cprox_status cprox_batch_tolerance(const cprox_batch *batch, const cprox_mover *
   return answer_range(q, batch, movers, first, last, results);
 }
 
-cprox_status cprox_batch_collision(const cprox_batch *batch, const cprox_mover *movers, size_t first, size_t last,
-                                   const cprox_options *options, cprox_workspace *workspace, cprox_result *results) {
+cprox_status batch_collision(const obstacle_batch *batch, const cprox_mover *movers, size_t first, size_t last,
+                             const cprox_options *options, cprox_workspace *workspace, cprox_result *results) {
   const query q = query_create((cprox_mover){0}, NULL, 0, 0.0, false, options, workspace);
   return answer_range(q, batch, movers, first, last, results);
 }

@@ -38,7 +38,7 @@ void batch_blocks_gather(batch_place *places, size_t n) {
   batch_blocks_gather(places + half, n - half);
 }
 
-void batch_blocks_surround(cprox_batch *batch) {
+void batch_blocks_surround(obstacle_batch *batch) {
   const lanes_balls *balls = &batch->balls;
   lanes_blocks *blocks = &batch->blocks;
   const double *centre[3] = {balls->x, balls->y, balls->z};

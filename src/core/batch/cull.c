@@ -5,7 +5,7 @@
 #include <math.h>
 
 /* The balls of one block, as if there were no others. */
-static lanes_balls balls_of(const cprox_batch *batch, size_t block) {
+static lanes_balls balls_of(const obstacle_batch *batch, size_t block) {
   const lanes_balls *all = &batch->balls;
   const size_t at = block * BLOCK;
   return (lanes_balls){BLOCK, BLOCK, all->x + at, all->y + at, all->z + at, all->reach + at, all->sizes + at};
@@ -13,7 +13,7 @@ static lanes_balls balls_of(const cprox_batch *batch, size_t block) {
 
 void batch_open_begin(batch_run *run) {
   enum { PAYS_FROM = 8 }; /* of fewer parts the curve's capsule rules out enough */
-  const cprox_batch *batch = run->batch;
+  const obstacle_batch *batch = run->batch;
   run->n_boxes = 0;
   if (!run->short_enough || batch->balls.n < PAYS_FROM || !batch_points_ready(run)) {
     for (size_t b = 0; b < batch->blocks.n; b++) run->block_lower[b] = -INFINITY;
@@ -41,13 +41,13 @@ static void open_block(batch_run *run, size_t block) {
   lanes_box_bounds(&balls, run->boxes, run->n_boxes, radius + run->beside, run->slack, lower);
 }
 
-static size_t end_of(const cprox_batch *batch, size_t block) {
+static size_t end_of(const obstacle_batch *batch, size_t block) {
   const size_t end = (block + 1) * BLOCK;
   return end < batch->balls.n ? end : batch->balls.n;
 }
 
 size_t batch_open_nearest(batch_run *run) {
-  const cprox_batch *batch = run->batch;
+  const obstacle_batch *batch = run->batch;
   if (batch->balls.n == 0) return SIZE_MAX;
   size_t block = 0;
   for (size_t b = 1; b < batch->blocks.n; b++)
@@ -60,7 +60,7 @@ size_t batch_open_nearest(batch_run *run) {
 }
 
 double batch_open_list(batch_run *run, double most) {
-  const cprox_batch *batch = run->batch;
+  const obstacle_batch *batch = run->batch;
   double beyond = INFINITY;
   size_t n = 0;
   for (size_t b = 0; b < batch->blocks.n; b++) {

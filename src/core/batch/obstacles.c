@@ -7,6 +7,7 @@
 
 #include "base/frame.h"
 #include "base/rounding.h"
+#include "base/workspace.h"
 #include "problem/placed_pair.h"
 #include "problem/validate.h"
 #include "shape/body.h"
@@ -123,8 +124,8 @@ static size_t parts_of(const cprox_obstacle *target) {
   return target->body && target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
 }
 
-static cprox_batch *allocate(size_t n_targets, size_t n_parts) {
-  cprox_batch *batch = calloc(1, sizeof *batch);
+static obstacle_batch *allocate(size_t n_targets, size_t n_parts) {
+  obstacle_batch *batch = calloc(1, sizeof *batch);
   if (!batch) return NULL;
   const size_t n_blocks = (n_parts + BLOCK - 1) / BLOCK, padded = n_blocks * BLOCK;
   const size_t padded_blocks = (n_blocks + BLOCK - 1) / BLOCK * BLOCK;
@@ -133,12 +134,11 @@ static cprox_batch *allocate(size_t n_targets, size_t n_parts) {
   batch->balls.padded = padded;
   batch->blocks.n = n_blocks;
   batch->blocks.padded = padded_blocks;
-  batch->targets = calloc(n_targets + 1, sizeof *batch->targets);
   batch->parts = calloc(n_parts + 1, sizeof *batch->parts);
   batch->cores = calloc(n_parts + 1, sizeof *batch->cores);
   batch->balls.x = calloc(5 * padded + 7 * padded_blocks + 1, sizeof(double));
-  if (!batch->targets || !batch->parts || !batch->cores || !batch->balls.x) {
-    cprox_batch_free(batch);
+  if (!batch->parts || !batch->cores || !batch->balls.x) {
+    obstacle_batch_free(batch);
     return NULL;
   }
   batch->balls.y = batch->balls.x + padded;
@@ -156,7 +156,7 @@ static cprox_batch *allocate(size_t n_targets, size_t n_parts) {
 }
 
 /* The balls of one part. What is on the mover's clock has none that would hold for every mover. */
-static void describe(cprox_batch *batch, const query *q, size_t k) {
+static void describe(obstacle_batch *batch, const query *q, size_t k) {
   const candidate *c = &batch->parts[k];
   const cprox_obstacle *target = &batch->targets[c->target];
   if (target->synchronized) return;
@@ -175,7 +175,7 @@ static void describe(cprox_batch *batch, const query *q, size_t k) {
 }
 
 /* All parts, those that stand together one after the other; what is everywhere comes last. False where memory is out. */
-static bool list_parts(cprox_batch *batch, const query *q) {
+static bool list_parts(obstacle_batch *batch, const query *q) {
   batch_place *places = calloc(batch->balls.n + 1, sizeof *places);
   if (!places) return false;
   size_t bounded = 0, n = 0;
@@ -197,23 +197,17 @@ static bool list_parts(cprox_batch *batch, const query *q) {
   return true;
 }
 
-cprox_status cprox_batch_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
-                                cprox_batch **batch) {
-  if (!workspace) return CPROX_INVALID;
-  workspace_clear(workspace);
-  if (!batch) return workspace_fail(workspace, CPROX_INVALID, "batch is NULL");
-  const cprox_status checked = arguments_check_targets(targets, n, workspace);
-  if (checked != CPROX_OK) return checked;
-
+cprox_status obstacle_batch_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
+                                   obstacle_batch **batch) {
   size_t n_parts = 0;
   for (size_t i = 0; i < n; i++) n_parts += parts_of(&targets[i]);
-  cprox_batch *made = allocate(n, n_parts);
+  obstacle_batch *made = allocate(n, n_parts);
   if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", n);
-  if (n > 0) memcpy(made->targets, targets, n * sizeof *targets);
+  made->targets = targets;
   for (size_t i = 0; i < n; i++) made->synchronized = made->synchronized || targets[i].synchronized;
   const query q = {.targets = made->targets, .n = n};
   if (!list_parts(made, &q)) {
-    cprox_batch_free(made);
+    obstacle_batch_free(made);
     return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", n);
   }
   for (size_t k = 0; k < n_parts; k++) describe(made, &q, k);
@@ -222,9 +216,8 @@ cprox_status cprox_batch_create(const cprox_obstacle *targets, size_t n, cprox_w
   return CPROX_OK;
 }
 
-void cprox_batch_free(cprox_batch *batch) {
+void obstacle_batch_free(obstacle_batch *batch) {
   if (!batch) return;
-  free(batch->targets);
   free(batch->parts);
   free(batch->cores);
   free(batch->balls.x); /* all arrays of the balls are in one block */

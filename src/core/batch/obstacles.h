@@ -4,7 +4,7 @@
 #define CPROX_BATCH_OBSTACLES_H
 
 #include "curve/packets.h"
-#include "curve_proximity/cprox/batch.h"
+#include "curve_proximity/cprox/query.h"
 #include "problem/candidates.h"
 
 /* A point in a target or near it, in the world, and balls about it: one inside the target, one round it. Margin is left
@@ -24,8 +24,8 @@ typedef struct batch_core {
   double obb_turned, obb_misplaced; /* and this [m] are what placing it may be off */
 } batch_core;
 
-struct cprox_batch {
-  cprox_obstacle *targets;
+typedef struct obstacle_batch {
+  const cprox_obstacle *targets; /* not owned */
   size_t n;
   bool synchronized; /* some of them are: where they are depends on the mover */
   /* one for each target that is a curve, one for each convex part of a body */
@@ -33,7 +33,12 @@ struct cprox_batch {
   batch_core *cores;
   lanes_balls balls;
   lanes_blocks blocks; /* of BLOCK parts each, that stand together */
-};
+} obstacle_batch;
+
+/* Makes n obstacles ready, which were checked and must outlive it. */
+cprox_status obstacle_batch_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
+                                   obstacle_batch **batch);
+void obstacle_batch_free(obstacle_batch *batch);
 
 /* Where a part stands, as far as its place in a block is concerned. */
 typedef struct batch_place {
@@ -43,6 +48,6 @@ typedef struct batch_place {
 
 /* Puts n places in the order of blocks; and boxes round the blocks of the batch's balls. */
 void batch_blocks_gather(batch_place *places, size_t n);
-void batch_blocks_surround(cprox_batch *batch);
+void batch_blocks_surround(obstacle_batch *batch);
 
 #endif

@@ -11,7 +11,7 @@ enum {
 
 /* One call, and the mover that it is at. */
 typedef struct batch_run {
-  const cprox_batch *batch;
+  const obstacle_batch *batch;
   query q;
   double *block_lower; /* of each block of parts, */
   double *lower;       /* of each part's ball, padded; not known in blocks that are beyond what matters */

@@ -4,13 +4,11 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/rounding.h"
 #include "base/workspace.h"
 #include "kinematics/link_model.h"
 #include "problem/level_of_detail.h"
-#include "problem/validate.h"
 #include "shape/body.h"
 
 /* The box of a target in the world, rounding included. False where it has none. */
@@ -47,7 +45,7 @@ static bool has_elements(const cprox_obstacle *target) {
 }
 
 /* Boxes of targets that have one, the others apart. */
-static void sort_targets(cprox_set *set) {
+static void sort_targets(obstacle_bvh *set) {
   vec3 low = vec(INFINITY, INFINITY, INFINITY), high = vec(-INFINITY, -INFINITY, -INFINITY);
   for (size_t i = 0; i < set->n; i++) {
     const cprox_obstacle *target = &set->targets[i];
@@ -67,40 +65,35 @@ static void sort_targets(cprox_set *set) {
   if (set->n_boxes > 0) set->centre = vec_axpy(vec_scale(0.5, low), 0.5, high);
 }
 
-static cprox_set *allocate(size_t n) {
-  cprox_set *set = calloc(1, sizeof *set);
+static obstacle_bvh *allocate(size_t n) {
+  obstacle_bvh *set = calloc(1, sizeof *set);
   if (!set) return NULL;
   set->n = n;
-  set->targets = calloc(n + 1, sizeof *set->targets);
   set->low = calloc(2 * n + 1, sizeof *set->low);
   set->of_box = calloc(2 * n + 1, sizeof *set->of_box);
-  if (set->targets && set->low && set->of_box) {
+  if (set->low && set->of_box) {
     set->high = set->low + n;
     set->unbounded = set->of_box + n;
     return set;
   }
-  cprox_set_free(set);
+  obstacle_bvh_free(set);
   return NULL;
 }
 
-cprox_status cprox_set_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace, cprox_set **set) {
-  if (!workspace) return CPROX_INVALID;
-  workspace_clear(workspace);
-  if (!set) return workspace_fail(workspace, CPROX_INVALID, "set is NULL: nowhere to put the handle");
-  const cprox_status checked = arguments_check_targets(targets, n, workspace);
-  if (checked != CPROX_OK) return checked;
+cprox_status obstacle_bvh_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
+                                 obstacle_bvh **set) {
   if (n > TREE_MOST_ELEMENTS)
     return workspace_fail(workspace, CPROX_INVALID, "%zu targets, at most %zu are possible", n, TREE_MOST_ELEMENTS);
-  cprox_set *made = allocate(n);
+  obstacle_bvh *made = allocate(n);
   if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a set of %zu targets", n);
-  if (n > 0) memcpy(made->targets, targets, n * sizeof *targets);
+  made->targets = targets;
   sort_targets(made);
   if (made->n_boxes > 0) {
     const tree_source source = {
         .kind = TREE_BOXES, .n = made->n_boxes, .points = made->low, .high = made->high, .centre = made->centre};
     made->boxes = tree_create(&source, TREE_BY_AREA);
     if (!made->boxes) {
-      cprox_set_free(made);
+      obstacle_bvh_free(made);
       return workspace_fail(workspace, CPROX_MEMORY, "no memory for a set of %zu targets", n);
     }
     for (size_t i = 0; i < made->n_boxes; i++) {
@@ -112,20 +105,10 @@ cprox_status cprox_set_create(const cprox_obstacle *targets, size_t n, cprox_wor
   return CPROX_OK;
 }
 
-void cprox_set_free(cprox_set *set) {
+void obstacle_bvh_free(obstacle_bvh *set) {
   if (!set) return;
-  free(set->targets);
   free(set->low);    /* high is in the same block */
   free(set->of_box); /* unbounded is in the same block */
   tree_free(set->boxes);
   free(set);
-}
-
-size_t cprox_set_size(const cprox_set *set) {
-  return set->n;
-}
-
-size_t cprox_set_bytes(const cprox_set *set) {
-  const size_t each = sizeof *set->targets + 2 * sizeof *set->low + 2 * sizeof *set->of_box;
-  return sizeof *set + set->n * each + (set->boxes ? tree_bytes(set->boxes) : 0);
 }

@@ -4,11 +4,11 @@
 #define CPROX_BROADPHASE_OBSTACLE_SET_H
 
 #include "bvh/bvh.h"
-#include "curve_proximity/cprox/set.h"
+#include "curve_proximity/cprox/query.h"
 #include "problem/candidates.h"
 
-struct cprox_set {
-  cprox_obstacle *targets;
+typedef struct obstacle_bvh {
+  const cprox_obstacle *targets; /* not owned */
   size_t n;
   tree *boxes;         /* round the targets, margin included; NULL where none has bounds */
   vec3 *low, *high;    /* of the elements of the tree, about the centre */
@@ -17,7 +17,12 @@ struct cprox_set {
   size_t n_boxes, n_unbounded;
   vec3 centre;
   bool has_clock, has_elements, has_solids, has_curves; /* what not every mover goes with */
-};
+} obstacle_bvh;
+
+/* The BVH over the boxes of n obstacles, which were checked and must outlive it. */
+cprox_status obstacle_bvh_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
+                                 obstacle_bvh **set);
+void obstacle_bvh_free(obstacle_bvh *set);
 
 /* A node, a pack, or a target. */
 typedef struct set_entry {
@@ -27,7 +32,7 @@ typedef struct set_entry {
 } set_entry;
 
 typedef struct set_walk {
-  const cprox_set *set;
+  const obstacle_bvh *set;
   const query *q;
   tree_segment segment;
   double offset, slack;
@@ -36,7 +41,7 @@ typedef struct set_walk {
 } set_walk;
 
 /* False where memory is out, here as there. q has been asked about its whole curve. */
-bool set_walk_begin(set_walk *w, const cprox_set *set, const query *q);
+bool set_walk_begin(set_walk *w, const obstacle_bvh *set, const query *q);
 
 /* The next target, if its lower bound is at most `most`; else *target is UINT32_MAX and *lower a bound of all that are left. */
 bool set_walk_next(set_walk *w, double most, uint32_t *target, double *lower);

@@ -70,7 +70,7 @@ static double carried_reach(const query *q) {
   return q->mover.radius + (body ? vec_norm(body->ball_centre) + body->ball_radius : 0.0);
 }
 
-bool set_walk_begin(set_walk *w, const cprox_set *set, const query *q) {
+bool set_walk_begin(set_walk *w, const obstacle_bvh *set, const query *q) {
   *w = (set_walk){.set = set, .q = q, .offset = carried_reach(q)};
   if (!set->boxes) return true;
   const cprox_curve *curve = q->mover.curve;
@@ -114,7 +114,7 @@ static bool open_node(set_walk *w, const set_entry *entry) {
 }
 
 static bool refine(set_walk *w, set_entry *entry) {
-  const cprox_set *set = w->set;
+  const obstacle_bvh *set = w->set;
   const cprox_curve *curve = w->q->mover.curve;
   entry->is = SET_TARGET;
   if (curve->n_pieces > 1) {

@@ -3,6 +3,7 @@
 #include "certificate/describe.h"
 #include "certificate/write.h"
 #include "curve_proximity/cprox/certificate.h"
+#include "problem/obstacles.h"
 #include "problem/problem.h"
 #include "problem/validate.h"
 #include "robot_query/pair_state.h"
@@ -79,8 +80,10 @@ static void say_motion(text *t, const cprox_motion *motion) {
 
 /* ---- the whole ------------------------------------------------------------------------------------------------------------ */
 
-size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, const char *id,
+size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obstacles, const char *id,
                             cprox_workspace *workspace, char *out, size_t size) {
+  const cprox_obstacle *targets = obstacles_list(obstacles);
+  const size_t n = obstacles_count(obstacles);
   query q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);
   if (!mover->motion || certify_unknown_geometry(mover->motion->robot) < mover->motion->robot->n_geometries ||
       arguments_check_query(mover, targets, n, &q.options, (arguments_query){"a description", 0}, workspace) !=

@@ -5,6 +5,7 @@
 #include "certificate/describe.h"
 #include "certificate/partition.h"
 #include "kinematics/motion.h"
+#include "problem/obstacles.h"
 #include "problem/validate.h"
 #include "solve/solve.h"
 
@@ -232,9 +233,11 @@ cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targets, si
                                      : "too close to delta for a certificate");
 }
 
-cprox_status cprox_certify(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
+cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *obstacles, double delta,
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate) {
+  const cprox_obstacle *targets = obstacles_list(obstacles);
+  const size_t n = obstacles_count(obstacles);
   const cprox_options chosen = options ? *options : cprox_options_default();
   workspace_clear(workspace);
   cprox_certificate_clear(certificate);

@@ -21,7 +21,7 @@ typedef struct query {
   curve_interval part; /* of the mover's curve: the whole of it, or some of one piece */
   curve_capsule reach; /* contains that part */
   double t0, t1;       /* that part by the curve's parameter */
-  const struct cprox_set
+  const struct obstacle_bvh
       *set; /* a robot's query: the set that the targets are, by whose boxes they are found; or NULL */
 } query;
 

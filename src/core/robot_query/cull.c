@@ -95,7 +95,7 @@ static void from_boxes(const double *rows, vec3 p, double *distance) {
 }
 
 void cluster_measure(robot_scene *s, int32_t part, uint32_t at, double displacement, cluster_lanes *lanes) {
-  const cprox_set *set = s->q->set;
+  const obstacle_bvh *set = s->q->set;
   const tree *t = set->boxes;
   const robot_pair any = {.moving = part, .element = {-1, -1}};
   const robot_body *body = robot_scene_moving(s, &any);

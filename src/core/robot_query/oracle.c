@@ -57,7 +57,7 @@ static search_node node_of(const robot_search *o, const search_node *parent, siz
 
 bool robot_search_root(robot_search *o, size_t first, double u0, size_t last, double u1, search_node *root) {
   *root = (search_node){.lower = -INFINITY};
-  const cprox_set *set = o->scene.q->set;
+  const obstacle_bvh *set = o->scene.q->set;
   const size_t n_pairs = o->scene.n_pairs, n_parts = set && set->boxes ? o->scene.motion->robot->n_parts : 0;
   const int32_t slot = lists_take(&o->lists, n_pairs + n_parts);
   if (slot < 0) return false;

@@ -5,13 +5,13 @@
 
 #include "base/workspace.h"
 #include "curve/relative_curve.h"
-#include "curve_proximity/cprox/clearance.h"
 #include "curve_query/search_pair.h"
 #include "problem/level_of_detail.h"
 #include "problem/minkowski.h"
 #include "problem/validate.h"
 #include "shape/body.h"
 #include "solve/gradient_ties.h"
+#include "solve/list.h"
 #include "solve/solve.h"
 
 /* How near another minimiser must not come, in lengths of the curve, unless
@@ -183,7 +183,7 @@ static cprox_status is_farther(cprox_mover mover, const cprox_obstacle *target, 
   for (int i = 0; i < 4 && *farther; i += 2) {
     if (!(breaks[i] < breaks[i + 1])) continue;
     cprox_profile_interval interval;
-    const cprox_status status = cprox_profile(mover, target, 1, &breaks[i], 1, options, workspace, &interval);
+    const cprox_status status = list_profile(mover, target, 1, &breaks[i], 1, options, workspace, &interval);
     if (status < 0) return status;
     *farther = interval.lower > distance + options->epsilon;
   }

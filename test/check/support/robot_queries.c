@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #define _POSIX_C_SOURCE 200809L
 #include "support/robot_queries.h"
+#include "support/of_list.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -97,10 +98,10 @@ void robot_write_targets(const cprox_obstacle *targets, size_t n, FILE *out) {
 
 void robot_write_mover(const cprox_mover *along, const cprox_obstacle *targets, size_t n, const char *id,
                        cprox_workspace *ws, FILE *out) {
-  const size_t length = cprox_mover_describe(along, targets, n, id, ws, NULL, 0);
+  const size_t length = describe_mover_of_list(along, targets, n, id, ws, NULL, 0);
   if (length == 0) fail_msg("a robot is not described: %s", cprox_workspace_error(ws));
   char *text = calloc(length + 1, 1);
-  cprox_mover_describe(along, targets, n, id, ws, text, length + 1);
+  describe_mover_of_list(along, targets, n, id, ws, text, length + 1);
   fputs(text, out);
   free(text);
 }

@@ -4,6 +4,8 @@
 #include <math.h>
 
 #include "support/cases.h"
+#include "support/make_curve.h"
+#include "support/of_list.h"
 
 enum { POLYGON_SIDES = 9 };
 
@@ -35,7 +37,7 @@ void batch_scene_targets(rng *r, bool planar, cprox_workspace *workspace, batch_
       assert_int_equal(cprox_body_create_compound(parts, poses, 2, workspace, &s->bodies[i]), CPROX_OK);
     } else {
       const cprox_vec3 points[4] = {rng_in_cube(r, 1), rng_in_cube(r, 1), rng_in_cube(r, 1), rng_in_cube(r, 1)};
-      assert_int_equal(cprox_curve_create_bezier(points, 4, 0, 1, workspace, &s->standing), CPROX_OK);
+      assert_int_equal(curve_from(describe_bezier(points, 4, 0, 1), workspace, &s->standing), CPROX_OK);
       s->targets[i] = cprox_obstacle_curve(s->standing, 0.02);
       continue;
     }
@@ -59,10 +61,10 @@ void batch_scene_movers(rng *r, bool planar, cprox_workspace *workspace, batch_s
       const size_t n = i % 16 == 7 ? 5 : 40;
       for (size_t k = 0; k < n + 4; k++) knots[k] = (double)k;
       const double end = (double)n;
-      assert_int_equal(cprox_curve_create_bspline(points, n, 3, knots, n + 4, 3, end, workspace, &s->curves[i]), 0);
+      assert_int_equal(curve_from(describe_bspline(points, n, 3, knots, n + 4, 3, end), workspace, &s->curves[i]), 0);
     } else {
       const size_t n = 2 + rng_index(r, 9);
-      assert_int_equal(cprox_curve_create_bezier(points, n, t0, t1, workspace, &s->curves[i]), CPROX_OK);
+      assert_int_equal(curve_from(describe_bezier(points, n, t0, t1), workspace, &s->curves[i]), CPROX_OK);
     }
     s->movers[i] = i % 4 == 1 ? cprox_tube_along(s->curves[i], 0.05) : cprox_point_along(s->curves[i]);
     if (!planar && i % 16 == 3) s->movers[i] = cprox_body_along(s->carried, s->curves[i]);
@@ -76,19 +78,20 @@ void batch_scene_free(batch_scene *s) {
   cprox_curve_free(s->standing);
 }
 
-cprox_status batch_ask(query_type v, const cprox_batch *batch, const batch_scene *s, size_t first, size_t last,
+cprox_status batch_ask(query_type v, const cprox_obstacles *batch, const batch_scene *s, size_t first, size_t last,
                        cprox_workspace *workspace, cprox_result *results) {
   switch (v) {
-    case DISTANCE: return cprox_batch_distance(batch, s->movers, first, last, NULL, workspace, results);
-    case TOLERANCE: return cprox_batch_tolerance(batch, s->movers, first, last, DELTA, NULL, workspace, results);
-    default: return cprox_batch_collision(batch, s->movers, first, last, NULL, workspace, results);
+    case DISTANCE: return cprox_obstacles_distance_batch(batch, s->movers, first, last, NULL, workspace, results);
+    case TOLERANCE:
+      return cprox_obstacles_tolerance_batch(batch, s->movers, first, last, DELTA, NULL, workspace, results);
+    default: return cprox_obstacles_collision_batch(batch, s->movers, first, last, NULL, workspace, results);
   }
 }
 
 void batch_ask_alone(query_type v, const batch_scene *s, size_t i, cprox_workspace *workspace, cprox_result *r) {
-  if (v == DISTANCE) cprox_distance_all(s->movers[i], s->targets, s->n_targets, NULL, workspace, r, NULL);
-  if (v == TOLERANCE) cprox_tolerance_all(s->movers[i], s->targets, s->n_targets, DELTA, NULL, workspace, r, NULL);
-  if (v == COLLISION) cprox_collision_all(s->movers[i], s->targets, s->n_targets, NULL, workspace, r, NULL);
+  if (v == DISTANCE) distance_of_list(s->movers[i], s->targets, s->n_targets, NULL, workspace, r, NULL);
+  if (v == TOLERANCE) tolerance_of_list(s->movers[i], s->targets, s->n_targets, DELTA, NULL, workspace, r, NULL);
+  if (v == COLLISION) collision_of_list(s->movers[i], s->targets, s->n_targets, NULL, workspace, r, NULL);
 }
 
 bool same_answer(const cprox_result *a, const cprox_result *b) {

@@ -32,7 +32,7 @@ typedef enum query_type { DISTANCE, TOLERANCE, COLLISION, QUERY_TYPES } query_ty
 static const double DELTA = 0.1;
 
 /* A query of the movers first … last - 1 by the batch. */
-cprox_status batch_ask(query_type v, const cprox_batch *batch, const batch_scene *s, size_t first, size_t last,
+cprox_status batch_ask(query_type v, const cprox_obstacles *batch, const batch_scene *s, size_t first, size_t last,
                        cprox_workspace *workspace, cprox_result *results);
 
 /* The same query of mover i without a batch. */

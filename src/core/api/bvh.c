@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The queries of an obstacle set. */
+/* The queries that find obstacles by their BVH. */
+#include "api/bvh.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "base/workspace.h"
-#include "broadphase/obstacle_set.h"
-#include "curve_proximity/cprox/clearance.h"
 #include "problem/validate.h"
 #include "robot_query/answer.h"
+#include "solve/list.h"
 #include "solve/solve.h"
 #include "solve/time_of_contact.h"
 
@@ -16,11 +17,10 @@ static bool boxes_hold(const query *q) {
   return q->options.max_lod == CPROX_LOD_MESH;
 }
 
-static cprox_status begin(const cprox_set *set, query *q, arguments_query asked) {
+static cprox_status begin(const obstacle_bvh *set, query *q, arguments_query asked) {
   cprox_workspace *workspace = q->workspace;
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
-  if (!set) return workspace_fail(workspace, CPROX_INVALID, "set is NULL");
   /* the targets were checked when the set was made, but for what the mover must go with */
   const bool robot = q->mover.motion && (set->has_curves || set->has_solids || q->mover.self || q->mover.pairs);
   const bool all = set->has_clock || (q->mover.body && set->has_elements) || robot;
@@ -38,7 +38,7 @@ static cprox_status out_of_memory(const query *q) {
   return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a list of targets");
 }
 
-static cprox_status answer(const cprox_set *set, query *q, const char *name, cprox_result *result) {
+static cprox_status answer(const obstacle_bvh *set, query *q, const char *name, cprox_result *result) {
   const unsigned depths = query_wants_verdict(q) ? 0 : ARGUMENTS_SIGNED;
   const cprox_status begun = begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | depths});
   if (begun != CPROX_OK) return begun;
@@ -67,36 +67,36 @@ static cprox_status answer(const cprox_set *set, query *q, const char *name, cpr
   return all.status;
 }
 
-cprox_status cprox_set_distance(const cprox_set *set, cprox_mover mover, const cprox_options *options,
-                                cprox_workspace *workspace, cprox_result *result) {
+cprox_status bvh_distance(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
+                          cprox_workspace *workspace, cprox_result *result) {
   query q = query_create(mover, NULL, 0, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   return answer(set, &q, "the distance to a set", result);
 }
 
-cprox_status cprox_set_tolerance(const cprox_set *set, cprox_mover mover, double delta, const cprox_options *options,
-                                 cprox_workspace *workspace, cprox_result *result) {
+cprox_status bvh_tolerance(const obstacle_bvh *set, cprox_mover mover, double delta, const cprox_options *options,
+                           cprox_workspace *workspace, cprox_result *result) {
   const cprox_status checked = arguments_check_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
   query q = query_create(mover, NULL, 0, delta, true, options, workspace);
   return answer(set, &q, "tolerance of a set", result);
 }
 
-cprox_status cprox_set_collision(const cprox_set *set, cprox_mover mover, const cprox_options *options,
-                                 cprox_workspace *workspace, cprox_result *result) {
+cprox_status bvh_collision(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
+                           cprox_workspace *workspace, cprox_result *result) {
   query q = query_create(mover, NULL, 0, 0.0, false, options, workspace);
   return answer(set, &q, "collision with a set", result);
 }
 
-cprox_status cprox_set_time_of_contact(const cprox_set *set, cprox_mover mover, const cprox_options *options,
-                                       cprox_workspace *workspace, cprox_result *result) {
+cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
+                                 cprox_workspace *workspace, cprox_result *result) {
   query q = query_create(mover, NULL, 0, 0.0, false, options, workspace);
   const cprox_status begun =
       begin(set, &q, (arguments_query){"time of contact with a set", ARGUMENTS_STOP | ARGUMENTS_LOD});
   if (begun != CPROX_OK) return begun;
   if (q.set) return robot_time_of_contact(&q, result);
   if (q.mover.motion || !boxes_hold(&q))
-    return cprox_time_of_contact_all(mover, set->targets, set->n, &q.options, workspace, result);
+    return list_time_of_contact(mover, set->targets, set->n, &q.options, workspace, result);
   set_walk walk;
   if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
   time_of_contact met = time_of_contact_begin();
@@ -112,8 +112,8 @@ cprox_status cprox_set_time_of_contact(const cprox_set *set, cprox_mover mover, 
   return time_of_contact_conclude(&met, &q, result);
 }
 
-cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k, const cprox_options *options,
-                               cprox_workspace *workspace, cprox_result *nearest, size_t *count) {
+cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, const cprox_options *options,
+                         cprox_workspace *workspace, cprox_result *nearest, size_t *count) {
   query q = query_create(mover, NULL, 0, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   const arguments_query asked = {"the nearest targets of a set", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
@@ -121,7 +121,7 @@ cprox_status cprox_set_nearest(const cprox_set *set, cprox_mover mover, size_t k
   if (begun != CPROX_OK) return begun;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
   if (q.mover.motion || !boxes_hold(&q))
-    return cprox_nearest(mover, set->targets, set->n, k, &q.options, workspace, nearest, count);
+    return list_nearest(mover, set->targets, set->n, k, &q.options, workspace, nearest, count);
   set_walk walk;
   cprox_result *kept = query_reserve_results(&q, set->n);
   if (!kept) return CPROX_MEMORY;

@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Many obstacles behind one handle, and the queries against them.
+ *
+ *  The handle is a list, with an index where one is asked for. Its queries answer against the union of the obstacles,
+ *  for curves and robots alike. A handle is immutable; any number of threads may use it at once, each with its own
+ *  workspace. `obstacles` may be NULL in every query: then there are none, as for a robot against itself
+ *  (cprox_robot_self()). */
+#ifndef CURVE_PROXIMITY_CPROX_OBSTACLES_H
+#define CURVE_PROXIMITY_CPROX_OBSTACLES_H
+
+#include <curve_proximity/cprox/query.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Obstacles, with their index. */
+typedef struct cprox_obstacles cprox_obstacles;
+
+/** How the obstacles are found. The index changes the cost, never the guarantees; the digits may differ. */
+typedef enum cprox_obstacle_index {
+  /** A list: each obstacle is tested by its bounding sphere, nearest first. Cost: a copy of the list. */
+  CPROX_INDEX_NONE,
+  /** A BVH over the boxes of the obstacles: only nearby obstacles are tested exactly. For distance, tolerance,
+   *  collision, time of contact and nearest; other queries go by the list. Obstacles without bounds (halfspaces) and
+   *  those on the clock of the mover are tested every time. Cost: n log n, and 6 support values an obstacle. */
+  CPROX_INDEX_BVH,
+  /** Spheres and boxes in SIMD packets, for cprox_obstacles_distance_batch() and its like. Queries of one mover go by
+   *  the list. Cost: about fifty nearest-point queries for each convex part. */
+  CPROX_INDEX_BATCH
+} cprox_obstacle_index;
+
+/** A handle for n >= 0 obstacles.
+ *
+ *  list       copied; the bodies and curves that it names are kept by reference and must outlive the handle.
+ *  obstacles  receives the handle, owned by the caller: cprox_obstacles_free(). Untouched on failure.
+ *
+ *  CPROX_INVALID where an obstacle is unusable, with its number in the error message; CPROX_MEMORY. */
+CPROX_API cprox_status cprox_obstacles_create(const cprox_obstacle *list, size_t n, cprox_obstacle_index index,
+                                              cprox_workspace *workspace, cprox_obstacles **obstacles);
+
+/** Frees a handle; NULL is allowed. No query may be using it. */
+CPROX_API void cprox_obstacles_free(cprox_obstacles *obstacles);
+
+/** The number of obstacles; 0 for NULL. */
+CPROX_API size_t cprox_obstacles_size(const cprox_obstacles *obstacles);
+
+/** Distance, tolerance and collision against the union of the obstacles, as cprox_distance(), cprox_tolerance() and
+ *  cprox_collision() answer for one.
+ *
+ *  result    obstacle_index counts as the list was given. Without obstacles: CPROX_OK, lower = upper = infinity,
+ *            obstacle_index -1.
+ *  each      NULL if not needed; else one result an obstacle, each to the accuracy asked. It makes the query go by the
+ *            list and test every obstacle. Without `each` obstacles that cannot be the nearest are skipped.
+ *
+ *  CPROX_INVALID where options ask for a certificate and the index is CPROX_INDEX_BVH. */
+CPROX_API cprox_status cprox_obstacles_distance(const cprox_obstacles *obstacles, cprox_mover mover,
+                                                const cprox_options *options, cprox_workspace *workspace,
+                                                cprox_result *result, cprox_result *each);
+CPROX_API cprox_status cprox_obstacles_tolerance(const cprox_obstacles *obstacles, cprox_mover mover, double delta,
+                                                 const cprox_options *options, cprox_workspace *workspace,
+                                                 cprox_result *result, cprox_result *each);
+CPROX_API cprox_status cprox_obstacles_collision(const cprox_obstacles *obstacles, cprox_mover mover,
+                                                 const cprox_options *options, cprox_workspace *workspace,
+                                                 cprox_result *result, cprox_result *each);
+
+/** The time of contact with any of the obstacles, as cprox_time_of_contact() answers for one. */
+CPROX_API cprox_status cprox_obstacles_time_of_contact(const cprox_obstacles *obstacles, cprox_mover mover,
+                                                       const cprox_options *options, cprox_workspace *workspace,
+                                                       cprox_result *result);
+
+/** The k obstacles that come closest.
+ *
+ *  k         >= 1.
+ *  nearest   receives min(k, n) results, ascending by upper; obstacle_index says which. Each is as cprox_distance()
+ *  gives
+ *            it, signed where options say so.
+ *            Every obstacle that is not among them is at least nearest[last].upper - w away, w = max(epsilon,
+ *            relative_epsilon * nearest[last].upper).
+ *  count     receives their number.
+ *
+ *  Returns as cprox_distance(). The first status above CPROX_OK that an obstacle gave is returned; then the statement
+ *  about the rest holds with the lower bound of that obstacle in place of it. On a negative status nothing is written.
+ *  Cost: a bounding-sphere test an obstacle, and a search for those that the k-th best so far does not rule out. */
+CPROX_API cprox_status cprox_obstacles_nearest(const cprox_obstacles *obstacles, cprox_mover mover, size_t k,
+                                               const cprox_options *options, cprox_workspace *workspace,
+                                               cprox_result *nearest, size_t *count);
+
+/** All obstacles that come within delta >= 0 [m].
+ *
+ *  near      room for n results; receives those with lower <= delta, in the order of the list. Verdict violated:
+ *            upper <= delta, and then upper - lower <= epsilon. undecided: neither was proven.
+ *            Every obstacle that is not among them is farther than delta everywhere.
+ *  count     receives their number.
+ *
+ *  Returns as cprox_obstacles_nearest(). */
+CPROX_API cprox_status cprox_obstacles_within(const cprox_obstacles *obstacles, cprox_mover mover, double delta,
+                                              const cprox_options *options, cprox_workspace *workspace,
+                                              cprox_result *near, size_t *count);
+
+/** The pairs of a robot that come closest: of a geometry and an obstacle (cprox_robot_along()), or of two geometries
+ *  (cprox_robot_self(), obstacles NULL). The mover selects the pairs.
+ *
+ *  k         at most so many, >= 1; the number of all pairs: a result for every pair.
+ *  delta     [m] >= 0: only pairs that come within it; infinity: any.
+ *  nearest   receives up to k results, ascending by upper; mover_part and obstacle_index say which pair. Each is as
+ *            cprox_distance() gives it for that pair alone.
+ *            Every pair that is not among them is farther than delta everywhere, or at least nearest[last].upper - w
+ *            away, w = max(epsilon, relative_epsilon * nearest[last].upper).
+ *  count     receives their number.
+ *
+ *  Returns as cprox_obstacles_nearest(). Cost: a search a pair, which ends as soon as the pair cannot be among them. */
+CPROX_API cprox_status cprox_obstacles_nearest_pairs(const cprox_obstacles *obstacles, cprox_mover mover, size_t k,
+                                                     double delta, const cprox_options *options,
+                                                     cprox_workspace *workspace, cprox_result *nearest, size_t *count);
+
+/** The clearance of the mover on one interval of its parameter. */
+typedef struct cprox_profile_interval {
+  /** the interval */
+  double t0, t1;
+  /** [m] lower <= min over [t0, t1] of the distance to the nearest obstacle <= upper; infinity: no obstacle */
+  double lower, upper;
+  /** where in [t0, t1] upper was attained */
+  double t;
+  /** which obstacle that was; -1 for none */
+  int32_t obstacle_index;
+  /** of a robot: which geometry; else as in cprox_result */
+  int32_t mover_part;
+} cprox_profile_interval;
+
+/** The clearance profile: lower and upper clearance on each interval of a partition, for colouring a path and for
+ *  planners.
+ *
+ *  breaks      n_intervals + 1 parameters, ascending, inside the range of the mover.
+ *  intervals   receives n_intervals of them, each to the accuracy that options ask for.
+ *
+ *  Returns as cprox_distance(); a status above CPROX_OK means that some interval is less accurate than asked, and all
+ *  are true. CPROX_INVALID also where breaks do not ascend or leave the range. On a negative status nothing or some is
+ *  written. */
+CPROX_API cprox_status cprox_obstacles_profile(const cprox_obstacles *obstacles, cprox_mover mover,
+                                               const double *breaks, size_t n_intervals, const cprox_options *options,
+                                               cprox_workspace *workspace, cprox_profile_interval *intervals);
+
+/** Distance of movers first … last - 1 from the union of the obstacles. Threads may answer ranges of the same movers,
+ *  each with its own workspace. Each answer depends on its mover alone: results are the same for every split into
+ *  ranges, every number of threads and every instruction set.
+ *
+ *  obstacles made with CPROX_INDEX_BATCH, else CPROX_INVALID.
+ *  movers    at least `last` of them; first <= last.
+ *  options   NULL: the default. A certificate is refused: ask the query of one mover for it.
+ *  results   results[i] receives what cprox_obstacles_distance() answers for movers[i]: the same guarantees, not the
+ *            same digits. Signed distances are searched one mover at a time.
+ *            The others are untouched. nodes and distance queries are 0 where spheres and boxes round the parts settled
+ *            it.
+ *
+ *  A mover that is unusable fails alone: its result has the negative status and the interval [0, infinity], all others
+ *  are answered. Returns the first negative status, else the largest; the error message names the first mover that it
+ *  belongs to. Where obstacles, movers, results, options or the range are unusable: CPROX_INVALID, and nothing is
+ *  written. Source: doc/batches.md. */
+CPROX_API cprox_status cprox_obstacles_distance_batch(const cprox_obstacles *obstacles, const cprox_mover *movers,
+                                                      size_t first, size_t last, const cprox_options *options,
+                                                      cprox_workspace *workspace, cprox_result *results);
+
+/** The same for cprox_obstacles_tolerance(). delta >= 0 [m]. */
+CPROX_API cprox_status cprox_obstacles_tolerance_batch(const cprox_obstacles *obstacles, const cprox_mover *movers,
+                                                       size_t first, size_t last, double delta,
+                                                       const cprox_options *options, cprox_workspace *workspace,
+                                                       cprox_result *results);
+
+/** The same for cprox_obstacles_collision(). */
+CPROX_API cprox_status cprox_obstacles_collision_batch(const cprox_obstacles *obstacles, const cprox_mover *movers,
+                                                       size_t first, size_t last, const cprox_options *options,
+                                                       cprox_workspace *workspace, cprox_result *results);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The queries that find obstacles by their BVH. */
+#ifndef CPROX_API_BVH_H
+#define CPROX_API_BVH_H
+
+#include "broadphase/obstacle_set.h"
+
+cprox_status bvh_distance(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
+                          cprox_workspace *workspace, cprox_result *result);
+cprox_status bvh_tolerance(const obstacle_bvh *set, cprox_mover mover, double delta, const cprox_options *options,
+                           cprox_workspace *workspace, cprox_result *result);
+cprox_status bvh_collision(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
+                           cprox_workspace *workspace, cprox_result *result);
+cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
+                                 cprox_workspace *workspace, cprox_result *result);
+cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, const cprox_options *options,
+                         cprox_workspace *workspace, cprox_result *nearest, size_t *count);
+
+#endif
