@@ -161,7 +161,7 @@ def batches(rows, out):
     yield bars(rows, out, 'batches', lambda row: row['workload'].startswith(('polygons', 'boxes')), 'A thousand quintic Bézier curves', 'batches',
                lambda row: f"{row['workload'].replace(' ', chr(10))}\n{row['parameter'].split()[0]}", 'median time of all curves [µs]')
     for query_type in ('distance', 'tolerance', 'collision'):
-        yield rates(rows, out, f'boxes {query}', f'Batches of a thousand quintics, {query}', f'batches_rate_{query_type}')
+        yield rates(rows, out, f'boxes {query_type}', f'Batches of a thousand quintics, {query_type}', f'batches_rate_{query_type}')
     yield threads(rows, out)
 
 
@@ -241,7 +241,7 @@ def seeds(rows, out):
     """Fig. 7 and 10 of Lakshmanan et al., and its Table II as bars."""
     yield narrowing(rows, out)
     for query_type in ('distance', 'tolerance', 'collision'):
-        yield work_precision(rows, out, 'seeds', f'figure 10 {query}', r'order (\d+)', f'Bézier curves and a point, {query}',
+        yield work_precision(rows, out, 'seeds', f'figure 10 {query_type}', r'order (\d+)', f'Bézier curves and a point, {query_type}',
                              f'seeds_figure_10_{query_type}', 'order of the curve', reverse=False)
     yield bars(rows, out, 'seeds', lambda row: row['workload'].startswith('table II'), 'The pairs of Table II', 'seeds_table_2',
                lambda row: f"{row['parameter'][0]}\n{row['workload'][9:]}")

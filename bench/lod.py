@@ -53,8 +53,8 @@ def main():
                 answers, failed = answers_of(arguments.cprox, query_type, rows.name, scene, robot)
                 for lod in LODS:
                     times = [float(row['microseconds']) for row in answers if row['lod'] == lod]
-                    print(f'lod,{name} {query[0]},curve_proximity {level of detail},{level of detail},{quantile(times, 0.5)},{quantile(times, 0.95)},'
-                          f'{len(times)},{len(answers)},,0,{failed if level of detail == LODS[0] else 0}', flush=True)
+                    print(f'lod,{name} {query_type[0]},curve_proximity {lod},{lod},{quantile(times, 0.5)},{quantile(times, 0.95)},'
+                          f'{len(times)},{len(answers)},,0,{failed if lod == LODS[0] else 0}', flush=True)
 
 
 if __name__ == '__main__':

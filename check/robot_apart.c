@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* For each segment of the motion a tree of intervals, cut in halves. On each, every pair that is still open is tried
  * with the last direction that the certificate gave for it, and with one that follows from its place: from the box
- * round what stands to the centre of what moves. What neither settles is open on both halves; a interval that is not
+ * round what stands to the centre of what moves. What neither settles is open on both halves; an interval that is not
  * cut must settle all.
  *
  * A direction n, fixed in what stands, settles a pair if in the middle its plane parts the two by more than delta and the way that points
@@ -163,7 +163,7 @@ static const char *check_interval(walk *w, num *points, const size_t *open, size
   for (size_t i = 0; i < n && !fault; i++) {
     if (is_settled(w, &r->pairs[open[i]])) continue;
     left_open[kept++] = open[i];
-    if (head % 2 == 0) fault = "a pair is not settled on a interval";
+    if (head % 2 == 0) fault = "a pair is not settled on an interval";
   }
   if (!fault && head % 2 == 1) {
     for (size_t v = 0; v < r->n_variables; v++)

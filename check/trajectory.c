@@ -174,7 +174,7 @@ void trajectory_halve(num *points, size_t degree, num *left) {
   }
 }
 
-/* The least length over a interval: halves, until the ball round the point in the middle that holds all Bézier points
+/* The least length over an interval: halves, until the ball round the point in the middle that holds all Bézier points
  * does not reach half way to 0. */
 static double least_length(num c[4][ROBOT_MAX_DEGREE + 1], size_t degree, int halvings) {
   num left[4][ROBOT_MAX_DEGREE + 1], all[4][ROBOT_MAX_DEGREE + 1];

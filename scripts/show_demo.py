@@ -109,7 +109,7 @@ def ask(query_type, **request):
     text = yaml.safe_dump(request, default_flow_style=True, width=1e9)
     answer = yaml.safe_load(run('rosservice', 'call', f'{NODE}/{query_type}', text))
     if not answer['success']:
-        raise Failure(f"{query}: {answer['message']}")
+        raise Failure(f"{query_type}: {answer['message']}")
     return answer['results']
 
 

@@ -108,11 +108,11 @@ def lods(rows):
     if not found:
         return ''
     kinds = ('sphere', 'hull', 'mesh')
-    body = [[*name.rsplit(' ', 1), *(cell for kind in kinds for cell in (f"{100.0 * float(of[kind]['nodes']) / float(of[kind]['distance queries']):.0f} %",
+    body = [[*name.rsplit(' ', 1), *(cell for kind in kinds for cell in (f"{100.0 * float(of[kind]['nodes']) / float(of[kind]['distance_queries']):.0f} %",
              microseconds(float(of[kind]['median_us'])) if of[kind]['median_us'] else ''))] for name, of in found.items()]
     return f'''
 ## What each model settles
-Curves through scenes, an answer for each object and link (`bench/lod.py`): the share of the answers that each lod of a body's lod gave, and the
+Curves through scenes, an answer for each object and link (`bench/lod.py`): the share of the answers that each level of detail gave, and the
 median of what they cost. A distance to 1e-6 is the mesh's own wherever the nearest body is one; verdicts seldom need it.
 
 {table(['scene', 'query_type', *(word for kind in kinds for word in (kind, 'cost'))], body)}

@@ -23,7 +23,7 @@ def proximity(figures):
     lines = []
     for pair, values in printed.items():
         for query_type, value in zip(('distance', 'tolerance', 'collision'), values):
-            key = ('seeds', f'table II {query}', pair)
+            key = ('seeds', f'table II {query_type}', pair)
             lines.append([pair.replace(' | ', ', ') if query_type == 'distance' else '', query_type, microseconds(value),
                           figures.time(*key, method=PAPER), figures.time(*key), figures.count(*key, method=PAPER, column='nodes'),
                           figures.count(*key, column='nodes')])
@@ -35,7 +35,7 @@ def orders(figures):
     for order in range(5, 50, 5):
         line = [str(order)]
         for query_type in ('distance', 'tolerance', 'collision'):
-            key = ('seeds', f'figure 10 {query}', f'order {order:02d}')
+            key = ('seeds', f'figure 10 {query_type}', f'order {order:02d}')
             line += [figures.time(*key, method=PAPER), figures.time(*key)]
         lines.append(line)
     return table(['order', 'distance, its method', 'ours', 'tolerance, its method', 'ours', 'collision, its method', 'ours'], lines)
@@ -80,7 +80,7 @@ method" is the published method, written again as described (`bench/paper`).
 ## A. Lakshmanan, A. Patterson, V. Cichella, N. Hovakimyan, "Proximity Queries for Absolutely Continuous Parametric Curves", RSS 2019
 (printed: Julia, 2.3 GHz Core i5)
 
-**Table I**, the length of a interval of a curve and its bound by Eq. 6:
+**Table I**, the length of an interval of a curve and its bound by Eq. 6:
 
 {arc_lengths(figures)}
 

@@ -9,7 +9,7 @@
 #include "robot_query/pair_state.h"
 #include "solve/solve.h"
 
-/* A pair on a interval: what is known of its distance at both ends. */
+/* A pair on an interval: what is known of its distance at both ends. */
 typedef struct ends {
   double lower, at[2];
   int32_t pair;
@@ -85,7 +85,7 @@ static double measured_gap(search *s, const robot_pair *pair) {
   return fmax(gap.lower, 0.0);
 }
 
-/* Bounds all pairs of a interval; keeps those that matter. Balls first, then distances at the ends. */
+/* Bounds all pairs of an interval; keeps those that matter. Balls first, then distances at the ends. */
 static void bound(search *s, interval *node) {
   const size_t n_axes = s->scene.motion->robot->n_axes;
   double *ways = malloc(node->n * sizeof *ways);
@@ -129,7 +129,7 @@ static void bound(search *s, interval *node) {
   free(ways), free(chain), free(balls[0]), free(balls[1]);
 }
 
-/* Bounds all pairs of a interval by what is measured in its middle. */
+/* Bounds all pairs of an interval by what is measured in its middle. */
 static void bound_centrally(search *s, interval *node, int order) {
   size_t kept = 0;
   s->nodes++;

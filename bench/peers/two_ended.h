@@ -15,7 +15,7 @@ typedef struct peer_answer {
 void two_ended_distance(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double epsilon,
                         uint32_t max_nodes, cprox_workspace *workspace, peer_answer *answer);
 
-/* Best first by the distance in the middle of a interval and one bound: of first order (2: M2), by a plane that stands
+/* Best first by the distance in the middle of an interval and one bound: of first order (2: M2), by a plane that stands
  * still to second (3: M3) or third order (4: M4). */
 void central_distance(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, int order, double epsilon,
                       uint32_t max_nodes, cprox_workspace *workspace, peer_answer *answer);

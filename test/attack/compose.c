@@ -276,7 +276,7 @@ static void ask_profile(query *q) {
                             .t_obstacle = NAN,
                             .status = status,
                             .verdict = CPROX_VERDICT_UNDECIDED};
-    /* a jump at the end of a interval belongs to the next */
+    /* a jump at the end of an interval belongs to the next */
     const double end = k + 1 < INTERVALS ? p->t1 - scene_step(&s->path) : p->t1;
     for (size_t i = 0; i < s->n; i++) check_lower(q, i, &x, p->t0, end);
     if (isinf(p->upper) || p->obstacle_index < 0 || (size_t)p->obstacle_index >= s->n) {

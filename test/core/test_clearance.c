@@ -122,7 +122,7 @@ CASE(within_lists_exactly_those_within) {
 }
 
 /* 200 worlds, seed 3, up to 12 intervals each, some as short as 1e-9: the least clearance sampled in long double at 40
- * parameters of a interval is never below its lower bound, and the whole is the least of the parts. */
+ * parameters of an interval is never below its lower bound, and the whole is the least of the parts. */
 CASE(a_profile_holds_on_every_interval_and_adds_up_to_the_whole) {
   rng r = rng_seed(3);
   for (size_t i = 0, cases = test_cases(200); i < cases; i++) {

@@ -78,7 +78,7 @@ CASE(evaluation_agrees_with_the_splines) {
 
 /* ---- bounds --------------------------------------------------------------------------------------------------------------- */
 
-/* A interval of a motion, one geometry seen from another one or from the world. */
+/* An interval of a motion, one geometry seen from another one or from the world. */
 typedef struct bound_case {
   size_t segment, moving;
   int standing; /* -1: the world */

@@ -66,7 +66,7 @@ CASE(nearest_is_that_of_all_elements_for_every_kernel) {
   }
 }
 
-/* Bounds over a interval (seed 37): no element of a lane is nearer to a point of the interval's hull than the lane's
+/* Bounds over an interval (seed 37): no element of a lane is nearer to a point of the interval's hull than the lane's
  * bound. */
 CASE(bounds_hold_over_the_hull_and_agree_between_kernels) {
   static vec3 low[MOST], high[MOST];

@@ -83,7 +83,7 @@ static int32_t *reserve(const robot_cover *c, size_t n) {
   return workspace_reserve(c->scene->q->workspace, WORKSPACE_COVER, (n + 1) * sizeof(int32_t));
 }
 
-/* The pairs that a interval leaves open come to stand behind `to`; their number is *kept. Writes the head and the
+/* The pairs that an interval leaves open come to stand behind `to`; their number is *kept. Writes the head and the
  * normals. */
 static cprox_status settle_pairs(robot_cover *c, size_t from, size_t to, double width, size_t *kept) {
   const size_t head = certificate_short(c->certificate, 0);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A motion over a interval of one of its segments: values, derivatives and their bounds, from Bernstein coefficients.
+/* A motion over an interval of one of its segments: values, derivatives and their bounds, from Bernstein coefficients.
  * */
 #include "kinematics/motion.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Joint splines: one Bézier polynomial a segment and variable that moves, and what a interval of them says of every
+/* Joint splines: one Bézier polynomial a segment and variable that moves, and what an interval of them says of every
  * axis. */
 #ifndef CPROX_KINEMATICS_MOTION_H
 #define CPROX_KINEMATICS_MOTION_H
@@ -28,7 +28,7 @@ struct cprox_motion {
   double *part_error; /* every point of a part is computed within this of where it is */
 };
 
-/* What a node, a interval [a, b] of a segment, says of one axis. Derivatives are by the node's own u in [0, 1]; all
+/* What a node, an interval [a, b] of a segment, says of one axis. Derivatives are by the node's own u in [0, 1]; all
  * bounds hold for the exact motion, rounding included. `velocity` and `acceleration` are those at the middle, in world
  * axes: angular for revolute axes and balls, linear for prismatic ones. */
 typedef struct axis_state {

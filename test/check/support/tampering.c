@@ -29,7 +29,7 @@ const char *tamper(bytes *b, rng *r, const bytes *other) {
       store_double(b, at, load_double(b, at) * (1.0 + rng_log_uniform(r, 1e-15, 0.1)));
       return "number";
     }
-    case 7: { /* a interval goes or comes twice */
+    case 7: { /* an interval goes or comes twice */
       if (b->n < HEAD + 2) return "nothing";
       const size_t from = HEAD + rng_index(r, b->n - HEAD), length = rng_index(r, b->n - from) + 1;
       memmove(b->at + from, b->at + from + length, b->n - from - length);
