@@ -155,7 +155,7 @@ TEST(Broadphase, boxes_contain_their_bodies) {
       const Eigen::Vector3d d = random.vector(1.0);
       cprox_vec3 at;
       cprox_body_support(placed.target.body, toVec3(d), &at);
-      const Eigen::Vector3d surface = pose * toEigen(at) + (pose.linear() * d).normalized() * placed.target.padding;
+      const Eigen::Vector3d surface = pose * toEigen(at) + (pose.linear() * d).normalized() * placed.target.margin;
       EXPECT_TRUE(placed.box.contains(surface));
     }
   }
