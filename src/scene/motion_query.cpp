@@ -156,7 +156,7 @@ Answer answerOf(const Asked &asked, const Query &query, Workspace &workspace) {
 /* What is asked about is a distance, and of all objects. */
 void checkDistances(bool self, const Query &query) {
   if (query.query_type != QueryType::DISTANCE)
-    throw Error("query does not apply: pairs and clearance profiles are answered by their distances");
+    throw Error("query_type does not apply: pairs and clearance profiles are answered by their distances");
   const std::string fault = faultOfMotion(query, true);
   if (!fault.empty()) throw Error(fault);
   if (self && !query.objects.empty())

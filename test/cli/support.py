@@ -29,6 +29,11 @@ class Answer:
             raise AssertionError(f'{len(found)} rows with id {identifier!r}, b {b!r}\n{self.out}\n{self.err}')
         return found[0]
 
+    def code_of_verdicts(self):
+        """The exit code that answered rows ask for: 1 where one is violated, 3 where one is undecided, else 0."""
+        verdicts = {row['verdict'] for row in self.rows}
+        return 1 if 'violated' in verdicts else 3 if 'undecided' in verdicts else 0
+
     def without_times(self):
         """The rows without the one column that differs from run to run."""
         return [{k: v for k, v in row.items() if k != 'microseconds'} for row in self.rows]

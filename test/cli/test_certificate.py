@@ -54,7 +54,7 @@ class CertificateTest(Case):
         """Asks with --certificate; the words of `check` for the same query."""
         self.certificates = os.path.join(self.folder, 'answers.cpc')
         answer = self.ask(query_type, rows, scene, '--certificate', self.certificates, *more)
-        self.assertEqual(answer.code, 0, answer.err)
+        self.assertEqual(answer.code, answer.code_of_verdicts(), answer.err)
         return answer
 
     def check(self, scene='scene.yaml', curves='curves.csv'):
@@ -136,7 +136,7 @@ class CertificateTest(Case):
                                ('distance', ['--max-lod', 'hull']), ('distance', ['--max-lod', 'sphere'])):
                 plain = self.ask(query_type, rows, scene, *more)
                 proven = self.ask(query_type, rows, scene, '--certificate', self.certificates, *more)
-                self.assertEqual((plain.code, proven.code), (0, 0), proven.err)
+                self.assertEqual((plain.code, proven.code), (plain.code_of_verdicts(),) * 2, proven.err)
                 self.assertEqual(without_proof(plain), without_proof(proven))
                 for line, row in zip(self.check().out.splitlines(), proven.rows):
                     said = {'apart': ': proven: farther than', 'near': ': proven: not farther than', 'none': ': nothing is claimed'}

@@ -223,8 +223,10 @@ typedef struct cprox_rectifiable_curve {
 typedef struct cprox_curve_description {
   /** which members are read */
   cprox_curve_kind kind;
-  /** the parameter range, t0 < t1; not read for Dubins paths and piecewise curves */
-  double t0, t1;
+  /** the start of the parameter range; not read for Dubins paths and piecewise curves */
+  double t0;
+  /** the end of the parameter range, above t0; not read where t0 is not */
+  double t1;
   /** [m] control points, coefficients, or points to pass */
   const cprox_vec3 *points;
   /** quaternions, for Pythagorean-hodograph curves */
@@ -239,13 +241,18 @@ typedef struct cprox_curve_description {
   const double *knots;
   /** the number of knots, nodes or ends */
   size_t n_knots;
-  /** [m] where planar curves and Pythagorean-hodograph curves start; the centre of an involute's circle; the end of a
-   *  Dubins path */
-  cprox_vec3 start, end;
-  /** [rad] about z, from x */
-  double heading, end_heading;
-  /** [1/m], [1/m²] of a clothoid */
-  double curvature, curvature_rate;
+  /** [m] where planar curves and Pythagorean-hodograph curves start; the centre of an involute's circle */
+  cprox_vec3 start;
+  /** [m] the end of a Dubins path */
+  cprox_vec3 end;
+  /** [rad] about z, from x: at the start */
+  double heading;
+  /** [rad] about z, from x: at the end of a Dubins path */
+  double end_heading;
+  /** [1/m] of a clothoid at its start */
+  double curvature;
+  /** [1/m²] of a clothoid: the change of its curvature by arc length */
+  double curvature_rate;
   /** [m] of the turns of a Dubins path, of the circle of an involute */
   double radius;
   /** of a Dubins path */
@@ -283,9 +290,12 @@ CPROX_API void cprox_curve_free(cprox_curve *curve);
 
 /** What is known of a curve. */
 typedef struct cprox_curve_info {
+  /** the kind that the curve was created as */
   cprox_curve_kind kind;
-  /** the ends of the parameter range */
-  double t0, t1;
+  /** the start of the parameter range */
+  double t0;
+  /** the end of the parameter range */
+  double t1;
   /** of the polynomial pieces; 0 for a curve that is known by its arc length */
   size_t degree;
   /** the number of polynomial pieces */
@@ -293,8 +303,10 @@ typedef struct cprox_curve_info {
   /** [m] how far the curve as it was given may be from its computed pieces, at most: the rounding of their conversion,
    *  and of a compiled curve the remainder. 0 for a Bézier curve. Every interval contains it. */
   double error;
-  /** [m] an axis-aligned box that contains the curve, rounding included */
-  cprox_vec3 lowest, highest;
+  /** [m] the lowest corner of an axis-aligned box that contains the curve, rounding included */
+  cprox_vec3 lowest;
+  /** [m] the highest corner of that box */
+  cprox_vec3 highest;
   /** what a Dubins path consists of; zeros for other kinds */
   cprox_dubins_path dubins;
 } cprox_curve_info;

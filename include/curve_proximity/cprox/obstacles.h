@@ -57,9 +57,11 @@ CPROX_API size_t cprox_obstacles_size(const cprox_obstacles *obstacles);
 CPROX_API cprox_status cprox_obstacles_distance(const cprox_obstacles *obstacles, cprox_mover mover,
                                                 const cprox_options *options, cprox_workspace *workspace,
                                                 cprox_result *result, cprox_result *each);
+/** As cprox_obstacles_distance(): are all obstacles farther than delta everywhere? delta >= 0 [m]. */
 CPROX_API cprox_status cprox_obstacles_tolerance(const cprox_obstacles *obstacles, cprox_mover mover, double delta,
                                                  const cprox_options *options, cprox_workspace *workspace,
                                                  cprox_result *result, cprox_result *each);
+/** As cprox_obstacles_distance(): does the mover touch or overlap an obstacle anywhere? */
 CPROX_API cprox_status cprox_obstacles_collision(const cprox_obstacles *obstacles, cprox_mover mover,
                                                  const cprox_options *options, cprox_workspace *workspace,
                                                  cprox_result *result, cprox_result *each);
@@ -116,8 +118,10 @@ CPROX_API cprox_status cprox_obstacles_nearest_pairs(const cprox_obstacles *obst
 
 /** The clearance of the mover on one interval of its parameter. */
 typedef struct cprox_profile_interval {
-  /** the interval */
-  double t0, t1;
+  /** the start of the interval */
+  double t0;
+  /** the end of the interval */
+  double t1;
   /** [m] lower <= min over [t0, t1] of the distance to the nearest obstacle <= upper; infinity: no obstacle */
   double lower, upper;
   /** where in [t0, t1] upper was attained */
