@@ -41,7 +41,7 @@ Five minutes for whoever plans motions. All times are medians of one run ([READM
 - **Only "is it farther than Δ?"**: ask `tolerance`. Against a 3-D polytope, for a curve of order 15, it takes {clear} when Δ is half of the distance, {near} when it is
   99 % of it; the distance itself to 1e-6 takes {distance}. The farther Δ is from the distance, the cheaper.
 - **Only "does it hit?"**: ask `collision`: a tolerance with Δ = 0.
-- **When does it hit?** `first contact`: never late.
+- **When does it hit?** `cprox_time_of_contact`: never late.
 - **How close, where, and in which direction?** `distance`.
 - **A gradient for an optimiser?** A constraint provider: by curve distance where curves are what you optimise, by superquadrics where the gradient must be smooth
   between bodies, by Fourier gaps where bodies may overlap and must be pushed apart.

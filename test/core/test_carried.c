@@ -314,7 +314,7 @@ static int by_count(const void *a, const void *b) {
 }
 
 /* Seed 35, 200 problems a pair of kinds, quintics in the unit cube, epsilon 1e-9. No allocation once the first is answered. */
-CASE(medians_stay_within_8_nodes_and_14_probes) {
+CASE(medians_stay_within_8_nodes_and_14_distance_queries) {
   enum { PROBLEMS = 200 };
   rng r = rng_seed(35);
   const cprox_body_kind kinds[][2] = {{CPROX_BOX, CPROX_BOX},
