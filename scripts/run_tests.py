@@ -309,7 +309,7 @@ def write_list(files):
 
 
 # Rostests that hold an answer against the wall clock have the machine to themselves.
-ALONE = r'_ros_(batches|concurrency|diagnostics|lifetime|managers|no_clock|nodelet|robot)\.test$'
+ALONE = r'_ros_(batches|concurrency|diagnostics|lifetime|managers|no_clock|nodelet|robot|topics)\.test$'
 
 
 def run_catkin_test(title, command, folder):
