@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A robot along a motion, as the problem's text has it: single axes, convex bodies on them, and a Bézier polynomial for each segment
- * and variable. */
+/* A robot along a motion, as the problem's text describes it: single axes, convex bodies on them, and a Bézier polynomial
+ * for each segment and variable. */
 #ifndef CHECK_ROBOT_H
 #define CHECK_ROBOT_H
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The method of Lakshmanan, Patterson, Cichella, Hovakimyan (RSS 2019) as they describe it, the baseline of all ratios: best-first
- * bisection; an interval's lower bound is the GJK distance to a polytope round the ellipsoid of Theorem 1, whose size is the
- * closed-form arc-length bound of Eq. 6; its upper bound is the GJK distance of the curve's point at the middle.
+/* The published method: Lakshmanan, Patterson, Cichella, Hovakimyan (RSS 2019). It is the baseline of all ratios.
  *
- * Kept as published: plain double arithmetic without regard to rounding. Its u² - L² cancels, so that lower bounds may come out too
- * high: the benches count that. Mended, in its favour: the 3-D hull's axes are orthogonal here (as published they are not, and the
- * hull misses part of the ellipsoid), and lower bounds are GJK's own lower bounds. */
+ * The search is best-first bisection. The lower bound of an interval is the GJK distance to a polytope round the
+ * ellipsoid of Theorem 1. The closed-form arc-length bound of Eq. 6 gives the size of the ellipsoid. The upper bound is
+ * the GJK distance of the curve's point in the middle.
+ *
+ * Kept as published: plain double arithmetic without regard to rounding. Its u² - L² cancels, so that lower bounds may
+ * be too high; the benches count that. Two mends in its favour: the axes of the 3-D hull are orthogonal here (as
+ * published they are not, and the hull misses part of the ellipsoid), and lower bounds are GJK's own lower bounds. */
 #ifndef CPROX_BENCH_PAPER_H
 #define CPROX_BENCH_PAPER_H
 

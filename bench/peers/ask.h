@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What a user would pick instead: points and curves against Bézier curves and B-splines by OpenCASCADE and SISL, a ball along a path
- * past a convex body by FCL at 100 points, its time of contact by Bullet on 100 chords; each where it is installed. */
+/* Peers that a user would pick instead, each where it is installed: OpenCASCADE and SISL for points and curves against
+ * Bézier curves and B-splines, FCL at 100 points for a sphere along a path past a convex body, and Bullet on 100 chords
+ * for its time of contact. */
 #ifndef CPROX_BENCH_ASK_H
 #define CPROX_BENCH_ASK_H
 

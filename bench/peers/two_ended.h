@@ -23,7 +23,8 @@ void central_distance(const cprox_mover *mover, const cprox_obstacle *targets, s
 /* Into how many steps a segment falls where no joint moves farther than `step` in one. */
 int sampled_steps(const cprox_motion *motion, size_t segment, double step);
 
-/* The least distance of samples between which no joint moves farther than `step`, or the first one at 0 where `first_hit` is set. */
+/* The least distance of samples between which no joint moves farther than `step`. With `first_hit` it ends at the first
+ * sample at distance 0. */
 void sampled_distance(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double step, bool first_hit,
                       cprox_workspace *workspace, peer_answer *answer);
 

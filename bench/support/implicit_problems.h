@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Pairs of implicit bodies: the objects of Chakraborty et al. 2008 at random places, bodies of many constraints, hard families. */
+/* Pairs of implicit bodies: the objects of Chakraborty et al. 2008 at random poses, bodies of many constraints, and hard
+ * families. */
 #ifndef CPROX_BENCH_IMPLICIT_PROBLEMS_H
 #define CPROX_BENCH_IMPLICIT_PROBLEMS_H
 

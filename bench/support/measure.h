@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Methods beside each other on the same problems: times, counts, errors, one row of results.csv each.
  *
- * All methods of a workload run in one process, in turns of ten problems, so that a noisy machine troubles all alike: trust ratios. */
+ * All methods of a workload run in one process, in turns of ten problems. A noisy machine then slows all of them alike:
+ * trust ratios. */
 #ifndef CPROX_BENCH_MEASURE_H
 #define CPROX_BENCH_MEASURE_H
 
