@@ -311,6 +311,65 @@ CASE(a_profile_is_true_on_every_interval) {
     if (!strstr(cprox_workspace_error(ws), part)) fail_msg("%s", cprox_workspace_error(ws)); \
   } while (0)
 
+/* A slider of three balls on a rail, through a wall at its end, where it may also touch itself; written with many waypoints. */
+CASE(proven_contact_ends_a_query_at_once) {
+  enum { POINTS = 4000, BALLS = 3 };
+  cprox_link links[BALLS];
+  cprox_link_geometry geometries[BALLS];
+  cprox_body *ball = NULL, *wall = NULL;
+  assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
+  assert_int_equal(cprox_body_create_box((cprox_vec3){0.1, 4, 4}, ws, &wall), CPROX_OK);
+  int32_t variables[BALLS];
+  for (int32_t i = 0; i < BALLS; i++) {
+    links[i] = (cprox_link){.parent = i - 1,
+                            .type = CPROX_JOINT_PRISMATIC,
+                            .origin = cprox_pose_identity(),
+                            .axis = {1, 0, 0},
+                            .variable = i,
+                            .multiplier = 1.0};
+    geometries[i] = (cprox_link_geometry){.body = ball, .pose = cprox_pose_identity(), .link = i};
+    variables[i] = i;
+  }
+  static double values[POINTS][BALLS];
+  static cprox_waypoint points[POINTS];
+  for (int i = 0; i < POINTS; i++) {
+    values[i][0] = (double)i / POINTS;
+    points[i] = (cprox_waypoint){.time = i, .positions = values[i]};
+    for (int k = 1; k < BALLS; k++) values[i][k] = 0.05 + 1e-6 * i;
+  }
+  cprox_robot *robot = NULL;
+  cprox_motion *motion = NULL;
+  assert_int_equal(cprox_robot_create(links, BALLS, geometries, BALLS, BALLS, ws, &robot), CPROX_OK);
+  assert_int_equal(
+      cprox_motion_create_waypoints(robot, variables, BALLS, points, POINTS, CPROX_LINEAR, NULL, ws, &motion),
+      CPROX_OK);
+  const cprox_obstacle targets[2] = {
+      cprox_obstacle_at(wall, (cprox_pose){.position = {0.5, 0, 0}, .orientation = {.w = 1.0}}),
+      cprox_obstacle_at(wall, (cprox_pose){.position = {9, 0, 0}, .orientation = {.w = 1.0}})};
+  cprox_obstacles *sets[2] = {NULL};
+  assert_int_equal(cprox_obstacles_create(targets, 2, CPROX_INDEX_NONE, ws, &sets[0]), CPROX_OK);
+  assert_int_equal(cprox_obstacles_create(targets, 2, CPROX_INDEX_BVH, ws, &sets[1]), CPROX_OK);
+  for (int i = 0; i < 3; i++) {
+    const cprox_mover mover = i == 2 ? cprox_robot_self(motion, NULL, 0) : cprox_robot_along(motion, NULL, 0);
+    const cprox_obstacles *set = i == 2 ? NULL : sets[i];
+    cprox_result r[3];
+    assert_int_equal(cprox_obstacles_distance(set, mover, NULL, ws, &r[0], NULL), CPROX_OK);
+    assert_int_equal(cprox_obstacles_collision(set, mover, NULL, ws, &r[1], NULL), CPROX_OK);
+    assert_int_equal(cprox_obstacles_tolerance(set, mover, 0.01, NULL, ws, &r[2], NULL), CPROX_OK);
+    for (int k = 0; k < 3; k++) {
+      assert_true(r[k].upper <= (k == 2 ? 0.01 : 0.0) && r[k].lower <= r[k].upper);
+      if (k > 0) assert_int_equal(r[k].verdict, CPROX_VERDICT_VIOLATED);
+      if (r[k].nodes > 1 || r[k].distance_queries > 18)
+        fail_msg("set %d query %d: %u nodes, %u distances", i, k, r[k].nodes, r[k].distance_queries);
+    }
+  }
+  for (int i = 0; i < 2; i++) cprox_obstacles_free(sets[i]);
+  cprox_motion_free(motion);
+  cprox_robot_free(robot);
+  cprox_body_free(ball);
+  cprox_body_free(wall);
+}
+
 CASE(bad_input_gets_a_sentence) {
   rng r = rng_seed(4414);
   test_robot t;

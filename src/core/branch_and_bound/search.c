@@ -60,12 +60,6 @@ static bool is_unresolved(const search_goal *goal, const search_best *best, cons
   return gap <= floor || (goal->limit >= 0.0 && gap <= goal->epsilon);
 }
 
-/* The best point alone ends the search: it violates the limit, or it is as close to 0 as was asked. */
-static bool is_answered(const search_goal *goal, const search_best *best) {
-  if (goal->order == SEARCH_LEFT_TO_RIGHT || goal->is_signed) return false;
-  return goal->limit >= 0.0 ? best->upper <= goal->limit : best->upper <= search_width(goal, best->upper);
-}
-
 /* Left to right: from here on nothing is asked any more, since contact came before. */
 static double time_cutoff(const search_goal *goal, const search_best *best) {
   return best->upper <= goal->limit + goal->epsilon ? lesser(best->at, goal->time_cutoff) : goal->time_cutoff;
@@ -97,7 +91,7 @@ static cprox_status work_on(const search_goal *goal, const search_oracle *oracle
   const cprox_status probed = oracle->probe(oracle->self, node, &outcome->best);
   if (probed < 0) return probed;
   *state = state_of(goal, &outcome->best, node);
-  if (*state != NODE_OPEN || is_answered(goal, &outcome->best)) return CPROX_OK;
+  if (*state != NODE_OPEN || search_is_answered(goal, outcome->best.upper)) return CPROX_OK;
 
   /* cut at the best point where it lies inside, else in the middle */
   search_node child[SEARCH_MAX_CHILDREN];
@@ -151,7 +145,7 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
       } else {
         const cprox_status worked = work_on(goal, oracle, &node, &open, outcome, &state);
         if (worked < 0) return worked;
-        if (state == NODE_OPEN && !is_answered(goal, &outcome->best)) continue;
+        if (state == NODE_OPEN && !search_is_answered(goal, outcome->best.upper)) continue;
       }
     }
 
@@ -159,7 +153,7 @@ cprox_status search_run(const search_goal *goal, const search_oracle *oracle, se
     outcome->lower = lesser(node.lower, outcome->lower);
     if (state != NODE_PRUNED) outcome->free_until = lesser(outcome->free_until, node.start);
     oracle->release(oracle->self, &node);
-    if (status != CPROX_OK || pruned_all || is_answered(goal, &outcome->best)) break;
+    if (status != CPROX_OK || pruned_all || search_is_answered(goal, outcome->best.upper)) break;
   }
 
   /* what is still open counts too */

@@ -96,6 +96,12 @@ static inline bool search_is_pruned(const search_goal *goal, double upper, doubl
   return goal->limit >= 0.0 ? lower > goal->limit : lower >= search_pruning_bound(goal, upper);
 }
 
+/* The best point alone ends the search: it violates the limit, or it is as close to 0 as was asked. */
+static inline bool search_is_answered(const search_goal *goal, double upper) {
+  if (goal->order == SEARCH_LEFT_TO_RIGHT || goal->is_signed) return false;
+  return goal->limit >= 0.0 ? upper <= goal->limit : upper <= search_width(goal, upper);
+}
+
 /* Searches from the root on; *outcome is always filled, and true, when the status is not negative. */
 cprox_status search_run(const search_goal *goal, const search_oracle *oracle, search_node root,
                         cprox_workspace *workspace, search_outcome *outcome);

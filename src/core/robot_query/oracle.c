@@ -8,7 +8,7 @@
 #include "broadphase/obstacle_set.h"
 #include "robot_query/cull.h"
 
-enum { SEEDS_PER_SEGMENT = 1, MOST_SEED_TESTS = 40000 };
+enum { MOST_SEEDS = 16, MOST_SEED_TESTS = 40000 };
 
 /* A gap is measured to this fraction of the width asked for. */
 static const double GAP_FRACTION = 0.02;
@@ -81,6 +81,11 @@ static double pruning_bound(const robot_search *o) {
 
 static bool is_pruned(const robot_search *o, double lower) {
   return search_is_pruned(&o->goal, o->best_bound.upper, lower);
+}
+
+/* Nothing more need be known: what is left on the lists does not matter. */
+static bool is_answered(const robot_search *o) {
+  return search_is_answered(&o->goal, o->best_bound.upper);
 }
 
 /* Distances: the least one. Left to right: the earliest one within epsilon of contact, and until there is one, the least. */
@@ -234,13 +239,13 @@ static cprox_status seed(robot_search *o, const search_node *node) {
   const robot_node *payload = robot_known(node);
   const int32_t list = payload->list;
   const size_t n = lists_count(&o->lists, list), first = payload->first, last = payload->last;
-  size_t places = (last - first) * SEEDS_PER_SEGMENT + 2;
-  while (places > 1 && places * n > MOST_SEED_TESTS) places /= 2;
+  size_t places = (last - first < MOST_SEEDS ? last - first : MOST_SEEDS) + 2;
+  while (places > 2 && places * n > MOST_SEED_TESTS) places /= 2;
   for (size_t i = 0; i < places; i++) {
-    size_t segment = first + i / SEEDS_PER_SEGMENT;
-    double u = ((double)(i % SEEDS_PER_SEGMENT) + 0.5) / SEEDS_PER_SEGMENT;
-    if (i == places - 2) segment = first, u = payload->a;
-    if (i == places - 1) segment = last - 1, u = payload->b;
+    size_t segment = places > 2 ? first + (last - first) * (2 * i + 1) / (2 * (places - 2)) : first;
+    double u = 0.5;
+    if (i + 2 == places) segment = first, u = payload->a;
+    if (i + 1 == places) segment = last - 1, u = payload->b;
     robot_scene_enter(&o->scene, segment, u, u);
     const double most = o->goal.limit >= 0.0 ? lesser(o->best_bound.upper, o->goal.limit) : o->best_bound.upper;
     nearest_pair nearest = {.apart = most, .pair = -1};
@@ -253,7 +258,7 @@ static cprox_status seed(robot_search *o, const search_node *node) {
     if (nearest.pair < 0) continue;
     const cprox_status status = measure_whole(o, nearest.pair, segment, u);
     if (status < 0) return status;
-    if (o->goal.limit >= 0.0 && o->best_bound.upper <= o->goal.limit) return CPROX_OK;
+    if (is_answered(o)) return CPROX_OK;
   }
   return CPROX_OK;
 }
@@ -548,6 +553,10 @@ static cprox_status bound_node(robot_search *o, search_node *node) {
     if (!is_pruned(o, entry.lower) && !entry.needs_split) {
       const cprox_status status = bound_pair(o, node, &entry, &slack);
       if (status < 0) return status;
+      if (is_answered(o)) {
+        node->lower = inherited;
+        return CPROX_OK;
+      }
     }
     if (is_pruned(o, entry.lower)) {
       o->dropped = lesser(entry.lower, o->dropped);
@@ -585,8 +594,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     o->seeded = true;
     status = seed(o, node);
   }
-  const bool answered = o->goal.order != SEARCH_LEFT_TO_RIGHT && o->best_bound.upper <= fmax(o->goal.limit, 0.0);
-  if (status == CPROX_OK && !answered && payload->first + 1 == payload->last) status = bound_node(o, node);
+  if (status == CPROX_OK && !is_answered(o) && payload->first + 1 == payload->last) status = bound_node(o, node);
   *best = o->best_bound;
   return status;
 }
