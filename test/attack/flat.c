@@ -231,20 +231,37 @@ static void ask(attack *a, rng *r, const scene *c, bool must) {
                  "contact at %.17g, t %.17g, t_contact_lower %.17g", (double)root, x.t, x.t_contact_lower);
 }
 
-/* Sliding in the plane, or along a face of a body that has an inside: nothing can be proven, and soon nothing is tried any more. */
+/* A body with a flat face in the plane z = 0 and nothing above it, and what slides there: a point or a small box whose lower
+ * face lies in that plane. Its pose shifts the body, so that the face is where the curve is. */
+static cprox_status make_sliding(attack *a, rng *r, cprox_body **body, cprox_pose *pose) {
+  const vec3 corner[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {rng_uniform(r, -1, 1), rng_uniform(r, -1, 1), -1}};
+  *pose = cprox_pose_identity();
+  const size_t kind = rng_index(r, 6);
+  if (kind < 2) return cprox_body_create_polytope(corner, kind == 0 ? 4 : 3, a->ws, body);
+  pose->position = vec(0.25, 0.25, -0.5);
+  if (kind == 2) return cprox_body_create_box(vec(0.5, rng_uniform(r, 0.1, 1), 1.0), a->ws, body);
+  if (kind == 3) return cprox_body_create_cylinder(1.0, rng_uniform(r, 0.1, 1), a->ws, body);
+  if (kind == 4) pose->orientation = (cprox_quat){.x = 1.0}; /* the base is up */
+  if (kind == 4) return cprox_body_create_cone(1.0, rng_uniform(r, 0.1, 1), a->ws, body);
+  pose->position.z = 0.0;
+  return cprox_body_create_halfspace(vec(0, 0, 1), 0.0, a->ws, body);
+}
+
+/* Sliding in the plane, or along a face of a body that has an inside: nothing can be proven, and soon nothing is tried any
+ * more. */
 static void slide(attack *a, rng *r) {
   attack_kind(a, "sliding");
-  const bool solid = rng_index(r, 2);
-  vec3 corner[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {rng_uniform(r, -1, 1), rng_uniform(r, -1, 1), -1}}, points[5];
+  vec3 points[5];
   const size_t n = 2 + rng_index(r, 4);
   for (size_t i = 0; i < n; i++) points[i] = vec(rng_uniform(r, -0.3, 1.3), rng_uniform(r, -0.3, 1.3), 0.0);
   points[0] = vec(0.2, 0.3, 0.0);
   cprox_body *body = NULL;
   cprox_curve *curve = NULL;
-  if (cprox_body_create_polytope(corner, solid ? 4 : 3, a->ws, &body) != CPROX_OK ||
+  cprox_pose pose;
+  if (make_sliding(a, r, &body, &pose) != CPROX_OK ||
       curve_from(describe_bezier(points, n, 0.0, 1.0), a->ws, &curve) != CPROX_OK)
     attack_fail(a, "%s", cprox_workspace_error(a->ws));
-  const cprox_obstacle target = cprox_obstacle_at(body, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(body, pose);
   cprox_options options = cprox_options_default();
   options.epsilon = rng_log_uniform(r, 1e-12, 1e-3);
   options.max_nodes = 200000;

@@ -263,6 +263,35 @@ CASE(medians_stay_within_60_nodes) {
   }
 }
 
+/* A curve in the plane of a face touches the face between two of its edges. The nearest sample lies on one of the edges, and its
+ * plane leans over that edge; at the other edge the search must find the plane of the face and end. */
+CASE(a_curve_that_slides_on_a_face_beside_an_edge_ends_soon) {
+  rng r = rng_seed(94);
+  uint32_t most = 0;
+  for (int k = 0; k < 20000; k++) {
+    const vec3 corner[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {rng_uniform(&r, -1, 1), rng_uniform(&r, -1, 1), -1}};
+    vec3 points[5];
+    for (int i = 0; i < 5; i++) points[i] = vec(rng_uniform(&r, -0.3, 1.3), rng_uniform(&r, -0.3, 1.3), 0.0);
+    points[0] = vec(rng_uniform(&r, -0.3, -0.01), rng_uniform(&r, 0.0, 0.5), 0.0);
+    points[4] = vec(rng_uniform(&r, 0.5, 1.0), rng_uniform(&r, 0.5, 1.0), 0.0);
+    cprox_body *body = NULL;
+    assert_int_equal(cprox_body_create_polytope(corner, 4, ws, &body), CPROX_OK);
+    cprox_curve *curve = bezier(points, 5);
+    cprox_options options = asked(rng_log_uniform(&r, 1e-12, 1e-6));
+    options.max_nodes = 2000;
+    cprox_result result;
+    assert_int_equal(
+        cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws, &result),
+        CPROX_OK);
+    assert_true(result.upper - result.lower <= options.epsilon);
+    if (result.nodes > most) most = result.nodes;
+    cprox_body_free(body);
+    cprox_curve_free(curve);
+  }
+  print_message("most nodes: %u\n", most);
+  assert_true(most <= 200);
+}
+
 int main(void) {
   return cases_run(workspace_setup, workspace_teardown);
 }

@@ -127,10 +127,11 @@ static double depth_along(curve_convex *o, vec3 y, vec3 n) {
   return o->shape->ops->support(o->shape, n, &o->support_hint, NULL) - vec_dot(n, y);
 }
 
-/* Bounds need a plane between the shape and a point that touches it, and there the way from its nearest point is rounding, or none: the
- * plane of the shape if it is flat, else one that parts the shape from a point a little farther out, and a little less. */
+/* Bounds need a plane between the shape and a point that touches it. There the way from the nearest point is rounding, or
+ * none. A flat shape has a plane of its own. Else a plane that separates the shape from a point a little farther out will do,
+ * as long as that point lies less far out than the touching point lies from the next edge: so the steps get shorter. */
 static vec3 touching_normal(curve_convex *o, vec3 y, vec3 seen, double rounding) {
-  enum { ROUNDS = 4 };
+  enum { ROUNDS = 7 };
   vec3 best = seen, outward, n;
   double least = vec_norm2(seen) > 0.0 ? depth_along(o, y, seen) : INFINITY;
   if (!(least > 4.0 * rounding)) return seen;
