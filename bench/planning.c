@@ -65,8 +65,9 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *answ
 
 /* As many states as MoveIt checks on a path of that length. */
 static size_t states_of(const robot_case *c) {
-  double t0, t1, before[CASE_MAX_VARIABLES], after[CASE_MAX_VARIABLES], length = 0.0;
-  cprox_motion_domain(c->motion, &t0, &t1);
+  double before[CASE_MAX_VARIABLES], after[CASE_MAX_VARIABLES], length = 0.0;
+  const cprox_motion_info info = cprox_motion_get_info(c->motion);
+  const double t0 = info.t0, t1 = info.t1;
   cprox_motion_evaluate(c->motion, t0, before);
   for (int k = 1; k <= 1000; k++) {
     cprox_motion_evaluate(c->motion, t0 + (t1 - t0) * k / 1000, after);
@@ -79,8 +80,9 @@ static size_t states_of(const robot_case *c) {
 static void states_by_fcl(const void *problems, size_t i, void *state, bench_answer *answer) {
   (void)state;
   const problem *p = (const problem *)problems + i;
-  double t0, t1, values[CASE_MAX_VARIABLES];
-  cprox_motion_domain(p->c.motion, &t0, &t1);
+  double values[CASE_MAX_VARIABLES];
+  const cprox_motion_info info = cprox_motion_get_info(p->c.motion);
+  const double t0 = info.t0, t1 = info.t1;
   bool hit = false;
   for (size_t k = 0; k < p->states; k++) {
     cprox_motion_evaluate(p->c.motion, t0 + (t1 - t0) * (double)k / (double)(p->states - 1), values);

@@ -159,7 +159,14 @@ static void links(const bench_size *size, cprox_workspace *ws) {
     cprox_robot *robot = NULL;
     cprox_motion *motion = NULL;
     cprox_robot_create(tree, COUNTS[k], bodies, COUNTS[k], COUNTS[k], NULL, &robot);
-    cprox_motion_create_waypoints(robot, variables, COUNTS[k], points, 3, CPROX_LINEAR, NULL, NULL, &motion);
+    cprox_motion_create(robot,
+                        &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                    .variables = variables,
+                                                    .n_variables = COUNTS[k],
+                                                    .waypoints = points,
+                                                    .n_waypoints = 3,
+                                                    .interpolation = CPROX_LINEAR},
+                        NULL, &motion);
     const problem p = {.mover = cprox_robot_self(motion, NULL, 0), .delta = -1.0};
     char parameter[40];
     snprintf(parameter, sizeof parameter, "links %zu", COUNTS[k]);
@@ -201,9 +208,10 @@ static void two_arms(const robot_case *arm, const bench_size *size, cprox_worksp
     }
   }
 
-  double start[2 * CASE_MAX_VARIABLES], middle[2 * CASE_MAX_VARIABLES], end[2 * CASE_MAX_VARIABLES], t0, t1;
+  double start[2 * CASE_MAX_VARIABLES], middle[2 * CASE_MAX_VARIABLES], end[2 * CASE_MAX_VARIABLES];
   int32_t variables[2 * CASE_MAX_VARIABLES];
-  cprox_motion_domain(arm->motion, &t0, &t1);
+  const cprox_motion_info info = cprox_motion_get_info(arm->motion);
+  const double t0 = info.t0, t1 = info.t1;
   for (size_t side = 0; side < 2; side++) { /* the other one the other way */
     cprox_motion_evaluate(arm->motion, side ? t1 : t0, start + side * arm->n_variables);
     cprox_motion_evaluate(arm->motion, 0.5 * (t0 + t1), middle + side * arm->n_variables);
@@ -216,8 +224,14 @@ static void two_arms(const robot_case *arm, const bench_size *size, cprox_worksp
   cprox_motion *motion = NULL;
   const bool made =
       cprox_robot_create(tree, 2 * arm->n_links, bodies, n_bodies, 2 * arm->n_variables, ws, &robot) == CPROX_OK &&
-      cprox_motion_create_waypoints(robot, variables, 2 * arm->n_variables, points, 3, CPROX_LINEAR, NULL, ws,
-                                    &motion) == CPROX_OK;
+      cprox_motion_create(robot,
+                          &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                      .variables = variables,
+                                                      .n_variables = 2 * arm->n_variables,
+                                                      .waypoints = points,
+                                                      .n_waypoints = 3,
+                                                      .interpolation = CPROX_LINEAR},
+                          ws, &motion) == CPROX_OK;
   /* all of one arm against all of the other, and of each arm what its SRDF leaves */
   const size_t half = n_bodies / 2;
   for (size_t i = half; i < n_bodies; i++)
@@ -271,7 +285,14 @@ static void slide(const bench_size *size, cprox_workspace *ws) {
                                     {.time = 2, .positions = middle, .velocities = still, .accelerations = still},
                                     {.time = 4, .positions = to, .velocities = still, .accelerations = still}};
   if (cprox_robot_create(tree, 2, &body, 1, 2, ws, &robot) == CPROX_OK &&
-      cprox_motion_create_waypoints(robot, variables, 2, points, 3, CPROX_QUINTIC, NULL, ws, &motion) == CPROX_OK) {
+      cprox_motion_create(robot,
+                          &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                      .variables = variables,
+                                                      .n_variables = 2,
+                                                      .waypoints = points,
+                                                      .n_waypoints = 3,
+                                                      .interpolation = CPROX_QUINTIC},
+                          ws, &motion) == CPROX_OK) {
     const cprox_obstacle target =
         cprox_obstacle_at(wall, (cprox_pose){.position = {0, 0.5, 0}, .orientation = {.w = 1.0}});
     for (int k = 0; k < 2; k++) {

@@ -164,10 +164,10 @@ std::vector<std::string> beyondLimits(const Kinematics &kinematics, const cprox_
   for (const Robot::Joint &joint : kinematics.robot->joints()) {
     const auto variable = kinematics.variables.find(joint.leader.empty() ? joint.name : joint.leader);
     if (variable == kinematics.variables.end() || !(std::isfinite(joint.lower) && std::isfinite(joint.upper))) continue;
-    double low = 0.0, high = 0.0;
-    cprox_motion_range(&motion, static_cast<std::size_t>(variable->second), &low, &high);
-    low = joint.multiplier * low + joint.offset;
-    high = joint.multiplier * high + joint.offset;
+    const cprox_variable_info range =
+        cprox_motion_get_variable_info(&motion, static_cast<std::size_t>(variable->second));
+    double low = joint.multiplier * range.lowest + joint.offset;
+    double high = joint.multiplier * range.highest + joint.offset;
     if (low > high) std::swap(low, high);
     char text[96];
     if (low < joint.lower - ROOM) {

@@ -91,9 +91,15 @@ void makeMotion(const TrajectoryDescription &trajectory, const JointPositions &r
 
   Workspace workspace;
   cprox_motion *made = nullptr;
-  const cprox_status status = cprox_motion_create_waypoints(
-      kinematics.core.get(), columns.variable.data(), columns.variable.size(), points.data(), points.size(),
-      toCore(trajectory.interpolation), still.data(), workspace.get(), &made);
+  cprox_motion_description description{};
+  description.kind = CPROX_MOTION_WAYPOINTS;
+  description.variables = columns.variable.data();
+  description.n_variables = columns.variable.size();
+  description.rest = still.data();
+  description.waypoints = points.data();
+  description.n_waypoints = points.size();
+  description.interpolation = toCore(trajectory.interpolation);
+  const cprox_status status = cprox_motion_create(kinematics.core.get(), &description, workspace.get(), &made);
   if (status != CPROX_OK) throw Error(workspace.reason(), status);
   data.core.reset(made);
 }
@@ -134,9 +140,8 @@ RobotMotion::RobotMotion(RobotMotion &&) noexcept = default;
 RobotMotion &RobotMotion::operator=(RobotMotion &&) noexcept = default;
 
 std::array<double, 2> RobotMotion::domain() const {
-  std::array<double, 2> out{};
-  cprox_motion_domain(data_->core.get(), &out[0], &out[1]);
-  return out;
+  const cprox_motion_info info = cprox_motion_get_info(data_->core.get());
+  return {info.t0, info.t1};
 }
 
 LinkPoses RobotMotion::linkPoses(double t) const {

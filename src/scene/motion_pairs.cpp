@@ -17,7 +17,8 @@ Links ordered(const std::string &a, const std::string &b) {
 }
 
 bool moves(const RobotMotion::Data &data, const MovingGeometry &geometry) {
-  return cprox_motion_moves_link(data.core.get(), data.kinematics->links.at(*geometry.link));
+  const auto link = static_cast<std::int32_t>(data.kinematics->links.at(*geometry.link));
+  return cprox_motion_get_link_info(data.core.get(), link, -1).n_moved > 0;
 }
 
 std::string nameOf(const MovingGeometry &geometry) {
@@ -40,11 +41,12 @@ bool mayTouch(const MovingGeometry &a, const MovingGeometry &b) {
  * carried does not, and is asked about as soon as a joint moves it against the other. */
 std::string exemptionOf(const MovingGeometry &a, const MovingGeometry &b, const RobotMotion::Data &data,
                         const std::set<Links> &off) {
-  const std::size_t link_a = data.kinematics->links.at(*a.link), link_b = data.kinematics->links.at(*b.link);
+  const auto link_a = static_cast<std::int32_t>(data.kinematics->links.at(*a.link));
+  const auto link_b = static_cast<std::int32_t>(data.kinematics->links.at(*b.link));
+  const cprox_link_info between = cprox_motion_get_link_info(data.core.get(), link_a, link_b);
   const bool carried = a.attached || b.attached;
-  if (carried && !cprox_motion_moves_between(data.core.get(), link_a, link_b))
-    return "this trajectory does not move them against each other";
-  if (!carried && !cprox_motion_relates_links(data.core.get(), link_a, link_b))
+  if (carried && between.n_moved == 0) return "this trajectory does not move them against each other";
+  if (!carried && (between.n_joints < 2 || between.n_moved == 0))
     return "this trajectory does not move them against each other, or a single joint does";
   if (mayTouch(a, b) || mayTouch(b, a)) return "it is one of its touch_links";
   if (!carried && off.count(ordered(*a.link, *b.link)) > 0) return "the SRDF disables them";

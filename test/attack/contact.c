@@ -143,8 +143,14 @@ static void screw(attack *a, rng *r, double epsilon) {
   cprox_robot *robot = NULL;
   cprox_motion *motion = NULL;
   if (cprox_robot_create(links, 2, &geometry, 1, 2, a->ws, &robot) != CPROX_OK ||
-      cprox_motion_create_waypoints(robot, (const int32_t[]){0, 1}, 2, points, 2, CPROX_LINEAR, NULL, a->ws, &motion) !=
-          CPROX_OK)
+      cprox_motion_create(robot,
+                          &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                      .variables = (const int32_t[]){0, 1},
+                                                      .n_variables = 2,
+                                                      .waypoints = points,
+                                                      .n_waypoints = 2,
+                                                      .interpolation = CPROX_LINEAR},
+                          a->ws, &motion) != CPROX_OK)
     attack_fail(a, "%s", cprox_workspace_error(a->ws));
   const double angle = rng_index(r, 2) ? 0.0 : rng_uniform(r, -1.5, 1.5);
   cprox_pose pose[2] = {geometry.pose, {{0, 0, 0}, {cos(angle), 0, 0, sin(angle)}}};

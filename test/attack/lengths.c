@@ -186,7 +186,14 @@ static void ask_robot(attack *a, setting *s) {
   cprox_motion *motion = NULL;
   cprox_result result = {0};
   if (cprox_robot_create(&link, 1, &geometry, 1, 1, a->ws, &robot) >= 0 &&
-      cprox_motion_create_waypoints(robot, &variable, 1, points, 2, CPROX_LINEAR, NULL, a->ws, &motion) >= 0) {
+      cprox_motion_create(robot,
+                          &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                      .variables = &variable,
+                                                      .n_variables = 1,
+                                                      .waypoints = points,
+                                                      .n_waypoints = 2,
+                                                      .interpolation = CPROX_LINEAR},
+                          a->ws, &motion) >= 0) {
     const truth t = truth_of(s, true, 2.0L * (long double)s->a.size + (long double)s->radius + (long double)s->margin);
     const cprox_mover mover = cprox_robot_along(motion, NULL, 0);
     check(a, s, "robot", cprox_distance(mover, target, &s->options, a->ws, &result), &result, t);

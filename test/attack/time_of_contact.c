@@ -82,7 +82,14 @@ static void one_case(attack *a, rng *r) {
     cprox_robot *robot = NULL;
     cprox_motion *motion = NULL;
     cprox_robot_create(&link, 1, &geometry, 1, 1, a->ws, &robot);
-    cprox_motion_create_waypoints(robot, &variable, 1, points, 2, CPROX_LINEAR, NULL, a->ws, &motion);
+    cprox_motion_create(robot,
+                        &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                    .variables = &variable,
+                                                    .n_variables = 1,
+                                                    .waypoints = points,
+                                                    .n_waypoints = 2,
+                                                    .interpolation = CPROX_LINEAR},
+                        a->ws, &motion);
     check(a, &m, "robot", cprox_time_of_contact(cprox_robot_along(motion, NULL, 0), target, &m.options, a->ws, &result),
           &result);
     cprox_motion_free(motion);

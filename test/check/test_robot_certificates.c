@@ -204,7 +204,14 @@ static finding check_slide(double delta, double length) {
   cprox_robot *robot;
   cprox_motion *motion;
   assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robot), CPROX_OK);
-  assert_int_equal(cprox_motion_create_waypoints(robot, &variable, 1, points, 2, CPROX_LINEAR, NULL, ws, &motion),
+  assert_int_equal(cprox_motion_create(robot,
+                                       &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                                   .variables = &variable,
+                                                                   .n_variables = 1,
+                                                                   .waypoints = points,
+                                                                   .n_waypoints = 2,
+                                                                   .interpolation = CPROX_LINEAR},
+                                       ws, &motion),
                    CPROX_OK);
   cprox_pose there = cprox_pose_identity();
   there.position.x = 2.0;

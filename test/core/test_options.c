@@ -96,9 +96,15 @@ static world make_world(void) {
   w.robot = make_robot(w.box);
   const cprox_waypoint points[] = {{.time = 0, .positions = (double[]){-1, 0.1}},
                                    {.time = 2, .positions = (double[]){1, 2}}};
-  assert_int_equal(
-      cprox_motion_create_waypoints(w.robot, (int32_t[]){0, 1}, 2, points, 2, CPROX_LINEAR, NULL, ws, &w.motion),
-      CPROX_OK);
+  assert_int_equal(cprox_motion_create(w.robot,
+                                       &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                                   .variables = (int32_t[]){0, 1},
+                                                                   .n_variables = 2,
+                                                                   .waypoints = points,
+                                                                   .n_waypoints = 2,
+                                                                   .interpolation = CPROX_LINEAR},
+                                       ws, &w.motion),
+                   CPROX_OK);
   return w;
 }
 

@@ -193,7 +193,14 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
     const int32_t variable = 0;
     const cprox_waypoint points[2] = {{.time = 0, .positions = &begin}, {.time = 1, .positions = &way}};
     cprox_motion *motion = NULL;
-    assert_int_equal(cprox_motion_create_waypoints(robot, &variable, 1, points, 2, CPROX_LINEAR, NULL, ws, &motion),
+    assert_int_equal(cprox_motion_create(robot,
+                                         &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                                     .variables = &variable,
+                                                                     .n_variables = 1,
+                                                                     .waypoints = points,
+                                                                     .n_waypoints = 2,
+                                                                     .interpolation = CPROX_LINEAR},
+                                         ws, &motion),
                      CPROX_OK);
 
     /* ahead of where the ball ends */

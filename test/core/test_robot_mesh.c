@@ -70,7 +70,7 @@ static long double distance_at(const mesh_robot *m, long double time, const vec3
   robot_ref_values(t, time, values);
   robot_ref_links(t, values, links);
   for (size_t g = 0; g < t->n_links; g++) {
-    if (!cprox_motion_moves_link(t->motion, g)) continue;
+    if (cprox_motion_get_link_info(t->motion, (int32_t)g, -1).n_moved == 0) continue;
     for (int i = 0; i < POINTS; i++) {
       const vec3l on_link = ref_pose_undo(&links[g], ref_vec(points[i]));
       const long double d = mesh_distance(&m->mesh[g], ref_to_local(&t->geometries[g].pose, on_link));
@@ -111,8 +111,8 @@ CASE(points_are_as_far_as_every_triangle_says) {
       cprox_result first, near, far;
       const cprox_mover mover = cprox_robot_along(m.robot.motion, NULL, 0);
       assert_true(time_of_contact_of_list(mover, &target, 1, NULL, ws, &first) >= 0);
-      double t0, t1;
-      cprox_motion_domain(m.robot.motion, &t0, &t1);
+      const cprox_motion_info info = cprox_motion_get_info(m.robot.motion);
+      const double t0 = info.t0, t1 = info.t1;
       for (int k = 0; k <= SAMPLES; k++) {
         const long double time = t0 + ((long double)t1 - t0) * k / SAMPLES, at = distance_at(&m, time, points);
         if (at < d.lower) fail_msg("robot %zu: %.12Lg at %.12Lg, lower is %.12g", i, at, time, d.lower);

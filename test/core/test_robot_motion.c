@@ -54,8 +54,9 @@ CASE(evaluation_agrees_with_the_splines) {
   for (size_t i = 0; i < test_cases(500); i++) {
     test_robot t;
     robot_make(&r, 2.0, &t);
-    double t0, t1, values[TEST_MAX_VARIABLES + 1];
-    cprox_motion_domain(t.motion, &t0, &t1);
+    double values[TEST_MAX_VARIABLES + 1];
+    const cprox_motion_info info = cprox_motion_get_info(t.motion);
+    const double t0 = info.t0, t1 = info.t1;
     long double exact[TEST_MAX_VARIABLES + 1];
     const double time = rng_uniform(&r, t0, t1);
     cprox_motion_evaluate(t.motion, time, values);

@@ -65,11 +65,12 @@ CASE(a_range_holds_all_values_and_is_reached) {
   for (size_t i = 0; i < test_cases(100); i++) {
     test_robot t;
     robot_make(&r, 1.0, &t);
-    double t0, t1, low[TEST_MAX_VARIABLES], high[TEST_MAX_VARIABLES];
+    cprox_variable_info range[TEST_MAX_VARIABLES];
     long double values[TEST_MAX_VARIABLES], least[TEST_MAX_VARIABLES], most[TEST_MAX_VARIABLES];
-    cprox_motion_domain(t.motion, &t0, &t1);
+    const cprox_motion_info info = cprox_motion_get_info(t.motion);
+    const double t0 = info.t0, t1 = info.t1;
     for (size_t v = 0; v < t.n_variables; v++) {
-      cprox_motion_range(t.motion, v, &low[v], &high[v]);
+      range[v] = cprox_motion_get_variable_info(t.motion, v);
       least[v] = INFINITY, most[v] = -INFINITY;
     }
     const int n = 4000 + (int)t.n_points; /* at the waypoints too: motions bend there */
@@ -79,11 +80,12 @@ CASE(a_range_holds_all_values_and_is_reached) {
       robot_ref_values(&t, at, values);
       for (size_t v = 0; v < t.n_variables; v++) {
         least[v] = fminl(least[v], values[v]), most[v] = fmaxl(most[v], values[v]);
-        assert_true(values[v] >= low[v] - 1e-13L && values[v] <= high[v] + 1e-13L);
+        assert_true(values[v] >= range[v].lowest - 1e-13L && values[v] <= range[v].highest + 1e-13L);
       }
     }
     /* between samples a polynomial of degree 9 rises by no more than its second derivative allows: 1e-4 is ten times that */
-    for (size_t v = 0; v < t.n_variables; v++) assert_true(least[v] - low[v] <= 1e-4L && high[v] - most[v] <= 1e-4L);
+    for (size_t v = 0; v < t.n_variables; v++)
+      assert_true(least[v] - range[v].lowest <= 1e-4L && range[v].highest - most[v] <= 1e-4L);
     robot_free(&t);
   }
 }

@@ -159,7 +159,7 @@ static long double distance_at(const test_robot *t, long double time, const vec3
   robot_ref_values(t, time, values);
   robot_ref_links(t, values, links);
   for (size_t g = 0; g < t->n_links; g++) {
-    if (!cprox_motion_moves_link(t->motion, g)) continue;
+    if (cprox_motion_get_link_info(t->motion, (int32_t)g, -1).n_moved == 0) continue;
     vec3l exact[TEST_VERTICES];
     vec3 v[TEST_VERTICES];
     robot_ref_vertices(t, links, g, exact);
@@ -200,8 +200,8 @@ CASE(no_sample_is_nearer_than_lower) {
     if (d.obstacle_index < 0) { /* nothing moves */
       assert_true(isinf(d.lower));
     } else {
-      double t0, t1;
-      cprox_motion_domain(t.motion, &t0, &t1);
+      const cprox_motion_info info = cprox_motion_get_info(t.motion);
+      const double t0 = info.t0, t1 = info.t1;
       assert_true(time_of_contact_of_list(mover, targets, TARGETS, &options, ws, &first) >= 0);
       assert_true(fabsl(distance_at(&t, d.t, points, TARGETS) - d.upper) <= 1e-9L);
       for (int k = 0; k <= SAMPLES; k++) {
@@ -249,12 +249,13 @@ CASE(the_robot_is_no_nearer_to_itself_than_lower) {
     robot_make(&r, rng_log_uniform(&r, 0.1, 2), &t);
     for (int32_t a = 1; a < (int32_t)t.n_links; a++) {
       const cprox_robot_pair pair = {a, (int32_t)rng_index(&r, (size_t)a)};
-      if (!cprox_motion_relates_links(t.motion, (size_t)pair.geometry, (size_t)pair.other)) continue;
+      const cprox_link_info between = cprox_motion_get_link_info(t.motion, pair.geometry, pair.other);
+      if (between.n_joints < 2 || between.n_moved == 0) continue;
       cprox_result d;
       const cprox_status status = distance_of_list(cprox_robot_self(t.motion, &pair, 1), NULL, 0, NULL, ws, &d, NULL);
       if (status < 0) fail_msg("robot %zu: %s", i, cprox_workspace_error(ws));
-      double t0, t1;
-      cprox_motion_domain(t.motion, &t0, &t1);
+      const cprox_motion_info info = cprox_motion_get_info(t.motion);
+      const double t0 = info.t0, t1 = info.t1;
       for (int k = 0; k <= SAMPLES; k++) {
         const double time = t0 + (t1 - t0) * k / SAMPLES, at = static_distance(&t, time, &pair);
         if (at < d.lower - 1e-12) fail_msg("robot %zu: %.12g at %.12g, lower is %.12g", i, at, time, d.lower);
@@ -276,9 +277,10 @@ CASE(a_profile_is_true_on_every_interval) {
     cprox_obstacle targets[TARGETS];
     robot_make(&r, 1.0, &t);
     make_points(&r, points, targets);
-    double t0, t1, breaks[INTERVALS + 1];
+    double breaks[INTERVALS + 1];
     cprox_profile_interval intervals[INTERVALS];
-    cprox_motion_domain(t.motion, &t0, &t1);
+    const cprox_motion_info info = cprox_motion_get_info(t.motion);
+    const double t0 = info.t0, t1 = info.t1;
     for (int k = 0; k <= INTERVALS; k++) breaks[k] = k == INTERVALS ? t1 : t0 + (t1 - t0) * k / INTERVALS;
     const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
     cprox_result whole, nearest[2];
@@ -391,19 +393,85 @@ CASE(bad_input_gets_a_sentence) {
   const int32_t variables[] = {0, 0}, wrong[] = {3};
   cprox_waypoint points[] = {{.time = 0.0, .positions = still}, {.time = 0.0, .positions = still}};
   cprox_motion *motion = NULL;
-  REFUSED(cprox_motion_create_waypoints(robot, variables, 1, points, 1, CPROX_LINEAR, NULL, ws, &motion), "at least 2");
-  REFUSED(cprox_motion_create_waypoints(robot, variables, 1, points, 2, CPROX_LINEAR, NULL, ws, &motion),
+  REFUSED(cprox_motion_create(robot,
+                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                          .variables = variables,
+                                                          .n_variables = 1,
+                                                          .waypoints = points,
+                                                          .n_waypoints = 1,
+                                                          .interpolation = CPROX_LINEAR},
+                              ws, &motion),
+          "at least 2");
+  REFUSED(cprox_motion_create(robot,
+                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                          .variables = variables,
+                                                          .n_variables = 1,
+                                                          .waypoints = points,
+                                                          .n_waypoints = 2,
+                                                          .interpolation = CPROX_LINEAR},
+                              ws, &motion),
           "must ascend");
   points[1].time = 1.0;
-  REFUSED(cprox_motion_create_waypoints(robot, variables, 2, points, 2, CPROX_LINEAR, NULL, ws, &motion),
+  REFUSED(cprox_motion_create(robot,
+                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                          .variables = variables,
+                                                          .n_variables = 2,
+                                                          .waypoints = points,
+                                                          .n_waypoints = 2,
+                                                          .interpolation = CPROX_LINEAR},
+                              ws, &motion),
           "named twice");
-  REFUSED(cprox_motion_create_waypoints(robot, wrong, 1, points, 2, CPROX_LINEAR, NULL, ws, &motion), "no variable 3");
-  REFUSED(cprox_motion_create_waypoints(robot, variables, 1, points, 2, CPROX_CUBIC, NULL, ws, &motion),
+  REFUSED(cprox_motion_create(robot,
+                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                          .variables = wrong,
+                                                          .n_variables = 1,
+                                                          .waypoints = points,
+                                                          .n_waypoints = 2,
+                                                          .interpolation = CPROX_LINEAR},
+                              ws, &motion),
+          "no variable 3");
+  REFUSED(cprox_motion_create(robot,
+                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                          .variables = variables,
+                                                          .n_variables = 1,
+                                                          .waypoints = points,
+                                                          .n_waypoints = 2,
+                                                          .interpolation = CPROX_CUBIC},
+                              ws, &motion),
           "no velocities");
   points[1].positions = bad;
-  REFUSED(cprox_motion_create_waypoints(robot, variables, 1, points, 2, CPROX_LINEAR, NULL, ws, &motion),
+  REFUSED(cprox_motion_create(robot,
+                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                          .variables = variables,
+                                                          .n_variables = 1,
+                                                          .waypoints = points,
+                                                          .n_waypoints = 2,
+                                                          .interpolation = CPROX_LINEAR},
+                              ws, &motion),
           "position 0 is");
   assert_null(motion);
+  const double knots[] = {0, 0, 1, 1};
+  cprox_motion_description spline = {.kind = CPROX_MOTION_BSPLINE,
+                                     .variables = variables,
+                                     .n_variables = 1,
+                                     .control = (const double[]){0, 1},
+                                     .n_control = 2,
+                                     .degree = 1,
+                                     .knots = knots,
+                                     .n_knots = 3};
+  REFUSED(cprox_motion_create(robot, &spline, ws, &motion), "need 4 knots, got 3");
+  spline.kind = (cprox_motion_kind)7;
+  REFUSED(cprox_motion_create(robot, &spline, ws, &motion), "7 is no kind of motion");
+  REFUSED(cprox_motion_create(robot, NULL, ws, &motion), "description of the motion is NULL");
+  REFUSED(cprox_motion_create(NULL, &spline, ws, &motion), "robot is NULL");
+  assert_null(motion);
+  spline.kind = CPROX_MOTION_BSPLINE, spline.n_knots = 4;
+  assert_int_equal(cprox_motion_create(robot, &spline, ws, &motion), CPROX_OK);
+  const cprox_motion_info info = cprox_motion_get_info(motion);
+  assert_true(info.kind == CPROX_MOTION_BSPLINE && info.t0 == 0.0 && info.t1 == 1.0 && info.n_pieces == 1);
+  assert_int_equal(cprox_motion_get_link_info(motion, 0, -1).n_moved, 1);
+  assert_int_equal(cprox_motion_get_link_info(motion, 0, 0).n_joints, 0);
+  cprox_motion_free(motion);
 
   /* quaternions through 0 */
   cprox_robot *flying = NULL;
@@ -412,7 +480,15 @@ CASE(bad_input_gets_a_sentence) {
   const double q0[] = {0, 0, 0, 0, 0, 0, 1}, q1[] = {0, 0, 0, 0, 0, 0, -1};
   const int32_t seven[] = {0, 1, 2, 3, 4, 5, 6};
   const cprox_waypoint turn[] = {{.time = 0.0, .positions = q0}, {.time = 1.0, .positions = q1}};
-  REFUSED(cprox_motion_create_waypoints(flying, seven, 7, turn, 2, CPROX_LINEAR, NULL, ws, &motion), "too near 0");
+  REFUSED(cprox_motion_create(flying,
+                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                          .variables = seven,
+                                                          .n_variables = 7,
+                                                          .waypoints = turn,
+                                                          .n_waypoints = 2,
+                                                          .interpolation = CPROX_LINEAR},
+                              ws, &motion),
+          "too near 0");
 
   const cprox_robot_pair pair = {0, 9}, far = {99, 0};
   cprox_result result;

@@ -232,7 +232,15 @@ static cprox_status make_robot(const robot_arguments *a) {
                                     {a->time[1], &a->position[1], &a->velocity[1], &a->acceleration[1]}};
   const double rest[2] = {0.0, a->rest};
   if (status >= 0)
-    status = cprox_motion_create_waypoints(robot, &variable, 1, points, 2, CPROX_QUINTIC, rest, ws, &motion);
+    status = cprox_motion_create(robot,
+                                 &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                             .variables = &variable,
+                                                             .n_variables = 1,
+                                                             .waypoints = points,
+                                                             .n_waypoints = 2,
+                                                             .interpolation = CPROX_QUINTIC,
+                                                             .rest = rest},
+                                 ws, &motion);
   cprox_motion_free(motion);
   cprox_robot_free(robot);
   return status;

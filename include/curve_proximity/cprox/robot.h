@@ -83,47 +83,108 @@ typedef enum cprox_interpolation {
   CPROX_QUINTIC
 } cprox_interpolation;
 
-/** The motion through n_points >= 2 waypoints at ascending times: Hermite polynomials between them. Where a controller
- *  would start from the state that the robot is in, that state is the first waypoint.
- *
- *  variables  which ones the waypoints speak of, n of them, none twice.
- *  rest       the values of all the robot's variables, for those that stand still; NULL: all 0. */
-CPROX_API cprox_status cprox_motion_create_waypoints(const cprox_robot *robot, const int32_t *variables, size_t n,
-                                                     const cprox_waypoint *points, size_t n_points,
-                                                     cprox_interpolation interpolation, const double *rest,
-                                                     cprox_workspace *workspace, cprox_motion **motion);
+/** The kinds of motions. Each comment names the members of cprox_motion_description that the kind reads, besides
+ *  variables, n_variables and rest. */
+typedef enum cprox_motion_kind {
+  /** The motion through waypoints: Hermite polynomials between them. Where a controller would start from the state that
+   *  the robot is in, that state is the first waypoint.
+   *
+   *  waypoints, n_waypoints   2 or more, at ascending times.
+   *  interpolation            how the variables go from one waypoint to the next. */
+  CPROX_MOTION_WAYPOINTS,
+  /** The motion along a B-spline in the space of the variables, from knots[degree] to knots[n_control].
+   *
+   *  control, n_control       n_control rows of n_variables values.
+   *  degree                   1 … 9.
+   *  knots, n_knots           [s] n_control + degree + 1 knots, non-decreasing, none more than degree times inside. */
+  CPROX_MOTION_BSPLINE
+} cprox_motion_kind;
 
-/** The motion along a B-spline in the space of n variables, from knots[degree] to knots[n_control].
+/** What a motion is made of. Set all members to 0, then those that the kind reads: cprox_motion_kind lists them. All
+ *  numbers are finite. Arrays are copied. */
+typedef struct cprox_motion_description {
+  /** which members are read */
+  cprox_motion_kind kind;
+  /** the variables of the robot that the motion gives; none twice */
+  const int32_t *variables;
+  /** their number */
+  size_t n_variables;
+  /** the values of all variables of the robot, for those that stand still; NULL: all 0 */
+  const double *rest;
+  /** waypoints, at ascending times */
+  const cprox_waypoint *waypoints;
+  /** the number of waypoints */
+  size_t n_waypoints;
+  /** between waypoints */
+  cprox_interpolation interpolation;
+  /** control points of a B-spline, one row of n_variables values each */
+  const double *control;
+  /** the number of control points */
+  size_t n_control;
+  /** of a B-spline */
+  size_t degree;
+  /** [s] knots of a B-spline */
+  const double *knots;
+  /** the number of knots */
+  size_t n_knots;
+} cprox_motion_description;
+
+/** Makes a motion.
  *
- *  control    n_control rows of n values.
- *  knots      n_control + degree + 1, non-decreasing, none more than degree + 1 times. 1 <= degree <= 9. */
-CPROX_API cprox_status cprox_motion_create_bspline(const cprox_robot *robot, const int32_t *variables, size_t n,
-                                                   size_t degree, const double *control, size_t n_control,
-                                                   const double *knots, const double *rest, cprox_workspace *workspace,
-                                                   cprox_motion **motion);
+ *  robot        kept by reference: it must outlive the motion.
+ *  description  checked once; what is wrong, and where, stands in the error message of the workspace.
+ *  workspace    may be NULL: then there is no error message.
+ *  motion       receives the handle, owned by the caller: cprox_motion_free(). Untouched on failure.
+ *
+ *  Returns CPROX_OK, CPROX_INVALID or CPROX_MEMORY. */
+CPROX_API cprox_status cprox_motion_create(const cprox_robot *robot, const cprox_motion_description *description,
+                                           cprox_workspace *workspace, cprox_motion **motion);
 
 /** Frees a motion; NULL is allowed. */
 CPROX_API void cprox_motion_free(cprox_motion *motion);
 
-/** The time that a motion begins and ends at [s]. */
-CPROX_API void cprox_motion_domain(const cprox_motion *motion, double *t0, double *t1);
+/** What is known of a motion. */
+typedef struct cprox_motion_info {
+  /** the kind that the motion was created as */
+  cprox_motion_kind kind;
+  /** [s] the start */
+  double t0;
+  /** [s] the end */
+  double t1;
+  /** the number of variables of the robot, at rest or not */
+  size_t n_variables;
+  /** the number of polynomial pieces */
+  size_t n_pieces;
+} cprox_motion_info;
+
+/** What is known of a motion. */
+CPROX_API cprox_motion_info cprox_motion_get_info(const cprox_motion *motion);
+
+/** What is known of one variable of the robot along a motion: all its values are in [lowest, highest], and come as near
+ *  to both as 1e-9 of the largest coefficient of the motion. */
+typedef struct cprox_variable_info {
+  /** no value is below this */
+  double lowest;
+  /** no value is above this */
+  double highest;
+} cprox_variable_info;
+
+/** What is known of one variable of the robot along a motion. */
+CPROX_API cprox_variable_info cprox_motion_get_variable_info(const cprox_motion *motion, size_t variable);
+
+/** What is known of two links along a motion. */
+typedef struct cprox_link_info {
+  /** the joints between the two links that can move */
+  size_t n_joints;
+  /** the joints between them that this motion moves; 0: the links stand still against each other */
+  size_t n_moved;
+} cprox_link_info;
+
+/** What is known of two links along a motion, or of one link and the world: link_b = -1. */
+CPROX_API cprox_link_info cprox_motion_get_link_info(const cprox_motion *motion, int32_t link_a, int32_t link_b);
 
 /** The values of all the robot's variables at a time (clamped to the domain). A plain evaluation. */
 CPROX_API void cprox_motion_evaluate(const cprox_motion *motion, double t, double *variables);
-
-/** The values that a variable of the robot takes along the motion: all of them are in [*low, *high], and those come as
- *  near to both as 1e-9 of the motion's largest coefficient. */
-CPROX_API void cprox_motion_range(const cprox_motion *motion, size_t variable, double *low, double *high);
-
-/** Does the motion move the link? Of a link that it does not, nothing is asked unless pairs are given. */
-CPROX_API bool cprox_motion_moves_link(const cprox_motion *motion, size_t link);
-
-/** Does the motion move the two links against each other? */
-CPROX_API bool cprox_motion_moves_between(const cprox_motion *motion, size_t link_a, size_t link_b);
-
-/** Can two links come closer in a way that is worth asking for: are there at least two joints that can move between
- *  them, and at least one that this motion moves? */
-CPROX_API bool cprox_motion_relates_links(const cprox_motion *motion, size_t link_a, size_t link_b);
 
 /** A pair that is asked about: a geometry of the robot, and the number of a target or of another geometry. */
 typedef struct cprox_robot_pair {
@@ -137,8 +198,9 @@ typedef struct cprox_robot_pair {
 CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
 /** The robot along a motion against itself: its queries have no obstacles (cprox_obstacles_distance(NULL, mover, …)).
- *  pairs: those that are asked about, kept by reference, `other` being geometries; NULL: all on links that
- *  cprox_motion_relates_links(). */
+ *  pairs: those that are asked about, kept by reference, `other` being geometries; NULL: all on
+ *  links with at least two joints between them that can move, of which this motion moves one
+ *  (cprox_motion_get_link_info()). */
 CPROX_API cprox_mover cprox_robot_self(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
 #ifdef __cplusplus

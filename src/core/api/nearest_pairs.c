@@ -19,13 +19,13 @@ static size_t list_pairs(const query *q, cprox_robot_pair *pairs) {
   for (size_t i = 0; i < robot->n_parts; i++) {
     const robot_part *a = &robot->parts[i];
     if (i > 0 && robot->parts[i - 1].geometry == a->geometry) continue;
-    if (!q->mover.self && !cprox_motion_moves_link(motion, (size_t)a->link)) continue;
+    if (!q->mover.self && !motion_moves_link(motion, a->link)) continue;
     for (size_t k = 0; !q->mover.self && k < q->n; k++, n++)
       if (pairs) pairs[n] = (cprox_robot_pair){.geometry = a->geometry, .other = (int32_t)k};
     for (size_t k = 0; q->mover.self && k < i; k++) {
       const robot_part *b = &robot->parts[k];
       if (k > 0 && robot->parts[k - 1].geometry == b->geometry) continue;
-      if (!cprox_motion_relates_links(motion, (size_t)a->link, (size_t)b->link)) continue;
+      if (!motion_relates_links(motion, a->link, b->link)) continue;
       if (pairs) pairs[n] = (cprox_robot_pair){.geometry = a->geometry, .other = b->geometry};
       n++;
     }

@@ -18,10 +18,11 @@ static bool make_room(motion_given *g, const int32_t *variables, size_t per_poin
   return true;
 }
 
-bool motion_keep_waypoints(motion_given *g, const int32_t *variables, size_t n, const cprox_waypoint *points,
-                           size_t n_points, cprox_interpolation interpolation) {
-  *g = (motion_given){.interpolation = interpolation, .n = n, .n_points = n_points, .n_times = n_points};
-  if (!make_room(g, variables, 3 * n)) return false;
+bool motion_keep_waypoints(motion_given *g, const cprox_motion_description *d) {
+  const cprox_waypoint *points = d->waypoints;
+  const size_t n = d->n_variables, n_points = d->n_waypoints;
+  *g = (motion_given){.interpolation = d->interpolation, .n = n, .n_points = n_points, .n_times = n_points};
+  if (!make_room(g, d->variables, 3 * n)) return false;
   for (size_t i = 0; i < n_points; i++) {
     const double *rows[3] = {points[i].positions, points[i].velocities, points[i].accelerations};
     g->times[i] = points[i].time;
@@ -33,12 +34,12 @@ bool motion_keep_waypoints(motion_given *g, const int32_t *variables, size_t n, 
   return true;
 }
 
-bool motion_keep_spline(motion_given *g, const int32_t *variables, size_t n, size_t degree, const double *control,
-                        size_t n_control, const double *knots) {
-  *g = (motion_given){.degree = degree, .n = n, .n_points = n_control, .n_times = n_control + degree + 1};
-  if (!make_room(g, variables, n)) return false;
-  memcpy(g->times, knots, g->n_times * sizeof *knots);
-  if (n > 0) memcpy(g->values, control, n_control * n * sizeof *control);
+bool motion_keep_spline(motion_given *g, const cprox_motion_description *d) {
+  const size_t n = d->n_variables, n_control = d->n_control;
+  *g = (motion_given){.degree = d->degree, .n = n, .n_points = n_control, .n_times = d->n_knots};
+  if (!make_room(g, d->variables, n)) return false;
+  memcpy(g->times, d->knots, g->n_times * sizeof *d->knots);
+  if (n > 0) memcpy(g->values, d->control, n_control * n * sizeof *d->control);
   return true;
 }
 

@@ -19,10 +19,8 @@ typedef struct motion_given {
 } motion_given;
 
 /* Keep a copy; false where memory is out, then nothing is kept. */
-bool motion_keep_waypoints(motion_given *given, const int32_t *variables, size_t n, const cprox_waypoint *points,
-                           size_t n_points, cprox_interpolation interpolation);
-bool motion_keep_spline(motion_given *given, const int32_t *variables, size_t n, size_t degree, const double *control,
-                        size_t n_control, const double *knots);
+bool motion_keep_waypoints(motion_given *given, const cprox_motion_description *description);
+bool motion_keep_spline(motion_given *given, const cprox_motion_description *description);
 
 void motion_given_free(motion_given *given);
 

@@ -276,9 +276,12 @@ double motion_time_below(const cprox_motion *m, size_t segment, double u) {
   return round_down_between(m->times[segment], m->times[segment + 1], u);
 }
 
-void cprox_motion_domain(const cprox_motion *motion, double *t0, double *t1) {
-  *t0 = motion->times[0];
-  *t1 = motion->times[motion->n_segments];
+cprox_motion_info cprox_motion_get_info(const cprox_motion *motion) {
+  return (cprox_motion_info){.kind = motion->given.degree > 0 ? CPROX_MOTION_BSPLINE : CPROX_MOTION_WAYPOINTS,
+                             .t0 = motion->times[0],
+                             .t1 = motion->times[motion->n_segments],
+                             .n_variables = motion->robot->n_variables,
+                             .n_pieces = motion->n_segments};
 }
 
 void cprox_motion_evaluate(const cprox_motion *motion, double t, double *variables) {
@@ -331,10 +334,10 @@ static void take_in(const double *root, size_t degree, value_range *range) {
   }
 }
 
-void cprox_motion_range(const cprox_motion *motion, size_t variable, double *low, double *high) {
+cprox_variable_info cprox_motion_get_variable_info(const cprox_motion *motion, size_t variable) {
   const int32_t slot = motion->slot[variable];
-  *low = *high = motion->rest[variable];
-  if (slot < 0) return;
+  const double rest = motion->rest[variable];
+  if (slot < 0) return (cprox_variable_info){.lowest = rest, .highest = rest};
   value_range range = {.low = INFINITY, .high = -INFINITY};
   for (int pass = 0; pass < 2; pass++) {
     for (size_t segment = 0; segment < motion->n_segments; segment++) {
@@ -344,7 +347,7 @@ void cprox_motion_range(const cprox_motion *motion, size_t variable, double *low
       if (pass == 1) take_in(c, motion->degree[segment], &range);
     }
   }
-  *low = range.low, *high = range.high;
+  return (cprox_variable_info){.lowest = range.low, .highest = range.high};
 }
 
 /* ---- what moves ----------------------------------------------------------------------------------------------------------- */
@@ -357,28 +360,21 @@ static void count_joints(const cprox_motion *m, int32_t from, int32_t to, size_t
   }
 }
 
-bool cprox_motion_moves_link(const cprox_motion *motion, size_t link) {
-  size_t joints = 0, moved = 0;
-  count_joints(motion, motion->robot->links[link].axis, -1, &joints, &moved);
-  return moved > 0;
-}
-
-/* The same between two links. */
-static void count_between(const cprox_motion *motion, size_t link_a, size_t link_b, size_t *joints, size_t *moved) {
-  const int32_t a = motion->robot->links[link_a].axis, b = motion->robot->links[link_b].axis;
+cprox_link_info cprox_motion_get_link_info(const cprox_motion *motion, int32_t link_a, int32_t link_b) {
+  const int32_t a = link_a < 0 ? -1 : motion->robot->links[link_a].axis;
+  const int32_t b = link_b < 0 ? -1 : motion->robot->links[link_b].axis;
   const int32_t common = robot_common_axis(motion->robot, a, b);
-  count_joints(motion, a, common, joints, moved);
-  count_joints(motion, b, common, joints, moved);
+  cprox_link_info info = {0};
+  count_joints(motion, a, common, &info.n_joints, &info.n_moved);
+  count_joints(motion, b, common, &info.n_joints, &info.n_moved);
+  return info;
 }
 
-bool cprox_motion_moves_between(const cprox_motion *motion, size_t link_a, size_t link_b) {
-  size_t joints = 0, moved = 0;
-  count_between(motion, link_a, link_b, &joints, &moved);
-  return moved >= 1;
+bool motion_moves_link(const cprox_motion *motion, int32_t link) {
+  return cprox_motion_get_link_info(motion, link, -1).n_moved > 0;
 }
 
-bool cprox_motion_relates_links(const cprox_motion *motion, size_t link_a, size_t link_b) {
-  size_t joints = 0, moved = 0;
-  count_between(motion, link_a, link_b, &joints, &moved);
-  return joints >= 2 && moved >= 1;
+bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t link_b) {
+  const cprox_link_info between = cprox_motion_get_link_info(motion, link_a, link_b);
+  return between.n_joints >= 2 && between.n_moved >= 1;
 }

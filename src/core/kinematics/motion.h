@@ -63,6 +63,12 @@ void motion_fill_rows(const cprox_motion *motion, size_t segment, double a, doub
 void motion_find_axis(const cprox_motion *motion, size_t segment, double a, double b, const double *rows, size_t axis,
                       axis_state *axes);
 
+/* Does the motion move the link? */
+bool motion_moves_link(const cprox_motion *motion, int32_t link);
+/* Can two links come closer in a way that is worth asking for: are there at least two joints that can move between them,
+ * and at least one that this motion moves? */
+bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t link_b);
+
 /* The states of all axes over the interval. */
 void motion_node(const cprox_motion *motion, size_t segment, double a, double b, double *rows, axis_state *axes);
 

@@ -12,20 +12,19 @@
 /* The largest value, velocity times duration, and so on. */
 #define MOTION_LARGEST 1e100
 
-/* What both constructors are given. */
+/* What a motion is made of. */
 typedef struct motion_source {
   const cprox_robot *robot;
   const int32_t *variables;
   size_t n;
   const double *rest;
+  const cprox_motion_description *description;
   cprox_workspace *workspace;
 } motion_source;
 
 /* ---- checks --------------------------------------------------------------------------------------------------------------- */
 
-static cprox_status check_source(const motion_source *s, cprox_motion **motion) {
-  if (!motion) return workspace_fail(s->workspace, CPROX_INVALID, "motion is NULL: nowhere to put the handle");
-  if (!s->robot) return workspace_fail(s->workspace, CPROX_INVALID, "robot is NULL");
+static cprox_status check_source(const motion_source *s) {
   if (s->n > 0 && !s->variables) return workspace_fail(s->workspace, CPROX_INVALID, "variables is NULL");
   for (size_t i = 0; i < s->n; i++) {
     if (s->variables[i] < 0 || (size_t)s->variables[i] >= s->robot->n_variables)
@@ -68,13 +67,17 @@ static cprox_status check_waypoint(const cprox_waypoint *p, size_t i, size_t n, 
   return status;
 }
 
-static cprox_status check_spline(size_t degree, const double *control, size_t n_control, const double *knots, size_t n,
-                                 cprox_workspace *workspace) {
+static cprox_status check_spline(const cprox_motion_description *d, cprox_workspace *workspace) {
+  const size_t degree = d->degree, n_control = d->n_control, n = d->n_variables;
+  const double *control = d->control, *knots = d->knots;
   if (degree < 1 || degree > MOTION_MAX_DEGREE)
     return workspace_fail(workspace, CPROX_INVALID, "the degree is %zu, must be 1 … %d", degree, MOTION_MAX_DEGREE);
   if (n_control < degree + 1)
     return workspace_fail(workspace, CPROX_INVALID, "degree %zu needs at least %zu control points, got %zu", degree,
                           degree + 1, n_control);
+  if (d->n_knots != n_control + degree + 1)
+    return workspace_fail(workspace, CPROX_INVALID, "%zu control points of degree %zu need %zu knots, got %zu",
+                          n_control, degree, n_control + degree + 1, d->n_knots);
   if (!control || !knots) return workspace_fail(workspace, CPROX_INVALID, "the control points or the knots are NULL");
   for (size_t i = 0; i < n_control * n; i++)
     if (!(fabs(control[i]) <= MOTION_LARGEST))
@@ -315,25 +318,23 @@ static double hermite(const cprox_waypoint *p, const cprox_waypoint *q, size_t k
   return size + fmax(fabs(a0), fabs(a1));
 }
 
-cprox_status cprox_motion_create_waypoints(const cprox_robot *robot, const int32_t *variables, size_t n,
-                                           const cprox_waypoint *points, size_t n_points,
-                                           cprox_interpolation interpolation, const double *rest,
-                                           cprox_workspace *workspace, cprox_motion **motion) {
-  const motion_source s = {robot, variables, n, rest, workspace};
-  workspace_clear(workspace);
-  cprox_status status = check_source(&s, motion);
-  if (status != CPROX_OK) return status;
+static cprox_status create_waypoints(const motion_source *s, cprox_motion **motion) {
+  cprox_workspace *const workspace = s->workspace;
+  const cprox_waypoint *points = s->description->waypoints;
+  const size_t n = s->n, n_points = s->description->n_waypoints;
+  const cprox_interpolation interpolation = s->description->interpolation;
   if (!points || n_points < 2)
     return workspace_fail(workspace, CPROX_INVALID, "a motion needs at least 2 waypoints, got %zu",
                           points ? n_points : (size_t)0);
   if ((unsigned)interpolation > CPROX_QUINTIC)
     return workspace_fail(workspace, CPROX_INVALID, "%d is no interpolation", (int)interpolation);
+  cprox_status status = CPROX_OK;
   for (size_t i = 0; i < n_points && status == CPROX_OK; i++)
     status = check_waypoint(&points[i], i, n, interpolation, workspace);
   if (status != CPROX_OK) return status;
 
-  cprox_motion *m = allocate(&s, n_points - 1, 5);
-  if (m && !motion_keep_waypoints(&m->given, variables, n, points, n_points, interpolation)) {
+  cprox_motion *m = allocate(s, n_points - 1, 5);
+  if (m && !motion_keep_waypoints(&m->given, s->description)) {
     cprox_motion_free(m);
     m = NULL;
   }
@@ -350,7 +351,7 @@ cprox_status cprox_motion_create_waypoints(const cprox_robot *robot, const int32
       m->error[at] = cutting_error(m->degree[i], size); /* the sums of hermite() are off by 8 u of their size at most */
     }
   }
-  return finish(m, &s, motion);
+  return finish(m, s, motion);
 }
 
 /* ---- B-splines ------------------------------------------------------------------------------------------------------------ */
@@ -368,19 +369,17 @@ static double convert_span(const double *control, size_t n, const double *knots,
   return size;
 }
 
-cprox_status cprox_motion_create_bspline(const cprox_robot *robot, const int32_t *variables, size_t n, size_t degree,
-                                         const double *control, size_t n_control, const double *knots,
-                                         const double *rest, cprox_workspace *workspace, cprox_motion **motion) {
-  const motion_source s = {robot, variables, n, rest, workspace};
-  workspace_clear(workspace);
-  cprox_status status = check_source(&s, motion);
-  if (status == CPROX_OK) status = check_spline(degree, control, n_control, knots, n, workspace);
+static cprox_status create_bspline(const motion_source *s, cprox_motion **motion) {
+  cprox_workspace *const workspace = s->workspace;
+  const double *control = s->description->control, *knots = s->description->knots;
+  const size_t n = s->n, degree = s->description->degree, n_control = s->description->n_control;
+  const cprox_status status = check_spline(s->description, workspace);
   if (status != CPROX_OK) return status;
 
   size_t n_segments = 0;
   for (size_t r = degree; r < n_control; r++) n_segments += knots[r] < knots[r + 1];
-  cprox_motion *m = allocate(&s, n_segments, degree);
-  if (m && !motion_keep_spline(&m->given, variables, n, degree, control, n_control, knots)) {
+  cprox_motion *m = allocate(s, n_segments, degree);
+  if (m && !motion_keep_spline(&m->given, s->description)) {
     cprox_motion_free(m);
     m = NULL;
   }
@@ -398,5 +397,28 @@ cprox_status cprox_motion_create_bspline(const cprox_robot *robot, const int32_t
     }
     i++;
   }
-  return finish(m, &s, motion);
+  return finish(m, s, motion);
+}
+
+/* ---- every kind ----------------------------------------------------------------------------------------------------------- */
+
+cprox_status cprox_motion_create(const cprox_robot *robot, const cprox_motion_description *description,
+                                 cprox_workspace *workspace, cprox_motion **motion) {
+  workspace_clear(workspace);
+  if (!motion) return workspace_fail(workspace, CPROX_INVALID, "motion is NULL: nowhere to put the handle");
+  if (!robot) return workspace_fail(workspace, CPROX_INVALID, "robot is NULL");
+  if (!description) return workspace_fail(workspace, CPROX_INVALID, "the description of the motion is NULL");
+  const motion_source s = {.robot = robot,
+                           .variables = description->variables,
+                           .n = description->n_variables,
+                           .rest = description->rest,
+                           .description = description,
+                           .workspace = workspace};
+  const cprox_status status = check_source(&s);
+  if (status != CPROX_OK) return status;
+  switch (description->kind) {
+    case CPROX_MOTION_WAYPOINTS: return create_waypoints(&s, motion);
+    case CPROX_MOTION_BSPLINE: return create_bspline(&s, motion);
+  }
+  return workspace_fail(workspace, CPROX_INVALID, "%d is no kind of motion", (int)description->kind);
 }

@@ -22,7 +22,8 @@ query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, d
 
 void query_ask_whole(query *q) {
   if (q->mover.motion) {
-    cprox_motion_domain(q->mover.motion, &q->t0, &q->t1);
+    const cprox_motion_info info = cprox_motion_get_info(q->mover.motion);
+    q->t0 = info.t0, q->t1 = info.t1;
     return;
   }
   q->part = curve_side_whole();

@@ -115,7 +115,7 @@ static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, rob
 }
 
 bool robot_scene_asks(const robot_scene *s, size_t part) {
-  return s->self || cprox_motion_moves_link(s->motion, (size_t)s->motion->robot->parts[part].link);
+  return s->self || motion_moves_link(s->motion, s->motion->robot->parts[part].link);
 }
 
 /* All pairs that are worth asking for. */
@@ -127,8 +127,7 @@ static void add_all_pairs(const robot_scene *s, robot_pair *pairs, size_t *n) {
     if (!robot_scene_asks(s, i)) continue;
     for (size_t k = 0; k < others; k++) {
       const robot_part *other = &robot->parts[k];
-      if (s->self && (other->geometry >= part->geometry ||
-                      !cprox_motion_relates_links(s->motion, (size_t)part->link, (size_t)other->link)))
+      if (s->self && (other->geometry >= part->geometry || !motion_relates_links(s->motion, part->link, other->link)))
         continue;
       if (pairs) pairs[*n] = pair_of(s, i, k);
       (*n)++;

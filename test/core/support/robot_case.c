@@ -112,10 +112,24 @@ static bool read_motion(FILE *f, robot_case *c, size_t n_variables) {
     points[i] = (cprox_waypoint){.positions = positions[i], .velocities = velocities[i]};
     if (!numbers(f, &points[i].time, 1) || !numbers(f, positions[i], n) || !numbers(f, velocities[i], n)) return false;
   }
-  return cprox_motion_create_waypoints(c->robot, variables, n, points, n_points, CPROX_CUBIC, rest, NULL, &c->motion) ==
-             CPROX_OK &&
-         cprox_motion_create_waypoints(c->mesh_robot, variables, n, points, n_points, CPROX_CUBIC, rest, NULL,
-                                       &c->mesh_motion) == CPROX_OK;
+  return cprox_motion_create(c->robot,
+                             &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                         .variables = variables,
+                                                         .n_variables = n,
+                                                         .waypoints = points,
+                                                         .n_waypoints = n_points,
+                                                         .interpolation = CPROX_CUBIC,
+                                                         .rest = rest},
+                             NULL, &c->motion) == CPROX_OK &&
+         cprox_motion_create(c->mesh_robot,
+                             &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                         .variables = variables,
+                                                         .n_variables = n,
+                                                         .waypoints = points,
+                                                         .n_waypoints = n_points,
+                                                         .interpolation = CPROX_CUBIC,
+                                                         .rest = rest},
+                             NULL, &c->mesh_motion) == CPROX_OK;
 }
 
 static bool read_scene(FILE *f, robot_case *c) {
@@ -156,7 +170,8 @@ bool robot_case_read(FILE *cases, const char *folder, robot_case *c) {
   for (size_t i = 0; i < c->n_geometries; i++)
     for (size_t k = 0; k < i; k++) {
       const size_t a = (size_t)c->links[i], b = (size_t)c->links[k];
-      if (disabled[a][b] || !cprox_motion_relates_links(c->motion, a, b)) continue;
+      const cprox_link_info between = cprox_motion_get_link_info(c->motion, c->links[i], c->links[k]);
+      if (disabled[a][b] || between.n_joints < 2 || between.n_moved == 0) continue;
       c->self_pairs[c->n_self_pairs++] = (cprox_robot_pair){(int32_t)i, (int32_t)k};
     }
   return true;

@@ -95,14 +95,30 @@ static void build(test_robot *t) {
     for (size_t i = 0; i < t->n_points; i++)
       memcpy(control + i * t->n_variables, t->positions[i], t->n_variables * sizeof *control);
     const size_t degree = TEST_SPLINE_DEGREE;
-    status = cprox_motion_create_bspline(t->robot, t->variables, t->n_variables, degree, control, t->n_points, t->times,
-                                         t->rest, ws, &t->motion);
+    status = cprox_motion_create(t->robot,
+                                 &(cprox_motion_description){.kind = CPROX_MOTION_BSPLINE,
+                                                             .variables = t->variables,
+                                                             .n_variables = t->n_variables,
+                                                             .degree = degree,
+                                                             .control = control,
+                                                             .n_control = t->n_points,
+                                                             .knots = t->times,
+                                                             .n_knots = t->n_points + degree + 1,
+                                                             .rest = t->rest},
+                                 ws, &t->motion);
   } else {
     cprox_waypoint points[TEST_MAX_WAYPOINTS];
     for (size_t i = 0; i < t->n_points; i++)
       points[i] = (cprox_waypoint){t->times[i], t->positions[i], t->velocities[i], t->accelerations[i]};
-    status = cprox_motion_create_waypoints(t->robot, t->variables, t->n_variables, points, t->n_points,
-                                           t->interpolation, t->rest, ws, &t->motion);
+    status = cprox_motion_create(t->robot,
+                                 &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                             .variables = t->variables,
+                                                             .n_variables = t->n_variables,
+                                                             .waypoints = points,
+                                                             .n_waypoints = t->n_points,
+                                                             .interpolation = t->interpolation,
+                                                             .rest = t->rest},
+                                 ws, &t->motion);
   }
   if (status != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   cprox_workspace_free(ws);
