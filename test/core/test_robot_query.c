@@ -342,9 +342,15 @@ CASE(proven_contact_ends_a_query_at_once) {
   cprox_robot *robot = NULL;
   cprox_motion *motion = NULL;
   assert_int_equal(cprox_robot_create(links, BALLS, geometries, BALLS, BALLS, ws, &robot), CPROX_OK);
-  assert_int_equal(
-      cprox_motion_create_waypoints(robot, variables, BALLS, points, POINTS, CPROX_LINEAR, NULL, ws, &motion),
-      CPROX_OK);
+  assert_int_equal(cprox_motion_create(robot,
+                                       &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
+                                                                   .variables = variables,
+                                                                   .n_variables = BALLS,
+                                                                   .waypoints = points,
+                                                                   .n_waypoints = POINTS,
+                                                                   .interpolation = CPROX_LINEAR},
+                                       ws, &motion),
+                   CPROX_OK);
   const cprox_obstacle targets[2] = {
       cprox_obstacle_at(wall, (cprox_pose){.position = {0.5, 0, 0}, .orientation = {.w = 1.0}}),
       cprox_obstacle_at(wall, (cprox_pose){.position = {9, 0, 0}, .orientation = {.w = 1.0}})};
