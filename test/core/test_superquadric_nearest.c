@@ -59,6 +59,50 @@ CASE(lower_bounds_of_pairs_hold_where_exponents_are_beside_1) {
   cprox_body_free(body);
 }
 
+/* How deep y is in the octahedron of the semi-axes. A body of exponents above 1 contains the octahedron, so y is as deep there
+ * at least. */
+static long double depth_in_octahedron(const superquadric *s, vec3 y) {
+  const vec3l n = {1.0L / s->a.x, 1.0L / s->a.y, 1.0L / s->a.z};
+  return (1.0L - fabsl(y.x) * n.x - fabsl(y.y) * n.y - fabsl(y.z) * n.z) / ref_norm(n);
+}
+
+/* Seed 2: no plane may prove a point to be less deep than it is, where exponents are beside 1 and the support point stays behind
+ * the support value. */
+CASE(depths_hold_where_exponents_are_beside_1) {
+  rng r = rng_seed(2);
+  size_t wrong = 0;
+  for (size_t i = 0; i < test_cases(20000); i++) {
+    superquadric s = {.a = {rng_log_uniform(&r, 0.05, 1), rng_log_uniform(&r, 0.05, 1), 1.0}};
+    s.p = vec(1.0 + rng_log_uniform(&r, 1e-9, 1e-1), 1.0 + rng_log_uniform(&r, 1e-9, 1e-1),
+              rng_index(&r, 2) ? 1.0 : rng_uniform(&r, 1, 20));
+    const vec3 y =
+        vec(s.a.x * rng_uniform(&r, -0.3, 0.3), s.a.y * rng_uniform(&r, -0.3, 0.3), s.a.z * rng_uniform(&r, -0.3, 0.3));
+    const long double deep = depth_in_octahedron(&s, y);
+    cprox_body *body = superquadric_body(&s, ws), *point = NULL; /* what lies about y */
+    cprox_pose at_y = cprox_pose_identity();
+    at_y.position = y;
+    const superquadric small = {.a = {1e-3, 2e-3, 1e-3}, .p = {s.p.y, s.p.x, s.p.z}};
+    const vec3 origin = {0, 0, 0};
+    const size_t kind = rng_index(&r, 3);
+    if (kind == 0) assert_int_equal(cprox_body_create_point(origin, ws, &point), CPROX_OK);
+    if (kind == 1) assert_int_equal(cprox_body_create_box(vec(1e-3, 1e-2, 1e-3), ws, &point), CPROX_OK);
+    if (kind == 2) point = superquadric_body(&small, ws);
+    const cprox_obstacle a = cprox_obstacle_at(body, cprox_pose_identity()), b = cprox_obstacle_at(point, at_y);
+    cprox_result x;
+    cprox_options options = cprox_options_default();
+    options.epsilon = 1e-6;
+    assert_true(cprox_pair(a, b, &options, ws, &x) >= 0);
+    const bool good = x.lower <= -deep;
+    if (!good)
+      print_message("[%.17g, %.17g], truth at most %.17Lg: axes %g %g %g, exponents %.17g %.17g %.17g, from %g %g %g\n",
+                    x.lower, x.upper, -deep, s.a.x, s.a.y, s.a.z, s.p.x, s.p.y, s.p.z, y.x, y.y, y.z);
+    wrong += !good;
+    cprox_body_free(point);
+    cprox_body_free(body);
+  }
+  assert_int_equal(wrong, 0);
+}
+
 int main(void) {
   return cases_run(workspace_setup, workspace_teardown);
 }
