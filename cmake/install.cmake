@@ -9,13 +9,17 @@ else()
   set(CPROX_LIB_DIR ${CMAKE_INSTALL_LIBDIR})
 endif()
 
-# The core: library, C headers, a CMake package and a pkg-config file, both relocatable.
+# The core and the Fourier gaps on top of it: libraries, C headers, a CMake package with the component `fourier`, and a
+# pkg-config file each; all relocatable.
 # Before 1.0 a new minor version may break the ABI, so that the SONAME carries it.
-set_target_properties(cprox PROPERTIES
+set_target_properties(cprox cprox_fourier PROPERTIES
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 install(TARGETS cprox EXPORT cproxTargets LIBRARY DESTINATION ${CPROX_LIB_DIR} ARCHIVE DESTINATION ${CPROX_LIB_DIR}
         RUNTIME DESTINATION bin)
+install(TARGETS cprox_fourier EXPORT cprox_fourierTargets LIBRARY DESTINATION ${CPROX_LIB_DIR}
+        ARCHIVE DESTINATION ${CPROX_LIB_DIR} RUNTIME DESTINATION bin)
 install(EXPORT cproxTargets NAMESPACE cprox:: DESTINATION ${CPROX_LIB_DIR}/cmake/cprox)
+install(EXPORT cprox_fourierTargets NAMESPACE cprox:: DESTINATION ${CPROX_LIB_DIR}/cmake/cprox)
 configure_file(cmake/cproxConfig.cmake.in ${PROJECT_BINARY_DIR}/cproxConfig.cmake COPYONLY)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cproxConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 #catkin_lint: ignore_once missing_file wrong_install_destination
@@ -24,8 +28,9 @@ install(FILES ${PROJECT_BINARY_DIR}/cproxConfig.cmake ${PROJECT_BINARY_DIR}/cpro
 file(RELATIVE_PATH CPROX_PC_PREFIX /${CPROX_LIB_DIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" CPROX_PC_PREFIX "${CPROX_PC_PREFIX}")
 configure_file(cmake/cprox.pc.in ${PROJECT_BINARY_DIR}/cprox.pc @ONLY)
+configure_file(cmake/cprox_fourier.pc.in ${PROJECT_BINARY_DIR}/cprox_fourier.pc @ONLY)
 #catkin_lint: ignore_once wrong_install_destination
-install(FILES ${PROJECT_BINARY_DIR}/cprox.pc DESTINATION ${CPROX_LIB_DIR}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/cprox.pc ${PROJECT_BINARY_DIR}/cprox_fourier.pc DESTINATION ${CPROX_LIB_DIR}/pkgconfig)
 
 install(DIRECTORY include/curve_proximity/ DESTINATION include/curve_proximity FILES_MATCHING PATTERN "*.h")
 # The C++ classes over the core alone need Eigen, and parallel.hpp threads; they are headers.

@@ -28,11 +28,11 @@ static cprox_gap *make(const shape *a, const shape *b, cprox_gap_mode mode, uint
 }
 
 static cprox_gap *make_certified(const shape *a, const shape *b, uint32_t samples, cprox_workspace *ws) {
-  return make(a, b, CPROX_GAP_CERTIFIED, samples, ws);
+  return make(a, b, CPROX_GAP_MODE_CERTIFIED, samples, ws);
 }
 
 static cprox_gap *make_tuned(const shape *a, const shape *b, uint32_t samples, cprox_workspace *ws) {
-  return make(a, b, CPROX_GAP_TUNED, samples, ws);
+  return make(a, b, CPROX_GAP_MODE_TUNED, samples, ws);
 }
 
 #ifdef HAVE_LIQUID
@@ -69,7 +69,7 @@ static cprox_gap *make_paper(const shape *a, const shape *b, uint32_t samples, c
   const int N = (int)samples / 2;
   double best = INFINITY, best_threshold = 0.0;
   kernel chosen = {.n = 0};
-  gap_plan plan = {.mode = CPROX_GAP_CERTIFIED, .dimension = 2, .N = N, .beta = kernel_beta(2, (int)samples)};
+  gap_plan plan = {.mode = CPROX_GAP_MODE_CERTIFIED, .dimension = 2, .N = N, .beta = kernel_beta(2, (int)samples)};
   plan.period = 2.6 * (a->solid->radius + b->solid->radius);
   const double area = plan.period * plan.period;
   for (double x0 = 0.3 / samples; x0 < 0.15; x0 *= 1.25)
@@ -79,7 +79,7 @@ static cprox_gap *make_paper(const shape *a, const shape *b, uint32_t samples, c
       double reach;
       cprox_solid *p = solid_offset(a->solid, x0 * plan.period, &reach),
                   *q = solid_offset(b->solid, x0 * plan.period, &reach);
-      const double mu = cprox_solid_measure(p) / area * (cprox_solid_measure(q) / area);
+      const double mu = cprox_solid_get_info(p).measure / area * (cprox_solid_get_info(q).measure / area);
       const double t = kernel_threshold(&w, 2, x0, NULL) + least_value(&w) * mu;
       cprox_solid_free(p);
       cprox_solid_free(q);
@@ -131,7 +131,7 @@ enum { N_METHODS = sizeof METHODS / sizeof *METHODS };
 static bool may_collide(const cprox_gap *gap, const cprox_pose *a, const cprox_pose *b, cprox_workspace *ws) {
   cprox_gap_result r;
   if (cprox_gap_test(gap, a, b, ws, &r) < CPROX_OK) abort();
-  return r.verdict == CPROX_GAP_COLLIDE || r.verdict == CPROX_GAP_UNDECIDED;
+  return r.verdict == CPROX_GAP_VERDICT_COLLIDE || r.verdict == CPROX_GAP_VERDICT_UNDECIDED;
 }
 
 /* Outwards from the edge of the bounding spheres: the first distance along the ray at which the gap says "may collide", to 1e-4. */

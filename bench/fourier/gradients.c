@@ -11,7 +11,7 @@
 enum { BINS = 6, MOST = 4000, MODES = 3 };
 static const double EDGES[BINS + 1] = {0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6};
 static const char *const NAMES[MODES] = {"curve_proximity", "curve_proximity tuned", "curve_proximity signal"};
-static const cprox_gap_mode KINDS[MODES] = {CPROX_GAP_CERTIFIED, CPROX_GAP_TUNED, CPROX_GAP_SIGNAL};
+static const cprox_gap_mode KINDS[MODES] = {CPROX_GAP_MODE_CERTIFIED, CPROX_GAP_MODE_TUNED, CPROX_GAP_MODE_SIGNAL};
 
 static int ascending(const void *a, const void *b) {
   const double x = *(const double *)a, y = *(const double *)b;
@@ -42,7 +42,7 @@ static void measure(const shape *a, const shape *b, int mode, uint32_t samples, 
   rng r = rng_seed(83);
   const cprox_pose here = shape_pose(0, 0, 0);
   const double sign =
-      KINDS[mode] == CPROX_GAP_SIGNAL ? 1.0 : -1.0; /* the signal is a logarithm that grows with the distance */
+      KINDS[mode] == CPROX_GAP_MODE_SIGNAL ? 1.0 : -1.0; /* the signal is a logarithm that grows with the distance */
   for (size_t i = 0; i < poses; i++) {
     const double phi = rng_uniform(&r, 0.0, 6.283185307179586), far = rng_uniform(&r, 0.0, 2.0);
     const cprox_pose at = shape_pose(far * cos(phi), far * sin(phi), rng_uniform(&r, 0.0, 6.283185307179586));
@@ -50,7 +50,7 @@ static void measure(const shape *a, const shape *b, int mode, uint32_t samples, 
     double g[2];
     cprox_gap_result found;
     if (d <= 1e-3 || !exact_gradient(a, b, &at, g) || cprox_gap_evaluate(gap, &here, &at, ws, &found) < CPROX_OK ||
-        found.verdict == CPROX_GAP_FAR)
+        found.verdict == CPROX_GAP_VERDICT_FAR)
       continue;
     const double size = hypot(found.position_b.x, found.position_b.y);
     for (int k = 0; k < BINS; k++)

@@ -27,7 +27,7 @@ static void by_gap(const void *problems, size_t i, void *state, bench_answer *an
   cprox_gap_result r = {0};
   const cprox_status status = (q->gradient ? cprox_gap_evaluate : cprox_gap_test)(q->gap, &p->a, &p->b, q->ws, &r);
   *answer = (bench_answer){.lower = NAN, .upper = NAN, .nodes = r.terms, .failed = status < CPROX_OK};
-  answer->wrong = (r.verdict == CPROX_GAP_CLEAR || r.verdict == CPROX_GAP_FAR) && p->truth < -1e-9;
+  answer->wrong = (r.verdict == CPROX_GAP_VERDICT_CLEAR || r.verdict == CPROX_GAP_VERDICT_FAR) && p->truth < -1e-9;
 }
 
 static void by_distance(const void *problems, size_t i, void *state, bench_answer *answer) {
@@ -50,7 +50,10 @@ void fourier_pairs(const bench_size *size) {
   cprox_body *b[2];
   const cprox_vec3 edges[2] = {{1.0, 0.7, 0.5}, {0.8, 0.8, 0.4}};
   for (int k = 0; k < 2; k++)
-    if (cprox_solid_create_box(3, edges[k], ws, &s[k]) || cprox_body_create_box(edges[k], ws, &b[k])) abort();
+    if (cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 3, .size = edges[k]}, ws,
+                           &s[k]) ||
+        cprox_body_create_box(edges[k], ws, &b[k]))
+      abort();
   pair_problem *problems = calloc(size->problems, sizeof *problems);
   rng r = rng_seed(78);
   for (size_t i = 0; problems && i < size->problems; i++) {

@@ -41,10 +41,17 @@ void shapes_create(shape shapes[SHAPES]) {
     cprox_pose poses[SHAPE_PIECES];
     for (int j = 0; j < shapes[i].n; j++) {
       poses[j] = cprox_pose_identity();
-      if (cprox_solid_create_polygon((const double(*)[2])shapes[i].v[j], (size_t)shapes[i].corners[j], NULL, &parts[j]))
+      if (cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON,
+                                                        .corners = (const double(*)[2])shapes[i].v[j],
+                                                        .n = (size_t)shapes[i].corners[j]},
+                             NULL, &parts[j]))
         abort();
     }
-    if (cprox_solid_create_union((const cprox_solid *const *)parts, poses, (size_t)shapes[i].n, NULL, &shapes[i].solid))
+    if (cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_UNION,
+                                                      .parts = (const cprox_solid *const *)parts,
+                                                      .poses = poses,
+                                                      .n = (size_t)shapes[i].n},
+                           NULL, &shapes[i].solid))
       abort();
     for (int j = 0; j < shapes[i].n; j++) cprox_solid_free(parts[j]);
   }

@@ -4,6 +4,7 @@
 #define CPROX_BENCH_FOURIER_SHAPES_H
 
 #include "curve_proximity/cprox.h"
+#include "curve_proximity/cprox_fourier.h"
 
 enum { SHAPE_PIECES = 6, SHAPE_CORNERS = 8 };
 

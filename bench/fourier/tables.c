@@ -154,7 +154,9 @@ void fourier_tables(const bench_size *asked_for) {
   cprox_workspace *ws = cprox_workspace_create();
   cprox_solid *s[2];
   for (int k = 0; k < 2; k++)
-    if (cprox_solid_create_box(3, EDGES[k], ws, &s[k])) abort();
+    if (cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 3, .size = EDGES[k]}, ws,
+                           &s[k]))
+      abort();
   measure(s, 17, &some, ws);
   measure(s, 33, &some, ws);
   for (int k = 0; k < 2; k++) cprox_solid_free(s[k]);

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include <curve_proximity/cprox_fourier.h>
 #include <curve_proximity/constraint_provider.hpp>
 #include <curve_proximity/query.hpp>
 
@@ -176,9 +177,15 @@ int main(int argc, char **argv) {
     cprox_gap *gap = nullptr;
     cprox_gap_options options = cprox_gap_options_default();
     options.samples = 9;
-    options.mode = CPROX_GAP_SIGNAL;
-    require(cprox_solid_create_ellipsoid(3, {0.5, 0.3, 0.4}, workspace.get(), &a), workspace);
-    require(cprox_solid_create_box(3, {0.5, 0.7, 0.6}, workspace.get(), &b), workspace);
+    options.mode = CPROX_GAP_MODE_SIGNAL;
+    cprox_solid_description ellipsoid{}, box{};
+    ellipsoid.kind = CPROX_SOLID_ELLIPSOID;
+    box.kind = CPROX_SOLID_BOX;
+    ellipsoid.dimension = box.dimension = 3;
+    ellipsoid.semi_axes = {0.5, 0.3, 0.4};
+    box.size = {0.5, 0.7, 0.6};
+    require(cprox_solid_create(&ellipsoid, workspace.get(), &a), workspace);
+    require(cprox_solid_create(&box, workspace.get(), &b), workspace);
     require(cprox_gap_create(a, b, &options, workspace.get(), &gap), workspace);
     const Ask core = [&](std::size_t i) {
       cprox_gap_result result;

@@ -11,7 +11,6 @@
 #include <curve_proximity/cprox/body.h>
 #include <curve_proximity/cprox/certificate.h>
 #include <curve_proximity/cprox/curve.h>
-#include <curve_proximity/cprox/fourier.h>
 #include <curve_proximity/cprox/gradient.h>
 #include <curve_proximity/cprox/implicit.h>
 #include <curve_proximity/cprox/obstacles.h>

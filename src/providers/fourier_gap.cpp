@@ -37,7 +37,7 @@ class FourierGapConstraint : public Constraint {
         require(cprox_gap_evaluate(gap_.get(), &place.a, &place.b, workspace.get(), &r), workspace);
 
     // By the mode, the constraint grows where the gap falls: 1 - V/t; or with the signal: c - level.
-    const bool signal = parameters_.options.mode == CPROX_GAP_SIGNAL;
+    const bool signal = parameters_.options.mode == CPROX_GAP_MODE_SIGNAL;
     const double sign = signal ? 1.0 : -1.0;
     out.status = status;
     out.value = signal ? r.value - parameters_.level : 1.0 - r.value;
@@ -54,12 +54,12 @@ class FourierGapConstraint : public Constraint {
     out.has_points = false;
 
     // Where it says nothing about the way.
-    out.valid = r.verdict != CPROX_GAP_FAR && status != CPROX_PRECISION && std::isfinite(out.value);
+    out.valid = r.verdict != CPROX_GAP_VERDICT_FAR && status != CPROX_PRECISION && std::isfinite(out.value);
     if (out.valid)
       out.reason.clear();
     else
-      out.reason = r.verdict == CPROX_GAP_FAR ? "beyond the bounding spheres the gap is flat"
-                                              : "the signal is below its rounding";
+      out.reason = r.verdict == CPROX_GAP_VERDICT_FAR ? "beyond the bounding spheres the gap is flat"
+                                                      : "the signal is below its rounding";
   }
 
  private:
@@ -88,9 +88,9 @@ class FourierGap : public ConstraintProvider {
   void initialise(const ParameterMap &parameters) override {
     ParameterReader reader(parameters);
     const std::string mode = reader.word("mode", "certified", {"certified", "tuned", "signal"});
-    parameters_.options.mode = mode == "signal"  ? CPROX_GAP_SIGNAL
-                               : mode == "tuned" ? CPROX_GAP_TUNED
-                                                 : CPROX_GAP_CERTIFIED;
+    parameters_.options.mode = mode == "signal"  ? CPROX_GAP_MODE_SIGNAL
+                               : mode == "tuned" ? CPROX_GAP_MODE_TUNED
+                                                 : CPROX_GAP_MODE_CERTIFIED;
     parameters_.dimension = reader.count("dimension", 3, 2, 3);
     parameters_.options.delta = reader.number("delta", 0.0, 0.0);
     parameters_.options.samples = static_cast<std::uint32_t>(reader.count("samples", 0, 0, 1025));
@@ -106,7 +106,7 @@ class FourierGap : public ConstraintProvider {
       throw Error("parameters samples and delta: give one of the two, delta chooses the samples");
     if (parameters_.options.samples == 0 && parameters_.options.delta == 0.0)
       parameters_.options.samples = parameters_.dimension == 2 ? 33 : 17;
-    if (parameters_.level != 0.0 && parameters_.options.mode != CPROX_GAP_SIGNAL)
+    if (parameters_.level != 0.0 && parameters_.options.mode != CPROX_GAP_MODE_SIGNAL)
       throw Error("parameter level: only the mode signal has one");
   }
 

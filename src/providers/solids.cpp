@@ -20,20 +20,21 @@ using Corners = std::vector<std::array<std::uint32_t, 3>>;
 /* Of the pyramid round a cone. */
 constexpr int SIDES = 32;
 
-template <typename Create>
-SolidHandle own(Create create) {
+SolidHandle own(const cprox_solid_description &description) {
   Workspace workspace;
   cprox_solid *solid = nullptr;
-  require(create(workspace.get(), &solid), workspace);
+  require(cprox_solid_create(&description, workspace.get(), &solid), workspace);
   return SolidHandle(solid, [](const cprox_solid *s) { cprox_solid_free(const_cast<cprox_solid *>(s)); });
 }
 
 SolidHandle meshSolid(const Points &vertices, const Corners &triangles) {
-  return own([&](cprox_workspace *w, cprox_solid **s) {
-    return cprox_solid_create_mesh(vertices.data(), vertices.size(),
-                                   reinterpret_cast<const std::uint32_t(*)[3]>(triangles.data()), triangles.size(), w,
-                                   s);
-  });
+  cprox_solid_description solid{};
+  solid.kind = CPROX_SOLID_MESH;
+  solid.points = vertices.data();
+  solid.n = vertices.size();
+  solid.triangles = reinterpret_cast<const std::uint32_t(*)[3]>(triangles.data());
+  solid.n_triangles = triangles.size();
+  return own(solid);
 }
 
 /* Turns each triangle so that it looks away from a point inside a convex hull. */
@@ -126,25 +127,30 @@ SolidHandle polygonSolid(const Eigen::Matrix3Xd &points) {
     hull.pop_back();
   }
   if (hull.size() < 3) throw Error("the hull of its vertices has no interior");
-  return own([&](cprox_workspace *w, cprox_solid **s) {
-    return cprox_solid_create_polygon(reinterpret_cast<const double(*)[2]>(hull.data()), hull.size(), w, s);
-  });
+  cprox_solid_description solid{};
+  solid.kind = CPROX_SOLID_POLYGON;
+  solid.corners = reinterpret_cast<const double(*)[2]>(hull.data());
+  solid.n = hull.size();
+  return own(solid);
 }
 
 SolidHandle solidOf(const ShapeDescription &shape, int dimension) {
   const std::vector<double> &d = shape.dimensions;
+  cprox_solid_description solid{};
+  solid.dimension = dimension;
   switch (shape.type) {
     case ShapeType::SPHERE:
-      return own(
-          [&](cprox_workspace *w, cprox_solid **s) { return cprox_solid_create_ball(dimension, d.at(0), w, s); });
+      solid.kind = CPROX_SOLID_BALL;
+      solid.radius = d.at(0);
+      return own(solid);
     case ShapeType::BOX:
-      return own([&](cprox_workspace *w, cprox_solid **s) {
-        return cprox_solid_create_box(dimension, {d.at(0), d.at(1), d.at(2)}, w, s);
-      });
+      solid.kind = CPROX_SOLID_BOX;
+      solid.size = {d.at(0), d.at(1), d.at(2)};
+      return own(solid);
     case ShapeType::ELLIPSOID:
-      return own([&](cprox_workspace *w, cprox_solid **s) {
-        return cprox_solid_create_ellipsoid(dimension, {d.at(0), d.at(1), d.at(2)}, w, s);
-      });
+      solid.kind = CPROX_SOLID_ELLIPSOID;
+      solid.semi_axes = {d.at(0), d.at(1), d.at(2)};
+      return own(solid);
     case ShapeType::POLYTOPE: return dimension == 2 ? polygonSolid(shape.vertices) : hullSolid(shape.vertices);
     case ShapeType::POLYGON:
       if (dimension == 3) break;
@@ -152,10 +158,10 @@ SolidHandle solidOf(const ShapeDescription &shape, int dimension) {
     case ShapeType::CYLINDER:
     case ShapeType::CAPSULE:
       if (dimension == 2) break;
-      return own([&](cprox_workspace *w, cprox_solid **s) {
-        return shape.type == ShapeType::CYLINDER ? cprox_solid_create_cylinder(d.at(0), d.at(1), w, s)
-                                                 : cprox_solid_create_capsule(3, d.at(0), d.at(1), w, s);
-      });
+      solid.kind = shape.type == ShapeType::CYLINDER ? CPROX_SOLID_CYLINDER : CPROX_SOLID_CAPSULE;
+      solid.height = d.at(0);
+      solid.radius = d.at(1);
+      return own(solid);
     case ShapeType::CONE:
       if (dimension == 2) break;
       return coneSolid(d.at(0), d.at(1));
@@ -187,9 +193,12 @@ SolidHandle makeSolid(const ConstraintBody &side, int dimension) {
   if (parts.size() == 1 && !moved) return parts.front();
   std::vector<const cprox_solid *> handles;
   for (const SolidHandle &part : parts) handles.push_back(part.get());
-  return own([&](cprox_workspace *w, cprox_solid **s) {
-    return cprox_solid_create_union(handles.data(), poses.data(), handles.size(), w, s);
-  });
+  cprox_solid_description all{};
+  all.kind = CPROX_SOLID_UNION;
+  all.parts = handles.data();
+  all.poses = poses.data();
+  all.n = handles.size();
+  return own(all);
 }
 
 } // namespace curve_proximity

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** From shapes to the solids of cprox/fourier.h. */
+/** From shapes to the solids of cprox_fourier.h. */
 #ifndef CURVE_PROXIMITY_PROVIDERS_SOLIDS_H
 #define CURVE_PROXIMITY_PROVIDERS_SOLIDS_H
 
+#include <curve_proximity/cprox_fourier.h>
 #include <curve_proximity/constraint_provider.hpp>
 #include <memory>
 

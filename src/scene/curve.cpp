@@ -68,9 +68,8 @@ std::vector<Eigen::AlignedBox3d> pieceBoxes(const CurveDescription &description,
   if (n == 1) return cutBoxes(curve, {description.t0, description.t1}, BOXES);
   std::vector<Eigen::AlignedBox3d> boxes(std::min(n, MOST_BOXES));
   for (std::size_t i = 0; i < n; ++i) {
-    cprox_vec3 lowest, highest;
-    cprox_curve_piece_bounds(curve, i, &lowest, &highest);
-    boxes[i * boxes.size() / n].extend(Eigen::AlignedBox3d(toEigen(lowest), toEigen(highest)));
+    const cprox_curve_piece_info piece = cprox_curve_get_piece_info(curve, i);
+    boxes[i * boxes.size() / n].extend(Eigen::AlignedBox3d(toEigen(piece.lowest), toEigen(piece.highest)));
   }
   return boxes;
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "curve_proximity/cprox_fourier.h"
 #include "scenes.h"
 #include "support/counting.h"
 #include "support/make_curve.h"
@@ -145,13 +146,32 @@ static cprox_status make_other(size_t which, const material *m, cprox_workspace 
   switch (which) {
     case 0: return cprox_obstacles_create(targets, 2, CPROX_INDEX_BVH, ws, &h->set);
     case 1: return cprox_obstacles_create(targets, 2, CPROX_INDEX_BATCH, ws, &h->batch);
-    case 2: return cprox_solid_create_ball(3, 1.0, ws, &h->solid);
-    case 3: return cprox_solid_create_box(2, vec(1, 2, 3), ws, &h->solid);
-    case 4: return cprox_solid_create_ellipsoid(3, vec(1, 2, 3), ws, &h->solid);
-    case 5: return cprox_solid_create_cylinder(1, 2, ws, &h->solid);
-    case 6: return cprox_solid_create_polygon(m->flat, POINTS, ws, &h->solid);
-    case 7: return cprox_solid_create_polyline(3, m->points, POINTS, 0.1, ws, &h->solid);
-    default: return cprox_solid_create_sweep(3, m->line, 0.1, 1e-3, ws, &h->solid);
+    case 2:
+      return cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 3, .radius = 1.0}, ws,
+                                &h->solid);
+    case 3:
+      return cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(1, 2, 3)}, ws, &h->solid);
+    case 4:
+      return cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_ELLIPSOID, .dimension = 3, .semi_axes = vec(1, 2, 3)}, ws,
+          &h->solid);
+    case 5:
+      return cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_CYLINDER, .height = 1, .radius = 2}, ws,
+                                &h->solid);
+    case 6:
+      return cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = m->flat, .n = POINTS}, ws, &h->solid);
+    case 7:
+      return cprox_solid_create(
+          &(cprox_solid_description){
+              .kind = CPROX_SOLID_POLYLINE, .dimension = 3, .points = m->points, .n = POINTS, .radius = 0.1},
+          ws, &h->solid);
+    default:
+      return cprox_solid_create(
+          &(cprox_solid_description){
+              .kind = CPROX_SOLID_SWEEP, .dimension = 3, .curve = m->line, .radius = 0.1, .tolerance = 1e-3},
+          ws, &h->solid);
   }
 }
 

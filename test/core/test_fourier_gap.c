@@ -44,11 +44,16 @@ static shape read_shape(const csv_table *t, const char *name) {
     const size_t n = csv_count(t, row, 2);
     s.corners[s.n] = n;
     for (size_t j = 0; j < 2 * n; j++) s.v[s.n][j / 2][j % 2] = csv_number(t, row, 3 + j);
-    MADE(cprox_solid_create_polygon((const double(*)[2])s.v[s.n], n, ws, &parts[s.n]));
+    MADE(cprox_solid_create(
+        &(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = (const double(*)[2])s.v[s.n], .n = n}, ws,
+        &parts[s.n]));
     poses[s.n++] = cprox_pose_identity();
   }
   assert_true(s.n > 0);
-  MADE(cprox_solid_create_union((const cprox_solid *const *)parts, poses, s.n, ws, &s.solid));
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){
+          .kind = CPROX_SOLID_UNION, .parts = (const cprox_solid *const *)parts, .poses = poses, .n = s.n},
+      ws, &s.solid));
   for (size_t i = 0; i < s.n; i++) cprox_solid_free(parts[i]);
   return s;
 }
@@ -124,8 +129,8 @@ CASE(certified_is_never_wrong_about_clear) {
   for (int pair = 0; pair < 24; pair++) {
     const shape *a = &shapes[rng_index(&r, N)], *b = &shapes[rng_index(&r, N)];
     const uint32_t samples = (const uint32_t[]){9, 17, 33}[pair % 3];
-    cprox_gap *gap = gap_of(a->solid, b->solid, CPROX_GAP_CERTIFIED, samples);
-    cprox_gap *tuned = gap_of(a->solid, b->solid, CPROX_GAP_TUNED, samples);
+    cprox_gap *gap = gap_of(a->solid, b->solid, CPROX_GAP_MODE_CERTIFIED, samples);
+    cprox_gap *tuned = gap_of(a->solid, b->solid, CPROX_GAP_MODE_TUNED, samples);
     const cprox_gap_info info = cprox_gap_get_info(gap), other = cprox_gap_get_info(tuned);
     assert_true(info.guaranteed && !other.guaranteed);
     for (size_t i = 0; i < test_cases(400); i++) {
@@ -144,18 +149,18 @@ CASE(certified_is_never_wrong_about_clear) {
       cprox_gap_result x, y;
       MADE(cprox_gap_test(gap, &pa, &pb, ws, &x));
       MADE(cprox_gap_test(tuned, &pa, &pb, ws, &y));
-      const bool says_clear = x.verdict == CPROX_GAP_CLEAR || x.verdict == CPROX_GAP_FAR;
+      const bool says_clear = x.verdict == CPROX_GAP_VERDICT_CLEAR || x.verdict == CPROX_GAP_VERDICT_FAR;
       colliding += d < -1e-12L;
       clear += says_clear;
       if (says_clear && d < -1e-12L)
         fail_msg("pair %d, n %u: clear at an overlap of %Lg, value %g", pair, samples, -d, x.value);
-      if (x.verdict == CPROX_GAP_FAR) assert_true(x.clearance <= (double)d + 1e-12);
+      if (x.verdict == CPROX_GAP_VERDICT_FAR) assert_true(x.clearance <= (double)d + 1e-12);
       if (!says_clear && d > 0) {
         over++;
         if (!((double)d <= info.over_reach)) fail_msg("called colliding %Lg apart, over-reach %g", d, info.over_reach);
         most = fmax(most, (double)d * samples / info.period);
       }
-      if (y.verdict != CPROX_GAP_CLEAR && y.verdict != CPROX_GAP_FAR && d > 0) {
+      if (y.verdict != CPROX_GAP_VERDICT_CLEAR && y.verdict != CPROX_GAP_VERDICT_FAR && d > 0) {
         if (!((double)d <= other.over_reach))
           fail_msg("tuned: called colliding %Lg apart, over-reach %g, n %u", d, other.over_reach, samples);
         if (samples > 9) most_tuned = fmax(most_tuned, (double)d * samples / other.period);
@@ -202,12 +207,16 @@ CASE(certified_is_never_wrong_in_space) {
     cprox_solid *s[2], *mesh;
     for (int k = 0; k < 2; k++) {
       for (int j = 0; j < 3; j++) h[k][j] = rng_log_uniform(&r, 0.05, 1.0);
-      MADE(cprox_solid_create_box(3, vec(2 * h[k][0], 2 * h[k][1], 2 * h[k][2]), ws, &s[k]));
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){
+              .kind = CPROX_SOLID_BOX, .dimension = 3, .size = vec(2 * h[k][0], 2 * h[k][1], 2 * h[k][2])},
+          ws, &s[k]));
     }
-    MADE(cprox_solid_create_clipped(s[0], outside, 1, ws, &mesh));
+    MADE(cprox_solid_create(
+        &(cprox_solid_description){.kind = CPROX_SOLID_CLIPPED, .solid = s[0], .region = outside, .n = 1}, ws, &mesh));
     const uint32_t samples = pair % 2 ? 9 : 13;
-    cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, samples),
-              *of_mesh = gap_of(mesh, s[1], CPROX_GAP_CERTIFIED, samples);
+    cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_MODE_CERTIFIED, samples),
+              *of_mesh = gap_of(mesh, s[1], CPROX_GAP_MODE_CERTIFIED, samples);
     for (size_t i = 0; i < test_cases(400); i++) {
       const cprox_pose p[2] = {rng_pose(&r, 3.0), {.orientation = rng_quat(&r)}};
       cprox_pose q = p[1];
@@ -218,10 +227,10 @@ CASE(certified_is_never_wrong_in_space) {
       MADE(cprox_gap_test(gap, &p[0], &q, ws, &x));
       MADE(cprox_gap_test(of_mesh, &p[0], &q, ws, &y));
       colliding += overlap > 1e-9L;
-      clear += x.verdict == CPROX_GAP_CLEAR || x.verdict == CPROX_GAP_FAR;
+      clear += x.verdict == CPROX_GAP_VERDICT_CLEAR || x.verdict == CPROX_GAP_VERDICT_FAR;
       if (overlap > 1e-9L) {
-        assert_true(x.verdict == CPROX_GAP_COLLIDE || x.verdict == CPROX_GAP_UNDECIDED);
-        assert_true(y.verdict == CPROX_GAP_COLLIDE || y.verdict == CPROX_GAP_UNDECIDED);
+        assert_true(x.verdict == CPROX_GAP_VERDICT_COLLIDE || x.verdict == CPROX_GAP_VERDICT_UNDECIDED);
+        assert_true(y.verdict == CPROX_GAP_VERDICT_COLLIDE || y.verdict == CPROX_GAP_VERDICT_UNDECIDED);
       }
     }
     cprox_gap_free(gap);
@@ -236,23 +245,26 @@ CASE(certified_is_never_wrong_in_space) {
 /* A dot on a dot among bars where the ball-shaped window's kernel is negative: the bars' negative share outweighs the dots'. */
 CASE(bars_around_a_dot_break_the_tuned_mode_and_not_the_certified_one) {
   cprox_solid *dot, *bar, *all;
-  MADE(cprox_solid_create_ball(2, 1e-3, ws, &dot));
-  MADE(cprox_solid_create_box(2, vec(0.1, 8.5, 0), ws, &bar));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 2, .radius = 1e-3}, ws,
+                          &dot));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(0.1, 8.5, 0)},
+                          ws, &bar));
   const cprox_solid *const parts[7] = {dot, bar, bar, bar, bar, bar, bar};
   const cprox_pose poses[7] = {planar(0, 0, 0),    planar(1.1, 0, 0), planar(-1.1, 0, 0), planar(2.9, 0, 0),
                                planar(-2.9, 0, 0), planar(4.7, 0, 0), planar(-4.7, 0, 0)};
-  MADE(cprox_solid_create_union(parts, poses, 7, ws, &all));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_UNION, .parts = parts, .poses = poses, .n = 7},
+                          ws, &all));
   const cprox_pose here = cprox_pose_identity();
   for (int swap = 0; swap < 2; swap++) {
     const cprox_solid *a = swap ? all : dot, *b = swap ? dot : all;
-    cprox_gap *tuned = gap_of(a, b, CPROX_GAP_TUNED, 17), *certified = gap_of(a, b, CPROX_GAP_CERTIFIED, 17);
+    cprox_gap *tuned = gap_of(a, b, CPROX_GAP_MODE_TUNED, 17), *certified = gap_of(a, b, CPROX_GAP_MODE_CERTIFIED, 17);
     cprox_gap_result r;
     MADE(cprox_gap_test(tuned, &here, &here, ws, &r));
-    assert_int_equal(r.verdict, CPROX_GAP_CLEAR); /* wrong */
+    assert_int_equal(r.verdict, CPROX_GAP_VERDICT_CLEAR); /* wrong */
     MADE(cprox_gap_evaluate(tuned, &here, &here, ws, &r));
     if (!(r.value < 0.7)) fail_msg("V/t = %g", r.value);
     MADE(cprox_gap_test(certified, &here, &here, ws, &r));
-    assert_int_equal(r.verdict, CPROX_GAP_COLLIDE);
+    assert_int_equal(r.verdict, CPROX_GAP_VERDICT_COLLIDE);
     cprox_gap_free(tuned);
     cprox_gap_free(certified);
   }
@@ -264,23 +276,24 @@ CASE(bars_around_a_dot_break_the_tuned_mode_and_not_the_certified_one) {
 /* Crossed rods 0.011 L thick: without an offset their overlap is below the t of an offset of L/4n, and would be called clear. */
 CASE(thin_bodies_need_the_offset) {
   cprox_solid *rod;
-  MADE(cprox_solid_create_box(2, vec(2, 0.05, 0), ws, &rod));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(2, 0.05, 0)},
+                          ws, &rod));
   const cprox_pose a = planar(0, 0, 0), b = planar(0.3, 0, 1.3);
   double reach;
-  gap_plan plan = {.mode = CPROX_GAP_CERTIFIED,
+  gap_plan plan = {.mode = CPROX_GAP_MODE_CERTIFIED,
                    .dimension = 2,
                    .N = 8,
                    .beta = kernel_beta(2, 17),
                    .period = 4.6,
                    .offset = 0.75 * 4.6 / 17};
-  cprox_gap *bare, *certified = gap_of(rod, rod, CPROX_GAP_CERTIFIED, 17);
+  cprox_gap *bare, *certified = gap_of(rod, rod, CPROX_GAP_MODE_CERTIFIED, 17);
   MADE(gap_build(&plan, solid_offset(rod, 0.0, &reach), solid_offset(rod, 0.0, &reach), (size_t)1 << 30, ws, &bare));
   bare->radius_a = bare->radius_b = rod->radius;
   cprox_gap_result r;
   MADE(cprox_gap_test(bare, &a, &b, ws, &r));
-  assert_int_equal(r.verdict, CPROX_GAP_CLEAR); /* false */
+  assert_int_equal(r.verdict, CPROX_GAP_VERDICT_CLEAR); /* false */
   MADE(cprox_gap_test(certified, &a, &b, ws, &r));
-  assert_int_equal(r.verdict, CPROX_GAP_COLLIDE);
+  assert_int_equal(r.verdict, CPROX_GAP_VERDICT_COLLIDE);
   cprox_gap_free(bare);
   cprox_gap_free(certified);
   cprox_solid_free(rod);
@@ -290,8 +303,9 @@ CASE(thin_bodies_need_the_offset) {
 CASE(images_of_the_period_never_answer) {
   rng r = rng_seed(713);
   cprox_solid *s;
-  MADE(cprox_solid_create_box(2, vec(1, 0.6, 0), ws, &s));
-  cprox_gap *gap = gap_of(s, s, CPROX_GAP_CERTIFIED, 33);
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(1, 0.6, 0)},
+                          ws, &s));
+  cprox_gap *gap = gap_of(s, s, CPROX_GAP_MODE_CERTIFIED, 33);
   const cprox_gap_info info = cprox_gap_get_info(gap);
   for (int i = 0; i < 2000; i++) {
     const double angle = rng_uniform(&r, 0, 6.3),
@@ -301,10 +315,10 @@ CASE(images_of_the_period_never_answer) {
     cprox_gap_result x;
     MADE(cprox_gap_test(gap, &a, &b, ws, &x));
     if (away > 2 * s->radius * (1 + 1e-12)) {
-      assert_int_equal(x.verdict, CPROX_GAP_FAR);
+      assert_int_equal(x.verdict, CPROX_GAP_VERDICT_FAR);
       assert_true(fabs(x.clearance - (away - 2 * s->radius)) <= 1e-12 * away);
     } else {
-      assert_true(x.verdict != CPROX_GAP_FAR);
+      assert_true(x.verdict != CPROX_GAP_VERDICT_FAR);
     }
   }
   /* a period that lets images overlap is refused, with what it takes */
@@ -338,8 +352,9 @@ CASE(certified_kernels_are_not_negative) {
  * refused with what it would take. */
 CASE(delta_chooses_no_more_than_is_needed) {
   cprox_solid *a, *b;
-  MADE(cprox_solid_create_box(2, vec(1, 0.6, 0), ws, &a));
-  MADE(cprox_solid_create_ball(2, 0.5, ws, &b));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(1, 0.6, 0)},
+                          ws, &a));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 2, .radius = 0.5}, ws, &b));
   uint32_t last = 0;
   for (double delta = 0.8; delta > 0.04; delta *= 0.5) {
     cprox_gap_options o = cprox_gap_options_default();
@@ -350,7 +365,7 @@ CASE(delta_chooses_no_more_than_is_needed) {
     assert_true(info.over_reach <= delta && info.samples > last);
     assert_true(info.bytes > 0 && info.terms > 0 && info.rounding < 1e-4);
     if (info.samples > 3) {
-      less = gap_of(a, b, CPROX_GAP_CERTIFIED, info.samples - 2);
+      less = gap_of(a, b, CPROX_GAP_MODE_CERTIFIED, info.samples - 2);
       assert_true(cprox_gap_get_info(less).over_reach > delta);
       cprox_gap_free(less);
     }
@@ -378,16 +393,19 @@ CASE(delta_chooses_no_more_than_is_needed) {
 /* Bodies of very different sizes: the accuracy is that of the pair's period, which exceeds the small body here. */
 CASE(a_small_body_beside_a_large_one_is_seen_coarsely) {
   cprox_solid *large, *small;
-  MADE(cprox_solid_create_box(2, vec(4, 4, 0), ws, &large));
-  MADE(cprox_solid_create_box(2, vec(0.1, 0.1, 0), ws, &small));
-  cprox_gap *gap = gap_of(large, small, CPROX_GAP_CERTIFIED, 33);
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(4, 4, 0)}, ws,
+                          &large));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(0.1, 0.1, 0)},
+                          ws, &small));
+  cprox_gap *gap = gap_of(large, small, CPROX_GAP_MODE_CERTIFIED, 33);
   const cprox_gap_info info = cprox_gap_get_info(gap);
   assert_true(info.over_reach > 0.1 && info.over_reach > info.period / 33);
   /* cropping the large one to a window around the small one brings it down */
   const double window[2][4] = {{-1, 0, 0, -1.6}, {0, -1, 0, -1.6}};
   cprox_solid *corner;
-  MADE(cprox_solid_create_clipped(large, window, 2, ws, &corner));
-  cprox_gap *local = gap_of(corner, small, CPROX_GAP_CERTIFIED, 33);
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){.kind = CPROX_SOLID_CLIPPED, .solid = large, .region = window, .n = 2}, ws, &corner));
+  cprox_gap *local = gap_of(corner, small, CPROX_GAP_MODE_CERTIFIED, 33);
   assert_true(cprox_gap_get_info(local).over_reach < 0.5 * info.over_reach);
   cprox_gap_free(gap);
   cprox_gap_free(local);

@@ -60,11 +60,11 @@ static void fail_pair(const test_solid s[2], const cprox_gap_options *o, const c
 
 /* What the plan means by delta. */
 static double accuracy(const gap_plan *plan) {
-  return plan->mode == CPROX_GAP_SIGNAL ? 2.2 * plan->period / (2 * plan->N + 1) : plan->over_reach;
+  return plan->mode == CPROX_GAP_MODE_SIGNAL ? 2.2 * plan->period / (2 * plan->N + 1) : plan->over_reach;
 }
 
 static cprox_status plan_with(const test_solid s[2], cprox_gap_options o, uint32_t samples, gap_plan *plan) {
-  workspace_clear(ws);
+  cprox_workspace_set_error(ws, NULL);
   o.samples = samples;
   if (samples > 0) o.delta = 0.0;
   return gap_plan_choose(s[0].solid, s[1].solid, &o, ws, plan);
@@ -102,7 +102,7 @@ static void delta_in_every_mode(rng *r, const test_solid s[2]) {
   for (int mode = 0; mode < 3; mode++) {
     cprox_gap_options o = cprox_gap_options_default();
     o.mode = (cprox_gap_mode)mode;
-    if (o.mode == CPROX_GAP_CERTIFIED && !is_provable(s)) {
+    if (o.mode == CPROX_GAP_MODE_CERTIFIED && !is_provable(s)) {
       o.delta = radii(s);
       assert_int_equal(plan_with(s, o, 0, &plan), CPROX_INVALID);
       assert_non_null(strstr(cprox_workspace_error(ws), "no over-reach can be proven for these solids"));
@@ -131,12 +131,12 @@ static void every_call(rng *r, const test_solid s[2]) {
   for (int mode = 0; mode < 3; mode++) {
     cprox_gap_options o = cprox_gap_options_default();
     o.mode = (cprox_gap_mode)mode, o.delta = radii(s);
-    if (o.mode == CPROX_GAP_CERTIFIED && !is_provable(s)) o.samples = 9, o.delta = 0.0;
+    if (o.mode == CPROX_GAP_MODE_CERTIFIED && !is_provable(s)) o.samples = 9, o.delta = 0.0;
     cprox_gap *gap;
     if (cprox_gap_create(s[0].solid, s[1].solid, &o, ws, &gap) != CPROX_OK) fail_pair(s, &o, cprox_workspace_error(ws));
     const cprox_gap_info info = cprox_gap_get_info(gap);
-    assert_true(info.mode == o.mode && info.guaranteed == (o.mode == CPROX_GAP_CERTIFIED));
-    if (o.samples == 0 && o.mode != CPROX_GAP_SIGNAL) assert_true(info.over_reach <= o.delta);
+    assert_true(info.mode == o.mode && info.guaranteed == (o.mode == CPROX_GAP_MODE_CERTIFIED));
+    if (o.samples == 0 && o.mode != CPROX_GAP_MODE_SIGNAL) assert_true(info.over_reach <= o.delta);
 
     const cprox_pose a = solid_pose(r, dimension, 0.3), b = solid_pose(r, dimension, 0.3);
     cprox_curve *line = segment(b.position, solid_pose(r, dimension, 2.0).position);
@@ -144,21 +144,24 @@ static void every_call(rng *r, const test_solid s[2]) {
     cprox_gap_along_result whole;
     double derivative;
     MADE(cprox_gap_evaluate(gap, &a, &b, ws, &at));
-    MADE(cprox_gap_along(gap, &a, line, &b.orientation, 0.0, ws, &along, &derivative));
+    MADE(cprox_gap_along(gap, &a, &(cprox_gap_carried){line, b.orientation}, 0.0, ws, &along, &derivative));
     /* the signal is -log of what has the error */
-    const double x = o.mode == CPROX_GAP_SIGNAL ? exp(-at.value) : at.value,
-                 y = o.mode == CPROX_GAP_SIGNAL ? exp(-along.value) : along.value;
+    const double x = o.mode == CPROX_GAP_MODE_SIGNAL ? exp(-at.value) : at.value,
+                 y = o.mode == CPROX_GAP_MODE_SIGNAL ? exp(-along.value) : along.value;
     assert_true(along.verdict == at.verdict && fabs(x - y) <= along.error + at.error + 1e-12);
-    const cprox_status status = cprox_gap_along_test(gap, &a, line, &b.orientation, 0.0, 1.0, 2, ws, &whole);
-    if (o.mode == CPROX_GAP_SIGNAL) assert_string_equal(cprox_workspace_error(ws), "the signal mode has no verdict");
-    if (o.mode != CPROX_GAP_SIGNAL && status < CPROX_OK) fail_pair(s, &o, cprox_workspace_error(ws));
+    const cprox_status status =
+        cprox_gap_along_test(gap, &a, &(cprox_gap_carried){line, b.orientation}, 0.0, 1.0, 2, ws, &whole);
+    if (o.mode == CPROX_GAP_MODE_SIGNAL)
+      assert_string_equal(cprox_workspace_error(ws), "the signal mode has no verdict");
+    if (o.mode != CPROX_GAP_MODE_SIGNAL && status < CPROX_OK) fail_pair(s, &o, cprox_workspace_error(ws));
     cprox_curve_free(line);
-    if (o.mode == CPROX_GAP_CERTIFIED) {
+    if (o.mode == CPROX_GAP_MODE_CERTIFIED) {
       cprox_gap_cascade *cascade;
       MADE(cprox_gap_cascade_create(s[0].solid, s[1].solid, &o, ws, &cascade));
       assert_int_equal(cprox_gap_get_info(cprox_gap_cascade_finest(cascade)).samples, info.samples);
       MADE(cprox_gap_cascade_test(cascade, &a, &b, ws, &along));
-      if (at.verdict == CPROX_GAP_CLEAR || at.verdict == CPROX_GAP_FAR) assert_int_equal(along.verdict, at.verdict);
+      if (at.verdict == CPROX_GAP_VERDICT_CLEAR || at.verdict == CPROX_GAP_VERDICT_FAR)
+        assert_int_equal(along.verdict, at.verdict);
       cprox_gap_cascade_free(cascade);
     }
     cprox_gap_free(gap);
@@ -183,7 +186,7 @@ static bool says_clear(const cprox_gap *gap, const test_solid s[2], const cprox_
                        double over_reach) {
   cprox_gap_result x;
   MADE(cprox_gap_test(gap, a, b, ws, &x));
-  const bool clear = x.verdict == CPROX_GAP_CLEAR || x.verdict == CPROX_GAP_FAR;
+  const bool clear = x.verdict == CPROX_GAP_VERDICT_CLEAR || x.verdict == CPROX_GAP_VERDICT_FAR;
   const double d = solid_distance(&s[0], a, &s[1], b), reached = solid_reached(&s[0], a, &s[1], b);
   seen.poses++, seen.clear += clear, seen.deep += d < -1e-9;
   if (clear && d < -1e-6)

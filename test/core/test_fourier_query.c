@@ -40,38 +40,72 @@ static void make_pair(int i, cprox_solid *out[2]) {
   const double cut[1][4] = {{1, 0.2, 0, 0.3}};
   const int dimension = i < 4 ? 2 : 3;
   if (dimension == 2) {
-    MADE(cprox_solid_create_polygon(L_SHAPE, 6, ws, &s[0]));
-    if (i == 0) MADE(cprox_solid_create_polygon(L_SHAPE, 6, ws, &s[1]));
-    if (i == 1) MADE(cprox_solid_create_box(2, vec(0.9, 0.4, 0), ws, &s[1]));
-    if (i == 2) MADE(cprox_solid_create_ellipsoid(2, vec(0.7, 0.3, 0), ws, &s[1]));
-    if (i == 3) MADE(cprox_solid_create_clipped(s[0], cut, 1, ws, &s[1]));
+    MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = L_SHAPE, .n = 6}, ws,
+                            &s[0]));
+    if (i == 0)
+      MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = L_SHAPE, .n = 6}, ws,
+                              &s[1]));
+    if (i == 1)
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(0.9, 0.4, 0)}, ws, &s[1]));
+    if (i == 2)
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_ELLIPSOID, .dimension = 2, .semi_axes = vec(0.7, 0.3, 0)}, ws,
+          &s[1]));
+    if (i == 3)
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_CLIPPED, .solid = s[0], .region = cut, .n = 1}, ws, &s[1]));
   } else {
     shift.position.z = 0.15;
     shift.orientation.x = 0.3;
-    MADE(cprox_solid_create_box(3, vec(0.9, 0.5, 0.7), ws, &s[0]));
-    if (i == 4) MADE(cprox_solid_create_box(3, vec(0.6, 0.8, 0.3), ws, &s[1]));
-    if (i == 5) MADE(cprox_solid_create_ellipsoid(3, vec(0.7, 0.3, 0.4), ws, &s[1]));
-    if (i == 6) MADE(cprox_solid_create_ball(3, 0.5, ws, &s[1]));
+    MADE(cprox_solid_create(
+        &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 3, .size = vec(0.9, 0.5, 0.7)}, ws, &s[0]));
+    if (i == 4)
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 3, .size = vec(0.6, 0.8, 0.3)}, ws, &s[1]));
+    if (i == 5)
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_ELLIPSOID, .dimension = 3, .semi_axes = vec(0.7, 0.3, 0.4)},
+          ws, &s[1]));
+    if (i == 6)
+      MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 3, .radius = 0.5}, ws,
+                              &s[1]));
     if (i >= 7) {
       cprox_solid_free(s[0]);
-      if (i == 7) MADE(cprox_solid_create_cylinder(0.8, 0.3, ws, &s[0]));
-      if (i == 8) MADE(cprox_solid_create_capsule(3, 0.8, 0.3, ws, &s[0]));
+      if (i == 7)
+        MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_CYLINDER, .height = 0.8, .radius = 0.3},
+                                ws, &s[0]));
+      if (i == 8)
+        MADE(cprox_solid_create(
+            &(cprox_solid_description){.kind = CPROX_SOLID_CAPSULE, .dimension = 3, .height = 0.8, .radius = 0.3}, ws,
+            &s[0]));
       if (i == 9) {
         cprox_solid *box;
-        MADE(cprox_solid_create_box(3, vec(0.9, 0.5, 0.7), ws, &box));
-        MADE(cprox_solid_create_clipped(box, cut, 1, ws, &s[0]));
+        MADE(cprox_solid_create(
+            &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 3, .size = vec(0.9, 0.5, 0.7)}, ws, &box));
+        MADE(cprox_solid_create(
+            &(cprox_solid_description){.kind = CPROX_SOLID_CLIPPED, .solid = box, .region = cut, .n = 1}, ws, &s[0]));
         cprox_solid_free(box);
       }
-      MADE(cprox_solid_create_polyline(3, line, 3, 0.2, ws, &s[1]));
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){
+              .kind = CPROX_SOLID_POLYLINE, .dimension = 3, .points = line, .n = 3, .radius = 0.2},
+          ws, &s[1]));
       if (i == 9) {
         cprox_solid_free(s[1]);
-        MADE(cprox_solid_create_union((const cprox_solid *const[]){s[0]}, (const cprox_pose[]){planar(0, 0, 1)}, 1, ws,
-                                      &s[1]));
+        MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_UNION,
+                                                           .parts = (const cprox_solid *const[]){s[0]},
+                                                           .poses = (const cprox_pose[]){planar(0, 0, 1)},
+                                                           .n = 1},
+                                ws, &s[1]));
       }
     }
   }
   for (int k = 0; k < 2; k++) {
-    MADE(cprox_solid_create_union((const cprox_solid *const[]){s[k]}, &shift, 1, ws, &out[k]));
+    MADE(cprox_solid_create(
+        &(cprox_solid_description){
+            .kind = CPROX_SOLID_UNION, .parts = (const cprox_solid *const[]){s[k]}, .poses = &shift, .n = 1},
+        ws, &out[k]));
     cprox_solid_free(s[k]);
   }
 }
@@ -110,7 +144,7 @@ CASE(gradients_agree_with_differences) {
     cprox_solid *s[2];
     make_pair(i / 2, s);
     const int dimension = s[0]->dimension;
-    const cprox_gap_mode mode = i % 2 ? CPROX_GAP_SIGNAL : CPROX_GAP_CERTIFIED;
+    const cprox_gap_mode mode = i % 2 ? CPROX_GAP_MODE_SIGNAL : CPROX_GAP_MODE_CERTIFIED;
     cprox_gap *gap = gap_of(s[0], s[1], mode, samples_of(i / 2, 17));
     const cprox_gap_info info = cprox_gap_get_info(gap);
     const double h = 2e-3 * info.period / info.samples;
@@ -118,8 +152,8 @@ CASE(gradients_agree_with_differences) {
       const cprox_pose p[2] = {random_pose(&r, dimension, 0.3), random_pose(&r, dimension, 0.3)};
       cprox_gap_result x, y;
       MADE(cprox_gap_evaluate(gap, &p[0], &p[1], ws, &x));
-      if (x.verdict == CPROX_GAP_FAR) continue;
-      double size = mode == CPROX_GAP_SIGNAL ? 1.0 : 1e-3 / info.offset;
+      if (x.verdict == CPROX_GAP_VERDICT_FAR) continue;
+      double size = mode == CPROX_GAP_MODE_SIGNAL ? 1.0 : 1e-3 / info.offset;
       for (int axis = 0; axis < 6; axis++)
         size = fmax(size, fmax(fabs(component(x.position_a, x.rotation_a, axis)),
                                fabs(component(x.position_b, x.rotation_b, axis))));
@@ -160,7 +194,7 @@ CASE(early_exit_and_lanes_change_no_verdict) {
     cprox_solid *s[2];
     make_pair(i / 2, s);
     const int dimension = s[0]->dimension;
-    cprox_gap *gap = gap_of(s[0], s[1], i % 2 ? CPROX_GAP_TUNED : CPROX_GAP_CERTIFIED, samples_of(i / 2, 33));
+    cprox_gap *gap = gap_of(s[0], s[1], i % 2 ? CPROX_GAP_MODE_TUNED : CPROX_GAP_MODE_CERTIFIED, samples_of(i / 2, 33));
     const simd_level widest = gap->simd;
     for (size_t k = 0; k < cases_of(i / 2, 200); k++) {
       const cprox_pose p[2] = {random_pose(&r, dimension, 0.9), random_pose(&r, dimension, 0.9)};
@@ -170,7 +204,7 @@ CASE(early_exit_and_lanes_change_no_verdict) {
       if (fast.verdict != full.verdict)
         fail_msg("pair %d: %s, the sum says %s, V/t %.15g", i, cprox_gap_verdict_name(fast.verdict),
                  cprox_gap_verdict_name(full.verdict), full.value);
-      assert_true(fabs(fast.value - full.value) <= fast.error + full.error || full.verdict == CPROX_GAP_FAR);
+      assert_true(fabs(fast.value - full.value) <= fast.error + full.error || full.verdict == CPROX_GAP_VERDICT_FAR);
       fewer += fast.terms < full.terms;
       all += full.terms > 0;
       for (simd_level w = SIMD_BASE; w < widest; w++) {
@@ -196,7 +230,7 @@ CASE(values_do_not_depend_on_where_the_world_is) {
     cprox_solid *s[2];
     make_pair(i, s);
     const int dimension = s[0]->dimension;
-    cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, samples_of(i, 33));
+    cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_MODE_CERTIFIED, samples_of(i, 33));
     for (size_t k = 0; k < cases_of(i, 20); k++) {
       const cprox_pose p[2] = {random_pose(&r, dimension, 0.2), random_pose(&r, dimension, 0.2)},
                        world = random_pose(&r, dimension, 1.0);
@@ -216,7 +250,7 @@ CASE(values_do_not_depend_on_where_the_world_is) {
 CASE(queries_do_not_allocate_once_warm) {
   cprox_solid *s[2];
   make_pair(0, s);
-  cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, 33);
+  cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_MODE_CERTIFIED, 33);
   const cprox_pose a = planar(0, 0, 0), b = planar(0.5, 0.4, 1);
   cprox_gap_result r;
   MADE(cprox_gap_evaluate(gap, &a, &b, ws, &r));
@@ -232,13 +266,14 @@ CASE(queries_do_not_allocate_once_warm) {
 /* Squares at one place: nowhere is down. The gradient is 0 within rounding, and says nothing of the way out. */
 CASE(perfect_symmetry_has_no_gradient) {
   cprox_solid *s;
-  MADE(cprox_solid_create_box(2, vec(1, 1, 0), ws, &s));
-  cprox_gap *gap = gap_of(s, s, CPROX_GAP_CERTIFIED, 17);
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(1, 1, 0)}, ws,
+                          &s));
+  cprox_gap *gap = gap_of(s, s, CPROX_GAP_MODE_CERTIFIED, 17);
   const cprox_pose p = planar(3, 4, 0.7);
   cprox_gap_result r;
   MADE(cprox_gap_evaluate(gap, &p, &p, ws, &r));
   assert_true(vec_norm(r.position_b) < 1e-10 && vec_norm(r.rotation_b) < 1e-10);
-  assert_true(r.verdict == CPROX_GAP_COLLIDE && r.value > 5.0);
+  assert_true(r.verdict == CPROX_GAP_VERDICT_COLLIDE && r.value > 5.0);
   cprox_gap_free(gap);
   cprox_solid_free(s);
 }
@@ -262,11 +297,16 @@ CASE(ties_of_nearest_points_are_no_kinks) {
   size_t sloping = 0;
   for (int dimension = 2; dimension <= 3; dimension++) {
     cprox_solid *box, *ball, *balls;
-    MADE(cprox_solid_create_box(dimension, vec(1, 1, 1), ws, &box));
-    MADE(cprox_solid_create_ball(dimension, 0.3, ws, &ball));
+    MADE(cprox_solid_create(
+        &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = dimension, .size = vec(1, 1, 1)}, ws, &box));
+    MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = dimension, .radius = 0.3},
+                            ws, &ball));
     const cprox_pose left = planar(-0.6, 0, 0), right = planar(0.6, 0, 0);
-    MADE(cprox_solid_create_union((const cprox_solid *const[]){ball, ball}, (const cprox_pose[]){left, right}, 2, ws,
-                                  &balls));
+    MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_UNION,
+                                                       .parts = (const cprox_solid *const[]){ball, ball},
+                                                       .poses = (const cprox_pose[]){left, right},
+                                                       .n = 2},
+                            ws, &balls));
     const cprox_pose placed[] = {planar(1, 0, 0),
                                  planar(0.9, 0, 0),
                                  planar(0.98, 0.98, 0),
@@ -274,7 +314,7 @@ CASE(ties_of_nearest_points_are_no_kinks) {
                                  planar(1.2, 0, 0.7853981633974483),
                                  planar(0, 0, 0)};
     const size_t n = sizeof placed / sizeof *placed;
-    for (int mode = CPROX_GAP_CERTIFIED; mode <= CPROX_GAP_SIGNAL; mode++)
+    for (int mode = CPROX_GAP_MODE_CERTIFIED; mode <= CPROX_GAP_MODE_SIGNAL; mode++)
       for (size_t k = 0; k <= n; k++) {
         cprox_gap *gap =
             k < n ? gap_of(box, box, (cprox_gap_mode)mode, 9) : gap_of(balls, ball, (cprox_gap_mode)mode, 9);
@@ -283,7 +323,7 @@ CASE(ties_of_nearest_points_are_no_kinks) {
         const double h = 2e-3 * info.period / info.samples;
         cprox_gap_result x;
         MADE(cprox_gap_evaluate(gap, &a, &b, ws, &x));
-        assert_true(x.verdict != CPROX_GAP_FAR);
+        assert_true(x.verdict != CPROX_GAP_VERDICT_FAR);
         const double size = fmax(fmax(vec_norm(x.position_b), vec_norm(x.rotation_b)), fmax(1.0, fabs(x.value)));
         for (int axis = 0; axis < 6; axis++) {
           if (dimension == 2 && axis > 1 && axis < 5) continue;
@@ -306,8 +346,9 @@ CASE(ties_of_nearest_points_are_no_kinks) {
 /* At touch V/t is far larger face to face than corner to corner: a value is no distance. */
 CASE(level_sets_are_not_equidistant) {
   cprox_solid *s;
-  MADE(cprox_solid_create_box(2, vec(1, 1, 0), ws, &s));
-  cprox_gap *gap = gap_of(s, s, CPROX_GAP_CERTIFIED, 65);
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(1, 1, 0)}, ws,
+                          &s));
+  cprox_gap *gap = gap_of(s, s, CPROX_GAP_MODE_CERTIFIED, 65);
   const cprox_pose a = planar(0, 0, 0), face = planar(1, 0, 0), corner = planar(1, 1, 0);
   cprox_gap_result x, y;
   MADE(cprox_gap_evaluate(gap, &a, &face, ws, &x));
@@ -320,15 +361,15 @@ CASE(level_sets_are_not_equidistant) {
 /* c grows all the way out of a deep overlap to the edge of the bounding spheres, and its gradient leads there. */
 CASE(the_signal_rises_with_clearance) {
   cprox_solid *s;
-  MADE(cprox_solid_create_polygon(L_SHAPE, 6, ws, &s));
-  cprox_gap *gap = gap_of(s, s, CPROX_GAP_SIGNAL, 33);
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = L_SHAPE, .n = 6}, ws, &s));
+  cprox_gap *gap = gap_of(s, s, CPROX_GAP_MODE_SIGNAL, 33);
   const cprox_pose a = planar(0, 0, 0);
   double last = -INFINITY;
   for (double x = 0.1; x < 1.9 * s->radius; x += 0.05) {
     const cprox_pose b = planar(0.8 * x, 0.6 * x, 2);
     cprox_gap_result r;
     MADE(cprox_gap_evaluate(gap, &a, &b, ws, &r));
-    assert_int_equal(r.verdict, CPROX_GAP_UNDECIDED);
+    assert_int_equal(r.verdict, CPROX_GAP_VERDICT_UNDECIDED);
     if (r.clearance > 0) break;
     assert_true(r.value > last);
     assert_true(x < 0.3 || 0.8 * r.position_b.x + 0.6 * r.position_b.y > 0);
@@ -341,8 +382,9 @@ CASE(the_signal_rises_with_clearance) {
 CASE(bad_queries_are_refused_in_words) {
   cprox_solid *s[2], *space;
   make_pair(1, s);
-  MADE(cprox_solid_create_ball(3, 1, ws, &space));
-  cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, 9), *none = NULL;
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 3, .radius = 1}, ws,
+                          &space));
+  cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_MODE_CERTIFIED, 9), *none = NULL;
   cprox_gap_result r = {.value = 77};
   cprox_pose good = planar(0, 0, 0), bad = good;
   bad.position.x = NAN;
@@ -382,11 +424,12 @@ CASE(a_cascade_stops_at_the_first_proof) {
     cprox_gap_result x, y;
     MADE(cprox_gap_cascade_test(cascade, &p[0], &p[1], ws, &x));
     MADE(cprox_gap_test(finest, &p[0], &p[1], ws, &y));
-    if (y.verdict == CPROX_GAP_COLLIDE) assert_true(x.verdict == CPROX_GAP_COLLIDE || x.verdict == CPROX_GAP_CLEAR);
-    if (y.verdict == CPROX_GAP_CLEAR) assert_true(x.verdict == CPROX_GAP_CLEAR);
-    if (y.verdict == CPROX_GAP_FAR) assert_true(x.verdict == CPROX_GAP_FAR);
+    if (y.verdict == CPROX_GAP_VERDICT_COLLIDE)
+      assert_true(x.verdict == CPROX_GAP_VERDICT_COLLIDE || x.verdict == CPROX_GAP_VERDICT_CLEAR);
+    if (y.verdict == CPROX_GAP_VERDICT_CLEAR) assert_true(x.verdict == CPROX_GAP_VERDICT_CLEAR);
+    if (y.verdict == CPROX_GAP_VERDICT_FAR) assert_true(x.verdict == CPROX_GAP_VERDICT_FAR);
   }
-  o.mode = CPROX_GAP_TUNED;
+  o.mode = CPROX_GAP_MODE_TUNED;
   cprox_gap_cascade *none = NULL;
   assert_int_equal(cprox_gap_cascade_create(s[0], s[1], &o, ws, &none), CPROX_INVALID);
   cprox_gap_cascade_free(cascade);
@@ -397,20 +440,24 @@ CASE(a_cascade_stops_at_the_first_proof) {
 /* Theorem 2: overlap outside the region does not count, overlap inside does. */
 CASE(a_region_localises_the_test) {
   cprox_solid *bar, *ball, *right;
-  MADE(cprox_solid_create_box(2, vec(4, 0.4, 0), ws, &bar));
-  MADE(cprox_solid_create_ball(2, 0.3, ws, &ball));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(4, 0.4, 0)},
+                          ws, &bar));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 2, .radius = 0.3}, ws,
+                          &ball));
   const double region[1][4] = {{-2, 0, 0, -1}}; /* x >= 0.5 */
-  MADE(cprox_solid_create_clipped(bar, region, 1, ws, &right));
-  assert_true(fabs(cprox_solid_measure(right) - 1.5 * 0.4) < 1e-14);
-  cprox_gap *whole = gap_of(bar, ball, CPROX_GAP_CERTIFIED, 33), *local = gap_of(right, ball, CPROX_GAP_CERTIFIED, 33);
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){.kind = CPROX_SOLID_CLIPPED, .solid = bar, .region = region, .n = 1}, ws, &right));
+  assert_true(fabs(cprox_solid_get_info(right).measure - 1.5 * 0.4) < 1e-14);
+  cprox_gap *whole = gap_of(bar, ball, CPROX_GAP_MODE_CERTIFIED, 33),
+            *local = gap_of(right, ball, CPROX_GAP_MODE_CERTIFIED, 33);
   const cprox_pose here = planar(0, 0, 0), left = planar(-1.5, 0, 0), inside = planar(1.2, 0.1, 0);
   cprox_gap_result r;
   MADE(cprox_gap_test(whole, &here, &left, ws, &r));
-  assert_int_equal(r.verdict, CPROX_GAP_COLLIDE);
+  assert_int_equal(r.verdict, CPROX_GAP_VERDICT_COLLIDE);
   MADE(cprox_gap_test(local, &here, &left, ws, &r));
-  assert_true(r.verdict == CPROX_GAP_CLEAR || r.verdict == CPROX_GAP_FAR);
+  assert_true(r.verdict == CPROX_GAP_VERDICT_CLEAR || r.verdict == CPROX_GAP_VERDICT_FAR);
   MADE(cprox_gap_test(local, &here, &inside, ws, &r));
-  assert_int_equal(r.verdict, CPROX_GAP_COLLIDE);
+  assert_int_equal(r.verdict, CPROX_GAP_VERDICT_COLLIDE);
   cprox_gap_free(whole);
   cprox_gap_free(local);
   cprox_solid_free(bar);
@@ -445,9 +492,13 @@ CASE(a_sweep_is_never_called_clear_where_it_hits) {
   const double radius = 0.05;
   cprox_curve *c = wave_curve();
   cprox_solid *sweep, *box;
-  MADE(cprox_solid_create_sweep(2, c, radius, 1e-3, ws, &sweep));
-  MADE(cprox_solid_create_box(2, vec(0.5, 0.3, 0), ws, &box));
-  cprox_gap *gap = gap_of(sweep, box, CPROX_GAP_CERTIFIED, 65);
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){
+          .kind = CPROX_SOLID_SWEEP, .dimension = 2, .curve = c, .radius = radius, .tolerance = 1e-3},
+      ws, &sweep));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(0.5, 0.3, 0)},
+                          ws, &box));
+  cprox_gap *gap = gap_of(sweep, box, CPROX_GAP_MODE_CERTIFIED, 65);
   const cprox_gap_info info = cprox_gap_get_info(gap);
   assert_true(info.guaranteed && info.over_reach < 1.0);
   size_t hits = 0, clears = 0;
@@ -456,7 +507,7 @@ CASE(a_sweep_is_never_called_clear_where_it_hits) {
     const double d = box_to_curve(c, &q, &p, 0.25, 0.15) - radius;
     cprox_gap_result x;
     MADE(cprox_gap_test(gap, &p, &q, ws, &x));
-    const bool clear = x.verdict == CPROX_GAP_CLEAR || x.verdict == CPROX_GAP_FAR;
+    const bool clear = x.verdict == CPROX_GAP_VERDICT_CLEAR || x.verdict == CPROX_GAP_VERDICT_FAR;
     hits += d < -1e-3, clears += clear;
     if (clear && d < -1e-3) fail_msg("clear at an overlap of %g, value %g", -d, x.value);
     if (!clear && !(d <= info.over_reach)) fail_msg("called colliding %g apart, over-reach %g", d, info.over_reach);
@@ -480,32 +531,32 @@ CASE(along_a_curve_the_verdict_holds_at_every_parameter) {
   cprox_curve *c = wave_curve();
   cprox_solid *s[2];
   make_pair(0, s);
-  cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_CERTIFIED, 33);
+  cprox_gap *gap = gap_of(s[0], s[1], CPROX_GAP_MODE_CERTIFIED, 33);
   size_t clear = 0, hit = 0;
   for (size_t i = 0; i < test_cases(60); i++) {
     const cprox_pose a = random_pose(&r, 2, 1.8);
     const cprox_quat q = random_pose(&r, 2, 1).orientation;
     const double t0 = rng_uniform(&r, 0, 0.9), t1 = rng_uniform(&r, t0, 1);
     cprox_gap_along_result v;
-    MADE(cprox_gap_along_test(gap, &a, c, &q, t0, t1, 100000, ws, &v));
-    clear += v.verdict == CPROX_GAP_CLEAR, hit += v.verdict == CPROX_GAP_COLLIDE;
+    MADE(cprox_gap_along_test(gap, &a, &(cprox_gap_carried){c, q}, t0, t1, 100000, ws, &v));
+    clear += v.verdict == CPROX_GAP_VERDICT_CLEAR, hit += v.verdict == CPROX_GAP_VERDICT_COLLIDE;
     assert_true(v.t >= t0 && v.t <= t1);
     cprox_gap_result x;
-    MADE(cprox_gap_along(gap, &a, c, &q, v.t, ws, &x, NULL));
-    if (v.verdict == CPROX_GAP_COLLIDE) assert_int_equal(x.verdict, CPROX_GAP_COLLIDE);
-    for (int k = 0; v.verdict == CPROX_GAP_CLEAR && k <= 200; k++) {
-      MADE(cprox_gap_along(gap, &a, c, &q, t0 + (t1 - t0) * k / 200, ws, &x, NULL));
-      assert_true(x.verdict == CPROX_GAP_CLEAR || x.verdict == CPROX_GAP_FAR);
+    MADE(cprox_gap_along(gap, &a, &(cprox_gap_carried){c, q}, v.t, ws, &x, NULL));
+    if (v.verdict == CPROX_GAP_VERDICT_COLLIDE) assert_int_equal(x.verdict, CPROX_GAP_VERDICT_COLLIDE);
+    for (int k = 0; v.verdict == CPROX_GAP_VERDICT_CLEAR && k <= 200; k++) {
+      MADE(cprox_gap_along(gap, &a, &(cprox_gap_carried){c, q}, t0 + (t1 - t0) * k / 200, ws, &x, NULL));
+      assert_true(x.verdict == CPROX_GAP_VERDICT_CLEAR || x.verdict == CPROX_GAP_VERDICT_FAR);
     }
     const double t = rng_uniform(&r, 0.1, 0.9), h = 1e-4, step[4] = {-2, -1, 1, 2}, weight[4] = {1, -8, 8, -1};
     double slope = 0, derivative;
     bool far = false;
     for (int k = 0; k < 4; k++) {
-      MADE(cprox_gap_along(gap, &a, c, &q, t + step[k] * h, ws, &x, NULL));
+      MADE(cprox_gap_along(gap, &a, &(cprox_gap_carried){c, q}, t + step[k] * h, ws, &x, NULL));
       slope += weight[k] * x.value / (12 * h);
-      far = far || x.verdict == CPROX_GAP_FAR;
+      far = far || x.verdict == CPROX_GAP_VERDICT_FAR;
     }
-    MADE(cprox_gap_along(gap, &a, c, &q, t, ws, &x, &derivative));
+    MADE(cprox_gap_along(gap, &a, &(cprox_gap_carried){c, q}, t, ws, &x, &derivative));
     if (!far) assert_true(fabs(slope - derivative) <= 1e-7 * fmax(fabs(derivative), 1.0));
   }
   print_message("%zu clear, %zu hit\n", clear, hit);
@@ -515,9 +566,9 @@ CASE(along_a_curve_the_verdict_holds_at_every_parameter) {
   const cprox_pose near = planar(0, 1.9, 0);
   const cprox_quat q = {1, 0, 0, 0};
   cprox_gap_along_result v;
-  assert_int_equal(cprox_gap_along_test(gap, &near, c, &q, 0, 1, 1, ws, &v), CPROX_BUDGET);
-  assert_int_equal(v.verdict, CPROX_GAP_UNDECIDED);
-  assert_int_equal(cprox_gap_along_test(gap, &near, c, &q, 0, 2, 1, ws, &v), CPROX_INVALID);
+  assert_int_equal(cprox_gap_along_test(gap, &near, &(cprox_gap_carried){c, q}, 0, 1, 1, ws, &v), CPROX_BUDGET);
+  assert_int_equal(v.verdict, CPROX_GAP_VERDICT_UNDECIDED);
+  assert_int_equal(cprox_gap_along_test(gap, &near, &(cprox_gap_carried){c, q}, 0, 2, 1, ws, &v), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "the interval [0, 2] must lie within [0, 1]");
   cprox_gap_free(gap);
   cprox_solid_free(s[0]);

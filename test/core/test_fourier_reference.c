@@ -18,7 +18,10 @@ static cprox_solid *read_polygon(const csv_table *t, const csv_row *row, size_t 
   assert_true(n <= 64);
   for (size_t i = 0; i < 2 * n; i++) v[i / 2][i % 2] = csv_number(t, row, field + 1 + i);
   cprox_solid *s;
-  assert_int_equal(cprox_solid_create_polygon((const double(*)[2])v, n, ws, &s), CPROX_OK);
+  assert_int_equal(
+      cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = (const double(*)[2])v, .n = n}, ws, &s),
+      CPROX_OK);
   return s;
 }
 
@@ -29,7 +32,12 @@ static cprox_solid *read_mesh(const csv_table *t, const csv_row *row) {
   csv_points(t, row, 6, 3, n, v);
   for (size_t i = 0; i < 3 * m; i++) f[i / 3][i % 3] = (uint32_t)csv_count(t, row, 6 + 3 * n + i);
   cprox_solid *s;
-  assert_int_equal(cprox_solid_create_mesh(v, n, (const uint32_t(*)[3])f, m, ws, &s), CPROX_OK);
+  assert_int_equal(
+      cprox_solid_create(
+          &(cprox_solid_description){
+              .kind = CPROX_SOLID_MESH, .points = v, .n = n, .triangles = (const uint32_t(*)[3])f, .n_triangles = m},
+          ws, &s),
+      CPROX_OK);
   free(v);
   free(f);
   return s;
@@ -42,13 +50,26 @@ static cprox_solid *read_solid(const csv_table *t, const csv_row *row) {
   if (is(row, 3, "polygon")) return read_polygon(t, row, 4);
   if (is(row, 3, "mesh")) return read_mesh(t, row);
   if (is(row, 3, "disk"))
-    assert_int_equal(cprox_solid_create_ball(2, a, ws, &s), CPROX_OK);
+    assert_int_equal(
+        cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 2, .radius = a}, ws, &s),
+        CPROX_OK);
   else if (is(row, 3, "box"))
-    assert_int_equal(cprox_solid_create_box(3, vec(2 * a, 2 * b, 2 * c), ws, &s), CPROX_OK);
+    assert_int_equal(
+        cprox_solid_create(
+            &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 3, .size = vec(2 * a, 2 * b, 2 * c)}, ws,
+            &s),
+        CPROX_OK);
   else if (is(row, 3, "ellipsoid"))
-    assert_int_equal(cprox_solid_create_ellipsoid(3, vec(a, b, c), ws, &s), CPROX_OK);
+    assert_int_equal(
+        cprox_solid_create(
+            &(cprox_solid_description){.kind = CPROX_SOLID_ELLIPSOID, .dimension = 3, .semi_axes = vec(a, b, c)}, ws,
+            &s),
+        CPROX_OK);
   else if (is(row, 3, "cylinder"))
-    assert_int_equal(cprox_solid_create_cylinder(2 * b, a, ws, &s), CPROX_OK);
+    assert_int_equal(
+        cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_CYLINDER, .height = 2 * b, .radius = a}, ws,
+                           &s),
+        CPROX_OK);
   else
     fail_msg("line %zu: kind %s", row->line, row->field[3]);
   return s;
@@ -65,7 +86,12 @@ static cprox_solid *read_side(const csv_table *t, const char *id, const char *si
     parts[n] = read_solid(t, row);
     poses[n++] = cprox_pose_identity();
   }
-  assert_int_equal(cprox_solid_create_union((const cprox_solid *const *)parts, poses, n, ws, &whole), CPROX_OK);
+  assert_int_equal(
+      cprox_solid_create(
+          &(cprox_solid_description){
+              .kind = CPROX_SOLID_UNION, .parts = (const cprox_solid *const *)parts, .poses = poses, .n = n},
+          ws, &whole),
+      CPROX_OK);
   for (size_t i = 0; i < n; i++) cprox_solid_free(parts[i]);
   return whole;
 }
@@ -73,7 +99,7 @@ static cprox_solid *read_side(const csv_table *t, const char *id, const char *si
 /* The gap of a case with the threshold that this library computes. */
 static cprox_gap *read_gap(const csv_table *t, const csv_row *row, int dimension, bool swap) {
   cprox_solid *a = read_side(t, row->field[1], swap ? "b" : "a"), *b = read_side(t, row->field[1], swap ? "a" : "b");
-  const gap_plan plan = {.mode = is(row, 3, "kaiser2") ? CPROX_GAP_CERTIFIED : CPROX_GAP_TUNED,
+  const gap_plan plan = {.mode = is(row, 3, "kaiser2") ? CPROX_GAP_MODE_CERTIFIED : CPROX_GAP_MODE_TUNED,
                          .dimension = dimension,
                          .N = (int)csv_count(t, row, 2),
                          .beta = csv_number(t, row, 4),
@@ -209,7 +235,7 @@ CASE(spectra_of_polygons_agree_with_the_reference) {
       cprox_solid *s = read_polygon(&t, &t.row[j], 2);
       double f[2];
       assert_int_equal(cprox_solid_spectrum(s, q, ws, f, NULL), CPROX_OK);
-      re += f[0], im += f[1], area += cprox_solid_measure(s);
+      re += f[0], im += f[1], area += cprox_solid_get_info(s).measure;
       cprox_solid_free(s);
     }
     assert_true(area > 0.0);

@@ -30,7 +30,10 @@ static cprox_solid *l_prism(void) {
     memcpy(f[8 + 2 * i], a, sizeof a);
   }
   cprox_solid *s;
-  MADE(cprox_solid_create_mesh(v, 12, (const uint32_t(*)[3])f, 20, ws, &s));
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){
+          .kind = CPROX_SOLID_MESH, .points = v, .n = 12, .triangles = (const uint32_t(*)[3])f, .n_triangles = 20},
+      ws, &s));
   return s;
 }
 
@@ -39,7 +42,13 @@ static cprox_solid *grid(int dimension) {
   for (int i = 0; i < (dimension == 2 ? 20 : 60); i++) cells[i] = (unsigned char)(i * 7 % 5 < 3);
   const uint32_t counts[3] = {5, 4, dimension == 2 ? 1 : 3};
   cprox_solid *s;
-  MADE(cprox_solid_create_grid(dimension, vec(-0.3, 0.1, 0), 0.2, counts, cells, ws, &s));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_GRID,
+                                                     .dimension = dimension,
+                                                     .lowest = vec(-0.3, 0.1, 0),
+                                                     .cell = 0.2,
+                                                     .counts = {counts[0], counts[1], counts[2]},
+                                                     .occupied = cells},
+                          ws, &s));
   return s;
 }
 
@@ -48,7 +57,10 @@ static cprox_solid *sweep(int dimension) {
   cprox_curve *c;
   MADE(curve_from(describe_bezier(p, 4, 0, 1), ws, &c));
   cprox_solid *s;
-  MADE(cprox_solid_create_sweep(dimension, c, 0.1, 0.01, ws, &s));
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){
+          .kind = CPROX_SOLID_SWEEP, .dimension = dimension, .curve = c, .radius = 0.1, .tolerance = 0.01},
+      ws, &s));
   cprox_curve_free(c);
   return s;
 }
@@ -58,18 +70,57 @@ static cprox_solid *solid_of(int kind) {
   cprox_solid *s = NULL;
   const cprox_vec3 line[3] = {{-0.4, 0.1, 0}, {0.3, 0.2, 0}, {0.5, -0.4, 0}};
   switch (kind) {
-    case 0: MADE(cprox_solid_create_ball(2, 0.7, ws, &s)); break;
-    case 1: MADE(cprox_solid_create_ball(3, 0.7, ws, &s)); break;
-    case 2: MADE(cprox_solid_create_box(2, vec(0.8, 0.5, 0), ws, &s)); break;
-    case 3: MADE(cprox_solid_create_box(3, vec(0.8, 0.5, 1.1), ws, &s)); break;
-    case 4: MADE(cprox_solid_create_ellipsoid(2, vec(0.8, 0.3, 0), ws, &s)); break;
-    case 5: MADE(cprox_solid_create_ellipsoid(3, vec(0.8, 0.3, 0.5), ws, &s)); break;
-    case 6: MADE(cprox_solid_create_cylinder(0.9, 0.4, ws, &s)); break;
-    case 7: MADE(cprox_solid_create_capsule(2, 0.9, 0.3, ws, &s)); break;
-    case 8: MADE(cprox_solid_create_capsule(3, 0.9, 0.3, ws, &s)); break;
-    case 9: MADE(cprox_solid_create_polygon(L_SHAPE, 6, ws, &s)); break;
+    case 0:
+      MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 2, .radius = 0.7}, ws,
+                              &s));
+      break;
+    case 1:
+      MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 3, .radius = 0.7}, ws,
+                              &s));
+      break;
+    case 2:
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(0.8, 0.5, 0)}, ws, &s));
+      break;
+    case 3:
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 3, .size = vec(0.8, 0.5, 1.1)}, ws, &s));
+      break;
+    case 4:
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_ELLIPSOID, .dimension = 2, .semi_axes = vec(0.8, 0.3, 0)}, ws,
+          &s));
+      break;
+    case 5:
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_ELLIPSOID, .dimension = 3, .semi_axes = vec(0.8, 0.3, 0.5)},
+          ws, &s));
+      break;
+    case 6:
+      MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_CYLINDER, .height = 0.9, .radius = 0.4},
+                              ws, &s));
+      break;
+    case 7:
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_CAPSULE, .dimension = 2, .height = 0.9, .radius = 0.3}, ws,
+          &s));
+      break;
+    case 8:
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_CAPSULE, .dimension = 3, .height = 0.9, .radius = 0.3}, ws,
+          &s));
+      break;
+    case 9:
+      MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = L_SHAPE, .n = 6}, ws,
+                              &s));
+      break;
     case 10: s = l_prism(); break;
-    case 11: MADE(cprox_solid_create_polyline(3, line, 3, 0.2, ws, &s)); break;
+    case 11:
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){
+              .kind = CPROX_SOLID_POLYLINE, .dimension = 3, .points = line, .n = 3, .radius = 0.2},
+          ws, &s));
+      break;
     case 12: s = grid(3); break;
     default: s = sweep(3);
   }
@@ -81,7 +132,10 @@ static cprox_solid *moved(const cprox_solid *s, rng *r) {
   cprox_pose pose = rng_pose(r, 0.5);
   if (s->dimension == 2) pose.orientation.x = pose.orientation.y = pose.position.z = 0.0;
   cprox_solid *u;
-  MADE(cprox_solid_create_union((const cprox_solid *const[]){s}, &pose, 1, ws, &u));
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){
+          .kind = CPROX_SOLID_UNION, .parts = (const cprox_solid *const[]){s}, .poses = &pose, .n = 1},
+      ws, &u));
   return u;
 }
 
@@ -97,7 +151,7 @@ CASE(gradients_of_spectra_agree_with_differences) {
   rng r = rng_seed(701);
   for (size_t i = 0; i < test_cases(2800); i++) {
     cprox_solid *s = solid_of((int)(i % KINDS)), *u = moved(s, &r);
-    const double radius = u->radius + vec_norm(u->centre), h = 0.01 / radius, measure = cprox_solid_measure(u);
+    const double radius = u->radius + vec_norm(u->centre), h = 0.01 / radius, measure = cprox_solid_get_info(u).measure;
     const vec3 q = random_frequency(&r, u->dimension, radius);
     double f[2];
     vec3 g[2];
@@ -133,12 +187,15 @@ CASE(a_box_as_a_mesh_or_a_polygon_has_the_spectrum_of_a_box) {
   const double outside[1][4] = {{1, 0, 0, 9}};
   for (int dimension = 2; dimension <= 3; dimension++) {
     cprox_solid *box, *mesh;
-    MADE(cprox_solid_create_box(dimension, vec(0.9, 0.6, 0.7), ws, &box));
-    MADE(cprox_solid_create_clipped(box, outside, 1, ws, &mesh));
+    MADE(cprox_solid_create(
+        &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = dimension, .size = vec(0.9, 0.6, 0.7)}, ws,
+        &box));
+    MADE(cprox_solid_create(
+        &(cprox_solid_description){.kind = CPROX_SOLID_CLIPPED, .solid = box, .region = outside, .n = 1}, ws, &mesh));
     assert_true(mesh->pieces[0].kind == (dimension == 2 ? PIECE_POLYGON : PIECE_SOUP));
     for (size_t i = 0; i < test_cases(1000); i++) {
       vec3 q = random_frequency(&r, dimension, box->radius * (i % 2 ? 1.0 : 1e6));
-      const double error = difference(box, mesh, q) / cprox_solid_measure(box);
+      const double error = difference(box, mesh, q) / cprox_solid_get_info(box).measure;
       if (!(error <= 1e-14)) fail_msg("dimension %d, q (%g, %g, %g): %g", dimension, q.x, q.y, q.z, error);
     }
     cprox_solid_free(box);
@@ -155,14 +212,17 @@ CASE(parts_on_both_sides_of_a_cut_add_up) {
     if (s->dimension == 2) n.z = 0;
     const double d = vec_dot(n, s->centre) + rng_uniform(&r, -0.2, 0.2);
     const double below[1][4] = {{n.x, n.y, n.z, d}}, above[1][4] = {{-n.x, -n.y, -n.z, -d}};
-    if (cprox_solid_create_clipped(s, below, 1, ws, &a) == CPROX_OK) {
-      if (cprox_solid_create_clipped(s, above, 1, ws, &b) == CPROX_OK) {
+    if (cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_CLIPPED, .solid = s, .region = below, .n = 1},
+                           ws, &a) == CPROX_OK) {
+      if (cprox_solid_create(
+              &(cprox_solid_description){.kind = CPROX_SOLID_CLIPPED, .solid = s, .region = above, .n = 1}, ws, &b) ==
+          CPROX_OK) {
         const vec3 q = random_frequency(&r, s->dimension, s->radius);
         double f[2], g[2], h[2];
         MADE(cprox_solid_spectrum(s, q, ws, f, NULL));
         MADE(cprox_solid_spectrum(a, q, ws, g, NULL));
         MADE(cprox_solid_spectrum(b, q, ws, h, NULL));
-        assert_true(hypot(f[0] - g[0] - h[0], f[1] - g[1] - h[1]) <= 1e-13 * cprox_solid_measure(s));
+        assert_true(hypot(f[0] - g[0] - h[0], f[1] - g[1] - h[1]) <= 1e-13 * cprox_solid_get_info(s).measure);
         cprox_solid_free(b);
       }
       cprox_solid_free(a);
@@ -177,14 +237,19 @@ CASE(capsules_agree_with_balls_and_outlines) {
   rng r = rng_seed(704);
   cprox_solid *capsule, *ball, *outline;
   for (int dimension = 2; dimension <= 3; dimension++) {
-    MADE(cprox_solid_create_capsule(dimension, 1e-13, 0.5, ws, &capsule));
-    MADE(cprox_solid_create_ball(dimension, 0.5, ws, &ball));
+    MADE(cprox_solid_create(
+        &(cprox_solid_description){.kind = CPROX_SOLID_CAPSULE, .dimension = dimension, .height = 1e-13, .radius = 0.5},
+        ws, &capsule));
+    MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = dimension, .radius = 0.5},
+                            ws, &ball));
     for (int i = 0; i < 500; i++) assert_true(difference(capsule, ball, random_frequency(&r, dimension, 0.5)) <= 2e-13);
     cprox_solid_free(capsule);
     cprox_solid_free(ball);
   }
   enum { N = 20000 };
-  MADE(cprox_solid_create_capsule(2, 0.8, 0.3, ws, &capsule));
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){.kind = CPROX_SOLID_CAPSULE, .dimension = 2, .height = 0.8, .radius = 0.3}, ws,
+      &capsule));
   piece p = piece_create(PIECE_POLYGON);
   p.corner = malloc(N * sizeof *p.corner);
   p.n_corners = N;
@@ -263,12 +328,14 @@ CASE(offsets_hold_every_point_within_rho) {
 CASE(the_offset_of_a_convex_mesh_has_the_volume_of_steiners_formula) {
   const double outside[1][4] = {{1, 0, 0, 9}}, rho = 0.2;
   cprox_solid *box, *mesh;
-  MADE(cprox_solid_create_box(3, vec(1, 2, 3), ws, &box));
-  MADE(cprox_solid_create_clipped(box, outside, 1, ws, &mesh));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 3, .size = vec(1, 2, 3)}, ws,
+                          &box));
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){.kind = CPROX_SOLID_CLIPPED, .solid = box, .region = outside, .n = 1}, ws, &mesh));
   double reach = 0.0;
   cprox_solid *o = solid_offset(mesh, rho, &reach);
   const double steiner = 6 + 22 * rho + 3.14159265358979 * 6 * rho * rho + 4.18879020478639 * rho * rho * rho;
-  const double volume = cprox_solid_measure(o);
+  const double volume = cprox_solid_get_info(o).measure;
   assert_true(volume >= steiner && volume <= steiner * 1.01);
   assert_false(o->pieces[0].folded);
   solid_bounds bounds;
@@ -283,10 +350,13 @@ CASE(the_offset_of_a_convex_mesh_has_the_volume_of_steiners_formula) {
 CASE(energies_of_loops_are_exact) {
   const double square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   cprox_solid *s, *u;
-  MADE(cprox_solid_create_polygon(square, 4, ws, &s));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = square, .n = 4}, ws, &s));
   cprox_pose poses[2] = {cprox_pose_identity(), cprox_pose_identity()};
   poses[1].position = vec(0.75, 0.5, 0);
-  MADE(cprox_solid_create_union((const cprox_solid *const[]){s, s}, poses, 2, ws, &u));
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){
+          .kind = CPROX_SOLID_UNION, .parts = (const cprox_solid *const[]){s, s}, .poses = poses, .n = 2},
+      ws, &u));
   solid_bounds b;
   assert_true(solid_find_bounds(u, &b));
   assert_true(fabs(b.energy - (2 + 2 * 0.125)) < 1e-11); /* 2 on 1/8, 1 on 2 (1 - 1/8) */
@@ -308,7 +378,13 @@ CASE(the_offset_of_a_grid_is_the_cells_within_rho) {
     for (uint32_t i = 0; i < n[0] * n[1] * n[2]; i++) cells[i] = rng_index(&r, 8) == 0;
     cells[rng_index(&r, n[0] * n[1] * n[2])] = 1;
     cprox_solid *s;
-    MADE(cprox_solid_create_grid(dimension, vec(0, 0, 0), cell, n, cells, ws, &s));
+    MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_GRID,
+                                                       .dimension = dimension,
+                                                       .lowest = vec(0, 0, 0),
+                                                       .cell = cell,
+                                                       .counts = {n[0], n[1], n[2]},
+                                                       .occupied = cells},
+                            ws, &s));
     double reach;
     cprox_solid *o = solid_offset(s, rho, &reach);
     assert_non_null(o);
@@ -344,7 +420,7 @@ CASE(grids_transform_axis_by_axis_to_the_same_spectrum) {
           double f[2];
           MADE(cprox_solid_spectrum(s, vec(step * x, step * y, step * z), ws, f, NULL));
           const wave w = grid_at(&table, x, y, z, dimension);
-          assert_true(hypot(f[0] - w.re, f[1] - w.im) <= 1e-13 * cprox_solid_measure(s));
+          assert_true(hypot(f[0] - w.re, f[1] - w.im) <= 1e-13 * cprox_solid_get_info(s).measure);
         }
     free(table.value);
     cprox_solid_free(s);
@@ -361,45 +437,92 @@ CASE(grids_transform_axis_by_axis_to_the_same_spectrum) {
   } while (0)
 
 CASE(bad_solids_are_refused_in_words) {
-  REFUSED(cprox_solid_create_ball(4, 1.0, ws, &solid), "dimension is 4, must be 2 or 3");
-  REFUSED(cprox_solid_create_ball(3, NAN, ws, &solid), "radius is nan, must be > 0");
-  REFUSED(cprox_solid_create_box(3, vec(1, 2, -1), ws, &solid), "size.z is -1, must be > 0");
-  REFUSED(cprox_solid_create_box(2, vec(1, INFINITY, 0), ws, &solid), "size.y is inf, must be finite");
+  REFUSED(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 4, .radius = 1.0}, ws,
+                             &solid),
+          "dimension is 4, must be 2 or 3");
+  REFUSED(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 3, .radius = NAN}, ws,
+                             &solid),
+          "radius is nan, must be > 0");
+  REFUSED(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 3, .size = vec(1, 2, -1)},
+                             ws, &solid),
+          "size.z is -1, must be > 0");
+  REFUSED(
+      cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(1, INFINITY, 0)}, ws, &solid),
+      "size.y is inf, must be finite");
 
   const double clockwise[3][2] = {{0, 0}, {0, 1}, {1, 0}}, bow[4][2] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
   const double twice[3][2] = {{0, 0}, {0, 0}, {1, 1}}, spike[4][2] = {{0, 0}, {2, 0}, {1, 0}, {1, 1}};
-  REFUSED(cprox_solid_create_polygon(clockwise, 3, ws, &solid),
+  REFUSED(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = clockwise, .n = 3}, ws,
+                             &solid),
           "the polygon is clockwise (area -0.5): give its vertices counter-clockwise");
-  REFUSED(cprox_solid_create_polygon(bow, 4, ws, &solid), "the polygon meets itself: edges 0 and 2 touch or cross");
-  REFUSED(cprox_solid_create_polygon(twice, 3, ws, &solid), "vertices 0 and 1 of the polygon are the same point");
-  REFUSED(cprox_solid_create_polygon(spike, 4, ws, &solid), "the polygon meets itself: edges 0 and 1 touch or cross");
+  REFUSED(
+      cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = bow, .n = 4}, ws, &solid),
+      "the polygon meets itself: edges 0 and 2 touch or cross");
+  REFUSED(
+      cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = twice, .n = 3}, ws, &solid),
+      "vertices 0 and 1 of the polygon are the same point");
+  REFUSED(
+      cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = spike, .n = 4}, ws, &solid),
+      "the polygon meets itself: edges 0 and 1 touch or cross");
 
   const cprox_vec3 v[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const uint32_t inside_out[4][3] = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
   const uint32_t crossed[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 3, 2}},
                  beyond[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 4}};
   const uint32_t open[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {0, 3, 2}};
-  REFUSED(cprox_solid_create_mesh(v, 4, beyond, 4, ws, &solid), "triangle 3 names vertex 4 of 4");
-  REFUSED(cprox_solid_create_mesh(v, 4, inside_out, 4, ws, &solid),
+  REFUSED(cprox_solid_create(
+              &(cprox_solid_description){
+                  .kind = CPROX_SOLID_MESH, .points = v, .n = 4, .triangles = beyond, .n_triangles = 4},
+              ws, &solid),
+          "triangle 3 names vertex 4 of 4");
+  REFUSED(cprox_solid_create(
+              &(cprox_solid_description){
+                  .kind = CPROX_SOLID_MESH, .points = v, .n = 4, .triangles = inside_out, .n_triangles = 4},
+              ws, &solid),
           "the mesh holds the volume -0.166667: triangles must be counter-clockwise from outside");
   cprox_solid *none = NULL;
-  assert_int_equal(cprox_solid_create_mesh(v, 4, crossed, 4, ws, &none), CPROX_INVALID);
-  assert_int_equal(cprox_solid_create_mesh(v, 4, open, 4, ws, &none), CPROX_INVALID);
+  assert_int_equal(cprox_solid_create(
+                       &(cprox_solid_description){
+                           .kind = CPROX_SOLID_MESH, .points = v, .n = 4, .triangles = crossed, .n_triangles = 4},
+                       ws, &none),
+                   CPROX_INVALID);
+  assert_int_equal(cprox_solid_create(
+                       &(cprox_solid_description){
+                           .kind = CPROX_SOLID_MESH, .points = v, .n = 4, .triangles = open, .n_triangles = 4},
+                       ws, &none),
+                   CPROX_INVALID);
   const uint32_t lid_off[5][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {1, 2, 3}};
-  assert_int_equal(cprox_solid_create_mesh(v, 4, lid_off, 5, ws, &none), CPROX_INVALID);
+  assert_int_equal(cprox_solid_create(
+                       &(cprox_solid_description){
+                           .kind = CPROX_SOLID_MESH, .points = v, .n = 4, .triangles = lid_off, .n_triangles = 5},
+                       ws, &none),
+                   CPROX_INVALID);
   const cprox_vec3 tent[5] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, -1}};
   const uint32_t no_floor[4][3] = {{0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}};
-  cprox_solid_create_mesh(tent, 5, no_floor, 4, ws, &none);
+  cprox_solid_create(
+      &(cprox_solid_description){
+          .kind = CPROX_SOLID_MESH, .points = tent, .n = 5, .triangles = no_floor, .n_triangles = 4},
+      ws, &none);
   assert_non_null(strstr(cprox_workspace_error(ws), "mesh is open: nothing borders the edge"));
 
   const unsigned char empty[8] = {0};
-  REFUSED(cprox_solid_create_grid(3, vec(0, 0, 0), 0.1, (const uint32_t[3]){2, 2, 2}, empty, ws, &solid),
+  REFUSED(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_GRID,
+                                                        .dimension = 3,
+                                                        .lowest = vec(0, 0, 0),
+                                                        .cell = 0.1,
+                                                        .counts = {2, 2, 2},
+                                                        .occupied = empty},
+                             ws, &solid),
           "no cell of the grid is occupied");
   cprox_solid *ball;
-  MADE(cprox_solid_create_ball(3, 1, ws, &ball));
+  MADE(
+      cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 3, .radius = 1}, ws, &ball));
   const double region[1][4] = {{1, 0, 0, 0}};
-  REFUSED(cprox_solid_create_clipped(ball, region, 1, ws, &solid),
-          "piece 0 cannot be clipped: only boxes, polygons and meshes can; give one that holds it");
+  REFUSED(
+      cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_CLIPPED, .solid = ball, .region = region, .n = 1}, ws, &solid),
+      "piece 0 cannot be clipped: only boxes, polygons and meshes can; give one that holds it");
   cprox_solid_free(ball);
 }
 

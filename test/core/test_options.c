@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
+#include "curve_proximity/cprox_fourier.h"
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/meshes.h"
@@ -492,7 +493,9 @@ CASE(what_belongs_to_robots_is_refused_with_curves) {
 /* The number of samples follows from delta, or is given. */
 CASE(gaps_refuse_delta_and_samples_together) {
   cprox_solid *ball = NULL;
-  assert_int_equal(cprox_solid_create_ball(3, 1.0, ws, &ball), CPROX_OK);
+  assert_int_equal(cprox_solid_create(
+                       &(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 3, .radius = 1.0}, ws, &ball),
+                   CPROX_OK);
   cprox_gap_options o = cprox_gap_options_default();
   cprox_gap *gap = NULL;
   o.samples = 9, o.delta = 0.3;

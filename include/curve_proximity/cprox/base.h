@@ -85,6 +85,14 @@ CPROX_API void cprox_workspace_free(cprox_workspace *workspace);
  *  result are those of the same query without a certificate. Valid until the next call with this workspace. */
 CPROX_API const char *cprox_workspace_error(const cprox_workspace *workspace);
 
+/** Sets the error message of a workspace; NULL or "": none. For libraries on top of this one, whose calls take the same
+ *  workspace (libcprox_fourier is one). A message longer than 255 bytes is cut. */
+CPROX_API void cprox_workspace_set_error(cprox_workspace *workspace, const char *message);
+
+/** Memory of the caller in a workspace: at least `bytes`, NULL where memory is out. What it held stays. No query of
+ *  this library uses it. Valid until the next call of this function; freed with the workspace. */
+CPROX_API void *cprox_workspace_reserve(cprox_workspace *workspace, size_t bytes);
+
 /** The bytes a workspace holds now. */
 CPROX_API size_t cprox_workspace_bytes(const cprox_workspace *workspace);
 

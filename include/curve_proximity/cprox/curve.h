@@ -326,16 +326,28 @@ CPROX_API cprox_status cprox_curve_evaluate(const cprox_curve *curve, double t, 
 
 /** The Bézier control points of the curve restricted to [a, b], which must lie within one polynomial piece.
  *
- *  points     receives cprox_curve_info.degree + 1 control points [m].
+ *  points     receives cprox_curve_info.degree + 1 control points [m]; of a whole piece without rounding.
  *  CPROX_INVALID if a >= b, if [a, b] leaves the domain, or if a joint lies strictly inside it.
  */
 CPROX_API cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, double b,
                                                   cprox_workspace *workspace, cprox_vec3 *points);
 
-/** An axis-aligned box that contains one polynomial piece, rounding included: 0 <= piece < cprox_curve_info.n_pieces,
- *  in the order of the parameter. */
-CPROX_API void cprox_curve_piece_bounds(const cprox_curve *curve, size_t piece, cprox_vec3 *lowest,
-                                        cprox_vec3 *highest);
+/** What is known of one polynomial piece of a curve. */
+typedef struct cprox_curve_piece_info {
+  /** the start of the piece */
+  double t0;
+  /** the end of the piece */
+  double t1;
+  /** [m] how far the curve as it was given may be from the computed piece, at most */
+  double error;
+  /** [m] the lowest corner of an axis-aligned box that contains the piece, rounding included */
+  cprox_vec3 lowest;
+  /** [m] the highest corner of that box */
+  cprox_vec3 highest;
+} cprox_curve_piece_info;
+
+/** What is known of one polynomial piece: 0 <= piece < cprox_curve_info.n_pieces, in the order of the parameter. */
+CPROX_API cprox_curve_piece_info cprox_curve_get_piece_info(const cprox_curve *curve, size_t piece);
 
 #ifdef __cplusplus
 }

@@ -42,6 +42,14 @@ void *workspace_reserve(cprox_workspace *workspace, workspace_buffer buffer, siz
   return memory;
 }
 
+void *cprox_workspace_reserve(cprox_workspace *workspace, size_t bytes) {
+  return workspace_reserve(workspace, WORKSPACE_CALLER, bytes);
+}
+
+void cprox_workspace_set_error(cprox_workspace *workspace, const char *message) {
+  workspace_fail(workspace, CPROX_OK, "%s", message ? message : "");
+}
+
 cprox_status workspace_fail(cprox_workspace *workspace, cprox_status status, const char *format, ...) {
   if (!workspace) return status;
   va_list arguments;

@@ -2,6 +2,7 @@
 #include "curve/curve.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/rounding.h"
 #include "base/workspace.h"
@@ -295,6 +296,10 @@ cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, doub
   if (b > right)
     return workspace_fail(workspace, CPROX_INVALID, "two pieces join at %.17g, inside [%.17g, %.17g]", right, a, b);
 
+  if (a == left && b == right) {
+    memcpy(points, curve_piece(curve, i), (degree + 1) * sizeof *points);
+    return CPROX_OK;
+  }
   /* a Bézier piece is a spline whose knots all stand at its ends */
   double knots[2 * CPROX_MAX_DEGREE];
   for (size_t k = 0; k < degree; k++) {
@@ -305,7 +310,7 @@ cprox_status cprox_curve_control_points(const cprox_curve *curve, double a, doub
   return CPROX_OK;
 }
 
-void cprox_curve_piece_bounds(const cprox_curve *curve, size_t piece, cprox_vec3 *lowest, cprox_vec3 *highest) {
+static void find_piece_bounds(const cprox_curve *curve, size_t piece, vec3 *lowest, vec3 *highest) {
   *lowest = vec(INFINITY, INFINITY, INFINITY);
   *highest = vec(-INFINITY, -INFINITY, -INFINITY);
   const vec3 *p = curve_piece(curve, piece);
@@ -323,6 +328,13 @@ void cprox_curve_piece_bounds(const cprox_curve *curve, size_t piece, cprox_vec3
   }
 }
 
+cprox_curve_piece_info cprox_curve_get_piece_info(const cprox_curve *curve, size_t piece) {
+  cprox_curve_piece_info info = {
+      .t0 = curve->breaks[piece], .t1 = curve->breaks[piece + 1], .error = curve->arcs ? 0.0 : curve->error[piece]};
+  find_piece_bounds(curve, piece, &info.lowest, &info.highest);
+  return info;
+}
+
 cprox_curve_info cprox_curve_get_info(const cprox_curve *curve) {
   cprox_curve_info info = {.kind = curve->kind,
                            .degree = curve->arcs ? 0 : curve->degree,
@@ -330,10 +342,10 @@ cprox_curve_info cprox_curve_get_info(const cprox_curve *curve) {
                            .error = curve_error(curve),
                            .dubins = curve->dubins};
   curve_domain(curve, &info.t0, &info.t1);
-  cprox_curve_piece_bounds(curve, 0, &info.lowest, &info.highest);
+  find_piece_bounds(curve, 0, &info.lowest, &info.highest);
   for (size_t i = 1; i < curve->n_pieces; i++) {
     vec3 low, high;
-    cprox_curve_piece_bounds(curve, i, &low, &high);
+    find_piece_bounds(curve, i, &low, &high);
     info.lowest = vec(fmin(info.lowest.x, low.x), fmin(info.lowest.y, low.y), fmin(info.lowest.z, low.z));
     info.highest = vec(fmax(info.highest.x, high.x), fmax(info.highest.y, high.y), fmax(info.highest.z, high.z));
   }

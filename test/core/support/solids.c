@@ -85,23 +85,32 @@ static void make_simple(test_solid *s, vec3 size, cprox_pose *pose) {
   cprox_body *body = NULL;
   switch (s->kind) {
     case SOLID_BALL:
-      MADE(cprox_solid_create_ball(d, 0.5 * size.x, ws, &s->solid));
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = d, .radius = 0.5 * size.x}, ws, &s->solid));
       MADE(cprox_body_create_sphere(0.5 * size.x, ws, &body));
       break;
     case SOLID_BOX:
-      MADE(cprox_solid_create_box(d, size, ws, &s->solid));
+      MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = d, .size = size}, ws,
+                              &s->solid));
       MADE(cprox_body_create_box(size, ws, &body));
       break;
     case SOLID_ELLIPSOID:
-      MADE(cprox_solid_create_ellipsoid(d, vec_scale(0.5, size), ws, &s->solid));
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_ELLIPSOID, .dimension = d, .semi_axes = vec_scale(0.5, size)},
+          ws, &s->solid));
       MADE(cprox_body_create_ellipsoid(vec_scale(0.5, size), ws, &body));
       break;
     case SOLID_CYLINDER:
-      MADE(cprox_solid_create_cylinder(size.x, 0.5 * size.y, ws, &s->solid));
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){.kind = CPROX_SOLID_CYLINDER, .height = size.x, .radius = 0.5 * size.y}, ws,
+          &s->solid));
       MADE(cprox_body_create_cylinder(size.x, 0.5 * size.y, ws, &body));
       break;
     default:
-      MADE(cprox_solid_create_capsule(d, size.x, 0.3 * size.y, ws, &s->solid));
+      MADE(cprox_solid_create(
+          &(cprox_solid_description){
+              .kind = CPROX_SOLID_CAPSULE, .dimension = d, .height = size.x, .radius = 0.3 * size.y},
+          ws, &s->solid));
       MADE(cprox_body_create_capsule(size.x, 0.3 * size.y, ws, &body));
       if (d == 2) pose->orientation = (cprox_quat){1, 0, 1, 0}; /* along x */
       break;
@@ -120,7 +129,9 @@ static void make_convex(rng *r, test_solid *s, vec3 size) {
       v[i][1] = 0.5 * size.y * sin(at);
       v[i][0] = 0.5 * size.x * cos(at) + shear * v[i][1];
     }
-    MADE(cprox_solid_create_polygon((const double(*)[2])v, n, ws, &s->solid));
+    MADE(cprox_solid_create(
+        &(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = (const double(*)[2])v, .n = n}, ws,
+        &s->solid));
     add_prism(s, (const double(*)[2])v, n, 1.0);
     return;
   }
@@ -132,7 +143,9 @@ static void make_convex(rng *r, test_solid *s, vec3 size) {
   }
   const uint32_t faces[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                                  {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  MADE(cprox_solid_create_mesh(v, 8, faces, 12, ws, &s->solid));
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){.kind = CPROX_SOLID_MESH, .points = v, .n = 8, .triangles = faces, .n_triangles = 12},
+      ws, &s->solid));
   add_polytope(s, v, 8);
 }
 
@@ -142,7 +155,8 @@ static void make_folded(rng *r, test_solid *s, vec3 size) {
                half = s->dimension == 2 ? 1.0 : 0.5 * size.z;
   const double v[6][2] = {{0, 0}, {size.x, 0}, {size.x, y}, {x, y}, {x, size.y}, {0, size.y}};
   if (s->dimension == 2) {
-    MADE(cprox_solid_create_polygon(v, 6, ws, &s->solid));
+    MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = v, .n = 6}, ws,
+                            &s->solid));
   } else {
     vec3 corners[12];
     for (int i = 0; i < 12; i++) corners[i] = vec(v[i % 6][0], v[i % 6][1], i < 6 ? -half : half);
@@ -154,7 +168,12 @@ static void make_folded(rng *r, test_solid *s, vec3 size) {
       const uint32_t a = i, b = (i + 1) % 6, side[2][3] = {{a, b, b + 6}, {a, b + 6, a + 6}};
       for (uint32_t j = 0; j < 6; j++) faces[8 + 2 * i + j / 3][j % 3] = side[j / 3][j % 3];
     }
-    MADE(cprox_solid_create_mesh(corners, 12, (const uint32_t(*)[3])faces, 20, ws, &s->solid));
+    MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_MESH,
+                                                       .points = corners,
+                                                       .n = 12,
+                                                       .triangles = (const uint32_t(*)[3])faces,
+                                                       .n_triangles = 20},
+                            ws, &s->solid));
   }
   add_box_at(s, vec(0, 0, -half), vec(size.x, y, half));
   add_box_at(s, vec(0, 0, -half), vec(x, size.y, half));
@@ -170,13 +189,21 @@ static void make_path(rng *r, test_solid *s, vec3 size, cprox_pose *poses) {
   }
   for (int i = 0; i < 3; i++) add_segment(s, poses, p[i], p[i + 1], radius);
   if (s->kind == SOLID_POLYLINE) {
-    MADE(cprox_solid_create_polyline(s->dimension, p, 4, radius, ws, &s->solid));
+    MADE(cprox_solid_create(
+        &(cprox_solid_description){
+            .kind = CPROX_SOLID_POLYLINE, .dimension = s->dimension, .points = p, .n = 4, .radius = radius},
+        ws, &s->solid));
     return;
   }
   cprox_curve *curve;
   const double knots[6] = {0, 0, 1, 2, 3, 3};
   MADE(curve_from(describe_bspline(p, 4, 1, knots, 6, 0, 3), ws, &curve));
-  MADE(cprox_solid_create_sweep(s->dimension, curve, radius, 1e-6 * radius, ws, &s->solid));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_SWEEP,
+                                                     .dimension = s->dimension,
+                                                     .curve = curve,
+                                                     .radius = radius,
+                                                     .tolerance = 1e-6 * radius},
+                          ws, &s->solid));
   cprox_curve_free(curve);
 }
 
@@ -191,7 +218,13 @@ static void make_grid(rng *r, test_solid *s, double size) {
     const uint32_t x = i % counts[0], y = i / counts[0] % counts[1], z = i / counts[0] / counts[1];
     cells[i] = blocks[x / ACROSS + 2 * (y / ACROSS) + 4 * (z / ACROSS)];
   }
-  MADE(cprox_solid_create_grid(s->dimension, lowest, 0.5 * size / ACROSS, counts, cells, ws, &s->solid));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_GRID,
+                                                     .dimension = s->dimension,
+                                                     .lowest = lowest,
+                                                     .cell = 0.5 * size / ACROSS,
+                                                     .counts = {counts[0], counts[1], counts[2]},
+                                                     .occupied = cells},
+                          ws, &s->solid));
   for (int i = 0; i < (planar ? 4 : 8); i++) {
     if (!blocks[i]) continue;
     const vec3 low = vec_axpy(lowest, 0.5 * size, vec(i & 1, i >> 1 & 1, planar ? -1 : i >> 2));
@@ -205,12 +238,16 @@ static void make_union(rng *r, test_solid *s, double scale, double aspect, cprox
   for (int i = 0; i < 2; i++) {
     const vec3 size = lengths_of(r, scale, aspect);
     cprox_body *body;
-    MADE(cprox_solid_create_box(s->dimension, size, ws, &parts[i]));
+    MADE(cprox_solid_create(
+        &(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = s->dimension, .size = size}, ws, &parts[i]));
     MADE(cprox_body_create_box(size, ws, &body));
     poses[i] = solid_pose(r, s->dimension, 0.5 * scale);
     add_part(s, body);
   }
-  MADE(cprox_solid_create_union((const cprox_solid *const *)parts, poses, 2, ws, &s->solid));
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){
+          .kind = CPROX_SOLID_UNION, .parts = (const cprox_solid *const *)parts, .poses = poses, .n = 2},
+      ws, &s->solid));
   for (int i = 0; i < 2; i++) cprox_solid_free(parts[i]);
 }
 
@@ -218,8 +255,10 @@ static void make_union(rng *r, test_solid *s, double scale, double aspect, cprox
 static void make_clipped(rng *r, test_solid *s, vec3 size) {
   cprox_solid *box;
   const double cut = rng_uniform(r, -0.3, 0.3) * size.x, plane[1][4] = {{2, 0, 0, 2 * cut}};
-  MADE(cprox_solid_create_box(s->dimension, size, ws, &box));
-  MADE(cprox_solid_create_clipped(box, plane, 1, ws, &s->solid));
+  MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = s->dimension, .size = size},
+                          ws, &box));
+  MADE(cprox_solid_create(
+      &(cprox_solid_description){.kind = CPROX_SOLID_CLIPPED, .solid = box, .region = plane, .n = 1}, ws, &s->solid));
   cprox_solid_free(box);
   add_box_at(s, vec_scale(-0.5, size), vec(cut, 0.5 * size.y, 0.5 * size.z));
   MADE(cprox_body_create_box(size, ws, &s->unclipped));

@@ -5,6 +5,7 @@
 #define CPROX_TEST_SOLIDS_H
 
 #include "curve_proximity/cprox.h"
+#include "curve_proximity/cprox_fourier.h"
 #include "support/random.h"
 
 typedef enum test_solid_kind {

@@ -35,28 +35,27 @@ static bool edges_meet(const vec3 *v, size_t n, size_t i, size_t j) {
 static cprox_status check_loop(const vec3 *v, size_t n, cprox_workspace *workspace) {
   for (size_t i = 0; i < n; i++)
     if (vec_equal(v[i], v[(i + 1) % n]))
-      return workspace_fail(workspace, CPROX_INVALID, "vertices %zu and %zu of the polygon are the same point", i,
-                            (i + 1) % n);
+      return fourier_fail(workspace, CPROX_INVALID, "vertices %zu and %zu of the polygon are the same point", i,
+                          (i + 1) % n);
   for (size_t i = 0; i < n; i++)
     for (size_t j = i + 1; j < n; j++)
       if (edges_meet(v, n, i, j))
-        return workspace_fail(workspace, CPROX_INVALID, "the polygon meets itself: edges %zu and %zu touch or cross", i,
-                              j);
+        return fourier_fail(workspace, CPROX_INVALID, "the polygon meets itself: edges %zu and %zu touch or cross", i,
+                            j);
   double area2 = 0.0;
   for (size_t i = 1; i + 1 < n; i++) area2 += side(v[0], v[i], v[i + 1]);
   if (area2 < 0.0)
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "the polygon is clockwise (area %g): give its vertices counter-clockwise", 0.5 * area2);
-  if (!(area2 > 0.0)) return workspace_fail(workspace, CPROX_INVALID, "the polygon has no area");
+    return fourier_fail(workspace, CPROX_INVALID,
+                        "the polygon is clockwise (area %g): give its vertices counter-clockwise", 0.5 * area2);
+  if (!(area2 > 0.0)) return fourier_fail(workspace, CPROX_INVALID, "the polygon has no area");
   return CPROX_OK;
 }
 
-cprox_status cprox_solid_create_polygon(const double (*vertices)[2], size_t n, cprox_workspace *workspace,
-                                        cprox_solid **solid) {
-  cprox_status status = solid_check_dimension(2, (const cprox_solid *const *)solid, workspace);
-  if (status != CPROX_OK) return status;
-  if (!vertices) return workspace_fail(workspace, CPROX_INVALID, "vertices is NULL");
-  if (n < 3) return workspace_fail(workspace, CPROX_INVALID, "a polygon needs at least 3 vertices, got %zu", n);
+cprox_status solid_create_polygon(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
+  const double(*vertices)[2] = d->corners;
+  const size_t n = d->n;
+  if (!vertices) return fourier_fail(workspace, CPROX_INVALID, "corners is NULL");
+  if (n < 3) return fourier_fail(workspace, CPROX_INVALID, "a polygon needs at least 3 vertices, got %zu", n);
 
   piece p = piece_create(PIECE_POLYGON);
   p.corner = calloc(n, sizeof *p.corner);
@@ -67,7 +66,7 @@ cprox_status cprox_solid_create_polygon(const double (*vertices)[2], size_t n, c
   }
   p.n_corners = p.n_vertices = n;
   for (size_t i = 0; i < n; i++) p.corner[i] = p.vertex[i] = vec(vertices[i][0], vertices[i][1], 0.0);
-  status = solid_check_points("vertex", p.vertex, n, 2, workspace);
+  cprox_status status = solid_check_points("vertex", p.vertex, n, 2, workspace);
   if (status == CPROX_OK) status = check_loop(p.vertex, n, workspace);
   if (status != CPROX_OK) {
     piece_free(&p);

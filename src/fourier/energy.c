@@ -154,7 +154,7 @@ bool solid_find_bounds(const cprox_solid *solid, solid_bounds *bounds) {
   *bounds = (solid_bounds){0.0, 0.0};
   bool ok = true;
   if (solid->n == 1 && indicators == 1)
-    *bounds = (solid_bounds){cprox_solid_measure(solid), 1.0};
+    *bounds = (solid_bounds){cprox_solid_get_info(solid).measure, 1.0};
   else if (loops == solid->n && corners <= MOST_EDGES)
     ok = bound_loops(solid, bounds);
   else if (indicators == solid->n && solid->n <= MOST_PIECES)

@@ -39,8 +39,8 @@ double kernel_beta(int dimension, int samples) {
 
 /* The tuned mode's falls in steps, the others' does not depend on n. */
 double kernel_offset(int dimension, int samples, cprox_gap_mode mode) {
-  if (mode == CPROX_GAP_SIGNAL) return 0.0;
-  if (mode == CPROX_GAP_CERTIFIED) return dimension == 2 ? 0.75 : 1.05;
+  if (mode == CPROX_GAP_MODE_SIGNAL) return 0.0;
+  if (mode == CPROX_GAP_MODE_CERTIFIED) return dimension == 2 ? 0.75 : 1.05;
   if (dimension == 3 || samples >= 97) return 0.75;
   return samples < 13 ? 0.35 : samples < 49 ? 0.5 : 0.6;
 }

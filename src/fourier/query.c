@@ -9,12 +9,12 @@ const char *cprox_gap_verdict_name(cprox_gap_verdict verdict) {
 }
 
 static cprox_status check_pose(const char *name, const cprox_pose *pose, int dimension, cprox_workspace *workspace) {
-  if (!pose) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", name);
+  if (!pose) return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", name);
   const char *fault = frame_pose_fault(pose);
   if (!fault && dimension == 2 && (pose->orientation.x != 0.0 || pose->orientation.y != 0.0))
     fault = "a planar pose turns about z only";
   if (!fault && dimension == 2 && pose->position.z != 0.0) fault = "a planar pose has z = 0";
-  return fault ? workspace_fail(workspace, CPROX_INVALID, "%s: %s", name, fault) : CPROX_OK;
+  return fault ? fourier_fail(workspace, CPROX_INVALID, "%s: %s", name, fault) : CPROX_OK;
 }
 
 /* Both frames, and the relative pose of the turned solid in the fixed one's frame. */
@@ -69,28 +69,28 @@ static void scale_gradients(cprox_gap_result *result, double s) {
 static cprox_status answer_signal(const cprox_gap *gap, cprox_workspace *workspace, cprox_gap_result *result) {
   const double least = 2.0 * gap->info.rounding, v = fmax(result->value, least);
   const bool lost = !(result->value > least);
-  result->verdict = CPROX_GAP_UNDECIDED;
+  result->verdict = CPROX_GAP_VERDICT_UNDECIDED;
   result->value = -log(v);
   scale_gradients(result, -1.0 / v);
-  return lost ? workspace_fail(workspace, CPROX_PRECISION, "the signal is below its rounding at this pose") : CPROX_OK;
+  return lost ? fourier_fail(workspace, CPROX_PRECISION, "the signal is below its rounding at this pose") : CPROX_OK;
 }
 
 static void answer_far(const cprox_gap *gap, cprox_gap_result *result) {
-  result->verdict = CPROX_GAP_FAR;
-  result->value = gap->info.mode == CPROX_GAP_SIGNAL ? INFINITY : 0.0;
+  result->verdict = CPROX_GAP_VERDICT_FAR;
+  result->value = gap->info.mode == CPROX_GAP_MODE_SIGNAL ? INFINITY : 0.0;
   result->error = 0.0;
 }
 
 static cprox_gap_verdict decide(double value, double error) {
-  if (value + error < 1.0 - 1e-12) return CPROX_GAP_CLEAR;
-  return value - error > 1.0 ? CPROX_GAP_COLLIDE : CPROX_GAP_UNDECIDED;
+  if (value + error < 1.0 - 1e-12) return CPROX_GAP_VERDICT_CLEAR;
+  return value - error > 1.0 ? CPROX_GAP_VERDICT_COLLIDE : CPROX_GAP_VERDICT_UNDECIDED;
 }
 
 static cprox_status ask(const cprox_gap *gap, const cprox_pose *a, const cprox_pose *b, bool gradient,
                         cprox_workspace *workspace, cprox_gap_result *result) {
-  workspace_clear(workspace);
+  fourier_clear(workspace);
   if (!gap || !workspace || !result)
-    return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", !gap ? "gap" : !workspace ? "workspace" : "result");
+    return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", !gap ? "gap" : !workspace ? "workspace" : "result");
   cprox_status status = check_pose("pose_a", a, gap->info.dimension, workspace);
   if (status == CPROX_OK) status = check_pose("pose_b", b, gap->info.dimension, workspace);
   if (status != CPROX_OK) return status;
@@ -106,17 +106,18 @@ static cprox_status ask(const cprox_gap *gap, const cprox_pose *a, const cprox_p
     return CPROX_OK;
   }
 
-  gap_job job = {.gap = gap, .x = r.x, .gradient = gradient, .early = !gradient && gap->info.mode != CPROX_GAP_SIGNAL};
+  gap_job job = {
+      .gap = gap, .x = r.x, .gradient = gradient, .early = !gradient && gap->info.mode != CPROX_GAP_MODE_SIGNAL};
   for (int i = 0; i < 9; i++) job.turn[i] = r.turn[i];
-  job.scratch = workspace_reserve(workspace, WORKSPACE_POINTS, gap_scratch_size(gap));
-  if (!job.scratch) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a gap's tables");
+  job.scratch = cprox_workspace_reserve(workspace, gap_scratch_size(gap));
+  if (!job.scratch) return fourier_fail(workspace, CPROX_MEMORY, "no memory for a gap's tables");
   gap_sum(&job);
 
   out.value = job.value;
   out.error = gap->info.rounding + job.tail;
   out.terms = (uint32_t)(job.blocks * LANES);
   if (gradient) spread_gradients(gap, &r, job.position, job.moment, &out);
-  if (gap->info.mode == CPROX_GAP_SIGNAL)
+  if (gap->info.mode == CPROX_GAP_MODE_SIGNAL)
     status = answer_signal(gap, workspace, &out);
   else
     out.verdict = decide(out.value, out.error);

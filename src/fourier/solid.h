@@ -3,11 +3,12 @@
 #ifndef CPROX_FOURIER_SOLID_H
 #define CPROX_FOURIER_SOLID_H
 
-#include "base/workspace.h"
-#include "curve_proximity/cprox/fourier.h"
+#include "curve_proximity/cprox_fourier.h"
+#include "fourier/error.h"
 #include "fourier/piece.h"
 
 struct cprox_solid {
+  cprox_solid_kind kind;
   int dimension;
   size_t n;
   piece *pieces;
@@ -19,8 +20,15 @@ struct cprox_solid {
 #define SOLID_LEAST 1e-100
 #define SOLID_LARGEST 1e100
 
+/* Makes one kind of solid from its description; checked: the dimension, where the kind reads it,
+ * and the pointers. */
+typedef cprox_status solid_constructor(const cprox_solid_description *d, cprox_workspace *workspace,
+                                       cprox_solid **solid);
+solid_constructor solid_create_ball, solid_create_box, solid_create_ellipsoid, solid_create_cylinder,
+    solid_create_capsule, solid_create_polygon, solid_create_mesh, solid_create_polyline, solid_create_sweep,
+    solid_create_grid, solid_create_union, solid_create_clipped;
+
 /* The checks that constructors share; CPROX_OK or the failure with its sentence. */
-cprox_status solid_check_dimension(int dimension, const cprox_solid *const *solid, cprox_workspace *workspace);
 cprox_status solid_check_length(const char *name, double value, cprox_workspace *workspace);
 cprox_status solid_check_points(const char *name, const vec3 *points, size_t n, int dimension,
                                 cprox_workspace *workspace);

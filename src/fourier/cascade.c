@@ -19,19 +19,19 @@ void cprox_gap_cascade_free(cprox_gap_cascade *cascade) {
 
 cprox_status cprox_gap_cascade_create(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
                                       cprox_workspace *workspace, cprox_gap_cascade **cascade) {
-  workspace_clear(workspace);
+  fourier_clear(workspace);
   if (!a || !b || !cascade)
-    return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", !a ? "a" : !b ? "b" : "cascade");
+    return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", !a ? "a" : !b ? "b" : "cascade");
   cprox_gap_options used = options ? *options : cprox_gap_options_default();
-  if (used.mode != CPROX_GAP_CERTIFIED)
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "a cascade is certified: in the other modes a coarse clear says nothing");
+  if (used.mode != CPROX_GAP_MODE_CERTIFIED)
+    return fourier_fail(workspace, CPROX_INVALID,
+                        "a cascade is certified: in the other modes a coarse clear says nothing");
   gap_plan plan;
   cprox_status status = gap_plan_choose(a, b, &used, workspace, &plan);
   if (status != CPROX_OK) return status;
 
   cprox_gap_cascade *made = calloc(1, sizeof *made);
-  if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a cascade");
+  if (!made) return fourier_fail(workspace, CPROX_MEMORY, "no memory for a cascade");
   const uint32_t finest = 2 * (uint32_t)plan.N + 1;
   used.period = 0.0; /* each level has its own, */
   used.delta = 0.0;  /* and is told its samples */
@@ -59,16 +59,16 @@ const cprox_gap *cprox_gap_cascade_finest(const cprox_gap_cascade *cascade) {
 cprox_status cprox_gap_cascade_test(const cprox_gap_cascade *cascade, const cprox_pose *pose_a,
                                     const cprox_pose *pose_b, cprox_workspace *workspace, cprox_gap_result *result) {
   if (!cascade || !workspace || !result)
-    return workspace_fail(workspace, CPROX_INVALID, "%s is NULL",
-                          !cascade     ? "cascade"
-                          : !workspace ? "workspace"
-                                       : "result");
+    return fourier_fail(workspace, CPROX_INVALID, "%s is NULL",
+                        !cascade     ? "cascade"
+                        : !workspace ? "workspace"
+                                     : "result");
   uint32_t terms = 0;
   for (size_t i = 0; i < cascade->n; i++) {
     const cprox_status status = cprox_gap_test(cascade->level[i], pose_a, pose_b, workspace, result);
     if (status < CPROX_OK) return status;
     terms += result->terms;
-    if (result->verdict == CPROX_GAP_CLEAR || result->verdict == CPROX_GAP_FAR) break;
+    if (result->verdict == CPROX_GAP_VERDICT_CLEAR || result->verdict == CPROX_GAP_VERDICT_FAR) break;
   }
   result->terms = terms;
   return CPROX_OK;

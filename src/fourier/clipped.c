@@ -74,30 +74,31 @@ static bool clip_piece(piece *p, int dimension, const double (*region)[4], size_
 
 static cprox_status check_region(const cprox_solid *solid, const double (*region)[4], size_t n,
                                  cprox_workspace *workspace) {
-  if (n == 0 || !region) return workspace_fail(workspace, CPROX_INVALID, "the region has no half-space");
+  if (n == 0 || !region) return fourier_fail(workspace, CPROX_INVALID, "the region has no half-space");
   for (size_t i = 0; i < n; i++) {
     const vec3 a = vec(region[i][0], region[i][1], region[i][2]);
     if (!vec_finite(a) || !isfinite(region[i][3]) || !(vec_norm(a) > SOLID_LEAST) || vec_norm(a) > SOLID_LARGEST)
-      return workspace_fail(workspace, CPROX_INVALID, "half-space %zu of the region has the normal (%g, %g, %g) and %g",
-                            i, a.x, a.y, a.z, region[i][3]);
+      return fourier_fail(workspace, CPROX_INVALID, "half-space %zu of the region has the normal (%g, %g, %g) and %g",
+                          i, a.x, a.y, a.z, region[i][3]);
     if (solid->dimension == 2 && a.z != 0.0)
-      return workspace_fail(workspace, CPROX_INVALID, "half-space %zu of the region has c = %g, in the plane it is 0",
-                            i, a.z);
+      return fourier_fail(workspace, CPROX_INVALID, "half-space %zu of the region has c = %g, in the plane it is 0", i,
+                          a.z);
   }
   for (size_t i = 0; i < solid->n; i++) {
     const piece_kind kind = solid->pieces[i].kind;
     if (kind != PIECE_BOX && kind != PIECE_POLYGON && !(kind == PIECE_SOUP))
-      return workspace_fail(workspace, CPROX_INVALID,
-                            "piece %zu cannot be clipped: only boxes, polygons and meshes can; give one that holds it",
-                            i);
+      return fourier_fail(workspace, CPROX_INVALID,
+                          "piece %zu cannot be clipped: only boxes, polygons and meshes can; give one that holds it",
+                          i);
   }
   return CPROX_OK;
 }
 
-cprox_status cprox_solid_create_clipped(const cprox_solid *solid, const double (*region)[4], size_t n,
-                                        cprox_workspace *workspace, cprox_solid **clipped) {
-  workspace_clear(workspace);
-  if (!solid || !clipped) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", solid ? "clipped" : "solid");
+cprox_status solid_create_clipped(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **clipped) {
+  const cprox_solid *solid = d->solid;
+  const double(*region)[4] = d->region;
+  const size_t n = d->n;
+  if (!solid) return fourier_fail(workspace, CPROX_INVALID, "solid is NULL");
   cprox_status status = check_region(solid, region, n, workspace);
   if (status != CPROX_OK) return status;
 
@@ -119,7 +120,7 @@ cprox_status cprox_solid_create_clipped(const cprox_solid *solid, const double (
   made->n = kept;
   if (kept == 0) {
     cprox_solid_free(made);
-    return workspace_fail(workspace, CPROX_INVALID, "nothing of the solid lies in the region");
+    return fourier_fail(workspace, CPROX_INVALID, "nothing of the solid lies in the region");
   }
   solid_bound(made);
   *clipped = made;

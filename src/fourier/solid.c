@@ -6,20 +6,12 @@
 
 static const double NO_TURN[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-cprox_status solid_check_dimension(int dimension, const cprox_solid *const *solid, cprox_workspace *workspace) {
-  workspace_clear(workspace);
-  if (!solid) return workspace_fail(workspace, CPROX_INVALID, "solid is NULL: nowhere to put the handle");
-  if (dimension != 2 && dimension != 3)
-    return workspace_fail(workspace, CPROX_INVALID, "dimension is %d, must be 2 or 3", dimension);
-  return CPROX_OK;
-}
-
 cprox_status solid_check_length(const char *name, double value, cprox_workspace *workspace) {
-  if (!(value > 0.0)) return workspace_fail(workspace, CPROX_INVALID, "%s is %g, must be > 0", name, value);
-  if (!isfinite(value)) return workspace_fail(workspace, CPROX_INVALID, "%s is %g, must be finite", name, value);
+  if (!(value > 0.0)) return fourier_fail(workspace, CPROX_INVALID, "%s is %g, must be > 0", name, value);
+  if (!isfinite(value)) return fourier_fail(workspace, CPROX_INVALID, "%s is %g, must be finite", name, value);
   if (value < SOLID_LEAST || value > SOLID_LARGEST)
-    return workspace_fail(workspace, CPROX_INVALID, "%s is %g, must be between %g and %g", name, value, SOLID_LEAST,
-                          SOLID_LARGEST);
+    return fourier_fail(workspace, CPROX_INVALID, "%s is %g, must be between %g and %g", name, value, SOLID_LEAST,
+                        SOLID_LARGEST);
   return CPROX_OK;
 }
 
@@ -28,16 +20,16 @@ cprox_status solid_check_points(const char *name, const vec3 *points, size_t n, 
   for (size_t i = 0; i < n; i++) {
     const vec3 p = points[i];
     if (!vec_finite(p) || fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))) > SOLID_LARGEST)
-      return workspace_fail(workspace, CPROX_INVALID, "%s %zu is (%g, %g, %g), must be finite and within %g", name, i,
-                            p.x, p.y, p.z, SOLID_LARGEST);
+      return fourier_fail(workspace, CPROX_INVALID, "%s %zu is (%g, %g, %g), must be finite and within %g", name, i,
+                          p.x, p.y, p.z, SOLID_LARGEST);
     if (dimension == 2 && p.z != 0.0)
-      return workspace_fail(workspace, CPROX_INVALID, "%s %zu has z = %g, a planar solid lies in z = 0", name, i, p.z);
+      return fourier_fail(workspace, CPROX_INVALID, "%s %zu has z = %g, a planar solid lies in z = 0", name, i, p.z);
   }
   return CPROX_OK;
 }
 
 cprox_status solid_out_of_memory(cprox_workspace *workspace) {
-  return workspace_fail(workspace, CPROX_MEMORY, "no memory for a solid");
+  return fourier_fail(workspace, CPROX_MEMORY, "no memory for a solid");
 }
 
 cprox_solid *solid_allocate(int dimension, size_t n) {
@@ -91,46 +83,44 @@ cprox_status solid_of_piece(int dimension, piece *p, cprox_workspace *workspace,
 /* A piece of one to three lengths, each checked under its name. */
 static cprox_status create_simple(piece_kind kind, int dimension, const char *const names[3], const double given[3],
                                   const double size[3], cprox_workspace *workspace, cprox_solid **solid) {
-  cprox_status status = solid_check_dimension(dimension, (const cprox_solid *const *)solid, workspace);
-  for (int i = 0; i < 3 && status == CPROX_OK; i++)
-    if (names[i]) status = solid_check_length(names[i], given[i], workspace);
-  if (status != CPROX_OK) return status;
+  for (int i = 0; i < 3; i++) {
+    const cprox_status status = names[i] ? solid_check_length(names[i], given[i], workspace) : CPROX_OK;
+    if (status != CPROX_OK) return status;
+  }
   piece p = piece_create(kind);
   for (int i = 0; i < 3; i++) p.size[i] = size[i];
   return solid_of_piece(dimension, &p, workspace, solid);
 }
 
-cprox_status cprox_solid_create_ball(int dimension, double radius, cprox_workspace *workspace, cprox_solid **solid) {
-  const double r[3] = {radius, radius, radius};
-  return create_simple(PIECE_ELLIPSOID, dimension, (const char *const[3]){"radius", NULL, NULL}, r, r, workspace,
+cprox_status solid_create_ball(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
+  const double r[3] = {d->radius, d->radius, d->radius};
+  return create_simple(PIECE_ELLIPSOID, d->dimension, (const char *const[3]){"radius", NULL, NULL}, r, r, workspace,
                        solid);
 }
 
-cprox_status cprox_solid_create_box(int dimension, cprox_vec3 size, cprox_workspace *workspace, cprox_solid **solid) {
-  const double full[3] = {size.x, size.y, size.z}, half[3] = {0.5 * size.x, 0.5 * size.y, 0.5 * size.z};
-  const char *const names[3] = {"size.x", "size.y", dimension == 2 ? NULL : "size.z"};
-  return create_simple(PIECE_BOX, dimension, names, full, half, workspace, solid);
+cprox_status solid_create_box(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
+  const double full[3] = {d->size.x, d->size.y, d->size.z};
+  const double half[3] = {0.5 * d->size.x, 0.5 * d->size.y, 0.5 * d->size.z};
+  const char *const names[3] = {"size.x", "size.y", d->dimension == 2 ? NULL : "size.z"};
+  return create_simple(PIECE_BOX, d->dimension, names, full, half, workspace, solid);
 }
 
-cprox_status cprox_solid_create_ellipsoid(int dimension, cprox_vec3 semi_axes, cprox_workspace *workspace,
-                                          cprox_solid **solid) {
-  const double a[3] = {semi_axes.x, semi_axes.y, semi_axes.z};
-  const char *const names[3] = {"semi_axes.x", "semi_axes.y", dimension == 2 ? NULL : "semi_axes.z"};
-  return create_simple(PIECE_ELLIPSOID, dimension, names, a, a, workspace, solid);
+cprox_status solid_create_ellipsoid(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
+  const double a[3] = {d->semi_axes.x, d->semi_axes.y, d->semi_axes.z};
+  const char *const names[3] = {"semi_axes.x", "semi_axes.y", d->dimension == 2 ? NULL : "semi_axes.z"};
+  return create_simple(PIECE_ELLIPSOID, d->dimension, names, a, a, workspace, solid);
 }
 
-cprox_status cprox_solid_create_cylinder(double height, double radius, cprox_workspace *workspace,
-                                         cprox_solid **solid) {
+cprox_status solid_create_cylinder(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
   return create_simple(PIECE_CYLINDER, 3, (const char *const[3]){"height", "radius", NULL},
-                       (const double[3]){height, radius, 0}, (const double[3]){radius, 0.5 * height, 0}, workspace,
-                       solid);
+                       (const double[3]){d->height, d->radius, 0}, (const double[3]){d->radius, 0.5 * d->height, 0},
+                       workspace, solid);
 }
 
-cprox_status cprox_solid_create_capsule(int dimension, double height, double radius, cprox_workspace *workspace,
-                                        cprox_solid **solid) {
-  return create_simple(PIECE_CAPSULE, dimension, (const char *const[3]){"height", "radius", NULL},
-                       (const double[3]){height, radius, 0}, (const double[3]){radius, 0.5 * height, 0}, workspace,
-                       solid);
+cprox_status solid_create_capsule(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
+  return create_simple(PIECE_CAPSULE, d->dimension, (const char *const[3]){"height", "radius", NULL},
+                       (const double[3]){d->height, d->radius, 0}, (const double[3]){d->radius, 0.5 * d->height, 0},
+                       workspace, solid);
 }
 
 /* Whether a pose is one of the dimension: NULL, or the fault as part of a sentence. */
@@ -141,26 +131,26 @@ static const char *pose_fault(const cprox_pose *pose, int dimension) {
   return pose->position.z != 0.0 ? "a planar pose has z = 0" : NULL;
 }
 
-cprox_status cprox_solid_create_union(const cprox_solid *const *parts, const cprox_pose *poses, size_t n,
-                                      cprox_workspace *workspace, cprox_solid **solid) {
-  workspace_clear(workspace);
-  if (!solid) return workspace_fail(workspace, CPROX_INVALID, "solid is NULL: nowhere to put the handle");
-  if (n == 0) return workspace_fail(workspace, CPROX_INVALID, "a union needs at least 1 part, got none");
-  if (!parts || !poses) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", parts ? "poses" : "parts");
+cprox_status solid_create_union(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
+  const cprox_solid *const *parts = d->parts;
+  const cprox_pose *poses = d->poses;
+  const size_t n = d->n;
+  if (n == 0) return fourier_fail(workspace, CPROX_INVALID, "a union needs at least 1 part, got none");
+  if (!parts || !poses) return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", parts ? "poses" : "parts");
   size_t pieces = 0;
   for (size_t i = 0; i < n; i++) {
-    if (!parts[i]) return workspace_fail(workspace, CPROX_INVALID, "part %zu is NULL", i);
+    if (!parts[i]) return fourier_fail(workspace, CPROX_INVALID, "part %zu is NULL", i);
     if (parts[i]->dimension != parts[0]->dimension)
-      return workspace_fail(workspace, CPROX_INVALID, "part %zu has dimension %d, part 0 has %d", i,
-                            parts[i]->dimension, parts[0]->dimension);
+      return fourier_fail(workspace, CPROX_INVALID, "part %zu has dimension %d, part 0 has %d", i, parts[i]->dimension,
+                          parts[0]->dimension);
     const char *fault = pose_fault(&poses[i], parts[0]->dimension);
-    if (fault) return workspace_fail(workspace, CPROX_INVALID, "the pose of part %zu: %s", i, fault);
+    if (fault) return fourier_fail(workspace, CPROX_INVALID, "the pose of part %zu: %s", i, fault);
     if ((parts[i]->pieces[0].kind == PIECE_SWEEP) != (parts[0]->pieces[0].kind == PIECE_SWEEP))
-      return workspace_fail(workspace, CPROX_INVALID, "parts 0 and %zu: a sweep cannot be united with a solid", i);
+      return fourier_fail(workspace, CPROX_INVALID, "parts 0 and %zu: a sweep cannot be united with a solid", i);
     pieces += parts[i]->n;
   }
   if (n > 1 && parts[0]->pieces[0].kind == PIECE_SWEEP)
-    return workspace_fail(workspace, CPROX_INVALID, "sweeps cannot be united: make one gap for each");
+    return fourier_fail(workspace, CPROX_INVALID, "sweeps cannot be united: make one gap for each");
 
   cprox_solid *made = solid_allocate(parts[0]->dimension, pieces);
   if (!made) return solid_out_of_memory(workspace);
@@ -214,24 +204,20 @@ double solid_error_scale(const cprox_solid *solid, double q) {
   return sum;
 }
 
-double cprox_solid_measure(const cprox_solid *solid) {
-  double sum = 0.0;
-  for (size_t i = 0; i < solid->n; i++) sum += piece_measure(&solid->pieces[i], solid->dimension);
-  return sum;
-}
-
-void cprox_solid_bounding_sphere(const cprox_solid *solid, cprox_vec3 *centre, double *radius) {
-  *centre = solid->centre;
-  *radius = solid->radius;
+cprox_solid_info cprox_solid_get_info(const cprox_solid *solid) {
+  cprox_solid_info info = {
+      .kind = solid->kind, .dimension = solid->dimension, .centre = solid->centre, .radius = solid->radius};
+  for (size_t i = 0; i < solid->n; i++) info.measure += piece_measure(&solid->pieces[i], solid->dimension);
+  return info;
 }
 
 cprox_status cprox_solid_spectrum(const cprox_solid *solid, cprox_vec3 q, cprox_workspace *workspace, double value[2],
                                   cprox_vec3 gradient[2]) {
-  workspace_clear(workspace);
-  if (!solid || !value) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", solid ? "value" : "solid");
+  fourier_clear(workspace);
+  if (!solid || !value) return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", solid ? "value" : "solid");
   if (!vec_finite(q) || (solid->dimension == 2 && q.z != 0.0))
-    return workspace_fail(workspace, CPROX_INVALID, "q is (%g, %g, %g), must be finite%s", q.x, q.y, q.z,
-                          solid->dimension == 2 ? " and have z = 0 in the plane" : "");
+    return fourier_fail(workspace, CPROX_INVALID, "q is (%g, %g, %g), must be finite%s", q.x, q.y, q.z,
+                        solid->dimension == 2 ? " and have z = 0 in the plane" : "");
   wave_jet jet;
   solid_spectrum(solid, q, gradient != NULL, &jet);
   value[0] = jet.value.re, value[1] = jet.value.im;

@@ -4,7 +4,7 @@
 #ifndef CPROX_FOURIER_KERNEL_H
 #define CPROX_FOURIER_KERNEL_H
 
-#include "curve_proximity/cprox/fourier.h"
+#include "curve_proximity/cprox_fourier.h"
 
 enum { KERNEL_MOST_N = 512 };
 

@@ -3,13 +3,15 @@
  *
  *  Solids are given by the closed-form Fourier transforms of their (offset) indicators. A gap is made once for a pair
  *  of solids and an accuracy; then each pose costs one short sum. The gap speaks of overlapping *interiors*: touching
- *  surfaces do not count, unlike elsewhere in this library.
+ *  surfaces do not count, unlike in libcprox.
  *
- *  In the certified mode CPROX_GAP_CLEAR is a proof that the interiors do not overlap. CPROX_GAP_COLLIDE only says that
- *  they may: solids farther apart than cprox_gap_info.over_reach are never called so.
+ *  In the certified mode CPROX_GAP_VERDICT_CLEAR is a proof that the interiors do not overlap.
+ *  CPROX_GAP_VERDICT_COLLIDE only says that they may: solids farther apart than cprox_gap_info.over_reach are never
+ *  called so.
  *
  *  Dimension 2: the plane z = 0; poses turn about z only and have position.z = 0.
- *  Solids and gaps are immutable once made and shared by any number of threads, each with its own workspace.
+ *  The library is libcprox_fourier, on top of libcprox: link both. Solids and gaps are immutable once made and shared
+ *  by any number of threads, each with its own workspace.
  *  Source: M. Lysenko, "Fourier Collision Detection", 2011, with the corrections of doc/fourier.md. */
 #ifndef CURVE_PROXIMITY_CPROX_FOURIER_H
 #define CURVE_PROXIMITY_CPROX_FOURIER_H
@@ -26,90 +28,126 @@ extern "C" {
 /* ---- Solids ---- */
 
 /** A solid in the plane or in space, as a nonnegative function that is at least 1 on it: the indicator, or the sum of
- *  the indicators of its pieces.
- *
- *  Constructors copy what they are given and check it once; they return CPROX_INVALID with a sentence in the workspace
- *  (which may be NULL: then without the sentence), or CPROX_MEMORY, and leave *solid untouched on failure. The handle
- *  is the caller's: cprox_solid_free(). Every length in metres, finite, and between 1e-100 and 1e100. dimension: 2,
- *  3. */
+ *  the indicators of its pieces. */
 typedef struct cprox_solid cprox_solid;
 
-/** A disc or ball about the origin, radius > 0. */
-CPROX_API cprox_status cprox_solid_create_ball(int dimension, double radius, cprox_workspace *workspace,
-                                               cprox_solid **solid);
+/** The kinds of solids. Each comment names the members of cprox_solid_description that the kind reads. */
+typedef enum cprox_solid_kind {
+  /** A disc or ball about the origin: dimension, radius. */
+  CPROX_SOLID_BALL,
+  /** A rectangle or box about the origin: dimension, size. */
+  CPROX_SOLID_BOX,
+  /** An ellipse or ellipsoid about the origin: dimension, semi_axes. */
+  CPROX_SOLID_ELLIPSOID,
+  /** A solid cylinder about the z axis, |z| <= height/2, in space: height, radius. */
+  CPROX_SOLID_CYLINDER,
+  /** All points within radius of the segment of length height about the origin, along x in the plane, along z in space:
+   *  dimension, height, radius. */
+  CPROX_SOLID_CAPSULE,
+  /** A simple polygon in the plane, convex or not: corners, n. */
+  CPROX_SOLID_POLYGON,
+  /** The inside of a closed triangle mesh in space, convex or not: points, n, triangles, n_triangles. Each edge belongs
+   *  to two triangles, in opposite directions. The mesh must not pass through itself; that is not checked: what is
+   *  inside twice counts twice. */
+  CPROX_SOLID_MESH,
+  /** All points within radius of a polyline, a sum of capsules: dimension, points, n, radius. */
+  CPROX_SOLID_POLYLINE,
+  /** A sphere of the radius swept along a curve (whole range of t), as one spectrum: dimension, curve, radius,
+   *  tolerance. The curve becomes a polyline that is nowhere farther from it than the tolerance. The radius grows by as
+   *  much, so that the guarantee is that of the curve itself. At most 1e6 segments, else CPROX_INVALID. The function is
+   *  a line integral, not an indicator. A gap with such a solid has a threshold of its own, and at most one of its two
+   *  solids may be swept. In the plane the curve must lie in z = 0. */
+  CPROX_SOLID_SWEEP,
+  /** The union of the occupied cells of a grid, for what has no formula: dimension, lowest, cell, counts, occupied. The
+   *  union is what is certified: occupy every cell that the body meets. */
+  CPROX_SOLID_GRID,
+  /** The union of solids of one dimension, each at a pose: parts, poses, n. It is the sum of their functions (Prop. 2):
+   *  overlaps count more than once; the guarantee stays, the over-reach grows. */
+  CPROX_SOLID_UNION,
+  /** The part of a solid inside a convex region: solid, region, n. It is the product of its function and the region's
+   *  indicator (Prop. 2, Theorem 2). In a gap it localises the test: overlap counts only inside the region. The product
+   *  must not be empty. Boxes, polygons, meshes and unions of them; others are refused: give them as a polygon or mesh
+   *  that holds them. */
+  CPROX_SOLID_CLIPPED
+} cprox_solid_kind;
 
-/** A rectangle or box about the origin. size: full edge lengths, each > 0; size.z is not read in the plane. */
-CPROX_API cprox_status cprox_solid_create_box(int dimension, cprox_vec3 size, cprox_workspace *workspace,
-                                              cprox_solid **solid);
+/** What a solid is made of. Set all members to 0, then those that the kind reads: cprox_solid_kind lists them. Every
+ *  length in metres, finite, and between 1e-100 and 1e100. Arrays and solids are copied. */
+typedef struct cprox_solid_description {
+  /** which members are read */
+  cprox_solid_kind kind;
+  /** 2: the plane z = 0; 3: space. Not read where the kind, or the solids it is made of, have one dimension only */
+  int dimension;
+  /** [m] > 0; of a sweep >= 0 */
+  double radius;
+  /** [m] > 0 of a cylinder or capsule */
+  double height;
+  /** [m] full edge lengths of a box, each > 0; z is not read in the plane */
+  cprox_vec3 size;
+  /** [m] of an ellipsoid, each > 0; z is not read in the plane */
+  cprox_vec3 semi_axes;
+  /** [m] corners of a polygon, 3 or more, counter-clockwise; edges do not meet but at their ends */
+  const double (*corners)[2];
+  /** [m] vertices of a mesh, or 2 points or more of a polyline */
+  const cprox_vec3 *points;
+  /** the number of corners, of points, of the parts of a union, or of the half-spaces of a region */
+  size_t n;
+  /** of a mesh: three indices below n each, counter-clockwise from outside */
+  const uint32_t (*triangles)[3];
+  /** the number of triangles */
+  size_t n_triangles;
+  /** of a sweep */
+  const cprox_curve *curve;
+  /** [m] > 0 of a sweep: how far the polyline may be from the curve */
+  double tolerance;
+  /** [m] of a grid: the corner of cell (0, 0, 0) */
+  cprox_vec3 lowest;
+  /** [m] > 0 of a grid: the edge length of a cell */
+  double cell;
+  /** of a grid: cells along x, y, z, each >= 1, their product <= 2^30; counts[2] is 1 in the plane */
+  uint32_t counts[3];
+  /** of a grid: one byte a cell, x fastest; not 0: occupied. At least one is */
+  const unsigned char *occupied;
+  /** the parts of a union, 1 or more, of one dimension */
+  const cprox_solid *const *parts;
+  /** the pose of each part of a union */
+  const cprox_pose *poses;
+  /** what is clipped */
+  const cprox_solid *solid;
+  /** of a clipped solid: half-spaces a x + b y + c z <= d as {a, b, c, d} in the frame of the solid, (a, b, c) not 0,
+   *  c = 0 in the plane */
+  const double (*region)[4];
+} cprox_solid_description;
 
-/** An ellipse or ellipsoid about the origin, each semi-axis > 0; semi_axes.z is not read in the plane. */
-CPROX_API cprox_status cprox_solid_create_ellipsoid(int dimension, cprox_vec3 semi_axes, cprox_workspace *workspace,
-                                                    cprox_solid **solid);
-
-/** A solid cylinder about the z axis, |z| <= height/2. */
-CPROX_API cprox_status cprox_solid_create_cylinder(double height, double radius, cprox_workspace *workspace,
-                                                   cprox_solid **solid);
-
-/** All points within radius of the segment of length height about the origin, along x in the plane, along z in
- *  space. */
-CPROX_API cprox_status cprox_solid_create_capsule(int dimension, double height, double radius,
-                                                  cprox_workspace *workspace, cprox_solid **solid);
-
-/** A simple polygon, convex or not: n >= 3 vertices, counter-clockwise, edges that do not meet but at their ends. */
-CPROX_API cprox_status cprox_solid_create_polygon(const double (*vertices)[2], size_t n, cprox_workspace *workspace,
-                                                  cprox_solid **solid);
-
-/** The inside of a closed triangle mesh, convex or not: n vertices, m triangles of indices below n, counter-clockwise
- *  from outside; each edge belongs to two triangles, in opposite directions. That the surface does not pass through
- *  itself is the caller's to see to: what is inside twice counts twice. */
-CPROX_API cprox_status cprox_solid_create_mesh(const cprox_vec3 *vertices, size_t n, const uint32_t (*triangles)[3],
-                                               size_t m, cprox_workspace *workspace, cprox_solid **solid);
-
-/** All points within radius of a polyline of n >= 2 points: a sum of capsules. */
-CPROX_API cprox_status cprox_solid_create_polyline(int dimension, const cprox_vec3 *points, size_t n, double radius,
-                                                   cprox_workspace *workspace, cprox_solid **solid);
-
-/** A sphere of the radius swept along a curve (whole range of t), as one spectrum.
+/** Makes a solid.
  *
- *  tolerance  > 0 [m]: the curve becomes a polyline that is nowhere farther from it; the radius grows by as much, so
- *             that the guarantee is that of the curve itself. At most 1e6 segments, else CPROX_INVALID.
- *  The function is a line integral, not an indicator; a gap with such a solid has a threshold of its own, and at most
- *  one of its two solids may be swept. radius >= 0. Planar: the curve must lie in z = 0. */
-CPROX_API cprox_status cprox_solid_create_sweep(int dimension, const cprox_curve *curve, double radius,
-                                                double tolerance, cprox_workspace *workspace, cprox_solid **solid);
-
-/** The union of the occupied cells of a grid, for what has no formula.
+ *  description  checked once; what is wrong, and where, stands in the error message of the workspace.
+ *  workspace    may be NULL: then there is no error message.
+ *  solid        receives the handle, owned by the caller: cprox_solid_free(). Untouched on failure.
  *
- *  lowest     the corner of cell (0, 0, 0).   cell: its edge length, > 0.
- *  counts     cells along x, y, z, each >= 1 and their product <= 2^30; counts[2] is 1 in the plane.
- *  occupied   one byte a cell, x fastest; not 0: occupied. At least one is. The union is what is certified: occupy
- *             every cell that the body meets. */
-CPROX_API cprox_status cprox_solid_create_grid(int dimension, cprox_vec3 lowest, double cell, const uint32_t counts[3],
-                                               const unsigned char *occupied, cprox_workspace *workspace,
-                                               cprox_solid **solid);
-
-/** The union of solids of one dimension, each at a pose: the sum of their functions (Prop. 2). n >= 1. Overlaps count
- *  more than once: the guarantee stays, the over-reach grows. Parts are copied. */
-CPROX_API cprox_status cprox_solid_create_union(const cprox_solid *const *parts, const cprox_pose *poses, size_t n,
-                                                cprox_workspace *workspace, cprox_solid **solid);
-
-/** The part of a solid inside a convex region: the product of its function and the region's indicator (Prop. 2,
- *  Theorem 2). In a gap it localises the test: overlap counts only inside the region.
- *
- *  region     n half-spaces a·x + b y + c z <= d as {a, b, c, d} in the solid's frame, (a, b, c) not 0 (c = 0 in the
- *             plane). The product must not be empty.
- *  Boxes, polygons, meshes and unions of them; others are refused: give them as a polygon or mesh that holds them. */
-CPROX_API cprox_status cprox_solid_create_clipped(const cprox_solid *solid, const double (*region)[4], size_t n,
-                                                  cprox_workspace *workspace, cprox_solid **clipped);
+ *  Returns CPROX_OK, CPROX_INVALID or CPROX_MEMORY. */
+CPROX_API cprox_status cprox_solid_create(const cprox_solid_description *description, cprox_workspace *workspace,
+                                          cprox_solid **solid);
 
 /** Frees a solid; NULL is allowed. Gaps keep what they need of it. */
 CPROX_API void cprox_solid_free(cprox_solid *solid);
 
-/** The integral of the function [m²] or [m³]: the measure where pieces do not overlap. */
-CPROX_API double cprox_solid_measure(const cprox_solid *solid);
+/** What is known of a solid. */
+typedef struct cprox_solid_info {
+  /** the kind that the solid was created as */
+  cprox_solid_kind kind;
+  /** 2 or 3 */
+  int dimension;
+  /** [m²] or [m³] the integral of the function: the measure where pieces do not overlap */
+  double measure;
+  /** [m] the centre of a ball that contains the solid, in its frame */
+  cprox_vec3 centre;
+  /** [m] the radius of that ball */
+  double radius;
+} cprox_solid_info;
 
-/** A ball that contains the solid: centre in its frame, radius [m]. */
-CPROX_API void cprox_solid_bounding_sphere(const cprox_solid *solid, cprox_vec3 *centre, double *radius);
+/** What is known of a solid. */
+CPROX_API cprox_solid_info cprox_solid_get_info(const cprox_solid *solid);
 
 /** The transform F(q) = integral of f(y) exp(-i q·y) dy at an angular frequency q [rad/m], q.z = 0 in the plane.
  *
@@ -123,9 +161,9 @@ CPROX_API cprox_status cprox_solid_spectrum(const cprox_solid *solid, cprox_vec3
 
 /** What a gap is for. */
 typedef enum cprox_gap_mode {
-  CPROX_GAP_CERTIFIED = 0, /**< clear is a proof */
-  CPROX_GAP_TUNED = 1,     /**< two to three times as accurate, clear is not a proof: there are bodies that break it */
-  CPROX_GAP_SIGNAL = 2     /**< a smooth constraint for solvers, usable at every clearance, without a verdict */
+  CPROX_GAP_MODE_CERTIFIED = 0, /**< clear is a proof */
+  CPROX_GAP_MODE_TUNED = 1, /**< two to three times as accurate, clear is not a proof: there are bodies that break it */
+  CPROX_GAP_MODE_SIGNAL = 2 /**< a smooth constraint for solvers, usable at every clearance, without a verdict */
 } cprox_gap_mode;
 
 /** Start from cprox_gap_options_default(). */
@@ -162,10 +200,10 @@ typedef struct cprox_gap_info {
 } cprox_gap_info;
 
 typedef enum cprox_gap_verdict {
-  CPROX_GAP_CLEAR = 0,    /**< the interiors do not overlap */
-  CPROX_GAP_COLLIDE = 1,  /**< they may */
-  CPROX_GAP_FAR = 2,      /**< clear by the bounding spheres alone: value is minus their distance, see `clearance` */
-  CPROX_GAP_UNDECIDED = 3 /**< within rounding of the threshold, or the signal mode: counts as unsafe */
+  CPROX_GAP_VERDICT_CLEAR = 0,   /**< the interiors do not overlap */
+  CPROX_GAP_VERDICT_COLLIDE = 1, /**< they may */
+  CPROX_GAP_VERDICT_FAR = 2, /**< clear by the bounding spheres alone: value is minus their distance, see `clearance` */
+  CPROX_GAP_VERDICT_UNDECIDED = 3 /**< within rounding of the threshold, or the signal mode: counts as unsafe */
 } cprox_gap_verdict;
 
 /** "clear", "collide", "far", "undecided". */
@@ -219,7 +257,7 @@ CPROX_API cprox_status cprox_gap_evaluate(const cprox_gap *gap, const cprox_pose
 /** Certified gaps of one pair with n = 9, 17, 33, … up to what the accuracy needs. */
 typedef struct cprox_gap_cascade cprox_gap_cascade;
 
-/** As cprox_gap_create(); options->mode must be CPROX_GAP_CERTIFIED. The memory limit holds for each level. */
+/** As cprox_gap_create(); options->mode must be CPROX_GAP_MODE_CERTIFIED. The memory limit holds for each level. */
 CPROX_API cprox_status cprox_gap_cascade_create(const cprox_solid *a, const cprox_solid *b,
                                                 const cprox_gap_options *options, cprox_workspace *workspace,
                                                 cprox_gap_cascade **cascade);
@@ -237,14 +275,21 @@ CPROX_API cprox_status cprox_gap_cascade_test(const cprox_gap_cascade *cascade, 
 
 /* ---- Along a curve ---- */
 
-/** The second solid carried along a curve without turning, its origin at psi(t): result as of cprox_gap_evaluate() at
- *  that pose.
+/** The second solid carried along a curve without turning, its origin at psi(t). */
+typedef struct cprox_gap_carried {
+  /** kept by reference; any but one that is known by its arc length, in the plane for a planar gap */
+  const cprox_curve *curve;
+  /** how the solid is turned, not (0, 0, 0, 0) */
+  cprox_quat orientation;
+} cprox_gap_carried;
+
+/** Value and gradient at a parameter of the curve: result as of cprox_gap_evaluate() at that pose.
  *
  *  derivative  d value/dt [1/unit of t], NULL if not needed.
  *  CPROX_INVALID if t is outside the curve's range, or the curve outside the plane of a planar gap. */
-CPROX_API cprox_status cprox_gap_along(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_curve *curve,
-                                       const cprox_quat *orientation, double t, cprox_workspace *workspace,
-                                       cprox_gap_result *result, double *derivative);
+CPROX_API cprox_status cprox_gap_along(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_gap_carried *carried,
+                                       double t, cprox_workspace *workspace, cprox_gap_result *result,
+                                       double *derivative);
 
 typedef struct cprox_gap_along_result {
   cprox_gap_verdict verdict; /**< clear: at every t of the interval (a proof in the certified mode) */
@@ -255,8 +300,8 @@ typedef struct cprox_gap_along_result {
 
 /** The verdict over the whole interval [t0, t1] of the curve: between the parameters looked at, value and gradient
  *  there and a bound of the second derivative keep V below t. max_nodes >= 1: CPROX_BUDGET beyond it, and undecided. */
-CPROX_API cprox_status cprox_gap_along_test(const cprox_gap *gap, const cprox_pose *pose_a, const cprox_curve *curve,
-                                            const cprox_quat *orientation, double t0, double t1, uint32_t max_nodes,
+CPROX_API cprox_status cprox_gap_along_test(const cprox_gap *gap, const cprox_pose *pose_a,
+                                            const cprox_gap_carried *carried, double t0, double t1, uint32_t max_nodes,
                                             cprox_workspace *workspace, cprox_gap_along_result *result);
 
 #ifdef __cplusplus

@@ -2,7 +2,6 @@
 /* Solids made of many small parts: polylines with a radius, spheres swept along curves, grids of cells. */
 #include <string.h>
 
-#include "curve/curve.h"
 #include "fourier/points.h"
 #include "fourier/solid.h"
 
@@ -30,13 +29,15 @@ static piece link_between(int dimension, vec3 a, vec3 b, double radius) {
   return p;
 }
 
-cprox_status cprox_solid_create_polyline(int dimension, const cprox_vec3 *points_given, size_t n, double radius,
-                                         cprox_workspace *workspace, cprox_solid **solid) {
-  cprox_status status = solid_check_dimension(dimension, (const cprox_solid *const *)solid, workspace);
-  if (status == CPROX_OK) status = solid_check_length("radius", radius, workspace);
+cprox_status solid_create_polyline(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
+  const vec3 *points_given = d->points;
+  const size_t n = d->n;
+  const int dimension = d->dimension;
+  const double radius = d->radius;
+  cprox_status status = solid_check_length("radius", radius, workspace);
   if (status != CPROX_OK) return status;
-  if (!points_given) return workspace_fail(workspace, CPROX_INVALID, "points is NULL");
-  if (n < 2) return workspace_fail(workspace, CPROX_INVALID, "a polyline needs at least 2 points, got %zu", n);
+  if (!points_given) return fourier_fail(workspace, CPROX_INVALID, "points is NULL");
+  if (n < 2) return fourier_fail(workspace, CPROX_INVALID, "a polyline needs at least 2 points, got %zu", n);
   status = solid_check_points("point", points_given, n, dimension, workspace);
   if (status != CPROX_OK) return status;
 
@@ -89,34 +90,38 @@ static void flatten(vec3 *stack, size_t degree, double tolerance, points *segmen
   }
 }
 
-cprox_status cprox_solid_create_sweep(int dimension, const cprox_curve *curve, double radius, double tolerance,
-                                      cprox_workspace *workspace, cprox_solid **solid) {
-  cprox_status status = solid_check_dimension(dimension, (const cprox_solid *const *)solid, workspace);
-  if (status == CPROX_OK) status = solid_check_length("tolerance", tolerance, workspace);
+cprox_status solid_create_sweep(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
+  const cprox_curve *curve = d->curve;
+  const int dimension = d->dimension;
+  const double radius = d->radius, tolerance = d->tolerance;
+  cprox_status status = solid_check_length("tolerance", tolerance, workspace);
   if (status != CPROX_OK) return status;
-  if (!curve) return workspace_fail(workspace, CPROX_INVALID, "curve is NULL");
-  if (curve->arcs)
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "a curve known by its arc lengths alone cannot be swept: it has no control points");
+  if (!curve) return fourier_fail(workspace, CPROX_INVALID, "curve is NULL");
+  const cprox_curve_info info = cprox_curve_get_info(curve);
+  if (info.kind == CPROX_CURVE_RECTIFIABLE)
+    return fourier_fail(workspace, CPROX_INVALID,
+                        "a curve known by its arc lengths alone cannot be swept: it has no control points");
   if (!(radius >= 0.0) || radius > SOLID_LARGEST)
-    return workspace_fail(workspace, CPROX_INVALID, "radius is %g, must be >= 0 and at most %g", radius, SOLID_LARGEST);
-  const size_t degree = curve->degree, width = degree + 1;
-  status = solid_check_points("control point", curve->points, curve->n_pieces * width, dimension, workspace);
-  if (status != CPROX_OK) return status;
-  double error = 0.0;
-  for (size_t i = 0; i < curve->n_pieces; i++) error = fmax(error, curve->error[i]);
-  if (!(error < 0.5 * tolerance))
-    return workspace_fail(workspace, CPROX_INVALID, "tolerance %g is below twice the curve's own rounding, %g",
-                          tolerance, error);
+    return fourier_fail(workspace, CPROX_INVALID, "radius is %g, must be >= 0 and at most %g", radius, SOLID_LARGEST);
+  if (!(info.error < 0.5 * tolerance))
+    return fourier_fail(workspace, CPROX_INVALID, "tolerance %g is below twice the curve's own rounding, %g", tolerance,
+                        info.error);
 
   points segments = {0};
+  const size_t width = info.degree + 1;
   vec3 *stack = malloc((MOST_HALVINGS + 2) * width * sizeof *stack);
   if (!stack) segments.failed = true;
-  for (size_t i = 0; !segments.failed && i < curve->n_pieces; i++) {
-    memcpy(stack, curve_piece(curve, i), width * sizeof *stack);
-    flatten(stack, degree, tolerance - error, &segments);
+  for (size_t i = 0; !segments.failed && status == CPROX_OK && i < info.n_pieces; i++) {
+    const cprox_curve_piece_info part = cprox_curve_get_piece_info(curve, i);
+    status = cprox_curve_control_points(curve, part.t0, part.t1, workspace, stack);
+    if (status == CPROX_OK) status = solid_check_points("control point", stack, width, dimension, workspace);
+    if (status == CPROX_OK) flatten(stack, info.degree, tolerance - info.error, &segments);
   }
   free(stack);
+  if (status != CPROX_OK) {
+    free(segments.at);
+    return status;
+  }
   piece p = piece_create(PIECE_SWEEP);
   p.corner = segments.at, p.n_corners = segments.n;
   p.size[0] = radius + tolerance;
@@ -126,38 +131,39 @@ cprox_status cprox_solid_create_sweep(int dimension, const cprox_curve *curve, d
     const bool failed = segments.failed, many = segments.n > 2 * MOST_SEGMENTS;
     piece_free(&p);
     if (failed) return solid_out_of_memory(workspace);
-    return many ? workspace_fail(workspace, CPROX_INVALID, "tolerance %g needs more than %d segments", tolerance,
-                                 MOST_SEGMENTS)
-                : workspace_fail(workspace, CPROX_INVALID, "the curve stands still: use a ball");
+    return many ? fourier_fail(workspace, CPROX_INVALID, "tolerance %g needs more than %d segments", tolerance,
+                               MOST_SEGMENTS)
+                : fourier_fail(workspace, CPROX_INVALID, "the curve stands still: use a ball");
   }
   return solid_of_piece(dimension, &p, workspace, solid);
 }
 
 /* ---- Grids ---- */
 
-cprox_status cprox_solid_create_grid(int dimension, cprox_vec3 lowest, double cell, const uint32_t counts[3],
-                                     const unsigned char *occupied, cprox_workspace *workspace, cprox_solid **solid) {
-  cprox_status status = solid_check_dimension(dimension, (const cprox_solid *const *)solid, workspace);
-  if (status == CPROX_OK) status = solid_check_length("cell", cell, workspace);
+cprox_status solid_create_grid(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
+  const vec3 lowest = d->lowest;
+  const double cell = d->cell;
+  const uint32_t *counts = d->counts;
+  const unsigned char *occupied = d->occupied;
+  const int dimension = d->dimension;
+  cprox_status status = solid_check_length("cell", cell, workspace);
   if (status == CPROX_OK) status = solid_check_points("lowest corner", &lowest, 1, dimension, workspace);
   if (status != CPROX_OK) return status;
-  if (!counts || !occupied)
-    return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", counts ? "occupied" : "counts");
+  if (!occupied) return fourier_fail(workspace, CPROX_INVALID, "occupied is NULL");
   const double cells = (double)counts[0] * counts[1] * counts[2];
   if (!(cells >= 1.0) || cells > 1073741824.0 || (dimension == 2 && counts[2] != 1))
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "counts are %u × %u × %u, must be 1 or more, together at most 2^30%s", counts[0], counts[1],
-                          counts[2], dimension == 2 ? ", the last 1 in the plane" : "");
+    return fourier_fail(workspace, CPROX_INVALID, "counts are %u × %u × %u, must be 1 or more, together at most 2^30%s",
+                        counts[0], counts[1], counts[2], dimension == 2 ? ", the last 1 in the plane" : "");
   const size_t n = (size_t)cells;
   if (!memchr(occupied, 1, n)) {
     size_t i = 0;
     while (i < n && !occupied[i]) i++;
-    if (i == n) return workspace_fail(workspace, CPROX_INVALID, "no cell of the grid is occupied");
+    if (i == n) return fourier_fail(workspace, CPROX_INVALID, "no cell of the grid is occupied");
   }
 
   piece p = piece_create(PIECE_GRID);
   p.size[0] = cell, p.centre = lowest;
-  memcpy(p.counts, counts, sizeof p.counts);
+  memcpy(p.counts, d->counts, sizeof p.counts);
   p.cells = malloc(n);
   if (!p.cells) return solid_out_of_memory(workspace);
   memcpy(p.cells, occupied, n);

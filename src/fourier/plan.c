@@ -6,7 +6,7 @@
 #include "fourier/gap.h"
 
 cprox_gap_options cprox_gap_options_default(void) {
-  return (cprox_gap_options){.mode = CPROX_GAP_CERTIFIED, .memory_limit = (size_t)256 << 20};
+  return (cprox_gap_options){.mode = CPROX_GAP_MODE_CERTIFIED, .memory_limit = (size_t)256 << 20};
 }
 
 /* The signal's blur sigma in L/n. */
@@ -42,7 +42,7 @@ static enlarged enlarge(const cprox_solid *a, const cprox_solid *b, double rho) 
   enlarged e = {.ok = p && q && solid_find_bounds(p, &bound_a) && solid_find_bounds(q, &bound_b)};
   if (e.ok) {
     e.reach = reach_a + reach_b;
-    e.most = fmin(cprox_solid_measure(p) * bound_b.peak, cprox_solid_measure(q) * bound_a.peak);
+    e.most = fmin(cprox_solid_get_info(p).measure * bound_b.peak, cprox_solid_get_info(q).measure * bound_a.peak);
     e.slope = fmin(slope_of(p) * bound_b.peak, slope_of(q) * bound_a.peak);
   }
   cprox_solid_free(p);
@@ -77,13 +77,13 @@ double gap_threshold(const kernel *k, const gap_plan *plan, const cprox_solid *a
 /* The least period that keeps images apart for N, and the over-reach there: L >= 2 (r_a + r_b) + over-reach, where the over-reach
  * itself depends on L. Each step enlarges L; over_reach is infinite where it does not settle: then clear is still a proof. */
 static cprox_status no_memory(cprox_workspace *workspace) {
-  return workspace_fail(workspace, CPROX_MEMORY, "no memory to plan a gap");
+  return fourier_fail(workspace, CPROX_MEMORY, "no memory to plan a gap");
 }
 
 /* The over-reach at the plan's period. `outside` is the certified kernel's table. */
 static double over_reach(const gap_plan *plan, const enlarged *e, double t, const double *outside) {
-  if (plan->mode == CPROX_GAP_SIGNAL) return INFINITY;
-  if (plan->mode == CPROX_GAP_TUNED)
+  if (plan->mode == CPROX_GAP_MODE_SIGNAL) return INFINITY;
+  if (plan->mode == CPROX_GAP_MODE_TUNED)
     return tuned_reach(plan->dimension, 2 * plan->N + 1) * plan->period / (2 * plan->N + 1);
   if (isinf(e->most)) return INFINITY;
   const double L = plan->period, volume = power(L, plan->dimension);
@@ -105,31 +105,31 @@ static cprox_status settle_period(const cprox_solid *a, const cprox_solid *b, co
     plan->offset = kernel_offset(plan->dimension, n, plan->mode) * plan->period / n;
     const enlarged e = enlarge(a, b, plan->offset);
     if (!e.ok) return no_memory(workspace);
-    plan->unbounded = plan->mode == CPROX_GAP_CERTIFIED && isinf(e.most);
+    plan->unbounded = plan->mode == CPROX_GAP_MODE_CERTIFIED && isinf(e.most);
     plan->over_reach = over_reach(plan, &e, gap_threshold(k, plan, a, b), outside);
     const bool known = plan->over_reach < INFINITY;
     const double needed = size + (known ? fmax(e.reach, plan->over_reach) : e.reach);
     if (asked > 0.0 && asked < needed)
-      return workspace_fail(workspace, CPROX_INVALID, "period %g is too small: images of the solids need %g at n = %d",
-                            asked, needed, n);
+      return fourier_fail(workspace, CPROX_INVALID, "period %g is too small: images of the solids need %g at n = %d",
+                          asked, needed, n);
     /* a period four times the solids is the end of trying for an over-reach that coarse samples do not have */
-    const bool hopeless = plan->mode != CPROX_GAP_CERTIFIED || plan->unbounded || plan->period > 4.0 * size;
+    const bool hopeless = plan->mode != CPROX_GAP_MODE_CERTIFIED || plan->unbounded || plan->period > 4.0 * size;
     if (asked > 0.0 || (plan->period >= needed && (known || hopeless))) return CPROX_OK;
     plan->period = known || plan->period < needed ? fmax(1.002 * needed, plan->period) : 1.15 * plan->period;
   }
-  return workspace_fail(workspace, CPROX_INVALID, "n = %d samples are too few for these solids", n);
+  return fourier_fail(workspace, CPROX_INVALID, "n = %d samples are too few for these solids", n);
 }
 
 static cprox_status settle(const cprox_solid *a, const cprox_solid *b, cprox_workspace *workspace, gap_plan *plan) {
   kernel k;
-  if (plan->mode == CPROX_GAP_TUNED)
+  if (plan->mode == CPROX_GAP_MODE_TUNED)
     kernel_tuned(&k, plan->N);
   else
     kernel_certified(&k, plan->N, plan->beta);
   const int steps = kernel_steps(plan->N);
   double *outside = malloc((size_t)(steps + 1) * sizeof *outside);
   cprox_status status = outside ? CPROX_OK : no_memory(workspace);
-  if (status == CPROX_OK && plan->mode == CPROX_GAP_CERTIFIED &&
+  if (status == CPROX_OK && plan->mode == CPROX_GAP_MODE_CERTIFIED &&
       !kernel_list_outside(&k, plan->dimension, steps, outside))
     status = no_memory(workspace);
   if (status == CPROX_OK) status = settle_period(a, b, outside, &k, workspace, plan);
@@ -150,45 +150,45 @@ static cprox_status plan_for(const cprox_solid *a, const cprox_solid *b, const c
 
 static cprox_status check_options(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *o,
                                   cprox_workspace *workspace) {
-  if (o->mode != CPROX_GAP_CERTIFIED && o->mode != CPROX_GAP_TUNED && o->mode != CPROX_GAP_SIGNAL)
-    return workspace_fail(workspace, CPROX_INVALID, "mode %d is none", (int)o->mode);
+  if (o->mode != CPROX_GAP_MODE_CERTIFIED && o->mode != CPROX_GAP_MODE_TUNED && o->mode != CPROX_GAP_MODE_SIGNAL)
+    return fourier_fail(workspace, CPROX_INVALID, "mode %d is none", (int)o->mode);
   if (a->dimension != b->dimension)
-    return workspace_fail(workspace, CPROX_INVALID, "the solids have dimensions %d and %d", a->dimension, b->dimension);
+    return fourier_fail(workspace, CPROX_INVALID, "the solids have dimensions %d and %d", a->dimension, b->dimension);
   if (sweep_length(a) > 0.0 && sweep_length(b) > 0.0)
-    return workspace_fail(workspace, CPROX_INVALID, "both solids are sweeps: at most one may be");
+    return fourier_fail(workspace, CPROX_INVALID, "both solids are sweeps: at most one may be");
   if (o->samples != 0 && (o->samples < 3 || o->samples > 2 * KERNEL_MOST_N + 1 || o->samples % 2 == 0))
-    return workspace_fail(workspace, CPROX_INVALID, "samples is %u, must be odd and within 3 … %d", o->samples,
-                          2 * KERNEL_MOST_N + 1);
+    return fourier_fail(workspace, CPROX_INVALID, "samples is %u, must be odd and within 3 … %d", o->samples,
+                        2 * KERNEL_MOST_N + 1);
   if (!(o->period >= 0.0) || o->period > SOLID_LARGEST)
-    return workspace_fail(workspace, CPROX_INVALID, "period is %g, must be > 0, or 0 for the least", o->period);
+    return fourier_fail(workspace, CPROX_INVALID, "period is %g, must be > 0, or 0 for the least", o->period);
   if (o->samples != 0 && o->delta != 0.0)
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "delta is %g and samples is %u: give one of the two, delta chooses n", o->delta, o->samples);
+    return fourier_fail(workspace, CPROX_INVALID, "delta is %g and samples is %u: give one of the two, delta chooses n",
+                        o->delta, o->samples);
   if (o->samples != 0) return CPROX_OK;
   if (!(o->delta > 0.0))
-    return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be > 0 (or give samples)", o->delta);
+    return fourier_fail(workspace, CPROX_INVALID, "delta is %g, must be > 0 (or give samples)", o->delta);
   if (o->period > 0.0 && o->period < solids_size(a, b))
-    return workspace_fail(workspace, CPROX_INVALID, "period %g is too small: images of the solids need more than %g",
-                          o->period, solids_size(a, b));
+    return fourier_fail(workspace, CPROX_INVALID, "period %g is too small: images of the solids need more than %g",
+                        o->period, solids_size(a, b));
   if (o->delta > a->radius + b->radius)
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "delta %g is larger than the bodies (radii %g and %g): their bounding spheres say as much",
-                          o->delta, a->radius, b->radius);
+    return fourier_fail(workspace, CPROX_INVALID,
+                        "delta %g is larger than the bodies (radii %g and %g): their bounding spheres say as much",
+                        o->delta, a->radius, b->radius);
   return CPROX_OK;
 }
 
 /* The signal has no over-reach: its blur sigma = 2.2 L/n is what delta means. */
 static double accuracy(const gap_plan *plan) {
-  return plan->mode == CPROX_GAP_SIGNAL ? SIGNAL_BLUR * plan->period / (2 * plan->N + 1) : plan->over_reach;
+  return plan->mode == CPROX_GAP_MODE_SIGNAL ? SIGNAL_BLUR * plan->period / (2 * plan->N + 1) : plan->over_reach;
 }
 
 /* What no period can bring the accuracy of 2N+1 samples below: the period is at least the solids' size, and both offsets are part of
  * a proven over-reach. */
 static double best_accuracy(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options, int N) {
   const int n = 2 * N + 1;
-  const double factor = options->mode == CPROX_GAP_SIGNAL  ? SIGNAL_BLUR
-                        : options->mode == CPROX_GAP_TUNED ? tuned_reach(a->dimension, n)
-                                                           : 2.0 * kernel_offset(a->dimension, n, options->mode);
+  const double factor = options->mode == CPROX_GAP_MODE_SIGNAL  ? SIGNAL_BLUR
+                        : options->mode == CPROX_GAP_MODE_TUNED ? tuned_reach(a->dimension, n)
+                                                                : 2.0 * kernel_offset(a->dimension, n, options->mode);
   return (1.0 - 1e-9) * factor * solids_size(a, b) / n;
 }
 
@@ -208,7 +208,7 @@ static cprox_status try_samples(const cprox_solid *a, const cprox_solid *b, cons
   if (status == CPROX_OK) t->accuracy = accuracy(&t->plan);
   t->enough = t->accuracy <= options->delta;
   if (status != CPROX_INVALID) return status;
-  workspace_clear(workspace);
+  fourier_clear(workspace);
   return CPROX_OK;
 }
 
@@ -233,8 +233,8 @@ static cprox_status too_many(const cprox_solid *a, const cprox_solid *b, const c
   char beyond[64] = "", had[64] = "no over-reach can be proven there";
   if (N < KERNEL_MOST_N) snprintf(beyond, sizeof beyond, ", beyond the limit of %zu", options->memory_limit);
   if (isfinite(accuracy(&plan))) snprintf(had, sizeof had, "%g is had there", accuracy(&plan));
-  return workspace_fail(workspace, CPROX_INVALID, "delta %g needs more than n = %d samples, %.3g bytes%s; %s",
-                        options->delta, n, gap_bytes(a->dimension, N), beyond, had);
+  return fourier_fail(workspace, CPROX_INVALID, "delta %g needs more than n = %d samples, %.3g bytes%s; %s",
+                      options->delta, n, gap_bytes(a->dimension, N), beyond, had);
 }
 
 /* Gallops up to enough samples, to more than may be, or to where more are worse. */
@@ -247,9 +247,9 @@ static cprox_status gallop(const cprox_solid *a, const cprox_solid *b, const cpr
     s->enough = t.enough;
     if (t.enough) return CPROX_OK;
     if (t.plan.unbounded)
-      return workspace_fail(workspace, CPROX_INVALID,
-                            "no over-reach can be proven for these solids (two that are not sums of convex pieces): "
-                            "give samples");
+      return fourier_fail(workspace, CPROX_INVALID,
+                          "no over-reach can be proven for these solids (two that are not sums of convex pieces): "
+                          "give samples");
     const int next = s->high + s->high / 2 + 1 < KERNEL_MOST_N ? s->high + s->high / 2 + 1 : KERNEL_MOST_N;
     s->rises = t.accuracy > s->last ? s->rises + 1 : 0;
     if (s->rises == MOST_RISES) return CPROX_OK;
@@ -282,9 +282,9 @@ static cprox_status search_valley(const cprox_solid *a, const cprox_solid *b, co
     else
       low = at[0];
   }
-  return workspace_fail(workspace, CPROX_INVALID,
-                        "delta %g cannot be proven for these solids: %g is the least, and more samples are worse",
-                        options->delta, s->best);
+  return fourier_fail(workspace, CPROX_INVALID,
+                      "delta %g cannot be proven for these solids: %g is the least, and more samples are worse",
+                      options->delta, s->best);
 }
 
 cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,

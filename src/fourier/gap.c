@@ -197,8 +197,8 @@ static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cpro
   bool failed = !drafts || !allocate(gap) || !fill_blocks(gap, w, fixed, folded ? turned : NULL, drafts);
   if (!failed) {
     order(gap, drafts);
-    const double measure = cprox_solid_measure(turned), L = gap->info.period;
-    gap->constant = cprox_solid_measure(fixed) * measure;
+    const double measure = cprox_solid_get_info(turned).measure, L = gap->info.period;
+    gap->constant = cprox_solid_get_info(fixed).measure * measure;
     const double volume = dimension == 2 ? L * L : L * L * L;
     /* folded: T is 1 at each term, so that what is left of its energy is the number of lattice points left: of no use */
     solid_bounds bounds = {INFINITY, INFINITY};
@@ -222,14 +222,14 @@ cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, siz
   if (!made) {
     cprox_solid_free(a);
     cprox_solid_free(b);
-    if (bytes <= (double)memory_limit) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a gap");
-    return workspace_fail(workspace, CPROX_INVALID, "n = %d samples need %.3g bytes, beyond the limit of %zu",
-                          2 * plan->N + 1, bytes, memory_limit);
+    if (bytes <= (double)memory_limit) return fourier_fail(workspace, CPROX_MEMORY, "no memory for a gap");
+    return fourier_fail(workspace, CPROX_INVALID, "n = %d samples need %.3g bytes, beyond the limit of %zu",
+                        2 * plan->N + 1, bytes, memory_limit);
   }
   kernel w;
-  if (plan->mode == CPROX_GAP_CERTIFIED)
+  if (plan->mode == CPROX_GAP_MODE_CERTIFIED)
     kernel_certified(&w, plan->N, plan->beta);
-  else if (plan->mode == CPROX_GAP_TUNED)
+  else if (plan->mode == CPROX_GAP_MODE_TUNED)
     kernel_tuned(&w, plan->N);
   else
     kernel_signal(&w, plan->N);
@@ -240,20 +240,21 @@ cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, siz
                                 .samples = 2 * (uint32_t)plan->N + 1,
                                 .period = L,
                                 .offset = plan->offset,
-                                .over_reach = plan->mode == CPROX_GAP_SIGNAL ? INFINITY : plan->over_reach,
-                                .guaranteed = plan->mode == CPROX_GAP_CERTIFIED,
+                                .over_reach = plan->mode == CPROX_GAP_MODE_SIGNAL ? INFINITY : plan->over_reach,
+                                .guaranteed = plan->mode == CPROX_GAP_MODE_CERTIFIED,
                                 .turned_first = plan->turned_first};
   /* the signal's V_ref is its mean over all places */
   const double volume = plan->dimension == 2 ? L * L : L * L * L;
-  made->info.threshold = plan->mode == CPROX_GAP_SIGNAL ? cprox_solid_measure(a) * cprox_solid_measure(b) / volume
-                                                        : gap_threshold(&w, plan, a, b);
+  made->info.threshold = plan->mode == CPROX_GAP_MODE_SIGNAL
+                             ? cprox_solid_get_info(a).measure * cprox_solid_get_info(b).measure / volume
+                             : gap_threshold(&w, plan, a, b);
   made->inverse = 1.0 / (made->info.threshold * volume);
   cprox_solid *turned = made->info.turned_first ? a : b, *fixed = made->info.turned_first ? b : a;
   const bool ok = fill(made, &w, fixed, turned);
   cprox_solid_free(fixed);
   if (!ok) {
     cprox_gap_free(made);
-    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a gap of n = %d", 2 * plan->N + 1);
+    return fourier_fail(workspace, CPROX_MEMORY, "no memory for a gap of n = %d", 2 * plan->N + 1);
   }
   made->simd = simd_of_machine();
   made->info.terms = count_terms(made);
@@ -264,8 +265,8 @@ cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, siz
 
 cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
                               cprox_workspace *workspace, cprox_gap **gap) {
-  workspace_clear(workspace);
-  if (!a || !b || !gap) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", !a ? "a" : !b ? "b" : "gap");
+  fourier_clear(workspace);
+  if (!a || !b || !gap) return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", !a ? "a" : !b ? "b" : "gap");
   const cprox_gap_options used = options ? *options : cprox_gap_options_default();
   gap_plan plan;
   cprox_status status = gap_plan_choose(a, b, &used, workspace, &plan);

@@ -24,14 +24,14 @@ static cprox_status check_closed(const uint32_t (*triangles)[3], size_t m, edge 
   for (size_t i = 0; i < 3 * m; i++) {
     const edge e = edges[i], reverse = {e.to, e.from};
     if (i > 0 && by_ends(&edges[i - 1], &e) == 0)
-      return workspace_fail(
+      return fourier_fail(
           workspace, CPROX_INVALID,
           "the edge from vertex %u to %u belongs to two triangles in the same direction: the mesh is not "
           "oriented, or more than two triangles meet there",
           e.from, e.to);
     if (!bsearch(&reverse, edges, 3 * m, sizeof *edges, by_ends))
-      return workspace_fail(workspace, CPROX_INVALID, "the mesh is open: nothing borders the edge from vertex %u to %u",
-                            e.from, e.to);
+      return fourier_fail(workspace, CPROX_INVALID, "the mesh is open: nothing borders the edge from vertex %u to %u",
+                          e.from, e.to);
   }
   return CPROX_OK;
 }
@@ -42,32 +42,31 @@ static cprox_status check_triangles(const vec3 *v, size_t n, const uint32_t (*tr
   for (size_t i = 0; i < m; i++) {
     for (int j = 0; j < 3; j++)
       if (triangles[i][j] >= n)
-        return workspace_fail(workspace, CPROX_INVALID, "triangle %zu names vertex %u of %zu", i, triangles[i][j], n);
+        return fourier_fail(workspace, CPROX_INVALID, "triangle %zu names vertex %u of %zu", i, triangles[i][j], n);
     const vec3 a = v[triangles[i][0]], b = vec_sub(v[triangles[i][1]], a), c = vec_sub(v[triangles[i][2]], a);
     const vec3 normal = vec_cross(b, c);
     if (!(vec_norm(normal) > 1e-14 * (vec_norm(b) + vec_norm(c)) * vec_norm(b)))
-      return workspace_fail(workspace, CPROX_INVALID, "triangle %zu has no area", i);
+      return fourier_fail(workspace, CPROX_INVALID, "triangle %zu has no area", i);
     volume += vec_dot(vec_sub(a, v[triangles[0][0]]), normal);
   }
   if (!(volume > 0.0))
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "the mesh holds the volume %g: triangles must be counter-clockwise from outside",
-                          volume / 6.0);
+    return fourier_fail(workspace, CPROX_INVALID,
+                        "the mesh holds the volume %g: triangles must be counter-clockwise from outside", volume / 6.0);
   return CPROX_OK;
 }
 
-cprox_status cprox_solid_create_mesh(const cprox_vec3 *vertices, size_t n, const uint32_t (*triangles)[3], size_t m,
-                                     cprox_workspace *workspace, cprox_solid **solid) {
-  cprox_status status = solid_check_dimension(3, (const cprox_solid *const *)solid, workspace);
-  if (status != CPROX_OK) return status;
+cprox_status solid_create_mesh(const cprox_solid_description *d, cprox_workspace *workspace, cprox_solid **solid) {
+  const vec3 *vertices = d->points;
+  const uint32_t(*triangles)[3] = d->triangles;
+  const size_t n = d->n, m = d->n_triangles;
   if (!vertices || !triangles)
-    return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", vertices ? "triangles" : "vertices");
+    return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", vertices ? "triangles" : "points");
   if (n < 4 || m < 4)
-    return workspace_fail(workspace, CPROX_INVALID, "a closed mesh needs 4 vertices and 4 triangles, got %zu and %zu",
-                          n, m);
+    return fourier_fail(workspace, CPROX_INVALID, "a closed mesh needs 4 vertices and 4 triangles, got %zu and %zu", n,
+                        m);
   if (n > UINT32_MAX || m > 100000000)
-    return workspace_fail(workspace, CPROX_INVALID, "%zu vertices and %zu triangles are too many", n, m);
-  status = solid_check_points("vertex", vertices, n, 3, workspace);
+    return fourier_fail(workspace, CPROX_INVALID, "%zu vertices and %zu triangles are too many", n, m);
+  cprox_status status = solid_check_points("vertex", vertices, n, 3, workspace);
   if (status == CPROX_OK) status = check_triangles(vertices, n, triangles, m, workspace);
   if (status != CPROX_OK) return status;
 
