@@ -294,6 +294,9 @@ CASE(a_profile_is_true_on_every_interval) {
         const long double time = breaks[k] + ((long double)breaks[k + 1] - breaks[k]) * s / 10;
         assert_true(distance_at(&t, time, points, TARGETS) >= intervals[k].lower - 1e-14L);
       }
+      /* 1e-9: times are rounded */
+      if (intervals[k].obstacle_index >= 0)
+        assert_true(distance_at(&t, intervals[k].t, points, TARGETS) <= intervals[k].upper + 1e-9L);
       least = fmin(least, intervals[k].lower);
     }
     if (whole.obstacle_index >= 0) {

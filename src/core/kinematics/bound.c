@@ -34,17 +34,19 @@ static double lever_arm(const axis_state *axis, vec3 centre) {
   return axis->kind == AXIS_BALL ? vec_norm(from) : vec_norm(vec_cross(axis->z, from));
 }
 
-/* Returns the displacement bound. r_k in the middle, then the greatest over the node: what is tipside shifts the part under the axis. */
+/* Returns the displacement bound. r_k in the middle, then the greatest over the node (of a span, over its line): what is tipside shifts
+ * the part under the axis. */
 static double find_lever_arms(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
                               double *lever_arms) {
-  double tipside = 0.0;
+  double tipside = 0.0, displacement = 0.0;
   for (size_t i = n; i-- > 0;) {
     const axis_state *axis = &axes[chain[i].axis];
     const double at_middle = turns(axis) ? ROUND_UP * (lever_arm(axis, centre) + radius) : 1.0;
     lever_arms[i] = turns(axis) ? at_middle + tipside : 1.0;
-    tipside += axis->shift * at_middle;
+    tipside += axis->line * at_middle;
+    displacement += axis->shift * at_middle;
   }
-  return ROUND_UP * tipside;
+  return ROUND_UP * displacement;
 }
 
 /* A sum over the chain in any order: up from both ends, always from the later axis, to the one above both. */
@@ -99,12 +101,13 @@ static void find_rates(const axis_state *axes, const chain_axis *chain, size_t n
 static void find_derivative_bounds(const axis_state *axes, const chain_axis *chain, size_t n, const double *lever_arms,
                                    chain_motion *m) {
   double s = 0.0, a = 0.0; /* of the turning axes so far */
-  m->rate = m->second = m->third = m->error = 0.0;
+  m->rate = m->second = m->third = m->error = m->stray = 0.0;
   for (size_t i = 0; i < n; i++) {
     const axis_state *axis = &axes[chain[i].axis];
     const double r = lever_arms[i], w = axis->w;
     m->rate += r * w;
     m->error += r * axis->error;
+    m->stray += ROUND_UP * r * axis->stray;
     if (turns(axis)) {
       const double s1 = s + w, a1 = a + axis->a;
       m->second += r * (w * (s1 + s) + axis->a);
@@ -180,7 +183,8 @@ double motion_plane_bound(const chain_motion *m, const bound_side *moving, const
     least = fmin(least, first[end]);
   }
   const double rounding = *slack + 16.0 * ROUND_U * fabs(least);
-  const double second = least_quotient(least - 0.125 * m->second - 0.25 * speed * m->rate - rounding, 0.0, k);
+  const double second =
+      least_quotient(least - 0.125 * m->second - 0.25 * speed * m->rate - rounding, 0.0, k) - m->stray;
   *slack = rounding;
   if (second > goal) return second;
 
@@ -199,5 +203,5 @@ double motion_plane_bound(const chain_motion *m, const bound_side *moving, const
     const double far = start + tau * along + curve + lowest(moving, d) - heights[end];
     third = fmin(third, least_quotient(first[end] - rest, far - first[end], k));
   }
-  return fmax(second, third);
+  return fmax(second, third - m->stray);
 }

@@ -20,6 +20,8 @@ typedef struct chain_motion {
   double displacement;     /* no point of the part comes farther than this from where it is in the middle */
   double rate;             /* bounds on the first, second and third derivative of any point's position */
   double second, third;
+  double
+      stray; /* over spans all but `displacement` is of a straight line of the variables; points are within this of those on it */
   double error; /* of what is computed with v, omega, a and alpha over the node */
 } chain_motion;
 

@@ -7,4 +7,5 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/motion.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_create.c
   ${CMAKE_CURRENT_LIST_DIR}/robot.c
+  ${CMAKE_CURRENT_LIST_DIR}/spans.c
 )

@@ -68,7 +68,8 @@ static void fill_lanes(lane_row *c, size_t degree, double a, double b, const dou
   const double n = (double)degree;
   double *value = out, *second = out + MOTION_SECOND * stride, *third = out + MOTION_G * stride;
   double *acceleration = out + MOTION_A * stride, *shift = out + MOTION_SHIFT * stride,
-         *variation = out + MOTION_VARIATION * stride;
+         *variation = out + MOTION_VARIATION * stride, *line = out + MOTION_LINE * stride,
+         *stray = out + MOTION_STRAY * stride;
   section(degree, a, b, c);
   lanes_middle((const lane_row *)c, degree, value);
 #pragma omp simd
@@ -82,7 +83,8 @@ static void fill_lanes(lane_row *c, size_t degree, double a, double b, const dou
 #pragma omp simd
   for (int l = 0; l < MOTION_LANES; l++) {
     shift[l] += 2.0 * error[l], variation[l] += 2.0 * n * error[l];
-    second[l] = acceleration[l] = third[l] = 0.0;
+    line[l] = shift[l];
+    second[l] = acceleration[l] = third[l] = stray[l] = 0.0;
   }
 
   lanes_differentiate(c, degree, 2.0 * n, error, out + MOTION_W * stride);
@@ -94,16 +96,16 @@ static void fill_lanes(lane_row *c, size_t degree, double a, double b, const dou
   lanes_differentiate(c, degree - 2, 8.0 * n * (n - 1.0) * (n - 2.0), error, third);
 }
 
-static size_t row_stride(const cprox_motion *m) {
+size_t motion_rows_stride(const cprox_motion *m) {
   return (m->n_moving + MOTION_LANES - 1) / MOTION_LANES * MOTION_LANES;
 }
 
 size_t motion_rows_size(const cprox_motion *m) {
-  return MOTION_ROWS * row_stride(m);
+  return MOTION_ROWS * motion_rows_stride(m);
 }
 
 void motion_fill_rows(const cprox_motion *m, size_t segment, double a, double b, double *rows) {
-  const size_t degree = m->degree[segment], stride = row_stride(m);
+  const size_t degree = m->degree[segment], stride = motion_rows_stride(m);
   for (size_t first = 0; first < m->n_moving; first += MOTION_LANES) {
     lane_row c[MOTION_MAX_DEGREE + 1], error;
     for (size_t l = 0; l < MOTION_LANES; l++) {
@@ -151,6 +153,10 @@ static double quaternion_over(const cprox_motion *m, size_t segment, int32_t var
 
 /* ---- one axis ------------------------------------------------------------------------------------------------------------- */
 
+/* Straight lines of quaternions that come nearer to 0 than this part of their middle bound nothing. */
+static const double NEAREST_LINE = 0.25;
+#define NO_LINE 1e300
+
 static double largest_norm(double c[4][MOTION_MAX_DEGREE + 1], size_t count) {
   double largest = 0.0;
   for (size_t i = 0; i < count; i++)
@@ -162,6 +168,50 @@ static double largest_norm(double c[4][MOTION_MAX_DEGREE + 1], size_t count) {
 static vec3 twice_product(const double *p, const double *q) {
   const vec3 u = vec(p[0], p[1], p[2]), v = vec(q[0], q[1], q[2]);
   return vec_scale(2.0, vec_sub(vec_sub(vec_scale(q[3], u), vec_scale(p[3], v)), vec_cross(u, v)));
+}
+
+/* The frame of a ball by its quaternion and two derivatives of that, and its velocities. */
+static void place_ball(const robot_axis *axis, double p[3][4], const placement *parent, const placement *before,
+                       axis_state *state) {
+  double square = 0.0, along = 0.0;
+  for (int k = 0; k < 4; k++) square += p[0][k] * p[0][k], along += p[0][k] * p[1][k];
+  const vec3 omega = vec_scale(1.0 / square, twice_product(p[1], p[0]));
+  const vec3 alpha = vec_axpy(vec_scale(1.0 / square, twice_product(p[2], p[0])), -2.0 * along / square, omega);
+  state->velocity = placement_turn(before, omega);
+  state->acceleration = placement_turn(before, alpha);
+  const placement own = axis_move(axis, NULL, 0.0, p[0]);
+  state->frame = parent ? placement_compose(parent, &own) : own;
+}
+
+/* Over a span the quaternion is within `stray` of a straight line. Quaternions that are e apart, one of them of norm m > e,
+ * turn vectors to where they are 2 e / m of their length apart at most, and any two turn them 2 apart at most. */
+static void ball_over_span(const cprox_motion *m, const robot_axis *axis, const double *rows, const placement *parent,
+                           const placement *before, axis_state *state) {
+  const size_t stride = motion_rows_stride(m);
+  double p[3][4] = {{0}}, line = 0.0, stray = 0.0, shift = 0.0, norm = 0.0;
+  for (int k = 0; k < 4; k++) {
+    const int32_t slot = m->slot[axis->variable + k];
+    const double *of = rows + (slot < 0 ? 0 : slot);
+    p[0][k] = slot < 0 ? m->rest[axis->variable + k] : of[MOTION_VALUE * stride];
+    norm += p[0][k] * p[0][k];
+    if (slot < 0) continue;
+    p[1][k] = of[MOTION_FIRST * stride];
+    line += of[MOTION_LINE * stride] * of[MOTION_LINE * stride];
+    stray += of[MOTION_STRAY * stride] * of[MOTION_STRAY * stride];
+    shift += of[MOTION_SHIFT * stride] * of[MOTION_SHIFT * stride];
+  }
+  norm = (1.0 - 16.0 * ROUND_U) * sqrt(norm);
+  line = ROUND_UP * sqrt(line), stray = ROUND_UP * sqrt(stray), shift = ROUND_UP * sqrt(shift);
+  const double least = norm - line, rate = 2.0 * line / greater(least, NEAREST_LINE * norm);
+  state->w = 2.0 * rate;
+  state->a = 4.0 * rate * rate;
+  state->g = 20.0 * rate * rate * rate;
+  state->shift = 2.0 * lesser(ROUND_UP * shift / norm, 1.0);
+  state->line = 2.0 * lesser(ROUND_UP * line / norm, 1.0);
+  state->stray = least > NEAREST_LINE * norm ? 2.0 * lesser(ROUND_UP * stray / least, 1.0) : NO_LINE;
+  state->variation = INFINITY;
+  state->error = 256.0 * ROUND_U * (1.0 + state->w) * (1.0 + state->w);
+  place_ball(axis, p, parent, before, state);
 }
 
 /* A quaternion of any norm turns at omega = 2 vec(p' p*) / |p|² and omega' = 2 vec(p'' p*) / |p|² - 2 omega (p·p') / |p|². */
@@ -187,18 +237,12 @@ static void ball_over(const cprox_motion *m, size_t segment, size_t axis_index, 
   state->w = 2.0 * r1;
   state->a = 2.0 * r2 + 4.0 * r1 * r1;
   state->g = 2.0 * r3 + 14.0 * r1 * r2 + 20.0 * r1 * r1 * r1;
-  state->shift = 0.5 * state->w;
+  state->shift = state->line = 0.5 * state->w;
   state->variation = state->w;
+  state->stray = 0.0;
   state->error = 2.0 * (2.0 * n + 1.0) * (2.0 * n + 1.0) * (1.0 + state->w) * (1.0 + state->w) * error / norm;
 
-  double square = 0.0, along = 0.0;
-  for (int k = 0; k < 4; k++) square += p[0][k] * p[0][k], along += p[0][k] * p[1][k];
-  const vec3 omega = vec_scale(1.0 / square, twice_product(p[1], p[0]));
-  const vec3 alpha = vec_axpy(vec_scale(1.0 / square, twice_product(p[2], p[0])), -2.0 * along / square, omega);
-  state->velocity = placement_turn(before, omega);
-  state->acceleration = placement_turn(before, alpha);
-  const placement own = axis_move(axis, NULL, 0.0, p[0]);
-  state->frame = parent ? placement_compose(parent, &own) : own;
+  place_ball(axis, p, parent, before, state);
 }
 
 static vec3 world_axis(const robot_axis *axis, const placement *before) {
@@ -208,15 +252,17 @@ static vec3 world_axis(const robot_axis *axis, const placement *before) {
   return vec(sign * column[0], sign * column[3], sign * column[6]);
 }
 
-static void line_over(const cprox_motion *m, size_t segment, const robot_axis *axis, const double *rows,
+static void line_over(const cprox_motion *m, const motion_interval *over, const robot_axis *axis, const double *rows,
                       const placement *before, axis_state *state) {
-  const size_t stride = row_stride(m), slot = (size_t)m->slot[axis->variable];
+  const size_t stride = motion_rows_stride(m), slot = (size_t)m->slot[axis->variable];
   const double *of = rows + slot;
-  const double error = m->error[segment * m->n_moving + slot], n = (double)m->degree[segment];
+  const double n = (double)m->degree[over->first];
+  const double error = motion_is_span(over) ? 0.0 : m->error[over->first * m->n_moving + slot];
   const double factor = fabs(axis->multiplier), value = axis->multiplier * of[MOTION_VALUE] + axis->offset;
   state->w = factor * of[MOTION_W * stride], state->a = factor * of[MOTION_A * stride];
   state->g = factor * of[MOTION_G * stride];
   state->shift = factor * of[MOTION_SHIFT * stride], state->variation = factor * of[MOTION_VARIATION * stride];
+  state->line = factor * of[MOTION_LINE * stride], state->stray = factor * of[MOTION_STRAY * stride];
   state->error = factor * error * (n + 0.5 * n * n);
   state->z = world_axis(axis, before);
   state->velocity = vec_scale(axis->multiplier * of[MOTION_FIRST * stride], state->z);
@@ -224,7 +270,7 @@ static void line_over(const cprox_motion *m, size_t segment, const robot_axis *a
   axis_advance(axis, before, value, &state->frame);
 }
 
-void motion_find_axis(const cprox_motion *m, size_t segment, double a, double b, const double *rows, size_t i,
+void motion_find_axis(const cprox_motion *m, const motion_interval *over, const double *rows, size_t i,
                       axis_state *axes) {
   const robot_axis *axis = &m->robot->axes[i];
   axis_state *state = &axes[i];
@@ -236,15 +282,24 @@ void motion_find_axis(const cprox_motion *m, size_t segment, double a, double b,
   }
   state->kind = axis->kind;
   const placement before = parent ? placement_compose(parent, &axis->at) : axis->at;
-  if (axis->kind == AXIS_BALL)
-    ball_over(m, segment, i, a, b, parent, &before, state);
+  if (axis->kind != AXIS_BALL)
+    line_over(m, over, axis, rows, &before, state);
+  else if (motion_is_span(over))
+    ball_over_span(m, axis, rows, parent, &before, state);
   else
-    line_over(m, segment, axis, rows, &before, state);
+    ball_over(m, over->first, i, over->a, over->b, parent, &before, state);
 }
 
 void motion_node(const cprox_motion *m, size_t segment, double a, double b, double *rows, axis_state *axes) {
+  const motion_interval over = {.a = a, .b = b, .first = segment, .last = segment + 1};
   motion_fill_rows(m, segment, a, b, rows);
-  for (size_t i = 0; i < m->robot->n_axes; i++) motion_find_axis(m, segment, a, b, rows, i, axes);
+  for (size_t i = 0; i < m->robot->n_axes; i++) motion_find_axis(m, &over, rows, i, axes);
+}
+
+span_centre motion_span_node(const cprox_motion *m, const motion_interval *over, double *rows, axis_state *axes) {
+  const span_centre centre = motion_fill_span(m, over->first, over->a, over->last, over->b, rows);
+  for (size_t i = 0; i < m->robot->n_axes; i++) motion_find_axis(m, over, rows, i, axes);
+  return centre;
 }
 
 /* ---- one time ------------------------------------------------------------------------------------------------------------- */
@@ -284,9 +339,20 @@ cprox_motion_info cprox_motion_get_info(const cprox_motion *motion) {
                              .n_pieces = motion->n_segments};
 }
 
+size_t motion_segment_at(const cprox_motion *m, double t) {
+  size_t first = 0, last = m->n_segments;
+  while (first + 1 < last) {
+    const size_t middle = first + (last - first) / 2;
+    if (m->times[middle] <= t)
+      first = middle;
+    else
+      last = middle;
+  }
+  return first;
+}
+
 void cprox_motion_evaluate(const cprox_motion *motion, double t, double *variables) {
-  size_t segment = 0;
-  while (segment + 1 < motion->n_segments && t >= motion->times[segment + 1]) segment++;
+  const size_t segment = motion_segment_at(motion, t);
   const double t0 = motion->times[segment], t1 = motion->times[segment + 1];
   values_at(motion, segment, fmin(fmax((t - t0) / (t1 - t0), 0.0), 1.0), variables);
 }

@@ -6,6 +6,7 @@
 
 #include "kinematics/given.h"
 #include "kinematics/joint_tree.h"
+#include "kinematics/spans.h"
 
 /* Variables are worked on so many at a time; rows are padded to whole lanes. */
 enum { MOTION_MAX_DEGREE = 9, MOTION_LANES = 8 };
@@ -24,6 +25,7 @@ struct cprox_motion {
   bool *axis_moves;
   placement *still; /* of an axis that does not: as it stands in its parent's frame */
   double *norm;     /* of a ball's quaternion: at least this everywhere */
+  motion_spans spans;
   motion_given given;
   double *part_error; /* every point of a part is computed within this of where it is */
 };
@@ -38,6 +40,8 @@ typedef struct axis_state {
   vec3 velocity, acceleration;
   double w, a, g;   /* bounds on the first, second and third derivative */
   double shift;     /* on the way from the middle to anywhere in the node */
+  double line;      /* over spans: the same of the straight line that w, velocity and acceleration belong to; */
+  double stray;     /* no value is farther from one on that line. Over one segment: shift and 0 */
   double variation; /* the length of the whole way */
   double error;     /* of half the computed velocity and an eighth of the acceleration together */
 } axis_state;
@@ -52,15 +56,35 @@ typedef enum motion_row {
   MOTION_G,
   MOTION_SHIFT,
   MOTION_VARIATION,
-  MOTION_ROWS
+  MOTION_LINE,
+  MOTION_STRAY,
+  MOTION_FROM, /* of a span: its ends, its range, how far it is beside its chord; room for a part of a segment */
+  MOTION_TO,
+  MOTION_LOW,
+  MOTION_HIGH,
+  MOTION_BELOW,
+  MOTION_ABOVE,
+  MOTION_CUT,
+  MOTION_ROWS = MOTION_CUT + MOTION_MAX_DEGREE + 1
 } motion_row;
 
-/* The numbers in all rows. */
+/* The numbers in one row, and in all. */
+size_t motion_rows_stride(const cprox_motion *motion);
 size_t motion_rows_size(const cprox_motion *motion);
 void motion_fill_rows(const cprox_motion *motion, size_t segment, double a, double b, double *rows);
 
+/* From u = a of segment `first` to u = b of segment last - 1. */
+typedef struct motion_interval {
+  double a, b;
+  size_t first, last;
+} motion_interval;
+
+static inline bool motion_is_span(const motion_interval *over) {
+  return over->first + 1 < over->last;
+}
+
 /* The state of one axis by them; that of its parent must be known. Of an axis that does not move, only the frame. */
-void motion_find_axis(const cprox_motion *motion, size_t segment, double a, double b, const double *rows, size_t axis,
+void motion_find_axis(const cprox_motion *motion, const motion_interval *over, const double *rows, size_t axis,
                       axis_state *axes);
 
 /* Does the motion move the link? */
@@ -69,7 +93,11 @@ bool motion_moves_link(const cprox_motion *motion, int32_t link);
  * and at least one that this motion moves? */
 bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t link_b);
 
+/* The segment that holds a time: the last one that begins at it or before it. */
+size_t motion_segment_at(const cprox_motion *motion, double t);
+
 /* The states of all axes over the interval. */
+span_centre motion_span_node(const cprox_motion *motion, const motion_interval *over, double *rows, axis_state *axes);
 void motion_node(const cprox_motion *motion, size_t segment, double a, double b, double *rows, axis_state *axes);
 
 /* The moved frames of all axes at u of a segment; `values` has room for all variables. */

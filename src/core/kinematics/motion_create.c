@@ -139,6 +139,7 @@ void cprox_motion_free(cprox_motion *motion) {
   free(motion->still);
   free(motion->norm);
   free(motion->part_error);
+  motion_spans_free(&motion->spans);
   motion_given_free(&motion->given);
   free(motion);
 }
@@ -277,6 +278,8 @@ static cprox_status finish(cprox_motion *m, const motion_source *s, cprox_motion
   find_moving(m, s);
   cprox_status status = finish_axes(m, s);
   if (status == CPROX_OK) status = finish_parts(m, s->workspace);
+  if (status == CPROX_OK && !motion_spans_make(m))
+    status = workspace_fail(s->workspace, CPROX_MEMORY, "no memory for the spans of %zu segments", m->n_segments);
   if (status != CPROX_OK) {
     cprox_motion_free(m);
     return status;

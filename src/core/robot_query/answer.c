@@ -13,9 +13,9 @@
 /* Fractions are rounded outwards by a little more than a division can be off. */
 static bool root_of(const query *q, robot_search *o, search_node *root) {
   const cprox_motion *m = q->mover.motion;
-  size_t first = 0, last = m->n_segments;
-  while (first + 1 < last && m->times[first + 1] <= q->t0) first++;
-  while (last > first + 1 && m->times[last - 1] >= q->t1) last--;
+  const size_t first = motion_segment_at(m, q->t0);
+  size_t last = motion_segment_at(m, q->t1) + 1;
+  if (last > first + 1 && m->times[last - 1] >= q->t1) last--;
   const double u0 = (q->t0 - m->times[first]) / (m->times[first + 1] - m->times[first]);
   const double u1 = (q->t1 - m->times[last - 1]) / (m->times[last] - m->times[last - 1]);
   return robot_search_root(o, first, q->t0 <= m->times[first] ? 0.0 : fmax(u0 - 0x1p-50, 0.0), last,

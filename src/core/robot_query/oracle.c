@@ -35,14 +35,15 @@ static const double ENOUGH_PIECES = 3.0;
 
 /* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
 
-static double middle_of(const search_node *node) {
+static motion_interval interval_of(const search_node *node) {
   const robot_node *payload = robot_known(node);
-  return 0.5 * (payload->a + payload->b);
+  return (motion_interval){.a = payload->a, .b = payload->b, .first = payload->first, .last = payload->last};
 }
 
-static double width_of(const search_node *node) {
-  const robot_node *payload = robot_known(node);
-  return payload->b - payload->a;
+/* Whether a node is so short that everything is measured. */
+static bool is_short(const search_node *node) {
+  const motion_interval over = interval_of(node);
+  return !motion_is_span(&over) && !(over.b - over.a > SHORT_INTERVAL);
 }
 
 static search_node node_of(const robot_search *o, const search_node *parent, size_t first, double a, size_t last,
@@ -105,8 +106,9 @@ static cprox_status refuse_callback(const robot_search *o) {
 }
 
 /* What was measured may be the least so far, or a contact. */
-static void keep_sample(robot_search *o, int32_t index, size_t segment, double u, const robot_gap *gap) {
-  const double upper = fmax(gap->upper, 0.0), at = motion_time_below(o->scene.motion, segment, u);
+static void keep_sample(robot_search *o, int32_t index, const robot_gap *gap) {
+  const size_t segment = o->scene.segment;
+  const double u = o->scene.u, upper = fmax(gap->upper, 0.0), at = motion_time_below(o->scene.motion, segment, u);
   const robot_sample sample = {.gap = *gap, .pair = index, .segment = segment, .u = u};
   if (is_better(o, upper, at)) {
     o->best = sample;
@@ -118,24 +120,27 @@ static void keep_sample(robot_search *o, int32_t index, size_t segment, double u
   }
 }
 
-static void keep_normal(robot_pair *pair, const robot_body *standing, size_t segment, double u, const robot_gap *gap) {
-  if (!(vec_norm2(gap->normal) > 0.0)) return;
-  pair->normal = placement_turn_back(&standing->side.at, gap->normal);
+/* Found where the scene is. */
+static void place_normal(const robot_search *o, robot_pair *pair, vec3 normal) {
+  pair->normal = normal;
   pair->normal_rate = vec(0, 0, 0);
-  pair->segment = segment, pair->u = u;
+  pair->found = pair->from = pair->to = robot_scene_place(&o->scene, o->scene.segment, o->scene.u);
   pair->normal_known = true;
 }
 
+static void keep_normal(const robot_search *o, robot_pair *pair, const robot_body *standing, const robot_gap *gap) {
+  if (vec_norm2(gap->normal) > 0.0) place_normal(o, pair, placement_turn_back(&standing->side.at, gap->normal));
+}
+
 /* The distance of the convex sides of a pair; it is that of the pair itself where that has no elements. */
-static cprox_status measure(robot_search *o, int32_t index, size_t segment, double u, robot_accuracy accuracy,
-                            robot_gap *gap) {
+static cprox_status measure(robot_search *o, int32_t index, robot_accuracy accuracy, robot_gap *gap) {
   robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   robot_scene_measure(moving, standing, accuracy, gap);
   o->gaps++;
   if (gap->fault) return refuse_callback(o);
-  keep_normal(pair, standing, segment, u, gap);
-  if (is_convex(moving, standing)) keep_sample(o, index, segment, u, gap);
+  keep_normal(o, pair, standing, gap);
+  if (is_convex(moving, standing)) keep_sample(o, index, gap);
   return CPROX_OK;
 }
 
@@ -154,28 +159,28 @@ static robot_refinement refinement_from(robot_search *o, int32_t index, const ro
                             .normal = hulls->upper > 0.0 ? hulls->normal : vec(0, 0, 0)};
 }
 
-static cprox_status refine_elements(robot_search *o, robot_refinement *c, size_t segment, double u) {
+static cprox_status refine_elements(robot_search *o, robot_refinement *c) {
   robot_refinement_run(c);
   o->gaps += c->gaps;
   o->refined = true;
   if (c->fault) return refuse_callback(o);
   if (c->no_memory) return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
-  if (c->nearest.gap.upper < INFINITY) keep_sample(o, c->pair, segment, u, &c->nearest.gap);
+  if (c->nearest.gap.upper < INFINITY) keep_sample(o, c->pair, &c->nearest.gap);
   return CPROX_OK;
 }
 
 /* The distance of a pair, elements and all, as far as it can be less than the best. */
-static cprox_status measure_whole(robot_search *o, int32_t index, size_t segment, double u) {
+static cprox_status measure_whole(robot_search *o, int32_t index) {
   robot_gap gap;
   const double floor = fmax(o->goal.limit, 0.0);
   const cprox_status status = measure(
-      o, index, segment, u,
-      (robot_accuracy){.epsilon = GAP_FRACTION * o->goal.epsilon, .floor = floor, .fraction = SEED_FRACTION}, &gap);
+      o, index, (robot_accuracy){.epsilon = GAP_FRACTION * o->goal.epsilon, .floor = floor, .fraction = SEED_FRACTION},
+      &gap);
   const robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   if (status < 0 || is_convex(moving, standing) || gap.lower >= o->best_bound.upper) return status;
   robot_refinement c = refinement_from(o, index, &gap, o->best_bound.upper, 0.0);
-  return refine_elements(o, &c, segment, u);
+  return refine_elements(o, &c);
 }
 
 /* The pair that comes closest by balls and boxes. */
@@ -234,77 +239,125 @@ static cprox_status try_cluster(robot_search *o, const list_entry *entry, neares
   return CPROX_OK;
 }
 
-/* Measures the pair whose balls and boxes come closest in a few places, so that the search begins with a distance. */
-static cprox_status seed(robot_search *o, const search_node *node) {
-  const robot_node *payload = robot_known(node);
-  const int32_t list = payload->list;
-  const size_t n = lists_count(&o->lists, list), first = payload->first, last = payload->last;
-  size_t places = (last - first < MOST_SEEDS ? last - first : MOST_SEEDS) + 2;
-  while (places > 2 && places * n > MOST_SEED_TESTS) places /= 2;
-  for (size_t i = 0; i < places; i++) {
-    size_t segment = places > 2 ? first + (last - first) * (2 * i + 1) / (2 * (places - 2)) : first;
-    double u = 0.5;
-    if (i + 2 == places) segment = first, u = payload->a;
-    if (i + 1 == places) segment = last - 1, u = payload->b;
-    robot_scene_enter(&o->scene, segment, u, u);
-    const double most = o->goal.limit >= 0.0 ? lesser(o->best_bound.upper, o->goal.limit) : o->best_bound.upper;
-    nearest_pair nearest = {.apart = most, .pair = -1};
-    for (size_t k = 0; k < n; k++) {
-      const list_entry entry = lists_at(&o->lists, list)[k];
-      const cprox_status status = entry.pair < 0 ? try_cluster(o, &entry, &nearest) : CPROX_OK;
-      if (status < 0) return status;
-      if (entry.pair >= 0) try_pair(o, entry.pair, &nearest);
-    }
-    if (nearest.pair < 0) continue;
-    const cprox_status status = measure_whole(o, nearest.pair, segment, u);
+/* Measures the pair whose balls and boxes come closest where the scene is. */
+static cprox_status seed_here(robot_search *o, int32_t list) {
+  const double most = o->goal.limit >= 0.0 ? lesser(o->best_bound.upper, o->goal.limit) : o->best_bound.upper;
+  const size_t n = lists_count(&o->lists, list);
+  nearest_pair nearest = {.apart = most, .pair = -1};
+  for (size_t k = 0; k < n; k++) {
+    const list_entry entry = lists_at(&o->lists, list)[k];
+    const cprox_status status = entry.pair < 0 ? try_cluster(o, &entry, &nearest) : CPROX_OK;
     if (status < 0) return status;
-    if (is_answered(o)) return CPROX_OK;
+    if (entry.pair >= 0) try_pair(o, entry.pair, &nearest);
   }
-  return CPROX_OK;
+  return nearest.pair < 0 ? CPROX_OK : measure_whole(o, nearest.pair);
+}
+
+/* The knot inside the span, a multiple of `step` where there is one, that is nearest to a time. */
+static size_t knot_near(const cprox_motion *m, size_t first, size_t last, size_t step, double t) {
+  size_t low = (first + step) / step, high = (last - 1) / step;
+  if (low > high) step = 1, low = first + 1, high = last - 1;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if (m->times[middle * step] < t)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  const size_t knot = low * step;
+  return knot > first + step && t - m->times[knot - step] < m->times[knot] - t ? knot - step : knot;
+}
+
+/* Blocks of the motion's tree are aligned: spans that begin and end at multiples of this are made of few of them. */
+static size_t step_for(size_t segments) {
+  size_t step = 1;
+  while (32 * step <= segments) step *= 2;
+  return step;
+}
+
+/* In the middle of a span, or where it is bent of its halves, `places` at most. */
+static cprox_status seed_span(robot_search *o, int32_t list, const motion_interval *over, size_t places) {
+  robot_scene_enter_span(&o->scene, over);
+  if (!o->scene.bent || places < 2) return seed_here(o, list);
+  const cprox_motion *m = o->scene.motion;
+  const double t0 = motion_time(m, over->first, over->a), t1 = motion_time(m, over->last - 1, over->b);
+  const size_t knot = knot_near(m, over->first, over->last, step_for(over->last - over->first), 0.5 * (t0 + t1));
+  motion_interval half = *over;
+  half.last = knot, half.b = 1.0;
+  const cprox_status status = seed_span(o, list, &half, places / 2);
+  if (status < 0 || is_answered(o)) return status;
+  half = *over;
+  half.first = knot, half.a = 0.0;
+  return seed_span(o, list, &half, places - places / 2);
+}
+
+/* A few places, so that the search begins with a distance. */
+static cprox_status seed(robot_search *o, const search_node *node) {
+  const motion_interval over = interval_of(node);
+  const int32_t list = robot_known(node)->list;
+  const size_t n = lists_count(&o->lists, list);
+  size_t places = MOST_SEEDS;
+  while (places > 1 && places * n > MOST_SEED_TESTS) places /= 2;
+  cprox_status status = seed_span(o, list, &over, places);
+  for (int end = 0; end < 2 && status >= 0 && !is_answered(o); end++) {
+    const double u = end == 0 ? over.a : over.b;
+    robot_scene_enter(&o->scene, end == 0 ? over.first : over.last - 1, u, u);
+    status = seed_here(o, list);
+  }
+  return status;
 }
 
 /* ---- bounds --------------------------------------------------------------------------------------------------------------- */
 
-/* The pair's last normal, carried on to the middle of the node as it turned; in the standing frame. (0,0,0) where there is none. */
-static vec3 known_normal(const search_node *node, const robot_pair *pair) {
+/* The pair's last normal, carried on to where the scene is as it turned; in the standing frame. (0,0,0) where there is none. */
+static vec3 known_normal(const robot_search *o, const robot_pair *pair) {
   if (!pair->normal_known) return vec(0, 0, 0);
-  const double middle = middle_of(node);
-  const double away = pair->segment == robot_known(node)->first ? middle - pair->u : 0.0;
+  const double here = robot_scene_place(&o->scene, o->scene.segment, o->scene.u);
+  const double away = here >= pair->from && here <= pair->to ? here - pair->found : 0.0;
   const vec3 n = vec_axpy(pair->normal, away, pair->normal_rate);
   return vec_scale(1.0 / vec_norm(n), n);
 }
 
-static vec3 normal_in_middle(const search_node *node, const robot_pair *pair, const robot_body *standing) {
-  const vec3 n = placement_turn(&standing->side.at, known_normal(node, pair));
+/* The beginning and the end of the node that the scene is at, along the motion; in that of one segment, of the segment. */
+static void ends_of_node(const robot_search *o, bool whole, double *from, double *to) {
+  const motion_interval *over = &o->scene.over;
+  const bool segment = whole && !motion_is_span(over);
+  *from = robot_scene_place(&o->scene, over->first, segment ? 0.0 : over->a);
+  *to = robot_scene_place(&o->scene, over->last - 1, segment ? 1.0 : over->b);
+}
+
+static double width_of_node(const robot_search *o) {
+  double from, to;
+  ends_of_node(o, false, &from, &to);
+  return to - from;
+}
+
+static vec3 normal_in_middle(const robot_search *o, const robot_pair *pair, const robot_body *standing) {
+  const vec3 n = placement_turn(&standing->side.at, known_normal(o, pair));
   return vec_scale(1.0 / vec_norm(n), n);
 }
 
 /* In the place of a normal that is not known yet. */
-static void keep_guess(const search_node *node, robot_pair *pair, const robot_body *moving,
-                       const robot_body *standing) {
+static void keep_guess(const robot_search *o, robot_pair *pair, const robot_body *moving, const robot_body *standing) {
   const vec3 guess = robot_scene_guess(moving, standing);
-  if (!(vec_norm2(guess) > 0.0)) return;
-  pair->normal = guess, pair->normal_rate = vec(0, 0, 0);
-  pair->segment = robot_known(node)->first, pair->u = middle_of(node);
-  pair->normal_known = true;
+  if (vec_norm2(guess) > 0.0) place_normal(o, pair, guess);
 }
 
 /* How far the two are apart along it: only to choose by, its rounding is not counted. */
-static double plane_middle(const search_node *node, const robot_pair *pair, const robot_body *moving,
+static double plane_middle(const robot_search *o, const robot_pair *pair, const robot_body *moving,
                            const robot_body *standing) {
-  const vec3 n = normal_in_middle(node, pair, standing);
+  const vec3 n = normal_in_middle(o, pair, standing);
   const double along = vec_dot(n, vec_sub(moving->side.at.p, standing->side.at.p));
   return along - bound_height(&moving->side, vec_neg(n)) - robot_scene_height(standing, n);
 }
 
 /* What that normal says of the node. */
-static double bound_by_normal(robot_search *o, const search_node *node, const robot_pair *pair,
-                              const robot_body *moving, const robot_body *standing, const chain_motion *motion,
-                              double goal, double *slack) {
-  const double width = width_of(node);
-  const bool same_segment = pair->segment == robot_known(node)->first;
-  const vec3 n = normal_in_middle(node, pair, standing);
-  vec3 normal_rate = placement_turn(&standing->side.at, vec_scale(same_segment ? width : 0.0, pair->normal_rate));
+static double bound_by_normal(robot_search *o, const robot_pair *pair, const robot_body *moving,
+                              const robot_body *standing, const chain_motion *motion, double goal, double *slack) {
+  const double here = robot_scene_place(&o->scene, o->scene.segment, o->scene.u);
+  const bool turning = here >= pair->from && here <= pair->to;
+  const vec3 n = normal_in_middle(o, pair, standing);
+  vec3 normal_rate = placement_turn(&standing->side.at, vec_scale(turning ? width_of_node(o) : 0.0, pair->normal_rate));
   normal_rate = vec_axpy(normal_rate, -vec_dot(normal_rate, n), n);
   if (!(vec_norm2(normal_rate) < FASTEST_NORMAL_RATE * FASTEST_NORMAL_RATE)) normal_rate = vec(0, 0, 0);
   double heights[2];
@@ -328,13 +381,12 @@ static double pieces_for(const robot_search *o, double middle, double bound) {
 }
 
 /* The plane of the distance just measured, turning as its feature does. */
-static double bound_by_gap(robot_search *o, const search_node *node, robot_pair *pair, const robot_body *moving,
-                           const robot_body *standing, const chain_motion *motion, const robot_gap *gap,
-                           double *slack) {
-  const double width = width_of(node);
-  const vec3 normal_rate = vec_scale(1.0 / width, robot_scene_normal_rate(gap, moving, standing, motion));
+static double bound_by_gap(robot_search *o, robot_pair *pair, const robot_body *moving, const robot_body *standing,
+                           const chain_motion *motion, const robot_gap *gap, double *slack) {
+  const vec3 normal_rate = vec_scale(1.0 / width_of_node(o), robot_scene_normal_rate(gap, moving, standing, motion));
   pair->normal_rate = placement_turn_back(&standing->side.at, normal_rate);
-  return bound_by_normal(o, node, pair, moving, standing, motion, pruning_bound(o), slack);
+  ends_of_node(o, true, &pair->from, &pair->to);
+  return bound_by_normal(o, pair, moving, standing, motion, pruning_bound(o), slack);
 }
 
 static bool keep_entry(robot_search *o, const list_entry *entry) {
@@ -347,17 +399,16 @@ static bool keep_entry(robot_search *o, const list_entry *entry) {
 
 /* One of the pairs of elements that take the place of a pair: kept where its own plane does not settle it. */
 static cprox_status enlist(robot_search *o, search_node *node, const robot_pair *whole, const robot_found *found) {
-  const double u = middle_of(node);
   robot_pair pair = {
       .moving = whole->moving, .standing = whole->standing, .element = {found->element[0], found->element[1]}};
   const robot_body *moving = robot_scene_moving(&o->scene, &pair), *standing = robot_scene_standing(&o->scene, &pair);
   chain_motion own;
   const chain_motion *motion = robot_scene_motion(&o->scene, &pair, moving, &own);
-  keep_normal(&pair, standing, robot_known(node)->first, u, &found->gap);
+  keep_normal(o, &pair, standing, &found->gap);
   list_entry entry = {.lower = found->gap.lower - motion->displacement};
   double slack = moving->side.error + standing->side.error;
   if (!is_pruned(o, entry.lower) && pair.normal_known && found->gap.upper > 0.0)
-    entry.lower = fmax(entry.lower, bound_by_gap(o, node, &pair, moving, standing, motion, &found->gap, &slack));
+    entry.lower = fmax(entry.lower, bound_by_gap(o, &pair, moving, standing, motion, &found->gap, &slack));
   if (is_pruned(o, entry.lower)) {
     o->dropped = fmin(o->dropped, entry.lower);
     return CPROX_OK;
@@ -372,12 +423,11 @@ static cprox_status enlist(robot_search *o, search_node *node, const robot_pair 
 /* The hulls do not settle it: what of their elements comes near enough takes the place of the pair. */
 static cprox_status refine_pair_elements(robot_search *o, search_node *node, list_entry *entry, const robot_gap *hulls,
                                          double displacement) {
-  const double u = middle_of(node);
   const double spare = 4.0 * hulls->slack;
   robot_refinement c =
       refinement_from(o, entry->pair, hulls, pruning_bound(o) + displacement + spare, displacement + spare);
   c.listing = true;
-  const cprox_status status = refine_elements(o, &c, robot_known(node)->first, u);
+  const cprox_status status = refine_elements(o, &c);
   if (status < 0 || c.too_many) return status;
   entry->lower = fmax(entry->lower, c.rest - displacement - hulls->slack);
   const robot_pair whole = o->scene.pairs[entry->pair];
@@ -406,30 +456,29 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   const double displacement = robot_scene_displacement(&o->scene, pair, moving);
   entry->lower = greater(apart - displacement, entry->lower);
   const double size = greater(MOST_DISPLACEMENT * apart, moving->radius);
-  if (is_pruned(o, entry->lower) || !(displacement > size) || !(width_of(node) > SHORT_INTERVAL)) return;
+  if (is_pruned(o, entry->lower) || !(displacement > size) || is_short(node)) return;
   entry->needs_split = true;
   want_pieces(o, displacement / size);
 }
 
 /* The same by planes and distances, the cheapest way that settles it. */
 static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *entry, double *slack) {
-  const robot_node *payload = robot_known(node);
   robot_pair *pair = &o->scene.pairs[entry->pair];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   *slack = moving->side.error + standing->side.error;
   chain_motion own;
   const chain_motion *motion = robot_scene_motion(&o->scene, pair, moving, &own);
-  const double displacement = motion->displacement, width = width_of(node);
+  const double displacement = motion->displacement;
 
-  if (!pair->normal_known) keep_guess(node, pair, moving, standing);
+  if (!pair->normal_known) keep_guess(o, pair, moving, standing);
   if (pair->normal_known) {
-    const double bound = bound_by_normal(o, node, pair, moving, standing, motion, pruning_bound(o), slack);
+    const double bound = bound_by_normal(o, pair, moving, standing, motion, pruning_bound(o), slack);
     entry->lower = fmax(entry->lower, bound);
     if (is_pruned(o, entry->lower)) return CPROX_OK;
 
     /* verdicts: a plane that parts the two in the middle says how short the pieces must be; no distance could say much more */
-    const double pieces = o->goal.limit >= 0.0 ? pieces_for(o, plane_middle(node, pair, moving, standing), bound) : 2.0;
-    if (pieces > ENOUGH_PIECES && width > SHORT_INTERVAL) {
+    const double pieces = o->goal.limit >= 0.0 ? pieces_for(o, plane_middle(o, pair, moving, standing), bound) : 2.0;
+    if (pieces > ENOUGH_PIECES && !is_short(node)) {
       want_pieces(o, pieces);
       return CPROX_OK;
     }
@@ -438,24 +487,23 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
   /* another pair wants the node cut: pieces will tell more */
   if (o->cut) return CPROX_OK;
   robot_gap gap;
-  const double u = middle_of(node);
   const robot_accuracy accuracy = {GAP_FRACTION * o->goal.epsilon, pruning_bound(o), EXCESS_FRACTION,
-                                   known_normal(node, pair)};
-  const cprox_status status = measure(o, entry->pair, payload->first, u, accuracy, &gap);
+                                   known_normal(o, pair)};
+  const cprox_status status = measure(o, entry->pair, accuracy, &gap);
   if (status < 0) return status;
   entry->lower = fmax(entry->lower, gap.lower - displacement);
   if (pair->normal_known && gap.upper > 0.0)
-    entry->lower = fmax(entry->lower, bound_by_gap(o, node, pair, moving, standing, motion, &gap, slack));
+    entry->lower = fmax(entry->lower, bound_by_gap(o, pair, moving, standing, motion, &gap, slack));
   if (!is_pruned(o, entry->lower)) want_pieces(o, pieces_for(o, gap.lower, entry->lower));
   if (is_convex(moving, standing) || is_pruned(o, entry->lower)) return CPROX_OK;
 
   /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
   if (o->goal.limit < 0.0 && gap.lower < o->best_bound.upper) {
     robot_refinement nearest = refinement_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
-    const cprox_status refined = refine_elements(o, &nearest, payload->first, u);
+    const cprox_status refined = refine_elements(o, &nearest);
     if (refined < 0) return refined;
   }
-  if (is_pruned(o, gap.lower) && width > SHORT_INTERVAL) return CPROX_OK;
+  if (is_pruned(o, gap.lower) && !is_short(node)) return CPROX_OK;
   return refine_pair_elements(o, node, entry, &gap, displacement);
 }
 
@@ -485,7 +533,6 @@ static cprox_status open_cluster(robot_search *o, const search_node *node, const
   const robot_pair any = {.moving = entry->part, .element = {-1, -1}};
   const double radius = robot_scene_moving(&o->scene, &any)->radius,
                displacement = robot_scene_coarse_displacement(&o->scene, &any);
-  const bool is_short = !(width_of(node) > SHORT_INTERVAL);
   uint32_t stack[TREE_LANES * TREE_DEEPEST] = {entry->under};
   size_t n = 1;
   cprox_status status = CPROX_OK;
@@ -498,7 +545,7 @@ static cprox_status open_cluster(robot_search *o, const search_node *node, const
       list_entry lane = *entry;
       lane.lower = greater(lanes.lower[l], entry->lower), lane.under = lanes.under[l];
       const double size = greater(MOST_DISPLACEMENT * lanes.apart[l], radius);
-      lane.needs_split = displacement > size && !is_short;
+      lane.needs_split = displacement > size && !is_short(node);
       if (is_pruned(o, lane.lower)) {
         o->dropped = lesser(lane.lower, o->dropped);
       } else if (at & TREE_LEAF) {
@@ -531,12 +578,13 @@ static cprox_status bound_roughly(robot_search *o, const search_node *node) {
   return status;
 }
 
-/* Bounds all pairs of a node of one segment; those that still matter become its own list. */
+/* Bounds all pairs of a node; those that still matter become its own list. */
 static cprox_status bound_node(robot_search *o, search_node *node) {
   robot_node *payload = robot_own(node);
   const int32_t old = payload->list;
   const double inherited = node->lower;
-  robot_scene_enter(&o->scene, payload->first, payload->a, payload->b);
+  const motion_interval over = interval_of(node);
+  robot_scene_enter_span(&o->scene, &over);
   o->n_next = 0;
   o->pieces = 2.0;
   const cprox_status rough = bound_roughly(o, node);
@@ -550,7 +598,7 @@ static cprox_status bound_node(robot_search *o, search_node *node) {
   for (size_t i = 0; i < n; i++) {
     list_entry entry = o->next[i];
     double slack = 0.0;
-    if (!is_pruned(o, entry.lower) && !entry.needs_split) {
+    if (!is_pruned(o, entry.lower) && !entry.needs_split && !o->scene.bent) {
       const cprox_status status = bound_pair(o, node, &entry, &slack);
       if (status < 0) return status;
       if (is_answered(o)) {
@@ -587,16 +635,39 @@ static double filter(void *self, search_node *node, double goal) {
 }
 
 static cprox_status probe(void *self, search_node *node, search_best *best) {
-  const robot_node *payload = robot_known(node);
   robot_search *o = self;
   cprox_status status = CPROX_OK;
   if (!o->seeded) {
     o->seeded = true;
     status = seed(o, node);
   }
-  if (status == CPROX_OK && !is_answered(o) && payload->first + 1 == payload->last) status = bound_node(o, node);
+  if (status == CPROX_OK && !is_answered(o)) status = bound_node(o, node);
   *best = o->best_bound;
   return status;
+}
+
+/* At knots, into pieces that take about the same time: as many as are wanted, or where the span is bent as many as can be. */
+static int split_span(const robot_search *o, const search_node *node, search_node *child) {
+  const cprox_motion *m = o->scene.motion;
+  const motion_interval over = interval_of(node);
+  const size_t segments = over.last - over.first;
+  const size_t wanted =
+      o->scene.bent || o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (size_t)ceil(o->pieces);
+  const double t0 = motion_time(m, over.first, over.a), t1 = motion_time(m, over.last - 1, over.b);
+  const size_t step = step_for(2 * segments / wanted);
+  size_t from = over.first;
+  int n = 0;
+  for (size_t k = 1; k <= wanted && from < over.last; k++) {
+    size_t to = over.last;
+    if (segments <= wanted)
+      to = from + 1;
+    else if (k < wanted)
+      to = knot_near(m, over.first, over.last, step, t0 + (t1 - t0) * (double)k / (double)wanted);
+    if (to <= from) continue;
+    child[n++] = node_of(o, node, from, from == over.first ? over.a : 0.0, to, to == over.last ? over.b : 1.0);
+    from = to;
+  }
+  return n;
 }
 
 static int split(void *self, search_node *node, search_node *child) {
@@ -604,14 +675,9 @@ static int split(void *self, search_node *node, search_node *child) {
   robot_search *o = self;
   const size_t first = payload->first, last = payload->last;
   const double a = payload->a, b = payload->b;
-  int n = 2;
+  int n;
   if (first + 1 < last) {
-    const size_t segments = last - first;
-    n = segments > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (int)segments;
-    for (int k = 0; k < n; k++) {
-      const size_t from = first + segments * (size_t)k / (size_t)n, to = first + segments * (size_t)(k + 1) / (size_t)n;
-      child[k] = node_of(o, node, from, k == 0 ? a : 0.0, to, k + 1 == n ? b : 1.0);
-    }
+    n = split_span(o, node, child);
   } else {
     if (!(b - a > SHORTEST_INTERVAL)) return 0;
     n = o->pieces < 2.0 ? 2 : o->pieces > SEARCH_MAX_CHILDREN ? SEARCH_MAX_CHILDREN : (int)ceil(o->pieces);
@@ -644,8 +710,7 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
 /* The distance of a pair at a time, as exactly as arithmetic has it; what it proves stands in o->touch. */
 static cprox_status look_at(robot_search *o, int32_t pair, double t, double *upper) {
   const cprox_motion *m = o->scene.motion;
-  size_t segment = 0;
-  while (segment + 1 < m->n_segments && m->times[segment + 1] <= t) segment++;
+  const size_t segment = motion_segment_at(m, t);
   const double from = m->times[segment], to = m->times[segment + 1];
   const double u = fmin(fmax((t - from) / (to - from), 0.0), 1.0);
   robot_scene_enter(&o->scene, segment, u, u);
@@ -656,7 +721,7 @@ static cprox_status look_at(robot_search *o, int32_t pair, double t, double *upp
   const double epsilon = o->goal.epsilon;
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
   o->goal.epsilon = 0.0;
-  const cprox_status status = measure_whole(o, pair, segment, u);
+  const cprox_status status = measure_whole(o, pair);
   *upper = o->best_bound.upper;
   o->best = best, o->best_bound = bound, o->goal.epsilon = epsilon;
   return status;

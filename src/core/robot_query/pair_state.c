@@ -198,8 +198,27 @@ int32_t robot_scene_add_pair(robot_scene *s, const robot_pair *pair) {
 
 void robot_scene_enter(robot_scene *s, size_t segment, double a, double b) {
   s->node++;
-  s->segment = segment, s->a = a, s->b = b;
+  s->over = (motion_interval){.a = a, .b = b, .first = segment, .last = segment + 1};
+  s->segment = segment, s->u = 0.5 * (a + b);
+  s->bent = false;
   motion_fill_rows(s->motion, segment, a, b, s->rows);
+}
+
+void robot_scene_enter_span(robot_scene *s, const motion_interval *over) {
+  if (!motion_is_span(over)) {
+    robot_scene_enter(s, over->first, over->a, over->b);
+    return;
+  }
+  s->node++;
+  s->over = *over;
+  const span_centre centre = motion_fill_span(s->motion, over->first, over->a, over->last, over->b, s->rows);
+  s->segment = centre.segment, s->u = centre.u;
+  s->bent = centre.bent;
+}
+
+double robot_scene_place(const robot_scene *s, size_t segment, double u) {
+  const double *times = s->motion->times, from = times[0], duration = times[s->motion->n_segments] - from;
+  return (times[segment] - from + u * (times[segment + 1] - times[segment])) / duration;
 }
 
 /* An axis and all above it that are not known yet; those are found from the base down. */
@@ -209,7 +228,7 @@ static void place_axis(robot_scene *s, int32_t axis) {
   for (; axis >= 0 && s->axis_placed[axis] != s->node; axis = axes[axis].parent) s->chain[n++].axis = axis;
   while (n > 0) {
     const int32_t next = s->chain[--n].axis;
-    motion_find_axis(s->motion, s->segment, s->a, s->b, s->rows, (size_t)next, s->axes);
+    motion_find_axis(s->motion, &s->over, s->rows, (size_t)next, s->axes);
     s->axis_placed[next] = s->node;
   }
 }

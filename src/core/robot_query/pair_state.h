@@ -13,11 +13,10 @@ typedef struct robot_pair {
   int32_t standing;   /* which obstacle, or in a query about the robot itself which part */
   uint32_t shared;    /* of the robot itself: so many axes are above both sides */
   int32_t element[2]; /* of what the moving and the standing side are made of: -1: all of it, by its convex shape */
-  /* the last separating direction, from what stands to what moves, in the frame of what stands, where it was found, and how fast
-   * it turned there, by u of the segment */
+  /* the last separating direction, from what stands to what moves, in the frame of what stands, where on the motion it was found
+   * (robot_scene_place()), and how fast it turned there; so it may be carried on between `from` and `to` */
   vec3 normal, normal_rate;
-  size_t segment;
-  double u;
+  double found, from, to;
   bool normal_known;
 } robot_pair;
 
@@ -48,8 +47,10 @@ typedef struct robot_scene {
   size_t cluster_room, cluster_count;
   robot_element element[2]; /* those of the pair that was placed last: moving, standing */
   uint32_t node;            /* counts the nodes, so that states know whether they are of the present one */
-  size_t segment;
-  double a, b;
+  motion_interval over;     /* that node; */
+  size_t segment;           /* everything stands as it does at u of this segment: its middle, or near that of a span */
+  double u;
+  bool bent; /* a span that is only bounded by how far parts move */
 } robot_scene;
 
 /* Makes the scene of targets first … last - 1 ready; false where memory is out. Of a set, only those without a box; the rest come as
@@ -64,8 +65,12 @@ bool robot_scene_asks(const robot_scene *scene, size_t part);
 size_t robot_scene_parts_of(const cprox_obstacle *target);
 int32_t robot_scene_add_obstacles(robot_scene *scene, size_t target);
 
-/* A new node. */
+/* A new node: of one segment, or of any number. */
 void robot_scene_enter(robot_scene *scene, size_t segment, double a, double b);
+void robot_scene_enter_span(robot_scene *scene, const motion_interval *over);
+
+/* Where a segment's u is along the motion, in [0, 1] by time: only to choose by. */
+double robot_scene_place(const robot_scene *scene, size_t segment, double u);
 
 /* One more pair; its number, or -1 where memory is out. It may move all pairs in memory. */
 int32_t robot_scene_add_pair(robot_scene *scene, const robot_pair *pair);
