@@ -9,6 +9,9 @@
 /* Among 10 to 10,000 obstacles, against 6 to 96 links of its own, two arms beside each other. */
 void bench_robot_scale(const robot_case *arm, const bench_size *size, cprox_workspace *workspace);
 
+/* One straight motion with 2 to 100,000 waypoints. */
+void bench_robot_waypoints(const robot_case *cases, size_t n, const bench_size *size, cprox_workspace *workspace);
+
 /* The share of the pairs looked at whose distance is measured. */
 void bench_robot_pairs(const robot_case *cases, size_t n, cprox_workspace *workspace);
 

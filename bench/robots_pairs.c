@@ -21,16 +21,13 @@ static double filter(void *self, search_node *node, double goal) {
   return w->oracle.filter(w->oracle.self, node, goal);
 }
 
-/* Only intervals of one segment look at pairs. */
 static cprox_status probe(void *self, search_node *node, search_best *best) {
   watched *w = self;
   const robot_search *o = &w->search;
   const robot_node *payload = robot_known(node);
-  if (payload->first + 1 == payload->last) {
-    const list_entry *entry = lists_at(&o->lists, payload->list);
-    const size_t n = lists_count(&o->lists, payload->list);
-    for (size_t i = 0; i < n; i++) w->looks += !search_is_pruned(&o->goal, o->best_bound.upper, entry[i].lower);
-  }
+  const list_entry *entry = lists_at(&o->lists, payload->list);
+  const size_t n = lists_count(&o->lists, payload->list);
+  for (size_t i = 0; i < n; i++) w->looks += !search_is_pruned(&o->goal, o->best_bound.upper, entry[i].lower);
   return w->oracle.probe(w->oracle.self, node, best);
 }
 
