@@ -82,7 +82,7 @@ static void make_polygons(scene *s) {
       s->vertex[k][i] = vec(v[i][0], v[i][1], 0);
     }
     check(cprox_body_create_polygon((const double(*)[2])v, SIDES, NULL, &s->bodies[k]));
-    s->targets[k] = cprox_obstacle_at(s->bodies[k], cprox_pose_identity());
+    s->targets[k] = cprox_obstacle_at(s->bodies[k], CPROX_POSE_IDENTITY);
   }
 }
 
@@ -112,7 +112,7 @@ static scene *scene_make(uint64_t seed, bool planar, size_t n, asked *q) {
   else
     make_boxes(&r, s);
   check(cprox_obstacles_create(s->targets, n, CPROX_INDEX_BATCH, q->workspace, &s->batch));
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = EPSILON;
   for (size_t i = 0; i < CURVES; i++) {
     cprox_workspace *w = q->workspace;
@@ -166,7 +166,7 @@ static void batch(const void *problems, size_t i, void *state, bench_answer *a) 
   const scene *s = ((scene *const *)problems)[i];
   judged *own = state;
   const asked *q = own->asked;
-  cprox_options o = cprox_options_default();
+  cprox_options o = CPROX_OPTIONS_DEFAULT;
   o.epsilon = EPSILON;
   if (q->query_type == DISTANCE)
     cprox_obstacles_distance_batch(s->batch, s->movers, 0, CURVES, &o, q->workspace, q->results);
@@ -183,7 +183,7 @@ static void one_by_one(const void *problems, size_t i, void *state, bench_answer
   const scene *s = ((scene *const *)problems)[i];
   judged *own = state;
   const asked *q = own->asked;
-  cprox_options o = cprox_options_default();
+  cprox_options o = CPROX_OPTIONS_DEFAULT;
   o.epsilon = EPSILON;
   for (size_t k = 0; k < CURVES; k++) {
     cprox_result *r = &q->results[k];

@@ -28,7 +28,7 @@ typedef struct query {
 } query;
 
 static cprox_status ask(const query *q, cprox_certificate *proof, cprox_workspace *ws, bench_answer *a) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.certificate = proof;
   cprox_result r = {.status = CPROX_INVALID};
   const cprox_status status = list_tolerance(q->mover, q->targets, q->n, q->delta, &options, ws, &r, NULL);
@@ -45,14 +45,15 @@ static void verdict(const void *queries, size_t i, void *state, bench_answer *a)
 static void with_certificate(const void *queries, size_t i, void *state, bench_answer *a) {
   const query *q = (const query *)queries + i;
   ask(q, q->proof, state, a);
-  a->nodes = (uint32_t)cprox_certificate_size(q->proof);
+  a->nodes = (uint32_t)cprox_certificate_get_info(q->proof).size;
   a->failed = a->failed || a->nodes == 0;
 }
 
 static void by_checker(const void *queries, size_t i, void *state, bench_answer *a) {
   const query *q = (const query *)queries + i;
   (void)state;
-  const finding f = check(&q->read, cprox_certificate_bytes(q->proof), cprox_certificate_size(q->proof));
+  const finding f =
+      check(&q->read, cprox_certificate_get_info(q->proof).bytes, cprox_certificate_get_info(q->proof).size);
   *a = (bench_answer){.lower = NAN, .upper = NAN, .nodes = (uint32_t)f.leaves, .failed = f.claim != CLAIM_APART};
 }
 

@@ -98,7 +98,7 @@ uint32_t median(std::vector<uint32_t> counts) {
 void distance(benchmark::State &state, Obstacle obstacle) {
   const Problems problems(obstacle, static_cast<int>(state.range(0)));
   cprox_workspace *workspace = cprox_workspace_create();
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-10;
   std::vector<uint32_t> nodes(kProblems), distance_queries(kProblems);
   for (auto _ : state) {

@@ -24,7 +24,7 @@ static void judge_verdict(const asked *q, cprox_verdict verdict, bench_answer *a
 }
 
 static void take(const asked *q, size_t i, cprox_mover mover, cprox_obstacle target, bench_answer *a) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = q->epsilon;
   cprox_result r;
   const cprox_status status = q->factor > 0.0

@@ -36,11 +36,11 @@ static double accuracy_of(const implicit_problem *p) {
 static void hybrid(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
   const bench_state *s = state;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = accuracy_of(p);
   cprox_result r;
-  const cprox_status status = cprox_pair(cprox_obstacle_at(p->a, cprox_pose_identity()),
-                                         cprox_obstacle_at(p->b, p->pose), &options, s->workspace, &r);
+  const cprox_status status = cprox_pair(cprox_obstacle_at(p->a, CPROX_POSE_IDENTITY), cprox_obstacle_at(p->b, p->pose),
+                                         &options, s->workspace, &r);
   *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .distance_queries = r.distance_queries};
   a->failed = status != CPROX_OK;
 }
@@ -139,11 +139,11 @@ static void table_1(const bench_size *size, cprox_body *const *object, bench_sta
 static void closest(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
   const bench_state *s = state;
-  const cprox_translating x = {.from = cprox_obstacle_at(p->a, cprox_pose_identity())};
+  const cprox_translating x = {.from = cprox_obstacle_at(p->a, CPROX_POSE_IDENTITY)};
   const vec3 aim = vec_scale(-1.0, p->pose.position);
   const cprox_translating y = {.from = cprox_obstacle_at(p->b, p->pose),
                                .velocity = {aim.y + aim.x, aim.y - aim.x, aim.z}};
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = accuracy_of(p);
   cprox_result r;
   const cprox_status status = cprox_translating_distance(x, y, s->duration, &options, s->workspace, &r);
@@ -153,9 +153,9 @@ static void closest(const void *problems, size_t i, void *state, bench_answer *a
 static void time_of_contact(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
   const bench_state *s = state;
-  const cprox_translating x = {.from = cprox_obstacle_at(p->a, cprox_pose_identity())};
+  const cprox_translating x = {.from = cprox_obstacle_at(p->a, CPROX_POSE_IDENTITY)};
   const cprox_translating y = {.from = cprox_obstacle_at(p->b, p->pose), .velocity = vec_scale(-1.0, p->pose.position)};
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-7 * (p->query.a->radius + p->query.b->radius);
   cprox_result r;
   const cprox_status status = cprox_translating_contact(x, y, s->duration, &options, s->workspace, &r);
@@ -187,7 +187,7 @@ static void deformed(const void *problems, size_t i, void *state, bench_answer *
   const implicit_problem *p = (const implicit_problem *)problems + i;
   const bench_state *s = state;
   const double part = (double)(i % 10 + 1) / 10.0;
-  cprox_affine map = cprox_affine_identity();
+  cprox_affine map = {.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   double exponents[3];
   for (int k = 0; k < 3; k++) {
     const double from = p->query.a->term[k].p;
@@ -195,12 +195,12 @@ static void deformed(const void *problems, size_t i, void *state, bench_answer *
     if (!s->exponents) map.linear[4 * k] = 1.0 + part * (s->scale.linear[4 * k] - 1.0);
   }
   cprox_body *body = NULL;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = accuracy_of(p);
   cprox_result r = {.status = CPROX_INVALID};
   if (cprox_body_create_deformed(p->a, s->exponents ? NULL : &map, s->exponents ? exponents : NULL, 3, s->workspace,
                                  &body) == CPROX_OK)
-    cprox_pair(cprox_obstacle_at(body, cprox_pose_identity()), cprox_obstacle_at(p->b, p->pose), &options, s->workspace,
+    cprox_pair(cprox_obstacle_at(body, CPROX_POSE_IDENTITY), cprox_obstacle_at(p->b, p->pose), &options, s->workspace,
                &r);
   cprox_body_free(body);
   *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.nodes, .failed = r.status != CPROX_OK};

@@ -122,7 +122,7 @@ static void pair_free(const pair *p) {
 /* ---- the methods -------------------------------------------------------------------------------------------------------------- */
 
 static cprox_result ask(const pair *p, const asked *q) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = p->distance < 0.0 ? 1e-8 * p->size : 0.0;
   options.relative_epsilon = 1e-9;
   cprox_result r = {.status = CPROX_INVALID};

@@ -47,7 +47,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *answ
   const problem *p = (const problem *)problems + i;
   const method_state *s = state;
   const cprox_motion *motion = s->meshes ? p->c.mesh_motion : p->c.motion;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-3;
   cprox_result scene, self;
   const cprox_status a = list_distance(cprox_robot_along(motion, NULL, 0), p->c.targets, p->c.n_targets, &options,

@@ -41,7 +41,7 @@ static size_t targets_of(const problem *p) {
 static void ours(const void *problems, size_t i, void *state, bench_answer *answer) {
   const problem *p = (const problem *)problems + i;
   method_state *s = state;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = s->epsilon;
   cprox_result r;
   cprox_status status;

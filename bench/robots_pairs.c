@@ -47,7 +47,7 @@ static bool watch(const robot_case *c, bool self, double delta, double epsilon, 
   const cprox_mover mover =
       self ? cprox_robot_self(c->motion, c->self_pairs, c->n_self_pairs) : cprox_robot_along(c->motion, NULL, 0);
   const size_t n = self ? 0 : c->n_targets;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   cprox_result r;
   if (delta < 0.0)

@@ -31,7 +31,7 @@ static void answer_with(cprox_status status, const cprox_result *r, bench_answer
 
 static void by_set(const void *problems, size_t i, void *state, bench_answer *answer) {
   const problem *p = (const problem *)problems + i;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = EPSILON;
   cprox_result r;
   answer_with(cprox_obstacles_distance(p->set, p->mover, &options, state, &r, NULL), &r, answer);
@@ -43,7 +43,7 @@ static double epsilon_of(const problem *p) {
 
 static void by_list(const void *problems, size_t i, void *state, bench_answer *answer) {
   const problem *p = (const problem *)problems + i;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon_of(p);
   cprox_result r;
   if (p->delta < 0.0) {
@@ -76,7 +76,7 @@ static void two_ended(const void *problems, size_t i, void *state, bench_answer 
 
 /* The distance by list, which is what all others are held against. */
 static double truth_of(const problem *p, cprox_workspace *ws) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-7;
   cprox_result r;
   list_distance(p->mover, p->targets, p->n, &options, ws, &r, NULL);
@@ -263,12 +263,12 @@ static void two_arms(const robot_case *arm, const bench_size *size, cprox_worksp
 static void slide(const bench_size *size, cprox_workspace *ws) {
   static const double EPSILONS[] = {1e-3, 1e-6};
   const cprox_link tree[2] = {{.parent = -1,
-                               .origin = cprox_pose_identity(),
+                               .origin = CPROX_POSE_IDENTITY,
                                .type = CPROX_JOINT_PRISMATIC,
                                .axis = {1, 0, 0},
                                .multiplier = 1.0},
                               {.parent = 0,
-                               .origin = cprox_pose_identity(),
+                               .origin = CPROX_POSE_IDENTITY,
                                .type = CPROX_JOINT_REVOLUTE,
                                .axis = {0, 0, 1},
                                .variable = 1,
@@ -278,7 +278,7 @@ static void slide(const bench_size *size, cprox_workspace *ws) {
   cprox_motion *motion = NULL;
   cprox_body_create_cylinder(0.4, 0.3, ws, &base);
   cprox_body_create_box((cprox_vec3){6.0, 0.1, 2.0}, ws, &wall);
-  const cprox_link_geometry body = {.link = 1, .body = base, .pose = cprox_pose_identity()};
+  const cprox_link_geometry body = {.link = 1, .body = base, .pose = CPROX_POSE_IDENTITY};
   const double still[2] = {0, 0}, from[2] = {-1.5, 0}, middle[2] = {0, 0.1}, to[2] = {1.5, 0};
   const int32_t variables[2] = {0, 1};
   const cprox_waypoint points[3] = {{.time = 0, .positions = from, .velocities = still, .accelerations = still},

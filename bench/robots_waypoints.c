@@ -32,7 +32,7 @@ static void ask(const void *problems, size_t i, void *state, bench_answer *answe
   const problem *p = (const problem *)problems + i;
   const method_state *s = state;
   const cprox_mover mover = s->sparse ? p->sparse : p->dense;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-4;
   cprox_result r;
   cprox_status status = CPROX_OK;
@@ -78,7 +78,7 @@ static cprox_motion *straight(const robot_case *arm, size_t points, cprox_worksp
 
 /* Motions that reach contact are asked when; the others how near they come. */
 static double distance_of(const problem *p, cprox_workspace *ws) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   cprox_result r = {.upper = 0.0};
   list_distance(p->sparse, p->targets, p->n, &options, ws, &r, NULL);
   return r.upper;

@@ -166,9 +166,9 @@ static void make_problem(rng *r, bool planar, size_t segments, cprox_workspace *
     else
       make_series(r, planar, ws, p);
     obstacle_make(r, planar ? OBSTACLE_POLYGON : OBSTACLE_POLYTOPE, &p->obstacle);
-    p->target = cprox_obstacle_at(p->obstacle.body, cprox_pose_identity());
+    p->target = cprox_obstacle_at(p->obstacle.body, CPROX_POSE_IDENTITY);
     p->paper_obstacle = (paper_obstacle){.vertex = p->obstacle.vertex, .n = p->obstacle.n};
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-12;
     cprox_result found;
     cprox_distance(cprox_point_along(p->curve), p->target, &options, ws, &found);
@@ -184,7 +184,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   const problem *p = (const problem *)problems + i;
   const asked *q = state;
   const cprox_mover mover = cprox_point_along(p->curve);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = q->epsilon;
   cprox_result r;
   const cprox_status status =

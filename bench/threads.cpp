@@ -135,7 +135,7 @@ int main(int argc, char **argv) {
   for (unsigned threads = 1; threads <= most; threads *= 2) pools.push_back(std::make_unique<Pool>(threads));
   const Scene scene;
   const Batch batch(scene.targets);
-  const cprox_options options = cprox_options_default();
+  const cprox_options options = CPROX_OPTIONS_DEFAULT;
   const std::pair<const char *, std::function<Batch::Answers(Pool &)>> query_types[] = {
       {"distance", [&](Pool &pool) { return batch.distance(scene.movers, options, pool); }},
       {"tolerance", [&](Pool &pool) { return batch.tolerance(scene.movers, kDelta, options, pool); }},

@@ -13,7 +13,7 @@ int main(void) {
 
   if (cprox_curve_create(&bezier, workspace, &path) < 0 ||
       cprox_body_create_box((cprox_vec3){0.5, 0.5, 0.5}, workspace, &box) < 0 ||
-      cprox_distance(cprox_tube_along(path, 0.02), cprox_obstacle_at(box, cprox_pose_identity()), NULL, workspace, &r) <
+      cprox_distance(cprox_tube_along(path, 0.02), cprox_obstacle_at(box, CPROX_POSE_IDENTITY), NULL, workspace, &r) <
           0) {
     fprintf(stderr, "%s\n", cprox_workspace_error(workspace));
     return 1;

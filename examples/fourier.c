@@ -13,7 +13,7 @@ int main(void) {
   cprox_workspace *workspace = cprox_workspace_create();
   cprox_solid *a = NULL, *b = NULL;
   cprox_gap *gap = NULL;
-  cprox_gap_options options = cprox_gap_options_default();
+  cprox_gap_options options = CPROX_GAP_OPTIONS_DEFAULT;
   options.samples = 65;
 
   int exit_code = cprox_solid_create(&shape, workspace, &a) < 0 || cprox_solid_create(&disc, workspace, &b) < 0 ||

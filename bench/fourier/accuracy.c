@@ -20,7 +20,7 @@
 typedef cprox_gap *(*gap_maker)(const shape *a, const shape *b, uint32_t samples, cprox_workspace *ws);
 
 static cprox_gap *make(const shape *a, const shape *b, cprox_gap_mode mode, uint32_t samples, cprox_workspace *ws) {
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.mode = mode, o.samples = samples;
   cprox_gap *gap = NULL;
   cprox_gap_create(a->solid, b->solid, &o, ws, &gap);

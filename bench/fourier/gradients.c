@@ -33,7 +33,7 @@ static bool exact_gradient(const shape *a, const shape *b, const cprox_pose *pb,
 
 /* Random poses inside the bounding spheres: the cosine of each goes to its bin. */
 static void measure(const shape *a, const shape *b, int mode, uint32_t samples, size_t poses, cprox_workspace *ws) {
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.mode = KINDS[mode], o.samples = samples;
   cprox_gap *gap = NULL;
   if (cprox_gap_create(a->solid, b->solid, &o, ws, &gap)) abort();

@@ -108,7 +108,7 @@ void fourier_nesting(const bench_size *size) {
   cprox_gap *gaps[GAPS];
   const uint32_t samples[GAPS] = {17, 33, 65};
   for (int k = 0; k < GAPS; k++) {
-    cprox_gap_options options = cprox_gap_options_default();
+    cprox_gap_options options = CPROX_GAP_OPTIONS_DEFAULT;
     options.samples = samples[k];
     if (cprox_gap_create(q.a->solid, q.b->solid, &options, q.ws, &gaps[k])) abort();
   }

@@ -33,7 +33,7 @@ static void by_gap(const void *problems, size_t i, void *state, bench_answer *an
 static void by_distance(const void *problems, size_t i, void *state, bench_answer *answer) {
   const pair_problem *p = (const pair_problem *)problems + i;
   const asked *q = state;
-  cprox_options o = cprox_options_default();
+  cprox_options o = CPROX_OPTIONS_DEFAULT;
   o.epsilon = 1e-3;
   cprox_result r = {0};
   const cprox_status status = cprox_pair(p->at, p->bt, &o, q->ws, &r);
@@ -61,7 +61,7 @@ void fourier_pairs(const bench_size *size) {
     p->a = (cprox_pose){.orientation = rng_quat(&r)};
     p->b = (cprox_pose){.orientation = rng_quat(&r), .position = vec_scale(rng_uniform(&r, 0.2, 1.25), rng_unit(&r))};
     p->at = cprox_obstacle_at(b[0], p->a), p->bt = cprox_obstacle_at(b[1], p->b);
-    cprox_options o = cprox_options_default();
+    cprox_options o = CPROX_OPTIONS_DEFAULT;
     cprox_result x = {0};
     cprox_pair(p->at, p->bt, &o, ws, &x);
     p->truth = x.upper;
@@ -70,7 +70,7 @@ void fourier_pairs(const bench_size *size) {
   for (int i = 0; problems && i < 3; i++) {
     char parameter[32];
     snprintf(parameter, sizeof parameter, "n %u", samples[i]);
-    cprox_gap_options o = cprox_gap_options_default();
+    cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
     o.samples = samples[i];
     cprox_gap *gap;
     if (cprox_gap_create(s[0], s[1], &o, ws, &gap)) abort();

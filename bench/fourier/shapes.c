@@ -40,7 +40,7 @@ void shapes_create(shape shapes[SHAPES]) {
     cprox_solid *parts[SHAPE_PIECES];
     cprox_pose poses[SHAPE_PIECES];
     for (int j = 0; j < shapes[i].n; j++) {
-      poses[j] = cprox_pose_identity();
+      poses[j] = CPROX_POSE_IDENTITY;
       if (cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON,
                                                         .corners = (const double(*)[2])shapes[i].v[j],
                                                         .n = (size_t)shapes[i].corners[j]},

@@ -58,8 +58,8 @@ static box_problem *make_problems(const cprox_gap *gap, size_t n) {
     const frame f = frame_create(&at, vec(0, 0, 0));
     for (int k = 0; k < 9; k++) p->turn[k] = f.r[k];
     p->x = at.position;
-    p->a = gap->info.turned_first ? at : cprox_pose_identity();
-    p->b = gap->info.turned_first ? cprox_pose_identity() : at;
+    p->a = gap->info.turned_first ? at : CPROX_POSE_IDENTITY;
+    p->b = gap->info.turned_first ? CPROX_POSE_IDENTITY : at;
   }
   return problems;
 }
@@ -108,7 +108,7 @@ static const struct {
 static void measure(cprox_solid *const s[2], uint32_t samples, const bench_size *size, cprox_workspace *ws) {
   char parameter[32];
   snprintf(parameter, sizeof parameter, "n %u", samples);
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.samples = samples;
   cprox_gap *gap = NULL;
   double start = now();

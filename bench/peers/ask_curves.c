@@ -38,7 +38,7 @@ typedef struct peer_state {
 static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   const query *p = (const query *)problems + i;
   const asked *q = state;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = q->epsilon;
   cprox_result r;
   ask_take(cprox_distance(p->mover, p->target, &options, q->workspace, &r), &r, a);
@@ -135,7 +135,7 @@ void ask_splines_and_splines(const bench_size *size, asked *q) {
     }
     queries[i].mover = cprox_point_along(curve[0]);
     queries[i].target = cprox_obstacle_curve(curve[1], 0.0);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-13;
     cprox_result found;
     cprox_distance(queries[i].mover, queries[i].target, &options, q->workspace, &found);

@@ -28,7 +28,7 @@ typedef struct path {
 static void path_distance(const void *problems, size_t i, void *state, bench_answer *a) {
   const path *p = (const path *)problems + i;
   const asked *q = state;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = EPSILON;
   cprox_result r;
   ask_take(cprox_distance(cprox_tube_along(p->curve, BALL), p->target, &options, q->workspace, &r), &r, a);
@@ -37,7 +37,7 @@ static void path_distance(const void *problems, size_t i, void *state, bench_ans
 static void path_contact(const void *problems, size_t i, void *state, bench_answer *a) {
   const path *p = (const path *)problems + i;
   const asked *q = state;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = EPSILON;
   cprox_result r;
   ask_take(cprox_time_of_contact(cprox_tube_along(p->curve, BALL), p->target, &options, q->workspace, &r), &r, a);
@@ -99,7 +99,7 @@ static bool make_path(rng *r, solid_kind kind, bool touching, cprox_workspace *w
     cprox_curve_evaluate(p->curve, (double)i / (PATH_POINTS - 1), ws, &at, NULL, NULL);
     p->points[i][0] = at.x, p->points[i][1] = at.y, p->points[i][2] = at.z;
   }
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-12;
   cprox_result found;
   cprox_distance(cprox_tube_along(p->curve, BALL), p->target, &options, ws, &found);

@@ -130,7 +130,7 @@ int main(int argc, char **argv) {
     pair.b = sideOf(ShapeType::BOX, {0.5, 0.7, 0.9});
     const auto constraint = provider->prepare(pair);
     const Places at = randomPlaces(n, true, random);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-9;
     options.signed_distance = true;
     const Ask core = [&](std::size_t i) {
@@ -153,7 +153,7 @@ int main(int argc, char **argv) {
     pair.b = sideOf(ShapeType::SUPERQUADRIC, {0.5, 0.6, 0.4, 4.0, 2.2, 6.0});
     const auto constraint = provider->prepare(pair);
     const Places at = randomPlaces(n, false, random);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-9;
     const Ask core = [&](std::size_t i) {
       cprox_result result;
@@ -175,7 +175,7 @@ int main(int argc, char **argv) {
     for (ConstraintPlace &place : at.places) place.a.position.x -= 1.5;
     cprox_solid *a = nullptr, *b = nullptr;
     cprox_gap *gap = nullptr;
-    cprox_gap_options options = cprox_gap_options_default();
+    cprox_gap_options options = CPROX_GAP_OPTIONS_DEFAULT;
     options.samples = 9;
     options.mode = CPROX_GAP_MODE_SIGNAL;
     cprox_solid_description ellipsoid{}, box{};

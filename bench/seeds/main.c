@@ -31,7 +31,7 @@ static const char *const QUERY_TYPES[] = {"distance", "tolerance", "collision"};
 static void ours(const void *queries, size_t i, void *state, bench_answer *a) {
   (void)state;
   const query *q = (const query *)queries + i;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = EPSILON;
   cprox_workspace *w = q->tools->workspace;
   cprox_result r = {.status = CPROX_INVALID};
@@ -182,7 +182,7 @@ static void figure_seven(const tools *t) {
   }
   last = INFINITY;
   for (uint32_t nodes = 1; nodes < 400 && last > EPSILON; nodes++) {
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = EPSILON;
     options.max_nodes = nodes;
     cprox_result r;
@@ -222,7 +222,7 @@ static void table_two_polygon(const bench_size *size, const tools *t, const char
   const paper_obstacle polygon = {.vertex = vertex, .n = n};
   query q = {.tools = t,
              .mover = cprox_point_along(curve->curve),
-             .target = cprox_obstacle_at(body, cprox_pose_identity()),
+             .target = cprox_obstacle_at(body, CPROX_POSE_IDENTITY),
              .first = &curve->paper,
              .obstacle = &polygon};
   measure_query_types(size, "table II", name, &q, 1);

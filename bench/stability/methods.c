@@ -33,10 +33,10 @@ static void judge(const hard *h, bool ended, double lower, double upper, bench_a
 static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   const hard *h = (const hard *)problems + i;
   const tools *t = state;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = EPSILON;
   const cprox_obstacle target =
-      h->second ? cprox_obstacle_curve(h->second, 0.0) : cprox_obstacle_at(h->body, cprox_pose_identity());
+      h->second ? cprox_obstacle_curve(h->second, 0.0) : cprox_obstacle_at(h->body, CPROX_POSE_IDENTITY);
   cprox_result r = {.status = CPROX_INVALID};
   cprox_distance(cprox_point_along(h->curve), target, &options, t->workspace, &r);
   *a = (bench_answer){.nodes = r.nodes, .distance_queries = r.distance_queries};

@@ -50,7 +50,7 @@ static double distance_at(const pass *p, double t) {
 static bool collides(const kind *k, cprox_workspace *ws, pass *p) {
   p->radius = k->radius;
   if (k->graze > 0.0) {
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-12;
     cprox_result r;
     if (cprox_distance(cprox_point_along(p->curve), p->target, &options, ws, &r) != CPROX_OK || r.lower < 1e-2)
@@ -125,7 +125,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
 /* Never late, and not early by more than was asked. */
 static void our_contact(const void *problems, size_t i, void *state, bench_answer *a) {
   const pass *p = (const pass *)problems + i;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = CONTACT;
   cprox_result r = {.status = CPROX_INVALID};
   cprox_time_of_contact(cprox_tube_along(p->curve, p->radius), p->target, &options, ((const tools *)state)->workspace,

@@ -109,7 +109,7 @@ static bool make_problem(rng *r, obstacle_kind kind, size_t degree, cprox_worksp
   make_points(r, degree, planar, p->points);
   obstacle_make(r, kind, &p->obstacle);
   check(curve_from(describe_bezier(p->points, degree + 1, 0.0, 1.0), NULL, &p->curve));
-  p->target = cprox_obstacle_at(p->obstacle.body, cprox_pose_identity());
+  p->target = cprox_obstacle_at(p->obstacle.body, CPROX_POSE_IDENTITY);
   cprox_result result;
   check(cprox_distance(cprox_point_along(p->curve), p->target, NULL, ws, &result));
   if (result.lower > 1e-3) {

@@ -115,7 +115,7 @@ static size_t make_clear(const worlds_scene *scene, rng *r, worlds_asked *q, siz
   const cprox_options fine = worlds_options(1e-12);
   size_t found = 0;
   for (int tries = 0; found < n && tries < 100000; tries++) {
-    worlds_problem p = {.target = cprox_obstacle_at(scene->body, cprox_pose_identity()), .peer = scene->peer};
+    worlds_problem p = {.target = cprox_obstacle_at(scene->body, CPROX_POSE_IDENTITY), .peer = scene->peer};
     worlds_curve_make(r, &p, scene->centre, scene->half, scene->scale);
     cprox_result result;
     worlds_check(cprox_distance(worlds_mover(&p), p.target, &fine, q->ws, &result), q->ws);
@@ -123,7 +123,7 @@ static size_t make_clear(const worlds_scene *scene, rng *r, worlds_asked *q, siz
       cprox_curve_free(p.curve);
       continue;
     }
-    p.middle = cprox_pose_identity();
+    p.middle = CPROX_POSE_IDENTITY;
     cprox_curve_evaluate(p.curve, 0.5, NULL, &p.middle.position, NULL, NULL);
     truth[found] = 0.5 * (result.lower + result.upper);
     clear[found++] = p;
@@ -152,7 +152,7 @@ static size_t make_tubes(const worlds_scene *scene, rng *r, worlds_asked *q, siz
   size_t found = 0;
   for (int tries = 0; found < 2 * n && tries < 100000; tries++) {
     worlds_problem p = {
-        .target = cprox_obstacle_at(scene->body, cprox_pose_identity()), .peer = scene->peer, .radius = BALL};
+        .target = cprox_obstacle_at(scene->body, CPROX_POSE_IDENTITY), .peer = scene->peer, .radius = BALL};
     worlds_curve_make(r, &p, scene->centre, scene->half, scene->scale);
     cprox_result result;
     worlds_check(cprox_collision(worlds_mover(&p), p.target, NULL, q->ws, &result), q->ws);

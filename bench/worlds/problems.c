@@ -39,7 +39,7 @@ void worlds_take(const cprox_result *r, bench_answer *a) {
 }
 
 cprox_options worlds_options(double epsilon) {
-  cprox_options o = cprox_options_default();
+  cprox_options o = CPROX_OPTIONS_DEFAULT;
   o.epsilon = epsilon;
   return o;
 }
@@ -52,6 +52,6 @@ double worlds_now(void) {
 
 void worlds_say_build(const char *what, size_t n, double seconds, const cprox_body *body) {
   printf("worlds,build %s,curve_proximity,elements %zu,%.4g,%.4g,%.4g,,,0,0\n", what, n, 1e6 * seconds, 1e6 * seconds,
-         (double)cprox_body_bytes(body) / (double)n);
+         (double)cprox_body_get_info(body).bytes / (double)n);
   fflush(stdout);
 }

@@ -54,8 +54,8 @@ struct ConstraintCurve {
 
 /** The poses of both sides, or a curve and the pose of b, in the fixed frame. The curve is kept by reference. */
 struct ConstraintPlace {
-  cprox_pose a = cprox_pose_identity();   /**< of side a; along a curve: the identity */
-  cprox_pose b = cprox_pose_identity();   /**< of side b */
+  cprox_pose a = CPROX_POSE_IDENTITY;     /**< of side a; along a curve: the identity */
+  cprox_pose b = CPROX_POSE_IDENTITY;     /**< of side b */
   const ConstraintCurve *curve = nullptr; /**< set if and only if the pair is along a curve */
 };
 

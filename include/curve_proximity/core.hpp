@@ -615,7 +615,7 @@ class Obstacles {
 
   /** How many there are. */
   std::size_t size() const {
-    return cprox_obstacles_size(handle_.get());
+    return cprox_obstacles_get_info(handle_.get()).n;
   }
 
   /** The C handle, owned by this object. */

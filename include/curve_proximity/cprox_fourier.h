@@ -166,7 +166,7 @@ typedef enum cprox_gap_mode {
   CPROX_GAP_MODE_SIGNAL = 2 /**< a smooth constraint for solvers, usable at every clearance, without a verdict */
 } cprox_gap_mode;
 
-/** Start from cprox_gap_options_default(). */
+/** Start from CPROX_GAP_OPTIONS_DEFAULT. */
 typedef struct cprox_gap_options {
   cprox_gap_mode mode;
   /** [m] > 0: the largest clearance that may still be called a collision; chooses the samples. Default 0: samples
@@ -178,7 +178,9 @@ typedef struct cprox_gap_options {
   size_t memory_limit;
 } cprox_gap_options;
 
-CPROX_API cprox_gap_options cprox_gap_options_default(void);
+/** The default of all options: certified, with samples or delta still to be given. */
+#define CPROX_GAP_OPTIONS_DEFAULT \
+  (CPROX_VALUE(cprox_gap_options){CPROX_GAP_MODE_CERTIFIED, 0.0, 0, 0.0, (size_t)256 << 20})
 
 /** What a gap is made of. */
 typedef struct cprox_gap_info {

@@ -26,7 +26,7 @@ struct Query {
 
   /** Epsilon, budget, stop function. `certificate` receives the proof of the result for all obstacles. It stays empty
    *  if there is no proof; Answer::unproven then says why. A certificate does not change the result. */
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   bool per_object = false; /**< one answer per object and per link; otherwise one in all */
 
   /** The objects to test. If `objects` and `links` are both empty, everything is tested; otherwise only what they

@@ -64,7 +64,7 @@ Outcome answerPair(const RowPair &rows, const Arguments &arguments, const Query 
     out.stopped = row.result.status == CPROX_STOPPED;
     if (row.result.status < 0)
       out.complaints.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_error(workspace.get()));
-    if (with_proof && row.result.status >= 0 && cprox_certificate_size(proof.get()) == 0)
+    if (with_proof && row.result.status >= 0 && cprox_certificate_get_info(proof.get()).size == 0)
       out.unproven.push_back(placeOf(*rows.first, arguments.curves) + ": " + cprox_workspace_error(workspace.get()));
   } catch (const std::bad_alloc &) {
     row.result.status = CPROX_MEMORY;

@@ -56,11 +56,12 @@ CertificateHandle makeCertificate() {
 }
 
 std::string recordOf(const CertificateHandle &certificate) {
-  return recordOf(cprox_certificate_bytes(certificate.get()), cprox_certificate_size(certificate.get()));
+  const cprox_certificate_info info = cprox_certificate_get_info(certificate.get());
+  return recordOf(info.bytes, info.size);
 }
 
 std::string proofOf(const CertificateHandle &certificate) {
-  switch (cprox_certificate_claim(certificate.get())) {
+  switch (cprox_certificate_get_info(certificate.get()).claim) {
     case CPROX_CLAIM_APART: return "apart";
     case CPROX_CLAIM_NEAR: return "near";
     case CPROX_CLAIM_NONE: break;

@@ -18,7 +18,7 @@ namespace curve_proximity::cli {
  *  written, for a quaternion that goes through a matrix does not come back the same to the last bit. */
 struct PlacedShape {
   ShapeDescription shape;
-  cprox_pose pose = cprox_pose_identity();
+  cprox_pose pose = CPROX_POSE_IDENTITY;
 };
 
 struct PairDescription {

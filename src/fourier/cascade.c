@@ -22,7 +22,7 @@ cprox_status cprox_gap_cascade_create(const cprox_solid *a, const cprox_solid *b
   fourier_clear(workspace);
   if (!a || !b || !cascade)
     return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", !a ? "a" : !b ? "b" : "cascade");
-  cprox_gap_options used = options ? *options : cprox_gap_options_default();
+  cprox_gap_options used = options ? *options : CPROX_GAP_OPTIONS_DEFAULT;
   if (used.mode != CPROX_GAP_MODE_CERTIFIED)
     return fourier_fail(workspace, CPROX_INVALID,
                         "a cascade is certified: in the other modes a coarse clear says nothing");

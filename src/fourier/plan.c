@@ -5,10 +5,6 @@
 
 #include "fourier/gap.h"
 
-cprox_gap_options cprox_gap_options_default(void) {
-  return (cprox_gap_options){.mode = CPROX_GAP_MODE_CERTIFIED, .memory_limit = (size_t)256 << 20};
-}
-
 /* The signal's blur sigma in L/n. */
 #define SIGNAL_BLUR 2.2
 

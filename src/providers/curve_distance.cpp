@@ -8,7 +8,7 @@ namespace curve_proximity {
 namespace {
 
 struct CurveDistanceParameters {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   double margin = 0.0; /* [m] */
 };
 

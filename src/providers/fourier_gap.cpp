@@ -13,7 +13,7 @@ namespace curve_proximity {
 namespace {
 
 struct Parameters {
-  cprox_gap_options options = cprox_gap_options_default();
+  cprox_gap_options options = CPROX_GAP_OPTIONS_DEFAULT;
   int dimension = 3;
   double level = 0.0; /* of the signal mode, subtracted */
 };

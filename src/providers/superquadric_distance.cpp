@@ -24,7 +24,7 @@ bool isJump(double near, double far, double noise) {
 }
 
 struct Parameters {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   SuperquadricFitOptions fit;
   double margin = 0.0; /* [m] */
 };
@@ -50,10 +50,7 @@ bool mayBeFlat(const ShapeDescription &shape) {
 }
 
 double sizeOf(const BodyHandle &body) {
-  cprox_vec3 centre;
-  double radius;
-  cprox_body_bounding_sphere(body.get(), &centre, &radius);
-  return radius;
+  return cprox_body_get_info(body.get()).radius;
 }
 
 /* A part's body in the part's frame, with the frame's pose in the side's. */

@@ -144,7 +144,7 @@ double innerRadius(const Eigen::Vector3d &semi_axes) {
 }
 
 void requireKind(const BodyHandle &body) {
-  const cprox_body_kind kind = cprox_body_get_kind(body.get());
+  const cprox_body_kind kind = cprox_body_get_info(body.get()).kind;
   switch (kind) {
     case CPROX_SPHERE:
     case CPROX_BOX:

@@ -180,7 +180,7 @@ void addOpenHulls(Canvas &canvas, const Drawing &drawing, const Drawing::Line &l
 
   Workspace workspace;
   std::vector<cprox_profile_interval> intervals(INTERVALS);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-4;
   options.max_nodes = NODES;
   ObstaclesHandle obstacles;

@@ -30,9 +30,9 @@ double addSide(Canvas &canvas, const ObjectDescription &side, const ResourceOpti
   for (const ShapeDescription &shape : side.shapes) {
     const BodyHandle hull = makeGeometry(shape, resources).hull;
     canvas.addShape("sides", shape, hull, resources, side.pose * shape.pose, colour(0.42, 0.52, 0.66, 0.45));
-    cprox_vec3 centre;
-    double radius = 0.0;
-    cprox_body_bounding_sphere(hull.get(), &centre, &radius);
+    const cprox_body_info info = cprox_body_get_info(hull.get());
+    const cprox_vec3 centre = info.centre;
+    const double radius = info.radius;
     reach = std::max(reach, (shape.pose * toEigen(centre)).norm() + radius);
   }
   return reach;

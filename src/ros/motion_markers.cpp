@@ -36,7 +36,7 @@ Parts partsOf(const Snapshot &scene, const std::string &link) {
 /** [m] The least plain distance of the parts of a link to the bodies; where they overlap 0 less the paddings. */
 double linkClearance(const Parts &parts, const Eigen::Isometry3d &link, const PlacedBodies &objects,
                      Workspace &workspace) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-4;
   double least = std::numeric_limits<double>::infinity();
   for (const Part &part : parts) {

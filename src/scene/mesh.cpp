@@ -161,7 +161,7 @@ Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bo
 
   Geometry out;
   out.body = lod(solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE);
-  const bool has_inside = cprox_body_is_solid(out.body.get());
+  const bool has_inside = cprox_body_get_info(out.body.get()).is_solid;
   out.surface = has_inside ? lod(CPROX_MESH_SURFACE) : out.body;
   out.hull = hull.body;
   out.hull_excess = hull.excess;

@@ -46,7 +46,7 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted)
   for (const std::size_t k : asked.items) {
     number[k] = static_cast<std::int32_t>(asked.targets.size());
     const PlacedShape &shape = *items[k].shape;
-    const bool by_hull = shape.is_mesh && cprox_body_is_solid(shape.target.body);
+    const bool by_hull = shape.is_mesh && cprox_body_get_info(shape.target.body).is_solid;
     asked.targets.push_back(by_hull ? shape.hull : shape.target);
     asked.proven.push_back(shape.surface);
     rounding = std::max(rounding, shape.rounding + (by_hull ? shape.hull_excess : 0.0));
@@ -113,7 +113,7 @@ void nameSides(const Asked &asked, const Query &query, Answer &answer) {
     answer.b = *item.owner;
     result.obstacle_index = item.part;
     answer.by_hull =
-        answer.by_hull || (item.shape->is_mesh && (coarse || cprox_body_is_solid(item.shape->target.body)));
+        answer.by_hull || (item.shape->is_mesh && (coarse || cprox_body_get_info(item.shape->target.body).is_solid));
   }
   if (answer.by_hull) answer.message = "the nearest shape is a mesh: its convex hull answers for it";
 }

@@ -60,9 +60,9 @@ PlacedShape place(const Geometry &geometry, const Eigen::Isometry3d &outer, cons
   out.is_open = geometry.is_open;
 
   // How far the body extends from its position.
-  cprox_vec3 centre;
-  double radius;
-  cprox_body_bounding_sphere(body.get(), &centre, &radius);
+  const cprox_body_info info = cprox_body_get_info(body.get());
+  const cprox_vec3 centre = info.centre;
+  const double radius = info.radius;
   const double reach = toEigen(centre).norm() + radius;
 
   // Rounding: sums of two translations, and the turn of what is rotated.

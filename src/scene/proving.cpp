@@ -18,7 +18,7 @@ double claimOf(const Query &query, const cprox_result &result) {
 }
 
 cprox_obstacle targetOf(const cprox_body *body) {
-  return cprox_obstacle_at(body, cprox_pose_identity());
+  return cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
 }
 
 } // namespace
@@ -47,7 +47,7 @@ void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<
 std::string unprovableBody(const std::string &who, const cprox_body *body) {
   const cprox_obstacle target = targetOf(body);
   if (cprox_obstacle_describe(&target, nullptr, 0) > 0) return {};
-  return who + " is of a kind that has no certificates: " + cprox_body_kind_name(cprox_body_get_kind(body));
+  return who + " is of a kind that has no certificates: " + cprox_body_kind_name(cprox_body_get_info(body).kind);
 }
 
 std::string wordOf(const std::string &text) {

@@ -175,8 +175,9 @@ void sayModel(cprox_lod max_lod, const PlacedShape &shape, Answer &answer) {
   } else if (shape.is_open) {
     answer.message = "the nearest shape is a mesh that is not closed: its surface alone counts";
   } else {
-    answer.message = cprox_body_is_solid(shape.target.body) ? "the nearest shape is a closed mesh: its inside counts"
-                                                            : "the nearest shape is a mesh: its surface alone counts";
+    answer.message = cprox_body_get_info(shape.target.body).is_solid
+                         ? "the nearest shape is a closed mesh: its inside counts"
+                         : "the nearest shape is a mesh: its surface alone counts";
   }
 }
 

@@ -131,7 +131,7 @@ static void compare(attack *t, rng *r, const coaxial *c, const cprox_result *res
 static void one_case(attack *t, rng *r) {
   static coaxial c;
   coaxial_make(r, &c);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = c.size * rng_log_uniform(r, 1e-9, 1e-1);
   const bool carried = rng_index(r, 8) == 0, swapped = rng_index(r, 2) == 0;
   attack_kind(t, "%s, %s%s", shape_name(&c.a), shape_name(&c.b), carried ? ", carried" : "");

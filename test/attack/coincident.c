@@ -138,7 +138,7 @@ static long double soonest_way_out(rng *r, const overlap *o) {
 }
 
 static void check_pair(attack *t, rng *r, const overlap *o) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = o->size * rng_log_uniform(r, 1e-10, 1e-2);
   const bool swapped = rng_index(r, 2) == 0;
   const cprox_obstacle a = cprox_obstacle_at(o->a.body, o->pa), b = cprox_obstacle_at(o->b.body, o->pb);
@@ -172,7 +172,7 @@ static void check_carried(attack *t, rng *r, const overlap *o) {
   cprox_curve *curve = NULL;
   cprox_status status = cprox_body_create_compound(&part, &still, 1, t->ws, &turned);
   if (status >= 0) status = curve_from(describe_bezier(points, 3, 0.0, 1.0), t->ws, &curve);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-9 * o->size;
   options.max_nodes = 2000;
   cprox_result result = {0};

@@ -426,7 +426,7 @@ static cprox_options some_options(rng *r, double scale) {
   const double epsilons[] = {0.0, 1e-9 * scale, 1e-6 * scale, 1e-6, 1e-3 * scale, 0.3 * scale, 1e3 * scale};
   const double relative[] = {0.0, 0.0, 1e-6, 1e-2, 0.999, 10.0};
   const uint32_t budgets[] = {2000, 2000, 2000, 20000, 200, 10, 1};
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilons[rng_index(r, 7)];
   options.relative_epsilon = relative[rng_index(r, 6)];
   options.max_nodes = budgets[rng_index(r, 7)];

@@ -71,9 +71,9 @@ static void along_curve(attack *a, rng *r, double epsilon) {
   cprox_curve *curve = NULL;
   if (curve_from(describe_bezier(points, n, 0.0, 1.0), a->ws, &curve) != CPROX_OK)
     attack_fail(a, "%s", cprox_workspace_error(a->ws));
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
-  cprox_pose pose[2] = {cprox_pose_identity(), rng_pose(r, 0.5)};
+  cprox_pose pose[2] = {CPROX_POSE_IDENTITY, rng_pose(r, 0.5)};
   cprox_result x;
   const cprox_status status = cprox_time_of_contact(cprox_body_along(s[0].body, curve),
                                                     cprox_obstacle_at(s[1].body, pose[1]), &options, a->ws, &x);
@@ -98,7 +98,7 @@ static void at_velocities(attack *a, rng *r, double epsilon) {
   }
   if (rng_index(r, 2))
     from[0].velocity = vec_add(from[1].velocity, vec_sub(from[1].from.pose.position, from[0].from.pose.position));
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   cprox_result x;
   const cprox_status status = cprox_translating_contact(from[0], from[1], 2.0, &options, a->ws, &x);
@@ -154,7 +154,7 @@ static void screw(attack *a, rng *r, double epsilon) {
     attack_fail(a, "%s", cprox_workspace_error(a->ws));
   const double angle = rng_index(r, 2) ? 0.0 : rng_uniform(r, -1.5, 1.5);
   cprox_pose pose[2] = {geometry.pose, {{0, 0, 0}, {cos(angle), 0, 0, sin(angle)}}};
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   cprox_result x;
   const cprox_status status = cprox_time_of_contact(cprox_robot_along(motion, NULL, 0),

@@ -205,7 +205,7 @@ static void ask(attack *a, rng *r, const scene *c, bool must) {
   if (c->rider) mover = cprox_body_along(c->rider, c->curve);
   cprox_obstacle target = cprox_obstacle_at(c->body, c->pose);
   if (c->synchronized) target = cprox_synchronized(cprox_body_along(c->body, c->clock)), target.pose = c->pose;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = rng_log_uniform(r, 1e-10, 1e-4);
   vec3l corner[2 * MOST_CORNERS];
   const size_t n = corners_of(c, corner);
@@ -235,7 +235,7 @@ static void ask(attack *a, rng *r, const scene *c, bool must) {
  * face lies in that plane. Its pose shifts the body, so that the face is where the curve is. */
 static cprox_status make_sliding(attack *a, rng *r, cprox_body **body, cprox_pose *pose) {
   const vec3 corner[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {rng_uniform(r, -1, 1), rng_uniform(r, -1, 1), -1}};
-  *pose = cprox_pose_identity();
+  *pose = CPROX_POSE_IDENTITY;
   const size_t kind = rng_index(r, 6);
   if (kind < 2) return cprox_body_create_polytope(corner, kind == 0 ? 4 : 3, a->ws, body);
   pose->position = vec(0.25, 0.25, -0.5);
@@ -262,7 +262,7 @@ static void slide(attack *a, rng *r) {
       curve_from(describe_bezier(points, n, 0.0, 1.0), a->ws, &curve) != CPROX_OK)
     attack_fail(a, "%s", cprox_workspace_error(a->ws));
   const cprox_obstacle target = cprox_obstacle_at(body, pose);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = rng_log_uniform(r, 1e-12, 1e-3);
   options.max_nodes = 200000;
   for (int query_type = 0; query_type < 4; query_type++) {

@@ -186,13 +186,13 @@ static void check_curve(attack *t, rng *r, const hull *h, vec3 p, quad wanted) {
   const vec3 points[3] = {vec_sub(p, along), p, vec_add(p, along)};
   cprox_curve *curve = NULL;
   cprox_status status = curve_from(describe_bezier(points, 3, 0.0, 1.0), t->ws, &curve);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-9 * h->size;
   options.max_nodes = 2000;
   cprox_result result = {0};
   if (status >= 0)
-    status = cprox_collision(cprox_point_along(curve), cprox_obstacle_at(h->body, cprox_pose_identity()), &options,
-                             t->ws, &result);
+    status = cprox_collision(cprox_point_along(curve), cprox_obstacle_at(h->body, CPROX_POSE_IDENTITY), &options, t->ws,
+                             &result);
   attack_check(t, status == CPROX_OK && result.verdict == CPROX_VERDICT_VIOLATED,
                "curve: [%.17g, %.17g] after %u nodes, depth %.17g", result.lower, result.upper, (unsigned)result.nodes,
                (double)-wanted);

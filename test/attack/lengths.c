@@ -77,7 +77,7 @@ typedef struct setting {
 } setting;
 
 static bool setting_make(attack *a, rng *r, setting *s) {
-  *s = (setting){.a.kind = rng_index(r, KINDS), .b.kind = rng_index(r, KINDS), .options = cprox_options_default()};
+  *s = (setting){.a.kind = rng_index(r, KINDS), .b.kind = rng_index(r, KINDS), .options = CPROX_OPTIONS_DEFAULT};
   const double away = length(r), step = length(r);
   s->a.size = length(r), s->b.size = length(r);
   s->margin = rng_index(r, 3) ? 0.0 : length(r);

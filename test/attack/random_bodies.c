@@ -280,7 +280,7 @@ static void make_mesh(attack *a, rng *r, double scale, random_body *b, bool lod)
   cprox_body *mesh = NULL;
   cprox_body_create_mesh(f->points, f->n, (const uint32_t(*)[3])f->triangles, f->m,
                          solid && !lod ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE, SIZE_MAX, a->ws, &mesh);
-  f->full = mesh && solid && !lod && cprox_body_is_solid(mesh);
+  f->full = mesh && solid && !lod && cprox_body_get_info(mesh).is_solid;
   snprintf(b->name, sizeof b->name, lod ? "lod" : f->full ? "solid mesh" : "mesh");
   if (!lod) {
     b->body = mesh;
@@ -299,7 +299,7 @@ static void make_compound(attack *a, rng *r, double scale, random_body *b) {
   const size_t n = 1 + rng_index(r, BODY_PARTS);
   b->depth = true;
   for (size_t i = 0; i < n; i++) {
-    random_body one = {.n_parts = 1, .parts = {{.pose = cprox_pose_identity()}}};
+    random_body one = {.n_parts = 1, .parts = {{.pose = CPROX_POSE_IDENTITY}}};
     make_kind(a, r, rng_index(r, 8), scale, &one);
     parts[i] = b->owned[i] = one.body;
     if (!one.body) return;
@@ -369,7 +369,7 @@ static double extent_of(const random_body *b, double scale) {
 void body_make(attack *a, rng *r, size_t kind, double scale, random_body *b) {
   memset(b, 0, sizeof *b);
   b->n_parts = 1;
-  for (size_t i = 0; i < BODY_PARTS; i++) b->parts[i].pose = cprox_pose_identity();
+  for (size_t i = 0; i < BODY_PARTS; i++) b->parts[i].pose = CPROX_POSE_IDENTITY;
   make_kind(a, r, kind, scale, b);
   b->convex = kind < 13 || kind > 22;
   b->carried = kind < 15 || kind > 22;

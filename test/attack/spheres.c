@@ -24,7 +24,7 @@ static void one_case(attack *a, rng *r) {
   const long double apart = ref_norm(ref_sub(ref_vec(pose[0].position), ref_vec(pose[1].position)));
   const long double truth = apart - (long double)radius[0] - (long double)radius[1];
   const long double room = 8.0L * LDBL_EPSILON * (long double)(scale + away);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = rng_index(r, 2) ? 0.0 : 1e-6 * scale;
   cprox_result result;
   const cprox_status status =

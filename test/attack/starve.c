@@ -85,11 +85,11 @@ enum { N_BODIES = 19, N_CURVES = 13, N_OTHERS = 9 };
 
 static cprox_status make_body(size_t which, const material *m, cprox_workspace *ws, cprox_body **b) {
   const cprox_body *parts[2] = {m->ball, m->hull};
-  const cprox_pose poses[2] = {cprox_pose_identity(), cprox_pose_identity()};
+  const cprox_pose poses[2] = {CPROX_POSE_IDENTITY, CPROX_POSE_IDENTITY};
   const double planes[4][4] = {{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}, {1, 1, 1, -1}};
   const cprox_implicit_description d = {.planes = planes, .n_planes = 4};
   const uint32_t changed[2] = {1, 3};
-  const cprox_affine map = cprox_affine_identity();
+  const cprox_affine map = {.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   vec3 high[POINTS];
   for (int i = 0; i < POINTS; i++) high[i] = vec_add(m->points[i], vec(1, 1, 1));
   switch (which) {
@@ -141,8 +141,8 @@ static cprox_status make_curve(size_t which, const material *m, cprox_workspace 
 }
 
 static cprox_status make_other(size_t which, const material *m, cprox_workspace *ws, handle *h) {
-  const cprox_obstacle targets[2] = {cprox_obstacle_at(m->hull, cprox_pose_identity()),
-                                     cprox_obstacle_at(m->mesh, cprox_pose_identity())};
+  const cprox_obstacle targets[2] = {cprox_obstacle_at(m->hull, CPROX_POSE_IDENTITY),
+                                     cprox_obstacle_at(m->mesh, CPROX_POSE_IDENTITY)};
   switch (which) {
     case 0: return cprox_obstacles_create(targets, 2, CPROX_INDEX_BVH, ws, &h->set);
     case 1: return cprox_obstacles_create(targets, 2, CPROX_INDEX_BATCH, ws, &h->batch);
@@ -322,7 +322,7 @@ static void one_case(attack *a, rng *r) {
     return;
   }
   if (scene_make(a, r, &s)) {
-    cprox_options o = cprox_options_default();
+    cprox_options o = CPROX_OPTIONS_DEFAULT;
     o.epsilon = 1e-3 * s.scale;
     o.max_nodes = 100;
     starve_query(a, &s, rng_index(r, N_QUERIES), &o);

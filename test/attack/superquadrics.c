@@ -105,7 +105,7 @@ static void ask_point(attack *a, rng *r) {
   c.ends[1] = c.ends[0];
   cprox_body *point = NULL;
   cprox_body_create_point(c.ends[0], a->ws, &point);
-  const cprox_obstacle standing = cprox_obstacle_at(point, cprox_pose_identity()),
+  const cprox_obstacle standing = cprox_obstacle_at(point, CPROX_POSE_IDENTITY),
                        body = cprox_obstacle_at(c.body, c.pose);
   const cprox_options options = accurate(rng_index(r, 2) ? 0.0 : 1e-9);
   const bool swapped = rng_index(r, 2);

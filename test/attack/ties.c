@@ -43,7 +43,7 @@ static double ask(attack *a, const problem *p, cprox_gradient *gradient) {
   cprox_obstacle target =
       p->synchronized ? cprox_synchronized(second) : cprox_with_margin(cprox_obstacle_at(p->body, p->pose), p->margin);
   target.pose = p->pose;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = gradient ? 1e-9 : 1e-12;
   options.signed_distance = p->is_signed;
   cprox_result result = {.upper = NAN};
@@ -226,7 +226,7 @@ static void inside(attack *a, rng *r, problem *p) {
 static void level(attack *a, rng *r, problem *p) {
   attack_kind(a, "level interval or two dips");
   p->body = make_body(a, r, 0, 4.0);
-  p->pose = cprox_pose_identity();
+  p->pose = CPROX_POSE_IDENTITY;
   p->splines = true;
   p->n = 5;
   const double high = rng_uniform(r, 2.5, 3.0), low = rng_uniform(r, 2.1, 2.4), length = rng_log_uniform(r, 1e-7, 0.3),

@@ -19,7 +19,7 @@ typedef struct meeting {
 
 static meeting meeting_make(attack *a, rng *r) {
   static const double origins[] = {0.0, 1.7e9, -1.0, 1e3, -1e-3, 1e15};
-  meeting m = {.radius = rng_uniform(r, 0.0, 0.2), .options = cprox_options_default()};
+  meeting m = {.radius = rng_uniform(r, 0.0, 0.2), .options = CPROX_OPTIONS_DEFAULT};
   m.t0 = origins[rng_index(r, 6)] * rng_uniform(r, 0.5, 1.0);
   m.t1 = m.t0 + rng_log_uniform(r, 0.1, 100.0) * fmax(1.0, 1e-12 * fabs(m.t0));
   m.from = rng_uniform(r, -2.0, -0.5), m.to = rng_uniform(r, 0.5, 2.0);
@@ -55,7 +55,7 @@ static void check(attack *a, const meeting *m, const char *what, cprox_status st
 
 static void one_case(attack *a, rng *r) {
   const meeting m = meeting_make(a, r);
-  const bool box = cprox_body_get_kind(m.body) == CPROX_BOX;
+  const bool box = cprox_body_get_info(m.body).kind == CPROX_BOX;
   const cprox_obstacle target = target_of(&m, box);
   cprox_result result = {0};
   const size_t kind = rng_index(r, 3);
@@ -69,14 +69,11 @@ static void one_case(attack *a, rng *r) {
           &result);
     cprox_curve_free(curve);
   } else if (kind == 1 && box) {
-    const cprox_link link = {.parent = -1,
-                             .type = CPROX_JOINT_PRISMATIC,
-                             .origin = cprox_pose_identity(),
-                             .axis = {1, 0, 0},
-                             .multiplier = 1};
+    const cprox_link link = {
+        .parent = -1, .type = CPROX_JOINT_PRISMATIC, .origin = CPROX_POSE_IDENTITY, .axis = {1, 0, 0}, .multiplier = 1};
     cprox_body *point = NULL;
     cprox_body_create_point(vec(0, 0, 0), a->ws, &point);
-    const cprox_link_geometry geometry = {.body = point, .pose = cprox_pose_identity(), .margin = m.radius};
+    const cprox_link_geometry geometry = {.body = point, .pose = CPROX_POSE_IDENTITY, .margin = m.radius};
     const int32_t variable = 0;
     const cprox_waypoint points[2] = {{.time = m.t0, .positions = &m.from}, {.time = m.t1, .positions = &m.to}};
     cprox_robot *robot = NULL;

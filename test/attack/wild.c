@@ -130,7 +130,7 @@ static void make_implicit(wild *w, cprox_body **body) {
                                         .n_planes = rng_index(w->r, 2) ? 0 : count(w, 4),
                                         .quadrics = (const double(*)[10])quadric,
                                         .n_quadrics = rng_index(w->r, 2)};
-  cprox_affine map = cprox_affine_identity();
+  cprox_affine map = {.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   for (int k = 0; k < 9; k++)
     if (rng_index(w->r, 4) == 0) map.linear[k] += number(w);
   map.translation = point(w);
@@ -207,9 +207,7 @@ static void join(wild *w) {
   else
     made(w, "lod", cprox_body_create_lod(parts[0], size(w), parts[1], w->ws, &joined), &joined);
   if (joined) {
-    vec3 centre;
-    double radius;
-    cprox_body_bounding_sphere(joined, &centre, &radius);
+    const double radius = cprox_body_get_info(joined).radius;
     attack_check(w->a, radius >= 0.0, "bounding sphere of %g", radius);
   }
   cprox_body_free(joined);
@@ -332,7 +330,7 @@ static void chain(wild *w) {
 /* ---- queries ---- */
 
 static cprox_options options(wild *w) {
-  cprox_options o = cprox_options_default();
+  cprox_options o = CPROX_OPTIONS_DEFAULT;
   o.max_nodes = (uint32_t)rng_index(w->r, 300);
   if (rng_index(w->r, 3) == 0) o.epsilon = size(w);
   if (rng_index(w->r, 3) == 0) o.relative_epsilon = size(w);

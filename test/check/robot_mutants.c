@@ -25,7 +25,7 @@ typedef struct tally {
 /* The distance of a query, and a certificate of it or of a verdict about it; false where there is none. */
 static bool ask(const robot_query *q, rng *r, cprox_workspace *ws, cprox_certificate *c, double interval[2],
                 bytes *genuine) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-9;
   cprox_result result;
   if (distance_of_list(q->mover, q->targets, q->n, &options, ws, &result, NULL) < 0) return false;
@@ -34,10 +34,10 @@ static bool ask(const robot_query *q, rng *r, cprox_workspace *ws, cprox_certifi
   const double delta = rng_index(r, 3) ? result.upper * rng_uniform(r, 0.3, 1.2) : fmax(result.lower - 1e-6, 0.0);
   if (tolerance_of_list(q->mover, q->targets, q->n, delta, &options, ws, &result, NULL) < 0) return false;
   if (certify_of_list(q->mover, q->targets, q->n, delta, &result, &options, ws, c) != CPROX_OK) return false;
-  genuine->n = cprox_certificate_size(c);
+  genuine->n = cprox_certificate_get_info(c).size;
   if (genuine->n == 0 || genuine->n + 16 > MOST_BYTES) return false;
   memset(genuine->at, 0, sizeof genuine->at);
-  memcpy(genuine->at, cprox_certificate_bytes(c), genuine->n);
+  memcpy(genuine->at, cprox_certificate_get_info(c).bytes, genuine->n);
   return true;
 }
 

@@ -118,7 +118,7 @@ static long double least_distance(const sample_problem *p, double t, rng *r) {
 
 /* Are both ends right? What is not is told on standard output. */
 static bool examine(const sample_problem *p, rng *r, cprox_workspace *ws, size_t number, long double *tightest) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = rng_index(r, 2) ? 0.0 : 1e-6 * p->scale;
   cprox_result result;
   const cprox_mover along = cprox_tube_along(p->curve, p->offset);

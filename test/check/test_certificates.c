@@ -26,7 +26,7 @@ static cprox_status ask(const asked *q, double delta, const cprox_options *optio
 
 /* Asks the distance and two tolerances about it; every certificate is checked. */
 static void examine(const asked *q, cprox_workspace *ws, cprox_certificate *c, tally *sum) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-6 * q->scale;
   options.certificate = c;
   double distance = 0.0;
@@ -38,24 +38,24 @@ static void examine(const asked *q, cprox_workspace *ws, cprox_certificate *c, t
     if (i == 0) distance = r.lower;
     sum->asked++;
     const bool open = i == 0 ? r.lower == 0.0 && r.upper == 0.0 : r.upper > delta && r.lower <= delta;
-    if (cprox_certificate_size(c) == 0) {
+    if (cprox_certificate_get_info(c).size == 0) {
       sum->none++;
       if (!open) fail_msg("no certificate of lower %.17g over %.17g: %s", r.lower, delta, cprox_workspace_error(ws));
       continue;
     }
-    const finding found = asked_check(q, cprox_certificate_bytes(c), cprox_certificate_size(c));
+    const finding found = asked_check(q, cprox_certificate_get_info(c).bytes, cprox_certificate_get_info(c).size);
     if (found.fault)
-      fail_msg("refused: %s (lower %.17g, delta %.17g)", found.fault, r.lower, cprox_certificate_delta(c));
-    assert_int_equal(found.claim, cprox_certificate_claim(c));
-    assert_true(found.delta == cprox_certificate_delta(c));
+      fail_msg("refused: %s (lower %.17g, delta %.17g)", found.fault, r.lower, cprox_certificate_get_info(c).delta);
+    assert_int_equal(found.claim, cprox_certificate_get_info(c).claim);
+    assert_true(found.delta == cprox_certificate_get_info(c).delta);
     sum->apart += found.claim == CLAIM_APART;
     if (i == 0 && found.claim == CLAIM_APART && found.delta < r.lower - 1e-12 * q->scale)
       fail_msg("distance > %.17g is proven, but not > %.17g", found.delta, r.lower);
     sum->near += found.claim == CLAIM_NEAR;
     if (found.claim == CLAIM_APART && i == 1) {
-      sum->bytes += cprox_certificate_size(c);
+      sum->bytes += cprox_certificate_get_info(c).size;
       sum->leaves += found.leaves;
-      if (cprox_certificate_size(c) > sum->largest) sum->largest = cprox_certificate_size(c);
+      if (cprox_certificate_get_info(c).size > sum->largest) sum->largest = cprox_certificate_get_info(c).size;
     }
   }
 }
@@ -107,7 +107,7 @@ static double seen(const asked *q, size_t target, cprox_workspace *ws) {
     const double at = fmin(t0 + (t1 - t0) * i / SAMPLES, t1);
     assert_int_equal(cprox_curve_evaluate(q->mover.curve, at, ws, &p, NULL, NULL), CPROX_OK);
     const vec3l y = ref_to_local(&t->pose, ref_vec(p));
-    const bool inside = cprox_body_is_solid(mesh->mesh) && fabsl(mesh_winding(&mesh->surface, y)) > 0.5L;
+    const bool inside = cprox_body_get_info(mesh->mesh).is_solid && fabsl(mesh_winding(&mesh->surface, y)) > 0.5L;
     const double d = inside ? 0.0 : (double)mesh_distance(&mesh->surface, y);
     least = fmin(least, fmax(d - q->radius - t->margin, 0.0));
   }
@@ -133,7 +133,7 @@ static bool is_same(const cprox_result *a, const cprox_result *b) {
 
 /* A query with and without a certificate: the answer is the same, and what is proven is so. */
 static void examine_mesh(const asked *q, double delta, cprox_workspace *ws, cprox_certificate *c, tally *sum) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-6 * q->scale;
   cprox_result plain, r;
   assert_true(ask(q, delta, &options, ws, &plain) >= 0);
@@ -142,14 +142,14 @@ static void examine_mesh(const asked *q, double delta, cprox_workspace *ws, cpro
   assert_true(is_same(&plain, &r));
   sum->asked++;
   const cprox_result hulls = hulls_of(q, options, ws);
-  if (cprox_certificate_size(c) == 0) {
+  if (cprox_certificate_get_info(c).size == 0) {
     const double wanted = delta < 0.0 ? 0.0 : delta;
     if (r.lower > wanted && hulls.lower > wanted)
       fail_msg("no certificate of lower %.17g, by hulls %.17g, over %.17g", r.lower, hulls.lower, wanted);
     sum->none++;
     return;
   }
-  const finding found = asked_check(q, cprox_certificate_bytes(c), cprox_certificate_size(c));
+  const finding found = asked_check(q, cprox_certificate_get_info(c).bytes, cprox_certificate_get_info(c).size);
   if (found.fault) fail_msg("refused: %s", found.fault);
   sum->apart += found.claim == CLAIM_APART;
   sum->near += found.claim == CLAIM_NEAR;
@@ -177,7 +177,7 @@ CASE(proofs_of_meshes_hold_of_their_triangles_and_leave_answers_as_they_are) {
     asked_random(&q, &r, (asked_kinds){.meshes = true, .bezier_only = i % 2 == 0}, 1.0, i % 3 ? 1.0 : 0.1, ws);
     for (size_t k = 0; k < q.n && i % 2; k++)
       if (q.mesh[k].body) q.targets[k].pose.position = vec_add(q.mover.points[0], rng_in_cube(&r, 0.3));
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     const double distance = hulls_of(&q, options, ws).lower;
     cprox_result exact;
     ask(&q, -1.0, &options, ws, &exact);
@@ -204,7 +204,7 @@ CASE(that_a_hull_is_near_proves_nothing_of_its_mesh) {
   for (size_t i = 0; i < test_cases(100); i++) {
     asked q;
     asked_random(&q, &r, (asked_kinds){.meshes = true}, 1.0, 1.0, ws);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.certificate = c;
     cprox_obstacle lods[QUERY_MAX_TARGETS];
     for (size_t k = 0; k < q.n; k++) {
@@ -214,8 +214,9 @@ CASE(that_a_hull_is_near_proves_nothing_of_its_mesh) {
     cprox_result by_hull;
     ask(&q, 2.0, &options, ws, &by_hull);
     for (size_t k = 0; k < q.n; k++) q.targets[k] = lods[k];
-    if (cprox_certificate_claim(c) == CPROX_CLAIM_NEAR && q.mesh[by_hull.obstacle_index].body) {
-      assert_int_equal(asked_check(&q, cprox_certificate_bytes(c), cprox_certificate_size(c)).claim, CLAIM_NONE);
+    if (cprox_certificate_get_info(c).claim == CPROX_CLAIM_NEAR && q.mesh[by_hull.obstacle_index].body) {
+      assert_int_equal(asked_check(&q, cprox_certificate_get_info(c).bytes, cprox_certificate_get_info(c).size).claim,
+                       CLAIM_NONE);
       tried++;
     }
     asked_free(&q);
@@ -249,13 +250,13 @@ CASE(what_a_check_takes_is_bounded_by_what_it_is_given) {
   for (size_t i = 0; i < test_cases(60); i++) {
     asked q;
     asked_random(&q, &r, (asked_kinds){.curve_target = i % 3 == 0, .meshes = i % 3 == 1}, 1.0, 1.0, ws);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.certificate = c;
     cprox_result result;
     ask(&q, -1.0, &options, ws, &result);
-    genuine.n = cprox_certificate_size(c);
+    genuine.n = cprox_certificate_get_info(c).size;
     if (genuine.n > 0 && genuine.n + 16 < MOST_BYTES) {
-      memcpy(genuine.at, cprox_certificate_bytes(c), genuine.n);
+      memcpy(genuine.at, cprox_certificate_get_info(c).bytes, genuine.n);
       const finding accepted = asked_check(&q, genuine.at, genuine.n);
       assert_null(accepted.fault);
       for (int k = 0; k < MUTANTS; k++) {

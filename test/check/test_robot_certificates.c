@@ -48,7 +48,7 @@ static double cpu_milliseconds(void) {
 static void examine(const cprox_mover *along, const cprox_obstacle *targets, size_t n, const cprox_certificate *c,
                     const cprox_result *r, double delta, bool verdict, const char *name, tally *sum) {
   sum->asked++;
-  if (cprox_certificate_size(c) == 0) {
+  if (cprox_certificate_get_info(c).size == 0) {
     sum->none++;
     /* not decided, or in touch: of flat bodies no point lies inside */
     const bool open = r->upper == 0.0 || (verdict && r->lower <= delta + 1e-9 && r->upper > delta - 1e-9);
@@ -58,17 +58,19 @@ static void examine(const cprox_mover *along, const cprox_obstacle *targets, siz
   }
   robot_text text = robot_text_of(along, targets, n, ws);
   const double begin = cpu_milliseconds();
-  const finding found = robot_text_check(&text, cprox_certificate_bytes(c), cprox_certificate_size(c));
+  const finding found =
+      robot_text_check(&text, cprox_certificate_get_info(c).bytes, cprox_certificate_get_info(c).size);
   const double milliseconds = cpu_milliseconds() - begin;
   robot_text_free(&text);
   if (found.fault)
-    fail_msg("%s: refused: %s (lower %.17g, delta %.17g)", name, found.fault, r->lower, cprox_certificate_delta(c));
-  assert_int_equal(found.claim, cprox_certificate_claim(c));
-  assert_true(found.delta == cprox_certificate_delta(c));
+    fail_msg("%s: refused: %s (lower %.17g, delta %.17g)", name, found.fault, r->lower,
+             cprox_certificate_get_info(c).delta);
+  assert_int_equal(found.claim, cprox_certificate_get_info(c).claim);
+  assert_true(found.delta == cprox_certificate_get_info(c).delta);
   sum->apart += found.claim == CLAIM_APART;
   sum->near += found.claim == CLAIM_NEAR;
   if (found.claim != CLAIM_APART || sum->n == MOST_ANSWERS) return;
-  sum->bytes[sum->n] = (double)cprox_certificate_size(c);
+  sum->bytes[sum->n] = (double)cprox_certificate_get_info(c).size;
   sum->tries[sum->n] = (double)found.leaves;
   sum->milliseconds[sum->n++] = milliseconds;
 }
@@ -157,10 +159,11 @@ CASE(meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are) {
     assert_true(distance_of_list(q.mover, q.targets, q.n, &options, ws, &with, NULL) >= 0);
     assert_true(with.status == plain.status && with.lower == plain.lower && with.upper == plain.upper);
     assert_true(with.t == plain.t && with.lod == plain.lod && with.nodes == plain.nodes);
-    none += cprox_certificate_size(c) == 0;
-    if (cprox_certificate_size(c) > 0) {
+    none += cprox_certificate_get_info(c).size == 0;
+    if (cprox_certificate_get_info(c).size > 0) {
       robot_text text = robot_text_of(&q.mover, q.targets, q.n, ws);
-      const finding found = robot_text_check(&text, cprox_certificate_bytes(c), cprox_certificate_size(c));
+      const finding found =
+          robot_text_check(&text, cprox_certificate_get_info(c).bytes, cprox_certificate_get_info(c).size);
       robot_text_free(&text);
       if (found.fault) fail_msg("robot %zu: refused: %s", i, found.fault);
       if (found.claim == CLAIM_APART ? found.delta >= plain.upper : found.delta < plain.lower)
@@ -192,12 +195,9 @@ static size_t put_number(unsigned char *to, double x) {
 static finding check_slide(double delta, double length) {
   cprox_body *ball;
   assert_int_equal(cprox_body_create_sphere(0.25, ws, &ball), CPROX_OK);
-  const cprox_link link = {.parent = -1,
-                           .type = CPROX_JOINT_PRISMATIC,
-                           .origin = cprox_pose_identity(),
-                           .axis = {1, 0, 0},
-                           .multiplier = 1.0};
-  const cprox_link_geometry geometry = {.body = ball, .pose = cprox_pose_identity()};
+  const cprox_link link = {
+      .parent = -1, .type = CPROX_JOINT_PRISMATIC, .origin = CPROX_POSE_IDENTITY, .axis = {1, 0, 0}, .multiplier = 1.0};
+  const cprox_link_geometry geometry = {.body = ball, .pose = CPROX_POSE_IDENTITY};
   const double at[2] = {0.0, 1.0};
   const cprox_waypoint points[2] = {{.time = 0.0, .positions = &at[0]}, {.time = 1.0, .positions = &at[1]}};
   const int32_t variable = 0;
@@ -213,7 +213,7 @@ static finding check_slide(double delta, double length) {
                                                                    .interpolation = CPROX_LINEAR},
                                        ws, &motion),
                    CPROX_OK);
-  cprox_pose there = cprox_pose_identity();
+  cprox_pose there = CPROX_POSE_IDENTITY;
   there.position.x = 2.0;
   const cprox_obstacle target = cprox_obstacle_at(ball, there);
   const cprox_mover along = cprox_robot_along(motion, NULL, 0);

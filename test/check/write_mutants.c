@@ -30,7 +30,7 @@ static FILE *open_file(const char *folder, size_t i, const char *what) {
 /* A distance, or a tolerance below or above it; false where there is no certificate. */
 static bool ask(const asked *q, rng *r, cprox_workspace *ws, cprox_certificate *c, double interval[2], bytes *genuine) {
   const cprox_mover along = cprox_tube_along(q->mover.curve, q->radius);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-12 * q->scale;
   options.certificate = c;
   cprox_result result;
@@ -41,10 +41,10 @@ static bool ask(const asked *q, rng *r, cprox_workspace *ws, cprox_certificate *
     const double delta = result.lower * rng_uniform(r, 0.3, 1.3);
     if (tolerance_of_list(along, q->targets, q->n, delta, &options, ws, &result, NULL) < 0) return false;
   }
-  genuine->n = cprox_certificate_size(c);
+  genuine->n = cprox_certificate_get_info(c).size;
   if (genuine->n == 0 || genuine->n + 16 > MOST_BYTES) return false;
   memset(genuine->at, 0, sizeof genuine->at);
-  memcpy(genuine->at, cprox_certificate_bytes(c), genuine->n);
+  memcpy(genuine->at, cprox_certificate_get_info(c).bytes, genuine->n);
   return true;
 }
 

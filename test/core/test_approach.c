@@ -116,7 +116,7 @@ CASE(grazing_rims_and_parallel_edges_lie_in_the_interval) {
     const vec3 n = symmetric ? near_axis(&r, rng_index(&r, 2) ? &pa : &pb, tilt) : shape_telling_direction(&r, &b, &pb);
     const double gap = rng_log_uniform(&r, 1e-15, 10.0), tolerance = shape_place(&a, &pa, &b, &pb, n, gap);
 
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     const double sizes = a.body->ball_radius + b.body->ball_radius + vec_norm(vec_sub(pa.position, pb.position));
     options.epsilon = 400.0 * ROUND_U * (sizes + vec_norm(a.body->ball_centre) + vec_norm(b.body->ball_centre));
     options.relative_epsilon = 1e-9;
@@ -213,7 +213,7 @@ static double looks_of(uint64_t seed, cprox_body_kind kind_a, cprox_body_kind ki
     const cprox_pose pa = rng_pose(&r, 0.0);
     cprox_pose pb = rng_pose(&r, 0.0);
     shape_place(&a, &pa, &b, &pb, shape_telling_direction(&r, &b, &pb), rng_log_uniform(&r, 1e-6, 1.0));
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 0.0;
     options.relative_epsilon = 1e-9;
     cprox_result result;

@@ -51,13 +51,11 @@ CASE(a_workspace_grows_and_keeps_what_it_holds) {
   const size_t live = allocations_live();
   cprox_workspace *w = cprox_workspace_create();
   assert_non_null(w);
-  const size_t empty = cprox_workspace_bytes(w);
   for (int b = 0; b < WORKSPACE_BUFFERS; b++) {
     unsigned char *memory = workspace_reserve(w, (workspace_buffer)b, 100);
     assert_non_null(memory);
     memset(memory, b + 1, 100);
   }
-  assert_int_equal(cprox_workspace_bytes(w), empty + 100 * WORKSPACE_BUFFERS);
   for (int b = 0; b < WORKSPACE_BUFFERS; b++) {
     const unsigned char *memory = workspace_reserve(w, (workspace_buffer)b, 1000);
     for (size_t i = 0; i < 100; i++) assert_int_equal(memory[i], b + 1);
@@ -85,12 +83,10 @@ CASE(a_workspace_survives_memory_that_is_out) {
   cprox_workspace *w = cprox_workspace_create();
   char *memory = workspace_reserve(w, WORKSPACE_POINTS, 8);
   memcpy(memory, "as it was", 8);
-  const size_t bytes = cprox_workspace_bytes(w);
   allocations_fail_after(0);
   void *more = workspace_reserve(w, WORKSPACE_POINTS, 1 << 20);
   allocations_allow();
   assert_null(more);
-  assert_int_equal(cprox_workspace_bytes(w), bytes);
   assert_memory_equal(workspace_reserve(w, WORKSPACE_POINTS, 8), "as it was", 8);
   assert_non_null(workspace_reserve(w, WORKSPACE_POINTS, 1 << 20));
   cprox_workspace_free(w);
@@ -123,11 +119,11 @@ CASE(the_reason_is_kept_until_the_next_call) {
 /* ---- poses ---- */
 
 CASE(poses_that_are_no_rotation_are_named) {
-  cprox_pose pose = cprox_pose_identity();
+  cprox_pose pose = CPROX_POSE_IDENTITY;
   assert_null(frame_pose_fault(&pose));
   pose.position.y = NAN;
   assert_string_equal(frame_pose_fault(&pose), "the position is not finite");
-  pose = cprox_pose_identity();
+  pose = CPROX_POSE_IDENTITY;
   pose.orientation.z = INFINITY;
   assert_string_equal(frame_pose_fault(&pose), "the quaternion is not finite");
   pose.orientation = (cprox_quat){0, 0, 0, 0};

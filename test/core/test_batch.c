@@ -112,7 +112,7 @@ CASE(a_disc_tells_nothing_of_curves_off_its_plane) {
   const double square[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_polygon(square, 4, workspace, &body), CPROX_OK);
-  const cprox_obstacle target = cprox_obstacle_at(body, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
   cprox_obstacles *batch = NULL;
   assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_BATCH, workspace, &batch), CPROX_OK);
   const cprox_vec3 points[3][3] = {{{-1, 0, 0.05}, {0, 0.1, 0.05}, {1, 0, 0.05}},
@@ -163,7 +163,7 @@ CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
     assert_int_equal(curve_from(describe_bezier(ends, 2, 0, 1), workspace, &curve), CPROX_OK);
     const long double truth = ref_point_segment(centre, ref_vec(ends[0]), ref_vec(ends[1])) - 1.0L;
     const cprox_mover mover = cprox_point_along(curve);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 0.0;
     cprox_result answers[2];
     const double delta = (double)truth + rng_uniform(&r, -1e-8, 1e-8);

@@ -83,7 +83,7 @@ CASE(bad_callbacks_are_refused) {
 CASE(bad_parts_are_refused_by_number) {
   cprox_body *ball = NULL, *two = NULL;
   assert_int_equal(cprox_body_create_sphere(1.0, ws, &ball), CPROX_OK);
-  cprox_pose poses[2] = {cprox_pose_identity(), cprox_pose_identity()};
+  cprox_pose poses[2] = {CPROX_POSE_IDENTITY, CPROX_POSE_IDENTITY};
   const cprox_body *parts[2] = {ball, NULL};
   REFUSED(cprox_body_create_compound(parts, poses, 0, ws, &body), "a compound needs at least 1 part, got none");
   REFUSED(cprox_body_create_compound(parts, poses, 2, ws, &body), "part 1 is NULL");
@@ -115,7 +115,7 @@ CASE(a_failed_allocation_is_said_and_leaves_nothing_behind) {
   cprox_body *ball = NULL, *body = NULL;
   cprox_body_create_sphere(1.0, ws, &ball);
   const cprox_body *parts[1] = {ball};
-  const cprox_pose pose = cprox_pose_identity();
+  const cprox_pose pose = CPROX_POSE_IDENTITY;
   for (size_t k = 0; k < 3; k++) {
     const size_t live = allocations_live();
     allocations_fail_after(k);
@@ -141,7 +141,7 @@ CASE(every_kind_has_its_name) {
     assert_string_equal(cprox_body_kind_name((cprox_body_kind)k), names[k]);
   cprox_body *body = NULL;
   cprox_body_create_cone(1.0, 1.0, ws, &body);
-  assert_int_equal(cprox_body_get_kind(body), CPROX_CONE);
+  assert_int_equal(cprox_body_get_info(body).kind, CPROX_CONE);
   cprox_body_free(body);
 }
 
@@ -253,9 +253,10 @@ CASE(the_bounding_sphere_holds_the_body) {
     assert_int_equal(cprox_body_create_compound((const cprox_body *const *)parts, poses, 3, ws, &all), CPROX_OK);
     for (int k = 0; k < 4; k++) {
       const cprox_body *body = k < 3 ? parts[k] : all;
-      vec3 centre, p;
-      double radius;
-      cprox_body_bounding_sphere(body, &centre, &radius);
+      const cprox_body_info info = cprox_body_get_info(body);
+      const vec3 centre = info.centre;
+      const double radius = info.radius;
+      vec3 p;
       for (int j = 0; j < 20; j++) {
         const vec3 d = rng_unit(&r);
         const double h = cprox_body_support(body, d, &p);
@@ -299,9 +300,7 @@ CASE(a_halfspace_has_no_end) {
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_halfspace(vec(0, 3, 4), -10.0, ws, &body), CPROX_OK);
   vec3 p;
-  double radius;
-  cprox_body_bounding_sphere(body, &p, &radius);
-  assert_true(isinf(radius));
+  assert_true(isinf(cprox_body_get_info(body).radius));
   assert_true(isinf(cprox_body_support(body, vec(1, 0, 0), &p)));
   assert_true(fabs(cprox_body_support(body, vec(0, 6, 8), &p) - 20.0) < 1e-14);
   assert_true(fabs(cprox_body_nearest(body, vec(7, 6, 8), &p) - 8.0) < 1e-14);

@@ -115,7 +115,7 @@ CASE(intervals_of_carried_polytopes_contain_the_distance_in_long_double) {
     cprox_body *carried = polytope(p.carried, p.n_carried), *standing = polytope(p.standing, p.n_standing);
     cprox_mover mover = cprox_body_along(carried, curve);
     mover.radius = p.radius;
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = p.scale * rng_log_uniform(&r, 1e-12, 1e-3);
     cprox_result result;
     const cprox_obstacle target = cprox_with_margin(cprox_obstacle_at(standing, p.pose), p.margin);
@@ -142,9 +142,9 @@ CASE(intervals_of_carried_polytopes_contain_the_distance_in_long_double) {
 /* The pair at parameter t; its lower bound is on minus the depth where they overlap. */
 static cprox_result pair_at(const cprox_mover *mover, const cprox_obstacle *target, double t) {
   cprox_obstacle moved = {.body = mover->body, .margin = mover->radius};
-  moved.pose = cprox_pose_identity();
+  moved.pose = CPROX_POSE_IDENTITY;
   assert_int_equal(cprox_curve_evaluate(mover->curve, t, ws, &moved.pose.position, NULL, NULL), CPROX_OK);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 0.0;
   cprox_result result;
   assert_true(cprox_pair(moved, *target, &options, ws, &result) >= 0);
@@ -191,7 +191,7 @@ CASE(every_kind_is_carried_past_every_kind) {
         if (rng_index(&r, 3) == 0) pose.orientation = (cprox_quat){1, 0, 0, 0};
         const cprox_obstacle target = cprox_with_margin(cprox_obstacle_at(halfspace ? halfspace : standing.body, pose),
                                                         rng_index(&r, 2) ? 0.0 : 0.1);
-        cprox_options options = cprox_options_default();
+        cprox_options options = CPROX_OPTIONS_DEFAULT;
         options.epsilon = 1e-9;
         cprox_result result, verdict;
         const cprox_status status = cprox_distance(mover, target, &options, ws, &result);
@@ -293,7 +293,7 @@ CASE(a_part_is_placed_by_two_poses_within_their_rounding) {
     const long double apart =
         boxes ? (long double)points[0].x - centre.x : ref_point_segment(centre, ref_vec(points[0]), ref_vec(points[1]));
     const long double truth = apart - (long double)size - (boxes ? 0.25L : (long double)carried_radius);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 0.0;
     cprox_result x;
     assert_true(
@@ -326,7 +326,7 @@ CASE(a_carried_body_is_measured_against_a_curve) {
       const cprox_mover mover = cprox_body_along(carried.body, curve);
       cprox_obstacle target = cprox_obstacle_curve(other, rng_index(&r, 2) ? 0.0 : 0.05);
       if (rng_index(&r, 2)) target.pose = rng_pose(&r, 1.0);
-      cprox_options options = cprox_options_default();
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
       options.epsilon = 1e-7;
       cprox_result result;
       const cprox_status status = cprox_distance(mover, target, &options, ws, &result);
@@ -360,7 +360,7 @@ CASE(an_unbounded_body_is_not_carried) {
   assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 0.0, ws, &halfspace), CPROX_OK);
   cprox_curve *curve = bezier((vec3[]){{0, 0, 0}, {1, 0, 0}}, 2);
   cprox_result result = {.lower = -7.0};
-  const cprox_obstacle target = cprox_obstacle_at(halfspace, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(halfspace, CPROX_POSE_IDENTITY);
   assert_int_equal(cprox_distance(cprox_body_along(halfspace, curve), target, NULL, ws, &result), CPROX_INVALID);
   assert_true(result.lower == -7.0);
   assert_string_equal(cprox_workspace_error(ws), "the mover's body is a halfspace or has one: it must be bounded");
@@ -389,7 +389,7 @@ CASE(medians_stay_within_8_nodes_and_14_distance_queries) {
       shape_make(&r, kinds[k][1], 0.3, 3.0, &standing);
       vec3 points[8];
       cprox_curve *curve = random_bezier(&r, 5, vec(0, 0, 0), 1.0, points);
-      cprox_options options = cprox_options_default();
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
       options.epsilon = 1e-9;
       cprox_result result;
       before = allocations_made();

@@ -67,7 +67,7 @@ CASE(the_k_nearest_are_the_least_of_all_distances) {
   rng r = rng_seed(1);
   for (size_t i = 0, cases = test_cases(600); i < cases; i++) {
     world w = world_make(&r);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-9;
     double all[MOST_TARGETS];
     for (size_t j = 0; j < w.n; j++) {
@@ -96,7 +96,7 @@ CASE(within_lists_exactly_those_within) {
   size_t listed = 0, left_out = 0;
   for (size_t i = 0, cases = test_cases(600); i < cases; i++) {
     world w = world_make(&r);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-7;
     const double delta = rng_index(&r, 4) ? rng_uniform(&r, 0.0, 2.0) : 0.0;
     cprox_result near[MOST_TARGETS];
@@ -127,7 +127,7 @@ CASE(a_profile_holds_on_every_interval_and_adds_up_to_the_whole) {
   rng r = rng_seed(3);
   for (size_t i = 0, cases = test_cases(200); i < cases; i++) {
     world w = world_make(&r);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-8;
     const size_t n = 1 + rng_index(&r, 12);
     double breaks[13] = {0};
@@ -171,9 +171,9 @@ CASE(intervals_may_begin_and_end_inside_pieces) {
   assert_int_equal(curve_from(describe_bspline(p, N, 3, knots, N + 4, 3, N), ws, &curve), CPROX_OK);
   cprox_body *floor = NULL;
   assert_int_equal(cprox_body_create_halfspace(vec(0, 0, 1), 0, ws, &floor), CPROX_OK);
-  const cprox_obstacle target = cprox_obstacle_at(floor, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(floor, CPROX_POSE_IDENTITY);
   cprox_profile_interval interval[INTERVALS];
-  const cprox_options options = cprox_options_default();
+  const cprox_options options = CPROX_OPTIONS_DEFAULT;
   assert_int_equal(profile_of_list(cprox_point_along(curve), &target, 1, breaks, INTERVALS, &options, ws, interval),
                    CPROX_OK);
   for (int i = 0; i < INTERVALS; i++) {
@@ -219,8 +219,8 @@ CASE(both_stretches_at_a_break_see_the_point_at_the_break) {
     cprox_body *point = NULL;
     const vec3 rounded = vec((double)at.x, (double)at.y, (double)at.z);
     assert_int_equal(cprox_body_create_point(rounded, ws, &point), CPROX_OK);
-    const cprox_obstacle target = cprox_obstacle_at(point, cprox_pose_identity());
-    cprox_options options = cprox_options_default();
+    const cprox_obstacle target = cprox_obstacle_at(point, CPROX_POSE_IDENTITY);
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 0.0;
     cprox_profile_interval interval[2];
     assert_true(

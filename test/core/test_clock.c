@@ -50,7 +50,7 @@ CASE(points_on_one_clock_are_as_near_as_long_double_says) {
     cprox_mover mover = cprox_point_along(first), other = cprox_point_along(second);
     mover.radius = rng_index(&r, 2) ? 0.0 : 0.1 * scale;
     other.radius = rng_index(&r, 2) ? 0.0 : 0.1 * scale;
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = scale * rng_log_uniform(&r, 1e-13, 1e-3);
     cprox_result result;
     const cprox_status status = cprox_distance(mover, cprox_synchronized(other), &options, ws, &result);
@@ -112,13 +112,13 @@ static cprox_result pair_at(const cprox_mover *mover, const cprox_obstacle *targ
   cprox_obstacle b = *target;
   b.synchronized = false, b.curve = NULL;
   if (!b.body) b.body = point;
-  a.pose = cprox_pose_identity();
+  a.pose = CPROX_POSE_IDENTITY;
   vec3 at;
   assert_int_equal(cprox_curve_evaluate(mover->curve, t, ws, &a.pose.position, NULL, NULL), CPROX_OK);
   assert_int_equal(cprox_curve_evaluate(target->curve, t, ws, &at, NULL, NULL), CPROX_OK);
   const vec3l world = ref_to_world(&target->pose, ref_vec(at));
   b.pose.position = vec((double)world.x, (double)world.y, (double)world.z);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 0.0;
   cprox_result result;
   assert_true(cprox_pair(a, b, &options, ws, &result) >= 0);
@@ -160,7 +160,7 @@ CASE(splines_that_carry_bodies_agree_with_static_pairs) {
     mover.radius = rng_index(&r, 2) ? 0.0 : 0.05;
     cprox_obstacle target = cprox_synchronized(other);
     if (rng_index(&r, 2)) target.pose = rng_pose(&r, 1.0);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-9;
     cprox_result result;
     const cprox_status status = cprox_distance(mover, target, &options, ws, &result);
@@ -217,7 +217,7 @@ CASE(different_domains_are_refused) {
   assert_true(result.lower == -7.0);
   assert_string_equal(cprox_workspace_error(ws),
                       "target 0 is on the mover's clock, but its curve runs over [0, 1.5] and the mover's over [0, 1]");
-  const cprox_obstacle nothing = {.synchronized = true, .pose = cprox_pose_identity()};
+  const cprox_obstacle nothing = {.synchronized = true, .pose = CPROX_POSE_IDENTITY};
   assert_int_equal(cprox_distance(cprox_point_along(first), nothing, NULL, ws, &result), CPROX_INVALID);
   cprox_curve_free(first);
   cprox_curve_free(second);

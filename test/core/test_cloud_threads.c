@@ -73,18 +73,18 @@ CASE(updated_clouds_answer_as_new_ones_do) {
       for (int i = 0; i < 50; i++) {
         const vec3 x = rng_in_cube(&r, 1.5);
         assert_true(fabs(cprox_body_nearest(now, x, NULL) - cprox_body_nearest(anew, x, NULL)) < 1e-14);
-        vec3 centre;
-        double radius;
-        cprox_body_bounding_sphere(now, &centre, &radius);
+        const cprox_body_info info = cprox_body_get_info(now);
+        const vec3 centre = info.centre;
+        const double radius = info.radius;
         assert_true(vec_norm(vec_sub(points[rng_index(&r, all)], centre)) <= radius);
       }
       cprox_curve *curve = random_curve(&r);
       cprox_result a, b;
       assert_int_equal(
-          cprox_distance(cprox_point_along(curve), cprox_obstacle_at(now, cprox_pose_identity()), NULL, ws, &a),
+          cprox_distance(cprox_point_along(curve), cprox_obstacle_at(now, CPROX_POSE_IDENTITY), NULL, ws, &a),
           CPROX_OK);
       assert_int_equal(
-          cprox_distance(cprox_point_along(curve), cprox_obstacle_at(anew, cprox_pose_identity()), NULL, ws, &b),
+          cprox_distance(cprox_point_along(curve), cprox_obstacle_at(anew, CPROX_POSE_IDENTITY), NULL, ws, &b),
           CPROX_OK);
       assert_true(a.lower <= b.upper && b.lower <= a.upper);
       cprox_curve_free(curve);
@@ -145,7 +145,7 @@ static void *reader(void *argument) {
     /* all points of the plane stand at one height: the distance says which state was seen */
     cprox_result r;
     const cprox_status status =
-        cprox_distance(cprox_point_along(curve), cprox_obstacle_at(b->body[mine], cprox_pose_identity()), NULL, ws, &r);
+        cprox_distance(cprox_point_along(curve), cprox_obstacle_at(b->body[mine], CPROX_POSE_IDENTITY), NULL, ws, &r);
     wrong += status != CPROX_OK || fabs(r.upper - (5.0 - b->shift[mine] - 0.01)) > 1e-3;
     pthread_mutex_lock(&b->mutex);
     b->held[mine]--;

@@ -95,7 +95,7 @@ static problem problem_random(rng *r) {
     for (size_t i = 0; i <= p.degree[k]; i++) p.points[k][i] = rng_in_cube(r, scale);
     p.curve[k] = bezier(p.points[k], p.degree[k] + 1);
   }
-  p.pose = rng_index(r, 2) ? cprox_pose_identity() : rng_pose(r, scale);
+  p.pose = rng_index(r, 2) ? CPROX_POSE_IDENTITY : rng_pose(r, scale);
   return p;
 }
 
@@ -353,7 +353,7 @@ CASE(a_target_is_a_body_or_a_curve_and_not_both) {
   assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_obstacle_curve(curve, -1.0), NULL, ws, &r),
                    CPROX_INVALID);
   assert_int_equal(
-      cprox_pair(cprox_obstacle_curve(curve, 0.0), cprox_obstacle_at(ball, cprox_pose_identity()), NULL, ws, &r),
+      cprox_pair(cprox_obstacle_curve(curve, 0.0), cprox_obstacle_at(ball, CPROX_POSE_IDENTITY), NULL, ws, &r),
       CPROX_INVALID);
   cprox_body_free(ball);
   cprox_curve_free(curve);

@@ -78,7 +78,7 @@ static void check(const char *id, const cprox_curve *curve, cprox_obstacle targe
   cprox_workspace *ws = cprox_workspace_create();
   for (int k = 0; k < 3; k++) {
     const double epsilon[3] = {1e-6, 1e-9, 1e-12};
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = epsilon[k];
     cprox_result r;
     const cprox_status status = cprox_distance(cprox_point_along(curve), target, &options, ws, &r);
@@ -105,7 +105,7 @@ static void check_polygon(const char *id, cprox_curve *curve) {
   assert_true(n >= 6 && n % 2 == 0);
   cprox_body *body = NULL;
   assert_int_equal(cprox_body_create_polygon((const double(*)[2])xy, n / 2, NULL, &body), CPROX_OK);
-  check(id, curve, cprox_obstacle_at(body, cprox_pose_identity()));
+  check(id, curve, cprox_obstacle_at(body, CPROX_POSE_IDENTITY));
   cprox_curve_free(curve);
   cprox_body_free(body);
   csv_free(&in);
@@ -157,7 +157,7 @@ CASE(bezier_curves_with_names) {
       double xy[64][2];
       for (size_t k = 0; k < m; k++) xy[k][0] = second[k].x, xy[k][1] = second[k].y;
       assert_int_equal(cprox_body_create_polygon((const double(*)[2])xy, m, NULL, &body), CPROX_OK);
-      check(id, curve, cprox_obstacle_at(body, cprox_pose_identity()));
+      check(id, curve, cprox_obstacle_at(body, CPROX_POSE_IDENTITY));
     } else {
       assert_int_equal(curve_from(describe_bezier(second, m, 0, 1), NULL, &other), CPROX_OK);
       check(id, curve, cprox_obstacle_curve(other, 0.0));

@@ -205,7 +205,7 @@ static void agree(const cprox_result *arcs, const cprox_result *points, double e
 static void check_body(bezier *b, bool with_velocity, const cprox_obstacle *target, double radius, double epsilon,
                        cprox_workspace *ws, cprox_result *of_arcs) {
   cprox_curve *arcs = with_velocity ? by_velocity(b) : by_arcs(b), *points = by_points(b);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   cprox_result of_points;
   const cprox_status status = cprox_distance(cprox_tube_along(arcs, radius), *target, &options, ws, of_arcs);
@@ -264,7 +264,7 @@ CASE(times_of_contact_and_profiles_agree) {
     cprox_curve *arcs = by_arcs(&b), *points = by_points(&b);
     cprox_body *body = random_body(&r, 1.0);
     const cprox_obstacle target = cprox_obstacle_at(body, random_pose(&r, 0.6, vec(0, 0, 0)));
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-6;
     cprox_result of_arcs, of_points;
     if (cprox_time_of_contact(cprox_point_along(arcs), target, &options, ws, &of_arcs) < 0)
@@ -304,7 +304,7 @@ CASE(curves_by_arcs_and_by_points_agree) {
     for (size_t k = 0; k <= b[1].degree; k++) b[1].p[k] = vec_add(b[1].p[k], shift);
     cprox_curve *arcs[2] = {by_arcs(&b[0]), i % 3 ? by_arcs(&b[1]) : by_points(&b[1])};
     cprox_curve *points[2] = {by_points(&b[0]), by_points(&b[1])};
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-4;
     cprox_result of_arcs, of_points;
     const cprox_status status =
@@ -385,7 +385,7 @@ CASE(what_goes_wrong_midway_ends_the_query) {
                                        cprox_obstacle_curve(straight, 0.0)};
     for (int query_type = 0; query_type < 6; query_type++) {
       const cprox_obstacle target = targets[query_type % 2];
-      cprox_options options = cprox_options_default();
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
       options.epsilon = 1e-9;
       cprox_result result = {.t = -123.0};
       cprox_status status = CPROX_OK;

@@ -10,7 +10,7 @@
 #include "support/shapes.h"
 
 static cprox_result ask(const cprox_body *a, cprox_pose pa, const cprox_body *b, cprox_pose pb, double epsilon) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   cprox_result result;
   assert_true(cprox_pair(cprox_obstacle_at(a, pa), cprox_obstacle_at(b, pb), &options, NULL, &result) >= CPROX_OK);
@@ -212,12 +212,12 @@ CASE(a_small_budget_leaves_a_true_bracket) {
   cprox_body *a = NULL, *b = NULL;
   assert_int_equal(cprox_body_create_ellipsoid(vec(1, 2, 3), NULL, &a), CPROX_OK);
   assert_int_equal(cprox_body_create_ellipsoid(vec(2, 1, 1.5), NULL, &b), CPROX_OK);
-  cprox_pose pa = cprox_pose_identity(), pb = cprox_pose_identity();
+  cprox_pose pa = CPROX_POSE_IDENTITY, pb = CPROX_POSE_IDENTITY;
   pb.position = vec(0.4, 0.3, 0.2);
   const cprox_result exact = ask(a, pa, b, pb, 1e-10);
   assert_int_equal(exact.status, CPROX_OK);
   for (uint32_t budget = 1; budget < 60; budget++) {
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-10;
     options.max_nodes = budget;
     cprox_result result;

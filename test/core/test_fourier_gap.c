@@ -17,7 +17,7 @@ static cprox_pose planar(double x, double y, double angle) {
 }
 
 static cprox_gap *gap_of(const cprox_solid *a, const cprox_solid *b, cprox_gap_mode mode, uint32_t samples) {
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.mode = mode, o.samples = samples;
   cprox_gap *gap = NULL;
   if (cprox_gap_create(a, b, &o, ws, &gap) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
@@ -47,7 +47,7 @@ static shape read_shape(const csv_table *t, const char *name) {
     MADE(cprox_solid_create(
         &(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = (const double(*)[2])s.v[s.n], .n = n}, ws,
         &parts[s.n]));
-    poses[s.n++] = cprox_pose_identity();
+    poses[s.n++] = CPROX_POSE_IDENTITY;
   }
   assert_true(s.n > 0);
   MADE(cprox_solid_create(
@@ -254,7 +254,7 @@ CASE(bars_around_a_dot_break_the_tuned_mode_and_not_the_certified_one) {
                                planar(-2.9, 0, 0), planar(4.7, 0, 0), planar(-4.7, 0, 0)};
   MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_UNION, .parts = parts, .poses = poses, .n = 7},
                           ws, &all));
-  const cprox_pose here = cprox_pose_identity();
+  const cprox_pose here = CPROX_POSE_IDENTITY;
   for (int swap = 0; swap < 2; swap++) {
     const cprox_solid *a = swap ? all : dot, *b = swap ? dot : all;
     cprox_gap *tuned = gap_of(a, b, CPROX_GAP_MODE_TUNED, 17), *certified = gap_of(a, b, CPROX_GAP_MODE_CERTIFIED, 17);
@@ -322,7 +322,7 @@ CASE(images_of_the_period_never_answer) {
     }
   }
   /* a period that lets images overlap is refused, with what it takes */
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.samples = 33, o.period = 0.9 * info.period;
   cprox_gap *none = NULL;
   assert_int_equal(cprox_gap_create(s, s, &o, ws, &none), CPROX_INVALID);
@@ -357,7 +357,7 @@ CASE(delta_chooses_no_more_than_is_needed) {
   MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 2, .radius = 0.5}, ws, &b));
   uint32_t last = 0;
   for (double delta = 0.8; delta > 0.04; delta *= 0.5) {
-    cprox_gap_options o = cprox_gap_options_default();
+    cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
     o.delta = delta;
     cprox_gap *gap, *less;
     MADE(cprox_gap_create(a, b, &o, ws, &gap));
@@ -372,7 +372,7 @@ CASE(delta_chooses_no_more_than_is_needed) {
     last = info.samples;
     cprox_gap_free(gap);
   }
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   cprox_gap *none = NULL;
   o.delta = 0.02, o.memory_limit = 10000;
   assert_int_equal(cprox_gap_create(a, b, &o, ws, &none), CPROX_INVALID);

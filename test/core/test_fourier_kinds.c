@@ -100,7 +100,7 @@ static void check_delta(rng *r, const test_solid s[2], cprox_gap_options *o) {
 static void delta_in_every_mode(rng *r, const test_solid s[2]) {
   gap_plan plan;
   for (int mode = 0; mode < 3; mode++) {
-    cprox_gap_options o = cprox_gap_options_default();
+    cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
     o.mode = (cprox_gap_mode)mode;
     if (o.mode == CPROX_GAP_MODE_CERTIFIED && !is_provable(s)) {
       o.delta = radii(s);
@@ -129,7 +129,7 @@ static void every_call(rng *r, const test_solid s[2]) {
   const int dimension = s[0].dimension;
   if (dimension == 3 && s[0].kind != SOLID_BOX && s[1].kind != SOLID_BOX && s[0].kind != s[1].kind) return;
   for (int mode = 0; mode < 3; mode++) {
-    cprox_gap_options o = cprox_gap_options_default();
+    cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
     o.mode = (cprox_gap_mode)mode, o.delta = radii(s);
     if (o.mode == CPROX_GAP_MODE_CERTIFIED && !is_provable(s)) o.samples = 9, o.delta = 0.0;
     cprox_gap *gap;
@@ -201,7 +201,7 @@ static bool says_clear(const cprox_gap *gap, const test_solid s[2], const cprox_
 
 /* Along random lines out of the other solid, halving to where the verdict changes. */
 static void verdict_holds(rng *r, const test_solid s[2]) {
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.samples = 7 + 2 * (uint32_t)rng_index(r, 3);
   cprox_gap *gap;
   MADE(cprox_gap_create(s[0].solid, s[1].solid, &o, ws, &gap));

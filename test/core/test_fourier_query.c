@@ -14,7 +14,7 @@
 static const double L_SHAPE[6][2] = {{-0.5, -0.5}, {0.7, -0.5}, {0.7, -0.2}, {-0.1, -0.2}, {-0.1, 0.6}, {-0.5, 0.6}};
 
 static cprox_gap *gap_of(const cprox_solid *a, const cprox_solid *b, cprox_gap_mode mode, uint32_t samples) {
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.mode = mode, o.samples = samples;
   cprox_gap *gap = NULL;
   if (cprox_gap_create(a, b, &o, ws, &gap) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
@@ -397,7 +397,7 @@ CASE(bad_queries_are_refused_in_words) {
   assert_int_equal(cprox_gap_test(gap, &good, &bad, ws, &r), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "pose_b: a planar pose turns about z only");
   assert_true(r.value == 77);
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.samples = 9;
   assert_int_equal(cprox_gap_create(s[0], space, &o, ws, &none), CPROX_INVALID);
   assert_string_equal(cprox_workspace_error(ws), "the solids have dimensions 2 and 3");
@@ -413,7 +413,7 @@ CASE(a_cascade_stops_at_the_first_proof) {
   rng r = rng_seed(724);
   cprox_solid *s[2];
   make_pair(0, s);
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.delta = 0.25;
   cprox_gap_cascade *cascade;
   MADE(cprox_gap_cascade_create(s[0], s[1], &o, ws, &cascade));
@@ -513,7 +513,7 @@ CASE(a_sweep_is_never_called_clear_where_it_hits) {
     if (!clear && !(d <= info.over_reach)) fail_msg("called colliding %g apart, over-reach %g", d, info.over_reach);
   }
   assert_true(hits > test_cases(20) / 4 && clears > test_cases(20) / 4);
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.samples = 9;
   cprox_gap *none = NULL;
   assert_int_equal(cprox_gap_create(sweep, sweep, &o, ws, &none), CPROX_INVALID);
@@ -580,7 +580,7 @@ CASE(along_a_curve_the_verdict_holds_at_every_parameter) {
 CASE(gaps_survive_every_failed_allocation) {
   cprox_solid *s[2];
   make_pair(1, s);
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   o.samples = 17;
   for (size_t n = 0;; n++) {
     const size_t live = allocations_live();

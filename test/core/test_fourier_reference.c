@@ -84,7 +84,7 @@ static cprox_solid *read_side(const csv_table *t, const char *id, const char *si
     const csv_row *row = &t->row[i];
     if (!is(row, 0, "solid") || !is(row, 1, id) || !is(row, 2, side)) continue;
     parts[n] = read_solid(t, row);
-    poses[n++] = cprox_pose_identity();
+    poses[n++] = CPROX_POSE_IDENTITY;
   }
   assert_int_equal(
       cprox_solid_create(

@@ -351,7 +351,7 @@ CASE(energies_of_loops_are_exact) {
   const double square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   cprox_solid *s, *u;
   MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_POLYGON, .corners = square, .n = 4}, ws, &s));
-  cprox_pose poses[2] = {cprox_pose_identity(), cprox_pose_identity()};
+  cprox_pose poses[2] = {CPROX_POSE_IDENTITY, CPROX_POSE_IDENTITY};
   poses[1].position = vec(0.75, 0.5, 0);
   MADE(cprox_solid_create(
       &(cprox_solid_description){

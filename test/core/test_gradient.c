@@ -48,7 +48,7 @@ static double ask(const problem *p, cprox_result *result, cprox_gradient *gradie
                           : p->kind == CURVE ? cprox_obstacle_curve(other, p->margin)
                                              : cprox_synchronized(second);
   target.pose = p->pose;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = gradient ? 1e-9 : 0.0;
   options.signed_distance = p->is_signed;
   assert_true(cprox_distance(mover, target, &options, ws, result) >= 0);
@@ -162,9 +162,9 @@ static size_t check(rng *r, const problem *p, double tolerance) {
   const double expected = derivative(p, &g, &d), off = misfit(p, &d, expected, &scale);
   if (!(off <= tolerance * scale))
     fail_msg("kind %d, %s past %s, t %.17g in [%g, %g], distance %.17g: %.12g, differences are off by %g", (int)p->kind,
-             p->carried ? cprox_body_kind_name(cprox_body_get_kind(p->carried)) : "point",
-             p->body ? cprox_body_kind_name(cprox_body_get_kind(p->body)) : "curve", g.t, p->t0, p->t1, result.upper,
-             expected, off);
+             p->carried ? cprox_body_kind_name(cprox_body_get_info(p->carried).kind) : "point",
+             p->body ? cprox_body_kind_name(cprox_body_get_info(p->body).kind) : "curve", g.t, p->t0, p->t1,
+             result.upper, expected, off);
   return 1;
 }
 
@@ -244,7 +244,7 @@ CASE(depths_have_gradients) {
 /* ---- where there is none -------------------------------------------------------------------------------------------------------- */
 
 static void assert_none(cprox_mover mover, cprox_obstacle target, bool is_signed, const char *why) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.signed_distance = is_signed;
   cprox_result result;
   cprox_gradient g = {.valid = true};
@@ -259,8 +259,8 @@ CASE(where_the_minimiser_is_not_unique_the_flag_says_so) {
   cprox_body *box = NULL, *ball = NULL, *two = NULL;
   assert_int_equal(cprox_body_create_box(vec(2, 2, 2), ws, &box), CPROX_OK);
   assert_int_equal(cprox_body_create_sphere(1.0, ws, &ball), CPROX_OK);
-  const cprox_obstacle at = cprox_obstacle_at(box, cprox_pose_identity()),
-                       round = cprox_obstacle_at(ball, cprox_pose_identity());
+  const cprox_obstacle at = cprox_obstacle_at(box, CPROX_POSE_IDENTITY),
+                       round = cprox_obstacle_at(ball, CPROX_POSE_IDENTITY);
 
   /* along a face; down and up twice; through the body; into it along the diagonal between two faces */
   cprox_curve *parallel = bezier((vec3[]){{-0.5, 0, 2}, {0.5, 0, 2}}, 2);
@@ -278,7 +278,7 @@ CASE(where_the_minimiser_is_not_unique_the_flag_says_so) {
   const cprox_pose poses[2] = {{{-2, 0, 0}, {1, 0, 0, 0}}, {{2, 0, 0}, {1, 0, 0, 0}}};
   assert_int_equal(cprox_body_create_compound((const cprox_body *[]){ball, ball}, poses, 2, ws, &two), CPROX_OK);
   cprox_curve *middle = bezier((vec3[]){{0, 0, 0}, {0, 2, 0}}, 2);
-  assert_none(cprox_point_along(middle), cprox_obstacle_at(two, cprox_pose_identity()), false,
+  assert_none(cprox_point_along(middle), cprox_obstacle_at(two, CPROX_POSE_IDENTITY), false,
               "no gradient: two parts are equally near");
 
   /* a plain case, which has one */

@@ -48,7 +48,7 @@ static cprox_curve *circle(double radius, double t1) {
 /* ---- queries ---------------------------------------------------------------------------------------------------------- */
 
 static void check_verdict(cprox_mover mover, cprox_obstacle target, double truth, double delta) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-9;
   cprox_result r;
   assert_true(cprox_tolerance(mover, target, delta, &options, ws, &r) >= 0 && r.nodes <= options.max_nodes);
@@ -63,7 +63,7 @@ static void is_at(double truth, cprox_curve *curve, cprox_obstacle target, cprox
   const cprox_mover mover = cprox_point_along(curve);
   static const double epsilons[] = {1e-9, 0.0, 1e-300, 1e3};
   for (size_t k = 0; k < sizeof epsilons / sizeof *epsilons; k++) {
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = epsilons[k];
     options.max_nodes = 2000;
     cprox_result r;
@@ -84,11 +84,11 @@ static void is_at(double truth, cprox_curve *curve, cprox_obstacle target, cprox
 }
 
 static void box_is_at(double truth, cprox_curve *curve) {
-  is_at(truth, curve, cprox_obstacle_at(box, cprox_pose_identity()), NULL);
+  is_at(truth, curve, cprox_obstacle_at(box, CPROX_POSE_IDENTITY), NULL);
 }
 
 static void point_is_at(double truth, cprox_curve *curve) {
-  is_at(truth, curve, cprox_obstacle_at(point, cprox_pose_identity()), NULL);
+  is_at(truth, curve, cprox_obstacle_at(point, CPROX_POSE_IDENTITY), NULL);
 }
 
 static void curves_are_at(double truth, cprox_curve *first, cprox_curve *second) {

@@ -95,12 +95,12 @@ CASE(maps_that_are_singular_and_lists_that_are_too_long_are_refused) {
   cprox_body *body = NULL;
   implicit_case c;
   implicit_case_paper(2, &c);
-  cprox_affine map = cprox_affine_identity();
+  cprox_affine map = {.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   map.linear[8] = 0.0;
   assert_refused(cprox_body_create_implicit(&c.description, &map, w, &body), w, "its determinant is 0");
   map.linear[8] = NAN;
   assert_refused(cprox_body_create_implicit(&c.description, &map, w, &body), w, "map is not finite");
-  map = cprox_affine_identity();
+  map = (cprox_affine){.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   map.linear[4] = 1e-13;
   assert_refused(cprox_body_create_implicit(&c.description, &map, w, &body), w, "singular");
 
@@ -125,9 +125,9 @@ CASE(the_bounding_ball_holds_the_body_and_the_inner_ball_is_in_it) {
     implicit_case c;
     implicit_case_paper(object, &c);
     cprox_body *body = implicit_case_body(&c, NULL);
-    vec3 centre;
-    double radius;
-    cprox_body_bounding_sphere(body, &centre, &radius);
+    const cprox_body_info info = cprox_body_get_info(body);
+    const vec3 centre = info.centre;
+    const double radius = info.radius;
     const implicit *shape = body->shape.implicit;
     assert_true(shape->inner > 0.1 && radius < 3.5);
     for (int i = 0; i < 200; i++) {
@@ -317,7 +317,7 @@ CASE(a_curve_sees_the_same_distance_as_from_the_kind_it_equals) {
     cprox_curve *curve = NULL;
     assert_int_equal(curve_from(describe_bezier(points, 6, 0, 1), w, &curve), CPROX_OK);
     const cprox_pose pose = rng_pose(&r, 2);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-9;
     cprox_result expected, found;
     assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(known, pose), &options, w, &expected),

@@ -45,7 +45,7 @@ static cprox_translating random_start(rng *r, const cprox_body *body, double nea
 static cprox_result pair_at(const bodies *b, cprox_translating x, cprox_translating y, double t, double epsilon) {
   x.from.pose.position = vec_axpy(x.from.pose.position, t, x.velocity);
   y.from.pose.position = vec_axpy(y.from.pose.position, t, y.velocity);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   cprox_result r;
   assert_true(cprox_pair(x.from, y.from, &options, b->workspace, &r) >= 0);
@@ -57,7 +57,7 @@ static cprox_result pair_at(const bodies *b, cprox_translating x, cprox_translat
 CASE(the_least_distance_over_a_time_is_below_that_at_every_time) {
   bodies *b = *state;
   rng r = rng_seed(21);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-8;
   for (int pair = 0; pair < 8; pair++) {
     for (size_t i = 0; i < test_cases(40); i++) {
@@ -95,7 +95,7 @@ CASE(time_of_contact_is_never_late_and_never_undecided) {
         const vec3 aim = vec_add(vec_sub(x.from.pose.position, y.from.pose.position), rng_in_cube(&r, 1));
         y.velocity = vec_axpy(x.velocity, 0.7, aim);
       }
-      cprox_options options = cprox_options_default();
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
       options.epsilon = 1e-7 * (first->ball_radius + second->ball_radius);
       cprox_result found, least;
       const cprox_status status = cprox_translating_contact(x, y, 2.0, &options, b->workspace, &found);
@@ -123,9 +123,9 @@ CASE(time_of_contact_is_never_late_and_never_undecided) {
 
 CASE(bodies_that_part_or_overlap_at_once_are_told_at_once) {
   bodies *b = *state;
-  cprox_pose away = cprox_pose_identity();
+  cprox_pose away = CPROX_POSE_IDENTITY;
   away.position.x = 6;
-  cprox_translating x = {.from = cprox_obstacle_at(b->body[2], cprox_pose_identity())};
+  cprox_translating x = {.from = cprox_obstacle_at(b->body[2], CPROX_POSE_IDENTITY)};
   cprox_translating y = {.from = cprox_obstacle_at(b->body[3], away), .velocity = {1, 0, 0}};
   cprox_result r;
   assert_int_equal(cprox_translating_contact(x, y, 10, NULL, b->workspace, &r), CPROX_OK);
@@ -172,7 +172,7 @@ CASE(scaled_by_the_growth_distance_bodies_touch) {
       for (int side = 0; side < 2; side++) {
         const double g = side == 0 ? growth.lower * (1 - 1e-9) : growth.upper * (1 + 1e-9);
         cprox_body *small = scaled(b, first, g), *other = scaled(b, second, g);
-        cprox_options options = cprox_options_default();
+        cprox_options options = CPROX_OPTIONS_DEFAULT;
         options.epsilon = 1e-10;
         cprox_result found;
         assert_true(cprox_pair(cprox_obstacle_at(small, x.pose), cprox_obstacle_at(other, y.pose), &options,
@@ -195,9 +195,9 @@ CASE(scaled_by_the_growth_distance_bodies_touch) {
 CASE(concentric_bodies_have_growth_distance_zero) {
   bodies *b = *state;
   cprox_growth growth;
-  const cprox_obstacle x = cprox_obstacle_at(b->body[2], cprox_pose_identity());
+  const cprox_obstacle x = cprox_obstacle_at(b->body[2], CPROX_POSE_IDENTITY);
   assert_int_equal(
-      cprox_growth_distance(x, cprox_obstacle_at(b->body[3], cprox_pose_identity()), NULL, b->workspace, &growth),
+      cprox_growth_distance(x, cprox_obstacle_at(b->body[3], CPROX_POSE_IDENTITY), NULL, b->workspace, &growth),
       CPROX_OK);
   assert_true(growth.lower == 0.0 && growth.upper <= 1e-9);
   assert_int_equal(cprox_growth_distance(x, cprox_with_margin(x, 0.1), NULL, b->workspace, &growth), CPROX_INVALID);
@@ -208,7 +208,7 @@ CASE(concentric_bodies_have_growth_distance_zero) {
 CASE(a_deformed_body_is_the_one_made_anew) {
   bodies *b = *state;
   rng r = rng_seed(24);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-9;
   for (int object = 1; object <= 6; object++) {
     implicit_case c;
@@ -221,10 +221,10 @@ CASE(a_deformed_body_is_the_one_made_anew) {
       assert_int_equal(cprox_body_create_deformed(b->body[object], &map, NULL, 0, b->workspace, &deformed), CPROX_OK);
       const cprox_obstacle other = cprox_obstacle_at(b->body[3], implicit_random_pose(&r, 6, 12));
       cprox_result x, y;
-      assert_int_equal(cprox_pair(cprox_obstacle_at(anew, cprox_pose_identity()), other, &options, b->workspace, &x),
+      assert_int_equal(cprox_pair(cprox_obstacle_at(anew, CPROX_POSE_IDENTITY), other, &options, b->workspace, &x),
                        CPROX_OK);
-      assert_int_equal(
-          cprox_pair(cprox_obstacle_at(deformed, cprox_pose_identity()), other, &options, b->workspace, &y), CPROX_OK);
+      assert_int_equal(cprox_pair(cprox_obstacle_at(deformed, CPROX_POSE_IDENTITY), other, &options, b->workspace, &y),
+                       CPROX_OK);
       assert_true(x.lower <= y.upper + 1e-12 && y.lower <= x.upper + 1e-12);
       cprox_body_free(anew);
       cprox_body_free(deformed);
@@ -235,12 +235,12 @@ CASE(a_deformed_body_is_the_one_made_anew) {
   cprox_body *third = NULL;
   assert_int_equal(cprox_body_create_deformed(b->body[1], &interval, exponents, 3, b->workspace, &third), CPROX_OK);
   cprox_result x, y;
-  cprox_pose far = cprox_pose_identity();
+  cprox_pose far = CPROX_POSE_IDENTITY;
   far.position = vec(3, 2, 4);
   const cprox_obstacle other = cprox_obstacle_at(b->body[2], far);
-  assert_int_equal(cprox_pair(cprox_obstacle_at(third, cprox_pose_identity()), other, &options, b->workspace, &x),
+  assert_int_equal(cprox_pair(cprox_obstacle_at(third, CPROX_POSE_IDENTITY), other, &options, b->workspace, &x),
                    CPROX_OK);
-  assert_int_equal(cprox_pair(cprox_obstacle_at(b->body[3], cprox_pose_identity()), other, &options, b->workspace, &y),
+  assert_int_equal(cprox_pair(cprox_obstacle_at(b->body[3], CPROX_POSE_IDENTITY), other, &options, b->workspace, &y),
                    CPROX_OK);
   assert_true(x.lower <= y.upper + 1e-12 && y.lower <= x.upper + 1e-12);
   cprox_body_free(third);

@@ -114,7 +114,7 @@ CASE(a_carried_twin_is_measured_like_the_kind_it_equals) {
     make_twins((int)(i % 4), random_size(&r), w, &known[0], &body[0]);
     make_twins((int)rng_index(&r, 4), random_size(&r), w, &known[1], &body[1]);
     const cprox_body *parts[2] = {body[1], body[1]};
-    cprox_pose places[2] = {cprox_pose_identity(), cprox_pose_identity()};
+    cprox_pose places[2] = {CPROX_POSE_IDENTITY, CPROX_POSE_IDENTITY};
     places[1].position.x = 1e3; /* far away */
     assert_int_equal(cprox_body_create_compound(parts, places, 2, w, &compound), CPROX_OK);
     cprox_vec3 points[4];
@@ -132,7 +132,7 @@ CASE(a_carried_twin_is_measured_like_the_kind_it_equals) {
     assert_true(cprox_distance(cprox_body_along(body[0], curve), cprox_obstacle_at(compound, pose), NULL, w, &found) >=
                 0);
     assert_agree(&expected, &found);
-    cprox_options deep = cprox_options_default();
+    cprox_options deep = CPROX_OPTIONS_DEFAULT;
     deep.signed_distance = true;
     assert_true(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(known[1], pose), &deep, w, &expected) >= 0);
     assert_true(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body[1], pose), &deep, w, &found) >= 0);

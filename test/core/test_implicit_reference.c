@@ -28,7 +28,7 @@ static void check_rows(const char *name, double relative) {
     const csv_row *row = &table.row[i];
     cprox_obstacle a = read_side(&table, row, X_DEFINITION, POSES), b = read_side(&table, row, Y_DEFINITION, POSES + 7);
     const double lower = csv_number(&table, row, LOWER), upper = csv_number(&table, row, UPPER);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = relative * (upper + a.body->ball_radius + b.body->ball_radius);
     cprox_result r;
     const cprox_status status = cprox_pair(a, b, &options, workspace, &r);

@@ -73,9 +73,9 @@ CASE(every_random_place_is_certified_to_1e_8) {
       assert_true(answer.overlap || answer.lower <= answer.upper);
       if (i % 10 != 0) continue;
       cprox_result other;
-      cprox_options options = cprox_options_default();
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
       options.epsilon = goal.epsilon;
-      assert_true(cprox_pair(cprox_obstacle_at(t.a, cprox_pose_identity()), cprox_obstacle_at(t.b, pose), &options,
+      assert_true(cprox_pair(cprox_obstacle_at(t.a, CPROX_POSE_IDENTITY), cprox_obstacle_at(t.b, pose), &options,
                              workspace, &other) >= 0);
       if (answer.overlap)
         assert_true(other.lower <= 0.0);
@@ -197,8 +197,8 @@ CASE(intersections_of_superquadrics_are_certified) {
       const double h = shape->ops->support(shape, d, NULL, &at);
       assert_true(h - vec_dot(d, at) <= shape->slack);
       cprox_result other;
-      assert_true(cprox_pair(cprox_obstacle_at(t.a, cprox_pose_identity()), cprox_obstacle_at(t.b, pose), NULL,
-                             workspace, &other) >= 0);
+      assert_true(cprox_pair(cprox_obstacle_at(t.a, CPROX_POSE_IDENTITY), cprox_obstacle_at(t.b, pose), NULL, workspace,
+                             &other) >= 0);
       if (!answer.overlap) assert_true(answer.lower <= other.upper && other.lower <= answer.upper);
     }
     two_free(&t);

@@ -36,7 +36,7 @@ static cprox_curve *random_curve(rng *r, double reach) {
 }
 
 static cprox_options up_to(cprox_lod lod, double epsilon) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.max_lod = lod;
   options.epsilon = epsilon;
   return options;
@@ -96,9 +96,9 @@ CASE(lods_contain_each_other_and_are_what_they_are_called) {
     assert_true(by[CPROX_LOD_HULL].lower <= by[CPROX_LOD_MESH].upper);
 
     /* the ball's distance, by the distance of its centre */
-    vec3 centre;
-    double radius;
-    cprox_body_bounding_sphere(l->body, &centre, &radius);
+    const cprox_body_info info = cprox_body_get_info(l->body);
+    const vec3 centre = info.centre;
+    const double radius = info.radius;
     cprox_body *point = NULL;
     cprox_result to_centre;
     assert_int_equal(cprox_body_create_point(centre, ws, &point), CPROX_OK);
@@ -166,7 +166,7 @@ CASE(a_curve_through_the_hull_but_clear_of_the_mesh_is_clear) {
   const double clear[2] = {0.2, 0.6};
   for (int i = 0; i < 2; i++) {
     cprox_curve *curve = bezier(ways[i], 2);
-    const cprox_obstacle target = cprox_obstacle_at(lods[i].body, cprox_pose_identity());
+    const cprox_obstacle target = cprox_obstacle_at(lods[i].body, CPROX_POSE_IDENTITY);
     const cprox_options coarse = up_to(CPROX_LOD_HULL, 1e-6);
     cprox_result r;
     assert_int_equal(cprox_collision(cprox_point_along(curve), target, &coarse, ws, &r), CPROX_OK);
@@ -262,8 +262,8 @@ CASE(a_mesh_waits_until_it_is_the_nearest_by_its_hull) {
   assert_int_equal(cprox_body_create_box(vec(0.1, 0.1, 0.1), ws, &box), CPROX_OK);
   const vec3 way[2] = {{0.9, 0.9, -0.1}, {0.9, 0.9, 0.1}};
   cprox_curve *curve = bezier(way, 2);
-  cprox_obstacle targets[2] = {cprox_obstacle_at(l.body, cprox_pose_identity()),
-                               cprox_obstacle_at(box, cprox_pose_identity())};
+  cprox_obstacle targets[2] = {cprox_obstacle_at(l.body, CPROX_POSE_IDENTITY),
+                               cprox_obstacle_at(box, CPROX_POSE_IDENTITY)};
   targets[1].pose.position = vec(1.2, 0.9, 0.0);
   cprox_result r;
   assert_int_equal(distance_of_list(cprox_point_along(curve), targets, 2, NULL, ws, &r, NULL), CPROX_OK);
@@ -294,10 +294,10 @@ CASE(pairs_climb_too) {
     const cprox_obstacle other = cprox_obstacle_at(box, rng_pose(&r, 2.5));
     const cprox_options hull = up_to(CPROX_LOD_HULL, 1e-9), ball = up_to(CPROX_LOD_SPHERE, 1e-9);
     cprox_result a, b, c, d;
-    assert_true(cprox_pair(cprox_obstacle_at(all, cprox_pose_identity()), other, NULL, ws, &a) >= 0);
-    assert_true(cprox_pair(cprox_obstacle_at(meshes, cprox_pose_identity()), other, NULL, ws, &b) >= 0);
-    assert_true(cprox_pair(cprox_obstacle_at(all, cprox_pose_identity()), other, &hull, ws, &c) >= 0);
-    assert_true(cprox_pair(cprox_obstacle_at(all, cprox_pose_identity()), other, &ball, ws, &d) >= 0);
+    assert_true(cprox_pair(cprox_obstacle_at(all, CPROX_POSE_IDENTITY), other, NULL, ws, &a) >= 0);
+    assert_true(cprox_pair(cprox_obstacle_at(meshes, CPROX_POSE_IDENTITY), other, NULL, ws, &b) >= 0);
+    assert_true(cprox_pair(cprox_obstacle_at(all, CPROX_POSE_IDENTITY), other, &hull, ws, &c) >= 0);
+    assert_true(cprox_pair(cprox_obstacle_at(all, CPROX_POSE_IDENTITY), other, &ball, ws, &d) >= 0);
     assert_true(a.lower <= b.upper && b.lower <= a.upper);
     assert_true(c.lower <= b.upper && d.lower <= c.upper);
     assert_int_equal(a.lod, CPROX_LOD_MESH);
@@ -335,7 +335,7 @@ CASE(bad_input_is_refused_with_a_sentence) {
   assert_int_equal(cprox_body_create_lod(ball, 0.31, l.mesh, ws, &made), CPROX_OK);
   const vec3 way[2] = {{2, -1, 0}, {2, 1, 0}};
   cprox_curve *curve = bezier(way, 2);
-  const cprox_obstacle target = cprox_obstacle_at(made, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(made, CPROX_POSE_IDENTITY);
   cprox_result r;
   const cprox_options coarse = up_to(CPROX_LOD_HULL, 1e-6), wrong = up_to((cprox_lod)9, 1e-6);
   assert_int_equal(cprox_distance(cprox_point_along(curve), target, &coarse, ws, &r), CPROX_OK);
@@ -345,10 +345,10 @@ CASE(bad_input_is_refused_with_a_sentence) {
 
   /* carried, and past a level-of-detail body, by the hulls where that is allowed: the same as the hulls themselves */
   cprox_result own;
-  assert_int_equal(cprox_distance(cprox_body_along(l.body, curve), cprox_obstacle_at(l.body, cprox_pose_identity()),
-                                  &coarse, ws, &r),
-                   CPROX_OK);
-  assert_int_equal(cprox_distance(cprox_body_along(l.hull, curve), cprox_obstacle_at(l.hull, cprox_pose_identity()),
+  assert_int_equal(
+      cprox_distance(cprox_body_along(l.body, curve), cprox_obstacle_at(l.body, CPROX_POSE_IDENTITY), &coarse, ws, &r),
+      CPROX_OK);
+  assert_int_equal(cprox_distance(cprox_body_along(l.hull, curve), cprox_obstacle_at(l.hull, CPROX_POSE_IDENTITY),
                                   &coarse, ws, &own),
                    CPROX_OK);
   assert_true(r.lower <= own.upper && own.lower <= r.upper);

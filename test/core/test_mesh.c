@@ -65,7 +65,7 @@ CASE(distance_holds_everywhere_and_at_its_witness) {
     test_mesh mesh = i % 2 ? mesh_soup(&r, m, 1.0, rng_log_uniform(&r, 1e-2, 1.0))
                            : mesh_torus(4 + rng_index(&r, 5), 3 + rng_index(&r, 4), 1.0, 0.3, 0.2);
     cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
-    cprox_pose pose = i % 3 ? rng_pose(&r, 1.0) : cprox_pose_identity();
+    cprox_pose pose = i % 3 ? rng_pose(&r, 1.0) : CPROX_POSE_IDENTITY;
     vec3 points[12];
     const size_t degree = 1 + rng_index(&r, 8);
     for (size_t k = 0; k <= degree; k++) points[k] = rng_in_cube(&r, i % 5 ? 1.5 : 4.0);
@@ -134,7 +134,7 @@ CASE(time_of_contact_is_never_late_and_never_missed) {
     const cprox_status status =
         cprox_time_of_contact(cprox_tube_along(b.curve, radius), cprox_obstacle_at(body, pose), &options, ws, &result);
     if (status != CPROX_OK) fail_msg("case %zu: %s: %s", i, cprox_status_name(status), cprox_workspace_error(ws));
-    const bool inside_first = cprox_body_is_solid(body) && result.t_contact_lower == 0.0;
+    const bool inside_first = cprox_body_get_info(body).is_solid && result.t_contact_lower == 0.0;
     if (result.verdict != CPROX_VERDICT_CLEAR) {
       hits++;
       const long double there = distance_at(&b, &mesh, &pose, result.t_contact_lower) - (long double)radius;
@@ -170,7 +170,7 @@ CASE(a_point_through_a_surface_is_a_proven_collision) {
     const test_bezier b = bezier_make(points, 2);
     cprox_result result;
     assert_int_equal(
-        cprox_collision(cprox_point_along(b.curve), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws, &result),
+        cprox_collision(cprox_point_along(b.curve), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), NULL, ws, &result),
         CPROX_OK);
     if (result.verdict != CPROX_VERDICT_VIOLATED)
       fail_msg("case %d: %s, [%g, %g]", i, cprox_verdict_name(result.verdict), result.lower, result.upper);
@@ -188,7 +188,7 @@ CASE(a_closed_mesh_is_solid_inside) {
   rng r = rng_seed(59);
   test_mesh mesh = mesh_torus(30, 20, 1.0, 0.4, 0.2);
   cprox_body *solid = mesh_body(&mesh, CPROX_MESH_SOLID, ws);
-  assert_true(cprox_body_is_solid(solid));
+  assert_true(cprox_body_get_info(solid).is_solid);
   size_t inside = 0;
   for (int i = 0; i < 300; i++) {
     const vec3 p = rng_in_cube(&r, 1.4);
@@ -199,7 +199,7 @@ CASE(a_closed_mesh_is_solid_inside) {
     const vec3 points[2] = {p, vec_add(p, rng_in_cube(&r, 1e-12))};
     const test_bezier b = bezier_make(points, 1);
     cprox_result result;
-    cprox_collision(cprox_point_along(b.curve), cprox_obstacle_at(solid, cprox_pose_identity()), NULL, ws, &result);
+    cprox_collision(cprox_point_along(b.curve), cprox_obstacle_at(solid, CPROX_POSE_IDENTITY), NULL, ws, &result);
     if (wanted) assert_int_equal(result.verdict, CPROX_VERDICT_VIOLATED);
     if (mesh_distance(&mesh, ref_vec(p)) > 1e-5L && !wanted) assert_int_equal(result.verdict, CPROX_VERDICT_CLEAR);
     cprox_curve_free(b.curve);
@@ -210,7 +210,7 @@ CASE(a_closed_mesh_is_solid_inside) {
   /* one triangle less, and it is a surface */
   mesh.m--;
   solid = mesh_body(&mesh, CPROX_MESH_SOLID, ws);
-  assert_false(cprox_body_is_solid(solid));
+  assert_false(cprox_body_get_info(solid).is_solid);
   cprox_body_free(solid);
   mesh_free(&mesh);
 }
@@ -339,7 +339,7 @@ CASE(bad_input_is_refused_with_a_sentence) {
   cprox_result unused;
   assert_int_equal(cprox_body_create_boxes(low, top, 1, SIZE_MAX, ws, &boxes), CPROX_OK);
   assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
-  const cprox_obstacle target = cprox_obstacle_at(boxes, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(boxes, CPROX_POSE_IDENTITY);
   expect_reason(cprox_distance(cprox_body_along(ball, path.curve), target, NULL, ws, &unused), CPROX_INVALID,
                 "carried");
   expect_reason(cprox_distance(cprox_body_along(boxes, path.curve), target, NULL, ws, &unused), CPROX_INVALID,
@@ -359,12 +359,12 @@ CASE(bad_input_is_refused_with_a_sentence) {
   /* one triangle without area is a mesh */
   const vec3 flat[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   assert_int_equal(cprox_body_create_mesh(flat, 3, good, 1, CPROX_MESH_SOLID, SIZE_MAX, ws, &body), CPROX_OK);
-  assert_false(cprox_body_is_solid(body));
+  assert_false(cprox_body_get_info(body).is_solid);
   const vec3 line[2] = {{1, -1, 0}, {1, 1, 0}};
   const test_bezier b = bezier_make(line, 1);
   cprox_result result;
   assert_int_equal(
-      cprox_distance(cprox_point_along(b.curve), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws, &result),
+      cprox_distance(cprox_point_along(b.curve), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), NULL, ws, &result),
       CPROX_OK);
   assert_true(result.lower <= 1.0 && 1.0 <= result.upper);
   cprox_body_free(body);
@@ -383,8 +383,8 @@ CASE(queries_do_not_allocate_once_the_workspace_has_grown) {
   for (int i = 0; i < 2; i++) {
     before = allocations_made();
     cprox_result result;
-    cprox_distance(cprox_tube_along(b.curve, 0.01), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws, &result);
-    cprox_time_of_contact(cprox_tube_along(b.curve, 0.01), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws,
+    cprox_distance(cprox_tube_along(b.curve, 0.01), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), NULL, ws, &result);
+    cprox_time_of_contact(cprox_tube_along(b.curve, 0.01), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), NULL, ws,
                           &result);
   }
   assert_int_equal(allocations_made(), before);

@@ -15,7 +15,7 @@
  * budget is what is asked about. */
 static cprox_result expect_distance(const char *name, const cprox_curve *curve, const cprox_body *body, cprox_pose pose,
                                     double epsilon, double truth, double doubt, uint32_t most) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   cprox_result r;
   const cprox_status status = cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, pose), &options, ws, &r);
@@ -33,7 +33,7 @@ static cprox_result expect_distance(const char *name, const cprox_curve *curve, 
 CASE(lines_along_a_plate_take_one_interval) {
   test_mesh mesh = mesh_plate(40, 1.0);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
-  const cprox_pose here = cprox_pose_identity();
+  const cprox_pose here = CPROX_POSE_IDENTITY;
   const vec3 above[2] = {{-0.7, 0.013, 0.25}, {0.7, 0.013, 0.25}};
   const vec3 on[2] = {{-0.7, 0.013, 0.0}, {0.7, 0.013, 0.0}};
   const vec3 touching[3] = {{-0.7, 0.013, 0.3}, {0.0, 0.013, -0.3}, {0.7, 0.013, 0.3}};
@@ -99,12 +99,12 @@ CASE(concentric_curves_end_within_the_budget) {
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
   const vec3 axis[2] = {{0, 0, -0.8}, {0, 0, 0.8}};
   cprox_curve *along = bezier(axis, 2);
-  expect_distance("axis", along, body, cprox_pose_identity(), 1e-6, 0.5 * cos(3.141592653589793 / N), 1e-14, 120);
+  expect_distance("axis", along, body, CPROX_POSE_IDENTITY, 1e-6, 0.5 * cos(3.141592653589793 / N), 1e-14, 120);
 
   const cprox_vec3 terms[3] = {{0, 0, 0.01}, {1, 0, 0}, {0, 1, 0}};
   cprox_curve *arc = NULL;
   assert_int_equal(curve_from(describe_trigonometric(terms, 3, 0.0, 3.0), ws, &arc), CPROX_OK);
-  expect_distance("arc", arc, body, cprox_pose_identity(), 1e-6, 0.5, 1e-9, 1300);
+  expect_distance("arc", arc, body, CPROX_POSE_IDENTITY, 1e-6, 0.5, 1e-9, 1300);
   cprox_curve_free(along);
   cprox_curve_free(arc);
   cprox_body_free(body);
@@ -129,7 +129,7 @@ CASE(the_bisector_of_a_groove_converges) {
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
   const vec3 line[2] = {{0.2, -0.8, 0.2}, {0.2, 0.8, 0.2}};
   cprox_curve *curve = bezier(line, 2);
-  expect_distance("groove", curve, body, cprox_pose_identity(), 1e-6, 0.2, 1e-15, 40);
+  expect_distance("groove", curve, body, CPROX_POSE_IDENTITY, 1e-6, 0.2, 1e-15, 40);
   cprox_curve_free(curve);
   cprox_body_free(body);
   mesh_free(&one);
@@ -154,8 +154,8 @@ CASE(a_spline_of_a_thousand_pieces_is_answered) {
   assert_int_equal(curve_from(describe_bspline(points, POINTS, 3, knots, POINTS + 4, 3.0, POINTS), ws, &curve),
                    CPROX_OK);
   cprox_result r;
-  assert_int_equal(
-      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), NULL, ws, &r), CPROX_OK);
+  assert_int_equal(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), NULL, ws, &r),
+                   CPROX_OK);
   double least = INFINITY;
   for (int k = 0; k <= 20000; k++) {
     vec3 x;
@@ -182,7 +182,7 @@ CASE(far_away_the_interval_is_as_wide_as_it_must_be) {
     for (int k = 0; k < 4; k++) points[k] = vec_add(rng_in_cube(&r, 2.0), offset);
     cprox_curve *curve = bezier(points, 4);
     for (int fine = 0; fine < 2; fine++) {
-      cprox_options options = cprox_options_default();
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
       options.epsilon = fine ? 1e-12 : 1e-6;
       cprox_result a;
       const cprox_status status =
@@ -207,11 +207,11 @@ CASE(tiny_epsilons_end_with_the_narrowest_interval) {
     vec3 points[5];
     for (int k = 0; k < 5; k++) points[k] = rng_in_cube(&r, 2.0);
     cprox_curve *curve = bezier(points, 5);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = i % 2 ? 0.0 : 1e-15;
     cprox_result a;
     const cprox_status status =
-        cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws, &a);
+        cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), &options, ws, &a);
     assert_true(status == CPROX_OK || status == CPROX_PRECISION);
     if (a.nodes > 400 || a.upper - a.lower > 1e-12)
       fail_msg("case %d: %u intervals, %g wide", i, a.nodes, a.upper - a.lower);
@@ -227,15 +227,15 @@ CASE(a_budget_is_kept) {
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
   const vec3 axis[2] = {{0.001, 0, -0.8}, {0, 0.001, 0.8}};
   cprox_curve *curve = bezier(axis, 2);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-9;
   cprox_result fine, coarse;
   options.max_nodes = 200000;
-  assert_true(cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws,
-                             &fine) >= 0);
+  assert_true(
+      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), &options, ws, &fine) >= 0);
   options.max_nodes = 10;
   const cprox_status status =
-      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws, &coarse);
+      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), &options, ws, &coarse);
   assert_true(coarse.nodes <= 10 && coarse.lower <= fine.upper && fine.lower <= coarse.upper);
   assert_true(status == CPROX_BUDGET || coarse.upper - coarse.lower <= 1e-9);
   cprox_curve_free(curve);
@@ -253,7 +253,7 @@ CASE(time_of_contact_takes_few_intervals) {
   test_mesh mesh = mesh_torus(60, 30, 1.0, 0.3, 0.02);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
   rng r = rng_seed(47);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-9;
   const double radius = 0.05;
   uint32_t nodes = 0, hits = 0;
@@ -263,7 +263,7 @@ CASE(time_of_contact_takes_few_intervals) {
     for (int k = 1; k < 6; k++) points[k] = vec_add(vec_scale(1.0 - 0.25 * k, points[0]), rng_in_cube(&r, 0.2));
     cprox_curve *curve = bezier(points, 6);
     cprox_result result;
-    cprox_time_of_contact(cprox_tube_along(curve, radius), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws,
+    cprox_time_of_contact(cprox_tube_along(curve, radius), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), &options, ws,
                           &result);
     if (result.verdict == CPROX_VERDICT_VIOLATED && result.t_contact_lower > 0.0) {
       hits++;

@@ -28,7 +28,7 @@ static bool count_and_go_on(void *user) {
 static cprox_certificate *proof;
 
 static cprox_options with(option o) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   if (o == SIGNED) options.signed_distance = true;
   if (o == CERTIFICATE) options.certificate = proof;
   if (o == STOP) options.stop = count_and_go_on;
@@ -58,25 +58,25 @@ static cprox_robot *make_robot(const cprox_body *body) {
   const cprox_link links[] = {
       {.parent = -1,
        .type = CPROX_JOINT_PRISMATIC,
-       .origin = cprox_pose_identity(),
+       .origin = CPROX_POSE_IDENTITY,
        .axis = {1, 0, 0},
        .variable = 0,
        .multiplier = 1},
       {.parent = 0,
        .type = CPROX_JOINT_PRISMATIC,
-       .origin = cprox_pose_identity(),
+       .origin = CPROX_POSE_IDENTITY,
        .axis = {0, 1, 0},
        .variable = 1,
        .multiplier = 1},
       {.parent = 1,
        .type = CPROX_JOINT_PRISMATIC,
-       .origin = cprox_pose_identity(),
+       .origin = CPROX_POSE_IDENTITY,
        .axis = {0, 0, 1},
        .variable = 1,
        .multiplier = 1},
   };
-  const cprox_link_geometry geometries[] = {{.body = body, .pose = cprox_pose_identity(), .link = 0},
-                                            {.body = body, .pose = cprox_pose_identity(), .link = 2}};
+  const cprox_link_geometry geometries[] = {{.body = body, .pose = CPROX_POSE_IDENTITY, .link = 0},
+                                            {.body = body, .pose = CPROX_POSE_IDENTITY, .link = 2}};
   cprox_robot *robot = NULL;
   assert_int_equal(cprox_robot_create(links, 3, geometries, 2, 2, ws, &robot), CPROX_OK);
   return robot;
@@ -131,7 +131,7 @@ static cprox_mover mover_of(const world *w, mover_kind kind) {
 static cprox_obstacle target_of(const world *w, target_kind kind, double height) {
   const cprox_body *const bodies[] = {w->ball, w->box, w->plane, w->quadric, w->mesh, w->cloud};
   cprox_obstacle t =
-      kind < LINE ? cprox_obstacle_at(bodies[kind], cprox_pose_identity()) : cprox_obstacle_curve(w->line, 0.05);
+      kind < LINE ? cprox_obstacle_at(bodies[kind], CPROX_POSE_IDENTITY) : cprox_obstacle_curve(w->line, 0.05);
   if (kind == CLOCK) t = cprox_synchronized(cprox_tube_along(w->line, 0.05));
   if (kind == CLOCK_BODY) t = cprox_synchronized(cprox_body_along(w->box, w->line));
   t.pose.position.z = -height;
@@ -294,7 +294,7 @@ static cprox_status batch_collision(const world *w, cprox_mover m, cprox_obstacl
 
 /* Standing and translating bodies: the mover's place is taken by a body. */
 static cprox_obstacle own_body(const world *w) {
-  return cprox_obstacle_at(w->quadric, cprox_pose_identity());
+  return cprox_obstacle_at(w->quadric, CPROX_POSE_IDENTITY);
 }
 
 static cprox_status pair(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
@@ -305,11 +305,11 @@ static cprox_status pair(const world *w, cprox_mover m, cprox_obstacle t, const 
 static cprox_status pair_of_parts(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
   (void)m;
   const cprox_body *const parts[2] = {w->quadric, w->ball};
-  cprox_pose poses[2] = {cprox_pose_identity(), cprox_pose_identity()};
+  cprox_pose poses[2] = {CPROX_POSE_IDENTITY, CPROX_POSE_IDENTITY};
   poses[1].position.z = 2.0;
   cprox_body *two = NULL;
   assert_int_equal(cprox_body_create_compound(parts, poses, 2, ws, &two), CPROX_OK);
-  const cprox_status status = cprox_pair(cprox_obstacle_at(two, cprox_pose_identity()), t, o, ws, r->result);
+  const cprox_status status = cprox_pair(cprox_obstacle_at(two, CPROX_POSE_IDENTITY), t, o, ws, r->result);
   cprox_body_free(two);
   return status;
 }
@@ -392,7 +392,7 @@ static void expect_effect(walk *all, size_t q, mover_kind mover, target_kind tar
   if (o == SIGNED && measured && apart && fabs(now->upper - before->upper) > 2e-6)
     fail_msg("%s: %.9g, not %.9g", what, now->upper, before->upper);
   if (o == CERTIFICATE && apart && mover <= TUBE && (target <= PLANE || target == LINE)) {
-    if (cprox_certificate_size(proof) == 0) fail_msg("%s: no certificate", what);
+    if (cprox_certificate_get_info(proof).size == 0) fail_msg("%s: no certificate", what);
     all->proven++;
   }
   if (o == RELATIVE && measured && (now->lower > before->upper || before->lower > now->upper))
@@ -445,7 +445,7 @@ CASE(options_have_their_effect_or_are_refused) {
       if (mover == ROBOT_SELF && !(QUERIES[q].has & TAKES_SELF)) continue;
       for (target_kind target = BALL; target < N_TARGETS; target++) {
         for (int apart = 0; apart < 2; apart++) {
-          const cprox_options options = cprox_options_default();
+          const cprox_options options = CPROX_OPTIONS_DEFAULT;
           reply plain = {0};
           const cprox_obstacle t = target_of(&all.w, target, apart ? 4.0 : 0.0);
           const cprox_status base = QUERIES[q].ask(&all.w, mover_of(&all.w, mover), t, &options, &plain);
@@ -475,7 +475,7 @@ CASE(what_belongs_to_robots_is_refused_with_curves) {
       if (i == 1) m.n_pairs = 1;
       if (i == 2) m.self = true;
       reply r;
-      const cprox_options options = cprox_options_default();
+      const cprox_options options = CPROX_OPTIONS_DEFAULT;
       const cprox_obstacle t = target_of(&w, BALL, 4.0);
       m.self = false;
       cprox_mover asked = m;
@@ -496,7 +496,7 @@ CASE(gaps_refuse_delta_and_samples_together) {
   assert_int_equal(cprox_solid_create(
                        &(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 3, .radius = 1.0}, ws, &ball),
                    CPROX_OK);
-  cprox_gap_options o = cprox_gap_options_default();
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
   cprox_gap *gap = NULL;
   o.samples = 9, o.delta = 0.3;
   assert_int_equal(cprox_gap_create(ball, ball, &o, ws, &gap), CPROX_INVALID);

@@ -49,7 +49,7 @@ static void check_apart(const sweep *w) {
     const double gap = scale * rng_log_uniform(&r, w->least_gap, w->most_gap);
     const double tolerance = shape_place(&a, &pa, &b, &pb, n, gap);
 
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     const double floor = 200.0 * ROUND_U * reach_of(&a, &pa, &b, &pb);
     options.epsilon = floor;
     options.relative_epsilon = 1e-9;
@@ -168,7 +168,7 @@ CASE(aligned_boxes_need_no_tolerance) {
                        CPROX_OK);
     }
     const vec3 d = vec_scale(rng_log_uniform(&r, 1e-3, 1.0), rng_unit(&r));
-    cprox_pose pose = cprox_pose_identity();
+    cprox_pose pose = CPROX_POSE_IDENTITY;
     pose.position = vec(d.x + 0.5 * (size[0].x + size[1].x), d.y + 0.5 * (size[0].y + size[1].y),
                         rng_index(&r, 2) ? d.z : d.z + 0.5 * (size[0].z + size[1].z));
     const vec3 p = pose.position;
@@ -176,10 +176,10 @@ CASE(aligned_boxes_need_no_tolerance) {
                        fmaxl(0, fabsl(p.y) - (0.5L * size[0].y + 0.5L * size[1].y)),
                        fmaxl(0, fabsl(p.z) - (0.5L * size[0].z + 0.5L * size[1].z))};
     const long double exact = ref_norm(gap);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-13;
     cprox_result result;
-    cprox_pair(cprox_obstacle_at(body[0], cprox_pose_identity()), cprox_obstacle_at(body[1], pose), &options, NULL,
+    cprox_pair(cprox_obstacle_at(body[0], CPROX_POSE_IDENTITY), cprox_obstacle_at(body[1], pose), &options, NULL,
                &result);
     if (exact > 0 && !(result.lower <= exact && exact <= result.upper && result.status == CPROX_OK))
       fail_msg("[%.17g, %.17g], exact %.20Lg", result.lower, result.upper, exact);
@@ -201,13 +201,13 @@ CASE(the_rounding_of_large_bodies_close_together_is_in_the_interval) {
       for (size_t j = 0; j < s[k].n; j++) s[k].v[j] = vec_axpy(rng_unit(&r), rng_uniform(&r, -50.0, 50.0), along);
       assert_int_equal(cprox_body_create_polytope(s[k].v, s[k].n, NULL, &s[k].body), CPROX_OK);
     }
-    const cprox_pose pa = cprox_pose_identity();
-    cprox_pose pb = cprox_pose_identity();
+    const cprox_pose pa = CPROX_POSE_IDENTITY;
+    cprox_pose pb = CPROX_POSE_IDENTITY;
     vec3 n = vec_cross(along, rng_unit(&r));
     n = vec_scale(1.0 / vec_norm(n), n);
     const double gap = rng_log_uniform(&r, 1e-3, 1.0), tolerance = shape_place(&s[0], &pa, &s[1], &pb, n, gap);
     if (vec_norm(pb.position) < 5.0) {
-      cprox_options options = cprox_options_default();
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
       options.epsilon = 0.0;
       cprox_result result;
       cprox_pair(cprox_obstacle_at(s[0].body, pa), cprox_obstacle_at(s[1].body, pb), &options, NULL, &result);
@@ -232,7 +232,7 @@ CASE(a_common_offset_of_a_million_metres_costs_nothing) {
     cprox_pose pa = rng_pose(&r, 0.0), pb = rng_pose(&r, 0.0);
     pa.position = offset;
     const double tolerance = shape_place(&a, &pa, &b, &pb, rng_unit(&r), 0.1);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-12;
     cprox_result result;
     cprox_pair(cprox_obstacle_at(a.body, pa), cprox_obstacle_at(b.body, pb), &options, NULL, &result);
@@ -252,7 +252,7 @@ CASE(balls_have_their_exact_signed_distance) {
     shape_make(&r, rng_index(&r, 2) ? CPROX_SPHERE : CPROX_POINT, 1.0, 4.0, &a);
     shape_make(&r, rng_index(&r, 4) ? TEST_BOUNDED[1 + rng_index(&r, 6)] : CPROX_SPHERE, 1.0, 4.0, &b);
     const cprox_pose pa = rng_pose(&r, 1.5), pb = rng_pose(&r, 1.5);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-12;
     cprox_result ab, ba;
     assert_int_equal(cprox_pair(cprox_obstacle_at(a.body, pa), cprox_obstacle_at(b.body, pb), &options, NULL, &ab),
@@ -287,7 +287,7 @@ CASE(a_halfspace_knows_the_signed_distance_of_everything) {
     assert_int_equal(cprox_body_create_halfspace(normal, offset, NULL, &h), CPROX_OK);
     const vec3l n = pose_turn(&ph, ref_vec(normal)), low = ref_to_local(&ph, shape_extreme(&b, &pb, ref_scale(-1, n)));
     const long double exact = (ref_dot(ref_vec(normal), low) + offset) / ref_norm(ref_vec(normal));
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-9;
     cprox_result hb, bh;
     assert_int_equal(cprox_pair(cprox_obstacle_at(h, ph), cprox_obstacle_at(b.body, pb), &options, NULL, &hb),
@@ -318,7 +318,7 @@ CASE(padding_is_taken_off_the_distance) {
     const double gap = rng_uniform(&r, 0.1, 1.0), pad_a = rng_uniform(&r, 0.0, 0.7), pad_b = rng_uniform(&r, 0.0, 0.7);
     const double tolerance = shape_place(&a, &pa, &b, &pb, shape_telling_direction(&r, &b, &pb), gap),
                  exact = gap - (pad_a + pad_b);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-9;
     cprox_result result;
     const cprox_obstacle ta = cprox_with_margin(cprox_obstacle_at(a.body, pa), pad_a),
@@ -351,11 +351,11 @@ CASE(a_compound_is_as_near_as_its_nearest_part) {
     assert_int_equal(cprox_body_create_compound(bodies + 3, poses + 3, 2, NULL, &b), CPROX_OK);
     cprox_pose away = rng_pose(&r, 1.0);
     away.position.x += 6.0;
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-9;
     cprox_result whole, single, least = {.upper = INFINITY, .lower = INFINITY};
     assert_int_equal(
-        cprox_pair(cprox_obstacle_at(a, away), cprox_obstacle_at(b, cprox_pose_identity()), &options, NULL, &whole),
+        cprox_pair(cprox_obstacle_at(a, away), cprox_obstacle_at(b, CPROX_POSE_IDENTITY), &options, NULL, &whole),
         CPROX_OK);
     for (int p = 0; p < 3; p++)
       for (int q = 0; q < 2; q++) {

@@ -58,7 +58,7 @@ CASE(fclAgreesOnNearlyAllPairsThatAreApart) {
                            {q.w(), q.x(), q.y(), q.z()}};
 
     cprox_result ours;
-    assert_true(cprox_pair(cprox_obstacle_at(a.body, cprox_pose_identity()), cprox_obstacle_at(b.body, pb), nullptr,
+    assert_true(cprox_pair(cprox_obstacle_at(a.body, CPROX_POSE_IDENTITY), cprox_obstacle_at(b.body, pb), nullptr,
                            nullptr, &ours) >= 0);
     if (ours.lower > 1e-6) {
       try {

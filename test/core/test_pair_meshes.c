@@ -36,7 +36,7 @@ static double by_triangles(const test_mesh *a, const cprox_pose *at, const test_
  * twice that. The witnesses are as far apart as is said, and the normal is theirs. */
 CASE(meshes_are_as_far_apart_as_their_nearest_triangles) {
   rng r = rng_seed(141);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-9;
   size_t touching = 0, apart = 0;
   for (size_t i = 0; i < test_cases(60); i++) {
@@ -109,7 +109,7 @@ CASE(one_inside_a_solid_overlaps_it) {
   test_mesh large = mesh_box(vec(1, 1, 1)), small = mesh_box(vec(0.1, 0.1, 0.1));
   cprox_body *solid = mesh_body(&large, CPROX_MESH_SOLID, ws), *surface = mesh_body(&large, CPROX_MESH_SURFACE, ws);
   cprox_body *inner = mesh_body(&small, CPROX_MESH_SURFACE, ws);
-  const cprox_pose here = cprox_pose_identity();
+  const cprox_pose here = CPROX_POSE_IDENTITY;
   cprox_result r;
   for (int swapped = 0; swapped < 2; swapped++) {
     const cprox_obstacle a = cprox_obstacle_at(swapped ? inner : solid, here),
@@ -179,7 +179,7 @@ CASE(neither_order_nor_a_looser_epsilon_costs_more) {
                          two = cprox_obstacle_at(y, there);
     uint32_t nodes[sizeof EPSILON / sizeof *EPSILON];
     for (size_t e = 0; e < sizeof EPSILON / sizeof *EPSILON; e++) {
-      cprox_options options = cprox_options_default();
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
       options.epsilon = EPSILON[e][0], options.relative_epsilon = EPSILON[e][1], options.max_nodes = 1000000;
       cprox_result p, q;
       const cprox_status status = cprox_pair(one, two, &options, ws, &p);
@@ -215,12 +215,12 @@ CASE(a_coarse_mesh_and_a_fine_one_take_the_same_either_way) {
     test_mesh b = open_tube(&r, 215, 100, 0.03, 0.12);
     cprox_body *arm = mesh_body(&a, CPROX_MESH_SURFACE, ws), *sensor = mesh_body(&b, CPROX_MESH_SURFACE, ws);
     for (int i = 0; i < 10; i++) {
-      const cprox_pose at = cprox_pose_identity();
+      const cprox_pose at = CPROX_POSE_IDENTITY;
       cprox_pose there = rng_pose(&r, 0.0);
       const double turned = rng_uniform(&r, 0.0, 6.3), away = i % 2 ? 0.25 : 0.35;
       there.position = vec(away * cos(turned), away * sin(turned), rng_uniform(&r, -0.2, 0.2));
       const cprox_obstacle one = cprox_obstacle_at(arm, at), two = cprox_obstacle_at(sensor, there);
-      cprox_options options = cprox_options_default();
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
       cprox_result p, q;
       assert_int_equal(cprox_pair(one, two, &options, ws, &p), CPROX_OK);
       assert_int_equal(cprox_pair(two, one, &options, ws, &q), CPROX_OK);
@@ -249,7 +249,7 @@ CASE(what_a_budget_leaves_open_is_bounded_by_what_is_meant) {
     cprox_body *x = mesh_body(&a, solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE, ws);
     cprox_body *y = mesh_body(&b, CPROX_MESH_SURFACE, ws);
     const cprox_obstacle one = cprox_obstacle_at(x, rng_pose(&r, 0.5)), two = cprox_obstacle_at(y, rng_pose(&r, 0.5));
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.max_nodes = 5 + (uint32_t)rng_index(&r, 60);
     cprox_result p, all;
     const cprox_status status = cprox_pair(one, two, &options, ws, &p);
@@ -276,16 +276,15 @@ static bool at_once(void *user) {
 CASE(a_search_through_meshes_can_be_stopped) {
   test_mesh a = mesh_torus(40, 25, 1.0, 0.3, 0.1);
   cprox_body *x = mesh_body(&a, CPROX_MESH_SURFACE, ws);
-  cprox_pose there = cprox_pose_identity();
+  cprox_pose there = CPROX_POSE_IDENTITY;
   there.position.x = 4.0;
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   cprox_result p, q;
-  assert_int_equal(
-      cprox_pair(cprox_obstacle_at(x, cprox_pose_identity()), cprox_obstacle_at(x, there), &options, ws, &p), CPROX_OK);
+  assert_int_equal(cprox_pair(cprox_obstacle_at(x, CPROX_POSE_IDENTITY), cprox_obstacle_at(x, there), &options, ws, &p),
+                   CPROX_OK);
   options.stop = at_once;
-  assert_int_equal(
-      cprox_pair(cprox_obstacle_at(x, cprox_pose_identity()), cprox_obstacle_at(x, there), &options, ws, &q),
-      CPROX_STOPPED);
+  assert_int_equal(cprox_pair(cprox_obstacle_at(x, CPROX_POSE_IDENTITY), cprox_obstacle_at(x, there), &options, ws, &q),
+                   CPROX_STOPPED);
   assert_true(q.lower >= 0.0 && q.lower <= p.upper && q.upper >= p.lower && q.nodes < p.nodes);
   cprox_body_free(x);
   mesh_free(&a);

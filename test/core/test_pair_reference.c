@@ -67,7 +67,7 @@ static side read_posed(const char *type, const double *p, size_t n, const double
 
 /* A box as the hull of its corners in the world, each rounded to double. */
 static side read_corners(const double *p, const double m[12]) {
-  side s = {.pose = cprox_pose_identity()};
+  side s = {.pose = CPROX_POSE_IDENTITY};
   vec3 v[8];
   for (int k = 0; k < 8; k++) {
     const long double x = k & 1 ? 0.5L * p[0] : -0.5L * p[0], y = k & 2 ? 0.5L * p[1] : -0.5L * p[1];
@@ -110,7 +110,7 @@ static size_t check_rows(bool corners) {
 
     const double largest =
         fmax(vec_norm(a.pose.position), vec_norm(b.pose.position)) + a.body->ball_radius + b.body->ball_radius;
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-9 * fmax(1.0, largest);
     cprox_result r;
     const cprox_status status =

@@ -15,7 +15,7 @@ static cprox_pose at(double x, double y, double z) {
 }
 
 static cprox_result ask(const cprox_body *a, cprox_pose pa, const cprox_body *b, cprox_pose pb, double epsilon) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   cprox_result r;
   assert_true(cprox_pair(cprox_obstacle_at(a, pa), cprox_obstacle_at(b, pb), &options, ws, &r) >= CPROX_OK);
@@ -188,7 +188,7 @@ CASE(the_status_is_that_of_the_interval) {
     cprox_pose pb = rng_pose(&r, 0.0);
     const double gap = rng_log_uniform(&r, 1e-3, 1.0);
     const double tolerance = shape_place(&a, &pa, &b, &pb, rng_unit(&r), gap);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.max_nodes = 1 + (uint32_t)rng_index(&r, 8);
     options.epsilon = rng_log_uniform(&r, 1e-15, 1e-1);
     cprox_result result;
@@ -318,10 +318,10 @@ CASE(unusable_arguments_are_refused_in_words) {
           "two halfspaces have no distance");
   REFUSED(cprox_obstacle_at(h, at(0, 0, 0)), cprox_obstacle_at(both, at(0, 0, 0)), NULL,
           "two halfspaces have no distance");
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = NAN;
   REFUSED(ok, ok, &options, "epsilon is nan, must be finite and 0 or more");
-  options = cprox_options_default();
+  options = CPROX_OPTIONS_DEFAULT;
   options.max_nodes = 0;
   REFUSED(ok, ok, &options, "max_nodes is 0: a query needs a budget of at least 1 node");
   assert_int_equal(cprox_pair(ok, ok, NULL, ws, NULL), CPROX_INVALID);

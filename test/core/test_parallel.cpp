@@ -120,7 +120,7 @@ CASE(answers_are_the_same_for_one_to_eight_threads) {
   world.movers[300].radius = -1;
   world.movers[70].radius = NAN;
   const Batch batch(world.targets);
-  const cprox_options options = cprox_options_default();
+  const cprox_options options = CPROX_OPTIONS_DEFAULT;
   Pool alone(1);
   const Batch::Answers distance = batch.distance(world.movers, options, alone);
   const Batch::Answers tolerance = batch.tolerance(world.movers, 0.05, options, alone);
@@ -157,7 +157,7 @@ CASE(unusable_targets_and_options_are_told) {
 
   const Batch batch(world.targets);
   Pool pool(3);
-  const Batch::Answers answers = batch.tolerance(world.movers, -1, cprox_options_default(), pool);
+  const Batch::Answers answers = batch.tolerance(world.movers, -1, CPROX_OPTIONS_DEFAULT, pool);
   assert_int_equal(answers.status, CPROX_INVALID);
   assert_true(answers.reason.find("delta") != std::string::npos);
   for (const cprox_result &result : answers.results) assert_int_equal(result.status, CPROX_INVALID);

@@ -538,7 +538,7 @@ CASE(witness_points_attain_upper_however_loose_epsilon_is) {
     const double radius = rng_uniform(&r, 0.0, 0.5), margin = rng_uniform(&r, 0.0, 0.5);
     const cprox_options options = accurate(rng_log_uniform(&r, 1e-3, 1e3));
     cprox_result result;
-    const cprox_obstacle target = cprox_with_margin(cprox_obstacle_at(hull, cprox_pose_identity()), margin);
+    const cprox_obstacle target = cprox_with_margin(cprox_obstacle_at(hull, CPROX_POSE_IDENTITY), margin);
     assert_int_equal(cprox_distance(cprox_tube_along(curve, radius), target, &options, ws, &result), CPROX_OK);
 
     vec3 at;
@@ -556,7 +556,7 @@ CASE(witness_points_attain_upper_however_loose_epsilon_is) {
 
 /* Bounds that contradict each other end the program where CPROX_CHECKED is on, as in every build of tests; bounds that do not, pass. */
 CASE(bounds_that_contradict_each_other_are_not_hidden) {
-  const query q = {.limit = -1.0, .options = cprox_options_default(), .workspace = ws};
+  const query q = {.limit = -1.0, .options = CPROX_OPTIONS_DEFAULT, .workspace = ws};
   for (int contradict = 0; contradict < 2; contradict++) {
     const pid_t child = fork();
     assert_true(child >= 0);

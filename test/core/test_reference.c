@@ -39,11 +39,11 @@ static double largest_coordinate(const csv_curve_case *c) {
 
 static void check_distance(const csv_curve_case *c, const cprox_curve *curve, const cprox_body *body, double reference,
                            double epsilon, cprox_workspace *ws) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   cprox_result r;
   const cprox_status status =
-      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws, &r);
+      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), &options, ws, &r);
   if (status != CPROX_OK && status != CPROX_PRECISION)
     fail_msg("%s: %s (%s), [%.17g, %.17g] after %u nodes", c->id, cprox_status_name(status), cprox_workspace_error(ws),
              r.lower, r.upper, r.nodes);
@@ -63,10 +63,10 @@ static void check_distance(const csv_curve_case *c, const cprox_curve *curve, co
 
 static void check_verdicts(const csv_curve_case *c, const cprox_curve *curve, const cprox_body *body, double reference,
                            double epsilon, cprox_workspace *ws) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   const cprox_mover mover = cprox_point_along(curve);
-  const cprox_obstacle target = cprox_obstacle_at(body, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
   cprox_result r;
   assert_true(cprox_collision(mover, target, &options, ws, &r) >= 0);
   if (r.verdict == CPROX_VERDICT_VIOLATED && reference > 1e-15)

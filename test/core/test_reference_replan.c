@@ -51,11 +51,11 @@ static cprox_curve *curve_of(const csv_row *row) {
 
 /* The references are searches that ended within 1e-10. */
 static void check_distance(const cprox_curve *curve, int k, double reference, cprox_workspace *ws) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-12;
   cprox_result r;
   assert_int_equal(
-      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(obstacle[k], cprox_pose_identity()), &options, ws, &r),
+      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(obstacle[k], CPROX_POSE_IDENTITY), &options, ws, &r),
       CPROX_OK);
   if (!(r.lower <= reference + 1e-10 && reference - 1e-10 <= r.upper))
     fail_msg("[%.17g, %.17g], the reference is %.17g", r.lower, r.upper, reference);
@@ -66,7 +66,7 @@ static unsigned class_of(const cprox_curve *curve, cprox_workspace *ws) {
   const cprox_mover mover = cprox_point_along(curve);
   unsigned worst = 1;
   for (int k = 0; k < 2; k++) {
-    const cprox_obstacle target = cprox_obstacle_at(obstacle[k], cprox_pose_identity());
+    const cprox_obstacle target = cprox_obstacle_at(obstacle[k], CPROX_POSE_IDENTITY);
     cprox_result r;
     assert_int_equal(cprox_tolerance(mover, target, DELTA, NULL, ws, &r), CPROX_OK);
     if (r.verdict == CPROX_VERDICT_CLEAR) continue;

@@ -183,7 +183,7 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
     cprox_body *moving = NULL, *ball = NULL;
     assert_int_equal(cprox_body_create_sphere(own, ws, &moving), CPROX_OK);
     assert_int_equal(cprox_body_create_sphere(other, ws, &ball), CPROX_OK);
-    const cprox_pose origin = cprox_pose_identity();
+    const cprox_pose origin = CPROX_POSE_IDENTITY;
     const cprox_link link = {
         .parent = -1, .type = CPROX_JOINT_PRISMATIC, .origin = origin, .axis = axis, .multiplier = 1.0};
     const cprox_link_geometry geometry = {.body = moving, .pose = origin, .margin = margin};

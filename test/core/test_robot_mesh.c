@@ -81,7 +81,7 @@ static long double distance_at(const mesh_robot *m, long double time, const vec3
 }
 
 static cprox_result ask(const mesh_robot *m, const cprox_obstacle *targets, size_t n) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-5;
   cprox_result r;
   const cprox_status status =
@@ -100,7 +100,7 @@ CASE(points_are_as_far_as_every_triangle_says) {
     for (int k = 0; k < POINTS; k++) points[k] = rng_in_cube(&r, 1.0);
     cprox_body *cloud = NULL;
     assert_int_equal(cprox_body_create_points(points, POINTS, 0.0, SIZE_MAX, ws, &cloud), CPROX_OK);
-    const cprox_obstacle target = cprox_obstacle_at(cloud, cprox_pose_identity());
+    const cprox_obstacle target = cprox_obstacle_at(cloud, CPROX_POSE_IDENTITY);
     const cprox_result d = ask(&m, &target, 1);
     carry(&m, m.lod);
     const cprox_result by_lod = ask(&m, &target, 1);
@@ -187,7 +187,7 @@ CASE(the_finest_lod_may_be_the_hull_or_the_ball) {
     carry(&m, m.lod);
     const cprox_mover mover = cprox_robot_along(m.robot.motion, NULL, 0);
     for (int lod = CPROX_LOD_SPHERE; lod <= CPROX_LOD_MESH; lod++) {
-      cprox_options options = cprox_options_default();
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
       options.max_lod = (cprox_lod)lod;
       cprox_result *one = &d[lod - CPROX_LOD_SPHERE];
       assert_int_equal(distance_of_list(mover, &target, 1, &options, ws, one, NULL), CPROX_OK);

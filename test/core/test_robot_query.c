@@ -107,7 +107,7 @@ CASE(surfaces_of_boxes_are_as_far_as_boxes) {
     if (i % 5 == 0 && c.answers[0].lower > 0.0) {
       const cprox_result solid = ask(&c, &c.answers[0], -1.0);
       for (size_t k = 0; k < c.n_targets; k++) {
-        if (cprox_body_get_kind(c.targets[k].body) != CPROX_BOX) continue;
+        if (cprox_body_get_info(c.targets[k].body).kind != CPROX_BOX) continue;
         cprox_body *mesh = mesh_of_box(c.targets[k].body);
         cprox_body_free((cprox_body *)c.targets[k].body);
         c.targets[k].body = mesh;
@@ -175,7 +175,7 @@ static void make_points(rng *r, vec3 *points, cprox_obstacle *targets) {
     cprox_body *body;
     points[i] = rng_in_cube(r, 2.0);
     assert_int_equal(cprox_body_create_point(points[i], ws, &body), CPROX_OK);
-    targets[i] = cprox_obstacle_at(body, cprox_pose_identity());
+    targets[i] = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
   }
 }
 
@@ -192,7 +192,7 @@ CASE(no_sample_is_nearer_than_lower) {
     robot_make(&r, rng_log_uniform(&r, 0.1, 2), &t);
     make_points(&r, points, targets);
     cprox_result d, first;
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-5;
     const cprox_mover mover = cprox_robot_along(t.motion, NULL, 0);
     const cprox_status status = distance_of_list(mover, targets, TARGETS, &options, ws, &d, NULL);
@@ -328,11 +328,11 @@ CASE(proven_contact_ends_a_query_at_once) {
   for (int32_t i = 0; i < BALLS; i++) {
     links[i] = (cprox_link){.parent = i - 1,
                             .type = CPROX_JOINT_PRISMATIC,
-                            .origin = cprox_pose_identity(),
+                            .origin = CPROX_POSE_IDENTITY,
                             .axis = {1, 0, 0},
                             .variable = i,
                             .multiplier = 1.0};
-    geometries[i] = (cprox_link_geometry){.body = ball, .pose = cprox_pose_identity(), .link = i};
+    geometries[i] = (cprox_link_geometry){.body = ball, .pose = CPROX_POSE_IDENTITY, .link = i};
     variables[i] = i;
   }
   static double values[POINTS][BALLS];
@@ -387,7 +387,7 @@ CASE(bad_input_gets_a_sentence) {
   robot_make(&r, 1.0, &t);
   cprox_robot *robot = NULL;
   cprox_link link = {
-      .parent = -1, .type = CPROX_JOINT_REVOLUTE, .origin = cprox_pose_identity(), .axis = {0, 0, 1}, .multiplier = 1};
+      .parent = -1, .type = CPROX_JOINT_REVOLUTE, .origin = CPROX_POSE_IDENTITY, .axis = {0, 0, 1}, .multiplier = 1};
   REFUSED(cprox_robot_create(NULL, 0, NULL, 0, 0, ws, &robot), "at least one link");
   REFUSED(cprox_robot_create(&link, 1, NULL, 0, 0, ws, &robot), "needs 1 variables");
   link.axis.z = 0;

@@ -333,10 +333,10 @@ CASE(no_sample_of_a_long_motion_is_nearer_than_lower) {
     const vec3 point = rng_in_cube(&r, 2.0);
     cprox_body *body;
     assert_int_equal(cprox_body_create_point(point, ws, &body), CPROX_OK);
-    const cprox_obstacle target = cprox_obstacle_at(body, cprox_pose_identity());
+    const cprox_obstacle target = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
     const cprox_mover mover = cprox_robot_along(p.motion, NULL, 0);
     cprox_result d, first, clear;
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-5;
     assert_true(distance_of_list(mover, &target, 1, &options, ws, &d, NULL) >= 0);
     if (d.status != CPROX_OK) fail_msg("path %zu: %s", i, cprox_workspace_error(ws));
@@ -396,7 +396,7 @@ CASE(waypoints_on_a_line_cost_next_to_nothing) {
       for (size_t s = 0; s < size; s++) p.times[s] = 10.0 * (double)s / (double)(size - 1);
       cprox_body *body;
       assert_int_equal(cprox_body_create_point(point, ws, &body), CPROX_OK);
-      const cprox_obstacle target = cprox_obstacle_at(body, cprox_pose_identity());
+      const cprox_obstacle target = cprox_obstacle_at(body, CPROX_POSE_IDENTITY);
       assert_true(make_motion(&p));
       const cprox_mover mover = cprox_robot_along(p.motion, NULL, 0);
       cprox_result result[QUERIES];

@@ -47,7 +47,7 @@ static scene scene_make(rng *r, size_t n, double half, bool all) {
     if (kind == 8) s.targets[i].pose = rng_pose(r, half);
     if (i % 4 == 0) s.targets[i].margin = 0.03;
   }
-  if (all) s.targets[n / 2] = cprox_obstacle_at(s.body[8], cprox_pose_identity());
+  if (all) s.targets[n / 2] = cprox_obstacle_at(s.body[8], CPROX_POSE_IDENTITY);
   return s;
 }
 
@@ -65,7 +65,7 @@ static cprox_obstacles *set_make(const scene *s) {
   cprox_obstacles *set = NULL;
   if (cprox_obstacles_create(s->targets, s->n, CPROX_INDEX_BVH, ws, &set) != CPROX_OK)
     fail_msg("%s", cprox_workspace_error(ws));
-  assert_int_equal(cprox_obstacles_size(set), s->n);
+  assert_int_equal(cprox_obstacles_get_info(set).n, s->n);
   return set;
 }
 
@@ -104,7 +104,7 @@ CASE(sets_answer_as_all_their_targets_do) {
     cprox_obstacles *set = set_make(&s);
     cprox_curve *curve = way(&r, i % 2 ? 4 : 6 + rng_index(&r, 30), 1.5);
     const cprox_mover mover = cprox_tube_along(curve, i % 3 ? 0.0 : 0.04);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.signed_distance = i % 5 == 4;
     cprox_result a, b;
     const cprox_status status = cprox_obstacles_distance(set, mover, &options, ws, &a, NULL);
@@ -154,7 +154,7 @@ CASE(carried_bodies_and_coarser_models_are_answered_as_without_a_set) {
     expect_overlap("carried", i, &a, &b);
     assert_int_equal(cprox_obstacles_distance(mixed, cprox_body_along(s.body[1], curve), NULL, ws, &a, NULL),
                      CPROX_INVALID);
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.max_lod = i % 2 ? CPROX_LOD_SPHERE : CPROX_LOD_HULL;
     assert_true(cprox_obstacles_distance(mixed, cprox_point_along(curve), &options, ws, &a, NULL) >= 0);
     assert_true(distance_of_list(cprox_point_along(curve), s.targets, s.n, &options, ws, &b, NULL) >= 0);
@@ -215,7 +215,7 @@ CASE(bad_input_is_refused_and_nothing_is_far) {
   rng r = rng_seed(101);
   cprox_obstacles *set = NULL;
   cprox_curve *curve = way(&r, 4, 1.0);
-  cprox_obstacle nothing = {.pose = cprox_pose_identity()};
+  cprox_obstacle nothing = {.pose = CPROX_POSE_IDENTITY};
   assert_int_equal(cprox_obstacles_create(&nothing, 1, CPROX_INDEX_BVH, ws, &set), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(ws), "target 0"));
   assert_int_equal(cprox_obstacles_create(NULL, 3, CPROX_INDEX_BVH, ws, &set), CPROX_INVALID);
@@ -224,7 +224,7 @@ CASE(bad_input_is_refused_and_nothing_is_far) {
   assert_int_equal(cprox_obstacles_create(NULL, 0, (cprox_obstacle_index)7, ws, &set), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(ws), "7 is no kind of index"));
   assert_int_equal(cprox_obstacles_distance(NULL, cprox_point_along(curve), NULL, ws, &a, NULL), CPROX_OK);
-  assert_true(isinf(a.lower) && a.obstacle_index == -1 && cprox_obstacles_size(NULL) == 0);
+  assert_true(isinf(a.lower) && a.obstacle_index == -1 && cprox_obstacles_get_info(NULL).n == 0);
   assert_int_equal(cprox_obstacles_create(NULL, 0, CPROX_INDEX_BVH, ws, &set), CPROX_OK);
   assert_int_equal(cprox_obstacles_distance(set, cprox_point_along(curve), NULL, ws, &a, NULL), CPROX_OK);
   assert_true(isinf(a.lower) && a.obstacle_index == -1);

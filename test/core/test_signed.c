@@ -13,7 +13,7 @@
 #include "support/shapes.h"
 
 static cprox_options asked(double epsilon) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   options.signed_distance = true;
   return options;
@@ -119,9 +119,9 @@ static cprox_result pair_at(const cprox_mover *mover, const cprox_obstacle *targ
   cprox_body *point = NULL;
   assert_int_equal(cprox_body_create_point(vec(0, 0, 0), ws, &point), CPROX_OK);
   cprox_obstacle moved = {.body = mover->body ? mover->body : point, .margin = mover->radius};
-  moved.pose = cprox_pose_identity();
+  moved.pose = CPROX_POSE_IDENTITY;
   assert_int_equal(cprox_curve_evaluate(mover->curve, t, ws, &moved.pose.position, NULL, NULL), CPROX_OK);
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-9;
   cprox_result result;
   assert_true(cprox_pair(moved, *target, &options, ws, &result) >= 0);
@@ -170,7 +170,7 @@ CASE(a_compound_is_as_deep_as_its_deepest_part) {
   cprox_body *small = NULL, *large = NULL, *both = NULL;
   assert_int_equal(cprox_body_create_sphere(0.25, ws, &small), CPROX_OK);
   assert_int_equal(cprox_body_create_box(vec(2, 2, 2), ws, &large), CPROX_OK);
-  cprox_pose poses[2] = {cprox_pose_identity(), cprox_pose_identity()};
+  cprox_pose poses[2] = {CPROX_POSE_IDENTITY, CPROX_POSE_IDENTITY};
   poses[0].position = vec(-3, 0, 0);
   assert_int_equal(cprox_body_create_compound((const cprox_body *[]){small, large}, poses, 2, ws, &both), CPROX_OK);
   /* along x at y = 0.25: 0.25 from the ball's centre, so at its surface; 0.75 deep in the box */
@@ -178,7 +178,7 @@ CASE(a_compound_is_as_deep_as_its_deepest_part) {
   const cprox_options options = asked(1e-9);
   cprox_result result;
   assert_int_equal(
-      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(both, cprox_pose_identity()), &options, ws, &result),
+      cprox_distance(cprox_point_along(curve), cprox_obstacle_at(both, CPROX_POSE_IDENTITY), &options, ws, &result),
       CPROX_OK);
   assert_true(result.lower <= -0.75 && -0.75 <= result.upper && result.obstacle_part == 1);
   cprox_result nearest, each[2];
@@ -201,7 +201,7 @@ CASE(bodies_that_cannot_tell_their_depth_say_so) {
   assert_int_equal(cprox_body_create_boxes(low, high, 2, SIZE_MAX, ws, &cells), CPROX_OK);
   cprox_curve *through = bezier((vec3[]){{-3, 0, 0}, {3, 0.5, 0}}, 2),
               *past = bezier((vec3[]){{-3, 3, 0}, {3, 3, 0}}, 2);
-  const cprox_obstacle target = cprox_obstacle_at(cells, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(cells, CPROX_POSE_IDENTITY);
   const cprox_options options = asked(1e-9);
   cprox_result result;
   assert_int_equal(cprox_distance(cprox_point_along(through), target, &options, ws, &result), CPROX_OVERLAP);
@@ -281,7 +281,7 @@ CASE(a_curve_that_slides_on_a_face_beside_an_edge_ends_soon) {
     options.max_nodes = 2000;
     cprox_result result;
     assert_int_equal(
-        cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, cprox_pose_identity()), &options, ws, &result),
+        cprox_distance(cprox_point_along(curve), cprox_obstacle_at(body, CPROX_POSE_IDENTITY), &options, ws, &result),
         CPROX_OK);
     assert_true(result.upper - result.lower <= options.epsilon);
     if (result.nodes > most) most = result.nodes;

@@ -47,10 +47,10 @@ CASE(lower_bounds_of_pairs_hold_where_exponents_are_beside_1) {
   const ref_interval truth = superquadric_distance(&s, local, NULL);
   cprox_body *body = superquadric_body(&s, ws), *point = NULL;
   assert_int_equal(cprox_body_create_point(at, ws, &point), CPROX_OK);
-  const cprox_obstacle a = cprox_obstacle_at(body, pose), b = cprox_obstacle_at(point, cprox_pose_identity());
+  const cprox_obstacle a = cprox_obstacle_at(body, pose), b = cprox_obstacle_at(point, CPROX_POSE_IDENTITY);
   for (int order = 0; order < 2; order++) {
     cprox_result r;
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-9;
     assert_true(cprox_pair(order ? a : b, order ? b : a, &options, ws, &r) >= 0);
     assert_true(r.lower <= truth.upper && r.upper >= truth.lower);
@@ -79,7 +79,7 @@ CASE(depths_hold_where_exponents_are_beside_1) {
         vec(s.a.x * rng_uniform(&r, -0.3, 0.3), s.a.y * rng_uniform(&r, -0.3, 0.3), s.a.z * rng_uniform(&r, -0.3, 0.3));
     const long double deep = depth_in_octahedron(&s, y);
     cprox_body *body = superquadric_body(&s, ws), *point = NULL; /* what lies about y */
-    cprox_pose at_y = cprox_pose_identity();
+    cprox_pose at_y = CPROX_POSE_IDENTITY;
     at_y.position = y;
     const superquadric small = {.a = {1e-3, 2e-3, 1e-3}, .p = {s.p.y, s.p.x, s.p.z}};
     const vec3 origin = {0, 0, 0};
@@ -87,9 +87,9 @@ CASE(depths_hold_where_exponents_are_beside_1) {
     if (kind == 0) assert_int_equal(cprox_body_create_point(origin, ws, &point), CPROX_OK);
     if (kind == 1) assert_int_equal(cprox_body_create_box(vec(1e-3, 1e-2, 1e-3), ws, &point), CPROX_OK);
     if (kind == 2) point = superquadric_body(&small, ws);
-    const cprox_obstacle a = cprox_obstacle_at(body, cprox_pose_identity()), b = cprox_obstacle_at(point, at_y);
+    const cprox_obstacle a = cprox_obstacle_at(body, CPROX_POSE_IDENTITY), b = cprox_obstacle_at(point, at_y);
     cprox_result x;
-    cprox_options options = cprox_options_default();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-6;
     assert_true(cprox_pair(a, b, &options, ws, &x) >= 0);
     const bool good = x.lower <= -deep;

@@ -74,7 +74,7 @@ CASE(threads_that_share_bodies_and_curves_get_the_answers_of_one_thread) {
   assert_int_equal(cprox_body_create_polytope(corners, 5, workspace, &bodies[5]), CPROX_OK);
   shared_world world = {.curve = curve};
   for (int i = 0; i < TARGETS; ++i) {
-    cprox_pose pose = cprox_pose_identity();
+    cprox_pose pose = CPROX_POSE_IDENTITY;
     pose.position = (cprox_vec3){0.5 + 0.6 * i, 0.8, 0.7};
     world.targets[i] = cprox_obstacle_at(bodies[i], pose);
   }

@@ -171,7 +171,7 @@ CASE(grazes_are_told_from_misses) {
     const vec3 p[3] = {{-1, drift, top + 1}, {0, -drift, top - 1}, {1, drift, top + 1}};
     cprox_curve *curve = bezier(p, 3);
     cprox_result c;
-    ask(cprox_point_along(curve), cprox_obstacle_at(ball, cprox_pose_identity()), epsilon, &c);
+    ask(cprox_point_along(curve), cprox_obstacle_at(ball, CPROX_POSE_IDENTITY), epsilon, &c);
     if (c.verdict != (height > 0 ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED))
       fail_msg("case %zu: height %.3g answered %s", i, height, cprox_verdict_name(c.verdict));
     if (height < 0) assert_true(c.t_contact_lower <= c.t && c.t_contact_lower < 0.5 && c.t <= 0.5 + 1e-9);
@@ -266,7 +266,7 @@ CASE(a_start_inside_is_contact_at_the_start) {
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.5, ws, &ball), CPROX_OK);
   cprox_result c;
-  ask(cprox_point_along(curve), cprox_obstacle_at(ball, cprox_pose_identity()), 1e-9, &c);
+  ask(cprox_point_along(curve), cprox_obstacle_at(ball, CPROX_POSE_IDENTITY), 1e-9, &c);
   assert_int_equal(c.verdict, CPROX_VERDICT_VIOLATED);
   assert_true(c.t_contact_lower == 0.0 && c.t == 0.0 && c.lower == 0.0 && c.upper == 0.0);
   cprox_body_free(ball);
@@ -281,7 +281,7 @@ CASE(resting_contact_ends_within_the_budget) {
   for (int k = 0; k < 2; k++) {
     cprox_curve *curve = bezier(k == 0 ? slide : land, 3);
     cprox_result c;
-    ask(cprox_point_along(curve), cprox_obstacle_at(box, cprox_pose_identity()), 1e-9, &c);
+    ask(cprox_point_along(curve), cprox_obstacle_at(box, CPROX_POSE_IDENTITY), 1e-9, &c);
     assert_true(c.verdict != CPROX_VERDICT_CLEAR);
     const double contact = k == 0 ? 1.0 / 3.0 : 1.0;
     assert_true(c.t_contact_lower <= contact && c.t_contact_lower > contact - 1e-4 && c.nodes < 300);

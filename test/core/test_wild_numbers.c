@@ -180,9 +180,9 @@ CASE(every_number_of_every_query_is_finite_or_refused) {
     const cprox_body *targets[2] = {ball, points};
     for (int i = 0; i < (bodies ? 1 : 2); i++) {
       arguments a = {.mover = cprox_point_along(curve),
-                     .target = cprox_obstacle_at(targets[i], cprox_pose_identity()),
+                     .target = cprox_obstacle_at(targets[i], CPROX_POSE_IDENTITY),
                      .other = cprox_obstacle_at(ball, (cprox_pose){{5, 0, 0}, {1, 0, 0, 0}}),
-                     .options = cprox_options_default(),
+                     .options = CPROX_OPTIONS_DEFAULT,
                      .delta = 0.1,
                      .duration = 1.0,
                      .velocity = {1, 0, 0}};
@@ -207,7 +207,7 @@ CASE(the_widest_epsilon_is_answered) {
   for (int i = 0; i < 3; i++) {
     cprox_options options = accurate(widest[i]);
     options.relative_epsilon = i == 2 ? 1e60 : 0.0;
-    const cprox_obstacle target = cprox_obstacle_at(points, cprox_pose_identity());
+    const cprox_obstacle target = cprox_obstacle_at(points, CPROX_POSE_IDENTITY);
     assert_int_equal(cprox_distance(cprox_point_along(curve), target, &options, ws, &result), CPROX_OK);
     assert_true(0.0 <= result.lower && result.lower <= result.upper && result.upper < 4.0);
   }

@@ -25,7 +25,7 @@ cprox_pose moved(const cprox_pose &pose, const Eigen::Vector3d &linear, const Ei
 }
 
 struct Case {
-  cprox_pose a = cprox_pose_identity(), b = cprox_pose_identity();
+  cprox_pose a = CPROX_POSE_IDENTITY, b = CPROX_POSE_IDENTITY;
   std::optional<CurveDescription> curve;
 };
 

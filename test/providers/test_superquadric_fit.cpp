@@ -98,7 +98,7 @@ TEST(Fits, of_what_has_no_bounds_or_no_single_part_are_refused_by_name) {
       fitSuperquadric(body);
       FAIL() << "a fit";
     } catch (const Error &error) {
-      EXPECT_NE(std::string(error.what()).find(cprox_body_kind_name(cprox_body_get_kind(body.get()))),
+      EXPECT_NE(std::string(error.what()).find(cprox_body_kind_name(cprox_body_get_info(body.get()).kind)),
                 std::string::npos);
     }
   }
@@ -143,7 +143,7 @@ TEST(SuperquadricDistances, of_fitted_bodies_contain_the_true_distance) {
       constraint->evaluate(place, workspace, value);
       const cprox_result truth = curve_proximity::pair(cprox_obstacle_at(pair.a.parts[0].body.get(), place.a),
                                                        cprox_obstacle_at(pair.b.parts[0].body.get(), place.b),
-                                                       cprox_options_default(), workspace);
+                                                       CPROX_OPTIONS_DEFAULT, workspace);
       ASSERT_LE(value.lower, truth.upper);
       ASSERT_GE(value.upper, truth.lower);
       overlapping += truth.upper < 0.0;

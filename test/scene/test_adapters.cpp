@@ -35,7 +35,7 @@ double byFcl(const fcl::CollisionObjectd &a, const fcl::CollisionObjectd &b) {
 cprox_result byUs(const fcl::CollisionObjectd &a, const fcl::CollisionObjectd &b) {
   Workspace workspace;
   const PosedBody p = fromFcl(a), q = fromFcl(b);
-  return pair(at(p.body, p.pose), at(q.body, q.pose), cprox_options_default(), workspace);
+  return pair(at(p.body, p.pose), at(q.body, q.pose), CPROX_OPTIONS_DEFAULT, workspace);
 }
 
 /* 200 poses of the two, at least 3 m and at most 8 m from centre to centre: apart for shapes of up to 1.4 m. */
@@ -164,8 +164,8 @@ TEST(CcdAdapter, a_support_callback_is_the_shape_it_describes) {
     const double y = random.uniform(-2, 2), z = random.uniform(-2, 2);
     const BodyHandle sphere = makeSphere(0.3), reference = makeBox(2.0 * box.half);
     const cprox_obstacle ball = at(sphere, translation(3.0, y, z));
-    const cprox_result mine = pair(at(body), ball, cprox_options_default(), workspace);
-    const cprox_result its = pair(at(reference, box.pose), ball, cprox_options_default(), workspace);
+    const cprox_result mine = pair(at(body), ball, CPROX_OPTIONS_DEFAULT, workspace);
+    const cprox_result its = pair(at(reference, box.pose), ball, CPROX_OPTIONS_DEFAULT, workspace);
     EXPECT_LE(mine.lower, its.upper);
     EXPECT_GE(mine.upper, its.lower);
   }
@@ -176,7 +176,7 @@ TEST(CcdAdapter, a_curve_is_measured_against_a_callback) {
   const BodyHandle body = makeSupport(&boxSupport, &box, Eigen::Vector3d::Zero(), box.half.norm() * 1.001, 0.0, 0.05);
   Workspace workspace;
   const CompiledCurve curve = compile(line({1.25, -3, 0}, {1.25, 3, 0}));
-  const cprox_result r = distance(along(curve.curve), at(body), cprox_options_default(), workspace);
+  const cprox_result r = distance(along(curve.curve), at(body), CPROX_OPTIONS_DEFAULT, workspace);
   EXPECT_LE(r.lower, 0.95);
   EXPECT_GE(r.upper, 0.95);
 }
@@ -187,7 +187,7 @@ TEST(CcdAdapter, a_callback_that_writes_nothing_is_caught) {
   const CompiledCurve curve = compile(line({1, 0, 0}, {2, 0, 0}));
   EXPECT_FALSE(errorOf([&] {
                  const BodyHandle body = makeSupport(&silentSupport, &nothing, Eigen::Vector3d::Zero(), 1.0);
-                 distance(along(curve.curve), at(body), cprox_options_default(), workspace);
+                 distance(along(curve.curve), at(body), CPROX_OPTIONS_DEFAULT, workspace);
                }).empty());
   EXPECT_FALSE(errorOf([&] { makeSupport(nullptr, &nothing, Eigen::Vector3d::Zero(), 1.0); }).empty());
 }

@@ -50,7 +50,7 @@ TEST(CoreHpp, a_compound_keeps_its_parts_alive) {
 
 TEST(CoreHpp, queries_answer_with_eigen_in_and_out) {
   Workspace workspace;
-  const cprox_options options = cprox_options_default();
+  const cprox_options options = CPROX_OPTIONS_DEFAULT;
   Eigen::Matrix3Xd points(3, 3);
   points << -1, 0, 1, /**/ 2, 1, 2, /**/ 0, 0, 0;
   const CurveHandle curve = makeBezier(points);
@@ -95,10 +95,10 @@ TEST(CoreHpp, a_refused_query_throws_and_the_next_is_answered) {
   Workspace workspace;
   const BodyHandle box = makeBox({1.0, 1.0, 1.0});
   const CurveHandle curve = makeBezier(Eigen::Matrix3Xd::Random(3, 4) + Eigen::Matrix3Xd::Constant(3, 4, 5.0));
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = NAN;
   expectContains(errorOf([&] { distance(along(curve), at(box), options, workspace); }), "epsilon");
-  EXPECT_GT(distance(along(curve), at(box), cprox_options_default(), workspace).lower, 0.0);
+  EXPECT_GT(distance(along(curve), at(box), CPROX_OPTIONS_DEFAULT, workspace).lower, 0.0);
 }
 
 /* The unit circle about z, four ways, and the ball of radius 1/2 about (3, 0, 0) that is 1.5 away from it. */
@@ -126,7 +126,7 @@ TEST(CoreHpp, every_maker_of_a_circle_makes_the_same_circle) {
   };
   const BodyHandle ball = makeSphere(0.5);
   for (const CurveHandle &circle : circles) {
-    const cprox_result r = distance(along(circle), at(ball, translation(3, 0, 0)), cprox_options_default(), workspace);
+    const cprox_result r = distance(along(circle), at(ball, translation(3, 0, 0)), CPROX_OPTIONS_DEFAULT, workspace);
     EXPECT_LE(r.lower, 1.5);
     EXPECT_GE(r.upper, 1.5);
     EXPECT_EQ(r.status, CPROX_OK);
@@ -145,7 +145,7 @@ TEST(CoreHpp, curves_of_functions_keep_them_and_say_what_went_wrong) {
     curve = makeRectifiable(line, -1.0, 1.0);
   }
   const BodyHandle ball = makeSphere(1.0);
-  const cprox_result r = distance(along(curve), at(ball), cprox_options_default(), workspace);
+  const cprox_result r = distance(along(curve), at(ball), CPROX_OPTIONS_DEFAULT, workspace);
   EXPECT_NEAR(r.upper, 4.0, 1e-5);
 
   RectifiableCurve wrong;
@@ -180,7 +180,7 @@ TEST(CoreHpp, a_set_answers_as_its_targets_do) {
   EXPECT_EQ(set.size(), 41u);
   const CurveHandle curve = makeBezier((Eigen::Matrix3Xd(3, 2) << 5, 9, 0, 0, 0, 0).finished());
   Workspace workspace;
-  const cprox_options options = cprox_options_default();
+  const cprox_options options = CPROX_OPTIONS_DEFAULT;
   const cprox_result all = list.distance(along(curve), options, workspace);
   EXPECT_NEAR(set.distance(along(curve), options, workspace).upper, all.upper, 1e-6);
   EXPECT_EQ(set.collision(along(curve), options, workspace).verdict, CPROX_VERDICT_CLEAR);

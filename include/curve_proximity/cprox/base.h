@@ -17,6 +17,13 @@
 #define CPROX_VERSION_MINOR 1
 #define CPROX_VERSION_PATCH 0
 
+/** The head of a value of a struct, before its braces, which C and C++ write differently. For constants of this API. */
+#ifdef __cplusplus
+#define CPROX_VALUE(type) type
+#else
+#define CPROX_VALUE(type) (type)
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -65,7 +72,7 @@ typedef struct cprox_pose {
 } cprox_pose;
 
 /** The pose that changes nothing. */
-CPROX_API cprox_pose cprox_pose_identity(void);
+#define CPROX_POSE_IDENTITY (CPROX_VALUE(cprox_pose){{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}})
 
 /** All memory that queries need, and the reason of the last failure.
  *
@@ -92,9 +99,6 @@ CPROX_API void cprox_workspace_set_error(cprox_workspace *workspace, const char 
 /** Memory of the caller in a workspace: at least `bytes`, NULL where memory is out. What it held stays. No query of
  *  this library uses it. Valid until the next call of this function; freed with the workspace. */
 CPROX_API void *cprox_workspace_reserve(cprox_workspace *workspace, size_t bytes);
-
-/** The bytes a workspace holds now. */
-CPROX_API size_t cprox_workspace_bytes(const cprox_workspace *workspace);
 
 #ifdef __cplusplus
 }

@@ -105,7 +105,7 @@ CPROX_API cprox_status cprox_body_create_support(cprox_support_fn support, const
 /** What the inside of a mesh is. */
 typedef enum cprox_mesh_fill {
   CPROX_MESH_SURFACE = 0, /**< nothing: the mesh is its triangles */
-  CPROX_MESH_SOLID = 1    /**< part of the body, if the mesh is closed; see cprox_body_is_solid() */
+  CPROX_MESH_SOLID = 1    /**< part of the body, if the mesh is closed; see cprox_body_info.is_solid */
 } cprox_mesh_fill;
 
 /** A triangle mesh.
@@ -114,8 +114,8 @@ typedef enum cprox_mesh_fill {
  *  triangles     m of them, each three indices below n; degenerate and repeated triangles are allowed
  *  fill          CPROX_MESH_SOLID asks for the inside too, by the generalised winding number (Jacobson et al. 2013). It
  *                is granted where the mesh is closed: every edge run through as often one way as the other, vertices
- *                with equal coordinates being one. Where it is not, the body is the surface, and cprox_body_is_solid()
- *                says so.
+ *                with equal coordinates being one. Where it is not, the body is the surface, and
+ *                cprox_body_info.is_solid says so.
  *  memory_limit  the most bytes that the body may take, SIZE_MAX: any. Beyond it CPROX_MEMORY, and the reason names the
  *                bytes.
  *
@@ -166,24 +166,28 @@ CPROX_API cprox_status cprox_body_create_boxes(const cprox_vec3 *low, const cpro
 CPROX_API cprox_status cprox_body_create_lod(const cprox_body *hull, double excess, const cprox_body *mesh,
                                              cprox_workspace *workspace, cprox_body **body);
 
-/** Whether the inside belongs to the body: false for mesh surfaces only. */
-CPROX_API bool cprox_body_is_solid(const cprox_body *body);
-
-/** The bytes that a mesh, a set of points or a set of boxes takes; 0 for other kinds. */
-CPROX_API size_t cprox_body_bytes(const cprox_body *body);
-
 /** Frees a body; NULL is allowed. No query and no compound may be using it. */
 CPROX_API void cprox_body_free(cprox_body *body);
 
-/** The kind a body was created as. */
-CPROX_API cprox_body_kind cprox_body_get_kind(const cprox_body *body);
+/** What is known of a body. */
+typedef struct cprox_body_info {
+  /** the kind that the body was created as */
+  cprox_body_kind kind;
+  /** whether the inside belongs to the body: false for mesh surfaces only */
+  bool is_solid;
+  /** the bytes that a mesh, a set of points or a set of boxes takes; 0 for other kinds */
+  size_t bytes;
+  /** [m] the centre of a ball that contains the body, in the frame of the body */
+  cprox_vec3 centre;
+  /** [m] the radius of that ball, rounding included; infinity for a halfspace */
+  double radius;
+} cprox_body_info;
+
+/** What is known of a body. */
+CPROX_API cprox_body_info cprox_body_get_info(const cprox_body *body);
 
 /** The name of a kind ("sphere", "polytope", …). Never NULL. */
 CPROX_API const char *cprox_body_kind_name(cprox_body_kind kind);
-
-/** A ball that contains the body, rounding included: centre in the body's frame [m], radius [m]. A halfspace has none:
- *  radius = infinity. */
-CPROX_API void cprox_body_bounding_sphere(const cprox_body *body, cprox_vec3 *centre, double *radius);
 
 /** The support function h(d) = max over the body of d·x, for any finite d that is not 0 (infinity for most directions
  * of a halfspace), and a point of the body that attains it, NULL if not needed. */

@@ -32,13 +32,20 @@ CPROX_API void cprox_certificate_free(cprox_certificate *certificate);
 /** Empties it: nothing is claimed. NULL is allowed. */
 CPROX_API void cprox_certificate_clear(cprox_certificate *certificate);
 
-/** The bytes to be kept or sent, and their number; 0 where nothing is proven. Valid until the next query with it. */
-CPROX_API const void *cprox_certificate_bytes(const cprox_certificate *certificate);
-CPROX_API size_t cprox_certificate_size(const cprox_certificate *certificate);
+/** What a certificate holds. */
+typedef struct cprox_certificate_info {
+  /** what it claims */
+  cprox_claim claim;
+  /** [m] the limit that the claim is about */
+  double delta;
+  /** the bytes to be kept or sent; valid until the next query with the certificate */
+  const void *bytes;
+  /** the number of bytes; 0 where nothing is proven */
+  size_t size;
+} cprox_certificate_info;
 
-/** What it claims, and the delta [m] that the claim is about. */
-CPROX_API cprox_claim cprox_certificate_claim(const cprox_certificate *certificate);
-CPROX_API double cprox_certificate_delta(const cprox_certificate *certificate);
+/** What a certificate holds. */
+CPROX_API cprox_certificate_info cprox_certificate_get_info(const cprox_certificate *certificate);
 
 /** Makes a certificate for an answer: what options->certificate does at the end of a query, for those who have the
  *  answer.
@@ -55,7 +62,7 @@ CPROX_API double cprox_certificate_delta(const cprox_certificate *certificate);
  *
  *  A claim that is as tight as double arithmetic allows may be proven for a delta that is weaker by a few roundings;
  *  that of a distance (delta == answer->lower) by epsilon, where the curve bends round a target at a constant distance
- *  and planes cannot follow as closely as the search did. cprox_certificate_delta() tells. Touching a flat target
+ *  and planes cannot follow as closely as the search did. cprox_certificate_info.delta tells. Touching a flat target
  *  without radius or margin cannot be proven.
  *
  *  Returns CPROX_OK        there is a proof

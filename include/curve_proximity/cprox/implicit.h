@@ -47,9 +47,6 @@ typedef struct cprox_affine {
   cprox_vec3 translation;
 } cprox_affine;
 
-/** The map that changes nothing. */
-CPROX_API cprox_affine cprox_affine_identity(void);
-
 /** The image of the described set under a map (NULL: the set itself).
  *
  *  The set must be bounded (within 1e10 m of the origin) and have an interior (a ball of 1e-9 of its size). The map is

@@ -42,8 +42,16 @@ CPROX_API cprox_status cprox_obstacles_create(const cprox_obstacle *list, size_t
 /** Frees a handle; NULL is allowed. No query may be using it. */
 CPROX_API void cprox_obstacles_free(cprox_obstacles *obstacles);
 
-/** The number of obstacles; 0 for NULL. */
-CPROX_API size_t cprox_obstacles_size(const cprox_obstacles *obstacles);
+/** What is known of obstacles. */
+typedef struct cprox_obstacles_info {
+  /** their number */
+  size_t n;
+  /** the index that the handle was created with */
+  cprox_obstacle_index index;
+} cprox_obstacles_info;
+
+/** What is known of obstacles; of NULL: none, by a list. */
+CPROX_API cprox_obstacles_info cprox_obstacles_get_info(const cprox_obstacles *obstacles);
 
 /** Distance, tolerance and collision against the union of the obstacles, as cprox_distance(), cprox_tolerance() and
  *  cprox_collision() answer for one.

@@ -86,7 +86,7 @@ typedef enum cprox_lod { CPROX_LOD_NONE = 0, CPROX_LOD_SPHERE = 1, CPROX_LOD_HUL
 /** "none", "sphere", "hull", "mesh". Convex bodies are their own hull. */
 CPROX_API const char *cprox_lod_name(cprox_lod lod);
 
-/** How a query is to be answered. Start from cprox_options_default().
+/** How a query is to be answered. Start from CPROX_OPTIONS_DEFAULT.
  *
  *  Every query has epsilon and max_nodes. An option that is set and does not apply to the query is refused:
  *  CPROX_INVALID, and the reason names the option. What applies:
@@ -126,7 +126,8 @@ typedef struct cprox_options {
   cprox_lod max_lod;
 } cprox_options;
 
-CPROX_API cprox_options cprox_options_default(void);
+/** The default of all options. */
+#define CPROX_OPTIONS_DEFAULT (CPROX_VALUE(cprox_options){1e-6, 0.0, 20000, NULL, NULL, NULL, false, CPROX_LOD_MESH})
 
 typedef struct cprox_result {
   cprox_status status; /**< the same that the call returned */

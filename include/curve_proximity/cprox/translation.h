@@ -52,7 +52,7 @@ typedef struct cprox_growth {
 /** The growth distance of two superquadrics or implicit bodies, to a relative width of options->epsilon (default 1e-6).
  *
  *  It measures penetration where there is some: the bodies overlap if and only if it is below 1. The centre is that of
- *  cprox_body_bounding_sphere(); margin is not scaled and must be 0. Returns as cprox_pair(). */
+ *  cprox_body_get_info(); margin is not scaled and must be 0. Returns as cprox_pair(). */
 CPROX_API cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
                                              cprox_workspace *workspace, cprox_growth *growth);
 

@@ -49,8 +49,11 @@ void cprox_obstacles_free(cprox_obstacles *obstacles) {
   free(obstacles);
 }
 
-size_t cprox_obstacles_size(const cprox_obstacles *obstacles) {
-  return obstacles_count(obstacles);
+cprox_obstacles_info cprox_obstacles_get_info(const cprox_obstacles *obstacles) {
+  cprox_obstacles_info info = {.n = obstacles_count(obstacles), .index = CPROX_INDEX_NONE};
+  if (obstacles && obstacles->bvh) info.index = CPROX_INDEX_BVH;
+  if (obstacles && obstacles->batch) info.index = CPROX_INDEX_BATCH;
+  return info;
 }
 
 /* ---- one mover ---------------------------------------------------------------------------------------------------- */

@@ -4,10 +4,6 @@
 #include "base/rotation.h"
 #include "base/rounding.h"
 
-cprox_pose cprox_pose_identity(void) {
-  return (cprox_pose){.position = {0, 0, 0}, .orientation = {1, 0, 0, 0}};
-}
-
 const char *frame_pose_fault(const cprox_pose *pose) {
   const cprox_quat q = pose->orientation;
   const vec3 p = pose->position;

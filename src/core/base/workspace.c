@@ -25,12 +25,6 @@ const char *cprox_workspace_error(const cprox_workspace *workspace) {
   return workspace ? workspace->reason : "";
 }
 
-size_t cprox_workspace_bytes(const cprox_workspace *workspace) {
-  size_t total = sizeof *workspace;
-  for (int i = 0; i < WORKSPACE_BUFFERS; i++) total += workspace->bytes[i];
-  return total;
-}
-
 void *workspace_reserve(cprox_workspace *workspace, workspace_buffer buffer, size_t bytes) {
   if (bytes <= workspace->bytes[buffer]) return workspace->memory[buffer];
   size_t grown = workspace->bytes[buffer] + workspace->bytes[buffer] / 2;

@@ -17,20 +17,9 @@ void cprox_certificate_free(cprox_certificate *certificate) {
   free(certificate);
 }
 
-const void *cprox_certificate_bytes(const cprox_certificate *certificate) {
-  return certificate->bytes;
-}
-
-size_t cprox_certificate_size(const cprox_certificate *certificate) {
-  return certificate->size;
-}
-
-cprox_claim cprox_certificate_claim(const cprox_certificate *certificate) {
-  return certificate->claim;
-}
-
-double cprox_certificate_delta(const cprox_certificate *certificate) {
-  return certificate->delta;
+cprox_certificate_info cprox_certificate_get_info(const cprox_certificate *certificate) {
+  return (cprox_certificate_info){
+      .claim = certificate->claim, .delta = certificate->delta, .bytes = certificate->bytes, .size = certificate->size};
 }
 
 /* Room for n bytes more, or NULL. */

@@ -394,7 +394,7 @@ bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_cur
 
   /* about the second curve's first point, sizes and not positions enter the rounding */
   const vec3 centre = second->points[0];
-  const cprox_pose unmoved = cprox_pose_identity();
+  const cprox_pose unmoved = CPROX_POSE_IDENTITY;
   const frame from_second = frame_create(placed, centre), own = frame_create(&unmoved, centre);
   curve_side_begin(&o->side[0], first, &from_second, &o->pool, SLOT_FIRST);
   curve_side_begin(&o->side[1], second, &own, &o->pool, SLOT_SECOND);

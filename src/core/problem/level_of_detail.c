@@ -45,7 +45,7 @@ model model_of_part(const cprox_body *body, size_t part, cprox_lod finest, cprox
   const bool compound = body->kind == CPROX_COMPOUND;
   const model m = model_of(compound ? body->parts[part].body : body, finest);
   const bool shifted = vec_norm2(m.shift) > 0.0;
-  *inner = compound ? body->parts[part].pose : cprox_pose_identity();
+  *inner = compound ? body->parts[part].pose : CPROX_POSE_IDENTITY;
   *moved = compound || shifted;
   if (shifted) {
     const frame f = frame_create(inner, vec(0, 0, 0));

@@ -34,7 +34,7 @@ placed_model placed_model_of_obstacle(const query *q, const candidate *c) {
 placed_models placed_models_resolve(const query *q, const candidate *c) {
   placed_models both = {.obstacle = placed_model_of_obstacle(q, c)};
   both.carried = model_at(q->mover.body, c->mover_part, both.obstacle.lod);
-  both.carried.pose = both.carried.moved ? both.carried.inner : cprox_pose_identity();
+  both.carried.pose = both.carried.moved ? both.carried.inner : CPROX_POSE_IDENTITY;
   return both;
 }
 

@@ -14,7 +14,7 @@ query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, d
              .n = n,
              .limit = limit,
              .is_tolerance = is_tolerance,
-             .options = options ? *options : cprox_options_default(),
+             .options = options ? *options : CPROX_OPTIONS_DEFAULT,
              .workspace = workspace};
   if (q.options.max_lod == CPROX_LOD_NONE) q.options.max_lod = CPROX_LOD_MESH;
   return q;

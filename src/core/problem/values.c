@@ -12,11 +12,7 @@ cprox_obstacle cprox_with_margin(cprox_obstacle target, double margin) {
 }
 
 cprox_obstacle cprox_obstacle_curve(const cprox_curve *curve, double radius) {
-  return (cprox_obstacle){.curve = curve, .pose = cprox_pose_identity(), .margin = radius};
-}
-
-cprox_options cprox_options_default(void) {
-  return (cprox_options){.epsilon = 1e-6, .relative_epsilon = 0.0, .max_nodes = 20000, .max_lod = CPROX_LOD_MESH};
+  return (cprox_obstacle){.curve = curve, .pose = CPROX_POSE_IDENTITY, .margin = radius};
 }
 
 const char *cprox_verdict_name(cprox_verdict verdict) {
@@ -48,7 +44,7 @@ cprox_mover cprox_tube_along(const cprox_curve *curve, double radius) {
 
 cprox_obstacle cprox_synchronized(cprox_mover other) {
   return (cprox_obstacle){.body = other.body,
-                          .pose = cprox_pose_identity(),
+                          .pose = CPROX_POSE_IDENTITY,
                           .margin = other.radius,
                           .curve = other.curve,
                           .synchronized = true};

@@ -343,8 +343,12 @@ void cprox_body_free(cprox_body *body) {
 
 /* ---- queries ---- */
 
-cprox_body_kind cprox_body_get_kind(const cprox_body *body) {
-  return body->kind;
+cprox_body_info cprox_body_get_info(const cprox_body *body) {
+  return (cprox_body_info){.kind = body->kind,
+                           .is_solid = elements_are_solid(body),
+                           .bytes = elements_bytes(body),
+                           .centre = body->ball_centre,
+                           .radius = body->ball_radius};
 }
 
 const char *cprox_body_kind_name(cprox_body_kind kind) {
@@ -369,11 +373,6 @@ const char *cprox_body_kind_name(cprox_body_kind kind) {
     case CPROX_LOD: return "lod";
   }
   return "unknown";
-}
-
-void cprox_body_bounding_sphere(const cprox_body *body, cprox_vec3 *centre, double *radius) {
-  *centre = body->ball_centre;
-  *radius = body->ball_radius;
 }
 
 double cprox_body_support(const cprox_body *body, cprox_vec3 direction, cprox_vec3 *point) {

@@ -7,9 +7,8 @@
 
 /* The bounding sphere of a part in the frame of the union, rounding included. */
 static double part_ball(const body_part *part, vec3 *centre) {
-  vec3 own;
-  double radius;
-  cprox_body_bounding_sphere(part->body, &own, &radius);
+  const vec3 own = part->body->ball_centre;
+  const double radius = part->body->ball_radius;
   const frame f = frame_create(&part->pose, vec(0, 0, 0));
   *centre = frame_to_world(&f, own);
   const double moved = ROUND_U * (ROUND_ROTATION * vec_norm(own) + 3.0 * vec_norm(*centre));

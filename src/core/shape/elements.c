@@ -84,11 +84,11 @@ cprox_status elements_create(cprox_body_kind kind, tree_source *source, size_t n
 /* ---- queries --------------------------------------------------------------------------------------------------------
  * */
 
-bool cprox_body_is_solid(const cprox_body *body) {
-  return body->mesh ? cprox_body_is_solid(body->mesh) : body->kind != CPROX_MESH || body->winding;
+bool elements_are_solid(const cprox_body *body) {
+  return body->mesh ? elements_are_solid(body->mesh) : body->kind != CPROX_MESH || body->winding;
 }
 
-size_t cprox_body_bytes(const cprox_body *body) {
+size_t elements_bytes(const cprox_body *body) {
   return body->tree ? sizeof *body + tree_bytes(body->tree) + winding_bytes(body->winding) : 0;
 }
 

@@ -21,4 +21,10 @@ cprox_status elements_create(cprox_body_kind kind, tree_source *source, size_t n
 double elements_support(const cprox_body *body, vec3 direction, vec3 *point);
 double elements_nearest(const cprox_body *body, vec3 point, vec3 *nearest);
 
+/* Whether the inside belongs to the body: false for mesh surfaces only. */
+bool elements_are_solid(const cprox_body *body);
+
+/* The bytes that elements take; 0 for other bodies. */
+size_t elements_bytes(const cprox_body *body);
+
 #endif

@@ -126,10 +126,6 @@ static const convex_ops open_ops = {
 
 /* ---- making ---- */
 
-cprox_affine cprox_affine_identity(void) {
-  return (cprox_affine){.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-}
-
 /* The handle of a built body about its centre, which it takes over. */
 static cprox_status wrap(implicit *made, bool superquadric, vec3 centre, cprox_workspace *workspace,
                          cprox_body **body) {
@@ -262,7 +258,7 @@ cprox_status cprox_body_create_deformed(const cprox_body *body, const cprox_affi
     return workspace_fail(workspace, CPROX_INVALID, "%zu exponents for a body of %d terms", n, shape->n_terms);
 
   /* the centre's image, and the map about it */
-  const cprox_affine affine = map ? *map : cprox_affine_identity();
+  const cprox_affine affine = map ? *map : (cprox_affine){.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   const double *l = affine.linear;
   implicit_map inner = {.shift = affine.translation};
   for (int i = 0; i < 9; i++) inner.linear[i] = l[i];

@@ -150,7 +150,7 @@ Eigen::Quaterniond YamlValue::quaternion(Warnings &warnings) const {
 
 cprox_pose YamlValue::pose(Warnings &warnings, const char *position, const char *orientation) const {
   warnOfOthers({position, orientation}, warnings);
-  cprox_pose out = cprox_pose_identity();
+  cprox_pose out = CPROX_POSE_IDENTITY;
   if (const auto p = find(position)) out.position = toVec3(p->vector());
   if (const auto o = find(orientation)) {
     const Eigen::Quaterniond q = o->quaternion(warnings);

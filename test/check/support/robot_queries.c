@@ -15,7 +15,7 @@
 /* One that ends somewhere: a link's. */
 static cprox_body *bounded_body(rng *r, double scale, cprox_workspace *ws) {
   cprox_body *body = query_body(r, scale, false, ws);
-  while (cprox_body_get_kind(body) == CPROX_HALFSPACE) {
+  while (cprox_body_get_info(body).kind == CPROX_HALFSPACE) {
     cprox_body_free(body);
     body = query_body(r, scale, false, ws);
   }

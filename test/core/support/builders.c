@@ -31,7 +31,7 @@ cprox_curve *bezier(const vec3 *points, size_t n) {
 }
 
 cprox_options accurate(double epsilon) {
-  cprox_options options = cprox_options_default();
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = epsilon;
   return options;
 }

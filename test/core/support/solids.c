@@ -61,7 +61,7 @@ static void add_segment(test_solid *s, cprox_pose *poses, vec3 a, vec3 b, double
   const vec3 axis = vec_cross(z, d);
   cprox_body *body;
   MADE(cprox_body_create_capsule(length, radius, ws, &body));
-  poses[s->n] = cprox_pose_identity();
+  poses[s->n] = CPROX_POSE_IDENTITY;
   poses[s->n].position = vec_scale(0.5, vec_add(a, b));
   /* the half-way quaternion from z to d */
   const double w = length + d.z;
@@ -270,7 +270,7 @@ static void make_clipped(rng *r, test_solid *s, vec3 size) {
 test_solid solid_make(rng *r, test_solid_kind kind, int dimension, double scale, double aspect) {
   test_solid s = {.kind = kind, .dimension = dimension};
   cprox_pose poses[SOLID_MOST_PARTS];
-  for (int i = 0; i < SOLID_MOST_PARTS; i++) poses[i] = cprox_pose_identity();
+  for (int i = 0; i < SOLID_MOST_PARTS; i++) poses[i] = CPROX_POSE_IDENTITY;
   const vec3 size = lengths_of(r, scale, aspect);
   switch (kind) {
     case SOLID_CONVEX: make_convex(r, &s, size); break;

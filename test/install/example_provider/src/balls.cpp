@@ -44,10 +44,10 @@ class BallsConstraint : public Constraint {
  private:
   static void round(const ConstraintBody &side, const char *name, Eigen::Vector3d &centre, double &radius) {
     const BodyHandle body = joinedBody(side);
-    cprox_vec3 middle;
-    cprox_body_bounding_sphere(body.get(), &middle, &radius);
+    const cprox_body_info info = cprox_body_get_info(body.get());
+    radius = info.radius;
     if (!std::isfinite(radius)) throw Error(std::string("side ") + name + " is without end: Balls has no ball for it");
-    centre = toEigen(middle);
+    centre = toEigen(info.centre);
     radius += side.padding + excessOf(side);
   }
 
