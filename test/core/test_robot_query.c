@@ -381,6 +381,51 @@ CASE(proven_contact_ends_a_query_at_once) {
   cprox_body_free(wall);
 }
 
+/* A box on a rail meets a box of the same section at t = 0.5, face to face: its sides slide along the other's, which proves
+ * nothing. From x = 0.65 on they cross at the beginning. */
+CASE(contact_of_faces_is_proven_near_its_time) {
+  cprox_body *bodies[2], *wall;
+  assert_int_equal(cprox_body_create_box((cprox_vec3){0.2, 0.2, 0.2}, ws, &bodies[0]), CPROX_OK);
+  assert_int_equal(cprox_body_create_box((cprox_vec3){1.0, 0.2, 0.2}, ws, &wall), CPROX_OK);
+  bodies[1] = mesh_of_box(bodies[0]);
+  const cprox_obstacle target =
+      cprox_obstacle_at(wall, (cprox_pose){.position = {1.2, 0, 0}, .orientation = {.w = 1.0}});
+  cprox_obstacles *sets[2];
+  assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_NONE, ws, &sets[0]), CPROX_OK);
+  assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_BVH, ws, &sets[1]), CPROX_OK);
+  const cprox_link link = {.parent = -1,
+                           .type = CPROX_JOINT_PRISMATIC,
+                           .origin = cprox_pose_identity(),
+                           .axis = {1, 0, 0},
+                           .multiplier = 1.0};
+  for (int i = 0; i < 8; i++) {
+    const cprox_link_geometry geometry = {.body = bodies[i % 2], .pose = cprox_pose_identity()};
+    const double from = i / 4 ? 0.65 : 0.1, to = from + 1.0;
+    const cprox_waypoint points[2] = {{.time = 0, .positions = &from}, {.time = 1, .positions = &to}};
+    const int32_t variable = 0;
+    const cprox_motion_description d = {
+        .variables = &variable, .n_variables = 1, .waypoints = points, .n_waypoints = 2, .interpolation = CPROX_LINEAR};
+    cprox_robot *robot = NULL;
+    cprox_motion *motion = NULL;
+    assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robot), CPROX_OK);
+    assert_int_equal(cprox_motion_create(robot, &d, ws, &motion), CPROX_OK);
+    cprox_result r;
+    const cprox_mover mover = cprox_robot_along(motion, NULL, 0);
+    assert_int_equal(cprox_obstacles_time_of_contact(sets[i / 2 % 2], mover, NULL, ws, &r), CPROX_OK);
+    assert_int_equal(r.verdict, CPROX_VERDICT_VIOLATED);
+    const double exact = i / 4 ? 0.0 : 0.5;
+    assert_true(r.t_contact_lower <= exact && r.t >= exact - 1e-12);
+    assert_true(r.t_contact_lower >= exact - 2e-6 && r.t <= exact + 2e-6);
+    if (i / 4 && (r.nodes > 1 || r.distance_queries > 20))
+      fail_msg("case %d: %u nodes, %u distances", i, r.nodes, r.distance_queries);
+    cprox_motion_free(motion);
+    cprox_robot_free(robot);
+  }
+  for (int i = 0; i < 2; i++) cprox_obstacles_free(sets[i]);
+  for (int i = 0; i < 2; i++) cprox_body_free(bodies[i]);
+  cprox_body_free(wall);
+}
+
 CASE(bad_input_gets_a_sentence) {
   rng r = rng_seed(4414);
   test_robot t;

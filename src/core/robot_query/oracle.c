@@ -291,6 +291,51 @@ static cprox_status seed_span(robot_search *o, int32_t list, const motion_interv
   return seed_span(o, list, &half, places - places / 2);
 }
 
+/* Measures a pair that is near enough to touch where the scene is. */
+static cprox_status measure_if_near(robot_search *o, int32_t index) {
+  const robot_pair *pair = &o->scene.pairs[index];
+  if (pair->element[0] >= 0 || pair->element[1] >= 0) return CPROX_OK;
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  if (robot_scene_balls(moving, standing) > o->goal.epsilon) return CPROX_OK;
+  return robot_scene_apart(moving, standing) > o->goal.epsilon ? CPROX_OK : measure_whole(o, index);
+}
+
+/* The same of all that is under a node of the set's tree, until contact is proven. */
+static cprox_status measure_near_cluster(robot_search *o, const list_entry *entry) {
+  const double known = o->touch_at;
+  cluster_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
+  cprox_status status = CPROX_OK;
+  while (stack.count > 0 && status >= 0 && o->touch_at == known) {
+    const uint32_t at = stack.at[--stack.count];
+    const double near = nextafter(o->goal.epsilon, INFINITY);
+    cluster_lanes lanes;
+    cluster_measure(&o->scene, entry->part, at, 0.0, &lanes);
+    if (!(at & TREE_LEAF)) push_nearest_last(&stack, &lanes, near);
+    for (uint32_t l = 0; (at & TREE_LEAF) && l < TREE_LANES; l++) {
+      if (!(lanes.live >> l & 1u) || !(lanes.apart[l] < near)) continue;
+      size_t count;
+      const int32_t pairs = cluster_pairs(&o->scene, entry->part, lanes.under[l], &count);
+      if (pairs < 0) return no_memory_for_pairs(o);
+      for (size_t k = 0; k < count && status >= 0; k++) status = measure_if_near(o, pairs + (int32_t)k);
+    }
+  }
+  return status;
+}
+
+/* Contact at the beginning answers a search from left to right at once; halves of halves would only close in on it. */
+static cprox_status measure_start(robot_search *o, const search_node *node) {
+  const robot_node *payload = robot_known(node);
+  const double known = o->touch_at;
+  const size_t n = lists_count(&o->lists, payload->list);
+  robot_scene_enter(&o->scene, payload->first, payload->a, payload->a);
+  cprox_status status = CPROX_OK;
+  for (size_t k = 0; k < n && status >= 0 && o->touch_at == known; k++) {
+    const list_entry entry = lists_at(&o->lists, payload->list)[k];
+    status = entry.pair < 0 ? measure_near_cluster(o, &entry) : measure_if_near(o, entry.pair);
+  }
+  return status;
+}
+
 /* A few places, so that the search begins with a distance. */
 static cprox_status seed(robot_search *o, const search_node *node) {
   const motion_interval over = interval_of(node);
@@ -639,9 +684,11 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   cprox_status status = CPROX_OK;
   if (!o->seeded) {
     o->seeded = true;
-    status = seed(o, node);
+    if (o->goal.order == SEARCH_LEFT_TO_RIGHT) status = measure_start(o, node);
+    if (status >= 0 && !isfinite(o->touch_at)) status = seed(o, node);
   }
-  if (status == CPROX_OK && !is_answered(o)) status = bound_node(o, node);
+  const bool begins_in_contact = o->touch_at <= node->start;
+  if (status == CPROX_OK && !is_answered(o) && !begins_in_contact) status = bound_node(o, node);
   *best = o->best_bound;
   return status;
 }
@@ -707,12 +754,13 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
 
 /* ---- proof of contact ----------------------------------------------------------------------------------------------------- */
 
-/* The distance of a pair at a time, as exactly as arithmetic has it; what it proves stands in o->touch. */
+/* The distance of a pair at a time, as exactly as arithmetic has it, or of every pair that may touch (-1); what it proves stands in
+ * o->touch. */
 static cprox_status look_at(robot_search *o, int32_t pair, double t, double *upper) {
   const cprox_motion *m = o->scene.motion;
   const size_t segment = motion_segment_at(m, t);
   const double from = m->times[segment], to = m->times[segment + 1];
-  const double u = fmin(fmax((t - from) / (to - from), 0.0), 1.0);
+  const double u = fmin(fmax((t - from) / (to - from), 0.0), 1.0), known = o->touch_at;
   robot_scene_enter(&o->scene, segment, u, u);
 
   /* what was found stays the best, whatever is seen here */
@@ -721,7 +769,10 @@ static cprox_status look_at(robot_search *o, int32_t pair, double t, double *upp
   const double epsilon = o->goal.epsilon;
   o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
   o->goal.epsilon = 0.0;
-  const cprox_status status = measure_whole(o, pair);
+  cprox_status status = CPROX_OK;
+  if (pair >= 0) status = measure_whole(o, pair);
+  const size_t n = pair < 0 ? o->scene.n_pairs : 0;
+  for (size_t i = 0; i < n && status >= 0 && o->touch_at == known; i++) status = measure_if_near(o, (int32_t)i);
   *upper = o->best_bound.upper;
   o->best = best, o->best_bound = bound, o->goal.epsilon = epsilon;
   return status;
@@ -746,24 +797,36 @@ static cprox_status prove_by_speed(robot_search *o, int32_t pair, double t, doub
   return status;
 }
 
+/* Elements that only slide along each other prove nothing, where others of the same two parts do. */
+static int32_t whole_pair(const robot_search *o, int32_t index) {
+  const robot_pair *of = &o->scene.pairs[index];
+  for (size_t i = 0; i < o->scene.n_pairs; i++) {
+    const robot_pair *pair = &o->scene.pairs[i];
+    if (pair->moving == of->moving && pair->standing == of->standing && pair->element[0] < 0 && pair->element[1] < 0)
+      return (int32_t)i;
+  }
+  return index;
+}
+
 cprox_status robot_search_prove(robot_search *o, double end) {
-  enum { MOST_STEPS = 24, MOST_CUTS = 40 };
+  enum { MOST_STEPS = 24, MOST_CUTS = 40, EVERY_PAIR = -1 };
   const double begin = o->best_bound.at, range = end - begin;
-  const int32_t pair = o->best.pair;
-  if (pair < 0 || !(o->best_bound.upper <= o->goal.epsilon) || !(o->best_bound.upper > 0.0) || !(range > 0.0))
+  if (o->best.pair < 0 || !(o->best_bound.upper <= o->goal.epsilon) || !(o->best_bound.upper > 0.0) || !(range > 0.0))
     return CPROX_OK;
-  double known = o->touch_at, unused;
-  cprox_status status = prove_by_speed(o, pair, begin, 1e-6 * range, end);
+  const double known = o->touch_at;
+  double unused;
+  cprox_status status = prove_by_speed(o, whole_pair(o, o->best.pair), begin, 1e-6 * range, end);
   if (status < 0 || o->touch_at < known) return status;
 
   /* farther along in growing steps, and then back to where it is not proven */
   double step = 1e-7 * range, before = begin;
   for (int i = 0; i < MOST_STEPS && step < range && begin + step < known; i++, step *= 2.0) {
-    status = look_at(o, pair, begin + step, &unused);
+    status = look_at(o, EVERY_PAIR, begin + step, &unused);
     if (status < 0 || o->touch_at < known) break;
     before = begin + step;
   }
-  if (status < 0 || !isfinite(o->touch_at) || o->touch.pair != pair) return status;
+  if (status < 0 || !(o->touch_at < known)) return status;
+  const int32_t pair = o->touch.pair;
   for (int i = 0; i < MOST_CUTS && o->touch_at - before > 1e-9 * range; i++) {
     const double middle = 0.5 * (before + o->touch_at);
     status = look_at(o, pair, middle, &unused);
