@@ -393,13 +393,10 @@ CASE(contact_of_faces_is_proven_near_its_time) {
   cprox_obstacles *sets[2];
   assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_NONE, ws, &sets[0]), CPROX_OK);
   assert_int_equal(cprox_obstacles_create(&target, 1, CPROX_INDEX_BVH, ws, &sets[1]), CPROX_OK);
-  const cprox_link link = {.parent = -1,
-                           .type = CPROX_JOINT_PRISMATIC,
-                           .origin = cprox_pose_identity(),
-                           .axis = {1, 0, 0},
-                           .multiplier = 1.0};
+  const cprox_link link = {
+      .parent = -1, .type = CPROX_JOINT_PRISMATIC, .origin = CPROX_POSE_IDENTITY, .axis = {1, 0, 0}, .multiplier = 1.0};
   for (int i = 0; i < 8; i++) {
-    const cprox_link_geometry geometry = {.body = bodies[i % 2], .pose = cprox_pose_identity()};
+    const cprox_link_geometry geometry = {.body = bodies[i % 2], .pose = CPROX_POSE_IDENTITY};
     const double from = i / 4 ? 0.65 : 0.1, to = from + 1.0;
     const cprox_waypoint points[2] = {{.time = 0, .positions = &from}, {.time = 1, .positions = &to}};
     const int32_t variable = 0;
