@@ -166,7 +166,7 @@ static void path_values(const path *p, size_t segment, long double u, long doubl
 
 /* ---- bounds --------------------------------------------------------------------------------------------------------------- */
 
-enum { COMBINATIONS = 6, SPANS = 12, SAMPLES = 10, TURNS = 32 };
+enum { COMBINATIONS = 12, SPANS = 12, SAMPLES = 7, TURNS = 12 };
 
 /* One geometry seen from another one or from the world, and what the core says of it. */
 typedef struct claim {
@@ -248,7 +248,7 @@ CASE(no_point_is_nearer_than_spans_say) {
   rng r = rng_seed(4420);
   size_t checks = 0, straight = 0, spans = 0;
   double nearest = 0.0;
-  for (size_t i = 0; i < test_cases(1500); i++) {
+  for (size_t i = 0; i < test_cases(720); i++) {
     path p = any_path(&r, i % 8 == 0 ? 300 : 40);
     for (int s = 0; s < SPANS && p.motion->n_segments > 1; s++) {
       const motion_interval over = any_span(&r, p.motion);
@@ -327,8 +327,8 @@ static long double distance_at(const path *p, size_t segment, long double u, vec
 
 CASE(no_sample_of_a_long_motion_is_nearer_than_lower) {
   rng r = rng_seed(4421);
-  enum { LOOKS = 60 };
-  for (size_t i = 0; i < test_cases(200); i++) {
+  enum { LOOKS = 40 };
+  for (size_t i = 0; i < test_cases(80); i++) {
     path p = any_path(&r, i % 8 == 0 ? 3000 : 200);
     const vec3 point = rng_in_cube(&r, 2.0);
     cprox_body *body;
@@ -372,7 +372,7 @@ CASE(no_sample_of_a_long_motion_is_nearer_than_lower) {
 /* The same straight motion with more and more waypoints takes as many nodes and distance queries as with two. */
 CASE(waypoints_on_a_line_cost_next_to_nothing) {
   static const size_t COUNTS[] = {2, 1000, 10000, 100000};
-  enum { ROBOTS = 12, QUERIES = 3 };
+  enum { ROBOTS = 6, QUERIES = 3 };
   uint64_t nodes[QUERIES][4] = {{0}}, measured[QUERIES][4] = {{0}};
   for (int c = 0; c < 4; c++) {
     for (int i = 0; i < ROBOTS; i++) {

@@ -59,6 +59,8 @@ struct cprox_robot {
 
 /* The error of one transform of a chain: the rotation's, per unit of length behind it (doc/robot-bounds.md). */
 #define ROUND_JOINT 104.0
+/* That of a place along the chain, per unit of the whole length. */
+#define ROUND_PLACE 7.0
 
 static inline vec3 placement_turn(const placement *at, vec3 v) {
   return rotate(at->r, v);

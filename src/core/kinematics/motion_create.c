@@ -248,30 +248,48 @@ static cprox_status finish_axes(cprox_motion *m, const motion_source *s) {
   return CPROX_OK;
 }
 
-/* Transforms that are off by ROUND_JOINT a joint, and values that are off by theirs, about lever arms of at most the reach. */
+/* How far the computed value of an axis may be from the exact one, and how large it gets. */
+static double value_error(const cprox_motion *m, int32_t i, double *value) {
+  const robot_axis *axis = &m->robot->axes[i];
+  const int32_t count = axis->kind == AXIS_BALL ? 4 : 1;
+  double largest = 0.0, error, sum = 0.0;
+  for (int32_t k = 0; k < count; k++) largest = largest_value(m, axis->variable + k, &error), sum += error;
+  *value = fabs(axis->multiplier) * largest + fabs(axis->offset);
+  if (axis->kind == AXIS_BALL) return 2.0 * sum / m->norm[i];
+  return fabs(axis->multiplier) * sum + 2.0 * ROUND_U * (*value + fabs(axis->offset));
+}
+
+/* From the part up: transforms that turn by ROUND_JOINT too much, and values that are off by theirs, about lever arms of at most the
+ * lengths that are behind them; then what sums of places round. */
 static cprox_status finish_parts(cprox_motion *m, cprox_workspace *workspace) {
-  for (size_t p = 0; p < m->robot->n_parts; p++) {
+  const robot_axis *axes = m->robot->axes;
+  const size_t n_axes = m->robot->n_axes;
+  double *largest = calloc(2 * n_axes + 1, sizeof *largest), *errors = largest + n_axes;
+  if (!largest) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a motion of %zu axes", n_axes);
+  for (size_t i = 0; i < n_axes; i++) errors[i] = value_error(m, (int32_t)i, &largest[i]);
+  cprox_status status = CPROX_OK;
+  for (size_t p = 0; p < m->robot->n_parts && status == CPROX_OK; p++) {
     const robot_part *part = &m->robot->parts[p];
-    double reach = part->reach, angles = 0.0, shifts = 0.0;
-    for (int32_t i = part->axis; i >= 0; i = m->robot->axes[i].parent) {
-      const robot_axis *axis = &m->robot->axes[i];
-      double error, sum = 0.0;
-      const int32_t count = axis->kind == AXIS_BALL ? 4 : 1;
-      double largest = 0.0;
-      for (int32_t k = 0; k < count; k++) largest = largest_value(m, axis->variable + k, &error), sum += error;
-      const double value = fabs(axis->multiplier) * largest + fabs(axis->offset);
-      const double off = fabs(axis->multiplier) * sum + 2.0 * ROUND_U * (value + fabs(axis->offset));
-      if (axis->kind == AXIS_PRISMATIC) reach += value, shifts += off;
-      if (axis->kind == AXIS_REVOLUTE) angles += off;
-      if (axis->kind == AXIS_BALL) angles += 2.0 * sum / m->norm[i];
+    double shifts = 0.0, turned = 0.0, values = 0.0;
+    uint32_t steps = part->steps;
+    for (int32_t i = part->axis; i >= 0; i = axes[i].parent) {
+      const double behind = part->reach - axes[i].reach + shifts;
+      turned += (double)(steps - axes[i].steps) * behind;
+      values += axes[i].kind == AXIS_PRISMATIC ? errors[i] : errors[i] * behind;
+      if (axes[i].kind == AXIS_PRISMATIC) shifts += largest[i];
+      steps = axes[i].steps;
     }
+    const double reach = part->reach + shifts;
+    turned += (double)steps * reach;
     if (!(reach <= LENGTH_MOST))
-      return workspace_fail(workspace, CPROX_INVALID,
-                            "the motion takes geometry %d as far as %g m, at most %g m are possible",
-                            (int)part->geometry, reach, LENGTH_MOST);
-    m->part_error[p] = ROUND_UP * (ROUND_JOINT * (double)part->steps * ROUND_U * reach + angles * reach + shifts);
+      status = workspace_fail(workspace, CPROX_INVALID,
+                              "the motion takes geometry %d as far as %g m, at most %g m are possible",
+                              (int)part->geometry, reach, LENGTH_MOST);
+    const double places = ROUND_PLACE * (1.0 + (double)part->steps) * reach;
+    m->part_error[p] = ROUND_UP * (ROUND_U * (ROUND_JOINT * turned + places) + values);
   }
-  return CPROX_OK;
+  free(largest);
+  return status;
 }
 
 static cprox_status finish(cprox_motion *m, const motion_source *s, cprox_motion **motion) {
