@@ -147,6 +147,66 @@ CASE(nothing_is_allocated_once_the_workspace_has_grown) {
   robot_case_free(&c);
 }
 
+/* Against obstacles and itself at once: the lesser of both, from one search. */
+CASE(the_whole_robot_is_as_near_as_the_nearer_of_both) {
+  size_t n, compared = 0;
+  uint64_t both_nodes = 0, whole_nodes = 0;
+  FILE *f = open_cases(&n);
+  for (size_t i = 0; i < n; i++) {
+    robot_case c;
+    assert_true(robot_case_read(f, folder(), &c));
+    cprox_obstacles *all = NULL;
+    const cprox_obstacle_index index = i % 2 ? CPROX_INDEX_BVH : CPROX_INDEX_NONE;
+    assert_int_equal(cprox_obstacles_create(c.targets, c.n_targets, index, ws, &all), CPROX_OK);
+    const cprox_mover scene = cprox_robot_along(c.motion, NULL, 0),
+                      self = cprox_robot_self(c.motion, c.self_pairs, c.n_self_pairs);
+    cprox_mover whole = scene;
+    whole.whole = true, whole.self_pairs = c.self_pairs, whole.n_self_pairs = c.n_self_pairs;
+    cprox_result a, b, r, first[3];
+    assert_true(cprox_obstacles_distance(all, scene, NULL, ws, &a, NULL) >= 0);
+    assert_true(cprox_obstacles_distance(NULL, self, NULL, ws, &b, NULL) >= 0);
+    assert_true(cprox_obstacles_distance(all, whole, NULL, ws, &r, NULL) >= 0);
+    assert_true(r.lower <= fmin(a.upper, b.upper) && fmin(a.lower, b.lower) <= r.upper);
+    if (b.upper < a.lower - 1e-6) assert_int_equal(r.obstacle_index, (int32_t)c.n_targets + b.obstacle_index);
+    if (a.upper < b.lower - 1e-6) assert_int_equal(r.obstacle_index, a.obstacle_index);
+    const double least = fmin(a.lower, b.lower);
+    for (int k = 0; k < 2 && least > 0.0; k++) {
+      const double delta = (k ? 1.01 : 0.9) * fmin(a.upper, b.upper);
+      cprox_result of_scene, of_itself;
+      assert_int_equal(cprox_obstacles_tolerance(all, whole, delta, NULL, ws, &r, NULL), CPROX_OK);
+      assert_int_equal(r.verdict, k ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR);
+      cprox_obstacles_tolerance(all, scene, delta, NULL, ws, &of_scene, NULL);
+      cprox_obstacles_tolerance(NULL, self, delta, NULL, ws, &of_itself, NULL);
+      both_nodes += of_scene.nodes + of_itself.nodes, whole_nodes += r.nodes;
+      compared++;
+    }
+    assert_true(cprox_obstacles_collision(all, whole, NULL, ws, &r, NULL) >= 0);
+    if (least > 0.0) assert_int_equal(r.verdict, CPROX_VERDICT_CLEAR);
+    assert_true(cprox_obstacles_time_of_contact(all, scene, NULL, ws, &first[0]) >= 0);
+    assert_true(cprox_obstacles_time_of_contact(NULL, self, NULL, ws, &first[1]) >= 0);
+    assert_true(cprox_obstacles_time_of_contact(all, whole, NULL, ws, &first[2]) >= 0);
+    for (int k = 0; k < 2; k++)
+      if (first[k].verdict == CPROX_VERDICT_VIOLATED) assert_true(first[2].t_contact_lower <= first[k].t);
+
+    /* what it does not have */
+    cprox_result each[CASE_MAX_OBJECTS];
+    cprox_certificate *proof = cprox_certificate_create();
+    cprox_options options = CPROX_OPTIONS_DEFAULT;
+    size_t count;
+    options.certificate = proof;
+    assert_int_equal(cprox_obstacles_nearest_pairs(all, whole, 1, 1.0, NULL, ws, each, &count), CPROX_INVALID);
+    if (i % 2 == 0) assert_int_equal(cprox_obstacles_distance(all, whole, NULL, ws, &r, each), CPROX_INVALID);
+    assert_int_equal(cprox_obstacles_distance(all, whole, &options, ws, &r, NULL), CPROX_INVALID);
+    cprox_certificate_free(proof);
+    cprox_obstacles_free(all);
+    robot_case_free(&c);
+  }
+  fclose(f);
+  print_message("%zu verdicts: %g nodes at once, %g one after the other\n", compared, (double)whole_nodes,
+                (double)both_nodes);
+  assert_true(compared > 10 && whole_nodes < both_nodes);
+}
+
 /* ---- random robots -------------------------------------------------------------------------------------------------------- */
 
 enum { SAMPLES = 60, TARGETS = 3 };

@@ -49,6 +49,10 @@ typedef struct cprox_mover {
   const struct cprox_robot_pair *pairs;
   size_t n_pairs;
   bool self;
+  /** a robot with `whole`: its pairs with itself; NULL: all */
+  const struct cprox_robot_pair *self_pairs;
+  size_t n_self_pairs;
+  bool whole; /**< a robot against the obstacles and itself at once, see cprox_robot_along() */
 } cprox_mover;
 
 CPROX_API cprox_mover cprox_point_along(const cprox_curve *curve);
@@ -142,10 +146,12 @@ typedef struct cprox_result {
   /** [m] world frame, the two points that attain upper (surfaces, radius and margin included); equal where they
    *  overlap, and either end of the way out for signed distances */
   cprox_vec3 witness_mover, witness_obstacle;
-  cprox_vec3 normal;      /**< unit, world frame, from target to mover; (0,0,0) where there is none */
-  int32_t obstacle_index; /**< which target; which other geometry, where a robot is asked about itself; -1 for none */
-  int32_t obstacle_part;  /**< which part of a compound; 0 otherwise */
-  int32_t mover_part;     /**< which part of a carried compound; which geometry of a robot, -1 for none; 0 otherwise */
+  cprox_vec3 normal; /**< unit, world frame, from target to mover; (0,0,0) where there is none */
+  /** which target; which other geometry, where a robot is asked about itself; of a mover with `whole` the number of
+   *  targets and that of the other geometry added up; -1 for none */
+  int32_t obstacle_index;
+  int32_t obstacle_part; /**< which part of a compound; 0 otherwise */
+  int32_t mover_part;    /**< which part of a carried compound; which geometry of a robot, -1 for none; 0 otherwise */
   cprox_lod lod;
   uint32_t nodes, distance_queries; /**< what it cost: intervals examined, nearest-point queries */
   double t_contact_lower;           /**< time of contact: no contact at any smaller parameter; other queries: 0 */

@@ -194,7 +194,12 @@ typedef struct cprox_robot_pair {
 /** The robot along a motion. Targets are bodies; of meshes the surface counts, and solid
  *  ones are refused. Of level-of-detail bodies, on links and as targets, the mesh is asked where the hull cannot
  *  decide; result.level of detail says whether. pairs: those that are asked about, kept by reference, `other` being
- *  targets; NULL: all geometries of links that the motion moves, against all targets. */
+ *  targets; NULL: all geometries of links that the motion moves, against all targets.
+ *
+ *  Against obstacles and itself at once: set `whole` of the mover, and self_pairs where not all pairs with itself are
+ *  asked about, which are those of cprox_robot_self(). One search begins with the pair that is nearest of both kinds. It
+ *  answers distance, tolerance, collision and time of contact, without `each` and without certificate. obstacle_index
+ *  is then that of an obstacle, or the number of obstacles plus that of the other geometry. */
 CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
 /** The robot along a motion against itself: its queries have no obstacles (cprox_obstacles_distance(NULL, mover, …)).

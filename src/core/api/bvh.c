@@ -22,7 +22,8 @@ static cprox_status begin(const obstacle_bvh *set, query *q, arguments_query ask
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
   /* the targets were checked when the set was made, but for what the mover must go with */
-  const bool robot = q->mover.motion && (set->has_curves || set->has_solids || q->mover.self || q->mover.pairs);
+  const bool robot =
+      q->mover.motion && (set->has_curves || set->has_solids || q->mover.self || q->mover.whole || q->mover.pairs);
   const bool all = set->has_clock || (q->mover.body && set->has_elements) || robot;
   const cprox_status checked =
       arguments_check_query(&q->mover, all ? set->targets : NULL, all ? set->n : 0, &q->options, asked, workspace);
@@ -40,7 +41,7 @@ static cprox_status out_of_memory(const query *q) {
 
 static cprox_status answer(const obstacle_bvh *set, query *q, const char *name, cprox_result *result) {
   const unsigned depths = query_wants_verdict(q) ? 0 : ARGUMENTS_SIGNED;
-  const cprox_status begun = begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | depths});
+  const cprox_status begun = begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | depths});
   if (begun != CPROX_OK) return begun;
   if (q->mover.motion || !boxes_hold(q)) return query_answer(q, 0, q->n, INFINITY, result);
   set_walk walk;
@@ -92,7 +93,7 @@ cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, con
                                  cprox_workspace *workspace, cprox_result *result) {
   query q = query_create(mover, NULL, 0, 0.0, false, options, workspace);
   const cprox_status begun =
-      begin(set, &q, (arguments_query){"time of contact with a set", ARGUMENTS_STOP | ARGUMENTS_LOD});
+      begin(set, &q, (arguments_query){"time of contact with a set", ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE});
   if (begun != CPROX_OK) return begun;
   if (q.set) return robot_time_of_contact(&q, result);
   if (q.mover.motion || !boxes_hold(&q))

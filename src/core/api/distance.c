@@ -28,8 +28,8 @@ static void leave_certificate(const query *q, const cprox_result *answer) {
     workspace_fail(q->workspace, answer->status, "%s%sno certificate: %s", of_answer, *of_answer ? "; " : "", of_proof);
 }
 
-static arguments_query query_of(const query *q) {
-  const unsigned has = ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE;
+static arguments_query query_of(const query *q, bool each) {
+  const unsigned has = ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE | (each ? 0 : ARGUMENTS_WHOLE);
   if (!query_wants_verdict(q)) return (arguments_query){"distance", has | ARGUMENTS_SIGNED};
   return (arguments_query){q->is_tolerance ? "tolerance" : "collision", has};
 }
@@ -37,7 +37,7 @@ static arguments_query query_of(const query *q) {
 static cprox_status ask_all(query *q, cprox_result *nearest, cprox_result *each) {
   workspace_clear(q->workspace);
   const cprox_status checked =
-      arguments_check_query(&q->mover, q->targets, q->n, &q->options, query_of(q), q->workspace);
+      arguments_check_query(&q->mover, q->targets, q->n, &q->options, query_of(q, each != NULL), q->workspace);
   if (checked != CPROX_OK) return checked;
   query_ask_whole(q);
   if (!each) return query_answer(q, 0, q->n, INFINITY, nearest);

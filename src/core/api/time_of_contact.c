@@ -10,7 +10,7 @@ cprox_status list_time_of_contact(cprox_mover mover, const cprox_obstacle *targe
                                   const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   query q = query_create(mover, targets, n, 0.0, false, options, workspace);
   workspace_clear(workspace);
-  const arguments_query asked = {"time of contact", ARGUMENTS_STOP | ARGUMENTS_LOD};
+  const arguments_query asked = {"time of contact", ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE};
   const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
   if (checked != CPROX_OK) return checked;
   query_ask_whole(&q);

@@ -127,17 +127,18 @@ static cprox_status check_carried(const cprox_body *body, cprox_lod finest, cpro
   return CPROX_OK;
 }
 
-static cprox_status check_pairs(const cprox_mover *mover, size_t n, cprox_workspace *workspace) {
-  const size_t geometries = mover->motion->robot->n_geometries, others = mover->self ? geometries : n;
-  for (size_t i = 0; mover->pairs && i < mover->n_pairs; i++) {
-    const cprox_robot_pair *pair = &mover->pairs[i];
+static cprox_status check_pairs(const cprox_mover *mover, const cprox_robot_pair *pairs, size_t n_pairs, bool self,
+                                size_t n, cprox_workspace *workspace) {
+  const size_t geometries = mover->motion->robot->n_geometries, others = self ? geometries : n;
+  for (size_t i = 0; pairs && i < n_pairs; i++) {
+    const cprox_robot_pair *pair = &pairs[i];
     if (pair->geometry < 0 || (size_t)pair->geometry >= geometries)
       return workspace_fail(workspace, CPROX_INVALID, "pair %zu: there is no geometry %d, the robot has %zu", i,
                             (int)pair->geometry, geometries);
     if (pair->other < 0 || (size_t)pair->other >= others)
-      return workspace_fail(workspace, CPROX_INVALID, "pair %zu: there is no %s %d", i,
-                            mover->self ? "geometry" : "target", (int)pair->other);
-    if (mover->self && pair->geometry == pair->other)
+      return workspace_fail(workspace, CPROX_INVALID, "pair %zu: there is no %s %d", i, self ? "geometry" : "target",
+                            (int)pair->other);
+    if (self && pair->geometry == pair->other)
       return workspace_fail(workspace, CPROX_INVALID, "pair %zu: geometry %d against itself", i, (int)pair->geometry);
   }
   return CPROX_OK;
@@ -159,7 +160,11 @@ static cprox_status check_robot(const cprox_mover *mover, const cprox_obstacle *
                             "target %zu is a solid mesh: a robot is asked about surfaces; fill it with convex parts",
                             i);
   }
-  return check_pairs(mover, n, workspace);
+  if (mover->self && mover->whole)
+    return workspace_fail(workspace, CPROX_INVALID, "the mover has self and whole: one of them");
+  const cprox_status status = check_pairs(mover, mover->pairs, mover->n_pairs, mover->self, n, workspace);
+  if (status != CPROX_OK) return status;
+  return check_pairs(mover, mover->self_pairs, mover->whole ? mover->n_self_pairs : 0, true, n, workspace);
 }
 
 cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
@@ -169,7 +174,12 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacl
   cprox_status checked = arguments_check_length("radius", mover->radius, workspace);
   if (checked == CPROX_OK) checked = arguments_check_options(options, asked, workspace);
   if (checked != CPROX_OK) return checked;
-  if (!mover->motion && (mover->pairs || mover->n_pairs > 0 || mover->self))
+  if (mover->whole && (!(asked.has & ARGUMENTS_WHOLE) || options->certificate))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "%s: a robot against obstacles and itself at once has a distance, verdicts and a time of "
+                          "contact, and no certificate",
+                          asked.name);
+  if (!mover->motion && (mover->pairs || mover->n_pairs > 0 || mover->self || mover->whole))
     return workspace_fail(workspace, CPROX_INVALID,
                           "the mover has %s, but no motion: that is for robots (cprox_robot_along, cprox_robot_self)",
                           mover->self ? "self" : "pairs");

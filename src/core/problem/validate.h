@@ -12,6 +12,7 @@ typedef enum arguments_option {
   ARGUMENTS_STOP = 4,        /* stop */
   ARGUMENTS_RELATIVE = 8,    /* relative_epsilon */
   ARGUMENTS_LOD = 16,        /* max_lod */
+  ARGUMENTS_WHOLE = 32,      /* robots against obstacles and themselves at once */
   ARGUMENTS_SEARCH = ARGUMENTS_STOP | ARGUMENTS_RELATIVE | ARGUMENTS_LOD
 } arguments_option;
 

@@ -44,8 +44,9 @@ static void report(const robot_search *o, const robot_sample *sample, cprox_resu
   r->witness_mover = sample->gap.on_moving, r->witness_obstacle = sample->gap.on_standing,
   r->normal = sample->gap.normal;
   r->mover_part = s->parts[pair->moving].body.index;
-  r->obstacle_index = s->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
-  r->obstacle_part = s->self ? 0 : s->obstacles[pair->standing].part;
+  r->obstacle_index = pair->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
+  if (pair->self && s->q->mover.whole) r->obstacle_index += (int32_t)s->q->n;
+  r->obstacle_part = pair->self ? 0 : s->obstacles[pair->standing].part;
 }
 
 static cprox_lod lod_of(const robot_search *o) {

@@ -444,8 +444,10 @@ static bool keep_entry(robot_search *o, const list_entry *entry) {
 
 /* One of the pairs of elements that take the place of a pair: kept where its own plane does not settle it. */
 static cprox_status enlist(robot_search *o, search_node *node, const robot_pair *whole, const robot_found *found) {
-  robot_pair pair = {
-      .moving = whole->moving, .standing = whole->standing, .element = {found->element[0], found->element[1]}};
+  robot_pair pair = {.moving = whole->moving,
+                     .standing = whole->standing,
+                     .element = {found->element[0], found->element[1]},
+                     .self = whole->self};
   const robot_body *moving = robot_scene_moving(&o->scene, &pair), *standing = robot_scene_standing(&o->scene, &pair);
   chain_motion own;
   const chain_motion *motion = robot_scene_motion(&o->scene, &pair, moving, &own);
@@ -802,7 +804,8 @@ static int32_t whole_pair(const robot_search *o, int32_t index) {
   const robot_pair *of = &o->scene.pairs[index];
   for (size_t i = 0; i < o->scene.n_pairs; i++) {
     const robot_pair *pair = &o->scene.pairs[i];
-    if (pair->moving == of->moving && pair->standing == of->standing && pair->element[0] < 0 && pair->element[1] < 0)
+    if (pair->moving == of->moving && pair->standing == of->standing && pair->self == of->self &&
+        pair->element[0] < 0 && pair->element[1] < 0)
       return (int32_t)i;
   }
   return index;

@@ -91,9 +91,9 @@ static size_t depth_of(const cprox_robot *robot, int32_t axis) {
   return depth;
 }
 
-static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing) {
-  robot_pair pair = {.moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}};
-  if (!s->displacements) return pair;
+static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing, bool self) {
+  robot_pair pair = {.moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}, .self = self};
+  if (!self || !s->displacements) return pair;
   const cprox_robot *robot = s->motion->robot;
   const int32_t common = robot_common_axis(robot, robot->parts[moving].axis, robot->parts[standing].axis);
   pair.shared = (uint32_t)depth_of(robot, common);
@@ -101,35 +101,35 @@ static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing) 
 }
 
 /* Adds the pairs of convex parts of a geometry and a target, or of two geometries; only counts them where there is no room. */
-static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, robot_pair *pairs, size_t *n) {
+static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, bool self, robot_pair *pairs, size_t *n) {
   const cprox_robot *robot = s->motion->robot;
-  const size_t others = s->self ? robot->n_parts : s->n_obstacles;
+  const size_t others = self ? robot->n_parts : s->n_obstacles;
   for (size_t i = 0; i < robot->n_parts; i++) {
     if (robot->parts[i].geometry != geometry) continue;
     for (size_t k = 0; k < others; k++) {
-      if ((s->self ? robot->parts[k].geometry : s->obstacles[k].index) != other) continue;
-      if (pairs) pairs[*n] = pair_of(s, i, k);
+      if ((self ? robot->parts[k].geometry : s->obstacles[k].index) != other) continue;
+      if (pairs) pairs[*n] = pair_of(s, i, k, self);
       (*n)++;
     }
   }
 }
 
 bool robot_scene_asks(const robot_scene *s, size_t part) {
-  return s->self || motion_moves_link(s->motion, s->motion->robot->parts[part].link);
+  return motion_moves_link(s->motion, s->motion->robot->parts[part].link);
 }
 
 /* All pairs that are worth asking for. */
-static void add_all_pairs(const robot_scene *s, robot_pair *pairs, size_t *n) {
+static void add_all_pairs(const robot_scene *s, bool self, robot_pair *pairs, size_t *n) {
   const cprox_robot *robot = s->motion->robot;
-  const size_t others = s->self ? robot->n_parts : s->n_obstacles;
+  const size_t others = self ? robot->n_parts : s->n_obstacles;
   for (size_t i = 0; i < robot->n_parts; i++) {
     const robot_part *part = &robot->parts[i];
-    if (!robot_scene_asks(s, i)) continue;
+    if (!self && !robot_scene_asks(s, i)) continue;
     for (size_t k = 0; k < others; k++) {
       const robot_part *other = &robot->parts[k];
-      if (s->self && (other->geometry >= part->geometry || !motion_relates_links(s->motion, part->link, other->link)))
+      if (self && (other->geometry >= part->geometry || !motion_relates_links(s->motion, part->link, other->link)))
         continue;
-      if (pairs) pairs[*n] = pair_of(s, i, k);
+      if (pairs) pairs[*n] = pair_of(s, i, k, self);
       (*n)++;
     }
   }
@@ -139,16 +139,20 @@ static void add_all_pairs(const robot_scene *s, robot_pair *pairs, size_t *n) {
 static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
   const cprox_mover *mover = &s->q->mover;
   size_t n = 0;
-  if (!mover->pairs) add_all_pairs(s, pairs, &n);
-  for (size_t i = 0; mover->pairs && i < mover->n_pairs; i++)
-    add_pairs(s, mover->pairs[i].geometry, mover->pairs[i].other, pairs, &n);
+  for (int self = mover->self; self <= (mover->self || mover->whole); self++) {
+    const bool second = self && mover->whole;
+    const cprox_robot_pair *given = second ? mover->self_pairs : mover->pairs;
+    const size_t count = second ? mover->n_self_pairs : mover->n_pairs;
+    if (!given) add_all_pairs(s, self, pairs, &n);
+    for (size_t i = 0; given && i < count; i++) add_pairs(s, given[i].geometry, given[i].other, self, pairs, &n);
+  }
   return n;
 }
 
 /* ---- beginning ------------------------------------------------------------------------------------------------------------ */
 
 bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last) {
-  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = q->mover.self};
+  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = q->mover.self || q->mover.whole};
   const cprox_robot *robot = s->motion->robot;
   const size_t n_axes = robot->n_axes + 1;
   size_t deepest = 0;
@@ -253,13 +257,13 @@ const robot_body *robot_scene_moving(robot_scene *s, const robot_pair *pair) {
 }
 
 const robot_body *robot_scene_standing(robot_scene *s, const robot_pair *pair) {
-  const robot_body *body = s->self ? &place(s, pair->standing)->body : &s->obstacles[pair->standing];
+  const robot_body *body = pair->self ? &place(s, pair->standing)->body : &s->obstacles[pair->standing];
   return pair->element[1] < 0 ? body : robot_element_make(body, pair->element[1], &s->element[1]);
 }
 
 /* What the motion of a pair's moving side is seen from. */
 static int32_t seen_from_axis(const robot_scene *s, const robot_pair *pair) {
-  return s->self ? s->motion->robot->parts[pair->standing].axis : -1;
+  return pair->self ? s->motion->robot->parts[pair->standing].axis : -1;
 }
 
 static void find_motion(robot_scene *s, const robot_pair *pair, const robot_body *body, chain_motion *m) {
@@ -284,7 +288,7 @@ static double displacement_of_part(robot_scene *s, int32_t index) {
 
 double robot_scene_coarse_displacement(robot_scene *s, const robot_pair *pair) {
   const double coarse = displacement_of_part(s, pair->moving);
-  if (!s->self) return coarse;
+  if (!pair->self) return coarse;
   const double other = displacement_of_part(s, pair->standing);
   if (!s->displacements) return coarse + other;
   return s->displacements[(size_t)pair->moving * s->n_displacements + pair->shared] +
@@ -292,14 +296,14 @@ double robot_scene_coarse_displacement(robot_scene *s, const robot_pair *pair) {
 }
 
 double robot_scene_displacement(robot_scene *s, const robot_pair *pair, const robot_body *moving) {
-  if (!s->self && pair->element[0] < 0) return displacement_of_part(s, pair->moving);
+  if (!pair->self && pair->element[0] < 0) return displacement_of_part(s, pair->moving);
   return motion_displacement(s->motion, s->axes, seen_from_axis(s, pair), s->motion->robot->parts[pair->moving].axis,
                              moving->side.at.p, moving->radius + moving->side.error);
 }
 
 const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, const robot_body *moving,
                                        chain_motion *own) {
-  if (s->self || pair->element[0] >= 0) {
+  if (pair->self || pair->element[0] >= 0) {
     find_motion(s, pair, moving, own);
     return own;
   }

@@ -10,7 +10,7 @@
 /* A pair of a part of the robot that moves and what it is held against. */
 typedef struct robot_pair {
   int32_t moving;     /* which part of the robot */
-  int32_t standing;   /* which obstacle, or in a query about the robot itself which part */
+  int32_t standing;   /* which obstacle, or of a pair with itself which part */
   uint32_t shared;    /* of the robot itself: so many axes are above both sides */
   int32_t element[2]; /* of what the moving and the standing side are made of: -1: all of it, by its convex shape */
   /* the last separating direction, from what stands to what moves, in the frame of what stands, where on the motion it was found
@@ -18,6 +18,7 @@ typedef struct robot_pair {
   vec3 normal, normal_rate;
   double found, from, to;
   bool normal_known;
+  bool self; /* what stands is a part of the robot, too */
 } robot_pair;
 
 /* A part over the node at hand. */
@@ -31,7 +32,7 @@ typedef struct part_state {
 typedef struct robot_scene {
   const query *q;
   const cprox_motion *motion;
-  bool self;
+  bool self; /* there are pairs with itself */
   robot_body *obstacles;
   part_state *parts;
   axis_state *axes;      /* those above the parts that were asked for on the present node, */
@@ -57,7 +58,7 @@ typedef struct robot_scene {
  * they are needed. */
 bool robot_scene_begin(robot_scene *scene, const query *q, size_t first, size_t last);
 
-/* Whether the robot's part is asked about at all. */
+/* Whether the robot's part is asked about, against obstacles. */
 bool robot_scene_asks(const robot_scene *scene, size_t part);
 
 /* The parts of a target are obstacles; adds them: the number of the first one, or -1 where memory is out. It may move all obstacles in
