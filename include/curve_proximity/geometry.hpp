@@ -34,7 +34,7 @@ std::string resolveResource(const std::string &uri, const ResourceOptions &optio
 
 /** A body made from a description. */
 struct Geometry {
-  BodyHandle body;     /**< of a mesh: with its convex hull as a coarser level of detail */
+  BodyHandle body;     /**< of a mesh: with its convex hull as a coarser level of detail; null: an empty octree */
   BodyHandle hull;     /**< the convex hull of a mesh; otherwise the body */
   BodyHandle surface;  /**< a solid mesh without its interior; otherwise the body */
   double excess = 0.0; /**< [m] how far points of the shape may be outside the body; set by the caller */
@@ -50,9 +50,9 @@ struct Geometry {
  *  Throws Error: dimensions that are too few or too many, not finite or not positive ("cylinder needs 2 dimensions
  *  [height, radius], got 1"); vertices that are missing or not finite; a mesh without triangles or with an index out of
  *  range, a scale that is 0 or not finite; a resource that cannot be read (see resolveResource), has no triangle or a
- *  vertex that is not finite; points that are none; an octree that is cut short, of an unknown kind or without an
- *  occupied cell; CPROX_MEMORY, with the bytes that it needs, for what would exceed the memory limit. Flat meshes and
- *  polytopes of any dimension are accepted.
+ *  vertex that is not finite; points that are none; an octree that is cut short or of an unknown kind; CPROX_MEMORY,
+ *  with the bytes that it needs, for what would exceed the memory limit. Flat meshes and
+ *  polytopes of any dimension are accepted. An octree without an occupied cell is the empty set: the body is null.
  *  Thread safety: any number of threads. */
 Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options = {});
 
@@ -65,7 +65,7 @@ struct Boxes {
 /** The boxes of an OCTREE's body, in the shape's own frame. Throws as makeGeometry() does. */
 Boxes octreeBoxes(const ShapeDescription &shape, const ResourceOptions &options = {});
 
-/** True if the octree has no occupied cell; makeGeometry() refuses it then. Throws as makeGeometry() does. */
+/** True if the octree has no occupied cell: makeGeometry() makes no body then. Throws as makeGeometry() does. */
 bool isEmpty(const OctreeData &octree, bool unknown_is_occupied);
 
 } // namespace curve_proximity

@@ -22,14 +22,22 @@ class RobotMotion {
    *  rest        values of joints that the trajectory does not move; others are at 0, or at mid-range where 0 is
    *              outside their limits. Names that the robot does not have are an error.
    *  base        where the root link, or the parent frame of its virtual joint, stands in the fixed frame.
-   *  disabled    pairs of links that are not checked against each other (an SRDF's).
+   *  disabled    pairs of links that are not checked against each other (an SRDF's). Links that the robot does not have
+   *              are ignored (see unknownLinks()).
+   *  links       only these links, and what they carry, are measured against objects, and against all of the robot.
+   *              Empty: all.
+   *
+   *  A trajectory of one point at time 0 is a robot that stands there: all of its links count, and its domain is
+   *  [0, 1].
    *
    *  Throws Error: no robot, what checkTrajectory() finds, joints that the robot does not have, a trajectory of one
-   *  point, a base joint whose child is not the root link. A mimic joint follows its leader; what a trajectory says of
+   *  point at a later time, a base joint whose child is not the root link. A mimic joint follows its leader; what a
+   *  trajectory says of
    *  it is not looked at. */
   RobotMotion(SnapshotPtr snapshot, const TrajectoryDescription &trajectory, const JointPositions &rest,
               const std::vector<std::array<std::string, 2>> &disabled = {},
-              const Eigen::Isometry3d &base = Eigen::Isometry3d::Identity());
+              const Eigen::Isometry3d &base = Eigen::Isometry3d::Identity(),
+              const std::vector<std::string> &links = {});
   ~RobotMotion();
   /** Moves. */
   RobotMotion(RobotMotion &&) noexcept;

@@ -7,6 +7,7 @@
 #define CURVE_PROXIMITY_SCENE_HPP
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -68,6 +69,9 @@ struct SceneChange {
   std::optional<double> default_link_padding; /**< [m] >= 0, of the links not named */
   std::map<std::string, double> link_scale;   /**< > 0, by link: see Snapshot::linkGeometry() */
   std::vector<AllowedPair> allowed;           /**< each replaces the entry of the same two names, in either order */
+
+  /** Asked before each new shape is made; true: shapes not made yet are errors. Null: never. */
+  std::function<bool()> stop;
 };
 
 /** A body at its pose in the fixed frame. */
@@ -92,7 +96,7 @@ struct ObjectShape {
 /** An object of the scene. */
 struct SceneObject {
   ObjectDescription description;   /**< as given, with the current pose and padding */
-  std::vector<ObjectShape> shapes; /**< as many as description.shapes */
+  std::vector<ObjectShape> shapes; /**< as many as description.shapes; that of an empty octree has no body */
 };
 
 /** An object that is attached to a link. */
@@ -210,7 +214,8 @@ class Scene {
    *
    *  Errors are: an unknown id on MOVE or REMOVE; an object without an id, or with that of an attached object; poses or
    *  paddings that are not finite; a padding < 0; an unknown link; an allowed pair without a first name; a halfspace to
-   *  attach. Cost: microseconds per unchanged object, whose bodies are shared; more for new objects. */
+   *  attach. Cost: microseconds per unchanged object, whose bodies are shared; more for new objects, whose bodies are
+   *  made before other changes have to wait. */
   std::vector<std::string> apply(const SceneChange &change);
 
  private:

@@ -19,13 +19,31 @@ struct VirtualJoint {
   std::string child_link;   /**< the robot's root link */
 };
 
+/** A group of links and joints, by name. */
+struct SrdfGroup {
+  std::string name;                               /**< of the group */
+  std::vector<std::string> links;                 /**< links */
+  std::vector<std::string> joints;                /**< joints: their child links belong to the group */
+  std::vector<std::array<std::string, 2>> chains; /**< base link and tip link: all links from one to the other */
+  std::vector<std::string> groups;                /**< groups that are part of it */
+};
+
 /** The elements of an SRDF that this package uses. */
 struct Srdf {
   std::vector<VirtualJoint> virtual_joints;         /**< in the order of the file */
   std::vector<std::array<std::string, 2>> disabled; /**< pairs of links that are not checked against each other */
   std::vector<std::string> disabled_by_default;     /**< links that are checked against nothing … */
   std::vector<std::array<std::string, 2>> enabled;  /**< … but these */
+  std::vector<SrdfGroup> groups;                    /**< in the order of the file */
 };
+
+class Robot;
+
+/** The links of a group, each once. Throws Error for an unknown group, link or joint. */
+std::vector<std::string> linksOfGroup(const Srdf &srdf, const Robot &robot, const std::string &group);
+
+/** The links that an SRDF disables and a robot does not have: perhaps it is another robot's. Each once. */
+std::vector<std::string> unknownLinks(const Srdf &srdf, const Robot &robot);
 
 /** Reads an SRDF. Other elements are ignored.
  *

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <curve_proximity/nearest_name.hpp>
+
 #include "placing.h"
 #include "scaling.h"
 
@@ -18,6 +20,7 @@ LinkGeometry shapeOnLink(const ShapeDescription &shape, const Eigen::Isometry3d 
   LinkGeometry out;
   out.description = scale == 1.0 ? shape : scaledShape(shape, scale, resources);
   out.geometry = makeGeometry(out.description, resources);
+  if (!out.geometry.body) return out; // an empty octree
   const PlacedShape placed = place(out.geometry, object, out.description.pose, 0.0);
   out.geometry.excess = placed.rounding;
   out.pose = object * out.description.pose;
@@ -30,7 +33,8 @@ void makeShapes(AttachedObject &object, double scale, const ResourceOptions &res
   object.shapes.clear();
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     try {
-      object.shapes.push_back(shapeOnLink(shapes[i], object.description.pose, scale, resources));
+      LinkGeometry shape = shapeOnLink(shapes[i], object.description.pose, scale, resources);
+      if (shape.geometry.body) object.shapes.push_back(std::move(shape));
     } catch (const Error &error) {
       const std::string which = shapes.size() > 1 ? "shape " + std::to_string(i + 1) + ": " : "";
       throw Error(which + error.what(), error.status());
@@ -42,7 +46,8 @@ void makeShapes(AttachedObject &object, double scale, const ResourceOptions &res
 
 void checkLink(const std::string &link, const Robot *robot) {
   if (robot && robot->links().count(link) > 0) return;
-  throw Error(robot ? "robot '" + robot->name() + "' has no link '" + link + "'"
+  throw Error(robot ? "robot '" + robot->name() + "' has no link '" + link + "'" +
+                          didYouMean(link, namesOf(robot->links()))
                     : "link '" + link + "' is unknown: the scene has no robot");
 }
 

@@ -98,11 +98,11 @@ void checkVertices(const ShapeDescription &shape) {
   if (!mesh && !octree && !shape.resource.empty()) throw Error(name + " takes no file, got '" + shape.resource + "'");
   if (!mesh && shape.solid) throw Error(name + " is not asked whether it is solid: meshes are");
   if (!octree && !shape.octree.data.empty()) throw Error(name + " takes no octree");
-  if (octree && shape.resource.empty() == shape.octree.data.empty()) {
-    throw Error(shape.resource.empty()
-                    ? "octree has neither a file nor bytes"
-                    : "octree '" + shape.resource + "' has bytes beside the file: give one of the two");
-  }
+  if (octree && !shape.resource.empty() && !shape.octree.data.empty())
+    throw Error("octree '" + shape.resource + "' has bytes beside the file: give one of the two");
+  const bool tree_without_nodes = !shape.octree.id.empty() && shape.octree.resolution > 0.0;
+  if (octree && shape.resource.empty() && shape.octree.data.empty() && !tree_without_nodes)
+    throw Error("octree has neither a file nor bytes");
   if (mesh && !shape.resource.empty() && (n > 0 || shape.triangles.cols() > 0)) {
     throw Error("mesh '" + shape.resource + "' has vertices or triangles beside the file: give one of the two");
   }
@@ -143,6 +143,7 @@ auto ofOctree(const ShapeDescription &shape, Work work) -> decltype(work()) {
 
 BodyHandle makeCells(const ShapeDescription &shape, const ResourceOptions &options) {
   const Boxes cells = octreeBoxes(shape, options);
+  if (cells.low.cols() == 0) return {};
   return ofOctree(shape, [&] { return makeBoxes(cells.low, cells.high, options.memory_limit); });
 }
 

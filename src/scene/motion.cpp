@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include <curve_proximity/motion.hpp>
+#include <curve_proximity/nearest_name.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -87,7 +88,14 @@ void makeMotion(const TrajectoryDescription &trajectory, const JointPositions &r
     points.push_back({point.time, chosen(point.positions, columns, memory), chosen(point.velocities, columns, memory),
                       chosen(point.accelerations, columns, memory)});
   }
-  if (points.size() < 2) throw Error("the trajectory has one point: from where it is reached is not said");
+  data.stands = points.size() == 1;
+  if (data.stands) {
+    if (points.front().time > 0.0)
+      throw Error(
+          "the trajectory has one point: from where it is reached is not said (at time 0 the robot stands there)");
+    points.push_back(points.front());
+    points.back().time = 1.0;
+  }
 
   Workspace workspace;
   cprox_motion *made = nullptr;
@@ -104,22 +112,11 @@ void makeMotion(const TrajectoryDescription &trajectory, const JointPositions &r
   data.core.reset(made);
 }
 
-/* Links that an SRDF speaks of and this robot does not have: perhaps it is another robot's. */
-void warnOfOtherLinks(const std::vector<std::array<std::string, 2>> &disabled, RobotMotion::Data &data) {
-  std::set<std::string> told;
-  for (const std::array<std::string, 2> &pair : disabled) {
-    for (const std::string &link : pair) {
-      if (data.kinematics->links.count(link) == 0 && told.insert(link).second)
-        data.warnings.push_back("the SRDF disables link '" + link + "', which robot '" +
-                                data.kinematics->robot->name() + "' does not have");
-    }
-  }
-}
-
 } // namespace
 
 RobotMotion::RobotMotion(SnapshotPtr snapshot, const TrajectoryDescription &trajectory, const JointPositions &rest,
-                         const std::vector<std::array<std::string, 2>> &disabled, const Eigen::Isometry3d &base) {
+                         const std::vector<std::array<std::string, 2>> &disabled, const Eigen::Isometry3d &base,
+                         const std::vector<std::string> &links) {
   checkTrajectory(trajectory);
   auto data = std::make_unique<Data>();
   data->snapshot = std::move(snapshot);
@@ -129,9 +126,13 @@ RobotMotion::RobotMotion(SnapshotPtr snapshot, const TrajectoryDescription &traj
     throw Error("robot '" + data->kinematics->robot->name() +
                 "' has no collision geometry: nothing of it can come close to anything");
   makeMotion(trajectory, rest, *data);
-  choosePairs(disabled, *data);
+  for (const std::string &link : links) {
+    if (data->kinematics->links.count(link) == 0)
+      throw Error("link '" + link + "' is no link of robot '" + data->kinematics->robot->name() + "'" +
+                  didYouMean(link, namesOf(data->kinematics->links)));
+  }
+  choosePairs(disabled, links, *data);
   data->warnings = beyondLimits(*data->kinematics, *data->core);
-  warnOfOtherLinks(disabled, *data);
   data_ = std::move(data);
 }
 

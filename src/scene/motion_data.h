@@ -21,13 +21,15 @@ struct RobotMotion::Data {
   std::string id;
   std::shared_ptr<const Kinematics> kinematics;
   std::unique_ptr<cprox_motion, void (*)(cprox_motion *)> core{nullptr, cprox_motion_free};
+  bool stands = false;                       /* one waypoint: the robot does not move */
   std::vector<cprox_robot_pair> self;        /* geometry against geometry */
   std::vector<cprox_robot_pair> environment; /* geometry against item of the snapshot's world */
   std::vector<std::string> skipped, warnings;
 };
 
-/* Fills self, environment and skipped; `disabled` are pairs of links. */
-void choosePairs(const std::vector<std::array<std::string, 2>> &disabled, RobotMotion::Data &data);
+/* Fills self, environment and skipped; `disabled` are pairs of links, `only` the links wanted (empty: all). */
+void choosePairs(const std::vector<std::array<std::string, 2>> &disabled, const std::vector<std::string> &only,
+                 RobotMotion::Data &data);
 
 } // namespace curve_proximity
 #endif

@@ -168,7 +168,7 @@ OctreeData readOctree(const std::string &file) {
 }
 
 Boxes cellBoxes(const OctreeData &octree, bool unknown_is_occupied, std::size_t memory_limit) {
-  if (octree.data.empty()) throw Error("octree is empty");
+  if (octree.data.empty()) return {};
   const std::size_t nodes = countNodes(octree);
   if (nodes > memory_limit / NODE_BYTES) {
     throw Error(std::to_string(nodes) + " octree nodes need about " + std::to_string(nodes * NODE_BYTES) +
@@ -176,7 +176,6 @@ Boxes cellBoxes(const OctreeData &octree, bool unknown_is_occupied, std::size_t 
                 CPROX_MEMORY);
   }
   const Cells cells = cellsOf(octree, unknown_is_occupied);
-  if (cells.boxes.empty()) throw Error("octree has no occupied cell");
 
   // Faces are products of whole numbers with the resolution, so that neighbours share theirs to the last bit.
   const auto n = static_cast<Eigen::Index>(cells.boxes.size());

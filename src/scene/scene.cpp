@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <tuple>
 #include <utility>
 
+#include <curve_proximity/nearest_name.hpp>
 #include <curve_proximity/scene.hpp>
 
 #include "attaching.h"
@@ -26,18 +28,36 @@ std::string shapeName(std::size_t number, std::size_t of) {
   return of > 1 ? "shape " + std::to_string(number + 1) + ": " : "";
 }
 
-/* Bodies for the shapes from number `first` on; those before are there. */
-void makeBodies(SceneObject &object, std::size_t first, const ResourceOptions &resources) {
-  const std::vector<ShapeDescription> &shapes = object.description.shapes;
-  for (std::size_t i = first; i < shapes.size(); ++i) {
+/* The bodies of one operation's shapes, made before the scene is locked. */
+struct Prepared {
+  std::vector<Geometry> geometries;
+  std::exception_ptr fault; /* of the first shape that has no body */
+};
+
+Prepared prepare(const ObjectDescription &given, const ResourceOptions &resources, const SceneChange &change) {
+  Prepared out;
+  const std::vector<ShapeDescription> &shapes = given.shapes;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
     try {
+      if (change.stop && change.stop()) throw Error("there was no time left to make its shapes", CPROX_STOPPED);
       checkPose(shapes[i].pose, "its pose");
-      ObjectShape shape;
-      shape.geometry = makeGeometry(shapes[i], resources);
-      object.shapes.push_back(std::move(shape));
+      out.geometries.push_back(makeGeometry(shapes[i], resources));
     } catch (const Error &error) {
-      throw Error(shapeName(i, shapes.size()) + error.what(), error.status());
+      out.fault = std::make_exception_ptr(Error(shapeName(i, shapes.size()) + error.what(), error.status()));
+      return out;
+    } catch (...) {
+      out.fault = std::current_exception();
+      return out;
     }
+  }
+  return out;
+}
+
+void addBodies(SceneObject &object, Prepared &prepared) {
+  if (prepared.fault) std::rethrow_exception(prepared.fault);
+  for (Geometry &geometry : prepared.geometries) {
+    object.shapes.emplace_back();
+    object.shapes.back().geometry = std::move(geometry);
   }
 }
 
@@ -46,21 +66,22 @@ void placeShapes(SceneObject &object) {
   const ObjectDescription &description = object.description;
   for (std::size_t i = 0; i < object.shapes.size(); ++i) {
     ObjectShape &shape = object.shapes[i];
-    shape.placed = place(shape.geometry, description.pose, description.shapes[i].pose, description.padding);
+    if (shape.geometry.body)
+      shape.placed = place(shape.geometry, description.pose, description.shapes[i].pose, description.padding);
   }
 }
 
-std::shared_ptr<const SceneObject> added(const ObjectDescription &given, const ResourceOptions &resources) {
+std::shared_ptr<const SceneObject> added(const ObjectDescription &given, Prepared &prepared) {
   if (given.shapes.empty()) throw Error("it has no shapes");
   const auto object = std::make_shared<SceneObject>();
   object->description = given;
-  makeBodies(*object, 0, resources);
+  addBodies(*object, prepared);
   placeShapes(*object);
   return object;
 }
 
 std::shared_ptr<const SceneObject> appended(const SceneObject &before, const ObjectDescription &given,
-                                            const ResourceOptions &resources) {
+                                            Prepared &prepared) {
   if (given.shapes.empty()) throw Error("APPEND brings no shapes");
   const Eigen::Matrix4d pose = given.pose.matrix();
   const bool own = (pose - before.description.pose.matrix()).cwiseAbs().maxCoeff() <= SAME_POSE;
@@ -72,7 +93,7 @@ std::shared_ptr<const SceneObject> appended(const SceneObject &before, const Obj
   std::vector<ShapeDescription> &shapes = object->description.shapes;
   shapes.insert(shapes.end(), given.shapes.begin(), given.shapes.end());
   if (given.padding > 0.0) object->description.padding = given.padding;
-  makeBodies(*object, before.shapes.size(), resources);
+  addBodies(*object, prepared);
   placeShapes(*object);
   return object;
 }
@@ -88,8 +109,7 @@ std::shared_ptr<const SceneObject> moved(const SceneObject &before, const Object
 }
 
 /* One operation; throws Error and leaves the objects as they were where it cannot be done. */
-void applyOperation(const Operation &operation, const ResourceOptions &resources, const AttachedObjects &attached,
-                    Objects &objects) {
+void applyOperation(const Operation &operation, Prepared &prepared, const AttachedObjects &attached, Objects &objects) {
   const ObjectDescription &given = operation.object;
   if (operation.kind == Operation::Kind::REMOVE && given.id.empty()) {
     objects.clear();
@@ -115,11 +135,11 @@ void applyOperation(const Operation &operation, const ResourceOptions &resources
       break;
     case Operation::Kind::APPEND:
       if (known) {
-        it->second = appended(*it->second, given, resources);
+        it->second = appended(*it->second, given, prepared);
         break;
       }
       [[fallthrough]];
-    default: objects[given.id] = added(given, resources); break;
+    default: objects[given.id] = added(given, prepared); break;
   }
 }
 
@@ -161,7 +181,8 @@ void detach(const AttachedObject &object, const Attachment &given, Carrying &sce
   ObjectDescription standing = object.description;
   standing.frame.clear();
   standing.pose = poseOfLink(given, object.link) * standing.pose;
-  scene.objects[standing.id] = added(standing, scene.resources);
+  Prepared prepared = prepare(standing, scene.resources, {});
+  scene.objects[standing.id] = added(standing, prepared);
 }
 
 void applyAttachment(const Attachment &given, Carrying &scene) {
@@ -190,7 +211,8 @@ void checkLinkPaddings(const std::map<std::string, double> &paddings, const Robo
       throw Error("link '" + link + "': " + error.what());
     }
     if (!robot || robot->links().count(link) == 0) {
-      throw Error("link padding: " + (robot ? "robot '" + robot->name() + "' has no link '" + link + "'"
+      throw Error("link padding: " + (robot ? "robot '" + robot->name() + "' has no link '" + link + "'" +
+                                                  didYouMean(link, namesOf(robot->links()))
                                             : "link '" + link + "' is unknown: the scene has no robot"));
     }
   }
@@ -232,6 +254,7 @@ World::World(const Objects &objects) {
   for (const auto &[id, object] : objects) {
     for (std::size_t i = 0; i < object->shapes.size(); ++i) {
       const PlacedShape &shape = object->shapes[i].placed;
+      if (!object->shapes[i].geometry.body) continue;
       const auto index = static_cast<std::uint32_t>(items_.size());
       items_.push_back({&shape, &id, false, static_cast<int>(i)});
       if (curve_proximity::unbounded(shape)) {
@@ -314,6 +337,14 @@ SnapshotPtr Scene::snapshot() const {
 }
 
 std::vector<std::string> Scene::apply(const SceneChange &change) {
+  // What takes long, the bodies, before anybody has to wait for it.
+  std::vector<Prepared> prepared;
+  prepared.reserve(change.operations.size());
+  for (const Operation &operation : change.operations) {
+    const bool shapes = operation.kind == Operation::Kind::ADD || operation.kind == Operation::Kind::APPEND;
+    prepared.push_back(shapes ? prepare(operation.object, resources_, change) : Prepared());
+  }
+
   const std::lock_guard<std::mutex> one_at_a_time(changing_);
   std::vector<std::string> faults;
   const std::shared_ptr<Snapshot> next(new Snapshot(*snapshot()));
@@ -328,9 +359,10 @@ std::vector<std::string> Scene::apply(const SceneChange &change) {
     next->scaled_.clear();
   }
 
-  for (const Operation &operation : change.operations) {
+  for (std::size_t i = 0; i < change.operations.size(); ++i) {
+    const Operation &operation = change.operations[i];
     try {
-      applyOperation(operation, resources_, next->attached_, next->objects_);
+      applyOperation(operation, prepared[i], next->attached_, next->objects_);
     } catch (const std::exception &error) {
       faults.push_back("object '" + operation.object.id + "': " + error.what());
     }

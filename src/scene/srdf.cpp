@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include <curve_proximity/nearest_name.hpp>
 #include <curve_proximity/srdf.hpp>
 
 #include <tinyxml2.h>
 
+#include <algorithm>
+#include <set>
+
 #include <curve_proximity/core.hpp>
+#include <curve_proximity/robot.hpp>
 
 namespace curve_proximity {
 namespace {
@@ -31,6 +36,24 @@ VirtualJoint readVirtualJoint(const XMLElement &element) {
   return joint;
 }
 
+std::vector<std::string> readNames(const XMLElement &group, const char *element) {
+  std::vector<std::string> out;
+  for (const XMLElement *e = group.FirstChildElement(element); e; e = e->NextSiblingElement(element))
+    out.push_back(required(*e, "name"));
+  return out;
+}
+
+SrdfGroup readGroup(const XMLElement &element) {
+  SrdfGroup group;
+  group.name = required(element, "name");
+  group.links = readNames(element, "link");
+  group.joints = readNames(element, "joint");
+  group.groups = readNames(element, "group");
+  for (const XMLElement *e = element.FirstChildElement("chain"); e; e = e->NextSiblingElement("chain"))
+    group.chains.push_back({required(*e, "base_link"), required(*e, "tip_link")});
+  return group;
+}
+
 using LinkPairs = std::vector<std::array<std::string, 2>>;
 
 LinkPairs readPairs(const XMLElement &robot, const char *name) {
@@ -56,9 +79,90 @@ Srdf parseSrdf(const std::string &xml) {
   }
   out.disabled = readPairs(*robot, "disable_collisions");
   out.enabled = readPairs(*robot, "enable_collisions");
+  for (const XMLElement *e = robot->FirstChildElement("group"); e; e = e->NextSiblingElement("group"))
+    out.groups.push_back(readGroup(*e));
   const char *all = "disable_default_collisions";
   for (const XMLElement *e = robot->FirstChildElement(all); e; e = e->NextSiblingElement(all)) {
     out.disabled_by_default.push_back(required(*e, "link"));
+  }
+  return out;
+}
+
+namespace {
+
+/** Collects the links of a group and of the groups in it, each group once. */
+class GroupLinks {
+ public:
+  GroupLinks(const Srdf &srdf, const Robot &robot) : srdf_(srdf), robot_(robot) {}
+
+  void add(const std::string &name) {
+    if (!seen_.insert(name).second) return;
+    const auto group = std::find_if(srdf_.groups.begin(), srdf_.groups.end(),
+                                    [&](const SrdfGroup &candidate) { return candidate.name == name; });
+    if (group == srdf_.groups.end()) {
+      std::vector<std::string> names;
+      for (const SrdfGroup &other : srdf_.groups) names.push_back(other.name);
+      throw Error("there is no group '" + name + "' in the SRDF" + didYouMean(name, names));
+    }
+    for (const std::string &link : group->links) addLink(link);
+    for (const std::string &joint : group->joints) addJoint(joint);
+    for (const auto &[base, tip] : group->chains) addChain(base, tip);
+    for (const std::string &other : group->groups) add(other);
+  }
+
+  std::vector<std::string> take() {
+    return std::move(links_);
+  }
+
+ private:
+  void addLink(const std::string &link) {
+    if (robot_.links().count(link) == 0)
+      throw Error("the SRDF's group names link '" + link + "', which robot '" + robot_.name() + "' does not have" +
+                  didYouMean(link, namesOf(robot_.links())));
+    if (std::find(links_.begin(), links_.end(), link) == links_.end()) links_.push_back(link);
+  }
+
+  void addJoint(const std::string &name) {
+    for (const Robot::Joint &joint : robot_.joints())
+      if (joint.name == name) return addLink(joint.child);
+    for (const VirtualJoint &joint : srdf_.virtual_joints)
+      if (joint.name == name) return addLink(joint.child_link);
+    throw Error("the SRDF's group names joint '" + name + "', which robot '" + robot_.name() + "' does not have");
+  }
+
+  void addChain(const std::string &base, const std::string &tip) {
+    std::string link = tip;
+    while (link != base) {
+      addLink(link);
+      const auto above = std::find_if(robot_.joints().begin(), robot_.joints().end(),
+                                      [&](const Robot::Joint &joint) { return joint.child == link; });
+      if (above == robot_.joints().end())
+        throw Error("the SRDF's chain from '" + base + "' to '" + tip + "' is none of robot '" + robot_.name() + "'");
+      link = above->parent;
+    }
+    addLink(base);
+  }
+
+  const Srdf &srdf_;
+  const Robot &robot_;
+  std::set<std::string> seen_;
+  std::vector<std::string> links_;
+};
+
+} // namespace
+
+std::vector<std::string> linksOfGroup(const Srdf &srdf, const Robot &robot, const std::string &group) {
+  GroupLinks links(srdf, robot);
+  links.add(group);
+  return links.take();
+}
+
+std::vector<std::string> unknownLinks(const Srdf &srdf, const Robot &robot) {
+  std::vector<std::string> out;
+  for (const auto &pair : srdf.disabled) {
+    for (const std::string &link : pair) {
+      if (robot.links().count(link) == 0 && std::find(out.begin(), out.end(), link) == out.end()) out.push_back(link);
+    }
   }
   return out;
 }

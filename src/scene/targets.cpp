@@ -4,6 +4,8 @@
 #include <set>
 #include <utility>
 
+#include <curve_proximity/nearest_name.hpp>
+
 #include "placing.h"
 #include "proving.h"
 
@@ -15,7 +17,7 @@ using Names = std::set<std::string>;
 void checkObjects(const Names &names, const Snapshot &snapshot) {
   for (const std::string &name : names) {
     if (snapshot.objects().count(name) == 0 && snapshot.attached().count(name) == 0)
-      throw Error("there is no object '" + name + "' in the scene");
+      throw Error("there is no object '" + name + "' in the scene" + didYouMean(name, namesOf(snapshot.objects())));
   }
 }
 
@@ -24,7 +26,9 @@ void checkLinks(const Names &names, const LinkPoses &poses, const Robot *robot) 
   if (!robot && !poses.empty()) throw Error("poses of links were given, but the scene has no robot");
   for (const std::string &name : names) {
     const auto it = robot->links().find(name);
-    if (it == robot->links().end()) throw Error("robot '" + robot->name() + "' has no link '" + name + "'");
+    if (it == robot->links().end())
+      throw Error("robot '" + robot->name() + "' has no link '" + name + "'" +
+                  didYouMean(name, namesOf(robot->links())));
     if (it->second.empty()) throw Error("link '" + name + "' has no collision geometry");
   }
   for (const auto &[name, pose] : poses) {

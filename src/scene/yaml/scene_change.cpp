@@ -35,6 +35,7 @@ std::string folderOf(const std::string &path) {
 SceneChange toChange(const SceneFile &file, const std::string &path, Warnings &warnings) {
   const Frames frames({}, file.transforms, {}, warnings);
   SceneChange change;
+  change.clear = !file.is_diff;
   change.operations = file.operations;
   change.attachments = file.attached;
   const auto prepare = [&](ObjectDescription &object) {

@@ -311,6 +311,7 @@ SceneFile readScene(const std::string &path, Warnings &warnings) {
                        "fixed_joints", "robot", "scene"},
                       warnings);
     if (const auto world = root.find("world")) readWorld(*world, out, warnings);
+    if (const auto diff = root.find("is_diff")) out.is_diff = diff->truth();
     readTransforms(root, out, warnings);
     readRobotState(root, out, warnings);
     readLinkSizes(root, out, warnings);

@@ -22,6 +22,7 @@ struct FrameTransform {
 
 /** The file as it stands: poses are still in the frames that the objects name. */
 struct SceneFile {
+  bool is_diff = false;              /**< true: adds to the scene that is there; false: replaces it */
   std::vector<Operation> operations; /**< the collision objects, in order */
   std::vector<Attachment> attached;  /**< their poses in the frames that the objects name, as all others */
   std::vector<FrameTransform> transforms;
