@@ -2,7 +2,7 @@
 # Everything the ROS side stands on, found once; dependency_targets.cmake makes targets of it.
 
 find_package(catkin REQUIRED COMPONENTS
-  actionlib actionlib_msgs diagnostic_updater dynamic_reconfigure geometric_shapes geometry_msgs message_generation
+  actionlib actionlib_msgs diagnostic_msgs diagnostic_updater dynamic_reconfigure geometric_shapes geometry_msgs message_generation
   nav_msgs nodelet pluginlib roscpp roslib sensor_msgs shape_msgs std_msgs tf2 tf2_eigen tf2_ros trajectory_msgs urdf
   visualization_msgs)
 find_package(Eigen3 REQUIRED)

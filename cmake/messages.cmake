@@ -13,7 +13,11 @@ set(CURVE_PROXIMITY_MESSAGES
   LinkScale.msg
   Octree.msg
   Proximity.msg
+  ProximityQuery.msg
   ProximityResults.msg
+  Refusal.msg
+  SceneState.msg
+  SensorState.msg
 )
 set(CURVE_PROXIMITY_SERVICES
   ApplyScene.srv

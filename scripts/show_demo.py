@@ -106,7 +106,8 @@ def master_answers():
 
 def ask(query_type, **request):
     """Calls a service of the node with rosservice, and returns its results."""
-    text = yaml.safe_dump(request, default_flow_style=True, width=1e9)
+    own = {name: request.pop(name) for name in ('delta',) if name in request}
+    text = yaml.safe_dump(dict(own, query=request), default_flow_style=True, width=1e9)
     answer = yaml.safe_load(run('rosservice', 'call', f'{NODE}/{query_type}', text))
     if not answer['success']:
         raise Failure(f"{query_type}: {answer['message']}")
@@ -179,7 +180,7 @@ def main(out):
         core, log = programs.start('roscore', 'roscore', '-p', os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1])
         wait_for(master_answers, core, log, 30)
         launch, log = programs.start('node', 'roslaunch', '--wait', 'curve_proximity', 'demo.launch', 'rviz:=false', 'play:=false',
-                                     'scene_file:=')
+                                     'scene:=')
         wait_for(serving, launch, log, 60)
         run('cprox', 'send', SCENE, '--node', NODE)
         near = ask_and_tell()

@@ -249,7 +249,7 @@ void measureService(ros::NodeHandle &handle, const std::string &server, const st
   PersistentClient<Distance> clients[] = {{handle, server + "/distance"}, {handle, plain + "/distance"}};
   Times times[2];
   Distance call;
-  call.request.curves.push_back(curve());
+  call.request.query.curves.push_back(curve());
   for (int i = 0; i < 2 * calls; ++i) {
     const int which = i / BLOCK % 2;
     const auto begin = Clock::now();
@@ -329,7 +329,7 @@ void measureNodelet(ros::NodeHandle &handle, const std::string &server, int mess
 void measureMemory(ros::NodeHandle &handle, const std::string &server, const Program &node, int calls) {
   PersistentClient<Distance> client(handle, server + "/distance");
   Distance call;
-  call.request.curves.push_back(curve());
+  call.request.query.curves.push_back(curve());
   const auto repeat = [&](int n) {
     const auto begin = Clock::now();
     for (int i = 0; i < n; ++i)

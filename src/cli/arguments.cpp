@@ -38,6 +38,8 @@ const std::map<std::string, Option> &options() {
       {"--provider", {true, {Action::CONSTRAINTS}}},
       {"--parameters", {true, {Action::CONSTRAINTS}}},
       {"--node", {true, {Action::SEND}}},
+      {"--replace", {false, {Action::SEND}}},
+      {"--add", {false, {Action::SEND}}},
       {"--epsilon", {true, {Action::CURVES, Action::PAIRS}}},
       {"--delta", {true, {Action::CURVES}}},
       {"--max-nodes", {true, {Action::CURVES, Action::PAIRS}}},
@@ -249,6 +251,8 @@ void readFiles(const Words &words, const Command &command, Arguments &out) {
       if (plain.empty()) throw BadUsage("'send' needs a file: cprox send SCENE.yaml");
       out.scene = plain.front();
       out.node = words.has("--node") ? words.text("--node") : kDefaultNode;
+      if (words.has("--replace") && words.has("--add")) throw BadUsage("--replace and --add exclude each other");
+      if (words.has("--replace") || words.has("--add")) out.replace = words.has("--replace");
       plain.erase(plain.begin());
       break;
     default: break;
@@ -301,7 +305,7 @@ cprox collision            (as above)   verdict: clear (no common point), violat
 cprox pairs     --in PAIRS.yaml         signed distance of static pairs of bodies
 cprox constraints --provider NAME --in CASES.yaml [--scene SCENE.yaml] [--parameters "name: value, ..."]
                                         value and gradient of clearance constraints by a plugin
-cprox send      SCENE.yaml [--node NAME] hands a scene file to a running node
+cprox send      SCENE.yaml [--replace | --add] [--node NAME]   hands a scene file to a running node
 cprox check     FILE  (the inputs of the query)  what the certificates in FILE prove
 
   --curves FILE     one curve a row: id,basis,degree,t0,t1,radius,n,x0,y0,z0,...[,knots]; basis bezier, bspline,
@@ -332,6 +336,8 @@ cprox check     FILE  (the inputs of the query)  what the certificates in FILE p
                     by their bounding spheres); a coarser one is never farther away
   --skipped         tell on standard error what takes no part, and why
   --out FILE        the results, instead of standard output
+  --replace         'send': the file takes the place of the node's scene (default, unless the file says is_diff: true)
+  --add             'send': the file is added to the node's scene
   --node NAME       the node that 'send' talks to (default )" +
          std::string(kDefaultNode) + R"()
   --help, --version

@@ -32,7 +32,8 @@ bool waitForService(const std::string &service) {
 int sendScene(const Arguments &arguments, Console &console) {
   /* the file first: what is wrong with it needs no node */
   Warnings warnings;
-  const SceneChange change = toChange(readScene(arguments.scene, warnings), arguments.scene, warnings);
+  SceneChange change = toChange(readScene(arguments.scene, warnings), arguments.scene, warnings);
+  if (arguments.replace) change.clear = *arguments.replace;
   console.warn(warnings);
 
   ros::init(ros::M_string(), "cprox_send", ros::init_options::AnonymousName | ros::init_options::NoRosout);
@@ -49,7 +50,7 @@ int sendScene(const Arguments &arguments, Console &console) {
   if (!ros::service::call(service, call)) throw BadUsage("send: the call of " + service + " failed");
   if (!call.response.success) throw BadUsage("send: " + service + ": " + call.response.message);
   console.say("sent: " + std::to_string(change.operations.size() + change.attachments.size()) + " objects to " +
-              arguments.node);
+              arguments.node + (change.clear ? ", in the place of its scene" : ", in addition to its scene"));
   return kAllAnswered;
 }
 

@@ -69,6 +69,9 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
   const RobotMotion motion = readMotion(arguments, world, warnings);
+  if (world.snapshot->robot())
+    for (const std::string &link : unknownLinks(world.srdf, *world.snapshot->robot()))
+      warnings.add("the SRDF disables link '" + link + "', which the robot does not have");
   for (const std::string &sentence : motion.warnings()) warnings.add(arguments.trajectory + ": " + sentence);
   Query query = arguments.query;
   query.options.stop = interrupted;

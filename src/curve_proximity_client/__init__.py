@@ -12,7 +12,7 @@ Metres, radians, the node's ~fixed_frame unless a frame is given. An instance be
 import time
 
 import rospy
-from curve_proximity.msg import Body, CollisionObject, ConstraintQuery, Curve
+from curve_proximity.msg import Body, CollisionObject, ConstraintQuery, Curve, ProximityQuery
 from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, CollisionRequest, Distance, DistanceRequest,
                                  EvaluateConstraints, EvaluateConstraintsRequest, Tolerance, ToleranceRequest)
 from geometry_msgs.msg import Point, Pose, Quaternion
@@ -123,7 +123,18 @@ class Client:
 
     def _ask(self, service, kind, request, curves, fields):
         alone = isinstance(curves, Curve)
-        response = self._call(service, kind, request(curves=[curves] if alone else list(curves), **fields))
+        asked = ProximityQuery(curves=[curves] if alone else list(curves))
+        own = {}
+        for name, value in fields.items():
+            if name == 'delta':
+                own[name] = value
+            elif name == 'trajectory':
+                asked.trajectories = [value]
+            elif name in ProximityQuery.__slots__:
+                setattr(asked, name, value)
+            else:
+                raise Failure('a query has no field %r' % name)
+        response = self._call(service, kind, request(query=asked, **own))
         return response.results[0] if alone and len(response.results) == 1 else response.results
 
     def _call(self, service, kind, request):

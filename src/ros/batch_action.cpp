@@ -57,9 +57,9 @@ void complain(const std::string &why) {
 
 } // namespace
 
-BatchAction::BatchAction(const ros::NodeHandle &handle, const std::string &fixed_frame, Queries &queries,
+BatchAction::BatchAction(const ros::NodeHandle &handle, const std::string &fixed_frame, Queries &queries, Turns &turns,
                          const std::atomic<bool> &stop)
-    : fixed_frame_(fixed_frame), queries_(queries), stop_(stop), handle_(handle) {
+    : fixed_frame_(fixed_frame), queries_(queries), turns_(turns), stop_(stop), handle_(handle) {
   server_ = std::make_unique<Server>(
       handle_, "query", [this](Server::GoalHandle goal) { guarded([&] { begin(std::move(goal)); }, complain); },
       [this](Server::GoalHandle goal) { guarded([&] { cancel(std::move(goal)); }, complain); }, false);
@@ -119,21 +119,14 @@ void BatchAction::answer(Batch &batch) {
   const auto goal = batch.handle.getGoal();
   QueryResult result;
   result.frame_id = fixed_frame_;
-  Feedback feedback(goal->curves.size() + goal->trajectories.size());
+  Feedback feedback(goal->query.curves.size() + goal->query.trajectories.size());
   guarded(
       [&] {
-        QueryRequest request{queryTypeFromName(goal->query_type),
-                             goal->delta,
-                             List<Curve>(goal->curves),
-                             List<trajectory_msgs::JointTrajectory>(goal->trajectories),
-                             goal->self_collision != 0,
-                             goal->objects,
-                             goal->links,
-                             goal->joint_state};
-        request.epsilon = goal->epsilon;
-        request.max_nodes = goal->max_nodes;
-        request.per_object = goal->per_object != 0;
-        request.budget_ms = goal->budget_ms != 0.0 ? goal->budget_ms : std::numeric_limits<double>::infinity();
+        QueryRequest request(queryTypeFromName(goal->query_type), goal->delta, goal->query);
+        const double budget_ms = goal->query.budget_ms;
+        request.budget_ms = budget_ms != 0.0 ? budget_ms : std::numeric_limits<double>::infinity();
+        Turn turn(turns_, "~query", Turns::Clock::time_point::max());
+        request.turn = &turn;
         request.cancelled = &batch.cancelled;
         const Progress progress = [&](const QueryResponse &response, std::size_t done) {
           if (feedback.update(response, done)) batch.handle.publishFeedback(feedback.message());
@@ -144,6 +137,8 @@ void BatchAction::answer(Batch &batch) {
         queries_.answer(request, response, drawing);
         result.success = response.success;
         result.message = std::move(response.message);
+        result.warnings = std::move(response.warnings);
+        result.scene = std::move(response.scene);
         result.results = std::move(response.results);
       },
       [&](const std::string &why) {

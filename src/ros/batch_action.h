@@ -19,11 +19,11 @@
 
 namespace curve_proximity {
 
-/** One batch is answered at a time, by a thread of its own; a few others wait, in the order in which they came. */
+/** One batch is answered at a time, by a thread of its own that takes turns with the requests; a few others wait, in the order in which they came. */
 class BatchAction {
  public:
   /** handle: private, on the queue that runs goals and cancellations. The others are kept by reference. stop: as that of Queries. */
-  BatchAction(const ros::NodeHandle &handle, const std::string &fixed_frame, Queries &queries,
+  BatchAction(const ros::NodeHandle &handle, const std::string &fixed_frame, Queries &queries, Turns &turns,
               const std::atomic<bool> &stop);
 
   /** Joins the thread: stop must be set. */
@@ -43,6 +43,7 @@ class BatchAction {
 
   const std::string fixed_frame_;
   Queries &queries_;
+  Turns &turns_;
   const std::atomic<bool> &stop_;
   std::mutex mutex_;
   std::condition_variable changed_;

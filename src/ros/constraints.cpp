@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "conversions.h"
+#include "name_limits.h"
 #include "robot_description.h"
+#include "turns.h"
 
 namespace curve_proximity {
 namespace {
@@ -119,9 +121,9 @@ void limit(const char *parameter, int most, std::size_t count, const char *what)
 
 } // namespace
 
-Constraints::Constraints(const Parameters &parameters, const Scene &scene, const Frames &frames,
+Constraints::Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames,
                          const std::atomic<bool> &stop)
-    : parameters_(parameters), scene_(scene), frames_(frames), stop_(stop) {
+    : parameters_(parameters), live_(live), frames_(frames), stop_(stop) {
   try {
     providers_ = std::make_unique<ProviderSet>(parameters.constraint_providers);
   } catch (const ProviderError &error) {
@@ -142,6 +144,7 @@ std::vector<std::string> Constraints::failures() const {
 
 void Constraints::checkLimits(const EvaluateConstraints::Request &request) const {
   limit("max_curves", parameters_.max_curves, request.cases.size(), "cases");
+  NameLimits(parameters_.max_name_length).check(request);
   std::size_t points = 0, results = 0;
   for (const ConstraintQuery &asked : request.cases) {
     points += asked.curve.points.size();
@@ -152,19 +155,21 @@ void Constraints::checkLimits(const EvaluateConstraints::Request &request) const
 }
 
 void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
-                         std::shared_ptr<const LevelDrawing> &drawing) {
+                         std::shared_ptr<const LevelDrawing> &drawing, Turn *turn) {
   if (providers_->all().empty()) throw Error("~constraint_providers names none");
   checkLimits(request);
   const auto deadline =
       std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                              std::chrono::duration<double, std::milli>(parameters_.budget_ms));
-  const SnapshotPtr snapshot = scene_.snapshot();
+  const SnapshotPtr snapshot = live_.scene.snapshot();
+  response.scene = live_.state(*snapshot);
   const ResourceOptions resources = resourceOptions("", parameters_.max_shape_mb);
   const WorkspacePool::Lease workspace(workspaces_);
-  FrameLookup lookup(frames_);
+  FrameLookup lookup(frames_, turn);
   std::size_t failed = 0;
   for (std::size_t i = 0; i < request.cases.size(); ++i) {
     const ConstraintQuery &asked = request.cases[i];
+    if (turn) turn->yield();
     std::vector<ConstraintRow> rows;
     ConstraintCase described;
     cprox_status fault = CPROX_OK;

@@ -16,6 +16,7 @@
 #include "../providers/provider_set.h"
 #include "frames.h"
 #include "level_markers.h"
+#include "live_scene.h"
 #include "parameters.h"
 #include "workspaces.h"
 
@@ -27,12 +28,12 @@ class Constraints {
   /** Loads those of parameters.constraint_providers. Throws ParameterError, naming the parameter, for a type that no package
    *  declares and for parameters that a provider refuses. A plugin that does not load, or throws, is told by name on the log and in
    *  every answer; the others go on. All is kept by reference. */
-  Constraints(const Parameters &parameters, const Scene &scene, const Frames &frames, const std::atomic<bool> &stop);
+  Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames, const std::atomic<bool> &stop);
 
   /** Throws Error where nothing can be answered at all; what is wrong with one case or provider becomes its row. drawing: the last
    *  case that a Fourier gap has answered, if any. */
   void answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
-              std::shared_ptr<const LevelDrawing> &drawing);
+              std::shared_ptr<const LevelDrawing> &drawing, Turn *turn);
 
   /** A sentence for each provider that failed to load. */
   std::vector<std::string> failures() const;
@@ -41,7 +42,7 @@ class Constraints {
   void checkLimits(const EvaluateConstraints::Request &request) const;
 
   const Parameters &parameters_;
-  const Scene &scene_;
+  const LiveScene &live_;
   const Frames &frames_;
   const std::atomic<bool> &stop_;
   std::unique_ptr<ProviderSet> providers_;

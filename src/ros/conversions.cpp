@@ -218,22 +218,16 @@ Eigen::Isometry3d frameOf(const CollisionObject &object, const ToFixed &to_fixed
 
 /* ---- what links carry --------------------------------------------------------------------------------------------- */
 
-std_msgs::Header headerOf(const std::string &frame, const ros::Time &stamp) {
-  std_msgs::Header header;
-  header.frame_id = frame;
-  header.stamp = stamp;
-  return header;
-}
-
 /** An object that names its link's frame needs no transform; others are brought there. */
-Attachment toAttachment(const AttachedCollisionObject &message, const ToFixed &to_fixed, const Snapshot &before) {
+Attachment toAttachment(const AttachedCollisionObject &message, const ToFixed &to_fixed,
+                        const LinkToFixed &link_to_fixed, const Snapshot &before) {
   Operation operation = toOperation(message.object);
   Attachment out;
   out.link = message.link_name;
   out.touch_links = message.touch_links;
   const std_msgs::Header &header = message.object.header;
   const auto locate = [&](const std::string &link) {
-    if (out.link_poses.count(link) == 0) out.link_poses[link] = to_fixed(headerOf(link, header.stamp));
+    if (out.link_poses.count(link) == 0) out.link_poses[link] = link_to_fixed(link, header.stamp);
   };
   try {
     if (operation.kind == Operation::Kind::REMOVE) {
@@ -245,7 +239,9 @@ Attachment toAttachment(const AttachedCollisionObject &message, const ToFixed &t
       locate(out.link);
     } else if (header.frame_id != out.link) {
       locate(out.link);
-      operation.object.pose = out.link_poses.at(out.link).inverse() * to_fixed(header) * operation.object.pose;
+      const bool on_link = before.robot() && before.robot()->links().count(header.frame_id) > 0;
+      const Eigen::Isometry3d frame = on_link ? link_to_fixed(header.frame_id, header.stamp) : to_fixed(header);
+      operation.object.pose = out.link_poses.at(out.link).inverse() * frame * operation.object.pose;
     }
   } catch (const std::exception &error) {
     throw Error("object '" + message.object.id + "': " + error.what());
@@ -451,11 +447,11 @@ SceneChange toSceneChange(const ApplySceneRequest &request, const ToFixed &to_fi
   return change;
 }
 
-void addAttachments(const ApplySceneRequest &request, const ToFixed &to_fixed, const Snapshot &before,
-                    SceneChange &change, std::vector<std::string> &faults) {
+void addAttachments(const ApplySceneRequest &request, const ToFixed &to_fixed, const LinkToFixed &link_to_fixed,
+                    const Snapshot &before, SceneChange &change, std::vector<std::string> &faults) {
   for (const AttachedCollisionObject &message : request.attached_collision_objects) {
     try {
-      change.attachments.push_back(toAttachment(message, to_fixed, before));
+      change.attachments.push_back(toAttachment(message, to_fixed, link_to_fixed, before));
     } catch (const std::exception &error) {
       faults.push_back(error.what());
     }
@@ -528,8 +524,7 @@ ApplySceneRequest toMessage(const SceneChange &change) {
 
 Proximity toMessage(const Answer &answer, QueryType query_type) {
   if (answer.result.status < 0) {
-    Proximity failed = toFailedRow(answer.id, answer.message);
-    failed.kind = answer.kind;
+    Proximity failed = toFailedRow(answer.id, answer.kind, answer.message);
     failed.status = answer.status;
     return failed;
   }
@@ -557,11 +552,11 @@ Proximity toMessage(const Answer &answer, QueryType query_type) {
   return message;
 }
 
-Proximity toFailedRow(const std::string &id, const std::string &why) {
+Proximity toFailedRow(const std::string &id, const std::string &kind, const std::string &why) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   Proximity message;
   message.id = id;
-  message.kind = "curve";
+  message.kind = kind;
   message.status = cprox_status_name(CPROX_INVALID);
   message.lower = message.upper = message.t = none;
   message.witness_a.x = message.witness_a.y = message.witness_a.z = none;
@@ -590,11 +585,27 @@ JointPositions toJointPositions(const sensor_msgs::JointState &state) {
 
 /* ---- trajectories ------------------------------------------------------------------------------------------------- */
 
-TrajectoryDescription toDescription(const trajectory_msgs::JointTrajectory &trajectory, const JointPositions &now) {
+TrajectoryDescription toDescription(const trajectory_msgs::JointTrajectory &trajectory, const JointPositions &now,
+                                    std::string &remark) {
   TrajectoryDescription out;
   out.joints = trajectory.joint_names;
-  for (const trajectory_msgs::JointTrajectoryPoint &point : trajectory.points)
-    out.points.push_back({point.positions, point.velocities, point.accelerations, point.time_from_start.toSec()});
+  const auto timeless = [](const trajectory_msgs::JointTrajectoryPoint &point) {
+    return point.time_from_start.isZero() && point.velocities.empty() && point.accelerations.empty();
+  };
+  const bool untimed =
+      trajectory.points.size() > 1 && std::all_of(trajectory.points.begin(), trajectory.points.end(), timeless);
+  if (untimed) remark = "its times are all 0: t counts its points";
+  for (const trajectory_msgs::JointTrajectoryPoint &point : trajectory.points) {
+    TrajectoryPoint next{point.positions, point.velocities, point.accelerations, point.time_from_start.toSec()};
+    if (untimed) next.time = static_cast<double>(out.points.size());
+    if (!out.points.empty()) {
+      const TrajectoryPoint &last = out.points.back();
+      const bool repeated = next.time == last.time && next.positions == last.positions &&
+                            next.velocities == last.velocities && next.accelerations == last.accelerations;
+      if (repeated) continue;
+    }
+    out.points.push_back(std::move(next));
+  }
   if (out.points.empty() || !(out.points.front().time > 0.0)) return out;
 
   // The way from where the robot is.

@@ -47,8 +47,9 @@ SceneChange toSceneChange(const ApplySceneRequest &request, const ToFixed &to_fi
 
 /** What links are to carry, the same way. `before`: the scene that the attachments are for, since what is detached must be known to
  *  stand on its link. */
-void addAttachments(const ApplySceneRequest &request, const ToFixed &to_fixed, const Snapshot &before,
-                    SceneChange &change, std::vector<std::string> &faults);
+using LinkToFixed = std::function<Eigen::Isometry3d(const std::string &link, const ros::Time &stamp)>;
+void addAttachments(const ApplySceneRequest &request, const ToFixed &to_fixed, const LinkToFixed &link_to_fixed,
+                    const Snapshot &before, SceneChange &change, std::vector<std::string> &faults);
 
 /** An object as ~apply_scene would take it with operation ADD. Mesh files stay names of files. */
 CollisionObject toMessage(const ObjectDescription &object);
@@ -62,15 +63,17 @@ ApplySceneRequest toMessage(const SceneChange &change);
 /** One row of the results. What has no answer has NaN for numbers. */
 Proximity toMessage(const Answer &answer, QueryType query_type);
 
-/** The row of a curve that could not be asked about. */
-Proximity toFailedRow(const std::string &id, const std::string &why);
+/** The row of a curve or motion that could not be asked about. */
+Proximity toFailedRow(const std::string &id, const std::string &kind, const std::string &why);
 
 /** Throws Error where names and positions are not as many, or a joint is named twice. */
 JointPositions toJointPositions(const sensor_msgs::JointState &state);
 
-/** A joint trajectory. Where its first point comes after 0 and `now` has all of its joints, it begins at 0 with the way from there:
- *  at rest if that point has velocities, without acceleration if it has accelerations. */
-TrajectoryDescription toDescription(const trajectory_msgs::JointTrajectory &trajectory, const JointPositions &now);
+/** A joint trajectory. Where its first point comes after 0 and `now` has all of its joints, it begins at 0 with the way
+ *  from there: at rest if that point has velocities, without acceleration if it has accelerations. Times that are all 0
+ *  become 0, 1, 2 …, and `remark` says so. A point that repeats the one before it, time included, is left out. */
+TrajectoryDescription toDescription(const trajectory_msgs::JointTrajectory &trajectory, const JointPositions &now,
+                                    std::string &remark);
 
 } // namespace curve_proximity
 #endif

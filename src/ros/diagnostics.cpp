@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "guard.h"
+#include "memory_account.h"
 
 namespace curve_proximity {
 namespace {
@@ -20,13 +21,14 @@ constexpr double QUIET_WARNING = 10.0; /* [s] between two log lines about the sa
 
 } // namespace
 
-Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, const Pipeline &pipeline,
-                         const Sensors &sensors, const Frames &frames, const Scene &scene)
+Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, Turns &turns, const Pipeline &pipeline,
+                         const Sensors &sensors, const Frames &frames, const LiveScene &live)
     : statistics_(statistics),
+      turns_(turns),
       pipeline_(pipeline),
       sensors_(sensors),
       frames_(frames),
-      scene_(scene),
+      live_(live),
       master_(handle.getNamespace() + "/distance"),
       handle_(handle),
       updater_(ros::NodeHandle(), handle, handle.getNamespace()) {
@@ -39,6 +41,7 @@ Diagnostics::Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, 
 
   // By the wall clock: the updater's own period counts in ROS time, which may stand still.
   timer_ = handle_.createWallTimer(ros::WallDuration(PERIOD), [this](const ros::WallTimerEvent &) {
+    memory::tidy();
     guarded([this] { updater_.force_update(); },
             [](const std::string &why) { ROS_ERROR("diagnostics: %s", why.c_str()); });
   });
@@ -58,6 +61,9 @@ void Diagnostics::queries(Status &status) {
   status.addf("rows per second", "%.1f", static_cast<double>(s.rows) / seconds);
   status.addf("median time of a request [us]", "%.0f", s.p50_us);
   status.addf("99th percentile [us]", "%.0f", s.p99_us);
+  status.add("requests that wait", turns_.waiting());
+  status.addf("longest wait [ms]", "%.1f", 1000.0 * turns_.takeLongestWait());
+  status.add("resident memory [MB]", memory::resident() >> 20);
   status.add("undecided rows", s.undecided);
   status.add("failed rows", s.failed);
   status.add("failed requests", s.failed_calls);
@@ -80,6 +86,10 @@ void Diagnostics::sensors(Status &status) {
   const double seconds = std::max(std::chrono::duration<double>(now - told_).count(), 1e-3);
   told_ = now;
   bool any = false, refused = false, dropped = false;
+  std::string unknown;
+  for (const SensorState &sensor : live_.sensors.states())
+    if (sensor.unknown) unknown += (unknown.empty() ? "" : ", ") + sensor.id;
+  if (!unknown.empty()) status.add("unknown", unknown);
   const auto tell = [&](const std::string &topic, const SensorCounts &counts, SensorCounts &before) {
     if (counts.taken + counts.refused == 0) return;
     any = true;
@@ -95,7 +105,9 @@ void Diagnostics::sensors(Status &status) {
   };
   tell("cloud", sensors_.cloud(), cloud_);
   tell("octomap", sensors_.octomap(), octomap_);
-  if (refused) {
+  if (!unknown.empty()) {
+    status.summary(DiagnosticStatus::WARN, "what is at an object is unknown: its sensor sees nothing");
+  } else if (refused) {
     status.summary(DiagnosticStatus::WARN, "messages that are of no use: the log says why");
   } else if (dropped) {
     status.summary(DiagnosticStatus::WARN, "messages are dropped: they come faster than they are built");
@@ -105,7 +117,7 @@ void Diagnostics::sensors(Status &status) {
 }
 
 void Diagnostics::transforms(Status &status) {
-  const SnapshotPtr snapshot = scene_.snapshot();
+  const SnapshotPtr snapshot = live_.scene.snapshot();
   if (!snapshot->robot()) return status.summary(DiagnosticStatus::OK, "no robot");
 
   // The links whose poses queries need; fixed ones have no age.

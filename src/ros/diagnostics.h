@@ -23,8 +23,8 @@ namespace curve_proximity {
 class Diagnostics {
  public:
   /** handle: private; its callback queue runs the timer. The others are kept by reference. */
-  Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, const Pipeline &pipeline, const Sensors &sensors,
-              const Frames &frames, const Scene &scene);
+  Diagnostics(const ros::NodeHandle &handle, Statistics &statistics, Turns &turns, const Pipeline &pipeline,
+              const Sensors &sensors, const Frames &frames, const LiveScene &live);
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
@@ -36,10 +36,11 @@ class Diagnostics {
   void master(Status &status);
 
   Statistics &statistics_;
+  Turns &turns_;
   const Pipeline &pipeline_;
   const Sensors &sensors_;
   const Frames &frames_;
-  const Scene &scene_;
+  const LiveScene &live_;
   MasterWatch master_;
   std::uint64_t dropped_ = 0;                                     /* when last told */
   SensorCounts cloud_, octomap_;                                  /* likewise */

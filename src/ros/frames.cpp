@@ -2,12 +2,22 @@
 #include "frames.h"
 
 #include <algorithm>
+#include <cmath>
 #include <curve_proximity/core.hpp>
+#include <curve_proximity/nearest_name.hpp>
 #include <sstream>
-#include <thread>
+#include <vector>
+
+#include "turns.h"
 
 namespace curve_proximity {
 namespace {
+
+/** By then what is published regularly, and what is latched, has come. */
+constexpr std::chrono::seconds SETTLED{3};
+
+/** A wait looks again this often, even where no transform has come: the stop flag is nobody's signal. */
+constexpr std::chrono::milliseconds LOOK_AGAIN{20};
 
 /** tf2 knows no leading slash; users of tf still write it. */
 std::string withoutSlash(const std::string &frame) {
@@ -25,50 +35,92 @@ Eigen::Isometry3d toIsometry(const geometry_msgs::Transform &transform) {
 Frames::Frames(const std::string &fixed_frame, double timeout, const std::atomic<bool> &stop)
     : fixed_frame_(withoutSlash(fixed_frame)), timeout_(timeout), stop_(stop), listener_(buffer_, true) {
   buffer_.setUsingDedicatedThread(true);
+  listening_ = buffer_._addTransformsChangedListener([this] { changed_.notify_all(); });
 }
 
-std::chrono::steady_clock::time_point Frames::deadline() const {
-  return std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(timeout_);
+Frames::~Frames() {
+  buffer_._removeTransformsChangedListener(listening_);
 }
 
-Eigen::Isometry3d Frames::toFixed(const std::string &given, const ros::Time &stamp,
-                                  std::chrono::steady_clock::time_point deadline) const {
+Frames::Clock::time_point Frames::deadline() const {
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout_);
+}
+
+bool Frames::settled() const {
+  return Clock::now() - began_ > SETTLED;
+}
+
+std::optional<Frames::Place> Frames::now(const std::string &frame, const ros::Time &stamp, std::string &reason) const {
+  try {
+    if (!buffer_.canTransform(fixed_frame_, frame, stamp, &reason)) return std::nullopt;
+    const geometry_msgs::TransformStamped found = buffer_.lookupTransform(fixed_frame_, frame, stamp);
+    Place place;
+    place.pose = toIsometry(found.transform);
+    if (stamp.isZero() && !found.header.stamp.isZero())
+      place.age = std::max(0.0, (ros::Time::now() - found.header.stamp).toSec());
+    return place;
+  } catch (const tf2::TransformException &error) {
+    reason = error.what(); // what was there a moment ago has left the buffer
+    return std::nullopt;
+  }
+}
+
+/** Why it makes no sense to wait for the frame; "" where it may come. */
+std::string Frames::unheard(const std::string &frame) const {
+  if (!settled() || buffer_._frameExists(frame)) return "";
+  std::vector<std::string> names;
+  buffer_._getFrameStrings(names);
+  return "nobody has published that frame" + didYouMean(frame, names);
+}
+
+void Frames::refuse(const std::string &frame, const ros::Time &stamp, const std::string &reason) const {
+  std::ostringstream what;
+  what << "no transform from frame '" << frame << "' to frame '" << fixed_frame_ << "' ";
+  if (stamp.isZero()) {
+    what << "at any time";
+  } else {
+    what << "at time " << stamp;
+  }
+  what << ": " << reason;
+  throw Error(what.str());
+}
+
+Frames::Place Frames::place(const std::string &given, const ros::Time &stamp, Clock::time_point deadline,
+                            Turn *turn) const {
   const std::string frame = withoutSlash(given);
-  if (frame.empty() || frame == fixed_frame_) return Eigen::Isometry3d::Identity();
+  if (frame.empty() || frame == fixed_frame_) return {};
+  std::string reason;
+  if (const std::optional<Place> found = now(frame, stamp, reason)) return *found;
+  const std::string hopeless = unheard(frame);
+  if (!hopeless.empty()) refuse(frame, stamp, hopeless);
 
   // tf2's own timeout counts in ROS time, which stands still without a clock: so ask without one, again and again.
-  while (true) {
-    std::string reason;
-    try {
-      if (buffer_.canTransform(fixed_frame_, frame, stamp, &reason))
-        return toIsometry(buffer_.lookupTransform(fixed_frame_, frame, stamp).transform);
-    } catch (const tf2::TransformException &error) {
-      reason = error.what(); // what was there a moment ago has left the buffer
+  const Turn::Pause pause(turn);
+  while (!stop_ && Clock::now() < deadline) {
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      changed_.wait_until(lock, std::min(deadline, Clock::now() + LOOK_AGAIN));
     }
-    if (stop_ || std::chrono::steady_clock::now() >= deadline) {
-      std::ostringstream what;
-      what << "no transform from frame '" << frame << "' to frame '" << fixed_frame_ << "' ";
-      if (stamp.isZero()) {
-        what << "at any time";
-      } else {
-        what << "at time " << stamp;
-      }
-      what << " within " << timeout_.count() << " s: " << reason;
-      throw Error(what.str());
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (const std::optional<Place> found = now(frame, stamp, reason)) return *found;
   }
+  std::ostringstream waited;
+  waited << "none within " << timeout_.count() << " s: " << reason;
+  refuse(frame, stamp, waited.str());
+}
+
+bool Frames::has(const std::string &given, const ros::Time &stamp) const {
+  const std::string frame = withoutSlash(given);
+  std::string reason;
+  return frame.empty() || frame == fixed_frame_ || now(frame, stamp, reason);
 }
 
 std::optional<double> Frames::age(const std::string &given) const {
   const std::string frame = withoutSlash(given);
   if (frame == fixed_frame_) return 0.0;
-  try {
-    const ros::Time stamp = buffer_.lookupTransform(fixed_frame_, frame, ros::Time()).header.stamp;
-    return stamp.isZero() ? 0.0 : std::max(0.0, (ros::Time::now() - stamp).toSec());
-  } catch (const tf2::TransformException &) {
-    return std::nullopt;
-  }
+  std::string reason;
+  const std::optional<Place> found = now(frame, ros::Time(), reason);
+  if (!found) return std::nullopt;
+  return std::isnan(found->age) ? 0.0 : found->age;
 }
 
 const Eigen::Isometry3d &FrameLookup::toFixed(const std::string &frame, const ros::Time &stamp) {
@@ -76,13 +128,14 @@ const Eigen::Isometry3d &FrameLookup::toFixed(const std::string &frame, const ro
   Found &found = inserted.first->second;
   if (inserted.second) {
     try {
-      found.pose = frames_.toFixed(frame, stamp, deadline_);
+      found.place = frames_.place(frame, stamp, deadline_, turn_);
     } catch (const std::exception &error) {
       found.error = error.what();
     }
   }
   if (!found.error.empty()) throw Error(found.error);
-  return found.pose;
+  oldest_ = std::fmax(oldest_, found.place.age);
+  return found.place.pose;
 }
 
 } // namespace curve_proximity

@@ -7,13 +7,26 @@
 #include <new>
 #include <string>
 
+#include "memory_account.h"
+#include "turns.h"
+
 namespace curve_proximity {
 
 /** Runs `work`; hands a sentence to `failed` if it throws anything at all. roscpp ends the process for what leaves a
  *  topic or timer callback, and for a thrown int in a service. */
 template <class Work, class Failed>
 void guarded(Work &&work, Failed &&failed) {
+  struct AtRequest {
+    AtRequest() : before(memory::at_request) {
+      memory::at_request = true;
+    }
+    ~AtRequest() {
+      memory::at_request = before;
+    }
+    const bool before;
+  };
   try {
+    const AtRequest marked;
     work();
   } catch (const std::bad_alloc &) {
     failed("out of memory");
@@ -24,14 +37,32 @@ void guarded(Work &&work, Failed &&failed) {
   }
 }
 
+/** Sets the status of a response that has one. */
+template <class Response>
+auto markBusy(Response &response, int) -> decltype(response.status, void()) {
+  response.status = Response::BUSY;
+}
+template <class Response>
+void markBusy(Response &, long) {}
+
 /** A service handler: always true, since `return false` reaches the client as an empty sentence. */
 template <class Response, class Work>
 bool answered(Response &response, Work &&work) {
-  guarded(work, [&](const std::string &why) {
+  const auto fail = [&](const std::string &why) {
     response = Response();
     response.success = false;
     response.message = why;
-  });
+  };
+  guarded(
+      [&] {
+        try {
+          work();
+        } catch (const Busy &busy) {
+          fail(busy.what());
+          markBusy(response, 0);
+        }
+      },
+      fail);
   return true;
 }
 

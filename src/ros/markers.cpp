@@ -29,6 +29,7 @@ void addScene(Canvas &canvas, const Snapshot &scene, const ResourceOptions &reso
     const SceneObject &object = *entry.second;
     for (std::size_t i = 0; i < object.shapes.size(); ++i) {
       const ShapeDescription &shape = object.description.shapes[i];
+      if (!object.shapes[i].geometry.body) continue; // an empty octree
       const Eigen::Isometry3d pose = object.description.pose * shape.pose;
       // What is large, a shelf say, must not hide what it holds.
       const bool is_seen =

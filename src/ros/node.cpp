@@ -35,11 +35,16 @@ void catchSignals() {
 
 /** Until a signal, a shutdown by the graph, or the end of our registration. */
 int serve() {
+  unsigned long closed = 0;
   curve_proximity::MasterWatch master(ros::this_node::getName() + "/distance");
   while (ros::ok() && !interrupted) {
     if (master.look() == curve_proximity::MasterWatch::State::FORGOTTEN) {
       ROS_FATAL("the master does not know this node any more (was it restarted?): ending, so that a respawn registers");
       return EXIT_UNREGISTERED;
+    }
+    if (const unsigned long now = curve_proximity::connectionsClosed(); now != closed) {
+      ROS_WARN_THROTTLE(5.0, "%lu connections were closed: they announced more than ~memory_limit_mb leaves", now);
+      closed = now;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }

@@ -132,6 +132,11 @@ class Reader {
     }
   }
 
+  /** A name that is ours, though nobody sets it. */
+  void keep(const char *name) {
+    known_.insert(name);
+  }
+
   /** A misspelt name would otherwise leave a default in force that nobody asked for. */
   void warnOfOthers() const {
     std::vector<std::string> all;
@@ -139,7 +144,7 @@ class Reader {
     const std::string prefix = handle_.getNamespace() + "/";
     for (const std::string &name : all) {
       if (name.compare(0, prefix.size(), prefix) != 0) continue;
-      const std::string own = name.substr(prefix.size());
+      const std::string whole = name.substr(prefix.size()), own = whole.substr(0, whole.find('/'));
       if (!known_.count(own)) ROS_WARN("parameter ~%s is none of this server's: it is not read", own.c_str());
     }
   }
@@ -174,6 +179,7 @@ Parameters readParameters(const ros::NodeHandle &handle) {
   Parameters parameters;
   Reader reader(handle);
   visitParameters(parameters, reader);
+  reader.keep(KEPT_BY_SERVER);
   reader.warnOfOthers();
 
   // What a type and a range cannot say.

@@ -29,17 +29,24 @@ struct Parameters {
   std::string fixed_frame = "world";
   double tf_timeout = 0.5;
   std::string scene_file;
+  std::string state_file = "auto";
   double epsilon = 1e-6;
   int max_nodes = 20000;
   std::string max_lod = "mesh";
   double budget_ms = 5000.0;
+  double max_wait_ms = 5000.0;
+  double scene_budget_ms = 30000.0;
   int threads = 4;
+  int max_waiting = 200;
   std::string query_type = "tolerance";
   double delta = 0.0;
   bool self_collision = true;
   double path_radius = 0.0;
   int queue_size = 10;
+  double state_rate = 0.0;
   int memory_limit_mb = 4096;
+  int max_request_mb = 1024;
+  int max_name_length = 256;
   int max_curves = 20000;
   int max_control_points = 2000000;
   int max_results = 200000;
@@ -48,6 +55,8 @@ struct Parameters {
   double cloud_radius = 0.01;
   std::string octomap_id = "<octomap>";
   bool unknown_is_occupied = false;
+  bool empty_cloud_clears = false;
+  double max_age = 0.0;
   std::vector<ProviderSpec> constraint_providers;
 };
 
@@ -57,6 +66,9 @@ struct Range {
   bool open = false; /**< least itself is not allowed */
   double most = std::numeric_limits<double>::infinity();
 };
+
+/** What a server leaves on the master for the one that comes after it. */
+constexpr const char *KEPT_BY_SERVER = "last_scene";
 
 /** Shows every parameter to a visitor: visit(name, value, range) for numbers, visit(name, value) for the others. */
 template <class Fields, class Visitor>
@@ -69,17 +81,24 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("fixed_frame", parameters.fixed_frame);
   visit("tf_timeout", parameters.tf_timeout, Range{0.0, false, 3600.0});
   visit("scene_file", parameters.scene_file);
+  visit("state_file", parameters.state_file);
   visit("epsilon", parameters.epsilon, Range{0.0, true});
   visit("max_nodes", parameters.max_nodes, Range{1.0, false, count});
   visit("max_lod", parameters.max_lod);
   visit("budget_ms", parameters.budget_ms, Range{0.0, true, 1e9});
+  visit("max_wait_ms", parameters.max_wait_ms, Range{0.0, true, 1e9});
+  visit("scene_budget_ms", parameters.scene_budget_ms, Range{0.0, true, 1e9});
   visit("threads", parameters.threads, Range{1.0, false, 256.0});
+  visit("max_waiting", parameters.max_waiting, Range{1.0, false, 10000.0});
   visit("query_type", parameters.query_type);
   visit("delta", parameters.delta, Range{0.0});
   visit("self_collision", parameters.self_collision);
   visit("path_radius", parameters.path_radius, Range{0.0});
   visit("queue_size", parameters.queue_size, Range{1.0, false, 1e6});
+  visit("state_rate", parameters.state_rate, Range{0.0, false, 1000.0});
   visit("memory_limit_mb", parameters.memory_limit_mb, Range{0.0, false, count});
+  visit("max_request_mb", parameters.max_request_mb, Range{1.0, false, count});
+  visit("max_name_length", parameters.max_name_length, Range{16.0, false, 65536.0});
   visit("max_curves", parameters.max_curves, Range{1.0, false, count});
   visit("max_control_points", parameters.max_control_points, Range{1.0, false, count});
   visit("max_results", parameters.max_results, Range{1.0, false, count});
@@ -88,6 +107,8 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
   visit("cloud_radius", parameters.cloud_radius, Range{0.0, false, 1e6});
   visit("octomap_id", parameters.octomap_id);
   visit("unknown_is_occupied", parameters.unknown_is_occupied);
+  visit("empty_cloud_clears", parameters.empty_cloud_clears);
+  visit("max_age", parameters.max_age, Range{0.0, false, 1e9});
   visit("constraint_providers", parameters.constraint_providers);
 }
 

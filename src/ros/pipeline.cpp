@@ -42,21 +42,22 @@ std::string idOf(const Message &) {
 
 } // namespace
 
-Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, const Tuning &tuning,
-                   const Scene &scene, const Srdf &srdf, Queries &queries, MarkerPublisher &markers,
-                   const std::atomic<bool> &stop)
+Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, const Tuning &tuning, LiveScene &live,
+                   Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop)
     : parameters_(parameters),
       tuning_(tuning),
-      scene_(scene),
-      srdf_(srdf),
+      live_(live),
       queries_(queries),
       markers_(markers),
       stop_(stop),
       query_type_(queryTypeFromName(parameters.query_type)),
       jobs_(static_cast<std::size_t>(parameters.queue_size)),
       handle_(handle),
-      spinner_(THREADS, &queue_) {
+      state_handle_(handle),
+      spinner_(THREADS, &queue_),
+      state_spinner_(1, &state_queue_) {
   handle_.setCallbackQueue(&queue_);
+  state_handle_.setCallbackQueue(&state_queue_);
   results_ = handle_.advertise<ProximityResults>("proximity", RESULTS_KEPT);
   listen<Curve>("curve");
   listen<trajectory_msgs::JointTrajectory>("trajectory");
@@ -64,16 +65,27 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
   listen<nav_msgs::Path>("path");
   subscribers_.push_back(handle_.subscribe<sensor_msgs::JointState>(
       "joint_states", RESULTS_KEPT, [this](const sensor_msgs::JointStateConstPtr &state) {
-        guarded([&] { keepJoints(*state); },
+        guarded([&] { live_.joints.take(*state, live_.scene.snapshot()->robot().get()); },
                 [](const std::string &why) { ROS_ERROR("~joint_states: %s", why.c_str()); });
       }));
   spinner_.start();
+  if (parameters_.state_rate == 0.0) return;
+  states_ = state_handle_.advertise<ProximityResults>("state_proximity", 1);
+  state_timer_ = state_handle_.createWallTimer(
+      ros::WallDuration(1.0 / parameters_.state_rate), [this](const ros::WallTimerEvent &) {
+        guarded([this] { tellState(); },
+                [](const std::string &why) { ROS_ERROR("~state_proximity: %s", why.c_str()); });
+      });
+  state_spinner_.start();
 }
 
 Pipeline::~Pipeline() {
   for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
+  state_timer_.stop();
   spinner_.stop();
+  state_spinner_.stop();
   queue_.clear();
+  state_queue_.clear();
 }
 
 /** roscpp's own queue drops what is oldest too, but counts nothing: it is left without a limit, and emptied at once. */
@@ -100,12 +112,6 @@ void Pipeline::work() {
   }
 }
 
-void Pipeline::keepJoints(const sensor_msgs::JointState &state) {
-  const std::lock_guard<std::mutex> lock(joints_mutex_);
-  for (std::size_t i = 0; i < state.name.size() && i < state.position.size(); ++i)
-    joints_[state.name[i]] = state.position[i];
-}
-
 void Pipeline::handle(const Job &job) {
   // What is known of the message before anything can go wrong with it.
   const auto results = boost::make_shared<ProximityResults>();
@@ -129,23 +135,13 @@ void Pipeline::handle(const Job &job) {
         std::visit([&](const auto &message) { toAsked(*message, asked); }, job);
 
         // Curves meet the robot where tf2 has it; joints that a trajectory leaves alone stand as they were last told.
-        sensor_msgs::JointState state;
-        if (asked.trajectories.size() > 0) {
-          const std::lock_guard<std::mutex> lock(joints_mutex_);
-          for (const auto &joint : joints_) {
-            state.name.push_back(joint.first);
-            state.position.push_back(joint.second);
-          }
-        }
-        const std::vector<std::string> everything;
-        const bool self = parameters_.self_collision && asked.trajectories.size() > 0;
-        QueryRequest request{query_type_, results->delta, asked.curves, asked.trajectories,
-                             self,        everything,     everything,   state};
-        QueryResponse answer;
-        queries_.answer(request, answer, *drawing);
-        results->success = answer.success;
-        results->message = std::move(answer.message);
-        results->results = std::move(answer.results);
+        ProximityQuery more;
+        more.self_collision = parameters_.self_collision && asked.trajectories.size() > 0;
+        more.current_joints = asked.trajectories.size() > 0 && !live_.joints.joints().empty();
+        QueryRequest request(query_type_, results->delta, more);
+        request.curves = asked.curves;
+        request.trajectories = asked.trajectories;
+        answer(request, *results, *drawing);
       },
       [&](const std::string &why) {
         results->success = false;
@@ -154,6 +150,41 @@ void Pipeline::handle(const Job &job) {
   results->dropped = jobs_.dropped();
   results_.publish(ProximityResultsPtr(results));
   markers_.show(drawing);
+}
+
+void Pipeline::answer(const QueryRequest &request, ProximityResults &results, Drawing &drawing) {
+  QueryResponse answer;
+  queries_.answer(request, answer, drawing);
+  results.success = answer.success;
+  results.message = std::move(answer.message);
+  results.warnings = std::move(answer.warnings);
+  results.scene = std::move(answer.scene);
+  results.results = std::move(answer.results);
+}
+
+void Pipeline::tellState() {
+  if (stop_ || states_.getNumSubscribers() == 0) return;
+  const auto results = boost::make_shared<ProximityResults>();
+  results->header.seq = state_seq_++;
+  results->header.stamp = ros::Time::now();
+  results->header.frame_id = parameters_.fixed_frame;
+  results->source = results->id = ProximityResults::SOURCE_STATE;
+  results->query_type = parameters_.query_type;
+  results->delta = query_type_ == QueryType::TOLERANCE ? tuning_.delta.load() : 0.0;
+  results->epsilon = tuning_.epsilon;
+  const auto drawing = std::make_shared<Drawing>();
+  guarded(
+      [&] {
+        ProximityQuery more;
+        more.robot_state = true;
+        more.self_collision = parameters_.self_collision;
+        answer(QueryRequest(query_type_, results->delta, more), *results, *drawing);
+      },
+      [&](const std::string &why) {
+        results->success = false;
+        results->message = why;
+      });
+  states_.publish(ProximityResultsPtr(results));
 }
 
 void Pipeline::toAsked(const Curve &message, Asked &asked) const {
@@ -165,7 +196,7 @@ void Pipeline::toAsked(const trajectory_msgs::JointTrajectory &message, Asked &a
 }
 
 void Pipeline::toAsked(const trajectory_msgs::MultiDOFJointTrajectory &message, Asked &asked) const {
-  asked.own_trajectory = toJointTrajectory(message, scene_.snapshot()->robot().get(), srdf_);
+  asked.own_trajectory = toJointTrajectory(message, live_.scene.snapshot()->robot().get(), live_.srdf);
   if (!asked.own_trajectory.joint_names.empty()) {
     asked.trajectories = List<trajectory_msgs::JointTrajectory>(&asked.own_trajectory, 1);
     return;

@@ -9,6 +9,7 @@
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
+#include <ros/wall_timer.h>
 #include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
 #include <trajectory_msgs/MultiDOFJointTrajectory.h>
@@ -29,12 +30,13 @@ namespace curve_proximity {
 
 /** Answers what comes on ~curve, ~trajectory, ~multi_dof_trajectory and ~path, one message after the other, on ~proximity. Messages
  *  are taken and results handed on by pointer: within one nodelet manager nothing is copied. While one message is being answered
- *  ~queue_size others wait; what is older than these is dropped and counted. */
+ *  ~queue_size others wait; what is older than these is dropped and counted. With ~state_rate it also tells on
+ *  ~state_proximity how close the robot is as it stands. */
 class Pipeline {
  public:
   /** handle: the server's private one. All are kept by reference. stop: as that of Queries. */
-  Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, const Tuning &tuning, const Scene &scene,
-           const Srdf &srdf, Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop);
+  Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, const Tuning &tuning, LiveScene &live,
+           Queries &queries, MarkerPublisher &markers, const std::atomic<bool> &stop);
 
   /** Joins the threads; a query that runs must have been told to stop. */
   ~Pipeline();
@@ -51,7 +53,8 @@ class Pipeline {
   void listen(const char *topic);
   void work();
   void handle(const Job &job);
-  void keepJoints(const sensor_msgs::JointState &state);
+  void answer(const QueryRequest &request, ProximityResults &results, Drawing &drawing);
+  void tellState();
 
   /* The curves or the joint trajectory that a message speaks of. */
   struct Asked {
@@ -67,20 +70,21 @@ class Pipeline {
 
   const Parameters &parameters_;
   const Tuning &tuning_;
-  const Scene &scene_;
-  const Srdf &srdf_;
+  LiveScene &live_;
   Queries &queries_;
   MarkerPublisher &markers_;
   const std::atomic<bool> &stop_;
   const QueryType query_type_;
   BoundedQueue<Job> jobs_;
-  std::mutex joints_mutex_;
-  std::map<std::string, double> joints_; /* the latest of ~joint_states, by name */
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
-  ros::Publisher results_;
+  ros::Publisher results_, states_;
+  ros::CallbackQueue state_queue_; /* with a thread of its own: it waits for no message */
+  ros::NodeHandle state_handle_;
+  ros::WallTimer state_timer_;
+  std::uint32_t state_seq_ = 0;
   std::vector<ros::Subscriber> subscribers_;
-  ros::AsyncSpinner spinner_;
+  ros::AsyncSpinner spinner_, state_spinner_;
 };
 
 } // namespace curve_proximity

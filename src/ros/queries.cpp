@@ -8,6 +8,8 @@
 #include <sstream>
 
 #include "conversions.h"
+#include "memory_account.h"
+#include "name_limits.h"
 
 namespace curve_proximity {
 namespace {
@@ -15,15 +17,20 @@ namespace {
 /** Markers show no more curves than a person can tell apart. */
 constexpr std::size_t MAX_DRAWN_CURVES = 100;
 
-/** Ends a query when its time is over or the server goes. */
+/** Ends a query when its time is over or the server goes, and makes way for others meanwhile. */
 class TimeBudget {
  public:
-  TimeBudget(double milliseconds, const std::atomic<bool> &stop, const std::atomic<bool> *cancelled)
-      : milliseconds_(milliseconds), deadline_(deadlineOf(milliseconds)), stop_(stop), cancelled_(cancelled) {}
+  explicit TimeBudget(double milliseconds, const QueryRequest &request, const std::atomic<bool> &stop)
+      : milliseconds_(milliseconds),
+        deadline_(deadlineOf(request.arrival, milliseconds)),
+        stop_(stop),
+        cancelled_(request.cancelled),
+        turn_(request.turn) {}
 
   /** In the shape of cprox_options.stop. */
   static bool isOver(void *user) {
     const TimeBudget &budget = *static_cast<const TimeBudget *>(user);
+    if (budget.turn_) budget.turn_->yield();
     return budget.stop_ || budget.isCancelled() || Clock::now() >= budget.deadline_;
   }
 
@@ -38,10 +45,10 @@ class TimeBudget {
  private:
   using Clock = std::chrono::steady_clock;
 
-  static Clock::time_point deadlineOf(double milliseconds) {
+  static Clock::time_point deadlineOf(Clock::time_point arrival, double milliseconds) {
     constexpr double FOREVER = 1e12; /* [ms] decades: within what the clock can count */
     const std::chrono::duration<double, std::milli> wait(std::min(milliseconds, FOREVER));
-    return Clock::now() + std::chrono::duration_cast<Clock::duration>(wait);
+    return arrival + std::chrono::duration_cast<Clock::duration>(wait);
   }
 
   bool isCancelled() const {
@@ -52,7 +59,11 @@ class TimeBudget {
   const Clock::time_point deadline_;
   const std::atomic<bool> &stop_;
   const std::atomic<bool> *const cancelled_;
+  Turn *const turn_;
 };
+
+/** Of a row: itself, its answer in the scene's form, its bytes on the wire, names of usual length. */
+constexpr std::size_t ROW_BYTES = 2 * sizeof(Proximity) + sizeof(Answer) + 512;
 
 void limit(const char *parameter, std::size_t most, std::size_t count, const char *what) {
   if (count <= most) return;
@@ -62,9 +73,9 @@ void limit(const char *parameter, std::size_t most, std::size_t count, const cha
 /** Everything that a query is measured against, for one stamp after the other. For one thread. */
 class StampedTargets {
  public:
-  StampedTargets(SnapshotPtr snapshot, const Query &query, const sensor_msgs::JointState &joint_state,
+  StampedTargets(SnapshotPtr snapshot, const Query &query, const Srdf &srdf, const JointPositions *joints,
                  FrameLookup &lookup)
-      : snapshot_(std::move(snapshot)), query_(query), lookup_(lookup) {
+      : snapshot_(std::move(snapshot)), query_(query), srdf_(srdf), joints_(joints), lookup_(lookup) {
     const bool everything = query.objects.empty() && query.links.empty();
     if (!query.links.empty() && !snapshot_->robot())
       throw Error("link '" + query.links.front() + "': this server has no robot, only objects");
@@ -72,8 +83,10 @@ class StampedTargets {
     carried_ =
         everything ? !snapshot_->attached().empty() : std::any_of(query.objects.begin(), query.objects.end(), carried);
     with_robot_ = snapshot_->robot() && (everything || carried_ || !query.links.empty());
-    from_joints_ = with_robot_ && !joint_state.name.empty();
-    if (from_joints_) positions_ = toJointPositions(joint_state);
+  }
+
+  bool withRobot() const {
+    return with_robot_;
   }
 
   struct Stamped {
@@ -94,10 +107,10 @@ class StampedTargets {
   }
 
  private:
-  /** From the request's joints, the root link brought to the fixed frame by tf2; else every link by tf2. */
+  /** From the joints of the request, if it has any; else every link by tf2. */
   LinkPoses linkPoses(const ros::Time &stamp) {
     const Robot &robot = *snapshot_->robot();
-    if (from_joints_) return robot.linkPoses(positions_, lookup_.toFixed(robot.rootLink(), stamp));
+    if (joints_) return robot.linkPoses(*joints_, rootPose(robot, srdf_, stamp, lookup_));
     LinkPoses poses;
     if (query_.links.empty()) {
       for (const auto &link : robot.links()) {
@@ -115,9 +128,10 @@ class StampedTargets {
 
   const SnapshotPtr snapshot_;
   const Query &query_;
+  const Srdf &srdf_;
+  const JointPositions *const joints_; /* null: tf2 tells */
   FrameLookup &lookup_;
-  bool with_robot_ = false, from_joints_ = false, carried_ = false;
-  JointPositions positions_;
+  bool with_robot_ = false, carried_ = false;
   std::map<ros::Time, Stamped> stamped_;
 };
 
@@ -149,10 +163,10 @@ QueryType queryTypeFromName(const std::string &name) {
   throw Error("the query '" + name + "' is none of distance, tolerance, collision");
 }
 
-Query Queries::toQuery(const QueryRequest &request) const {
-  // Here NaN and negative numbers are told once, not once a row; 0 means the server's own.
-  if (request.epsilon != 0.0 && !(request.epsilon > 0.0 && std::isfinite(request.epsilon)))
-    throw Error("epsilon is " + std::to_string(request.epsilon) + ": it must be above 0 and finite, or 0 for ~epsilon");
+Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) const {
+  const ProximityQuery &more = request.more;
+  if (!(more.epsilon >= 0.0 && std::isfinite(more.epsilon)))
+    throw Error("epsilon is " + std::to_string(more.epsilon) + ": it must be at least 0 and finite");
   if (!(request.budget_ms >= 0.0))
     throw Error("budget_ms is " + std::to_string(request.budget_ms) + ": it must be at least 0");
   if (!(request.delta >= 0.0 && std::isfinite(request.delta)))
@@ -161,38 +175,61 @@ Query Queries::toQuery(const QueryRequest &request) const {
   // What no row would heed is an error, too.
   if (request.delta != 0.0 && request.query_type != QueryType::TOLERANCE)
     throw Error("delta is " + std::to_string(request.delta) + ": it is the clearance that tolerance asks for");
-  if (request.self_collision && request.trajectories.size() == 0)
-    throw Error("self_collision is about the robot along a trajectory, and there is none");
+  if (more.self_collision && request.trajectories.size() == 0 && !more.robot_state)
+    throw Error("self_collision is about the robot along a trajectory or as it stands (robot_state): there is neither");
   Query query;
   query.query_type = request.query_type;
   query.delta = request.delta;
-  query.options.epsilon = request.epsilon != 0.0 ? request.epsilon : tuning_.epsilon.load();
-  query.options.max_nodes = request.max_nodes != 0 ? request.max_nodes : static_cast<std::uint32_t>(tuning_.max_nodes);
+  query.options.epsilon = more.epsilon != 0.0 ? more.epsilon : tuning_.epsilon.load();
+  query.options.max_nodes = more.max_nodes != 0 ? more.max_nodes : static_cast<std::uint32_t>(tuning_.max_nodes);
   query.options.max_lod = *lodFromName(parameters_.max_lod);
-  query.per_object = request.per_object;
-  query.objects = request.objects;
-  query.links = request.links;
+  query.per_object = more.per_object != 0;
+  query.objects = more.objects;
+  query.links = more.links;
+  if (more.group.empty()) return query;
+  if (!snapshot.robot()) throw Error("group '" + more.group + "': this server has no robot, only objects");
+
+  // Of curves only links with geometry can be targets, and a group may have others.
+  for (const std::string &link : linksOfGroup(live_.srdf, *snapshot.robot(), more.group))
+    if (!snapshot.robot()->links().at(link).empty()) query.links.push_back(link);
+  if (query.links.empty()) throw Error("group '" + more.group + "': none of its links has collision geometry");
   return query;
 }
 
-void Queries::checkLimits(const QueryRequest &request, const Snapshot &snapshot) const {
-  limit("max_curves", static_cast<std::size_t>(parameters_.max_curves), request.curves.size(), "curves");
-  std::size_t points = 0;
-  for (const Curve &curve : request.curves) points += curve.points.size();
+/** Throws Error for what is beyond a limit; how many rows there will be at most. */
+std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &snapshot) const {
+  limit("max_curves", static_cast<std::size_t>(parameters_.max_curves),
+        request.curves.size() + request.trajectories.size(), "curves");
+  const NameLimits names(parameters_.max_name_length);
+  names.check(request.more);
+  std::size_t points = 0, values = 0;
+  for (const Curve &curve : request.curves) {
+    names.check(curve);
+    points += curve.points.size();
+  }
   limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), points, "control points");
+  for (const auto &trajectory : request.trajectories) {
+    names.check("the name of a joint", trajectory.joint_names);
+    values += trajectory.points.size() * trajectory.joint_names.size();
+  }
+  limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), values, "joint values");
 
   // With per_object the answer may be far larger than the query.
   std::size_t targets = 1;
-  if (request.per_object) {
-    const bool everything = request.objects.empty() && request.links.empty();
-    targets = request.objects.size() + request.links.size();
-    if (everything) targets = snapshot.objects().size() + (snapshot.robot() ? snapshot.robot()->links().size() : 0);
+  if (request.more.per_object) {
+    const bool everything = request.more.objects.empty() && request.more.links.empty();
+    targets = request.more.objects.size() + request.more.links.size();
+    if (everything || !request.more.group.empty())
+      targets += snapshot.objects().size() + (snapshot.robot() ? snapshot.robot()->links().size() : 0);
   }
-  limit("max_results", static_cast<std::size_t>(parameters_.max_results), request.curves.size() * targets, "results");
+  const std::size_t motions = request.trajectories.size() + (request.more.robot_state ? 1 : 0);
+  const std::size_t rows = (request.curves.size() + motions) * targets + motions;
+  limit("max_results", static_cast<std::size_t>(parameters_.max_results), rows, "results");
+  return rows;
 }
 
 void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing) {
-  const auto begin = Statistics::Clock::now();
+  const auto begin = request.arrival;
   try {
     answerAll(request, response, drawing);
   } catch (...) {
@@ -204,50 +241,93 @@ void Queries::answer(const QueryRequest &request, QueryResponse &response, Drawi
 
 void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing) {
   // One snapshot for all: what changes meanwhile does not change this answer.
-  Query query = toQuery(request);
-  TimeBudget budget(request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load(), stop_, request.cancelled);
+  const SnapshotPtr snapshot = live_.scene.snapshot();
+  response.scene = live_.state(*snapshot);
+  live_.demand(*snapshot, request.more.scene_epoch, request.more.scene_version);
+  Query query = toQuery(request, *snapshot);
+  TimeBudget budget(request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load(), request, stop_);
   query.options.stop = TimeBudget::isOver;
   query.options.stop_user = &budget;
-  const SnapshotPtr snapshot = scene_.snapshot();
-  checkLimits(request, *snapshot);
-  if (!snapshot->robot() && !request.joint_state.name.empty())
-    throw Error("joint_state names '" + request.joint_state.name.front() + "', and this server has no robot");
+  const std::size_t rows = checkLimits(request, *snapshot);
+  const memory::Share share(rows * ROW_BYTES, static_cast<std::size_t>(parameters_.max_request_mb) << 20);
+  if (!snapshot->robot() && !request.more.joint_state.name.empty())
+    throw Error("joint_state names '" + request.more.joint_state.name.front() + "', and this server has no robot");
 
-  answerCurves(request, query, snapshot, response, drawing);
-  answerTrajectories(request, query, snapshot, response, drawing);
+  const bool current = request.more.current_joints || request.more.robot_state;
+  Work work{request,
+            snapshot,
+            std::move(query),
+            FrameLookup(frames_, request.turn),
+            currentJoints(request.more.joint_state, current && snapshot->robot(), live_.joints),
+            Doubts(parameters_.max_age, response.scene.sensors),
+            response,
+            drawing};
+  answerCurves(work);
+  answerTrajectories(work);
+  answerState(work);
   for (Proximity &row : response.results)
     if (row.status == cprox_status_name(CPROX_STOPPED)) row.message = budget.reason();
+  describe(work);
   drawing.query_type = request.query_type;
   drawing.snapshot = snapshot;
 }
 
-void Queries::answerCurves(const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
-                           QueryResponse &response, Drawing &drawing) {
+/** What the answer was about, and what a reader should know of it. */
+void Queries::describe(Work &work) const {
+  QueryResponse &response = work.response;
+  response.scene.transform_age = work.lookup.oldest();
+  response.scene.joint_state_age = work.joints.age;
+  const Query &query = work.query;
+  if (!query.objects.empty()) response.scene.objects = static_cast<std::uint32_t>(query.objects.size());
+  if (!query.links.empty()) response.scene.links = static_cast<std::uint32_t>(query.links.size());
+  if (query.objects.empty() && !query.links.empty() && work.request.curves.size() > 0) response.scene.objects = 0;
+  if (!query.objects.empty() && query.links.empty() && work.request.curves.size() > 0) response.scene.links = 0;
+
+  const auto nothing = [](const Proximity &row) { return std::isinf(row.lower) && row.b.empty(); };
+  const auto first = std::find_if(response.results.begin(), response.results.end(), nothing);
+  if (first != response.results.end())
+    response.warnings.push_back("row '" + first->id + "' (" + first->kind + ") was measured against nothing" +
+                                (response.scene.objects == 0 ? ": there is no object" : ""));
+  work.doubts.tell(response.warnings);
+  if (live_.lost)
+    response.warnings.push_back(
+        "the scene of the server before this one is lost, and none has been sent since: send it again");
+}
+
+void Queries::answerCurves(Work &work) {
   // Each curve is answered on its own: what is wrong with it fails its row only.
-  FrameLookup lookup(frames_);
-  StampedTargets targets(snapshot, query, request.joint_state, lookup);
+  const QueryRequest &request = work.request;
+  if (request.curves.size() == 0) return;
+  QueryResponse &response = work.response;
+  const bool by_joints = !work.joints.positions.empty();
+  StampedTargets targets(work.snapshot, work.query, live_.srdf, by_joints ? &work.joints.positions : nullptr,
+                         work.lookup);
+  work.doubts.objects(work.query);
   const WorkspacePool::Lease workspace(workspaces_);
   response.results.reserve(request.curves.size());
   Failures failures;
   for (const Curve &message : request.curves) {
     const auto i = static_cast<std::size_t>(&message - request.curves.begin());
+    if (request.turn) request.turn->yield();
     try {
       // The curve's frame, the robot and the curve itself: each may be what is wrong with this row.
       const CurveDescription description =
-          toDescription(message, lookup.toFixed(message.header.frame_id, message.header.stamp));
+          toDescription(message, work.lookup.toFixed(message.header.frame_id, message.header.stamp));
       CompiledCurve curve = compile(description);
       const StampedTargets::Stamped &stamped = targets.at(message.header.stamp);
-      std::vector<Answer> answers = ask(stamped.targets, curve, query, *workspace);
+      std::vector<Answer> answers = ask(stamped.targets, curve, work.query, *workspace);
+      work.doubts.ages(work.lookup.oldest(), targets.withRobot() ? work.joints.age : NAN);
       for (const Answer &answer : answers) {
         response.results.push_back(toMessage(answer, request.query_type));
+        work.doubts.apply(response.results.back());
         if (answer.result.status < 0) failures.count(response.results.back(), i);
       }
-      if (drawing.lines.size() < MAX_DRAWN_CURVES) {
-        drawing.links = stamped.links;
-        drawing.lines.push_back({std::move(curve), std::move(answers)});
+      if (work.drawing.lines.size() < MAX_DRAWN_CURVES) {
+        work.drawing.links = stamped.links;
+        work.drawing.lines.push_back({std::move(curve), std::move(answers)});
       }
     } catch (const Error &error) {
-      response.results.push_back(toFailedRow(message.id, error.what()));
+      response.results.push_back(toFailedRow(message.id, Proximity::KIND_CURVE, error.what()));
       failures.count(response.results.back(), i);
     }
     if (request.progress) (*request.progress)(response, i + 1);
@@ -255,56 +335,94 @@ void Queries::answerCurves(const QueryRequest &request, const Query &query, cons
   failures.tell(response);
 }
 
-void Queries::answerTrajectories(const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
-                                 QueryResponse &response, Drawing &drawing) {
-  const auto &trajectories = request.trajectories;
+void Queries::answerTrajectories(Work &work) {
+  const auto &trajectories = work.request.trajectories;
   if (trajectories.size() == 0) return;
-  if (!snapshot->robot()) throw Error("a trajectory needs a robot, and this server has none");
-  std::size_t values = 0;
-  for (const auto &trajectory : trajectories) values += trajectory.points.size() * trajectory.joint_names.size();
-  limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), values, "joint values");
-
+  if (!work.snapshot->robot()) throw Error("a trajectory needs a robot, and this server has none");
   for (const auto &trajectory : trajectories) {
     const auto i = static_cast<std::size_t>(&trajectory - trajectories.begin());
     const std::string id = trajectories.size() == 1 ? "trajectory" : "trajectory/" + std::to_string(i);
-    answerTrajectory(trajectory, id, request, query, snapshot, response, drawing);
-    if (request.progress) (*request.progress)(response, request.curves.size() + i + 1);
+    answerTrajectory(trajectory, id, work);
+    if (work.request.progress) (*work.request.progress)(work.response, work.request.curves.size() + i + 1);
   }
 }
 
-void Queries::answerTrajectory(const trajectory_msgs::JointTrajectory &message, const std::string &id,
-                               const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
-                               QueryResponse &response, Drawing &drawing) {
+void Queries::answerTrajectory(const trajectory_msgs::JointTrajectory &message, const std::string &id, Work &work) {
+  TrajectoryDescription trajectory;
+  std::string remark, why_not;
+  try {
+    trajectory = toDescription(message, work.joints.positions, remark);
+  } catch (const Error &error) {
+    why_not = error.what();
+  }
+  trajectory.id = id;
+  answerMotion(std::move(trajectory), message.header.stamp, remark, why_not, work);
+}
+
+/** The robot where it stands: a trajectory of one point. */
+void Queries::answerState(Work &work) {
+  if (!work.request.more.robot_state) return;
+  if (!work.snapshot->robot()) throw Error("robot_state needs a robot, and this server has none");
+  TrajectoryDescription state;
+  state.id = "state";
+  state.points.emplace_back();
+  for (const auto &[joint, position] : work.joints.positions) {
+    state.joints.push_back(joint);
+    state.points.back().positions.push_back(position);
+  }
+  answerMotion(std::move(state), work.request.more.joint_state.header.stamp, "", "", work);
+}
+
+void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
+                           const std::string &why_not, Work &work) {
+  const QueryRequest &request = work.request;
+  QueryResponse &response = work.response;
+  const std::string id = trajectory.id;
+  const std::size_t before = response.results.size();
+  if (request.turn) request.turn->yield();
+
   // The trajectory, the joints that it leaves alone, and where the robot stands.
   try {
-    const JointPositions rest = toJointPositions(request.joint_state);
-    TrajectoryDescription trajectory = toDescription(message, rest);
-    trajectory.id = id;
-    adoptBase(srdf_.virtual_joints, trajectory);
-    FrameLookup lookup(frames_);
-    const std::string frame =
-        trajectory.base.empty() ? snapshot->robot()->rootLink() : trajectory.base.front().parent_frame;
-    auto motion = std::make_shared<const RobotMotion>(snapshot, trajectory, rest, srdf_.disabled,
-                                                      lookup.toFixed(frame, message.header.stamp));
+    if (!why_not.empty()) throw Error(why_not);
+    const Robot &robot = *work.snapshot->robot();
+    adoptBase(live_.srdf.virtual_joints, trajectory);
+    const Eigen::Isometry3d base = trajectory.base.empty()
+                                       ? rootPose(robot, live_.srdf, stamp, work.lookup)
+                                       : work.lookup.toFixed(trajectory.base.front().parent_frame, stamp);
+    auto motion = std::make_shared<const RobotMotion>(work.snapshot, trajectory, work.joints.positions,
+                                                      live_.srdf.disabled, base, work.query.links);
 
     const WorkspacePool::Lease workspace(workspaces_);
-    std::vector<Answer> answers = askEnvironment(*motion, query, *workspace);
-    Query self = query; // one row, of no objects
-    self.per_object = false;
-    self.objects.clear();
-    if (request.self_collision) answers.push_back(askSelf(*motion, self, *workspace));
-    for (const Answer &answer : answers) response.results.push_back(toMessage(answer, request.query_type));
-    drawing.motion = std::move(motion);
-    drawing.motion_answers = std::move(answers);
+    Query environment = work.query;
+    environment.links.clear(); // the motion has them
+    std::vector<Answer> answers = askEnvironment(*motion, environment, *workspace);
+    if (request.more.self_collision) {
+      Query self = environment; // one row, of no objects
+      self.per_object = false;
+      self.objects.clear();
+      if (request.turn) request.turn->yield();
+      answers.push_back(askSelf(*motion, self, *workspace));
+    }
+    for (const Answer &answer : answers) {
+      response.results.push_back(toMessage(answer, request.query_type));
+      Proximity &row = response.results.back();
+      if (!remark.empty() && answer.result.status >= 0) row.message += (row.message.empty() ? "" : "; ") + remark;
+      work.doubts.objects(environment, answer.kind == Proximity::KIND_ENVIRONMENT);
+      work.doubts.ages(work.lookup.oldest(), work.joints.age);
+      work.doubts.apply(row);
+    }
+    work.drawing.motion = std::move(motion);
+    work.drawing.motion_answers = std::move(answers);
   } catch (const Error &error) {
-    response.results.push_back(toFailedRow(id, error.what()));
+    response.results.push_back(toFailedRow(id, Proximity::KIND_ENVIRONMENT, error.what()));
+    if (request.more.self_collision) response.results.push_back(toFailedRow(id, Proximity::KIND_SELF, error.what()));
   }
 
   // A row that failed fails the call, as a curve's does.
-  const Proximity &last = response.results.back();
-  if (response.success && last.status == cprox_status_name(CPROX_INVALID)) {
+  for (std::size_t i = before; i < response.results.size() && response.success; ++i) {
+    if (!std::isnan(response.results[i].lower)) continue;
     response.success = false;
-    response.message = id + ": " + last.message;
+    response.message = id + ": " + response.results[i].message;
   }
 }
 

@@ -5,6 +5,8 @@
 
 #include <curve_proximity/Curve.h>
 #include <curve_proximity/Proximity.h>
+#include <curve_proximity/ProximityQuery.h>
+#include <curve_proximity/SceneState.h>
 #include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
@@ -18,10 +20,13 @@
 #include <string>
 #include <vector>
 
+#include "doubts.h"
 #include "frames.h"
+#include "live_scene.h"
 #include "parameters.h"
 #include "statistics.h"
 #include "tuning.h"
+#include "turns.h"
 #include "workspaces.h"
 
 namespace curve_proximity {
@@ -60,15 +65,15 @@ struct QueryRequest {
   double delta; /**< [m] of TOLERANCE */
   List<Curve> curves;
   List<trajectory_msgs::JointTrajectory> trajectories;
-  bool self_collision;
-  const std::vector<std::string> &objects, &links;
-  const sensor_msgs::JointState &joint_state;
-  double epsilon = 0.0;        /**< [m] 0: the server's */
-  std::uint32_t max_nodes = 0; /**< 0: the server's */
-  bool per_object = false;
-  double budget_ms = 0.0;                       /**< 0: the server's */
+  const ProximityQuery &more; /**< all else; its curves and trajectories are not looked at */
+  double budget_ms = 0.0;     /**< 0: the server's */
+  std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now(); /**< when the budget begins */
   const std::atomic<bool> *cancelled = nullptr; /**< set, it ends this query; null: nobody can */
   const Progress *progress = nullptr;           /**< called after each curve and trajectory; null: nobody is told */
+  Turn *turn = nullptr;                         /**< given back to others now and then; may be null */
+
+  QueryRequest(QueryType type, double limit, const ProximityQuery &query)
+      : query_type(type), delta(limit), curves(query.curves), trajectories(query.trajectories), more(query) {}
 };
 
 /** "distance", "tolerance", "collision". Throws Error for any other word. */
@@ -78,6 +83,8 @@ QueryType queryTypeFromName(const std::string &name);
 struct QueryResponse {
   bool success = true;
   std::string message;
+  std::vector<std::string> warnings;
+  SceneState scene;
   std::vector<Proximity> results;
 };
 
@@ -101,37 +108,41 @@ struct Drawing {
 class Queries {
  public:
   /** All are kept by reference. stop: set, it ends running queries with the intervals that they have. */
-  Queries(const Parameters &parameters, const Tuning &tuning, const Scene &scene, const Srdf &srdf,
-          const Frames &frames, Statistics &statistics, const std::atomic<bool> &stop)
-      : parameters_(parameters),
-        tuning_(tuning),
-        scene_(scene),
-        srdf_(srdf),
-        frames_(frames),
-        statistics_(statistics),
-        stop_(stop) {}
+  Queries(const Parameters &parameters, const Tuning &tuning, const LiveScene &live, const Frames &frames,
+          Statistics &statistics, const std::atomic<bool> &stop)
+      : parameters_(parameters), tuning_(tuning), live_(live), frames_(frames), statistics_(statistics), stop_(stop) {}
 
   /** Fills the response and the drawing. Throws Error where nothing can be answered at all; what is
    *  wrong with one curve becomes its row. */
   void answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
 
  private:
-  Query toQuery(const QueryRequest &request) const;
-  void answerCurves(const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
-                    QueryResponse &response, Drawing &drawing);
-  void answerTrajectories(const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
-                          QueryResponse &response, Drawing &drawing);
-  void answerTrajectory(const trajectory_msgs::JointTrajectory &message, const std::string &id,
-                        const QueryRequest &request, const Query &query, const SnapshotPtr &snapshot,
-                        QueryResponse &response, Drawing &drawing);
-  void checkLimits(const QueryRequest &request, const Snapshot &snapshot) const;
+  /* A request on its way: what was asked, of which scene, and what the answer rests on. */
+  struct Work {
+    const QueryRequest &request;
+    const SnapshotPtr snapshot;
+    Query query;
+    FrameLookup lookup;
+    CurrentJoints joints;
+    Doubts doubts;
+    QueryResponse &response;
+    Drawing &drawing;
+  };
 
+  Query toQuery(const QueryRequest &request, const Snapshot &snapshot) const;
+  std::size_t checkLimits(const QueryRequest &request, const Snapshot &snapshot) const;
   void answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
+  void answerCurves(Work &work);
+  void answerTrajectories(Work &work);
+  void answerState(Work &work);
+  void answerTrajectory(const trajectory_msgs::JointTrajectory &message, const std::string &id, Work &work);
+  void answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
+                    const std::string &why_not, Work &work);
+  void describe(Work &work) const;
 
   const Parameters &parameters_;
   const Tuning &tuning_;
-  const Scene &scene_;
-  const Srdf &srdf_;
+  const LiveScene &live_;
   const Frames &frames_;
   Statistics &statistics_;
   const std::atomic<bool> &stop_;

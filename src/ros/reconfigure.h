@@ -5,8 +5,11 @@
 
 #include <curve_proximity/ProximityServerConfig.h>
 #include <dynamic_reconfigure/server.h>
+#include <ros/console.h>
 #include <ros/node_handle.h>
 
+#include <atomic>
+#include <cmath>
 #include <functional>
 
 #include "tuning.h"
@@ -22,15 +25,31 @@ class Reconfigure {
   }
 
  private:
-  void change(const ProximityServerConfig &config, std::uint32_t level) {
+  void change(ProximityServerConfig &config, std::uint32_t level) {
     // The first call, on all levels at once, tells what was read at start, within the sliders' ranges: that is known, and exactly.
     constexpr std::uint32_t ALL_LEVELS = 0xffffffffu;
     if (level == ALL_LEVELS) return;
-    tuning_.epsilon = config.epsilon;
-    tuning_.delta = config.delta;
-    tuning_.budget_ms = config.budget_ms;
-    tuning_.max_nodes = config.max_nodes;
-    threads_(config.threads);
+    take("epsilon", config.epsilon, tuning_.epsilon, Range{0.0, true, 1.0});
+    take("delta", config.delta, tuning_.delta, Range{0.0, false, 10.0});
+    take("budget_ms", config.budget_ms, tuning_.budget_ms, Range{0.0, true, 3600000.0});
+    take("max_nodes", config.max_nodes, tuning_.max_nodes, Range{1.0, false, 1e9});
+    std::atomic<int> threads{tuning_.threads.load()};
+    take("threads", config.threads, threads, Range{1.0, false, 256.0});
+    tuning_.threads = threads.load();
+    threads_(threads);
+  }
+
+  /** What is refused stays as it is; the answer of ~set_parameters tells what is in force. */
+  template <class Number>
+  static void take(const char *name, Number &given, std::atomic<Number> &value, const Range &range) {
+    const auto x = static_cast<double>(given);
+    if (std::isfinite(x) && (range.open ? x > range.least : x >= range.least) && x <= range.most) {
+      value = given;
+      return;
+    }
+    ROS_WARN("dynamic_reconfigure: %s is not %s %g and at most %g: it stays at %g", name,
+             range.open ? "above" : "at least", range.least, range.most, static_cast<double>(value.load()));
+    given = value;
   }
 
   Tuning &tuning_;

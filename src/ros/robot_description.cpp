@@ -37,7 +37,11 @@ Srdf loadSrdf(const ros::NodeHandle &handle, const Parameters &parameters) {
   std::string name;
   const std::string xml = findText(handle, parameters.robot_description_semantic,
                                    Parameters().robot_description_semantic, "robot_description_semantic", "SRDF", name);
-  if (xml.empty()) return {};
+  if (xml.empty()) {
+    ROS_INFO("there is no %s: pairs of links that the SRDF would disable are checked",
+             parameters.robot_description_semantic.c_str());
+    return {};
+  }
   try {
     return parseSrdf(xml);
   } catch (const Error &error) {
@@ -62,7 +66,11 @@ std::shared_ptr<const Robot> loadRobot(const ros::NodeHandle &handle, const Para
   try {
     robot = Robot::fromUrdf(xml, options);
   } catch (const Error &error) {
-    throw Error("the URDF in '" + name + "': " + error.what(), error.status());
+    const std::string what = error.what();
+    const bool relative = parameters.urdf_dir.empty() && what.find("the path is relative") != std::string::npos;
+    throw Error("the URDF in '" + name + "': " + what +
+                    (relative ? ": the parameter ~urdf_dir names the folder of such mesh files" : ""),
+                error.status());
   }
   for (const std::string &warning : robot->warnings()) ROS_WARN("%s", warning.c_str());
   ROS_INFO("robot '%s' with %zu links from '%s'", robot->name().c_str(), robot->links().size(), name.c_str());

@@ -11,8 +11,9 @@
 namespace curve_proximity {
 namespace {
 
-/** The same complaint is made once in this time, however fast the sensor is. */
+/** The same complaint is made once in this time, and no more than so many others. */
 constexpr std::chrono::seconds COMPLAIN_EVERY{5};
+constexpr std::size_t MOST_COMPLAINTS = 20;
 
 ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue) {
   ros::NodeHandle own(handle);
@@ -22,8 +23,8 @@ ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue
 
 } // namespace
 
-Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, Scene &scene, const Frames &frames)
-    : parameters_(parameters), scene_(scene), frames_(frames), handle_(onQueue(handle, queue_)), spinner_(1, &queue_) {
+Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames)
+    : parameters_(parameters), live_(live), frames_(frames), handle_(onQueue(handle, queue_)), spinner_(1, &queue_) {
   subscribers_ = {handle_.subscribe("cloud", 1, &Sensors::takeCloud, this),
                   handle_.subscribe("octomap", 1, &Sensors::takeOctomap, this)};
   spinner_.start();
@@ -65,8 +66,9 @@ void Sensors::takeCloud(const sensor_msgs::PointCloud2::ConstPtr &message) {
   take("~cloud", message->header, cloud_, cloud_seq_, [&] {
     Cloud cloud = toCloud(*message);
     if (cloud.points.cols() == 0) {
+      if (!parameters_.empty_cloud_clears) return live_.sensors.sawNothing(parameters_.cloud_id, message->header.stamp);
       remove(parameters_.cloud_id);
-      return;
+      return live_.sensors.saw(parameters_.cloud_id, message->header.stamp);
     }
     ShapeDescription shape;
     shape.type = ShapeType::POINTS;
@@ -83,41 +85,36 @@ void Sensors::takeOctomap(const OctomapMessage::ConstPtr &message) {
     shape.unknown_is_occupied = parameters_.unknown_is_occupied;
     shape.octree = {message->id, message->resolution, message->binary != 0,
                     std::string(message->data.begin(), message->data.end())};
-    try {
-      replace(parameters_.octomap_id, message->header, shape);
-    } catch (const Error &) {
-      if (!isEmpty(shape.octree, shape.unknown_is_occupied)) throw;
-      remove(parameters_.octomap_id);
-    }
+    replace(parameters_.octomap_id, message->header, std::move(shape));
   });
 }
 
 void Sensors::replace(const std::string &id, const std_msgs::Header &header, ShapeDescription shape) {
   Operation operation;
   operation.object.id = id;
-  operation.object.pose = frames_.toFixed(header.frame_id, header.stamp, frames_.deadline());
+  operation.object.pose = frames_.place(header.frame_id, header.stamp, frames_.deadline(), nullptr).pose;
   operation.object.shapes.push_back(std::move(shape));
   SceneChange change;
   change.operations.push_back(std::move(operation));
-  for (const std::string &fault : scene_.apply(change)) throw Error(fault);
+  for (const std::string &fault : live_.scene.apply(change)) throw Error(fault);
+  live_.sensors.saw(id, header.stamp);
 }
 
 void Sensors::remove(const std::string &id) {
-  if (scene_.snapshot()->objects().count(id) == 0) return;
+  if (live_.scene.snapshot()->objects().count(id) == 0) return;
   SceneChange change;
   change.operations.resize(1);
   change.operations.front().kind = Operation::Kind::REMOVE;
   change.operations.front().object.id = id;
-  scene_.apply(change);
+  live_.scene.apply(change);
 }
 
 void Sensors::complain(const std::string &topic, const std::string &why) {
-  const std::string complaint = topic + ": " + why + "; the object stays as it was";
   const auto now = std::chrono::steady_clock::now();
-  if (complaint == last_complaint_ && now - last_complained_ < COMPLAIN_EVERY) return;
-  last_complaint_ = complaint;
-  last_complained_ = now;
-  ROS_WARN_STREAM(complaint);
+  for (auto it = complained_.begin(); it != complained_.end();)
+    it = now - it->second >= COMPLAIN_EVERY ? complained_.erase(it) : ++it;
+  if (complained_.size() >= MOST_COMPLAINTS || !complained_.emplace(topic + why, now).second) return;
+  ROS_WARN_STREAM(topic + ": " + why + "; the object stays as it was");
 }
 
 } // namespace curve_proximity

@@ -12,11 +12,13 @@
 #include <chrono>
 #include <cstdint>
 #include <curve_proximity/scene.hpp>
+#include <map>
 #include <mutex>
 #include <string>
 #include <vector>
 
 #include "frames.h"
+#include "live_scene.h"
 #include "octomap_message.h"
 #include "parameters.h"
 
@@ -32,12 +34,12 @@ struct SensorCounts {
 /** ~cloud and ~octomap. They have a thread of their own, so that what is built at the rate of a sensor takes no thread from the
  *  queries, which work on the snapshot before it. Of messages that come too fast the oldest are dropped.
  *
- *  A message without a point, or without an occupied cell, takes the object away: nothing is seen. One that cannot be used leaves
- *  the object as it was, and a warning says why. */
+ *  A cloud without a point makes the object unknown, or with ~empty_cloud_clears takes it away; an octree without an
+ *  occupied cell is an empty object. A message that cannot be used leaves the object as it was, and a warning says why. */
 class Sensors {
  public:
   /** All are kept by reference. handle: private. */
-  Sensors(const ros::NodeHandle &handle, const Parameters &parameters, Scene &scene, const Frames &frames);
+  Sensors(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames);
 
   /** No callback runs, nor will one begin, when it has ended. */
   ~Sensors();
@@ -58,16 +60,15 @@ class Sensors {
   void complain(const std::string &topic, const std::string &why);
 
   const Parameters &parameters_;
-  Scene &scene_;
+  LiveScene &live_;
   const Frames &frames_;
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_; /* its callbacks go to queue_ */
   std::vector<ros::Subscriber> subscribers_;
   mutable std::mutex mutex_; /* of the counts */
   SensorCounts cloud_, octomap_;
-  std::uint32_t cloud_seq_ = 0, octomap_seq_ = 0; /* of the last message */
-  std::string last_complaint_;
-  std::chrono::steady_clock::time_point last_complained_;
+  std::uint32_t cloud_seq_ = 0, octomap_seq_ = 0;                           /* of the last message */
+  std::map<std::string, std::chrono::steady_clock::time_point> complained_; /* when, by complaint; few at a time */
   ros::AsyncSpinner spinner_;
 };
 

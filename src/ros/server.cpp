@@ -4,12 +4,16 @@
 #include <ros/console.h>
 
 #include <chrono>
+#include <curve_proximity/nearest_name.hpp>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include "../scene/yaml/scene_change.h"
 #include "conversions.h"
 #include "guard.h"
+#include "memory_account.h"
+#include "name_limits.h"
 #include "robot_description.h"
 
 namespace curve_proximity {
@@ -30,10 +34,46 @@ ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue
   return own;
 }
 
-/** A request about curves alone leaves the trajectory as it is made. */
-List<trajectory_msgs::JointTrajectory> trajectoriesOf(const trajectory_msgs::JointTrajectory &trajectory) {
-  const bool none = trajectory.joint_names.empty() && trajectory.points.empty();
-  return {&trajectory, none ? std::size_t{0} : std::size_t{1}};
+/** Changes of more bytes than this take turns among themselves, so many at a time. */
+constexpr std::size_t LARGE_CHANGE = std::size_t{1} << 20;
+constexpr int LARGE_CHANGES = 1;
+
+/** What a request takes in memory, for a byte on the wire: its bytes and its message, its curves compiled or its shapes
+ *  with their trees. */
+constexpr std::size_t QUERY_TIMES_WIRE = 4, SCENE_TIMES_WIRE = 5;
+
+double deltaOf(const Distance::Request &) {
+  return 0.0;
+}
+double deltaOf(const Collision::Request &) {
+  return 0.0;
+}
+double deltaOf(const Tolerance::Request &request) {
+  return request.delta;
+}
+
+/** Once, here: not in every answer. */
+void warnOfOtherLinks(const LiveScene &live) {
+  const std::shared_ptr<const Robot> robot = live.scene.snapshot()->robot();
+  if (!robot) return;
+  std::string names;
+  for (const std::string &link : unknownLinks(live.srdf, *robot)) names += (names.empty() ? "" : ", ") + link;
+  if (!names.empty())
+    ROS_WARN("the SRDF disables links that robot '%s' does not have: %s", robot->name().c_str(), names.c_str());
+}
+
+/** By the joints of the request, else by tf2, else by the latest joint states. */
+Eigen::Isometry3d linkPose(const std::string &link, const ros::Time &stamp, const sensor_msgs::JointState &given,
+                           const LiveScene &live, const Snapshot &snapshot, FrameLookup &lookup) {
+  const Robot *robot = snapshot.robot().get();
+  if (!robot) throw Error("link '" + link + "' is unknown: this server has no robot");
+  if (robot->links().count(link) == 0)
+    throw Error("robot '" + robot->name() + "' has no link '" + link + "'" + didYouMean(link, namesOf(robot->links())));
+  const bool by_joints = !given.name.empty();
+  if (!by_joints && (lookup.frames().has(link, stamp) || live.joints.joints().empty()))
+    return lookup.toFixed(link, stamp);
+  const CurrentJoints joints = currentJoints(given, !by_joints, live.joints);
+  return robot->linkPoses(joints.positions, rootPose(*robot, live.srdf, stamp, lookup)).at(link);
 }
 
 std::string joined(const std::vector<std::string> &sentences) {
@@ -49,53 +89,72 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       tuning_(parameters_),
       handle_(onQueue(handle, queue_)),
       control_handle_(onQueue(handle, control_queue_)),
+      turns_(parameters_.threads),
+      scene_turns_(LARGE_CHANGES),
       frames_(parameters_.fixed_frame, parameters_.tf_timeout, stop_),
-      srdf_(loadSrdf(handle, parameters_)),
-      scene_(loadRobot(handle, parameters_), resourceOptions("", parameters_.max_shape_mb), allowedPairs(srdf_)),
-      queries_(parameters_, tuning_, scene_, srdf_, frames_, statistics_, stop_),
-      constraints_(parameters_, scene_, frames_, stop_) {
+      live_(loadRobot(handle, parameters_), loadSrdf(handle, parameters_),
+            resourceOptions("", parameters_.max_shape_mb)),
+      state_file_(handle, parameters_, live_),
+      queries_(parameters_, tuning_, live_, frames_, statistics_, stop_),
+      constraints_(parameters_, live_, frames_, stop_) {
+  warnOfOtherLinks(live_);
   loadScene();
+  restoreScene();
+  live_.sensors.appeared = [this] { state_file_.changed(); };
+  state_file_.watch(parameters_.fixed_frame);
   markers_ = std::make_unique<MarkerPublisher>(
-      control_handle_, scene_, parameters_.fixed_frame,
+      control_handle_, live_.scene, parameters_.fixed_frame,
       MarkerResources{resourceOptions("", parameters_.max_shape_mb),
                       resourceOptions(parameters_.urdf_dir, parameters_.max_shape_mb)});
-  sensors_ = std::make_unique<Sensors>(handle, parameters_, scene_, frames_);
-  services_ = {handle_.advertiseService("distance", &ProximityServer::distance, this),
-               handle_.advertiseService("tolerance", &ProximityServer::tolerance, this),
-               handle_.advertiseService("collision", &ProximityServer::collision, this),
-               handle_.advertiseService("apply_scene", &ProximityServer::applyScene, this),
-               handle_.advertiseService("get_scene", &ProximityServer::getScene, this),
-               handle_.advertiseService("evaluate_constraints", &ProximityServer::evaluateConstraints, this)};
+  sensors_ = std::make_unique<Sensors>(handle, parameters_, live_, frames_);
+  services_ = {
+      advertise<Distance>(handle_, "distance", queryHandler<Distance>(QueryType::DISTANCE)),
+      advertise<Tolerance>(handle_, "tolerance", queryHandler<Tolerance>(QueryType::TOLERANCE)),
+      advertise<Collision>(handle_, "collision", queryHandler<Collision>(QueryType::COLLISION)),
+      advertise<ApplyScene>(handle_, "apply_scene",
+                            handler<ApplyScene>(SCENE_TIMES_WIRE,
+                                                [this](const Call &call, const RequestThreads::AtWork &at_work,
+                                                       ApplyScene::Request &request, ApplyScene::Response &response) {
+                                                  applyScene(call, at_work, request, response);
+                                                })),
+      advertise<GetScene>(
+          handle_, "get_scene",
+          handler<GetScene>(QUERY_TIMES_WIRE,
+                            [this](const Call &, const RequestThreads::AtWork &, GetScene::Request &request,
+                                   GetScene::Response &response) { getScene(request, response); })),
+      advertise<EvaluateConstraints>(
+          handle_, "evaluate_constraints",
+          handler<EvaluateConstraints>(
+              SCENE_TIMES_WIRE, [this](const Call &call, const RequestThreads::AtWork &at_work,
+                                       EvaluateConstraints::Request &request, EvaluateConstraints::Response &response) {
+                Turn turn(turns_, call.client, waitUntil(call, at_work));
+                response.frame_id = frames_.fixedFrame();
+                std::shared_ptr<const LevelDrawing> drawing;
+                constraints_.answer(request, response, drawing, &turn);
+                if (drawing) markers_->show(std::move(drawing));
+              }))};
   objects_ = {handle_.subscribe("collision_object", OBJECTS_KEPT, &ProximityServer::takeObject, this),
               handle_.subscribe("attached_collision_object", OBJECTS_KEPT, &ProximityServer::takeAttached, this)};
-  pipeline_ = std::make_unique<Pipeline>(handle, parameters_, tuning_, scene_, srdf_, queries_, *markers_, stop_);
-  batches_ = std::make_unique<BatchAction>(control_handle_, parameters_.fixed_frame, queries_, stop_);
-  diagnostics_ = std::make_unique<Diagnostics>(control_handle_, statistics_, *pipeline_, *sensors_, frames_, scene_);
+  pipeline_ = std::make_unique<Pipeline>(handle, parameters_, tuning_, live_, queries_, *markers_, stop_);
+  batches_ = std::make_unique<BatchAction>(control_handle_, parameters_.fixed_frame, queries_, turns_, stop_);
+  diagnostics_ =
+      std::make_unique<Diagnostics>(control_handle_, statistics_, turns_, *pipeline_, *sensors_, frames_, live_);
   reconfigure_ = std::make_unique<Reconfigure>(control_handle_, tuning_, [this](int threads) { setThreads(threads); });
-  setThreads(parameters_.threads);
+  threads_ = std::make_unique<RequestThreads>(queue_, static_cast<std::size_t>(parameters_.max_waiting));
   control_spinner_ = std::make_unique<ros::AsyncSpinner>(1, &control_queue_);
   control_spinner_->start();
 }
 
-/** Ends a thread only when its request has been answered; the others go on. */
 void ProximityServer::setThreads(int threads) {
-  const auto wanted = static_cast<std::size_t>(threads);
-  while (spinners_.size() > wanted) {
-    spinners_.back()->stop();
-    spinners_.pop_back();
-  }
-  while (spinners_.size() < wanted) {
-    spinners_.push_back(std::make_unique<ros::AsyncSpinner>(1, &queue_));
-    spinners_.back()->start();
-  }
+  turns_.setSlots(threads);
 }
 
 ProximityServer::~ProximityServer() {
   // Running queries end with what they have; their answers leave while the services still stand.
   stop_ = true;
-  const bool busy = running_ > 0;
+  const bool busy = threads_->atWork() > 0;
   const auto deadline = std::chrono::steady_clock::now() + FAREWELL;
-  while (running_ > 0 && std::chrono::steady_clock::now() < deadline)
+  while (threads_->atWork() > 0 && std::chrono::steady_clock::now() < deadline)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   if (busy) std::this_thread::sleep_for(LAST_WRITE);
 
@@ -103,7 +162,7 @@ ProximityServer::~ProximityServer() {
   for (ros::ServiceServer &service : services_) service.shutdown();
   for (ros::Subscriber &subscriber : objects_) subscriber.shutdown();
   control_spinner_->stop();
-  setThreads(0);
+  threads_.reset();
   reconfigure_.reset();
   diagnostics_.reset();
   batches_.reset();
@@ -114,90 +173,114 @@ ProximityServer::~ProximityServer() {
   queue_.clear();
 }
 
-/** Everything that a handler does happens in here: what it throws becomes a message, and it is counted while it runs. */
-template <class Response, class Work>
-bool ProximityServer::handle(Response &response, Work &&work) {
-  struct Count {
-    explicit Count(std::atomic<int> &n) : running(n) {
-      ++running;
+/** Everything that a handler does happens in here: what it throws becomes a message. A request that cannot be read fails
+ *  the call, by roscpp. times_wire: what it takes in memory, for a byte on the wire. */
+template <class Service, class Work>
+typename ServiceHelper<Service>::Handler ProximityServer::handler(std::size_t times_wire, Work work) {
+  using Helper = ServiceHelper<Service>;
+  return [this, times_wire, work](const Call &call, const typename Helper::Read &read,
+                                  typename Helper::Response &response) {
+    const RequestThreads::AtWork at_work(*threads_);
+    std::optional<memory::Share> share;
+    bool admitted = false;
+    answered(response, [&] {
+      if (stop_) throw Error("the server is shutting down");
+      share.emplace(times_wire * call.bytes, requestLimit());
+      admitted = true;
+    });
+    if (!admitted) return;
+    typename Helper::Request request;
+    {
+      const memory::Reading reading(call.bytes);
+      read(request);
     }
-    ~Count() {
-      --running;
-    }
-    std::atomic<int> &running;
-  } const count(running_);
-  return answered(response, [&] {
-    if (stop_) throw Error("the server is shutting down");
-    work();
-  });
+    answered(response, [&] { work(call, at_work, request, response); });
+  };
 }
 
-template <class Request, class Response>
-bool ProximityServer::query(QueryType query_type, double delta, const Request &request, Response &response) {
-  return handle(response, [&] {
-    const QueryRequest common{query_type,
-                              delta,
-                              List<Curve>(request.curves),
-                              trajectoriesOf(request.trajectory),
-                              request.self_collision != 0,
-                              request.objects,
-                              request.links,
-                              request.joint_state,
-                              request.epsilon,
-                              request.max_nodes,
-                              request.per_object != 0};
-    QueryResponse answer;
-    auto drawing = std::make_shared<Drawing>();
-    queries_.answer(common, answer, *drawing);
-    response.success = answer.success;
-    response.message = std::move(answer.message);
-    response.frame_id = frames_.fixedFrame();
-    response.results = std::move(answer.results);
-    markers_->show(std::move(drawing));
-  });
+std::size_t ProximityServer::requestLimit() const {
+  return static_cast<std::size_t>(parameters_.max_request_mb) << 20;
 }
 
-bool ProximityServer::distance(Distance::Request &request, Distance::Response &response) {
-  return query(QueryType::DISTANCE, 0.0, request, response);
+/** How long the request may wait for a turn. */
+Turns::Clock::time_point ProximityServer::waitUntil(const Call &call, const RequestThreads::AtWork &at_work) const {
+  if (at_work.isLast()) return call.arrival;
+  return call.arrival + std::chrono::duration_cast<Turns::Clock::duration>(
+                            std::chrono::duration<double, std::milli>(parameters_.max_wait_ms));
 }
 
-bool ProximityServer::tolerance(Tolerance::Request &request, Tolerance::Response &response) {
-  return query(QueryType::TOLERANCE, request.delta, request, response);
-}
-
-bool ProximityServer::collision(Collision::Request &request, Collision::Response &response) {
-  return query(QueryType::COLLISION, 0.0, request, response);
+template <class Service>
+typename ServiceHelper<Service>::Handler ProximityServer::queryHandler(QueryType query_type) {
+  return handler<Service>(QUERY_TIMES_WIRE,
+                          [this, query_type](const Call &call, const RequestThreads::AtWork &at_work,
+                                             typename Service::Request &asked, typename Service::Response &response) {
+                            response.frame_id = frames_.fixedFrame();
+                            Turn turn(turns_, call.client, waitUntil(call, at_work));
+                            QueryRequest request(query_type, deltaOf(asked), asked.query);
+                            request.budget_ms = asked.query.budget_ms;
+                            request.arrival = call.arrival;
+                            request.turn = &turn;
+                            QueryResponse answer;
+                            auto drawing = std::make_shared<Drawing>();
+                            queries_.answer(request, answer, *drawing);
+                            response.success = answer.success;
+                            response.message = std::move(answer.message);
+                            response.warnings = std::move(answer.warnings);
+                            response.scene = std::move(answer.scene);
+                            response.results = std::move(answer.results);
+                            markers_->show(std::move(drawing));
+                          });
 }
 
 /** Objects come in any frame; what is wrong with one is told, and the others are applied. */
 std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &request) {
+  NameLimits(parameters_.max_name_length).check(request);
   FrameLookup lookup(frames_);
   std::vector<std::string> faults;
+  const SnapshotPtr before = live_.scene.snapshot();
   const ToFixed to_fixed = [&](const std_msgs::Header &header) {
     return lookup.toFixed(header.frame_id, header.stamp);
   };
+  const LinkToFixed link_to_fixed = [&](const std::string &link, const ros::Time &stamp) {
+    return linkPose(link, stamp, request.joint_state, live_, *before, lookup);
+  };
   SceneChange change = toSceneChange(request, to_fixed, faults);
-  addAttachments(request, to_fixed, *scene_.snapshot(), change, faults);
-  for (std::string &fault : scene_.apply(change)) faults.push_back(std::move(fault));
+  addAttachments(request, to_fixed, link_to_fixed, *before, change, faults);
+  const auto deadline =
+      std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                             std::chrono::duration<double, std::milli>(parameters_.scene_budget_ms));
+  change.stop = [&] { return stop_ || std::chrono::steady_clock::now() >= deadline; };
+  for (std::string &fault : live_.scene.apply(change)) faults.push_back(std::move(fault));
+
+  // What somebody sets or removes by name is no sensor's until its next message.
+  for (const Operation &operation : change.operations)
+    if (!operation.object.id.empty()) live_.sensors.forget(operation.object.id);
+  live_.lost = false;
+  state_file_.changed();
   return faults;
 }
 
-bool ProximityServer::applyScene(ApplyScene::Request &request, ApplyScene::Response &response) {
-  return handle(response, [&] {
-    const std::vector<std::string> faults = apply(request);
-    response.success = faults.empty();
-    response.message = joined(faults);
-  });
+void ProximityServer::applyScene(const Call &call, const RequestThreads::AtWork &at_work, ApplyScene::Request &request,
+                                 ApplyScene::Response &response) {
+  // Small changes pass by the large ones.
+  std::optional<Turn> turn;
+  if (call.bytes > LARGE_CHANGE) turn.emplace(scene_turns_, call.client, waitUntil(call, at_work));
+  const std::vector<std::string> faults = apply(request);
+  response.success = faults.empty();
+  response.message = joined(faults);
+  response.scene = live_.state(*live_.scene.snapshot());
 }
 
 /** As ~apply_scene with one object; there is nobody to be told but the log. */
 template <class Fill>
 void ProximityServer::changeScene(const char *topic, Fill &&fill) {
   const auto complain = [&](const std::string &why) { ROS_ERROR("%s: %s", topic, why.c_str()); };
+  const RequestThreads::AtWork at_work(*threads_);
   guarded(
       [&] {
         ApplyScene::Request request;
         fill(request);
+        const memory::Share share(SCENE_TIMES_WIRE * ros::serialization::serializationLength(request), requestLimit());
         for (const std::string &fault : apply(request)) complain(fault);
       },
       complain);
@@ -228,23 +311,25 @@ void ProximityServer::loadScene() {
   if (!why.empty()) throw ParameterError("parameter ~scene_file: " + why);
 }
 
-bool ProximityServer::getScene(GetScene::Request &request, GetScene::Response &response) {
-  return handle(response, [&] {
-    toMessage(*scene_.snapshot(), request.ids, response);
-    for (CollisionObject &object : response.objects) object.header.frame_id = frames_.fixedFrame();
-    response.frame_id = frames_.fixedFrame();
-    response.success = true;
-  });
+/** The scene of the server before this one, within the same run. */
+void ProximityServer::restoreScene() {
+  const std::optional<KeptScene> kept = state_file_.read();
+  if (!kept) return;
+  const std::vector<std::string> faults = apply(kept->request);
+  for (const std::string &fault : faults) ROS_WARN("of the scene before the restart: %s", fault.c_str());
+  for (const std::string &id : kept->sensors) live_.sensors.awaits(id);
+  live_.lost = !faults.empty();
+  ROS_INFO("the scene is as before the restart: %zu objects; of sensors %zu are awaited",
+           live_.scene.snapshot()->objects().size(), kept->sensors.size());
 }
 
-bool ProximityServer::evaluateConstraints(EvaluateConstraints::Request &request,
-                                          EvaluateConstraints::Response &response) {
-  return handle(response, [&] {
-    response.frame_id = frames_.fixedFrame();
-    std::shared_ptr<const LevelDrawing> drawing;
-    constraints_.answer(request, response, drawing);
-    if (drawing) markers_->show(std::move(drawing));
-  });
+void ProximityServer::getScene(const GetScene::Request &request, GetScene::Response &response) {
+  const SnapshotPtr snapshot = live_.scene.snapshot();
+  toMessage(*snapshot, request.ids, response);
+  for (CollisionObject &object : response.objects) object.header.frame_id = frames_.fixedFrame();
+  response.scene = live_.state(*snapshot);
+  response.frame_id = frames_.fixedFrame();
+  response.success = true;
 }
 
 } // namespace curve_proximity

@@ -26,14 +26,19 @@
 #include "constraints.h"
 #include "diagnostics.h"
 #include "frames.h"
+#include "live_scene.h"
 #include "markers.h"
 #include "parameters.h"
 #include "pipeline.h"
 #include "queries.h"
 #include "reconfigure.h"
+#include "request_threads.h"
 #include "sensors.h"
+#include "service.h"
+#include "state_file.h"
 #include "statistics.h"
 #include "tuning.h"
+#include "turns.h"
 
 namespace curve_proximity {
 
@@ -51,12 +56,15 @@ class ProximityServer {
   ProximityServer &operator=(const ProximityServer &) = delete;
 
  private:
-  bool distance(Distance::Request &request, Distance::Response &response);
-  bool tolerance(Tolerance::Request &request, Tolerance::Response &response);
-  bool collision(Collision::Request &request, Collision::Response &response);
-  bool applyScene(ApplyScene::Request &request, ApplyScene::Response &response);
-  bool getScene(GetScene::Request &request, GetScene::Response &response);
-  bool evaluateConstraints(EvaluateConstraints::Request &request, EvaluateConstraints::Response &response);
+  template <class Service, class Work>
+  typename ServiceHelper<Service>::Handler handler(std::size_t times_wire, Work work);
+  template <class Service>
+  typename ServiceHelper<Service>::Handler queryHandler(QueryType query_type);
+  Turns::Clock::time_point waitUntil(const Call &call, const RequestThreads::AtWork &at_work) const;
+
+  void applyScene(const Call &call, const RequestThreads::AtWork &at_work, ApplyScene::Request &request,
+                  ApplyScene::Response &response);
+  void getScene(const GetScene::Request &request, GetScene::Response &response);
 
   void takeObject(const CollisionObjectConstPtr &object);
   void takeAttached(const AttachedCollisionObjectConstPtr &object);
@@ -64,13 +72,9 @@ class ProximityServer {
   void changeScene(const char *topic, Fill &&fill);
   std::vector<std::string> apply(const ApplyScene::Request &request);
   void loadScene();
-
-  template <class Request, class Response>
-  bool query(QueryType query_type, double delta, const Request &request, Response &response);
-  template <class Response, class Work>
-  bool handle(Response &response, Work &&work);
-
+  void restoreScene();
   void setThreads(int threads);
+  std::size_t requestLimit() const;
 
   const Parameters parameters_;
   Tuning tuning_;
@@ -79,9 +83,10 @@ class ProximityServer {
   std::atomic<int> running_{0};              /* handlers that have begun and not ended */
   ros::CallbackQueue queue_, control_queue_; /* of requests; of what watches over them, with a thread of its own */
   ros::NodeHandle handle_, control_handle_;  /* their callbacks go to these queues */
+  Turns turns_, scene_turns_;                /* of queries; of large changes of the scene, which are made beside them */
   Frames frames_;
-  const Srdf srdf_;
-  Scene scene_;
+  LiveScene live_;
+  StateFile state_file_;
   Queries queries_;
   Constraints constraints_;
   std::unique_ptr<MarkerPublisher> markers_;
@@ -92,7 +97,7 @@ class ProximityServer {
   std::unique_ptr<BatchAction> batches_;
   std::unique_ptr<Diagnostics> diagnostics_;
   std::unique_ptr<Reconfigure> reconfigure_;
-  std::vector<std::unique_ptr<ros::AsyncSpinner>> spinners_; /* ~threads, of a thread each */
+  std::unique_ptr<RequestThreads> threads_;
   std::unique_ptr<ros::AsyncSpinner> control_spinner_;
 };
 

@@ -15,10 +15,11 @@ struct Tuning {
       : epsilon(parameters.epsilon),
         delta(parameters.delta),
         budget_ms(parameters.budget_ms),
-        max_nodes(parameters.max_nodes) {}
+        max_nodes(parameters.max_nodes),
+        threads(parameters.threads) {}
 
   std::atomic<double> epsilon, delta, budget_ms;
-  std::atomic<int> max_nodes;
+  std::atomic<int> max_nodes, threads;
 };
 
 } // namespace curve_proximity

@@ -89,6 +89,15 @@ fixed_frame_transforms:
         self.assertEqual(answer.code, 0, answer.err)
         self.assertEqual(len(self.call('get_scene', '{}')['objects']), 7)
 
+    def a_file_takes_the_place_of_the_scene_unless_it_is_a_diff(self):
+        other = BOX_SCENE.replace('box', 'other', 1)
+        for scene, more, expected in ((BOX_SCENE, (), {'box'}), (BOX_SCENE, (), {'box'}), (other, (), {'other'}),
+                                      (BOX_SCENE, ('--add',), {'box', 'other'}), ('is_diff: true\n' + other, (), {'box', 'other'}),
+                                      ('is_diff: true\n' + other, ('--replace',), {'other'})):
+            answer = self.send(scene, *more)
+            self.assertEqual(answer.code, 0, answer.err)
+            self.assertEqual({entry['id'] for entry in self.call('get_scene', '{}')['objects']}, expected)
+
     def a_node_under_another_name_is_not_found(self):
         answer = self.send(BOX_SCENE, '--node', '/elsewhere')
         self.assertRefused(answer, '/elsewhere/apply_scene')

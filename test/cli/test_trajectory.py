@@ -193,7 +193,7 @@ joint_trajectory:
                             (SLIDE.replace('secs: 4', 'secs: -1'), ('point 1', 'not after')),
                             ('interpolation: quintic\n' + SLIDE, ('point 0', 'velocities')),
                             ('interpolation: spline\n' + SLIDE, ("'spline'",)),
-                            ('joint_trajectory: {joint_names: [slide], points: [{positions: [1], time_from_start: 0}]}', ('one point',)),
+                            ('joint_trajectory: {joint_names: [slide], points: [{positions: [1], time_from_start: 1}]}', ('one point',)),
                             ('joint_trajectory: {joint_names: [], points: []}', ('no joints',)),
                             ('[1, 2]', ('go.yaml',))):
             with self.subTest(text=text):

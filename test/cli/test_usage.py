@@ -58,11 +58,11 @@ class Usage(Case):
         values = {'--curves': 'c', '--against': 'd', '--trajectory': 't', '--scene': 's', '--robot': 'r', '--srdf': 'q', '--state': 'j: 1',
                   '--certificate': 'f', '--in': 'i', '--provider': 'p', '--parameters': 'k: 1', '--node': '/n', '--epsilon': '1e-3',
                   '--delta': '1', '--max-nodes': '9', '--threads': '2', '--max-lod': 'hull', '--out': 'o', '--self': None,
-                  '--signed': None, '--per-object': None, '--skipped': None}
+                  '--replace': None, '--add': None, '--signed': None, '--per-object': None, '--skipped': None}
         run = {'--epsilon', '--max-nodes', '--threads', '--out'}
         rows = [('pairs', ['--in', 'i'], run | {'--max-lod', '--skipped'}),
                 ('constraints', ['--in', 'i', '--provider', 'p'], {'--parameters', '--scene', '--threads', '--out'}),
-                ('send', ['s'], {'--node'})]
+                ('send', ['s'], {'--node', '--replace', '--add'})]
         for command, own in (('distance', {'--signed'}), ('tolerance', {'--delta'}), ('collision', set())):
             start = ['--delta', '1'] if command == 'tolerance' else []
             rows += [(command, start + ['--curves', 'c', '--robot', 'r'],

@@ -8,7 +8,7 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import QueryAction, QueryGoal
-from helpers import Server, bezier, ring_and_shells, run, sphere, until
+from helpers import Server, bezier, query, ring_and_shells, run, sphere, until
 
 
 class Batches(unittest.TestCase):
@@ -21,7 +21,8 @@ class Batches(unittest.TestCase):
     def send(self, seconds=20, **fields):
         """One goal; its state and its result."""
         self.feedback = []
-        self.client.send_goal(QueryGoal(**fields), feedback_cb=self.feedback.append)
+        own = {name: fields.pop(name) for name in ('query_type', 'delta') if name in fields}
+        self.client.send_goal(QueryGoal(query=query(**fields), **own), feedback_cb=self.feedback.append)
         self.assertTrue(self.client.wait_for_result(rospy.Duration(seconds)))
         return self.client.get_state(), self.client.get_result()
 
@@ -58,7 +59,7 @@ class Batches(unittest.TestCase):
         self.server.replace(*balls)
         first = bezier((0, 0, 5), (1, 0, 5), id='first')
         self.feedback = []
-        self.client.send_goal(QueryGoal(query_type='distance', curves=[first] + [ring] * 50, **fields),
+        self.client.send_goal(QueryGoal(query_type='distance', query=query([first] + [ring] * 50, **fields)),
                               feedback_cb=self.feedback.append)
         self.assertTrue(until(lambda: self.feedback, 10))
         time.sleep(0.3)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the server tells of itself on /diagnostics, and what may be changed while it runs."""
 import struct
+import time
 import unittest
 
 import rospy
@@ -87,6 +88,12 @@ class Diagnostics(unittest.TestCase):
         self.assertLess(float(values['cloud: age of the last one used [s]']), 1.0)
         self.assertEqual(values['cloud: refused'], '0')
         before = int(values['cloud: dropped'])
+        lost = TransformStamped(child_frame_id='nowhere')
+        lost.header.frame_id, lost.header.stamp, lost.transform.rotation.w = 'elsewhere', rospy.Time.now(), 1.0
+        transforms = rospy.Publisher('/tf', TFMessage, queue_size=10)
+        self.assertTrue(until(transforms.get_num_connections, 10))
+        transforms.publish(TFMessage([lost]))
+        time.sleep(0.3)
         for _ in range(20):
             publisher.publish(cloud('nowhere'))  # the first waits ~tf_timeout for that frame; the last one takes the others' place
         status, values = self.status('sensors', lambda s, v: int(v['cloud: dropped']) >= before + 15)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of the node share: messages by one call each, and the services of the node under test."""
+import itertools
 import math
 import os
 import subprocess
@@ -8,7 +9,7 @@ import time
 
 import rospy
 import rostest
-from curve_proximity.msg import Body, CollisionObject, Curve, Hyperquadric
+from curve_proximity.msg import Body, CollisionObject, Curve, Hyperquadric, ProximityQuery
 from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, CollisionRequest, Distance,
                                  DistanceRequest, GetScene, Tolerance, ToleranceRequest)
 from geometry_msgs.msg import Point, Pose, Quaternion
@@ -16,6 +17,7 @@ from sensor_msgs.msg import JointState
 from shape_msgs.msg import Mesh, MeshTriangle, Plane, SolidPrimitive
 
 BOX, SPHERE, CYLINDER, CONE = 1, 2, 3, 4
+_NODES = itertools.count()
 
 
 def run(name):
@@ -96,6 +98,13 @@ def plane(name, coefficients, **fields):
     return thing(name, planes=[Plane(coef=[float(c) for c in coefficients])], **fields)
 
 
+def query(curves=(), trajectory=None, **fields):
+    """What services and the action are asked: curves, perhaps one trajectory, and further fields."""
+    if trajectory is not None:
+        fields['trajectories'] = [trajectory]
+    return ProximityQuery(curves=list(curves) if isinstance(curves, (list, tuple)) else [curves], **fields)
+
+
 def joints(**positions):
     return JointState(name=list(positions), position=list(positions.values()))
 
@@ -114,18 +123,14 @@ class Server:
         self._apply = connect('apply_scene', ApplyScene)
         self._get = connect('get_scene', GetScene)
 
-    @staticmethod
-    def _request(kind, curves, fields):
-        return kind(curves=list(curves) if isinstance(curves, (list, tuple)) else [curves], **fields)
-
     def distance(self, curves, **fields):
-        return self._distance(self._request(DistanceRequest, curves, fields))
+        return self._distance(DistanceRequest(query(curves, **fields)))
 
     def tolerance(self, curves, delta, **fields):
-        return self._tolerance(self._request(ToleranceRequest, curves, dict(fields, delta=delta)))
+        return self._tolerance(ToleranceRequest(query(curves, **fields), delta))
 
     def collision(self, curves, **fields):
-        return self._collision(self._request(CollisionRequest, curves, fields))
+        return self._collision(CollisionRequest(query(curves, **fields)))
 
     def apply(self, *objects, **fields):
         return self._apply(ApplySceneRequest(objects=list(objects), **fields))
@@ -155,10 +160,10 @@ class Node:
         self.name = name
         self.forget()
         arguments = [executable('curve_proximity', 'curve_proximity_node'), '__name:=' + name]
-        for parameter, value in parameters.items():
+        for parameter, value in dict({'state_file': ''}, **parameters).items():
             if environment is None:
                 rospy.set_param('/%s/%s' % (name, parameter), value)
-        self._log = open(os.path.join('/tmp', 'curve_proximity_%s_%d.log' % (name, os.getpid())), 'w+')
+        self._log = open(os.path.join('/tmp', 'curve_proximity_%s_%d_%d.log' % (name, os.getpid(), next(_NODES))), 'w+')
         self.process = subprocess.Popen(arguments, stdout=self._log, stderr=subprocess.STDOUT, env=environment)
 
     def forget(self):

@@ -11,6 +11,7 @@ import struct
 import unittest
 
 import rosgraph
+from curve_proximity.msg import ProximityQuery
 from curve_proximity.srv import Distance, DistanceRequest
 from helpers import Node, Server, bezier, run, sphere
 
@@ -36,7 +37,7 @@ def handshake(**fields):
 
 def request():
     buffer = io.BytesIO()
-    DistanceRequest(curves=[LINE]).serialize(buffer)
+    DistanceRequest(ProximityQuery(curves=[LINE])).serialize(buffer)
     return buffer.getvalue()
 
 

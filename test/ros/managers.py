@@ -13,7 +13,7 @@ import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import Curve, QueryAction, QueryGoal
-from helpers import Call, Server, bezier, executable, ring_and_shells, run, until
+from helpers import Call, Server, bezier, executable, query, ring_and_shells, run, until
 
 LOG = '/tmp/curve_proximity_manager_%d.log' % os.getpid()
 
@@ -53,7 +53,7 @@ class Managers(unittest.TestCase):
         call = Call(lambda: server.distance(ring, **fields))
         client = actionlib.SimpleActionClient('/stopped_server/query', QueryAction)
         self.assertTrue(client.wait_for_server(rospy.Duration(10)))
-        client.send_goal(QueryGoal(query_type='distance', curves=[ring] * 100, **fields))
+        client.send_goal(QueryGoal(query_type='distance', query=query([ring] * 100, **fields)))
         topic = rospy.Publisher('/stopped_server/curve', Curve, queue_size=100)
         self.assertTrue(until(topic.get_num_connections, 10))
         for i in range(50):

@@ -130,7 +130,9 @@ class Trajectory(unittest.TestCase):
 
     def test_what_is_wrong_is_told_and_the_node_goes_on(self):
         good = trajectory(READY, [0.5] + READY[1:])
-        for bad, word in ((trajectory([0], [1], names=['elbow']), "'elbow'"), (trajectory(READY), 'one point'),
+        late = trajectory(READY)
+        late.points[0].time_from_start = rospy.Duration(1)
+        for bad, word in ((trajectory([0], [1], names=['elbow']), "'elbow'"), (late, 'one point'),
                           (trajectory(READY, READY[:3]), 'point 1'), (trajectory([float('nan')] * 7, READY), 'not finite'),
                           (JointTrajectory(points=good.points), 'no joints')):
             response = self.server.distance([], trajectory=bad)

@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "doubts.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace curve_proximity {
+namespace {
+
+void add(std::string &text, const std::string &sentence) {
+  text += (text.empty() ? "" : "; ") + sentence;
+}
+
+std::string tooOld(const std::string &what, double age, double max_age) {
+  std::ostringstream text;
+  text.precision(3);
+  text << what << " is " << age << " s old, above ~max_age = " << max_age;
+  return text.str();
+}
+
+} // namespace
+
+void Doubts::objects(const Query &query, bool any) {
+  stale_objects_.clear();
+  unknown_objects_.clear();
+  const bool everything = query.objects.empty() && query.links.empty();
+  for (const SensorState &sensor : sensors_) {
+    const bool named = std::find(query.objects.begin(), query.objects.end(), sensor.id) != query.objects.end();
+    if (!any || !(everything || named)) continue;
+    if (sensor.unknown) {
+      add(unknown_objects_, "what is at object '" + sensor.id + "' is unknown: its sensor sees nothing");
+    } else if (max_age_ > 0.0 && sensor.age > max_age_) {
+      add(stale_objects_, tooOld("object '" + sensor.id + "'", sensor.age, max_age_));
+    }
+  }
+}
+
+void Doubts::ages(double transforms, double joints) {
+  stale_ages_.clear();
+  if (!(max_age_ > 0.0)) return;
+  if (transforms > max_age_) add(stale_ages_, tooOld("a transform", transforms, max_age_));
+  if (joints > max_age_) add(stale_ages_, tooOld("a joint value", joints, max_age_));
+}
+
+void Doubts::apply(Proximity &row) {
+  if (row.lower != row.lower) return;
+  std::string why;
+  for (const std::string *part : {&stale_ages_, &stale_objects_, &unknown_objects_})
+    if (!part->empty()) add(why, *part);
+  if (why.empty()) return;
+  const bool stale = !stale_ages_.empty() || !stale_objects_.empty();
+  row.status = stale ? Proximity::STATUS_STALE : Proximity::STATUS_UNKNOWN;
+  row.lower = 0.0;
+  if (row.verdict == Proximity::VERDICT_CLEAR || (stale && !row.verdict.empty()))
+    row.verdict = Proximity::VERDICT_UNDECIDED;
+  add(row.message, why);
+  told_.insert(why);
+}
+
+void Doubts::tell(std::vector<std::string> &warnings) const {
+  constexpr std::size_t MOST = 10;
+  for (const std::string &why : told_)
+    if (warnings.size() < MOST) warnings.push_back(why);
+}
+
+} // namespace curve_proximity

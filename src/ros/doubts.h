@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Why an answer that is right about the data is not to be relied on: data that is too old, or not there. */
+#ifndef CURVE_PROXIMITY_ROS_DOUBTS_H
+#define CURVE_PROXIMITY_ROS_DOUBTS_H
+
+#include <curve_proximity/Proximity.h>
+#include <curve_proximity/SensorState.h>
+
+#include <curve_proximity/query.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace curve_proximity {
+
+/** Turns 'clear' into 'undecided' where it does not hold of the world as it is now. For one request. */
+class Doubts {
+ public:
+  /** max_age [s]: ~max_age, 0 for none. */
+  Doubts(double max_age, const std::vector<SensorState> &sensors) : max_age_(max_age), sensors_(sensors) {}
+
+  /** Which objects the rows to come are about: those of the query, or none. */
+  void objects(const Query &query, bool any = true);
+
+  /** [s] The ages of transforms and of joint values of the rows to come; NaN: none were used. */
+  void ages(double transforms, double joints);
+
+  /** lower becomes 0, and the verdict undecided, with the reason; a violation stays one where only a sensor sees
+   *  nothing. Rows without an answer are left as they are. */
+  void apply(Proximity &row);
+
+  /** A sentence for each doubt that a row had. */
+  void tell(std::vector<std::string> &warnings) const;
+
+ private:
+  const double max_age_;
+  const std::vector<SensorState> sensors_;
+  std::string stale_objects_, unknown_objects_, stale_ages_;
+  std::set<std::string> told_;
+};
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The latest value of each joint, from ~joint_states, and how old it is. */
+#ifndef CURVE_PROXIMITY_ROS_JOINT_BOARD_H
+#define CURVE_PROXIMITY_ROS_JOINT_BOARD_H
+
+#include <sensor_msgs/JointState.h>
+
+#include <chrono>
+#include <curve_proximity/robot.hpp>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "age.h"
+
+namespace curve_proximity {
+
+/** Any number of threads. */
+class JointBoard {
+ public:
+  struct Joint {
+    double position = 0.0;
+    Age age;
+  };
+
+  /** Takes in a message. Joints that the robot does not have are ignored, and so are values that are not finite. */
+  void take(const sensor_msgs::JointState &state, const Robot *robot) {
+    const Age age(state.header.stamp);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (std::size_t i = 0; i < state.name.size() && i < state.position.size(); ++i) {
+      const bool known = robot && robot->hasJoint(state.name[i]);
+      if (known && std::isfinite(state.position[i])) joints_[state.name[i]] = {state.position[i], age};
+    }
+  }
+
+  std::map<std::string, Joint> joints() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return joints_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::string, Joint> joints_;
+};
+
+} // namespace curve_proximity
+#endif

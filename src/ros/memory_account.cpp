@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "memory_account.h"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <curve_proximity/core.hpp>
+#include <mutex>
+#include <string>
+
+#include "turns.h"
+
+namespace curve_proximity::memory {
+namespace {
+
+constexpr std::size_t MEGABYTE = std::size_t{1} << 20;
+
+/** Less than this is not worth the look at what is resident. */
+constexpr std::size_t SMALL = MEGABYTE;
+
+/** After a share of this size memory is given back to the system. */
+constexpr std::size_t LARGE = 8 * MEGABYTE;
+
+/** An empty vector of strings takes 8 times the bytes that it has on the wire; other messages take less. */
+constexpr std::size_t MOST_TIMES_WIRE = 16;
+
+std::atomic<std::size_t> most{0};
+std::mutex mutex;
+std::size_t reserved = 0;
+std::atomic<bool> untidy{false};
+
+std::string megabytes(std::size_t bytes) {
+  return std::to_string((bytes + MEGABYTE - 1) / MEGABYTE) + " MB";
+}
+
+} // namespace
+
+thread_local Allowance allowance;
+thread_local bool at_request = false;
+
+void setLimit(std::size_t bytes) {
+  most = bytes;
+}
+
+std::size_t limit() {
+  return most;
+}
+
+std::size_t resident() {
+  // The second number of /proc/self/statm, in pages; read without an allocation.
+  char text[128];
+  const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  const ssize_t n = read(file, text, sizeof text - 1);
+  close(file);
+  if (n <= 0) return 0;
+  text[n] = '\0';
+  char *next = text;
+  std::strtoul(next, &next, 10);
+  return std::strtoul(next, nullptr, 10) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+Share::Share(std::size_t bytes, std::size_t most_of_request) : bytes_(bytes < SMALL ? 0 : bytes) {
+  if (bytes_ == 0) return;
+  const std::size_t all = limit();
+  const std::size_t least = all > 0 ? std::min(most_of_request, all / 2) : most_of_request;
+  if (bytes_ > least)
+    throw Error("too large: the request would take about " + megabytes(bytes_) + ", more than the " + megabytes(least) +
+                " that one may take (~max_request_mb, half of ~memory_limit_mb)");
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (all > 0 && resident() + reserved + bytes_ > all) {
+    malloc_trim(0);
+    const std::size_t taken = resident() + reserved;
+    if (taken + bytes_ > all)
+      throw Busy("busy: the request would take about " + megabytes(bytes_) + ", and " + megabytes(taken) +
+                 " of ~memory_limit_mb = " + megabytes(all) + " are taken");
+  }
+  reserved += bytes_;
+}
+
+Share::~Share() {
+  if (bytes_ == 0) return;
+  const std::lock_guard<std::mutex> lock(mutex);
+  reserved -= bytes_;
+  if (bytes_ >= LARGE) untidy = true;
+}
+
+void tidy() {
+  if (untidy.exchange(false)) malloc_trim(0);
+}
+
+Reading::Reading(std::size_t wire_bytes) {
+  allowance = {true, MOST_TIMES_WIRE * wire_bytes + MEGABYTE};
+}
+
+Reading::~Reading() {
+  allowance = {};
+}
+
+} // namespace curve_proximity::memory

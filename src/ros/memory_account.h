@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** One account of the process's memory: what requests are going to take is entered before it is made. */
+#ifndef CURVE_PROXIMITY_ROS_MEMORY_ACCOUNT_H
+#define CURVE_PROXIMITY_ROS_MEMORY_ACCOUNT_H
+
+#include <cstddef>
+
+namespace curve_proximity::memory {
+
+/** [bytes] The most that the process may take; 0: no limit. */
+void setLimit(std::size_t bytes);
+std::size_t limit();
+
+/** [bytes] What the process has resident now. */
+std::size_t resident();
+
+/** Bytes of the account, for as long as this lives. Below a megabyte nothing is entered. */
+class Share {
+ public:
+  /** most: of one request; half of the limit, where that is less. Throws Error where a request is larger than that, and
+   *  Busy where the account has no room for it now. Both name the figures. */
+  Share(std::size_t bytes, std::size_t most);
+  ~Share();
+
+  Share(const Share &) = delete;
+  Share &operator=(const Share &) = delete;
+
+ private:
+  std::size_t bytes_;
+};
+
+/** Gives memory back to the system, if a large share has ended since the last call. */
+void tidy();
+
+/** What this thread may still allocate while a request is read; see Reading. */
+struct Allowance {
+  bool limited = false;
+  std::size_t left = 0; /**< [bytes] */
+};
+extern thread_local Allowance allowance;
+
+/** This thread is at a request: an allocation that the limit forbids may throw std::bad_alloc. */
+extern thread_local bool at_request;
+
+/** While a request of so many bytes is read, this thread allocates a few times as much at most: a count on the wire that
+ *  its bytes do not hold costs nothing. Heeded by curve_proximity_node, whose allocations are counted. */
+class Reading {
+ public:
+  explicit Reading(std::size_t wire_bytes);
+  ~Reading();
+
+  Reading(const Reading &) = delete;
+  Reading &operator=(const Reading &) = delete;
+};
+
+} // namespace curve_proximity::memory
+#endif

@@ -1,0 +1,155 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What one client can make the node hold: requests of honest form and hostile size, under a memory limit. The resident memory
+never goes above the limit and 64 MB, and goes back afterwards. scripts/soak has these at full size."""
+import io
+import os
+import socket
+import struct
+import threading
+import time
+import unittest
+
+import numpy
+import rosgraph
+from curve_proximity.msg import Body, CollisionObject, Curve, ProximityQuery
+from curve_proximity.srv import ApplyScene, ApplySceneRequest, DistanceRequest, Distance
+from helpers import Call, Node, Server, bezier, run, sphere, until
+from hostile import framed, handshake
+
+LIMIT_MB = 300
+ROOM_MB = 64
+LINE = bezier((-1, 0, 1), (1, 0, 1))
+
+
+class Memory(threading.Thread):
+    """The most that a node has resident, looked at all the time."""
+
+    def __init__(self, node):
+        super().__init__(daemon=True)
+        self.node, self.most, self.going = node, 0.0, True
+        self.start()
+
+    def run(self):
+        while self.going:
+            self.most = max(self.most, self.node.resident_mb())
+            time.sleep(0.002)
+
+    def end(self):
+        self.going = False
+        self.join()
+        return self.most
+
+
+class Attacks(unittest.TestCase):
+    def setUp(self):
+        self.node = Node('attacked', memory_limit_mb=LIMIT_MB)
+        self.addCleanup(self.node.end)
+        self.server = Server('/attacked')
+        self.server.replace(sphere('ball', 0.25))
+        self.before = self.node.resident_mb()
+        self.memory = Memory(self.node)
+
+    def assertHeld(self):
+        self.assertTrue(self.node.alive(), self.node.output()[-2000:])
+        row, = self.server.distance(LINE).results
+        self.assertAlmostEqual(row.upper, 0.75, delta=2e-6)
+        self.assertTrue(until(lambda: self.node.resident_mb() < self.before + 40, 10), self.node.resident_mb() - self.before)
+        self.assertLess(self.memory.end(), LIMIT_MB + ROOM_MB)
+
+    def send(self, service, kind, message, copies=1):
+        """The same bytes over as many connections at once; the answers, None where a connection was closed."""
+        buffer = io.BytesIO()
+        message.serialize(buffer)
+        return self.send_bytes(service, kind, buffer.getvalue(), copies)
+
+    def send_bytes(self, service, kind, data, copies=1):
+        address = rosgraph.Master('/test').lookupService('/attacked/' + service).split('//')[1].split(':')
+
+        def call():
+            with socket.create_connection((address[0], int(address[1])), 20) as connection:
+                connection.sendall(handshake(service='/attacked/' + service, md5sum=kind._md5sum))
+                size, = struct.unpack('<I', connection.recv(4, socket.MSG_WAITALL))
+                connection.recv(size, socket.MSG_WAITALL)
+                connection.sendall(framed(data))
+                if connection.recv(1, socket.MSG_WAITALL) != b'\1':
+                    return None
+                size, = struct.unpack('<I', connection.recv(4, socket.MSG_WAITALL))
+                return kind._response_class().deserialize(connection.recv(size, socket.MSG_WAITALL))
+
+        calls = [Call(call) for _ in range(copies)]
+        for one in calls:
+            one.join(60)
+            self.assertIsNotNone(one.ended, 'a client still waits')
+        return [one.response for one in calls]
+
+    def test_one_request_with_a_long_id(self):
+        self.server.apply(*[sphere('ball%d' % i, 0.1, (i, 0, -5)) for i in range(400)])
+        curve = bezier(*((-1, 0, 1), (1, 0, 1)), id='x' * 900000)
+        answer, = self.send('distance', Distance, DistanceRequest(ProximityQuery(curves=[curve], per_object=True)))
+        self.assertFalse(answer.success)
+        self.assertIn('max_name_length', answer.message)
+        self.assertLess(len(answer.message), 300)
+        answer, = self.send('apply_scene', ApplyScene, ApplySceneRequest(objects=[sphere('y' * 900000, 1.0)]))
+        self.assertIn('max_name_length', answer.message)
+        self.assertHeld()
+
+    def test_millions_of_points_in_one_body(self):
+        for copies, points in ((1, 5000000), (4, 1500000)):
+            request = ApplySceneRequest(objects=[CollisionObject(id='big', bodies=[Body(type='points')])])
+            buffer = io.BytesIO()
+            request.serialize(buffer)
+            data = buffer.getvalue()
+            at = self.vertices_at()
+            data = data[:at] + struct.pack('<I', points) + numpy.random.default_rng(1).random((points, 3)).tobytes() + data[at + 4:]
+            answers = self.send_bytes('apply_scene', ApplyScene, data, copies)
+            for answer in answers:
+                if answer is not None:
+                    self.assertFalse(answer.success)
+                    self.assertRegex(answer.message, 'too large|busy|memory')
+            self.assertTrue(any(answers) or copies > 1)
+        self.assertHeld()
+
+    @staticmethod
+    def vertices_at():
+        """Where the count of a body's vertices stands: what one vertex more changes first."""
+        texts = []
+        for n in (0, 1):
+            body = Body(type='points')
+            body.vertices = [bezier((0, 0, 0)).points[0]] * n
+            buffer = io.BytesIO()
+            ApplySceneRequest(objects=[CollisionObject(id='big', bodies=[body])]).serialize(buffer)
+            texts.append(buffer.getvalue())
+        return next(i for i, (a, b) in enumerate(zip(*texts)) if a != b)
+
+    def test_a_flood_of_small_strings_and_claimed_counts(self):
+        # two million empty names take 8 MB on the wire and 64 MB as strings
+        data = io.BytesIO()
+        DistanceRequest(ProximityQuery(curves=[LINE], objects=[''] * 2000000)).serialize(data)
+        self.send_bytes('distance', Distance, data.getvalue(), 6)
+        for count in (1 << 20, 1 << 26, (1 << 32) - 1):
+            self.assertEqual(self.send_bytes('distance', Distance, struct.pack('<I', count) + b'\0' * 60, 3), [None] * 3)
+        self.assertHeld()
+
+    def test_connections_that_announce_gigabytes_and_send_little(self):
+        address = rosgraph.Master('/test').lookupService('/attacked/distance').split('//')[1].split(':')
+        opened = []
+        for size in [900000000] * 8 + [50000000] * 8:
+            connection = socket.create_connection((address[0], int(address[1])), 5)
+            connection.sendall(handshake(service='/attacked/distance', md5sum=Distance._md5sum) + struct.pack('<I', size))
+            opened.append(connection)
+        time.sleep(0.3)
+        for connection in opened:
+            connection.settimeout(5)
+            try:
+                connection.sendall(b'\1' * 20000000)
+            except OSError:
+                pass  # it was closed, or is not read
+        self.assertTrue(self.server.distance(LINE).success)
+        for connection in opened:
+            connection.close()
+        self.assertHeld()
+
+
+if __name__ == '__main__':
+    run('attacks')

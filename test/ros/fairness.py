@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Nothing that one client does makes another one wait: small requests go between large ones, what waits for tf2 holds nobody up,
+budgets count from the arrival, and what cannot be begun in time is told to come back. bench/ros measures the ratios."""
+import statistics
+import threading
+import time
+import unittest
+
+from helpers import Call, Node, Server, bezier, ring_and_shells, run, sphere
+from curve_proximity.msg import CollisionObject
+
+LINE = bezier((-1, 0, 1), (1, 0, 1))
+
+
+class Fairness(unittest.TestCase):
+    def begin(self, name, **parameters):
+        node = Node(name, **parameters)
+        self.addCleanup(node.end)
+        return Server('/' + name)
+
+    def times(self, server, count, **fields):
+        out = []
+        for _ in range(count):
+            begin = time.monotonic()
+            response = server.distance(LINE, objects=['ball'], **fields)
+            self.assertTrue(response.success, response.message)
+            out.append(time.monotonic() - begin)
+        return out
+
+    def crowd(self, name, clients, work):
+        """So many clients that do the same again and again; a function that ends them and returns what they got."""
+        going, got = threading.Event(), []
+        going.set()
+
+        def one():
+            server = Server('/' + name)
+            while going.is_set():
+                got.append(work(server))
+        calls = [Call(one) for _ in range(clients)]
+
+        def end():
+            going.clear()
+            for call in calls:
+                call.join(20)
+                self.assertIsNone(call.failure)
+                self.assertIsNotNone(call.ended)
+            return got
+        return end
+
+    def test_a_small_request_goes_between_large_ones_even_with_one_thread(self):
+        for name, threads in (('fair_one', 1), ('fair_four', 4)):
+            server = self.begin(name, threads=threads, budget_ms=600)
+            ring, balls, fields = ring_and_shells()
+            server.replace(sphere('ball', 0.25), *balls)
+            end = self.crowd(name, 6, lambda s: s.distance(ring, **fields))
+            time.sleep(0.5)
+            times = self.times(server, 30)
+            answers = end()
+            # each large one takes 600 ms and more; six of them, first come first served, would be seconds
+            self.assertLess(statistics.median(times), 0.1)
+            self.assertLess(max(times), 0.5)
+            self.assertTrue(all(a.success for a in answers))
+            stopped = {row.status for a in answers for row in a.results}
+            self.assertIn('stopped', stopped)
+
+    def test_what_waits_for_tf_holds_nobody_up(self):
+        server = self.begin('patient', threads=2, tf_timeout=0.4)
+        server.replace(sphere('ball', 0.25))
+        lost = bezier((0, 0, 1), (1, 0, 1), frame='nowhere')
+        end = self.crowd('patient', 12, lambda s: s.distance(lost))
+        times = self.times(server, 40)
+        self.assertLess(statistics.median(times), 0.1)
+        self.assertTrue(all(not a.success and "'nowhere'" in a.message for a in end()))
+
+    def test_the_budget_counts_from_the_arrival_and_what_waits_too_long_is_busy(self):
+        server = self.begin('hurried', threads=1, budget_ms=400, max_wait_ms=30)
+        ring, balls, fields = ring_and_shells()
+        server.replace(sphere('ball', 0.25), *balls)
+        began = time.monotonic()
+        calls = [Call(lambda: Server('/hurried').distance(ring, **fields)) for _ in range(4)]
+        for call in calls:
+            call.join(20)
+            self.assertTrue(call.response.success or call.response.status == 'busy', call.response)
+            self.assertLess(call.ended - began, 4.0)
+        # with so little room, the further ones are turned away
+        full = self.begin('full', threads=1, max_waiting=2, budget_ms=800)
+        full.replace(sphere('ball', 0.25), *balls)
+        calls = [Call(lambda: Server('/full').distance(ring, **fields)) for _ in range(8)]
+        for call in calls:
+            call.join(20)
+        busy = [c.response for c in calls if c.response.status == 'busy']
+        self.assertTrue(busy)
+        for response in busy:
+            self.assertFalse(response.success)
+            self.assertIn('busy', response.message)
+        self.assertTrue(full.distance(LINE, objects=['ball']).success)
+
+    def test_queries_and_small_changes_do_not_wait_for_a_large_object(self):
+        server = self.begin('building', threads=1)
+        server.replace(sphere('ball', 0.25))
+        vertices = [bezier((i % 100, i // 100, 50.0)).points[0] for i in range(150000)]
+        large = CollisionObject(id='large')
+        from curve_proximity.msg import Body
+        large.bodies = [Body(type=Body.POINTS, vertices=vertices)]
+        other = Server('/building')
+        call = Call(lambda: other.apply(large))
+        times = []
+        while call.is_alive():
+            times += self.times(server, 1)
+            self.assertTrue(server.apply(sphere('small', 0.1, (5, 5, 5))).success)
+        self.assertTrue(call.response.success, call.response.message)
+        self.assertLess(max(times), 1.0)
+
+
+if __name__ == '__main__':
+    run('fairness')

@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Nothing is clear by accident: which scene an answer is about, how old its data is, and what a restart leaves."""
+import math
+import os
+import signal
+import struct
+import tempfile
+import unittest
+
+import rospy
+from curve_proximity.msg import AttachedCollisionObject, CollisionObject
+from dynamic_reconfigure.client import Client as Reconfigure
+from helpers import Node, Server, bezier, joints, run, sphere, thing, until
+from sensor_msgs.msg import JointState, PointCloud2, PointField
+
+LINE = bezier((-1, 0, 1), (1, 0, 1))
+ARM = os.path.dirname(os.path.abspath(__file__)) + '/data/arm.urdf'
+
+
+def cloud(*points, stamp=None):
+    message = PointCloud2(height=1, width=len(points), point_step=12, row_step=12 * len(points))
+    message.header.stamp = stamp or rospy.Time.now()
+    message.fields = [PointField(name, 4 * i, PointField.FLOAT32, 1) for i, name in enumerate('xyz')]
+    message.data = b''.join(struct.pack('<3f', *p) for p in points)
+    return message
+
+
+class Known(unittest.TestCase):
+    def begin(self, name, **parameters):
+        node = Node(name, **parameters)
+        self.addCleanup(node.end)
+        return node, Server('/' + name)
+
+    def publisher(self, topic, kind):
+        publisher = rospy.Publisher(topic, kind, queue_size=5)
+        self.assertTrue(until(publisher.get_num_connections, 10))
+        return publisher
+
+    def test_every_answer_says_which_scene_it_is_about_and_a_request_may_demand_one(self):
+        _, server = self.begin('versions')
+        nothing = server.tolerance(LINE, 0.1)
+        self.assertEqual((nothing.results[0].verdict, nothing.scene.objects), ('clear', 0))
+        self.assertIn('nothing', nothing.warnings[0])
+        applied = server.apply(sphere('ball', 0.25))
+        answer = server.distance(LINE, scene_epoch=applied.scene.epoch, scene_version=applied.scene.version)
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual((answer.scene.epoch, answer.scene.version, answer.scene.objects, answer.scene.links),
+                         (applied.scene.epoch, applied.scene.version, 1, 0))
+        self.assertEqual((answer.warnings, answer.scene.sensors), ([], []))
+        self.assertLess(abs(answer.scene.epoch.to_sec() - rospy.Time.now().to_sec()), 60)
+        for fields, word in ((dict(scene_version=applied.scene.version + 1), 'scene_version'),
+                             (dict(scene_epoch=rospy.Time(5)), 'scene_epoch')):
+            refused = server.distance(LINE, **fields)
+            self.assertFalse(refused.success)
+            self.assertIn(word, refused.message)
+        self.assertEqual(server.scene().scene.version, applied.scene.version)
+
+    def test_a_cloud_without_a_point_makes_its_object_unknown_and_an_old_one_stale(self):
+        _, server = self.begin('seeing', max_age=0.6)
+        clouds = self.publisher('/seeing/cloud', PointCloud2)
+        server.replace(sphere('ball', 0.25))
+
+        def row(verdicts=True, **fields):
+            response = server.tolerance(LINE, 0.1, **fields)
+            self.assertTrue(response.success, response.message)
+            return response.results[0], response
+
+        clouds.publish(cloud((0, 0, -3)))
+        self.assertTrue(until(lambda: server.scene().scene.sensors, 5))
+        self.assertEqual(row()[0].verdict, 'clear')
+        clouds.publish(cloud((math.nan, 0, 0)))
+        self.assertTrue(until(lambda: server.scene().scene.sensors[0].unknown, 5))
+        unknown, response = row()
+        self.assertEqual((unknown.verdict, unknown.status, unknown.lower), ('undecided', 'unknown', 0.0))
+        self.assertIn("'cloud'", unknown.message)
+        self.assertIn("'cloud'", response.warnings[0])
+        self.assertEqual({o.id for o in server.scene().objects}, {'ball', 'cloud'})  # it keeps its last shape
+        self.assertEqual(row(objects=['ball'])[0].verdict, 'clear')  # it is not about the cloud
+        distance = server.distance(LINE).results[0]
+        self.assertEqual((distance.lower, distance.status), (0.0, 'unknown'))
+        clouds.publish(cloud((0, 0, -3)))
+        self.assertTrue(until(lambda: row()[0].verdict == 'clear', 5))
+        self.assertTrue(until(lambda: row()[0].status == 'stale', 5))
+        stale = row()[0]
+        self.assertEqual((stale.verdict, stale.lower), ('undecided', 0.0))
+        self.assertIn('max_age', stale.message)
+        clouds.publish(cloud((0, 0, -3), stamp=rospy.Time.now() - rospy.Duration(100)))  # the stamp counts, too
+        self.assertTrue(until(lambda: server.scene().scene.sensors[0].age > 99, 5))
+        self.assertEqual(row()[0].status, 'stale')
+        server.apply(thing('cloud', operation=CollisionObject.REMOVE))  # somebody says so
+        self.assertEqual(row()[0].verdict, 'clear')
+
+    def test_with_empty_cloud_clears_the_object_goes(self):
+        _, server = self.begin('clearing', empty_cloud_clears=True)
+        clouds = self.publisher('/clearing/cloud', PointCloud2)
+        clouds.publish(cloud((0, 0, -3)))
+        self.assertTrue(until(lambda: server.scene().objects, 5))
+        clouds.publish(cloud())
+        self.assertTrue(until(lambda: not server.scene().objects, 5))
+        self.assertEqual(server.tolerance(LINE, 0.1).results[0].verdict, 'clear')
+
+    def test_joint_states_and_their_age(self):
+        with open(ARM) as text:
+            rospy.set_param('/robot_description', text.read())
+        self.addCleanup(rospy.delete_param, '/robot_description')
+        _, server = self.begin('jointed', max_age=0.5, fixed_frame='base')
+        states = self.publisher('/jointed/joint_states', JointState)
+        server.replace(sphere('ball', 0.1, (0, 0, 9)))
+        states.publish(joints(turn=0.0))
+        fresh = until(lambda: (lambda r: r.success and r)(server.tolerance([], 0.01, robot_state=True)), 5)
+        self.assertEqual((fresh.results[0].id, fresh.results[0].kind, fresh.results[0].verdict),
+                         ('state', 'environment', 'clear'))
+        self.assertLess(fresh.scene.joint_state_age, 0.5)
+        stale = until(lambda: (lambda r: r.results[0].status == 'stale' and r)(server.tolerance([], 0.01, robot_state=True)), 5)
+        self.assertEqual(stale.results[0].verdict, 'undecided')
+        self.assertGreater(stale.scene.joint_state_age, 0.5)
+
+    def test_the_scene_survives_a_crash_and_a_lost_one_is_said(self):
+        folder = tempfile.mkdtemp()
+        path = folder + '/kept.scene'
+        node, server = self.begin('kept', state_file=path)
+        clouds = self.publisher('/kept/cloud', PointCloud2)
+        before = server.replace(sphere('ball', 0.25), sphere('other', 0.1, (5, 5, 5), padding=0.01)).scene
+        clouds.publish(cloud((0, 0, -3)))
+        self.assertTrue(until(lambda: server.scene().scene.sensors, 5))
+        self.assertTrue(until(lambda: os.path.exists(path) and b'cloud' in open(path, 'rb').read(), 5))
+        again, server = self.crash(node, 'kept', state_file=path)
+        scene = server.scene()
+        self.assertEqual({o.id for o in scene.objects}, {'ball', 'other'})
+        answer = server.distance(LINE, objects=['ball'])
+        self.assertAlmostEqual(answer.results[0].upper, 0.75, delta=2e-6)
+        self.assertNotEqual(answer.scene.epoch, before.epoch)
+        self.assertEqual(answer.warnings, [])
+        self.assertEqual(server.tolerance(LINE, 0.1).results[0].status, 'unknown')  # the cloud has not come yet
+
+        # the file is cut short: what is lost is said, in every answer until there is a scene again
+        with open(path, 'r+b') as file:
+            file.truncate(os.path.getsize(path) - 10)
+        _, server = self.crash(again, 'kept', state_file=path)
+        self.assertEqual(server.scene().objects, [])
+        self.assertTrue(any('lost' in w for w in server.distance(LINE).warnings))
+        self.assertTrue(server.apply(sphere('ball', 0.25)).success)
+        self.assertEqual(server.distance(LINE).warnings, [])
+
+    def crash(self, node, name, **parameters):
+        """The node dies, and another one of its name takes its place, as by a respawn: the master keeps parameters."""
+        node.process.send_signal(signal.SIGKILL)
+        node.wait(5)
+        kept = rospy.get_param('/%s/last_scene' % name)
+        again = Node(name, **parameters, last_scene=kept)
+        self.addCleanup(again.end)
+        return again, until(lambda: self.answering(again, name), 10)
+
+    @staticmethod
+    def answering(node, name):
+        try:
+            server = Server('/' + name)
+            server.scene()
+            return server
+        except (rospy.ServiceException, rospy.ROSException):
+            return None
+
+    def test_dynamic_reconfigure_refuses_what_makes_no_sense(self):
+        _, server = self.begin('tuned')
+        server.replace(sphere('ball', 0.25))
+        client = Reconfigure('/tuned', timeout=10)
+        for name, value in (('epsilon', math.nan), ('budget_ms', math.nan), ('delta', math.nan), ('epsilon', -1.0),
+                            ('budget_ms', -5.0), ('delta', -1.0), ('threads', 0), ('threads', 1000), ('max_nodes', -3)):
+            kept = client.get_configuration()[name]
+            self.assertEqual(client.update_configuration({name: value})[name], kept, (name, value))
+        begin = rospy.get_rostime().to_sec()
+        for threads in (256, 1, 64):
+            self.assertEqual(client.update_configuration({'threads': threads})['threads'], threads)
+        self.assertLess(rospy.get_rostime().to_sec() - begin, 1.0)
+        row, = server.distance(LINE).results
+        self.assertEqual(row.status, 'ok')
+        self.assertEqual(client.update_configuration({'epsilon': 1e-3})['epsilon'], 1e-3)
+
+
+if __name__ == '__main__':
+    run('known')
