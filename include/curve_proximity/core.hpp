@@ -282,6 +282,12 @@ inline BodyHandle makeMesh(const Eigen::Matrix3Xd &vertices, const Eigen::Matrix
   });
 }
 
+/** A mesh without its inside; it shares the triangles and keeps the mesh alive. */
+inline BodyHandle makeSurface(const BodyHandle &mesh) {
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_surface(mesh.get(), w, b); }, mesh);
+}
+
 /** A mesh, point cloud or set of boxes with its convex hull as a fast first test. It keeps both alive.
  *  excess: no point of the mesh is farther than this from the hull [m], >= 0. */
 inline BodyHandle makeLod(const BodyHandle &hull, double excess, const BodyHandle &mesh) {

@@ -13,6 +13,10 @@
 
 namespace curve_proximity {
 
+/** The folder in which meshes that were read once are kept: curve_proximity/meshes in $XDG_CACHE_HOME or ~/.cache; ""
+ *  where neither is known. */
+std::string userCacheDir();
+
 /** Where mesh and octree files are searched, and how much memory a body may take. */
 struct ResourceOptions {
   /** The folder of paths without a scheme. If empty, only absolute paths are accepted. */
@@ -24,6 +28,26 @@ struct ResourceOptions {
 
   /** [bytes] The largest size of the body of one mesh, point cloud or octree. */
   std::size_t memory_limit = std::numeric_limits<std::size_t>::max();
+
+  /** Where meshes that were read, and their convex hulls, are kept for the next time; "": nowhere. The files are found
+   *  by the content of the mesh file, its scale and the version of this library. Files that are damaged or belong to
+   *  another user are ignored and made again. At most 1 GiB is kept. */
+  std::string cache_dir = userCacheDir();
+};
+
+/** How long it took to load one mesh file. */
+struct MeshTiming {
+  /** Where the mesh came from. */
+  enum Source {
+    FILE,      /**< the file, read by libassimp */
+    CACHE_DIR, /**< ResourceOptions::cache_dir */
+    MEMORY     /**< this process had read the same content before */
+  };
+  std::string file;   /**< its path */
+  Source from = FILE; /**< where it came from */
+  double read = 0.0;  /**< [s] for vertices and triangles */
+  double hull = 0.0;  /**< [s] for the convex hull, and for keeping it */
+  double tree = 0.0;  /**< [s] for the bounding-volume hierarchy over the triangles */
 };
 
 /** The file of a URI: package://NAME/path, file:///path, an absolute path, or a path relative to base_dir.

@@ -47,6 +47,7 @@ const std::map<std::string, Option> &options() {
       {"--per-object", {false, {Action::CURVES}}},
       {"--max-lod", {true, {Action::CURVES, Action::PAIRS}}},
       {"--skipped", {false, {Action::CURVES, Action::PAIRS}}},
+      {"--timings", {false, {Action::CURVES}}},
       {"--out", {true, {Action::CURVES, Action::PAIRS, Action::CONSTRAINTS}}},
   };
   return table;
@@ -184,7 +185,8 @@ void readQuery(const Words &words, const Command &command, Query &query) {
 
 /* Curves against curves: there is no scene, and a row has one answer. */
 void readAgainst(const Words &words, Arguments &out) {
-  for (const char *name : {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--max-lod"}) {
+  for (const char *name :
+       {"--scene", "--robot", "--srdf", "--state", "--per-object", "--skipped", "--timings", "--max-lod"}) {
     if (words.has(name))
       throw BadUsage("--against takes no " + std::string(name) + ": curves are measured against curves");
   }
@@ -288,6 +290,7 @@ Arguments parseArguments(const std::vector<std::string> &words) {
     throw BadUsage("--certificate takes no --per-object: a certificate is about all objects at once");
   }
   out.skipped = split.has("--skipped");
+  out.timings = split.has("--timings");
   out.threads = std::max(1u, std::thread::hardware_concurrency());
   if (split.has("--threads")) out.threads = static_cast<std::size_t>(readCount(split, "--threads", kMostThreads));
   return out;
@@ -335,6 +338,7 @@ cprox check     FILE  (the inputs of the query)  what the certificates in FILE p
   --max-lod R       the finest model that may answer: mesh (default), hull (meshes by their convex hulls) or sphere (bodies
                     by their bounding spheres); a coarser one is never farther away
   --skipped         tell on standard error what takes no part, and why
+  --timings         tell on standard error how long loading the robot and the scene takes, mesh by mesh
   --out FILE        the results, instead of standard output
   --replace         'send': the file takes the place of the node's scene (default, unless the file says is_diff: true)
   --add             'send': the file is added to the node's scene

@@ -34,6 +34,7 @@ struct Arguments {
   std::string out;             /**< file of the results; empty: standard output */
   std::size_t threads = 1;
   bool skipped = false; /**< tell on standard error what takes no part, and why */
+  bool timings = false; /**< tell on standard error how long loading takes */
 };
 
 /** Reads the words after the program's name. Throws BadUsage with one line for words, options and values that are not

@@ -81,6 +81,7 @@ int answerCurves(const Arguments &arguments, Console &console) {
     warnOfUnprovable(unprovable(targets), warnings);
   }
   console.warn(warnings);
+  if (arguments.timings) tellTimings(world.timings, console);
   if (arguments.skipped) tellSkipped(world.skipped, console);
 
   /* row by row */

@@ -10,6 +10,10 @@ void tellSkipped(const std::vector<std::string> &sentences, Console &console) {
   if (sentences.empty()) console.say("skipped: nothing");
 }
 
+void tellTimings(const std::vector<std::string> &sentences, Console &console) {
+  for (const std::string &sentence : sentences) console.say("timing: " + sentence);
+}
+
 void noteVerdict(const ResultRow &row, Outcome &outcome) {
   if (!row.has_verdict || row.result.status < 0) return;
   outcome.violated = outcome.violated || row.result.verdict == CPROX_VERDICT_VIOLATED;

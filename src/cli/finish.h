@@ -12,6 +12,9 @@
 
 namespace curve_proximity::cli {
 
+/** --timings: how long loading took. */
+void tellTimings(const std::vector<std::string> &sentences, Console &console);
+
 /** --skipped: what takes no part. */
 void tellSkipped(const std::vector<std::string> &sentences, Console &console);
 

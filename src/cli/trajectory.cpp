@@ -85,6 +85,7 @@ int answerTrajectory(const Arguments &arguments, Console &console) {
     if (arguments.self) warnOfUnprovable(unprovable(motion, true, query), warnings);
   }
   console.warn(warnings);
+  if (arguments.timings) tellTimings(world.timings, console);
   if (arguments.skipped) {
     tellSkipped(world.skipped, console);
     tellSkipped(motion.skipped(), console);

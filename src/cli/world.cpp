@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "world.h"
 
+#include <chrono>
+#include <cstdio>
 #include <set>
 
 #include "../scene/yaml/frames.h"
@@ -152,11 +154,46 @@ std::vector<std::string> skippedOf(const SceneFile &file, const PlacedRobot &rob
   return out;
 }
 
+std::string milliseconds(double seconds) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.1f ms", 1e3 * seconds);
+  return text;
+}
+
+const char *sourceName(MeshTiming::Source from) {
+  switch (from) {
+    case MeshTiming::CACHE_DIR: return "the cache directory";
+    case MeshTiming::MEMORY: return "memory";
+    case MeshTiming::FILE: break;
+  }
+  return "the file";
+}
+
+/* One sentence a mesh, and one for all. */
+std::vector<std::string> timingsOf(const PlacedRobot &robot, double robot_seconds, double all_seconds) {
+  std::vector<std::string> out;
+  if (robot.robot) {
+    for (const MeshTiming &t : robot.robot->meshTimings())
+      out.push_back("mesh '" + t.file + "': " + milliseconds(t.read) + " to read it from " + sourceName(t.from) + ", " +
+                    milliseconds(t.hull) + " for the hull, " + milliseconds(t.tree) + " for the triangles");
+    out.push_back("robot: " + milliseconds(robot_seconds));
+  }
+  out.push_back("robot and scene: " + milliseconds(all_seconds));
+  return out;
+}
+
 } // namespace
 
 World readWorld(const Arguments &arguments, Warnings &warnings) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const Clock::time_point start = Clock::now();
   const SceneFile file = arguments.scene.empty() ? SceneFile() : readScene(arguments.scene, warnings);
+  const Clock::time_point robot_start = Clock::now();
   const PlacedRobot robot = placeRobot(arguments, file, warnings);
+  const double robot_seconds = since(robot_start);
   const Frames frames(robot.fixed, file.transforms, robot.links_of_scene, warnings);
 
   /* mesh files of the scene are relative to its folder */
@@ -170,7 +207,13 @@ World readWorld(const Arguments &arguments, Warnings &warnings) {
     throw BadUsage(arguments.scene + ": " + e.what());
   }
   warnOfOpenMeshes(*scene.snapshot(), warnings);
-  return {scene.snapshot(), robot.links_now, robot.scene_joints, robot.state, robot.srdf, skippedOf(file, robot)};
+  return {scene.snapshot(),
+          robot.links_now,
+          robot.scene_joints,
+          robot.state,
+          robot.srdf,
+          skippedOf(file, robot),
+          timingsOf(robot, robot_seconds, since(start))};
 }
 
 } // namespace curve_proximity::cli

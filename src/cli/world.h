@@ -23,6 +23,7 @@ struct World {
   JointPositions state;             /**< --state */
   Srdf srdf;                        /**< empty without --srdf */
   std::vector<std::string> skipped; /**< what takes no part, a sentence each */
+  std::vector<std::string> timings; /**< how long loading took, a sentence each */
 };
 
 /** Reads --scene, --robot, --srdf and --state. Throws BadUsage with one line. */

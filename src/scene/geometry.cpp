@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include <curve_proximity/geometry.hpp>
@@ -115,19 +116,12 @@ void checkConstraints(const ShapeDescription &shape) {
     throw Error(std::string(shapeTypeName(shape.type)) + " takes no terms, planes or quadrics");
 }
 
-Geometry makeMesh(const ShapeDescription &shape, const ResourceOptions &options) {
-  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
-  if (!shape.dimensions.empty()) scale = Eigen::Map<const Eigen::Vector3d>(shape.dimensions.data());
+Geometry makeMesh(const ShapeDescription &shape, const ResourceOptions &options, const MeshLoader &loader) {
+  const Eigen::Vector3d scale = meshScale(shape);
   if (shape.resource.empty()) {
     return makeMeshGeometry({shape.vertices, shape.triangles}, scale, shape.solid, options.memory_limit);
   }
-
-  const MeshData data = readMesh(resolveResource(shape.resource, options));
-  try {
-    return makeMeshGeometry(data, scale, shape.solid, options.memory_limit);
-  } catch (const Error &error) {
-    throw Error("mesh '" + shape.resource + "': " + error.what(), error.status());
-  }
+  return loader({shape.resource, resolveResource(shape.resource, options), scale, shape.solid});
 }
 
 /* Says of which file it speaks, where there is one. */
@@ -235,14 +229,33 @@ Boxes octreeBoxes(const ShapeDescription &shape, const ResourceOptions &options)
   return ofOctree(shape, [&] { return cellBoxes(octree, shape.unknown_is_occupied, options.memory_limit); });
 }
 
-Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options) {
+Eigen::Vector3d meshScale(const ShapeDescription &shape) {
+  if (shape.dimensions.empty()) return Eigen::Vector3d::Ones();
+  return Eigen::Map<const Eigen::Vector3d>(shape.dimensions.data());
+}
+
+std::string userCacheDir() {
+  const auto variable = [](const char *name) {
+    const char *text = std::getenv(name);
+    return std::string(text && text[0] == '/' ? text : ""); /* relative ones are to be ignored: XDG */
+  };
+  const std::string xdg = variable("XDG_CACHE_HOME"), home = variable("HOME");
+  if (!xdg.empty()) return xdg + "/curve_proximity/meshes";
+  return home.empty() ? "" : home + "/.cache/curve_proximity/meshes";
+}
+
+Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options, const MeshLoader &loader) {
   checkDimensions(shape);
   checkVertices(shape);
   checkConstraints(shape);
-  if (shape.type == ShapeType::MESH) return makeMesh(shape, options);
+  if (shape.type == ShapeType::MESH) return makeMesh(shape, options, loader);
   Geometry out;
   out.body = out.hull = out.surface = makeBody(shape, options);
   return out;
+}
+
+Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options) {
+  return makeGeometry(shape, options, [&](const MeshRequest &request) { return loadMeshGeometry(request, options); });
 }
 
 } // namespace curve_proximity

@@ -2,34 +2,24 @@
 #include "mesh.h"
 
 #include <algorithm>
-#include <limits>
+#include <array>
+#include <chrono>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include <geometric_shapes/bodies.h>
-
+#include "hull.h"
+#include "mesh_cache.h"
 #include "mesh_process.h"
 
 namespace curve_proximity {
 namespace {
 
-using Points = std::vector<Eigen::Vector3d>;
+using Clock = std::chrono::steady_clock;
 
-/* Below so many vertices a hull computation costs more than it saves. */
-constexpr std::size_t FEW_VERTICES = 16;
-
-/* Vertices that the hull computation dropped may stand out of the hull by this fraction of the mesh's size: then they
- * are covered by Geometry::excess. Farther ones are taken back. */
-constexpr double DROPPED_TOLERANCE = 1e-12;
-
-/* A mesh whose thickness is below this fraction of its size has no hull that qhull could compute. */
-constexpr double FLATNESS = 1e-9;
-
-/* Accuracy of cprox_body_nearest(), per unit of |point| + size (cprox/body.h). */
-constexpr double NEAREST_ROUNDING = 64.0 * std::numeric_limits<double>::epsilon() / 2.0;
-
-void checkTriangles(const MeshData &mesh) {
+void checkMesh(const MeshData &mesh, const Eigen::Vector3d &scale) {
+  if (!scale.allFinite() || (scale.array() == 0.0).any()) throw Error("mesh scale must be finite and not 0");
   const Eigen::Index n = mesh.vertices.cols();
   if (mesh.triangles.cols() == 0) throw Error("mesh has no triangle");
   for (Eigen::Index k = 0; k < mesh.triangles.size(); ++k) {
@@ -37,6 +27,10 @@ void checkTriangles(const MeshData &mesh) {
     if (index >= 0 && index < n) continue;
     throw Error("mesh triangle " + std::to_string(k / 3) + " uses vertex " + std::to_string(index) +
                 ", but there are " + std::to_string(n) + " vertices");
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Vector3d scaled = mesh.vertices.col(i).cwiseProduct(scale);
+    if (!scaled.allFinite()) throw Error("mesh vertex " + std::to_string(i) + " is not finite");
   }
 }
 
@@ -46,15 +40,11 @@ Points usedVertices(const MeshData &mesh, const Eigen::Vector3d &scale) {
   for (Eigen::Index k = 0; k < mesh.triangles.size(); ++k) {
     used[static_cast<std::size_t>(mesh.triangles.data()[k])] = true;
   }
-
   Points points;
   for (std::size_t i = 0; i < used.size(); ++i) {
     const Eigen::Vector3d vertex = mesh.vertices.col(static_cast<Eigen::Index>(i));
-    const Eigen::Vector3d scaled = vertex.cwiseProduct(scale);
-    if (!scaled.allFinite()) throw Error("mesh vertex " + std::to_string(i) + " is not finite");
-    if (used[i]) points.push_back(scaled);
+    if (used[i]) points.push_back(vertex.cwiseProduct(scale));
   }
-
   const auto key = [](const Eigen::Vector3d &p) { return std::make_tuple(p.x(), p.y(), p.z()); };
   std::sort(points.begin(), points.end(),
             [&](const Eigen::Vector3d &a, const Eigen::Vector3d &b) { return key(a) < key(b); });
@@ -62,112 +52,127 @@ Points usedVertices(const MeshData &mesh, const Eigen::Vector3d &scale) {
   return points;
 }
 
-/* The farthest point by a measure, and how far. */
-template <typename Measure>
-std::pair<Eigen::Vector3d, double> farthest(const Points &points, Measure measure) {
-  std::pair<Eigen::Vector3d, double> best(points.front(), -1.0);
-  for (const Eigen::Vector3d &p : points) {
-    const double d = measure(p);
-    if (d > best.second) best = {p, d};
+Geometry geometryOf(const MeshData &mesh, const HullPoints &hull_points, const Eigen::Vector3d &scale, bool solid,
+                    std::size_t memory_limit) {
+  const BodyHandle hull = polytopeOf(hull_points.kept);
+  const Eigen::Matrix3Xd vertices = scale.asDiagonal() * mesh.vertices;
+  const BodyHandle triangles =
+      makeMesh(vertices, mesh.triangles, solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE, memory_limit);
+  const bool has_inside = cprox_body_get_info(triangles.get()).is_solid;
+
+  Geometry out;
+  out.body = makeLod(hull, hull_points.excess, triangles);
+  out.surface = has_inside ? makeLod(hull, hull_points.excess, makeSurface(triangles)) : out.body;
+  out.hull = hull;
+  out.hull_excess = hull_points.excess;
+  out.is_mesh = true;
+  out.is_open = solid && !has_inside;
+  return out;
+}
+
+Digest keyOfFile(const Digest &content, const Eigen::Vector3d &scale) {
+  return keyOf("file").add(content.data(), content.size()).add(scale.data(), 3 * sizeof(double)).finish();
+}
+
+Digest keyOfArrays(const MeshData &mesh, const Eigen::Vector3d &scale) {
+  const std::array<Eigen::Index, 2> counts = {mesh.vertices.cols(), mesh.triangles.cols()};
+  return keyOf("arrays")
+      .add(counts.data(), sizeof counts)
+      .add(mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.size()) * sizeof(double))
+      .add(mesh.triangles.data(), static_cast<std::size_t>(mesh.triangles.size()) * sizeof(int))
+      .add(scale.data(), 3 * sizeof(double))
+      .finish();
+}
+
+const std::string &readerProgram() {
+  static const std::string program = meshReaderProgram();
+  return program;
+}
+
+/* Errors say of which mesh they speak. */
+template <class Work>
+auto ofMesh(const std::string &name, Work work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const Error &error) {
+    throw Error("mesh '" + name + "': " + error.what(), error.status());
   }
-  return best;
 }
 
-/* Is there no thickness to speak of? By the simplex of points that are each farthest from those before. */
-bool isFlat(const Points &points) {
-  const Eigen::Vector3d a = points.front();
-  const auto [b, length] = farthest(points, [&](const Eigen::Vector3d &p) { return (p - a).norm(); });
-  if (!(length > 0.0)) return true;
-  const Eigen::Vector3d along = (b - a) / length;
-  const auto [c, width] = farthest(points, [&](const Eigen::Vector3d &p) { return along.cross(p - a).norm(); });
-  if (!(width > FLATNESS * length)) return true;
-  const Eigen::Vector3d normal = along.cross(c - a) / width;
-  const auto [d, thickness] = farthest(points, [&](const Eigen::Vector3d &p) { return std::abs(normal.dot(p - a)); });
-  (void)d;
-  return !(thickness > FLATNESS * length);
+/* What is kept of a file, or its mesh without the hull. */
+struct Found {
+  PreparedMeshPtr kept;
+  std::shared_ptr<PreparedMesh> read;
+  std::optional<Digest> key; /* of what may be kept */
+};
+
+Found find(const MeshRequest &request, const std::string &cache_dir, MeshTiming &timing) {
+  const MeshFile file(request.file);
+  Found out;
+  if (file.digest()) out.key = keyOfFile(*file.digest(), request.scale);
+  if (out.key && (out.kept = recallMesh(*out.key))) timing.from = MeshTiming::MEMORY;
+  if (out.key && !out.kept && (out.kept = loadMesh(cache_dir, *out.key))) timing.from = MeshTiming::CACHE_DIR;
+  if (out.kept) return out;
+  out.read = std::make_shared<PreparedMesh>();
+  out.read->mesh = file.readBy(readerProgram());
+  return out;
 }
 
-/* The extreme points as qhull finds them; empty where it gives up. */
-Points extremePoints(const Points &points) {
-  shapes::Mesh mesh(static_cast<unsigned>(points.size()), 0);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    Eigen::Map<Eigen::Vector3d>(mesh.vertices + 3 * i) = points[i];
-  }
-  const bodies::ConvexMesh hull(&mesh);
-  return Points(hull.getVertices().begin(), hull.getVertices().end());
-}
-
-BodyHandle polytopeOf(const Points &points) {
-  return makePolytope(
-      Eigen::Map<const Eigen::Matrix3Xd>(points.front().data(), 3, static_cast<Eigen::Index>(points.size())));
-}
-
-double largestCoordinate(const Points &points) {
-  double largest = 0.0;
-  for (const Eigen::Vector3d &p : points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  return largest;
+/* The hull, made now where it is not kept. */
+PreparedMeshPtr complete(const Found &found, const MeshRequest &request, const std::string &cache_dir) {
+  const PreparedMesh &mesh = found.kept ? *found.kept : *found.read;
+  checkMesh(mesh.mesh, request.scale);
+  if (!found.kept) found.read->hull = hullPointsOf(usedVertices(mesh.mesh, request.scale));
+  const PreparedMeshPtr out = found.kept ? found.kept : found.read;
+  if (found.key) keepMesh(*found.key, out);
+  if (found.key && !found.kept) saveMesh(cache_dir, *found.key, *out);
+  return out;
 }
 
 } // namespace
 
 MeshData readMesh(const std::string &file) {
-  static const std::string program = meshReaderProgram();
-  try {
-    return readMeshBy(program, file);
-  } catch (const Error &error) {
-    throw Error("mesh '" + file + "': " + error.what(), error.status());
-  }
-}
-
-Hull hullCovering(const Points &all, Points kept) {
-  Hull out;
-  out.body = polytopeOf(kept);
-
-  // What stands out a little is told, what stands out farther is taken back.
-  const double size = largestCoordinate(all);
-  Points back;
-  for (const Eigen::Vector3d &p : all) {
-    const double out_by = cprox_body_nearest(out.body.get(), toVec3(p), nullptr);
-    if (out_by <= DROPPED_TOLERANCE * size) {
-      out.excess = std::max(out.excess, out_by);
-    } else {
-      back.push_back(p);
-    }
-  }
-  if (!back.empty()) {
-    kept.insert(kept.end(), back.begin(), back.end());
-    out.body = polytopeOf(kept);
-  }
-  out.excess += NEAREST_ROUNDING * 6.0 * size;
-  return out;
-}
-
-/* Extreme points only, where that pays and can be had. Qhull merges facets: what it drops must be covered all the same. */
-static Hull hullOf(const Points &all) {
-  Points kept;
-  if (all.size() > FEW_VERTICES && !isFlat(all)) kept = extremePoints(all);
-  if (kept.size() >= 4) return hullCovering(all, std::move(kept));
-  return {polytopeOf(all), 0.0};
+  return ofMesh(file, [&] { return readMeshBy(readerProgram(), file); });
 }
 
 Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bool solid, std::size_t memory_limit) {
-  if (!scale.allFinite() || (scale.array() == 0.0).any()) throw Error("mesh scale must be finite and not 0");
-  checkTriangles(mesh);
-  const Hull hull = hullOf(usedVertices(mesh, scale));
-  const Eigen::Matrix3Xd vertices = scale.asDiagonal() * mesh.vertices;
-  const auto lod = [&](cprox_mesh_fill fill) {
-    return makeLod(hull.body, hull.excess, makeMesh(vertices, mesh.triangles, fill, memory_limit));
-  };
+  checkMesh(mesh, scale);
+  const Digest key = keyOfArrays(mesh, scale);
+  PreparedMeshPtr hull = recallMesh(key);
+  if (!hull) {
+    auto made = std::make_shared<PreparedMesh>();
+    made->hull = hullPointsOf(usedVertices(mesh, scale));
+    keepMesh(key, made);
+    hull = made;
+  }
+  return geometryOf(mesh, hull->hull, scale, solid, memory_limit);
+}
 
-  Geometry out;
-  out.body = lod(solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE);
-  const bool has_inside = cprox_body_get_info(out.body.get()).is_solid;
-  out.surface = has_inside ? lod(CPROX_MESH_SURFACE) : out.body;
-  out.hull = hull.body;
-  out.hull_excess = hull.excess;
-  out.is_mesh = true;
-  out.is_open = solid && !has_inside;
-  return out;
+bool MeshRequest::operator<(const MeshRequest &other) const {
+  const auto key = [](const MeshRequest &r) {
+    return std::make_tuple(r.file, r.uri, r.scale.x(), r.scale.y(), r.scale.z(), r.solid);
+  };
+  return key(*this) < key(other);
+}
+
+Geometry loadMeshGeometry(const MeshRequest &request, const ResourceOptions &options, MeshTiming *timing) {
+  MeshTiming ignored;
+  MeshTiming &times = timing ? *timing : ignored;
+  times.file = request.file;
+  Clock::time_point start = Clock::now();
+  const auto lap = [&start] {
+    const Clock::time_point before = std::exchange(start, Clock::now());
+    return std::chrono::duration<double>(start - before).count();
+  };
+  const Found found = ofMesh(request.file, [&] { return find(request, options.cache_dir, times); });
+  times.read = lap();
+  return ofMesh(request.uri, [&] {
+    const PreparedMeshPtr mesh = complete(found, request, options.cache_dir);
+    times.hull = lap();
+    Geometry out = geometryOf(mesh->mesh, mesh->hull, request.scale, request.solid, options.memory_limit);
+    times.tree = lap();
+    return out;
+  });
 }
 
 } // namespace curve_proximity

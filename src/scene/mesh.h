@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_SCENE_MESH_H
 #define CURVE_PROXIMITY_SCENE_MESH_H
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,19 +21,30 @@ struct MeshData {
 MeshData readMesh(const std::string &file);
 
 /* The mesh, scaled along the axes, as a level-of-detail body of the convex hull of the vertices that triangles use, and
- * the triangles. Throws Error: no triangle, an index out of range, vertices or scale not finite, a scale of 0;
- * CPROX_MEMORY where the triangles would take more than memory_limit bytes. */
+ * the triangles. The hull is kept in memory and found again by the mesh's content. Throws Error: no triangle, an index out
+ * of range, vertices or scale not finite, a scale of 0; CPROX_MEMORY where the triangles would take more than memory_limit
+ * bytes. */
 Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bool solid, std::size_t memory_limit);
 
-/* A convex hull, and how far what it is the hull of may stand out of it [m]. */
-struct Hull {
-  BodyHandle body;
-  double excess = 0.0;
+/* A mesh file that a description names. */
+struct MeshRequest {
+  std::string uri, file; /* as the description has it, and where that is */
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+  bool solid = false;
+
+  bool operator<(const MeshRequest &other) const;
 };
 
-/* The hull of `kept`, some of the points of `all`, so that all of them are covered: by the body, by the excess where they
- * stand out by no more than rounding, or by taking them back. */
-Hull hullCovering(const std::vector<Eigen::Vector3d> &all, std::vector<Eigen::Vector3d> kept);
+/* Reads the file and makes the geometry as makeMeshGeometry() does; what is kept of the file's content and scale, in
+ * memory or in the cache directory, is not made again. Throws Error, naming the file. */
+Geometry loadMeshGeometry(const MeshRequest &request, const ResourceOptions &options, MeshTiming *timing = nullptr);
+
+/* How makeGeometry() gets the geometry of a mesh file. */
+using MeshLoader = std::function<Geometry(const MeshRequest &request)>;
+Geometry makeGeometry(const ShapeDescription &shape, const ResourceOptions &options, const MeshLoader &loader);
+
+/* The scale of a MESH. */
+Eigen::Vector3d meshScale(const ShapeDescription &shape);
 
 } // namespace curve_proximity
 #endif

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,7 +16,9 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <thread>
+#include <utility>
 
 extern char **environ;
 
@@ -34,6 +37,7 @@ std::string systemError(const std::string &what, int code) {
 /* Above the standard ones, so that the process that is started can be given it as one of them; closed in every other. */
 class Descriptor {
  public:
+  Descriptor() = default;
   explicit Descriptor(int descriptor) : descriptor_(fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1)) {
     const int why = errno;
     if (descriptor >= 0) ::close(descriptor);
@@ -42,6 +46,7 @@ class Descriptor {
   ~Descriptor() {
     close();
   }
+  Descriptor(Descriptor &&other) noexcept : descriptor_(other.release()) {}
   Descriptor(const Descriptor &) = delete;
   Descriptor &operator=(const Descriptor &) = delete;
   void close() {
@@ -50,6 +55,9 @@ class Descriptor {
   }
   int get() const {
     return descriptor_;
+  }
+  int release() {
+    return std::exchange(descriptor_, -1);
   }
 
  private:
@@ -244,6 +252,43 @@ std::uint64_t sizeOf(const Descriptor &file) {
   return static_cast<std::uint64_t>(status.st_size);
 }
 
+/* Larger files are read as they are. */
+constexpr std::uint64_t LARGEST_COPY = std::uint64_t{256} << 20;
+
+/* Reads all bytes; false where the file became shorter. */
+bool readAll(int from, char *to, std::size_t size) {
+  while (size > 0) {
+    const ssize_t n = read(from, to, size);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw Error(systemError("it cannot be read", errno));
+    if (n == 0) return false;
+    to += n;
+    size -= static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+std::string extensionOf(const std::string &file) {
+  std::string out = std::filesystem::path(file).extension().string();
+  for (char &c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
+/* A copy of the file that has no name, and its digest. No digest where the machine has no such files. */
+Descriptor copyOf(const Descriptor &in, std::uint64_t size, const std::string &file, std::optional<Digest> &digest) {
+  const int made = memfd_create("mesh", MFD_CLOEXEC);
+  if (made < 0) return Descriptor();
+  Descriptor copy(made);
+  if (ftruncate(copy.get(), static_cast<off_t>(size)) != 0) return Descriptor();
+  void *bytes = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, copy.get(), 0);
+  if (bytes == MAP_FAILED) return Descriptor();
+  const auto unmap = [size](void *at) { munmap(at, size); };
+  const std::unique_ptr<void, decltype(unmap)> mapped(bytes, unmap);
+  if (!readAll(in.get(), static_cast<char *>(bytes), size)) throw Error("it became shorter while it was read");
+  digest = Hasher().add(extensionOf(file)).add(bytes, size).finish();
+  return copy;
+}
+
 } // namespace
 
 std::string meshReaderProgram() {
@@ -266,16 +311,30 @@ MeshData hearMesh(int from, pid_t id, const mesh_reader::Limits &limits) {
   throw Error(endOf(process.status(std::min(deadline, Clock::now() + LATER)), limits) + note);
 }
 
-MeshData readMeshBy(const std::string &program, const std::string &file) {
-  const Descriptor in(openForReading(file));
-  const mesh_reader::Limits limits = mesh_reader::limitsFor(sizeOf(in));
+MeshFile::MeshFile(const std::string &file) : file_(file) {
+  Descriptor in(openForReading(file));
+  size_ = sizeOf(in);
+  Descriptor copy = size_ <= LARGEST_COPY ? copyOf(in, size_, file, digest_) : Descriptor();
+  descriptor_ = digest_ ? copy.release() : in.release();
+}
+
+MeshFile::~MeshFile() {
+  close(descriptor_);
+}
+
+MeshData MeshFile::readBy(const std::string &program) const {
+  const mesh_reader::Limits limits = mesh_reader::limitsFor(size_);
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Error(systemError("it cannot be read", errno));
   const Descriptor from(ends[0]);
   Descriptor to(ends[1]);
-  const pid_t id = SpawnSettings(in.get(), to.get()).start(program, file);
+  const pid_t id = SpawnSettings(descriptor_, to.get()).start(program, file_);
   to.close();
   return hearMesh(from.get(), id, limits);
+}
+
+MeshData readMeshBy(const std::string &program, const std::string &file) {
+  return MeshFile(file).readBy(program);
 }
 
 } // namespace curve_proximity

@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* From URDF text to a Robot. urdfdom parses; what it drops without a word is found by counting, and refused. */
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
 #include <locale>
 #include <map>
 #include <set>
 #include <sstream>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 #include <tinyxml2.h>
@@ -13,6 +18,7 @@
 #include <curve_proximity/robot.hpp>
 
 #include "joint_parts.h"
+#include "mesh.h"
 
 namespace curve_proximity {
 namespace {
@@ -186,6 +192,23 @@ ShapeDescription describe(const urdf::Collision &collision, const std::string &w
   return shape;
 }
 
+/* work(i) for all i < n, by so many threads (0: as many as the machine has). It must not throw. */
+template <class Work>
+void forEachInParallel(std::size_t n, unsigned threads, Work work) {
+  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
+  std::atomic<std::size_t> next{0};
+  const auto serve = [&] {
+    for (std::size_t i = next++; i < n; i = next++) work(i);
+  };
+  std::vector<std::thread> others;
+  try {
+    while (others.size() + 1 < std::min<std::size_t>(threads, n)) others.emplace_back(serve);
+  } catch (const std::system_error &) { /* fewer will do */
+  }
+  serve();
+  for (std::thread &thread : others) thread.join();
+}
+
 std::string elementName(const std::string &link, std::size_t number, std::size_t of) {
   const std::string which = of > 1 ? ", collision element " + std::to_string(number + 1) : "";
   return "link '" + link + "'" + which + ": ";
@@ -343,7 +366,48 @@ class RobotReader {
     joint.leader = at->name;
   }
 
+  /* The mesh files of all links, each once, loaded by several threads. What cannot be resolved is told where its link is
+   * read. */
+  void loadMeshes(const urdf::ModelInterface &model, const Inventory &inventory) {
+    for (const auto &[name, faults] : inventory) {
+      const urdf::LinkConstSharedPtr link = model.getLink(name);
+      if (!link) continue;
+      for (const urdf::CollisionSharedPtr &collision : link->collision_array) requestMesh(*collision);
+    }
+    std::vector<std::pair<const MeshRequest, LoadedMesh> *> todo;
+    for (auto &entry : meshes_) todo.push_back(&entry);
+    forEachInParallel(todo.size(), options_.threads, [&](std::size_t i) {
+      const auto &[request, loaded] = *todo[i];
+      LoadedMesh &out = todo[i]->second;
+      try {
+        out.geometry = loadMeshGeometry(request, options_.resources, &out.timing);
+      } catch (...) {
+        out.error = std::current_exception();
+      }
+    });
+    for (const auto &[request, loaded] : meshes_)
+      if (!loaded.error) robot_->mesh_timings_.push_back(loaded.timing);
+  }
+
+  void requestMesh(const urdf::Collision &collision) {
+    try {
+      const ShapeDescription shape = describe(collision, "");
+      if (shape.type != ShapeType::MESH) return;
+      const std::string file = resolveResource(shape.resource, options_.resources);
+      meshes_[{shape.resource, file, meshScale(shape), shape.solid}];
+    } catch (const Error &) { /* told later */
+    }
+  }
+
+  Geometry loadedMesh(const MeshRequest &request) const {
+    const auto it = meshes_.find(request);
+    if (it == meshes_.end()) return loadMeshGeometry(request, options_.resources);
+    if (it->second.error) std::rethrow_exception(it->second.error);
+    return it->second.geometry;
+  }
+
   void readLinks(const urdf::ModelInterface &model, const Inventory &inventory) {
+    loadMeshes(model, inventory);
     for (const auto &[name, faults] : inventory) {
       const urdf::LinkConstSharedPtr link = model.getLink(name);
       if (!link) throw Error("link '" + name + "' was not understood");
@@ -360,7 +424,8 @@ class RobotReader {
       LinkGeometry out;
       out.description = describe(collision, "");
       out.pose = out.description.pose;
-      out.geometry = makeGeometry(out.description, options_.resources);
+      out.geometry = makeGeometry(out.description, options_.resources,
+                                  [this](const MeshRequest &request) { return loadedMesh(request); });
       to.push_back(std::move(out));
     } catch (const Error &error) {
       fault(who + error.what());
@@ -380,8 +445,15 @@ class RobotReader {
     robot_->warnings_.push_back(sentence + "; left out");
   }
 
+  struct LoadedMesh {
+    Geometry geometry;
+    MeshTiming timing;
+    std::exception_ptr error;
+  };
+
   const RobotOptions &options_;
   std::shared_ptr<Robot> robot_;
+  std::map<MeshRequest, LoadedMesh> meshes_;
 };
 
 std::shared_ptr<const Robot> Robot::fromUrdf(const std::string &xml, const RobotOptions &options) {

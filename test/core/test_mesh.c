@@ -215,6 +215,68 @@ CASE(a_closed_mesh_is_solid_inside) {
   mesh_free(&mesh);
 }
 
+/* Two pyramids of 100 sides on one base, apexes first in the order of places: closed, and open without one triangle or
+ * with one turned over. */
+CASE(closedness_is_found_at_vertices_of_many_edges) {
+  enum { SIDES = 100 };
+  vec3 v[SIDES + 2];
+  uint32_t t[2 * SIDES][3];
+  v[0] = vec(-5, 0, 1), v[1] = vec(-5, 0, -1);
+  for (uint32_t i = 0; i < SIDES; i++) {
+    const double angle = 6.283185307179586 * i / SIDES;
+    const uint32_t a = 2 + i, b = 2 + (i + 1) % SIDES;
+    v[a] = vec(cos(angle), sin(angle), 0);
+    t[2 * i][0] = 0, t[2 * i][1] = a, t[2 * i][2] = b;
+    t[2 * i + 1][0] = 1, t[2 * i + 1][1] = b, t[2 * i + 1][2] = a;
+  }
+  for (size_t m = 2 * SIDES; m >= 2 * SIDES - 1; m--) {
+    cprox_body *body = NULL;
+    assert_int_equal(
+        cprox_body_create_mesh(v, SIDES + 2, (const uint32_t(*)[3])t, m, CPROX_MESH_SOLID, SIZE_MAX, ws, &body),
+        CPROX_OK);
+    assert_int_equal(cprox_body_is_solid(body), m == 2 * SIDES);
+    cprox_body_free(body);
+  }
+  const uint32_t swap = t[7][0];
+  t[7][0] = t[7][1], t[7][1] = swap;
+  cprox_body *body = NULL;
+  assert_int_equal(
+      cprox_body_create_mesh(v, SIDES + 2, (const uint32_t(*)[3])t, 2 * SIDES, CPROX_MESH_SOLID, SIZE_MAX, ws, &body),
+      CPROX_OK);
+  assert_false(cprox_body_is_solid(body));
+  cprox_body_free(body);
+}
+
+/* 200 points (seed 60): the surface of a solid is the mesh made as a surface, and outlives no part of it. */
+CASE(a_solid_shares_its_triangles_with_its_surface) {
+  rng r = rng_seed(60);
+  test_mesh mesh = mesh_torus(30, 20, 1.0, 0.4, 0.2);
+  cprox_body *solid = mesh_body(&mesh, CPROX_MESH_SOLID, ws), *made = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *surface = NULL, *again = NULL;
+  assert_int_equal(cprox_body_create_surface(solid, ws, &surface), CPROX_OK);
+  assert_int_equal(cprox_body_create_surface(surface, ws, &again), CPROX_OK);
+  assert_false(cprox_body_is_solid(surface));
+  for (int i = 0; i < 200; i++) {
+    const vec3 p = rng_in_cube(&r, 1.4);
+    assert_true(cprox_body_nearest(surface, p, NULL) == cprox_body_nearest(made, p, NULL));
+    assert_true(cprox_body_nearest(again, p, NULL) == cprox_body_nearest(made, p, NULL));
+    assert_true(cprox_body_support(surface, p, NULL) == cprox_body_support(made, p, NULL));
+  }
+  cprox_body_free(again);
+  cprox_body_free(surface);
+  assert_true(cprox_body_nearest(solid, vec(0, 0, 0), NULL) > 0.0);
+  cprox_body *box = NULL;
+  assert_int_equal(cprox_body_create_box(vec(1, 1, 1), ws, &box), CPROX_OK);
+  assert_int_equal(cprox_body_create_surface(box, ws, &again), CPROX_INVALID);
+  assert_non_null(strstr(cprox_workspace_error(ws), "must be a mesh"));
+  assert_int_equal(cprox_body_create_surface(NULL, ws, &again), CPROX_INVALID);
+  assert_int_equal(cprox_body_create_surface(solid, ws, NULL), CPROX_INVALID);
+  cprox_body_free(box);
+  cprox_body_free(made);
+  cprox_body_free(solid);
+  mesh_free(&mesh);
+}
+
 /* ---- points and boxes ------------------------------------------------------------------------------------------------- */
 
 /* 600 random queries (seed 61) against clouds and boxes, held against every element in long double; epsilon 1e-6. */

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "hull.h"
 #include "mesh.h"
 #include "support.h"
 
@@ -203,10 +204,11 @@ TEST(Meshes, vertices_that_were_dropped_are_covered_or_taken_back) {
       if (kept.size() < 4 || random.below(3) == 0) kept.push_back(p);
     }
     all.push_back(kept[0] * (1.0 + 1e-14)); // stands out by no more than rounding
-    const Hull hull = hullCovering(all, kept);
+    const HullPoints hull = coveringPoints(all, kept);
     EXPECT_LE(hull.excess, 1e-11);
+    const BodyHandle body = polytopeOf(hull.kept);
     for (const Eigen::Vector3d &p : all) {
-      EXPECT_LE(cprox_body_nearest(hull.body.get(), toVec3(p), nullptr), hull.excess + 64 * 0x1p-53 * 6.0);
+      EXPECT_LE(cprox_body_nearest(body.get(), toVec3(p), nullptr), hull.excess + 64 * 0x1p-53 * 6.0);
     }
   }
 }

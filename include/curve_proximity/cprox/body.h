@@ -126,6 +126,9 @@ CPROX_API cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t
                                               size_t m, cprox_mesh_fill fill, size_t memory_limit,
                                               cprox_workspace *workspace, cprox_body **body);
 
+/** The surface of a mesh: the mesh without its inside. The triangles are shared, so `mesh` must outlive the body. */
+CPROX_API cprox_status cprox_body_create_surface(const cprox_body *mesh, cprox_workspace *workspace, cprox_body **body);
+
 /** Points, each a ball of the radius [m] >= 0. n >= 1, finite. memory_limit as for meshes. Built for speed: for what a
  *  sensor measures thirty times a second. */
 CPROX_API cprox_status cprox_body_create_points(const cprox_vec3 *points, size_t n, double radius, size_t memory_limit,

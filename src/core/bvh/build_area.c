@@ -7,20 +7,35 @@
 
 enum { BINS = 16, DEEPEST_BY_AREA = 24 };
 
+/* An element on its way into the tree. */
+typedef struct item {
+  box b;
+  uint32_t element;
+} item;
+
 typedef struct builder {
   tree *t;
   const tree_source *source;
-  uint32_t *order; /* the elements, a range for each subtree */
-  box *boxes;      /* of the elements */
+  item *items; /* a range for each subtree */
 } builder;
+
+/* box_add(), in line. */
+static inline void grow(box *b, const box *other) {
+  b->low.x = other->low.x < b->low.x ? other->low.x : b->low.x;
+  b->low.y = other->low.y < b->low.y ? other->low.y : b->low.y;
+  b->low.z = other->low.z < b->low.z ? other->low.z : b->low.z;
+  b->high.x = other->high.x > b->high.x ? other->high.x : b->high.x;
+  b->high.y = other->high.y > b->high.y ? other->high.y : b->high.y;
+  b->high.z = other->high.z > b->high.z ? other->high.z : b->high.z;
+}
 
 static double axis_of(vec3 v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
 /* Twice the middle of an element's box. */
-static vec3 middle2(const builder *b, uint32_t element) {
-  return vec_add(b->boxes[element].low, b->boxes[element].high);
+static inline vec3 middle2(const item *i) {
+  return vec_add(i->b.low, i->b.high);
 }
 
 static double area_of(const box *b) {
@@ -37,8 +52,8 @@ typedef struct cut {
   double cost;
 } cut;
 
-static int bin_of(const builder *b, uint32_t element, const cut *c) {
-  const int bin = (int)((axis_of(middle2(b, element), c->axis) - c->low) * c->scale);
+static int bin_of(const item *i, const cut *c) {
+  const int bin = (int)((axis_of(middle2(i), c->axis) - c->low) * c->scale);
   return bin < BINS ? bin : BINS - 1;
 }
 
@@ -55,22 +70,22 @@ static void try_axis(const builder *b, size_t first, size_t last, int axis, doub
   size_t count[BINS] = {0}, behind[BINS];
   for (int i = 0; i < BINS; i++) boxes[i] = box_empty();
   for (size_t i = first; i < last; i++) {
-    const int bin = bin_of(b, b->order[i], &c);
-    box_add(&boxes[bin], &b->boxes[b->order[i]]);
+    const int bin = bin_of(&b->items[i], &c);
+    grow(&boxes[bin], &b->items[i].b);
     count[bin]++;
   }
   right[BINS - 1] = boxes[BINS - 1];
   behind[BINS - 1] = count[BINS - 1];
   for (int i = BINS - 1; i-- > 0;) {
     right[i] = right[i + 1];
-    box_add(&right[i], &boxes[i]);
+    grow(&right[i], &boxes[i]);
     behind[i] = behind[i + 1] + count[i];
   }
   box left = box_empty();
   size_t before = 0;
   for (int i = 0; i + 1 < BINS; i++) {
     before += count[i];
-    box_add(&left, &boxes[i]);
+    grow(&left, &boxes[i]);
     /* a side with less than half a pack would waste memory, more than was reserved */
     if (before < TREE_LANES / 2 || behind[i + 1] < TREE_LANES / 2) continue;
     c.bin = i;
@@ -83,10 +98,10 @@ static void try_axis(const builder *b, size_t first, size_t last, int axis, doub
 static size_t partition(builder *b, size_t first, size_t last, const cut *c) {
   size_t m = first;
   for (size_t i = first; i < last; i++) {
-    const uint32_t element = b->order[i];
-    if (bin_of(b, element, c) > c->bin) continue;
-    b->order[i] = b->order[m];
-    b->order[m++] = element;
+    if (bin_of(&b->items[i], c) > c->bin) continue;
+    const item moved = b->items[i];
+    b->items[i] = b->items[m];
+    b->items[m++] = moved;
   }
   return m;
 }
@@ -96,15 +111,15 @@ static void select_middle(builder *b, size_t first, size_t last, size_t m, int a
   ptrdiff_t low = (ptrdiff_t)first, high = (ptrdiff_t)last - 1;
   const ptrdiff_t wanted = (ptrdiff_t)m;
   while (low < high) {
-    const double pivot = axis_of(middle2(b, b->order[wanted]), axis);
+    const double pivot = axis_of(middle2(&b->items[wanted]), axis);
     ptrdiff_t i = low, j = high;
     while (i <= j) {
-      while (axis_of(middle2(b, b->order[i]), axis) < pivot) i++;
-      while (pivot < axis_of(middle2(b, b->order[j]), axis)) j--;
+      while (axis_of(middle2(&b->items[i]), axis) < pivot) i++;
+      while (pivot < axis_of(middle2(&b->items[j]), axis)) j--;
       if (i > j) break;
-      const uint32_t moved = b->order[i];
-      b->order[i++] = b->order[j];
-      b->order[j--] = moved;
+      const item moved = b->items[i];
+      b->items[i++] = b->items[j];
+      b->items[j--] = moved;
     }
     if (j < wanted) low = i;
     if (wanted < i) high = j;
@@ -115,8 +130,8 @@ static void select_middle(builder *b, size_t first, size_t last, size_t m, int a
 static size_t cut_range(builder *b, size_t first, size_t last, int depth) {
   box middles = box_empty();
   for (size_t i = first; i < last; i++) {
-    const vec3 m = middle2(b, b->order[i]);
-    box_add(&middles, &(box){m, m});
+    const vec3 m = middle2(&b->items[i]);
+    grow(&middles, &(box){m, m});
   }
   const vec3 extent = vec_sub(middles.high, middles.low);
   if (last - first > 2 * TREE_LANES && depth < DEEPEST_BY_AREA) {
@@ -139,7 +154,9 @@ static size_t cut_range(builder *b, size_t first, size_t last, int depth) {
 static uint32_t build_range(builder *b, size_t first, size_t last, int depth, box *all) {
   if (last - first <= TREE_LANES) {
     const uint32_t pack = (uint32_t)b->t->n_packs;
-    *all = tree_append_pack(b->t, b->source, b->order + first, last - first);
+    uint32_t elements[TREE_LANES];
+    for (size_t i = first; i < last; i++) elements[i - first] = b->items[i].element;
+    *all = tree_append_pack(b->t, b->source, elements, last - first);
     return pack | TREE_LEAF;
   }
   size_t at[TREE_LANES + 1] = {first, last}, n = 1;
@@ -166,20 +183,16 @@ static uint32_t build_range(builder *b, size_t first, size_t last, int depth, bo
 
 bool tree_build_by_area(tree *t, const tree_source *source) {
   builder b = {.t = t, .source = source};
-  b.order = malloc(source->n * sizeof *b.order);
-  b.boxes = malloc(source->n * sizeof *b.boxes);
-  const bool made = b.order && b.boxes;
+  b.items = malloc(source->n * sizeof *b.items);
+  const bool made = b.items != NULL;
   if (made) {
-    for (size_t i = 0; i < source->n; i++) {
-      b.order[i] = (uint32_t)i;
-      b.boxes[i] = element_box(source, (uint32_t)i);
-    }
+    for (size_t i = 0; i < source->n; i++)
+      b.items[i] = (item){.b = element_box(source, (uint32_t)i), .element = (uint32_t)i};
     box all;
     const uint32_t root = build_range(&b, 0, source->n, 0, &all);
     /* a single pack hangs from a node of its own */
     if (root & TREE_LEAF) tree_fill_node(&t->nodes[t->n_nodes++], &all, &root, 1);
   }
-  free(b.order);
-  free(b.boxes);
+  free(b.items);
   return made;
 }

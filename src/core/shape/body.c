@@ -336,7 +336,7 @@ void cprox_body_free(cprox_body *body) {
   free(body->shape.edge);
   free(body->parts);
   free(body->shape.implicit); /* one block */
-  tree_free(body->tree);
+  if (!body->borrows_tree) tree_free(body->tree);
   winding_free(body->winding);
   free(body);
 }

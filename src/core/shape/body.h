@@ -23,6 +23,7 @@ struct cprox_body {
   size_t n_parts;
   struct tree
       *tree; /* meshes, points, boxes: the elements, about `centre`; the shape has the margin and the scale alone */
+  bool borrows_tree;             /* the tree belongs to another body */
   struct winding *winding;       /* solid meshes: what tells inside from outside */
   const cprox_body *hull, *mesh; /* level-of-detail bodies: the two models, */
   double excess;                 /* and how far the mesh may stick out of the hull */

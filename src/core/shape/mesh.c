@@ -43,34 +43,62 @@ static void merge_vertices(const vec3 *vertices, size_t n, placed_vertex *sorted
   }
 }
 
-typedef struct edge {
-  uint32_t low, high;
+/* A use of an edge, in the list of its vertex with the lower number. */
+typedef struct edge_use {
+  uint32_t high;
   int32_t way;
-} edge;
+} edge_use;
 
-static int compare_edges(const void *a, const void *b) {
-  const edge *p = a, *q = b;
-  if (p->low != q->low) return p->low < q->low ? -1 : 1;
-  return (p->high > q->high) - (p->high < q->high);
+static int compare_uses(const void *a, const void *b) {
+  const uint32_t p = ((const edge_use *)a)->high, q = ((const edge_use *)b)->high;
+  return (p > q) - (p < q);
 }
 
-/* Every edge is run through as often one way as the other: then the winding number is a whole one off the surface. */
-static bool edges_balance(const uint32_t (*triangles)[3], size_t m, const uint32_t *merged, edge *edges) {
-  size_t n = 0;
+/* Whether the uses of each edge of one vertex add up to 0. Sorts them. */
+static bool uses_balance(edge_use *uses, size_t n) {
+  enum { FEW = 24 };
+  if (n > FEW) {
+    qsort(uses, n, sizeof *uses, compare_uses);
+  } else {
+    for (size_t i = 1; i < n; i++) {
+      const edge_use moved = uses[i];
+      size_t k = i;
+      for (; k > 0 && uses[k - 1].high > moved.high; k--) uses[k] = uses[k - 1];
+      uses[k] = moved;
+    }
+  }
+  int64_t sum = 0;
+  for (size_t i = 0; i < n; i++) {
+    sum += uses[i].way;
+    const bool last = i + 1 == n || uses[i].high != uses[i + 1].high;
+    if (last && sum != 0) return false;
+  }
+  return true;
+}
+
+/* Every edge is run through as often one way as the other: then the winding number is a whole one off the surface. The
+ * uses are sorted by the lower vertex in linear time; `start` has room for n + 1 numbers, `uses` for 3 m. */
+static bool edges_balance(const uint32_t (*triangles)[3], size_t m, const uint32_t *merged, size_t n, size_t *start,
+                          edge_use *uses) {
+  for (size_t i = 0; i <= n; i++) start[i] = 0;
   for (size_t i = 0; i < m; i++) {
     for (int k = 0; k < 3; k++) {
       const uint32_t a = merged[triangles[i][k]], b = merged[triangles[i][(k + 1) % 3]];
-      if (a != b) edges[n++] = a < b ? (edge){a, b, 1} : (edge){b, a, -1};
+      if (a != b) start[(a < b ? a : b) + 1]++;
     }
   }
-  qsort(edges, n, sizeof *edges, compare_edges);
-  int64_t sum = 0;
-  for (size_t i = 0; i < n; i++) {
-    sum += edges[i].way;
-    const bool last = i + 1 == n || compare_edges(&edges[i], &edges[i + 1]) != 0;
-    if (last && sum != 0) return false;
+  for (size_t i = 0; i < n; i++) start[i + 1] += start[i];
+  const size_t all = start[n];
+  for (size_t i = 0; i < m; i++) {
+    for (int k = 0; k < 3; k++) {
+      const uint32_t a = merged[triangles[i][k]], b = merged[triangles[i][(k + 1) % 3]];
+      if (a != b) uses[start[a < b ? a : b]++] = a < b ? (edge_use){b, 1} : (edge_use){a, -1};
+    }
   }
-  return n > 0;
+  /* now start[i] is where the list of vertex i ends */
+  for (size_t i = 0, first = 0; i < n; first = start[i++])
+    if (!uses_balance(uses + first, start[i] - first)) return false;
+  return all > 0;
 }
 
 /* False where memory is out. No triangles close nothing. */
@@ -79,19 +107,21 @@ static bool find_closedness(const vec3 *vertices, size_t n, const uint32_t (*tri
   if (n == 0 || m == 0) return true;
   placed_vertex *sorted = malloc(n * sizeof *sorted);
   uint32_t *merged = malloc(n * sizeof *merged);
-  edge *edges = malloc(3 * m * sizeof *edges);
-  const bool enough = sorted && merged && edges;
+  size_t *start = malloc((n + 1) * sizeof *start);
+  edge_use *uses = malloc(3 * m * sizeof *uses);
+  const bool enough = sorted && merged && start && uses;
   if (enough) {
     merge_vertices(vertices, n, sorted, merged);
-    *closed = edges_balance(triangles, m, merged, edges);
+    *closed = edges_balance(triangles, m, merged, n, start, uses);
   }
   free(sorted);
   free(merged);
-  free(edges);
+  free(start);
+  free(uses);
   return enough;
 }
 
-/* ---- the constructor -------------------------------------------------------------------------------------------------- */
+/* ---- the constructors -------------------------------------------------------------------------------------------------- */
 
 cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const uint32_t (*triangles)[3], size_t m,
                                     cprox_mesh_fill fill, size_t memory_limit, cprox_workspace *workspace,
@@ -121,6 +151,24 @@ cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const 
     cprox_body_free(made);
     return body_out_of_memory(workspace);
   }
+  *body = made;
+  return CPROX_OK;
+}
+
+cprox_status cprox_body_create_surface(const cprox_body *mesh, cprox_workspace *workspace, cprox_body **body) {
+  if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
+  if (!mesh || mesh->kind != CPROX_MESH)
+    return workspace_fail(workspace, CPROX_INVALID, "the body is %s, must be a mesh",
+                          mesh ? cprox_body_kind_name(mesh->kind) : "NULL");
+  cprox_body *made = body_allocate(NULL, CPROX_MESH);
+  if (!made) return body_out_of_memory(workspace);
+  made->tree = mesh->tree;
+  made->borrows_tree = true;
+  made->centre = mesh->centre;
+  made->ball_centre = mesh->ball_centre;
+  made->ball_radius = mesh->ball_radius;
+  made->shape.margin = mesh->shape.margin;
+  made->shape.scale = mesh->shape.scale;
   *body = made;
   return CPROX_OK;
 }
