@@ -97,7 +97,12 @@ typedef enum cprox_motion_kind {
    *  control, n_control       n_control rows of n_variables values.
    *  degree                   1 … 9.
    *  knots, n_knots           [s] n_control + degree + 1 knots, non-decreasing, none more than degree times inside. */
-  CPROX_MOTION_BSPLINE
+  CPROX_MOTION_BSPLINE,
+
+  /** One state of the robot, which does not move. Every query answers for it, and cprox_motion_set_state() changes it.
+   *
+   *  rest                     the values of all variables; NULL: all 0. */
+  CPROX_MOTION_STATE
 } cprox_motion_kind;
 
 /** What a motion is made of. Set all members to 0, then those that the kind reads: cprox_motion_kind lists them. All
@@ -139,6 +144,15 @@ typedef struct cprox_motion_description {
  *  Returns CPROX_OK, CPROX_INVALID or CPROX_MEMORY. */
 CPROX_API cprox_status cprox_motion_create(const cprox_robot *robot, const cprox_motion_description *description,
                                            cprox_workspace *workspace, cprox_motion **motion);
+
+/** Changes the state of a motion of the kind CPROX_MOTION_STATE.
+ *
+ *  motion     no query may be using it.
+ *  values     the values of all variables of the robot; finite. Copied.
+ *  workspace  may be NULL: then there is no error message.
+ *
+ *  Returns CPROX_OK or CPROX_INVALID; the state is untouched on failure. Allocates nothing. Cost: forward kinematics. */
+CPROX_API cprox_status cprox_motion_set_state(cprox_motion *motion, const double *values, cprox_workspace *workspace);
 
 /** Frees a motion; NULL is allowed. */
 CPROX_API void cprox_motion_free(cprox_motion *motion);
@@ -194,7 +208,8 @@ typedef struct cprox_robot_pair {
 /** The robot along a motion. Targets are bodies; of meshes the surface counts, and solid
  *  ones are refused. Of level-of-detail bodies, on links and as targets, the mesh is asked where the hull cannot
  *  decide; result.level of detail says whether. pairs: those that are asked about, kept by reference, `other` being
- *  targets; NULL: all geometries of links that the motion moves, against all targets.
+ *  targets; NULL: all geometries of links that the motion moves (of a state: that a joint can move), against all
+ *  targets.
  *
  *  Against obstacles and itself at once: set `whole` of the mover, and self_pairs where not all pairs with itself are
  *  asked about, which are those of cprox_robot_self(). One search begins with the pair that is nearest of both kinds. It
@@ -205,8 +220,46 @@ CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_
 /** The robot along a motion against itself: its queries have no obstacles (cprox_obstacles_distance(NULL, mover, …)).
  *  pairs: those that are asked about, kept by reference, `other` being geometries; NULL: all on
  *  links with at least two joints between them that can move, of which this motion moves one
- *  (cprox_motion_get_link_info()). */
+ *  (cprox_motion_get_link_info()); of a state, all with two such joints. */
 CPROX_API cprox_mover cprox_robot_self(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
+
+struct cprox_obstacles;
+
+/** What many states of a robot are asked. Set all members to 0, then those that are needed. */
+typedef struct cprox_state_query {
+  /** what stands, see obstacles.h; NULL: nothing */
+  const struct cprox_obstacles *obstacles;
+  /** pairs of geometries and obstacles; NULL: as for cprox_robot_along() */
+  const cprox_robot_pair *pairs;
+  /** their number */
+  size_t n_pairs;
+  /** pairs of geometries; NULL: as for cprox_robot_self() */
+  const cprox_robot_pair *self_pairs;
+  /** their number */
+  size_t n_self_pairs;
+  /** the robot is not held against itself */
+  bool without_self;
+  /** [m] >= 0: verdicts are about this distance; 0: collision */
+  double delta;
+  /** the distance is wanted, not the verdict; delta is ignored */
+  bool distance;
+  /** NULL: the default */
+  const cprox_options *options;
+} cprox_state_query;
+
+/** Asks about many states of a robot: its verdict or its distance, against the obstacles and itself at once.
+ *
+ *  states     n rows of the values of all variables of the robot.
+ *  workspace  not NULL. Nothing is allocated once it has grown, but for one state for all rows.
+ *  results    receives n results, each the answer of a motion that stands still. A result about the robot itself has
+ *             the part that obstacle_index names in the robot: then about_self[i] is true.
+ *  about_self n of them, or NULL.
+ *
+ *  A state that is violated against the obstacles is not held against itself. Returns CPROX_OK, or the least favourable
+ *  status of a result; CPROX_INVALID or CPROX_MEMORY end the call, and results before that state are valid. */
+CPROX_API cprox_status cprox_robot_ask_states(const cprox_robot *robot, const cprox_state_query *asked,
+                                              const double *states, size_t n, cprox_workspace *workspace,
+                                              cprox_result *results, bool *about_self);
 
 #ifdef __cplusplus
 }

@@ -6,5 +6,6 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/nearest_pairs.c
   ${CMAKE_CURRENT_LIST_DIR}/obstacles.c
   ${CMAKE_CURRENT_LIST_DIR}/profile.c
+  ${CMAKE_CURRENT_LIST_DIR}/states.c
   ${CMAKE_CURRENT_LIST_DIR}/time_of_contact.c
 )

@@ -332,7 +332,8 @@ double motion_time_below(const cprox_motion *m, size_t segment, double u) {
 }
 
 cprox_motion_info cprox_motion_get_info(const cprox_motion *motion) {
-  return (cprox_motion_info){.kind = motion->given.degree > 0 ? CPROX_MOTION_BSPLINE : CPROX_MOTION_WAYPOINTS,
+  const cprox_motion_kind moving = motion->given.degree > 0 ? CPROX_MOTION_BSPLINE : CPROX_MOTION_WAYPOINTS;
+  return (cprox_motion_info){.kind = motion->is_state ? CPROX_MOTION_STATE : moving,
                              .t0 = motion->times[0],
                              .t1 = motion->times[motion->n_segments],
                              .n_variables = motion->robot->n_variables,
@@ -437,10 +438,11 @@ cprox_link_info cprox_motion_get_link_info(const cprox_motion *motion, int32_t l
 }
 
 bool motion_moves_link(const cprox_motion *motion, int32_t link) {
-  return cprox_motion_get_link_info(motion, link, -1).n_moved > 0;
+  const cprox_link_info to_world = cprox_motion_get_link_info(motion, link, -1);
+  return (motion->is_state ? to_world.n_joints : to_world.n_moved) > 0;
 }
 
 bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t link_b) {
   const cprox_link_info between = cprox_motion_get_link_info(motion, link_a, link_b);
-  return between.n_joints >= 2 && between.n_moved >= 1;
+  return between.n_joints >= 2 && (motion->is_state || between.n_moved >= 1);
 }

@@ -21,7 +21,8 @@ struct cprox_motion {
   double *error;   /* [segment][moving variable]: of what is computed from the coefficients anywhere, 1e-15 of them */
   int32_t *moving; /* the variables that do not stand still */
   int32_t *slot;   /* of a variable among those, or -1 */
-  double *rest;    /* the values of the others */
+  double *rest;    /* the values of the others; of a state, room for another one behind them */
+  bool is_state;   /* nothing moves, and everything is asked about that could */
   bool *axis_moves;
   placement *still; /* of an axis that does not: as it stands in its parent's frame */
   double *norm;     /* of a ball's quaternion: at least this everywhere */
@@ -87,10 +88,10 @@ static inline bool motion_is_span(const motion_interval *over) {
 void motion_find_axis(const cprox_motion *motion, const motion_interval *over, const double *rows, size_t axis,
                       axis_state *axes);
 
-/* Does the motion move the link? */
+/* Does the motion move the link? Of a state: could a joint move it? */
 bool motion_moves_link(const cprox_motion *motion, int32_t link);
 /* Can two links come closer in a way that is worth asking for: are there at least two joints that can move between them,
- * and at least one that this motion moves? */
+ * and at least one that this motion moves, if it is no state? */
 bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t link_b);
 
 /* The segment that holds a time: the last one that begins at it or before it. */

@@ -114,7 +114,7 @@ static cprox_motion *allocate(const motion_source *s, size_t n_segments, size_t 
   m->error = calloc(room * n, sizeof *m->error);
   m->moving = calloc(n, sizeof *m->moving);
   m->slot = calloc(n_variables, sizeof *m->slot);
-  m->rest = calloc(n_variables, sizeof *m->rest);
+  m->rest = calloc(2 * n_variables, sizeof *m->rest);
   m->axis_moves = calloc(s->robot->n_axes + 1, sizeof *m->axis_moves);
   m->still = calloc(s->robot->n_axes + 1, sizeof *m->still);
   m->norm = calloc(s->robot->n_axes + 1, sizeof *m->norm);
@@ -421,6 +421,53 @@ static cprox_status create_bspline(const motion_source *s, cprox_motion **motion
   return finish(m, s, motion);
 }
 
+/* ---- states --------------------------------------------------------------------------------------------------------------- */
+
+/* All that depends on the values of the variables, which stand in m->rest. */
+static cprox_status place_state(cprox_motion *m, cprox_workspace *workspace) {
+  const motion_source s = {.robot = m->robot, .workspace = workspace};
+  const cprox_status status = finish_axes(m, &s);
+  return status == CPROX_OK ? finish_parts(m, workspace) : status;
+}
+
+/* Its time is any in [0, 1]: a motion that goes nowhere. */
+static cprox_status create_state(const motion_source *s, cprox_motion **motion) {
+  cprox_workspace *const workspace = s->workspace;
+  if (s->n > 0) return workspace_fail(workspace, CPROX_INVALID, "a state gives all variables by rest, none by name");
+  static const double NOTHING = 0.0;
+  const cprox_waypoint ends[2] = {{.time = 0.0, .positions = &NOTHING}, {.time = 1.0, .positions = &NOTHING}};
+  const cprox_motion_description given = {.waypoints = ends, .n_waypoints = 2, .interpolation = CPROX_LINEAR};
+  cprox_motion *m = allocate(s, 1, 1);
+  if (m && !motion_keep_waypoints(&m->given, &given)) {
+    cprox_motion_free(m);
+    m = NULL;
+  }
+  if (!m)
+    return workspace_fail(workspace, CPROX_MEMORY, "no memory for a state of %zu variables", s->robot->n_variables);
+  m->is_state = true;
+  m->times[1] = 1.0;
+  m->degree[0] = 1;
+  return finish(m, s, motion);
+}
+
+cprox_status cprox_motion_set_state(cprox_motion *motion, const double *values, cprox_workspace *workspace) {
+  workspace_clear(workspace);
+  if (!motion || !values) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", motion ? "values" : "motion");
+  if (!motion->is_state) return workspace_fail(workspace, CPROX_INVALID, "the motion is no state");
+  const size_t n = motion->robot->n_variables;
+  const motion_source s = {.robot = motion->robot, .rest = values, .workspace = workspace};
+  cprox_status status = check_source(&s);
+  if (status != CPROX_OK) return status;
+  double *before = motion->rest + n; /* there is room for two states */
+  memcpy(before, motion->rest, n * sizeof *before);
+  memcpy(motion->rest, values, n * sizeof *values);
+  status = place_state(motion, workspace);
+  if (status == CPROX_OK) return CPROX_OK;
+  memcpy(motion->rest, before, n * sizeof *before);
+  place_state(motion, NULL);
+  return status;
+}
+
 /* ---- every kind ----------------------------------------------------------------------------------------------------------- */
 
 cprox_status cprox_motion_create(const cprox_robot *robot, const cprox_motion_description *description,
@@ -440,6 +487,7 @@ cprox_status cprox_motion_create(const cprox_robot *robot, const cprox_motion_de
   switch (description->kind) {
     case CPROX_MOTION_WAYPOINTS: return create_waypoints(&s, motion);
     case CPROX_MOTION_BSPLINE: return create_bspline(&s, motion);
+    case CPROX_MOTION_STATE: return create_state(&s, motion);
   }
   return workspace_fail(workspace, CPROX_INVALID, "%d is no kind of motion", (int)description->kind);
 }
