@@ -215,6 +215,48 @@ CASE(a_closed_mesh_is_solid_inside) {
   mesh_free(&mesh);
 }
 
+/* 100 bodies (seed 62) of 1 to 3000 triangles, points and boxes, in 100 directions each, against all their corners. Tolerance:
+ * 1e-14 of the sizes, about 20 roundings on either side. */
+CASE(support_values_are_those_of_all_corners) {
+  rng r = rng_seed(62);
+  enum { MOST = 3000 };
+  static vec3 low[MOST], high[MOST];
+  static uint32_t triangles[MOST][3];
+  for (int i = 0; i < 100; i++) {
+    const size_t n = 1 + rng_index(&r, i % 5 ? 40 : MOST);
+    const vec3 at = rng_in_cube(&r, 3.0);
+    for (size_t k = 0; k < n; k++) {
+      low[k] = vec_add(at, rng_in_cube(&r, 1.0));
+      high[k] = vec_add(low[k], vec(rng_uniform(&r, 0, 0.2), rng_uniform(&r, 0, 0.2), k % 9 ? 0.1 : 0.0));
+      for (int c = 0; c < 3; c++) triangles[k][c] = (uint32_t)rng_index(&r, (uint32_t)n);
+    }
+    cprox_body *body = NULL;
+    const cprox_status made = i % 3 == 0   ? cprox_body_create_mesh(low, n, (const uint32_t(*)[3])triangles, n,
+                                                                    CPROX_MESH_SURFACE, SIZE_MAX, ws, &body)
+                              : i % 3 == 1 ? cprox_body_create_points(low, n, 0.0, SIZE_MAX, ws, &body)
+                                           : cprox_body_create_boxes(low, high, n, SIZE_MAX, ws, &body);
+    assert_int_equal(made, CPROX_OK);
+    for (int k = 0; k < 100; k++) {
+      vec3 d = rng_in_cube(&r, 1.0), point;
+      if (k < 6) d = vec(k / 2 == 0, k / 2 == 1, k / 2 == 2), d = k % 2 ? d : vec_neg(d);
+      double most = -INFINITY;
+      for (size_t e = 0; e < n; e++) {
+        for (int c = 0; c < (i % 3 == 0 ? 3 : 1); c++) {
+          const vec3 v = i % 3 == 0 ? low[triangles[e][c]] : low[e];
+          most = fmax(most, vec_dot(d, v));
+        }
+        if (i % 3 == 2)
+          most = fmax(most, vec_dot(d, vec(d.x > 0 ? high[e].x : low[e].x, d.y > 0 ? high[e].y : low[e].y,
+                                           d.z > 0 ? high[e].z : low[e].z)));
+      }
+      const double h = cprox_body_support(body, d, &point);
+      assert_true(fabs(h - most) <= 1e-14 * 10.0);
+      assert_true(fabs(vec_dot(d, point) - h) <= 1e-14 * 10.0);
+    }
+    cprox_body_free(body);
+  }
+}
+
 /* Two pyramids of 100 sides on one base, apexes first in the order of places: closed, and open without one triangle or
  * with one turned over. */
 CASE(closedness_is_found_at_vertices_of_many_edges) {

@@ -92,22 +92,51 @@ size_t elements_bytes(const cprox_body *body) {
   return body->tree ? sizeof *body + tree_bytes(body->tree) + winding_bytes(body->winding) : 0;
 }
 
+/* The best of a pack along a direction. */
+static void support_of_pack(const tree *t, uint32_t pack, vec3 d, double *most, vec3 *at) {
+  for (uint32_t lane = 0; lane < TREE_LANES; lane++) {
+    vec3 corner[3];
+    const int n = tree_corners(t, (tree_place){pack, lane}, corner);
+    for (int k = 0; k < (t->kind == TREE_BOXES ? 1 : n); k++) {
+      vec3 v = corner[k];
+      if (t->kind == TREE_BOXES)
+        v = vec(d.x > 0.0 ? corner[1].x : v.x, d.y > 0.0 ? corner[1].y : v.y, d.z > 0.0 ? corner[1].z : v.z);
+      const double h = vec_dot(d, v);
+      if (h > *most) *most = h, *at = v;
+    }
+  }
+}
+
+/* No corner in a lane's box is farther along the direction, as vec_dot() computes it: rounding keeps the order. */
+static double support_of_lane(const tree_node *node, uint32_t l, vec3 d) {
+  return vec_dot(d, vec(d.x > 0.0 ? node->high[0][l] : node->low[0][l], d.y > 0.0 ? node->high[1][l] : node->low[1][l],
+                        d.z > 0.0 ? node->high[2][l] : node->low[2][l]));
+}
+
 double elements_support(const cprox_body *body, vec3 direction, vec3 *point) {
   const tree *t = body->tree;
-  double most = -INFINITY;
+  double most = -INFINITY, bounds[TREE_LANES * TREE_DEEPEST];
+  uint32_t open[TREE_LANES * TREE_DEEPEST];
+  size_t count = 0;
   vec3 at = vec(0, 0, 0);
-  for (uint32_t pack = 0; pack < t->n_packs; pack++) {
-    for (uint32_t lane = 0; lane < TREE_LANES; lane++) {
-      vec3 corner[3];
-      const int n = tree_corners(t, (tree_place){pack, lane}, corner);
-      for (int k = 0; k < (t->kind == TREE_BOXES ? 1 : n); k++) {
-        vec3 v = corner[k];
-        if (t->kind == TREE_BOXES)
-          v = vec(direction.x > 0.0 ? corner[1].x : v.x, direction.y > 0.0 ? corner[1].y : v.y,
-                  direction.z > 0.0 ? corner[1].z : v.z);
-        const double h = vec_dot(direction, v);
-        if (h > most) most = h, at = v;
-      }
+  open[0] = 0, bounds[count++] = INFINITY;
+  while (count > 0) {
+    const uint32_t next = open[--count];
+    if (!(bounds[count] > most)) continue;
+    if (next & TREE_LEAF) {
+      support_of_pack(t, next & ~TREE_LEAF, direction, &most, &at);
+      continue;
+    }
+    /* the lane that promises most is opened first */
+    const tree_node *node = &t->nodes[next];
+    const size_t first = count;
+    for (uint32_t l = 0; l < TREE_LANES; l++) {
+      if (!(node->lanes >> l & 1u)) continue;
+      const double bound = support_of_lane(node, l, direction);
+      if (!(bound > most)) continue;
+      size_t i = count++;
+      for (; i > first && bounds[i - 1] > bound; i--) open[i] = open[i - 1], bounds[i] = bounds[i - 1];
+      open[i] = node->child[l], bounds[i] = bound;
     }
   }
   const double margin = body->shape.margin, norm = vec_norm(direction);
