@@ -100,14 +100,40 @@ static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing, 
   return pair;
 }
 
+/* The parts of a geometry stand side by side, in the order of the geometries; so do the obstacles of a target. The first one
+ * at or after `index`. */
+static size_t first_part(const cprox_robot *robot, int32_t geometry) {
+  size_t low = 0, high = robot->n_parts;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if (robot->parts[middle].geometry < geometry)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static size_t first_obstacle(const robot_scene *s, int32_t index) {
+  size_t low = 0, high = s->n_obstacles;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if (s->obstacles[middle].index < index)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 /* Adds the pairs of convex parts of a geometry and a target, or of two geometries; only counts them where there is no room. */
 static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, bool self, robot_pair *pairs, size_t *n) {
   const cprox_robot *robot = s->motion->robot;
   const size_t others = self ? robot->n_parts : s->n_obstacles;
-  for (size_t i = 0; i < robot->n_parts; i++) {
-    if (robot->parts[i].geometry != geometry) continue;
-    for (size_t k = 0; k < others; k++) {
-      if ((self ? robot->parts[k].geometry : s->obstacles[k].index) != other) continue;
+  const size_t first = self ? first_part(robot, other) : first_obstacle(s, other);
+  for (size_t i = first_part(robot, geometry); i < robot->n_parts && robot->parts[i].geometry == geometry; i++) {
+    for (size_t k = first; k < others; k++) {
+      if ((self ? robot->parts[k].geometry : s->obstacles[k].index) != other) break;
       if (pairs) pairs[*n] = pair_of(s, i, k, self);
       (*n)++;
     }

@@ -9,6 +9,9 @@
 /* More than so many elements near each other: the node is too long, halves will tell more. */
 enum { MOST_FOUND = 256 };
 
+/* What is out of reach need not be measured any better than this fraction of how far it is beyond. */
+static const double BEYOND = 0.9;
+
 enum { MOVING, STANDING };
 
 /* Through one side's tree, with the other side as what its elements are near to. */
@@ -20,6 +23,33 @@ typedef struct descent {
   int through;      /* whose tree it is */
   double allowance; /* what the tree's own bounds may be off by, and the elements' margin */
 } descent;
+
+/* A lower bound of the distance along any n of length 1 within 8 u, rounding included: the sides lie behind two planes across
+ * n. Not of a halfspace. */
+static double apart_along(const robot_body *const side[2], vec3 n) {
+  const bound_side *m = &side[MOVING]->side, *s = &side[STANDING]->side;
+  const vec3 apart = vec_sub(m->at.p, s->at.p);
+  const double along = vec_dot(n, apart) - bound_height(m, vec_neg(n)) - bound_height(s, n);
+  const double sizes = vec_norm(apart) + m->shape->scale + m->margin + s->shape->scale + s->margin;
+  return along - ROUND_UP * (m->error + s->error + m->shape->slack + s->shape->slack + 128.0 * ROUND_U * sizes);
+}
+
+/* Do the two lie apart by the plane that told others of these sides apart? Neighbouring elements are often behind the same
+ * one. */
+static bool is_behind(const robot_refinement *c, const robot_body *const side[2], int level) {
+  const vec3 n = c->last[level];
+  return vec_norm2(n) > 0.0 && side[STANDING]->side.shape->ops->kind != CPROX_HALFSPACE &&
+         apart_along(side, n) >= c->reach;
+}
+
+/* The distance of the two, and its normal for those that come next. What is out of reach need not be known well. */
+static void ask(robot_refinement *c, const robot_body *const side[2], int level, robot_gap *gap) {
+  robot_accuracy accuracy = {.epsilon = c->accuracy, .floor = c->reach, .fraction = BEYOND};
+  if (vec_norm2(c->last[level]) > 0.0) accuracy.start = placement_turn_back(&side[STANDING]->side.at, c->last[level]);
+  robot_scene_measure(side[MOVING], side[STANDING], accuracy, gap);
+  c->gaps++;
+  if (!gap->fault && gap->upper > 0.0) c->last[level] = gap->normal;
+}
 
 static void give_up(robot_refinement *c) {
   c->reach = -INFINITY;
@@ -46,9 +76,9 @@ static void keep(robot_refinement *c, const int32_t code[2], const robot_gap *ga
 /* Two convex sides: elements, or what has none. */
 static void measure(robot_refinement *c, const robot_body *const side[2], const int32_t code[2]) {
   if (robot_scene_apart(side[MOVING], side[STANDING]) >= c->reach) return;
+  if (is_behind(c, side, 1)) return;
   robot_gap gap;
-  robot_scene_measure(side[MOVING], side[STANDING], (robot_accuracy){.epsilon = c->accuracy}, &gap);
-  c->gaps++;
+  ask(c, side, 1, &gap);
   if (gap.fault)
     fail(c);
   else if (gap.lower < c->reach)
@@ -61,9 +91,9 @@ static void descend(robot_refinement *c, const robot_body *const side[2], const 
  * its elements apart. */
 static void descend_under(robot_refinement *c, const robot_body *const side[2], const int32_t code[2], int through) {
   if (robot_scene_apart(side[MOVING], side[STANDING]) >= c->reach) return;
+  if (is_behind(c, side, 0)) return;
   robot_gap gap;
-  robot_scene_measure(side[MOVING], side[STANDING], (robot_accuracy){.epsilon = c->accuracy}, &gap);
-  c->gaps++;
+  ask(c, side, 0, &gap);
   if (gap.fault) {
     fail(c);
     return;
@@ -125,6 +155,7 @@ static void descend(robot_refinement *c, const robot_body *const side[2], const 
 void robot_refinement_run(robot_refinement *c) {
   robot_scene *s = c->scene;
   c->n_found = 0, c->gaps = 0;
+  c->last[0] = c->last[1] = vec(0, 0, 0);
   c->too_many = c->fault = c->no_memory = false;
   c->nearest.gap.upper = INFINITY;
   if (c->listing) {

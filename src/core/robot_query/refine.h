@@ -28,6 +28,7 @@ typedef struct robot_refinement {
   double rest; /* in the middle of the node every pair of elements that was not found is at least so far apart */
   bool too_many, fault, no_memory;
   uint32_t gaps;
+  vec3 last[2]; /* world: the normal found last of an element and a hull, and of two elements; (0,0,0): none */
 } robot_refinement;
 
 void robot_refinement_run(robot_refinement *refinement);
