@@ -276,7 +276,7 @@ CASE(closedness_is_found_at_vertices_of_many_edges) {
     assert_int_equal(
         cprox_body_create_mesh(v, SIDES + 2, (const uint32_t(*)[3])t, m, CPROX_MESH_SOLID, SIZE_MAX, ws, &body),
         CPROX_OK);
-    assert_int_equal(cprox_body_is_solid(body), m == 2 * SIDES);
+    assert_int_equal(cprox_body_get_info(body).is_solid, m == 2 * SIDES);
     cprox_body_free(body);
   }
   const uint32_t swap = t[7][0];
@@ -285,7 +285,7 @@ CASE(closedness_is_found_at_vertices_of_many_edges) {
   assert_int_equal(
       cprox_body_create_mesh(v, SIDES + 2, (const uint32_t(*)[3])t, 2 * SIDES, CPROX_MESH_SOLID, SIZE_MAX, ws, &body),
       CPROX_OK);
-  assert_false(cprox_body_is_solid(body));
+  assert_false(cprox_body_get_info(body).is_solid);
   cprox_body_free(body);
 }
 
@@ -297,7 +297,7 @@ CASE(a_solid_shares_its_triangles_with_its_surface) {
   cprox_body *surface = NULL, *again = NULL;
   assert_int_equal(cprox_body_create_surface(solid, ws, &surface), CPROX_OK);
   assert_int_equal(cprox_body_create_surface(surface, ws, &again), CPROX_OK);
-  assert_false(cprox_body_is_solid(surface));
+  assert_false(cprox_body_get_info(surface).is_solid);
   for (int i = 0; i < 200; i++) {
     const vec3 p = rng_in_cube(&r, 1.4);
     assert_true(cprox_body_nearest(surface, p, NULL) == cprox_body_nearest(made, p, NULL));

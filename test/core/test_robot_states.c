@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
+#include "kinematics/motion.h"
 #include "support/builders.h"
 #include "support/cases.h"
 #include "support/robots.h"
@@ -24,8 +25,8 @@ static cprox_body *placed(const test_robot *t, const ref_pose *links, size_t geo
 /* The distance of two bodies in the world, margins of the robot included; 0 where they overlap. */
 static cprox_result between(const cprox_body *a, const cprox_body *b, double margins) {
   cprox_result r;
-  const cprox_obstacle x = cprox_obstacle_at(a, cprox_pose_identity()),
-                       y = cprox_with_margin(cprox_obstacle_at(b, cprox_pose_identity()), margins);
+  const cprox_obstacle x = cprox_obstacle_at(a, CPROX_POSE_IDENTITY),
+                       y = cprox_with_margin(cprox_obstacle_at(b, CPROX_POSE_IDENTITY), margins);
   assert_true(cprox_pair(x, y, NULL, ws, &r) >= 0);
   r.lower = fmax(r.lower, 0.0), r.upper = fmax(r.upper, 0.0);
   return r;
@@ -47,7 +48,7 @@ CASE(a_state_is_where_forward_kinematics_puts_it) {
     robot_make(&r, 0.5, &t);
     cprox_body *box = NULL;
     assert_int_equal(cprox_body_create_box(vec(0.3, 0.4, 0.5), ws, &box), CPROX_OK);
-    cprox_obstacle target = cprox_obstacle_at(box, cprox_pose_identity());
+    cprox_obstacle target = cprox_obstacle_at(box, CPROX_POSE_IDENTITY);
     target.pose.position = rng_in_cube(&r, 1.5);
     cprox_obstacles *set = NULL;
     assert_int_equal(cprox_obstacles_create(&target, 1, i % 2 ? CPROX_INDEX_BVH : CPROX_INDEX_NONE, ws, &set),
@@ -84,7 +85,7 @@ CASE(a_state_is_where_forward_kinematics_puts_it) {
       for (size_t a = 0; a < t.n_links; a++) {
         cprox_result one;
         assert_true(
-            cprox_pair(cprox_with_margin(cprox_obstacle_at(bodies[a], cprox_pose_identity()), t.geometries[a].margin),
+            cprox_pair(cprox_with_margin(cprox_obstacle_at(bodies[a], CPROX_POSE_IDENTITY), t.geometries[a].margin),
                        target, NULL, ws, &one) >= 0);
         to_scene.lower = fmin(to_scene.lower, fmax(one.lower, 0.0));
         to_scene.upper = fmin(to_scene.upper, fmax(one.upper, 0.0));
@@ -119,7 +120,7 @@ CASE(a_state_is_where_forward_kinematics_puts_it) {
   assert_true(near > 100);
 }
 
-/* 300 robots (seed 302): a state changed by cprox_motion_set_state() answers as one that was made so, and as a motion through
+/* 300 robots (seed 302): a state changed by motion_set_state() answers as one that was made so, and as a motion through
  * the same waypoint twice; both intervals hold the same distance. */
 CASE(a_state_answers_as_a_motion_of_no_length) {
   rng r = rng_seed(302);
@@ -141,7 +142,7 @@ CASE(a_state_answers_as_a_motion_of_no_length) {
     assert_int_equal(cprox_motion_create(t.robot, &posture, ws, &made), CPROX_OK);
     assert_int_equal(cprox_motion_create(t.robot, &rest, ws, &changed), CPROX_OK);
     assert_int_equal(cprox_motion_get_info(made).kind, CPROX_MOTION_STATE);
-    assert_int_equal(cprox_motion_set_state(changed, values, ws), CPROX_OK);
+    assert_int_equal(motion_set_state(changed, values, ws), CPROX_OK);
     cprox_robot_pair pairs[TEST_MAX_LINKS * TEST_MAX_LINKS];
     size_t n = 0;
     for (int32_t a = 0; a < (int32_t)t.n_links; a++)
@@ -168,14 +169,14 @@ CASE(a_state_answers_as_a_motion_of_no_length) {
 CASE(a_state_that_is_refused_changes_nothing) {
   cprox_body *ball = NULL;
   assert_int_equal(cprox_body_create_sphere(0.1, ws, &ball), CPROX_OK);
-  cprox_link links[2] = {{.parent = -1, .type = CPROX_JOINT_FLOATING, .origin = cprox_pose_identity(), .variable = 0},
+  cprox_link links[2] = {{.parent = -1, .type = CPROX_JOINT_FLOATING, .origin = CPROX_POSE_IDENTITY, .variable = 0},
                          {.parent = 0,
                           .type = CPROX_JOINT_PRISMATIC,
-                          .origin = cprox_pose_identity(),
+                          .origin = CPROX_POSE_IDENTITY,
                           .axis = vec(0, 0, 1),
                           .variable = 7,
                           .multiplier = 1.0}};
-  const cprox_link_geometry geometry = {.body = ball, .pose = cprox_pose_identity(), .link = 1};
+  const cprox_link_geometry geometry = {.body = ball, .pose = CPROX_POSE_IDENTITY, .link = 1};
   cprox_robot *robot = NULL;
   assert_int_equal(cprox_robot_create(links, 2, &geometry, 1, 8, ws, &robot), CPROX_OK);
   const double good[8] = {1, 2, 3, 0, 0, 0, 1, 0.5}, zero[8] = {0}, nan[8] = {0, 0, 0, 0, 0, 0, 1, NAN},
@@ -185,18 +186,18 @@ CASE(a_state_that_is_refused_changes_nothing) {
   assert_int_equal(cprox_motion_create(robot, &posture, ws, &motion), CPROX_OK);
   const double *const bad[3] = {zero, nan, far};
   const char *const why[3] = {"quaternion", "variable 7", "at most"};
-  const cprox_obstacle target = cprox_obstacle_at(ball, cprox_pose_identity());
+  const cprox_obstacle target = cprox_obstacle_at(ball, CPROX_POSE_IDENTITY);
   cprox_result before, after;
   assert_int_equal(cprox_distance(cprox_robot_along(motion, NULL, 0), target, NULL, ws, &before), CPROX_OK);
   for (int k = 0; k < 3; k++) {
-    assert_int_equal(cprox_motion_set_state(motion, bad[k], ws), CPROX_INVALID);
+    assert_int_equal(motion_set_state(motion, bad[k], ws), CPROX_INVALID);
     assert_non_null(strstr(cprox_workspace_error(ws), why[k]));
     assert_int_equal(cprox_distance(cprox_robot_along(motion, NULL, 0), target, NULL, ws, &after), CPROX_OK);
     assert_true(before.lower == after.lower && before.upper == after.upper);
     cprox_state_query q = {.without_self = true};
     assert_int_equal(cprox_robot_ask_states(robot, &q, bad[k], 1, ws, &after, NULL), CPROX_INVALID);
   }
-  assert_int_equal(cprox_motion_set_state(motion, NULL, ws), CPROX_INVALID);
+  assert_int_equal(motion_set_state(motion, NULL, ws), CPROX_INVALID);
   cprox_motion_free(motion);
 
   const cprox_waypoint ends[2] = {{.time = 0.0, .positions = good}, {.time = 1.0, .positions = good}};
@@ -204,7 +205,7 @@ CASE(a_state_that_is_refused_changes_nothing) {
   const cprox_motion_description moving = {
       .variables = variables, .n_variables = 8, .waypoints = ends, .n_waypoints = 2};
   assert_int_equal(cprox_motion_create(robot, &moving, ws, &motion), CPROX_OK);
-  assert_int_equal(cprox_motion_set_state(motion, good, ws), CPROX_INVALID);
+  assert_int_equal(motion_set_state(motion, good, ws), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(ws), "is no state"));
   cprox_motion_free(motion);
   cprox_state_query q = {.delta = 0.0};

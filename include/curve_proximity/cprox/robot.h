@@ -99,7 +99,8 @@ typedef enum cprox_motion_kind {
    *  knots, n_knots           [s] n_control + degree + 1 knots, non-decreasing, none more than degree times inside. */
   CPROX_MOTION_BSPLINE,
 
-  /** One state of the robot, which does not move. Every query answers for it, and cprox_motion_set_state() changes it.
+  /** One state of the robot, which does not move. Every query answers for it; t is any time in [0, 1]. Many states are
+   *  asked by cprox_robot_ask_states().
    *
    *  rest                     the values of all variables; NULL: all 0. */
   CPROX_MOTION_STATE
@@ -144,15 +145,6 @@ typedef struct cprox_motion_description {
  *  Returns CPROX_OK, CPROX_INVALID or CPROX_MEMORY. */
 CPROX_API cprox_status cprox_motion_create(const cprox_robot *robot, const cprox_motion_description *description,
                                            cprox_workspace *workspace, cprox_motion **motion);
-
-/** Changes the state of a motion of the kind CPROX_MOTION_STATE.
- *
- *  motion     no query may be using it.
- *  values     the values of all variables of the robot; finite. Copied.
- *  workspace  may be NULL: then there is no error message.
- *
- *  Returns CPROX_OK or CPROX_INVALID; the state is untouched on failure. Allocates nothing. Cost: forward kinematics. */
-CPROX_API cprox_status cprox_motion_set_state(cprox_motion *motion, const double *values, cprox_workspace *workspace);
 
 /** Frees a motion; NULL is allowed. */
 CPROX_API void cprox_motion_free(cprox_motion *motion);

@@ -3,6 +3,7 @@
 #include "base/workspace.h"
 #include "curve_proximity/cprox/obstacles.h"
 #include "curve_proximity/cprox/robot.h"
+#include "kinematics/motion.h"
 #include "problem/problem.h"
 
 static cprox_status ask(const cprox_state_query *q, const cprox_obstacles *obstacles, cprox_mover mover,
@@ -60,7 +61,7 @@ cprox_status cprox_robot_ask_states(const cprox_robot *robot, const cprox_state_
   for (size_t i = 0; i < n && worst >= 0; i++) {
     bool self = false;
     cprox_result found;
-    cprox_status status = i > 0 ? cprox_motion_set_state(state, states + i * width, workspace) : CPROX_OK;
+    cprox_status status = i > 0 ? motion_set_state(state, states + i * width, workspace) : CPROX_OK;
     if (status >= 0) status = ask_state(asked, state, workspace, &found, &self);
     if (status < 0 || worst == CPROX_OK) worst = status;
     if (status < 0) break;

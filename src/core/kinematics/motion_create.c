@@ -450,7 +450,7 @@ static cprox_status create_state(const motion_source *s, cprox_motion **motion) 
   return finish(m, s, motion);
 }
 
-cprox_status cprox_motion_set_state(cprox_motion *motion, const double *values, cprox_workspace *workspace) {
+cprox_status motion_set_state(cprox_motion *motion, const double *values, cprox_workspace *workspace) {
   workspace_clear(workspace);
   if (!motion || !values) return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", motion ? "values" : "motion");
   if (!motion->is_state) return workspace_fail(workspace, CPROX_INVALID, "the motion is no state");
