@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The seven MotionBenchMaker trajectories that MoveIt was measured on: the certified minimum, of hulls and of meshes, to the scene and
- * to the robot itself, beside the boolean check of states that a planner makes, at MoveIt's usual step. MoveIt's own figures, measured
+ * to the robot itself, beside the boolean check of states that a planner makes, at MoveIt's usual step; and that check by
+ * ourselves. MoveIt's own figures, measured
  * by themselves with moveit_core 1.1.16 and FCL, stand beside them for reference: they are not of this process. */
 #include <math.h>
 #include <stdio.h>
@@ -32,6 +33,7 @@ enum { SCENES = sizeof MOVEIT / sizeof MOVEIT[0] };
 typedef struct problem {
   robot_case c;
   robot_fcl *fcl;
+  cprox_obstacles *set;
   size_t states;
   double truth;
 } problem;
@@ -93,6 +95,35 @@ static void states_by_fcl(const void *problems, size_t i, void *state, bench_ans
   answer->wrong = hit && p->truth > 0.0;
 }
 
+/* ---- states by ourselves -------------------------------------------------------------------------------------------------- */
+
+enum { MOST_STATES = 4096 };
+
+/* The same states, all by one call. */
+static void states_by_us(const void *problems, size_t i, void *state, bench_answer *answer) {
+  static double values[MOST_STATES * CASE_MAX_VARIABLES];
+  static cprox_result results[MOST_STATES];
+  const problem *p = (const problem *)problems + i;
+  const method_state *s = state;
+  const cprox_motion_info info = cprox_motion_get_info(p->c.motion);
+  const size_t n = p->states < MOST_STATES ? p->states : MOST_STATES;
+  for (size_t k = 0; k < n; k++) {
+    const double t = info.t0 + (info.t1 - info.t0) * (double)k / (double)(n - 1);
+    cprox_motion_evaluate(p->c.motion, t, values + k * p->c.n_variables);
+  }
+  const cprox_state_query query = {
+      .obstacles = p->set, .self_pairs = p->c.self_pairs, .n_self_pairs = p->c.n_self_pairs};
+  const cprox_status status =
+      cprox_robot_ask_states(s->meshes ? p->c.mesh_robot : p->c.robot, &query, values, n, s->workspace, results, NULL);
+  *answer = (bench_answer){.lower = NAN, .upper = NAN, .nodes = (uint32_t)n, .failed = status < 0};
+  bool hit = false;
+  for (size_t k = 0; k < n && status >= 0; k++) {
+    answer->distance_queries += results[k].distance_queries;
+    hit = hit || results[k].verdict != CPROX_VERDICT_CLEAR;
+  }
+  answer->wrong = hit && p->truth > 0.0;
+}
+
 /* ---- the workload --------------------------------------------------------------------------------------------------------- */
 
 static bool read_problem(FILE *f, problem *p) {
@@ -104,11 +135,14 @@ static bool read_problem(FILE *f, problem *p) {
 
 int main(int argc, char **argv) {
   const bench_size size = bench_arguments(argc, argv);
-  if (!bench_wanted(&size, "planning")) return 0;
+  if (!bench_wanted(&size, "planning") && !bench_wanted(&size, "states")) return 0;
   method_state by_hull = {.workspace = cprox_workspace_create()},
                by_mesh = {.workspace = by_hull.workspace, .meshes = true};
   const bench_method hulls[] = {{"curve_proximity", ours, &by_hull}, {robot_fcl_name(), states_by_fcl, NULL}};
   const bench_method meshes[] = {{"curve_proximity", ours, &by_mesh}, {"by hulls", ours, &by_hull}};
+  const bench_method states[] = {{"curve_proximity", states_by_us, &by_mesh},
+                                 {"by hulls", states_by_us, &by_hull},
+                                 {robot_fcl_name(), states_by_fcl, NULL}};
   FILE *f = fopen(BENCH_DATA_DIR "/motion/cases.txt", "r");
   size_t n;
   if (!f || fscanf(f, "%zu", &n) != 1) return 1;
@@ -124,6 +158,11 @@ int main(int argc, char **argv) {
       const bench_workload of_meshes = {"robots", "meshes", p.c.name, &p, 1, &p.truth, 1.1e-6};
       bench_measure(&w, &size, hulls, robot_fcl_name() ? 2 : 1);
       bench_measure(&of_meshes, &size, meshes, 2);
+      if (cprox_obstacles_create(p.c.targets, p.c.n_targets, CPROX_INDEX_BVH, by_hull.workspace, &p.set) != CPROX_OK)
+        return 1;
+      const bench_workload of_states = {"robots", "states", p.c.name, &p, 1, NULL, 0.0};
+      bench_measure(&of_states, &size, states, robot_fcl_name() ? 3 : 2);
+      cprox_obstacles_free(p.set);
       printf("robots,planning,MoveIt 1.1.16 by itself,%s,%g,%g,%zu,0,,0,0\n", p.c.name, 1e3 * MOVEIT[k].milliseconds,
              1e3 * MOVEIT[k].milliseconds, p.states);
       robot_fcl_free(p.fcl);
