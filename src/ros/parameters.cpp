@@ -206,6 +206,8 @@ GateParameters readGateParameters(const ros::NodeHandle &handle) {
   Reader reader(handle);
   visitGateParameters(parameters, reader);
   reader.warnOfOthers();
+  if (!parameters.controller.empty() && parameters.server.empty())
+    throw ParameterError("parameter ~controller: goals need a server to ask: ~server is its namespace");
   return parameters;
 }
 

@@ -116,12 +116,18 @@ void visitParameters(Fields &parameters, Visitor &&visit) {
 struct GateParameters {
   double delta = 0.0; /**< [m] */
   int queue_size = 10;
+  std::string server;         /**< the namespace of the server's services; empty: the scene is not looked at again */
+  std::string controller;     /**< the action of the controller; empty: there is no action */
+  bool self_collision = true; /**< of goals of the action */
 };
 
 template <class Fields, class Visitor>
 void visitGateParameters(Fields &parameters, Visitor &&visit) {
   visit("delta", parameters.delta, Range{0.0});
   visit("queue_size", parameters.queue_size, Range{1.0, false, 1e6});
+  visit("server", parameters.server);
+  visit("controller", parameters.controller);
+  visit("self_collision", parameters.self_collision);
 }
 
 /** Reads the parameters of a private handle; those that are not set keep their defaults.

@@ -8,6 +8,8 @@
 #include <trajectory_msgs/MultiDOFJointTrajectory.h>
 
 #include <algorithm>
+#include <cmath>
+#include <curve_proximity/core.hpp>
 #include <curve_proximity/fingerprint.hpp>
 #include <string>
 #include <utility>
@@ -21,6 +23,19 @@ constexpr std::uint32_t QUEUE = 100; /* of roscpp: emptied at once */
 
 void complain(const std::string &why) {
   ROS_ERROR("gate: %s", why.c_str());
+}
+
+bool addTo(ProximityQuery &query, const Curve &curve) {
+  query.curves.push_back(curve);
+  return true;
+}
+bool addTo(ProximityQuery &query, const trajectory_msgs::JointTrajectory &trajectory) {
+  query.trajectories.push_back(trajectory);
+  return true;
+}
+template <class Message>
+bool addTo(ProximityQuery &, const Message &) {
+  return false;
 }
 
 template <class Entry>
@@ -46,28 +61,31 @@ bool isClear(const ProximityResults &results, double delta) {
   if (!results.success || results.results.empty()) return false;
   const bool tolerant = results.query_type == "tolerance" && results.delta >= delta;
   const bool apart = results.query_type == "collision" && delta == 0.0;
-  return std::all_of(results.results.begin(), results.results.end(), [&](const Proximity &row) {
-    const bool settled = (tolerant || apart) && row.verdict == "clear";
-    return settled || row.lower > delta; // a row without an answer has NaN and no verdict
-  });
+  return std::all_of(results.results.begin(), results.results.end(),
+                     [&](const Proximity &row) { return isClear(row, delta, tolerant || apart); });
 }
 
 TrajectoryGate::TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters)
     : parameters_(parameters), handle_(handle), spinner_(1, &queue_) {
   handle_.setCallbackQueue(&queue_);
+  refused_ = handle_.advertise<Refusal>("refused", QUEUE);
+  if (!parameters_.server.empty())
+    calls_ = std::make_unique<ServerCalls>(handle_, parameters_.server, parameters_.delta);
+  if (!parameters_.controller.empty()) actions_ = std::make_unique<ActionGate>(handle, parameters_, refused_);
   connect<Curve>("curve");
   connect<trajectory_msgs::JointTrajectory>("trajectory");
   connect<trajectory_msgs::MultiDOFJointTrajectory>("multi_dof_trajectory");
   connect<nav_msgs::Path>("path");
   subscribers_.push_back(handle_.subscribe<ProximityResults>(
       "proximity", QUEUE,
-      [this](const ProximityResultsConstPtr &results) { guarded([&] { answer(*results); }, complain); }));
+      [this](const ProximityResultsConstPtr &results) { guarded([&] { answer(results); }, complain); }));
   spinner_.start();
 }
 
 TrajectoryGate::~TrajectoryGate() {
   for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
   spinner_.stop();
+  actions_.reset();
   queue_.clear();
 }
 
@@ -76,30 +94,70 @@ void TrajectoryGate::connect(const std::string &topic) {
   using Pointer = boost::shared_ptr<const Message>;
   const ros::Publisher out = handle_.advertise<Message>("clear_" + topic, QUEUE);
   subscribers_.push_back(handle_.subscribe<Message>(topic, QUEUE, [this, out](const Pointer &message) {
-    guarded([&] { receive({fingerprint(*message), [out, message] { out.publish(message); }}); }, complain);
+    guarded(
+        [&] {
+          receive({fingerprint(*message), [out, message] { out.publish(message); },
+                   [message](ProximityQuery &query) { return addTo(query, *message); }});
+        },
+        complain);
   }));
 }
 
 void TrajectoryGate::receive(Waiting message) {
   const std::optional<Answered> known = take(answered_, message.fingerprint);
-  if (!known) {
-    keep(waiting_, std::move(message), static_cast<std::size_t>(parameters_.queue_size));
-  } else if (known->clear) {
-    message.pass();
-  }
+  if (known) return decide(message, *known->results);
+  keep(waiting_, std::move(message), static_cast<std::size_t>(parameters_.queue_size));
 }
 
-void TrajectoryGate::answer(const ProximityResults &results) {
-  const bool clear = isClear(results, parameters_.delta);
-  if (!clear)
-    ROS_WARN("gate: %s '%s' does not pass: it is not certified to be clear", results.source.c_str(),
-             results.id.c_str());
-  const std::optional<Waiting> message = take(waiting_, results.fingerprint);
-  if (!message) {
-    keep(answered_, {results.fingerprint, clear}, static_cast<std::size_t>(parameters_.queue_size));
-  } else if (clear) {
-    message->pass();
+void TrajectoryGate::answer(const ProximityResultsConstPtr &results) {
+  const std::optional<Waiting> message = take(waiting_, results->fingerprint);
+  if (message) return decide(*message, *results);
+  keep(answered_, {results->fingerprint, results}, static_cast<std::size_t>(parameters_.queue_size));
+}
+
+void TrajectoryGate::decide(const Waiting &message, const ProximityResults &results) {
+  Refusal refusal;
+  if (!isClear(results, parameters_.delta)) {
+    refusal = refusalOf(results.results, parameters_.delta, results.scene);
+    if (!results.success) refusal.message = results.message;
+  } else if (isStillClear(message, results, refusal)) {
+    return message.pass();
   }
+  refuse(std::move(refusal), results);
+}
+
+/** The scene may have changed since the answer. */
+bool TrajectoryGate::isStillClear(const Waiting &message, const ProximityResults &results, Refusal &refusal) {
+  if (!calls_) return true;
+  bool clear = false;
+  guarded(
+      [&] {
+        const SceneState now = calls_->scene();
+        clear = now.epoch == results.scene.epoch && now.version == results.scene.version;
+        if (clear) return;
+        ProximityQuery query;
+        if (!message.ask(query)) throw Error("the scene has changed since the answer");
+        query.current_joints = !std::isnan(results.scene.joint_state_age);
+        query.self_collision = std::any_of(results.results.begin(), results.results.end(),
+                                           [](const Proximity &row) { return row.kind == Proximity::KIND_SELF; });
+        clear = calls_->isClear(query, refusal);
+      },
+      [&](const std::string &why) {
+        refusal.header.stamp = ros::Time::now();
+        refusal.scene = results.scene;
+        refusal.message = why;
+      });
+  return clear;
+}
+
+void TrajectoryGate::refuse(Refusal refusal, const ProximityResults &results) {
+  refusal.header.frame_id = results.header.frame_id;
+  refusal.source = results.source;
+  refusal.id = results.id;
+  refusal.fingerprint = results.fingerprint;
+  refusal.delta = parameters_.delta;
+  ROS_WARN("gate: %s '%s' does not pass: %s", results.source.c_str(), results.id.c_str(), refusal.message.c_str());
+  refused_.publish(refusal);
 }
 
 } // namespace curve_proximity

@@ -11,10 +11,13 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "action_gate.h"
 #include "parameters.h"
+#include "server_calls.h"
 
 namespace curve_proximity {
 
@@ -24,7 +27,9 @@ bool isClear(const ProximityResults &results, double delta);
 
 /** Waits for the answer (~proximity) to each message on ~curve, ~trajectory, ~multi_dof_trajectory and ~path, in whichever order they
  *  come, and hands on those that are clear, by pointer: ~clear_curve, ~clear_trajectory, ~clear_multi_dof_trajectory, ~clear_path.
- *  ~queue_size messages and as many answers wait for each other; what is older never passes. */
+ *  ~queue_size messages and as many answers wait for each other; what is older never passes. Before it hands a message on, it
+ *  looks at the scene of ~server: where that is another one than the answer's, it asks again. What does not pass is told on
+ *  ~refused. With ~controller it is also a FollowJointTrajectory action: see ActionGate. */
 class TrajectoryGate {
  public:
   TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters);
@@ -37,23 +42,30 @@ class TrajectoryGate {
   struct Waiting {
     std::uint64_t fingerprint;
     std::function<void()> pass;
+    std::function<bool(ProximityQuery &)> ask; /* makes a query of the message; false: it cannot be asked about again */
   };
   struct Answered {
     std::uint64_t fingerprint;
-    bool clear;
+    ProximityResultsConstPtr results;
   };
 
   template <class Message>
   void connect(const std::string &topic);
   void receive(Waiting message);
-  void answer(const ProximityResults &results);
+  void answer(const ProximityResultsConstPtr &results);
+  void decide(const Waiting &message, const ProximityResults &results);
+  bool isStillClear(const Waiting &message, const ProximityResults &results, Refusal &refusal);
+  void refuse(Refusal refusal, const ProximityResults &results);
 
   const GateParameters parameters_;
   std::deque<Waiting> waiting_; /* touched by the one thread of the queue alone */
   std::deque<Answered> answered_;
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
+  ros::Publisher refused_;
+  std::unique_ptr<ServerCalls> calls_; /* null: the scene is not looked at again */
   std::vector<ros::Subscriber> subscribers_;
+  std::unique_ptr<ActionGate> actions_;
   ros::AsyncSpinner spinner_;
 };
 

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What the gate asks of the server: which scene there is now, and whether a motion is clear of it. */
+#ifndef CURVE_PROXIMITY_ROS_SERVER_CALLS_H
+#define CURVE_PROXIMITY_ROS_SERVER_CALLS_H
+
+#include <curve_proximity/Proximity.h>
+#include <curve_proximity/ProximityQuery.h>
+#include <curve_proximity/Refusal.h>
+#include <curve_proximity/SceneState.h>
+#include <curve_proximity/Tolerance.h>
+#include <ros/node_handle.h>
+
+#include <curve_proximity/client.hpp>
+#include <string>
+#include <vector>
+
+namespace curve_proximity {
+
+/** A refusal by the first row that is not certified to stay farther than delta: its pair, its time, its distance. */
+Refusal refusalOf(const std::vector<Proximity> &rows, double delta, const SceneState &scene);
+
+/** Does this row prove that? decided: its verdict is about a limit of delta at least. */
+bool isClear(const Proximity &row, double delta, bool decided);
+
+/** For one thread. */
+class ServerCalls {
+ public:
+  /** server: the namespace of its services. delta [m]. */
+  ServerCalls(const ros::NodeHandle &handle, const std::string &server, double delta)
+      : delta_(delta), tolerance_(handle, server + "/tolerance") {}
+
+  /** Throws Error where the server does not answer. */
+  SceneState scene();
+
+  /** True where all of it is clear; else `refusal` says what is not, or why there is no answer. */
+  bool isClear(const ProximityQuery &query, Refusal &refusal);
+
+ private:
+  const double delta_;
+  PersistentClient<Tolerance> tolerance_;
+};
+
+} // namespace curve_proximity
+#endif

@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The gate as an action between a planner and a controller: what is clear passes, what is not is refused with its reason, and what
+stops being clear while it runs is cancelled. The types are made of control_msgs' published definition."""
+import time
+import unittest
+
+import actionlib
+import genpy.dynamic
+import rospy
+from actionlib_msgs.msg import GoalID, GoalStatus
+from curve_proximity.msg import CollisionObject, Refusal
+from helpers import Server, joints, run, sphere, thing, until
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Header
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+TOLERANCE = 'string name\nfloat64 position\nfloat64 velocity\nfloat64 acceleration\n'
+GOAL = ('trajectory_msgs/JointTrajectory trajectory\nJointTolerance[] path_tolerance\nJointTolerance[] goal_tolerance\n'
+        'duration goal_time_tolerance\n')
+RESULT = ('int32 error_code\nint32 SUCCESSFUL = 0\nint32 INVALID_GOAL = -1\nint32 INVALID_JOINTS = -2\n'
+          'int32 OLD_HEADER_TIMESTAMP = -3\nint32 PATH_TOLERANCE_VIOLATED = -4\nint32 GOAL_TOLERANCE_VIOLATED = -5\nstring error_string\n')
+POINT = 'trajectory_msgs/JointTrajectoryPoint '
+FEEDBACK = 'Header header\nstring[] joint_names\n%sdesired\n%sactual\n%serror\n' % (POINT, POINT, POINT)
+PARTS = {'FollowJointTrajectoryGoal': GOAL, 'FollowJointTrajectoryResult': RESULT, 'FollowJointTrajectoryFeedback': FEEDBACK,
+         'FollowJointTrajectoryActionGoal': 'Header header\nactionlib_msgs/GoalID goal_id\nFollowJointTrajectoryGoal goal\n',
+         'FollowJointTrajectoryActionResult': 'Header header\nactionlib_msgs/GoalStatus status\nFollowJointTrajectoryResult result\n',
+         'FollowJointTrajectoryActionFeedback': 'Header header\nactionlib_msgs/GoalStatus status\nFollowJointTrajectoryFeedback feedback\n',
+         'FollowJointTrajectoryAction': 'FollowJointTrajectoryActionGoal action_goal\nFollowJointTrajectoryActionResult action_result\n'
+                                        'FollowJointTrajectoryActionFeedback action_feedback\n'}
+
+
+def types():
+    """The classes of the action."""
+    line = '\n' + '=' * 80 + '\nMSG: '
+    others = {'control_msgs/' + name: text for name, text in PARTS.items()}
+    others.update({'control_msgs/JointTolerance': TOLERANCE, 'std_msgs/Header': Header._full_text, 'actionlib_msgs/GoalID': GoalID._full_text,
+                   'actionlib_msgs/GoalStatus': GoalStatus._full_text.split(line.strip('\n').split('\n')[0])[0],
+                   'trajectory_msgs/JointTrajectoryPoint': JointTrajectoryPoint._full_text,
+                   'trajectory_msgs/JointTrajectory': JointTrajectory._full_text.split('=' * 80)[0]})
+    top = 'control_msgs/FollowJointTrajectoryAction'
+    text = others.pop(top) + ''.join(line + name + '\n' + definition for name, definition in others.items())
+    return genpy.dynamic.generate_dynamic(top, text)
+
+
+TYPES = types()
+Action, Goal, Result = (TYPES['control_msgs/FollowJointTrajectory' + name] for name in ('Action', 'Goal', 'Result'))
+
+
+class Controller:
+    """Takes as long as the trajectory does."""
+
+    def __init__(self):
+        self.begun, self.cancelled, self.ended = 0, 0, 0
+        self.server = actionlib.SimpleActionServer('/controller/follow_joint_trajectory', Action, self.execute, False)
+        self.server.start()
+
+    def execute(self, goal):
+        self.begun += 1
+        end = time.monotonic() + goal.trajectory.points[-1].time_from_start.to_sec()
+        while time.monotonic() < end:
+            if self.server.is_preempt_requested():
+                self.cancelled += 1
+                return self.server.set_preempted(Result(), 'cancelled')
+            time.sleep(0.01)
+        self.ended += 1
+        self.server.set_succeeded(Result())
+
+
+def turning(to, seconds):
+    return JointTrajectory(joint_names=['turn'], points=[
+        JointTrajectoryPoint(positions=[p], time_from_start=rospy.Duration(t)) for p, t in ((0.0, 0), (0.5 * to, seconds / 2), (to, seconds))])
+
+
+class Gate(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server, cls.controller, cls.refused, cls.passed = Server(), Controller(), [], []
+        rospy.Subscriber('/gate/refused', Refusal, cls.refused.append)
+        rospy.Subscriber('/gate/clear_trajectory', JointTrajectory, cls.passed.append)
+        cls.topic = rospy.Publisher('/curve_proximity/trajectory', JointTrajectory, queue_size=5)
+        cls.states = rospy.Publisher('/curve_proximity/joint_states', JointState, queue_size=5)
+        cls.client = actionlib.SimpleActionClient('/gate/follow_joint_trajectory', Action)
+        assert cls.client.wait_for_server(rospy.Duration(20))
+        assert until(lambda: cls.states.get_num_connections() and cls.topic.get_num_connections(), 20)
+        time.sleep(1.0)  # the gate finds the controller
+        cls.states.publish(joints(turn=0.0))
+        time.sleep(0.2)
+
+    def setUp(self):
+        self.server.replace(sphere('far', 0.1, (0, 0, 5)))
+        del self.refused[:], self.passed[:]
+
+    def test_a_clear_goal_reaches_the_controller_and_its_result_comes_back(self):
+        begun = self.controller.begun
+        self.client.send_goal(Goal(trajectory=turning(1.0, 0.5)))
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(10)))
+        self.assertEqual((self.client.get_state(), self.controller.begun), (GoalStatus.SUCCEEDED, begun + 1), self.client.get_goal_status_text())
+        self.assertEqual(self.refused, [])
+
+    def test_a_goal_that_is_not_clear_is_rejected_with_pair_time_and_distance(self):
+        begun = self.controller.begun
+        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))  # where the arm is after a quarter turn
+        self.client.send_goal(Goal(trajectory=turning(3.0, 2.0)))
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(10)))
+        self.assertEqual((self.client.get_state(), self.controller.begun), (GoalStatus.REJECTED, begun))
+        self.assertIn("'post'", self.client.get_result().error_string)
+        self.assertTrue(until(lambda: self.refused, 5))
+        refusal, = self.refused
+        self.assertEqual((refusal.source, refusal.row.a, refusal.row.b, refusal.cancelled), (Refusal.ACTION, 'arm', 'post', False))
+        self.assertLess(refusal.row.lower, 0.05)
+        self.assertGreater(refusal.row.t, 0.0)
+
+    def test_a_running_goal_is_cancelled_when_what_is_left_of_it_is_no_longer_clear(self):
+        before = self.controller.cancelled
+        self.client.send_goal(Goal(trajectory=turning(2.0, 3.0)))
+        self.assertTrue(until(lambda: self.controller.server.is_active(), 5))
+        self.server.apply(sphere('behind', 0.1, (0.5, -0.5, 0.5)))  # another scene, and nothing in the way
+        time.sleep(0.4)
+        self.assertEqual((self.controller.cancelled, self.refused), (before, []))
+        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        begin = time.monotonic()
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(10)))
+        self.assertLess(time.monotonic() - begin, 1.0)
+        self.assertEqual((self.client.get_state(), self.controller.cancelled), (GoalStatus.ABORTED, before + 1))
+        self.assertTrue(until(lambda: self.refused, 5))
+        self.assertEqual((self.refused[0].row.b, self.refused[0].cancelled), ('post', True))
+
+    def test_a_client_may_cancel(self):
+        before = self.controller.cancelled
+        self.client.send_goal(Goal(trajectory=turning(1.0, 3.0)))
+        self.assertTrue(until(lambda: self.controller.server.is_active(), 5))
+        self.client.cancel_goal()
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(5)))
+        self.assertEqual((self.client.get_state(), self.controller.cancelled), (GoalStatus.PREEMPTED, before + 1))
+
+    def test_refused_messages_of_topics_are_told_too(self):
+        self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))
+        self.topic.publish(turning(3.0, 2.0))
+        self.assertTrue(until(lambda: self.refused, 5))
+        self.assertEqual((self.refused[0].source, self.refused[0].row.b), ('trajectory', 'post'))
+        self.server.apply(thing('post', operation=CollisionObject.REMOVE))
+        self.topic.publish(turning(3.0, 2.0))
+        self.assertTrue(until(lambda: self.passed, 5))
+        self.assertEqual((len(self.passed), len(self.refused)), (1, 1))
+
+
+if __name__ == '__main__':
+    run('gating')
