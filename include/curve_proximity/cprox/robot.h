@@ -205,8 +205,8 @@ typedef struct cprox_robot_pair {
  *
  *  Against obstacles and itself at once: set `whole` of the mover, and self_pairs where not all pairs with itself are
  *  asked about, which are those of cprox_robot_self(). One search begins with the pair that is nearest of both kinds.
- *  It answers distance, tolerance, collision and time of contact, without `each` and without certificate. obstacle_index
- *  is then that of an obstacle, or the number of obstacles plus that of the other geometry. */
+ *  It answers distance, tolerance, collision and time of contact, without `each` and without certificate.
+ *  obstacle_index is then that of an obstacle, or the number of obstacles plus that of the other geometry. */
 CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 
 /** The robot along a motion against itself: its queries have no obstacles (cprox_obstacles_distance(NULL, mover, …)).
