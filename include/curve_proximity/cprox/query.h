@@ -51,8 +51,8 @@ typedef struct cprox_mover {
   bool self;
   /** a robot with `whole`: its pairs with itself; NULL: all */
   const struct cprox_robot_pair *self_pairs;
-  size_t n_self_pairs;
-  bool whole; /**< a robot against the obstacles and itself at once, see cprox_robot_along() */
+  size_t n_self_pairs; /**< the number of self_pairs */
+  bool whole;          /**< a robot against the obstacles and itself at once, see cprox_robot_along() */
 } cprox_mover;
 
 CPROX_API cprox_mover cprox_point_along(const cprox_curve *curve);
