@@ -161,71 +161,108 @@ CPROX_API cprox_status cprox_solid_spectrum(const cprox_solid *solid, cprox_vec3
 
 /** What a gap is for. */
 typedef enum cprox_gap_mode {
-  CPROX_GAP_MODE_CERTIFIED = 0, /**< clear is a proof */
-  CPROX_GAP_MODE_TUNED = 1, /**< two to three times as accurate, clear is not a proof: there are bodies that break it */
-  CPROX_GAP_MODE_SIGNAL = 2 /**< a smooth constraint for solvers, usable at every clearance, without a verdict */
+  /** clear is a proof */
+  CPROX_GAP_MODE_CERTIFIED = 0,
+  /** two to three times as accurate, clear is not a proof: there are bodies that break it */
+  CPROX_GAP_MODE_TUNED = 1,
+  /** a smooth constraint for solvers, usable at every clearance, without a verdict */
+  CPROX_GAP_MODE_SIGNAL = 2
 } cprox_gap_mode;
 
-/** Start from CPROX_GAP_OPTIONS_DEFAULT. */
+/** Start from CPROX_GAP_OPTIONS_DEFAULT, which sets the size: later versions may add members. */
 typedef struct cprox_gap_options {
+  /** sizeof(cprox_gap_options), as CPROX_GAP_OPTIONS_DEFAULT sets it; any other size is refused */
+  size_t size;
+  /** What the gap is for. */
   cprox_gap_mode mode;
   /** [m] > 0: the largest clearance that may still be called a collision; chooses the samples. Default 0: samples
    *  must be given. Refused together with samples */
   double delta;
-  uint32_t samples; /**< n, odd, 3 … 1025: samples an axis; 0: the fewest for delta. Default 0 */
-  double period;    /**< [m] L, or 0 for the least that keeps images apart (default); a smaller one is refused */
+  /** n, odd, 3 … 1025: samples an axis; 0: the fewest for delta. Default 0 */
+  uint32_t samples;
+  /** [m] L, or 0 for the least that keeps images apart (default); a smaller one is refused */
+  double period;
   /** bytes a gap may hold; beyond it CPROX_INVALID and a sentence with n and the bytes it needs. Default 256 MiB */
   size_t memory_limit;
 } cprox_gap_options;
 
 /** The default of all options: certified, with samples or delta still to be given. */
 #define CPROX_GAP_OPTIONS_DEFAULT \
-  (CPROX_VALUE(cprox_gap_options){CPROX_GAP_MODE_CERTIFIED, 0.0, 0, 0.0, (size_t)256 << 20})
+  (CPROX_VALUE(cprox_gap_options){sizeof(cprox_gap_options), CPROX_GAP_MODE_CERTIFIED, 0.0, 0, 0.0, (size_t)256 << 20})
 
 /** What a gap is made of. */
 typedef struct cprox_gap_info {
+  /** Certified, tuned or signal. */
   cprox_gap_mode mode;
+  /** 2 or 3. */
   int dimension;
-  uint32_t samples; /**< n: samples an axis */
-  double period;    /**< L [m] */
-  double offset;    /**< rho [m], by which both solids are enlarged; 0 in the signal mode */
-  double threshold; /**< t, in units of the measure squared over L^d; V_ref in the signal mode */
+  /** n: samples an axis */
+  uint32_t samples;
+  /** L [m] */
+  double period;
+  /** rho [m], by which both solids are enlarged; 0 in the signal mode */
+  double offset;
+  /** t, in units of the measure squared over L^d; V_ref in the signal mode */
+  double threshold;
   /** [m] solids farther apart than this are never called colliding. Certified: proven. Tuned: what was measured,
    *  times 1.25. To a clipped solid: from the solid or from its region, whichever is farther. Infinity in the signal
    *  mode, and where the gap is too coarse to say */
   double over_reach;
-  bool guaranteed;   /**< clear is a proof */
-  bool turned_first; /**< the first solid, the simpler one, is the one whose spectrum is turned */
-  size_t terms;      /**< of the sum */
-  size_t bytes;      /**< held by the gap */
-  double rounding;   /**< bound on the error of a value V/t (of V/V_ref in the signal mode) by rounding */
+  /** clear is a proof */
+  bool guaranteed;
+  /** the first solid, the simpler one, is the one whose spectrum is turned */
+  bool turned_first;
+  /** of the sum */
+  size_t terms;
+  /** held by the gap */
+  size_t bytes;
+  /** bound on the error of a value V/t (of V/V_ref in the signal mode) by rounding */
+  double rounding;
 } cprox_gap_info;
 
 typedef enum cprox_gap_verdict {
-  CPROX_GAP_VERDICT_CLEAR = 0,   /**< the interiors do not overlap */
-  CPROX_GAP_VERDICT_COLLIDE = 1, /**< they may */
-  CPROX_GAP_VERDICT_FAR = 2, /**< clear by the bounding spheres alone: value is minus their distance, see `clearance` */
-  CPROX_GAP_VERDICT_UNDECIDED = 3 /**< within rounding of the threshold, or the signal mode: counts as unsafe */
+  /** the interiors do not overlap */
+  CPROX_GAP_VERDICT_CLEAR = 0,
+  /** they may */
+  CPROX_GAP_VERDICT_COLLIDE = 1,
+  /** clear by the bounding spheres alone: value is minus their distance, see `clearance` */
+  CPROX_GAP_VERDICT_FAR = 2,
+  /** within rounding of the threshold, or the signal mode: counts as unsafe */
+  CPROX_GAP_VERDICT_UNDECIDED = 3
 } cprox_gap_verdict;
 
 /** "clear", "collide", "far", "undecided". */
 CPROX_API const char *cprox_gap_verdict_name(cprox_gap_verdict verdict);
 
+/** The result of a gap query. */
 typedef struct cprox_gap_result {
+  /** See cprox_gap_verdict. */
   cprox_gap_verdict verdict;
   /** certified, tuned: V/t, overlap is possible from 1 on. Signal: c = -log(V/V_ref), the larger the freer. FAR: 0
    *  (signal: infinity) with gradients 0 */
   double value;
   /** |exact - value| at most: the rounding, and what an early exit left out. Of V/V_ref in the signal mode */
   double error;
-  double clearance; /**< [m] the distance of the bounding spheres, 0 where they overlap */
-  uint32_t terms;   /**< summed */
+  /** [m] the distance of the bounding spheres, 0 where they overlap */
+  double clearance;
+  /** summed */
+  uint32_t terms;
   /** Gradients of value. Position: world frame [1/m]. Rotation: in the body's own frame, d/ds of the value for
    *  R exp(s[w]) is rotation·w [1/rad]; only z in the plane. 0 from cprox_gap_test(). */
-  cprox_vec3 position_a, rotation_a, position_b, rotation_b;
+  cprox_vec3 position_a;
+  /** By the rotation of a. */
+  cprox_vec3 rotation_a;
+  /** By the position of b. */
+  cprox_vec3 position_b;
+  /** By the rotation of b. */
+  cprox_vec3 rotation_b;
   /** The same of the relative pose (R, x): R = R_a^T R_b, x = R_a^T (x_b - x_a), x in the frame of a, the rotation in
    *  b's. */
-  cprox_vec3 position, rotation;
+  cprox_vec3 position;
+  /** By the relative rotation. */
+  cprox_vec3 rotation;
+  /** 0: room for later members, so that the size of the struct stays */
+  uint64_t reserved[4];
 } cprox_gap_result;
 
 /** A pair of solids made ready. */
@@ -240,8 +277,10 @@ typedef struct cprox_gap cprox_gap;
 CPROX_API cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
                                         cprox_workspace *workspace, cprox_gap **gap);
 
+/** Frees a gap; NULL is allowed. */
 CPROX_API void cprox_gap_free(cprox_gap *gap);
 
+/** What a gap is made of. */
 CPROX_API cprox_gap_info cprox_gap_get_info(const cprox_gap *gap);
 
 /** The verdict alone, with early exit both ways. CPROX_INVALID for poses that are none. No allocation once the
@@ -264,6 +303,7 @@ CPROX_API cprox_status cprox_gap_cascade_create(const cprox_solid *a, const cpro
                                                 const cprox_gap_options *options, cprox_workspace *workspace,
                                                 cprox_gap_cascade **cascade);
 
+/** Frees a cascade; NULL is allowed. */
 CPROX_API void cprox_gap_cascade_free(cprox_gap_cascade *cascade);
 
 /** The finest level: owned by the cascade. */
@@ -293,11 +333,18 @@ CPROX_API cprox_status cprox_gap_along(const cprox_gap *gap, const cprox_pose *p
                                        double t, cprox_workspace *workspace, cprox_gap_result *result,
                                        double *derivative);
 
+/** The result of cprox_gap_along_test(). */
 typedef struct cprox_gap_along_result {
-  cprox_gap_verdict verdict; /**< clear: at every t of the interval (a proof in the certified mode) */
-  double t;                  /**< where the value below was met; collide, undecided: the first such t that was found */
-  double value;              /**< the largest V/t met at the parameters looked at */
-  uint32_t nodes;            /**< intervals looked at */
+  /** clear: at every t of the interval (a proof in the certified mode) */
+  cprox_gap_verdict verdict;
+  /** where the value below was met; collide, undecided: the first such t that was found */
+  double t;
+  /** the largest V/t met at the parameters looked at */
+  double value;
+  /** intervals looked at */
+  uint32_t nodes;
+  /** 0: room for later members, so that the size of the struct stays */
+  uint64_t reserved[2];
 } cprox_gap_along_result;
 
 /** The verdict over the whole interval [t0, t1] of the curve: between the parameters looked at, value and gradient

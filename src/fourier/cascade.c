@@ -22,7 +22,7 @@ cprox_status cprox_gap_cascade_create(const cprox_solid *a, const cprox_solid *b
   fourier_clear(workspace);
   if (!a || !b || !cascade)
     return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", !a ? "a" : !b ? "b" : "cascade");
-  cprox_gap_options used = options ? *options : CPROX_GAP_OPTIONS_DEFAULT;
+  cprox_gap_options used = gap_options(options);
   if (used.mode != CPROX_GAP_MODE_CERTIFIED)
     return fourier_fail(workspace, CPROX_INVALID,
                         "a cascade is certified: in the other modes a coarse clear says nothing");
@@ -41,7 +41,7 @@ cprox_status cprox_gap_cascade_create(const cprox_solid *a, const cprox_solid *b
     made->n += status == CPROX_OK;
   }
   used.samples = finest;
-  used.period = options ? options->period : 0.0;
+  used.period = gap_options(options).period;
   if (status == CPROX_OK) status = cprox_gap_create(a, b, &used, workspace, &made->level[made->n]);
   made->n += status == CPROX_OK;
   if (status != CPROX_OK) {

@@ -267,7 +267,7 @@ cprox_status cprox_gap_create(const cprox_solid *a, const cprox_solid *b, const 
                               cprox_workspace *workspace, cprox_gap **gap) {
   fourier_clear(workspace);
   if (!a || !b || !gap) return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", !a ? "a" : !b ? "b" : "gap");
-  const cprox_gap_options used = options ? *options : CPROX_GAP_OPTIONS_DEFAULT;
+  const cprox_gap_options used = gap_options(options);
   gap_plan plan;
   cprox_status status = gap_plan_choose(a, b, &used, workspace, &plan);
   if (status != CPROX_OK) return status;

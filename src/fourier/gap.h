@@ -65,6 +65,10 @@ void gap_sum(gap_job *job);
 cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, size_t memory_limit,
                        cprox_workspace *workspace, cprox_gap **gap);
 
+/* A copy of the caller's options, of NULL the default. Options of another size are not read: the copy is the default with
+ * their size, which gap_plan_choose() refuses. */
+cprox_gap_options gap_options(const cprox_gap_options *options);
+
 /* Chooses the plan for what the options ask. */
 cprox_status gap_plan_choose(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
                              cprox_workspace *workspace, gap_plan *plan);

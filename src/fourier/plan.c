@@ -144,8 +144,21 @@ static cprox_status plan_for(const cprox_solid *a, const cprox_solid *b, const c
   return settle(a, b, workspace, plan);
 }
 
+cprox_gap_options gap_options(const cprox_gap_options *options) {
+  cprox_gap_options copy = CPROX_GAP_OPTIONS_DEFAULT;
+  if (options && options->size == sizeof copy)
+    copy = *options;
+  else if (options)
+    copy.size = options->size;
+  return copy;
+}
+
 static cprox_status check_options(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *o,
                                   cprox_workspace *workspace) {
+  if (o->size != sizeof *o)
+    return fourier_fail(workspace, CPROX_INVALID,
+                        "options.size is %zu, this library knows %zu: start from CPROX_GAP_OPTIONS_DEFAULT", o->size,
+                        sizeof *o);
   if (o->mode != CPROX_GAP_MODE_CERTIFIED && o->mode != CPROX_GAP_MODE_TUNED && o->mode != CPROX_GAP_MODE_SIGNAL)
     return fourier_fail(workspace, CPROX_INVALID, "mode %d is none", (int)o->mode);
   if (a->dimension != b->dimension)

@@ -24,8 +24,9 @@ class CurveDistanceConstraint : public Constraint {
   void evaluate(const ConstraintPlace &place, Workspace &workspace, ConstraintValue &out) const override {
     requirePlace(pair_, place);
     const CurveDescription &curve = place.curve->description;
-    cprox_mover mover = cprox_tube_along(place.curve->curve.get(), curve.radius + pair_.a.padding);
-    mover.body = carried_.get();
+    cprox_mover mover = carried_ ? cprox_body_along(carried_.get(), place.curve->curve.get())
+                                 : cprox_tube_along(place.curve->curve.get(), 0.0);
+    mover.radius = curve.radius + pair_.a.padding;
     const cprox_obstacle target = cprox_with_margin(cprox_obstacle_at(target_.get(), place.b), pair_.b.padding);
 
     // The core's two calls.

@@ -260,7 +260,7 @@ std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool 
   const Asked asked = askedOf(motion, self, query);
   std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
   for (std::size_t i = 0; i < intervals.size(); ++i)
-    intervals[i] = {breaks[i], breaks[i + 1], INFINITE, INFINITE, breaks[i], -1, -1};
+    intervals[i] = {breaks[i], breaks[i + 1], INFINITE, INFINITE, breaks[i], -1, -1, {}};
   if (!asked.pairs.empty()) {
     const cprox_options options = withoutRounding(query.options, asked.rounding);
     const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);

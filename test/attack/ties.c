@@ -38,7 +38,7 @@ static cprox_curve *make_curve(attack *a, const problem *p, const vec3 *points) 
 static double ask(attack *a, const problem *p, cprox_gradient *gradient) {
   cprox_curve *curve = make_curve(a, p, p->points), *clock = p->synchronized ? make_curve(a, p, p->other) : NULL;
   cprox_mover mover = cprox_tube_along(curve, p->radius), second = cprox_tube_along(clock, p->margin);
-  if (p->carries) mover.body = p->carried;
+  if (p->carries) mover.kind = CPROX_MOVER_BODY, mover.body = p->carried;
   second.body = p->body;
   cprox_obstacle target =
       p->synchronized ? cprox_synchronized(second) : cprox_with_margin(cprox_obstacle_at(p->body, p->pose), p->margin);

@@ -446,7 +446,7 @@ static void ask(wild *w) {
   const size_t n = rng_index(w->r, 10) ? 1 + rng_index(w->r, 3) : 0;
   for (size_t i = 0; i < 3; i++) targets[i] = some_target(w);
   cprox_mover mover = cprox_tube_along(w->curve[0], rng_index(w->r, 2) ? 0.0 : size(w));
-  if (rng_index(w->r, 3) == 0) mover.body = w->body[0];
+  if (rng_index(w->r, 3) == 0) mover.kind = CPROX_MOVER_BODY, mover.body = w->body[0];
   cprox_options o = options(w), *given = rng_index(w->r, 5) ? &o : NULL;
   cprox_result x;
   memset(&x, 0xA5, sizeof x);

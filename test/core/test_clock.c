@@ -155,8 +155,8 @@ CASE(splines_that_carry_bodies_agree_with_static_pairs) {
     cprox_curve *first = spline(&r, d + 1 + rng_index(&r, 6), d, t1),
                 *second = spline(&r, e + 1 + rng_index(&r, 6), e, t1);
     cprox_mover mover = cprox_point_along(first), other = cprox_point_along(second);
-    if (rng_index(&r, 3)) mover.body = a.body;
-    if (rng_index(&r, 3)) other.body = b.body;
+    if (rng_index(&r, 3)) mover.kind = CPROX_MOVER_BODY, mover.body = a.body;
+    if (rng_index(&r, 3)) other.kind = CPROX_MOVER_BODY, other.body = b.body;
     mover.radius = rng_index(&r, 2) ? 0.0 : 0.05;
     cprox_obstacle target = cprox_synchronized(other);
     if (rng_index(&r, 2)) target.pose = rng_pose(&r, 1.0);

@@ -42,8 +42,8 @@ static cprox_curve *make(const problem *p, const vec3 *points) {
 static double ask(const problem *p, cprox_result *result, cprox_gradient *gradient) {
   cprox_curve *curve = make(p, p->points), *other = p->kind == BODY ? NULL : make(p, p->other);
   cprox_mover mover = cprox_tube_along(curve, p->radius), second = cprox_tube_along(other, p->margin);
-  mover.body = p->carried;
-  second.body = p->kind == CLOCK ? p->body : NULL;
+  if (p->carried) mover.kind = CPROX_MOVER_BODY, mover.body = p->carried;
+  if (p->kind == CLOCK && p->body) second.kind = CPROX_MOVER_BODY, second.body = p->body;
   cprox_obstacle target = p->kind == BODY    ? cprox_with_margin(cprox_obstacle_at(p->body, p->pose), p->margin)
                           : p->kind == CURVE ? cprox_obstacle_curve(other, p->margin)
                                              : cprox_synchronized(second);

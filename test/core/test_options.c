@@ -154,7 +154,7 @@ typedef struct reply {
 typedef cprox_status (*query)(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r);
 
 static size_t targets_of(const cprox_mover *m) {
-  return m->self ? 0 : 1;
+  return m->kind == CPROX_MOVER_ROBOT_SELF ? 0 : 1;
 }
 
 static cprox_status distance(const world *w, cprox_mover m, cprox_obstacle t, const cprox_options *o, reply *r) {
@@ -461,6 +461,81 @@ CASE(options_have_their_effect_or_are_refused) {
   free_world(&all.w);
 }
 
+/* ---- sizes ---------------------------------------------------------------------------------------------------------------- */
+
+/* Options of a caller that was compiled with other headers: nothing of them but their size is read, nothing is written. */
+CASE(options_of_another_size_are_refused_by_every_query) {
+  world w = make_world();
+  const size_t right = sizeof(cprox_options), wrong[] = {0, 8, right - 8, right + 8, SIZE_MAX};
+  for (size_t q = 0; q < N_QUERIES; q++) {
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+      cprox_options options = CPROX_OPTIONS_DEFAULT;
+      assert_int_equal(options.size, right);
+      options.size = wrong[i];
+      reply r, untouched;
+      memset(&r, 0x5a, sizeof r);
+      memset(&untouched, 0x5a, sizeof untouched);
+      const cprox_obstacle t = target_of(&w, BALL, 4.0);
+      assert_int_equal(QUERIES[q].ask(&w, cprox_point_along(w.way), t, &options, &r), CPROX_INVALID);
+      if (!strstr(cprox_workspace_error(ws), "options.size is") || !strstr(cprox_workspace_error(ws), cprox_version()))
+        fail_msg("%s: '%s'", QUERIES[q].name, cprox_workspace_error(ws));
+      if (memcmp(&r, &untouched, sizeof r) != 0) fail_msg("%s: refused, but the result is written", QUERIES[q].name);
+    }
+  }
+  free_world(&w);
+
+  cprox_solid *ball = NULL;
+  const cprox_solid_description description = {.kind = CPROX_SOLID_BALL, .dimension = 3, .radius = 1.0};
+  assert_int_equal(cprox_solid_create(&description, ws, &ball), CPROX_OK);
+  cprox_gap_options o = CPROX_GAP_OPTIONS_DEFAULT;
+  cprox_gap *gap = NULL;
+  cprox_gap_cascade *cascade = NULL;
+  o.samples = 9, o.size += 8;
+  assert_int_equal(cprox_gap_create(ball, ball, &o, ws, &gap), CPROX_INVALID);
+  assert_non_null(strstr(cprox_workspace_error(ws), "options.size is"));
+  assert_int_equal(cprox_gap_cascade_create(ball, ball, &o, ws, &cascade), CPROX_INVALID);
+  assert_non_null(strstr(cprox_workspace_error(ws), "options.size is"));
+  assert_true(!gap && !cascade);
+  cprox_solid_free(ball);
+}
+
+static bool is_zero(const uint64_t *reserved, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    if (reserved[i] != 0) return false;
+  return true;
+}
+
+/* The room for later members is 0 in whatever a query writes. */
+CASE(results_keep_room_for_later_members) {
+  world w = make_world();
+  size_t results = 0, others = 0;
+  for (size_t q = 0; q < N_QUERIES; q++) {
+    for (mover_kind mover = POINT; mover < N_MOVERS; mover++) {
+      if (mover != POINT && !(QUERIES[q].has & TAKES_MOVERS)) continue;
+      for (int apart = 0; apart < 2; apart++) {
+        const cprox_options options = CPROX_OPTIONS_DEFAULT;
+        reply r, untouched;
+        memset(&r, 0x5a, sizeof r);
+        memset(&untouched, 0x5a, sizeof untouched);
+        const cprox_obstacle t = target_of(&w, BALL, apart ? 4.0 : 0.0);
+        if (QUERIES[q].ask(&w, mover_of(&w, mover), t, &options, &r) < 0) continue;
+        if (r.result->status != untouched.result->status) {
+          results++;
+          if (!is_zero(r.result->reserved, 4)) fail_msg("%s: the result", QUERIES[q].name);
+        }
+        if (r.interval.obstacle_index != untouched.interval.obstacle_index) {
+          others++;
+          assert_true(is_zero(r.interval.reserved, 2));
+        }
+        if (strcmp(QUERIES[q].name, "gradient") == 0) others++, assert_true(is_zero(r.gradient.reserved, 4));
+        if (strcmp(QUERIES[q].name, "growth distance") == 0) others++, assert_true(is_zero(r.growth.reserved, 2));
+      }
+    }
+  }
+  assert_true(results > 60 && others >= 6);
+  free_world(&w);
+}
+
 /* ---- structures besides the options ------------------------------------------------------------------------------------- */
 
 /* Pairs and `self` are a robot's: with a curve they are refused by every query. */
@@ -473,19 +548,30 @@ CASE(what_belongs_to_robots_is_refused_with_curves) {
       cprox_mover m = cprox_point_along(w.way);
       if (i == 0) m.pairs = &one, m.n_pairs = 1;
       if (i == 1) m.n_pairs = 1;
-      if (i == 2) m.self = true;
       reply r;
       const cprox_options options = CPROX_OPTIONS_DEFAULT;
       const cprox_obstacle t = target_of(&w, BALL, 4.0);
-      m.self = false;
       cprox_mover asked = m;
-      asked.self = i == 2;
+      if (i == 2) asked.kind = CPROX_MOVER_ROBOT_SELF;
       assert_int_equal(QUERIES[q].ask(&w, asked, t, &options, &r), CPROX_INVALID);
     }
   }
   cprox_mover m = cprox_robot_along(w.motion, NULL, 0);
   m.radius = 0.1;
   cprox_result r;
+  /* a tag that does not fit what it is of */
+  cprox_mover wrong[6] = {cprox_point_along(w.way),
+                          cprox_point_along(w.way),
+                          cprox_body_along(w.box, w.way),
+                          cprox_robot_along(w.motion, NULL, 0),
+                          cprox_robot_self(w.motion, NULL, 0),
+                          cprox_body_along(NULL, w.way)};
+  wrong[0].kind = CPROX_MOVER_BODY, wrong[1].kind = CPROX_MOVER_ROBOT, wrong[2].kind = CPROX_MOVER_BALL;
+  wrong[3].kind = CPROX_MOVER_BALL, wrong[4].kind = (cprox_mover_kind)9;
+  for (int i = 0; i < 6; i++) {
+    const cprox_status status = cprox_distance(wrong[i], target_of(&w, BALL, 4.0), NULL, ws, &r);
+    if (status != CPROX_INVALID || !strstr(cprox_workspace_error(ws), "mover")) fail_msg("mover %d is not refused", i);
+  }
   assert_int_equal(cprox_distance(m, target_of(&w, BALL, 4.0), NULL, ws, &r), CPROX_INVALID);
   free_world(&w);
 }

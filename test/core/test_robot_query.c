@@ -161,7 +161,7 @@ CASE(the_whole_robot_is_as_near_as_the_nearer_of_both) {
     const cprox_mover scene = cprox_robot_along(c.motion, NULL, 0),
                       self = cprox_robot_self(c.motion, c.self_pairs, c.n_self_pairs);
     cprox_mover whole = scene;
-    whole.whole = true, whole.self_pairs = c.self_pairs, whole.n_self_pairs = c.n_self_pairs;
+    whole.kind = CPROX_MOVER_ROBOT_WHOLE, whole.self_pairs = c.self_pairs, whole.n_self_pairs = c.n_self_pairs;
     cprox_result a, b, r, first[3];
     assert_true(cprox_obstacles_distance(all, scene, NULL, ws, &a, NULL) >= 0);
     assert_true(cprox_obstacles_distance(NULL, self, NULL, ws, &b, NULL) >= 0);

@@ -143,7 +143,7 @@ CASE(every_kind_knows_how_deep_it_goes) {
         const size_t degree = 1 + rng_index(&r, 5);
         for (size_t i = 0; i <= degree; i++) points[i] = rng_in_cube(&r, 1.0);
         cprox_curve *curve = bezier(points, degree + 1);
-        const cprox_mover mover = cprox_body_along(carried.body, curve);
+        const cprox_mover mover = carried.body ? cprox_body_along(carried.body, curve) : cprox_point_along(curve);
         const cprox_obstacle target = cprox_obstacle_at(standing.body, rng_pose(&r, 0.3));
         const cprox_options options = asked(1e-7);
         cprox_result result;

@@ -7,14 +7,18 @@
 #include <stdint.h>
 
 #if defined(_WIN32)
+/** Marks the functions that the library exports. */
 #define CPROX_API
 #else
+/** Marks the functions that the library exports. */
 #define CPROX_API __attribute__((visibility("default")))
 #endif
 
 /** The version of these headers. Before 1.0 a new minor version may break the ABI: the SONAME carries both numbers. */
 #define CPROX_VERSION_MAJOR 0
+/** The minor version. */
 #define CPROX_VERSION_MINOR 1
+/** The patch version. */
 #define CPROX_VERSION_PATCH 0
 
 /** The head of a value of a struct, before its braces, which C and C++ write differently. For constants of this API. */
@@ -43,6 +47,7 @@ CPROX_API const char *cprox_version(void);
   X(CPROX_MEMORY, -2, "memory", "an allocation failed")
 
 typedef enum cprox_status {
+/** Makes an enumerator of a row of CPROX_STATUS_LIST. */
 #define CPROX_STATUS_ENUM(code, value, name, sentence) code = value,
   CPROX_STATUS_LIST(CPROX_STATUS_ENUM)
 #undef CPROX_STATUS_ENUM
@@ -56,19 +61,33 @@ CPROX_API const char *cprox_status_text(cprox_status status);
 
 /** A point or a direction, in metres where it is a point. */
 typedef struct cprox_vec3 {
-  double x, y, z;
+  /** The x coordinate. */
+  double x;
+  /** The y coordinate. */
+  double y;
+  /** The z coordinate. */
+  double z;
 } cprox_vec3;
 
 /** A rotation as a quaternion. Any finite norm but 0 stands for the rotation of its direction: the rotation is
  *  R = 1 + (2/q·q)(w[v] + [v]²), v = (x, y, z), so it need not be normalised. */
 typedef struct cprox_quat {
-  double w, x, y, z;
+  /** The real part. */
+  double w;
+  /** The x part. */
+  double x;
+  /** The y part. */
+  double y;
+  /** The z part. */
+  double z;
 } cprox_quat;
 
 /** Where a body's own frame stands in the world: p_world = R(orientation) p_body + position. */
 typedef struct cprox_pose {
-  cprox_vec3 position;    /**< [m] each coordinate at most 1e60 in size */
-  cprox_quat orientation; /**< not (0, 0, 0, 0) */
+  /** [m] each coordinate at most 1e60 in size */
+  cprox_vec3 position;
+  /** not (0, 0, 0, 0) */
+  cprox_quat orientation;
 } cprox_pose;
 
 /** The pose that changes nothing. */

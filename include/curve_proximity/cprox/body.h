@@ -15,6 +15,7 @@
 extern "C" {
 #endif
 
+/** A body: a set of points in its own frame. */
 typedef struct cprox_body cprox_body;
 
 typedef enum cprox_body_kind {
@@ -104,8 +105,10 @@ CPROX_API cprox_status cprox_body_create_support(cprox_support_fn support, const
 
 /** What the inside of a mesh is. */
 typedef enum cprox_mesh_fill {
-  CPROX_MESH_SURFACE = 0, /**< nothing: the mesh is its triangles */
-  CPROX_MESH_SOLID = 1    /**< part of the body, if the mesh is closed; see cprox_body_info.is_solid */
+  /** nothing: the mesh is its triangles */
+  CPROX_MESH_SURFACE = 0,
+  /** part of the body, if the mesh is closed; see cprox_body_info.is_solid */
+  CPROX_MESH_SOLID = 1
 } cprox_mesh_fill;
 
 /** A triangle mesh.

@@ -17,9 +17,12 @@ extern "C" {
 #endif
 
 typedef enum cprox_claim {
-  CPROX_CLAIM_NONE,  /**< nothing is proven: the certificate is empty */
-  CPROX_CLAIM_APART, /**< mover and targets are farther apart than delta everywhere */
-  CPROX_CLAIM_NEAR   /**< somewhere they are no farther apart than delta */
+  /** nothing is proven: the certificate is empty */
+  CPROX_CLAIM_NONE,
+  /** mover and targets are farther apart than delta everywhere */
+  CPROX_CLAIM_APART,
+  /** somewhere they are no farther apart than delta */
+  CPROX_CLAIM_NEAR
 } cprox_claim;
 
 /** A new, empty certificate, or NULL where memory is out. Owned by the caller: cprox_certificate_free(). It may be used

@@ -14,17 +14,29 @@ typedef struct cprox_gradient {
   /** false: the distance is not differentiable here, or cannot be told to be; the reason is in the workspace, the
    *  numbers are those of one of the minimisers or 0 */
   bool valid;
-  double t, t_obstacle; /**< the minimiser, as exactly as double arithmetic finds it; t_obstacle NaN for bodies */
+  /** the minimiser, as exactly as double arithmetic finds it */
+  double t;
+  /** the minimiser on a target that is a curve; NaN for bodies */
+  double t_obstacle;
   /** by the mover's point at t. By a coefficient of the mover's curve: its weight at t (cprox_curve_weights())
    *  times this */
   cprox_vec3 mover;
   /** the same of a target that is a curve: by its point at t_obstacle, in the target's frame; else 0 */
   cprox_vec3 obstacle_point;
-  cprox_vec3 position; /**< by the target's position, world axes */
+  /** by the target's position, world axes */
+  cprox_vec3 position;
   /** [m/rad] by a small rotation vector w that turns the target about its position, world axes: R becomes exp([w]) R */
   cprox_vec3 rotation;
-  double radius, margin; /**< by the mover's radius and the target's margin: -1 */
-  double t0, t1; /**< by the ends of the range, the curve itself going on as it is: 0 unless the minimiser is an end */
+  /** by the radius of the mover: -1 */
+  double radius;
+  /** by the margin of the target: -1 */
+  double margin;
+  /** by the start of the range, the curve itself going on as it is: 0 unless the minimiser is there */
+  double t0;
+  /** by the end of the range, likewise */
+  double t1;
+  /** 0: room for later members, so that the size of the struct stays */
+  uint64_t reserved[4];
 } cprox_gradient;
 
 /** The gradient of cprox_distance(mover, target, options), given its result.

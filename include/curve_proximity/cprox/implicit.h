@@ -24,26 +24,35 @@ CPROX_API cprox_status cprox_body_create_superquadric(cprox_vec3 semi_axes, cpro
 
 /** The set sum over its terms of |a x + b y + c z + d|^exponent <= 1. */
 typedef struct cprox_hyperquadric {
-  const double (*terms)[5]; /**< each a, b, c [1/m], d, exponent (1 … 1000); a, b, c not all 0 */
-  size_t n_terms;           /**< 1 … 64 */
+  /** each a, b, c [1/m], d, exponent (1 … 1000); a, b, c not all 0 */
+  const double (*terms)[5];
+  /** 1 … 64 */
+  size_t n_terms;
 } cprox_hyperquadric;
 
 /** The intersection of what is listed; each array NULL where its count is 0. At most 1024 constraints and terms in
  *  all. */
 typedef struct cprox_implicit_description {
+  /** Hyperquadrics, or NULL. */
   const cprox_hyperquadric *hyperquadrics;
+  /** Their number. */
   size_t n_hyperquadrics;
-  const double (*planes)[4]; /**< each b1, b2, b3, c: b·x + c <= 0 */
+  /** each b1, b2, b3, c: b·x + c <= 0 */
+  const double (*planes)[4];
+  /** The number of planes. */
   size_t n_planes;
   /** each q11, q12, q13, q22, q23, q33, b1, b2, b3, c: x'Qx + b·x + c <= 0, Q symmetric (x'Qx counts q12, q13, q23
    *  twice) and positive semidefinite */
   const double (*quadrics)[10];
+  /** The number of quadrics. */
   size_t n_quadrics;
 } cprox_implicit_description;
 
 /** The map x -> linear x + translation: rotation, scale, shear. */
 typedef struct cprox_affine {
-  double linear[9]; /**< row-major, determinant not 0 */
+  /** row-major, determinant not 0 */
+  double linear[9];
+  /** [m] added after the linear part. */
   cprox_vec3 translation;
 } cprox_affine;
 

@@ -131,13 +131,17 @@ typedef struct cprox_profile_interval {
   /** the end of the interval */
   double t1;
   /** [m] lower <= min over [t0, t1] of the distance to the nearest obstacle <= upper; infinity: no obstacle */
-  double lower, upper;
+  double lower;
+  /** [m] and at most this. */
+  double upper;
   /** where in [t0, t1] upper was attained */
   double t;
   /** which obstacle that was; -1 for none */
   int32_t obstacle_index;
   /** of a robot: which geometry; else as in cprox_result */
   int32_t mover_part;
+  /** 0: room for later members, so that the size of the struct stays */
+  uint64_t reserved[2];
 } cprox_profile_interval;
 
 /** The clearance profile: lower and upper clearance on each interval of a partition, for colouring a path and for

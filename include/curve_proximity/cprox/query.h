@@ -20,14 +20,21 @@ extern "C" {
 
 /** A body or a curve somewhere: a value. What it names is kept by reference. */
 typedef struct cprox_obstacle {
-  const cprox_body *body; /**< or NULL, for a curve */
+  /** or NULL, for a curve */
+  const cprox_body *body;
+  /** The pose in the world. */
   cprox_pose pose;
-  double margin;            /**< [m] >= 0: the set of all points within this of the body or curve */
-  const cprox_curve *curve; /**< or NULL, for a body */
-  bool synchronized;        /**< the curve is at the mover's own parameter, and carries the body if there is one */
+  /** [m] >= 0: the set of all points within this of the body or curve */
+  double margin;
+  /** or NULL, for a body */
+  const cprox_curve *curve;
+  /** the curve is at the mover's own parameter, and carries the body if there is one */
+  bool synchronized;
 } cprox_obstacle;
 
+/** A body at a pose, without margin. */
 CPROX_API cprox_obstacle cprox_obstacle_at(const cprox_body *body, cprox_pose pose);
+/** The same obstacle with a margin >= 0 [m]. */
 CPROX_API cprox_obstacle cprox_with_margin(cprox_obstacle target, double margin);
 
 /** A curve that stands where it was made, as thick as a ball of the radius that rides it: [m] >= 0, 0 for a line. The
@@ -38,24 +45,48 @@ CPROX_API cprox_obstacle cprox_obstacle_curve(const cprox_curve *curve, double r
 struct cprox_motion;
 struct cprox_robot_pair;
 
-/** What moves: a value. The curve is kept by reference. */
+/** The kinds of moving objects. Each comment names the members of cprox_mover that the kind reads; all others are 0. */
+typedef enum cprox_mover_kind {
+  /** A ball that rides a curve, or a point where the radius is 0: curve, radius. cprox_point_along(),
+   *  cprox_tube_along(). */
+  CPROX_MOVER_BALL,
+  /** A body that is carried along a curve without turning: curve, body, radius. cprox_body_along(). */
+  CPROX_MOVER_BODY,
+  /** A robot along a joint motion, against obstacles: motion, pairs, n_pairs. cprox_robot_along(), robot.h. */
+  CPROX_MOVER_ROBOT,
+  /** A robot along a joint motion, against itself: motion, pairs, n_pairs. cprox_robot_self(), robot.h. */
+  CPROX_MOVER_ROBOT_SELF,
+  /** A robot along a joint motion, against obstacles and itself at once: motion, pairs, n_pairs, self_pairs,
+   *  n_self_pairs. cprox_robot_along(), with this kind set instead. */
+  CPROX_MOVER_ROBOT_WHOLE
+} cprox_mover_kind;
+
+/** What moves: a value, made by one of the functions that cprox_mover_kind names. What it refers to is kept by
+ *  reference. A query refuses members that do not belong to the kind. */
 typedef struct cprox_mover {
+  /** which members are read */
+  cprox_mover_kind kind;
+  /** the curve that a ball or a body follows */
   const cprox_curve *curve;
-  double radius; /**< [m] >= 0: a ball that rides the curve, 0 for a point; with a body, its margin */
-  /** what is carried along the curve without turning, its frame's origin on the curve and its axes those of the
-   *  world; NULL: a point. Convex or a compound, no halfspace. Kept by reference. */
+  /** [m] >= 0: of the ball; of a body its margin */
+  double radius;
+  /** the frame's origin is on the curve and its axes are those of the world; convex or a compound, no halfspace */
   const cprox_body *body;
-  const struct cprox_motion *motion; /**< instead of a curve: a robot along a joint motion, see robot.h */
+  /** of a robot */
+  const struct cprox_motion *motion;
+  /** of a robot: the pairs to test, or NULL for all */
   const struct cprox_robot_pair *pairs;
+  /** the number of pairs */
   size_t n_pairs;
-  bool self;
-  /** a robot with `whole`: its pairs with itself; NULL: all */
+  /** of CPROX_MOVER_ROBOT_WHOLE: its pairs with itself, or NULL for all */
   const struct cprox_robot_pair *self_pairs;
-  size_t n_self_pairs; /**< the number of self_pairs */
-  bool whole;          /**< a robot against the obstacles and itself at once, see cprox_robot_along() */
+  /** the number of pairs with itself */
+  size_t n_self_pairs;
 } cprox_mover;
 
+/** A point along a curve. */
 CPROX_API cprox_mover cprox_point_along(const cprox_curve *curve);
+/** A ball of the radius >= 0 [m] along a curve. */
 CPROX_API cprox_mover cprox_tube_along(const cprox_curve *curve, double radius);
 
 /** A body that is carried along the curve without turning. Every query answers for it: the curve of its origin is held
@@ -90,7 +121,7 @@ typedef enum cprox_lod { CPROX_LOD_NONE = 0, CPROX_LOD_SPHERE = 1, CPROX_LOD_HUL
 /** "none", "sphere", "hull", "mesh". Convex bodies are their own hull. */
 CPROX_API const char *cprox_lod_name(cprox_lod lod);
 
-/** How a query is to be answered. Start from CPROX_OPTIONS_DEFAULT.
+/** How a query is to be answered. Start from CPROX_OPTIONS_DEFAULT, which sets the size.
  *
  *  Every query has epsilon and max_nodes. An option that is set and does not apply to the query is refused:
  *  CPROX_INVALID, and the reason names the option. What applies:
@@ -107,13 +138,19 @@ CPROX_API const char *cprox_lod_name(cprox_lod lod);
  *    translating contact, growth distance      no                yes   no        no           no
  *    certificate for an answer                 yes               no    yes       no           no */
 typedef struct cprox_options {
+  /** sizeof(cprox_options), as CPROX_OPTIONS_DEFAULT sets it; any other size is refused */
+  size_t size;
   /** [m] width of the interval asked for, 0 … 1e60; 0 asks for the narrowest one that double arithmetic allows, and
    *  the status says precision. Default 1e-6 */
   double epsilon;
-  double relative_epsilon;  /**< the interval may also be this fraction of upper wide; 0 … 1e60, default 0 */
-  uint32_t max_nodes;       /**< budget of parameter intervals examined, for each target; >= 1, default 20000 */
-  bool (*stop)(void *user); /**< polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
-  void *stop_user;          /**< handed to stop */
+  /** the interval may also be this fraction of upper wide; 0 … 1e60, default 0 */
+  double relative_epsilon;
+  /** budget of parameter intervals examined, for each target; >= 1, default 20000 */
+  uint32_t max_nodes;
+  /** polled now and then; true ends the query with CPROX_STOPPED. NULL: never */
+  bool (*stop)(void *user);
+  /** handed to stop */
+  void *stop_user;
   /** receives the proof of the answer, against all targets at once; NULL: none. For a distance the claim is that of
    *  lower, or where lower is 0 that of upper. It changes nothing in the answer; it is empty where there is no proof,
    *  and the reason in the workspace says why */
@@ -131,30 +168,49 @@ typedef struct cprox_options {
 } cprox_options;
 
 /** The default of all options. */
-#define CPROX_OPTIONS_DEFAULT (CPROX_VALUE(cprox_options){1e-6, 0.0, 20000, NULL, NULL, NULL, false, CPROX_LOD_MESH})
+#define CPROX_OPTIONS_DEFAULT \
+  (CPROX_VALUE(cprox_options){sizeof(cprox_options), 1e-6, 0.0, 20000, NULL, NULL, NULL, false, CPROX_LOD_MESH})
 
+/** The result of a query. */
 typedef struct cprox_result {
-  cprox_status status; /**< the same that the call returned */
+  /** the same that the call returned */
+  cprox_status status;
   /** tolerance: yes = farther than delta everywhere; collision: yes = they touch or overlap; undecided counts as
    *  unsafe. distance: undecided, always */
   cprox_verdict verdict;
   /** [m] certified: lower <= true value <= upper. upper = infinity where bounding balls (in batches also boxes) alone
    *  decided a verdict: then there is no witness, and obstacle_index is -1 */
-  double lower, upper;
-  double t;          /**< where on the mover's curve upper was attained */
-  double t_obstacle; /**< where on a target that is a curve; NaN for bodies */
+  double lower;
+  /** [m] certified: not below the true value. */
+  double upper;
+  /** where on the mover's curve upper was attained */
+  double t;
+  /** where on a target that is a curve; NaN for bodies */
+  double t_obstacle;
   /** [m] world frame, the two points that attain upper (surfaces, radius and margin included); equal where they
    *  overlap, and either end of the way out for signed distances */
-  cprox_vec3 witness_mover, witness_obstacle;
-  cprox_vec3 normal; /**< unit, world frame, from target to mover; (0,0,0) where there is none */
-  /** which target; which other geometry, where a robot is asked about itself; of a mover with `whole` the number of
+  cprox_vec3 witness_mover;
+  /** [m] the witness point on the obstacle, world frame. */
+  cprox_vec3 witness_obstacle;
+  /** unit, world frame, from target to mover; (0,0,0) where there is none */
+  cprox_vec3 normal;
+  /** which target; which other geometry, where a robot is asked about itself; of CPROX_MOVER_ROBOT_WHOLE the number of
    *  targets and that of the other geometry added up; -1 for none */
   int32_t obstacle_index;
-  int32_t obstacle_part; /**< which part of a compound; 0 otherwise */
-  int32_t mover_part;    /**< which part of a carried compound; which geometry of a robot, -1 for none; 0 otherwise */
+  /** which part of a compound; 0 otherwise */
+  int32_t obstacle_part;
+  /** which part of a carried compound; which geometry of a robot, -1 for none; 0 otherwise */
+  int32_t mover_part;
+  /** The finest level of detail that the result needed. */
   cprox_lod lod;
-  uint32_t nodes, distance_queries; /**< what it cost: intervals examined, nearest-point queries */
-  double t_contact_lower;           /**< time of contact: no contact at any smaller parameter; other queries: 0 */
+  /** what it cost: parameter intervals examined */
+  uint32_t nodes;
+  /** what it cost: nearest-point queries */
+  uint32_t distance_queries;
+  /** time of contact: no contact at any smaller parameter; other queries: 0 */
+  double t_contact_lower;
+  /** 0: room for later members, so that the size of the struct stays */
+  uint64_t reserved[4];
 } cprox_result;
 
 /** Distance between what moves and what stands, over the mover's whole parameter range.

@@ -20,23 +20,35 @@ typedef struct cprox_robot cprox_robot;
 
 /** How a link moves on its parent, and how many variables that takes. */
 typedef enum cprox_joint_type {
-  CPROX_JOINT_FIXED,    /**< 0 */
-  CPROX_JOINT_REVOLUTE, /**< 1 [rad], about the axis; URDF's continuous joints too: angles as they are, never wrapped */
-  CPROX_JOINT_PRISMATIC, /**< 1 [m], along the axis */
-  CPROX_JOINT_PLANAR,    /**< 3: x, y [m] in the plane z = 0 of the joint's frame, then theta [rad] about its z */
-  CPROX_JOINT_FLOATING   /**< 7: x, y, z [m] and the quaternion's x, y, z, w: of any norm, so that its components may be
-                              polynomials; a motion on which it comes near 0 is refused */
+  /** 0 */
+  CPROX_JOINT_FIXED,
+  /** 1 [rad], about the axis; URDF's continuous joints too: angles as they are, never wrapped */
+  CPROX_JOINT_REVOLUTE,
+  /** 1 [m], along the axis */
+  CPROX_JOINT_PRISMATIC,
+  /** 3: x, y [m] in the plane z = 0 of the joint's frame, then theta [rad] about its z */
+  CPROX_JOINT_PLANAR,
+  /** 7: x, y, z [m] and the quaternion's x, y, z, w: of any norm, so that its components may be polynomials; a
+   *  motion on which it comes near 0 is refused */
+  CPROX_JOINT_FLOATING
 } cprox_joint_type;
 
 /** One link and the joint that it hangs on. Its frame is the joint's, moved. */
 typedef struct cprox_link {
-  int32_t parent; /**< which link, one before this one; -1: the world */
+  /** which link, one before this one; -1: the world */
+  int32_t parent;
+  /** How the link moves on its parent. */
   cprox_joint_type type;
-  cprox_pose origin; /**< of the joint's frame in the parent link's */
-  cprox_vec3 axis;   /**< revolute and prismatic: in the joint's frame, not 0, of any length */
-  int32_t variable;  /**< the first of the joint's variables; links may share one (mimic joints) */
+  /** of the joint's frame in the parent link's */
+  cprox_pose origin;
+  /** revolute and prismatic: in the joint's frame, not 0, of any length */
+  cprox_vec3 axis;
+  /** the first of the joint's variables; links may share one (mimic joints) */
+  int32_t variable;
   /** revolute and prismatic: the joint is at multiplier * variable + offset; at most 1e60 in size */
-  double multiplier, offset;
+  double multiplier;
+  /** The offset of the joint. */
+  double offset;
 } cprox_link;
 
 /** A body on a link. */
@@ -44,9 +56,12 @@ typedef struct cprox_link_geometry {
   /** convex, a level-of-detail body, a mesh's surface, points, boxes, or a compound of these; no halfspace; kept by
    *  reference */
   const cprox_body *body;
-  cprox_pose pose; /**< in the link's frame */
+  /** in the link's frame */
+  cprox_pose pose;
+  /** The index of the link. */
   int32_t link;
-  double margin; /**< [m] >= 0 */
+  /** [m] >= 0 */
+  double margin;
 } cprox_link_geometry;
 
 /** A robot of n_links >= 1 links, parents first, and n_geometries bodies; its variables are numbered from 0 to
@@ -68,9 +83,13 @@ typedef struct cprox_motion cprox_motion;
 
 /** Where some variables are at one time. */
 typedef struct cprox_waypoint {
-  double time;              /**< [s] */
-  const double *positions;  /**< one a variable */
-  const double *velocities; /**< a second; NULL: unknown */
+  /** [s] */
+  double time;
+  /** one a variable */
+  const double *positions;
+  /** a second; NULL: unknown */
+  const double *velocities;
+  /** Accelerations, or NULL. */
   const double *accelerations;
 } cprox_waypoint;
 
@@ -194,7 +213,10 @@ CPROX_API void cprox_motion_evaluate(const cprox_motion *motion, double t, doubl
 
 /** A pair that is asked about: a geometry of the robot, and the number of a target or of another geometry. */
 typedef struct cprox_robot_pair {
-  int32_t geometry, other;
+  /** A geometry of the robot. */
+  int32_t geometry;
+  /** An obstacle, or another geometry of the robot. */
+  int32_t other;
 } cprox_robot_pair;
 
 /** The robot along a motion. Targets are bodies; of meshes the surface counts, and solid
@@ -203,9 +225,9 @@ typedef struct cprox_robot_pair {
  *  targets; NULL: all geometries of links that the motion moves (of a state: that a joint can move), against all
  *  targets.
  *
- *  Against obstacles and itself at once: set `whole` of the mover, and self_pairs where not all pairs with itself are
- *  asked about, which are those of cprox_robot_self(). One search begins with the pair that is nearest of both kinds.
- *  It answers distance, tolerance, collision and time of contact, without `each` and without certificate.
+ *  Against obstacles and itself at once: set the kind CPROX_MOVER_ROBOT_WHOLE, and self_pairs where not all pairs with
+ *  itself are asked about, which are those of cprox_robot_self(). One search begins with the pair that is nearest of
+ *  both kinds. It answers distance, tolerance, collision and time of contact, without `each` and without certificate.
  *  obstacle_index is then that of an obstacle, or the number of obstacles plus that of the other geometry. */
 CPROX_API cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs);
 

@@ -15,7 +15,9 @@ extern "C" {
 
 /** A body that starts at the target's pose and moves on at the velocity [m/s], world frame. */
 typedef struct cprox_translating {
+  /** The body at time 0. */
   cprox_obstacle from;
+  /** [m/s] world frame. */
   cprox_vec3 velocity;
 } cprox_translating;
 
@@ -43,10 +45,18 @@ CPROX_API cprox_status cprox_translating_contact(cprox_translating a, cprox_tran
 
 /** The growth distance: the least factor by which both bodies, each scaled about its centre, touch. */
 typedef struct cprox_growth {
+  /** As the call returned it. */
   cprox_status status;
-  double lower, upper; /**< certified; > 1 apart, < 1 overlapping, 0 where the centres coincide */
-  cprox_vec3 normal;   /**< unit, world frame, from b to a, of the planes between which the scaled bodies just fit */
-  uint32_t pairs;      /**< what it cost: pairs of bodies answered */
+  /** certified: not above the true value; > 1 apart, < 1 overlapping, 0 where the centres coincide */
+  double lower;
+  /** certified: not below the true value */
+  double upper;
+  /** unit, world frame, from b to a, of the planes between which the scaled bodies just fit */
+  cprox_vec3 normal;
+  /** what it cost: pairs of bodies answered */
+  uint32_t pairs;
+  /** 0: room for later members, so that the size of the struct stays */
+  uint64_t reserved[2];
 } cprox_growth;
 
 /** The growth distance of two superquadrics or implicit bodies, to a relative width of options->epsilon (default 1e-6).

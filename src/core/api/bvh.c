@@ -22,8 +22,8 @@ static cprox_status begin(const obstacle_bvh *set, query *q, arguments_query ask
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
   /* the targets were checked when the set was made, but for what the mover must go with */
-  const bool robot =
-      q->mover.motion && (set->has_curves || set->has_solids || q->mover.self || q->mover.whole || q->mover.pairs);
+  const bool robot = q->mover.motion && (set->has_curves || set->has_solids || mover_is_self(&q->mover) ||
+                                         mover_is_whole(&q->mover) || q->mover.pairs);
   const bool all = set->has_clock || (q->mover.body && set->has_elements) || robot;
   const cprox_status checked =
       arguments_check_query(&q->mover, all ? set->targets : NULL, all ? set->n : 0, &q->options, asked, workspace);

@@ -78,7 +78,7 @@ cprox_status list_distance(cprox_mover mover, const cprox_obstacle *targets, siz
 cprox_status list_tolerance(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
                             const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                             cprox_result *each) {
-  cprox_certificate_clear(options ? options->certificate : NULL);
+  cprox_certificate_clear(arguments_options(options).certificate);
   const cprox_status checked = arguments_check_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
   query q = query_create(mover, targets, n, delta, true, options, workspace);

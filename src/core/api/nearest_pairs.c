@@ -19,10 +19,10 @@ static size_t list_pairs(const query *q, cprox_robot_pair *pairs) {
   for (size_t i = 0; i < robot->n_parts; i++) {
     const robot_part *a = &robot->parts[i];
     if (i > 0 && robot->parts[i - 1].geometry == a->geometry) continue;
-    if (!q->mover.self && !motion_moves_link(motion, a->link)) continue;
-    for (size_t k = 0; !q->mover.self && k < q->n; k++, n++)
+    if (!mover_is_self(&q->mover) && !motion_moves_link(motion, a->link)) continue;
+    for (size_t k = 0; !mover_is_self(&q->mover) && k < q->n; k++, n++)
       if (pairs) pairs[n] = (cprox_robot_pair){.geometry = a->geometry, .other = (int32_t)k};
-    for (size_t k = 0; q->mover.self && k < i; k++) {
+    for (size_t k = 0; mover_is_self(&q->mover) && k < i; k++) {
       const robot_part *b = &robot->parts[k];
       if (k > 0 && robot->parts[k - 1].geometry == b->geometry) continue;
       if (!motion_relates_links(motion, a->link, b->link)) continue;
@@ -49,7 +49,8 @@ static cprox_status ask_pairs(query *q, const cprox_robot_pair *pairs, size_t n,
   for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
     const double cutoff = *count == k ? fmin(nearest[k - 1].upper, within) : within;
     q->mover.pairs = &pairs[i], q->mover.n_pairs = 1;
-    const size_t first = q->mover.self ? 0 : (size_t)pairs[i].other, last = q->mover.self ? 0 : first + 1;
+    const size_t first = mover_is_self(&q->mover) ? 0 : (size_t)pairs[i].other,
+                 last = mover_is_self(&q->mover) ? 0 : first + 1;
     cprox_result r;
     const cprox_status status = robot_answer(q, first, last, cutoff, &r);
     if (status < 0) return status;

@@ -99,7 +99,7 @@ size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obs
   say(&t, "pairs %zu", scene.n_pairs);
   for (size_t i = 0; i < scene.n_pairs; i++)
     say(&t, " %d %zu", (int)scene.pairs[i].moving,
-        (size_t)scene.pairs[i].standing + (mover->self ? 0 : robot->n_parts));
+        (size_t)scene.pairs[i].standing + (mover_is_self(mover) ? 0 : robot->n_parts));
   say(&t, "\n");
   say_motion(&t, mover->motion);
   return t.length;

@@ -238,7 +238,7 @@ cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *obstacles, 
                            cprox_certificate *certificate) {
   const cprox_obstacle *targets = obstacles_list(obstacles);
   const size_t n = obstacles_count(obstacles);
-  const cprox_options chosen = options ? *options : CPROX_OPTIONS_DEFAULT;
+  const cprox_options chosen = arguments_options(options);
   workspace_clear(workspace);
   cprox_certificate_clear(certificate);
   const arguments_query asked = {"a certificate for an answer", ARGUMENTS_RELATIVE | ARGUMENTS_LOD};

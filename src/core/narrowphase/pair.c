@@ -338,7 +338,7 @@ static cprox_status pair_status(const pair_answer *answer, const cprox_options *
 cprox_status cprox_pair(cprox_obstacle a, cprox_obstacle b, const cprox_options *options, cprox_workspace *workspace,
                         cprox_result *result) {
   workspace_clear(workspace);
-  const cprox_options asked = options ? *options : CPROX_OPTIONS_DEFAULT;
+  const cprox_options asked = arguments_options(options);
   cprox_status status;
   if (!result) return workspace_fail(workspace, CPROX_INVALID, "result is NULL: nowhere to put the answer");
   const arguments_query kind = {"a pair", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED}; /* depths are always measured */

@@ -62,7 +62,7 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
                                         const cprox_options *options, cprox_workspace *workspace,
                                         cprox_result *result) {
   workspace_clear(workspace);
-  const cprox_options asked = options ? *options : CPROX_OPTIONS_DEFAULT;
+  const cprox_options asked = arguments_options(options);
   const arguments_query kind = {"the distance of bodies that translate", ARGUMENTS_RELATIVE};
   cprox_status status = check_motion(&a, &b, duration, true, &asked, kind, workspace);
   if (status) return status;
@@ -195,7 +195,7 @@ static cprox_status approach_prove(approach *p, const cprox_options *options, cp
 cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b, double duration,
                                        const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   workspace_clear(workspace);
-  const cprox_options asked = options ? *options : CPROX_OPTIONS_DEFAULT;
+  const cprox_options asked = arguments_options(options);
   const arguments_query kind = {"contact of bodies that translate", ARGUMENTS_STOP};
   cprox_status status = check_motion(&a, &b, duration, false, &asked, kind, workspace);
   if (status) return status;
@@ -231,7 +231,7 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
 cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
                                    cprox_workspace *workspace, cprox_growth *growth) {
   workspace_clear(workspace);
-  const cprox_options asked = options ? *options : CPROX_OPTIONS_DEFAULT;
+  const cprox_options asked = arguments_options(options);
   const cprox_translating still_a = {.from = a}, still_b = {.from = b};
   const arguments_query kind = {"the growth distance", ARGUMENTS_STOP};
   cprox_status status = check_motion(&still_a, &still_b, 1.0, true, &asked, kind, workspace);

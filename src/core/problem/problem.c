@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "curve/subcurve.h"
 #include "curve_proximity/cprox/robot.h"
+#include "problem/validate.h"
 
 query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool is_tolerance,
                    const cprox_options *options, cprox_workspace *workspace) {
@@ -14,7 +15,7 @@ query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, d
              .n = n,
              .limit = limit,
              .is_tolerance = is_tolerance,
-             .options = options ? *options : CPROX_OPTIONS_DEFAULT,
+             .options = arguments_options(options),
              .workspace = workspace};
   if (q.options.max_lod == CPROX_LOD_NONE) q.options.max_lod = CPROX_LOD_MESH;
   return q;

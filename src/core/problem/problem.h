@@ -40,6 +40,16 @@ static inline search_order query_order(const query *q) {
   return query_wants_verdict(q) ? SEARCH_DEPTH_FIRST : SEARCH_BEST_FIRST;
 }
 
+/* A robot against itself. */
+static inline bool mover_is_self(const cprox_mover *mover) {
+  return mover->kind == CPROX_MOVER_ROBOT_SELF;
+}
+
+/* A robot against obstacles and itself at once. */
+static inline bool mover_is_whole(const cprox_mover *mover) {
+  return mover->kind == CPROX_MOVER_ROBOT_WHOLE;
+}
+
 /* options NULL: the default. Nothing is checked. */
 query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool is_tolerance,
                    const cprox_options *options, cprox_workspace *workspace);

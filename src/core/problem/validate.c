@@ -43,7 +43,21 @@ static cprox_status check_applies(const cprox_options *options, arguments_query 
   return CPROX_OK;
 }
 
+cprox_options arguments_options(const cprox_options *options) {
+  cprox_options copy = CPROX_OPTIONS_DEFAULT;
+  if (options && options->size == sizeof copy)
+    copy = *options;
+  else if (options)
+    copy.size = options->size;
+  return copy;
+}
+
 cprox_status arguments_check_options(const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
+  if (options->size != sizeof *options)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "options.size is %zu, this library knows %zu: start from CPROX_OPTIONS_DEFAULT, and compile "
+                          "with the headers of libcprox %s",
+                          options->size, sizeof *options, cprox_version());
   cprox_status status = arguments_check_length("epsilon", options->epsilon, workspace);
   if (status == CPROX_OK) status = arguments_check_length("relative_epsilon", options->relative_epsilon, workspace);
   if (status != CPROX_OK) return status;
@@ -149,7 +163,7 @@ static cprox_status check_robot(const cprox_mover *mover, const cprox_obstacle *
   if (mover->curve || mover->body || mover->radius != 0.0)
     return workspace_fail(workspace, CPROX_INVALID,
                           "a mover is a robot's motion, or a curve and what rides it: not both; pad the robot's links");
-  if (mover->self && n > 0)
+  if (mover->kind == CPROX_MOVER_ROBOT_SELF && n > 0)
     return workspace_fail(workspace, CPROX_INVALID, "a robot against itself has no targets, got %zu", n);
   for (size_t i = 0; i < n; i++) {
     const cprox_body *body = targets[i].body;
@@ -160,29 +174,46 @@ static cprox_status check_robot(const cprox_mover *mover, const cprox_obstacle *
                             "target %zu is a solid mesh: a robot is asked about surfaces; fill it with convex parts",
                             i);
   }
-  if (mover->self && mover->whole)
-    return workspace_fail(workspace, CPROX_INVALID, "the mover has self and whole: one of them");
-  const cprox_status status = check_pairs(mover, mover->pairs, mover->n_pairs, mover->self, n, workspace);
+  const bool self = mover->kind == CPROX_MOVER_ROBOT_SELF, whole = mover->kind == CPROX_MOVER_ROBOT_WHOLE;
+  const cprox_status status = check_pairs(mover, mover->pairs, mover->n_pairs, self, n, workspace);
   if (status != CPROX_OK) return status;
-  return check_pairs(mover, mover->self_pairs, mover->whole ? mover->n_self_pairs : 0, true, n, workspace);
+  return check_pairs(mover, mover->self_pairs, whole ? mover->n_self_pairs : 0, true, n, workspace);
+}
+
+/* Do the members that are set belong to the kind? */
+static cprox_status check_kind(const cprox_mover *mover, cprox_workspace *workspace) {
+  if ((unsigned)mover->kind > CPROX_MOVER_ROBOT_WHOLE)
+    return workspace_fail(workspace, CPROX_INVALID, "%d is no kind of mover", (int)mover->kind);
+  const bool robot = mover->kind >= CPROX_MOVER_ROBOT;
+  if (robot && !mover->motion) return workspace_fail(workspace, CPROX_INVALID, "the mover is a robot without a motion");
+  if (!robot && !mover->curve) return workspace_fail(workspace, CPROX_INVALID, "the mover has no curve");
+  if (!robot && mover->motion)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "the mover has a motion, but its kind is not that of a robot (cprox_robot_along, "
+                          "cprox_robot_self)");
+  if (mover->kind == CPROX_MOVER_BALL && mover->body)
+    return workspace_fail(workspace, CPROX_INVALID, "the mover has a body, but its kind is a ball (cprox_body_along)");
+  if (mover->kind == CPROX_MOVER_BODY && !mover->body)
+    return workspace_fail(workspace, CPROX_INVALID, "the mover is a body without a body");
+  return CPROX_OK;
 }
 
 cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
                                    const cprox_options *options, arguments_query asked, cprox_workspace *workspace) {
   if (!workspace) return CPROX_INVALID;
-  if (!mover->curve && !mover->motion) return workspace_fail(workspace, CPROX_INVALID, "the mover has no curve");
-  cprox_status checked = arguments_check_length("radius", mover->radius, workspace);
+  cprox_status checked = check_kind(mover, workspace);
+  if (checked == CPROX_OK) checked = arguments_check_length("radius", mover->radius, workspace);
   if (checked == CPROX_OK) checked = arguments_check_options(options, asked, workspace);
   if (checked != CPROX_OK) return checked;
-  if (mover->whole && (!(asked.has & ARGUMENTS_WHOLE) || options->certificate))
+  if (mover->kind == CPROX_MOVER_ROBOT_WHOLE && (!(asked.has & ARGUMENTS_WHOLE) || options->certificate))
     return workspace_fail(workspace, CPROX_INVALID,
                           "%s: a robot against obstacles and itself at once has a distance, verdicts and a time of "
                           "contact, and no certificate",
                           asked.name);
-  if (!mover->motion && (mover->pairs || mover->n_pairs > 0 || mover->self || mover->whole))
-    return workspace_fail(workspace, CPROX_INVALID,
-                          "the mover has %s, but no motion: that is for robots (cprox_robot_along, cprox_robot_self)",
-                          mover->self ? "self" : "pairs");
+  if (!mover->motion && (mover->pairs || mover->n_pairs > 0 || mover->self_pairs || mover->n_self_pairs > 0))
+    return workspace_fail(
+        workspace, CPROX_INVALID,
+        "the mover has pairs, but no motion: that is for robots (cprox_robot_along, cprox_robot_self)");
   if (mover->motion && options->signed_distance)
     return workspace_fail(workspace, CPROX_INVALID,
                           "signed_distance does not apply to robots: how deep they overlap is not measured");

@@ -35,11 +35,11 @@ const char *cprox_lod_name(cprox_lod lod) {
 }
 
 cprox_mover cprox_point_along(const cprox_curve *curve) {
-  return (cprox_mover){.curve = curve, .radius = 0.0};
+  return (cprox_mover){.kind = CPROX_MOVER_BALL, .curve = curve, .radius = 0.0};
 }
 
 cprox_mover cprox_tube_along(const cprox_curve *curve, double radius) {
-  return (cprox_mover){.curve = curve, .radius = radius};
+  return (cprox_mover){.kind = CPROX_MOVER_BALL, .curve = curve, .radius = radius};
 }
 
 cprox_obstacle cprox_synchronized(cprox_mover other) {
@@ -51,13 +51,13 @@ cprox_obstacle cprox_synchronized(cprox_mover other) {
 }
 
 cprox_mover cprox_body_along(const cprox_body *body, const cprox_curve *curve) {
-  return (cprox_mover){.curve = curve, .body = body};
+  return (cprox_mover){.kind = CPROX_MOVER_BODY, .curve = curve, .body = body};
 }
 
 cprox_mover cprox_robot_along(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs) {
-  return (cprox_mover){.motion = motion, .pairs = pairs, .n_pairs = n_pairs};
+  return (cprox_mover){.kind = CPROX_MOVER_ROBOT, .motion = motion, .pairs = pairs, .n_pairs = n_pairs};
 }
 
 cprox_mover cprox_robot_self(const cprox_motion *motion, const cprox_robot_pair *pairs, size_t n_pairs) {
-  return (cprox_mover){.motion = motion, .pairs = pairs, .n_pairs = n_pairs, .self = true};
+  return (cprox_mover){.kind = CPROX_MOVER_ROBOT_SELF, .motion = motion, .pairs = pairs, .n_pairs = n_pairs};
 }

@@ -45,7 +45,7 @@ static void report(const robot_search *o, const robot_sample *sample, cprox_resu
   r->normal = sample->gap.normal;
   r->mover_part = s->parts[pair->moving].body.index;
   r->obstacle_index = pair->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
-  if (pair->self && s->q->mover.whole) r->obstacle_index += (int32_t)s->q->n;
+  if (pair->self && mover_is_whole(&s->q->mover)) r->obstacle_index += (int32_t)s->q->n;
   r->obstacle_part = pair->self ? 0 : s->obstacles[pair->standing].part;
 }
 

@@ -165,8 +165,9 @@ static void add_all_pairs(const robot_scene *s, bool self, robot_pair *pairs, si
 static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
   const cprox_mover *mover = &s->q->mover;
   size_t n = 0;
-  for (int self = mover->self; self <= (mover->self || mover->whole); self++) {
-    const bool second = self && mover->whole;
+  const bool whole = mover_is_whole(mover);
+  for (int self = mover_is_self(mover); self <= (mover_is_self(mover) || whole); self++) {
+    const bool second = self && whole;
     const cprox_robot_pair *given = second ? mover->self_pairs : mover->pairs;
     const size_t count = second ? mover->n_self_pairs : mover->n_pairs;
     if (!given) add_all_pairs(s, self, pairs, &n);
@@ -178,7 +179,8 @@ static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
 /* ---- beginning ------------------------------------------------------------------------------------------------------------ */
 
 bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last) {
-  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = q->mover.self || q->mover.whole};
+  const bool self = mover_is_self(&q->mover) || mover_is_whole(&q->mover);
+  *s = (robot_scene){.q = q, .motion = q->mover.motion, .self = self};
   const cprox_robot *robot = s->motion->robot;
   const size_t n_axes = robot->n_axes + 1;
   size_t deepest = 0;
