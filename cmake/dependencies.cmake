@@ -7,6 +7,11 @@ find_package(catkin REQUIRED COMPONENTS
   visualization_msgs)
 find_package(Eigen3 REQUIRED)
 
+# The Python package: pybind11 builds for the Python that catkin uses.
+set(Python3_EXECUTABLE ${PYTHON_EXECUTABLE})
+find_package(Python3 REQUIRED COMPONENTS Interpreter Development)
+find_package(pybind11 REQUIRED CONFIG)
+
 # FCL: 0.6 and 0.7 bring a CMake package with a target; 0.5 is asked for by pkg-config.
 find_package(fcl QUIET CONFIG)
 if(TARGET fcl)

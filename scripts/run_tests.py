@@ -389,11 +389,12 @@ def on_debian_12():
 GROUPS = {
     'layering': layering, 'headers': headers, 'text': text, 'docs': docs, 'lint': lint, 'format': formatting, 'bench': bench_pages,
     'core': core, 'tidy': tidy, 'sanitizers': sanitized, 'threads': threads,
-    'scene': lambda: room('scene'), 'providers': lambda: room('providers'), 'cli': lambda: room('cli'), 'ros': lambda: room('ros'),
+    'scene': lambda: room('scene'), 'providers': lambda: room('providers'), 'cli': lambda: room('cli'), 'python': lambda: room('python'),
+    'ros': lambda: room('ros'),
     'install': install, 'demo': demo,
 }
 
-NAMED = (*CORE_FOLDERS, 'scene', 'providers', 'cli', 'ros')  # rooms whose tests have names: scripts/test core.test_pair
+NAMED = (*CORE_FOLDERS, 'scene', 'providers', 'cli', 'python', 'ros')  # rooms whose tests have names: scripts/test core.test_pair
 
 
 def main():

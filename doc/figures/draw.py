@@ -441,11 +441,20 @@ def scenes():
     }, [('yaml', 'scene', ''), ('topic', 'scene', ''), ('mesh', 'reader', ''), ('reader', 'scene', ''), ('scene', 'snap', '')])
 
 
+def python():
+    return flow((9, 2.4), {
+        'numpy': (0.9, 1.1, 'your program,\nNumPy arrays', GREY),
+        'package': (3.6, 1.1, 'package cprox\n(pybind11)', ORANGE),
+        'scene': (6.4, 2.0, 'scene classes:\nURDF, meshes, motions', BLUE),
+        'core': (9.4, 1.1, 'libcprox', BLUE),
+    }, [('numpy', 'package', ''), ('package', 'scene', ''), ('package', 'core', ''), ('scene', 'core', '')])
+
+
 def main():
     drawings = {name: value for name, value in globals().items()
                 if callable(value) and name in ('curve_bound', 'batches', 'fourier', 'implicit', 'robot_bounds', 'time_of_contact',
                                                 'convex_pairs', 'non_convex', 'rounding', 'certificates', 'ros', 'command_line',
-                                                'c_api', 'scenes')}
+                                                'c_api', 'scenes', 'python')}
     for name in sys.argv[1:] or drawings:
         figure = drawings[name]()
         figure.savefig(os.path.join(HERE, name + '.png'), dpi=100, bbox_inches='tight', pad_inches=0.08)

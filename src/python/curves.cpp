@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Curves: each as a kind of cprox_curve_description, with its points read in place. */
+#include "conversion.h"
+
+namespace curve_proximity::python {
+namespace {
+
+Curve make(cprox_curve_kind kind, const Array &points, double t0, double t1) {
+  const Points p(points, "points");
+  cprox_curve_description d = detail::describe(kind, t0, t1);
+  d.points = p.data, d.n = p.size;
+  return Curve{detail::makeCurve(d)};
+}
+
+/* Point, first and second derivative at each t, as the caller wants them. */
+Array evaluate(const Curve &curve, const Array &t, int derivative) {
+  if (derivative < 0 || derivative > 2) throw Error("derivative must be 0, 1 or 2");
+  if (t.ndim() > 1) throw Error("t must be a number or an array of shape (n,)");
+  Workspace &workspace = threadWorkspace();
+  std::vector<py::ssize_t> shape(t.shape(), t.shape() + t.ndim());
+  shape.push_back(3);
+  Array out(shape);
+  auto *to = reinterpret_cast<cprox_vec3 *>(out.mutable_data());
+  for (py::ssize_t i = 0; i < t.size(); ++i)
+    require(cprox_curve_evaluate(curve.curve.get(), t.data()[i], workspace.get(), derivative == 0 ? to + i : nullptr,
+                                 derivative == 1 ? to + i : nullptr, derivative == 2 ? to + i : nullptr),
+            workspace);
+  return out;
+}
+
+} // namespace
+
+void addCurves(py::module &module) {
+  py::class_<Curve>(module, "Curve", "A parametric curve on [t0, t1]. Immutable, shared by threads.")
+      .def_property_readonly(
+          "t0", [](const Curve &c) { return cprox_curve_get_info(c.curve.get()).t0; }, "Start.")
+      .def_property_readonly(
+          "t1", [](const Curve &c) { return cprox_curve_get_info(c.curve.get()).t1; }, "End.")
+      .def_property_readonly(
+          "n_pieces", [](const Curve &c) { return cprox_curve_get_info(c.curve.get()).n_pieces; }, "Polynomial pieces.")
+      .def("__call__", &evaluate, py::arg("t"), py::arg("derivative") = 0,
+           "The point at t, or the first or second derivative: (3,) for a number, (n, 3) for an array (n,).");
+
+  module.def(
+      "bezier", [](const Array &points, double t0, double t1) { return make(CPROX_CURVE_BEZIER, points, t0, t1); },
+      py::arg("points"), py::arg("t0") = 0.0, py::arg("t1") = 1.0, "A Bézier curve; points (n, 3) [m].");
+  module.def(
+      "bspline",
+      [](const Array &points, std::size_t degree, const Array &knots, std::optional<double> t0,
+         std::optional<double> t1) {
+        const Points p(points, "points");
+        if (knots.ndim() != 1) throw Error("knots must be an array of shape (n + degree + 1,)");
+        const auto n_knots = static_cast<std::size_t>(knots.shape(0));
+        const bool fits = degree < n_knots && p.size < n_knots;
+        cprox_curve_description d =
+            detail::describe(CPROX_CURVE_BSPLINE, t0.value_or(fits ? knots.data()[degree] : 0.0),
+                             t1.value_or(fits ? knots.data()[p.size] : 1.0));
+        d.points = p.data, d.n = p.size, d.degree = degree, d.knots = knots.data(), d.n_knots = n_knots;
+        return Curve{detail::makeCurve(d)};
+      },
+      py::arg("points"), py::arg("degree"), py::arg("knots"), py::arg("t0") = py::none(), py::arg("t1") = py::none(),
+      "A B-spline curve; points (n, 3) [m], knots (n + degree + 1,), non-decreasing. Its range is that of the knots:\n"
+      "[knots[degree], knots[n]].");
+  module.def(
+      "polynomial",
+      [](const Array &coefficients, double t0, double t1) {
+        return make(CPROX_CURVE_POLYNOMIAL, coefficients, t0, t1);
+      },
+      py::arg("coefficients"), py::arg("t0") = 0.0, py::arg("t1") = 1.0, "The sum of coefficients[k] t^k; (n, 3).");
+  module.def(
+      "trigonometric",
+      [](const Array &coefficients, double t0, double t1) {
+        return make(CPROX_CURVE_TRIGONOMETRIC, coefficients, t0, t1);
+      },
+      py::arg("coefficients"), py::arg("t0"), py::arg("t1"),
+      "A trigonometric series; the rows of coefficients (2 k + 1, 3) belong to 1, cos t, sin t, cos 2t, …");
+  module.def(
+      "clothoid",
+      [](const Array &start, double heading, double curvature, double curvature_rate, double t0, double t1) {
+        return Curve{makeClothoid(toEigen(toVector(start, "start")), heading, curvature, curvature_rate, t0, t1)};
+      },
+      py::arg("start"), py::arg("heading"), py::arg("curvature"), py::arg("curvature_rate"), py::arg("t0"),
+      py::arg("t1"),
+      "A clothoid in a plane z = const; heading [rad] and curvature [1/m] are those at t = 0, t is the arc length.");
+  module.def(
+      "dubins",
+      [](const Array &start, double start_heading, const Array &end, double end_heading, double radius) {
+        return Curve{makeDubins(toEigen(toVector(start, "start")), start_heading, toEigen(toVector(end, "end")),
+                                end_heading, radius)};
+      },
+      py::arg("start"), py::arg("start_heading"), py::arg("end"), py::arg("end_heading"), py::arg("radius"),
+      "The shortest Dubins path; t is the arc length.");
+  module.def(
+      "piecewise",
+      [](const std::vector<Curve> &curves, const std::vector<double> &ends, double gap) {
+        std::vector<CurveHandle> handles;
+        for (const Curve &one : curves) handles.push_back(one.curve);
+        return Curve{makePiecewise(handles, ends, gap)};
+      },
+      py::arg("curves"), py::arg("ends") = std::vector<double>{}, py::arg("gap") = 0.0,
+      "Curves end to end, on their own ranges or on those between `ends`; gap [m] allowed between them.");
+}
+
+} // namespace curve_proximity::python

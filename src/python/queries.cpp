@@ -1,0 +1,419 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What moves, obstacles, and the queries about them. Queries release the GIL. */
+#include <map>
+
+#include <curve_proximity/parallel.hpp>
+
+#include "conversion.h"
+
+namespace curve_proximity::python {
+namespace {
+
+/* A mover, and what it refers to. */
+struct Mover {
+  cprox_mover mover{};
+  CurveHandle curve;
+  BodyHandle body;
+};
+
+struct Obstacle {
+  cprox_obstacle obstacle{};
+  BodyHandle body;
+  CurveHandle curve;
+  std::vector<std::shared_ptr<Mover>> others; /* at the same parameter */
+};
+
+/* Many obstacles, and what they refer to; immutable. The batch index is made when it is first wanted. */
+class ObstacleSet {
+ public:
+  ObstacleSet(std::vector<std::shared_ptr<Obstacle>> list, const std::string &index)
+      : list_(std::move(list)), targets_(targetsOf(list_)), obstacles_(targets_, indexOf(index)) {}
+
+  const Obstacles &get() const {
+    return obstacles_;
+  }
+
+  const Batch &batch() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!batch_) batch_ = std::make_unique<Batch>(targets_);
+    return *batch_;
+  }
+
+ private:
+  static std::vector<cprox_obstacle> targetsOf(const std::vector<std::shared_ptr<Obstacle>> &list) {
+    std::vector<cprox_obstacle> out;
+    for (const auto &one : list) out.push_back(one->obstacle);
+    return out;
+  }
+
+  static cprox_obstacle_index indexOf(const std::string &name) {
+    if (name == "bvh") return CPROX_INDEX_BVH;
+    if (name == "none") return CPROX_INDEX_NONE;
+    throw Error("index must be 'bvh' or 'none', got '" + name + "'");
+  }
+
+  std::vector<std::shared_ptr<Obstacle>> list_;
+  std::vector<cprox_obstacle> targets_;
+  Obstacles obstacles_;
+  mutable std::mutex mutex_;
+  mutable std::unique_ptr<Batch> batch_;
+};
+
+/* ---- options ----------------------------------------------------------------------------------------------------- */
+
+/* Ctrl-C ends a query: the core asks now and then. */
+bool interrupted(void *) {
+  const py::gil_scoped_acquire gil;
+  return PyErr_CheckSignals() != 0;
+}
+
+cprox_options optionsOf(const py::kwargs &given) {
+  cprox_options options = CPROX_OPTIONS_DEFAULT;
+  for (const auto &[key, value] : given) {
+    const auto name = key.cast<std::string>();
+    if (name == "epsilon")
+      options.epsilon = value.cast<double>();
+    else if (name == "relative_epsilon")
+      options.relative_epsilon = value.cast<double>();
+    else if (name == "max_nodes")
+      options.max_nodes = value.cast<std::uint32_t>();
+    else if (name == "signed")
+      options.signed_distance = value.cast<bool>();
+    else if (name == "max_lod") {
+      const auto word = value.cast<std::string>();
+      const std::map<std::string, cprox_lod> words = {
+          {"sphere", CPROX_LOD_SPHERE}, {"hull", CPROX_LOD_HULL}, {"mesh", CPROX_LOD_MESH}};
+      if (words.count(word) == 0) throw Error("max_lod must be 'sphere', 'hull' or 'mesh', got '" + word + "'");
+      options.max_lod = words.at(word);
+    } else {
+      throw py::type_error("unexpected option '" + name +
+                           "': options are epsilon, relative_epsilon, max_nodes, signed, max_lod");
+    }
+  }
+  return options;
+}
+
+/* Runs a query without the GIL. Ctrl-C ends it with KeyboardInterrupt. */
+template <typename Ask>
+auto unlocked(cprox_options &options, const Ask &ask) {
+  options.stop = interrupted;
+  auto answer = [&] {
+    const py::gil_scoped_release release;
+    return ask();
+  }();
+  if (PyErr_Occurred()) throw py::error_already_set();
+  return answer;
+}
+
+/* A curve alone is a point along it. */
+std::shared_ptr<Mover> moverOf(const py::object &given) {
+  if (py::isinstance<Mover>(given)) return given.cast<std::shared_ptr<Mover>>();
+  if (!py::isinstance<Curve>(given)) throw py::type_error("the mover must be a Curve or a Mover");
+  auto out = std::make_shared<Mover>();
+  out->curve = given.cast<Curve>().curve;
+  out->mover = cprox_point_along(out->curve.get());
+  return out;
+}
+
+std::shared_ptr<ObstacleSet> setOf(const py::object &given) {
+  if (py::isinstance<ObstacleSet>(given)) return given.cast<std::shared_ptr<ObstacleSet>>();
+  std::vector<std::shared_ptr<Obstacle>> list;
+  if (py::isinstance<Obstacle>(given))
+    list.push_back(given.cast<std::shared_ptr<Obstacle>>());
+  else
+    list = given.cast<std::vector<std::shared_ptr<Obstacle>>>();
+  return std::make_shared<ObstacleSet>(std::move(list), "none");
+}
+
+/* ---- answers ------------------------------------------------------------------------------------------------------ */
+
+std::string describe(const cprox_result &r) {
+  return "<cprox.Result [" + std::to_string(r.lower) + ", " + std::to_string(r.upper) + "] " +
+         cprox_verdict_name(r.verdict) + " at t = " + std::to_string(r.t) + ", " + cprox_status_name(r.status) + ">";
+}
+
+/* One array a column, for many results. */
+py::dict columnsOf(const std::vector<cprox_result> &results) {
+  const auto n = static_cast<py::ssize_t>(results.size());
+  Array lower(n), upper(n), t(n);
+  py::array_t<std::int32_t> obstacle(n);
+  py::array_t<std::int8_t> verdict(n), status(n);
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const cprox_result &r = results[static_cast<std::size_t>(i)];
+    lower.mutable_data()[i] = r.lower, upper.mutable_data()[i] = r.upper, t.mutable_data()[i] = r.t;
+    obstacle.mutable_data()[i] = r.obstacle_index;
+    verdict.mutable_data()[i] = static_cast<std::int8_t>(r.verdict);
+    status.mutable_data()[i] = static_cast<std::int8_t>(r.status);
+  }
+  py::dict out;
+  out["lower"] = lower, out["upper"] = upper, out["t"] = t;
+  out["obstacle"] = obstacle, out["verdict"] = verdict, out["status"] = status;
+  return out;
+}
+
+py::dict profileOf(const ObstacleSet &set, const Mover &mover, const Array &breaks, cprox_options options) {
+  if (breaks.ndim() != 1 || breaks.shape(0) < 2) throw Error("breaks must be an array of two and more parameters");
+  const auto n = static_cast<std::size_t>(breaks.shape(0)) - 1;
+  std::vector<cprox_profile_interval> intervals(n);
+  unlocked(options, [&] {
+    Workspace &workspace = threadWorkspace();
+    return require(cprox_obstacles_profile(set.get().get(), mover.mover, breaks.data(), n, &options, workspace.get(),
+                                           intervals.data()),
+                   workspace);
+  });
+  const auto rows = static_cast<py::ssize_t>(n);
+  Array lower(rows), upper(rows), t(rows);
+  py::array_t<std::int32_t> obstacle(rows);
+  for (py::ssize_t i = 0; i < rows; ++i) {
+    const cprox_profile_interval &one = intervals[static_cast<std::size_t>(i)];
+    lower.mutable_data()[i] = one.lower, upper.mutable_data()[i] = one.upper, t.mutable_data()[i] = one.t;
+    obstacle.mutable_data()[i] = one.obstacle_index;
+  }
+  py::dict out;
+  out["lower"] = lower, out["upper"] = upper, out["t"] = t, out["obstacle"] = obstacle;
+  return out;
+}
+
+/* ---- many curves -------------------------------------------------------------------------------------------------- */
+
+/* Bézier curves of one degree, (N, n, 3); made and asked by the threads of a pool. */
+template <typename Ask>
+py::dict askBatch(const Array &points, double radius, unsigned threads, const Ask &ask) {
+  if (points.ndim() != 3 || points.shape(2) != 3) throw Error("points must be an array of shape (N, n, 3)");
+  const auto count = static_cast<std::size_t>(points.shape(0)), n = static_cast<std::size_t>(points.shape(1));
+  const auto *data = reinterpret_cast<const cprox_vec3 *>(points.data());
+  Batch::Answers answers;
+  {
+    const py::gil_scoped_release release;
+    std::vector<CurveHandle> curves(count);
+    std::vector<cprox_mover> movers(count);
+    Pool pool(threads);
+    pool.run(count, 256, [&](std::size_t first, std::size_t last, Workspace &) {
+      for (std::size_t i = first; i < last; ++i) {
+        cprox_curve_description d = detail::describe(CPROX_CURVE_BEZIER, 0.0, 1.0);
+        d.points = data + i * n, d.n = n;
+        try {
+          curves[i] = detail::makeCurve(d);
+        } catch (const Error &e) {
+          throw Error("curve " + std::to_string(i) + ": " + e.what(), e.status());
+        }
+        movers[i] = cprox_tube_along(curves[i].get(), radius);
+      }
+    });
+    answers = ask(movers, pool);
+  }
+  if (answers.status < 0) throw Error(answers.reason, answers.status);
+  return columnsOf(answers.results);
+}
+
+/* ---- the gradient ------------------------------------------------------------------------------------------------- */
+
+py::dict gradientOf(const Mover &mover, const Obstacle &obstacle, cprox_options options) {
+  cprox_gradient g{};
+  cprox_result r{};
+  std::string reason;
+  unlocked(options, [&] {
+    Workspace &workspace = threadWorkspace();
+    require(cprox_distance(mover.mover, obstacle.obstacle, &options, workspace.get(), &r), workspace);
+    const cprox_status status =
+        cprox_distance_gradient(mover.mover, obstacle.obstacle, &options, &r, workspace.get(), &g);
+    reason = workspace.reason();
+    return require(status, workspace);
+  });
+  py::dict out;
+  out["result"] = r, out["valid"] = g.valid, out["reason"] = g.valid ? "" : reason, out["t"] = g.t;
+  out["mover"] = fromVector(g.mover), out["position"] = fromVector(g.position),
+  out["rotation"] = fromVector(g.rotation);
+  out["radius"] = g.radius, out["margin"] = g.margin, out["t0"] = g.t0, out["t1"] = g.t1;
+  return out;
+}
+
+template <typename Ask>
+cprox_result askOne(const py::object &mover, const py::object &obstacles, const py::kwargs &given, const Ask &ask) {
+  const std::shared_ptr<Mover> moving = moverOf(mover);
+  const std::shared_ptr<ObstacleSet> set = setOf(obstacles);
+  cprox_options options = optionsOf(given);
+  return unlocked(options, [&] { return ask(set->get(), moving->mover, options, threadWorkspace()); });
+}
+
+} // namespace
+
+void addQueries(py::module &module) {
+  py::class_<cprox_result>(module, "Result", "A certified answer: lower <= true value <= upper [m].")
+      .def_readonly("lower", &cprox_result::lower, "[m] The true value is not below this.")
+      .def_readonly("upper", &cprox_result::upper, "[m] The true value is not above this.")
+      .def_readonly("t", &cprox_result::t, "Where on the mover's curve upper is attained.")
+      .def_readonly("t_obstacle", &cprox_result::t_obstacle, "Where on an obstacle that is a curve; NaN for shapes.")
+      .def_readonly("t_contact_lower", &cprox_result::t_contact_lower, "Time of contact: no contact before this.")
+      .def_readonly("obstacle", &cprox_result::obstacle_index, "Which obstacle; -1: none.")
+      .def_readonly("obstacle_part", &cprox_result::obstacle_part, "Which part of a compound.")
+      .def_readonly("nodes", &cprox_result::nodes, "Parameter intervals examined.")
+      .def_readonly("distance_queries", &cprox_result::distance_queries, "Nearest-point queries.")
+      .def_property_readonly(
+          "witness_mover", [](const cprox_result &r) { return fromVector(r.witness_mover); }, "(3,)")
+      .def_property_readonly(
+          "witness_obstacle", [](const cprox_result &r) { return fromVector(r.witness_obstacle); }, "(3,)")
+      .def_property_readonly(
+          "normal", [](const cprox_result &r) { return fromVector(r.normal); },
+          "(3,) unit, from obstacle to mover; 0 where there is none.")
+      .def_property_readonly(
+          "verdict", [](const cprox_result &r) { return cprox_verdict_name(r.verdict); },
+          "'clear', 'violated' or 'undecided'; undecided counts as unsafe.")
+      .def_property_readonly(
+          "status", [](const cprox_result &r) { return cprox_status_name(r.status); },
+          "'ok', or why the interval is wider than asked: 'budget', 'precision', 'stopped'.")
+      .def("__repr__", &describe);
+
+  py::class_<Mover, std::shared_ptr<Mover>>(module, "Mover", "What moves: a point, a ball or a shape along a curve.");
+  module.def(
+      "tube",
+      [](const Curve &curve, double radius) {
+        auto out = std::make_shared<Mover>();
+        out->curve = curve.curve, out->mover = cprox_tube_along(out->curve.get(), radius);
+        return out;
+      },
+      py::arg("curve"), py::arg("radius"), "A ball of the radius >= 0 [m] along the curve.");
+  module.def(
+      "carried",
+      [](const Shape &shape, const Curve &curve, double margin) {
+        auto out = std::make_shared<Mover>();
+        out->curve = curve.curve, out->body = shape.body;
+        out->mover = cprox_body_along(out->body.get(), out->curve.get());
+        out->mover.radius = margin;
+        return out;
+      },
+      py::arg("shape"), py::arg("curve"), py::arg("margin") = 0.0,
+      "A convex shape or a compound, carried along the curve without turning.");
+
+  py::class_<Obstacle, std::shared_ptr<Obstacle>>(module, "Obstacle", "A shape at a pose, or a curve.")
+      .def(py::init([](const Shape &shape, const std::optional<Array> &pose, double margin) {
+             auto out = std::make_shared<Obstacle>();
+             out->body = shape.body;
+             out->obstacle = cprox_with_margin(cprox_obstacle_at(out->body.get(), toPose(toTransform(pose))), margin);
+             return out;
+           }),
+           py::arg("shape"), py::arg("pose") = py::none(), py::arg("margin") = 0.0,
+           "A shape at a pose (4, 4), None: the identity; margin >= 0 [m].")
+      .def_static(
+          "from_curve",
+          [](const Curve &curve, double radius, const std::optional<Array> &pose) {
+            auto out = std::make_shared<Obstacle>();
+            out->curve = curve.curve, out->obstacle = cprox_obstacle_curve(out->curve.get(), radius);
+            out->obstacle.pose = toPose(toTransform(pose));
+            return out;
+          },
+          py::arg("curve"), py::arg("radius") = 0.0, py::arg("pose") = py::none(),
+          "A curve that stands, as thick as a ball of the radius.")
+      .def_static(
+          "synchronized",
+          [](const py::object &other) {
+            auto out = std::make_shared<Obstacle>();
+            out->others.push_back(moverOf(other));
+            out->obstacle = cprox_synchronized(out->others.back()->mover);
+            return out;
+          },
+          py::arg("mover"), "Another mover, at the same parameter as the mover of the query.");
+
+  py::class_<ObstacleSet, std::shared_ptr<ObstacleSet>>(
+      module, "Obstacles", "Many obstacles behind one index. Immutable, shared by threads.")
+      .def(py::init<std::vector<std::shared_ptr<Obstacle>>, const std::string &>(), py::arg("obstacles"),
+           py::arg("index") = "bvh", "index: 'bvh', or 'none' for a few obstacles.")
+      .def("__len__", [](const ObstacleSet &set) { return set.get().size(); })
+      .def(
+          "nearest",
+          [](const ObstacleSet &set, const py::object &mover, std::size_t k, const py::kwargs &given) {
+            const std::shared_ptr<Mover> moving = moverOf(mover);
+            cprox_options options = optionsOf(given);
+            return unlocked(options, [&] { return set.get().nearest(moving->mover, k, options, threadWorkspace()); });
+          },
+          py::arg("mover"), py::arg("k"), "The k nearest obstacles, a Result each, in ascending order.")
+      .def(
+          "profile",
+          [](const ObstacleSet &set, const py::object &mover, const Array &breaks, const py::kwargs &given) {
+            return profileOf(set, *moverOf(mover), breaks, optionsOf(given));
+          },
+          py::arg("mover"), py::arg("breaks"),
+          "The clearance on each interval between two of breaks (n + 1,): a dict of arrays (n,) lower, upper, t, "
+          "obstacle.")
+      .def(
+          "distance_batch",
+          [](const ObstacleSet &set, const Array &points, double radius, unsigned threads, const py::kwargs &given) {
+            const cprox_options options = optionsOf(given);
+            return askBatch(points, radius, threads, [&](const std::vector<cprox_mover> &movers, Pool &pool) {
+              return set.batch().distance(movers, options, pool);
+            });
+          },
+          py::arg("points"), py::arg("radius") = 0.0, py::arg("threads") = 0,
+          "The distance of each of N Bézier curves, points (N, n, 3): a dict of arrays (N,) lower, upper, t, "
+          "obstacle,\n"
+          "verdict, status. threads 0: as many as the machine has.")
+      .def(
+          "tolerance_batch",
+          [](const ObstacleSet &set, const Array &points, double delta, double radius, unsigned threads,
+             const py::kwargs &given) {
+            const cprox_options options = optionsOf(given);
+            return askBatch(points, radius, threads, [&](const std::vector<cprox_mover> &movers, Pool &pool) {
+              return set.batch().tolerance(movers, delta, options, pool);
+            });
+          },
+          py::arg("points"), py::arg("delta"), py::arg("radius") = 0.0, py::arg("threads") = 0,
+          "Whether each of N Bézier curves is farther than delta [m] everywhere; as distance_batch(). verdict: 0 "
+          "clear,\n"
+          "1 violated, 2 undecided.");
+
+  module.def(
+      "distance",
+      [](const py::object &mover, const py::object &obstacles, const py::kwargs &given) {
+        return askOne(mover, obstacles, given,
+                      [](const Obstacles &o, const cprox_mover &m, const cprox_options &options, Workspace &w) {
+                        return o.distance(m, options, w);
+                      });
+      },
+      py::arg("mover"), py::arg("obstacles"),
+      "The least distance over the whole curve [m]. obstacles: Obstacles, one Obstacle or a list of them.\n"
+      "Options: epsilon=1e-6, relative_epsilon=0, max_nodes=20000, signed=False, max_lod='mesh'.");
+  module.def(
+      "tolerance",
+      [](const py::object &mover, const py::object &obstacles, double delta, const py::kwargs &given) {
+        return askOne(mover, obstacles, given,
+                      [&](const Obstacles &o, const cprox_mover &m, const cprox_options &options, Workspace &w) {
+                        return o.tolerance(m, delta, options, w);
+                      });
+      },
+      py::arg("mover"), py::arg("obstacles"), py::arg("delta"), "Is the mover farther than delta >= 0 [m] everywhere?");
+  module.def(
+      "collision",
+      [](const py::object &mover, const py::object &obstacles, const py::kwargs &given) {
+        return askOne(mover, obstacles, given,
+                      [](const Obstacles &o, const cprox_mover &m, const cprox_options &options, Workspace &w) {
+                        return o.collision(m, options, w);
+                      });
+      },
+      py::arg("mover"), py::arg("obstacles"), "Does the mover touch or overlap an obstacle anywhere?");
+  module.def(
+      "time_of_contact",
+      [](const py::object &mover, const py::object &obstacles, const py::kwargs &given) {
+        return askOne(mover, obstacles, given,
+                      [](const Obstacles &o, const cprox_mover &m, const cprox_options &options, Workspace &w) {
+                        return o.timeOfContact(m, options, w);
+                      });
+      },
+      py::arg("mover"), py::arg("obstacles"), "Where the mover first touches: in [t_contact_lower, t]. Never late.");
+  module.def(
+      "pair",
+      [](const Obstacle &a, const Obstacle &b, const py::kwargs &given) {
+        cprox_options options = optionsOf(given);
+        return unlocked(options, [&] { return pair(a.obstacle, b.obstacle, options, threadWorkspace()); });
+      },
+      py::arg("a"), py::arg("b"), "The signed distance of two shapes that stand [m].");
+  module.def(
+      "distance_gradient",
+      [](const py::object &mover, const Obstacle &obstacle, const py::kwargs &given) {
+        return gradientOf(*moverOf(mover), obstacle, optionsOf(given));
+      },
+      py::arg("mover"), py::arg("obstacle"),
+      "The distance and its derivatives: a dict of result, valid, reason, t, mover (by the point at t), position,\n"
+      "rotation (of the obstacle), radius, margin, t0, t1.");
+}
+
+} // namespace curve_proximity::python

@@ -1,0 +1,316 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Robots, scenes, and robots along joint trajectories. Queries release the GIL. */
+#include <fstream>
+#include <sstream>
+
+#include <curve_proximity/motion.hpp>
+#include <curve_proximity/srdf.hpp>
+
+#include "conversion.h"
+
+namespace curve_proximity::python {
+namespace {
+
+using Packages = std::map<std::string, std::string>;
+
+std::string readText(const std::string &path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) throw Error(path + ": the file cannot be read");
+  return text.str();
+}
+
+ResourceOptions resourcesOf(const std::string &path, const Packages &packages) {
+  ResourceOptions out;
+  const std::size_t slash = path.rfind('/');
+  out.base_dir = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  out.find_package = [packages](const std::string &name) {
+    const auto found = packages.find(name);
+    return found == packages.end() ? std::string() : found->second;
+  };
+  return out;
+}
+
+/* A robot with what its SRDF says. */
+struct LoadedRobot {
+  std::shared_ptr<const Robot> robot;
+  Srdf srdf;
+};
+
+std::shared_ptr<LoadedRobot> load(const std::string &urdf, const std::optional<std::string> &srdf,
+                                  const Packages &packages) {
+  auto out = std::make_shared<LoadedRobot>();
+  RobotOptions options;
+  options.resources = resourcesOf(urdf, packages);
+  const auto read = [](const std::string &path, const auto &parse) {
+    try {
+      return parse(readText(path));
+    } catch (const Error &e) {
+      throw Error(path + ": " + e.what(), e.status());
+    }
+  };
+  const py::gil_scoped_release release;
+  out->robot = read(urdf, [&](const std::string &text) { return Robot::fromUrdf(text, options); });
+  if (srdf) out->srdf = read(*srdf, [](const std::string &text) { return parseSrdf(text); });
+  return out;
+}
+
+/* A scene whose changes throw. */
+class PythonScene {
+ public:
+  PythonScene(std::shared_ptr<LoadedRobot> robot, const Packages &packages)
+      : robot_(std::move(robot)),
+        scene_(robot_ ? robot_->robot : nullptr, resourcesOf("", packages),
+               robot_ ? allowedPairs(robot_->srdf) : std::vector<AllowedPair>{}) {}
+
+  void change(const SceneChange &change) {
+    std::vector<std::string> wrong;
+    {
+      const py::gil_scoped_release release;
+      wrong = scene_.apply(change);
+    }
+    if (!wrong.empty()) throw Error(wrong.front());
+  }
+
+  void add(const std::string &id, const std::string &type, const std::vector<double> &dimensions,
+           const std::optional<Array> &pose, double padding, const std::optional<Array> &vertices,
+           const std::optional<py::array_t<int, py::array::c_style | py::array::forcecast>> &triangles,
+           const std::string &resource, bool solid) {
+    const std::optional<ShapeType> known = shapeTypeFromName(type);
+    if (!known) throw Error("object '" + id + "': there is no shape '" + type + "'");
+    ShapeDescription shape;
+    shape.type = *known, shape.dimensions = dimensions, shape.resource = resource, shape.solid = solid;
+    if (vertices) {
+      const Points points(*vertices, "vertices");
+      shape.vertices = Eigen::Map<const Eigen::Matrix3Xd>(vertices->data(), 3, static_cast<Eigen::Index>(points.size));
+    }
+    if (triangles) {
+      if (triangles->ndim() != 2 || triangles->shape(1) != 3) throw Error("triangles must be an array of shape (m, 3)");
+      shape.triangles = Eigen::Map<const Triangles>(triangles->data(), 3, triangles->shape(0));
+    }
+    Operation add;
+    add.object.id = id, add.object.pose = toTransform(pose), add.object.padding = padding;
+    add.object.shapes.push_back(std::move(shape));
+    SceneChange change;
+    change.operations.push_back(std::move(add));
+    this->change(change);
+  }
+
+  void operate(Operation::Kind kind, const std::string &id, const Eigen::Isometry3d &pose) {
+    Operation operation;
+    operation.kind = kind, operation.object.id = id, operation.object.pose = pose;
+    SceneChange change;
+    change.operations.push_back(std::move(operation));
+    this->change(change);
+  }
+
+  void allow(const std::string &a, const std::string &b, bool allowed) {
+    SceneChange change;
+    change.allowed.push_back({a, b, allowed});
+    this->change(change);
+  }
+
+  SnapshotPtr snapshot() const {
+    return scene_.snapshot();
+  }
+  const LoadedRobot *robot() const {
+    return robot_.get();
+  }
+
+ private:
+  std::shared_ptr<LoadedRobot> robot_;
+  Scene scene_;
+};
+
+/* ---- motions ------------------------------------------------------------------------------------------------------ */
+
+std::vector<double> row(const Array &rows, py::ssize_t i) {
+  return {rows.data(i), rows.data(i) + rows.shape(1)};
+}
+
+void requireRows(const Array &rows, std::size_t n, std::size_t joints, const char *what) {
+  if (rows.ndim() != 2 || static_cast<std::size_t>(rows.shape(0)) != n ||
+      static_cast<std::size_t>(rows.shape(1)) != joints)
+    throw Error(std::string(what) + " must be an array of shape (" + std::to_string(n) + ", " + std::to_string(joints) +
+                "): one row a time, one column a joint");
+}
+
+std::shared_ptr<RobotMotion> makeMotion(const PythonScene &scene, const std::vector<std::string> &joints,
+                                        const std::vector<double> &times, const Array &positions,
+                                        const std::optional<Array> &velocities,
+                                        const std::optional<Array> &accelerations, const JointPositions &rest,
+                                        const std::optional<Array> &base) {
+  if (!scene.robot()) throw Error("the scene has no robot");
+  requireRows(positions, times.size(), joints.size(), "positions");
+  if (velocities) requireRows(*velocities, times.size(), joints.size(), "velocities");
+  if (accelerations) requireRows(*accelerations, times.size(), joints.size(), "accelerations");
+  TrajectoryDescription trajectory;
+  trajectory.id = "trajectory", trajectory.joints = joints;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const auto k = static_cast<py::ssize_t>(i);
+    TrajectoryPoint point;
+    point.time = times[i], point.positions = row(positions, k);
+    if (velocities) point.velocities = row(*velocities, k);
+    if (accelerations) point.accelerations = row(*accelerations, k);
+    trajectory.points.push_back(std::move(point));
+  }
+  adoptBase(scene.robot()->srdf.virtual_joints, trajectory);
+  const Eigen::Isometry3d at = toTransform(base);
+  const py::gil_scoped_release release;
+  return std::make_shared<RobotMotion>(scene.snapshot(), trajectory, rest, scene.robot()->srdf.disabled, at);
+}
+
+Query queryOf(const std::string &type, double delta, double epsilon, std::uint32_t max_nodes) {
+  Query out;
+  if (type == "tolerance")
+    out.query_type = QueryType::TOLERANCE;
+  else if (type == "collision")
+    out.query_type = QueryType::COLLISION;
+  else if (type != "distance")
+    throw Error("there is no query '" + type + "'");
+  out.delta = delta, out.options.epsilon = epsilon, out.options.max_nodes = max_nodes;
+  return out;
+}
+
+py::dict answerOf(const Answer &answer) {
+  if (answer.result.status < 0) throw Error(answer.message, answer.result.status);
+  py::dict out;
+  out["result"] = answer.result, out["kind"] = answer.kind, out["a"] = answer.a, out["b"] = answer.b;
+  out["by_hull"] = answer.by_hull, out["message"] = answer.message;
+  return out;
+}
+
+py::dict ask(const RobotMotion &motion, bool self, const Query &query) {
+  Answer answer;
+  {
+    const py::gil_scoped_release release;
+    answer =
+        self ? askSelf(motion, query, threadWorkspace()) : askEnvironment(motion, query, threadWorkspace()).front();
+  }
+  return answerOf(answer);
+}
+
+py::dict profileOf(const RobotMotion &motion, const std::vector<double> &breaks, bool self, double epsilon) {
+  std::vector<ClearanceInterval> intervals;
+  {
+    const py::gil_scoped_release release;
+    intervals = clearanceProfile(motion, self, breaks, queryOf("distance", 0.0, epsilon, 20000), threadWorkspace());
+  }
+  const auto n = static_cast<py::ssize_t>(intervals.size());
+  Array lower(n), upper(n), t(n);
+  py::list a, b;
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const ClearanceInterval &one = intervals[static_cast<std::size_t>(i)];
+    lower.mutable_data()[i] = one.lower, upper.mutable_data()[i] = one.upper, t.mutable_data()[i] = one.t;
+    a.append(one.a), b.append(one.b);
+  }
+  py::dict out;
+  out["lower"] = lower, out["upper"] = upper, out["t"] = t, out["a"] = a, out["b"] = b;
+  return out;
+}
+
+py::list pairsOf(const RobotMotion &motion, std::size_t k, double within, bool self, double epsilon) {
+  std::vector<Answer> answers;
+  {
+    const py::gil_scoped_release release;
+    answers = nearestPairs(motion, self, {k, within}, queryOf("distance", 0.0, epsilon, 20000), threadWorkspace());
+  }
+  py::list out;
+  for (const Answer &answer : answers) out.append(answerOf(answer));
+  return out;
+}
+
+} // namespace
+
+void addRobots(py::module &module) {
+  py::class_<LoadedRobot, std::shared_ptr<LoadedRobot>>(module, "Robot", "A robot from its URDF. Immutable.")
+      .def_static("from_urdf", &load, py::arg("urdf"), py::arg("srdf") = py::none(), py::arg("packages") = Packages{},
+                  "Reads the file of a URDF, and of an SRDF. packages: the folder of each package:// in them.")
+      .def_property_readonly("name", [](const LoadedRobot &r) { return r.robot->name(); })
+      .def_property_readonly(
+          "variables", [](const LoadedRobot &r) { return r.robot->variables(); }, "The names of all joints that move.")
+      .def(
+          "link_poses",
+          [](const LoadedRobot &r, const JointPositions &positions) {
+            py::dict out;
+            for (const auto &[link, pose] : r.robot->linkPoses(positions)) out[py::str(link)] = fromTransform(pose);
+            return out;
+          },
+          py::arg("positions"), "Forward kinematics: the pose (4, 4) of each link for joint values by name.");
+
+  py::class_<PythonScene, std::shared_ptr<PythonScene>>(module, "Scene", "Objects by name, and a robot.")
+      .def(py::init<std::shared_ptr<LoadedRobot>, const Packages &>(), py::arg("robot") = nullptr,
+           py::arg("packages") = Packages{})
+      .def("add", &PythonScene::add, py::arg("id"), py::arg("type"), py::arg("dimensions") = std::vector<double>{},
+           py::arg("pose") = py::none(), py::arg("padding") = 0.0, py::arg("vertices") = py::none(),
+           py::arg("triangles") = py::none(), py::arg("resource") = "", py::arg("solid") = false,
+           "Adds or replaces an object: type 'box', dimensions [x, y, z] and so on, as in a scene file.")
+      .def(
+          "move",
+          [](PythonScene &s, const std::string &id, const Array &pose) {
+            s.operate(Operation::Kind::MOVE, id, toTransform(pose));
+          },
+          py::arg("id"), py::arg("pose"))
+      .def(
+          "remove",
+          [](PythonScene &s, const std::string &id) {
+            s.operate(Operation::Kind::REMOVE, id, Eigen::Isometry3d::Identity());
+          },
+          py::arg("id"))
+      .def("allow", &PythonScene::allow, py::arg("a"), py::arg("b"), py::arg("allowed") = true,
+           "Sets an entry of the allowed collision matrix; b '': the default of a.")
+      .def_property_readonly("objects", [](const PythonScene &s) {
+        py::list out;
+        for (const auto &[id, object] : s.snapshot()->objects()) out.append(id);
+        return out;
+      });
+
+  py::class_<RobotMotion, std::shared_ptr<RobotMotion>>(
+      module, "Motion",
+      "The robot of a scene along a joint trajectory, in the scene as it was when the motion was made.")
+      .def(py::init(&makeMotion), py::arg("scene"), py::arg("joints"), py::arg("times"), py::arg("positions"),
+           py::arg("velocities") = py::none(), py::arg("accelerations") = py::none(),
+           py::arg("rest") = JointPositions{}, py::arg("base") = py::none(),
+           "Waypoints: times (n,) [s], positions (n, joints); with velocities the motion is cubic between them, with\n"
+           "accelerations too quintic, else linear. rest: values of the other joints by name.")
+      .def_property_readonly("domain", &RobotMotion::domain, "[s] The first and the last time.")
+      .def(
+          "link_poses",
+          [](const RobotMotion &m, double t) {
+            py::dict out;
+            for (const auto &[link, pose] : m.linkPoses(t)) out[py::str(link)] = fromTransform(pose);
+            return out;
+          },
+          py::arg("t"), "The pose (4, 4) of each link at the time t [s].")
+      .def(
+          "distance",
+          [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes) {
+            return ask(m, self, queryOf("distance", 0.0, epsilon, max_nodes));
+          },
+          py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          "The least distance to the objects, or of the robot to itself: a dict of result, kind, a (link), b (object "
+          "or\n"
+          "link), by_hull, message.")
+      .def(
+          "tolerance",
+          [](const RobotMotion &m, double delta, bool self, double epsilon, std::uint32_t max_nodes) {
+            return ask(m, self, queryOf("tolerance", delta, epsilon, max_nodes));
+          },
+          py::arg("delta"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          "Is the robot farther than delta [m] everywhere? As distance().")
+      .def(
+          "collision",
+          [](const RobotMotion &m, bool self, double epsilon, std::uint32_t max_nodes) {
+            return ask(m, self, queryOf("collision", 0.0, epsilon, max_nodes));
+          },
+          py::arg("self_collision") = false, py::arg("epsilon") = 1e-6, py::arg("max_nodes") = 20000,
+          "Does the robot touch or overlap an object, or itself? As distance().")
+      .def("profile", &profileOf, py::arg("breaks"), py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
+           "The clearance between each two of breaks (n + 1,) [s]: a dict of lower, upper, t (n,) and lists a, b.")
+      .def("nearest_pairs", &pairsOf, py::arg("k") = 10, py::arg("within") = std::numeric_limits<double>::infinity(),
+           py::arg("self_collision") = false, py::arg("epsilon") = 1e-6,
+           "The k pairs that come closest, nearest first; each as distance() gives it.");
+}
+
+} // namespace curve_proximity::python

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Shapes: each as the function of cprox/body.h. */
+#include "conversion.h"
+
+namespace curve_proximity::python {
+namespace {
+
+BodyHandle makeMeshOf(const Array &vertices,
+                      py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> triangles, bool solid) {
+  const Points points(vertices, "vertices");
+  if (triangles.ndim() != 2 || triangles.shape(1) != 3) throw Error("triangles must be an array of shape (m, 3)");
+  std::vector<std::array<std::uint32_t, 3>> indices(static_cast<std::size_t>(triangles.shape(0)));
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t index = triangles.at(static_cast<py::ssize_t>(i), static_cast<py::ssize_t>(k));
+      if (index < 0 || static_cast<std::size_t>(index) >= points.size)
+        throw Error("triangle " + std::to_string(i) + ": there is no vertex " + std::to_string(index));
+      indices[i][k] = static_cast<std::uint32_t>(index);
+    }
+  const BodyHandle body = detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+    return cprox_body_create_mesh(points.data, points.size, reinterpret_cast<const std::uint32_t(*)[3]>(indices.data()),
+                                  indices.size(), solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE,
+                                  std::numeric_limits<std::size_t>::max(), w, b);
+  });
+  if (solid && !cprox_body_get_info(body.get()).is_solid) throw Error("the mesh is not closed, so it has no interior");
+  return body;
+}
+
+BodyHandle polytopeOf(const Array &vertices) {
+  const Points points(vertices, "vertices");
+  return detail::makeBody(
+      [&](cprox_workspace *w, cprox_body **b) { return cprox_body_create_polytope(points.data, points.size, w, b); });
+}
+
+BodyHandle cloudOf(const Array &points, double radius) {
+  const Points cloud(points, "points");
+  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+    return cprox_body_create_points(cloud.data, cloud.size, radius, std::numeric_limits<std::size_t>::max(), w, b);
+  });
+}
+
+BodyHandle polygonOf(const Array &vertices) {
+  if (vertices.ndim() != 2 || vertices.shape(1) != 2) throw Error("vertices must be an array of shape (n, 2)");
+  return detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
+    return cprox_body_create_polygon(reinterpret_cast<const double(*)[2]>(vertices.data()),
+                                     static_cast<std::size_t>(vertices.shape(0)), w, b);
+  });
+}
+
+BodyHandle compoundOf(const std::vector<Shape> &parts, const std::vector<Array> &poses) {
+  std::vector<BodyHandle> bodies;
+  for (const Shape &part : parts) bodies.push_back(part.body);
+  std::vector<Eigen::Isometry3d> placed;
+  for (const Array &pose : poses) placed.push_back(toTransform(pose));
+  return makeCompound(bodies, placed);
+}
+
+} // namespace
+
+void addShapes(py::module &module) {
+  py::class_<Shape>(module, "Shape", "A set of points in its own frame. Immutable, shared by threads.");
+  module.def(
+      "point", [](const Array &position) { return Shape{makePoint(toEigen(toVector(position, "position")))}; },
+      py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), "A point (3,) [m].");
+  module.def(
+      "sphere", [](double radius) { return Shape{makeSphere(radius)}; }, py::arg("radius"),
+      "A ball about the origin; radius > 0 [m].");
+  module.def(
+      "box", [](const Array &size) { return Shape{makeBox(toEigen(toVector(size, "size")))}; }, py::arg("size"),
+      "A box about the origin; size (3,): full edge lengths [m].");
+  module.def(
+      "capsule", [](double height, double radius) { return Shape{makeCapsule(height, radius)}; }, py::arg("height"),
+      py::arg("radius"), "A capsule along z about the origin; height: between the centres of the hemispheres [m].");
+  module.def(
+      "cylinder", [](double height, double radius) { return Shape{makeCylinder(height, radius)}; }, py::arg("height"),
+      py::arg("radius"), "A cylinder along z about the origin [m].");
+  module.def(
+      "cone", [](double height, double radius) { return Shape{makeCone(height, radius)}; }, py::arg("height"),
+      py::arg("radius"), "A cone along z about mid-height, apex at +z [m].");
+  module.def(
+      "ellipsoid",
+      [](const Array &semi_axes) { return Shape{makeEllipsoid(toEigen(toVector(semi_axes, "semi_axes")))}; },
+      py::arg("semi_axes"), "An ellipsoid about the origin; semi_axes (3,) [m].");
+  module.def(
+      "halfspace",
+      [](const Array &normal, double offset) {
+        return Shape{makeHalfspace(toEigen(toVector(normal, "normal")), offset)};
+      },
+      py::arg("normal"), py::arg("offset"), "The halfspace normal·x + offset <= 0.");
+  module.def(
+      "superquadric",
+      [](const Array &semi_axes, const Array &exponents) {
+        return Shape{
+            makeSuperquadric(toEigen(toVector(semi_axes, "semi_axes")), toEigen(toVector(exponents, "exponents")))};
+      },
+      py::arg("semi_axes"), py::arg("exponents"), "The sum of |x_i/semi_axes_i|^exponents_i is <= 1; exponents >= 1.");
+  module.def(
+      "polytope", [](const Array &vertices) { return Shape{polytopeOf(vertices)}; }, py::arg("vertices"),
+      "The convex hull of vertices (n, 3) [m], in any order and of any dimension.");
+  module.def(
+      "polygon", [](const Array &vertices) { return Shape{polygonOf(vertices)}; }, py::arg("vertices"),
+      "A convex polygon in the plane z = 0; vertices (n, 2) [m] in order.");
+  module.def(
+      "mesh",
+      [](const Array &vertices, const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> &triangles,
+         bool solid) { return Shape{makeMeshOf(vertices, triangles, solid)}; },
+      py::arg("vertices"), py::arg("triangles"), py::arg("solid") = false,
+      "A triangle mesh: vertices (n, 3) [m], triangles (m, 3) of indices from 0. A hollow surface; with solid, a "
+      "closed\n"
+      "mesh includes its interior, and one that is not closed is a ValueError.");
+  module.def(
+      "point_cloud", [](const Array &points, double radius) { return Shape{cloudOf(points, radius)}; },
+      py::arg("points"), py::arg("radius") = 0.0, "A ball of the radius >= 0 about each of points (n, 3) [m].");
+  module.def(
+      "compound",
+      [](const std::vector<Shape> &parts, const std::vector<Array> &poses) { return Shape{compoundOf(parts, poses)}; },
+      py::arg("parts"), py::arg("poses"), "The union of convex shapes, each at its pose (4, 4).");
+  module.def(
+      "transform",
+      [](const Array &position, const std::optional<Array> &quaternion) {
+        cprox_pose pose = CPROX_POSE_IDENTITY;
+        pose.position = toVector(position, "position");
+        if (quaternion) {
+          if (quaternion->ndim() != 1 || quaternion->shape(0) != 4)
+            throw Error("a quaternion is four numbers x, y, z, w");
+          pose.orientation = {quaternion->at(3), quaternion->at(0), quaternion->at(1), quaternion->at(2)};
+        }
+        return fromTransform(toIsometry(pose));
+      },
+      py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::arg("quaternion") = py::none(),
+      "A pose (4, 4) of a position (3,) [m] and a quaternion x, y, z, w of any norm but 0.");
+}
+
+} // namespace curve_proximity::python

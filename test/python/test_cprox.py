@@ -1,0 +1,236 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The Python package cprox: answers against dense samples in NumPy, arrays in and out, errors, threads, a robot."""
+import os
+import signal
+import threading
+import time
+import unittest
+
+import numpy
+import yaml
+
+import cprox
+
+DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'data')
+
+
+def de_casteljau(points, t):
+    """Points of a Bézier curve at parameters t (n,)."""
+    rows = [numpy.outer(numpy.ones_like(t), p) for p in numpy.asarray(points, float)]
+    while len(rows) > 1:
+        rows = [(1 - t)[:, None] * a + t[:, None] * b for a, b in zip(rows, rows[1:])]
+    return rows[0]
+
+
+def box_distance(p, size):
+    """Distances of points (n, 3) from a box about the origin."""
+    return numpy.linalg.norm(numpy.maximum(numpy.abs(p) - numpy.asarray(size) / 2, 0), axis=1)
+
+
+class Curves(unittest.TestCase):
+    def test_distances_are_those_of_dense_samples(self):
+        random = numpy.random.default_rng(1)
+        t = numpy.linspace(0, 1, 20001)
+        for _ in range(50):
+            points, size = random.uniform(-2, 2, (5, 3)), random.uniform(.1, 1, 3)
+            answer = cprox.distance(cprox.bezier(points), cprox.Obstacle(cprox.box(size)))
+            sampled = box_distance(de_casteljau(points, t), size).min()
+            self.assertLessEqual(answer.lower, sampled + 1e-12)
+            self.assertGreater(answer.upper, sampled - 2e-3)
+            self.assertLessEqual(answer.upper - answer.lower, 1e-6)
+            apart = numpy.linalg.norm(answer.witness_mover - answer.witness_obstacle)
+            self.assertAlmostEqual(apart, answer.upper, places=9)
+
+    def test_curves_are_evaluated_for_numbers_and_arrays(self):
+        points = numpy.array([[0, 0, 0], [1, 2, 0], [2, 0, 1], [3, 1, 1.]])
+        curve = cprox.bezier(points, 2, 4)
+        t = numpy.linspace(2, 4, 7)
+        numpy.testing.assert_allclose(curve(t), de_casteljau(points, (t - 2) / 2), atol=1e-12)
+        self.assertEqual(curve(3.).shape, (3,))
+        numpy.testing.assert_allclose(curve(2., derivative=1), 3 * (points[1] - points[0]) / 2)
+        spline = cprox.bspline(points, 2, [0, 0, 0, 1, 2, 2, 2])
+        self.assertEqual((spline.t0, spline.t1, spline.n_pieces), (0, 2, 2))
+
+    def test_arrays_of_other_types_and_orders_are_copied(self):
+        points = numpy.asfortranarray(numpy.arange(12).reshape(4, 3)[::-1].astype(numpy.float32))
+        numpy.testing.assert_allclose(cprox.bezier(points)(0.), points[0])
+
+    def test_a_tube_and_a_carried_shape_are_thick(self):
+        curve, wall = cprox.bezier([[-1, 0, 0], [1, 0, 0]]), cprox.Obstacle(cprox.box([1, 1, 1]), cprox.transform([0, 2, 0]))
+        self.assertAlmostEqual(cprox.distance(curve, wall).upper, 1.5)
+        self.assertAlmostEqual(cprox.distance(cprox.tube(curve, .25), wall).upper, 1.25)
+        self.assertAlmostEqual(cprox.distance(cprox.carried(cprox.box([.2, .4, .2]), curve), wall).upper, 1.3)
+
+    def test_verdicts_time_of_contact_and_signed_distances(self):
+        curve = cprox.bezier([[-2, 0, 0], [2, 0, 0]])
+        ball = cprox.Obstacle(cprox.sphere(.5))
+        self.assertEqual(cprox.collision(curve, ball).verdict, 'violated')
+        self.assertEqual(cprox.tolerance(curve, cprox.Obstacle(cprox.sphere(.5), cprox.transform([0, 1, 0])), .4).verdict,
+                         'clear')
+        contact = cprox.time_of_contact(curve, ball)
+        self.assertLessEqual(contact.t_contact_lower, .375)
+        self.assertAlmostEqual(contact.t, .375, places=5)
+        self.assertAlmostEqual(cprox.distance(curve, ball, signed=True).upper, -.5, places=5)
+        self.assertAlmostEqual(cprox.pair(ball, cprox.Obstacle(cprox.sphere(.5), cprox.transform([3, 0, 0]))).upper, 2)
+
+    def test_mixed_obstacles_nearest_and_profile(self):
+        random = numpy.random.default_rng(2)
+        shapes = [cprox.sphere(.2), cprox.box([.3, .2, .1]), cprox.cylinder(.4, .1), cprox.superquadric([.2, .1, .3], [4, 4, 4]),
+                  cprox.mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])]
+        obstacles = [cprox.Obstacle(s, cprox.transform(random.uniform(-5, 5, 3), random.normal(size=4)), margin=.01)
+                     for s in shapes * 20]
+        many, curve = cprox.Obstacles(obstacles), cprox.bezier(random.uniform(-3, 3, (4, 3)))
+        self.assertEqual(len(many), 100)
+        answer = cprox.distance(curve, many)
+        self.assertAlmostEqual(answer.upper, min(cprox.distance(curve, o).upper for o in obstacles), places=5)
+        nearest = many.nearest(curve, 3)
+        self.assertEqual(nearest[0].obstacle, answer.obstacle)
+        self.assertEqual(sorted(n.upper for n in nearest), [n.upper for n in nearest])
+        profile = many.profile(curve, numpy.linspace(0, 1, 33))
+        self.assertEqual(profile['lower'].shape, (32,))
+        self.assertAlmostEqual(profile['upper'].min(), answer.upper, places=5)
+        self.assertTrue((profile['lower'] <= profile['upper']).all())
+
+    def test_a_batch_answers_as_single_queries_do(self):
+        random = numpy.random.default_rng(3)
+        obstacles = cprox.Obstacles([cprox.Obstacle(cprox.box([1, 1, 1]), cprox.transform(p)) for p in
+                                     random.uniform(-10, 10, (30, 3))])
+        points = random.uniform(-10, 10, (500, 1, 3)) + random.uniform(-1, 1, (500, 4, 3))
+        for threads in (1, 3):
+            batch = obstacles.distance_batch(points, radius=.1, threads=threads)
+            for i in range(0, 500, 25):
+                one = cprox.distance(cprox.tube(cprox.bezier(points[i]), .1), obstacles)
+                self.assertLessEqual(abs(batch['upper'][i] - one.upper), 2e-6)
+        verdicts = obstacles.tolerance_batch(points, .5, radius=.1)['verdict']
+        self.assertTrue(((verdicts == 0) == (batch['lower'] > .5))[numpy.abs(batch['upper'] - .5) > 1e-5].all())
+
+    def test_gradients_are_those_of_differences(self):
+        points, ball = numpy.array([[-1, .3, 0], [0, 1, .5], [1, 0, .2]]), cprox.Obstacle(cprox.sphere(.2))
+        gradient = cprox.distance_gradient(cprox.bezier(points), ball, epsilon=1e-12)
+        self.assertTrue(gradient['valid'], gradient['reason'])
+        t, step = gradient['t'], 1e-6
+        weights = [(1 - t) ** 2, 2 * t * (1 - t), t * t]
+        for i in range(3):
+            for k in range(3):
+                moved = [points.copy(), points.copy()]
+                moved[0][i, k] -= step
+                moved[1][i, k] += step
+                low, high = (cprox.distance(cprox.bezier(m), ball, epsilon=1e-12).upper for m in moved)
+                self.assertAlmostEqual((high - low) / (2 * step), weights[i] * gradient['mover'][k], places=6)
+
+
+class Errors(unittest.TestCase):
+    def refused(self, error, part, call, *arguments, **options):
+        with self.assertRaises(error) as caught:
+            call(*arguments, **options)
+        self.assertIn(part, str(caught.exception))
+
+    def test_what_is_wrong_is_said(self):
+        curve, ball = cprox.bezier([[0, 0, 0], [1, 0, 0]]), cprox.Obstacle(cprox.sphere(1))
+        self.refused(ValueError, 'radius', cprox.sphere, -1)
+        self.refused(ValueError, 'shape (n, 3)', cprox.bezier, [[0, 0], [1, 1]])
+        self.refused(ValueError, '', cprox.bezier, [[0, 0, numpy.nan]])
+        self.refused(ValueError, 'rigid', cprox.Obstacle, cprox.sphere(1), 2 * numpy.eye(4))
+        self.refused(ValueError, 'epsilon', cprox.distance, curve, ball, epsilon=numpy.inf)
+        self.refused(TypeError, 'tolerence', cprox.distance, curve, ball, tolerence=1)
+        self.refused(TypeError, 'Curve', cprox.distance, 3, ball)
+        self.refused(ValueError, 'vertex 7', cprox.mesh, [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 7]])
+        self.refused(ValueError, 'not closed', cprox.mesh, [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], solid=True)
+        self.refused(ValueError, 'index', cprox.Obstacles, [ball], index='tree')
+        self.refused(ValueError, 'curve 1', cprox.Obstacles([ball]).distance_batch,
+                     [[[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [numpy.inf, 0, 0]]])
+        self.refused(ValueError, 'nowhere.urdf', cprox.Robot.from_urdf, 'nowhere.urdf')
+
+
+class Threads(unittest.TestCase):
+    def test_queries_release_the_interpreter(self):
+        obstacles = cprox.Obstacles([cprox.Obstacle(cprox.sphere(.1), cprox.transform([i, 0, 0])) for i in range(50)])
+        points = numpy.random.default_rng(4).uniform(0, 50, (20000, 6, 3))
+        counted, done = 0, threading.Event()
+
+        def work():
+            obstacles.distance_batch(points, threads=1)
+            done.set()
+        worker = threading.Thread(target=work)
+        worker.start()
+        while not done.is_set():
+            counted += 1
+            time.sleep(1e-4)
+        worker.join()
+        self.assertGreater(counted, 2)
+
+    def test_ctrl_c_ends_a_query(self):
+        waves = cprox.trigonometric(numpy.random.default_rng(5).normal(size=(101, 3)), 0, 6)
+        cloud = cprox.point_cloud(numpy.random.default_rng(6).normal(size=(2000, 3)) * 20)
+        signal.setitimer(signal.ITIMER_REAL, .05)
+        before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                for _ in range(1000):
+                    cprox.distance(waves, cprox.Obstacle(cloud), epsilon=0, max_nodes=1000000000)
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, before)
+
+
+class Robots(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = os.path.join(DATA, 'robots/panda')
+        cls.robot = cprox.Robot.from_urdf(os.path.join(folder, 'panda.urdf'), srdf=os.path.join(folder, 'panda.srdf'))
+        with open(os.path.join(DATA, 'trajectories/panda_box_0001_rrt.yaml')) as text:
+            cls.file = yaml.safe_load(text)
+        cls.joints = cls.file['joint_trajectory']['joint_names']
+        points = cls.file['joint_trajectory']['points']
+        cls.times = [p['time_from_start'] for p in points]
+        cls.positions = [p['positions'] for p in points]
+        cls.velocities = [p['velocities'] for p in points]
+
+    def motion(self, scene):
+        return cprox.Motion(scene, self.joints, self.times, self.positions, self.velocities,
+                            rest=self.file['fixed_joints'])
+
+    def test_the_distance_to_a_ball_is_no_more_than_that_of_any_sample(self):
+        scene = cprox.Scene(self.robot)
+        scene.add('ball', 'sphere', [.1], cprox.transform([.6, .5, 1.2]))
+        self.assertEqual(scene.objects, ['ball'])
+        motion = self.motion(scene)
+        answer = motion.distance()
+        self.assertEqual((answer['kind'], answer['b']), ('environment', 'ball'))
+        origins = [pose[:3, 3] for t in numpy.linspace(*motion.domain, 200)
+                   for link, pose in motion.link_poses(t).items() if link in ('panda_link4', 'panda_link6', 'panda_hand')]
+        sampled = min(numpy.linalg.norm(p - [.6, .5, 1.2]) - .1 for p in origins)
+        self.assertLessEqual(answer['result'].lower, sampled)
+        self.assertEqual(motion.tolerance(answer['result'].lower / 2)['result'].verdict, 'clear')
+        profile = motion.profile(numpy.linspace(*motion.domain, 11))
+        self.assertAlmostEqual(profile['upper'].min(), answer['result'].upper, places=5)
+        pairs = motion.nearest_pairs(k=3)
+        self.assertEqual(len(pairs), 3)
+        self.assertAlmostEqual(pairs[0]['result'].upper, answer['result'].upper, places=5)
+
+    def test_self_collision_and_changes_of_the_scene(self):
+        scene = cprox.Scene(self.robot)
+        motion = self.motion(scene)
+        self.assertTrue(numpy.isinf(motion.distance()['result'].lower))  # no object
+        answer = motion.distance(self_collision=True)
+        self.assertEqual(answer['kind'], 'self')
+        self.assertGreater(answer['result'].lower, 0)
+        scene.add('wall', 'box', [2, 2, 2], cprox.transform([0, 0, 1]))
+        self.assertEqual(self.motion(scene).collision()['result'].verdict, 'violated')
+        scene.move('wall', cprox.transform([0, 0, 9]))
+        self.assertEqual(self.motion(scene).collision()['result'].verdict, 'clear')
+        scene.remove('wall')
+        self.assertEqual(scene.objects, [])
+        with self.assertRaises(ValueError):
+            scene.remove('wall')
+        with self.assertRaises(ValueError) as caught:
+            cprox.Motion(scene, ['elbow'], [0, 1], [[0], [1]])
+        self.assertIn('elbow', str(caught.exception))
+
+
+if __name__ == '__main__':
+    outcome = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromModule(__import__('__main__')))
+    failed = len(outcome.failures) + len(outcome.errors)
+    print(f'{outcome.testsRun - failed} passed, {failed} failed')
+    raise SystemExit(failed > 0 or outcome.testsRun == 0)
