@@ -195,8 +195,9 @@ static void check_contact(attack *a, const scene *c, const char *what, const cpr
   const vec3 apart = vec_sub(x->witness_mover, x->witness_obstacle);
   attack_check(a, x->upper == 0.0 && vec_norm(apart) <= x->upper, "%s: upper %.17g, points %.17g apart", what, x->upper,
                vec_norm(apart));
+  /* where the curve meets the plane at a grazing angle, rounding of t moves the point along the curve */
   if (c->n_carried == 0 && !c->synchronized)
-    attack_check(a, ref_norm(ref_sub(ref_vec(x->witness_mover), meeting)) < 1e-11L,
+    attack_check(a, ref_norm(ref_sub(ref_vec(x->witness_mover), meeting)) < 1e-9L,
                  "%s: the common point is off by %.3Lg", what, ref_norm(ref_sub(ref_vec(x->witness_mover), meeting)));
 }
 
