@@ -110,7 +110,7 @@ cprox_status arguments_check_targets(const cprox_obstacle *targets, size_t n, cp
 /* What is synchronized must run over the same time. */
 static cprox_status check_clock(const cprox_curve *curve, const cprox_obstacle *target, size_t index,
                                 cprox_workspace *workspace) {
-  if (!target->synchronized) return CPROX_OK;
+  if (!curve || !target->synchronized) return CPROX_OK;
   if (curve->arcs || target->curve->arcs)
     return workspace_fail(
         workspace, CPROX_INVALID,

@@ -108,7 +108,7 @@ static bool find_closedness(const vec3 *vertices, size_t n, const uint32_t (*tri
   placed_vertex *sorted = malloc(n * sizeof *sorted);
   uint32_t *merged = malloc(n * sizeof *merged);
   size_t *start = malloc((n + 1) * sizeof *start);
-  edge_use *uses = malloc(3 * m * sizeof *uses);
+  edge_use *uses = calloc(3 * m, sizeof *uses);
   const bool enough = sorted && merged && start && uses;
   if (enough) {
     merge_vertices(vertices, n, sorted, merged);

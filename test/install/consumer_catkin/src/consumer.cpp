@@ -27,7 +27,7 @@ int main() {
 
   // The service's types are there as well.
   curve_proximity::Distance service;
-  service.request.curves.resize(1);
+  service.request.query.curves.resize(1);
   std::printf("%s %.6f\n", answers.at(0).b.c_str(), answers.at(0).result.upper);
   return 0;
 }
