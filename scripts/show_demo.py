@@ -2,7 +2,6 @@
 """The demo proper, in the environment of the built workspace: see scripts/demo."""
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -11,6 +10,7 @@ import numpy as np
 import yaml
 
 import draw_scene
+from free_port import free_port
 
 REPO = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 LOGS = os.environ['LOGS']
@@ -77,12 +77,6 @@ def wait_for(query, process, log, seconds):
                 tail = ''.join(text.readlines()[-15:])
             raise Failure(f'{tail}\n{os.path.basename(log)[5:-4]} did not start; the end of {log} is above')
         time.sleep(0.1)
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return probe.getsockname()[1]
 
 
 # -------------------------------------------------------------------------------------------------------------- asking

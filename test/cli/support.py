@@ -4,10 +4,14 @@ import csv
 import io
 import os
 import subprocess
+import sys
 import tempfile
 import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.append(os.path.join(os.path.dirname(os.path.dirname(HERE)), 'scripts'))
+from free_port import free_port  # noqa: E402,F401 (for the test that starts a master)
+
 DATA = os.path.join(os.path.dirname(HERE), 'data')
 HEADER = ('id,kind,status,verdict,lower,upper,t,a_x,a_y,a_z,b_x,b_y,b_z,a,b,nodes,distance_queries,microseconds,t_b,lod')
 NUMBERS = ('lower', 'upper', 't', 'a_x', 'a_y', 'a_z', 'b_x', 'b_y', 'b_z', 'nodes', 'distance_queries', 'microseconds', 't_b')

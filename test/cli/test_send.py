@@ -1,19 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """send: a scene file to a running node, and back by ~get_scene. Needs the sourced workspace (rosservice, the messages)."""
 import os
-import socket
 import subprocess
 import time
 
 import yaml
 
-from support import BOX_SCENE, DATA, Case, cprox
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return probe.getsockname()[1]
+from support import BOX_SCENE, DATA, Case, cprox, free_port
 
 
 class Send(Case):

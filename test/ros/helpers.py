@@ -4,6 +4,7 @@ import itertools
 import math
 import os
 import subprocess
+import sys
 import threading
 import time
 
@@ -15,6 +16,9 @@ from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, Colli
 from geometry_msgs.msg import Point, Pose, Quaternion
 from sensor_msgs.msg import JointState
 from shape_msgs.msg import Mesh, MeshTriangle, Plane, SolidPrimitive
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'scripts'))
+from free_port import free_port  # noqa: E402,F401 (for the tests that start masters)
 
 BOX, SPHERE, CYLINDER, CONE = 1, 2, 3, 4
 _NODES = itertools.count()

@@ -3,13 +3,12 @@
 """How the node ends, what it holds while it lives, and that it notices a master that has forgotten it."""
 import os
 import signal
-import socket
 import subprocess
 import time
 import unittest
 
 import rosgraph
-from helpers import Call, Node, Server, bezier, ring_and_shells, run, sphere, until
+from helpers import Call, Node, Server, bezier, free_port, ring_and_shells, run, sphere, until
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 CALLS = int(os.environ.get('CURVE_PROXIMITY_CALLS', 20000))  # of the memory test
@@ -69,9 +68,7 @@ class Lifetime(unittest.TestCase):
         self.assertLess(node.resident_mb() - before, 3.0)
 
     def test_a_node_that_its_master_has_forgotten_ends_for_a_respawn(self):
-        with socket.socket() as free:
-            free.bind(('', 0))
-            port = free.getsockname()[1]
+        port = free_port()
         environment = dict(os.environ, ROS_MASTER_URI='http://localhost:%d' % port)
 
         def master():

@@ -3,7 +3,6 @@
 """Nodelet managers that end while queries run, and whose master is restarted."""
 import os
 import signal
-import socket
 import subprocess
 import time
 import unittest
@@ -13,7 +12,7 @@ import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from curve_proximity.msg import Curve, QueryAction, QueryGoal
-from helpers import Call, Server, bezier, executable, query, ring_and_shells, run, until
+from helpers import Call, Server, bezier, executable, free_port, query, ring_and_shells, run, until
 
 LOG = '/tmp/curve_proximity_manager_%d.log' % os.getpid()
 
@@ -71,9 +70,7 @@ class Managers(unittest.TestCase):
         self.assertGreaterEqual(manager.returncode, 0, 'it died of a signal:\n' + self.output())
 
     def test_a_manager_that_its_master_has_forgotten_says_so(self):
-        with socket.socket() as free:
-            free.bind(('', 0))
-            port = free.getsockname()[1]
+        port = free_port()
         environment = dict(os.environ, ROS_MASTER_URI='http://localhost:%d' % port)
         graph = rosgraph.Master('/test', environment['ROS_MASTER_URI'])
 

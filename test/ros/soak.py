@@ -18,7 +18,7 @@ import rosgraph
 import rospy
 from curve_proximity.msg import Body, CollisionObject, ProximityQuery
 from curve_proximity.srv import ApplyScene, ApplySceneRequest, Distance, DistanceRequest
-from helpers import Node, Server, bezier, bspline, box, ring_and_shells, sphere
+from helpers import Node, Server, bezier, bspline, box, free_port, ring_and_shells, sphere
 from hostile import Attacker, framed, handshake
 
 LIMIT_MB, ROOM_MB, GROWTH_MB = 512, 64, 32  # growth: from the first quarter of the time to the last one, medians
@@ -206,9 +206,7 @@ def main():
     parser.add_argument('--minutes', type=float, default=30.0)
     parser.add_argument('--out')
     options = parser.parse_args()
-    with socket.socket() as free:
-        free.bind(('127.0.0.1', 0))
-        port = free.getsockname()[1]
+    port = free_port()
     os.environ.update(ROS_MASTER_URI='http://localhost:%d' % port, ROS_HOSTNAME='localhost')
     master = subprocess.Popen(['rosmaster', '--core', '-p', str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
