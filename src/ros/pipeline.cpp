@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t RESULTS_KEPT = 100; /* for subscribers in other processes that are slow */
 
 /** One thread answers, the other takes in what comes meanwhile. */
-constexpr std::uint32_t THREADS = 2;
+constexpr int THREADS = 2;
 
 const char *topicOf(const CurveConstPtr &) {
   return "curve";
@@ -54,7 +54,6 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
       jobs_(static_cast<std::size_t>(parameters.queue_size)),
       handle_(handle),
       state_handle_(handle),
-      spinner_(THREADS, &queue_),
       state_spinner_(1, &state_queue_) {
   handle_.setCallbackQueue(&queue_);
   state_handle_.setCallbackQueue(&state_queue_);
@@ -68,7 +67,7 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
         guarded([&] { live_.joints.take(*state, live_.scene.snapshot()->robot().get()); },
                 [](const std::string &why) { ROS_ERROR("~joint_states: %s", why.c_str()); });
       }));
-  spinner_.start();
+  for (int i = 0; i < THREADS; i++) threads_.emplace_back([this] { takeIn(); });
   if (parameters_.state_rate == 0.0) return;
   states_ = state_handle_.advertise<ProximityResults>("state_proximity", 1);
   state_timer_ = state_handle_.createWallTimer(
@@ -82,7 +81,8 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
 Pipeline::~Pipeline() {
   for (ros::Subscriber &subscriber : subscribers_) subscriber.shutdown();
   state_timer_.stop();
-  spinner_.stop();
+  ending_ = true;
+  for (std::thread &thread : threads_) thread.join();
   state_spinner_.stop();
   queue_.clear();
   state_queue_.clear();
@@ -93,14 +93,24 @@ template <class Message>
 void Pipeline::listen(const char *topic) {
   using Pointer = boost::shared_ptr<const Message>;
   ros::SubscribeOptions options;
-  options.init<Message>(topic, 0, [this](const Pointer &message) {
-    if (!message || !jobs_.push(Job(message))) return;
-    work();
-  });
+  options.init<Message>(topic, 0, [this](const Pointer &message) { works_ = message && jobs_.push(Job(message)); });
   options.callback_queue = &queue_;
-  options.allow_concurrent_callbacks = true;
   options.transport_hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(handle_.subscribe(options));
+}
+
+/** One thread at a time, so that messages are answered in the order in which they came. */
+void Pipeline::takeIn() {
+  while (!ending_) {
+    bool works;
+    {
+      const std::lock_guard<std::mutex> lock(intake_);
+      works_ = false;
+      queue_.callOne(ros::WallDuration(0.1));
+      works = works_;
+    }
+    if (works) work();
+  }
 }
 
 void Pipeline::work() {
@@ -123,10 +133,7 @@ void Pipeline::handle(const Job &job) {
         results->fingerprint = fingerprint(*message);
       },
       job);
-  results->header.frame_id = parameters_.fixed_frame;
-  results->query_type = parameters_.query_type;
-  results->delta = query_type_ == QueryType::TOLERANCE ? tuning_.delta.load() : 0.0;
-  results->epsilon = tuning_.epsilon;
+  describe(*results);
 
   const auto drawing = std::make_shared<Drawing>();
   guarded(
@@ -152,6 +159,14 @@ void Pipeline::handle(const Job &job) {
   markers_.show(drawing);
 }
 
+/** What is asked of every message. */
+void Pipeline::describe(ProximityResults &results) const {
+  results.header.frame_id = parameters_.fixed_frame;
+  results.query_type = parameters_.query_type;
+  results.delta = query_type_ == QueryType::TOLERANCE ? tuning_.delta.load() : 0.0;
+  results.epsilon = tuning_.epsilon;
+}
+
 void Pipeline::answer(const QueryRequest &request, ProximityResults &results, Drawing &drawing) {
   QueryResponse answer;
   queries_.answer(request, answer, drawing);
@@ -167,11 +182,8 @@ void Pipeline::tellState() {
   const auto results = boost::make_shared<ProximityResults>();
   results->header.seq = state_seq_++;
   results->header.stamp = ros::Time::now();
-  results->header.frame_id = parameters_.fixed_frame;
   results->source = results->id = ProximityResults::SOURCE_STATE;
-  results->query_type = parameters_.query_type;
-  results->delta = query_type_ == QueryType::TOLERANCE ? tuning_.delta.load() : 0.0;
-  results->epsilon = tuning_.epsilon;
+  describe(*results);
   const auto drawing = std::make_shared<Drawing>();
   guarded(
       [&] {

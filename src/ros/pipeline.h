@@ -18,6 +18,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <variant>
 #include <vector>
 
@@ -51,8 +52,10 @@ class Pipeline {
 
   template <class Message>
   void listen(const char *topic);
+  void takeIn();
   void work();
   void handle(const Job &job);
+  void describe(ProximityResults &results) const;
   void answer(const QueryRequest &request, ProximityResults &results, Drawing &drawing);
   void tellState();
 
@@ -76,6 +79,9 @@ class Pipeline {
   const std::atomic<bool> &stop_;
   const QueryType query_type_;
   BoundedQueue<Job> jobs_;
+  std::mutex intake_;
+  bool works_ = false; /* whether who takes in has to work, guarded by intake_ */
+  std::atomic<bool> ending_{false};
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
   ros::Publisher results_, states_;
@@ -84,7 +90,8 @@ class Pipeline {
   ros::WallTimer state_timer_;
   std::uint32_t state_seq_ = 0;
   std::vector<ros::Subscriber> subscribers_;
-  ros::AsyncSpinner spinner_, state_spinner_;
+  std::vector<std::thread> threads_;
+  ros::AsyncSpinner state_spinner_;
 };
 
 } // namespace curve_proximity
