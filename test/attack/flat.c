@@ -175,6 +175,12 @@ static bool root_near(const scene *c, vec3l normal, vec3l origin, long double t,
   return false;
 }
 
+/* The sine of the angle at which the curve crosses the plane. */
+static long double sine_at(const scene *c, vec3l normal, long double t) {
+  const vec3l along = ref_sub(curve_at(c, t + 1e-9L), curve_at(c, t - 1e-9L));
+  return fabsl(ref_dot(normal, along)) / ref_norm(along);
+}
+
 /* ---- the answers --------------------------------------------------------------------------------------------------------- */
 
 static void check_contact(attack *a, const scene *c, const char *what, const cprox_result *x, const vec3l *corner,
@@ -195,10 +201,10 @@ static void check_contact(attack *a, const scene *c, const char *what, const cpr
   const vec3 apart = vec_sub(x->witness_mover, x->witness_obstacle);
   attack_check(a, x->upper == 0.0 && vec_norm(apart) <= x->upper, "%s: upper %.17g, points %.17g apart", what, x->upper,
                vec_norm(apart));
-  /* where the curve meets the plane at a grazing angle, rounding of t moves the point along the curve */
-  if (c->n_carried == 0 && !c->synchronized)
-    attack_check(a, ref_norm(ref_sub(ref_vec(x->witness_mover), meeting)) < 1e-9L,
-                 "%s: the common point is off by %.3Lg", what, ref_norm(ref_sub(ref_vec(x->witness_mover), meeting)));
+  if (c->n_carried > 0 || c->synchronized) return;
+  const long double sine = sine_at(c, normal, root), off = ref_norm(ref_sub(ref_vec(x->witness_mover), meeting));
+  /* A height over the plane, rounded, moves the common point along the curve by itself over the sine. */
+  attack_check(a, off * sine < 1e-12L, "%s: the common point is off by %.3Lg at sine %.3Lg", what, off, sine);
 }
 
 static void ask(attack *a, rng *r, const scene *c, bool must) {
