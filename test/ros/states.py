@@ -85,13 +85,16 @@ class States(unittest.TestCase):
         results = []
         rospy.Subscriber('/chain/state_proximity', ProximityResults, results.append)
         self.states.publish(joints(one=0.0, two=0.0))
-        upper = lambda: self.server.distance([], robot_state=True).results[0].upper
-        self.assertTrue(until(lambda: abs(upper() - 0.7) < 1e-5, 5))
-        self.assertTrue(until(lambda: results and results[-1].source == 'state' and abs(results[-1].results[0].upper - 0.7) < 1e-5, 5))
+
+        def upper():  # NaN until the first joint states have come
+            response = self.server.distance([], robot_state=True)
+            return response.results[0].upper if response.success else math.nan
+        self.assertTrue(until(lambda: abs(upper() - 0.7) < 1e-5, 20))
+        self.assertTrue(until(lambda: results and results[-1].source == 'state' and abs(results[-1].results[0].upper - 0.7) < 1e-5, 20))
         self.assertEqual([row.kind for row in results[-1].results], ['environment', 'self'])
         self.states.publish(joints(two=math.pi / 2))  # lower's ball goes to (1, 1, 0)
-        self.assertTrue(until(lambda: abs(upper() - (1 - 0.3)) < 1e-5, 5))
-        self.assertTrue(until(lambda: results[-1].results[1].upper < 1.3, 5))  # self: sqrt(2) - 0.2
+        self.assertTrue(until(lambda: abs(upper() - (1 - 0.3)) < 1e-5, 20))
+        self.assertTrue(until(lambda: results[-1].results[1].upper < 1.3, 20))  # self: sqrt(2) - 0.2
         line = bezier((2, 0.5, 0), (2, 0.6, 0))
         row, = self.server.distance(line, links=['lower'], current_joints=True).results
         self.assertAlmostEqual(row.upper, math.hypot(1, 0.4) - 0.1, delta=2e-6)
