@@ -89,6 +89,12 @@ class Topics(unittest.TestCase):
         self.assertTrue(until(lambda: len(self.results) > before, seconds), 'no answer')
         return self.results[before]
 
+    def move(self):
+        """The frame moving, not a fixed one, is where the world is, now."""
+        moving = TransformStamped(child_frame_id='moving')
+        moving.header.frame_id, moving.header.stamp, moving.transform.rotation.w = 'world', rospy.Time.now(), 1.0
+        self.transforms.publish(TFMessage([moving]))
+
     def settled(self):
         """What the gate has let pass once everything is through."""
         time.sleep(0.3)
@@ -176,10 +182,13 @@ class Topics(unittest.TestCase):
         self.assertEqual(self.settled(), 1)
 
     def test_what_comes_too_fast_is_dropped_oldest_first_and_counted(self):
+        late = rospy.Time.now() + rospy.Duration(1000)  # a transform of then is waited for, for ~tf_timeout
+        self.move()
+        self.assertTrue(until(lambda: self.ask('curve', bezier(*LINE, frame='moving')).success, 5))
         before = self.ask('path', path((0, 0, 9))).dropped
         for attempt in range(10):  # on a machine that stands still for ~tf_timeout they do not come too fast
             del self.results[:]
-            self.publishers['curve'].publish(bezier(*LINE, id='slow', frame='nowhere'))  # waits ~tf_timeout for that frame
+            self.publishers['curve'].publish(bezier(*LINE, id='slow', frame='moving', stamp=late))
             for i in range(40):
                 self.publishers['curve'].publish(bezier((0, 0, 5 + i), (1, 0, 5 + i), id='fast%d' % i))
             self.assertTrue(until(lambda: self.results and self.results[-1].id == 'fast39', 20))
@@ -215,9 +224,7 @@ class Topics(unittest.TestCase):
         self.assertTrue(self.ask('path', path((0, 0, 9), (1, 0, 9))).success)
         answer = self.ask('curve', bezier(*LINE, id='later', frame='shelf', stamp=later))
         self.assertTrue(answer.success, answer.message)  # shelf is fixed in the world, and so is the arm's base
-        moving = TransformStamped(child_frame_id='moving')
-        moving.header.frame_id, moving.header.stamp, moving.transform.rotation.w = 'world', rospy.Time.now(), 1.0
-        self.transforms.publish(TFMessage([moving]))
+        self.move()
         self.assertTrue(until(lambda: self.ask('curve', bezier(*LINE, frame='moving')).success, 5))
         answer = self.ask('curve', bezier(*LINE, id='later', frame='moving', stamp=later))
         self.assertFalse(answer.success)
