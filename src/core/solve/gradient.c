@@ -29,6 +29,9 @@ static const double NEARBY[] = {1e-6, 1e-5, 1e-4, 1e-3};
 /* How narrowly those are searched, in lengths of the curve and distances. */
 static const double HARDLY = 1e-14;
 
+/* The most nodes of each of these searches: what it leaves open counts as near. A depth may not be known that narrowly. */
+static const uint32_t MOST_NODES = 1000;
+
 static cprox_status invalid(cprox_workspace *workspace, cprox_gradient *g, const char *why) {
   g->valid = false;
   workspace_fail(workspace, CPROX_OK, "no gradient: %s", why);
@@ -179,11 +182,13 @@ static void refine_pair(const cprox_mover *mover, const cprox_obstacle *target, 
  * [breaks[0], breaks[1]] and [breaks[2], breaks[3]]. */
 static cprox_status is_farther(cprox_mover mover, const cprox_obstacle *target, const cprox_options *options,
                                const double breaks[4], double distance, cprox_workspace *workspace, bool *farther) {
+  cprox_options few = *options;
+  if (few.max_nodes > MOST_NODES) few.max_nodes = MOST_NODES;
   *farther = true;
   for (int i = 0; i < 4 && *farther; i += 2) {
     if (!(breaks[i] < breaks[i + 1])) continue;
     cprox_profile_interval interval;
-    const cprox_status status = list_profile(mover, target, 1, &breaks[i], 1, options, workspace, &interval);
+    const cprox_status status = list_profile(mover, target, 1, &breaks[i], 1, &few, workspace, &interval);
     if (status < 0) return status;
     *farther = interval.lower > distance + options->epsilon;
   }

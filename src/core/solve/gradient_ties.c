@@ -10,8 +10,8 @@ const double TIES_NEAR = 1e-6, TIES_FAR = 1e-4;
  * differences of normals likewise. */
 static const double POINT_NOISE = 1e-6, NORMAL_NOISE = 2e-5;
 
-/* What is smooth shrinks to a hundredth. */
-static const double LEAST_LEFT = 0.25;
+/* What is smooth shrinks to a hundredth; the rest is left for rounding. */
+static const double LEAST_LEFT = 0.03;
 
 bool ties_is_jump(double near, double far, double noise) {
   return near > noise && near > LEAST_LEFT * far;
