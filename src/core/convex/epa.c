@@ -79,9 +79,9 @@ static inline void facet_try(const surface *s, facet *f, vec3 n) {
   f->normal = n;
 }
 
-/* Whether the rounding of the edges' product outweighs it. */
+/* Whether the edges enclose an angle whose sine is below 0.1: it multiplies the rounding of their product. */
 static bool is_sliver(vec3 cross, vec3 ab, vec3 ac) {
-  return !(vec_norm2(cross) > 1e-6 * vec_norm2(ab) * vec_norm2(ac));
+  return !(vec_norm2(cross) > 1e-2 * vec_norm2(ab) * vec_norm2(ac));
 }
 
 /* A sliver's own normal is computed in sums of two doubles; where it has no area at all, the direction in which it lies from 0 is a
