@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/frame.h"
 #include "base/rounding.h"
 #include "curve_proximity/cprox.h"
 #include "implicit/implicit.h"
@@ -52,6 +53,32 @@ static void refuse_text(const char *text, const char *reason, cprox_workspace *w
   implicit_case_read(text, &c);
   assert_refused(cprox_body_create_implicit(&c.description, NULL, workspace, &body), workspace, reason);
   assert_null(body);
+}
+
+/* The first ball that is known about such a set is 1e10 times its size where the origin lies in it. */
+CASE(ellipsoids_by_one_quadric_are_accepted_wherever_they_stand) {
+  cprox_workspace *w = *state;
+  rng r = rng_seed(17);
+  for (int i = 0; i < 3000; i++) {
+    const double scale = rng_log_uniform(&r, 1e-3, 1e3);
+    const vec3 a = vec(scale * rng_log_uniform(&r, 0.1, 1.0), scale * rng_log_uniform(&r, 0.1, 1.0), scale);
+    const double quadric[1][10] = {{1.0 / (a.x * a.x), 0, 0, 1.0 / (a.y * a.y), 0, 1.0 / (a.z * a.z), 0, 0, 0, -1}};
+    const cprox_implicit_description d = {.quadrics = quadric, .n_quadrics = 1};
+    const cprox_pose pose = rng_pose(&r, i % 2 ? 0.5 * scale : 10.0 * scale);
+    cprox_affine map = {.translation = pose.position};
+    const frame f = frame_create(&pose, vec(0, 0, 0));
+    for (int k = 0; k < 3; k++) {
+      const vec3 column = frame_turn_to_world(&f, vec(k == 0, k == 1, k == 2));
+      map.linear[k] = column.x, map.linear[3 + k] = column.y, map.linear[6 + k] = column.z;
+    }
+    cprox_body *body = NULL;
+    if (cprox_body_create_implicit(&d, &map, w, &body) != CPROX_OK)
+      fail_msg("case %d: %s", i, cprox_workspace_error(w));
+    const cprox_body_info info = cprox_body_get_info(body);
+    if (!(info.radius >= (1.0 - 1e-9) * scale && info.radius <= 4.0 * scale))
+      fail_msg("case %d: the radius is %g of the longest semi-axis", i, info.radius / scale);
+    cprox_body_free(body);
+  }
 }
 
 CASE(an_implicit_body_is_refused_by_the_constraint_at_fault) {

@@ -10,11 +10,11 @@ enum { CENTRE_MAX_CUTS = 4000 };
 /* Nothing lies farther out. */
 static const double CENTRE_REACH = 2e10;
 
-/* The constraint that the point breaks most, as a cut g·(x - point) <= -depth that every point of the body obeys; false
+/* The constraint that a point breaks most, as a cut g·(x - point) <= -depth that every point of the body obeys; false
  * where it breaks none. Depths are compared in the ellipsoid's own measure. */
 typedef struct cut {
   bool found;
-  vec3 g;       /* B'g, B the ellipsoid's matrix */
+  vec3 g;       /* B'g / |B'g|, B the ellipsoid's matrix */
   double depth; /* in units of |B'g| */
 } cut;
 
@@ -38,13 +38,13 @@ static void consider(const ellipsoid *e, vec3 g, double value, cut *worst) {
 }
 
 /* While a term is beyond 1 it gives the cut itself: its power might overflow. */
-static void consider_power(const implicit *body, const implicit_power *power, const ellipsoid *e, cut *worst) {
+static void consider_power(const implicit *body, const implicit_power *power, const ellipsoid *e, vec3 at, cut *worst) {
   double value = -1.0;
   vec3 gradient = vec(0, 0, 0);
   bool beyond = false;
   for (int32_t i = power->first; i < power->first + power->n; i++) {
     const implicit_term *term = &body->term[i];
-    const double u = implicit_row(term, e->centre), size = fabs(u), side = u < 0.0 ? -1.0 : 1.0;
+    const double u = implicit_row(term, at), size = fabs(u), side = u < 0.0 ? -1.0 : 1.0;
     if (size > 1.0) {
       beyond = true;
       consider(e, vec_scale(side, term->a), size - 1.0, worst);
@@ -57,16 +57,16 @@ static void consider_power(const implicit *body, const implicit_power *power, co
   if (!beyond) consider(e, gradient, value, worst);
 }
 
-static cut worst_cut(const implicit *body, const ellipsoid *e) {
+static cut worst_cut(const implicit *body, const ellipsoid *e, vec3 at) {
   cut worst = {0};
   for (int32_t k = 0; k < body->n_planes; k++)
-    consider(e, body->plane[k].b, vec_dot(body->plane[k].b, e->centre) + body->plane[k].c, &worst);
+    consider(e, body->plane[k].b, vec_dot(body->plane[k].b, at) + body->plane[k].c, &worst);
   for (int32_t k = 0; k < body->n_quadrics; k++) {
     vec3 gradient;
-    const double value = implicit_quadric_at(&body->quadric[k], e->centre, &gradient);
+    const double value = implicit_quadric_at(&body->quadric[k], at, &gradient);
     consider(e, gradient, value, &worst);
   }
-  for (int32_t k = 0; k < body->n_powers; k++) consider_power(body, &body->power[k], e, &worst);
+  for (int32_t k = 0; k < body->n_powers; k++) consider_power(body, &body->power[k], e, at, &worst);
   return worst;
 }
 
@@ -87,21 +87,43 @@ static void shrink(ellipsoid *e, const cut *c) {
   }
 }
 
+/* The centre is inside: a cut through a point a tenth of the way to the ellipsoid's surface, where one of six is outside. Such
+ * a cut leaves less than the whole, so that in the end the ellipsoid is hardly larger than the body. */
+static cut cut_beside(const implicit *body, const ellipsoid *e) {
+  for (int k = 0; k < 6; k++) {
+    const double side = k % 2 == 0 ? 0.1 : -0.1;
+    const vec3 w = vec(k / 2 == 0 ? side : 0.0, k / 2 == 1 ? side : 0.0, k / 2 == 2 ? side : 0.0);
+    const double *b = &e->b[k / 2];
+    cut c = worst_cut(body, e, vec_axpy(e->centre, side, vec(b[0], b[3], b[6])));
+    c.depth -= vec_dot(c.g, w); /* seen from the centre */
+    if (c.found) return c;
+  }
+  return (cut){0};
+}
+
 bool implicit_find_interior(const implicit *body, vec3 *point, double *reach) {
   ellipsoid e = {.b = {CENTRE_REACH, 0, 0, 0, CENTRE_REACH, 0, 0, 0, CENTRE_REACH}};
+  vec3 first = e.centre, last = e.centre;
+  bool found = false;
   for (int i = 0; i < CENTRE_MAX_CUTS; i++) {
-    const cut worst = worst_cut(body, &e);
-    if (!worst.found) {
-      double square = 0.0;
-      for (int j = 0; j < 9; j++) square += e.b[j] * e.b[j];
-      *point = e.centre;
-      *reach = (1.0 + 1e-9) * sqrt(square);
-      return true;
+    cut next = worst_cut(body, &e, e.centre);
+    if (!next.found) {
+      last = e.centre;
+      if (!found) first = last;
+      found = true;
+      next = cut_beside(body, &e);
     }
-    if (!(worst.depth < 1.0)) return false;
-    shrink(&e, &worst);
+    if (!next.found || !(next.depth < 1.0)) break;
+    shrink(&e, &next);
   }
-  return false;
+  if (!found) return false;
+  double square = 0.0;
+  for (int j = 0; j < 9; j++) square += e.b[j] * e.b[j];
+  const double radius = sqrt(square);
+  /* where the set is unbounded the last point may be anywhere along it */
+  *point = radius < 0.5 * CENTRE_REACH ? last : first;
+  *reach = (1.0 + 1e-9) * (vec_norm(vec_sub(*point, e.centre)) + radius);
+  return true;
 }
 
 /* ---- measures ---- */
