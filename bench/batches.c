@@ -173,7 +173,7 @@ static void batch(const void *problems, size_t i, void *state, bench_answer *a) 
   if (q->query_type == TOLERANCE)
     cprox_obstacles_tolerance_batch(s->batch, s->movers, 0, CURVES, DELTA, &o, q->workspace, q->results);
   if (q->query_type == COLLISION)
-    cprox_obstacles_collision_batch(s->batch, s->movers, 0, CURVES, &o, q->workspace, q->results);
+    cprox_obstacles_tolerance_batch(s->batch, s->movers, 0, CURVES, 0.0, &o, q->workspace, q->results);
   if (!own->known[i][q->query_type]) judge_results(s, q, &own->answer[i][q->query_type]);
   own->known[i][q->query_type] = true;
   *a = own->answer[i][q->query_type];

@@ -198,8 +198,9 @@ static void deformed(const void *problems, size_t i, void *state, bench_answer *
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = accuracy_of(p);
   cprox_result r = {.status = CPROX_INVALID};
-  if (cprox_body_create_deformed(p->a, s->exponents ? NULL : &map, s->exponents ? exponents : NULL, 3, s->workspace,
-                                 &body) == CPROX_OK)
+  const cprox_implicit_description d = {
+      .deformed = p->a, .exponents = s->exponents ? exponents : NULL, .n_exponents = 3};
+  if (cprox_body_create_implicit(&d, s->exponents ? NULL : &map, s->workspace, &body) == CPROX_OK)
     cprox_pair(cprox_obstacle_at(body, CPROX_POSE_IDENTITY), cprox_obstacle_at(p->b, p->pose), &options, s->workspace,
                &r);
   cprox_body_free(body);

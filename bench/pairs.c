@@ -36,10 +36,10 @@ typedef struct kinds {
   cprox_body_kind a, b;
 } kinds;
 
-static const kinds KINDS[] = {{"ellipsoids", CPROX_ELLIPSOID, CPROX_ELLIPSOID},
-                              {"box and cylinder", CPROX_BOX, CPROX_CYLINDER},
-                              {"capsule and box", CPROX_CAPSULE, CPROX_BOX},
-                              {"polytopes of 200", CPROX_POLYTOPE, CPROX_POLYTOPE}};
+static const kinds KINDS[] = {{"ellipsoids", CPROX_BODY_ELLIPSOID, CPROX_BODY_ELLIPSOID},
+                              {"box and cylinder", CPROX_BODY_BOX, CPROX_BODY_CYLINDER},
+                              {"capsule and box", CPROX_BODY_CAPSULE, CPROX_BODY_BOX},
+                              {"polytopes of 200", CPROX_BODY_POLYTOPE, CPROX_BODY_POLYTOPE}};
 
 typedef struct asked {
   cprox_workspace *workspace;
@@ -63,15 +63,15 @@ static convex polytope_make(rng *r) {
 }
 
 static convex convex_make(rng *r, cprox_body_kind kind, double scale, const asked *q) {
-  if (kind == CPROX_POLYTOPE) return q->polytope[rng_index(r, POLYTOPES)];
+  if (kind == CPROX_BODY_POLYTOPE) return q->polytope[rng_index(r, POLYTOPES)];
   const double s[3] = {scale * rng_uniform(r, 0.2, 1.0), scale * rng_uniform(r, 0.2, 1.0),
                        scale * rng_uniform(r, 0.2, 1.0)};
   convex c = {.size = 2.0 * scale};
   cprox_status status;
   switch (kind) {
-    case CPROX_BOX: status = cprox_body_create_box(vec(s[0], s[1], s[2]), NULL, &c.body); break;
-    case CPROX_CYLINDER: status = cprox_body_create_cylinder(s[0], s[1], NULL, &c.body); break;
-    case CPROX_CAPSULE: status = cprox_body_create_capsule(s[0], s[1], NULL, &c.body); break;
+    case CPROX_BODY_BOX: status = cprox_body_create_box(vec(s[0], s[1], s[2]), NULL, &c.body); break;
+    case CPROX_BODY_CYLINDER: status = cprox_body_create_cylinder(s[0], s[1], NULL, &c.body); break;
+    case CPROX_BODY_CAPSULE: status = cprox_body_create_capsule(s[0], s[1], NULL, &c.body); break;
     default: status = cprox_body_create_ellipsoid(vec(s[0], s[1], s[2]), NULL, &c.body);
   }
   if (status != CPROX_OK) exit(1);
@@ -208,7 +208,7 @@ static void one_kind(const bench_size *size, const kinds *k, asked *q) {
   if (!pairs) exit(1);
   static const char *const workloads[] = {"apart", "apart at all sizes", "overlapping"};
   for (int w = 0; w < 3; w++) {
-    if (!bench_wanted(size, workloads[w]) || (w == 1 && k->a == CPROX_POLYTOPE))
+    if (!bench_wanted(size, workloads[w]) || (w == 1 && k->a == CPROX_BODY_POLYTOPE))
       continue; /* polytopes have one size here */
     rng r = rng_seed(601 + (uint64_t)w);
     for (size_t i = 0; i < many; i++) {

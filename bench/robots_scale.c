@@ -165,7 +165,7 @@ static void links(const bench_size *size, cprox_workspace *ws) {
                                                     .n_variables = COUNTS[k],
                                                     .waypoints = points,
                                                     .n_waypoints = 3,
-                                                    .interpolation = CPROX_LINEAR},
+                                                    .interpolation = CPROX_INTERPOLATION_LINEAR},
                         NULL, &motion);
     const problem p = {.mover = cprox_robot_self(motion, NULL, 0), .delta = -1.0};
     char parameter[40];
@@ -230,7 +230,7 @@ static void two_arms(const robot_case *arm, const bench_size *size, cprox_worksp
                                                       .n_variables = 2 * arm->n_variables,
                                                       .waypoints = points,
                                                       .n_waypoints = 3,
-                                                      .interpolation = CPROX_LINEAR},
+                                                      .interpolation = CPROX_INTERPOLATION_LINEAR},
                           ws, &motion) == CPROX_OK;
   /* all of one arm against all of the other, and of each arm what its SRDF leaves */
   const size_t half = n_bodies / 2;
@@ -291,7 +291,7 @@ static void slide(const bench_size *size, cprox_workspace *ws) {
                                                       .n_variables = 2,
                                                       .waypoints = points,
                                                       .n_waypoints = 3,
-                                                      .interpolation = CPROX_QUINTIC},
+                                                      .interpolation = CPROX_INTERPOLATION_QUINTIC},
                           ws, &motion) == CPROX_OK) {
     const cprox_obstacle target =
         cprox_obstacle_at(wall, (cprox_pose){.position = {0, 0.5, 0}, .orientation = {.w = 1.0}});

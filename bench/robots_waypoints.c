@@ -68,7 +68,7 @@ static cprox_motion *straight(const robot_case *arm, size_t points, cprox_worksp
                                       .n_variables = n,
                                       .waypoints = list,
                                       .n_waypoints = points,
-                                      .interpolation = CPROX_LINEAR};
+                                      .interpolation = CPROX_INTERPOLATION_LINEAR};
   if (cprox_motion_create(arm->robot, &d, ws, &motion) != CPROX_OK)
     fprintf(stderr, "waypoints: %s\n", cprox_workspace_error(ws));
   free(values);

@@ -29,9 +29,9 @@ fcl::Transform3d placed(const cprox_pose &pose) {
 
 void *pair_fcl_make(cprox_body_kind kind, const double size[3]) {
   switch (kind) {
-    case CPROX_BOX: return new Geometry(std::make_shared<fcl::Boxd>(size[0], size[1], size[2]));
-    case CPROX_CYLINDER: return new Geometry(std::make_shared<fcl::Cylinderd>(size[1], size[0]));
-    case CPROX_CAPSULE: return new Geometry(std::make_shared<fcl::Capsuled>(size[1], size[0]));
+    case CPROX_BODY_BOX: return new Geometry(std::make_shared<fcl::Boxd>(size[0], size[1], size[2]));
+    case CPROX_BODY_CYLINDER: return new Geometry(std::make_shared<fcl::Cylinderd>(size[1], size[0]));
+    case CPROX_BODY_CAPSULE: return new Geometry(std::make_shared<fcl::Capsuled>(size[1], size[0]));
     default: return new Geometry(std::make_shared<fcl::Ellipsoidd>(size[0], size[1], size[2]));
   }
 }

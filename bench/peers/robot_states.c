@@ -27,9 +27,9 @@ static void add_shape(robot_fcl *fcl, const cprox_body *body, const cprox_body *
     }
     robot_fcl_add_mesh(fcl, corners, (size_t)(at - corners) / 9);
     free(corners);
-  } else if (body->kind == CPROX_BOX) {
+  } else if (body->kind == CPROX_BODY_BOX) {
     robot_fcl_add_box(fcl, (cprox_vec3){2.0 * size[0], 2.0 * size[1], 2.0 * size[2]});
-  } else if (body->kind == CPROX_CYLINDER) {
+  } else if (body->kind == CPROX_BODY_CYLINDER) {
     robot_fcl_add_cylinder(fcl, size[0], 2.0 * size[1]);
   } else {
     robot_fcl_add_sphere(fcl, body->shape.margin);

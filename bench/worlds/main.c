@@ -18,8 +18,9 @@ static void ask_meshes(const bench_size *size, worlds_asked *q) {
     const uint32_t(*triangles)[3] = (const uint32_t(*)[3])m.triangles;
     cprox_body *body = NULL;
     const double start = worlds_now();
-    worlds_check(cprox_body_create_mesh(m.vertices, m.n, triangles, m.m, CPROX_MESH_SURFACE, SIZE_MAX, q->ws, &body),
-                 q->ws);
+    worlds_check(
+        cprox_body_create_mesh(m.vertices, m.n, triangles, m.m, CPROX_MESH_FILL_SURFACE, SIZE_MAX, q->ws, &body),
+        q->ws);
     if (bench_wanted(size, "build mesh")) worlds_say_build("mesh", m.m, worlds_now() - start, body);
     world_peer *peer = NULL;
 #ifdef CPROX_BENCH_FCL

@@ -271,7 +271,7 @@ inline BodyHandle makeBoxes(const Eigen::Matrix3Xd &low, const Eigen::Matrix3Xd 
 
 /** A triangle mesh. Each column of `triangles` holds three column indices of `vertices`, from 0. */
 inline BodyHandle makeMesh(const Eigen::Matrix3Xd &vertices, const Eigen::Matrix<int, 3, Eigen::Dynamic> &triangles,
-                           cprox_mesh_fill fill = CPROX_MESH_SURFACE,
+                           cprox_mesh_fill fill = CPROX_MESH_FILL_SURFACE,
                            std::size_t memory_limit = std::numeric_limits<std::size_t>::max()) {
   // An index below 0 becomes one that is out of range.
   const Eigen::Matrix<std::uint32_t, 3, Eigen::Dynamic> indices = triangles.cast<std::uint32_t>();

@@ -201,7 +201,7 @@ class Batch {
   Answers collision(const std::vector<cprox_mover> &movers, const cprox_options &options, Pool &pool) const {
     return ask(movers, pool,
                [&](std::size_t first, std::size_t last, cprox_workspace *workspace, cprox_result *results) {
-                 return cprox_obstacles_collision_batch(obstacles_.get(), movers.data(), first, last, &options,
+                 return cprox_obstacles_tolerance_batch(obstacles_.get(), movers.data(), first, last, 0.0, &options,
                                                         workspace, results);
                });
   }

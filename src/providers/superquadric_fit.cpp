@@ -146,17 +146,17 @@ double innerRadius(const Eigen::Vector3d &semi_axes) {
 void requireKind(const BodyHandle &body) {
   const cprox_body_kind kind = cprox_body_get_info(body.get()).kind;
   switch (kind) {
-    case CPROX_SPHERE:
-    case CPROX_BOX:
-    case CPROX_CAPSULE:
-    case CPROX_CYLINDER:
-    case CPROX_CONE:
-    case CPROX_ELLIPSOID:
-    case CPROX_POLYTOPE:
-    case CPROX_POLYGON:
-    case CPROX_SUPPORT:
-    case CPROX_SUPERQUADRIC:
-    case CPROX_IMPLICIT: return;
+    case CPROX_BODY_SPHERE:
+    case CPROX_BODY_BOX:
+    case CPROX_BODY_CAPSULE:
+    case CPROX_BODY_CYLINDER:
+    case CPROX_BODY_CONE:
+    case CPROX_BODY_ELLIPSOID:
+    case CPROX_BODY_POLYTOPE:
+    case CPROX_BODY_POLYGON:
+    case CPROX_BODY_SUPPORT:
+    case CPROX_BODY_SUPERQUADRIC:
+    case CPROX_BODY_IMPLICIT: return;
     default:
       throw Error(std::string("no superquadric is fitted to bodies of the kind '") + cprox_body_kind_name(kind) + "'");
   }

@@ -19,7 +19,7 @@ BodyHandle makeMeshOf(const Array &vertices,
     }
   const BodyHandle body = detail::makeBody([&](cprox_workspace *w, cprox_body **b) {
     return cprox_body_create_mesh(points.data, points.size, reinterpret_cast<const std::uint32_t(*)[3]>(indices.data()),
-                                  indices.size(), solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE,
+                                  indices.size(), solid ? CPROX_MESH_FILL_SOLID : CPROX_MESH_FILL_SURFACE,
                                   std::numeric_limits<std::size_t>::max(), w, b);
   });
   if (solid && !cprox_body_get_info(body.get()).is_solid) throw Error("the mesh is not closed, so it has no interior");

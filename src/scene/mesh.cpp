@@ -57,7 +57,7 @@ Geometry geometryOf(const MeshData &mesh, const HullPoints &hull_points, const E
   const BodyHandle hull = polytopeOf(hull_points.kept);
   const Eigen::Matrix3Xd vertices = scale.asDiagonal() * mesh.vertices;
   const BodyHandle triangles =
-      makeMesh(vertices, mesh.triangles, solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE, memory_limit);
+      makeMesh(vertices, mesh.triangles, solid ? CPROX_MESH_FILL_SOLID : CPROX_MESH_FILL_SURFACE, memory_limit);
   const bool has_inside = cprox_body_get_info(triangles.get()).is_solid;
 
   Geometry out;

@@ -70,12 +70,12 @@ const double *chosen(const std::vector<double> &values, const Columns &columns,
 
 cprox_interpolation toCore(Interpolation interpolation) {
   switch (interpolation) {
-    case Interpolation::LINEAR: return CPROX_LINEAR;
-    case Interpolation::CUBIC: return CPROX_CUBIC;
-    case Interpolation::QUINTIC: return CPROX_QUINTIC;
+    case Interpolation::LINEAR: return CPROX_INTERPOLATION_LINEAR;
+    case Interpolation::CUBIC: return CPROX_INTERPOLATION_CUBIC;
+    case Interpolation::QUINTIC: return CPROX_INTERPOLATION_QUINTIC;
     case Interpolation::BY_POINTS: break;
   }
-  return CPROX_BY_WAYPOINTS;
+  return CPROX_INTERPOLATION_BY_WAYPOINTS;
 }
 
 void makeMotion(const TrajectoryDescription &trajectory, const JointPositions &rest, RobotMotion::Data &data) {

@@ -11,9 +11,9 @@
 
 /* One of the kinds of revolution, from scale/aspect to scale. */
 static void make_of_revolution(rng *r, double scale, double aspect, test_shape *s) {
-  const cprox_body_kind kinds[] = {CPROX_CYLINDER, CPROX_CONE, CPROX_CAPSULE, CPROX_ELLIPSOID};
+  const cprox_body_kind kinds[] = {CPROX_BODY_CYLINDER, CPROX_BODY_CONE, CPROX_BODY_CAPSULE, CPROX_BODY_ELLIPSOID};
   const cprox_body_kind kind = kinds[rng_index(r, 4)];
-  if (kind != CPROX_ELLIPSOID) {
+  if (kind != CPROX_BODY_ELLIPSOID) {
     shape_make(r, kind, scale, aspect, s);
     return;
   }
@@ -55,7 +55,7 @@ static void coaxial_make(rng *r, coaxial *c) {
   c->size = scale;
   c->pa = rng_pose(r, rng_index(r, 2) ? scale : 0.0);
   const double reach =
-      c->a.size[c->a.kind == CPROX_ELLIPSOID ? 2 : 1] + c->b.size[c->b.kind == CPROX_ELLIPSOID ? 2 : 1];
+      c->a.size[c->a.kind == CPROX_BODY_ELLIPSOID ? 2 : 1] + c->b.size[c->b.kind == CPROX_BODY_ELLIPSOID ? 2 : 1];
   const double along = rng_uniform(r, -0.7, 0.7) * reach, aside = scale * slight(r, 1e-14, 1e-2),
                around = rng_uniform(r, 0, 6.28);
   const vec3l at = ref_to_world(&c->pa, (vec3l){aside * cos(around), aside * sin(around), along});

@@ -14,13 +14,13 @@
 static double inner_radius(const test_shape *s) {
   const double *z = s->size;
   switch (s->kind) {
-    case CPROX_SPHERE: return z[0];
-    case CPROX_BOX:
-    case CPROX_SUPPORT:
-    case CPROX_ELLIPSOID: return fmin(z[0], fmin(z[1], z[2]));
-    case CPROX_CAPSULE: return z[0];
-    case CPROX_CYLINDER: return fmin(z[0], z[1]);
-    case CPROX_CONE: return fmin(z[1], z[0] * z[1] / hypot(z[0], 2.0 * z[1]));
+    case CPROX_BODY_SPHERE: return z[0];
+    case CPROX_BODY_BOX:
+    case CPROX_BODY_SUPPORT:
+    case CPROX_BODY_ELLIPSOID: return fmin(z[0], fmin(z[1], z[2]));
+    case CPROX_BODY_CAPSULE: return z[0];
+    case CPROX_BODY_CYLINDER: return fmin(z[0], z[1]);
+    case CPROX_BODY_CONE: return fmin(z[1], z[0] * z[1] / hypot(z[0], 2.0 * z[1]));
     default: return 0.0;
   }
 }
@@ -28,7 +28,7 @@ static double inner_radius(const test_shape *s) {
 /* The octahedron and the hulls of points all round their middle: their inner radius is that of the octahedron within. */
 static double make_hull(rng *r, double scale, double aspect, test_shape *s) {
   memset(s, 0, sizeof *s);
-  s->kind = CPROX_POLYTOPE;
+  s->kind = CPROX_BODY_POLYTOPE;
   for (int i = 0; i < 3; i++) s->size[i] = scale * rng_log_uniform(r, 1.0 / aspect, 1.0);
   const double *z = s->size;
   for (int i = 0; i < 6; i++) {
@@ -47,7 +47,7 @@ static double make_hull(rng *r, double scale, double aspect, test_shape *s) {
 /* Any kind; the radius that is known to lie within. */
 static double make_any(rng *r, double scale, double aspect, test_shape *s) {
   const cprox_body_kind kind = TEST_BOUNDED[rng_index(r, TEST_N_BOUNDED)];
-  if (kind == CPROX_POLYTOPE) return make_hull(r, scale, aspect, s);
+  if (kind == CPROX_BODY_POLYTOPE) return make_hull(r, scale, aspect, s);
   shape_make(r, kind, scale, aspect, s);
   return inner_radius(s);
 }
@@ -69,7 +69,7 @@ typedef struct overlap {
 
 /* The middle of the shape in its own frame. */
 static vec3 middle(const test_shape *s) {
-  return s->kind == CPROX_POINT ? s->v[0] : vec(0, 0, 0);
+  return s->kind == CPROX_BODY_POINT ? s->v[0] : vec(0, 0, 0);
 }
 
 static void overlap_make(rng *r, overlap *o) {

@@ -375,7 +375,7 @@ static void ask_batch(query *q) {
   cprox_status status = CPROX_OK;
   if (which == 0) status = cprox_obstacles_distance_batch(batch, movers, 0, 2, &q->options, q->a->ws, x);
   if (which == 1) status = cprox_obstacles_tolerance_batch(batch, movers, 0, 2, s->scale, &q->options, q->a->ws, x);
-  if (which == 2) status = cprox_obstacles_collision_batch(batch, movers, 0, 2, &q->options, q->a->ws, x);
+  if (which == 2) status = cprox_obstacles_tolerance_batch(batch, movers, 0, 2, 0.0, &q->options, q->a->ws, x);
   if (answered(q, status)) {
     check_all(q, &x[0]);
     attack_check(q->a, x[0].lower == x[1].lower && x[0].upper == x[1].upper,

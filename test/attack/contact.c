@@ -149,7 +149,7 @@ static void screw(attack *a, rng *r, double epsilon) {
                                                       .n_variables = 2,
                                                       .waypoints = points,
                                                       .n_waypoints = 2,
-                                                      .interpolation = CPROX_LINEAR},
+                                                      .interpolation = CPROX_INTERPOLATION_LINEAR},
                           a->ws, &motion) != CPROX_OK)
     attack_fail(a, "%s", cprox_workspace_error(a->ws));
   const double angle = rng_index(r, 2) ? 0.0 : rng_uniform(r, -1.5, 1.5);

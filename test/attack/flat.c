@@ -28,7 +28,7 @@ typedef struct scene {
 static cprox_status make_fan(scene *c, cprox_workspace *ws) {
   uint32_t triangles[MOST_CORNERS][3];
   for (uint32_t i = 0; i + 2 < c->n; i++) triangles[i][0] = 0, triangles[i][1] = i + 1, triangles[i][2] = i + 2;
-  return cprox_body_create_mesh(c->corner, c->n, (const uint32_t(*)[3])triangles, c->n - 2, CPROX_MESH_SURFACE,
+  return cprox_body_create_mesh(c->corner, c->n, (const uint32_t(*)[3])triangles, c->n - 2, CPROX_MESH_FILL_SURFACE,
                                 SIZE_MAX, ws, &c->body);
 }
 

@@ -192,7 +192,7 @@ static void ask_robot(attack *a, setting *s) {
                                                       .n_variables = 1,
                                                       .waypoints = points,
                                                       .n_waypoints = 2,
-                                                      .interpolation = CPROX_LINEAR},
+                                                      .interpolation = CPROX_INTERPOLATION_LINEAR},
                           a->ws, &motion) >= 0) {
     const truth t = truth_of(s, true, 2.0L * (long double)s->a.size + (long double)s->radius + (long double)s->margin);
     const cprox_mover mover = cprox_robot_along(motion, NULL, 0);

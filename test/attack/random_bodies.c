@@ -279,7 +279,7 @@ static void make_mesh(attack *a, rng *r, double scale, random_body *b, bool lod)
   }
   cprox_body *mesh = NULL;
   cprox_body_create_mesh(f->points, f->n, (const uint32_t(*)[3])f->triangles, f->m,
-                         solid && !lod ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE, SIZE_MAX, a->ws, &mesh);
+                         solid && !lod ? CPROX_MESH_FILL_SOLID : CPROX_MESH_FILL_SURFACE, SIZE_MAX, a->ws, &mesh);
   f->full = mesh && solid && !lod && cprox_body_get_info(mesh).is_solid;
   snprintf(b->name, sizeof b->name, lod ? "lod" : f->full ? "solid mesh" : "mesh");
   if (!lod) {

@@ -107,10 +107,10 @@ static cprox_status make_body(size_t which, const material *m, cprox_workspace *
     case 11: return cprox_body_create_support(box_support, NULL, vec(0, 0, 0), 2.0, 0.0, 0.0, ws, b);
     case 12: return cprox_body_create_superquadric(vec(1, 2, 3), vec(2, 3, 4), ws, b);
     case 13: return cprox_body_create_implicit(&d, &map, ws, b);
-    case 14: return cprox_body_create_deformed(m->quadric, &map, NULL, 0, ws, b);
+    case 14: return cprox_body_create_implicit(&(cprox_implicit_description){.deformed = m->quadric}, &map, ws, b);
     case 15:
-      return cprox_body_create_mesh(m->points, POINTS, (const uint32_t(*)[3])m->triangles, POINTS, CPROX_MESH_SOLID,
-                                    SIZE_MAX, ws, b);
+      return cprox_body_create_mesh(m->points, POINTS, (const uint32_t(*)[3])m->triangles, POINTS,
+                                    CPROX_MESH_FILL_SOLID, SIZE_MAX, ws, b);
     case 16: return cprox_body_create_points(m->points, POINTS, 0.1, SIZE_MAX, ws, b);
     case 17: return cprox_body_create_boxes(m->points, high, POINTS, SIZE_MAX, ws, b);
     default: return cprox_body_update_points(m->cloud, changed, high, 2, NULL, ws, b);
@@ -224,8 +224,8 @@ static bool make_material(attack *a, rng *r, material *m) {
   const vec3 ends[2] = {m->points[0], m->points[1]};
   cprox_body_create_sphere(1.0, a->ws, &m->ball);
   cprox_body_create_polytope(m->points, POINTS, a->ws, &m->hull);
-  cprox_body_create_mesh(m->points, POINTS, (const uint32_t(*)[3])m->triangles, POINTS, CPROX_MESH_SURFACE, SIZE_MAX,
-                         a->ws, &m->mesh);
+  cprox_body_create_mesh(m->points, POINTS, (const uint32_t(*)[3])m->triangles, POINTS, CPROX_MESH_FILL_SURFACE,
+                         SIZE_MAX, a->ws, &m->mesh);
   cprox_body_create_superquadric(vec(1, 2, 3), vec(2, 3, 4), a->ws, &m->quadric);
   cprox_body_create_points(m->points, POINTS, 0.0, SIZE_MAX, a->ws, &m->cloud);
   curve_from(describe_bezier(ends, 2, 0, 1), a->ws, &m->line);

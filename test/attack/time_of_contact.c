@@ -55,7 +55,7 @@ static void check(attack *a, const meeting *m, const char *what, cprox_status st
 
 static void one_case(attack *a, rng *r) {
   const meeting m = meeting_make(a, r);
-  const bool box = cprox_body_get_info(m.body).kind == CPROX_BOX;
+  const bool box = cprox_body_get_info(m.body).kind == CPROX_BODY_BOX;
   const cprox_obstacle target = target_of(&m, box);
   cprox_result result = {0};
   const size_t kind = rng_index(r, 3);
@@ -85,7 +85,7 @@ static void one_case(attack *a, rng *r) {
                                                     .n_variables = 1,
                                                     .waypoints = points,
                                                     .n_waypoints = 2,
-                                                    .interpolation = CPROX_LINEAR},
+                                                    .interpolation = CPROX_INTERPOLATION_LINEAR},
                         a->ws, &motion);
     check(a, &m, "robot", cprox_time_of_contact(cprox_robot_along(motion, NULL, 0), target, &m.options, a->ws, &result),
           &result);

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "attack.h"
+#include "support/implicits.h"
 #include "support/make_curve.h"
 #include "support/of_list.h"
 
@@ -139,8 +140,7 @@ static void make_implicit(wild *w, cprox_body **body) {
   cprox_body *deformed = NULL;
   const double exponents[6] = {size(w), 1.0 + size(w), 1.0 + size(w), 2.0, 2.0, 2.0};
   made(w, "deformed",
-       cprox_body_create_deformed(*body, &map, rng_index(w->r, 2) ? exponents : NULL, rng_index(w->r, 6), w->ws,
-                                  &deformed),
+       implicit_deformed(*body, &map, rng_index(w->r, 2) ? exponents : NULL, rng_index(w->r, 6), w->ws, &deformed),
        &deformed);
   cprox_body_free(deformed);
 }

@@ -210,7 +210,7 @@ static finding check_slide(double delta, double length) {
                                                                    .n_variables = 1,
                                                                    .waypoints = points,
                                                                    .n_waypoints = 2,
-                                                                   .interpolation = CPROX_LINEAR},
+                                                                   .interpolation = CPROX_INTERPOLATION_LINEAR},
                                        ws, &motion),
                    CPROX_OK);
   cprox_pose there = CPROX_POSE_IDENTITY;

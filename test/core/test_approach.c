@@ -11,8 +11,9 @@
 #include "support/shapes.h"
 
 /* The last is smooth and has no foot. */
-static const cprox_body_kind PROJECTED[] = {CPROX_POINT,    CPROX_SPHERE, CPROX_BOX,      CPROX_CAPSULE,
-                                            CPROX_CYLINDER, CPROX_CONE,   CPROX_ELLIPSOID};
+static const cprox_body_kind PROJECTED[] = {CPROX_BODY_POINT,    CPROX_BODY_SPHERE,   CPROX_BODY_BOX,
+                                            CPROX_BODY_CAPSULE,  CPROX_BODY_CYLINDER, CPROX_BODY_CONE,
+                                            CPROX_BODY_ELLIPSOID};
 enum { N_PROJECTED = 6, FIRST_SOLID = 2, N_SOLID = 5 };
 
 /* ---- feet ---- */
@@ -228,8 +229,8 @@ static double looks_of(uint64_t seed, cprox_body_kind kind_a, cprox_body_kind ki
 
 /* Seeds 804 and 805: the simplex search takes 10 looks for the one, 6 for the other. */
 CASE(projections_and_smoothness_save_looks) {
-  assert_true(looks_of(804, CPROX_BOX, CPROX_CYLINDER) <= 4.0);
-  assert_true(looks_of(805, CPROX_ELLIPSOID, CPROX_ELLIPSOID) <= 5.0);
+  assert_true(looks_of(804, CPROX_BODY_BOX, CPROX_BODY_CYLINDER) <= 4.0);
+  assert_true(looks_of(805, CPROX_BODY_ELLIPSOID, CPROX_BODY_ELLIPSOID) <= 5.0);
 }
 
 int main(void) {

@@ -126,7 +126,7 @@ CASE(a_disc_tells_nothing_of_curves_off_its_plane) {
     cprox_result r;
     assert_int_equal(cprox_obstacles_distance_batch(batch, &mover, 0, 1, NULL, workspace, &r), CPROX_OK);
     assert_true(r.lower <= distance[i] && distance[i] <= r.upper && r.upper - r.lower <= 1e-6);
-    assert_int_equal(cprox_obstacles_collision_batch(batch, &mover, 0, 1, NULL, workspace, &r), CPROX_OK);
+    assert_int_equal(cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, 0.0, NULL, workspace, &r), CPROX_OK);
     assert_int_equal(r.verdict, i == 2 ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_CLEAR);
     cprox_curve_free(curve);
   }
@@ -217,7 +217,7 @@ CASE(small_boxes_are_met_or_passed_without_a_search) {
         cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, delta, NULL, workspace, &one);
         tolerance_of_list(mover, targets, BOXES, delta, NULL, workspace, &alone, NULL);
       } else {
-        cprox_obstacles_collision_batch(batch, &mover, 0, 1, NULL, workspace, &one);
+        cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, 0.0, NULL, workspace, &one);
         collision_of_list(mover, targets, BOXES, NULL, workspace, &alone, NULL);
       }
       assert_int_equal(one.verdict, alone.verdict);

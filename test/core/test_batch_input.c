@@ -74,7 +74,8 @@ CASE(unusable_calls_are_refused_with_a_sentence) {
   assert_int_equal(cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, -1, NULL, workspace, &result), CPROX_INVALID);
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = NAN;
-  assert_int_equal(cprox_obstacles_collision_batch(batch, &mover, 0, 1, &options, workspace, &result), CPROX_INVALID);
+  assert_int_equal(cprox_obstacles_tolerance_batch(batch, &mover, 0, 1, 0.0, &options, workspace, &result),
+                   CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(workspace), "epsilon"));
   cprox_obstacles_free(batch);
   cprox_obstacles_free(NULL);

@@ -137,11 +137,11 @@ CASE(a_failed_allocation_is_said_and_leaves_nothing_behind) {
 CASE(every_kind_has_its_name) {
   const char *names[] = {"point",     "sphere",    "box",      "capsule", "cylinder", "cone",
                          "ellipsoid", "halfspace", "polytope", "polygon", "compound", "support"};
-  for (int k = CPROX_POINT; k <= CPROX_SUPPORT; k++)
+  for (int k = CPROX_BODY_POINT; k <= CPROX_BODY_SUPPORT; k++)
     assert_string_equal(cprox_body_kind_name((cprox_body_kind)k), names[k]);
   cprox_body *body = NULL;
   cprox_body_create_cone(1.0, 1.0, ws, &body);
-  assert_int_equal(cprox_body_get_info(body).kind, CPROX_CONE);
+  assert_int_equal(cprox_body_get_info(body).kind, CPROX_BODY_CONE);
   cprox_body_free(body);
 }
 

@@ -376,10 +376,10 @@ static int by_count(const void *a, const void *b) {
 CASE(medians_stay_within_8_nodes_and_14_distance_queries) {
   enum { PROBLEMS = 200 };
   rng r = rng_seed(35);
-  const cprox_body_kind kinds[][2] = {{CPROX_BOX, CPROX_BOX},
-                                      {CPROX_BOX, CPROX_CYLINDER},
-                                      {CPROX_CAPSULE, CPROX_POLYTOPE},
-                                      {CPROX_ELLIPSOID, CPROX_CONE}};
+  const cprox_body_kind kinds[][2] = {{CPROX_BODY_BOX, CPROX_BODY_BOX},
+                                      {CPROX_BODY_BOX, CPROX_BODY_CYLINDER},
+                                      {CPROX_BODY_CAPSULE, CPROX_BODY_POLYTOPE},
+                                      {CPROX_BODY_ELLIPSOID, CPROX_BODY_CONE}};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
     uint32_t nodes[PROBLEMS], distance_queries[PROBLEMS];
     size_t n = 0, before = 0;

@@ -15,14 +15,14 @@ static cprox_body *random_body(rng *r, cprox_body_kind kind, double aspect) {
   cprox_body *body = NULL;
   cprox_status status = CPROX_INVALID;
   switch (kind) {
-    case CPROX_POINT: status = cprox_body_create_point(vec(a, b, c), NULL, &body); break;
-    case CPROX_SPHERE: status = cprox_body_create_sphere(a, NULL, &body); break;
-    case CPROX_BOX: status = cprox_body_create_box(vec(a, b, c), NULL, &body); break;
-    case CPROX_CAPSULE: status = cprox_body_create_capsule(a, b, NULL, &body); break;
-    case CPROX_CYLINDER: status = cprox_body_create_cylinder(a, b, NULL, &body); break;
-    case CPROX_CONE: status = cprox_body_create_cone(a, b, NULL, &body); break;
-    case CPROX_ELLIPSOID: status = cprox_body_create_ellipsoid(vec(a, b, c), NULL, &body); break;
-    case CPROX_POLYGON: {
+    case CPROX_BODY_POINT: status = cprox_body_create_point(vec(a, b, c), NULL, &body); break;
+    case CPROX_BODY_SPHERE: status = cprox_body_create_sphere(a, NULL, &body); break;
+    case CPROX_BODY_BOX: status = cprox_body_create_box(vec(a, b, c), NULL, &body); break;
+    case CPROX_BODY_CAPSULE: status = cprox_body_create_capsule(a, b, NULL, &body); break;
+    case CPROX_BODY_CYLINDER: status = cprox_body_create_cylinder(a, b, NULL, &body); break;
+    case CPROX_BODY_CONE: status = cprox_body_create_cone(a, b, NULL, &body); break;
+    case CPROX_BODY_ELLIPSOID: status = cprox_body_create_ellipsoid(vec(a, b, c), NULL, &body); break;
+    case CPROX_BODY_POLYGON: {
       double v[MOST][2];
       const size_t n = 3 + rng_index(r, MOST - 3);
       for (size_t i = 0; i < n; i++) {
@@ -53,8 +53,9 @@ static vec3 extreme(const convex *shape, vec3 d) {
   return vec_axpy(at, shape->margin / vec_norm(d), d);
 }
 
-static const cprox_body_kind KINDS[] = {CPROX_POINT, CPROX_SPHERE,    CPROX_BOX,      CPROX_CAPSULE, CPROX_CYLINDER,
-                                        CPROX_CONE,  CPROX_ELLIPSOID, CPROX_POLYTOPE, CPROX_POLYGON};
+static const cprox_body_kind KINDS[] = {CPROX_BODY_POINT,     CPROX_BODY_SPHERE,   CPROX_BODY_BOX,
+                                        CPROX_BODY_CAPSULE,   CPROX_BODY_CYLINDER, CPROX_BODY_CONE,
+                                        CPROX_BODY_ELLIPSOID, CPROX_BODY_POLYTOPE, CPROX_BODY_POLYGON};
 enum { N_KINDS = sizeof KINDS / sizeof *KINDS };
 
 /* Distance of p from the cover's centre or axis, in long double. */
@@ -83,10 +84,10 @@ CASE(a_cover_holds_the_whole_shape_and_touches_it) {
     if (near.distance > 1e-9 * shape->scale && shape->ops->cover && shape->ops->cover(shape, &near, &cover)) {
       covers[k]++;
       cylinders[k] += cover.cylinder;
-      const long double slack =
-          KINDS[k] == CPROX_POLYTOPE || KINDS[k] == CPROX_POLYGON || KINDS[k] == CPROX_BOX || KINDS[k] == CPROX_POINT
-              ? 0.0L
-              : 8.0L * ROUND_U * shape->scale;
+      const long double slack = KINDS[k] == CPROX_BODY_POLYTOPE || KINDS[k] == CPROX_BODY_POLYGON ||
+                                        KINDS[k] == CPROX_BODY_BOX || KINDS[k] == CPROX_BODY_POINT
+                                    ? 0.0L
+                                    : 8.0L * ROUND_U * shape->scale;
       for (int j = 0; j < 30; j++) {
         const vec3 d = j % 3 ? rng_unit(&r) : vec_axpy(near.normal, rng_log_uniform(&r, 1e-6, 1.0), rng_unit(&r));
         const long double out = reach(&cover, extreme(shape, d));
@@ -102,7 +103,7 @@ CASE(a_cover_holds_the_whole_shape_and_touches_it) {
     cprox_body_free(body);
   }
   for (size_t k = 0; k < N_KINDS; k++) {
-    if (KINDS[k] == CPROX_CONE)
+    if (KINDS[k] == CPROX_BODY_CONE)
       assert_int_equal(covers[k], 0);
     else
       assert_true(covers[k] > 0 || test_cases(100) < 100);
@@ -165,7 +166,7 @@ CASE(the_support_is_attained_and_never_passed) {
  * 1e-6 sizes (their second order is 1e-10, their rounding 1e-11, times what a ratio of axes of 4 and 1/0.2 raise it by). */
 CASE(the_maximiser_moves_as_its_curvature_says) {
   rng r = rng_seed(403);
-  const cprox_body_kind curved[] = {CPROX_CYLINDER, CPROX_CONE, CPROX_ELLIPSOID};
+  const cprox_body_kind curved[] = {CPROX_BODY_CYLINDER, CPROX_BODY_CONE, CPROX_BODY_ELLIPSOID};
   for (size_t i = 0; i < test_cases(30000); i++) {
     cprox_body *body = random_body(&r, curved[i % 3], 2.0);
     const convex *shape = &body->shape;

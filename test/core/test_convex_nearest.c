@@ -155,7 +155,7 @@ static double random_coordinate(rng *r, double size, double scale) {
 static vec3 random_point(rng *r, const convex *shape) {
   const double *s = shape->size;
   const cprox_body_kind type = shape->ops->kind;
-  const bool round = type == CPROX_CAPSULE || type == CPROX_CYLINDER || type == CPROX_CONE;
+  const bool round = type == CPROX_BODY_CAPSULE || type == CPROX_BODY_CYLINDER || type == CPROX_BODY_CONE;
   const double scale = shape->scale;
   if (rng_index(r, 4) == 0) { /* on the surface, or a little beside it */
     vec3 at;

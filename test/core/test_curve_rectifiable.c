@@ -170,7 +170,7 @@ static cprox_body *random_body(rng *r, double scale) {
       /* a surface that is no hull: two triangles with a fold */
       static const uint32_t triangles[2][3] = {{0, 1, 2}, {1, 2, 3}};
       for (int i = 0; i < 4; i++) v[i] = rng_in_cube(r, 0.4 * scale);
-      status = cprox_body_create_mesh(v, 4, triangles, 2, CPROX_MESH_SURFACE, SIZE_MAX, NULL, &body);
+      status = cprox_body_create_mesh(v, 4, triangles, 2, CPROX_MESH_FILL_SURFACE, SIZE_MAX, NULL, &body);
       break;
     }
     case 1: status = cprox_body_create_sphere(scale * rng_uniform(r, 0.05, 0.5), NULL, &body); break;

@@ -172,7 +172,7 @@ static cprox_quat spun(cprox_quat q, double angle) {
 CASE(coaxial_bodies_are_measured_in_their_profile) {
   rng r = rng_seed(84);
   static test_shape a, b;
-  const cprox_body_kind kinds[] = {CPROX_CYLINDER, CPROX_CONE, CPROX_CAPSULE};
+  const cprox_body_kind kinds[] = {CPROX_BODY_CYLINDER, CPROX_BODY_CONE, CPROX_BODY_CAPSULE};
   for (size_t k = 0; k < test_cases(600); k++) {
     shape_make(&r, kinds[k % 3], 1.0, 10.0, &a);
     shape_make(&r, kinds[(k / 3) % 3], 1.0, 10.0, &b);

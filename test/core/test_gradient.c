@@ -168,8 +168,9 @@ static size_t check(rng *r, const problem *p, double tolerance) {
   return 1;
 }
 
-static const cprox_body_kind SOLID[] = {CPROX_SPHERE, CPROX_BOX,       CPROX_CAPSULE, CPROX_CYLINDER,
-                                        CPROX_CONE,   CPROX_ELLIPSOID, CPROX_POLYTOPE};
+static const cprox_body_kind SOLID[] = {CPROX_BODY_SPHERE,   CPROX_BODY_BOX,  CPROX_BODY_CAPSULE,
+                                        CPROX_BODY_CYLINDER, CPROX_BODY_CONE, CPROX_BODY_ELLIPSOID,
+                                        CPROX_BODY_POLYTOPE};
 
 /* Seed 101, 10000 problems against seven kinds of bodies, 2000 of two curves, 2000 synchronized: 1e-7 (1 +
  * |derivative|), which leaves the differences 1e-8 for their own rounding and truncation. */
@@ -226,7 +227,7 @@ CASE(carried_bodies_have_gradients) {
 /* Seed 103, 2000 problems through balls, ellipsoids and boxes: depths have gradients where one way out is the shortest. */
 CASE(depths_have_gradients) {
   rng r = rng_seed(103);
-  const cprox_body_kind kinds[] = {CPROX_SPHERE, CPROX_ELLIPSOID, CPROX_BOX, CPROX_CAPSULE};
+  const cprox_body_kind kinds[] = {CPROX_BODY_SPHERE, CPROX_BODY_ELLIPSOID, CPROX_BODY_BOX, CPROX_BODY_CAPSULE};
   size_t valid = 0, all = 0;
   for (size_t k = 0; k < test_cases(2000); k++, all++) {
     test_shape s;

@@ -153,7 +153,7 @@ CASE(bodies_that_part_or_overlap_at_once_are_told_at_once) {
 static cprox_body *scaled(const bodies *b, const cprox_body *body, double g) {
   cprox_affine map = {.linear = {g, 0, 0, 0, g, 0, 0, 0, g}, .translation = vec_scale(1.0 - g, body->centre)};
   cprox_body *made = NULL;
-  assert_int_equal(cprox_body_create_deformed(body, &map, NULL, 0, b->workspace, &made), CPROX_OK);
+  assert_int_equal(implicit_deformed(body, &map, NULL, 0, b->workspace, &made), CPROX_OK);
   return made;
 }
 
@@ -218,7 +218,7 @@ CASE(a_deformed_body_is_the_one_made_anew) {
       for (int k = 0; k < 9; k++) map.linear[k] = rng_uniform(&r, -0.7, 0.7) + (k % 4 == 0 ? 1.5 : 0.0);
       map.translation = rng_in_cube(&r, 2);
       cprox_body *anew = implicit_case_body(&c, &map), *deformed = NULL;
-      assert_int_equal(cprox_body_create_deformed(b->body[object], &map, NULL, 0, b->workspace, &deformed), CPROX_OK);
+      assert_int_equal(implicit_deformed(b->body[object], &map, NULL, 0, b->workspace, &deformed), CPROX_OK);
       const cprox_obstacle other = cprox_obstacle_at(b->body[3], implicit_random_pose(&r, 6, 12));
       cprox_result x, y;
       assert_int_equal(cprox_pair(cprox_obstacle_at(anew, CPROX_POSE_IDENTITY), other, &options, b->workspace, &x),
@@ -233,7 +233,7 @@ CASE(a_deformed_body_is_the_one_made_anew) {
   const double exponents[3] = {76.0 / 9, 71.0 / 5, 179.0 / 13}, bad[3] = {0.5, 2, 2};
   const cprox_affine interval = {.linear = {1, 0, 0, 0, 1 / 0.7, 0, 0, 0, 1}};
   cprox_body *third = NULL;
-  assert_int_equal(cprox_body_create_deformed(b->body[1], &interval, exponents, 3, b->workspace, &third), CPROX_OK);
+  assert_int_equal(implicit_deformed(b->body[1], &interval, exponents, 3, b->workspace, &third), CPROX_OK);
   cprox_result x, y;
   cprox_pose far = CPROX_POSE_IDENTITY;
   far.position = vec(3, 2, 4);
@@ -245,9 +245,9 @@ CASE(a_deformed_body_is_the_one_made_anew) {
   assert_true(x.lower <= y.upper + 1e-12 && y.lower <= x.upper + 1e-12);
   cprox_body_free(third);
   third = NULL;
-  assert_int_equal(cprox_body_create_deformed(b->body[1], NULL, bad, 3, b->workspace, &third), CPROX_INVALID);
+  assert_int_equal(implicit_deformed(b->body[1], NULL, bad, 3, b->workspace, &third), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(b->workspace), "the exponent is 0.5"));
-  assert_int_equal(cprox_body_create_deformed(b->body[1], NULL, exponents, 2, b->workspace, &third), CPROX_INVALID);
+  assert_int_equal(implicit_deformed(b->body[1], NULL, exponents, 2, b->workspace, &third), CPROX_INVALID);
   assert_null(third);
 }
 

@@ -17,7 +17,7 @@ typedef struct test_lod {
 
 static test_lod lod_make(const test_mesh *mesh) {
   test_lod l = {0};
-  l.mesh = mesh_body(mesh, CPROX_MESH_SURFACE, ws);
+  l.mesh = mesh_body(mesh, CPROX_MESH_FILL_SURFACE, ws);
   assert_int_equal(cprox_body_create_polytope(mesh->vertices, mesh->n, ws, &l.hull), CPROX_OK);
   if (cprox_body_create_lod(l.hull, 0.0, l.mesh, ws, &l.body) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
   return l;

@@ -64,7 +64,7 @@ CASE(distance_holds_everywhere_and_at_its_witness) {
     const size_t m = 1 + rng_index(&r, 60);
     test_mesh mesh = i % 2 ? mesh_soup(&r, m, 1.0, rng_log_uniform(&r, 1e-2, 1.0))
                            : mesh_torus(4 + rng_index(&r, 5), 3 + rng_index(&r, 4), 1.0, 0.3, 0.2);
-    cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+    cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
     cprox_pose pose = i % 3 ? rng_pose(&r, 1.0) : CPROX_POSE_IDENTITY;
     vec3 points[12];
     const size_t degree = 1 + rng_index(&r, 8);
@@ -116,7 +116,7 @@ CASE(time_of_contact_is_never_late_and_never_missed) {
     test_mesh mesh = i % 4 == 0   ? mesh_torus(12, 8, 0.5, 0.2, 0.1)
                      : i % 4 == 1 ? mesh_plate(1 + rng_index(&r, 6), 0.6)
                                   : mesh_box(vec(0.5, 0.5, rng_log_uniform(&r, 1e-6, 1e-2)));
-    cprox_body *body = mesh_body(&mesh, i % 8 < 4 ? CPROX_MESH_SURFACE : CPROX_MESH_SOLID, ws);
+    cprox_body *body = mesh_body(&mesh, i % 8 < 4 ? CPROX_MESH_FILL_SURFACE : CPROX_MESH_FILL_SOLID, ws);
     const cprox_pose pose = rng_pose(&r, 0.3);
     const double radius = i % 3 == 0 ? 0.0 : rng_log_uniform(&r, 1e-4, 0.2);
     vec3 points[4];
@@ -163,7 +163,7 @@ CASE(time_of_contact_is_never_late_and_never_missed) {
 CASE(a_point_through_a_surface_is_a_proven_collision) {
   rng r = rng_seed(57);
   test_mesh mesh = mesh_torus(24, 16, 1.0, 0.3, 0.1);
-  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
   for (int i = 0; i < 100; i++) {
     const vec3 points[3] = {vec(rng_uniform(&r, -0.1, 0.1), 0.02, 0.0), rng_in_cube(&r, 1.0),
                             vec_scale(1.0, vec(1.0, rng_uniform(&r, -0.05, 0.05), 0.01))};
@@ -187,7 +187,7 @@ CASE(a_point_through_a_surface_is_a_proven_collision) {
 CASE(a_closed_mesh_is_solid_inside) {
   rng r = rng_seed(59);
   test_mesh mesh = mesh_torus(30, 20, 1.0, 0.4, 0.2);
-  cprox_body *solid = mesh_body(&mesh, CPROX_MESH_SOLID, ws);
+  cprox_body *solid = mesh_body(&mesh, CPROX_MESH_FILL_SOLID, ws);
   assert_true(cprox_body_get_info(solid).is_solid);
   size_t inside = 0;
   for (int i = 0; i < 300; i++) {
@@ -209,7 +209,7 @@ CASE(a_closed_mesh_is_solid_inside) {
 
   /* one triangle less, and it is a surface */
   mesh.m--;
-  solid = mesh_body(&mesh, CPROX_MESH_SOLID, ws);
+  solid = mesh_body(&mesh, CPROX_MESH_FILL_SOLID, ws);
   assert_false(cprox_body_get_info(solid).is_solid);
   cprox_body_free(solid);
   mesh_free(&mesh);
@@ -232,7 +232,7 @@ CASE(support_values_are_those_of_all_corners) {
     }
     cprox_body *body = NULL;
     const cprox_status made = i % 3 == 0   ? cprox_body_create_mesh(low, n, (const uint32_t(*)[3])triangles, n,
-                                                                    CPROX_MESH_SURFACE, SIZE_MAX, ws, &body)
+                                                                    CPROX_MESH_FILL_SURFACE, SIZE_MAX, ws, &body)
                               : i % 3 == 1 ? cprox_body_create_points(low, n, 0.0, SIZE_MAX, ws, &body)
                                            : cprox_body_create_boxes(low, high, n, SIZE_MAX, ws, &body);
     assert_int_equal(made, CPROX_OK);
@@ -274,7 +274,7 @@ CASE(closedness_is_found_at_vertices_of_many_edges) {
   for (size_t m = 2 * SIDES; m >= 2 * SIDES - 1; m--) {
     cprox_body *body = NULL;
     assert_int_equal(
-        cprox_body_create_mesh(v, SIDES + 2, (const uint32_t(*)[3])t, m, CPROX_MESH_SOLID, SIZE_MAX, ws, &body),
+        cprox_body_create_mesh(v, SIDES + 2, (const uint32_t(*)[3])t, m, CPROX_MESH_FILL_SOLID, SIZE_MAX, ws, &body),
         CPROX_OK);
     assert_int_equal(cprox_body_get_info(body).is_solid, m == 2 * SIDES);
     cprox_body_free(body);
@@ -282,9 +282,9 @@ CASE(closedness_is_found_at_vertices_of_many_edges) {
   const uint32_t swap = t[7][0];
   t[7][0] = t[7][1], t[7][1] = swap;
   cprox_body *body = NULL;
-  assert_int_equal(
-      cprox_body_create_mesh(v, SIDES + 2, (const uint32_t(*)[3])t, 2 * SIDES, CPROX_MESH_SOLID, SIZE_MAX, ws, &body),
-      CPROX_OK);
+  assert_int_equal(cprox_body_create_mesh(v, SIDES + 2, (const uint32_t(*)[3])t, 2 * SIDES, CPROX_MESH_FILL_SOLID,
+                                          SIZE_MAX, ws, &body),
+                   CPROX_OK);
   assert_false(cprox_body_get_info(body).is_solid);
   cprox_body_free(body);
 }
@@ -293,7 +293,8 @@ CASE(closedness_is_found_at_vertices_of_many_edges) {
 CASE(a_solid_shares_its_triangles_with_its_surface) {
   rng r = rng_seed(60);
   test_mesh mesh = mesh_torus(30, 20, 1.0, 0.4, 0.2);
-  cprox_body *solid = mesh_body(&mesh, CPROX_MESH_SOLID, ws), *made = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *solid = mesh_body(&mesh, CPROX_MESH_FILL_SOLID, ws),
+             *made = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
   cprox_body *surface = NULL, *again = NULL;
   assert_int_equal(cprox_body_create_surface(solid, ws, &surface), CPROX_OK);
   assert_int_equal(cprox_body_create_surface(surface, ws, &again), CPROX_OK);
@@ -375,7 +376,7 @@ CASE(pairs_answer_as_their_triangles_do) {
   const cprox_options options = accurate(1e-9);
   for (size_t i = 0; i < test_cases(400); i++) {
     test_mesh mesh = i % 2 ? mesh_soup(&r, 1 + rng_index(&r, 40), 1.0, 0.2) : mesh_torus(9, 7, 1.0, 0.3, 0.2);
-    cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws), *other = NULL;
+    cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws), *other = NULL;
     const double radius = rng_uniform(&r, 0.01, 0.2);
     const bool ball = i % 4 < 2;
     if (ball)
@@ -425,11 +426,11 @@ CASE(bad_input_is_refused_with_a_sentence) {
   cprox_body *body = NULL;
   vec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const uint32_t good[1][3] = {{0, 1, 2}}, bad[2][3] = {{0, 1, 2}, {0, 1, 3}};
-  expect_reason(cprox_body_create_mesh(v, 3, bad, 2, CPROX_MESH_SURFACE, SIZE_MAX, ws, &body), CPROX_INVALID,
+  expect_reason(cprox_body_create_mesh(v, 3, bad, 2, CPROX_MESH_FILL_SURFACE, SIZE_MAX, ws, &body), CPROX_INVALID,
                 "triangle 1 names vertex 3");
-  expect_reason(cprox_body_create_mesh(v, 3, good, 0, CPROX_MESH_SURFACE, SIZE_MAX, ws, &body), CPROX_INVALID,
+  expect_reason(cprox_body_create_mesh(v, 3, good, 0, CPROX_MESH_FILL_SURFACE, SIZE_MAX, ws, &body), CPROX_INVALID,
                 "no triangles");
-  expect_reason(cprox_body_create_mesh(v, 3, good, 1, CPROX_MESH_SURFACE, 100, ws, &body), CPROX_MEMORY, "bytes");
+  expect_reason(cprox_body_create_mesh(v, 3, good, 1, CPROX_MESH_FILL_SURFACE, 100, ws, &body), CPROX_MEMORY, "bytes");
   expect_reason(cprox_body_create_points(v, 10000000, 0.0, 1000000, ws, &body), CPROX_MEMORY, "10000000 points need");
   expect_reason(cprox_body_create_points(v, 0, 0.0, SIZE_MAX, ws, &body), CPROX_INVALID, "no points");
   expect_reason(cprox_body_create_points(v, 3, -1.0, SIZE_MAX, ws, &body), CPROX_INVALID, "radius");
@@ -454,7 +455,7 @@ CASE(bad_input_is_refused_with_a_sentence) {
 
   for (int k = 0; k < 2; k++) {
     v[1].y = k ? NAN : INFINITY;
-    expect_reason(cprox_body_create_mesh(v, 3, good, 1, CPROX_MESH_SURFACE, SIZE_MAX, ws, &body), CPROX_INVALID,
+    expect_reason(cprox_body_create_mesh(v, 3, good, 1, CPROX_MESH_FILL_SURFACE, SIZE_MAX, ws, &body), CPROX_INVALID,
                   "vertex 1");
     expect_reason(cprox_body_create_points(v, 3, 0.0, SIZE_MAX, ws, &body), CPROX_INVALID, "point 1");
   }
@@ -462,7 +463,7 @@ CASE(bad_input_is_refused_with_a_sentence) {
 
   /* one triangle without area is a mesh */
   const vec3 flat[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-  assert_int_equal(cprox_body_create_mesh(flat, 3, good, 1, CPROX_MESH_SOLID, SIZE_MAX, ws, &body), CPROX_OK);
+  assert_int_equal(cprox_body_create_mesh(flat, 3, good, 1, CPROX_MESH_FILL_SOLID, SIZE_MAX, ws, &body), CPROX_OK);
   assert_false(cprox_body_get_info(body).is_solid);
   const vec3 line[2] = {{1, -1, 0}, {1, 1, 0}};
   const test_bezier b = bezier_make(line, 1);
@@ -479,7 +480,7 @@ CASE(bad_input_is_refused_with_a_sentence) {
 CASE(queries_do_not_allocate_once_the_workspace_has_grown) {
   rng r = rng_seed(67);
   test_mesh mesh = mesh_torus(40, 30, 1.0, 0.3, 0.1);
-  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
   vec3 points[6];
   for (size_t k = 0; k < 6; k++) points[k] = rng_in_cube(&r, 1.0);
   const test_bezier b = bezier_make(points, 5);

@@ -32,7 +32,7 @@ static cprox_result expect_distance(const char *name, const cprox_curve *curve, 
 /* A plate of 2 * 40² triangles in z = 0, one unit wide each way; straight lines along an axis. */
 CASE(lines_along_a_plate_take_one_interval) {
   test_mesh mesh = mesh_plate(40, 1.0);
-  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
   const cprox_pose here = CPROX_POSE_IDENTITY;
   const vec3 above[2] = {{-0.7, 0.013, 0.25}, {0.7, 0.013, 0.25}};
   const vec3 on[2] = {{-0.7, 0.013, 0.0}, {0.7, 0.013, 0.0}};
@@ -53,7 +53,7 @@ CASE(lines_along_a_plate_take_one_interval) {
 /* The same plate turned by 0.3 about (1, 2, 3), the line parallel to it but for the pose's rounding. */
 CASE(a_line_parallel_to_an_oblique_plate_converges) {
   test_mesh mesh = mesh_plate(40, 1.0);
-  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
   const double s = sin(0.15) / sqrt(14.0);
   const cprox_pose pose = {.position = {0.1, -0.2, 0.3}, .orientation = {cos(0.15), s, 2.0 * s, 3.0 * s}};
   const frame f = frame_create(&pose, vec(0, 0, 0));
@@ -96,7 +96,7 @@ static test_mesh mesh_mantle(size_t n, size_t k, double radius, double half) {
 CASE(concentric_curves_end_within_the_budget) {
   enum { N = 64 };
   test_mesh mesh = mesh_mantle(N, 16, 0.5, 1.0);
-  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
   const vec3 axis[2] = {{0, 0, -0.8}, {0, 0, 0.8}};
   cprox_curve *along = bezier(axis, 2);
   expect_distance("axis", along, body, CPROX_POSE_IDENTITY, 1e-6, 0.5 * cos(3.141592653589793 / N), 1e-14, 120);
@@ -126,7 +126,7 @@ CASE(the_bisector_of_a_groove_converges) {
       mesh.triangles[i][c] = one.triangles[i][c];
       mesh.triangles[one.m + i][c] = one.triangles[i][c] + (uint32_t)one.n;
     }
-  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
   const vec3 line[2] = {{0.2, -0.8, 0.2}, {0.2, 0.8, 0.2}};
   cprox_curve *curve = bezier(line, 2);
   expect_distance("groove", curve, body, CPROX_POSE_IDENTITY, 1e-6, 0.2, 1e-15, 40);
@@ -142,7 +142,7 @@ CASE(the_bisector_of_a_groove_converges) {
 CASE(a_spline_of_a_thousand_pieces_is_answered) {
   enum { PIECES = 1000, POINTS = PIECES + 3 };
   test_mesh mesh = mesh_torus(60, 30, 1.0, 0.3, 0.1);
-  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
   static vec3 points[POINTS];
   static double knots[POINTS + 4];
   for (int k = 0; k < POINTS; k++) {
@@ -174,7 +174,7 @@ CASE(far_away_the_interval_is_as_wide_as_it_must_be) {
   rng r = rng_seed(121);
   for (int i = 0; i < 40; i++) {
     test_mesh mesh = mesh_torus(12, 8, 1.0, 0.3, 0.1);
-    cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+    cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
     const vec3 offset = rng_in_cube(&r, 1e6);
     cprox_pose pose = rng_pose(&r, 1.0);
     pose.position = vec_add(pose.position, offset);
@@ -202,7 +202,7 @@ CASE(far_away_the_interval_is_as_wide_as_it_must_be) {
 CASE(tiny_epsilons_end_with_the_narrowest_interval) {
   rng r = rng_seed(123);
   test_mesh mesh = mesh_torus(24, 16, 1.0, 0.3, 0.1);
-  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
   for (int i = 0; i < 60; i++) {
     vec3 points[5];
     for (int k = 0; k < 5; k++) points[k] = rng_in_cube(&r, 2.0);
@@ -224,7 +224,7 @@ CASE(tiny_epsilons_end_with_the_narrowest_interval) {
 /* A budget of 10 intervals for what needs hundreds: the interval is true. */
 CASE(a_budget_is_kept) {
   test_mesh mesh = mesh_mantle(64, 16, 0.5, 1.0);
-  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
   const vec3 axis[2] = {{0.001, 0, -0.8}, {0, 0.001, 0.8}};
   cprox_curve *curve = bezier(axis, 2);
   cprox_options options = CPROX_OPTIONS_DEFAULT;
@@ -251,7 +251,7 @@ CASE(a_budget_is_kept) {
  * it the tube is clear of every triangle. */
 CASE(time_of_contact_takes_few_intervals) {
   test_mesh mesh = mesh_torus(60, 30, 1.0, 0.3, 0.02);
-  cprox_body *body = mesh_body(&mesh, CPROX_MESH_SURFACE, ws);
+  cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);
   rng r = rng_seed(47);
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = 1e-9;

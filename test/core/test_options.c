@@ -86,7 +86,7 @@ static world make_world(void) {
   world w = {.way = bezier((vec3[]){{-1.1, 0.02, 0.01}, {0.1, -0.1, 0.03}, {1.2, 0.05, -0.02}}, 3),
              .line = bezier((vec3[]){{0.05, -1, 0.3}, {0.02, 1, 0.2}}, 2)};
   test_mesh torus = mesh_torus(12, 9, 0.5, 0.2, 0.0);
-  w.mesh = mesh_body(&torus, CPROX_MESH_SURFACE, ws);
+  w.mesh = mesh_body(&torus, CPROX_MESH_FILL_SURFACE, ws);
   assert_int_equal(cprox_body_create_points(torus.vertices, torus.n, 0.01, SIZE_MAX, ws, &w.cloud), CPROX_OK);
   mesh_free(&torus);
   assert_int_equal(cprox_body_create_sphere(0.5, ws, &w.ball), CPROX_OK);
@@ -103,7 +103,7 @@ static world make_world(void) {
                                                                    .n_variables = 2,
                                                                    .waypoints = points,
                                                                    .n_waypoints = 2,
-                                                                   .interpolation = CPROX_LINEAR},
+                                                                   .interpolation = CPROX_INTERPOLATION_LINEAR},
                                        ws, &w.motion),
                    CPROX_OK);
   return w;
@@ -271,7 +271,7 @@ static cprox_status of_batch(const cprox_obstacle *t, const cprox_mover *m, cons
   const cprox_result before = *r->result;
   const cprox_status status = which == 0   ? cprox_obstacles_distance_batch(batch, m, 0, 1, o, ws, r->result)
                               : which == 1 ? cprox_obstacles_tolerance_batch(batch, m, 0, 1, 0.1, o, ws, r->result)
-                                           : cprox_obstacles_collision_batch(batch, m, 0, 1, o, ws, r->result);
+                                           : cprox_obstacles_tolerance_batch(batch, m, 0, 1, 0.0, o, ws, r->result);
   cprox_obstacles_free(batch);
   if (status < 0) memcpy(r->result, &before, sizeof before);
   return status;

@@ -197,7 +197,7 @@ CASE(the_rounding_of_large_bodies_close_together_is_in_the_interval) {
   for (size_t i = 0; i < test_cases(100000); i++) {
     const vec3 along = rng_unit(&r);
     for (int k = 0; k < 2; k++) {
-      s[k] = (test_shape){.kind = CPROX_POLYTOPE, .n = 20};
+      s[k] = (test_shape){.kind = CPROX_BODY_POLYTOPE, .n = 20};
       for (size_t j = 0; j < s[k].n; j++) s[k].v[j] = vec_axpy(rng_unit(&r), rng_uniform(&r, -50.0, 50.0), along);
       assert_int_equal(cprox_body_create_polytope(s[k].v, s[k].n, NULL, &s[k].body), CPROX_OK);
     }
@@ -249,8 +249,8 @@ CASE(balls_have_their_exact_signed_distance) {
   rng r = rng_seed(307);
   static test_shape a, b;
   for (size_t i = 0; i < test_cases(50000); i++) {
-    shape_make(&r, rng_index(&r, 2) ? CPROX_SPHERE : CPROX_POINT, 1.0, 4.0, &a);
-    shape_make(&r, rng_index(&r, 4) ? TEST_BOUNDED[1 + rng_index(&r, 6)] : CPROX_SPHERE, 1.0, 4.0, &b);
+    shape_make(&r, rng_index(&r, 2) ? CPROX_BODY_SPHERE : CPROX_BODY_POINT, 1.0, 4.0, &a);
+    shape_make(&r, rng_index(&r, 4) ? TEST_BOUNDED[1 + rng_index(&r, 6)] : CPROX_BODY_SPHERE, 1.0, 4.0, &b);
     const cprox_pose pa = rng_pose(&r, 1.5), pb = rng_pose(&r, 1.5);
     cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.epsilon = 1e-12;

@@ -42,7 +42,7 @@ CASE(meshes_are_as_far_apart_as_their_nearest_triangles) {
   for (size_t i = 0; i < test_cases(60); i++) {
     test_mesh a = i % 2 ? mesh_soup(&r, 10 + rng_index(&r, 30), 1.0, 0.3) : mesh_torus(6, 5, 1.0, 0.3, 0.2);
     test_mesh b = i % 3 ? mesh_soup(&r, 10 + rng_index(&r, 30), 1.0, 0.3) : mesh_torus(5, 4, 1.0, 0.2, 0.1);
-    cprox_body *x = mesh_body(&a, CPROX_MESH_SURFACE, ws), *y = mesh_body(&b, CPROX_MESH_SURFACE, ws);
+    cprox_body *x = mesh_body(&a, CPROX_MESH_FILL_SURFACE, ws), *y = mesh_body(&b, CPROX_MESH_FILL_SURFACE, ws);
     const cprox_pose at = rng_pose(&r, 1.0);
     cprox_pose there = rng_pose(&r, 1.0);
     there.position = vec_add(there.position, vec(i % 4 ? 2.0 : 0.5, 0, 0));
@@ -78,7 +78,7 @@ CASE(large_meshes_clouds_and_boxes_too) {
   test_mesh torus = mesh_torus(40, 25, 1.0, 0.3, 0.1);
   vec3 low[300], high[300];
   for (int k = 0; k < 300; k++) low[k] = rng_in_cube(&r, 1.0), high[k] = vec_add(low[k], vec(0.05, 0.1, 0.02));
-  cprox_body *bodies[3] = {mesh_body(&torus, CPROX_MESH_SURFACE, ws)};
+  cprox_body *bodies[3] = {mesh_body(&torus, CPROX_MESH_FILL_SURFACE, ws)};
   assert_int_equal(cprox_body_create_points(low, 300, 0.01, SIZE_MAX, ws, &bodies[1]), CPROX_OK);
   assert_int_equal(cprox_body_create_boxes(low, high, 300, SIZE_MAX, ws, &bodies[2]), CPROX_OK);
   for (int i = 0; i < 60; i++) {
@@ -107,8 +107,9 @@ CASE(large_meshes_clouds_and_boxes_too) {
 /* A small box inside a hollow one: clear of the surface, inside of the solid. */
 CASE(one_inside_a_solid_overlaps_it) {
   test_mesh large = mesh_box(vec(1, 1, 1)), small = mesh_box(vec(0.1, 0.1, 0.1));
-  cprox_body *solid = mesh_body(&large, CPROX_MESH_SOLID, ws), *surface = mesh_body(&large, CPROX_MESH_SURFACE, ws);
-  cprox_body *inner = mesh_body(&small, CPROX_MESH_SURFACE, ws);
+  cprox_body *solid = mesh_body(&large, CPROX_MESH_FILL_SOLID, ws),
+             *surface = mesh_body(&large, CPROX_MESH_FILL_SURFACE, ws);
+  cprox_body *inner = mesh_body(&small, CPROX_MESH_FILL_SURFACE, ws);
   const cprox_pose here = CPROX_POSE_IDENTITY;
   cprox_result r;
   for (int swapped = 0; swapped < 2; swapped++) {
@@ -171,7 +172,7 @@ CASE(neither_order_nor_a_looser_epsilon_costs_more) {
   size_t worst = 0;
   for (size_t i = 0; i < test_cases(150); i++) {
     test_mesh a = any_mesh(&r, i), b = any_mesh(&r, i / 4);
-    cprox_body *x = mesh_body(&a, CPROX_MESH_SURFACE, ws), *y = mesh_body(&b, CPROX_MESH_SURFACE, ws);
+    cprox_body *x = mesh_body(&a, CPROX_MESH_FILL_SURFACE, ws), *y = mesh_body(&b, CPROX_MESH_FILL_SURFACE, ws);
     const cprox_pose at = rng_pose(&r, 0.2);
     cprox_pose there = rng_pose(&r, 0.2);
     there.position = vec_axpy(there.position, rng_uniform(&r, 0.5, 3.5), rng_unit(&r));
@@ -213,7 +214,7 @@ CASE(a_coarse_mesh_and_a_fine_one_take_the_same_either_way) {
   for (int shape = 0; shape < 2; shape++) {
     test_mesh a = shape ? open_tube(&r, 25, 20, 0.055, 0.4) : open_tube(&r, 500, 1, 0.055, 0.4);
     test_mesh b = open_tube(&r, 215, 100, 0.03, 0.12);
-    cprox_body *arm = mesh_body(&a, CPROX_MESH_SURFACE, ws), *sensor = mesh_body(&b, CPROX_MESH_SURFACE, ws);
+    cprox_body *arm = mesh_body(&a, CPROX_MESH_FILL_SURFACE, ws), *sensor = mesh_body(&b, CPROX_MESH_FILL_SURFACE, ws);
     for (int i = 0; i < 10; i++) {
       const cprox_pose at = CPROX_POSE_IDENTITY;
       cprox_pose there = rng_pose(&r, 0.0);
@@ -246,8 +247,8 @@ CASE(what_a_budget_leaves_open_is_bounded_by_what_is_meant) {
   for (size_t i = 0; i < test_cases(300); i++) {
     test_mesh a = mesh_torus(20, 12, 1.0, 0.3, 0.1), b = mesh_torus(18, 11, 0.5, 0.1, 0.05);
     const bool solid = i % 2;
-    cprox_body *x = mesh_body(&a, solid ? CPROX_MESH_SOLID : CPROX_MESH_SURFACE, ws);
-    cprox_body *y = mesh_body(&b, CPROX_MESH_SURFACE, ws);
+    cprox_body *x = mesh_body(&a, solid ? CPROX_MESH_FILL_SOLID : CPROX_MESH_FILL_SURFACE, ws);
+    cprox_body *y = mesh_body(&b, CPROX_MESH_FILL_SURFACE, ws);
     const cprox_obstacle one = cprox_obstacle_at(x, rng_pose(&r, 0.5)), two = cprox_obstacle_at(y, rng_pose(&r, 0.5));
     cprox_options options = CPROX_OPTIONS_DEFAULT;
     options.max_nodes = 5 + (uint32_t)rng_index(&r, 60);
@@ -275,7 +276,7 @@ static bool at_once(void *user) {
 /* The stop function ends a search through two meshes: what it says is true. */
 CASE(a_search_through_meshes_can_be_stopped) {
   test_mesh a = mesh_torus(40, 25, 1.0, 0.3, 0.1);
-  cprox_body *x = mesh_body(&a, CPROX_MESH_SURFACE, ws);
+  cprox_body *x = mesh_body(&a, CPROX_MESH_FILL_SURFACE, ws);
   cprox_pose there = CPROX_POSE_IDENTITY;
   there.position.x = 4.0;
   cprox_options options = CPROX_OPTIONS_DEFAULT;

@@ -38,7 +38,8 @@ static bool ccd_says_overlap(const test_shape *a, const cprox_pose *pa, const te
 CASE(libccd_gives_the_same_verdict_where_it_is_clear) {
   rng r = rng_seed(701);
   static test_shape a, b;
-  const cprox_body_kind kinds[] = {CPROX_SPHERE, CPROX_BOX, CPROX_CAPSULE, CPROX_CYLINDER, CPROX_CONE, CPROX_ELLIPSOID};
+  const cprox_body_kind kinds[] = {CPROX_BODY_SPHERE,   CPROX_BODY_BOX,  CPROX_BODY_CAPSULE,
+                                   CPROX_BODY_CYLINDER, CPROX_BODY_CONE, CPROX_BODY_ELLIPSOID};
   size_t apart = 0, together = 0;
   for (size_t i = 0; i < test_cases(100000); i++) {
     shape_make(&r, kinds[rng_index(&r, 6)], 1.0, 4.0, &a);

@@ -62,7 +62,7 @@ CASE(a_hair_over_a_face_the_bounds_still_meet) {
     const cprox_pose turned = rng_pose(&r, 0.0), pa = {.orientation = turned.orientation};
     /* b stands on a corner over a's top, a gap above it */
     cprox_pose pb = rng_pose(&r, 0.0);
-    test_shape sb = {.kind = CPROX_BOX, .size = {0.5, 0.5, 0.5}, .body = b};
+    test_shape sb = {.kind = CPROX_BODY_BOX, .size = {0.5, 0.5, 0.5}, .body = b};
     const vec3l up = pose_turn(&pa, (vec3l){0, 0, 1}), low = shape_extreme(&sb, &pb, ref_scale(-1, up));
     const double gap = rng_log_uniform(&r, 1e-15, 1e-10);
     const vec3l spot = pose_turn(&pa, (vec3l){rng_uniform(&r, -0.4, 0.4), rng_uniform(&r, -0.9, 0.9), 1.5L + gap});
@@ -82,7 +82,7 @@ CASE(a_hair_over_a_face_the_bounds_still_meet) {
 CASE(a_hair_beside_an_edge_the_bounds_still_meet) {
   rng r = rng_seed(608);
   static test_shape a, b;
-  const cprox_body_kind flat[] = {CPROX_BOX, CPROX_POLYTOPE};
+  const cprox_body_kind flat[] = {CPROX_BODY_BOX, CPROX_BODY_POLYTOPE};
   size_t asked = 0;
   for (size_t i = 0; i < test_cases(20000); i++) {
     shape_make(&r, flat[rng_index(&r, 2)], 1.0, 4.0, &a);
@@ -132,7 +132,8 @@ CASE(bodies_that_touch_are_neither_apart_nor_deep) {
 CASE(concentric_bodies_overlap) {
   static test_shape a, b;
   rng r = rng_seed(602);
-  const cprox_body_kind solid[] = {CPROX_BOX, CPROX_CYLINDER, CPROX_CONE, CPROX_ELLIPSOID, CPROX_SUPPORT};
+  const cprox_body_kind solid[] = {CPROX_BODY_BOX, CPROX_BODY_CYLINDER, CPROX_BODY_CONE, CPROX_BODY_ELLIPSOID,
+                                   CPROX_BODY_SUPPORT};
   for (int i = 0; i < 5; i++)
     for (int j = 0; j < 5; j++) {
       shape_make(&r, solid[i], 1.0, 4.0, &a);
@@ -152,7 +153,7 @@ CASE(concentric_bodies_overlap) {
  * the other way round; the bound on how many may is that of the design, 5e-4. */
 CASE(newton_that_does_not_help_gives_way) {
   rng r = rng_seed(603);
-  const cprox_body_kind curved[] = {CPROX_CYLINDER, CPROX_CONE, CPROX_ELLIPSOID, CPROX_POLYTOPE};
+  const cprox_body_kind curved[] = {CPROX_BODY_CYLINDER, CPROX_BODY_CONE, CPROX_BODY_ELLIPSOID, CPROX_BODY_POLYTOPE};
   static test_shape a, b;
   size_t undecided = 0;
   double steps = 0.0;

@@ -31,7 +31,7 @@ static cprox_body *surface(rng *r) {
   }
   cprox_body *mesh = NULL;
   assert_int_equal(
-      cprox_body_create_mesh(v, 12, (const uint32_t(*)[3])triangles, 4, CPROX_MESH_SURFACE, SIZE_MAX, ws, &mesh),
+      cprox_body_create_mesh(v, 12, (const uint32_t(*)[3])triangles, 4, CPROX_MESH_FILL_SURFACE, SIZE_MAX, ws, &mesh),
       CPROX_OK);
   return mesh;
 }
@@ -199,7 +199,7 @@ CASE(lanes_bound_what_is_under_them_over_the_whole_node) {
                                                                      .n_variables = 1,
                                                                      .waypoints = points,
                                                                      .n_waypoints = 2,
-                                                                     .interpolation = CPROX_LINEAR},
+                                                                     .interpolation = CPROX_INTERPOLATION_LINEAR},
                                          ws, &motion),
                      CPROX_OK);
 

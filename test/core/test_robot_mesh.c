@@ -37,7 +37,7 @@ static void mesh_robot_make(rng *r, mesh_robot *m) {
   robot_make(r, rng_log_uniform(r, 0.1, 2), t);
   for (size_t i = 0; i < t->n_links; i++) {
     m->mesh[i] = any_mesh(r);
-    m->surface[i] = mesh_body(&m->mesh[i], CPROX_MESH_SURFACE, ws);
+    m->surface[i] = mesh_body(&m->mesh[i], CPROX_MESH_FILL_SURFACE, ws);
     m->hull[i] = hull_of(&m->mesh[i]);
     m->lod[i] = NULL;
     assert_int_equal(cprox_body_create_lod(m->hull[i], 0.0, m->surface[i], ws, &m->lod[i]), CPROX_OK);
@@ -145,7 +145,7 @@ CASE(meshes_are_as_far_as_their_triangles_one_by_one) {
     mesh_robot_make(&r, &m);
     test_mesh standing = any_mesh(&r);
     cprox_pose pose = rng_pose(&r, 0.6);
-    cprox_body *surface = mesh_body(&standing, CPROX_MESH_SURFACE, ws), *hull = hull_of(&standing), *lod = NULL;
+    cprox_body *surface = mesh_body(&standing, CPROX_MESH_FILL_SURFACE, ws), *hull = hull_of(&standing), *lod = NULL;
     assert_int_equal(cprox_body_create_lod(hull, 0.0, surface, ws, &lod), CPROX_OK);
     static cprox_obstacle triangles[MOST];
     assert_true(standing.m < MOST);

@@ -93,7 +93,7 @@ static cprox_body *mesh_of_box(const cprox_body *box) {
   for (int i = 0; i < 8; i++)
     v[i] = vec(i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], i & 4 ? half[2] : -half[2]);
   cprox_body *mesh = NULL;
-  assert_int_equal(cprox_body_create_mesh(v, 8, TRIANGLES, 12, CPROX_MESH_SURFACE, SIZE_MAX, ws, &mesh), CPROX_OK);
+  assert_int_equal(cprox_body_create_mesh(v, 8, TRIANGLES, 12, CPROX_MESH_FILL_SURFACE, SIZE_MAX, ws, &mesh), CPROX_OK);
   return mesh;
 }
 
@@ -107,7 +107,7 @@ CASE(surfaces_of_boxes_are_as_far_as_boxes) {
     if (i % 5 == 0 && c.answers[0].lower > 0.0) {
       const cprox_result solid = ask(&c, &c.answers[0], -1.0);
       for (size_t k = 0; k < c.n_targets; k++) {
-        if (cprox_body_get_info(c.targets[k].body).kind != CPROX_BOX) continue;
+        if (cprox_body_get_info(c.targets[k].body).kind != CPROX_BODY_BOX) continue;
         cprox_body *mesh = mesh_of_box(c.targets[k].body);
         cprox_body_free((cprox_body *)c.targets[k].body);
         c.targets[k].body = mesh;
@@ -411,7 +411,7 @@ CASE(proven_contact_ends_a_query_at_once) {
                                                                    .n_variables = BALLS,
                                                                    .waypoints = points,
                                                                    .n_waypoints = POINTS,
-                                                                   .interpolation = CPROX_LINEAR},
+                                                                   .interpolation = CPROX_INTERPOLATION_LINEAR},
                                        ws, &motion),
                    CPROX_OK);
   const cprox_obstacle targets[2] = {
@@ -460,8 +460,11 @@ CASE(contact_of_faces_is_proven_near_its_time) {
     const double from = i / 4 ? 0.65 : 0.1, to = from + 1.0;
     const cprox_waypoint points[2] = {{.time = 0, .positions = &from}, {.time = 1, .positions = &to}};
     const int32_t variable = 0;
-    const cprox_motion_description d = {
-        .variables = &variable, .n_variables = 1, .waypoints = points, .n_waypoints = 2, .interpolation = CPROX_LINEAR};
+    const cprox_motion_description d = {.variables = &variable,
+                                        .n_variables = 1,
+                                        .waypoints = points,
+                                        .n_waypoints = 2,
+                                        .interpolation = CPROX_INTERPOLATION_LINEAR};
     cprox_robot *robot = NULL;
     cprox_motion *motion = NULL;
     assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robot), CPROX_OK);
@@ -510,7 +513,7 @@ CASE(bad_input_gets_a_sentence) {
                                                           .n_variables = 1,
                                                           .waypoints = points,
                                                           .n_waypoints = 1,
-                                                          .interpolation = CPROX_LINEAR},
+                                                          .interpolation = CPROX_INTERPOLATION_LINEAR},
                               ws, &motion),
           "at least 2");
   REFUSED(cprox_motion_create(robot,
@@ -519,7 +522,7 @@ CASE(bad_input_gets_a_sentence) {
                                                           .n_variables = 1,
                                                           .waypoints = points,
                                                           .n_waypoints = 2,
-                                                          .interpolation = CPROX_LINEAR},
+                                                          .interpolation = CPROX_INTERPOLATION_LINEAR},
                               ws, &motion),
           "must ascend");
   points[1].time = 1.0;
@@ -529,7 +532,7 @@ CASE(bad_input_gets_a_sentence) {
                                                           .n_variables = 2,
                                                           .waypoints = points,
                                                           .n_waypoints = 2,
-                                                          .interpolation = CPROX_LINEAR},
+                                                          .interpolation = CPROX_INTERPOLATION_LINEAR},
                               ws, &motion),
           "named twice");
   REFUSED(cprox_motion_create(robot,
@@ -538,7 +541,7 @@ CASE(bad_input_gets_a_sentence) {
                                                           .n_variables = 1,
                                                           .waypoints = points,
                                                           .n_waypoints = 2,
-                                                          .interpolation = CPROX_LINEAR},
+                                                          .interpolation = CPROX_INTERPOLATION_LINEAR},
                               ws, &motion),
           "no variable 3");
   REFUSED(cprox_motion_create(robot,
@@ -547,7 +550,7 @@ CASE(bad_input_gets_a_sentence) {
                                                           .n_variables = 1,
                                                           .waypoints = points,
                                                           .n_waypoints = 2,
-                                                          .interpolation = CPROX_CUBIC},
+                                                          .interpolation = CPROX_INTERPOLATION_CUBIC},
                               ws, &motion),
           "no velocities");
   points[1].positions = bad;
@@ -557,7 +560,7 @@ CASE(bad_input_gets_a_sentence) {
                                                           .n_variables = 1,
                                                           .waypoints = points,
                                                           .n_waypoints = 2,
-                                                          .interpolation = CPROX_LINEAR},
+                                                          .interpolation = CPROX_INTERPOLATION_LINEAR},
                               ws, &motion),
           "position 0 is");
   assert_null(motion);
@@ -597,7 +600,7 @@ CASE(bad_input_gets_a_sentence) {
                                                           .n_variables = 7,
                                                           .waypoints = turn,
                                                           .n_waypoints = 2,
-                                                          .interpolation = CPROX_LINEAR},
+                                                          .interpolation = CPROX_INTERPOLATION_LINEAR},
                               ws, &motion),
           "too near 0");
 

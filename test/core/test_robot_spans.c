@@ -110,7 +110,7 @@ static bool path_make(rng *r, size_t points, path_shape shape, path_times times,
   robot_make(r, 1.0, &p->t);
   p->n = p->t.n_variables;
   p->degree = rng_index(r, 3) == 0 ? 1 + rng_index(r, MOST_DEGREE) : 0;
-  p->interpolation = (cprox_interpolation)(CPROX_LINEAR + rng_index(r, 3));
+  p->interpolation = (cprox_interpolation)(CPROX_INTERPOLATION_LINEAR + rng_index(r, 3));
   if (p->points < p->degree + 2) p->points = p->degree + 2;
   const size_t size = p->points * (p->n + 1);
   p->times = calloc(p->points + p->degree + 1, sizeof(double));
@@ -155,9 +155,9 @@ static void path_values(const path *p, size_t segment, long double u, long doubl
     const long double v = h * p->velocities[i], w = h * p->velocities[i + n], u2 = u * u, u3 = u2 * u;
     const long double e = h * h * p->accelerations[i], f = h * h * p->accelerations[i + n], u4 = u3 * u, u5 = u4 * u;
     out[k] = a + u * (b - a);
-    if (p->interpolation == CPROX_CUBIC)
+    if (p->interpolation == CPROX_INTERPOLATION_CUBIC)
       out[k] = (2 * u3 - 3 * u2 + 1) * a + (u3 - 2 * u2 + u) * v + (3 * u2 - 2 * u3) * b + (u3 - u2) * w;
-    if (p->interpolation == CPROX_QUINTIC)
+    if (p->interpolation == CPROX_INTERPOLATION_QUINTIC)
       out[k] = (1 - 10 * u3 + 15 * u4 - 6 * u5) * a + (u - 6 * u3 + 8 * u4 - 3 * u5) * v +
                (u2 / 2 - 1.5L * u3 + 1.5L * u4 - u5 / 2) * e + (10 * u3 - 15 * u4 + 6 * u5) * b +
                (-4 * u3 + 7 * u4 - 3 * u5) * w + (u3 / 2 - u4 + u5 / 2) * f;
@@ -380,7 +380,7 @@ CASE(waypoints_on_a_line_cost_next_to_nothing) {
       rng r = rng_seed(4430 + (uint64_t)i);
       path p;
       const size_t size = COUNTS[c];
-      p = (path){.points = size, .interpolation = CPROX_LINEAR};
+      p = (path){.points = size, .interpolation = CPROX_INTERPOLATION_LINEAR};
       robot_make(&r, 1.0, &p.t);
       p.n = p.t.n_variables;
       const vec3 point = rng_in_cube(&r, 2.0);

@@ -30,7 +30,7 @@ static scene scene_make(rng *r, size_t n, double half, bool all) {
   assert_int_equal(cprox_body_create_sphere(0.1, ws, &s.body[0]), CPROX_OK);
   assert_int_equal(cprox_body_create_box(vec(0.05, 0.4, 0.1), ws, &s.body[1]), CPROX_OK);
   assert_int_equal(cprox_body_create_capsule(0.3, 0.05, ws, &s.body[2]), CPROX_OK);
-  s.body[3] = mesh_body(&s.mesh, CPROX_MESH_SURFACE, ws);
+  s.body[3] = mesh_body(&s.mesh, CPROX_MESH_FILL_SURFACE, ws);
   assert_int_equal(cprox_body_create_polytope(s.mesh.vertices, s.mesh.n, ws, &s.body[4]), CPROX_OK);
   assert_int_equal(cprox_body_create_lod(s.body[4], 0.0, s.body[3], ws, &s.body[5]), CPROX_OK);
   vec3 points[20];

@@ -238,7 +238,7 @@ static cprox_status make_robot(const robot_arguments *a) {
                                                              .n_variables = 1,
                                                              .waypoints = points,
                                                              .n_waypoints = 2,
-                                                             .interpolation = CPROX_QUINTIC,
+                                                             .interpolation = CPROX_INTERPOLATION_QUINTIC,
                                                              .rest = rest},
                                  ws, &motion);
   cprox_motion_free(motion);

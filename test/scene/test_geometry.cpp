@@ -123,7 +123,7 @@ TEST(Shapes, vertices_belong_to_points_polytopes_and_meshes) {
   s.vertices = Eigen::Matrix3Xd::Identity(3, 3);
   expectContains(refusal(s), "polygon vertex 2 has z = 1");
   s.vertices << 0, 1, 0, 0, 0, 1, 0, 0, 0;
-  EXPECT_EQ(cprox_body_get_info(makeGeometry(s).body.get()).kind, CPROX_POLYGON);
+  EXPECT_EQ(cprox_body_get_info(makeGeometry(s).body.get()).kind, CPROX_BODY_POLYGON);
   s = shape(ShapeType::POLYTOPE, {});
   s.vertices = Eigen::Matrix3Xd::Zero(3, 4);
   s.vertices(1, 2) = NAN;

@@ -19,24 +19,24 @@ extern "C" {
 typedef struct cprox_body cprox_body;
 
 typedef enum cprox_body_kind {
-  CPROX_POINT,
-  CPROX_SPHERE,
-  CPROX_BOX,
-  CPROX_CAPSULE,
-  CPROX_CYLINDER,
-  CPROX_CONE,
-  CPROX_ELLIPSOID,
-  CPROX_HALFSPACE,
-  CPROX_POLYTOPE,
-  CPROX_POLYGON,
-  CPROX_COMPOUND,
-  CPROX_SUPPORT,
-  CPROX_SUPERQUADRIC,
-  CPROX_IMPLICIT,
-  CPROX_MESH,
-  CPROX_POINTS,
-  CPROX_OCTREE,
-  CPROX_LOD
+  CPROX_BODY_POINT,
+  CPROX_BODY_SPHERE,
+  CPROX_BODY_BOX,
+  CPROX_BODY_CAPSULE,
+  CPROX_BODY_CYLINDER,
+  CPROX_BODY_CONE,
+  CPROX_BODY_ELLIPSOID,
+  CPROX_BODY_HALFSPACE,
+  CPROX_BODY_POLYTOPE,
+  CPROX_BODY_POLYGON,
+  CPROX_BODY_COMPOUND,
+  CPROX_BODY_SUPPORT,
+  CPROX_BODY_SUPERQUADRIC,
+  CPROX_BODY_IMPLICIT,
+  CPROX_BODY_MESH,
+  CPROX_BODY_POINTS,
+  CPROX_BODY_OCTREE,
+  CPROX_BODY_LOD
 } cprox_body_kind;
 
 /** One point [m], finite. */
@@ -106,16 +106,16 @@ CPROX_API cprox_status cprox_body_create_support(cprox_support_fn support, const
 /** What the inside of a mesh is. */
 typedef enum cprox_mesh_fill {
   /** nothing: the mesh is its triangles */
-  CPROX_MESH_SURFACE = 0,
+  CPROX_MESH_FILL_SURFACE = 0,
   /** part of the body, if the mesh is closed; see cprox_body_info.is_solid */
-  CPROX_MESH_SOLID = 1
+  CPROX_MESH_FILL_SOLID = 1
 } cprox_mesh_fill;
 
 /** A triangle mesh.
  *
  *  vertices      n of them [m], finite, at most 1e60 m from the origin; duplicates are allowed
  *  triangles     m of them, each three indices below n; degenerate and repeated triangles are allowed
- *  fill          CPROX_MESH_SOLID asks for the inside too, by the generalised winding number (Jacobson et al. 2013). It
+ *  fill          CPROX_MESH_FILL_SOLID asks for the inside too, by the generalised winding number (Jacobson et al. 2013). It
  *                is granted where the mesh is closed: every edge run through as often one way as the other, vertices
  *                with equal coordinates being one. Where it is not, the body is the surface, and
  *                cprox_body_info.is_solid says so.

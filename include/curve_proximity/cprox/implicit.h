@@ -30,8 +30,8 @@ typedef struct cprox_hyperquadric {
   size_t n_terms;
 } cprox_hyperquadric;
 
-/** The intersection of what is listed; each array NULL where its count is 0. At most 1024 constraints and terms in
- *  all. */
+/** The intersection of what is listed, or another body deformed; each array NULL where its count is 0. At most 1024
+ *  constraints and terms in all. Set all members to 0, then those that are needed. */
 typedef struct cprox_implicit_description {
   /** Hyperquadrics, or NULL. */
   const cprox_hyperquadric *hyperquadrics;
@@ -46,6 +46,14 @@ typedef struct cprox_implicit_description {
   const double (*quadrics)[10];
   /** The number of quadrics. */
   size_t n_quadrics;
+  /** NULL, or the superquadric or implicit body of whose constraints the set is made; then none is listed. Cheaper than
+   *  making the body anew: what a map does to centre and size is known. For bodies that deform from query to query. */
+  const cprox_body *deformed;
+  /** of the deformed body: one for each term in the order of its description (a superquadric's x, y, z), 1 … 1000;
+   *  NULL: as they are */
+  const double *exponents;
+  /** The number of exponents, that of the body's terms. */
+  size_t n_exponents;
 } cprox_implicit_description;
 
 /** The map x -> linear x + translation: rotation, scale, shear. */
@@ -56,7 +64,7 @@ typedef struct cprox_affine {
   cprox_vec3 translation;
 } cprox_affine;
 
-/** The image of the described set under a map (NULL: the set itself).
+/** The image of the described set under a map (NULL: the set itself), which works in the frame of the body.
  *
  *  The set must be bounded (within 1e10 m of the origin) and have an interior (a ball of 1e-9 of its size). The map is
  *  applied to the coefficients in twice the precision of double; the body is that of the coefficients so rounded.
@@ -65,18 +73,6 @@ typedef struct cprox_affine {
 CPROX_API cprox_status cprox_body_create_implicit(const cprox_implicit_description *description,
                                                   const cprox_affine *map, cprox_workspace *workspace,
                                                   cprox_body **body);
-
-/** A superquadric or implicit body deformed: its image under a map, with other exponents.
- *
- *  map        x -> linear x + translation in the body's frame; NULL: none
- *  exponents  one for each term in the order of the description (a superquadric's x, y, z), 1 … 1000; NULL: as they are
- *  n          their number, that of the body's terms
- *
- *  Cheaper than making the body anew: what a map does to centre and size is known. Meant for bodies that deform from
- *  query to query. Errors as cprox_body_create_implicit(). */
-CPROX_API cprox_status cprox_body_create_deformed(const cprox_body *body, const cprox_affine *map,
-                                                  const double *exponents, size_t n, cprox_workspace *workspace,
-                                                  cprox_body **deformed);
 
 #ifdef __cplusplus
 }

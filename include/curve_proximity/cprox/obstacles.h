@@ -177,16 +177,11 @@ CPROX_API cprox_status cprox_obstacles_distance_batch(const cprox_obstacles *obs
                                                       size_t first, size_t last, const cprox_options *options,
                                                       cprox_workspace *workspace, cprox_result *results);
 
-/** The same for cprox_obstacles_tolerance(). delta >= 0 [m]. */
+/** The same for cprox_obstacles_tolerance(), and at delta = 0 for cprox_obstacles_collision(). delta >= 0 [m]. */
 CPROX_API cprox_status cprox_obstacles_tolerance_batch(const cprox_obstacles *obstacles, const cprox_mover *movers,
                                                        size_t first, size_t last, double delta,
                                                        const cprox_options *options, cprox_workspace *workspace,
                                                        cprox_result *results);
-
-/** The same for cprox_obstacles_collision(). */
-CPROX_API cprox_status cprox_obstacles_collision_batch(const cprox_obstacles *obstacles, const cprox_mover *movers,
-                                                       size_t first, size_t last, const cprox_options *options,
-                                                       cprox_workspace *workspace, cprox_result *results);
 
 #ifdef __cplusplus
 }

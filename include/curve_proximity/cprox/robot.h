@@ -96,10 +96,10 @@ typedef struct cprox_waypoint {
 /** How variables go from one waypoint to the next, as joint_trajectory_controller has it. */
 typedef enum cprox_interpolation {
   /** by what both waypoints know: positions: linear; velocities too: cubic; accelerations too: quintic */
-  CPROX_BY_WAYPOINTS,
-  CPROX_LINEAR,
-  CPROX_CUBIC,
-  CPROX_QUINTIC
+  CPROX_INTERPOLATION_BY_WAYPOINTS,
+  CPROX_INTERPOLATION_LINEAR,
+  CPROX_INTERPOLATION_CUBIC,
+  CPROX_INTERPOLATION_QUINTIC
 } cprox_interpolation;
 
 /** The kinds of motions. Each comment names the members of cprox_motion_description that the kind reads, besides

@@ -147,10 +147,3 @@ cprox_status cprox_obstacles_tolerance_batch(const cprox_obstacles *obstacles, c
   const obstacle_batch *batch = batch_of(obstacles, workspace);
   return batch ? batch_tolerance(batch, movers, first, last, delta, options, workspace, results) : CPROX_INVALID;
 }
-
-cprox_status cprox_obstacles_collision_batch(const cprox_obstacles *obstacles, const cprox_mover *movers, size_t first,
-                                             size_t last, const cprox_options *options, cprox_workspace *workspace,
-                                             cprox_result *results) {
-  const obstacle_batch *batch = batch_of(obstacles, workspace);
-  return batch ? batch_collision(batch, movers, first, last, options, workspace, results) : CPROX_INVALID;
-}

@@ -98,7 +98,6 @@ static cprox_status answer_one(batch_run *run, const cprox_mover *mover, cprox_r
     return answer_fast(run, r);
   }
   if (!query_wants_verdict(q)) return list_distance(*mover, targets, n, &q->options, q->workspace, r, NULL);
-  if (!q->is_tolerance) return list_collision(*mover, targets, n, &q->options, q->workspace, r, NULL);
   return list_tolerance(*mover, targets, n, q->limit, &q->options, q->workspace, r, NULL);
 }
 
@@ -166,11 +165,5 @@ cprox_status batch_tolerance(const obstacle_batch *batch, const cprox_mover *mov
   const cprox_status checked = arguments_check_delta(delta, workspace);
   if (checked != CPROX_OK) return checked;
   const query q = query_create((cprox_mover){0}, NULL, 0, delta, true, options, workspace);
-  return answer_range(q, batch, movers, first, last, results);
-}
-
-cprox_status batch_collision(const obstacle_batch *batch, const cprox_mover *movers, size_t first, size_t last,
-                             const cprox_options *options, cprox_workspace *workspace, cprox_result *results) {
-  const query q = query_create((cprox_mover){0}, NULL, 0, 0.0, false, options, workspace);
   return answer_range(q, batch, movers, first, last, results);
 }

@@ -10,7 +10,5 @@ cprox_status batch_distance(const obstacle_batch *batch, const cprox_mover *move
 cprox_status batch_tolerance(const obstacle_batch *batch, const cprox_mover *movers, size_t first, size_t last,
                              double delta, const cprox_options *options, cprox_workspace *workspace,
                              cprox_result *results);
-cprox_status batch_collision(const obstacle_batch *batch, const cprox_mover *movers, size_t first, size_t last,
-                             const cprox_options *options, cprox_workspace *workspace, cprox_result *results);
 
 #endif

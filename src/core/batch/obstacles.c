@@ -17,7 +17,7 @@
 /* How deep a point of the shape's frame lies inside, at least; 0 or less: not known to be inside. */
 static double depth_at(const convex *shape, vec3 y) {
   convex_near near;
-  if (shape->ops->kind == CPROX_POLYGON)
+  if (shape->ops->kind == CPROX_BODY_POLYGON)
     convex_polygon_nearest_in_plane(shape, y, &near);
   else
     shape->ops->nearest(shape, y, NULL, &near);
@@ -28,7 +28,7 @@ static double depth_at(const convex *shape, vec3 y) {
 /* Climbs from the origin of the shape's frame, by steps along the axes that shrink. A deep point makes fast answers, none is needed. */
 static double deepest(const convex *shape, vec3 *centre) {
   enum { HALVINGS = 8 };
-  const int axes = shape->ops->kind == CPROX_POLYGON ? 2 : 3;
+  const int axes = shape->ops->kind == CPROX_BODY_POLYGON ? 2 : 3;
   double best = depth_at(shape, vec(0, 0, 0));
   *centre = vec(0, 0, 0);
   double step = 0.25 * shape->scale;
@@ -48,14 +48,14 @@ static double deepest(const convex *shape, vec3 *centre) {
 /* Shapes whose nearest point is cheap, certain and tells a depth. */
 static bool has_depth(const cprox_body *body) {
   switch (body->kind) {
-    case CPROX_SPHERE:
-    case CPROX_BOX:
-    case CPROX_CAPSULE:
-    case CPROX_CYLINDER:
-    case CPROX_CONE:
-    case CPROX_ELLIPSOID:
-    case CPROX_POLYTOPE:
-    case CPROX_POLYGON: return true;
+    case CPROX_BODY_SPHERE:
+    case CPROX_BODY_BOX:
+    case CPROX_BODY_CAPSULE:
+    case CPROX_BODY_CYLINDER:
+    case CPROX_BODY_CONE:
+    case CPROX_BODY_ELLIPSOID:
+    case CPROX_BODY_POLYTOPE:
+    case CPROX_BODY_POLYGON: return true;
     default: return false;
   }
 }
@@ -78,7 +78,7 @@ static batch_core core_of(const placed_pair *p, candidate_ball round) {
   batch_core core = {.centre = round.centre, .inner = -1.0, .outer = round.radius};
   if (!body || !has_depth(body)) return core;
   const frame f = frame_create(&p->pose, body->centre);
-  core.flat = body->kind == CPROX_POLYGON;
+  core.flat = body->kind == CPROX_BODY_POLYGON;
   if (core.flat && !f.about_z) return core;
   vec3 centre;
   const double depth = deepest(&body->shape, &centre);
@@ -101,7 +101,7 @@ static double half_along(const convex *shape, vec3 axis) {
 /* A ball says more of a sphere than any box. */
 static void lay_obb(const placed_pair *p, batch_core *core) {
   const cprox_body *body = p->shape;
-  if (!body || !has_depth(body) || body->kind == CPROX_SPHERE) return;
+  if (!body || !has_depth(body) || body->kind == CPROX_BODY_SPHERE) return;
   const convex *shape = &body->shape;
   const frame f = p->frame;
   lanes_obb *obb = &core->obb;
@@ -109,7 +109,7 @@ static void lay_obb(const placed_pair *p, batch_core *core) {
   obb->position = f.position;
   obb->centre = f.centre;
   core->has_obb = true;
-  core->is_obb = body->kind == CPROX_BOX;
+  core->is_obb = body->kind == CPROX_BODY_BOX;
   obb->half = vec(shape->size[0], shape->size[1], shape->size[2]);
   if (!core->is_obb)
     obb->half = vec(half_along(shape, vec(1, 0, 0)), half_along(shape, vec(0, 1, 0)), half_along(shape, vec(0, 0, 1)));
@@ -121,7 +121,7 @@ static void lay_obb(const placed_pair *p, batch_core *core) {
 /* ---- the batch ---------------------------------------------------------------------------------------------------------- */
 
 static size_t parts_of(const cprox_obstacle *target) {
-  return target->body && target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
+  return target->body && target->body->kind == CPROX_BODY_COMPOUND ? target->body->n_parts : 1;
 }
 
 static obstacle_batch *allocate(size_t n_targets, size_t n_parts) {

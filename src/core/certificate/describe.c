@@ -35,11 +35,11 @@ static void say_vertices(text *t, const cprox_body *body) {
 
 static bool is_known(const cprox_body *body) {
   if (!body->mesh) return reach_is_known(body);
-  return body->hull->kind == CPROX_POLYTOPE || body->hull->kind == CPROX_POLYGON;
+  return body->hull->kind == CPROX_BODY_POLYTOPE || body->hull->kind == CPROX_BODY_POLYGON;
 }
 
 const cprox_body *say_unknown(const cprox_body *body) {
-  if (body->kind != CPROX_COMPOUND) return is_known(body) ? NULL : body;
+  if (body->kind != CPROX_BODY_COMPOUND) return is_known(body) ? NULL : body;
   for (size_t i = 0; i < body->n_parts; i++)
     if (!is_known(body->parts[i].body)) return body->parts[i].body;
   return NULL;
@@ -59,17 +59,17 @@ void say_body(text *t, const cprox_body *body) {
     return;
   }
   switch (body->kind) {
-    case CPROX_POINT:
+    case CPROX_BODY_POINT:
       say(t, " point");
       say_vector(t, body->centre);
       break;
-    case CPROX_SPHERE: say(t, " sphere %a", size[0]); break;
-    case CPROX_BOX: say(t, " box %a %a %a", size[0], size[1], size[2]); break;
-    case CPROX_CAPSULE: say(t, " capsule %a %a", size[1], size[0]); break;
-    case CPROX_CYLINDER: say(t, " cylinder %a %a", size[1], size[0]); break;
-    case CPROX_CONE: say(t, " cone %a %a", size[1], size[0]); break;
-    case CPROX_ELLIPSOID: say(t, " ellipsoid %a %a %a", size[0], size[1], size[2]); break;
-    case CPROX_HALFSPACE: say(t, " halfspace %a %a %a %a", size[0], size[1], size[2], size[3]); break;
+    case CPROX_BODY_SPHERE: say(t, " sphere %a", size[0]); break;
+    case CPROX_BODY_BOX: say(t, " box %a %a %a", size[0], size[1], size[2]); break;
+    case CPROX_BODY_CAPSULE: say(t, " capsule %a %a", size[1], size[0]); break;
+    case CPROX_BODY_CYLINDER: say(t, " cylinder %a %a", size[1], size[0]); break;
+    case CPROX_BODY_CONE: say(t, " cone %a %a", size[1], size[0]); break;
+    case CPROX_BODY_ELLIPSOID: say(t, " ellipsoid %a %a %a", size[0], size[1], size[2]); break;
+    case CPROX_BODY_HALFSPACE: say(t, " halfspace %a %a %a %a", size[0], size[1], size[2], size[3]); break;
     default: say(t, " polytope"); say_vertices(t, body);
   }
 }
@@ -86,7 +86,7 @@ size_t cprox_obstacle_describe(const cprox_obstacle *target, char *out, size_t s
   const cprox_body *body = target->body;
   if (!body || target->synchronized || say_unknown(body)) return 0;
   text t = {.at = out, .size = out ? size : 0};
-  if (body->kind != CPROX_COMPOUND) {
+  if (body->kind != CPROX_BODY_COMPOUND) {
     say_part(&t, target, body, NULL);
     return t.length;
   }

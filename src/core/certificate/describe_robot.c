@@ -29,7 +29,7 @@ static void say_part(text *t, const cprox_link_geometry *g, const cprox_body *bo
 }
 
 static void say_geometry(text *t, const cprox_link_geometry *g) {
-  if (g->body->kind != CPROX_COMPOUND) {
+  if (g->body->kind != CPROX_BODY_COMPOUND) {
     say_part(t, g, g->body, NULL);
     return;
   }

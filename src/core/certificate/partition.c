@@ -36,7 +36,7 @@ double cover_cut(const cover *c, reach_part part, double witness) {
 
 static trial try_normal(const cover *c, vec3 n) {
   trial t = {.n = n};
-  if (c->set.body->kind == CPROX_HALFSPACE) {
+  if (c->set.body->kind == CPROX_BODY_HALFSPACE) {
     /* it has one normal, which the checker knows */
     t.n = vec(0, 0, 0);
     t.direction = reach_of_halfspace(&c->set);

@@ -31,7 +31,7 @@ typedef struct view {
 } view;
 
 static bool is_halfspace(const view *v) {
-  return v->standing->side.shape->ops->kind == CPROX_HALFSPACE;
+  return v->standing->side.shape->ops->kind == CPROX_BODY_HALFSPACE;
 }
 
 /* Does a normal in the frame of what stands settle the pair? unsure: by how much it may be off. */
@@ -59,7 +59,7 @@ static outcome settle(const robot_cover *c, const view *v, double width, vec3 *w
   /* from the box to the centre */
   const vec3 apart = vec_sub(v->moving->side.at.p, v->standing->side.at.p);
   const vec3 y = vec_sub(placement_turn_back(&v->standing->side.at, apart), v->standing->middle);
-  const bool rounded = v->standing->side.shape->ops->kind == CPROX_ELLIPSOID; /* the box is that of its core */
+  const bool rounded = v->standing->side.shape->ops->kind == CPROX_BODY_ELLIPSOID; /* the box is that of its core */
   const double more = rounded ? v->standing->side.shape->margin : 0.0;
   const vec3 h = vec_add(v->standing->half, vec(more, more, more));
   vec3 out = vec(copysign(fmax(fabs(y.x) - h.x, 0.0), y.x), copysign(fmax(fabs(y.y) - h.y, 0.0), y.y),

@@ -66,16 +66,16 @@ static reach_direction turn(cprox_quat q, double w, const reach_direction *n) {
 
 bool reach_is_known(const cprox_body *body) {
   switch (body->kind) {
-    case CPROX_POINT:
-    case CPROX_SPHERE:
-    case CPROX_BOX:
-    case CPROX_CAPSULE:
-    case CPROX_CYLINDER:
-    case CPROX_CONE:
-    case CPROX_ELLIPSOID:
-    case CPROX_HALFSPACE:
-    case CPROX_POLYTOPE:
-    case CPROX_POLYGON: return true;
+    case CPROX_BODY_POINT:
+    case CPROX_BODY_SPHERE:
+    case CPROX_BODY_BOX:
+    case CPROX_BODY_CAPSULE:
+    case CPROX_BODY_CYLINDER:
+    case CPROX_BODY_CONE:
+    case CPROX_BODY_ELLIPSOID:
+    case CPROX_BODY_HALFSPACE:
+    case CPROX_BODY_POLYTOPE:
+    case CPROX_BODY_POLYGON: return true;
     default: return false;
   }
 }
@@ -94,20 +94,21 @@ static dd support(const convex *shape, const reach_direction *n) {
   const double *size = shape->size;
   const dd x = n->k[0], y = n->k[1], z = n->k[2];
   switch (shape->ops->kind) {
-    case CPROX_BOX:
+    case CPROX_BODY_BOX:
       return dd_add(dd_add(dd_scale(absolute(x), size[0]), dd_scale(absolute(y), size[1])),
                     dd_scale(absolute(z), size[2]));
-    case CPROX_CAPSULE: return dd_scale(absolute(z), size[1]);
-    case CPROX_CYLINDER: return dd_add(dd_scale(norm(x, y, dd_from(0.0)), size[0]), dd_scale(absolute(z), size[1]));
-    case CPROX_CONE: {
+    case CPROX_BODY_CAPSULE: return dd_scale(absolute(z), size[1]);
+    case CPROX_BODY_CYLINDER:
+      return dd_add(dd_scale(norm(x, y, dd_from(0.0)), size[0]), dd_scale(absolute(z), size[1]));
+    case CPROX_BODY_CONE: {
       const dd apex = dd_scale(z, size[1]);
       const dd rim = subtract(dd_scale(norm(x, y, dd_from(0.0)), size[0]), apex);
       return is_less(apex, rim) ? rim : apex;
     }
-    case CPROX_ELLIPSOID: return norm(dd_scale(x, size[0]), dd_scale(y, size[1]), dd_scale(z, size[2]));
-    case CPROX_HALFSPACE: return dd_from(-size[3]);
-    case CPROX_POLYTOPE:
-    case CPROX_POLYGON: return farthest_vertex(shape, n);
+    case CPROX_BODY_ELLIPSOID: return norm(dd_scale(x, size[0]), dd_scale(y, size[1]), dd_scale(z, size[2]));
+    case CPROX_BODY_HALFSPACE: return dd_from(-size[3]);
+    case CPROX_BODY_POLYTOPE:
+    case CPROX_BODY_POLYGON: return farthest_vertex(shape, n);
     default: return dd_from(0.0); /* a point, a sphere */
   }
 }
@@ -140,7 +141,7 @@ reach_value reach_of_body(const reach_set *set, const reach_direction *n) {
   const cprox_body *body = set->body;
   reach_value far;
   const reach_direction own = to_own_frame(set, n, &far);
-  const bool rounded = body->kind == CPROX_SPHERE || body->kind == CPROX_CAPSULE;
+  const bool rounded = body->kind == CPROX_BODY_SPHERE || body->kind == CPROX_BODY_CAPSULE;
   const double ball = set->offset, margin = rounded ? body->shape.margin : 0.0;
   far.value = dd_add(far.value, dd_add(dot(&own, body->centre), support(&body->shape, &own)));
   far.value = dd_add(far.value, dd_multiply(length(n), dd_sum(ball, margin)));

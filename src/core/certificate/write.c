@@ -30,7 +30,7 @@ typedef struct task {
 } task;
 
 static size_t parts_of(const cprox_obstacle *target) {
-  return target->body && target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
+  return target->body && target->body->kind == CPROX_BODY_COMPOUND ? target->body->n_parts : 1;
 }
 
 /* The counting parameter at t. */
@@ -60,7 +60,7 @@ static cover cover_of(const task *t, size_t target, size_t part, uint32_t width)
              .workspace = t->workspace,
              .certificate = t->certificate};
   c.set.offset = sum_up(t->mover->radius, at->margin);
-  if (at->body && at->body->kind == CPROX_COMPOUND) {
+  if (at->body && at->body->kind == CPROX_BODY_COMPOUND) {
     const body_part *inner = &at->body->parts[part];
     c.set.body = inner->body;
     c.set.pose[1] = &inner->pose;

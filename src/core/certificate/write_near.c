@@ -20,10 +20,10 @@ static vec3 local_point(const cover *c, const frame *f, vec3 world, double *erro
 double cover_inner_radius(const convex *shape) {
   const double *s = shape->size;
   switch (shape->ops->kind) {
-    case CPROX_BOX:
-    case CPROX_ELLIPSOID: return fmin(s[0], fmin(s[1], s[2]));
-    case CPROX_CYLINDER: return fmin(s[0], s[1]);
-    case CPROX_CONE: return fmin(s[1], 0.999 * s[0] * s[1] / sqrt(s[0] * s[0] + 4.0 * s[1] * s[1]));
+    case CPROX_BODY_BOX:
+    case CPROX_BODY_ELLIPSOID: return fmin(s[0], fmin(s[1], s[2]));
+    case CPROX_BODY_CYLINDER: return fmin(s[0], s[1]);
+    case CPROX_BODY_CONE: return fmin(s[1], 0.999 * s[0] * s[1] / sqrt(s[0] * s[0] + 4.0 * s[1] * s[1]));
     default: return s[0]; /* a sphere, a capsule */
   }
 }
@@ -38,8 +38,8 @@ double cover_near_point(const cprox_body *body, cprox_certificate *certificate, 
   const convex *shape = &body->shape;
   const cprox_body_kind kind = body->kind;
   convex_hint hint = {0};
-  if (kind == CPROX_POINT) return vec_norm(y) + error;
-  if (kind == CPROX_POLYTOPE || kind == CPROX_POLYGON) {
+  if (kind == CPROX_BODY_POINT) return vec_norm(y) + error;
+  if (kind == CPROX_BODY_POLYTOPE || kind == CPROX_BODY_POLYGON) {
     gjk_answer answer;
     gjk_nearest(shape, y, &hint, &answer);
     const bool inside = answer.distance < 0.0;
@@ -53,7 +53,7 @@ double cover_near_point(const cprox_body *body, cprox_certificate *certificate, 
   if (near.distance > -error) {
     const double drawn = error + ROOM * ROUND_U * (vec_norm(y) + shape->scale);
     const double inner = cover_inner_radius(shape);
-    if (kind == CPROX_HALFSPACE)
+    if (kind == CPROX_BODY_HALFSPACE)
       v = vec_scale(near.distance + drawn, near.normal);
     else if (drawn < 0.5 * inner)
       v = vec_sub(y, vec_scale(1.0 - drawn / inner, near.point));

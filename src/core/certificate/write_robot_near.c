@@ -23,14 +23,14 @@ static const cprox_body *body_of_part(const cprox_robot *robot, int32_t part) {
   size_t first = (size_t)part;
   while (first > 0 && robot->parts[first - 1].geometry == robot->parts[part].geometry) first--;
   const cprox_body *body = robot->given_geometries[robot->parts[part].geometry].body;
-  if (body->kind == CPROX_COMPOUND) body = body->parts[(size_t)part - first].body;
+  if (body->kind == CPROX_BODY_COMPOUND) body = body->parts[(size_t)part - first].body;
   return body->mesh ? NULL : body;
 }
 
 static const cprox_body *body_of_obstacle(const robot_scene *s, int32_t obstacle) {
   const robot_body *o = &s->obstacles[obstacle];
   const cprox_body *body = s->q->targets[o->index].body;
-  if (body->kind == CPROX_COMPOUND) body = body->parts[o->part].body;
+  if (body->kind == CPROX_BODY_COMPOUND) body = body->parts[o->part].body;
   return body->mesh ? NULL : body;
 }
 
@@ -56,8 +56,8 @@ static int32_t nearest_pair(robot_scene *s, const cprox_result *answer, robot_ga
 static vec3 write_point_of(const cprox_body *body, cprox_certificate *c, vec3 y) {
   const convex *shape = &body->shape;
   convex_hint hint = {0};
-  if (body->kind == CPROX_POINT) return vec(0, 0, 0);
-  if (body->kind == CPROX_POLYTOPE || body->kind == CPROX_POLYGON) {
+  if (body->kind == CPROX_BODY_POINT) return vec(0, 0, 0);
+  if (body->kind == CPROX_BODY_POLYTOPE || body->kind == CPROX_BODY_POLYGON) {
     gjk_answer answer;
     gjk_nearest(shape, y, &hint, &answer);
     vec3 mean = vec(0, 0, 0);

@@ -48,7 +48,7 @@ static void capsule_project(const convex *shape, vec3 y, convex_foot *foot) {
 }
 
 /* near_rounding: a difference (u), a norm (3u), a difference (u). */
-const convex_ops convex_capsule = {.kind = CPROX_CAPSULE,
+const convex_ops convex_capsule = {.kind = CPROX_BODY_CAPSULE,
                                    .near_rounding = 6.0,
                                    .nearest = capsule_nearest,
                                    .support = capsule_support,

@@ -111,7 +111,7 @@ static void cone_project(const convex *shape, vec3 y, convex_foot *foot) {
 /* near_rounding: rho (2u) times height (u), plus c (u) times radius (u), a sum (u), over slant (2u), a quotient (u): 7u of
  * rho and 6u of |c|, at most 10u of |y| + scale. A region mistaken by rounding changes the distance by as little, since
  * each test compares coordinates that are exact to u about the feature it decides for. */
-const convex_ops convex_cone = {.kind = CPROX_CONE,
+const convex_ops convex_cone = {.kind = CPROX_BODY_CONE,
                                 .near_rounding = 12.0,
                                 .nearest = cone_nearest,
                                 .support = cone_support,

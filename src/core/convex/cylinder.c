@@ -82,7 +82,7 @@ static void cylinder_project(const convex *shape, vec3 y, convex_foot *foot) {
 }
 
 /* near_rounding: rho (2u), two differences (u), a norm (2u), each of at most |y| + scale. */
-const convex_ops convex_cylinder = {.kind = CPROX_CYLINDER,
+const convex_ops convex_cylinder = {.kind = CPROX_BODY_CYLINDER,
                                     .near_rounding = 8.0,
                                     .nearest = cylinder_nearest,
                                     .support = cylinder_support,

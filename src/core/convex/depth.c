@@ -52,10 +52,10 @@ double depth_proven(const convex *shape, vec3 y) {
 /* Whether the kind's nearest() does not know depths. */
 static bool only_proves(const convex *shape) {
   switch (shape->ops->kind) {
-    case CPROX_POLYTOPE:
-    case CPROX_SUPPORT: return true;
-    case CPROX_SUPERQUADRIC:
-    case CPROX_IMPLICIT: return shape->ops->curvature != NULL; /* its support function has a closed form */
+    case CPROX_BODY_POLYTOPE:
+    case CPROX_BODY_SUPPORT: return true;
+    case CPROX_BODY_SUPERQUADRIC:
+    case CPROX_BODY_IMPLICIT: return shape->ops->curvature != NULL; /* its support function has a closed form */
     default: return false;
   }
 }

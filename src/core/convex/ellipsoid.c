@@ -178,7 +178,7 @@ static bool ellipsoid_cover(const convex *shape, const convex_near *near, convex
 
 /* near_rounding: each term rz_i/(sigma + k_i) is within 12u, so G within 27u and the sigma found solves the problem of a
  * point within 18u |y| of y; the formula for d adds 30u of d <= |y| + a_max. */
-const convex_ops convex_ellipsoid = {.kind = CPROX_ELLIPSOID,
+const convex_ops convex_ellipsoid = {.kind = CPROX_BODY_ELLIPSOID,
                                      .near_rounding = 64.0,
                                      .nearest = ellipsoid_nearest,
                                      .support = ellipsoid_support,

@@ -28,7 +28,7 @@ void flat_describe(const convex *shape, flat_shape *flat) {
   *flat = (flat_shape){.dimension = 3};
   vec3 to = vec(0, 0, 0);
   const double least = FLAT * shape->scale;
-  if (shape->ops->kind == CPROX_HALFSPACE) return;
+  if (shape->ops->kind == CPROX_BODY_HALFSPACE) return;
   longest_chord(shape, &flat->origin, &to);
   const double length = feature_unit(vec_sub(to, flat->origin), &flat->e);
   if (!(length > least)) flat->e = vec(1, 0, 0);

@@ -26,7 +26,7 @@ static double difference_support(const convex *shape, vec3 d, convex_hint *hint,
 /* ---- nearest points ---- */
 
 static bool has_closed_form(const convex *shape) {
-  return shape->ops->kind != CPROX_POLYTOPE && shape->ops->kind != CPROX_SUPPORT;
+  return shape->ops->kind != CPROX_BODY_POLYTOPE && shape->ops->kind != CPROX_BODY_SUPPORT;
 }
 
 /* r H r^T */
@@ -60,7 +60,7 @@ static void nearest_of_ball(const convex *shape, vec3 y, convex_near *near) {
 static void difference_nearest(const convex *shape, vec3 y, convex_hint *hint, convex_near *near) {
   (void)hint;
   const convex *standing = shape->standing, *carried = shape->carried;
-  const bool ball = standing->ops->kind == CPROX_POINT || standing->ops->kind == CPROX_SPHERE;
+  const bool ball = standing->ops->kind == CPROX_BODY_POINT || standing->ops->kind == CPROX_BODY_SPHERE;
   if (ball && has_closed_form(carried)) {
     nearest_of_ball(shape, y, near);
     return;
@@ -83,7 +83,7 @@ static void difference_nearest(const convex *shape, vec3 y, convex_hint *hint, c
 
 /* near_rounding: that of pair_separate, 32, and the steps to and from it; no closed form of a carried shape needs more. */
 const convex_ops convex_difference = {
-    .kind = CPROX_SUPPORT, .near_rounding = 72.0, .nearest = difference_nearest, .support = difference_support};
+    .kind = CPROX_BODY_SUPPORT, .near_rounding = 72.0, .nearest = difference_nearest, .support = difference_support};
 
 /* ---- making ---- */
 
@@ -112,8 +112,8 @@ bool difference_make(const convex *standing, const convex *carried, const double
                      convex *difference) {
   /* r, computed from two poses, and its product with a point or a direction; doc/rounding.md, T3 */
   const double turning = turned ? 2.0 * ROUND_ROTATION * ROUND_U : 0.0;
-  if (standing->ops->kind == CPROX_HALFSPACE) return make_halfspace(standing, carried, r, turning, difference);
-  if (standing->ops->kind == CPROX_BOX && carried->ops->kind == CPROX_BOX && !turned) {
+  if (standing->ops->kind == CPROX_BODY_HALFSPACE) return make_halfspace(standing, carried, r, turning, difference);
+  if (standing->ops->kind == CPROX_BODY_BOX && carried->ops->kind == CPROX_BODY_BOX && !turned) {
     make_box(standing, carried, difference);
     return true;
   }

@@ -396,12 +396,12 @@ static simplex_vertex pair_farthest(void *self, vec3 n) {
 
 static bool is_of_revolution(const convex *shape) {
   switch (shape->ops->kind) {
-    case CPROX_POINT:
-    case CPROX_SPHERE:
-    case CPROX_CAPSULE:
-    case CPROX_CYLINDER:
-    case CPROX_CONE: return true;
-    case CPROX_ELLIPSOID: return shape->size[0] == shape->size[1];
+    case CPROX_BODY_POINT:
+    case CPROX_BODY_SPHERE:
+    case CPROX_BODY_CAPSULE:
+    case CPROX_BODY_CYLINDER:
+    case CPROX_BODY_CONE: return true;
+    case CPROX_BODY_ELLIPSOID: return shape->size[0] == shape->size[1];
     default: return false;
   }
 }

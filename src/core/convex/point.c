@@ -28,7 +28,7 @@ static void point_project(const convex *shape, vec3 y, convex_foot *foot) {
 }
 
 /* near_rounding: a norm, 3u of |y|. */
-const convex_ops convex_point = {.kind = CPROX_POINT,
+const convex_ops convex_point = {.kind = CPROX_BODY_POINT,
                                  .near_rounding = 4.0,
                                  .nearest = point_nearest,
                                  .support = point_support,

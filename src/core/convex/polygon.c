@@ -183,7 +183,7 @@ void convex_polygon_nearest_in_plane(const convex *shape, vec3 y, convex_near *n
 }
 
 /* near_rounding: vertices about the centre (u), a difference (u), an edge's direction (3u), a product (3u), a norm (3u). */
-const convex_ops convex_polygon = {.kind = CPROX_POLYGON,
+const convex_ops convex_polygon = {.kind = CPROX_BODY_POLYGON,
                                    .near_rounding = 16.0,
                                    .nearest = polygon_nearest,
                                    .support = vertices_support,

@@ -14,7 +14,7 @@ static bool piece_is_planar(curve_convex *o) {
     const size_t degree = o->side.curve->degree;
     const double *z = points_pool_at(&o->pool, CURVE_CONVEX_ROOT) + 2 * (degree + 1);
     o->planar_piece = o->side.root_piece;
-    o->planar = o->shape->ops->kind == CPROX_POLYGON && o->side.frame.about_z && !o->side.curve->arcs;
+    o->planar = o->shape->ops->kind == CPROX_BODY_POLYGON && o->side.frame.about_z && !o->side.curve->arcs;
     for (size_t i = 0; i <= degree && o->planar; i++) o->planar = z[i] == 0.0;
   }
   return o->planar;
@@ -361,7 +361,7 @@ static void bound_range_children(const curve_convex *o, search_node *child, size
 /* And by the ball about the frame's origin that the body lies in: each from its own side, as no one plane sees them. */
 static void bound_range_children_by_ball(const curve_convex *o, search_node *child, size_t n) {
   const convex *shape = o->shape;
-  if (shape->ops->kind == CPROX_HALFSPACE) return;
+  if (shape->ops->kind == CPROX_BODY_HALFSPACE) return;
   double least[CURVE_PACK];
   const curve_reach reach = curve_side_children_distance(&o->side, &curve_convex_own(&child[0])->at, least);
   const double radius = shape->scale + o->offset;

@@ -56,10 +56,11 @@ static cprox_status check_waypoint(const cprox_waypoint *p, size_t i, size_t n, 
     return workspace_fail(workspace, CPROX_INVALID,
                           "waypoint %zu is at %.15g s, waypoint %zu at %.15g s: times must ascend", i - 1, p[-1].time,
                           i, p->time);
-  const bool wants_velocity = interpolation == CPROX_CUBIC || interpolation == CPROX_QUINTIC;
+  const bool wants_velocity =
+      interpolation == CPROX_INTERPOLATION_CUBIC || interpolation == CPROX_INTERPOLATION_QUINTIC;
   if (wants_velocity && !p->velocities)
     return workspace_fail(workspace, CPROX_INVALID, "waypoint %zu has no velocities, which the interpolation needs", i);
-  if (interpolation == CPROX_QUINTIC && !p->accelerations)
+  if (interpolation == CPROX_INTERPOLATION_QUINTIC && !p->accelerations)
     return workspace_fail(workspace, CPROX_INVALID, "waypoint %zu has no accelerations, which quintics need", i);
   cprox_status status = check_row(p->positions, n, "position", i, workspace);
   if (status == CPROX_OK) status = check_row(p->velocities, n, "velocity", i, workspace);
@@ -315,10 +316,10 @@ static double cutting_error(size_t degree, double largest) {
 
 static size_t degree_between(const cprox_waypoint *a, const cprox_waypoint *b, cprox_interpolation interpolation) {
   switch (interpolation) {
-    case CPROX_LINEAR: return 1;
-    case CPROX_CUBIC: return 3;
-    case CPROX_QUINTIC: return 5;
-    case CPROX_BY_WAYPOINTS: break;
+    case CPROX_INTERPOLATION_LINEAR: return 1;
+    case CPROX_INTERPOLATION_CUBIC: return 3;
+    case CPROX_INTERPOLATION_QUINTIC: return 5;
+    case CPROX_INTERPOLATION_BY_WAYPOINTS: break;
   }
   if (!a->velocities || !b->velocities) return 1;
   return a->accelerations && b->accelerations ? 5 : 3;
@@ -347,7 +348,7 @@ static cprox_status create_waypoints(const motion_source *s, cprox_motion **moti
   if (!points || n_points < 2)
     return workspace_fail(workspace, CPROX_INVALID, "a motion needs at least 2 waypoints, got %zu",
                           points ? n_points : (size_t)0);
-  if ((unsigned)interpolation > CPROX_QUINTIC)
+  if ((unsigned)interpolation > CPROX_INTERPOLATION_QUINTIC)
     return workspace_fail(workspace, CPROX_INVALID, "%d is no interpolation", (int)interpolation);
   cprox_status status = CPROX_OK;
   for (size_t i = 0; i < n_points && status == CPROX_OK; i++)
@@ -436,7 +437,8 @@ static cprox_status create_state(const motion_source *s, cprox_motion **motion) 
   if (s->n > 0) return workspace_fail(workspace, CPROX_INVALID, "a state gives all variables by rest, none by name");
   static const double NOTHING = 0.0;
   const cprox_waypoint ends[2] = {{.time = 0.0, .positions = &NOTHING}, {.time = 1.0, .positions = &NOTHING}};
-  const cprox_motion_description given = {.waypoints = ends, .n_waypoints = 2, .interpolation = CPROX_LINEAR};
+  const cprox_motion_description given = {
+      .waypoints = ends, .n_waypoints = 2, .interpolation = CPROX_INTERPOLATION_LINEAR};
   cprox_motion *m = allocate(s, 1, 1);
   if (m && !motion_keep_waypoints(&m->given, &given)) {
     cprox_motion_free(m);

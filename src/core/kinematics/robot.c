@@ -184,7 +184,7 @@ static void add_link(cprox_robot *robot, const cprox_link *link) {
 /* ---- parts ---------------------------------------------------------------------------------------------------------------- */
 
 static size_t parts_of(const cprox_body *body) {
-  return body->kind == CPROX_COMPOUND ? body->n_parts : 1;
+  return body->kind == CPROX_BODY_COMPOUND ? body->n_parts : 1;
 }
 
 static void add_part(cprox_robot *robot, const chain_end *at, const cprox_body *body, double margin, size_t geometry,
@@ -205,7 +205,7 @@ static void add_part(cprox_robot *robot, const chain_end *at, const cprox_body *
 
 static void add_geometry(cprox_robot *robot, const cprox_link_geometry *g, size_t i) {
   const chain_end link = link_end(&robot->links[g->link]), at = extend(&link, &g->pose);
-  if (g->body->kind != CPROX_COMPOUND) {
+  if (g->body->kind != CPROX_BODY_COMPOUND) {
     add_part(robot, &at, g->body, g->margin, i, g->link);
     return;
   }

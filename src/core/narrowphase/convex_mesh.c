@@ -168,7 +168,7 @@ void pair_elements(const pair_side *elements, const pair_side *convex_side, cons
   s.each = s.goal;
   s.each.epsilon *= FINER, s.each.relative_epsilon *= FINER;
   const cprox_body_kind kind = convex_side->shape->ops->kind;
-  if (kind == CPROX_POINT || kind == CPROX_SPHERE)
+  if (kind == CPROX_BODY_POINT || kind == CPROX_BODY_SPHERE)
     ball(&s, answer);
   else
     any_convex(&s, answer);

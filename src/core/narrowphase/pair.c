@@ -42,7 +42,7 @@ static cprox_status pair_check_target(const char *name, const cprox_obstacle *ta
 /* ---- placing ---- */
 
 static size_t pair_count_parts(const cprox_body *body) {
-  return body->kind == CPROX_COMPOUND ? body->n_parts : 1;
+  return body->kind == CPROX_BODY_COMPOUND ? body->n_parts : 1;
 }
 
 static vec3 pair_to_world(const pair_side *a, vec3 p) {
@@ -76,17 +76,17 @@ static void pair_halfspace(const pair_side *a, const pair_side *b, const pair_pl
 
 static bool has_closed_form(const convex *shape) {
   switch (shape->ops->kind) {
-    case CPROX_POLYTOPE:
-    case CPROX_SUPPORT:
-    case CPROX_SUPERQUADRIC:
-    case CPROX_IMPLICIT:
-    case CPROX_COMPOUND: return false;
+    case CPROX_BODY_POLYTOPE:
+    case CPROX_BODY_SUPPORT:
+    case CPROX_BODY_SUPERQUADRIC:
+    case CPROX_BODY_IMPLICIT:
+    case CPROX_BODY_COMPOUND: return false;
     default: return true;
   }
 }
 
 static bool is_ball(const convex *shape) {
-  return shape->ops->kind == CPROX_POINT || shape->ops->kind == CPROX_SPHERE;
+  return shape->ops->kind == CPROX_BODY_POINT || shape->ops->kind == CPROX_BODY_SPHERE;
 }
 
 /* A ball (b) against a shape with a closed form: exact on both sides of the surface. */
@@ -193,7 +193,7 @@ static cprox_status pair_with_elements(const pair_side *a, const pair_side *b, c
     pair_answer_to_world(first, answer);
     return CPROX_OK;
   }
-  if (second->shape->ops->kind == CPROX_HALFSPACE)
+  if (second->shape->ops->kind == CPROX_BODY_HALFSPACE)
     return workspace_fail(workspace, CPROX_INVALID, "a halfspace has no distance to a mesh, points or boxes here");
   pair_elements(first, second, goal, answer);
   if (swapped) pair_swap(answer);
@@ -205,13 +205,13 @@ static cprox_status pair_with_elements(const pair_side *a, const pair_side *b, c
 static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pair_goal *goal,
                                cprox_workspace *workspace, pair_answer *answer) {
   if (a->body->tree || b->body->tree) return pair_with_elements(a, b, goal, workspace, answer);
-  const bool halfspace = b->shape->ops->kind == CPROX_HALFSPACE;
+  const bool halfspace = b->shape->ops->kind == CPROX_BODY_HALFSPACE;
   const bool ball = is_ball(a->shape) && has_closed_form(b->shape) && !is_ball(b->shape);
-  const bool swapped = halfspace || (ball && a->shape->ops->kind != CPROX_HALFSPACE);
+  const bool swapped = halfspace || (ball && a->shape->ops->kind != CPROX_BODY_HALFSPACE);
   const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
   const pair_placement place = pair_place(first, second);
 
-  if (first->shape->ops->kind == CPROX_HALFSPACE)
+  if (first->shape->ops->kind == CPROX_BODY_HALFSPACE)
     pair_halfspace(first, second, &place, answer);
   else if (is_ball(second->shape) && has_closed_form(first->shape))
     pair_ball(first, second, &place, answer);
@@ -252,7 +252,8 @@ typedef struct pair_task {
 /* Parts i of a and j of b, by their finest models up to the level of detail. */
 static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cprox_lod finest, pair_reply *reply) {
   const pair_side a = pair_place_model(task->a, i, finest), b = pair_place_model(task->b, j, finest);
-  if (!a.body->tree && !b.body->tree && a.shape->ops->kind == CPROX_HALFSPACE && b.shape->ops->kind == CPROX_HALFSPACE)
+  if (!a.body->tree && !b.body->tree && a.shape->ops->kind == CPROX_BODY_HALFSPACE &&
+      b.shape->ops->kind == CPROX_BODY_HALFSPACE)
     return workspace_fail(task->workspace, CPROX_INVALID, "two halfspaces have no distance");
   *reply = (pair_reply){.answer = {.upper = INFINITY}, .part = (int32_t)j};
   reply->lod = a.lod > b.lod ? a.lod : b.lod;
@@ -264,9 +265,9 @@ static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cp
 
 static bool pair_has_lod(const pair_task *task, size_t i, size_t j) {
   const cprox_body *a = task->a->body, *b = task->b->body;
-  if (a->kind == CPROX_COMPOUND) a = a->parts[i].body;
-  if (b->kind == CPROX_COMPOUND) b = b->parts[j].body;
-  return a->kind == CPROX_LOD || b->kind == CPROX_LOD;
+  if (a->kind == CPROX_BODY_COMPOUND) a = a->parts[i].body;
+  if (b->kind == CPROX_BODY_COMPOUND) b = b->parts[j].body;
+  return a->kind == CPROX_BODY_LOD || b->kind == CPROX_BODY_LOD;
 }
 
 static void pair_join(pair_reply *all, const pair_reply *one) {

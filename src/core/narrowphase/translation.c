@@ -19,7 +19,7 @@ static cprox_status check_body(const char *name, const cprox_obstacle *target, b
                                cprox_workspace *workspace) {
   if (target->curve || !target->body) return workspace_fail(workspace, CPROX_INVALID, "%s is not a body", name);
   const cprox_body_kind kind = target->body->kind;
-  const bool is_implicit = kind == CPROX_SUPERQUADRIC || kind == CPROX_IMPLICIT;
+  const bool is_implicit = kind == CPROX_BODY_SUPERQUADRIC || kind == CPROX_BODY_IMPLICIT;
   if (implicit_only && !is_implicit)
     return workspace_fail(workspace, CPROX_INVALID, "%s is a %s, must be a superquadric or an implicit body", name,
                           cprox_body_kind_name(kind));

@@ -36,7 +36,7 @@ static candidate_ball bounding_ball_of(const cprox_obstacle *obstacle, int32_t p
     round.radius = m->body->ball_radius;
     *sizes += size_of(m->body->ball_centre) + size_of(m->pose.position);
     /* a compound's part: what the two positions lose may be more than their sum, which is small where they cancel */
-    if (obstacle->body && obstacle->body->kind == CPROX_COMPOUND)
+    if (obstacle->body && obstacle->body->kind == CPROX_BODY_COMPOUND)
       *sizes += size_of(obstacle->body->parts[part].pose.position);
   }
   if (obstacle->curve) {
@@ -93,7 +93,7 @@ void candidates_sort(candidate *list, size_t n) {
 }
 
 static size_t parts_of(const cprox_body *body) {
-  return body && body->kind == CPROX_COMPOUND ? body->n_parts : 1;
+  return body && body->kind == CPROX_BODY_COMPOUND ? body->n_parts : 1;
 }
 
 candidate *candidates_list(const query *q, size_t first, size_t last, bool ranked, size_t *count) {

@@ -6,10 +6,10 @@
 
 static bool has_ball(const cprox_body *body) {
   switch (body->kind) {
-    case CPROX_POINT:
-    case CPROX_SPHERE: /* are their own */
-    case CPROX_POINTS:
-    case CPROX_OCTREE: return false;
+    case CPROX_BODY_POINT:
+    case CPROX_BODY_SPHERE: /* are their own */
+    case CPROX_BODY_POINTS:
+    case CPROX_BODY_OCTREE: return false;
     default: return isfinite(body->ball_radius);
   }
 }
@@ -24,7 +24,7 @@ model model_of(const cprox_body *body, cprox_lod finest) {
                    .lod = CPROX_LOD_SPHERE};
   }
   model m = {.body = body};
-  if (body->kind == CPROX_LOD) {
+  if (body->kind == CPROX_BODY_LOD) {
     const bool by_hull = finest == CPROX_LOD_SPHERE || finest == CPROX_LOD_HULL;
     m.body = by_hull ? body->hull : body->mesh;
     m.excess = by_hull ? body->excess : 0.0;
@@ -35,14 +35,14 @@ model model_of(const cprox_body *body, cprox_lod finest) {
 
 bool model_has_tree(const cprox_body *body, cprox_lod finest) {
   if (!body) return false;
-  if (body->kind != CPROX_COMPOUND) return model_of(body, finest).body->tree != NULL;
+  if (body->kind != CPROX_BODY_COMPOUND) return model_of(body, finest).body->tree != NULL;
   for (size_t i = 0; i < body->n_parts; i++)
     if (model_of(body->parts[i].body, finest).body->tree) return true;
   return false;
 }
 
 model model_of_part(const cprox_body *body, size_t part, cprox_lod finest, cprox_pose *inner, bool *moved) {
-  const bool compound = body->kind == CPROX_COMPOUND;
+  const bool compound = body->kind == CPROX_BODY_COMPOUND;
   const model m = model_of(compound ? body->parts[part].body : body, finest);
   const bool shifted = vec_norm2(m.shift) > 0.0;
   *inner = compound ? body->parts[part].pose : CPROX_POSE_IDENTITY;

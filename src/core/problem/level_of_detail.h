@@ -24,7 +24,7 @@ bool model_has_tree(const cprox_body *body, cprox_lod finest);
 
 /* Most bodies are their own only model. */
 static inline bool model_is_body(const cprox_body *body, cprox_lod finest) {
-  return body->kind != CPROX_COMPOUND && body->kind != CPROX_LOD && finest != CPROX_LOD_SPHERE;
+  return body->kind != CPROX_BODY_COMPOUND && body->kind != CPROX_BODY_LOD && finest != CPROX_LOD_SPHERE;
 }
 
 /* Of a part of a compound, or of the body where it is none; *inner becomes the pose of the model in the frame of the body. False in

@@ -4,10 +4,10 @@
 #include "base/rounding.h"
 #include "convex/minkowski.h"
 
-const cprox_body carried_point = {.kind = CPROX_POINT, .shape = {.ops = &convex_point, .scale = 1e-100}};
+const cprox_body carried_point = {.kind = CPROX_BODY_POINT, .shape = {.ops = &convex_point, .scale = 1e-100}};
 
 static bool is_ball(const cprox_body *body) {
-  return body->kind == CPROX_POINT || body->kind == CPROX_SPHERE;
+  return body->kind == CPROX_BODY_POINT || body->kind == CPROX_BODY_SPHERE;
 }
 
 bool carried_join(const cprox_body *standing, const cprox_pose *pose, const cprox_body *carried,

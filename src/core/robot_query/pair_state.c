@@ -10,7 +10,7 @@
 enum { GAP_STEPS = 128, MOST_DISPLACEMENTS = 1 << 18 };
 
 static bool is_halfspace(const robot_body *body) {
-  return body->side.shape->ops->kind == CPROX_HALFSPACE;
+  return body->side.shape->ops->kind == CPROX_BODY_HALFSPACE;
 }
 
 /* ---- bodies --------------------------------------------------------------------------------------------------------------- */
@@ -21,7 +21,7 @@ static part_model model_for(const query *q, part_model model) {
   if (q->options.max_lod == CPROX_LOD_MESH || many) return model;
   if (model.tree && model.by_ball && q->options.max_lod == CPROX_LOD_HULL) return model; /* it has no hull */
   model.tree = NULL;
-  const bool endless = model.shape->ops->kind == CPROX_HALFSPACE;
+  const bool endless = model.shape->ops->kind == CPROX_BODY_HALFSPACE;
   return q->options.max_lod == CPROX_LOD_SPHERE && !endless ? part_model_ball(&model) : model;
 }
 
@@ -33,7 +33,7 @@ static robot_body obstacle_of(const query *q, size_t index, size_t part) {
   const cprox_body *body = target->body;
   cprox_pose pose = target->pose;
   double error = 0.0;
-  if (body->kind == CPROX_COMPOUND) {
+  if (body->kind == CPROX_BODY_COMPOUND) {
     const body_part *p = &body->parts[part];
     body = p->body;
     pose = frame_compose(&target->pose, &p->pose);
@@ -42,7 +42,7 @@ static robot_body obstacle_of(const query *q, size_t index, size_t part) {
     error = ROUND_U * (ROUND_ROTATION * error + 3.0 * vec_norm(pose.position));
   }
   part_model m = model_for(q, part_model_of(body));
-  if (m.shape->ops->kind != CPROX_HALFSPACE) part_model_find_box(&m);
+  if (m.shape->ops->kind != CPROX_BODY_HALFSPACE) part_model_find_box(&m);
   const frame f = frame_create(&pose, m.centre);
   robot_body placed = {.radius = m.radius + target->margin, .index = (int32_t)index, .part = (int32_t)part};
   placed.side = (bound_side){.shape = m.shape, .margin = m.margin + target->margin};
@@ -57,7 +57,7 @@ static robot_body obstacle_of(const query *q, size_t index, size_t part) {
 }
 
 size_t robot_scene_parts_of(const cprox_obstacle *target) {
-  return target->body->kind == CPROX_COMPOUND ? target->body->n_parts : 1;
+  return target->body->kind == CPROX_BODY_COMPOUND ? target->body->n_parts : 1;
 }
 
 int32_t robot_scene_add_obstacles(robot_scene *s, size_t target) {

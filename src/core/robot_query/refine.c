@@ -38,7 +38,7 @@ static double apart_along(const robot_body *const side[2], vec3 n) {
  * one. */
 static bool is_behind(const robot_refinement *c, const robot_body *const side[2], int level) {
   const vec3 n = c->last[level];
-  return vec_norm2(n) > 0.0 && side[STANDING]->side.shape->ops->kind != CPROX_HALFSPACE &&
+  return vec_norm2(n) > 0.0 && side[STANDING]->side.shape->ops->kind != CPROX_BODY_HALFSPACE &&
          apart_along(side, n) >= c->reach;
 }
 
@@ -132,7 +132,7 @@ static void descend(robot_refinement *c, const robot_body *const side[2], const 
   d.seeker.radius = shape->radius;
 
   /* of a halfspace, what is within reach of the part; its plane says the rest */
-  const bool endless = shape->side.shape->ops->kind == CPROX_HALFSPACE;
+  const bool endless = shape->side.shape->ops->kind == CPROX_BODY_HALFSPACE;
   if (endless) d.seeker.centre = vec_neg(own->tree_at), d.seeker.radius = own->radius + c->reach;
   if (vec_norm2(c->normal) > 0.0) {
     const vec3 n = through == MOVING ? c->normal : vec_neg(c->normal); /* from the other side to the tree */

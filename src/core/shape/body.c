@@ -88,7 +88,7 @@ static cprox_status body_create_primitive(const convex_ops *ops, const double si
 cprox_status cprox_body_create_point(cprox_vec3 point, cprox_workspace *workspace, cprox_body **body) {
   cprox_status status;
   if ((status = check_out(body, workspace)) || (status = check_point("the point", point, workspace))) return status;
-  cprox_body *made = body_allocate(&convex_point, CPROX_POINT);
+  cprox_body *made = body_allocate(&convex_point, CPROX_BODY_POINT);
   if (!made) return body_out_of_memory(workspace);
   made->centre = made->ball_centre = point;
   *body = made;
@@ -218,7 +218,7 @@ cprox_status cprox_body_create_polytope(const cprox_vec3 *vertices, size_t n, cp
     snprintf(name, sizeof name, "vertex %zu", i);
     if ((status = check_point(name, vertices[i], workspace))) return status;
   }
-  cprox_body *made = body_allocate(&convex_polytope, CPROX_POLYTOPE);
+  cprox_body *made = body_allocate(&convex_polytope, CPROX_BODY_POLYTOPE);
   if (!made || body_store_vertices(made, vertices, n)) {
     cprox_body_free(made);
     return body_out_of_memory(workspace);
@@ -288,7 +288,7 @@ cprox_status cprox_body_create_polygon(const double (*vertices)[2], size_t n, cp
   if (!(fabs(area2) > 1024.0 * ROUND_U * size2))
     return workspace_fail(workspace, CPROX_INVALID, "the polygon's area is %g, must be > 0", 0.5 * fabs(area2));
 
-  cprox_body *made = body_allocate(&convex_polygon, CPROX_POLYGON);
+  cprox_body *made = body_allocate(&convex_polygon, CPROX_BODY_POLYGON);
   vec3 *clean = malloc(n * sizeof *clean);
   if (made && clean) {
     const size_t kept = polygon_clean(vertices, n, area2 < 0.0, clean);
@@ -353,36 +353,36 @@ cprox_body_info cprox_body_get_info(const cprox_body *body) {
 
 const char *cprox_body_kind_name(cprox_body_kind kind) {
   switch (kind) {
-    case CPROX_POINT: return "point";
-    case CPROX_SPHERE: return "sphere";
-    case CPROX_BOX: return "box";
-    case CPROX_CAPSULE: return "capsule";
-    case CPROX_CYLINDER: return "cylinder";
-    case CPROX_CONE: return "cone";
-    case CPROX_ELLIPSOID: return "ellipsoid";
-    case CPROX_HALFSPACE: return "halfspace";
-    case CPROX_POLYTOPE: return "polytope";
-    case CPROX_POLYGON: return "polygon";
-    case CPROX_COMPOUND: return "compound";
-    case CPROX_SUPPORT: return "support";
-    case CPROX_SUPERQUADRIC: return "superquadric";
-    case CPROX_IMPLICIT: return "implicit";
-    case CPROX_MESH: return "mesh";
-    case CPROX_POINTS: return "points";
-    case CPROX_OCTREE: return "octree";
-    case CPROX_LOD: return "lod";
+    case CPROX_BODY_POINT: return "point";
+    case CPROX_BODY_SPHERE: return "sphere";
+    case CPROX_BODY_BOX: return "box";
+    case CPROX_BODY_CAPSULE: return "capsule";
+    case CPROX_BODY_CYLINDER: return "cylinder";
+    case CPROX_BODY_CONE: return "cone";
+    case CPROX_BODY_ELLIPSOID: return "ellipsoid";
+    case CPROX_BODY_HALFSPACE: return "halfspace";
+    case CPROX_BODY_POLYTOPE: return "polytope";
+    case CPROX_BODY_POLYGON: return "polygon";
+    case CPROX_BODY_COMPOUND: return "compound";
+    case CPROX_BODY_SUPPORT: return "support";
+    case CPROX_BODY_SUPERQUADRIC: return "superquadric";
+    case CPROX_BODY_IMPLICIT: return "implicit";
+    case CPROX_BODY_MESH: return "mesh";
+    case CPROX_BODY_POINTS: return "points";
+    case CPROX_BODY_OCTREE: return "octree";
+    case CPROX_BODY_LOD: return "lod";
   }
   return "unknown";
 }
 
 double cprox_body_support(const cprox_body *body, cprox_vec3 direction, cprox_vec3 *point) {
-  if (body->kind == CPROX_COMPOUND) return compound_support(body, direction, point);
+  if (body->kind == CPROX_BODY_COMPOUND) return compound_support(body, direction, point);
   if (body->mesh) return cprox_body_support(body->mesh, direction, point);
   if (body->tree) return elements_support(body, direction, point);
   const convex *shape = &body->shape;
   vec3 at, unit;
   double h = shape->ops->support(shape, direction, NULL, &at);
-  if (body->kind == CPROX_HALFSPACE) { /* any multiple of its normal will do here */
+  if (body->kind == CPROX_BODY_HALFSPACE) { /* any multiple of its normal will do here */
     feature_unit(direction, &unit);
     const vec3 n = vec(shape->size[0], shape->size[1], shape->size[2]);
     const double off = vec_norm(vec_sub(unit, n));
@@ -397,7 +397,7 @@ double cprox_body_support(const cprox_body *body, cprox_vec3 direction, cprox_ve
 }
 
 double cprox_body_nearest(const cprox_body *body, cprox_vec3 point, cprox_vec3 *nearest) {
-  if (body->kind == CPROX_COMPOUND) return compound_nearest(body, point, nearest);
+  if (body->kind == CPROX_BODY_COMPOUND) return compound_nearest(body, point, nearest);
   if (body->mesh) return cprox_body_nearest(body->mesh, point, nearest);
   if (body->tree) return elements_nearest(body, point, nearest);
   const vec3 y = vec_sub(point, body->centre);

@@ -17,5 +17,5 @@ cprox_status cprox_body_create_boxes(const cprox_vec3 *low, const cprox_vec3 *hi
                             low[i].x, low[i].y, low[i].z, high[i].x, high[i].y, high[i].z);
   }
   tree_source source = {.kind = TREE_BOXES, .n = n, .points = low, .high = high};
-  return elements_create(CPROX_OCTREE, &source, n, TREE_BY_MORTON, 0.0, workspace, body);
+  return elements_create(CPROX_BODY_OCTREE, &source, n, TREE_BY_MORTON, 0.0, workspace, body);
 }

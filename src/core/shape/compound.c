@@ -45,13 +45,13 @@ cprox_status cprox_body_create_compound(const cprox_body *const *parts, const cp
     return workspace_fail(workspace, CPROX_INVALID, "%zu parts, at most %d are possible", n, INT32_MAX);
   for (size_t i = 0; i < n; i++) {
     if (!parts[i]) return workspace_fail(workspace, CPROX_INVALID, "part %zu is NULL", i);
-    if (parts[i]->kind == CPROX_COMPOUND)
+    if (parts[i]->kind == CPROX_BODY_COMPOUND)
       return workspace_fail(workspace, CPROX_INVALID, "part %zu is a compound itself: give its parts instead", i);
     const char *fault = frame_pose_fault(&poses[i]);
     if (fault) return workspace_fail(workspace, CPROX_INVALID, "the pose of part %zu: %s", i, fault);
   }
 
-  cprox_body *made = body_allocate(NULL, CPROX_COMPOUND);
+  cprox_body *made = body_allocate(NULL, CPROX_BODY_COMPOUND);
   if (made) made->parts = malloc(n * sizeof *made->parts);
   if (!made || !made->parts) {
     cprox_body_free(made);

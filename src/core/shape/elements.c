@@ -85,7 +85,7 @@ cprox_status elements_create(cprox_body_kind kind, tree_source *source, size_t n
  * */
 
 bool elements_are_solid(const cprox_body *body) {
-  return body->mesh ? elements_are_solid(body->mesh) : body->kind != CPROX_MESH || body->winding;
+  return body->mesh ? elements_are_solid(body->mesh) : body->kind != CPROX_BODY_MESH || body->winding;
 }
 
 size_t elements_bytes(const cprox_body *body) {

@@ -109,20 +109,20 @@ static double open_support(const convex *shape, vec3 d, convex_hint *hint, vec3 
 }
 
 /* near_rounding: the interval of the search is IMPLICIT_EPSILON wide; what is more shows in the certificate of the query. */
-static const convex_ops superquadric_ops = {.kind = CPROX_SUPERQUADRIC,
+static const convex_ops superquadric_ops = {.kind = CPROX_BODY_SUPERQUADRIC,
                                             .near_rounding = 64.0,
                                             .nearest = implicit_nearest,
                                             .support = closed_support,
                                             .curvature = closed_curvature,
                                             .follow = closed_follow};
-static const convex_ops closed_ops = {.kind = CPROX_IMPLICIT,
+static const convex_ops closed_ops = {.kind = CPROX_BODY_IMPLICIT,
                                       .near_rounding = 64.0,
                                       .nearest = implicit_nearest,
                                       .support = closed_support,
                                       .curvature = closed_curvature,
                                       .follow = closed_follow};
 static const convex_ops open_ops = {
-    .kind = CPROX_IMPLICIT, .near_rounding = 64.0, .nearest = implicit_nearest, .support = open_support};
+    .kind = CPROX_BODY_IMPLICIT, .near_rounding = 64.0, .nearest = implicit_nearest, .support = open_support};
 
 /* ---- making ---- */
 
@@ -202,6 +202,54 @@ static cprox_status check_rows(const cprox_implicit_description *d, size_t *term
   return CPROX_OK;
 }
 
+/* The built body's constraints once more, about its centre, for changes. */
+static implicit *copy(const implicit *body) {
+  implicit *given = implicit_allocate((size_t)body->n_planes, (size_t)body->n_quadrics, (size_t)body->n_powers,
+                                      (size_t)body->n_terms);
+  if (given) implicit_recentre(body, vec(0, 0, 0), given);
+  return given;
+}
+
+static cprox_status deform(const cprox_implicit_description *d, const cprox_affine *map, cprox_workspace *workspace,
+                           cprox_body **deformed) {
+  const cprox_body *body = d->deformed;
+  const double *exponents = d->exponents;
+  const implicit *shape = body->shape.implicit;
+  if (!shape)
+    return workspace_fail(workspace, CPROX_INVALID, "the deformed body is a %s, must be a superquadric or implicit",
+                          cprox_body_kind_name(body->kind));
+  if (d->n_planes + d->n_quadrics + d->n_hyperquadrics > 0)
+    return workspace_fail(workspace, CPROX_INVALID, "a deformed body has constraints of its own: list none");
+  if (exponents && d->n_exponents != (size_t)shape->n_terms)
+    return workspace_fail(workspace, CPROX_INVALID, "%zu exponents for a body of %d terms", d->n_exponents,
+                          shape->n_terms);
+
+  /* the centre's image, and the map about it */
+  const cprox_affine affine = map ? *map : (cprox_affine){.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  const double *l = affine.linear;
+  implicit_map inner = {.shift = affine.translation};
+  for (int i = 0; i < 9; i++) inner.linear[i] = l[i];
+  implicit *given = copy(shape);
+  if (!given) return body_out_of_memory(workspace);
+  for (int32_t i = 0; exponents && i < shape->n_terms; i++) given->term[i].p = exponents[i];
+  cprox_status status = implicit_check(given, &inner, workspace);
+
+  const vec3 c = body->centre, moved = {l[0] * c.x + l[1] * c.y + l[2] * c.z, l[3] * c.x + l[4] * c.y + l[5] * c.z,
+                                        l[6] * c.x + l[7] * c.y + l[8] * c.z};
+  vec3 offset = vec(0, 0, 0);
+  implicit *made = NULL;
+  if (!status && (exponents || shape->closed)) {
+    inner.shift = vec(0, 0, 0);
+    status = implicit_build(given, &inner, workspace, &offset, &made);
+  } else if (!status) {
+    status = implicit_deform(shape, l, workspace, &made);
+  }
+  free(given);
+  if (status) return status;
+  const bool superquadric = body->kind == CPROX_BODY_SUPERQUADRIC && made->orthogonal;
+  return wrap(made, superquadric, vec_add(vec_add(moved, affine.translation), offset), workspace, deformed);
+}
+
 cprox_status cprox_body_create_implicit(const cprox_implicit_description *description, const cprox_affine *map,
                                         cprox_workspace *workspace, cprox_body **body) {
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
@@ -210,6 +258,8 @@ cprox_status cprox_body_create_implicit(const cprox_implicit_description *descri
   if ((d->n_planes > 0 && !d->planes) || (d->n_quadrics > 0 && !d->quadrics) ||
       (d->n_hyperquadrics > 0 && !d->hyperquadrics))
     return workspace_fail(workspace, CPROX_INVALID, "an array of the description is NULL and its count is not 0");
+  if (d->deformed) return deform(d, map, workspace, body);
+  if (d->exponents) return workspace_fail(workspace, CPROX_INVALID, "exponents are given and no deformed body");
   size_t terms = 0;
   const cprox_status status = check_rows(d, &terms, workspace);
   if (status) return status;
@@ -237,48 +287,4 @@ cprox_status cprox_body_create_implicit(const cprox_implicit_description *descri
   implicit_map inner = {.shift = map->translation};
   for (int i = 0; i < 9; i++) inner.linear[i] = map->linear[i];
   return create(given, &inner, false, workspace, body);
-}
-
-/* The built body's constraints once more, about its centre, for changes. */
-static implicit *copy(const implicit *body) {
-  implicit *given = implicit_allocate((size_t)body->n_planes, (size_t)body->n_quadrics, (size_t)body->n_powers,
-                                      (size_t)body->n_terms);
-  if (given) implicit_recentre(body, vec(0, 0, 0), given);
-  return given;
-}
-
-cprox_status cprox_body_create_deformed(const cprox_body *body, const cprox_affine *map, const double *exponents,
-                                        size_t n, cprox_workspace *workspace, cprox_body **deformed) {
-  if (!deformed) return workspace_fail(workspace, CPROX_INVALID, "deformed is NULL: nowhere to put the handle");
-  if (!body || !body->shape.implicit)
-    return workspace_fail(workspace, CPROX_INVALID, "the body is %s, must be a superquadric or an implicit body",
-                          body ? cprox_body_kind_name(body->kind) : "NULL");
-  const implicit *shape = body->shape.implicit;
-  if (exponents && n != (size_t)shape->n_terms)
-    return workspace_fail(workspace, CPROX_INVALID, "%zu exponents for a body of %d terms", n, shape->n_terms);
-
-  /* the centre's image, and the map about it */
-  const cprox_affine affine = map ? *map : (cprox_affine){.linear = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-  const double *l = affine.linear;
-  implicit_map inner = {.shift = affine.translation};
-  for (int i = 0; i < 9; i++) inner.linear[i] = l[i];
-  implicit *given = copy(shape);
-  if (!given) return body_out_of_memory(workspace);
-  for (int32_t i = 0; exponents && i < shape->n_terms; i++) given->term[i].p = exponents[i];
-  cprox_status status = implicit_check(given, &inner, workspace);
-
-  const vec3 c = body->centre, moved = {l[0] * c.x + l[1] * c.y + l[2] * c.z, l[3] * c.x + l[4] * c.y + l[5] * c.z,
-                                        l[6] * c.x + l[7] * c.y + l[8] * c.z};
-  vec3 offset = vec(0, 0, 0);
-  implicit *made = NULL;
-  if (!status && (exponents || shape->closed)) {
-    inner.shift = vec(0, 0, 0);
-    status = implicit_build(given, &inner, workspace, &offset, &made);
-  } else if (!status) {
-    status = implicit_deform(shape, l, workspace, &made);
-  }
-  free(given);
-  if (status) return status;
-  const bool superquadric = body->kind == CPROX_SUPERQUADRIC && made->orthogonal;
-  return wrap(made, superquadric, vec_add(vec_add(moved, affine.translation), offset), workspace, deformed);
 }

@@ -41,7 +41,7 @@ cprox_status cprox_body_create_lod(const cprox_body *hull, double excess, const 
   const cprox_status covered = check_cover(hull, excess, mesh, workspace);
   if (covered != CPROX_OK) return covered;
 
-  cprox_body *made = body_allocate(NULL, CPROX_LOD);
+  cprox_body *made = body_allocate(NULL, CPROX_BODY_LOD);
   if (!made) return body_out_of_memory(workspace);
   made->hull = hull;
   made->mesh = mesh;

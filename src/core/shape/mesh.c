@@ -131,9 +131,9 @@ cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const 
     return workspace_fail(workspace, CPROX_INVALID, "%zu vertices, at most %u are possible", n, UINT32_MAX);
   if (n > 0 && !vertices) return workspace_fail(workspace, CPROX_INVALID, "vertices is NULL");
   if (m > 0 && !triangles) return workspace_fail(workspace, CPROX_INVALID, "triangles is NULL");
-  if (fill != CPROX_MESH_SURFACE && fill != CPROX_MESH_SOLID)
+  if (fill != CPROX_MESH_FILL_SURFACE && fill != CPROX_MESH_FILL_SOLID)
     return workspace_fail(workspace, CPROX_INVALID, "fill is %d, neither surface nor solid", (int)fill);
-  const size_t extra = fill == CPROX_MESH_SOLID ? winding_bytes_needed(tree_most_nodes(m, TREE_BY_AREA)) : 0;
+  const size_t extra = fill == CPROX_MESH_FILL_SOLID ? winding_bytes_needed(tree_most_nodes(m, TREE_BY_AREA)) : 0;
   cprox_status status =
       elements_check_count("triangles", TREE_TRIANGLES, m, extra, TREE_BY_AREA, memory_limit, workspace);
   if (status == CPROX_OK) status = elements_check_points("vertex", vertices, n, workspace);
@@ -141,11 +141,11 @@ cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const 
   if (status != CPROX_OK) return status;
 
   bool closed = false;
-  if (fill == CPROX_MESH_SOLID && !find_closedness(vertices, n, triangles, m, &closed))
+  if (fill == CPROX_MESH_FILL_SOLID && !find_closedness(vertices, n, triangles, m, &closed))
     return body_out_of_memory(workspace);
   tree_source source = {.kind = TREE_TRIANGLES, .n = m, .points = vertices, .triangles = triangles};
   cprox_body *made = NULL;
-  status = elements_create(CPROX_MESH, &source, n, TREE_BY_AREA, 0.0, workspace, &made);
+  status = elements_create(CPROX_BODY_MESH, &source, n, TREE_BY_AREA, 0.0, workspace, &made);
   if (status != CPROX_OK) return status;
   if (closed && !(made->winding = winding_create(made->tree))) {
     cprox_body_free(made);
@@ -157,10 +157,10 @@ cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const 
 
 cprox_status cprox_body_create_surface(const cprox_body *mesh, cprox_workspace *workspace, cprox_body **body) {
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
-  if (!mesh || mesh->kind != CPROX_MESH)
+  if (!mesh || mesh->kind != CPROX_BODY_MESH)
     return workspace_fail(workspace, CPROX_INVALID, "the body is %s, must be a mesh",
                           mesh ? cprox_body_kind_name(mesh->kind) : "NULL");
-  cprox_body *made = body_allocate(NULL, CPROX_MESH);
+  cprox_body *made = body_allocate(NULL, CPROX_BODY_MESH);
   if (!made) return body_out_of_memory(workspace);
   made->tree = mesh->tree;
   made->borrows_tree = true;

@@ -19,7 +19,7 @@ cprox_status cprox_body_create_points(const cprox_vec3 *points, size_t n, double
   if (status != CPROX_OK) return status;
   tree_source source = {.kind = TREE_POINTS, .n = n, .points = points};
   cprox_body *made = NULL;
-  status = elements_create(CPROX_POINTS, &source, n, TREE_BY_MORTON, radius, workspace, &made);
+  status = elements_create(CPROX_BODY_POINTS, &source, n, TREE_BY_MORTON, radius, workspace, &made);
   if (status != CPROX_OK) return status;
   if (!tree_begin_family(made->tree)) {
     cprox_body_free(made);
@@ -31,11 +31,11 @@ cprox_status cprox_body_create_points(const cprox_vec3 *points, size_t n, double
 
 static cprox_status check_update(const cprox_body *previous, const uint32_t *changed, const cprox_vec3 *points,
                                  size_t n, const cprox_body *retired, cprox_workspace *workspace) {
-  if (!previous || previous->kind != CPROX_POINTS)
+  if (!previous || previous->kind != CPROX_BODY_POINTS)
     return workspace_fail(workspace, CPROX_INVALID, "previous is %s, not points",
                           previous ? cprox_body_kind_name(previous->kind) : "NULL");
   if (retired &&
-      (retired == previous || retired->kind != CPROX_POINTS || !tree_is_family(previous->tree, retired->tree)))
+      (retired == previous || retired->kind != CPROX_BODY_POINTS || !tree_is_family(previous->tree, retired->tree)))
     return workspace_fail(workspace, CPROX_INVALID,
                           "retired was not made from the same points, or is the previous body");
   if (n > UINT32_MAX) return workspace_fail(workspace, CPROX_INVALID, "%zu changes are too many", n);
@@ -53,7 +53,7 @@ cprox_status cprox_body_update_points(const cprox_body *previous, const uint32_t
   if (!body) return workspace_fail(workspace, CPROX_INVALID, "body is NULL: nowhere to put the handle");
   const cprox_status checked = check_update(previous, changed, points, n, retired, workspace);
   if (checked != CPROX_OK) return checked;
-  cprox_body *made = retired ? retired : body_allocate(NULL, CPROX_POINTS);
+  cprox_body *made = retired ? retired : body_allocate(NULL, CPROX_BODY_POINTS);
   tree *t =
       made ? tree_update(previous->tree, changed, points, n, previous->centre, retired ? retired->tree : NULL) : NULL;
   if (!t) {

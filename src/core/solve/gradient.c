@@ -237,8 +237,8 @@ static cprox_obstacle stopped(const cprox_mover *mover, const cprox_obstacle *ta
 /* Whether no other pair of parts is as near at the minimiser. */
 static cprox_status part_is_alone(const query *q, const placed_pair *best, double t, double distance, bool *alone) {
   const cprox_body *standing = q->targets[0].body, *carried = q->mover.body;
-  const size_t parts = standing && standing->kind == CPROX_COMPOUND ? standing->n_parts : 1;
-  const size_t own = carried && carried->kind == CPROX_COMPOUND ? carried->n_parts : 1;
+  const size_t parts = standing && standing->kind == CPROX_BODY_COMPOUND ? standing->n_parts : 1;
+  const size_t own = carried && carried->kind == CPROX_BODY_COMPOUND ? carried->n_parts : 1;
   *alone = true;
   for (size_t i = 0; i < parts * own && *alone; i++) {
     const candidate c = {.part = (int32_t)(i / own), .mover_part = (int32_t)(i % own)};
@@ -309,7 +309,7 @@ static placed_bodies bodies_at(const query *q, const placed_pair *c, double t) {
 }
 
 static bool is_round(const cprox_body *body) {
-  return !body || body->kind == CPROX_POINT || body->kind == CPROX_SPHERE;
+  return !body || body->kind == CPROX_BODY_POINT || body->kind == CPROX_BODY_SPHERE;
 }
 
 /* A ball has one nearest point where it has one normal. Two other bodies may
@@ -320,7 +320,7 @@ static cprox_status nearest_is_alone(const query *q, const placed_pair *c, doubl
   if (is_round(standing) || is_round(carried)) return CPROX_OK;
   placed_bodies p = bodies_at(q, c, t);
   p.size = carried->shape.scale + carried->shape.margin;
-  if (standing->kind != CPROX_HALFSPACE) p.size = fmin(p.size, standing->shape.scale + standing->shape.margin);
+  if (standing->kind != CPROX_BODY_HALFSPACE) p.size = fmin(p.size, standing->shape.scale + standing->shape.margin);
   return ties_point_is_alone(&p, alone);
 }
 
@@ -446,7 +446,7 @@ cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, c
   query_ask_whole(&q);
   if (!(q.t0 <= result->t && result->t <= q.t1))
     return workspace_fail(workspace, CPROX_INVALID, "the result's t = %.17g is not on the mover's curve", result->t);
-  if (target.body && target.body->kind == CPROX_COMPOUND &&
+  if (target.body && target.body->kind == CPROX_BODY_COMPOUND &&
       !(result->obstacle_part >= 0 && (size_t)result->obstacle_part < target.body->n_parts))
     return workspace_fail(workspace, CPROX_INVALID, "the result's obstacle_part %d is no part of the target",
                           result->obstacle_part);

@@ -143,9 +143,10 @@ cprox_body *query_body(rng *r, double scale, bool polytope_only, cprox_workspace
 /* A torus with bumps, or triangles anywhere; the hull may be smaller than it by what it is told to be. */
 query_mesh query_mesh_random(rng *r, double scale, cprox_mesh_fill fill, cprox_workspace *ws) {
   const double size = rng_uniform(r, 0.2, 0.5) * scale;
-  test_mesh mesh = fill == CPROX_MESH_SOLID || rng_index(r, 2) ? mesh_torus(6 + rng_index(r, 8), 4 + rng_index(r, 4),
-                                                                            size, size * rng_uniform(r, 0.1, 0.5), 0.1)
-                                                               : mesh_soup(r, 3 + rng_index(r, 20), 0.5 * size, size);
+  test_mesh mesh =
+      fill == CPROX_MESH_FILL_SOLID || rng_index(r, 2)
+          ? mesh_torus(6 + rng_index(r, 8), 4 + rng_index(r, 4), size, size * rng_uniform(r, 0.1, 0.5), 0.1)
+          : mesh_soup(r, 3 + rng_index(r, 20), 0.5 * size, size);
   query_mesh made = {.mesh = mesh_body(&mesh, fill, ws), .surface = mesh};
   const double excess = rng_index(r, 2) ? 0.0 : 0.01 * size;
   vec3 *inner = calloc(mesh.n, sizeof *inner);
@@ -191,7 +192,7 @@ void asked_random(asked *q, rng *r, asked_kinds kinds, double scale, double away
       continue;
     }
     if (kinds.meshes && rng_index(r, 2)) {
-      q->mesh[i] = query_mesh_random(r, scale, rng_index(r, 3) ? CPROX_MESH_SURFACE : CPROX_MESH_SOLID, ws);
+      q->mesh[i] = query_mesh_random(r, scale, rng_index(r, 3) ? CPROX_MESH_FILL_SURFACE : CPROX_MESH_FILL_SOLID, ws);
       *t = cprox_obstacle_at(q->mesh[i].body, (cprox_pose){vec_add(middle, beside), rng_quat(r)});
       if (rng_index(r, 3) == 0) *t = cprox_with_margin(*t, 0.05 * scale);
       continue;
@@ -238,7 +239,7 @@ static void write_target(const asked *q, const cprox_obstacle *t, FILE *out) {
 }
 
 static size_t sections_of(const cprox_obstacle *t) {
-  return t->body && t->body->kind == CPROX_COMPOUND ? t->body->n_parts : 1;
+  return t->body && t->body->kind == CPROX_BODY_COMPOUND ? t->body->n_parts : 1;
 }
 
 void asked_write_targets(const asked *q, FILE *out) {

@@ -15,7 +15,7 @@
 /* One that ends somewhere: a link's. */
 static cprox_body *bounded_body(rng *r, double scale, cprox_workspace *ws) {
   cprox_body *body = query_body(r, scale, false, ws);
-  while (cprox_body_get_info(body).kind == CPROX_HALFSPACE) {
+  while (cprox_body_get_info(body).kind == CPROX_BODY_HALFSPACE) {
     cprox_body_free(body);
     body = query_body(r, scale, false, ws);
   }
@@ -26,7 +26,7 @@ static cprox_body *bounded_body(rng *r, double scale, cprox_workspace *ws) {
 static cprox_body *one_or_two(robot_query *q, rng *r, bool bounded, double scale, bool meshes, cprox_workspace *ws) {
   if (meshes && rng_index(r, 3) == 0) {
     query_mesh *mesh = &q->mesh[q->n_meshes++];
-    *mesh = query_mesh_random(r, scale, CPROX_MESH_SURFACE, ws);
+    *mesh = query_mesh_random(r, scale, CPROX_MESH_FILL_SURFACE, ws);
     return mesh->body;
   }
   cprox_body *one = bounded ? bounded_body(r, scale, ws) : query_body(r, scale, false, ws), *both = NULL;

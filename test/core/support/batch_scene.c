@@ -84,7 +84,7 @@ cprox_status batch_ask(query_type v, const cprox_obstacles *batch, const batch_s
     case DISTANCE: return cprox_obstacles_distance_batch(batch, s->movers, first, last, NULL, workspace, results);
     case TOLERANCE:
       return cprox_obstacles_tolerance_batch(batch, s->movers, first, last, DELTA, NULL, workspace, results);
-    default: return cprox_obstacles_collision_batch(batch, s->movers, first, last, NULL, workspace, results);
+    default: return cprox_obstacles_tolerance_batch(batch, s->movers, first, last, 0.0, NULL, workspace, results);
   }
 }
 

@@ -31,4 +31,11 @@ long double implicit_case_value(const implicit_case *c, const long double x[3]);
 /* A uniform rotation, and a position at a distance between the two in a uniform direction. */
 cprox_pose implicit_random_pose(rng *r, double near, double far);
 
+/* A body made of another's constraints. */
+static inline cprox_status implicit_deformed(const cprox_body *body, const cprox_affine *map, const double *exponents,
+                                             size_t n, cprox_workspace *workspace, cprox_body **made) {
+  const cprox_implicit_description d = {.deformed = body, .exponents = exponents, .n_exponents = n};
+  return cprox_body_create_implicit(&d, map, workspace, made);
+}
+
 #endif

@@ -27,8 +27,8 @@ static cprox_body *read_mesh(FILE *f, const cprox_body **surface) {
   bool good = v && t;
   for (size_t i = 0; i < n && good; i++) good = fscanf(f, "%lf %lf %lf", &v[i].x, &v[i].y, &v[i].z) == 3;
   for (size_t i = 0; i < m && good; i++) good = fscanf(f, "%u %u %u", &t[i][0], &t[i][1], &t[i][2]) == 3;
-  if (good &&
-      cprox_body_create_mesh(v, n, (const uint32_t(*)[3])t, m, CPROX_MESH_SURFACE, SIZE_MAX, NULL, &mesh) == CPROX_OK)
+  if (good && cprox_body_create_mesh(v, n, (const uint32_t(*)[3])t, m, CPROX_MESH_FILL_SURFACE, SIZE_MAX, NULL,
+                                     &mesh) == CPROX_OK)
     cprox_body_create_polytope(v, n, NULL, &hull);
   *surface = mesh;
   free(t);
@@ -118,7 +118,7 @@ static bool read_motion(FILE *f, robot_case *c, size_t n_variables) {
                                                          .n_variables = n,
                                                          .waypoints = points,
                                                          .n_waypoints = n_points,
-                                                         .interpolation = CPROX_CUBIC,
+                                                         .interpolation = CPROX_INTERPOLATION_CUBIC,
                                                          .rest = rest},
                              NULL, &c->motion) == CPROX_OK &&
          cprox_motion_create(c->mesh_robot,
@@ -127,7 +127,7 @@ static bool read_motion(FILE *f, robot_case *c, size_t n_variables) {
                                                          .n_variables = n,
                                                          .waypoints = points,
                                                          .n_waypoints = n_points,
-                                                         .interpolation = CPROX_CUBIC,
+                                                         .interpolation = CPROX_INTERPOLATION_CUBIC,
                                                          .rest = rest},
                              NULL, &c->mesh_motion) == CPROX_OK;
 }

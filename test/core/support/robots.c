@@ -58,7 +58,7 @@ static void make_geometries(rng *r, test_robot *t) {
 
 static void make_points(rng *r, double speed, test_robot *t) {
   t->spline = rng_index(r, 4) == 0;
-  t->interpolation = (cprox_interpolation)(CPROX_LINEAR + rng_index(r, 3));
+  t->interpolation = (cprox_interpolation)(CPROX_INTERPOLATION_LINEAR + rng_index(r, 3));
   t->n_points = t->spline ? TEST_MAX_WAYPOINTS : 2 + rng_index(r, TEST_MAX_WAYPOINTS - 1);
   for (size_t k = 0; k < t->n_variables; k++) {
     t->variables[k] = (int32_t)k;
@@ -149,9 +149,9 @@ void robot_free(test_robot *t) {
 static long double hermite(const test_robot *t, size_t i, size_t k, long double time) {
   const long double h = (long double)t->times[i + 1] - t->times[i], u = (time - t->times[i]) / h;
   const long double p = t->positions[i][k], q = t->positions[i + 1][k];
-  if (t->interpolation == CPROX_LINEAR) return p + u * (q - p);
+  if (t->interpolation == CPROX_INTERPOLATION_LINEAR) return p + u * (q - p);
   const long double v = h * t->velocities[i][k], w = h * t->velocities[i + 1][k], u2 = u * u, u3 = u2 * u;
-  if (t->interpolation == CPROX_CUBIC)
+  if (t->interpolation == CPROX_INTERPOLATION_CUBIC)
     return (2 * u3 - 3 * u2 + 1) * p + (u3 - 2 * u2 + u) * v + (3 * u2 - 2 * u3) * q + (u3 - u2) * w;
   const long double a = h * h * t->accelerations[i][k], b = h * h * t->accelerations[i + 1][k], u4 = u3 * u,
                     u5 = u4 * u;

@@ -11,8 +11,9 @@
 
 #include "base/rounding.h"
 
-const cprox_body_kind TEST_BOUNDED[10] = {CPROX_POINT, CPROX_SPHERE,    CPROX_BOX,      CPROX_CAPSULE, CPROX_CYLINDER,
-                                          CPROX_CONE,  CPROX_ELLIPSOID, CPROX_POLYTOPE, CPROX_POLYGON, CPROX_SUPPORT};
+const cprox_body_kind TEST_BOUNDED[10] = {
+    CPROX_BODY_POINT, CPROX_BODY_SPHERE,    CPROX_BODY_BOX,      CPROX_BODY_CAPSULE, CPROX_BODY_CYLINDER,
+    CPROX_BODY_CONE,  CPROX_BODY_ELLIPSOID, CPROX_BODY_POLYTOPE, CPROX_BODY_POLYGON, CPROX_BODY_SUPPORT};
 
 /* A user's callback: a box, given by its half extents. */
 static void box_callback(const void *user, const double d[3], double p[3]) {
@@ -28,17 +29,17 @@ void shape_make(rng *r, cprox_body_kind kind, double scale, double aspect, test_
   const double *z = s->size;
   cprox_status status = CPROX_INVALID;
   switch (kind) {
-    case CPROX_POINT:
+    case CPROX_BODY_POINT:
       s->v[s->n++] = rng_in_cube(r, scale);
       status = cprox_body_create_point(s->v[0], NULL, &s->body);
       break;
-    case CPROX_SPHERE: status = cprox_body_create_sphere(z[0], NULL, &s->body); break;
-    case CPROX_BOX: status = cprox_body_create_box(vec(2 * z[0], 2 * z[1], 2 * z[2]), NULL, &s->body); break;
-    case CPROX_CAPSULE: status = cprox_body_create_capsule(2 * z[1], z[0], NULL, &s->body); break;
-    case CPROX_CYLINDER: status = cprox_body_create_cylinder(2 * z[1], z[0], NULL, &s->body); break;
-    case CPROX_CONE: status = cprox_body_create_cone(2 * z[1], z[0], NULL, &s->body); break;
-    case CPROX_ELLIPSOID: status = cprox_body_create_ellipsoid(vec(z[0], z[1], z[2]), NULL, &s->body); break;
-    case CPROX_POLYTOPE:
+    case CPROX_BODY_SPHERE: status = cprox_body_create_sphere(z[0], NULL, &s->body); break;
+    case CPROX_BODY_BOX: status = cprox_body_create_box(vec(2 * z[0], 2 * z[1], 2 * z[2]), NULL, &s->body); break;
+    case CPROX_BODY_CAPSULE: status = cprox_body_create_capsule(2 * z[1], z[0], NULL, &s->body); break;
+    case CPROX_BODY_CYLINDER: status = cprox_body_create_cylinder(2 * z[1], z[0], NULL, &s->body); break;
+    case CPROX_BODY_CONE: status = cprox_body_create_cone(2 * z[1], z[0], NULL, &s->body); break;
+    case CPROX_BODY_ELLIPSOID: status = cprox_body_create_ellipsoid(vec(z[0], z[1], z[2]), NULL, &s->body); break;
+    case CPROX_BODY_POLYTOPE:
       for (s->n = 1 + rng_index(r, TEST_MAX_VERTICES); s->body == NULL;) {
         const vec3 offset = rng_in_cube(r, scale);
         for (size_t i = 0; i < s->n; i++) {
@@ -48,7 +49,7 @@ void shape_make(rng *r, cprox_body_kind kind, double scale, double aspect, test_
         status = cprox_body_create_polytope(s->v, s->n, NULL, &s->body);
       }
       break;
-    case CPROX_POLYGON: {
+    case CPROX_BODY_POLYGON: {
       double flat[TEST_MAX_VERTICES][2];
       s->n = 3 + rng_index(r, 12);
       for (size_t i = 0; i < s->n; i++) {
@@ -60,7 +61,7 @@ void shape_make(rng *r, cprox_body_kind kind, double scale, double aspect, test_
       status = cprox_body_create_polygon((const double(*)[2])flat, s->n, NULL, &s->body);
       break;
     }
-    case CPROX_SUPPORT:
+    case CPROX_BODY_SUPPORT:
       status = cprox_body_create_support(box_callback, s->size, vec(0, 0, 0), 2 * scale, 0.0, 0.0, NULL, &s->body);
       break;
     default: break;
@@ -73,15 +74,15 @@ static vec3l extreme(const test_shape *s, vec3l d) {
   const long double a = s->size[0], b = s->size[1], c = s->size[2], e = hypotl(d.x, d.y), length = ref_norm(d);
   vec3l x = {0, 0, 0};
   switch (s->kind) {
-    case CPROX_SPHERE: return ref_scale(a / length, d);
-    case CPROX_BOX:
-    case CPROX_SUPPORT: return (vec3l){copysignl(a, d.x), copysignl(b, d.y), copysignl(c, d.z)};
-    case CPROX_CAPSULE: x.z = copysignl(b, d.z); return ref_add(x, ref_scale(a / length, d));
-    case CPROX_CYLINDER: return (vec3l){a * d.x / e, a * d.y / e, copysignl(b, d.z)};
-    case CPROX_CONE:
+    case CPROX_BODY_SPHERE: return ref_scale(a / length, d);
+    case CPROX_BODY_BOX:
+    case CPROX_BODY_SUPPORT: return (vec3l){copysignl(a, d.x), copysignl(b, d.y), copysignl(c, d.z)};
+    case CPROX_BODY_CAPSULE: x.z = copysignl(b, d.z); return ref_add(x, ref_scale(a / length, d));
+    case CPROX_BODY_CYLINDER: return (vec3l){a * d.x / e, a * d.y / e, copysignl(b, d.z)};
+    case CPROX_BODY_CONE:
       if (b * d.z > a * e - b * d.z) return (vec3l){0, 0, b};
       return (vec3l){a * d.x / e, a * d.y / e, -b};
-    case CPROX_ELLIPSOID: {
+    case CPROX_BODY_ELLIPSOID: {
       const vec3l w = {a * d.x, b * d.y, c * d.z};
       const long double n = ref_norm(w);
       return (vec3l){a * w.x / n, b * w.y / n, c * w.z / n};
