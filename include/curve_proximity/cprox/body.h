@@ -115,7 +115,7 @@ typedef enum cprox_mesh_fill {
  *
  *  vertices      n of them [m], finite, at most 1e60 m from the origin; duplicates are allowed
  *  triangles     m of them, each three indices below n; degenerate and repeated triangles are allowed
- *  fill          CPROX_MESH_FILL_SOLID asks for the inside too, by the generalised winding number (Jacobson et al. 2013). It
+ *  fill          CPROX_MESH_FILL_SOLID asks for the inside, too (winding number: Jacobson et al. 2013). It
  *                is granted where the mesh is closed: every edge run through as often one way as the other, vertices
  *                with equal coordinates being one. Where it is not, the body is the surface, and
  *                cprox_body_info.is_solid says so.
