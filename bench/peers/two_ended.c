@@ -73,7 +73,7 @@ static double way_of(search *s, const robot_pair *pair, const axis_state *axes, 
 }
 
 static double ball_gap(search *s, const robot_pair *pair) {
-  return robot_scene_apart(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair));
+  return robot_scene_ball_distance(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair));
 }
 
 static double measured_gap(search *s, const robot_pair *pair) {
@@ -141,7 +141,7 @@ static void bound_centrally(search *s, interval *node, int order) {
     const robot_body *moving = robot_scene_moving(&s->scene, pair), *standing = robot_scene_standing(&s->scene, pair);
     chain_motion own;
     const chain_motion *motion = robot_scene_motion(&s->scene, pair, moving, &own);
-    e.lower = fmax(e.lower, robot_scene_apart(moving, standing) - motion->displacement);
+    e.lower = fmax(e.lower, robot_scene_ball_distance(moving, standing) - motion->displacement);
     if (!(e.lower > s->upper - s->epsilon)) {
       robot_gap gap;
       robot_scene_measure(moving, standing, (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);

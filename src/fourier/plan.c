@@ -92,7 +92,7 @@ static double over_reach(const gap_plan *plan, const enlarged *e, double t, cons
 enum { MOST_STEPS = 60, LONGEST_PERIOD = 64 };
 
 /* Enlarges L until images are apart: from each other at the offsets, and by the over-reach where there is one. */
-static cprox_status settle_period(const cprox_solid *a, const cprox_solid *b, const double *outside, const kernel *k,
+static cprox_status choose_period(const cprox_solid *a, const cprox_solid *b, const double *outside, const kernel *k,
                                   cprox_workspace *workspace, gap_plan *plan) {
   const double size = solids_size(a, b), asked = plan->period;
   const int n = 2 * plan->N + 1;
@@ -128,7 +128,7 @@ static cprox_status settle(const cprox_solid *a, const cprox_solid *b, cprox_wor
   if (status == CPROX_OK && plan->mode == CPROX_GAP_MODE_CERTIFIED &&
       !kernel_list_outside(&k, plan->dimension, steps, outside))
     status = no_memory(workspace);
-  if (status == CPROX_OK) status = settle_period(a, b, outside, &k, workspace, plan);
+  if (status == CPROX_OK) status = choose_period(a, b, outside, &k, workspace, plan);
   free(outside);
   return status;
 }

@@ -10,11 +10,11 @@ const char *cprox_gap_verdict_name(cprox_gap_verdict verdict) {
 
 static cprox_status check_pose(const char *name, const cprox_pose *pose, int dimension, cprox_workspace *workspace) {
   if (!pose) return fourier_fail(workspace, CPROX_INVALID, "%s is NULL", name);
-  const char *fault = frame_pose_fault(pose);
-  if (!fault && dimension == 2 && (pose->orientation.x != 0.0 || pose->orientation.y != 0.0))
-    fault = "a planar pose turns about z only";
-  if (!fault && dimension == 2 && pose->position.z != 0.0) fault = "a planar pose has z = 0";
-  return fault ? fourier_fail(workspace, CPROX_INVALID, "%s: %s", name, fault) : CPROX_OK;
+  const char *support_failed = frame_pose_error(pose);
+  if (!support_failed && dimension == 2 && (pose->orientation.x != 0.0 || pose->orientation.y != 0.0))
+    support_failed = "a planar pose turns about z only";
+  if (!support_failed && dimension == 2 && pose->position.z != 0.0) support_failed = "a planar pose has z = 0";
+  return support_failed ? fourier_fail(workspace, CPROX_INVALID, "%s: %s", name, support_failed) : CPROX_OK;
 }
 
 /* Both frames, and the relative pose of the turned solid in the fixed one's frame. */

@@ -124,9 +124,9 @@ cprox_status solid_create_capsule(const cprox_solid_description *d, cprox_worksp
 }
 
 /* Whether a pose is one of the dimension: NULL, or the fault as part of a sentence. */
-static const char *pose_fault(const cprox_pose *pose, int dimension) {
-  const char *fault = frame_pose_fault(pose);
-  if (fault || dimension == 3) return fault;
+static const char *pose_error(const cprox_pose *pose, int dimension) {
+  const char *support_failed = frame_pose_error(pose);
+  if (support_failed || dimension == 3) return support_failed;
   if (pose->orientation.x != 0.0 || pose->orientation.y != 0.0) return "a planar pose turns about z only";
   return pose->position.z != 0.0 ? "a planar pose has z = 0" : NULL;
 }
@@ -143,8 +143,8 @@ cprox_status solid_create_union(const cprox_solid_description *d, cprox_workspac
     if (parts[i]->dimension != parts[0]->dimension)
       return fourier_fail(workspace, CPROX_INVALID, "part %zu has dimension %d, part 0 has %d", i, parts[i]->dimension,
                           parts[0]->dimension);
-    const char *fault = pose_fault(&poses[i], parts[0]->dimension);
-    if (fault) return fourier_fail(workspace, CPROX_INVALID, "the pose of part %zu: %s", i, fault);
+    const char *support_failed = pose_error(&poses[i], parts[0]->dimension);
+    if (support_failed) return fourier_fail(workspace, CPROX_INVALID, "the pose of part %zu: %s", i, support_failed);
     if ((parts[i]->pieces[0].kind == PIECE_SWEEP) != (parts[0]->pieces[0].kind == PIECE_SWEEP))
       return fourier_fail(workspace, CPROX_INVALID, "parts 0 and %zu: a sweep cannot be united with a solid", i);
     pieces += parts[i]->n;

@@ -120,20 +120,20 @@ CASE(the_reason_is_kept_until_the_next_call) {
 
 CASE(poses_that_are_no_rotation_are_named) {
   cprox_pose pose = CPROX_POSE_IDENTITY;
-  assert_null(frame_pose_fault(&pose));
+  assert_null(frame_pose_error(&pose));
   pose.position.y = NAN;
-  assert_string_equal(frame_pose_fault(&pose), "the position is not finite");
+  assert_string_equal(frame_pose_error(&pose), "the position is not finite");
   pose = CPROX_POSE_IDENTITY;
   pose.orientation.z = INFINITY;
-  assert_string_equal(frame_pose_fault(&pose), "the quaternion is not finite");
+  assert_string_equal(frame_pose_error(&pose), "the quaternion is not finite");
   pose.orientation = (cprox_quat){0, 0, 0, 0};
-  assert_string_equal(frame_pose_fault(&pose), "the quaternion's norm is 0");
+  assert_string_equal(frame_pose_error(&pose), "the quaternion's norm is 0");
   pose.orientation = (cprox_quat){1e-170, 0, 0, 0};
-  assert_string_equal(frame_pose_fault(&pose), "the quaternion's norm is 0");
+  assert_string_equal(frame_pose_error(&pose), "the quaternion's norm is 0");
   pose.orientation = (cprox_quat){1e-120, 0, 0, 0};
-  assert_string_equal(frame_pose_fault(&pose), "the quaternion's norm is out of range");
+  assert_string_equal(frame_pose_error(&pose), "the quaternion's norm is out of range");
   pose.orientation = (cprox_quat){0, 1e155, 1e155, 0};
-  assert_string_equal(frame_pose_fault(&pose), "the quaternion's norm is out of range");
+  assert_string_equal(frame_pose_error(&pose), "the quaternion's norm is out of range");
 }
 
 /* A quaternion of any norm and any sparsity, a position up to 1e6 m away. */

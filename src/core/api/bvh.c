@@ -47,10 +47,10 @@ static cprox_status answer(const obstacle_bvh *set, query *q, const char *name, 
   set_walk walk;
   if (!set_walk_begin(&walk, set, q)) return out_of_memory(q);
   cprox_result all = query_nothing();
-  cprox_status trouble = CPROX_OK;
+  cprox_status failure = CPROX_OK;
   double rest = INFINITY;
   for (;;) {
-    const bool answered = (!q->is_signed && all.upper <= fmax(q->limit, 0.0)) || trouble == CPROX_STOPPED;
+    const bool answered = (!q->is_signed && all.upper <= fmax(q->limit, 0.0)) || failure == CPROX_STOPPED;
     const double most = answered ? -INFINITY : query_wants_verdict(q) ? q->limit : all.upper;
     uint32_t target;
     if (!set_walk_next(&walk, most, &target, &rest)) return out_of_memory(q);
@@ -58,12 +58,12 @@ static cprox_status answer(const obstacle_bvh *set, query *q, const char *name, 
     cprox_result one = {0};
     const cprox_status status = query_answer(q, target, (size_t)target + 1, all.upper, &one);
     if (status < 0) return status;
-    if (status != CPROX_OK) trouble = status;
+    if (status != CPROX_OK) failure = status;
     query_join(&all, &one);
   }
   all.lower = fmin(all.lower, q->is_signed ? rest : fmax(rest, 0.0));
   if (all.lod == CPROX_LOD_NONE && q->n > 0) all.lod = CPROX_LOD_SPHERE;
-  query_conclude(q, INFINITY, trouble, &all);
+  query_conclude(q, INFINITY, failure, &all);
   *result = all;
   return all.status;
 }
@@ -128,8 +128,8 @@ cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, c
   if (!kept) return CPROX_MEMORY;
   if (!set_walk_begin(&walk, set, &q)) return out_of_memory(&q);
   size_t found = 0;
-  cprox_status trouble = CPROX_OK;
-  while (trouble != CPROX_STOPPED) {
+  cprox_status failure = CPROX_OK;
+  while (failure != CPROX_STOPPED) {
     const double cutoff = found == k ? kept[k - 1].upper : INFINITY;
     uint32_t target;
     double lower;
@@ -138,11 +138,11 @@ cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, c
     cprox_result r;
     const cprox_status status = query_answer(&q, target, (size_t)target + 1, cutoff, &r);
     if (status < 0) return status;
-    if (trouble == CPROX_OK) trouble = status;
+    if (failure == CPROX_OK) failure = status;
     query_rank(kept, &found, k, &r);
   }
   if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
   *count = found;
-  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", query_shortfall(trouble));
-  return trouble;
+  if (failure != CPROX_OK) workspace_fail(workspace, failure, "%s", query_shortfall(failure));
+  return failure;
 }

@@ -44,19 +44,19 @@ static cprox_status ask_all(query *q, cprox_result *nearest, cprox_result *each)
 
   /* each target by itself; where the union falls short, it is for the one that is not known to be farther */
   cprox_result all = query_nothing();
-  cprox_status trouble = CPROX_OK;
+  cprox_status failure = CPROX_OK;
   for (size_t i = 0; i < q->n; i++) {
     cprox_result one;
     const cprox_status status = query_answer(q, i, i + 1, INFINITY, &one);
     if (status < 0) return status;
-    if (!(one.lower >= all.lower)) trouble = status;
+    if (!(one.lower >= all.lower)) failure = status;
     query_join(&all, &one);
     if (one.obstacle_index < 0) one.obstacle_index = (int32_t)i;
     each[i] = one;
   }
   workspace_clear(q->workspace);
   *nearest = all;
-  return query_conclude(q, INFINITY, trouble, nearest);
+  return query_conclude(q, INFINITY, failure, nearest);
 }
 
 static cprox_status ask(query *q, cprox_result *nearest, cprox_result *each) {

@@ -47,21 +47,21 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
   if (!kept) return CPROX_MEMORY;
 
   size_t found = 0;
-  cprox_status trouble = CPROX_OK;
-  for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
+  cprox_status failure = CPROX_OK;
+  for (size_t i = 0; i < n && failure != CPROX_STOPPED; i++) {
     const double cutoff = found == k ? kept[k - 1].upper : INFINITY;
     if (rank[i].lower > cutoff) break;
     cprox_result r;
     const size_t target = (size_t)rank[i].target;
     const cprox_status status = query_answer(&q, target, target + 1, cutoff, &r);
     if (status < 0) return status;
-    trouble = worse(trouble, status);
+    failure = worse(failure, status);
     query_rank(kept, &found, k, &r);
   }
   if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
   *count = found;
-  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", query_shortfall(trouble));
-  return trouble;
+  if (failure != CPROX_OK) workspace_fail(workspace, failure, "%s", query_shortfall(failure));
+  return failure;
 }
 
 cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_t n, double delta,
@@ -82,19 +82,19 @@ cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_
   const double width = fmax(q.options.epsilon, q.options.relative_epsilon * delta);
   const double cutoff = (delta + 2.0 * width) * (1.0 + 4.0 * (q.options.relative_epsilon + 1e-15));
   size_t found = 0;
-  cprox_status trouble = CPROX_OK;
-  for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
+  cprox_status failure = CPROX_OK;
+  for (size_t i = 0; i < n && failure != CPROX_STOPPED; i++) {
     cprox_result r;
     const cprox_status status = query_answer(&q, i, i + 1, cutoff, &r);
     if (status < 0) return status;
     if (r.lower > delta) continue;
-    trouble = worse(trouble, status);
+    failure = worse(failure, status);
     if (r.obstacle_index < 0) r.obstacle_index = (int32_t)i;
     r.verdict = r.upper <= delta ? CPROX_VERDICT_VIOLATED : CPROX_VERDICT_UNDECIDED;
     kept[found++] = r;
   }
   if (found > 0) memcpy(near, kept, found * sizeof *kept);
   *count = found;
-  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", query_shortfall(trouble));
-  return trouble;
+  if (failure != CPROX_OK) workspace_fail(workspace, failure, "%s", query_shortfall(failure));
+  return failure;
 }

@@ -45,8 +45,8 @@ static cprox_status ask_pairs(query *q, const cprox_robot_pair *pairs, size_t n,
   /* a search that ends at the cutoff has a lower bound of at least cutoff - width: above delta */
   const double width = fmax(q->options.epsilon, q->options.relative_epsilon * delta);
   const double within = (delta + 2.0 * width) * (1.0 + 4.0 * (q->options.relative_epsilon + 1e-15));
-  cprox_status trouble = CPROX_OK;
-  for (size_t i = 0; i < n && trouble != CPROX_STOPPED; i++) {
+  cprox_status failure = CPROX_OK;
+  for (size_t i = 0; i < n && failure != CPROX_STOPPED; i++) {
     const double cutoff = *count == k ? fmin(nearest[k - 1].upper, within) : within;
     q->mover.pairs = &pairs[i], q->mover.n_pairs = 1;
     const size_t first = mover_is_self(&q->mover) ? 0 : (size_t)pairs[i].other,
@@ -55,11 +55,11 @@ static cprox_status ask_pairs(query *q, const cprox_robot_pair *pairs, size_t n,
     const cprox_status status = robot_answer(q, first, last, cutoff, &r);
     if (status < 0) return status;
     if (r.lower > delta || (*count == k && r.upper >= nearest[k - 1].upper)) continue;
-    if (status != CPROX_OK) trouble = status;
+    if (status != CPROX_OK) failure = status;
     r.mover_part = pairs[i].geometry, r.obstacle_index = pairs[i].other;
     insert(nearest, count, k, &r);
   }
-  return trouble;
+  return failure;
 }
 
 cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets, size_t n, size_t k, double delta,
@@ -89,10 +89,10 @@ cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets
   cprox_result *kept = query_reserve_results(&q, n_pairs);
   if (!kept) return CPROX_MEMORY;
   size_t found = 0;
-  const cprox_status trouble = ask_pairs(&q, pairs, n_pairs, k, delta, kept, &found);
-  if (trouble < 0) return trouble;
+  const cprox_status failure = ask_pairs(&q, pairs, n_pairs, k, delta, kept, &found);
+  if (failure < 0) return failure;
   if (found > 0) memcpy(nearest, kept, found * sizeof *kept);
   *count = found;
-  if (trouble > CPROX_OK) workspace_fail(workspace, trouble, "%s", query_shortfall(trouble));
-  return trouble;
+  if (failure > CPROX_OK) workspace_fail(workspace, failure, "%s", query_shortfall(failure));
+  return failure;
 }

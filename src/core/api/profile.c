@@ -57,7 +57,7 @@ static curve_interval section_between(const cprox_curve *curve, size_t piece, do
 }
 
 /* A point that is farther out than asked may be that much nearer: the curve is no faster than the ends of its hodograph. */
-static double outward_travel(const cprox_curve *curve, size_t piece) {
+static double outward_motion(const cprox_curve *curve, size_t piece) {
   const vec3 *p = curve_piece(curve, piece);
   double longest = 0.0;
   for (size_t i = 1; i <= curve->degree; i++) longest = fmax(longest, vec_norm(vec_sub(p[i], p[i - 1])));
@@ -69,7 +69,7 @@ static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox
   const cprox_curve *curve = q->mover.curve;
   *interval = (cprox_profile_interval){
       .t0 = t0, .t1 = t1, .lower = INFINITY, .upper = INFINITY, .t = t0, .obstacle_index = -1, .mover_part = -1};
-  cprox_status trouble = CPROX_OK;
+  cprox_status failure = CPROX_OK;
   while (*piece + 1 < curve->n_pieces && curve->breaks[*piece + 1] <= t0) (*piece)++;
   for (size_t i = *piece; i < curve->n_pieces && curve->breaks[i] < t1; i++) {
     const double from = fmax(t0, curve->breaks[i]), to = fmin(t1, curve->breaks[i + 1]);
@@ -80,9 +80,9 @@ static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox
     cprox_result r;
     const cprox_status status = query_answer(q, 0, q->n, interval->upper, &r);
     if (status < 0) return status;
-    if (status != CPROX_OK) trouble = status;
+    if (status != CPROX_OK) failure = status;
     interval->lower = fmin(interval->lower, r.lower);
-    r.upper += outward_travel(curve, i);
+    r.upper += outward_motion(curve, i);
     if (r.upper < interval->upper) {
       interval->upper = r.upper;
       interval->t = fmin(fmax(r.t, t0), t1);
@@ -91,7 +91,7 @@ static cprox_status measure(query *q, double t0, double t1, size_t *piece, cprox
     }
   }
   CORE_CHECK(!(interval->lower > interval->upper), "lower %.17g, upper %.17g", interval->lower, interval->upper);
-  return trouble;
+  return failure;
 }
 
 /* The same of a robot, whose search knows of segments itself. */
@@ -124,13 +124,13 @@ cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size
   if (status != CPROX_OK) return status;
 
   size_t piece = 0;
-  cprox_status trouble = CPROX_OK;
+  cprox_status failure = CPROX_OK;
   for (size_t i = 0; i < n_intervals; i++) {
     status = mover.motion ? measure_motion(&q, breaks[i], breaks[i + 1], &intervals[i])
                           : measure(&q, breaks[i], breaks[i + 1], &piece, &intervals[i]);
     if (status < 0) return status;
-    if (status != CPROX_OK) trouble = status;
+    if (status != CPROX_OK) failure = status;
   }
-  if (trouble != CPROX_OK) workspace_fail(workspace, trouble, "%s", query_shortfall(trouble));
-  return trouble;
+  if (failure != CPROX_OK) workspace_fail(workspace, failure, "%s", query_shortfall(failure));
+  return failure;
 }

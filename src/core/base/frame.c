@@ -4,7 +4,7 @@
 #include "base/rotation.h"
 #include "base/rounding.h"
 
-const char *frame_pose_fault(const cprox_pose *pose) {
+const char *frame_pose_error(const cprox_pose *pose) {
   const cprox_quat q = pose->orientation;
   const vec3 p = pose->position;
   if (!vec_finite(p)) return "the position is not finite";

@@ -15,7 +15,7 @@
 /* ---- one mover ---------------------------------------------------------------------------------------------------------- */
 
 /* A point of the curve is so near to a part that the limit is violated, whatever else there is. */
-static cprox_status report_hit(const batch_run *run, const batch_look *look, cprox_result *r) {
+static cprox_status report_hit(const batch_run *run, const batch_prefilter_answer *look, cprox_result *r) {
   const batch_hit *hit = &look->hit;
   const candidate *part = &run->batch->parts[hit->part];
   const double *breaks = run->q.mover.curve->breaks + hit->piece, radius = run->q.mover.radius;
@@ -46,32 +46,32 @@ static cprox_status report_hit(const batch_run *run, const batch_look *look, cpr
 }
 
 /* The union of what is near. */
-static cprox_status search_near(const batch_run *run, const batch_look *look, cprox_result *all) {
+static cprox_status search_near(const batch_run *run, const batch_prefilter_answer *look, cprox_result *all) {
   const query *q = &run->q;
-  cprox_status trouble = CPROX_OK;
+  cprox_status failure = CPROX_OK;
   *all = query_nothing();
   double rest = look->beyond; /* the least bound of what was not searched */
   for (size_t i = 0; i < look->n; i++) {
     const candidate *c = &run->near[i];
     const bool too_far = !query_wants_verdict(q) && c->lower > all->upper;
-    if (too_far || all->upper <= fmax(q->limit, 0.0) || trouble == CPROX_STOPPED) {
+    if (too_far || all->upper <= fmax(q->limit, 0.0) || failure == CPROX_STOPPED) {
       rest = fmin(rest, c->lower);
       continue;
     }
     cprox_result one = {0};
     const cprox_status status = candidate_search(q, c, all->upper, &one);
     if (status < 0) return status;
-    if (status != CPROX_OK) trouble = status;
+    if (status != CPROX_OK) failure = status;
     query_join(all, &one);
   }
   if (look->n == 0 && run->batch->n > 0) all->lod = look->lod;
   all->lower = fmin(all->lower, fmax(rest, 0.0));
-  return query_conclude(q, INFINITY, trouble, all);
+  return query_conclude(q, INFINITY, failure, all);
 }
 
 static cprox_status answer_fast(batch_run *run, cprox_result *r) {
-  batch_look look;
-  batch_look_around(run, &look);
+  batch_prefilter_answer look;
+  batch_prefilter(run, &look);
   if (look.is_hit) return report_hit(run, &look, r);
   query_ask_whole(&run->q);
   run->degree = SIZE_MAX; /* a search has bases of its own */

@@ -70,7 +70,7 @@ static bool cut_chord(batch_run *run, uint32_t piece, uint32_t k, lanes_chords *
 }
 
 /* A chord that may come too near is cut again: raises *lower, its bound. True for a hit. */
-static bool look_closer(look *l, uint32_t piece, uint32_t k, double *lower, batch_hit *hit) {
+static bool subdivide_chord(look *l, uint32_t piece, uint32_t k, double *lower, batch_hit *hit) {
   lanes_chords fine;
   if (!cut_chord(l->run, piece, k, &fine)) return false;
   lanes_sample sample;
@@ -84,7 +84,7 @@ static bool look_closer(look *l, uint32_t piece, uint32_t k, double *lower, batc
   return sqrt(square) - beside - l->margin <= l->limit && hits_at(l, piece, s, hit);
 }
 
-bool batch_look_at_obb(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit) {
+bool batch_bound_by_obb(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit) {
   enum { MOST_CUT = 6 }; /* a search is faster than more of these */
   const batch_core *core = &run->batch->cores[part];
   const uint32_t pieces = (uint32_t)run->q.mover.curve->n_pieces;
@@ -118,7 +118,7 @@ bool batch_look_at_obb(batch_run *run, size_t part, double most, candidate *c, d
   for (uint32_t i = 0; i < pieces; i++) {
     for (uint32_t k = 0; k < CHORDS; k++) {
       double bound = sample[i].lower[k] - off;
-      if (bound <= settles && cut++ < MOST_CUT && look_closer(&l, i, k, &bound, hit)) return true;
+      if (bound <= settles && cut++ < MOST_CUT && subdivide_chord(&l, i, k, &bound, hit)) return true;
       lower = lesser(lower, bound);
     }
   }

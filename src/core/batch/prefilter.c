@@ -83,7 +83,7 @@ static bool find_hit(batch_run *run, double limit, batch_hit *hit) {
 /* ---- chords against all balls --------------------------------------------------------------------------------------------- */
 
 /* Bounds on the distance, and where the search should begin. Raises c->lower; returns the upper bound. */
-static double look_at_balls(const batch_run *run, candidate *c, size_t part) {
+static double bound_by_balls(const batch_run *run, candidate *c, size_t part) {
   const batch_core *core = &run->batch->cores[part];
   double least = INFINITY, along = 0.0;
   size_t chord = 0, piece = 0;
@@ -104,10 +104,10 @@ static double look_at_balls(const batch_run *run, candidate *c, size_t part) {
 }
 
 /* What balls leave open the obb may settle. */
-static double look_at(batch_run *run, candidate *c, size_t part, double most, batch_look *look) {
-  double upper = look_at_balls(run, c, part), by_obb = INFINITY;
+static double measure_pair_at(batch_run *run, candidate *c, size_t part, double most, batch_prefilter_answer *look) {
+  double upper = bound_by_balls(run, c, part), by_obb = INFINITY;
   if (run->batch->cores[part].has_obb && !(c->lower > most)) {
-    look->is_hit = batch_look_at_obb(run, part, most, c, &by_obb, &look->hit);
+    look->is_hit = batch_bound_by_obb(run, part, most, c, &by_obb, &look->hit);
     look->hit.part = part;
     look->lod = CPROX_LOD_HULL;
   }
@@ -116,7 +116,7 @@ static double look_at(batch_run *run, candidate *c, size_t part, double most, ba
 
 /* The promising candidate first, the others nearest first. Those that a later one has ruled out leave: farther than the first one is,
  * they do not lower the union's bound. */
-static void put_in_order(batch_run *run, size_t promising, double upper, batch_look *look) {
+static void put_in_order(batch_run *run, size_t promising, double upper, batch_prefilter_answer *look) {
   if (look->n < 2) return;
   candidate *near = run->near;
   const candidate first = near[promising];
@@ -131,7 +131,8 @@ static void put_in_order(batch_run *run, size_t promising, double upper, batch_l
 }
 
 /* One part more that may matter: among the candidates where it comes within `most` as far as chords can tell. Lowers *least_upper. */
-static void consider(batch_run *run, size_t k, double most, double *least_upper, size_t *promising, batch_look *look) {
+static void consider(batch_run *run, size_t k, double most, double *least_upper, size_t *promising,
+                     batch_prefilter_answer *look) {
   candidate *c = &run->near[look->n];
   *c = run->batch->parts[k];
   c->lower = run->lower[k];
@@ -139,7 +140,7 @@ static void consider(batch_run *run, size_t k, double most, double *least_upper,
   double upper = INFINITY;
   if (!(c->lower > beyond) && run->short_enough && run->batch->targets[c->target].body) {
     if (!run->joined && (run->measured || batch_points_ready(run))) batch_points_join(run);
-    if (run->joined) upper = look_at(run, c, k, beyond, look);
+    if (run->joined) upper = measure_pair_at(run, c, k, beyond, look);
   }
   if (c->lower > beyond) {
     look->beyond = lesser(look->beyond, c->lower);
@@ -149,7 +150,7 @@ static void consider(batch_run *run, size_t k, double most, double *least_upper,
   look->n++;
 }
 
-void batch_look_around(batch_run *run, batch_look *look) {
+void batch_prefilter(batch_run *run, batch_prefilter_answer *look) {
   const query *q = &run->q;
   const bool decides = query_wants_verdict(q);
   const double most = decides ? q->limit : INFINITY;

@@ -42,16 +42,16 @@ typedef struct batch_hit {
   vec3 surface;    /* of which this point is that near */
 } batch_hit;
 
-typedef struct batch_look {
+typedef struct batch_prefilter_answer {
   bool is_hit; /* that settles it: of what is below `beyond` and `level of detail` are known */
   batch_hit hit;
   size_t n;      /* candidates in `near`: the one of the least upper bound first, the others nearest first */
   double beyond; /* the least lower bound of all others */
   cprox_lod lod; /* what that took */
-} batch_look;
+} batch_prefilter_answer;
 
 /* Looks at all parts from the curve of run->q.mover, a point or a ball with control points. Fills *look. */
-void batch_look_around(batch_run *run, batch_look *look);
+void batch_prefilter(batch_run *run, batch_prefilter_answer *look);
 
 /* Which parts may matter: bounds the blocks of them, by boxes round the curve's chords where there are many; the part that may be nearest, or SIZE_MAX
  * where there is none; lists in run->open what is not farther than `most`, and returns the least bound of the others. */
@@ -67,6 +67,6 @@ void batch_points_join(batch_run *run);
 
 /* What the box round a part says of the curve, whose chords are joined. Raises c->lower, to more than `most` where that can be shown, says
  * where a search should begin, and sets *upper to an upper bound or infinity. True where it finds a hit: contact, or what violates the limit. */
-bool batch_look_at_obb(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit);
+bool batch_bound_by_obb(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit);
 
 #endif

@@ -74,7 +74,7 @@ static outcome settle(const robot_cover *c, const view *v, double width, vec3 *w
   robot_gap gap;
   const robot_accuracy accuracy = {.floor = c->delta, .fraction = 0.01};
   robot_scene_measure(v->moving, v->standing, accuracy, &gap);
-  if (gap.fault || !(gap.upper > c->delta) || !(vec_norm2(gap.normal) > 0.0)) return TOO_NEAR;
+  if (gap.support_failed || !(gap.upper > c->delta) || !(vec_norm2(gap.normal) > 0.0)) return TOO_NEAR;
   *written = certificate_round(c->certificate, placement_turn_back(&v->standing->side.at, gap.normal));
   return settles(c, v, *written, 0.0) ? WRITTEN : OPEN;
 }
@@ -85,7 +85,7 @@ static int32_t *reserve(const robot_cover *c, size_t n) {
 
 /* The pairs that an interval leaves open come to stand behind `to`; their number is *kept. Writes the head and the
  * normals. */
-static cprox_status settle_pairs(robot_cover *c, size_t from, size_t to, double width, size_t *kept) {
+static cprox_status certify_open_pairs(robot_cover *c, size_t from, size_t to, double width, size_t *kept) {
   const size_t head = certificate_short(c->certificate, 0);
   unsigned count = 0;
   *kept = 0;
@@ -116,7 +116,7 @@ static cprox_status lay(robot_cover *c, size_t segment, double a, double b, size
   c->budget--;
   robot_scene_enter(c->scene, segment, a, b);
   size_t kept;
-  cprox_status status = settle_pairs(c, from, to, b - a, &kept);
+  cprox_status status = certify_open_pairs(c, from, to, b - a, &kept);
   if (status != CPROX_OK || kept == 0) return status;
   if (!(b - a > c->shortest)) return CPROX_PRECISION;
   const double middle = 0.5 * (a + b);

@@ -116,7 +116,7 @@ static bool is_of_distance(const task *t) {
   return t->answer && t->answer->verdict == CPROX_VERDICT_UNDECIDED && t->delta == t->answer->lower;
 }
 
-static cprox_status certify_apart(const task *t) {
+static cprox_status certify_clear(const task *t) {
   cprox_status status = attempt(t, 4, t->delta);
   if (status > 0) status = attempt(t, 8, t->delta);
   if (status <= 0 || !t->answer || t->answer->obstacle_index < 0) return status;
@@ -163,10 +163,10 @@ static cprox_status certify_curve(const task *t) {
       return workspace_fail(t->workspace, CPROX_INVALID, "target %zu is of a kind that has no certificates: %s", i,
                             cprox_body_kind_name(say_unknown(target->body)->kind));
   }
-  if (!t->answer || t->answer->upper > t->delta) return certify_apart(t);
+  if (!t->answer || t->answer->upper > t->delta) return certify_clear(t);
   const cprox_status status = certify_near(t);
   if (status == CPROX_OK || status == CPROX_MEMORY || !is_of_distance(t) || !(t->delta > 0.0)) return status;
-  return certify_apart(t); /* a distance that is known exactly: it is no less, either */
+  return certify_clear(t); /* a distance that is known exactly: it is no less, either */
 }
 
 static cprox_status prove(const task *t) {

@@ -33,7 +33,7 @@ static cprox_status attempt(robot_scene *scene, uint32_t width, double delta, ui
 }
 
 /* What the search's bounds prove with planes that turn, planes that stand may not: the claim about a distance gives away epsilon. */
-static cprox_status certify_apart(robot_scene *scene, double delta, const cprox_result *answer, double epsilon,
+static cprox_status certify_clear(robot_scene *scene, double delta, const cprox_result *answer, double epsilon,
                                   uint32_t budget, cprox_certificate *c) {
   cprox_status status = attempt(scene, 4, delta, budget, c);
   if (status > 0) status = attempt(scene, 8, delta, budget, c);
@@ -60,5 +60,5 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
     const cprox_status status = cover_robot_near(&near, answer);
     if (status == CPROX_OK || status == CPROX_MEMORY || !distance) return status;
   }
-  return certify_apart(&scene, delta, answer, epsilon, options->max_nodes, certificate);
+  return certify_clear(&scene, delta, answer, epsilon, options->max_nodes, certificate);
 }

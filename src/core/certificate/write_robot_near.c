@@ -43,7 +43,7 @@ static int32_t nearest_pair(robot_scene *s, const cprox_result *answer, robot_ga
     if (s->parts[pair->moving].body.index != answer->mover_part || other != answer->obstacle_index) continue;
     robot_gap gap;
     robot_scene_measure(robot_scene_moving(s, pair), robot_scene_standing(s, pair), (robot_accuracy){0}, &gap);
-    if (gap.fault || (found >= 0 && gap.upper >= nearest->upper)) continue;
+    if (gap.support_failed || (found >= 0 && gap.upper >= nearest->upper)) continue;
     *nearest = gap;
     found = (int32_t)i;
   }

@@ -140,7 +140,7 @@ static void approach_describe(const approach_task *task, const approach_pair *p,
 }
 
 /* The points of the cores that are nearest to each other along u, phi(u), and u if it is the best. */
-static simplex_vertex approach_look(const approach_task *task, vec3 u, approach_answer *answer) {
+static simplex_vertex approach_support_step(const approach_task *task, vec3 u, approach_answer *answer) {
   simplex_vertex x = {.id = -1};
   task->a->ops->support(task->a, vec_neg(u), NULL, &x.a);
   task->b->ops->support(task->b, rotate_back(task->r, u), NULL, &x.b);
@@ -176,7 +176,7 @@ void approach_search(const approach_task *task, approach_answer *answer) {
     answer->pair.b = p.b.point;
 
     const vec3 u = approach_direction(&p);
-    if (vec_norm2(u) > 0.0) approach_look(task, u, answer);
+    if (vec_norm2(u) > 0.0) approach_support_step(task, u, answer);
     answer->reached = pair_is_reached(task->goal, task->margins, task->rounding, answer->lower, answer->distance);
     if (answer->reached) {
       if (task->feature) approach_describe(task, &p, answer);
@@ -214,7 +214,7 @@ static bool smooth_step(const approach_task *task, const simplex_vertex *x, vec3
 void approach_smooth(const approach_task *task, vec3 u, approach_answer *answer) {
   *answer = (approach_answer){.pair = {.id = -1}, .distance = INFINITY, .lower = -INFINITY};
   for (int round = 0; round < APPROACH_ROUNDS && answer->looks + 1 < task->goal->max_steps; round++) {
-    const simplex_vertex x = approach_look(task, u, answer);
+    const simplex_vertex x = approach_support_step(task, u, answer);
     const double distance = vec_norm(x.w), phi = vec_dot(u, x.w);
     if (distance < answer->distance) {
       answer->distance = distance;

@@ -37,7 +37,7 @@ void depth_of_point(const convex *shape, vec3 y, double width, convex_near *near
   const pair_goal goal = {.epsilon = width, .max_steps = MOST_STEPS, .wants_feature = true, .wants_depth = true};
   pair_answer answer;
   separate_point(shape, y, &goal, &answer);
-  *near = (convex_near){.distance = answer.fault ? NAN : answer.upper, .normal = vec_neg(answer.normal)};
+  *near = (convex_near){.distance = answer.support_failed ? NAN : answer.upper, .normal = vec_neg(answer.normal)};
   near->point = vec_axpy(y, -near->distance, near->normal);
   if (answer.measured || !answer.overlap) depth_describe(&answer.feature, shape->margin, y, near);
 }
@@ -46,7 +46,7 @@ double depth_proven(const convex *shape, vec3 y) {
   const pair_goal goal = {.max_steps = MOST_STEPS};
   pair_answer answer;
   separate_point(shape, y, &goal, &answer);
-  return answer.overlap && !answer.fault ? greater(answer.depth - answer.rounding, 0.0) : 0.0;
+  return answer.overlap && !answer.support_failed ? greater(answer.depth - answer.rounding, 0.0) : 0.0;
 }
 
 /* Whether the kind's nearest() does not know depths. */
@@ -67,7 +67,7 @@ void depth_complete(const convex *shape, vec3 y, convex_near *near) {
   const pair_goal goal = {.max_steps = (uint32_t)vertices, .wants_depth = true, .plain = true, .room = vertices};
   pair_answer answer;
   separate_point(shape, y, &goal, &answer);
-  if (answer.fault) return;
+  if (answer.support_failed) return;
   double distance = fmin(0.5 * (answer.upper + answer.lower), 0.0);
   if (!answer
            .measured) { /* beside a sharp vertex: between what near() has proven and the best plane, where the two are close */

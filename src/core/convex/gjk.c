@@ -85,7 +85,7 @@ static bool gjk_accept(gjk *g, simplex *grown) {
 }
 
 /* Looks along u, from y to the core, for a lower bound and a vertex that makes the simplex nearer. */
-static bool gjk_look(gjk *g, vec3 u) {
+static bool gjk_support_step(gjk *g, vec3 u) {
   const simplex_vertex vertex = gjk_extreme(g->shape, g->y, vec_neg(u));
   const double lower = vec_dot(u, vertex.w);
   if (isnan(lower)) {
@@ -109,10 +109,10 @@ static bool gjk_step(gjk *g) {
   const vec3 normal = g->nearest.normal;
   vec3 along;
   feature_unit(g->nearest.v, &along);
-  if (vec_norm2(normal) > 0.0 && gjk_look(g, normal)) return true;
+  if (vec_norm2(normal) > 0.0 && gjk_support_step(g, normal)) return true;
   if (!(g->nearest.distance - g->lower > 2.0 * g->contact_tolerance))
     return false; /* the bounds have met, or the callback failed */
-  return vec_norm2(along) > 0.0 && !vec_equal(along, normal) && gjk_look(g, along);
+  return vec_norm2(along) > 0.0 && !vec_equal(along, normal) && gjk_support_step(g, along);
 }
 
 /* Starts again from all round. */

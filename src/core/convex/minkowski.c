@@ -71,7 +71,7 @@ static void difference_nearest(const convex *shape, vec3 y, convex_hint *hint, c
   pair_answer answer;
   pair_separate(standing, standing->margin, carried, carried->margin, &place, &goal, &answer);
   *near = (convex_near){0};
-  if (answer.fault) {
+  if (answer.support_failed) {
     near->distance = NAN;
     return;
   }

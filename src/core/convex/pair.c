@@ -38,7 +38,7 @@ typedef struct pair {
   const convex *a, *b;
   const double *r;
   vec3 t;
-  bool curved, fault;
+  bool curved, support_failed;
   bool met;                 /* the cores have a point in common within the tolerance */
   double rounding;          /* of either bound */
   double contact_tolerance; /* distances that differ by less are the same */
@@ -71,7 +71,7 @@ static simplex_vertex pair_extreme(pair *p, vec3 u) {
   const vec3 da = vec_neg(u), db = rotate_back(p->r, u);
   const double ha = p->a->ops->support(p->a, da, NULL, &x.a);
   const double hb = p->b->ops->support(p->b, db, NULL, &x.b);
-  if (isnan(ha) || isnan(hb)) p->fault = true;
+  if (isnan(ha) || isnan(hb)) p->support_failed = true;
   x.w = pair_difference(p, x.a, x.b);
   x.behind = missed(p->a, ha, da, x.a) + missed(p->b, hb, db, x.b);
   p->supports++;
@@ -219,7 +219,7 @@ bool pair_is_reached(const pair_goal *goal, double margins, double rounding, dou
 
 /* Looks along u: a lower bound, and a vertex that may bring the simplex nearer; on curved shapes its other vertices are moved
  * along their pieces as well, since the old ones would hold it back. True where one of the bounds got better. */
-static bool pair_look(pair *p, vec3 u, bool follow) {
+static bool pair_support_step(pair *p, vec3 u, bool follow) {
   const simplex_vertex x = pair_extreme(p, u);
   const double lower = p->lower;
   pair_raise_lower(p, u, vec_dot(u, x.w) - x.behind);
@@ -243,12 +243,12 @@ static bool pair_look(pair *p, vec3 u, bool follow) {
  * directions, since the normal is exact where v is all rounding, and v where the simplex is a sliver. */
 static bool pair_step(pair *p, bool newton) {
   vec3 u;
-  if (newton && pair_newton(p, &u)) return pair_look(p, u, true);
+  if (newton && pair_newton(p, &u)) return pair_support_step(p, u, true);
   const vec3 normal = p->nearest.normal;
-  if (vec_norm2(normal) > 0.0 && pair_look(p, normal, false)) return true;
-  if (p->nearest.inside || p->fault) return true;
+  if (vec_norm2(normal) > 0.0 && pair_support_step(p, normal, false)) return true;
+  if (p->nearest.inside || p->support_failed) return true;
   feature_unit(p->nearest.v, &u);
-  return vec_norm2(u) > 0.0 && !vec_equal(u, normal) && pair_look(p, u, false);
+  return vec_norm2(u) > 0.0 && !vec_equal(u, normal) && pair_support_step(p, u, false);
 }
 
 /* Starts again from all round. */
@@ -281,7 +281,7 @@ static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) 
   simplex_reduce(&p->s, &p->nearest);
   p->least = p->nearest.distance;
 
-  for (p->steps++; p->steps < most && !p->fault && !p->nearest.inside; p->steps++) {
+  for (p->steps++; p->steps < most && !p->support_failed && !p->nearest.inside; p->steps++) {
     const double gap = p->nearest.distance - p->lower;
     if (pair_is_reached(goal, margins, p->rounding, p->lower, p->nearest.distance)) return;
 
@@ -313,9 +313,10 @@ static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) 
 /* Where the shapes touch or overlap the simplex has no direction to offer. So b is drawn back along the best direction until
  * it is free, and the direction of the distance there is tried here; closer and closer, since where they are curved the
  * direction found is only as good as the distance was short. */
-static void pair_draw_apart(pair *p, double size, const pair_goal *goal) {
+static void pair_separate_slightly(pair *p, double size, const pair_goal *goal) {
   double clear = 1e-3 * size;
-  for (int round = 0; round < PAIR_ROUNDS && p->lower < -p->rounding && !p->fault && p->steps < goal->max_steps;
+  for (int round = 0;
+       round < PAIR_ROUNDS && p->lower < -p->rounding && !p->support_failed && p->steps < goal->max_steps;
        round++, clear *= 1e-2) {
     pair q = *p;
     q.t = vec_axpy(p->t, p->lower - clear, p->u);
@@ -324,7 +325,7 @@ static void pair_draw_apart(pair *p, double size, const pair_goal *goal) {
     pair_search(&q, p->u, 0.0, &enough);
     p->supports = q.supports;
     p->steps = q.steps;
-    p->fault = q.fault;
+    p->support_failed = q.support_failed;
 
     const double before = p->lower;
     const simplex_vertex x = pair_extreme(p, q.u);
@@ -435,8 +436,8 @@ static bool pair_expand_beside(pair *p, const expand_goal *goal, expand_depth *d
     pair_search(&q, p->u, 0.0, &inside);
     p->supports = q.supports;
     p->steps += q.steps;
-    p->fault = q.fault;
-    if (p->fault) return false;
+    p->support_failed = q.support_failed;
+    if (p->support_failed) return false;
     left.max_steps -= q.steps < left.max_steps ? q.steps : left.max_steps;
     if (!expand_beside(&set, &q.s, shift, &left, depth)) continue;
     if (far < p->nearest.distance) p->s = q.s;
@@ -542,14 +543,14 @@ static void pair_find(pair *p, vec3 u, double margins, const pair_goal *goal, pa
     p->met = found.met;
     pair_search(p, found.lower > 0.0 ? found.u : u, margins, goal);
   }
-  if (goal->wants_feature && !found.described && !p->nearest.inside && !p->fault) pair_describe(p, feature);
+  if (goal->wants_feature && !found.described && !p->nearest.inside && !p->support_failed) pair_describe(p, feature);
 }
 
 /* Neither apart nor overlapping is proven by more than a few roundings, or the depth is wanted; and no direction yet tells that there is
  * nothing to prove. */
 static bool pair_is_open(const pair *p, double margins, const pair_goal *goal) {
   const double shallow = PAIR_SHALLOW * p->rounding;
-  if (p->fault || p->steps >= goal->max_steps || !(p->lower < -2.0 * shallow)) return false;
+  if (p->support_failed || p->steps >= goal->max_steps || !(p->lower < -2.0 * shallow)) return false;
   if (p->nearest.inside)
     return goal->wants_depth || !(p->nearest.depth + margins > fmax(shallow, -PAIR_THIN * p->lower));
   if (p->nearest.distance <= p->rounding) return true;
@@ -569,7 +570,7 @@ static void pair_go_inside(pair *p, double margin_a, double margin_b, double siz
     pair_prove_overlap(p, goal, pair_expand, answer);
   if (answer->measured) return;
 
-  pair_draw_apart(p, size, goal);
+  pair_separate_slightly(p, size, goal);
   if (pair_is_open(p, margins, goal)) {
     if (goal->wants_depth)
       pair_measure_depth(p, margin_a, margin_b, goal, pair_expand_beside, answer);
@@ -602,7 +603,7 @@ void pair_separate(const convex *a, double margin_a, const convex *b, double mar
   pair_points(&p, margin_a, margin_b, answer);
   pair_go_inside(&p, margin_a, margin_b, size, goal, answer);
 
-  answer->fault = p.fault;
+  answer->support_failed = p.support_failed;
   answer->steps = p.steps;
   answer->supports = p.supports;
   answer->rounding = p.rounding;

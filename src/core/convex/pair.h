@@ -36,7 +36,7 @@ typedef struct pair_feature {
 } pair_feature;
 
 typedef struct pair_answer {
-  bool fault;           /* a support callback misbehaved: nothing else is set */
+  bool support_failed;  /* a support callback misbehaved: nothing else is set */
   bool exhausted;       /* max_steps were not enough */
   bool stopped;         /* the caller's stop function ended a search through elements or parts */
   bool overlap;         /* the cores overlap, proven */

@@ -52,7 +52,7 @@ typedef struct polygon_lanes {
 } polygon_lanes;
 
 SIMD_CLONES
-static void polygon_look(const convex *shape, double px, double py, polygon_lanes *best) {
+static void polygon_nearest_edges(const convex *shape, double px, double py, polygon_lanes *best) {
   const int32_t stride = shape->padded;
   polygon_lanes b;
   for (int l = 0; l < LANES; l++) {
@@ -106,7 +106,7 @@ static polygon_place polygon_locate_any(const convex *shape, double px, double p
 
 static polygon_place polygon_locate(const convex *shape, double px, double py) {
   polygon_lanes lanes;
-  polygon_look(shape, px, py, &lanes);
+  polygon_nearest_edges(shape, px, py, &lanes);
   int line = 0, edge = 0;
   double height = lanes.height[0], square = lanes.square[0];
   for (int l = 1; l < LANES; l++) {

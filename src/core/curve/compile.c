@@ -17,7 +17,7 @@
 
 /* ---- memory ---- */
 
-static void give_back(compile *c) {
+static void release_memory(compile *c) {
   free(c->breaks);
   free(c->points);
   free(c->error);
@@ -183,13 +183,13 @@ static cprox_status append_pieces(compile *c, const compile_source *source, doub
 cprox_status compile_append(compile *c, const compile_source *source, double t0, double t1) {
   if (c->n == 0) c->from = t0;
   const cprox_status status = append_pieces(c, source, t0, t1);
-  if (status != CPROX_OK) give_back(c);
+  if (status != CPROX_OK) release_memory(c);
   return status;
 }
 
 cprox_status compile_finish(compile *c, cprox_curve **curve) {
   if (c->n == 0) {
-    give_back(c);
+    release_memory(c);
     return workspace_fail(c->workspace, CPROX_INVALID, "the curve has no pieces");
   }
   cprox_curve *made = curve_allocate(5, c->n);
@@ -201,7 +201,7 @@ cprox_status compile_finish(compile *c, cprox_curve **curve) {
     curve_finish(made);
   }
   const size_t n = c->n;
-  give_back(c);
+  release_memory(c);
   if (!made) return workspace_fail(c->workspace, CPROX_MEMORY, "no memory for a curve of %zu pieces", n);
   *curve = made;
   return CPROX_OK;

@@ -56,7 +56,7 @@ static double middle(const convert_piece *piece) {
 
 /* Whether half of the piece would be rounded better: its points are large against the curve, what rounding them costs is
  * more than the error they have already, and there is a double to cut it at. */
-static bool is_crowded(const convert_piece *piece, size_t degree, double size) {
+static bool is_ill_conditioned(const convert_piece *piece, size_t degree, double size) {
   const double largest = largest_point(piece, degree), cut = middle(piece);
   return largest > CROWDED * size && ROUND_U * largest > piece->error && piece->from < cut && cut < piece->to;
 }
@@ -88,10 +88,10 @@ static void halve(const convert_piece *piece, size_t degree, convert_piece *left
 }
 
 /* Halves every crowded piece once. Takes *pieces and *n over: false where memory is out, with both as they were. */
-static bool halve_crowded(convert_piece **pieces, size_t *n, size_t degree, bool *changed) {
+static bool halve_ill_conditioned(convert_piece **pieces, size_t *n, size_t degree, bool *changed) {
   const double size = curve_size(*pieces, *n, degree);
   size_t crowded = 0;
-  for (size_t i = 0; i < *n; i++) crowded += is_crowded(&(*pieces)[i], degree, size);
+  for (size_t i = 0; i < *n; i++) crowded += is_ill_conditioned(&(*pieces)[i], degree, size);
   *changed = crowded > 0;
   if (crowded == 0) return true;
 
@@ -99,7 +99,7 @@ static bool halve_crowded(convert_piece **pieces, size_t *n, size_t degree, bool
   if (!finer) return false;
   for (size_t i = 0; i < *n; i++) {
     const convert_piece *piece = &(*pieces)[i];
-    if (is_crowded(piece, degree, size)) {
+    if (is_ill_conditioned(piece, degree, size)) {
       halve(piece, degree, next, next + 1);
       next += 2;
     } else {
@@ -153,7 +153,7 @@ cprox_status convert_finish(convert_piece *pieces, size_t n, size_t degree, cpro
                             cprox_curve **curve) {
   bool changed = true;
   while (changed && n <= MOST_PIECES) {
-    if (!halve_crowded(&pieces, &n, degree, &changed)) {
+    if (!halve_ill_conditioned(&pieces, &n, degree, &changed)) {
       free(pieces);
       return workspace_fail(workspace, CPROX_MEMORY, "no memory for a curve of %zu pieces", n);
     }

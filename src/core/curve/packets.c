@@ -173,7 +173,7 @@ double lanes_nearest_point(const lanes_chords *c, uint32_t first, vec3 from, uin
 }
 
 SIMD_CLONES
-double lanes_first_look(const double *basis, const double *x, const double *y, const double *z, size_t degree) {
+double lanes_nearest_sample(const double *basis, const double *x, const double *y, const double *z, size_t degree) {
   /* begun by their first terms: so many sums stay in registers */
   double px[CHORDS], py[CHORDS], pz[CHORDS], square[CHORDS + 1];
 #pragma omp simd

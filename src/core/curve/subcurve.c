@@ -39,19 +39,19 @@ static int32_t points_pool_take(points_pool *pool) {
   return (int32_t)pool->slots++;
 }
 
-void points_pool_give(points_pool *pool, int32_t slot) {
+void points_pool_release(points_pool *pool, int32_t slot) {
   if (slot < 0) return;
   int32_t *free_slots = workspace_reserve(pool->workspace, WORKSPACE_FREE_SLOTS, 0);
   free_slots[pool->free_slots++] = slot;
 }
 
-cprox_status curve_side_trouble(const curve_side *side) {
-  if (side->pool->trouble < 0) return side->pool->trouble;
+cprox_status curve_side_failure(const curve_side *side) {
+  if (side->pool->failure < 0) return side->pool->failure;
   return workspace_fail(side->pool->workspace, CPROX_MEMORY, "no memory for another parameter interval");
 }
 
 cprox_status curve_side_status(const curve_side *side) {
-  return side->pool->trouble;
+  return side->pool->failure;
 }
 
 /* ---- pieces ----------------------------------------------------------------------------------------------------------- */
@@ -193,7 +193,7 @@ void curve_side_load(curve_side *side, size_t piece) {
 
 /* Whether all went well; else the trouble is kept, with its reason. */
 static bool went_well(const curve_side *side, cprox_status status) {
-  if (status < 0) side->pool->trouble = status;
+  if (status < 0) side->pool->failure = status;
   return status >= 0;
 }
 
@@ -285,7 +285,7 @@ static bool cut_to_section(curve_side *side, curve_interval *at) {
   }
   /* a, b and a/b are rounded, by 4 u in all: along a curve with |psi'| <= 2 degree max|P| */
   at->error += ROUND_UP * 8.0 * (double)degree * ROUND_U * side->root_magnitude;
-  points_pool_give(side->pool, rest);
+  points_pool_release(side->pool, rest);
   return true;
 }
 

@@ -22,13 +22,13 @@ typedef struct points_pool {
   double *points; /* of slot 0 */
   size_t stride;  /* numbers a slot */
   size_t slots, free_slots;
-  cprox_status trouble; /* negative where a curve's own functions failed; the workspace has the reason */
+  cprox_status failure; /* negative where a curve's own functions failed; the workspace has the reason */
 } points_pool;
 
 /* A pool whose first `reserved` slots are never given out: each side's root, scratch. False where memory is out. */
 bool points_pool_begin(points_pool *pool, size_t degree, size_t reserved, cprox_workspace *workspace);
 double *points_pool_at(const points_pool *pool, size_t slot);
-void points_pool_give(points_pool *pool, int32_t slot);
+void points_pool_release(points_pool *pool, int32_t slot);
 
 typedef struct curve_side {
   const cprox_curve *curve;
@@ -48,7 +48,7 @@ void curve_side_begin(curve_side *side, const cprox_curve *curve, const frame *p
 
 /* The status of a call below that returned false: CPROX_MEMORY with its reason, or what a curve's own functions did wrong. And the
  * latter alone, CPROX_OK where they did nothing wrong: to be asked where points were taken. */
-cprox_status curve_side_trouble(const curve_side *side);
+cprox_status curve_side_failure(const curve_side *side);
 cprox_status curve_side_status(const curve_side *side);
 
 /* The interval that is the whole curve. */
@@ -71,7 +71,7 @@ void curve_side_load(curve_side *side, size_t piece);
 curve_interval curve_side_section(const cprox_curve *curve, size_t piece, double a, double b);
 
 /* Gives a piece's interval control points of its own: of a curve that is known by its arc length, its ends and their ellipsoid
- * (rectifiable.h), which bounds see and others need not. False where memory is out, or by curve_side_trouble(). */
+ * (rectifiable.h), which bounds see and others need not. False where memory is out, or by curve_side_failure(). */
 bool curve_side_materialise(curve_side *side, curve_interval *at);
 
 /* Gives an interval that shares its control points with another a copy of its own. False where memory is out. */

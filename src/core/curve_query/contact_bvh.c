@@ -119,7 +119,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   if (!curve_side_is_piece(&o->side, &payload->at)) {
     status = probe_range(c, node);
   } else {
-    if (!curve_side_materialise(&o->side, &payload->at)) return curve_side_trouble(&o->side);
+    if (!curve_side_materialise(&o->side, &payload->at)) return curve_side_failure(&o->side);
     status = probe_piece(c, node);
   }
   if (status < 0) return status;
@@ -146,7 +146,7 @@ static int split(void *self, search_node *node, search_node *child) {
     const double s = stepping ? c->share : fmax(fmin(0.5, 2.0 * c->ahead), SHORTEST_AIM),
                  cut = at->a + s * (at->b - at->a);
     if (!(at->a < cut && cut < at->b)) return 0;
-    if (!curve_side_cut_piece(&o->side, at, cut, s, half)) return curve_side_trouble(&o->side);
+    if (!curve_side_cut_piece(&o->side, at, cut, s, half)) return curve_side_failure(&o->side);
   }
   int children = 0;
   for (int k = 0; k < 2; k++) {

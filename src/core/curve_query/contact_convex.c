@@ -40,7 +40,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   double s, error;
   vec3 y;
   if (curve_side_is_piece(&o->side, at)) {
-    if (!curve_side_materialise(&o->side, at)) return curve_side_trouble(&o->side);
+    if (!curve_side_materialise(&o->side, at)) return curve_side_failure(&o->side);
     const size_t stride = o->side.curve->degree + 1;
     const double *points = points_pool_at(&o->pool, (size_t)at->slot);
     piece = curve_side_piece(&o->side, at), s = at->a, error = at->error;
@@ -97,7 +97,7 @@ static int split(void *self, search_node *node, search_node *child) {
     const double s = fraction * SHORTEST_STEP > 1.0 && fraction < 1.0 ? fraction : 0.5;
     const double cut = at->a + s * (at->b - at->a);
     if (!(at->a < cut && cut < at->b)) return 0;
-    if (!curve_side_cut_piece(&o->side, at, cut, s, half)) return curve_side_trouble(&o->side);
+    if (!curve_side_cut_piece(&o->side, at, cut, s, half)) return curve_side_failure(&o->side);
   }
   int children = 0;
   for (int k = 0; k < 2; k++)

@@ -214,7 +214,7 @@ static void seed_at(curve_tree *o, size_t piece, double s) {
   adopt_better(o, &sample, &at);
 }
 
-void curve_tree_look(curve_tree *o, double t) {
+void curve_tree_measure_at(curve_tree *o, double t) {
   const double *breaks = o->side.curve->breaks;
   size_t piece = 0;
   while (piece + 1 < o->side.curve->n_pieces && breaks[piece + 1] <= t) piece++;
@@ -378,7 +378,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   const double s = 0.5 * (at->a + at->b);
   vec3 x;
   if (piece) {
-    if (!curve_side_materialise(&o->side, at)) return curve_side_trouble(&o->side);
+    if (!curve_side_materialise(&o->side, at)) return curve_side_failure(&o->side);
     x = curve_side_point(&o->side, s);
     if (curve_side_status(&o->side) < 0) return curve_side_status(&o->side);
   } else {
@@ -425,7 +425,7 @@ static int split(void *self, search_node *node, search_node *child) {
   } else {
     const double s = cut_of(o, node), cut = s == 0.5 ? 0.5 * (at->a + at->b) : o->best.s;
     if (!(at->a < cut && cut < at->b)) return 0;
-    if (!curve_side_cut_piece(&o->side, at, cut, s, half)) return curve_side_trouble(&o->side);
+    if (!curve_side_cut_piece(&o->side, at, cut, s, half)) return curve_side_failure(&o->side);
   }
   /* the half that is nearer to the best point comes last: the engine takes the last of equals first */
   const double t = o->found ? curve_side_parameter(&o->side, o->best.piece, o->best.s) : -INFINITY;
@@ -443,7 +443,7 @@ static int split(void *self, search_node *node, search_node *child) {
 
 static void release(void *self, const search_node *node) {
   curve_tree *o = self;
-  points_pool_give(&o->pool, curve_tree_known(node)->at.slot);
+  points_pool_release(&o->pool, curve_tree_known(node)->at.slot);
 }
 
 /* ---- the oracle ------------------------------------------------------------------------------------------------------- */

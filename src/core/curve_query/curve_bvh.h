@@ -65,7 +65,7 @@ bool curve_tree_begin(curve_tree *o, const cprox_curve *curve, const cprox_body 
 bool curve_tree_root(curve_tree *o, search_node *root);
 
 /* Measures where the curve's parameter is t, into o->best and o->best_bound. */
-void curve_tree_look(curve_tree *o, double t);
+void curve_tree_measure_at(curve_tree *o, double t);
 
 /* The functions of the contract in branch_and_bound/search.h, self being the curve_tree. */
 search_oracle curve_tree_oracle(curve_tree *o);

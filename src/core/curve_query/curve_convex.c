@@ -214,7 +214,7 @@ static cprox_status probe_at(curve_convex *o, size_t piece, double s, double ste
 
 /* From the frame's origin, about which the body stands, towards the chord of a range: a normal that is had without a measurement.
  * False where the chord meets the origin. */
-static bool look_from_origin(curve_convex *o, const search_node *node) {
+static bool normal_from_origin(curve_convex *o, const search_node *node) {
   const vec3 y = curve_side_chord_from_origin(&o->side, &curve_convex_known(node)->at);
   const double length2 = vec_norm2(y);
   if (!(length2 > 0.0 && isfinite(length2))) return false;
@@ -225,10 +225,10 @@ static bool look_from_origin(curve_convex *o, const search_node *node) {
 }
 
 /* Where the loaded piece comes nearest to the frame's origin, about which the body stands, as far as a few points tell. */
-static double first_look(const curve_convex *o) {
+static double nearest_sample(const curve_convex *o) {
   const size_t degree = o->side.curve->degree;
   const double *basis = lanes_basis(degree, o->workspace), *x = points_pool_at(&o->pool, CURVE_CONVEX_ROOT);
-  return basis ? lanes_first_look(basis, x, x + degree + 1, x + 2 * (degree + 1), degree) : 0.5;
+  return basis ? lanes_nearest_sample(basis, x, x + degree + 1, x + 2 * (degree + 1), degree) : 0.5;
 }
 
 /* Many pieces are so short that their chords tell as much as points on them. */
@@ -244,7 +244,7 @@ static cprox_status probe_range(curve_convex *o, const search_node *node) {
     double s;
     const size_t nearest = curve_side_nearest_piece(&o->side, &payload->at, &s);
     curve_side_load(&o->side, nearest);
-    return probe_at(o, nearest, is_long(o) ? s : first_look(o), 0.5 / CHORDS);
+    return probe_at(o, nearest, is_long(o) ? s : nearest_sample(o), 0.5 / CHORDS);
   }
   if (o->incumbent > 0) {
     o->last = o->best;
@@ -266,7 +266,7 @@ static double promising(const curve_convex *o, const curve_interval *at, double 
   *step = 0.25 * (at->b - at->a);
   if (o->incumbent == 0 && !o->side.curve->arcs && at->a == 0.0 && at->b == 1.0) {
     *step = 0.5 / CHORDS;
-    return first_look(o);
+    return nearest_sample(o);
   }
   if (o->incumbent > 0 && vec_norm2(o->best.normal) > 0.0) {
     const size_t degree = o->side.curve->degree;
@@ -289,7 +289,7 @@ cprox_status curve_convex_seed(curve_convex *o, size_t piece, double s, search_n
   curve_side_load(&o->side, piece);
   const cprox_status status = probe_at(o, piece, s, 1.0 / 16);
   if (status < 0 || o->incumbent == 0 || o->best_bound.upper <= o->good_enough) return status;
-  if (is_piece(o, root) && !curve_side_materialise(&o->side, &payload->at)) return curve_side_trouble(&o->side);
+  if (is_piece(o, root) && !curve_side_materialise(&o->side, &payload->at)) return curve_side_failure(&o->side);
   curve_convex_bound(o, root, &o->best);
   payload->seen = o->incumbent;
   return CPROX_OK;
@@ -301,7 +301,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   o->nodes++;
   const bool piece = is_piece(o, node);
   if (piece) {
-    if (!curve_side_materialise(&o->side, &payload->at)) return curve_side_trouble(&o->side);
+    if (!curve_side_materialise(&o->side, &payload->at)) return curve_side_failure(&o->side);
     if (best_inside(o, node) >= 0.0) {
       if (payload->seen != o->incumbent) curve_convex_bound(o, node, &o->best);
       payload->seen = o->incumbent;
@@ -389,7 +389,7 @@ static int split_range(curve_convex *o, const search_node *node, search_node *ch
   }
   bound_range_children_by_ball(o, child, n);
   if (is_open(o, child, n)) bound_range_children(o, child, n, &o->best);
-  if (is_open(o, child, n) && look_from_origin(o, node)) bound_range_children(o, child, n, &o->last);
+  if (is_open(o, child, n) && normal_from_origin(o, node)) bound_range_children(o, child, n, &o->last);
   return (int)n;
 }
 
@@ -402,7 +402,7 @@ static int split(void *self, search_node *node, search_node *child) {
   const double inside = best_inside(o, node);
   const double cut = inside < 0.0 ? 0.5 * (at->a + at->b) : o->best.s;
   if (!(at->a < cut && cut < at->b)) return 0;
-  if (!curve_side_cut_piece(&o->side, at, cut, inside < 0.0 ? 0.5 : inside, half)) return curve_side_trouble(&o->side);
+  if (!curve_side_cut_piece(&o->side, at, cut, inside < 0.0 ? 0.5 : inside, half)) return curve_side_failure(&o->side);
   int children = 0;
   for (int k = 0; k < 2; k++) children = add_child(o, node, &half[k], child, children);
   return children;
@@ -410,7 +410,7 @@ static int split(void *self, search_node *node, search_node *child) {
 
 static void release(void *self, const search_node *node) {
   curve_convex *o = self;
-  points_pool_give(&o->pool, curve_convex_known(node)->at.slot);
+  points_pool_release(&o->pool, curve_convex_known(node)->at.slot);
 }
 
 /* ---- the oracle ------------------------------------------------------------------------------------------------------- */

@@ -105,7 +105,7 @@ static void measure_carried(curve_curve *o, curve_meeting *m, double error, sear
   shape->ops->nearest(shape, apart, NULL, &m->near);
   if (o->is_signed && m->near.distance <= 0.0 && vec_norm2(m->near.normal) == 0.0)
     depth_of_point(shape, apart, 0.1 * o->epsilon, &m->near);
-  o->fault |= isnan(m->near.distance);
+  o->support_failed |= isnan(m->near.distance);
   m->distance = m->near.distance;
   m->normal = m->near.normal;
   const double length2 = vec_norm2(m->normal);
@@ -184,7 +184,7 @@ cprox_status curve_curve_materialise(curve_curve *o, search_node *node, bool *pi
     if (!curve_side_is_piece(&o->side[k], &payload->side[k])) {
       *pieces = false;
     } else if (!curve_side_materialise(&o->side[k], &payload->side[k])) {
-      return curve_side_trouble(&o->side[k]);
+      return curve_side_failure(&o->side[k]);
     }
   }
   return CPROX_OK;
@@ -209,7 +209,7 @@ curve_meeting curve_curve_meeting_near(curve_curve *o, const search_node *node, 
 }
 
 /* Where the two pieces that the search begins with come nearest, as far as a few points of each tell. */
-static bool first_look(const curve_curve *o, const search_node *node, double fraction[2]) {
+static bool nearest_sample(const curve_curve *o, const search_node *node, double fraction[2]) {
   const curve_curve_node *payload = curve_curve_known(node);
   lanes_piece piece[2];
   const double *basis[2];
@@ -241,7 +241,7 @@ static cprox_status measure_node(curve_curve *o, search_node *node, const double
   const uint32_t before = o->incumbent;
   consider(o, &m, error);
   if (curve_side_status(&o->side[0]) < 0) return curve_side_status(&o->side[0]); /* both sides keep it in one place */
-  if (o->fault) return workspace_fail(o->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
+  if (o->support_failed) return workspace_fail(o->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
   if (o->carries || looked) {
     load_pieces(o, node);
     o->last_normal = m.normal;
@@ -262,7 +262,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
 
   /* points of both suggest where to measure, or the chords do, and a normal */
   double fraction[2];
-  const bool looked = pieces && o->incumbent == 0 && first_look(o, node, fraction);
+  const bool looked = pieces && o->incumbent == 0 && nearest_sample(o, node, fraction);
   if (!looked) {
     o->last_normal = curve_curve_suggest(o, node, fraction);
     curve_curve_bound(o, node, o->last_normal);
@@ -350,7 +350,7 @@ int curve_curve_cut(curve_curve *o, search_node *node, const curve_curve_cuts *c
   for (int k = 0; k < 2; k++) {
     n[k] = cut_side(o, node, k, cuts, part[k]);
     if (n[k] == 0) return 0;
-    if (n[k] < 0) return curve_side_trouble(&o->side[k]);
+    if (n[k] < 0) return curve_side_failure(&o->side[k]);
   }
 
   /* every pair of parts is a child; a part that serves a second child gets points of its own */
@@ -364,7 +364,7 @@ int curve_curve_cut(curve_curve *o, search_node *node, const curve_curve_cuts *c
       payload->side[1] = part[1][j];
       if ((j > 0 && !curve_side_copy(&o->side[0], &payload->side[0])) ||
           (i > 0 && !curve_side_copy(&o->side[1], &payload->side[1])))
-        return curve_side_trouble(&o->side[0]);
+        return curve_side_failure(&o->side[0]);
       payload->seen = o->incumbent;
     }
   }
@@ -382,7 +382,7 @@ static int split(void *self, search_node *node, search_node *child) {
 
 static void release(void *self, const search_node *node) {
   curve_curve *o = self;
-  for (int k = 0; k < 2; k++) points_pool_give(&o->pool, curve_curve_known(node)->side[k].slot);
+  for (int k = 0; k < 2; k++) points_pool_release(&o->pool, curve_curve_known(node)->side[k].slot);
 }
 
 /* ---- the oracle ------------------------------------------------------------------------------------------------------- */

@@ -48,10 +48,10 @@ typedef struct curve_curve {
   /* what is known */
   curve_meeting best;
   search_best best_bound;
-  uint32_t incumbent; /* counts the best meetings; 0: none */
-  vec3 last_normal;   /* of the last pair of chords, or of the last probe of a carried body */
-  bool fault;         /* a support callback misbehaved */
-  double goal;        /* what settles a node, as of the last one that was looked at */
+  uint32_t incumbent;  /* counts the best meetings; 0: none */
+  vec3 last_normal;    /* of the last pair of chords, or of the last probe of a carried body */
+  bool support_failed; /* a support callback misbehaved */
+  double goal;         /* what settles a node, as of the last one that was looked at */
   uint32_t distance_queries, nodes;
 
   /* memory */

@@ -315,7 +315,7 @@ cprox_status candidate_measure_mesh(const query *q, const candidate *c, cprox_re
   const placed_pair p = placed_pair_resolve(q, c);
   curve_tree o;
   if (!placed_begin_tree(q, &p, &o)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a curve");
-  curve_tree_look(&o, result->t);
+  curve_tree_measure_at(&o, result->t);
   if (curve_side_status(&o.side) < 0) return curve_side_status(&o.side);
   result->distance_queries += o.distance_queries;
   result->upper = fmax(o.best_bound.upper, 0.0);

@@ -89,7 +89,7 @@ bool barrier_begin(barrier *b, vec3 z, double mu, double lift_below) {
 
 /* ---- the state ---- */
 
-barrier_state barrier_look(const barrier *b) {
+barrier_state barrier_evaluate(const barrier *b) {
   const implicit *body = b->body;
   barrier_state state = {.pairs = implicit_count(body)};
   for (int32_t k = 0; k < state.pairs; k++) {

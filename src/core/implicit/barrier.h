@@ -61,7 +61,7 @@ typedef struct barrier_state {
  * z is not strictly inside. */
 bool barrier_begin(barrier *b, vec3 z, double mu, double lift_below);
 
-barrier_state barrier_look(const barrier *b);
+barrier_state barrier_evaluate(const barrier *b);
 
 /* Adds the body's part of Newton's system for the target product `target` of slack and multiplier. */
 void barrier_assemble(barrier *b, double target, barrier_system *system);

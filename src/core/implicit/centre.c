@@ -174,7 +174,7 @@ static double row_size(vec3 a, vec3 box) {
 /* How far rounding of a constraint's value may carry a point: by convexity, drawing a point in by the fraction
  * error/-f(centre) of its distance from the centre lowers f by as much. The same covers the rounding of the stored
  * coefficients. */
-static double body_give(const implicit *body) {
+static double body_shrinkage(const implicit *body) {
   double fraction = 0.0;
   for (int32_t k = 0; k < body->n_planes; k++) {
     const implicit_plane *plane = &body->plane[k];
@@ -221,6 +221,6 @@ bool implicit_measure(implicit *body) {
   body->inner = inner * (1.0 - 1e-12);
   body->closed = implicit_is_closed(body, body->inverse);
   body->orthogonal = body->closed && isfinite(implicit_closed_radius(body));
-  body->give = body_give(body);
+  body->give = body_shrinkage(body);
   return inner > 0.0;
 }

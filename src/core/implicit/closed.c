@@ -202,7 +202,7 @@ static bool closest_together(closest *c) {
   return false;
 }
 
-static bool closest_apart(closest *c) {
+static bool closest_outside(closest *c) {
   enum { STEPS = 80 };
   double low = -INFINITY, high = INFINITY;
   for (int step = 0; step < STEPS; step++) {
@@ -270,7 +270,7 @@ bool implicit_closed_nearest(const implicit *body, vec3 y, double width, implici
   const closest start = c;
   if (!closest_together(&c)) {
     c = start;
-    if (!closest_apart(&c)) return false;
+    if (!closest_outside(&c)) return false;
   }
 
   /* what rounding left is drawn onto the surface; the search may also have ended elsewhere, and then nothing is known */

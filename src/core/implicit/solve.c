@@ -53,7 +53,7 @@ size_t implicit_memory(const implicit *a, const implicit *b) {
 
 /* ---- the problem ---- */
 
-static vec3 solve_apart(const solve *s) {
+static vec3 solve_difference(const solve *s) {
   const implicit_query *q = s->q;
   if (q->far) return vec_neg(q->t);
   vec3 e = vec_sub(s->side[0].z, q->t);
@@ -107,7 +107,7 @@ static bool solve_begin(solve *s, const solve_settings *settings) {
   /* mu rests on the distance of the starting points */
   if (!solve_begin_side(&s->side[0], towards, settings->start, 1.0, settings->lift_below)) return false;
   if (s->sides == 2 && !solve_begin_side(&s->side[1], back, settings->start, 1.0, settings->lift_below)) return false;
-  s->e = solve_apart(s);
+  s->e = solve_difference(s);
   s->scale = q->far ? s->reach : vec_norm(s->e) + (s->sides == 2 ? fmin(q->a->radius, q->b->radius) : q->a->radius);
   const double mu = start_mu(s, settings->mu);
   for (int i = 0; i < s->sides; i++)
@@ -122,12 +122,12 @@ static bool solve_begin_warm(solve *s, const implicit_warm *warm, const solve_se
   s->time = (solve_time){.tau = 0.5 * q->duration};
   s->side[0].z = warm->x;
   s->side[1].z = warm->y;
-  s->e = solve_apart(s);
+  s->e = solve_difference(s);
   s->scale = vec_norm(s->e) + (s->sides == 2 ? fmin(q->a->radius, q->b->radius) : q->a->radius);
   const double change = vec_norm(vec_sub(s->e, warm->apart)) / s->scale;
   const double kappa = fmin(fmax(2.0 * change, 1e-3), 0.3);
   for (int i = 0; i < s->sides; i++) s->side[i].z = vec_scale(1.0 - kappa, s->side[i].z);
-  s->e = solve_apart(s);
+  s->e = solve_difference(s);
   const double mu = start_mu(s, fmin(kappa, 0.1));
   for (int i = 0; i < s->sides; i++)
     if (!barrier_begin(&s->side[i], s->side[i].z, mu, settings->lift_below)) return false;
@@ -366,12 +366,12 @@ static bool solve_overlaps(solve *s) {
 /* Bounds how far the objective (half the squared distance, or the height) is from its optimum, if the residuals are true. */
 static double solve_gap(solve *s, double *mu) {
   const implicit_query *q = s->q;
-  barrier_state a = barrier_look(&s->side[0]);
+  barrier_state a = barrier_evaluate(&s->side[0]);
   vec3 residual = vec_add(s->e, a.force);
   double products = a.products, pairs = a.pairs, lifted = a.lifted;
   double gap = vec_norm(residual) * q->a->radius;
   if (s->sides == 2) {
-    const barrier_state b = barrier_look(&s->side[1]);
+    const barrier_state b = barrier_evaluate(&s->side[1]);
     residual = vec_sub(b.force, rotate_back(q->m, s->e));
     gap += vec_norm(residual) * q->b->radius;
     products += b.products;
@@ -422,7 +422,7 @@ static double solve_step(solve *s, double target) {
   const double least = 1e-2 * target, most = primal < 0.2 ? 10.0 * target : INFINITY;
   for (int i = 0; i < s->sides; i++) barrier_go(&s->side[i], primal, dual, least, most);
   if (s->q->moving) time_go(&s->time, s->q->duration, primal, dual, least, most);
-  s->e = solve_apart(s);
+  s->e = solve_difference(s);
   return primal;
 }
 
@@ -432,7 +432,7 @@ static bool solve_certify_all(solve *s) {
   if (solve_certify(s, BARRIER_MIXED) || solve_certify(s, BARRIER_LIFTED) || solve_certify(s, BARRIER_TANGENT))
     return true;
   if (s->q->far) return false;
-  const vec3 force = barrier_look(&s->side[0]).force;
+  const vec3 force = barrier_evaluate(&s->side[0]).force;
   const double push = vec_norm(force);
   if (push > 0.0) certify_along(s, vec_scale(1.0 / push, force), 1.0 / push, BARRIER_MIXED);
   return s->answer->upper - s->answer->lower <= solve_asked(s, s->answer->upper);

@@ -27,8 +27,9 @@ static cprox_status check_link(const cprox_link *link, size_t i, size_t n_variab
   if (link->parent < -1 || (link->parent >= 0 && (size_t)link->parent >= i))
     return workspace_fail(workspace, CPROX_INVALID, "link %zu: its parent is %d; parents stand before their children",
                           i, (int)link->parent);
-  const char *fault = frame_pose_fault(&link->origin);
-  if (fault) return workspace_fail(workspace, CPROX_INVALID, "link %zu: the joint's origin: %s", i, fault);
+  const char *support_failed = frame_pose_error(&link->origin);
+  if (support_failed)
+    return workspace_fail(workspace, CPROX_INVALID, "link %zu: the joint's origin: %s", i, support_failed);
   if ((unsigned)link->type > CPROX_JOINT_FLOATING)
     return workspace_fail(workspace, CPROX_INVALID, "link %zu: %d is no type of joint", i, (int)link->type);
   const size_t needed = variables_of(link->type);
@@ -55,8 +56,8 @@ static cprox_status check_geometry(const cprox_link_geometry *g, size_t i, size_
   if (!g->body) return workspace_fail(workspace, CPROX_INVALID, "geometry %zu has no body", i);
   if (g->link < 0 || (size_t)g->link >= n_links)
     return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: there is no link %d", i, (int)g->link);
-  const char *fault = frame_pose_fault(&g->pose);
-  if (fault) return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: %s", i, fault);
+  const char *support_failed = frame_pose_error(&g->pose);
+  if (support_failed) return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: %s", i, support_failed);
   if (!(g->margin >= 0.0) || !isfinite(g->margin))
     return workspace_fail(workspace, CPROX_INVALID, "geometry %zu: margin is %g, must be finite and 0 or more", i,
                           g->margin);

@@ -81,9 +81,9 @@ static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
   pair_separate(&shape, s->elements->margin, s->convex_side->shape, s->convex_side->margin, &place, &s->each, &answer);
   s->best.steps += answer.steps;
   s->best.supports += answer.supports;
-  s->best.fault = s->best.fault || answer.fault;
+  s->best.support_failed = s->best.support_failed || answer.support_failed;
   s->best.exhausted = s->best.exhausted || answer.exhausted;
-  if (answer.fault) return;
+  if (answer.support_failed) return;
   s->lower = fmin(s->lower, answer.lower);
   if (answer.overlap || answer.upper < s->best.upper) {
     const pair_answer before = s->best;
@@ -141,7 +141,7 @@ static void any_convex(search *s, pair_answer *answer) {
   s->lower = INFINITY;
   tree_seek(body->tree, &seeker);
   *answer = s->best;
-  if (answer->fault) return;
+  if (answer->support_failed) return;
   if (answer->overlap) {
     overlap(s, s->best.common, answer);
     return;

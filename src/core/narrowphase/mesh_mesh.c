@@ -107,7 +107,7 @@ static void measure(dual *d, tree_place at, tree_place there) {
   answer.supports += d->best.supports;
   answer.exhausted = answer.exhausted || d->best.exhausted;
   d->lower = fmin(d->lower, answer.lower);
-  if (!(answer.overlap || answer.fault || answer.upper < d->best.upper)) {
+  if (!(answer.overlap || answer.support_failed || answer.upper < d->best.upper)) {
     d->best.steps = answer.steps, d->best.supports = answer.supports, d->best.exhausted = answer.exhausted;
     return;
   }
@@ -291,7 +291,7 @@ static bool is_stopped(const dual *d) {
 static void descend(dual *d) {
   for (uint32_t left = tree_of(d, 0)->nodes[0].lanes; left && !d->out_of_memory; left &= left - 1)
     spread(d, 1, 0, tree_of(d, 1)->nodes[0].lanes, (dual_side){0, (uint32_t)__builtin_ctz(left)}, d->least);
-  while (d->count > 0 && !d->best.overlap && !d->best.fault && !d->out_of_memory) {
+  while (d->count > 0 && !d->best.overlap && !d->best.support_failed && !d->out_of_memory) {
     d->best.stopped = is_stopped(d);
     d->best.exhausted = d->best.exhausted || d->best.steps > d->goal.max_steps;
     const dual_entry top = pop(d);
@@ -351,7 +351,7 @@ static double least_unseen(const dual *d) {
 
 static void conclude(const dual *d, pair_answer *answer) {
   *answer = d->best;
-  if (answer->fault) return;
+  if (answer->support_failed) return;
   if (answer->overlap) {
     overlap(d, d->best.common, answer);
     return;
@@ -379,7 +379,7 @@ bool pair_trees(const pair_side *a, const pair_side *b, const pair_goal *goal, c
   d.lower = INFINITY;
   d.least = -d.margins - d.rounding;
   seed(&d);
-  if (!d.best.overlap && !d.best.fault) descend(&d);
+  if (!d.best.overlap && !d.best.support_failed) descend(&d);
   if (d.out_of_memory) return false;
   conclude(&d, answer);
   return true;

@@ -27,8 +27,8 @@ typedef struct pair_reply {
 static cprox_status pair_check_target(const char *name, const cprox_obstacle *target, cprox_workspace *workspace) {
   if (target->curve) return workspace_fail(workspace, CPROX_INVALID, "%s is a curve: a pair is of two bodies", name);
   if (!target->body) return workspace_fail(workspace, CPROX_INVALID, "%s: the body is NULL", name);
-  const char *fault = frame_pose_fault(&target->pose);
-  if (fault) return workspace_fail(workspace, CPROX_INVALID, "%s: %s", name, fault);
+  const char *support_failed = frame_pose_error(&target->pose);
+  if (support_failed) return workspace_fail(workspace, CPROX_INVALID, "%s: %s", name, support_failed);
   if (!(target->margin >= 0.0) || !isfinite(target->margin))
     return workspace_fail(workspace, CPROX_INVALID, "%s: margin is %g, must be >= 0 and finite", name, target->margin);
   if (target->margin > LENGTH_MOST)
@@ -59,7 +59,7 @@ static void pair_halfspace(const pair_side *a, const pair_side *b, const pair_pl
   vec3 at;
   *answer = (pair_answer){.steps = 1, .supports = 1};
   const double lowest = -b->shape->ops->support(b->shape, down, NULL, &at);
-  answer->fault = isnan(lowest);
+  answer->support_failed = isnan(lowest);
 
   const double height = vec_dot(n, place->t) + h->size[3];
   const double distance = height + lowest - a->margin - b->margin;
@@ -259,7 +259,7 @@ static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cp
   reply->lod = a.lod > b.lod ? a.lod : b.lod;
   const cprox_status status = pair_solve(&a, &b, task->goal, task->workspace, &reply->answer);
   if (status) return status;
-  if (!reply->answer.fault) return CPROX_OK;
+  if (!reply->answer.support_failed) return CPROX_OK;
   return workspace_fail(task->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
 }
 

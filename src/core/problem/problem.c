@@ -99,11 +99,11 @@ void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_resu
   nearest[i] = *r;
 }
 
-cprox_status query_conclude(const query *q, double cutoff, cprox_status trouble, cprox_result *all) {
+cprox_status query_conclude(const query *q, double cutoff, cprox_status failure, cprox_result *all) {
   /* each bound is proven, so that they contradict each other only where a proof is wrong */
   CORE_CHECK(!(all->lower > all->upper), "lower %.17g, upper %.17g", all->lower, all->upper);
   all->lower = lesser(all->lower, all->upper);
-  all->status = query_is_satisfied(q, cutoff, all) ? CPROX_OK : trouble != CPROX_OK ? trouble : CPROX_PRECISION;
+  all->status = query_is_satisfied(q, cutoff, all) ? CPROX_OK : failure != CPROX_OK ? failure : CPROX_PRECISION;
   all->verdict = query_verdict(q, all);
   if (all->status != CPROX_OK) workspace_fail(q->workspace, all->status, "%s", query_shortfall(all->status));
   return all->status;

@@ -77,6 +77,6 @@ cprox_result *query_reserve_results(const query *q, size_t n);
 void query_rank(cprox_result *nearest, size_t *count, size_t k, const cprox_result *r);
 
 /* The union is complete: its status (`trouble` is the last that a search had), verdict and reason. */
-cprox_status query_conclude(const query *q, double cutoff, cprox_status trouble, cprox_result *all);
+cprox_status query_conclude(const query *q, double cutoff, cprox_status failure, cprox_result *all);
 
 #endif

@@ -80,8 +80,8 @@ cprox_status arguments_check_target(const cprox_obstacle *target, size_t index, 
     return workspace_fail(workspace, CPROX_INVALID, "target %zu is on the mover's clock, but has no curve", index);
   if (target->body && target->curve && !target->synchronized)
     return workspace_fail(workspace, CPROX_INVALID, "target %zu has both a body and a curve", index);
-  const char *fault = frame_pose_fault(&target->pose);
-  if (fault) return workspace_fail(workspace, CPROX_INVALID, "target %zu: %s", index, fault);
+  const char *support_failed = frame_pose_error(&target->pose);
+  if (support_failed) return workspace_fail(workspace, CPROX_INVALID, "target %zu: %s", index, support_failed);
   if (!(target->margin >= 0.0 && isfinite(target->margin)))
     return workspace_fail(workspace, CPROX_INVALID, "target %zu: margin is %g, must be finite and 0 or more", index,
                           target->margin);

@@ -138,7 +138,7 @@ static cprox_status measure(robot_search *o, int32_t index, robot_accuracy accur
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   robot_scene_measure(moving, standing, accuracy, gap);
   o->gaps++;
-  if (gap->fault) return refuse_callback(o);
+  if (gap->support_failed) return refuse_callback(o);
   keep_normal(o, pair, standing, gap);
   if (is_convex(moving, standing)) keep_sample(o, index, gap);
   return CPROX_OK;
@@ -163,7 +163,7 @@ static cprox_status refine_elements(robot_search *o, robot_refinement *c) {
   robot_refinement_run(c);
   o->gaps += c->gaps;
   o->refined = true;
-  if (c->fault) return refuse_callback(o);
+  if (c->support_failed) return refuse_callback(o);
   if (c->no_memory) return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
   if (c->nearest.gap.upper < INFINITY) keep_sample(o, c->pair, &c->nearest.gap);
   return CPROX_OK;
@@ -193,7 +193,7 @@ static void try_pair(robot_search *o, int32_t index, nearest_pair *nearest) {
   const robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   if (robot_scene_balls(moving, standing) >= nearest->apart) return;
-  const double apart = robot_scene_apart(moving, standing);
+  const double apart = robot_scene_ball_distance(moving, standing);
   if (apart < nearest->apart) *nearest = (nearest_pair){.apart = apart, .pair = index};
 }
 
@@ -297,7 +297,7 @@ static cprox_status measure_if_near(robot_search *o, int32_t index) {
   if (pair->element[0] >= 0 || pair->element[1] >= 0) return CPROX_OK;
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
   if (robot_scene_balls(moving, standing) > o->goal.epsilon) return CPROX_OK;
-  return robot_scene_apart(moving, standing) > o->goal.epsilon ? CPROX_OK : measure_whole(o, index);
+  return robot_scene_ball_distance(moving, standing) > o->goal.epsilon ? CPROX_OK : measure_whole(o, index);
 }
 
 /* The same of all that is under a node of the set's tree, until contact is proven. */
@@ -497,7 +497,7 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
     entry->lower = greater(robot_scene_balls(moving, standing) - coarse, entry->lower);
     if (is_pruned(o, entry->lower)) return;
   }
-  const double apart = robot_scene_apart(moving, standing);
+  const double apart = robot_scene_ball_distance(moving, standing);
   entry->lower = greater(apart - coarse, entry->lower);
   if (is_pruned(o, entry->lower)) return;
   const double displacement = robot_scene_displacement(&o->scene, pair, moving);
@@ -668,7 +668,7 @@ static cprox_status bound_node(robot_search *o, search_node *node) {
   list_entry *to = lists_at(&o->lists, list);
   for (size_t i = 0; i < o->n_next; i++) to[i] = o->next[i];
   lists_set_count(&o->lists, list, o->n_next);
-  lists_give(&o->lists, old);
+  lists_release(&o->lists, old);
   payload->list = list;
   node->lower = fmax(node->lower, inherited);
   return CPROX_OK;
@@ -741,7 +741,7 @@ static int split(void *self, search_node *node, search_node *child) {
 
 static void release(void *self, const search_node *node) {
   robot_search *o = self;
-  lists_give(&o->lists, robot_known(node)->list);
+  lists_release(&o->lists, robot_known(node)->list);
 }
 
 void robot_search_begin(robot_search *o, const search_goal *goal) {
@@ -758,7 +758,7 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
 
 /* The distance of a pair at a time, as exactly as arithmetic has it, or of every pair that may touch (-1); what it proves stands in
  * o->touch. */
-static cprox_status look_at(robot_search *o, int32_t pair, double t, double *upper) {
+static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, double *upper) {
   const cprox_motion *m = o->scene.motion;
   const size_t segment = motion_segment_at(m, t);
   const double from = m->times[segment], to = m->times[segment + 1];
@@ -784,11 +784,11 @@ static cprox_status look_at(robot_search *o, int32_t pair, double t, double *upp
 static cprox_status prove_by_speed(robot_search *o, int32_t pair, double t, double first, double end) {
   enum { MOST_STEPS = 8 };
   double before, now, step = first;
-  cprox_status status = look_at(o, pair, t, &before);
+  cprox_status status = measure_pair_at(o, pair, t, &before);
   for (int i = 0; i < MOST_STEPS && status >= 0 && t + step < o->touch_at; i++) {
     const double next = fmin(t + step, end);
     if (!(next > t)) break;
-    status = look_at(o, pair, next, &now);
+    status = measure_pair_at(o, pair, next, &now);
     if (status < 0 || !(now > 0.0)) break;
     const double speed = (before - now) / (next - t);
     if (!(speed > 0.0)) break;
@@ -824,7 +824,7 @@ cprox_status robot_search_prove(robot_search *o, double end) {
   /* farther along in growing steps, and then back to where it is not proven */
   double step = 1e-7 * range, before = begin;
   for (int i = 0; i < MOST_STEPS && step < range && begin + step < known; i++, step *= 2.0) {
-    status = look_at(o, EVERY_PAIR, begin + step, &unused);
+    status = measure_pair_at(o, EVERY_PAIR, begin + step, &unused);
     if (status < 0 || o->touch_at < known) break;
     before = begin + step;
   }
@@ -832,7 +832,7 @@ cprox_status robot_search_prove(robot_search *o, double end) {
   const int32_t pair = o->touch.pair;
   for (int i = 0; i < MOST_CUTS && o->touch_at - before > 1e-9 * range; i++) {
     const double middle = 0.5 * (before + o->touch_at);
-    status = look_at(o, pair, middle, &unused);
+    status = measure_pair_at(o, pair, middle, &unused);
     if (status < 0) return status;
     if (o->touch_at > middle) before = middle;
   }

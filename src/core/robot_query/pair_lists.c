@@ -55,7 +55,7 @@ void lists_share(robot_lists *l, int32_t block) {
   head_of(l, block)->users++;
 }
 
-void lists_give(robot_lists *l, int32_t block) {
+void lists_release(robot_lists *l, int32_t block) {
   block_head *head = head_of(l, block);
   if (--head->users > 0) return;
   head->next = l->free[head->size_class];

@@ -35,6 +35,6 @@ void lists_set_count(robot_lists *l, int32_t block, size_t n);
 
 /* One more user, or one less. */
 void lists_share(robot_lists *l, int32_t block);
-void lists_give(robot_lists *l, int32_t block);
+void lists_release(robot_lists *l, int32_t block);
 
 #endif

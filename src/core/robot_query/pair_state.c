@@ -363,7 +363,7 @@ double robot_scene_balls(const robot_body *moving, const robot_body *standing) {
   return between - radii - ROUND_UP * (moving->side.error + standing->side.error + 8.0 * ROUND_U * (between + radii));
 }
 
-double robot_scene_apart(const robot_body *moving, const robot_body *standing) {
+double robot_scene_ball_distance(const robot_body *moving, const robot_body *standing) {
   const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p);
   double most = from_box(standing, moving->side.at.p) - standing->side.margin - moving->radius;
   if (!is_halfspace(standing))
@@ -409,7 +409,7 @@ static void measure_halfspace(const robot_body *moving, const robot_body *standi
                      .on_moving = lowest,
                      .on_standing = distance > 0.0 ? vec_axpy(lowest, -distance, n) : lowest,
                      .normal = n,
-                     .fault = isnan(distance)};
+                     .support_failed = isnan(distance)};
 }
 
 /* What moves, in the frame of what stands. */
@@ -442,8 +442,9 @@ void robot_scene_measure(const robot_body *moving, const robot_body *standing, r
   pair_answer answer;
   pair_separate(standing->side.shape, standing->side.margin, moving->side.shape, moving->side.margin, &seen, &goal,
                 &answer);
-  *gap = (robot_gap){.fault = answer.fault, .lower = answer.lower, .upper = answer.upper, .slack = answer.rounding};
-  if (answer.fault) return;
+  *gap = (robot_gap){
+      .support_failed = answer.support_failed, .lower = answer.lower, .upper = answer.upper, .slack = answer.rounding};
+  if (answer.support_failed) return;
   const bool apart = answer.upper > 0.0;
   gap->on_standing = placement_apply(&standing->side.at, apart ? answer.on_a : answer.common);
   gap->on_moving = placement_apply(&standing->side.at, apart ? answer.on_b : answer.common);

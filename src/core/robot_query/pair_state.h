@@ -87,7 +87,7 @@ const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pai
                                        chain_motion *own);
 
 /* A lower bound on the distance of two parts by their balls and boxes, and a quicker one by their balls; halfspaces have none. */
-double robot_scene_apart(const robot_body *moving, const robot_body *standing);
+double robot_scene_ball_distance(const robot_body *moving, const robot_body *standing);
 double robot_scene_balls(const robot_body *moving, const robot_body *standing);
 
 /* The distance in the middle of the node. */
@@ -100,7 +100,7 @@ typedef struct robot_gap {
   vec3 on_edge[3], across[3];
   int n;
   double hessian[6];
-  bool fault;
+  bool support_failed;
 } robot_gap;
 
 /* How exactly: within epsilon, or within `fraction` of what the lower end is above `floor`. And where to begin. */

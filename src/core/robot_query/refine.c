@@ -48,16 +48,16 @@ static void ask(robot_refinement *c, const robot_body *const side[2], int level,
   if (vec_norm2(c->last[level]) > 0.0) accuracy.start = placement_turn_back(&side[STANDING]->side.at, c->last[level]);
   robot_scene_measure(side[MOVING], side[STANDING], accuracy, gap);
   c->gaps++;
-  if (!gap->fault && gap->upper > 0.0) c->last[level] = gap->normal;
+  if (!gap->support_failed && gap->upper > 0.0) c->last[level] = gap->normal;
 }
 
-static void give_up(robot_refinement *c) {
+static void abandon(robot_refinement *c) {
   c->reach = -INFINITY;
 }
 
 static void fail(robot_refinement *c) {
-  c->fault = true;
-  give_up(c);
+  c->support_failed = true;
+  abandon(c);
 }
 
 static void keep(robot_refinement *c, const int32_t code[2], const robot_gap *gap) {
@@ -67,7 +67,7 @@ static void keep(robot_refinement *c, const int32_t code[2], const robot_gap *ga
   if (!c->listing) return;
   if (c->n_found == MOST_FOUND) {
     c->too_many = true;
-    give_up(c);
+    abandon(c);
     return;
   }
   c->found[c->n_found++] = found;
@@ -75,11 +75,11 @@ static void keep(robot_refinement *c, const int32_t code[2], const robot_gap *ga
 
 /* Two convex sides: elements, or what has none. */
 static void measure(robot_refinement *c, const robot_body *const side[2], const int32_t code[2]) {
-  if (robot_scene_apart(side[MOVING], side[STANDING]) >= c->reach) return;
+  if (robot_scene_ball_distance(side[MOVING], side[STANDING]) >= c->reach) return;
   if (is_behind(c, side, 1)) return;
   robot_gap gap;
   ask(c, side, 1, &gap);
-  if (gap.fault)
+  if (gap.support_failed)
     fail(c);
   else if (gap.lower < c->reach)
     keep(c, code, &gap);
@@ -90,11 +90,11 @@ static void descend(robot_refinement *c, const robot_body *const side[2], const 
 /* One element and the convex shape of the other side: where these are within reach, the other side's tree. Their own plane tells most of
  * its elements apart. */
 static void descend_under(robot_refinement *c, const robot_body *const side[2], const int32_t code[2], int through) {
-  if (robot_scene_apart(side[MOVING], side[STANDING]) >= c->reach) return;
+  if (robot_scene_ball_distance(side[MOVING], side[STANDING]) >= c->reach) return;
   if (is_behind(c, side, 0)) return;
   robot_gap gap;
   ask(c, side, 0, &gap);
-  if (gap.fault) {
+  if (gap.support_failed) {
     fail(c);
     return;
   }
@@ -156,7 +156,7 @@ void robot_refinement_run(robot_refinement *c) {
   robot_scene *s = c->scene;
   c->n_found = 0, c->gaps = 0;
   c->last[0] = c->last[1] = vec(0, 0, 0);
-  c->too_many = c->fault = c->no_memory = false;
+  c->too_many = c->support_failed = c->no_memory = false;
   c->nearest.gap.upper = INFINITY;
   if (c->listing) {
     c->found = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_FOUND, MOST_FOUND * sizeof *c->found);

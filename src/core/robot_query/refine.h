@@ -26,7 +26,7 @@ typedef struct robot_refinement {
   size_t n_found;
   robot_found nearest; /* its gap's upper is infinite where there is none */
   double rest; /* in the middle of the node every pair of elements that was not found is at least so far apart */
-  bool too_many, fault, no_memory;
+  bool too_many, support_failed, no_memory;
   uint32_t gaps;
   vec3 last[2]; /* world: the normal found last of an element and a hull, and of two elements; (0,0,0): none */
 } robot_refinement;

@@ -49,7 +49,7 @@ typedef struct look {
   double slack; /* of the distance */
 } look;
 
-static cprox_status look_at(curve_convex *o, double t, bool from_left, look *seen) {
+static cprox_status measure_pair_at(curve_convex *o, double t, bool from_left, look *seen) {
   const cprox_curve *c = o->side.curve;
   size_t piece = 0;
   while (piece + 1 < c->n_pieces && (from_left ? c->breaks[piece + 1] < t : c->breaks[piece + 1] <= t)) piece++;
@@ -80,7 +80,7 @@ static cprox_status find_root(curve_convex *o, double left, double right, look *
     if (!(next > left && next < right)) return CPROX_OK;
     *t = next;
     look seen;
-    const cprox_status status = look_at(o, next, false, &seen);
+    const cprox_status status = measure_pair_at(o, next, false, &seen);
     if (status < 0) return status;
     if (seen.slope == 0.0) return CPROX_OK;
     if (seen.slope < 0.0) {
@@ -106,8 +106,8 @@ static cprox_status refine(curve_convex *o, double t0, double t1, double *t, int
   for (int i = 0; i < MOST_STEPS && step < 0.05 * range; i++, step *= 8.0) {
     const double left = fmax(*t - step, t0), right = fmin(*t + step, t1);
     look a = {.slope = 0.0}, b = {.slope = 0.0};
-    cprox_status status = look_at(o, left, true, &a);
-    if (status == CPROX_OK) status = look_at(o, right, false, &b);
+    cprox_status status = measure_pair_at(o, left, true, &a);
+    if (status == CPROX_OK) status = measure_pair_at(o, right, false, &b);
     if (status < 0) return status;
     if (left == t0 && a.slope > 0.0) {
       *t = t0, *end = -1;
@@ -249,7 +249,7 @@ static cprox_status part_is_alone(const query *q, const placed_pair *best, doubl
     o.is_signed = q->is_signed;
     o.epsilon = q->options.epsilon;
     look seen;
-    const cprox_status status = look_at(&o, t, false, &seen);
+    const cprox_status status = measure_pair_at(&o, t, false, &seen);
     if (status < 0) return status;
     *alone = seen.sample.near.distance - o.offset > distance + 2.0 * q->options.epsilon;
   }
@@ -345,7 +345,7 @@ static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox
   int end;
   cprox_status status = refine(&o, q->t0, q->t1, &g->t, &end);
   look here = {.slope = 0.0};
-  if (status == CPROX_OK) status = look_at(&o, g->t, end > 0, &here);
+  if (status == CPROX_OK) status = measure_pair_at(&o, g->t, end > 0, &here);
   if (status < 0) return status;
   const double distance = here.sample.near.distance - o.offset;
   if (end < 0) g->t0 = here.slope;

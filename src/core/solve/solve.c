@@ -24,13 +24,13 @@ cprox_status query_answer(const query *q, size_t first, size_t last, double cuto
   }
 
   cprox_result all = query_nothing();
-  cprox_status trouble = CPROX_OK;
+  cprox_status failure = CPROX_OK;
   size_t i = 0;
   while (i < n) {
     /* sorted: when one ball is too far to matter, so are the rest */
     const bool too_far = query_wants_verdict(q) ? list[i].lower > q->limit : list[i].lower > lesser(all.upper, cutoff);
     const bool answered = !q->is_signed && all.upper <= greater(q->limit, 0.0);
-    if (too_far || answered || trouble == CPROX_STOPPED) break;
+    if (too_far || answered || failure == CPROX_STOPPED) break;
 
     /* with nothing to compare with, a mesh waits until it is the nearest by its hull */
     const bool unknown = !query_wants_verdict(q) && isinf(lesser(all.upper, cutoff));
@@ -43,14 +43,14 @@ cprox_status query_answer(const query *q, size_t first, size_t last, double cuto
     cprox_result one;
     const cprox_status status = candidate_search(q, &list[i++], lesser(all.upper, cutoff), &one);
     if (status < 0) return status;
-    if (status != CPROX_OK) trouble = status;
+    if (status != CPROX_OK) failure = status;
     query_join(&all, &one);
   }
 
   /* the rest is at least as far as the first ball of it */
   if (i < n) all.lower = fmin(all.lower, q->is_signed ? list[i].lower : fmax(list[i].lower, 0.0));
   if (i == 0 && n > 0) all.lod = CPROX_LOD_SPHERE;
-  query_conclude(q, cutoff, trouble, &all);
+  query_conclude(q, cutoff, failure, &all);
   *result = all;
   return all.status;
 }

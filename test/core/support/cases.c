@@ -32,12 +32,12 @@ const char *cases_fault(const test_case *list) {
 }
 
 int cases_run(CMFixtureFunction setup, CMFixtureFunction teardown) {
-  const char *fault = cases_fault(registered);
+  const char *support_failed = cases_fault(registered);
   size_t n = 0;
   for (const test_case *c = registered; c; c = c->next) n++;
-  struct CMUnitTest *tests = fault ? NULL : (struct CMUnitTest *)calloc(n, sizeof *tests);
+  struct CMUnitTest *tests = support_failed ? NULL : (struct CMUnitTest *)calloc(n, sizeof *tests);
   if (!tests) {
-    fprintf(stderr, "%s\n", fault ? fault : "out of memory");
+    fprintf(stderr, "%s\n", support_failed ? support_failed : "out of memory");
     return EXIT_FAILURE;
   }
   size_t i = 0;
