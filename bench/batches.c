@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A thousand quintic Bézier curves against two polygons (Fig. 12 of Lakshmanan et al. 2019) and against 2, 50 and 100 boxes: the batch
- * call, one query after another, the paper's method, and FCL at 100 points of each curve. A problem is a whole scene: times are
- * those of all its curves. error: the largest |distance - midpoint of the certified interval|; unsound: curves with a wrong verdict. */
+/* A thousand quintic Bézier curves against two polygons (Fig. 12 of Lakshmanan et al. 2019) and against 2, 50 and 100
+ * boxes: the batch call, one query after another, the paper's method, and FCL at 100 points of each curve. A problem is
+ * a whole scene: times are those of all its curves. error: the largest |distance - midpoint of the certified interval|;
+ * unsound: curves with a wrong verdict. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,7 +36,8 @@ typedef struct scene {
   cprox_result truth[3][CURVES]; /* certified, by query */
 } scene;
 
-/* A method's own state; what it answers never changes, so that each scene is judged once and not on the clock of the others. */
+/* A method's own state; what it answers never changes, so that each scene is judged once and not on the clock of the
+ * others. */
 typedef struct judged {
   struct asked *asked;
   bool known[SCENES][3];
@@ -56,7 +58,7 @@ static void check(cprox_status status) {
   exit(1);
 }
 
-/* ---- scenes --------------------------------------------------------------------------------------------------------------- */
+/* ---- scenes ---- */
 
 /* From one side to the other, by two random control points. */
 static void make_curves(rng *r, scene *s) {
@@ -131,7 +133,7 @@ static void scene_free(scene *s) {
   free(s);
 }
 
-/* ---- answers -------------------------------------------------------------------------------------------------------------- */
+/* ---- answers ---- */
 
 static void judge_results(const scene *s, const asked *q, bench_answer *a) {
   *a = (bench_answer){0};
@@ -160,7 +162,7 @@ static void judge_values(const scene *s, const asked *q, bench_answer *a) {
   a->lower = a->upper;
 }
 
-/* ---- methods -------------------------------------------------------------------------------------------------------------- */
+/* ---- methods ---- */
 
 static void batch(const void *problems, size_t i, void *state, bench_answer *a) {
   const scene *s = ((scene *const *)problems)[i];
@@ -236,7 +238,7 @@ static void sampled(const void *problems, size_t i, void *state, bench_answer *a
   judge_values(s, q, a);
 }
 
-/* ---- workloads ------------------------------------------------------------------------------------------------------------ */
+/* ---- workloads ---- */
 
 static void measure_scenes(const bench_size *size, const char *name, bool planar, size_t n, asked *q) {
   if (!bench_wanted(size, name)) return;

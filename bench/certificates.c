@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What proofs cost: a verdict alone, the verdict with its certificate (nodes: bytes), and the checker's time with that (nodes: leaves),
- * for Bézier curves beside polytopes and for robots along joint splines (test/data/motion), at nine tenths of the distance. */
+/* What proofs cost: a verdict alone, the verdict with its certificate (nodes: bytes), and the checker's time with that
+ * (nodes: leaves), for Bézier curves beside polytopes and for robots along joint splines (test/data/motion), at nine
+ * tenths of the distance. */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdio.h>

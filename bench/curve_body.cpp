@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Distance of Bézier curves to a box, a 20-gon and a 64-vertex polytope at epsilon 1e-10: time, intervals examined, nearest-point
- * queries. Run: scripts/run curve_proximity_bench_core, or the executable itself. */
+/* Distance of Bézier curves to a box, a 20-gon and a 64-vertex polytope at epsilon 1e-10: time, intervals examined,
+ * nearest-point queries. Run: scripts/run curve_proximity_bench_core, or the executable itself. */
 #include <benchmark/benchmark.h>
 #include <curve_proximity/cprox.h>
 

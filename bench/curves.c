@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Bézier curves against points, polygons and polytopes, and against each other: distance and tolerance, ours beside the paper's
- * method, over orders and accuracies. */
+/* Bézier curves against points, polygons and polytopes, and against each other: distance and tolerance, ours beside the
+ * paper's method, over orders and accuracies. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -48,7 +48,7 @@ static void take_paper(const asked *q, const paper_answer *r, bench_answer *a) {
   if (q->factor > 0.0) judge_verdict(q, r->verdict ? CPROX_VERDICT_CLEAR : CPROX_VERDICT_VIOLATED, a);
 }
 
-/* ---- the methods ---------------------------------------------------------------------------------------------------------- */
+/* ---- the methods ---- */
 
 static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   const curve_problem *p = (const curve_problem *)problems + i;
@@ -78,7 +78,7 @@ static void paper_pair(const void *pairs, size_t i, void *state, bench_answer *a
   take_paper(q, &r, a);
 }
 
-/* ---- the workloads ---------------------------------------------------------------------------------------------------------- */
+/* ---- the workloads ---- */
 
 /* Distance at 1e-10, at other accuracies, and verdicts about one set of problems. */
 static void measure(const bench_size *size, const char *name, int order, bool accuracies, bench_method *methods,
@@ -111,7 +111,7 @@ static void measure(const bench_size *size, const char *name, int order, bool ac
   }
 }
 
-/* ---- samples, and libraries for curves, on the same problems ------------------------------------------------------------------ */
+/* ---- samples, and libraries for curves, on the same problems ---- */
 
 typedef struct library {
   const curve_peer *peer;
@@ -180,7 +180,7 @@ static void others_of_pairs(const bench_size *size, const char *name, const curv
   free(queries);
 }
 
-/* ---- all of one kind ------------------------------------------------------------------------------------------------------------ */
+/* ---- all of one kind ---- */
 
 static void measure_obstacles(const bench_size *size, obstacle_kind kind, const char *name, asked *q) {
   if (!bench_wanted(size, name)) return;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Implicit bodies: the tables and the figure of Chakraborty et al. 2008 made again, the interior point method beside the climb of
- * the dual that goes before it, the search by support functions, and Ipopt where it is installed. `nodes` are iterations. */
+/* Implicit bodies: the tables and the figure of Chakraborty et al. 2008 made again, the interior point method beside
+ * the climb of the dual that goes before it, the search by support functions, and Ipopt where it is installed. `nodes`
+ * are iterations. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,7 +32,7 @@ static double accuracy_of(const implicit_problem *p) {
   return ACCURACY * (p->query.a->radius + p->query.b->radius);
 }
 
-/* ---- Table I -------------------------------------------------------------------------------------------------------------- */
+/* ---- Table I ---- */
 
 static void hybrid(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
@@ -54,7 +55,8 @@ static void interior_point(const void *problems, size_t i, void *state, bench_an
   *a = (bench_answer){.lower = r.lower, .upper = r.upper, .nodes = r.steps, .failed = !r.certified};
 }
 
-/* The search by support functions alone; other bodies than superquadrics have theirs by an interior point method each time. */
+/* The search by support functions alone; other bodies than superquadrics have theirs by an interior point method each
+ * time. */
 static void supports(const void *problems, size_t i, void *state, bench_answer *a) {
   (void)state;
   const implicit_problem *p = (const implicit_problem *)problems + i;
@@ -89,7 +91,8 @@ static void ipopt(const void *problems, size_t i, void *state, bench_answer *a) 
 }
 #endif
 
-/* Ipopt, where it is, by itself and in one round: its time is most of the group's, and what it is beside ours is no matter of caches. */
+/* Ipopt, where it is, by itself and in one round: its time is most of the group's, and what it is beside ours is no
+ * matter of caches. */
 static void measure_ipopt(const bench_workload *w, const bench_size *size, bench_state *s) {
 #ifdef CPROX_BENCH_IPOPT
   const bench_size once = {.problems = size->problems, .rounds = 1};
@@ -134,7 +137,7 @@ static void table_1(const bench_size *size, cprox_body *const *object, bench_sta
   }
 }
 
-/* ---- Table II: b flies past a, or into it ------------------------------------------------------------------------------------ */
+/* ---- Table II: b flies past a, or into it ---- */
 
 static void closest(const void *problems, size_t i, void *state, bench_answer *a) {
   const implicit_problem *p = (const implicit_problem *)problems + i;
@@ -180,7 +183,7 @@ static void table_2(const bench_size *size, cprox_body *const *object, bench_sta
   }
 }
 
-/* ---- Table III: the deformed body is made and measured ----------------------------------------------------------------------- */
+/* ---- Table III: the deformed body is made and measured ---- */
 
 /* The step of ten that the problem's number picks. */
 static void deformed(const void *problems, size_t i, void *state, bench_answer *a) {
@@ -225,7 +228,7 @@ static void table_3(const bench_size *size, cprox_body *const *object, bench_sta
   }
 }
 
-/* ---- Fig. 2: growth in the number of constraints ------------------------------------------------------------------------------- */
+/* ---- Fig. 2: growth in the number of constraints ---- */
 
 static void figure_2(const bench_size *size, bench_state *s) {
   static const char *const names[3] = {"figure 2 planes", "figure 2 quadrics", "figure 2 superquadrics"};
@@ -252,7 +255,7 @@ static void figure_2(const bench_size *size, bench_state *s) {
   }
 }
 
-/* ---- the families on which solvers fail ------------------------------------------------------------------------------------------ */
+/* ---- the families on which solvers fail ---- */
 
 static void hard(const bench_size *size, bench_state *s) {
   static const char *const tags[] = {"exponent", "aspect", "scale",  "mixedscale", "far",        "faceface",
@@ -284,7 +287,7 @@ static void hard(const bench_size *size, bench_state *s) {
   }
 }
 
-/* ---- one point ----------------------------------------------------------------------------------------------------------------- */
+/* ---- one point ---- */
 
 static void point_quick(const void *problems, size_t i, void *state, bench_answer *a) {
   (void)state;

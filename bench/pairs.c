@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Pairs of convex bodies whose distance is known by construction: at one size, and over twelve decades of size and of size ratio, to a
- * relative 1e-9, beside FCL; and depths of overlap. A method that says how far it may be off is wrong where its interval misses
- * the distance; FCL, which does not, where it is off by more than a thousandth of the distance and 1e-9 of the sizes. */
+/* Pairs of convex bodies whose distance is known by construction: at one size, and over twelve decades of size and of
+ * size ratio, to a relative 1e-9, beside FCL; and depths of overlap. A method that says how far it may be off is wrong
+ * where its interval misses the distance; FCL, which does not, where it is off by more than a thousandth of the
+ * distance and 1e-9 of the sizes. */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdio.h>
@@ -46,7 +47,7 @@ typedef struct asked {
   convex polytope[POLYTOPES];
 } asked;
 
-/* ---- bodies and pairs ------------------------------------------------------------------------------------------------------- */
+/* ---- bodies and pairs ---- */
 
 static convex polytope_make(rng *r) {
   static obstacle o;
@@ -96,8 +97,8 @@ static vec3 extreme(const cprox_body *body, const cprox_pose *pose, vec3 d) {
   return frame_to_world(&f, at);
 }
 
-/* b stands so that both touch the same two parallel planes, `distance` apart, with a segment between them along their normal, which
- * is that of b's nearest point to somewhere: faces, edges and corners take part. */
+/* b stands so that both touch the same two parallel planes, `distance` apart, with a segment between them along their
+ * normal, which is that of b's nearest point to somewhere: faces, edges and corners take part. */
 static pair pair_make(rng *r, const kinds *k, double scale_a, double scale_b, double relative_gap, const asked *q) {
   pair p = {.a = convex_make(r, k->a, scale_a, q), .b = convex_make(r, k->b, scale_b, q)};
   p.size = p.a.size + p.b.size;
@@ -119,7 +120,7 @@ static void pair_free(const pair *p) {
   if (!p->b.shared) convex_free(&p->b);
 }
 
-/* ---- the methods -------------------------------------------------------------------------------------------------------------- */
+/* ---- the methods ---- */
 
 static cprox_result ask(const pair *p, const asked *q) {
   cprox_options options = CPROX_OPTIONS_DEFAULT;
@@ -153,7 +154,7 @@ static void fcl(const void *problems, size_t i, void *state, bench_answer *a) {
 }
 #endif
 
-/* ---- the workloads ------------------------------------------------------------------------------------------------------------ */
+/* ---- the workloads ---- */
 
 static void measure(const bench_size *size, const char *workload, const kinds *k, const pair *pairs, size_t n,
                     asked *q) {
@@ -181,8 +182,8 @@ static double microseconds_of(const pair *p, const asked *q, cprox_result *r) {
   return 1e6 * (double)(end.tv_sec - begin.tv_sec) + 1e-3 * (double)(end.tv_nsec - begin.tv_nsec);
 }
 
-/* The time of the slowest pair in a thousand, and how many were not decided within the limit of iterations. Of three times each the middle one: the slowest of
- * single times are those that something else of the machine interrupted. */
+/* The time of the slowest pair in a thousand, and how many were not decided within the limit of iterations. Of three
+ * times each the middle one: the slowest of single times are those that something else of the machine interrupted. */
 static void measure_tail(const char *workload, const kinds *k, const pair *pairs, size_t n, asked *q) {
   double *times = calloc(n, sizeof *times);
   if (!times) exit(1);

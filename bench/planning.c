@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The seven MotionBenchMaker trajectories that MoveIt was measured on: the certified minimum, of hulls and of meshes, to the scene and
- * to the robot itself, beside the boolean check of states that a planner makes, at MoveIt's usual step; and that check by
- * ourselves. MoveIt's own figures, measured
- * by themselves with moveit_core 1.1.16 and FCL, stand beside them for reference: they are not of this process. */
+/* The seven MotionBenchMaker trajectories that MoveIt was measured on: the certified minimum, of hulls and of meshes,
+ * to the scene and to the robot itself, beside the boolean check of states that a planner makes, at MoveIt's usual
+ * step; and that check by ourselves. MoveIt's own figures, measured by themselves with moveit_core 1.1.16 and FCL,
+ * stand beside them for reference: they are not of this process. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +13,8 @@
 #include "solve/list.h"
 #include "support/measure.h"
 
-/* MoveIt's longest valid segment: this fraction of the joint space's extent, which is the sum of the Panda's seven ranges [rad]. */
+/* MoveIt's longest valid segment: this fraction of the joint space's extent, which is the sum of the Panda's seven
+ * ranges [rad]. */
 static const double SEGMENT_FRACTION = 0.01, PANDA_EXTENT = 33.476;
 
 /* MoveIt's boolean check of the trajectory at that step [ms]. */
@@ -43,7 +44,7 @@ typedef struct method_state {
   bool meshes;
 } method_state;
 
-/* ---- ours ----------------------------------------------------------------------------------------------------------------- */
+/* ---- ours ---- */
 
 static void ours(const void *problems, size_t i, void *state, bench_answer *answer) {
   const problem *p = (const problem *)problems + i;
@@ -63,7 +64,7 @@ static void ours(const void *problems, size_t i, void *state, bench_answer *answ
                            .failed = a < 0 || b < 0};
 }
 
-/* ---- states by FCL ------------------------------------------------------------------------------------------------------- */
+/* ---- states by FCL ---- */
 
 /* As many states as MoveIt checks on a path of that length. */
 static size_t states_of(const robot_case *c) {
@@ -95,7 +96,7 @@ static void states_by_fcl(const void *problems, size_t i, void *state, bench_ans
   answer->wrong = hit && p->truth > 0.0;
 }
 
-/* ---- states by ourselves -------------------------------------------------------------------------------------------------- */
+/* ---- states by ourselves ---- */
 
 enum { MOST_STATES = 4096 };
 
@@ -124,7 +125,7 @@ static void states_by_us(const void *problems, size_t i, void *state, bench_answ
   answer->wrong = hit && p->truth > 0.0;
 }
 
-/* ---- the workload --------------------------------------------------------------------------------------------------------- */
+/* ---- the workload ---- */
 
 static bool read_problem(FILE *f, problem *p) {
   if (!robot_case_read(f, BENCH_DATA_DIR "/motion", &p->c)) return false;

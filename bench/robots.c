@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Robots along joint splines, 23 trajectories (test/data/motion): the least distance to the scene and to the robot itself, verdicts, and
- * thin obstacles. Beside ours: the bound of both ends, and samples, both on our own kinematics and distances. */
+/* Robots along joint splines, 23 trajectories (test/data/motion): the least distance to the scene and to the robot
+ * itself, verdicts, and thin obstacles. Beside ours: the bound of both ends, and samples, both on our own kinematics
+ * and distances. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -132,7 +133,8 @@ static void distances(const problem *problems, size_t n, bool self, const bench_
   bench_measure(&w, &once, methods, robot_fcl_name() ? 2 : 1);
 }
 
-/* Verdicts by a least distance, at an epsilon that tells it from delta: what they cost without a search of their own. */
+/* Verdicts by a least distance, at an epsilon that tells it from delta: what they cost without a search of their own.
+ */
 static void verdict_by_distance(const void *problems, size_t i, void *state, bench_answer *answer) {
   const problem *p = (const problem *)problems + i;
   method_state s = *(const method_state *)state;
@@ -162,7 +164,7 @@ static void verdicts(const problem *problems, size_t n, const bench_size *size, 
   }
 }
 
-/* ---- thin obstacles ------------------------------------------------------------------------------------------------------- */
+/* ---- thin obstacles ---- */
 
 enum { MAX_THIN = 10000, FULL_RUN = 200 };
 

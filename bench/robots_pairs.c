@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* How many of the pairs that a node looks at have their distance measured: the same search as a query's, its oracle watched from outside.
- * `nodes` are looks at a pair on an interval of the motion, `distance queries` distances measured, those that the search
- * begins with and those of elements of meshes included, `error` their share. */
+/* How many of the pairs that a node looks at have their distance measured: the same search as a query's, its oracle
+ * watched from outside. `nodes` are looks at a pair on an interval of the motion, `distance queries` distances
+ * measured, those that the search begins with and those of elements of meshes included, `error` their share. */
 #include <math.h>
 #include <stdio.h>
 

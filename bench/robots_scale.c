@@ -90,7 +90,7 @@ static void measure(const char *name, const char *parameter, const problem *p, c
   bench_measure(&w, size, methods, n);
 }
 
-/* ---- obstacles ------------------------------------------------------------------------------------------------------------ */
+/* ---- obstacles ---- */
 
 /* Boxes of up to a decimetre, crowded round the arm, none nearer to its path than 2 centimetres. */
 static void obstacles(const robot_case *arm, const bench_size *size, cprox_workspace *ws) {
@@ -127,7 +127,7 @@ static void obstacles(const robot_case *arm, const bench_size *size, cprox_works
   free(targets);
 }
 
-/* ---- links ---------------------------------------------------------------------------------------------------------------- */
+/* ---- links ---- */
 
 /* A chain of capsules, its axes in turns across and up, that bends from one gentle curve to another. */
 static void links(const bench_size *size, cprox_workspace *ws) {
@@ -178,9 +178,10 @@ static void links(const bench_size *size, cprox_workspace *ws) {
   cprox_body_free(capsule);
 }
 
-/* ---- two arms ------------------------------------------------------------------------------------------------------------- */
+/* ---- two arms ---- */
 
-/* The arm and its like face to face, each with balls (tools, cables) at its links besides; as many pairs as an SRDF of such a cell leaves. */
+/* The arm and its like face to face, each with balls (tools, cables) at its links besides; as many pairs as an SRDF of
+ * such a cell leaves. */
 static void two_arms(const robot_case *arm, const bench_size *size, cprox_workspace *ws) {
   enum { PAIRS = 560, MOST_LINKS = 2 * CASE_MAX_LINKS, MOST_BODIES = 4 * CASE_MAX_GEOMETRIES };
   cprox_link tree[MOST_LINKS];
@@ -257,9 +258,10 @@ static void two_arms(const robot_case *arm, const bench_size *size, cprox_worksp
   cprox_body_free(ball);
 }
 
-/* ---- a flat minimum -------------------------------------------------------------------------------------------------------- */
+/* ---- a flat minimum ---- */
 
-/* A base that slides along a wall from rest to rest, turning a little on the way and back: it is as near as it gets all the way. */
+/* A base that slides along a wall from rest to rest, turning a little on the way and back: it is as near as it gets all
+ * the way. */
 static void slide(const bench_size *size, cprox_workspace *ws) {
   static const double EPSILONS[] = {1e-3, 1e-6};
   const cprox_link tree[2] = {{.parent = -1,

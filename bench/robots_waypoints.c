@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* One straight motion of a robot, written with 2 to 100,000 waypoints: what the waypoints cost. In turns with each, the same query of the
- * motion with 2 waypoints. */
+/* One straight motion of a robot, written with 2 to 100,000 waypoints: what the waypoints cost. In turns with each, the
+ * same query of the motion with 2 waypoints. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Uniform cubic B-splines of 10 to 1000 segments, and trigonometric series (which we compile to quintic pieces): distance and
- * tolerance against a polygon or a polytope, ours beside the paper's method, which knows both exactly. */
+/* Uniform cubic B-splines of 10 to 1000 segments, and trigonometric series (which we compile to quintic pieces):
+ * distance and tolerance against a polygon or a polytope, ours beside the paper's method, which knows both exactly. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +18,8 @@ typedef struct problem {
   cprox_obstacle target;
   paper_curve paper;
   paper_obstacle paper_obstacle;
-  /* what the paper's method knows: Bézier segments and the energy before each, or a series and that of its squared speed */
+  /* what the paper's method knows: Bézier segments and the energy before each, or a series and that of its squared
+   * speed */
   size_t segments;
   paper_bezier *segment;
   double *before;
@@ -39,7 +40,7 @@ static void check(cprox_status status, const cprox_workspace *ws) {
   exit(1);
 }
 
-/* ---- what the paper's method knows ------------------------------------------------------------------------------------------ */
+/* ---- what the paper's method knows ---- */
 
 static size_t segment_at(const problem *p, double t) {
   return t >= (double)p->segments ? p->segments - 1 : (size_t)t;
@@ -96,7 +97,7 @@ static void square_speed(problem *p) {
   }
 }
 
-/* ---- problems --------------------------------------------------------------------------------------------------------------- */
+/* ---- problems ---- */
 
 /* A random walk with inertia, grown to fill a box of width 5 about the obstacles. */
 static void walk(rng *r, bool planar, vec3 *points, size_t n) {
@@ -178,7 +179,7 @@ static void make_problem(rng *r, bool planar, size_t segments, cprox_workspace *
   }
 }
 
-/* ---- methods ---------------------------------------------------------------------------------------------------------------- */
+/* ---- methods ---- */
 
 static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   const problem *p = (const problem *)problems + i;
@@ -213,7 +214,7 @@ static void paper(const void *problems, size_t i, void *state, bench_answer *a) 
   a->lower = a->upper = NAN;
 }
 
-/* ---- workloads -------------------------------------------------------------------------------------------------------------- */
+/* ---- workloads ---- */
 
 /* Time against accuracy, and samples, which have no accuracy but an error. */
 static void measure_accuracies(const bench_size *size, const char *name, const problem *problems, size_t n, asked *q) {

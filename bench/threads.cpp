@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A thousand quintics against a hundred boxes over 1, 2, … threads, as many as the machine runs at once. Times are of the wall. All numbers of threads
- * take turns, round by round, forwards and backwards; the time of several is the median of what each round took over what one thread took in the same
- * round, times one thread's median: what slows a machine for longer than a round slows both. Beside them a loop of plain arithmetic over the
- * same pools: where that gains nothing from a second thread, the machine's second core was not free. What is wrong is what differs from one
+/* A thousand quintics against a hundred boxes over 1, 2, … threads, as many as the machine runs at once. Times are of
+ * the wall. All numbers of threads take turns, round by round, forwards and backwards; the time of several is the
+ * median of what each round took over what one thread took in the same round, times one thread's median: what slows a
+ * machine for longer than a round slows both. Beside them a loop of plain arithmetic over the same pools: where that
+ * gains nothing from a second thread, the machine's second core was not free. What is wrong is what differs from one
  * thread's answers. */
 #include <algorithm>
 #include <chrono>

@@ -3,8 +3,8 @@
 
 #include <mpfr.h>
 
-/* R = 1 + s (w [v] + [v]²), s = 2/q·q; [v]² = v vᵀ - v·v, of the four middles. Unit quaternions that are d apart make rotations that are
- * at most 2 d apart. */
+/* R = 1 + s (w [v] + [v]²), s = 2/q·q; [v]² = v vᵀ - v·v, of the four middles. Unit quaternions that are d apart make
+ * rotations that are at most 2 d apart. */
 rot rot_of_quaternion(const num given[4]) {
   num square = num_of(0.0), k[9], q[4];
   double off = 0.0;

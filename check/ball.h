@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Numbers, vectors and rotations in double arithmetic, each with a radius: what is meant is within e of what is computed (vectors: in
- * Euclid's norm; rotations: in the norm of matrices that it makes). Every operation adds what its own rounding may cost; GROW covers
- * the rounding of the radii themselves. Compiled without value-changing optimisations; products and sums may be fused.
+/* Numbers, vectors and rotations in double arithmetic, each with a radius: what is meant is within e of what is
+ * computed (vectors: in Euclid's norm; rotations: in the norm of matrices that it makes). Every operation adds what its
+ * own rounding may cost; GROW covers the rounding of the radii themselves. Compiled without value-changing
+ * optimisations; products and sums may be fused.
  *
- * Robots are checked with these and not with MPFR's intervals: a chain of rotations in intervals grows by sqrt(3) a joint, and a
- * trajectory takes thousands of support values. */
+ * Robots are checked with these and not with MPFR's intervals: a chain of rotations in intervals grows by sqrt(3) a
+ * joint, and a trajectory takes thousands of support values. */
 #ifndef CHECK_BALL_H
 #define CHECK_BALL_H
 
@@ -34,7 +35,7 @@ typedef struct place {
   vec p;
 } place;
 
-/* ---- numbers -------------------------------------------------------------------------------------------------------------- */
+/* ---- numbers ---- */
 
 static inline num num_of(double m) {
   return (num){m, 0.0};
@@ -84,7 +85,7 @@ static inline num num_sqrt(num a) {
   return (num){m, GROW(a.e / m + 4.0 * BALL_U * m)};
 }
 
-/* ---- vectors -------------------------------------------------------------------------------------------------------------- */
+/* ---- vectors ---- */
 
 static inline vec vec_of(const double x[3]) {
   return (vec){{x[0], x[1], x[2]}, 0.0};
@@ -144,7 +145,7 @@ static inline vec vec_cross(const vec *a, const vec *b) {
                GROW(a->e * length_of(y) + length_of(x) * b->e + a->e * b->e + 8.0 * BALL_U * sizes)};
 }
 
-/* ---- rotations ------------------------------------------------------------------------------------------------------------ */
+/* ---- rotations ---- */
 
 /* With nine numbers. */
 static inline rot rot_of(const num k[9]) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Little-endian numbers from a row of bytes. Reading past the end, and numbers that are not finite, are bad and stay so. */
+/* Little-endian numbers from a row of bytes. Reading past the end, and numbers that are not finite, are bad and stay
+ * so. */
 #ifndef CHECK_BYTES_H
 #define CHECK_BYTES_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The core of the checker. A leaf with the direction n proves that a part of the mover is farther than delta from a set, if
- *   min n·psi over the control points of the part  -  max n·x over the set  >  (delta + radius + margin) |n|:
+/* The core of the checker. A leaf with the direction n proves that a part of the mover is farther than delta from a
+ * set, if min n·psi over the control points of the part  -  max n·x over the set  >  (delta + radius + margin) |n|:
  * weak duality, for any n whatever. The leaves together cover all of the parameter range. */
 #include "check.h"
 
@@ -75,7 +75,8 @@ static sign separation(const section *c, int level, const double normal[3], part
   return proper == POSITIVE ? apart : proper;
 }
 
-/* One leaf. More bits are for what fewer leave open, and for nothing else: to refuse it needs no more than to accept. */
+/* One leaf. More bits are for what fewer leave open, and for nothing else: to refuse it needs no more than to accept.
+ */
 static bool separates(const section *c, const double normal[3], part mine, const part *theirs) {
   sign found = OPEN;
   for (int level = 0; level < PIECES_LEVELS && found == OPEN; level++) {

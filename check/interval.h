@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Intervals of real numbers, their ends rounded outwards by MPFR: what holds for both ends holds for the number. Sums and
- * products of doubles stay single points as long as they fit into the precision, so polynomials of them are exact. */
+/* Intervals of real numbers, their ends rounded outwards by MPFR: what holds for both ends holds for the number. Sums
+ * and products of doubles stay single points as long as they fit into the precision, so polynomials of them are exact.
+ */
 #ifndef CHECK_INTERVAL_H
 #define CHECK_INTERVAL_H
 
@@ -15,7 +16,8 @@ typedef struct iv {
 /* Bits of every number made from now on. */
 void iv_precision(int bits);
 
-/* What has been done since the program began, in products of two words of 64 bits: a measure that is the same on all machines. */
+/* What has been done since the program began, in products of two words of 64 bits: a measure that is the same on all
+ * machines. */
 double iv_work(void);
 
 /* n intervals, all [0, 0]; ends the program where memory is out. iv_free() takes the same n. */

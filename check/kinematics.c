@@ -40,7 +40,7 @@ static jet jet_of(const num *points, size_t degree) {
   return j;
 }
 
-/* ---- axes ----------------------------------------------------------------------------------------------------------------- */
+/* ---- axes ---- */
 
 static vec vec_of_numbers(num x, num y, num z) {
   const double e[3] = {x.e, y.e, z.e};
@@ -75,7 +75,8 @@ static vec twice_ratio(const num p[4], const num q[4], num square) {
   return vec_scale(num_div(num_of(2.0), square), &abc);
 }
 
-/* omega = 2 vec(p' p*) / |p|², alpha = 2 vec(p'' p*) / |p|² - 2 omega (p·p') / |p|²; the bounds are those of doc/robot-bounds.md. */
+/* omega = 2 vec(p' p*) / |p|², alpha = 2 vec(p'' p*) / |p|² - 2 omega (p·p') / |p|²; the bounds are those of
+ * doc/robot-bounds.md. */
 static void quaternion_state(const robot *r, const axis *a, size_t degree, const num *points, const place *before,
                              axis_state *s) {
   num p[ORDERS][4], square = num_of(0.0), along = num_of(0.0), c[4][ROOM];
@@ -128,10 +129,10 @@ place kinematics_place(const body *b, const axis_state *states) {
   return b->axis < 0 ? b->at : place_product(&states[b->axis].frame, &b->at);
 }
 
-/* ---- bodies --------------------------------------------------------------------------------------------------------------- */
+/* ---- bodies ---- */
 
-/* The axes that move on the way from what stands up to the axis above both, and down to what moves: numbers from the base to the
- * tip, the first *up of them passed from tip to base. */
+/* The axes that move on the way from what stands up to the axis above both, and down to what moves: numbers from the
+ * base to the tip, the first *up of them passed from tip to base. */
 static size_t find_chain(const robot *r, int standing, int moving, int *chain, size_t *up) {
   size_t n = 0, down = 0;
   int a = standing, b = moving;

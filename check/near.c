@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* At the parameter t the point y of the mover is within delta + radius + margin of a point of the set: then the
  * distance is at most delta. Everything is seen from the set's own frame. What the point of the set is:
- *   a curve's own at a parameter; a point itself; of four vertices of a polytope the mean by weights, or where all weights are 0
- *   y itself, inside their tetrahedron; of the other bodies y - v, v being given. */
+ *   a curve's own at a parameter; a point itself; of four vertices of a polytope the mean by weights, or where all
+ * weights are 0 y itself, inside their tetrahedron; of the other bodies y - v, v being given. */
 #include "near.h"
 
 #include "check.h"
@@ -83,7 +83,8 @@ static bool in_tetrahedron(const set *s, const uint32_t vertex[4], iv *y) {
   return positive == 5 || negative == 5;
 }
 
-/* v = y less the polytope's point that four vertices and their weights name. False where y ought to lie inside and does not. */
+/* v = y less the polytope's point that four vertices and their weights name. False where y ought to lie inside and does
+ * not. */
 static bool from_polytope(iv v[3], const set *s, iv *y, reader *in) {
   uint32_t vertex[4];
   double weight[4], largest = 0.0;

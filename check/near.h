@@ -13,7 +13,8 @@ const char *check_near(const problem *p, reader *in, double delta);
 /* Whether the last check_near() refused what more bits may accept. */
 bool near_left_open(void);
 
-/* With y = the mover's point in the frame of the set, and `apart` the balls: what the certificate says of it. y and apart are used up. */
+/* With y = the mover's point in the frame of the set, and `apart` the balls: what the certificate says of it. y and
+ * apart are used up. */
 const char *near_check_point(const set *s, iv *y, iv *apart, reader *in, bool left);
 
 /* The point of the set's own frame that a certificate names; false where it is none of the set's. */

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- polynomials: Bézier points are values of the blossom f, b_j = f(lo, …, lo, hi, …, hi) with hi j times ---------------- */
+/* ---- polynomials: Bézier points are values of the blossom f, b_j = f(lo, …, lo, hi, …, hi) with hi j times ---- */
 
-/* A polynomial of one coordinate whose arguments are given away one by one: a spline's span over its 2p knots, or sum c_k x^k with
- * d_k = c_k / C(p, k). */
+/* A polynomial of one coordinate whose arguments are given away one by one: a spline's span over its 2p knots, or sum
+ * c_k x^k with d_k = c_k / C(p, k). */
 typedef struct blossom {
   size_t p;
   const double *knots; /* NULL: powers */
@@ -45,7 +45,8 @@ static void blossom_all(const blossom *b, iv *d, const iv *lo, const iv *hi, iv 
   iv_free(rest, b->p + 1);
 }
 
-/* x = (a t + b) / (t1 - t0): from t0 … t1 to -1 … 1 for a Legendre series, to 0 … 1 for Lagrange's nodes and Bézier's parameter. */
+/* x = (a t + b) / (t1 - t0): from t0 … t1 to -1 … 1 for a Legendre series, to 0 … 1 for Lagrange's nodes and Bézier's
+ * parameter. */
 static void normal_parameter(iv *x, const curve *c, double t) {
   iv *w = iv_new(3);
   iv_set_d(&w[0], c->t0);
@@ -278,7 +279,7 @@ static const char *polynomial_point(const curve *c, double t, bool left, iv poin
   return NULL;
 }
 
-/* ---- trigonometric series: quintic Hermite pieces, remainder K6 h^6 / 46080 ------------------------------------------------ */
+/* ---- trigonometric series: quintic Hermite pieces, remainder K6 h^6 / 46080 ---- */
 
 /* (c, s) of an angle becomes that of the sum with another: c c1 - s s1, s c1 + c s1. */
 static void turn_on(iv *angle, const iv *by) {
@@ -380,7 +381,7 @@ static void series_piece(double lo, double hi, const iv *at_lo, const iv *at_hi,
   iv_free(w, 1);
 }
 
-/* ---- any basis --------------------------------------------------------------------------------------------------------------- */
+/* ---- any basis ---- */
 
 /* Which source a piece is cut from; the pieces are asked about in order. NULL, or why it is cut from none. */
 static const char *find_source(pieces *p, size_t i) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A curve as Bézier pieces between given parameters, from its own basis: exactly, or in intervals where that takes divisions, or
- * with a remainder where the basis is no polynomial. */
+/* A curve as Bézier pieces between given parameters, from its own basis: exactly, or in intervals where that takes
+ * divisions, or with a remainder where the basis is no polynomial. */
 #ifndef CHECK_PIECES_H
 #define CHECK_PIECES_H
 
@@ -12,8 +12,8 @@ enum { PIECES_LEVELS = 2 };
 
 /* What has been made of the pieces with so many bits; NULL where nothing has needed it. */
 typedef struct pieces_level {
-  iv **
-      piece; /* degree + 1 points of three numbers, and a remainder: every point of the curve is within this of the piece's */
+  iv **piece;  /* degree + 1 points of three numbers, and a remainder: every point of the curve is within this of the
+                  piece's */
   iv **source; /* Bézier points of the span or the polynomial that pieces are cut from */
   iv **jet;    /* of a trigonometric series at the breaks */
   iv *sixth;   /* bounds its sixth derivative */
@@ -27,16 +27,17 @@ typedef struct pieces {
   pieces_level at[PIECES_LEVELS];
 } pieces;
 
-/* Piece i runs from breaks[i] to breaks[i+1], which are kept by reference. NULL, or why these cannot be the breaks: they do not ascend
- * from t0 to t1, or a knot of a spline lies inside a piece. To be freed in any case. */
+/* Piece i runs from breaks[i] to breaks[i+1], which are kept by reference. NULL, or why these cannot be the breaks:
+ * they do not ascend from t0 to t1, or a knot of a spline lies inside a piece. To be freed in any case. */
 const char *pieces_make(pieces *p, const curve *c, const double *breaks, size_t n);
 void pieces_free(pieces *p);
 
-/* min n·x over the part [from, to] of the pieces, counted from 0 to their number. The level's bits are those of the arithmetic. */
+/* min n·x over the part [from, to] of the pieces, counted from 0 to their number. The level's bits are those of the
+ * arithmetic. */
 void pieces_least(iv *out, pieces *p, int level, const iv n[3], double from, double to);
 
-/* The point of the curve at the parameter t of [t0, t1]: a piece of no length. At a knot where a spline jumps, its limit from the left
- * or from the right. */
+/* The point of the curve at the parameter t of [t0, t1]: a piece of no length. At a knot where a spline jumps, its
+ * limit from the left or from the right. */
 const char *pieces_point(iv point[3], iv *remainder, const curve *c, double t, bool left);
 
 #endif

@@ -62,7 +62,7 @@ size_t words_choose(words *w, const char *const *names, size_t n) {
   return 0;
 }
 
-/* ---- curves ------------------------------------------------------------------------------------------------------------- */
+/* ---- curves ---- */
 
 /* Points and knots as many as the basis needs, the range inside the domain. */
 static bool curve_fits(const curve *c) {
@@ -109,7 +109,7 @@ void set_free(set *s) {
   free_curve(&s->curve);
 }
 
-/* ---- targets ------------------------------------------------------------------------------------------------------------ */
+/* ---- targets ---- */
 
 void words_set(words *w, set *s) {
   static const char *const names[] = {"point",     "sphere",    "box",      "capsule", "cylinder", "cone",
@@ -138,7 +138,7 @@ void words_set(words *w, set *s) {
   if (s->kind == CURVE) read_curve(w, &s->curve);
 }
 
-/* ---- lines -------------------------------------------------------------------------------------------------------------- */
+/* ---- lines ---- */
 
 const char *words_line(problem *p, words *w) {
   const char *found = NULL;

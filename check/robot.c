@@ -20,7 +20,7 @@ static bool turns_nothing(const double q[4]) {
   return q[0] == 0.0 && q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0;
 }
 
-/* ---- links ---------------------------------------------------------------------------------------------------------------- */
+/* ---- links ---- */
 
 static void add_axis(robot *r, hook *at, axis_kind moves, const double z[3], size_t variable, double multiplier,
                      double offset) {
@@ -63,7 +63,7 @@ static void read_link(words *w, robot *r) {
   r->links[r->n_links++] = at;
 }
 
-/* ---- bodies --------------------------------------------------------------------------------------------------------------- */
+/* ---- bodies ---- */
 
 static void add_body(robot *r, const set *s, const hook *on) {
   body *b = &r->bodies[r->n_bodies++];
@@ -87,7 +87,7 @@ static void read_part(words *w, robot *r) {
   if (!w->wrong) add_body(r, s, &r->links[on]);
 }
 
-/* ---- the whole ------------------------------------------------------------------------------------------------------------ */
+/* ---- the whole ---- */
 
 /* "WORD N" and N lines of it. */
 static bool read_lines(problem *p, words *w, robot *r, const char *word, size_t n, void (*read)(words *, robot *)) {
@@ -112,8 +112,8 @@ static bool read_pairs(problem *p, words *w, robot *r) {
   return words_end(p, w);
 }
 
-/* "robot ID" LINKS PARTS VARIABLES, then those links and parts, the pairs, the values of all variables that stand still, and the
- * motion. */
+/* "robot ID" LINKS PARTS VARIABLES, then those links and parts, the pairs, the values of all variables that stand
+ * still, and the motion. */
 static bool read_all(problem *p, words *w, robot *r) {
   const size_t links = words_size(w), parts = words_size(w);
   r->n_variables = words_size(w);

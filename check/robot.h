@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A robot along a motion, as the problem's text describes it: single axes, convex bodies on them, and a Bézier polynomial
- * for each segment and variable. */
+/* A robot along a motion, as the problem's text describes it: single axes, convex bodies on them, and a Bézier
+ * polynomial for each segment and variable. */
 #ifndef CHECK_ROBOT_H
 #define CHECK_ROBOT_H
 
@@ -13,8 +13,8 @@ enum { ROBOT_MAX_DEGREE = 9 };
 
 typedef enum axis_kind { AXIS_TURN, AXIS_SHIFT, AXIS_QUATERNION } axis_kind;
 
-/* A rotation about z or a shift along it by multiplier * variable + offset; or a rotation by the quaternion of four variables
- * (x, y, z, w). */
+/* A rotation about z or a shift along it by multiplier * variable + offset; or a rotation by the quaternion of four
+ * variables (x, y, z, w). */
 typedef struct axis {
   axis_kind kind;
   int parent; /* -1: the world */

@@ -4,9 +4,9 @@
  * round what stands to the centre of what moves. What neither settles is open on both halves; an interval that is not
  * cut must settle all.
  *
- * A direction n, fixed in what stands, settles a pair if in the middle its plane parts the two by more than delta and the way that points
- * of the moving body may take (first order), or if the second or third order expansion of n·x over the interval stays
- * above delta. */
+ * A direction n, fixed in what stands, settles a pair if in the middle its plane parts the two by more than delta and
+ * the way that points of the moving body may take (first order), or if the second or third order expansion of n·x over
+ * the interval stays above delta. */
 #include "robot_check.h"
 
 #include <stdlib.h>
@@ -96,7 +96,8 @@ static bool settles(const walk *w, const view *v, const double own[3]) {
   return true;
 }
 
-/* From the box round what stands to the centre of what moves, in the frame of what stands; a halfspace has its own normal. */
+/* From the box round what stands to the centre of what moves, in the frame of what stands; a halfspace has its own
+ * normal. */
 static void default_normal(const view *v, double n[3]) {
   const vec y = rot_turn(&v->from->r, &v->apart, true);
   for (int k = 0; k < 3; k++) {

@@ -12,7 +12,8 @@ num span_along(const set *s, double radius, const vec *n);
 /* No point is farther from the centre; a halfspace: the distance of its plane. */
 double span_radius(const set *s);
 
-/* A box round it, or of what is rounded by a ball (spheres, capsules, hulls with an excess) round the rest; only to choose by. */
+/* A box round it, or of what is rounded by a ball (spheres, capsules, hulls with an excess) round the rest; only to
+ * choose by. */
 void span_box(const set *s, double middle[3], double half[3]);
 
 #endif

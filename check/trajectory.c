@@ -36,7 +36,7 @@ static void read_variables(words *w, source *s) {
   }
 }
 
-/* ---- waypoints ------------------------------------------------------------------------------------------------------------ */
+/* ---- waypoints ---- */
 
 /* One line: at TIME ORDERS, then positions, with 2 orders velocities, with 3 accelerations. */
 typedef struct waypoint {
@@ -106,7 +106,7 @@ static bool read_waypoints(problem *p, words *w, source *s) {
   return good;
 }
 
-/* ---- B-splines ------------------------------------------------------------------------------------------------------------ */
+/* ---- B-splines ---- */
 
 /* The Bézier points of the span [knot r, knot r + 1]: blossoms at its ends, by de Boor. */
 static void blossom(const double *control, size_t n, const double *knots, size_t degree, size_t r, num *c) {
@@ -125,7 +125,8 @@ static void blossom(const double *control, size_t n, const double *knots, size_t
   }
 }
 
-/* bspline DEGREE N variable×N POINTS, then "knots" and POINTS + DEGREE + 1 of them, and a line "control" with N values a point. */
+/* bspline DEGREE N variable×N POINTS, then "knots" and POINTS + DEGREE + 1 of them, and a line "control" with N values
+ * a point. */
 static bool read_spline(problem *p, words *w, source *s) {
   robot *r = s->robot;
   const size_t degree = words_size(w);
@@ -162,7 +163,7 @@ static bool read_spline(problem *p, words *w, source *s) {
   return good && !w->wrong;
 }
 
-/* ---- quaternions ---------------------------------------------------------------------------------------------------------- */
+/* ---- quaternions ---- */
 
 void trajectory_halve(num *points, size_t degree, num *left) {
   for (size_t level = 0; level <= degree; level++) {
@@ -212,7 +213,7 @@ static double least_of_axis(const robot *r, const axis *a) {
   return least;
 }
 
-/* ---- the whole ------------------------------------------------------------------------------------------------------------ */
+/* ---- the whole ---- */
 
 static void find_what_moves(robot *r) {
   for (size_t i = 0; i < r->n_axes; i++) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Motions of a robot's variables, read from text: Hermite polynomials between waypoints, or B-splines, as Bézier polynomials. */
+/* Motions of a robot's variables, read from text: Hermite polynomials between waypoints, or B-splines, as Bézier
+ * polynomials. */
 #ifndef CHECK_TRAJECTORY_H
 #define CHECK_TRAJECTORY_H
 

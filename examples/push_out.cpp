@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Pushes a spline out of collision: NLopt's SLSQP, with value and gradient by the provider curve_proximity/CurveDistance.
+/** Pushes a spline out of collision: NLopt's SLSQP, with value and gradient by the provider
+ * curve_proximity/CurveDistance.
  *
  *      push_out SCENE.yaml [OUT.csv]
  *
- *  A ball of 3 cm is to go along a cubic B-spline from one end to the other, as smoothly as can be and 1 cm clear of every object.
- *  The variables are the inner control points; the constraints are the signed distances of eight intervals of the
- *  spline to each object. At the end the whole spline is asked about once more: its clearance is then proven, not
+ *  A ball of 3 cm is to go along a cubic B-spline from one end to the other, as smoothly as can be and 1 cm clear of
+ * every object. The variables are the inner control points; the constraints are the signed distances of eight intervals
+ * of the spline to each object. At the end the whole spline is asked about once more: its clearance is then proven, not
  *  sampled. OUT.csv gets the spline before and after as CURVES.csv has them, for `cprox` and for draw_push_out.py. */
 #include <nlopt.h>
 #include <pluginlib/class_loader.hpp>

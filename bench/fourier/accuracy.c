@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Over-reach against n, and outlines of obstacles: rays from deep overlap outwards, the last place called colliding on each. */
+/* Over-reach against n, and outlines of obstacles: rays from deep overlap outwards, the last place called colliding on
+ * each. */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdio.h>
@@ -63,8 +64,8 @@ static bool paper_kernel(int N, double x0, double x1, kernel *w) {
   return isfinite(w->w[N]) && taps[N] > 0.0F;
 }
 
-/* A gap with that kernel and the threshold that its negative part leaves: t - eta mu mu (the corrected theorem). Pass and stop band
- * are those of the least 2 rho + x1 with a threshold above 0 out of a scan. */
+/* A gap with that kernel and the threshold that its negative part leaves: t - eta mu mu (the corrected theorem). Pass
+ * and stop band are those of the least 2 rho + x1 with a threshold above 0 out of a scan. */
 static cprox_gap *make_paper(const shape *a, const shape *b, uint32_t samples, cprox_workspace *ws) {
   const int N = (int)samples / 2;
   double best = INFINITY, best_threshold = 0.0;
@@ -134,7 +135,8 @@ static bool may_collide(const cprox_gap *gap, const cprox_pose *a, const cprox_p
   return r.verdict == CPROX_GAP_VERDICT_COLLIDE || r.verdict == CPROX_GAP_VERDICT_UNDECIDED;
 }
 
-/* Outwards from the edge of the bounding spheres: the first distance along the ray at which the gap says "may collide", to 1e-4. */
+/* Outwards from the edge of the bounding spheres: the first distance along the ray at which the gap says "may collide",
+ * to 1e-4. */
 static double ray_end(const cprox_gap *gap, double phi, double theta, cprox_workspace *ws) {
   const double most = gap->radius_a + gap->radius_b, step = most / 150.0;
   const cprox_pose a = shape_pose(0, 0, 0);
@@ -176,8 +178,8 @@ static double time_of(const cprox_gap *gap, cprox_workspace *ws) {
   return best / POSES;
 }
 
-/* The largest clearance called colliding on random rays around random rotations, over the period; overlaps called clear are
- * unsound. */
+/* The largest clearance called colliding on random rays around random rotations, over the period; overlaps called clear
+ * are unsound. */
 static void measure_reach(const method *m, const shape *a, const shape *b, uint32_t samples, size_t rays,
                           cprox_workspace *ws) {
   char parameter[64], workload[64];
@@ -218,7 +220,8 @@ void fourier_over_reach(const bench_size *size) {
   shapes_free(s);
 }
 
-/* Outlines of the obstacle of an L and a T: at one rotation for several n and exactly, and at n = 17 for twelve rotations. */
+/* Outlines of the obstacle of an L and a T: at one rotation for several n and exactly, and at n = 17 for twelve
+ * rotations. */
 static double exact_end(const shape *a, const shape *b, double phi, double theta) {
   const cprox_pose here = shape_pose(0, 0, 0);
   double x = 3.0;

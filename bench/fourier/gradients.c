@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What the gradients of gap functions are worth to a solver: their cosine to the exact gradient of the distance, over the clearance. */
+/* What the gradients of gap functions are worth to a solver: their cosine to the exact gradient of the distance, over
+ * the clearance. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

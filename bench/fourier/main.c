@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Fourier gap functions: how far bodies apart are still called colliding, over n, ours beside the paper's kernel (its Figs. 3 and 5);
- * outlines of the SE(2) obstacle (Fig. 6); what their gradients are worth; what a query costs beside a distance between convex bodies
- * and beside tables of the spectrum; a nesting problem. */
+/* Fourier gap functions: how far bodies apart are still called colliding, over n, ours beside the paper's kernel (its
+ * Figs. 3 and 5); outlines of the SE(2) obstacle (Fig. 6); what their gradients are worth; what a query costs beside a
+ * distance between convex bodies and beside tables of the spectrum; a nesting problem. */
 #include "fourier/parts.h"
 
 #include <stdio.h>

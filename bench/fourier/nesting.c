@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Nesting: bring an L as close to an E as their interiors allow, centre to centre, from random poses (most of them deep inside),
- * by NLopt's SLSQP. The constraint is the certified gap, from coarse to fine; or the signed distance of the nearest pair of convex
- * pieces; or the one first and then the other. */
+/* Nesting: bring an L as close to an E as their interiors allow, centre to centre, from random poses (most of them deep
+ * inside), by NLopt's SLSQP. The constraint is the certified gap, from coarse to fine; or the signed distance of the
+ * nearest pair of convex pieces; or the one first and then the other. */
 #include "fourier/parts.h"
 
 #ifndef HAVE_NLOPT
@@ -87,8 +87,8 @@ static void solve(nest *q, nlopt_func constraint, double x[3]) {
   nlopt_destroy(solver);
 }
 
-/* From the same starts for all. found[i]: how close start i ended, infinite where it overlaps by more than 1e-3. Returns the time a
- * start took [us]. */
+/* From the same starts for all. found[i]: how close start i ended, infinite where it overlaps by more than 1e-3.
+ * Returns the time a start took [us]. */
 static double run(nest *q, const recipe *how, cprox_gap *const gaps[GAPS], size_t starts, double *found) {
   rng r = rng_seed(79);
   const double begin = now();

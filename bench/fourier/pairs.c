@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What a verdict costs: gaps of two boxes beside the certified distance between them by GJK. The distance is faster and finer on
- * convex pairs; the gap is smooth, and its time does not depend on convexity. */
+/* What a verdict costs: gaps of two boxes beside the certified distance between them by GJK. The distance is faster and
+ * finer on convex pairs; the gap is smooth, and its time does not depend on convexity. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -33,7 +33,7 @@ INLINE void turn_term(const phases *p, const term *t, double *re, double *im) {
   *re = a, *im = b;
 }
 
-/* ---- the table ------------------------------------------------------------------------------------------------------------ */
+/* ---- the table ---- */
 
 static int along_rows(const void *a, const void *b) {
   const term *p = a, *q = b;

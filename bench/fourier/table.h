@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The way of the paper: the turned body's spectrum as a table on the frequencies' own lattice, looked up between its points by tricubic
- * (Catmull-Rom) interpolation for each pose. And the floor under any way: the sum alone, for a body that never turns. */
+/* The way of the paper: the turned body's spectrum as a table on the frequencies' own lattice, looked up between its
+ * points by tricubic (Catmull-Rom) interpolation for each pose. And the floor under any way: the sum alone, for a body
+ * that never turns. */
 #ifndef CPROX_BENCH_FOURIER_TABLE_H
 #define CPROX_BENCH_FOURIER_TABLE_H
 
@@ -10,7 +11,8 @@
 
 #define TAU 6.28318530717958647693
 
-/* What is compiled for the widths of the machines at hand, as the gap's own sum is; here with fused multiplication, too. */
+/* What is compiled for the widths of the machines at hand, as the gap's own sum is; here with fused multiplication,
+ * too. */
 #if defined(__GNUC__) && defined(__x86_64__)
 #define WIDTH_512 __attribute__((target("avx512f,avx512dq,avx512vl,fma")))
 #define WIDTH_256 __attribute__((target("avx2,fma")))
@@ -39,14 +41,15 @@ static inline void fill_phases(phases *p, int N, double step, vec3 x) {
 
 typedef struct table table;
 
-/* What a sum tells, in units of the threshold: the gradients in the fixed solid's frame by position, in the turned one's by rotation. */
+/* What a sum tells, in units of the threshold: the gradients in the fixed solid's frame by position, in the turned
+ * one's by rotation. */
 typedef struct table_answer {
   double value;
   vec3 position, rotation;
 } table_answer;
 
-/* A table for the gap's turned solid, `finer` points for each of the lattice along an axis; `complex`: of any body, otherwise of one whose
- * spectrum is real, like a box about its centre. NULL: out of memory. */
+/* A table for the gap's turned solid, `finer` points for each of the lattice along an axis; `complex`: of any body,
+ * otherwise of one whose spectrum is real, like a box about its centre. NULL: out of memory. */
 table *table_create(const cprox_gap *gap, int finer, bool complex);
 void table_free(table *t);
 size_t table_bytes(const table *t);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Value and gradient of a box's gap: by the closed form that turns with the body, by tables of its spectrum with tricubic interpolation,
- * and the sum of a body that does not turn, which no way can undercut. */
+/* Value and gradient of a box's gap: by the closed form that turns with the body, by tables of its spectrum with
+ * tricubic interpolation, and the sum of a body that does not turn, which no way can undercut. */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 
 #include "paper.h"
 
-/* ---- the hull of an interval (Theorem 1) --------------------------------------------------------------------------------- */
+/* ---- the hull of an interval (Theorem 1) ---- */
 
 typedef struct hull {
   size_t n;
@@ -41,7 +41,7 @@ static void hull_of(const paper_curve *c, double a, double b, hull *h) {
   }
 }
 
-/* ---- best first -------------------------------------------------------------------------------------------------------------- */
+/* ---- best first ---- */
 
 static void push(paper_node *heap, uint32_t *count, paper_node node) {
   uint32_t i = (*count)++;

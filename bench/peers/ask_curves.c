@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Points and curves, curves and curves. unsound counts distances that are off by more than WRONG. References: long double for Bézier
- * curves, our interval of width 1e-12 for splines, which the soundness campaigns hold. */
+/* Points and curves, curves and curves. unsound counts distances that are off by more than WRONG. References: long
+ * double for Bézier curves, our interval of width 1e-12 for splines, which the soundness campaigns hold. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What others answer about curves and convex shapes, behind one face; each library is built where it is installed. Distances are
- * NAN, parameters -1, where a library gives none. */
+/* What others answer about curves and convex shapes, behind one face; each library is built where it is installed.
+ * Distances are NAN, parameters -1, where a library gives none. */
 #ifndef CPROX_BENCH_CURVE_PEERS_H
 #define CPROX_BENCH_CURVE_PEERS_H
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The same problems by Ipopt, a general interior point solver, on the paper's own formulation: six variables, no lifting. */
+/* The same problems by Ipopt, a general interior point solver, on the paper's own formulation: six variables, no
+ * lifting. */
 #ifndef CPROX_BENCH_PEERS_IPOPT_H
 #define CPROX_BENCH_PEERS_IPOPT_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The textbook's method on the paper's formulation, for comparison: feasible primal-dual interior point steps in x and y with the
- * constraints as they are, no lifted variables, one set of settings, no certificate. */
+/* The textbook's method on the paper's formulation, for comparison: feasible primal-dual interior point steps in x and
+ * y with the constraints as they are, no lifted variables, one set of settings, no certificate. */
 #ifndef CPROX_BENCH_PEERS_NAIVE_H
 #define CPROX_BENCH_PEERS_NAIVE_H
 

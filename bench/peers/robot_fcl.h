@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What a planner's edge check does: a robot of triangle meshes at one state after the other, by FCL as MoveIt sets it up: a tree of
- * OBBRSS boxes a mesh, a dynamic tree over the world. */
+/* What a planner's edge check does: a robot of triangle meshes at one state after the other, by FCL as MoveIt sets it
+ * up: a tree of OBBRSS boxes a mesh, a dynamic tree over the world. */
 #ifndef CPROX_BENCH_ROBOT_FCL_H
 #define CPROX_BENCH_ROBOT_FCL_H
 
@@ -21,7 +21,8 @@ typedef struct robot_fcl robot_fcl;
 robot_fcl *robot_fcl_create(void);
 void robot_fcl_free(robot_fcl *r);
 
-/* A part of the robot: m triangles, nine numbers each, or a box, a cylinder (height), a sphere. Numbered as they come. */
+/* A part of the robot: m triangles, nine numbers each, or a box, a cylinder (height), a sphere. Numbered as they come.
+ */
 void robot_fcl_add_mesh(robot_fcl *r, const double *corners, size_t m);
 void robot_fcl_add_box(robot_fcl *r, cprox_vec3 edges);
 void robot_fcl_add_cylinder(robot_fcl *r, double radius, double height);

@@ -20,7 +20,8 @@ void sampling_free(sampling *s);
 void sampling_add_box(sampling *s, cprox_vec3 edges, cprox_pose pose);
 void sampling_ready(sampling *s);
 
-/* 1 where the ball touches anything at one of the parameters, else 0; the least distance at them, 0 where it touches. */
+/* 1 where the ball touches anything at one of the parameters, else 0; the least distance at them, 0 where it touches.
+ */
 double sampling_collides(const sampling *s, const cprox_vec3 *points, size_t n_points, double radius, size_t samples);
 double sampling_distance(const sampling *s, const cprox_vec3 *points, size_t n_points, double radius, size_t samples);
 

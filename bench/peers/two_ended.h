@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What certified answers for robots cost without this library's bounds, on its own kinematics and distances: half the sum of the
- * distances at both ends minus how far the joints can carry the part between (constant levers), best first; and samples. */
+/* What certified answers for robots cost without this library's bounds, on its own kinematics and distances: half the
+ * sum of the distances at both ends minus how far the joints can carry the part between (constant levers), best first;
+ * and samples. */
 #ifndef CPROX_BENCH_TWO_ENDED_H
 #define CPROX_BENCH_TWO_ENDED_H
 

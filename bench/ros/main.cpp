@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What ROS adds to the core's time: one curve of 6 points against 30 boxes, by a persistent service connection to a node, and by
- *  topic through the nodelet in this process, as inside a manager. Beside both a server and a relay that do nothing but take the same
- *  message, keep a processor busy for as long as the core does, and answer: what they cost is roscpp's. Starts a master and the nodes.
+/** What ROS adds to the core's time: one curve of 6 points against 30 boxes, by a persistent service connection to a
+ * node, and by topic through the nodelet in this process, as inside a manager. Beside both a server and a relay that do
+ * nothing but take the same message, keep a processor busy for as long as the core does, and answer: what they cost is
+ * roscpp's. Starts a master and the nodes.
  *
  *  usage: curve_proximity_bench_ros [--quick] [--calls N]
- *  Prints rows of results.csv. The memory row's error is what the node's resident set grew by over that many calls [MB]. */
+ *  Prints rows of results.csv. The memory row's error is what the node's resident set grew by over that many calls
+ * [MB]. */
 #include <curve_proximity/ApplyScene.h>
 #include <curve_proximity/Distance.h>
 #include <curve_proximity/ProximityResults.h>
@@ -45,7 +47,7 @@ double microseconds(Clock::duration time) {
   return std::chrono::duration<double, std::micro>(time).count();
 }
 
-/* ---- processes ----------------------------------------------------------------------------------------------------- */
+/* ---- processes ---- */
 
 /** A program that ends with this object. */
 class Program {
@@ -101,7 +103,7 @@ void waitFor(const char *what, Condition condition) {
   }
 }
 
-/* ---- the query -------------------------------------------------------------------------------------------------- */
+/* ---- the query ---- */
 
 geometry_msgs::Point point(double x, double y, double z) {
   geometry_msgs::Point p;
@@ -144,7 +146,7 @@ void build(const std::string &server) {
     throw std::runtime_error(server + ": " + scene.response.message);
 }
 
-/* ---- what roscpp costs by itself ----------------------------------------------------------------------------------- */
+/* ---- what roscpp costs by itself ---- */
 
 constexpr double WORK_US = 20.0; /* about what the core takes for the query */
 
@@ -206,7 +208,7 @@ class PlainRelay {
   ros::AsyncSpinner spinner_;
 };
 
-/* ---- rows ---------------------------------------------------------------------------------------------------------- */
+/* ---- rows ---- */
 
 double percentile(std::vector<double> values, double fraction) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
@@ -241,7 +243,7 @@ void printAdded(const std::string &way, const Times &ours, const Times &plain) {
     print(method, way + " p99", percentile(times->added, 0.99), percentile(times->added, 0.99));
 }
 
-/* ---- the measurements ---------------------------------------------------------------------------------------------- */
+/* ---- the measurements ---- */
 
 /** One call after the other over one connection; a hundred to ours, a hundred to the plain one, and again. */
 void measureService(ros::NodeHandle &handle, const std::string &server, const std::string &plain, int calls) {
@@ -310,7 +312,8 @@ class Asker {
   ros::AsyncSpinner spinner_;
 };
 
-/** A message each millisecond, by pointer, in turn to ours and to the plain relay; from its publication to the arrival of its result. */
+/** A message each millisecond, by pointer, in turn to ours and to the plain relay; from its publication to the arrival
+ * of its result. */
 void measureNodelet(ros::NodeHandle &handle, const std::string &server, int messages) {
   const std::string relay = "/bench_relay";
   const PlainRelay plain(relay);

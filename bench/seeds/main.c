@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The tables and figures of Lakshmanan et al. (2019) that the other groups do not measure: Table I, Fig. 7, Fig. 10, Table II. The
- * kinds of curves are the paper's; where they stand, and the polygons, are ours, since it does not print them. */
+/* The tables and figures of Lakshmanan et al. (2019) that the other groups do not measure: Table I, Fig. 7, Fig. 10,
+ * Table II. The kinds of curves are the paper's; where they stand, and the polygons, are ours, since it does not print
+ * them. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -83,7 +84,7 @@ static void measure_query_types(const bench_size *size, const char *workload, co
   }
 }
 
-/* ---- Table I: the length of a curve by quadrature, and its bound in closed form ------------------------------------------------ */
+/* ---- Table I: the length of a curve by quadrature, and its bound in closed form ---- */
 
 /* One of the three curves, over one interval. */
 typedef struct interval {
@@ -165,7 +166,7 @@ static void table_one(const bench_size *size) {
   }
 }
 
-/* ---- Fig. 7: how the interval narrows ------------------------------------------------------------------------------------------- */
+/* ---- Fig. 7: how the interval narrows ---- */
 
 static void print_width(const char *method, uint32_t nodes, double width) {
   printf("seeds,figure 7,%s,after %03u intervals,,,%u,,%.3g,0,0\n", method, nodes, nodes, width);
@@ -192,7 +193,7 @@ static void figure_seven(const tools *t) {
   curve_problems_free(p, 1);
 }
 
-/* ---- Fig. 10: ten Bézier curves of each order and a point ------------------------------------------------------------------------- */
+/* ---- Fig. 10: ten Bézier curves of each order and a point ---- */
 
 static void figure_ten(const bench_size *size, const tools *t) {
   enum { N = 10 };
@@ -213,7 +214,7 @@ static void figure_ten(const bench_size *size, const tools *t) {
   }
 }
 
-/* ---- Table II: the pairs of Fig. 11 ------------------------------------------------------------------------------------------------ */
+/* ---- Table II: the pairs of Fig. 11 ---- */
 
 static void table_two_polygon(const bench_size *size, const tools *t, const char *name, const named_curve *curve,
                               const vec3 *vertex, size_t n) {

@@ -14,7 +14,7 @@ static void check(cprox_status status) {
   exit(1);
 }
 
-/* ---- trigonometric series ------------------------------------------------------------------------------------------------- */
+/* ---- trigonometric series ---- */
 
 static vec3 series_point(const void *self, double t) {
   const named_curve *c = self;
@@ -99,7 +99,7 @@ void named_lissajous(vec3 centre, double size, named_curve *c) {
   finish_series(c, centre, size);
 }
 
-/* ---- the others ----------------------------------------------------------------------------------------------------------- */
+/* ---- the others ---- */
 
 static vec3 involute_point(const void *self, double t) {
   const named_curve *c = self;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The kinds of curves in Fig. 11 of Lakshmanan et al. (2019), for us and for their method: each with the integral of |psi'|² in
- * closed form. The sizes and places are ours: the paper does not print them. */
+/* The kinds of curves in Fig. 11 of Lakshmanan et al. (2019), for us and for their method: each with the integral of
+ * |psi'|² in closed form. The sizes and places are ours: the paper does not print them. */
 #ifndef CPROX_BENCH_SEEDS_NAMED_H
 #define CPROX_BENCH_SEEDS_NAMED_H
 
@@ -25,7 +25,8 @@ void named_epicycloid(vec3 centre, double size, named_curve *c);
 void named_fish(vec3 centre, double size, named_curve *c);
 void named_lissajous(vec3 centre, double size, named_curve *c);
 void named_involute(vec3 centre, double t1, named_curve *c);
-/* Of unit speed, its curvature t, t from -2 pi to 2 pi. The paper's method gets our compiled points: it need not integrate. */
+/* Of unit speed, its curvature t, t from -2 pi to 2 pi. The paper's method gets our compiled points: it need not
+ * integrate. */
 void named_spiral(vec3 centre, named_curve *c);
 
 #endif

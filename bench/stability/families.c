@@ -17,7 +17,8 @@ static void one_point(hard *h, vec3 p) {
   h->vertex[0] = p;
 }
 
-/* The control points of (x(t), c (x(t))^power + gap) for x = 2t - 1: by the elevation of a monomial to Bernstein form. */
+/* The control points of (x(t), c (x(t))^power + gap) for x = 2t - 1: by the elevation of a monomial to Bernstein form.
+ */
 static void graph_of_power(hard *h, size_t power, double c, double gap) {
   h->degree = power;
   for (size_t i = 0; i <= power; i++) {
@@ -111,8 +112,8 @@ static void through_the_point(rng *r, hard *h) {
   shift_middle(r, h);
 }
 
-/* A quarter of a circle, as a cubic as near to it as a cubic can be, about its centre: the distance is nearly the same everywhere; it is
- * least where the cubic meets the circle, at its ends and its middle. */
+/* A quarter of a circle, as a cubic as near to it as a cubic can be, about its centre: the distance is nearly the same
+ * everywhere; it is least where the cubic meets the circle, at its ends and its middle. */
 static void about_the_centre(rng *r, hard *h) {
   h->degree = 3;
   const double size = rng_uniform(r, 0.5, 2.0), k = 4.0 / 3.0 * (sqrt(2.0) - 1.0);

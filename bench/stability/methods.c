@@ -10,7 +10,7 @@
 
 static const double EPSILON = 1e-9;
 
-/* ---- judging: the same for all ---------------------------------------------------------------------------------------------------- */
+/* ---- judging: the same for all ---- */
 
 /* The distances are sums of a few doubles of the inputs' size. */
 static double doubt(const hard *h) {
@@ -28,7 +28,7 @@ static void judge(const hard *h, bool ended, double lower, double upper, bench_a
   a->failed = !a->wrong && !ended;
 }
 
-/* ---- the methods ------------------------------------------------------------------------------------------------------------------- */
+/* ---- the methods ---- */
 
 static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   const hard *h = (const hard *)problems + i;
@@ -61,7 +61,8 @@ static void paper(const void *problems, size_t i, void *state, bench_answer *a) 
   judge(h, r.ended, r.lower, r.upper, a);
 }
 
-/* What is mostly done: the least distance of a thousand points of the curve (and of the other one). It never says that it may be off. */
+/* What is mostly done: the least distance of a thousand points of the curve (and of the other one). It never says that
+ * it may be off. */
 static void sampling(const void *problems, size_t i, void *state, bench_answer *a) {
   enum { SAMPLES = 1000, OTHER = 100 };
   const hard *h = (const hard *)problems + i;
@@ -101,7 +102,7 @@ static void by_library(const void *problems, size_t i, void *state, bench_answer
   a->wrong = a->wrong && !a->failed;
 }
 
-/* ---- one family --------------------------------------------------------------------------------------------------------------------- */
+/* ---- one family ---- */
 
 static void finish(hard *h) {
   cprox_status status = curve_from(describe_bezier(h->points, h->degree + 1, 0.0, 1.0), NULL, &h->curve);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Collisions that sampling misses: a point or a ball along a quintic through thin plates, and grazes. Each case collides by a witness
- * that none of the methods gave: of 20001 points of the curve one is inside, or the ball at the nearest point is larger than its
- * distance. */
+/* Collisions that sampling misses: a point or a ball along a quintic through thin plates, and grazes. Each case
+ * collides by a witness that none of the methods gave: of 20001 points of the curve one is inside, or the ball at the
+ * nearest point is larger than its distance. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,7 +35,7 @@ typedef struct pass {
   void *fcl, *bullet;
 } pass;
 
-/* ---- the cases ------------------------------------------------------------------------------------------------------------ */
+/* ---- the cases ---- */
 
 /* The distance of the curve's point at t to the body. */
 static double distance_at(const pass *p, double t) {
@@ -111,7 +111,7 @@ static bool draw(rng *r, const kind *k, cprox_workspace *ws, pass *p) {
   return true;
 }
 
-/* ---- the methods ---------------------------------------------------------------------------------------------------------- */
+/* ---- the methods ---- */
 
 static void ours(const void *problems, size_t i, void *state, bench_answer *a) {
   const pass *p = (const pass *)problems + i;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Pairs of implicit bodies: the objects of Chakraborty et al. 2008 at random poses, bodies of many constraints, and hard
- * families. */
+/* Pairs of implicit bodies: the objects of Chakraborty et al. 2008 at random poses, bodies of many constraints, and
+ * hard families. */
 #ifndef CPROX_BENCH_IMPLICIT_PROBLEMS_H
 #define CPROX_BENCH_IMPLICIT_PROBLEMS_H
 
@@ -28,8 +28,8 @@ void implicit_problem_place(implicit_problem *problem, cprox_pose pose);
 /* The distances, to 1e-11 of distance and sizes. free() frees. */
 double *implicit_problems_truth(const implicit_problem *problems, size_t n);
 
-/* The rows of a reference file with one tag, apart from each other: problems and distances, both for free(); the bodies are never
- * freed. Returns how many; `tag` NULL: all. */
+/* The rows of a reference file with one tag, apart from each other: problems and distances, both for free(); the bodies
+ * are never freed. Returns how many; `tag` NULL: all. */
 size_t implicit_problems_read(const char *path, const char *tag, implicit_problem **problems, double **truth);
 
 /* A ball of radius 1.3 cut by n planes, by n quadrics, by n superquadrics that each touch the unit ball. */

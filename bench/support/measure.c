@@ -13,8 +13,8 @@ enum { MAX_ROUNDS = 64, MAX_METHODS = 16, BLOCK = 10 };
 /* A sample lasts at least this long, so that the clock's own cost does not count [s]. */
 static const double SHORTEST_SAMPLE = 2e-5;
 
-/* A method that takes longer than this [s] is asked in a third of the rounds only: its noise is small beside its time, and its time is
- * most of the run's. */
+/* A method that takes longer than this [s] is asked in a third of the rounds only: its noise is small beside its time,
+ * and its time is most of the run's. */
 static const double SLOW = 2e-3;
 
 static double now(void) {
@@ -33,7 +33,7 @@ static double quantile(double *values, size_t n, double q) {
   return values[(size_t)(q * (double)(n - 1) + 0.5)];
 }
 
-/* ---- the command line --------------------------------------------------------------------------------------------------- */
+/* ---- the command line ---- */
 
 bench_size bench_arguments(int argc, char **argv) {
   bench_size size = {.problems = 200, .rounds = 7};
@@ -57,7 +57,7 @@ bool bench_wanted(const bench_size *size, const char *workload) {
   return !size->only || strstr(workload, size->only);
 }
 
-/* ---- one workload --------------------------------------------------------------------------------------------------------- */
+/* ---- one workload ---- */
 
 /* What is kept of one method. */
 typedef struct record {

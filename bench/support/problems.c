@@ -24,7 +24,7 @@ static void *memory(size_t count, size_t size) {
   return p;
 }
 
-/* ---- obstacles ------------------------------------------------------------------------------------------------------------ */
+/* ---- obstacles ---- */
 
 static int ascending(const void *a, const void *b) {
   const double x = *(const double *)a, y = *(const double *)b;
@@ -93,7 +93,7 @@ void obstacle_free(obstacle *o) {
   *o = (obstacle){.n = 0};
 }
 
-/* ---- curves and obstacles --------------------------------------------------------------------------------------------------- */
+/* ---- curves and obstacles ---- */
 
 static void make_points(rng *r, size_t degree, bool planar, vec3 *points) {
   for (size_t i = 0; i <= degree; i++) {
@@ -140,7 +140,7 @@ void curve_problems_free(curve_problem *problems, size_t n) {
   free(problems);
 }
 
-/* ---- exact distances -------------------------------------------------------------------------------------------------------- */
+/* ---- exact distances ---- */
 
 static long double distance_at(const curve_problem *p, obstacle_kind kind, long double t) {
   const vec3l x = ref_bezier(p->points, p->degree, t, 0);
@@ -190,7 +190,7 @@ double *curve_problems_truth(const curve_problem *problems, size_t n, obstacle_k
   return truth;
 }
 
-/* ---- pairs of curves --------------------------------------------------------------------------------------------------------- */
+/* ---- pairs of curves ---- */
 
 curve_pair *curve_pairs_make(size_t degree, bool planar, size_t n) {
   rng r = rng_seed(7000 + (uint64_t)degree + (planar ? 500 : 0));

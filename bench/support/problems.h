@@ -47,7 +47,8 @@ typedef struct curve_problem {
 curve_problem *curve_problems_make(obstacle_kind kind, size_t degree, size_t n);
 void curve_problems_free(curve_problem *problems, size_t n);
 
-/* The exact distances: long double, 600 parameters, the best of them refined by golden section. NAN for large polytopes. */
+/* The exact distances: long double, 600 parameters, the best of them refined by golden section. NAN for large
+ * polytopes. */
 double *curve_problems_truth(const curve_problem *problems, size_t n, obstacle_kind kind);
 
 /* Two Bézier curves. */

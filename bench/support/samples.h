@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Sampling, the usual substitute for a query: the least distance of evenly spaced points of a curve to a polytope, by FCL.
- * It has no error bound; the column `error` of the rows is what it was off. */
+/* Sampling, the usual substitute for a query: the least distance of evenly spaced points of a curve to a polytope, by
+ * FCL. It has no error bound; the column `error` of the rows is what it was off. */
 #ifndef CPROX_BENCH_SAMPLES_H
 #define CPROX_BENCH_SAMPLES_H
 

@@ -8,7 +8,7 @@
 
 static const double CONTACT = 1e-9, BALL = 0.05;
 
-/* ---- methods ------------------------------------------------------------------------------------------------------------ */
+/* ---- methods ---- */
 
 static void our_distance(const void *problems, size_t i, void *state, bench_answer *a) {
   const worlds_problem *p = (const worlds_problem *)problems + i;
@@ -79,7 +79,7 @@ static const bench_method DISTANCE, COLLISION, BALLS[1];
 static const size_t N_PEERS = 0, N_BALLS = 0;
 #endif
 
-/* ---- workloads ---------------------------------------------------------------------------------------------------------- */
+/* ---- workloads ---- */
 
 /* Some problems of one scene. */
 typedef struct some {

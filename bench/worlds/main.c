@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Quintic Bézier curves against meshes of 1,352 to 81,608 triangles, 10^5 points and octree cells, and sets of 10 to 10^4 bodies; FCL at
- * 100 points of the curve beside, and asked about single balls. The truth is our own interval at epsilon 1e-12, which tests hold
- * against long double. Rows "build …" have the time of one construction, and in the column nodes the bytes that an element takes. */
+/* Quintic Bézier curves against meshes of 1,352 to 81,608 triangles, 10^5 points and octree cells, and sets of 10 to
+ * 10^4 bodies; FCL at 100 points of the curve beside, and asked about single balls. The truth is our own interval at
+ * epsilon 1e-12, which tests hold against long double. Rows "build …" have the time of one construction, and in the
+ * column nodes the bytes that an element takes. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -10,7 +10,8 @@ static int by_number(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* A million points in a cube, of which those in three of its 64 cells move, with the memory of the body before the last. */
+/* A million points in a cube, of which those in three of its 64 cells move, with the memory of the body before the
+ * last. */
 void worlds_ask_updates(const bench_size *size, worlds_asked *q) {
   enum { MANY = 1000000, UPDATES = 9 };
   if (!bench_wanted(size, "update points")) return;

@@ -20,8 +20,8 @@ struct Task {
   std::vector<double> start, goal; /**< of the joints */
 };
 
-/** Is the robot farther than the clearance from the scene, and apart from itself, everywhere between two joint positions? Proven,
- *  not sampled: undecided counts as no. */
+/** Is the robot farther than the clearance from the scene, and apart from itself, everywhere between two joint
+ * positions? Proven, not sampled: undecided counts as no. */
 bool clearBetween(const Task &task, const std::vector<double> &from, const std::vector<double> &to,
                   curve_proximity::Workspace &workspace);
 

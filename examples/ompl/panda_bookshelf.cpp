@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Plans for a Panda in a bookshelf twice, by RRT-Connect: with edges that are proven clear, and with edges that are sampled as is
- *  usual. Then both paths are held against the proof: how many of the sampled one's edges touch something after all?
+/** Plans for a Panda in a bookshelf twice, by RRT-Connect: with edges that are proven clear, and with edges that are
+ * sampled as is usual. Then both paths are held against the proof: how many of the sampled one's edges touch something
+ * after all?
  *
  *    example_ompl ROBOT.urdf ROBOT.srdf SCENE.yaml TRAJECTORY.yaml [RUNS] [OUT.yaml]
  *
- *  TRAJECTORY.yaml: from its first to its last point is planned. OUT.yaml: the last certified path, as `cprox collision --trajectory` reads it. */
+ *  TRAJECTORY.yaml: from its first to its last point is planned. OUT.yaml: the last certified path, as `cprox collision
+ * --trajectory` reads it. */
 #include <ompl/base/ProblemDefinition.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/geometric/PathGeometric.h>

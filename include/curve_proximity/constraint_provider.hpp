@@ -22,7 +22,7 @@
 
 namespace curve_proximity {
 
-/* ---- what a constraint is about ---------------------------------------------------------------------------------- */
+/* ---- what a constraint is about ---- */
 
 /** One side of a constraint: convex parts that move together, in the side's own frame. */
 struct ConstraintBody {
@@ -59,7 +59,7 @@ struct ConstraintPlace {
   const ConstraintCurve *curve = nullptr; /**< set if and only if the pair is along a curve */
 };
 
-/* ---- what a constraint answers ----------------------------------------------------------------------------------- */
+/* ---- what a constraint answers ---- */
 
 /** Derivative of a value by a small rigid step of one side: d value = linear·v + angular·w.
  *
@@ -92,7 +92,7 @@ struct ConstraintValue {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    /**< unit, from b to a */
 };
 
-/* ---- providers --------------------------------------------------------------------------------------------------- */
+/* ---- providers ---- */
 
 /** A prepared pair for any number of evaluations. It must not outlive its provider.
  *
@@ -151,7 +151,7 @@ class LayoutProvider {
 /** The base class of constraint provider plugins. */
 using ConstraintProvider = LayoutProvider<providerLayout()>;
 
-/* ---- for plugins ------------------------------------------------------------------------------------------------- */
+/* ---- for plugins ---- */
 
 /** The weight of each control point or coefficient in the curve's point at t; n = description.points.cols() of them. */
 inline void curveWeights(const CurveDescription &curve, double t, double *weights) {

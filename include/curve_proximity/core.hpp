@@ -79,7 +79,7 @@ inline cprox_status require(cprox_status status, const Workspace &workspace) {
   throw Error(reason.empty() ? cprox_status_text(status) : reason, status);
 }
 
-/* ---- Eigen and C ------------------------------------------------------------------------------------------------ */
+/* ---- Eigen and C ---- */
 
 /** From Eigen to C. */
 inline cprox_vec3 toVec3(const Eigen::Vector3d &v) {
@@ -119,7 +119,7 @@ inline std::vector<cprox_vec3> toVec3s(const Eigen::Matrix3Xd &points) {
   return out;
 }
 
-/* ---- makers: each as the function of cprox/body.h or cprox/curve.h of that name, throwing Error ------------------ */
+/* ---- makers: each as the function of cprox/body.h or cprox/curve.h of that name, throwing Error ---- */
 
 namespace detail {
 

@@ -14,7 +14,8 @@
 
 namespace curve_proximity::cli {
 
-/** The record of one row: a certificate behind its length. Of length 0 where there is no answer or none can be proven. */
+/** The record of one row: a certificate behind its length. Of length 0 where there is no answer or none can be proven.
+ */
 std::string emptyRecord();
 
 /** A certificate that a query may leave, and its record. */

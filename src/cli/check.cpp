@@ -40,7 +40,8 @@ class Checker {
   Checker(const Checker &) = delete;
   Checker &operator=(const Checker &) = delete;
 
-  /* False where it no longer listens. It is started by the first text: an input that cannot be read is no problem of its own. */
+  /* False where it no longer listens. It is started by the first text: an input that cannot be read is no problem of
+   * its own. */
   bool tell(const std::string &text) {
     if (process_ < 0) start();
     for (std::size_t sent = 0; sent < text.size();) {

@@ -20,8 +20,8 @@ std::vector<YamlValue> readCases(const std::string &path, Warnings &warnings);
 /** The id of an entry, "" where it has none. Never throws. */
 std::string caseId(const YamlValue &entry);
 
-/** One entry; objects without shapes are those of the snapshot. All stands in the fixed frame, '' or 'world'. The entry's
- *  `providers` are not read. Throws BadInput and Error with what is wrong. */
+/** One entry; objects without shapes are those of the snapshot. All stands in the fixed frame, '' or 'world'. The
+ * entry's `providers` are not read. Throws BadInput and Error with what is wrong. */
 ConstraintCase parseCase(const YamlValue &entry, const Snapshot &snapshot, Warnings &warnings);
 
 /** "mode: signal, samples: 9" as parameters. Throws BadUsage. */

@@ -54,9 +54,10 @@ std::string placeOf(const CsvRow &row, const std::string &file);
 /** The id of a row, as far as it can be read: also of rows that are no curve. */
 std::string rowId(const std::string &text);
 
-/** The row as a curve: id,basis,degree,t0,t1,radius,n,x0,y0,z0,…[,knot0,…] (a lagrange curve's nodes stand as knots). Empty fields at the end are left out.
- *  Throws BadInput, naming the column: a field that is not a finite number, too few or too many columns, a degree that
- *  does not fit. What needs geometry to judge (knots that descend, t0 >= t1) is left to compile(). */
+/** The row as a curve: id,basis,degree,t0,t1,radius,n,x0,y0,z0,…[,knot0,…] (a lagrange curve's nodes stand as knots).
+ * Empty fields at the end are left out. Throws BadInput, naming the column: a field that is not a finite number, too
+ * few or too many columns, a degree that does not fit. What needs geometry to judge (knots that descend, t0 >= t1) is
+ * left to compile(). */
 CurveDescription parseCurve(const std::string &text);
 
 } // namespace curve_proximity::cli

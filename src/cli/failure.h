@@ -9,7 +9,8 @@ namespace curve_proximity::cli {
 
 using namespace yaml;
 
-/** What the program leaves behind, as the manual promises. BadUsage: main() prints the one line and ends with kBadUsage. */
+/** What the program leaves behind, as the manual promises. BadUsage: main() prints the one line and ends with
+ * kBadUsage. */
 enum ExitCode {
   kAllAnswered = 0,    /**< of tolerance and collision: every verdict is clear */
   kSomeRowsFailed = 1, /**< of the commands without verdicts */

@@ -14,8 +14,8 @@
 
 namespace curve_proximity::cli {
 
-/** A body as written: its shape in its own frame (shape.pose is not used), and where it stands. The pose is kept as it was
- *  written, for a quaternion that goes through a matrix does not come back the same to the last bit. */
+/** A body as written: its shape in its own frame (shape.pose is not used), and where it stands. The pose is kept as it
+ * was written, for a quaternion that goes through a matrix does not come back the same to the last bit. */
 struct PlacedShape {
   ShapeDescription shape;
   cprox_pose pose = CPROX_POSE_IDENTITY;

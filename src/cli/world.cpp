@@ -78,8 +78,8 @@ Operation toFixed(Operation operation, const Frames &frames) {
   return operation;
 }
 
-/* What a link carries, from the frame that it names to the link's, by where the scene's robot_state has the link. Without a robot it
- * stands where it is. */
+/* What a link carries, from the frame that it names to the link's, by where the scene's robot_state has the link.
+ * Without a robot it stands where it is. */
 void attach(const Attachment &given, const Frames &frames, const PlacedRobot &robot, SceneChange &change) {
   if (!robot.robot) {
     change.operations.push_back(toFixed(Operation{Operation::Kind::ADD, given.object}, frames));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The second solid of a gap carried along a curve without turning: value and derivative at a parameter, the verdict over an
- * interval (doc/fourier.md, "Along a curve"). */
+/* The second solid of a gap carried along a curve without turning: value and derivative at a parameter, the verdict
+ * over an interval (doc/fourier.md, "Along a curve"). */
 #include <stdlib.h>
 
 #include "fourier/gap.h"
@@ -45,8 +45,9 @@ cprox_status cprox_gap_along(const cprox_gap *gap, const cprox_pose *pose_a, con
   return status;
 }
 
-/* An upper bound of the value over [a, b] from value and gradient at its middle: the curve lies in the hull of its control points,
- * and along the line to any of its points the value is below its tangent plus half the curvature's square. */
+/* An upper bound of the value over [a, b] from value and gradient at its middle: the curve lies in the hull of its
+ * control points, and along the line to any of its points the value is below its tangent plus half the curvature's
+ * square. */
 typedef struct leg {
   double a, b;
 } leg;

@@ -67,8 +67,8 @@ static double sagitta(const vec3 *p, size_t degree) {
   return most;
 }
 
-/* Halves the piece on `stack` until each part is flat; parts in the order of the parameter. `stack` has room for MOST_HALVINGS + 2
- * pieces. */
+/* Halves the piece on `stack` until each part is flat; parts in the order of the parameter. `stack` has room for
+ * MOST_HALVINGS + 2 pieces. */
 static void flatten(vec3 *stack, size_t degree, double tolerance, points *segments) {
   size_t depth[MOST_HALVINGS + 2], n = 1;
   depth[0] = 0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Clipping by half-spaces: closed loops and soups stay closed, so that winding numbers, and with them spectra, stay exact. */
+/* Clipping by half-spaces: closed loops and soups stay closed, so that winding numbers, and with them spectra, stay
+ * exact. */
 #include <string.h>
 
 #include "fourier/points.h"
@@ -9,8 +10,8 @@ static double beyond(const double plane[4], vec3 p) {
   return plane[0] * p.x + plane[1] * p.y + plane[2] * p.z - plane[3];
 }
 
-/* Sutherland-Hodgman on one closed polygon; the new edges lie along the plane. *out_to and *in_from: where it left the half-space
- * and where it came back, the last time each (a triangle does so once). Returns whether it did. */
+/* Sutherland-Hodgman on one closed polygon; the new edges lie along the plane. *out_to and *in_from: where it left the
+ * half-space and where it came back, the last time each (a triangle does so once). Returns whether it did. */
 static bool cut(const vec3 *in, size_t n, const double plane[4], points *out, vec3 *out_to, vec3 *in_from) {
   bool crossed = false;
   for (size_t i = 0; i < n; i++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The integral of the square of a solid's function and its largest value: exactly where pieces are loops in the plane, else
- * bounded from above. What is left of the first bounds the rest of a gap's sum, the second enters the over-reach (doc/fourier.md, "Early
- * exit" and "Over-reach"). */
+/* The integral of the square of a solid's function and its largest value: exactly where pieces are loops in the plane,
+ * else bounded from above. What is left of the first bounds the rest of a gap's sum, the second enters the over-reach
+ * (doc/fourier.md, "Early exit" and "Over-reach"). */
 #include <stdlib.h>
 
 #include "fourier/solid.h"
@@ -97,8 +97,8 @@ static bool bound_loops(const cprox_solid *solid, solid_bounds *bounds) {
   return ok;
 }
 
-/* Whether a loop turns left alone, once around: then its function is an indicator. Loops here wind once at least, and the offset of
- * a convex loop turns by 2 pi exactly. */
+/* Whether a loop turns left alone, once around: then its function is an indicator. Loops here wind once at least, and
+ * the offset of a convex loop turns by 2 pi exactly. */
 static bool is_convex(const piece *p) {
   double turned = 0.0;
   for (size_t i = 0; i < p->n_corners; i++) {
@@ -128,8 +128,8 @@ static double box_overlap(const piece *a, const piece *b, int dimension) {
 /* Beyond this many edges the slabs are not worth their time, and beyond this many pieces their pairs. */
 enum { MOST_EDGES = 300, MOST_PIECES = 3000 };
 
-/* Pieces that are indicators: each pair overlaps no more than its boxes and its smaller one do; the function is at most one more
- * than the number of boxes that meet a piece's. */
+/* Pieces that are indicators: each pair overlaps no more than its boxes and its smaller one do; the function is at most
+ * one more than the number of boxes that meet a piece's. */
 static void bound_pairs(const cprox_solid *solid, solid_bounds *bounds) {
   for (size_t i = 0; i < solid->n; i++) {
     const double own = piece_measure(&solid->pieces[i], solid->dimension);

@@ -52,7 +52,8 @@ static int by_energy(const void *a, const void *b) {
   return 0;
 }
 
-/* J: k_z > 0, or k_z = 0 and k_y > 0, or both 0 and k_x > 0. Rows of it, in blocks; returns how many, writes where out is given. */
+/* J: k_z > 0, or k_z = 0 and k_y > 0, or both 0 and k_x > 0. Rows of it, in blocks; returns how many, writes where out
+ * is given. */
 static size_t list_blocks(const kernel *w, int dimension, draft *out) {
   const int N = w->n, top = dimension == 2 ? 0 : N;
   size_t n = 0;
@@ -101,8 +102,8 @@ static void fill_block(const cprox_gap *gap, const sources *from, draft *d) {
   }
 }
 
-/* The bound on the rounding of a value: every term is a product of spectra and phases, each within a few (N + 10) u of its error
- * scale, and sums run over blocks of a chunk and then over chunks (doc/fourier.md, "Rounding"). */
+/* The bound on the rounding of a value: every term is a product of spectra and phases, each within a few (N + 10) u of
+ * its error scale, and sums run over blocks of a chunk and then over chunks (doc/fourier.md, "Rounding"). */
 static double rounding_bound(const cprox_gap *gap, const kernel *w, const cprox_solid *fixed, const cprox_solid *turned,
                              double corners) {
   const int N = gap->N;
@@ -137,8 +138,8 @@ static void order(cprox_gap *gap, draft *drafts) {
   }
 }
 
-/* Bounds of the derivatives by the position: sum over J of |C| |q|^m |T|, by Cauchy-Schwarz from T's energy or from its measure,
- * whichever is less; T = 1 where it is folded into C. */
+/* Bounds of the derivatives by the position: sum over J of |C| |q|^m |T|, by Cauchy-Schwarz from T's energy or from its
+ * measure, whichever is less; T = 1 where it is folded into C. */
 static void bound_derivatives(cprox_gap *gap, bool folded, double measure) {
   double square[2] = {0, 0}, plain[2] = {0, 0};
   for (size_t i = 0; i < gap->n_blocks; i++)
@@ -200,7 +201,8 @@ static bool fill(cprox_gap *gap, const kernel *w, const cprox_solid *fixed, cpro
     const double measure = cprox_solid_get_info(turned).measure, L = gap->info.period;
     gap->constant = cprox_solid_get_info(fixed).measure * measure;
     const double volume = dimension == 2 ? L * L : L * L * L;
-    /* folded: T is 1 at each term, so that what is left of its energy is the number of lattice points left: of no use */
+    /* folded: T is 1 at each term, so that what is left of its energy is the number of lattice points left: of no use
+     */
     solid_bounds bounds = {INFINITY, INFINITY};
     failed = !folded && !solid_find_bounds(turned, &bounds);
     gap->half_energy = 0.5 * fmax(0.0, volume * bounds.energy - measure * measure);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The inside of a gap: the fixed solid's spectrum times the kernel in blocks of lattice points, and the turned solid. */
+/* The inside of a gap: the fixed solid's spectrum times the kernel in blocks of lattice points, and the turned solid.
+ */
 #ifndef CPROX_FOURIER_GAP_H
 #define CPROX_FOURIER_GAP_H
 
@@ -60,13 +61,13 @@ size_t gap_scratch_size(const cprox_gap *gap);
 
 void gap_sum(gap_job *job);
 
-/* Makes a gap of solids that are offset and centred already (both are taken over, also on failure). radius and centre: those of
- * the bare ones. */
+/* Makes a gap of solids that are offset and centred already (both are taken over, also on failure). radius and centre:
+ * those of the bare ones. */
 cprox_status gap_build(const gap_plan *plan, cprox_solid *a, cprox_solid *b, size_t memory_limit,
                        cprox_workspace *workspace, cprox_gap **gap);
 
-/* A copy of the caller's options, of NULL the default. Options of another size are not read: the copy is the default with
- * their size, which gap_plan_choose() refuses. */
+/* A copy of the caller's options, of NULL the default. Options of another size are not read: the copy is the default
+ * with their size, which gap_plan_choose() refuses. */
 cprox_gap_options gap_options(const cprox_gap_options *options);
 
 /* Chooses the plan for what the options ask. */

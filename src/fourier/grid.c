@@ -10,7 +10,8 @@ bool grid_is_aligned(const piece *p) {
   return p->kind == PIECE_GRID && t[0] == 1.0 && t[4] == 1.0 && t[8] == 1.0;
 }
 
-/* phases[k][i] = exp(-i q (origin + cell (i + 1/2))) cell sinc(q cell/2), q = step k: the transform of cell i along one axis. */
+/* phases[k][i] = exp(-i q (origin + cell (i + 1/2))) cell sinc(q cell/2), q = step k: the transform of cell i along one
+ * axis. */
 static void fill_phases(double origin, double cell, uint32_t count, int N, double step, wave *phases) {
   for (int k = -N; k <= N; k++) {
     const double q = step * k, weight = cell * profile_sinc(0.5 * q * cell);

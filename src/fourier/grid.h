@@ -14,7 +14,8 @@ typedef struct grid_table {
 /* Whether the piece is such a grid. */
 bool grid_is_aligned(const piece *p);
 
-/* false where memory is out. Cost: cells (2N+1) for the first axis and less for the others, instead of runs (2N+1)^d. */
+/* false where memory is out. Cost: cells (2N+1) for the first axis and less for the others, instead of runs (2N+1)^d.
+ */
 bool grid_transform(const piece *p, int dimension, int N, double step, grid_table *table);
 
 static inline wave grid_at(const grid_table *t, int x, int y, int z, int dimension) {

@@ -50,8 +50,8 @@ static double ball_spectrum(int dimension, double rho, double q) {
   return ball_measure(dimension, rho) * (dimension == 2 ? profile_disc(q * rho) : profile_ball(q * rho));
 }
 
-/* Over the octant k >= 0, each point as often as it has mirror images. The matrix sum of W b² q q^T is a multiple of 1, because W
- * and b² are symmetric in the axes: its trace over d bounds the bend. */
+/* Over the octant k >= 0, each point as often as it has mirror images. The matrix sum of W b² q q^T is a multiple of 1,
+ * because W and b² are symmetric in the axes: its trace over d bounds the bend. */
 double kernel_threshold(const kernel *k, int dimension, double rho, double *bend) {
   const int top = dimension == 2 ? 0 : k->n;
   double sum = 0.0, second = 0.0;
@@ -84,8 +84,9 @@ static void list_masses(const kernel *k, int M, double *mass) {
   }
 }
 
-/* A lower bound of the product kernel's integral over the ball of radius R/(2M): strips of the one axis, each over the chord at its
- * outer end of the other, whose integral `inner` lists. Both are non-decreasing, since the kernel is nonnegative. */
+/* A lower bound of the product kernel's integral over the ball of radius R/(2M): strips of the one axis, each over the
+ * chord at its outer end of the other, whose integral `inner` lists. Both are non-decreasing, since the kernel is
+ * nonnegative. */
 static double disc_mass(const double *mass, const double *inner, int R) {
   double sum = 0.0;
   for (int i = 0; i < R; i++) {
@@ -114,8 +115,8 @@ bool kernel_list_outside(const kernel *k, int dimension, int steps, double *outs
   return true;
 }
 
-/* V <= integral over |u| > x of K(u) min(most, slope (|u| - x)) = slope times the integral of outside(s) over s from x to
- * x + most/slope; outside() falls, so that the left ends of the steps bound it. */
+/* V <= integral over |u| > x of K(u) min(most, slope (|u| - x)) = slope times the integral of outside(s) over s from x
+ * to x + most/slope; outside() falls, so that the left ends of the steps bound it. */
 double kernel_reach(const double *outside, int steps, double most, double slope, double t) {
   const double step = 0.5 / steps;
   const double span = fmin(ceil(most / slope / step), (double)steps);

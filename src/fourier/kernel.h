@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Kernels by their weights on the lattice, their thresholds, and how far they reach. Everything here is in units of the period:
- * L = 1. */
+/* Kernels by their weights on the lattice, their thresholds, and how far they reach. Everything here is in units of the
+ * period: L = 1. */
 #ifndef CPROX_FOURIER_KERNEL_H
 #define CPROX_FOURIER_KERNEL_H
 
@@ -19,8 +19,8 @@ void kernel_certified(kernel *k, int N, double beta);
 void kernel_tuned(kernel *k, int N);
 void kernel_signal(kernel *k, int N);
 
-/* Kaiser's beta, and the offset rho n/L, that make the certified over-reach of bodies of ordinary proportions least, within 3 % (a
- * scan over both; doc/fourier.md, "Kernels"); the tuned mode's offsets. */
+/* Kaiser's beta, and the offset rho n/L, that make the certified over-reach of bodies of ordinary proportions least,
+ * within 3 % (a scan over both; doc/fourier.md, "Kernels"); the tuned mode's offsets. */
 double kernel_beta(int dimension, int samples);
 double kernel_offset(int dimension, int samples, cprox_gap_mode mode);
 
@@ -31,8 +31,8 @@ static inline double kernel_weight(const kernel *k, const int at[3]) {
   return a <= k->n && b <= k->n && c <= k->n ? k->w[a] * k->w[b] * k->w[c] : 0.0;
 }
 
-/* t of two balls of radius rho at one place: the least value of a pair whose interiors overlap. bend: G(u) >= t - bend |u|²/2 for
- * two balls u apart (NULL if not needed). */
+/* t of two balls of radius rho at one place: the least value of a pair whose interiors overlap. bend: G(u) >= t - bend
+ * |u|²/2 for two balls u apart (NULL if not needed). */
 double kernel_threshold(const kernel *k, int dimension, double rho, double *bend);
 
 /* Upper bounds of the part of a nonnegative kernel's integral outside the balls of radius i/(2 steps), i = 0 … steps.
@@ -40,8 +40,8 @@ double kernel_threshold(const kernel *k, int dimension, double rho, double *bend
 int kernel_steps(int N);
 bool kernel_list_outside(const kernel *k, int dimension, int steps, double *outside);
 
-/* The least x of the table's radii such that V < t wherever the obstacle is farther away than x, where the overlap of two bodies
- * is at most `most` and grows by at most `slope` for each unit of depth; 0.5 where there is none below. */
+/* The least x of the table's radii such that V < t wherever the obstacle is farther away than x, where the overlap of
+ * two bodies is at most `most` and grows by at most `slope` for each unit of depth; 0.5 where there is none below. */
 double kernel_reach(const double *outside, int steps, double most, double slope, double t);
 
 #endif

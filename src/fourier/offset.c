@@ -54,8 +54,8 @@ static bool offset_corners(const piece *p, double rho, piece *out, double *reach
   return !corners.failed;
 }
 
-/* a'² = (1 + 1/p) a² + (1 + p) rho² for any p > 0: h + rho <= h' for every support value h (Cauchy-Schwarz). h' - h is convex in h,
- * so that it is largest at an end. */
+/* a'² = (1 + 1/p) a² + (1 + p) rho² for any p > 0: h + rho <= h' for every support value h (Cauchy-Schwarz). h' - h is
+ * convex in h, so that it is largest at an end. */
 static void offset_ellipsoid(const piece *p, int dimension, double rho, piece *out, double *reach) {
   double mean = 0.0;
   for (int i = 0; i < dimension; i++) mean += p->size[i] * p->size[i] / dimension;
@@ -68,8 +68,8 @@ static void offset_ellipsoid(const piece *p, int dimension, double rho, piece *o
 
 #define FAR UINT32_MAX
 
-/* Along a line: out[j] = least in[i] + max(|j - m - i| - 1, 0)² over |j - m - i| <= m, j = 0 … n + 2 m - 1. Cells that border are
- * 0 apart. */
+/* Along a line: out[j] = least in[i] + max(|j - m - i| - 1, 0)² over |j - m - i| <= m, j = 0 … n + 2 m - 1. Cells that
+ * border are 0 apart. */
 static void spread_line(const uint32_t *in, int64_t stride, int64_t n, int64_t m, uint32_t *out, int64_t out_stride) {
   for (int64_t j = 0; j < n + 2 * m; j++) {
     uint32_t best = FAR;
@@ -83,8 +83,8 @@ static void spread_line(const uint32_t *in, int64_t stride, int64_t n, int64_t m
   }
 }
 
-/* The squares of distances to occupied cells, in cells, axis by axis: cells of `out` where it is at most rho. from, rows, line: room for
- * nx ny nz, wx wy nz and wz. */
+/* The squares of distances to occupied cells, in cells, axis by axis: cells of `out` where it is at most rho. from,
+ * rows, line: room for nx ny nz, wx wy nz and wz. */
 static void spread_grid(const piece *p, const int64_t m[3], double rho, piece *out, uint32_t *from, uint32_t *rows,
                         uint32_t *line) {
   const int64_t nx = p->counts[0], ny = p->counts[1], nz = p->counts[2];

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The offset of a closed mesh: its inside, a prism over each face, a wedge over each convex edge, a cap over each vertex whose
- * normal cone is not empty. Each point outside within rho of the mesh has its nearest point in one of them. On a convex mesh
- * they are disjoint; at reflex edges prisms overlap and count twice. Only surfaces that do not cancel are written. */
+/* The offset of a closed mesh: its inside, a prism over each face, a wedge over each convex edge, a cap over each
+ * vertex whose normal cone is not empty. Each point outside within rho of the mesh has its nearest point in one of
+ * them. On a convex mesh they are disjoint; at reflex edges prisms overlap and count twice. Only surfaces that do not
+ * cancel are written. */
 #include <string.h>
 
 #include "fourier/points.h"
@@ -41,8 +42,8 @@ static void add_wall(points *soup, vec3 a, vec3 b, vec3 normal, double rho) {
   add_quad(soup, a, b, vec_axpy(b, rho, normal), vec_axpy(a, rho, normal));
 }
 
-/* Over a convex edge from a to b between the face m to its left and n to its right: tangents of the arc from m to n, and the two
- * ends. */
+/* Over a convex edge from a to b between the face m to its left and n to its right: tangents of the arc from m to n,
+ * and the two ends. */
 static void add_wedge(points *soup, vec3 a, vec3 b, vec3 m, vec3 n, double rho) {
   const double angle = atan2(vec_norm(vec_cross(m, n)), vec_dot(m, n));
   const int steps = (int)ceil(angle / EDGE_STEP - 1e-9);
@@ -77,8 +78,8 @@ static bool add_edge(const piece *mesh, const half_edge *left, const half_edge *
   return true;
 }
 
-/* The 42-vertex polytope: an icosahedron with its faces in four, turned out of every likely plane, circumscribed to the unit
- * ball. 80 faces of 3 corners. Returns how far its corners are. */
+/* The 42-vertex polytope: an icosahedron with its faces in four, turned out of every likely plane, circumscribed to the
+ * unit ball. 80 faces of 3 corners. Returns how far its corners are. */
 enum { CAP_FACES = 80 };
 static double cap_polytope(vec3 faces[CAP_FACES][3]) {
   const double g = 1.61803398874989484820;
@@ -111,8 +112,8 @@ static double cap_polytope(vec3 faces[CAP_FACES][3]) {
   return 1.0 / least;
 }
 
-/* The part of one face of the polytope in the normal cone of a vertex, {u: u·e <= 0 for all edges e}, as a pyramid over the
- * vertex. Sides along the cone's own planes are written; those between faces of the polytope cancel. */
+/* The part of one face of the polytope in the normal cone of a vertex, {u: u·e <= 0 for all edges e}, as a pyramid over
+ * the vertex. Sides along the cone's own planes are written; those between faces of the polytope cancel. */
 static void add_cap_face(points *soup, vec3 v, const vec3 face[3], double rho, const vec3 *edges, size_t n,
                          points *part) {
   part->n = 0;

@@ -53,7 +53,8 @@ bool piece_copy(const piece *p, const double turn[9], vec3 shift, piece *copy);
 /* Integral of the function. */
 double piece_measure(const piece *p, int dimension);
 
-/* How much of it a shift by a unit length uncovers at most: the largest projection of a convex piece, half the boundary of another. */
+/* How much of it a shift by a unit length uncovers at most: the largest projection of a convex piece, half the boundary
+ * of another. */
 double piece_slope(const piece *p, int dimension);
 
 /* Every point of the piece is within the answer of the point. */

@@ -27,8 +27,8 @@ static real_jet box(const piece *p, int dimension, vec3 q) {
                                        m * hz * profile_sinc_slope(q.z * hz) * a * b)};
 }
 
-/* The section of a capsule or cylinder across its axis: the transform of a disc (in space) or a segment (in the plane) of
- * radius s at the transverse frequency, and its derivative over that frequency. */
+/* The section of a capsule or cylinder across its axis: the transform of a disc (in space) or a segment (in the plane)
+ * of radius s at the transverse frequency, and its derivative over that frequency. */
 typedef struct section {
   double value, slope;
 } section;
@@ -72,8 +72,8 @@ static void add_cap_slice(int dimension, double r, double h, double along, doubl
   sum[2] += w * c * at.slope;
 }
 
-/* The cylinder between the caps in closed form, the caps by quadrature over their slices: half balls have no closed form.
- * A panel spans at most 16 rad of phase, which 24 nodes integrate to rounding. */
+/* The cylinder between the caps in closed form, the caps by quadrature over their slices: half balls have no closed
+ * form. A panel spans at most 16 rad of phase, which 24 nodes integrate to rounding. */
 static real_jet capsule(const piece *p, int dimension, vec3 q) {
   const double r = p->size[0], h = p->size[1];
   const double along = dimension == 2 ? q.x : q.z, transverse = dimension == 2 ? q.y : hypot(q.x, q.y);
@@ -124,7 +124,8 @@ static void over_boundary(vec3 q, bool gradient, wave_jet *jet) {
   jet->im = vec_axpy(vec_scale(w, re), -2.0 * w * jet->value.im, q);
 }
 
-/* Below this |q| times the size the sums over the boundary cancel, and the sums over simplices from one corner take over. */
+/* Below this |q| times the size the sums over the boundary cancel, and the sums over simplices from one corner take
+ * over. */
 #define FAR_FROM_ZERO 2.0
 
 static void polygon_boundary(const piece *p, vec3 q, vec3 origin, bool gradient, wave_jet *jet) {

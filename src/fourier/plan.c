@@ -18,8 +18,8 @@ static double tuned_reach(int dimension, int samples) {
   return samples < 13 ? 2.8 : dimension == 2 ? 2.1 : 1.9;
 }
 
-/* Both solids at rho, as far as the over-reach depends on them: how far the offsets go, how much they can overlap, and how fast that
- * grows with depth. */
+/* Both solids at rho, as far as the over-reach depends on them: how far the offsets go, how much they can overlap, and
+ * how fast that grows with depth. */
 typedef struct enlarged {
   double reach, most, slope;
   bool ok;
@@ -56,7 +56,8 @@ static double sweep_length(const cprox_solid *s) {
   return p->kind == PIECE_SWEEP ? piece_measure(p, s->dimension) / ball_measure(s->dimension, p->size[0]) : 0.0;
 }
 
-/* Of a sweep: the integral over its length of the parabola below G (doc/fourier.md, "Sweeps"). In units of L for lengths. */
+/* Of a sweep: the integral over its length of the parabola below G (doc/fourier.md, "Sweeps"). In units of L for
+ * lengths. */
 static double sweep_threshold(double t, double bend, double length) {
   const double s = fmin(length, sqrt(2.0 * t / bend));
   return t * s - bend * s * s * s / 6.0;
@@ -70,8 +71,9 @@ double gap_threshold(const kernel *k, const gap_plan *plan, const cprox_solid *a
                       : power(L, plan->dimension) * t;
 }
 
-/* The least period that keeps images apart for N, and the over-reach there: L >= 2 (r_a + r_b) + over-reach, where the over-reach
- * itself depends on L. Each step enlarges L; over_reach is infinite where it does not settle: then clear is still a proof. */
+/* The least period that keeps images apart for N, and the over-reach there: L >= 2 (r_a + r_b) + over-reach, where the
+ * over-reach itself depends on L. Each step enlarges L; over_reach is infinite where it does not settle: then clear is
+ * still a proof. */
 static cprox_status no_memory(cprox_workspace *workspace) {
   return fourier_fail(workspace, CPROX_MEMORY, "no memory to plan a gap");
 }
@@ -88,7 +90,8 @@ static double over_reach(const gap_plan *plan, const enlarged *e, double t, cons
   return x < 0.5 ? e->reach + x * L : INFINITY;
 }
 
-/* A period is given up beyond so many times the solids' size: offsets that grow as fast as the period never let it settle. */
+/* A period is given up beyond so many times the solids' size: offsets that grow as fast as the period never let it
+ * settle. */
 enum { MOST_STEPS = 60, LONGEST_PERIOD = 64 };
 
 /* Enlarges L until images are apart: from each other at the offsets, and by the over-reach where there is one. */
@@ -191,8 +194,8 @@ static double accuracy(const gap_plan *plan) {
   return plan->mode == CPROX_GAP_MODE_SIGNAL ? SIGNAL_BLUR * plan->period / (2 * plan->N + 1) : plan->over_reach;
 }
 
-/* What no period can bring the accuracy of 2N+1 samples below: the period is at least the solids' size, and both offsets are part of
- * a proven over-reach. */
+/* What no period can bring the accuracy of 2N+1 samples below: the period is at least the solids' size, and both
+ * offsets are part of a proven over-reach. */
 static double best_accuracy(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options, int N) {
   const int n = 2 * N + 1;
   const double factor = options->mode == CPROX_GAP_MODE_SIGNAL  ? SIGNAL_BLUR
@@ -201,8 +204,8 @@ static double best_accuracy(const cprox_solid *a, const cprox_solid *b, const cp
   return (1.0 - 1e-9) * factor * solids_size(a, b) / n;
 }
 
-/* One trial of the search for n. A refusal (no period keeps images apart, or only a longer one than was asked) says that these
- * samples are too few, as an accuracy above delta does: more may do. */
+/* One trial of the search for n. A refusal (no period keeps images apart, or only a longer one than was asked) says
+ * that these samples are too few, as an accuracy above delta does: more may do. */
 typedef struct trial {
   gap_plan plan;
   double accuracy; /* infinite where refused, or known to be above delta without a plan */
@@ -221,8 +224,8 @@ static cprox_status try_samples(const cprox_solid *a, const cprox_solid *b, cons
   return CPROX_OK;
 }
 
-/* The trials so far. Over-reaches fall with n, those of sweeps down to a least one: from there on their threshold falls faster than
- * what the kernel has outside. */
+/* The trials so far. Over-reaches fall with n, those of sweeps down to a least one: from there on their threshold falls
+ * faster than what the kernel has outside. */
 typedef struct search {
   int low, high;     /* not enough, and the trial after it */
   int before, after; /* the best trial lies between these */
@@ -271,7 +274,8 @@ static cprox_status gallop(const cprox_solid *a, const cprox_solid *b, const cpr
   }
 }
 
-/* Between samples that are too few and more that are worse again: in thirds down to the least accuracy, until one is enough. */
+/* Between samples that are too few and more that are worse again: in thirds down to the least accuracy, until one is
+ * enough. */
 static cprox_status search_valley(const cprox_solid *a, const cprox_solid *b, const cprox_gap_options *options,
                                   cprox_workspace *workspace, search *s) {
   int low = s->before, high = s->after;

@@ -36,9 +36,8 @@ static inline void points_add_triangle(points *list, vec3 a, vec3 b, vec3 c) {
 void clip_loop(points *loop, const double plane[4]);
 void clip_soup(points *soup, const double plane[4]);
 
-/* Adds the boundary of a function that is at least 1 within rho of a closed mesh and is its indicator on it. *reach grows to
- * how far it goes beyond the mesh. Returns whether the
- * function may exceed 1. */
+/* Adds the boundary of a function that is at least 1 within rho of a closed mesh and is its indicator on it. *reach
+ * grows to how far it goes beyond the mesh. Returns whether the function may exceed 1. */
 struct piece;
 bool offset_mesh(const struct piece *mesh, double rho, points *soup, double *reach);
 

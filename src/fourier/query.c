@@ -40,8 +40,9 @@ static relative relate(const cprox_gap *gap, const cprox_pose *a, const cprox_po
   return r;
 }
 
-/* Gradients by both poses from those by the relative one. The turned body's centre moves with its rotation, the fixed body turns
- * everything else the other way: dV/dw_fixed = -R m' - origin × V_x with all of it about the fixed body's own origin. */
+/* Gradients by both poses from those by the relative one. The turned body's centre moves with its rotation, the fixed
+ * body turns everything else the other way: dV/dw_fixed = -R m' - origin × V_x with all of it about the fixed body's
+ * own origin. */
 static void spread_gradients(const cprox_gap *gap, const relative *r, vec3 by_x, vec3 moment,
                              cprox_gap_result *result) {
   /* about the turned body's origin, in the fixed frame */

@@ -43,8 +43,8 @@ void solid_bound(cprox_solid *solid);
 /* One piece as a solid: takes the piece over, also on failure (memory out). */
 cprox_status solid_of_piece(int dimension, piece *p, cprox_workspace *workspace, cprox_solid **solid);
 
-/* A copy whose function is at least 1 within rho of the solid, shifted by minus its centre; no clipping left. *reach: how far
- * it goes beyond the solid at most. NULL where memory is out. */
+/* A copy whose function is at least 1 within rho of the solid, shifted by minus its centre; no clipping left. *reach:
+ * how far it goes beyond the solid at most. NULL where memory is out. */
 cprox_solid *solid_offset(const cprox_solid *solid, double rho, double *reach);
 
 /* Sum of the pieces' spectra. */

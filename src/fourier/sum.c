@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The sum over the lattice, LANES terms side by side. One body, compiled for the lane widths of the machines at hand; every lane does
- * the same operations in the same order in all of them, so that their results are the same bit for bit. */
+/* The sum over the lattice, LANES terms side by side. One body, compiled for the lane widths of the machines at hand;
+ * every lane does the same operations in the same order in all of them, so that their results are the same bit for bit.
+ */
 #include "fourier/gap.h"
 
 #define TAU 6.28318530717958647693
@@ -58,8 +59,8 @@ INLINE void phase_lanes(const phase *p, const block *b, bool plane, double c[LAN
   }
 }
 
-/* sin(y)/y and its derivative from y, sin y and cos y; by series below 1/2, where the difference cancels. inverse: 1/y there, anything
- * else below. */
+/* sin(y)/y and its derivative from y, sin y and cos y; by series below 1/2, where the difference cancels. inverse: 1/y
+ * there, anything else below. */
 INLINE bool lane_is_small(double y) {
   return fabs(y) < 0.5;
 }
@@ -225,8 +226,8 @@ INLINE void box_lanes(const turned_piece *t, const block *b, bool gradient, bool
   add_piece(t, b, o, gradient, plane, f, m);
 }
 
-/* sin and cos of 0 <= y < 1e5, without branches: reduction by pi/2 in three parts, then series on [-pi/4, pi/4]. Within 2u of
- * 1. */
+/* sin and cos of 0 <= y < 1e5, without branches: reduction by pi/2 in three parts, then series on [-pi/4, pi/4]. Within
+ * 2u of 1. */
 INLINE void lane_sincos(double y, double *sine, double *cosine) {
   const double n = nearbyint(y * 0.63661977236758134308);
   const double r =
@@ -298,7 +299,8 @@ INLINE void ellipsoid_lanes(const turned_piece *t, const block *b, bool gradient
   add_piece(t, b, o, gradient, false, f, m);
 }
 
-/* (i/|q|²) sum over the edges of (q×d) e^{-iq·m} sinc(q·d/2), d = 2h; the term of the gradient along q turns nothing. */
+/* (i/|q|²) sum over the edges of (q×d) e^{-iq·m} sinc(q·d/2), d = 2h; the term of the gradient along q turns nothing.
+ */
 INLINE void polygon_lanes(const turned_piece *t, const block *b, bool gradient, lanes *o) {
   double are[LANES] = {0}, aim[LANES] = {0}, mre[LANES] = {0}, mim[LANES] = {0};
   const double qy = o->qy;
@@ -314,8 +316,8 @@ INLINE void polygon_lanes(const turned_piece *t, const block *b, bool gradient, 
       are[l] += w * cm[l];
       aim[l] -= w * sm[l];
       if (gradient) {
-        /* (∇A)×q: from e^{-iq·m}: -i w m×q; from the sinc: cross h×q, h×q = -cross/2; what q×d gives, 2y s e^{-iq·m}, is the
-         * difference of the phases at the edge's ends and adds up to 0 around the loop */
+        /* (∇A)×q: from e^{-iq·m}: -i w m×q; from the sinc: cross h×q, h×q = -cross/2; what q×d gives, 2y s e^{-iq·m},
+         * is the difference of the phases at the edge's ends and adds up to 0 around the loop */
         const double turn = -0.5 * cross * cross * lane_sinc_slope(y, inverse, s, ch[l]);
         const double swing = w * (m.x * qy - m.y * o->qx[l]);
         mre[l] += turn * cm[l] - swing * sm[l];
@@ -419,8 +421,8 @@ static double add_up(const double x[LANES]) {
   return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
 }
 
-/* What the blocks from `at` on can still add, by Cauchy-Schwarz from their coefficients' energy and what is left of the turned
- * solid's. The last term covers the rounding of the difference. */
+/* What the blocks from `at` on can still add, by Cauchy-Schwarz from their coefficients' energy and what is left of the
+ * turned solid's. The last term covers the rounding of the difference. */
 static double tail_after(const cprox_gap *gap, size_t at, double energy) {
   if (gap->tail[at] == 0.0) return 0.0;
   const double left = fmax(0.0, gap->half_energy - energy) + 1e-12 * gap->half_energy;

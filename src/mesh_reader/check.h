@@ -28,7 +28,8 @@ Triangles checkFile(const std::string &extension, std::string_view bytes);
 /* The letters after the last point, as libassimp is told them: in lower case, "stl" for what contains it. */
 std::string extensionOf(const std::string &file);
 
-/* What is wrong with the XML of a Collada file, "" for nothing or another format. libassimp decides whether it can be read. */
+/* What is wrong with the XML of a Collada file, "" for nothing or another format. libassimp decides whether it can be
+ * read. */
 std::string noteOn(const std::string &extension, std::string_view bytes);
 
 } // namespace curve_proximity::mesh_reader

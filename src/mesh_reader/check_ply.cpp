@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* PLY. A header in text names elements, how many there are of each, and their properties; then come the elements, a line each
- * in the ascii format. */
+/* PLY. A header in text names elements, how many there are of each, and their properties; then come the elements, a
+ * line each in the ascii format. */
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -55,7 +55,7 @@ const Type &typeNamed(const Words &words, std::string_view name) {
   words.fail(quoted(name) + " is no type of a property");
 }
 
-/* ---- the header ---------------------------------------------------------------------------------------------------- */
+/* ---- the header ---- */
 
 void readFormat(Words &words, Header &header) {
   const std::string_view format = words.nextInLine();
@@ -142,7 +142,7 @@ Header readHeader(std::string_view bytes) {
   return header;
 }
 
-/* ---- what counts are held against ---------------------------------------------------------------------------------- */
+/* ---- what counts are held against ---- */
 
 /* Whether this property says which vertices a face has. */
 bool namesVertices(const Element &element, const Property &property) {
@@ -177,7 +177,7 @@ void checkIndex(double index, const Header &header, const Element &element, std:
               std::to_string(header.vertices));
 }
 
-/* ---- binary elements ----------------------------------------------------------------------------------------------- */
+/* ---- binary elements ---- */
 
 class BinaryPly {
  public:
@@ -261,7 +261,7 @@ class BinaryPly {
   Faces faces_;
 };
 
-/* ---- elements in text ---------------------------------------------------------------------------------------------- */
+/* ---- elements in text ---- */
 
 class TextPly {
  public:

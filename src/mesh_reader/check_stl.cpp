@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* STL. Binary: a header of 80 bytes, the number of triangles, 50 bytes each and nothing more. Text: solids of facets of three
- * vertices each, up to `endsolid`. */
+/* STL. Binary: a header of 80 bytes, the number of triangles, 50 bytes each and nothing more. Text: solids of facets of
+ * three vertices each, up to `endsolid`. */
 #include <cmath>
 
 #include "text.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* curve_proximity_mesh_reader NAME <FILE: reads a mesh file for the library, whose process a malformed file must neither end nor
- * stall. What it says is in protocol.h. */
+/* curve_proximity_mesh_reader NAME <FILE: reads a mesh file for the library, whose process a malformed file must
+ * neither end nor stall. What it says is in protocol.h. */
 #include <dirent.h>
 #include <fcntl.h>
 #include <sys/prctl.h>

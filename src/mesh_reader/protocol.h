@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What the program curve_proximity_mesh_reader takes and says. Standard input is the file, the only argument its name.
- * Standard output is a row of messages: a kind, the bytes of the payload as uint64_t, the payload; numbers as this machine has
- * them. A mesh or an error is the last message. */
+ * Standard output is a row of messages: a kind, the bytes of the payload as uint64_t, the payload; numbers as this
+ * machine has them. A mesh or an error is the last message. */
 #ifndef CURVE_PROXIMITY_MESH_READER_PROTOCOL_H
 #define CURVE_PROXIMITY_MESH_READER_PROTOCOL_H
 

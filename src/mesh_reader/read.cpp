@@ -27,7 +27,7 @@ struct Mesh {
   std::vector<std::int32_t> triangles;
 };
 
-/* ---- messages ------------------------------------------------------------------------------------------------------ */
+/* ---- messages ---- */
 
 /* Whoever no longer listens has no use for this process. */
 void writeAll(int out, const void *data, std::size_t size) {
@@ -70,7 +70,7 @@ void writeMesh(int out, const Mesh &mesh) {
   writeAll(out, &END, 1);
 }
 
-/* ---- limits -------------------------------------------------------------------------------------------------------- */
+/* ---- limits ---- */
 
 int out_of_memory = -1; /* where to say so */
 std::array<char, 100> out_of_memory_text{};
@@ -109,7 +109,7 @@ void takeLimits(std::uint64_t file_size, int out) {
   std::set_new_handler(sayOutOfMemory);
 }
 
-/* ---- the file ------------------------------------------------------------------------------------------------------ */
+/* ---- the file ---- */
 
 std::string readBytes(int in, std::uint64_t size) {
   std::string bytes(size, '\0');

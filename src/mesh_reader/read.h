@@ -7,7 +7,8 @@
 
 namespace curve_proximity::mesh_reader {
 
-/* Takes the limits on itself, reads the file from `in`, writes the messages to `out`. For a process that ends after it. */
+/* Takes the limits on itself, reads the file from `in`, writes the messages to `out`. For a process that ends after it.
+ */
 void answer(const std::string &file, int in, int out);
 
 } // namespace curve_proximity::mesh_reader

@@ -56,7 +56,8 @@ class Words {
   std::uint64_t line_;
 };
 
-/* A number as libassimp takes it (a decimal comma is a point); none where the word is something else. May be infinite or NaN. */
+/* A number as libassimp takes it (a decimal comma is a point); none where the word is something else. May be infinite
+ * or NaN. */
 std::optional<double> parseNumber(std::string_view word);
 
 /* Digits with or without a sign; none where it does not fit into 62 bits. */

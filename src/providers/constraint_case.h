@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** One case of a request for constraints, from its description to its answers: beneath the service and the command line. */
+/** One case of a request for constraints, from its description to its answers: beneath the service and the command
+ * line. */
 #ifndef CURVE_PROXIMITY_PROVIDERS_CONSTRAINT_CASE_H
 #define CURVE_PROXIMITY_PROVIDERS_CONSTRAINT_CASE_H
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* curve_proximity/CurveDistance: the distance of what rides a curve from bodies, by the core's search and its gradient. */
+/* curve_proximity/CurveDistance: the distance of what rides a curve from bodies, by the core's search and its gradient.
+ */
 #include <pluginlib/class_list_macros.hpp>
 
 #include <curve_proximity/constraint_provider.hpp>
@@ -61,8 +62,9 @@ class CurveDistanceConstraint : public Constraint {
     out.normal = toEigen(result.normal);
   }
 
-  /* By the curve's points, and by the curve as a whole: psi(t) changes by the weights, and the value by n for psi(t). The weights
-   * stand at the front of the matrix; from the back, a column never covers a weight that is still to be read. */
+  /* By the curve's points, and by the curve as a whole: psi(t) changes by the weights, and the value by n for psi(t).
+   * The weights stand at the front of the matrix; from the back, a column never covers a weight that is still to be
+   * read. */
   static void fillCurve(const CurveDescription &curve, double t, const Eigen::Vector3d &n, ConstraintValue &out) {
     const Eigen::Index count = curve.points.cols();
     out.points.resize(3, count);

@@ -41,8 +41,8 @@ struct LoadedProvider {
   std::string failure;
 };
 
-/** Runs `work`, and makes a sentence of whatever it throws, whether an exception or not; "" where it throws nothing. Errors keep
- *  their status, all else is CPROX_INVALID. */
+/** Runs `work`, and makes a sentence of whatever it throws, whether an exception or not; "" where it throws nothing.
+ * Errors keep their status, all else is CPROX_INVALID. */
 std::string sentenceOf(const std::function<void()> &work, cprox_status *status = nullptr);
 
 /** Providers, and the pairs that they have made ready lately. Any number of threads. */
@@ -59,8 +59,8 @@ class ProviderSet {
   /** The one of that name; null where there is none. */
   const LoadedProvider *find(const std::string &name) const;
 
-  /** The pair made ready by the provider, at once where it was so lately: `key` says all that the pair is, and `pair` makes it.
-   *  Throws what these two throw. */
+  /** The pair made ready by the provider, at once where it was so lately: `key` says all that the pair is, and `pair`
+   * makes it. Throws what these two throw. */
   std::shared_ptr<const Constraint> prepared(const LoadedProvider &provider, const std::string &key,
                                              const std::function<ConstraintPair()> &pair);
 

@@ -45,8 +45,8 @@ void lookOutward(const Points &vertices, const Eigen::Vector3d &inside, Corners 
   }
 }
 
-/* The hull of points with an interior. What the hull's computation dropped is taken in again: all is scaled about the middle
- * until every point is behind every face. */
+/* The hull of points with an interior. What the hull's computation dropped is taken in again: all is scaled about the
+ * middle until every point is behind every face. */
 SolidHandle hullSolid(const Eigen::Matrix3Xd &points) {
   shapes::Mesh mesh(static_cast<unsigned>(points.cols()), 0);
   Eigen::Map<Eigen::Matrix3Xd>(mesh.vertices, 3, points.cols()) = points;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* curve_proximity/SuperquadricDistance: the signed distance of standing bodies, each a superquadric, an implicit body, or a
- * superquadric that encloses it. */
+/* curve_proximity/SuperquadricDistance: the signed distance of standing bodies, each a superquadric, an implicit body,
+ * or a superquadric that encloses it. */
 #include <pluginlib/class_list_macros.hpp>
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 namespace curve_proximity {
 namespace {
 
-/* Two steps, in sizes and in radians: a jump stays as it is from one to the other, what is smooth shrinks to a hundredth. */
+/* Two steps, in sizes and in radians: a jump stays as it is from one to the other, what is smooth shrinks to a
+ * hundredth. */
 constexpr double NEAR = 1e-6, FAR = 1e-4, LEAST_LEFT = 0.25;
 
 /* What is rounding: of nearest points in sizes, of normals, of distances in sizes. */
@@ -141,8 +142,8 @@ class SuperquadricConstraint : public Constraint {
     return out;
   }
 
-  /* d = max over unit n of -h_A(-n) - h_B(n) is minus the depth inside, the distance outside: by the support points, a turn w of a
-   * changes it by w·((p_a - x_a) x n), one of b by -w·((p_b - x_b) x n). */
+  /* d = max over unit n of -h_A(-n) - h_B(n) is minus the depth inside, the distance outside: by the support points, a
+   * turn w of a changes it by w·((p_a - x_a) x n), one of b by -w·((p_b - x_b) x n). */
   void fill(const Nearest &best, double lower, const ConstraintPlace &place, ConstraintValue &out) const {
     const cprox_result &r = best.result;
     out.status = r.status;
@@ -220,8 +221,8 @@ class SuperquadricConstraint : public Constraint {
     return near <= noise || !isJump(near, spread(best, place, FAR, workspace), noise);
   }
 
-  /* How far apart b's nearest points are when it has turned about its own to one side and to the other, about the axis across the
-   * normal where that is most. */
+  /* How far apart b's nearest points are when it has turned about its own to one side and to the other, about the axis
+   * across the normal where that is most. */
   double spread(const Nearest &best, const ConstraintPlace &place, double turn, Workspace &workspace) const {
     const Eigen::Vector3d n = toEigen(best.result.normal), centre = toEigen(best.result.witness_obstacle);
     const Eigen::Vector3d across = n.unitOrthogonal(), other = n.cross(across);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* How far one convex set stands out of another, from above: branch and bound over directions, doc/constraint-providers.md. */
+/* How far one convex set stands out of another, from above: branch and bound over directions,
+ * doc/constraint-providers.md. */
 #include <algorithm>
 #include <array>
 #include <limits>

@@ -59,7 +59,7 @@ class ObstacleSet {
   mutable std::unique_ptr<Batch> batch_;
 };
 
-/* ---- options ----------------------------------------------------------------------------------------------------- */
+/* ---- options ---- */
 
 /* Ctrl-C ends a query: the core asks now and then. */
 bool interrupted(void *) {
@@ -125,7 +125,7 @@ std::shared_ptr<ObstacleSet> setOf(const py::object &given) {
   return std::make_shared<ObstacleSet>(std::move(list), "none");
 }
 
-/* ---- answers ------------------------------------------------------------------------------------------------------ */
+/* ---- answers ---- */
 
 std::string describe(const cprox_result &r) {
   return "<cprox.Result [" + std::to_string(r.lower) + ", " + std::to_string(r.upper) + "] " +
@@ -174,7 +174,7 @@ py::dict profileOf(const ObstacleSet &set, const Mover &mover, const Array &brea
   return out;
 }
 
-/* ---- many curves -------------------------------------------------------------------------------------------------- */
+/* ---- many curves ---- */
 
 /* Bézier curves of one degree, (N, n, 3); made and asked by the threads of a pool. */
 template <typename Ask>
@@ -206,7 +206,7 @@ py::dict askBatch(const Array &points, double radius, unsigned threads, const As
   return columnsOf(answers.results);
 }
 
-/* ---- the gradient ------------------------------------------------------------------------------------------------- */
+/* ---- the gradient ---- */
 
 py::dict gradientOf(const Mover &mover, const Obstacle &obstacle, cprox_options options) {
   cprox_gradient g{};

@@ -123,7 +123,7 @@ class PythonScene {
   Scene scene_;
 };
 
-/* ---- motions ------------------------------------------------------------------------------------------------------ */
+/* ---- motions ---- */
 
 std::vector<double> row(const Array &rows, py::ssize_t i) {
   return {rows.data(i), rows.data(i) + rows.shape(1)};

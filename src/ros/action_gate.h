@@ -21,9 +21,10 @@
 
 namespace curve_proximity {
 
-/** A goal of ~follow_joint_trajectory is asked about from where the robot is by ~joint_states of the server. It is rejected,
- *  or handed to the action ~controller. While it runs, what is left of it is asked about again as soon as the scene is
- *  another one; the controller is told to cancel where that is not clear, or the server does not answer. One thread. */
+/** A goal of ~follow_joint_trajectory is asked about from where the robot is by ~joint_states of the server. It is
+ * rejected, or handed to the action ~controller. While it runs, what is left of it is asked about again as soon as the
+ * scene is another one; the controller is told to cancel where that is not clear, or the server does not answer. One
+ * thread. */
 class ActionGate {
  public:
   /** handle: private. refused: where refusals go. */

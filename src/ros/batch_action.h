@@ -19,10 +19,12 @@
 
 namespace curve_proximity {
 
-/** One batch is answered at a time, by a thread of its own that takes turns with the requests; a few others wait, in the order in which they came. */
+/** One batch is answered at a time, by a thread of its own that takes turns with the requests; a few others wait, in
+ * the order in which they came. */
 class BatchAction {
  public:
-  /** handle: private, on the queue that runs goals and cancellations. The others are kept by reference. stop: as that of Queries. */
+  /** handle: private, on the queue that runs goals and cancellations. The others are kept by reference. stop: as that
+   * of Queries. */
   BatchAction(const ros::NodeHandle &handle, const std::string &fixed_frame, Queries &queries, Turns &turns,
               const std::atomic<bool> &stop);
 

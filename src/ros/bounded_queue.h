@@ -11,8 +11,8 @@
 
 namespace curve_proximity {
 
-/** Any number of threads put jobs in; one at a time takes them out. A thread that puts a job in and finds nobody at work becomes the
- *  one that works: so a job that need not wait costs no change of threads. */
+/** Any number of threads put jobs in; one at a time takes them out. A thread that puts a job in and finds nobody at
+ * work becomes the one that works: so a job that need not wait costs no change of threads. */
 template <class Job>
 class BoundedQueue {
  public:

@@ -26,7 +26,8 @@ void addQuad(Marker &marker, const geometry_msgs::Point (&corners)[4]) {
   for (const int c : {0, 1, 2, 0, 2, 3}) marker.points.push_back(corners[c]);
 }
 
-/** The surface of a solid of revolution about z, as triangles: `profile` is a list of (radius, z) from bottom to top. */
+/** The surface of a solid of revolution about z, as triangles: `profile` is a list of (radius, z) from bottom to top.
+ */
 void addLathe(Marker &marker, const Profile &profile) {
   constexpr int SIDES = 24;
   const auto at = [](const std::pair<double, double> &p, int k) {
@@ -62,7 +63,7 @@ bool isFinite(const Marker &marker) {
 
 } // namespace
 
-/* ---- colours ------------------------------------------------------------------------------------------------------ */
+/* ---- colours ---- */
 
 std_msgs::ColorRGBA colour(double r, double g, double b, double a) {
   std_msgs::ColorRGBA out;
@@ -98,7 +99,7 @@ void setScale(Marker &marker, double x, double y, double z) {
   marker.scale.z = z;
 }
 
-/* ---- the canvas --------------------------------------------------------------------------------------------------- */
+/* ---- the canvas ---- */
 
 Canvas::Canvas(std::string frame) : frame_(std::move(frame)) {
   Marker all;
@@ -128,7 +129,7 @@ visualization_msgs::MarkerArray Canvas::take() {
   return std::move(array_);
 }
 
-/* ---- bodies ------------------------------------------------------------------------------------------------------- */
+/* ---- bodies ---- */
 
 /** The support points of a grid of directions are corners of the body's hull. */
 void Canvas::addConvex(const std::string &space, const cprox_body *body, const Eigen::Isometry3d &pose,
@@ -186,7 +187,8 @@ void Canvas::addPoints(const std::string &space, const ShapeDescription &shape, 
     marker.points.push_back(toPointMessage(toVec3(shape.vertices.col(i))));
 }
 
-/** Its cells, a marker for all of a size; higher ones are lighter, so that they can be told apart. Nothing where its file has gone. */
+/** Its cells, a marker for all of a size; higher ones are lighter, so that they can be told apart. Nothing where its
+ * file has gone. */
 void Canvas::addOctree(const std::string &space, const ShapeDescription &shape, const ResourceOptions &resources,
                        const Eigen::Isometry3d &pose, const std_msgs::ColorRGBA &tint) {
   Boxes cells;

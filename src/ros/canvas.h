@@ -13,11 +13,12 @@ namespace curve_proximity {
 
 std_msgs::ColorRGBA colour(double r, double g, double b, double a);
 
-/** Red at a touch, amber between, teal with 0.3 m to spare; hue and lightness both change, for eyes that do not tell red from
- *  green. */
+/** Red at a touch, amber between, teal with 0.3 m to spare; hue and lightness both change, for eyes that do not tell
+ * red from green. */
 std_msgs::ColorRGBA clearanceColour(double clearance, double alpha = 1.0);
 
-/** The same, darker where a surface of that unit normal turns away from a light above: RViz does not light coloured vertices. */
+/** The same, darker where a surface of that unit normal turns away from a light above: RViz does not light coloured
+ * vertices. */
 std_msgs::ColorRGBA shaded(std_msgs::ColorRGBA tint, const Eigen::Vector3d &normal);
 
 void setScale(visualization_msgs::Marker &marker, double x, double y, double z);
@@ -30,8 +31,8 @@ class Canvas {
   visualization_msgs::Marker &add(const std::string &space, int type,
                                   const Eigen::Isometry3d &pose = Eigen::Isometry3d::Identity());
 
-  /** A body, from its description where RViz has a type or a mesh file for it, else from its surface. resources: where its
-   *  mesh file is looked for. */
+  /** A body, from its description where RViz has a type or a mesh file for it, else from its surface. resources: where
+   * its mesh file is looked for. */
   void addShape(const std::string &space, const ShapeDescription &shape, const BodyHandle &body,
                 const ResourceOptions &resources, const Eigen::Isometry3d &pose, const std_msgs::ColorRGBA &tint);
 

@@ -20,7 +20,7 @@ constexpr const char *GAP = "curve_proximity/FourierGap";
 
 constexpr double NONE = std::numeric_limits<double>::quiet_NaN();
 
-/* ---- from messages ------------------------------------------------------------------------------------------------ */
+/* ---- from messages ---- */
 
 bool hasShapes(const CollisionObject &side) {
   return !side.primitives.empty() || !side.meshes.empty() || !side.planes.empty() || !side.bodies.empty();
@@ -67,7 +67,7 @@ ConstraintCase toCase(const ConstraintQuery &message, const Snapshot &snapshot, 
   return out;
 }
 
-/* ---- to messages -------------------------------------------------------------------------------------------------- */
+/* ---- to messages ---- */
 
 geometry_msgs::Vector3 toVectorMessage(const Eigen::Vector3d &v) {
   geometry_msgs::Vector3 message;

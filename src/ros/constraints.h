@@ -25,13 +25,13 @@ namespace curve_proximity {
 /** The providers of a node. */
 class Constraints {
  public:
-  /** Loads those of parameters.constraint_providers. Throws ParameterError, naming the parameter, for a type that no package
-   *  declares and for parameters that a provider refuses. A plugin that does not load, or throws, is told by name on the log and in
-   *  every answer; the others go on. All is kept by reference. */
+  /** Loads those of parameters.constraint_providers. Throws ParameterError, naming the parameter, for a type that no
+   * package declares and for parameters that a provider refuses. A plugin that does not load, or throws, is told by
+   * name on the log and in every answer; the others go on. All is kept by reference. */
   Constraints(const Parameters &parameters, const LiveScene &live, const Frames &frames, const std::atomic<bool> &stop);
 
-  /** Throws Error where nothing can be answered at all; what is wrong with one case or provider becomes its row. drawing: the last
-   *  case that a Fourier gap has answered, if any. */
+  /** Throws Error where nothing can be answered at all; what is wrong with one case or provider becomes its row.
+   * drawing: the last case that a Fourier gap has answered, if any. */
   void answer(const EvaluateConstraints::Request &request, EvaluateConstraints::Response &response,
               std::shared_ptr<const LevelDrawing> &drawing, Turn *turn);
 

@@ -40,7 +40,7 @@ bool isUnset(const geometry_msgs::Pose &pose) {
   return p.x == 0 && p.y == 0 && p.z == 0 && q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0;
 }
 
-/* ---- shapes, from messages ---------------------------------------------------------------------------------------- */
+/* ---- shapes, from messages ---- */
 
 ShapeDescription toShape(const shape_msgs::SolidPrimitive &primitive) {
   ShapeDescription shape;
@@ -216,7 +216,7 @@ Eigen::Isometry3d frameOf(const CollisionObject &object, const ToFixed &to_fixed
   }
 }
 
-/* ---- what links carry --------------------------------------------------------------------------------------------- */
+/* ---- what links carry ---- */
 
 /** An object that names its link's frame needs no transform; others are brought there. */
 Attachment toAttachment(const AttachedCollisionObject &message, const ToFixed &to_fixed,
@@ -257,7 +257,7 @@ LinkScale toScaleMessage(const std::pair<const std::string, double> &scale) {
   return message;
 }
 
-/* ---- shapes, to messages ------------------------------------------------------------------------------------------ */
+/* ---- shapes, to messages ---- */
 
 void addPrimitive(CollisionObject &message, std::uint8_t type, const ShapeDescription &shape) {
   shape_msgs::SolidPrimitive primitive;
@@ -338,7 +338,7 @@ LinkPadding toPaddingMessage(const std::string &link, double padding) {
 
 } // namespace
 
-/* ---- poses -------------------------------------------------------------------------------------------------------- */
+/* ---- poses ---- */
 
 Eigen::Isometry3d toIsometry(const geometry_msgs::Pose &pose) {
   const geometry_msgs::Point &p = pose.position;
@@ -362,7 +362,7 @@ geometry_msgs::Point toPointMessage(const cprox_vec3 &point) {
   return toPointMessage(toEigen(point));
 }
 
-/* ---- curves ------------------------------------------------------------------------------------------------------- */
+/* ---- curves ---- */
 
 /* A coefficient that is not a point of the curve turns, and does not move: all but the first of a series. */
 static bool isSeries(const std::string &basis) {
@@ -399,7 +399,7 @@ CurveDescription toDescription(const Curve &curve, const Eigen::Isometry3d &fram
   return out;
 }
 
-/* ---- the scene ---------------------------------------------------------------------------------------------------- */
+/* ---- the scene ---- */
 
 Operation toOperation(const CollisionObject &message) {
   Operation out;
@@ -520,7 +520,7 @@ ApplySceneRequest toMessage(const SceneChange &change) {
   return request;
 }
 
-/* ---- answers ------------------------------------------------------------------------------------------------------ */
+/* ---- answers ---- */
 
 Proximity toMessage(const Answer &answer, QueryType query_type) {
   if (answer.result.status < 0) {
@@ -569,7 +569,7 @@ Proximity toFailedRow(const std::string &id, const std::string &kind, const std:
   return message;
 }
 
-/* ---- joints ------------------------------------------------------------------------------------------------------- */
+/* ---- joints ---- */
 
 JointPositions toJointPositions(const sensor_msgs::JointState &state) {
   if (state.name.size() != state.position.size())
@@ -583,7 +583,7 @@ JointPositions toJointPositions(const sensor_msgs::JointState &state) {
   return positions;
 }
 
-/* ---- trajectories ------------------------------------------------------------------------------------------------- */
+/* ---- trajectories ---- */
 
 TrajectoryDescription toDescription(const trajectory_msgs::JointTrajectory &trajectory, const JointPositions &now,
                                     std::string &remark) {

@@ -36,17 +36,17 @@ geometry_msgs::Point toPointMessage(const cprox_vec3 &point);
 CurveDescription toDescription(const Curve &curve, const Eigen::Isometry3d &frame_in_fixed);
 
 /** One operation on the scene; its object's pose is still the message's, in header.frame_id.
- *  Throws Error, which names the object and the shape: an unknown type or operation, poses that do not match the shapes,
- *  triangles with an index that is none. Dimensions are left to the scene. */
+ *  Throws Error, which names the object and the shape: an unknown type or operation, poses that do not match the
+ * shapes, triangles with an index that is none. Dimensions are left to the scene. */
 Operation toOperation(const CollisionObject &object);
 
-/** The whole request of ~apply_scene. The poses of objects are brought to the fixed frame by `to_fixed(header)`, which may
- *  throw. An object that cannot be converted becomes a sentence in `faults`, and the others stay. */
+/** The whole request of ~apply_scene. The poses of objects are brought to the fixed frame by `to_fixed(header)`, which
+ * may throw. An object that cannot be converted becomes a sentence in `faults`, and the others stay. */
 using ToFixed = std::function<Eigen::Isometry3d(const std_msgs::Header &header)>;
 SceneChange toSceneChange(const ApplySceneRequest &request, const ToFixed &to_fixed, std::vector<std::string> &faults);
 
-/** What links are to carry, the same way. `before`: the scene that the attachments are for, since what is detached must be known to
- *  stand on its link. */
+/** What links are to carry, the same way. `before`: the scene that the attachments are for, since what is detached must
+ * be known to stand on its link. */
 using LinkToFixed = std::function<Eigen::Isometry3d(const std::string &link, const ros::Time &stamp)>;
 void addAttachments(const ApplySceneRequest &request, const ToFixed &to_fixed, const LinkToFixed &link_to_fixed,
                     const Snapshot &before, SceneChange &change, std::vector<std::string> &faults);

@@ -35,8 +35,8 @@ std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> framesAlong(const std::
   return frames;
 }
 
-/** Appends the control points of [a, b], where joints of pieces lie inside those of halves without one. What is left about a joint
- *  after so many halvings is too short to be seen. */
+/** Appends the control points of [a, b], where joints of pieces lie inside those of halves without one. What is left
+ * about a joint after so many halvings is too short to be seen. */
 void addControlPoints(const cprox_curve *curve, double a, double b, int halvings, std::size_t degree,
                       std::vector<cprox_vec3> &points) {
   std::vector<cprox_vec3> own(degree + 1);
@@ -72,7 +72,7 @@ double clearance(const cprox_vec3 &centre, double radius, const PlacedBodies &pl
   return least;
 }
 
-/* ---- curves -------------------------------------------------------------------------------------------------------- */
+/* ---- curves ---- */
 
 void addTube(Canvas &canvas, const std::string &space, const std::vector<Eigen::Vector3d> &points,
              const std::vector<std_msgs::ColorRGBA> &tints, double radius) {
@@ -125,7 +125,7 @@ void addCurve(Canvas &canvas, const CompiledCurve &curve, const PlacedBodies &pl
   addTube(canvas, "curves", points, tints, curve.radius);
 }
 
-/* ---- pairs --------------------------------------------------------------------------------------------------------- */
+/* ---- pairs ---- */
 
 void addPair(Canvas &canvas, const Answer &answer) {
   const cprox_result &result = answer.result;
@@ -155,7 +155,7 @@ void addPair(Canvas &canvas, const Answer &answer) {
   label.text = text;
 }
 
-/* ---- what is open -------------------------------------------------------------------------------------------------- */
+/* ---- what is open ---- */
 
 bool isOpen(const Answer &answer, QueryType query_type) {
   const cprox_status status = answer.result.status;

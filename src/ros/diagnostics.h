@@ -18,8 +18,10 @@
 
 namespace curve_proximity {
 
-/** Five statuses: `queries` (rate, 50th and 99th percentile of the time of a request, undecided and failed rows), `topics` (messages
- *  dropped), `sensors` (of ~cloud and ~octomap the rate, the age of the last message used, drops and refusals), `transforms` (how old the robot's link poses in the fixed frame are), `master` (whether it still knows the server). */
+/** Five statuses: `queries` (rate, 50th and 99th percentile of the time of a request, undecided and failed rows),
+ * `topics` (messages dropped), `sensors` (of ~cloud and ~octomap the rate, the age of the last message used, drops and
+ * refusals), `transforms` (how old the robot's link poses in the fixed frame are), `master` (whether it still knows the
+ * server). */
 class Diagnostics {
  public:
   /** handle: private; its callback queue runs the timer. The others are kept by reference. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The action control_msgs/FollowJointTrajectory by its published definition: control_msgs itself need not be installed. */
+/** The action control_msgs/FollowJointTrajectory by its published definition: control_msgs itself need not be
+ * installed. */
 #ifndef CURVE_PROXIMITY_ROS_FOLLOW_JOINT_TRAJECTORY_H
 #define CURVE_PROXIMITY_ROS_FOLLOW_JOINT_TRAJECTORY_H
 
@@ -74,8 +75,8 @@ struct FollowJointTrajectoryAction {
 
 } // namespace curve_proximity::control
 
-/* A message of control_msgs: its name, its MD5, its members in their order. Its definition is left out: tools look it up by the
- * name. */
+/* A message of control_msgs: its name, its MD5, its members in their order. Its definition is left out: tools look it
+ * up by the name. */
 #define CURVE_PROXIMITY_CONTROL_TRAITS(Name, Md5)                       \
   namespace ros::message_traits {                                       \
   template <>                                                           \

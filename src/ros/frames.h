@@ -57,8 +57,8 @@ class Frames {
   /** Has the server listened long enough to have heard of static and regular transforms? */
   bool settled() const;
 
-  /** [s] How old the latest pose of `frame` in the fixed frame is, by ROS time; 0 where nothing between them moves. Does
-   *  not wait: nothing where there is no transform. */
+  /** [s] How old the latest pose of `frame` in the fixed frame is, by ROS time; 0 where nothing between them moves.
+   * Does not wait: nothing where there is no transform. */
   std::optional<double> age(const std::string &frame) const;
 
  private:

@@ -79,7 +79,8 @@ class Field {
     return evened(value_.value);
   }
 
-  /* V/t falls by orders of magnitude from one point of the grid to the next: between them its logarithm is the nearer to a straight line. */
+  /* V/t falls by orders of magnitude from one point of the grid to the next: between them its logarithm is the nearer
+   * to a straight line. */
   static double evened(double value) {
     constexpr double LEAST = 1e-3;
     return -std::log(std::max(1.0 - value, LEAST));

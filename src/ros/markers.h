@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What RViz shows: the scene, the last curves and the last trajectory that were asked about, coloured by clearance, and their closest
- *  pairs. */
+/** What RViz shows: the scene, the last curves and the last trajectory that were asked about, coloured by clearance,
+ * and their closest pairs. */
 #ifndef CURVE_PROXIMITY_ROS_MARKERS_H
 #define CURVE_PROXIMITY_ROS_MARKERS_H
 
@@ -35,8 +35,8 @@ struct MarkerResources {
  *    pairs    the closest pairs, each a line with its ends; labels: how long they are
  *  Drawings may be null. Pairs are shown only as long as the scene is the one they were measured in.
  *
- *  Colours come from plain distances at sampled parameters: they are for the eye. The certified answers are the pairs with their
- *  labels, and the open hulls. */
+ *  Colours come from plain distances at sampled parameters: they are for the eye. The certified answers are the pairs
+ * with their labels, and the open hulls. */
 visualization_msgs::MarkerArray toMarkers(const Snapshot &scene, const Drawing *curves, const Drawing *motion,
                                           const LevelDrawing *levels, const std::string &frame,
                                           const MarkerResources &resources);
@@ -47,8 +47,8 @@ class MarkerPublisher {
   /** handle: its callback queue runs the timer. scene: kept by reference. */
   MarkerPublisher(ros::NodeHandle &handle, const Scene &scene, const std::string &frame, MarkerResources resources);
 
-  /** What is to be shown next: its curves in the place of the last ones, its motion in that of the last one. Never waits for what is
-   *  being published. */
+  /** What is to be shown next: its curves in the place of the last ones, its motion in that of the last one. Never
+   * waits for what is being published. */
   void show(std::shared_ptr<const Drawing> drawing);
   void show(std::shared_ptr<const LevelDrawing> levels);
 

@@ -17,12 +17,12 @@ class MasterWatch {
  public:
   enum class State { KNOWN, SILENT, FORGOTTEN };
 
-  /** service: by its full name, and advertised before the first look. The node's own name would not do: a node that subscribes to
-   *  something new is known again, its services are not. */
+  /** service: by its full name, and advertised before the first look. The node's own name would not do: a node that
+   * subscribes to something new is known again, its services are not. */
   explicit MasterWatch(std::string service) : service_(std::move(service)) {}
 
-  /** FORGOTTEN: a master answers, and twice in a row did not know the service. SILENT: none answers; it may come back and know us.
-   *  Asks every two seconds at most; in between the last state. */
+  /** FORGOTTEN: a master answers, and twice in a row did not know the service. SILENT: none answers; it may come back
+   * and know us. Asks every two seconds at most; in between the last state. */
   State look() {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return state_;

@@ -42,8 +42,8 @@ extern thread_local Allowance allowance;
 /** This thread is at a request: an allocation that the limit forbids may throw std::bad_alloc. */
 extern thread_local bool at_request;
 
-/** While a request of so many bytes is read, this thread allocates a few times as much at most: a count on the wire that
- *  its bytes do not hold costs nothing. Heeded by curve_proximity_node, whose allocations are counted. */
+/** While a request of so many bytes is read, this thread allocates a few times as much at most: a count on the wire
+ * that its bytes do not hold costs nothing. Heeded by curve_proximity_node, whose allocations are counted. */
 class Reading {
  public:
   explicit Reading(std::size_t wire_bytes);

@@ -15,8 +15,8 @@
 
 namespace {
 
-/** Smaller allocations are not counted: what a request takes of them is bounded by its estimate, and while it is read by
- *  its allowance. */
+/** Smaller allocations are not counted: what a request takes of them is bounded by its estimate, and while it is read
+ * by its allowance. */
 constexpr std::size_t COUNTED = 1024;
 
 /** An allocation of this size may throw wherever it happens. */

@@ -5,7 +5,8 @@
 
 namespace curve_proximity {
 
-/** From now on allocations are counted, and the account of memory_account.h has this limit; 0: none. After ros::start().
+/** From now on allocations are counted, and the account of memory_account.h has this limit; 0: none. After
+ * ros::start().
  *
  *  roscpp resizes vectors to whatever count a request claims, before it looks at the bytes: such an allocation throws
  *  std::bad_alloc in the callback, where it fails one call. roscpp takes its receive buffers by `new[]` in the thread

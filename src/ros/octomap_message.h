@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** octomap_msgs/Octomap as roscpp receives it, by its published definition: octomap_msgs itself need not be installed. */
+/** octomap_msgs/Octomap as roscpp receives it, by its published definition: octomap_msgs itself need not be installed.
+ */
 #ifndef CURVE_PROXIMITY_ROS_OCTOMAP_MESSAGE_H
 #define CURVE_PROXIMITY_ROS_OCTOMAP_MESSAGE_H
 

@@ -15,7 +15,7 @@ namespace {
 /** Below this a process with a few threads does not even start. */
 constexpr int LEAST_MEMORY_MB = 256;
 
-/* ---- ~constraint_providers ---------------------------------------------------------------------------------------- */
+/* ---- ~constraint_providers ---- */
 
 using Xml = XmlRpc::XmlRpcValue;
 

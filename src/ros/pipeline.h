@@ -29,10 +29,10 @@
 
 namespace curve_proximity {
 
-/** Answers what comes on ~curve, ~trajectory, ~multi_dof_trajectory and ~path, one message after the other, on ~proximity. Messages
- *  are taken and results handed on by pointer: within one nodelet manager nothing is copied. While one message is being answered
- *  ~queue_size others wait; what is older than these is dropped and counted. With ~state_rate it also tells on
- *  ~state_proximity how close the robot is as it stands. */
+/** Answers what comes on ~curve, ~trajectory, ~multi_dof_trajectory and ~path, one message after the other, on
+ * ~proximity. Messages are taken and results handed on by pointer: within one nodelet manager nothing is copied. While
+ * one message is being answered ~queue_size others wait; what is older than these is dropped and counted. With
+ * ~state_rate it also tells on ~state_proximity how close the robot is as it stands. */
 class Pipeline {
  public:
   /** handle: the server's private one. All are kept by reference. stop: as that of Queries. */

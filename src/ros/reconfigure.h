@@ -16,7 +16,8 @@
 
 namespace curve_proximity {
 
-/** Serves ~set_parameters. handle: private, on the queue whose thread carries changes out. threads: is told a new number of them. */
+/** Serves ~set_parameters. handle: private, on the queue whose thread carries changes out. threads: is told a new
+ * number of them. */
 class Reconfigure {
  public:
   Reconfigure(const ros::NodeHandle &handle, Tuning &tuning, std::function<void(int)> threads)
@@ -26,7 +27,8 @@ class Reconfigure {
 
  private:
   void change(ProximityServerConfig &config, std::uint32_t level) {
-    // The first call, on all levels at once, tells what was read at start, within the sliders' ranges: that is known, and exactly.
+    // The first call, on all levels at once, tells what was read at start, within the sliders' ranges: that is known,
+    // and exactly.
     constexpr std::uint32_t ALL_LEVELS = 0xffffffffu;
     if (level == ALL_LEVELS) return;
     take("epsilon", config.epsilon, tuning_.epsilon, Range{0.0, true, 1.0});

@@ -18,8 +18,9 @@ ResourceOptions resourceOptions(const std::string &base_dir, int max_shape_mb) {
 
 namespace {
 
-/** A text in the parameter of that name, searched upwards. The search begins above the server's own namespace, where the private
- *  parameter of the same name is that name and no text. Empty where there is none; a name that is not the default must exist. */
+/** A text in the parameter of that name, searched upwards. The search begins above the server's own namespace, where
+ * the private parameter of the same name is that name and no text. Empty where there is none; a name that is not the
+ * default must exist. */
 std::string findText(const ros::NodeHandle &handle, const std::string &wanted, const std::string &by_default,
                      const char *parameter, const char *what, std::string &name) {
   const std::string above = ros::names::parentNamespace(handle.getNamespace());

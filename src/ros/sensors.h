@@ -31,11 +31,12 @@ struct SensorCounts {
   std::chrono::steady_clock::time_point last; /**< when the last one was used, where any was */
 };
 
-/** ~cloud and ~octomap. They have a thread of their own, so that what is built at the rate of a sensor takes no thread from the
- *  queries, which work on the snapshot before it. Of messages that come too fast the oldest are dropped.
+/** ~cloud and ~octomap. They have a thread of their own, so that what is built at the rate of a sensor takes no thread
+ * from the queries, which work on the snapshot before it. Of messages that come too fast the oldest are dropped.
  *
  *  A cloud without a point makes the object unknown, or with ~empty_cloud_clears takes it away; an octree without an
- *  occupied cell is an empty object. A message that cannot be used leaves the object as it was, and a warning says why. */
+ *  occupied cell is an empty object. A message that cannot be used leaves the object as it was, and a warning says why.
+ */
 class Sensors {
  public:
   /** All are kept by reference. handle: private. */

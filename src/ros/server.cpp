@@ -173,8 +173,8 @@ ProximityServer::~ProximityServer() {
   queue_.clear();
 }
 
-/** Everything that a handler does happens in here: what it throws becomes a message. A request that cannot be read fails
- *  the call, by roscpp. times_wire: what it takes in memory, for a byte on the wire. */
+/** Everything that a handler does happens in here: what it throws becomes a message. A request that cannot be read
+ * fails the call, by roscpp. times_wire: what it takes in memory, for a byte on the wire. */
 template <class Service, class Work>
 typename ServiceHelper<Service>::Handler ProximityServer::handler(std::size_t times_wire, Work work) {
   using Helper = ServiceHelper<Service>;

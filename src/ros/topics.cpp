@@ -12,10 +12,10 @@ bool isFinite(double x, double y, double z) {
   return std::isfinite(x) && std::isfinite(y) && std::isfinite(z);
 }
 
-/* ---- splines ------------------------------------------------------------------------------------------------------- */
+/* ---- splines ---- */
 
-/** The three cubic B-splines of a knot vector that are not 0 at its inner knot number i (counted from the first, i >= 1), and their
- *  second derivatives there. */
+/** The three cubic B-splines of a knot vector that are not 0 at its inner knot number i (counted from the first, i >=
+ * 1), and their second derivatives there. */
 struct AtKnot {
   double value[3];
   double second[3];
@@ -46,9 +46,10 @@ void fitNaturalSpline(const std::vector<geometry_msgs::Point> &points, const std
   curve.knots.insert(curve.knots.end(), at.begin(), at.end());
   curve.knots.insert(curve.knots.end(), 3, at.back());
 
-  // Unknown are the inner n control points c[1 … n]; c[0] and c[n+1] are the end points. The rows: no second derivative at the
-  // first knot, the n - 2 inner points met, no second derivative at the last knot. At a clamped end the three B-splines'
-  // second derivatives are those of atKnot() with the coinciding knots in place, so each row has three neighbours.
+  // Unknown are the inner n control points c[1 … n]; c[0] and c[n+1] are the end points. The rows: no second derivative
+  // at the first knot, the n - 2 inner points met, no second derivative at the last knot. At a clamped end the three
+  // B-splines' second derivatives are those of atKnot() with the coinciding knots in place, so each row has three
+  // neighbours.
   const std::size_t n = points.size();
   std::vector<double> lower(n), diagonal(n), upper(n);
   std::vector<Eigen::Vector3d> right(n, Eigen::Vector3d::Zero());
@@ -82,7 +83,7 @@ void fitNaturalSpline(const std::vector<geometry_msgs::Point> &points, const std
   }
 }
 
-/* ---- paths --------------------------------------------------------------------------------------------------------- */
+/* ---- paths ---- */
 
 Curve toCurve(const nav_msgs::Path &path, double radius) {
   if (path.poses.empty()) throw Error("the path has no poses");
@@ -117,7 +118,7 @@ Curve toCurve(const nav_msgs::Path &path, double radius) {
   return curve;
 }
 
-/* ---- planar and floating joints ------------------------------------------------------------------------------------ */
+/* ---- planar and floating joints ---- */
 
 namespace {
 

@@ -15,25 +15,26 @@
 namespace curve_proximity {
 
 /** The natural cubic spline through points at ascending parameters, as a B-spline of degree 3: its second derivative is
- *  continuous, and 0 at both ends (C. de Boor, A Practical Guide to Splines, ch. IV). As many points as parameters, at least two;
- *  fills basis, degree, points and knots. */
+ *  continuous, and 0 at both ends (C. de Boor, A Practical Guide to Splines, ch. IV). As many points as parameters, at
+ * least two; fills basis, degree, points and knots. */
 void fitNaturalSpline(const std::vector<geometry_msgs::Point> &points, const std::vector<double> &at, Curve &curve);
 
-/** A path as the natural cubic spline through its poses' positions, over the length of the chords between them [m]. Poses that
- *  repeat the position before them are left out; a path of one position is that point. The curve's id is "path".
- *  Throws Error: no poses, a position that is not finite, a pose in another frame than the path's. */
+/** A path as the natural cubic spline through its poses' positions, over the length of the chords between them [m].
+ * Poses that repeat the position before them are left out; a path of one position is that point. The curve's id is
+ * "path". Throws Error: no poses, a position that is not finite, a pose in another frame than the path's. */
 Curve toCurve(const nav_msgs::Path &path, double radius);
 
-/** A trajectory of planar and floating joints, as the joint trajectory of their parts (NAME/x …, NAME/trans_x …): linear between the
- *  points; velocities and accelerations are not looked at. Angles and quaternions take the shorter way from point to point.
- *  Empty where the robot has none of the joints. Throws Error, naming joint and point: some of the joints are the robot's and
- *  others are not, a transform that leaves the plane of a planar joint, a count of transforms that differs from that of the joints,
- *  numbers that are not finite, a frame that is not the joint's parent. */
+/** A trajectory of planar and floating joints, as the joint trajectory of their parts (NAME/x …, NAME/trans_x …):
+ * linear between the points; velocities and accelerations are not looked at. Angles and quaternions take the shorter
+ * way from point to point. Empty where the robot has none of the joints. Throws Error, naming joint and point: some of
+ * the joints are the robot's and others are not, a transform that leaves the plane of a planar joint, a count of
+ * transforms that differs from that of the joints, numbers that are not finite, a frame that is not the joint's parent.
+ */
 trajectory_msgs::JointTrajectory toJointTrajectory(const trajectory_msgs::MultiDOFJointTrajectory &trajectory,
                                                    const Robot *robot, const Srdf &srdf);
 
-/** Of what is no robot's: each joint's translation as the natural cubic spline through its points over time [s], id the joint's name.
- *  Throws Error: no joints, fewer than two points, times that do not ascend, counts that differ. */
+/** Of what is no robot's: each joint's translation as the natural cubic spline through its points over time [s], id the
+ * joint's name. Throws Error: no joints, fewer than two points, times that do not ascend, counts that differ. */
 std::vector<Curve> toCurves(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, double radius);
 
 } // namespace curve_proximity

@@ -21,15 +21,16 @@
 
 namespace curve_proximity {
 
-/** Do these results prove that what they are about stays farther than delta from everything? All rows answered, at least one, and
- *  each with a certified lower bound above delta, or the verdict that says so. */
+/** Do these results prove that what they are about stays farther than delta from everything? All rows answered, at
+ * least one, and each with a certified lower bound above delta, or the verdict that says so. */
 bool isClear(const ProximityResults &results, double delta);
 
-/** Waits for the answer (~proximity) to each message on ~curve, ~trajectory, ~multi_dof_trajectory and ~path, in whichever order they
- *  come, and hands on those that are clear, by pointer: ~clear_curve, ~clear_trajectory, ~clear_multi_dof_trajectory, ~clear_path.
- *  ~queue_size messages and as many answers wait for each other; what is older never passes. Before it hands a message on, it
- *  looks at the scene of ~server: where that is another one than the answer's, it asks again. What does not pass is told on
- *  ~refused. With ~controller it is also a FollowJointTrajectory action: see ActionGate. */
+/** Waits for the answer (~proximity) to each message on ~curve, ~trajectory, ~multi_dof_trajectory and ~path, in
+ * whichever order they come, and hands on those that are clear, by pointer: ~clear_curve, ~clear_trajectory,
+ * ~clear_multi_dof_trajectory, ~clear_path. ~queue_size messages and as many answers wait for each other; what is older
+ * never passes. Before it hands a message on, it looks at the scene of ~server: where that is another one than the
+ * answer's, it asks again. What does not pass is told on ~refused. With ~controller it is also a FollowJointTrajectory
+ * action: see ActionGate. */
 class TrajectoryGate {
  public:
   TrajectoryGate(const ros::NodeHandle &handle, const GateParameters &parameters);

@@ -22,9 +22,9 @@ class Busy : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/** A number of turns, each held by one thread. Where several wait, the client that has computed least goes first; a client
- *  that was idle starts level with the others. A holder that calls Turn::yield() now and then makes way for a client
- *  that has computed less, so that a small request waits for a few milliseconds behind any number of large ones.
+/** A number of turns, each held by one thread. Where several wait, the client that has computed least goes first; a
+ * client that was idle starts level with the others. A holder that calls Turn::yield() now and then makes way for a
+ * client that has computed less, so that a small request waits for a few milliseconds behind any number of large ones.
  *
  *  Start-time fair queuing (P. Goyal, H. M. Vin, H. Cheng, SIGCOMM 1996), with the time used as the tag. */
 class Turns {

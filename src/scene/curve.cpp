@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t BOXES = 8;
 constexpr std::size_t MOST_BOXES = 32;
 
-/* Control points of a part of a curve are within (12 degree + 20) 2^-53 of the largest coordinate, and those of a half of it within
- * degree 2^-53 more: of an eighth below 1e-13. */
+/* Control points of a part of a curve are within (12 degree + 20) 2^-53 of the largest coordinate, and those of a half
+ * of it within degree 2^-53 more: of an eighth below 1e-13. */
 constexpr double BOX_MARGIN = 1e-12;
 
 Eigen::AlignedBox3d bounds(const cprox_curve *curve) {
@@ -21,7 +21,8 @@ Eigen::AlignedBox3d bounds(const cprox_curve *curve) {
   return {toEigen(info.lowest), toEigen(info.highest)};
 }
 
-/* The two halves of a Bézier curve of n control points, by de Casteljau's averages: the left one takes the curve's place. */
+/* The two halves of a Bézier curve of n control points, by de Casteljau's averages: the left one takes the curve's
+ * place. */
 void halve(cprox_vec3 *left, cprox_vec3 *right, std::size_t n) {
   std::copy(left, left + n, right);
   for (std::size_t k = 1; k < n; ++k) {
@@ -33,7 +34,8 @@ void halve(cprox_vec3 *left, cprox_vec3 *right, std::size_t n) {
   }
 }
 
-/* Cuts each of the intervals between the breaks into `parts`, a power of two; empty where the intervals are too short to cut. */
+/* Cuts each of the intervals between the breaks into `parts`, a power of two; empty where the intervals are too short
+ * to cut. */
 std::vector<Eigen::AlignedBox3d> cutBoxes(const cprox_curve *curve, const std::vector<double> &breaks,
                                           std::size_t parts) {
   const cprox_curve_info info = cprox_curve_get_info(curve);

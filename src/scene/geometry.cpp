@@ -12,7 +12,8 @@
 namespace curve_proximity {
 namespace {
 
-/* What a type expects in `dimensions`: how many, what they are called, and from which value on; `optional`: or none at all. */
+/* What a type expects in `dimensions`: how many, what they are called, and from which value on; `optional`: or none at
+ * all. */
 struct Expected {
   std::size_t n;
   const char *names;

@@ -61,7 +61,7 @@ bool isFlat(const Points &points) {
   return !(thickness > FLATNESS * length);
 }
 
-/* ---- qhull ---------------------------------------------------------------------------------------------------------- */
+/* ---- qhull ---- */
 
 /* What qhull finds: extreme points, and the surface as triangles of their numbers. Empty where it gives up. */
 struct Surface {
@@ -69,8 +69,8 @@ struct Surface {
   std::vector<HullFacet> facets;
 };
 
-/* Qhull's own check of its result (option Tv) takes a hundred times as long as its work. coveringPoints() proves what is
- * needed of the result instead. */
+/* Qhull's own check of its result (option Tv) takes a hundred times as long as its work. coveringPoints() proves what
+ * is needed of the result instead. */
 Surface surfaceOf(const Points &points) {
   Surface out;
   const std::unique_ptr<FILE, int (*)(FILE *)> nowhere(std::fopen("/dev/null", "w"), std::fclose);
@@ -108,11 +108,11 @@ Surface surfaceOf(const Points &points) {
   return out;
 }
 
-/* ---- the proof that points are covered --------------------------------------------------------------------------------- */
+/* ---- the proof that points are covered ---- */
 
-/* A set seen from a point within: each facet of the hull is the end of a cone. A point that is a convex combination of that
- * centre and of the corners of a facet is in the hull, whatever the facets are. The weights come from determinants, and how
- * far the combination is from the point is measured: errors of the weights are harmless. */
+/* A set seen from a point within: each facet of the hull is the end of a cone. A point that is a convex combination of
+ * that centre and of the corners of a facet is in the hull, whatever the facets are. The weights come from
+ * determinants, and how far the combination is from the point is measured: errors of the weights are harmless. */
 class Cones {
  public:
   /* centre: in the hull of the points. */
@@ -122,8 +122,8 @@ class Cones {
     link();
   }
 
-  /* A bound on the distance from p to the hull but for rounding, infinity where the walk from cone to cone does not arrive.
-   * The walk starts at the cone of the last point. */
+  /* A bound on the distance from p to the hull but for rounding, infinity where the walk from cone to cone does not
+   * arrive. The walk starts at the cone of the last point. */
   double distance(const Eigen::Vector3d &p) {
     if (cones_.empty()) return INFINITY;
     const Eigen::Vector3d way = p - centre_;

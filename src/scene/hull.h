@@ -24,11 +24,11 @@ using HullFacet = std::array<int, 3>;
 /* The extreme points of `all`, or all of them where they are few or flat. `all`: at least one, finite, each once. */
 HullPoints hullPointsOf(const Points &all);
 
-/* Makes `kept`, some of the points of `all`, cover all of them: by their hull, by the excess where a point stands out by
- * no more than rounding, or by taking it back.
+/* Makes `kept`, some of the points of `all`, cover all of them: by their hull, by the excess where a point stands out
+ * by no more than rounding, or by taking it back.
  *
- *  facets  the surface of the hull of `kept`, numbers of points in `kept`. They only save time: a point that they do not
- *          prove to be covered is asked of the core. */
+ *  facets  the surface of the hull of `kept`, numbers of points in `kept`. They only save time: a point that they do
+ * not prove to be covered is asked of the core. */
 HullPoints coveringPoints(const Points &all, Points kept, const std::vector<HullFacet> &facets = {});
 
 /* The polytope of points. */

@@ -107,8 +107,8 @@ class Builder {
     return addLink(parent, type, joint.origin, joint.axis, variableOf(joint.leader), joint.multiplier, joint.offset);
   }
 
-  /* The variable of a joint of one value. A leader may come after those that follow it: its variable is made when it is first
-   * heard of. */
+  /* The variable of a joint of one value. A leader may come after those that follow it: its variable is made when it is
+   * first heard of. */
   int variableOf(const std::string &name) {
     const auto known = out_.variables.find(name);
     if (known != out_.variables.end()) return known->second;

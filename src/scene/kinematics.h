@@ -39,7 +39,8 @@ struct Kinematics {
   std::vector<MovingGeometry> geometries;
 };
 
-/* The robot of the snapshot, its root link at `place` in the fixed frame or on a joint of its own there. Throws Error. */
+/* The robot of the snapshot, its root link at `place` in the fixed frame or on a joint of its own there. Throws Error.
+ */
 std::shared_ptr<const Kinematics> makeKinematics(const Snapshot &snapshot, const std::vector<VirtualJoint> &base,
                                                  const std::vector<std::string> &base_joints,
                                                  const Eigen::Isometry3d &place);

@@ -16,14 +16,14 @@ struct MeshData {
   Triangles triangles;
 };
 
-/* Reads any format that assimp knows, in a process of its own: a malformed file costs seconds at most. Throws Error, naming the
- * file and what is wrong with it, where it is cut short or otherwise malformed, or holds no triangle. */
+/* Reads any format that assimp knows, in a process of its own: a malformed file costs seconds at most. Throws Error,
+ * naming the file and what is wrong with it, where it is cut short or otherwise malformed, or holds no triangle. */
 MeshData readMesh(const std::string &file);
 
 /* The mesh, scaled along the axes, as a level-of-detail body of the convex hull of the vertices that triangles use, and
- * the triangles. The hull is kept in memory and found again by the mesh's content. Throws Error: no triangle, an index out
- * of range, vertices or scale not finite, a scale of 0; CPROX_MEMORY where the triangles would take more than memory_limit
- * bytes. */
+ * the triangles. The hull is kept in memory and found again by the mesh's content. Throws Error: no triangle, an index
+ * out of range, vertices or scale not finite, a scale of 0; CPROX_MEMORY where the triangles would take more than
+ * memory_limit bytes. */
 Geometry makeMeshGeometry(const MeshData &mesh, const Eigen::Vector3d &scale, bool solid, std::size_t memory_limit);
 
 /* A mesh file that a description names. */

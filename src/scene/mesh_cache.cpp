@@ -26,7 +26,7 @@ constexpr std::uint64_t FORMAT = 1;
 constexpr std::size_t MEMORY_LIMIT = std::size_t{64} << 20;
 constexpr std::uintmax_t FOLDER_LIMIT = std::uintmax_t{1} << 30, FOLDER_AFTER = FOLDER_LIMIT / 4 * 3;
 
-/* ---- in memory ------------------------------------------------------------------------------------------------------ */
+/* ---- in memory ---- */
 
 std::size_t sizeOf(const PreparedMesh &mesh) {
   return sizeof mesh + static_cast<std::size_t>(mesh.mesh.vertices.size()) * sizeof(double) +
@@ -77,7 +77,7 @@ Memory &memory() {
   return one;
 }
 
-/* ---- files ---------------------------------------------------------------------------------------------------------- */
+/* ---- files ---- */
 
 struct Head {
   char magic[16];

@@ -32,9 +32,10 @@ std::string systemError(const std::string &what, int code) {
   return what + ": " + std::strerror(code);
 }
 
-/* ---- what must not be left behind ---------------------------------------------------------------------------------- */
+/* ---- what must not be left behind ---- */
 
-/* Above the standard ones, so that the process that is started can be given it as one of them; closed in every other. */
+/* Above the standard ones, so that the process that is started can be given it as one of them; closed in every other.
+ */
 class Descriptor {
  public:
   Descriptor() = default;
@@ -74,7 +75,8 @@ class Process {
   Process(const Process &) = delete;
   Process &operator=(const Process &) = delete;
 
-  /* Its status once it has ended, at the latest at the deadline, when it is killed. -1 where someone else has reaped it. */
+  /* Its status once it has ended, at the latest at the deadline, when it is killed. -1 where someone else has reaped
+   * it. */
   int status(Clock::time_point deadline) {
     while (!reaped_) {
       if (reap(WNOHANG)) break;
@@ -110,7 +112,7 @@ class Process {
   bool reaped_ = false;
 };
 
-/* ---- starting ------------------------------------------------------------------------------------------------------ */
+/* ---- starting ---- */
 
 /* The file as standard input, the pipe as standard output, and signals as in a process that nobody has changed. */
 class SpawnSettings {
@@ -148,7 +150,7 @@ class SpawnSettings {
   posix_spawnattr_t attributes_;
 };
 
-/* ---- listening ----------------------------------------------------------------------------------------------------- */
+/* ---- listening ---- */
 
 /* What the process writes, until a deadline. */
 class Inbox {
@@ -225,7 +227,7 @@ Received receive(Inbox inbox, std::uint64_t most) {
   return out;
 }
 
-/* ---- what is said of a process that did not answer ----------------------------------------------------------------- */
+/* ---- what is said of a process that did not answer ---- */
 
 std::string endOf(int status, const mesh_reader::Limits &limits) {
   if (status != -1 && WIFSIGNALED(status)) {

@@ -17,12 +17,14 @@ namespace curve_proximity {
 /* The program curve_proximity_mesh_reader, where it stands beside this library. */
 std::string meshReaderProgram();
 
-/* What `program` says of the file (mesh_reader/protocol.h). The process has limits of memory and time, which grow with the
- * file; one that keeps neither them nor the protocol is ended. Throws Error in one sentence without the file's name.
- * Thread safety: any number of threads. SIGCHLD and SIGPIPE may be ignored, blocked or handled, and a handler may reap. */
+/* What `program` says of the file (mesh_reader/protocol.h). The process has limits of memory and time, which grow with
+ * the file; one that keeps neither them nor the protocol is ended. Throws Error in one sentence without the file's
+ * name. Thread safety: any number of threads. SIGCHLD and SIGPIPE may be ignored, blocked or handled, and a handler may
+ * reap. */
 MeshData readMeshBy(const std::string &program, const std::string &file);
 
-/* A mesh file as it is at one moment: its digest and what is read of it belong together, whoever writes the file meanwhile. */
+/* A mesh file as it is at one moment: its digest and what is read of it belong together, whoever writes the file
+ * meanwhile. */
 class MeshFile {
  public:
   /* Opens the file and copies it. Throws Error in one sentence without the file's name. */
@@ -31,7 +33,8 @@ class MeshFile {
   MeshFile(const MeshFile &) = delete;
   MeshFile &operator=(const MeshFile &) = delete;
 
-  /* Of the content and of the name's extension, which tells the format; nothing where the file is too large to be copied. */
+  /* Of the content and of the name's extension, which tells the format; nothing where the file is too large to be
+   * copied. */
   const std::optional<Digest> &digest() const {
     return digest_;
   }

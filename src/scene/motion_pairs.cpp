@@ -10,7 +10,7 @@ namespace {
 
 using Links = std::array<std::string, 2>;
 
-/* ---- the pairs ----------------------------------------------------------------------------------------------------- */
+/* ---- the pairs ---- */
 
 Links ordered(const std::string &a, const std::string &b) {
   return a < b ? Links{a, b} : Links{b, a};
@@ -37,8 +37,8 @@ bool mayTouch(const MovingGeometry &a, const MovingGeometry &b) {
   return std::find(touch.begin(), touch.end(), *b.link) != touch.end();
 }
 
-/* Why two geometries of the robot are not asked about; "" where they are. Neighbours in the chain overlap by their making; what is
- * carried does not, and is asked about as soon as a joint moves it against the other. */
+/* Why two geometries of the robot are not asked about; "" where they are. Neighbours in the chain overlap by their
+ * making; what is carried does not, and is asked about as soon as a joint moves it against the other. */
 std::string exemptionOf(const MovingGeometry &a, const MovingGeometry &b, const RobotMotion::Data &data,
                         const std::set<Links> &off) {
   const auto link_a = static_cast<std::int32_t>(data.kinematics->links.at(*a.link));

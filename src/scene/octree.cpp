@@ -22,7 +22,7 @@ constexpr std::size_t NODE_BYTES = 96;
 
 constexpr int CELLS = 1 << OCTREE_DEPTH;
 
-/* ---- the header of a file ------------------------------------------------------------------------------------------- */
+/* ---- the header of a file ---- */
 
 struct Header {
   OctreeData octree;
@@ -52,7 +52,7 @@ Header readHeader(std::istream &stream) {
   throw Error("its header has no end: the word data is missing");
 }
 
-/* ---- the cells ------------------------------------------------------------------------------------------------------ */
+/* ---- the cells ---- */
 
 /* A cube of cells, counted from the corner of the space that octrees divide. */
 struct Cube {

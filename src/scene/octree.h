@@ -9,12 +9,13 @@
 
 namespace curve_proximity {
 
-/* The octree in a .bt or .ot file. Throws Error, naming the file: no such header, a size that the header does not keep. */
+/* The octree in a .bt or .ot file. Throws Error, naming the file: no such header, a size that the header does not keep.
+ */
 OctreeData readOctree(const std::string &file);
 
-/* A box for each occupied cell of the tree, merged where eight of them fill a larger one; with unknown_is_occupied also for what was
- * never measured inside the box of all measured cells. Throws Error: bytes that end too early or go deeper than octrees
- * do, a resolution that is not above 0, an unknown kind; CPROX_MEMORY beyond memory_limit bytes. */
+/* A box for each occupied cell of the tree, merged where eight of them fill a larger one; with unknown_is_occupied also
+ * for what was never measured inside the box of all measured cells. Throws Error: bytes that end too early or go deeper
+ * than octrees do, a resolution that is not above 0, an unknown kind; CPROX_MEMORY beyond memory_limit bytes. */
 Boxes cellBoxes(const OctreeData &octree, bool unknown_is_occupied, std::size_t memory_limit);
 
 } // namespace curve_proximity

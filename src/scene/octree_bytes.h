@@ -12,8 +12,8 @@ namespace curve_proximity {
 /* Levels below the root: cells are 2^-OCTREE_DEPTH of the whole. */
 constexpr int OCTREE_DEPTH = 16;
 
-/* How many nodes the bytes hold. Throws Error where they end too early, go deeper than octrees do or hold an occupancy that is no
- * number; for a resolution that is not above 0 and a kind of node that is not known. */
+/* How many nodes the bytes hold. Throws Error where they end too early, go deeper than octrees do or hold an occupancy
+ * that is no number; for a resolution that is not above 0 and a kind of node that is not known. */
 std::size_t countNodes(const OctreeData &octree);
 
 } // namespace curve_proximity

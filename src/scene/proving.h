@@ -19,7 +19,8 @@ void leaveProof(const Query &query, const cprox_mover &mover, const std::vector<
 /* Why nothing at all can be proven where this body takes part; empty where it can. `who`: "object 'can'". */
 std::string unprovableBody(const std::string &who, const cprox_body *body);
 
-/* The number of lines and a line a convex part, with the name of its owner; empty where a body is of a kind that has no certificates. */
+/* The number of lines and a line a convex part, with the name of its owner; empty where a body is of a kind that has no
+ * certificates. */
 std::string targetLines(const std::vector<cprox_obstacle> &targets, const std::vector<std::string> &names);
 
 /* The text as one word. */

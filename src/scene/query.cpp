@@ -39,7 +39,7 @@ struct Search {
   }
 };
 
-/* ---- rounding ------------------------------------------------------------------------------------------------------ */
+/* ---- rounding ---- */
 
 /* How far the curve's points can be from a position. */
 double farthest(const CompiledCurve &curve, const cprox_vec3 &from) {
@@ -63,7 +63,7 @@ double roundingOf(const Search &search) {
   return most;
 }
 
-/* ---- the choice of what can matter --------------------------------------------------------------------------------- */
+/* ---- the choice of what can matter ---- */
 
 double gapTo(const CompiledCurve &curve, const PlacedShape &shape) {
   double gap = INFINITE;
@@ -155,7 +155,7 @@ void choose(const Targets::Data &data, Search &search) {
   if (search.chosen.size() == search.items.size()) search.left_out = INFINITE;
 }
 
-/* ---- the search ---------------------------------------------------------------------------------------------------- */
+/* ---- the search ---- */
 
 cprox_status runCore(const Search &search, const cprox_options &options, cprox_result &result) {
   std::vector<cprox_obstacle> targets;

@@ -7,8 +7,8 @@
 
 namespace curve_proximity {
 
-/* The shape enlarged about its own origin, of a mesh about the mean of its vertices; the pose says where that puts it. scale > 0.
- * Throws Error where a mesh file cannot be read, and for octrees. */
+/* The shape enlarged about its own origin, of a mesh about the mean of its vertices; the pose says where that puts it.
+ * scale > 0. Throws Error where a mesh file cannot be read, and for octrees. */
 ShapeDescription scaledShape(const ShapeDescription &shape, double scale, const ResourceOptions &resources);
 
 } // namespace curve_proximity

@@ -143,7 +143,7 @@ void applyOperation(const Operation &operation, Prepared &prepared, const Attach
   }
 }
 
-/* ---- what links carry ---------------------------------------------------------------------------------------------- */
+/* ---- what links carry ---- */
 
 /* What an attachment changes of a scene. */
 struct Carrying {
@@ -218,7 +218,7 @@ void checkLinkPaddings(const std::map<std::string, double> &paddings, const Robo
   }
 }
 
-/* ---- who may touch whom --------------------------------------------------------------------------------------------- */
+/* ---- who may touch whom ---- */
 
 using NamedPair = std::pair<const std::string &, const std::string &>;
 
@@ -247,7 +247,7 @@ const AllowedPair *findAllowed(const std::vector<AllowedPair> &matrix, const Nam
 
 } // namespace
 
-/* ---- World -------------------------------------------------------------------------------------------------------- */
+/* ---- World ---- */
 
 World::World(const Objects &objects) {
   std::vector<Eigen::AlignedBox3d> boxes;
@@ -268,7 +268,7 @@ World::World(const Objects &objects) {
   tree_ = std::make_unique<const Broadphase>(boxes);
 }
 
-/* ---- Snapshot ------------------------------------------------------------------------------------------------------ */
+/* ---- Snapshot ---- */
 
 Snapshot::Snapshot() : allowed_(std::make_shared<const std::vector<AllowedPair>>()) {}
 Snapshot::~Snapshot() = default;
@@ -319,7 +319,7 @@ void Snapshot::scaleLinks(const std::map<std::string, double> &scales, const Res
   for (auto it = link_scale_.begin(); it != link_scale_.end();) it = it->second == 1.0 ? link_scale_.erase(it) : ++it;
 }
 
-/* ---- Scene --------------------------------------------------------------------------------------------------------- */
+/* ---- Scene ---- */
 
 Scene::Scene(std::shared_ptr<const Robot> robot, ResourceOptions resources, const std::vector<AllowedPair> &allowed)
     : resources_(std::move(resources)),

@@ -30,10 +30,10 @@ std::string attribute(const XMLElement &element, const char *name) {
   return text ? text : "";
 }
 
-/* ---- the document, before urdfdom sees it ---------------------------------------------------------------------- */
+/* ---- the document, before urdfdom sees it ---- */
 
-/* Elements that say nothing about where collision geometry is. urdfdom gives up on a whole link where it dislikes one of
- * them, so they are taken out. */
+/* Elements that say nothing about where collision geometry is. urdfdom gives up on a whole link where it dislikes one
+ * of them, so they are taken out. */
 void stripTo(XMLElement &parent, const std::set<std::string> &wanted) {
   for (XMLElement *child = parent.FirstChildElement(); child;) {
     XMLElement *next = child->NextSiblingElement();
@@ -141,7 +141,7 @@ void readJointElements(XMLElement &robot, const Inventory &inventory) {
   }
 }
 
-/* ---- urdfdom's types in Eigen's ---------------------------------------------------------------------------------- */
+/* ---- urdfdom's types in Eigen's ---- */
 
 Eigen::Vector3d toEigen(const urdf::Vector3 &v) {
   return {v.x, v.y, v.z};
@@ -216,7 +216,7 @@ std::string elementName(const std::string &link, std::size_t number, std::size_t
 
 } // namespace
 
-/* ---- the reader -------------------------------------------------------------------------------------------------- */
+/* ---- the reader ---- */
 
 /* Builds one Robot; has access to its members. */
 class RobotReader {
@@ -366,8 +366,8 @@ class RobotReader {
     joint.leader = at->name;
   }
 
-  /* The mesh files of all links, each once, loaded by several threads. What cannot be resolved is told where its link is
-   * read. */
+  /* The mesh files of all links, each once, loaded by several threads. What cannot be resolved is told where its link
+   * is read. */
   void loadMeshes(const urdf::ModelInterface &model, const Inventory &inventory) {
     for (const auto &[name, faults] : inventory) {
       const urdf::LinkConstSharedPtr link = model.getLink(name);

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What every attack begins with: random cases of one family, each held against a reference that shares no code with the core.
+/* What every attack begins with: random cases of one family, each held against a reference that shares no code with the
+ * core.
  *
  *   PROGRAM [SIZE] [SEED] [--case N] [--seconds S]
  *
- * Case N of a seed has random numbers of its own, so that it can be run again alone. A wrong case is one line with the command
- * that repeats it; the last line is `N passed, N failed`. Exit code 1 where a case failed or none was run. README.md has more. */
+ * Case N of a seed has random numbers of its own, so that it can be run again alone. A wrong case is one line with the
+ * command that repeats it; the last line is `N passed, N failed`. Exit code 1 where a case failed or none was run.
+ * README.md has more. */
 #ifndef CPROX_TEST_ATTACK_H
 #define CPROX_TEST_ATTACK_H
 
@@ -35,7 +37,8 @@ void attack_kind(attack *a, const char *format, ...) __attribute__((format(print
 /* Counts something that is no fault, such as "undecided": the summary shows it. */
 void attack_count(attack *a, const char *what);
 
-/* This case is wrong: what was asked, what was answered, what is true (%.17g). Later faults of the same case are not printed. */
+/* This case is wrong: what was asked, what was answered, what is true (%.17g). Later faults of the same case are not
+ * printed. */
 void attack_fail(attack *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* attack_fail() where the condition does not hold. Returns the condition. */

@@ -158,7 +158,8 @@ static vec3l all_shrunken(const part *f, vec3l p, long double weight) {
                  copysignl(shrunken(fabsl(p.z), f->size.z, f->exponents.z, weight), p.z)};
 }
 
-/* By the multiplier of the constraint, in its logarithm, with false positions: the greater end is always inside the body. */
+/* By the multiplier of the constraint, in its logarithm, with false positions: the greater end is always inside the
+ * body. */
 static vec3l nearest_power(const part *f, vec3l p) {
   if (power_at(f, p) <= 1.0L) return p;
   const long double far = ref_norm(p) + f->size.x + f->size.y + f->size.z, unit = far * far;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Random bodies of every kind, with distances and supports of their own in long double. Each is a union of parts, and each part one
- * of nine forms of which the nearest point is found by the plainest method: all facets, all triangles, bisection. */
+/* Random bodies of every kind, with distances and supports of their own in long double. Each is a union of parts, and
+ * each part one of nine forms of which the nearest point is found by the plainest method: all facets, all triangles,
+ * bisection. */
 #ifndef CPROX_TEST_ATTACK_BODIES_H
 #define CPROX_TEST_ATTACK_BODIES_H
 
@@ -28,10 +29,9 @@ typedef struct part {
   double offset, margin; /* margin: a ball added */
   vec3 points[BODY_POINTS], high[BODY_POINTS];
   size_t n, m;
-  uint32_t
-      triangles[BODY_TRIANGLES]
-               [3]; /* of a mesh; of a hull the facets, seen from outside counter-clockwise, or all where it is flat */
-  bool full;        /* hull: it has an inside; mesh: the inside counts */
+  uint32_t triangles[BODY_TRIANGLES][3]; /* of a mesh; of a hull the facets, seen from outside counter-clockwise, or all
+                                            where it is flat */
+  bool full;                             /* hull: it has an inside; mesh: the inside counts */
 } part;
 
 typedef struct random_body {
@@ -49,16 +49,16 @@ typedef struct random_body {
 
 enum { BODY_KINDS = 24 };
 
-/* Fills b, which must stay where it is: callbacks point into it. The kind is a number below BODY_KINDS; sizes from about
- * scale/1000 to scale. The core's reason fails the case where it refuses the body. */
+/* Fills b, which must stay where it is: callbacks point into it. The kind is a number below BODY_KINDS; sizes from
+ * about scale/1000 to scale. The core's reason fails the case where it refuses the body. */
 void body_make(attack *a, rng *r, size_t kind, double scale, random_body *b);
 
 /* One kind that a curve can carry. */
 size_t body_carried_kind(rng *r);
 void body_free(random_body *b);
 
-/* The distance to the posed body, 0 inside, and the nearest point (the point itself inside). An upper bound always; the distance
- * itself within 2^-60 of the sizes for forms but FORM_POWER, there within 2^-50. */
+/* The distance to the posed body, 0 inside, and the nearest point (the point itself inside). An upper bound always; the
+ * distance itself within 2^-60 of the sizes for forms but FORM_POWER, there within 2^-50. */
 long double body_nearest(const random_body *b, const cprox_pose *pose, vec3l p, vec3l *nearest);
 
 /* How deep the point is in the posed body, least way out of its deepest part; 0 outside. Only where b->depth. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Bodies of revolution whose axes all but coincide, axes 0 or 1e-14 to 1e-2 sizes apart and as much askew, pairs and carried. Every
- * direction bounds the depth from above, in long double, whose own error is 1e-17 of what is added up: the upper end must not lie
- * below any of them, and the lower end of a pair not above what its own normal proves. */
+/* Bodies of revolution whose axes all but coincide, axes 0 or 1e-14 to 1e-2 sizes apart and as much askew, pairs and
+ * carried. Every direction bounds the depth from above, in long double, whose own error is 1e-17 of what is added up:
+ * the upper end must not lie below any of them, and the lower end of a pair not above what its own normal proves. */
 #include <string.h>
 
 #include "attack.h"
@@ -69,8 +69,8 @@ static long double phi(const coaxial *c, vec3l u) {
   return ref_dot(u, ref_sub(shape_extreme(&c->a, &c->pa, away), shape_extreme(&c->b, &c->pb, u))) / ref_norm(u);
 }
 
-/* Of directions all round the axis and in the planes of the misalignment, the one that leads out soonest, climbed from by smaller and
- * smaller steps. */
+/* Of directions all round the axis and in the planes of the misalignment, the one that leads out soonest, climbed from
+ * by smaller and smaller steps. */
 static long double soonest_way_out(rng *r, const coaxial *c) {
   long double best = -HUGE_VALL;
   vec3l u = {0, 0, 1};

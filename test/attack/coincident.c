@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Overlaps whose centres lie 0 or 1e-17 to 1e-8 sizes apart: pairs of all convex kinds, carried bodies, and curves through hulls. At
- * least one of the two is thick: it holds a ball about its centre that is known in closed form, or by its planes in long double,
- * and the other's centre is a point of the other. So a common point deep inside is known without a search, and must be proven. The ends of the
- * interval are held against directions in long double, whose own error is 1e-17 of what is added up. */
+/* Overlaps whose centres lie 0 or 1e-17 to 1e-8 sizes apart: pairs of all convex kinds, carried bodies, and curves
+ * through hulls. At least one of the two is thick: it holds a ball about its centre that is known in closed form, or by
+ * its planes in long double, and the other's centre is a point of the other. So a common point deep inside is known
+ * without a search, and must be proven. The ends of the interval are held against directions in long double, whose own
+ * error is 1e-17 of what is added up. */
 #include <string.h>
 
 #include "attack.h"
@@ -25,7 +26,8 @@ static double inner_radius(const test_shape *s) {
   }
 }
 
-/* The octahedron and the hulls of points all round their middle: their inner radius is that of the octahedron within. */
+/* The octahedron and the hulls of points all round their middle: their inner radius is that of the octahedron within.
+ */
 static double make_hull(rng *r, double scale, double aspect, test_shape *s) {
   memset(s, 0, sizeof *s);
   s->kind = CPROX_BODY_POLYTOPE;

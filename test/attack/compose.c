@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Everything with everything: curves of every family, points, balls and bodies on them, bodies of every kind, curves and other moving
- * objects as obstacles, every query, scales from 1e-6 to 1e6 m, up to 1e6 scales from the origin, every accuracy and budget.
+/* Everything with everything: curves of every family, points, balls and bodies on them, bodies of every kind, curves
+ * and other moving objects as obstacles, every query, scales from 1e-6 to 1e6 m, up to 1e6 scales from the origin,
+ * every accuracy and budget.
  *
- * Held against scenes.h. A lower bound must not be above a distance that is found at any parameter; at the parameter of an upper
- * bound the distance must not be above it, and the witness points must lie in both and be as near; verdicts must follow from that;
- * a status ok promises the width. Not a number, more intervals than the budget and results of a failed call are faults. */
+ * Held against scenes.h. A lower bound must not be above a distance that is found at any parameter; at the parameter of
+ * an upper bound the distance must not be above it, and the witness points must lie in both and be as near; verdicts
+ * must follow from that; a status ok promises the width. Not a number, more intervals than the budget and results of a
+ * failed call are faults. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Time of contact: "violated" is a common point at t, and otherwise upper is the distance of the two points that are reported. The points are
- * held against the bodies where they are then, in long double; contact face on face is known in closed form. */
+/* Time of contact: "violated" is a common point at t, and otherwise upper is the distance of the two points that are
+ * reported. The points are held against the bodies where they are then, in long double; contact face on face is known
+ * in closed form. */
 #include <math.h>
 
 #include "attack.h"
@@ -36,7 +37,8 @@ static long double off(const solid *s, const cprox_pose *pose, vec3 world) {
   return s->kind == 2 ? ref_point_box(p, s->half) : ref_point_hull(p, s->corner, 6);
 }
 
-/* Both points on their bodies, and what is said of them. `signed_too`: where the bodies overlap upper is minus a depth. */
+/* Both points on their bodies, and what is said of them. `signed_too`: where the bodies overlap upper is minus a depth.
+ */
 static void check_words(attack *a, const cprox_result *x, double epsilon, const solid *s[2], const cprox_pose pose[2],
                         bool signed_too) {
   static const double ROOM = 1e-10; /* sizes are about 1, and points come from weighted sums and poses */
@@ -58,7 +60,7 @@ static void check_words(attack *a, const cprox_result *x, double epsilon, const 
     attack_check(a, x->upper <= epsilon * 1.000001 + ROOM, "undecided, but upper is %.17g", x->upper);
 }
 
-/* ---- along a curve, and at constant velocities ------------------------------------------------------------------------------ */
+/* ---- along a curve, and at constant velocities ---- */
 
 static void along_curve(attack *a, rng *r, double epsilon) {
   attack_kind(a, "along a curve");
@@ -114,7 +116,7 @@ static void at_velocities(attack *a, rng *r, double epsilon) {
   for (int i = 0; i < 2; i++) cprox_body_free(s[i].body);
 }
 
-/* ---- a box that screws onto a box ------------------------------------------------------------------------------------------- */
+/* ---- a box that screws onto a box ---- */
 
 /* It goes down a way of 1 s at constant speed while it turns about the vertical: contact at a time that is known. */
 static void screw(attack *a, rng *r, double epsilon) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Bodies without an inside: a curve that passes through one meets it at a parameter that double need not contain, and a curve that slides
- * along one touches it and no more. Contact is told in long double by the curve's root in the plane and its place among the edges there:
- * exact to 1e-18 of the sizes. */
+/* Bodies without an inside: a curve that passes through one meets it at a parameter that double need not contain, and a
+ * curve that slides along one touches it and no more. Contact is told in long double by the curve's root in the plane
+ * and its place among the edges there: exact to 1e-18 of the sizes. */
 #include <math.h>
 
 #include "attack.h"
@@ -131,7 +131,7 @@ static void make_curves(attack *a, rng *r, scene *c, vec3 hit) {
   if (c->synchronized) c->clock = make_curve(a, c, c->other);
 }
 
-/* ---- the truth ----------------------------------------------------------------------------------------------------------- */
+/* ---- the truth ---- */
 
 static vec3l normal_of(const vec3l *corner, size_t n) {
   vec3l best = {0, 0, 0};
@@ -158,7 +158,8 @@ static long double inside_by(const vec3l *corner, size_t n, vec3l normal, vec3l 
   return least;
 }
 
-/* The root of the height over the plane that is nearest to t and not far behind it: bisection between signs, outward in steps. */
+/* The root of the height over the plane that is nearest to t and not far behind it: bisection between signs, outward in
+ * steps. */
 static bool root_near(const scene *c, vec3l normal, vec3l origin, long double t, long double *root) {
   const long double most = c->splines ? (long double)c->degree : 1.0L;
   for (long double step = 1e-17L; step < 1e-3L; step *= 4.0L) {
@@ -181,7 +182,7 @@ static long double sine_at(const scene *c, vec3l normal, long double t) {
   return fabsl(ref_dot(normal, along)) / ref_norm(along);
 }
 
-/* ---- the answers --------------------------------------------------------------------------------------------------------- */
+/* ---- the answers ---- */
 
 static void check_contact(attack *a, const scene *c, const char *what, const cprox_result *x, const vec3l *corner,
                           size_t n, bool must) {
@@ -238,8 +239,8 @@ static void ask(attack *a, rng *r, const scene *c, bool must) {
                  "contact at %.17g, t %.17g, t_contact_lower %.17g", (double)root, x.t, x.t_contact_lower);
 }
 
-/* A body with a flat face in the plane z = 0 and nothing above it, and what slides there: a point or a small box whose lower
- * face lies in that plane. Its pose shifts the body, so that the face is where the curve is. */
+/* A body with a flat face in the plane z = 0 and nothing above it, and what slides there: a point or a small box whose
+ * lower face lies in that plane. Its pose shifts the body, so that the face is where the curve is. */
 static cprox_status make_sliding(attack *a, rng *r, cprox_body **body, cprox_pose *pose) {
   const vec3 corner[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {rng_uniform(r, -1, 1), rng_uniform(r, -1, 1), -1}};
   *pose = CPROX_POSE_IDENTITY;
@@ -254,8 +255,8 @@ static cprox_status make_sliding(attack *a, rng *r, cprox_body **body, cprox_pos
   return cprox_body_create_halfspace(vec(0, 0, 1), 0.0, a->ws, body);
 }
 
-/* Sliding in the plane, or along a face of a body that has an inside: nothing can be proven, and soon nothing is tried any
- * more. */
+/* Sliding in the plane, or along a face of a body that has an inside: nothing can be proven, and soon nothing is tried
+ * any more. */
 static void slide(attack *a, rng *r) {
   attack_kind(a, "sliding");
   vec3 points[5];

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Points inside hulls: on faces, edges, vertices, diagonals, planes through vertices, or a hair beside them. The reference is the
- * nearest of the hull's planes in quadruple precision, which loses nothing of the products of doubles: all planes through three
- * vertices of small hulls that have the others on one side, the known faces of bipyramids and their like of up to 600 vertices. */
+/* Points inside hulls: on faces, edges, vertices, diagonals, planes through vertices, or a hair beside them. The
+ * reference is the nearest of the hull's planes in quadruple precision, which loses nothing of the products of doubles:
+ * all planes through three vertices of small hulls that have the others on one side, the known faces of bipyramids and
+ * their like of up to 600 vertices. */
 #include <float.h>
 #include <string.h>
 
@@ -101,8 +102,8 @@ static void make_bipyramid(rng *r, hull *h) {
 
 /* ---- the reference ---- */
 
-/* The height of p over the plane, positive outside; false where vertices lie on both sides by more than quadruple precision leaves
- * open, or the plane is none. */
+/* The height of p over the plane, positive outside; false where vertices lie on both sides by more than quadruple
+ * precision leaves open, or the plane is none. */
 static bool height_over(const hull *h, const int face[3], bool known, vec3 p, quad *height) {
   const vec3 a = h->v[face[0]];
   const quad3 normal = q_cross(q_sub(h->v[face[1]], a), q_sub(h->v[face[2]], a));
@@ -120,7 +121,8 @@ static bool height_over(const hull *h, const int face[3], bool known, vec3 p, qu
   return true;
 }
 
-/* The greatest height over a plane of the hull: minus the depth inside, at most the distance outside. False where the hull is flat. */
+/* The greatest height over a plane of the hull: minus the depth inside, at most the distance outside. False where the
+ * hull is flat. */
 static bool reference(const hull *h, vec3 p, quad *distance) {
   bool found = false;
   quad height = 0;

@@ -227,7 +227,7 @@ static void ask_curves(attack *a, rng *r, setting *s) {
   cprox_curve_free(other);
 }
 
-/* ---- the same in other units: lengths times a power of 2, which rounds nothing ---------------------------------------------- */
+/* ---- the same in other units: lengths times a power of 2, which rounds nothing ---- */
 
 static vec3 scaled(double by, vec3 p) {
   return vec_scale(by, p);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Random curves of every family, evaluated in long double by their definitions: none by Bézier pieces but those that are given so. */
+/* Random curves of every family, evaluated in long double by their definitions: none by Bézier pieces but those that
+ * are given so. */
 #ifndef CPROX_TEST_ATTACK_PATHS_H
 #define CPROX_TEST_ATTACK_PATHS_H
 
@@ -40,11 +41,12 @@ typedef struct random_path {
 
 const char *path_name(path_family family);
 
-/* A curve about `origin`, of size about scale; in the plane z = 0 of the origin where planar. p must stay where it is. The core's
- * reason fails the case where it refuses the curve. */
+/* A curve about `origin`, of size about scale; in the plane z = 0 of the origin where planar. p must stay where it is.
+ * The core's reason fails the case where it refuses the curve. */
 void path_make(attack *a, rng *r, path_family family, double scale, vec3 origin, bool planar, random_path *p);
 
-/* The same family and size on a given range, for a mover on another's clock: false where the family has no free range. */
+/* The same family and size on a given range, for a mover on another's clock: false where the family has no free range.
+ */
 bool path_has_range(path_family family);
 void path_make_on(attack *a, rng *r, path_family family, double scale, vec3 origin, bool planar, double t0, double t1,
                   random_path *p);

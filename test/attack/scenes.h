@@ -33,7 +33,8 @@ typedef struct scene {
 bool scene_make(attack *a, rng *r, scene *s);
 void scene_free(scene *s);
 
-/* What is checked at one parameter t. `at` is the obstacle's own parameter where it is a curve at rest, NAN: the best of many. */
+/* What is checked at one parameter t. `at` is the obstacle's own parameter where it is a curve at rest, NAN: the best
+ * of many. */
 
 /* No less than the distance of the moving object from obstacle i, radius and margin taken off and not cut at 0:
  * negative where they overlap by so much at least. Where neither carries a body and the obstacle is no curve at rest it
@@ -54,7 +55,8 @@ long double scene_witness_room(const scene *s, size_t i);
 /* The steps to both sides of t within which a parameter of the core may have been rounded. */
 double scene_step(const random_path *p);
 
-/* The smallest scene_distance() that is found over [t0, t1], beginning with samples, t and what is near it. *where: its parameter. */
+/* The smallest scene_distance() that is found over [t0, t1], beginning with samples, t and what is near it. *where: its
+ * parameter. */
 long double scene_least(const scene *s, size_t i, rng *r, double t, double t0, double t1, double *where);
 
 #endif

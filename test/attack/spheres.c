@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Two balls anywhere: their signed distance has a closed form. The shortest family, and the one to begin another from. */
+/* Two balls anywhere: their signed distance has a closed form. The shortest family, and the one to begin another from.
+ */
 #include <float.h>
 
 #include "attack.h"

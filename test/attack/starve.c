@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Allocation failures: every allocation of every constructor and of every query on a random scene fails once, the first, then the
- * second, until the call gets by. A call that fails says so by its status, gives back all it took and leaves its output untouched; one
- * that does without the memory answers as truly as before; the next call with the same workspace answers as if nothing had been. */
+/* Allocation failures: every allocation of every constructor and of every query on a random scene fails once, the
+ * first, then the second, until the call gets by. A call that fails says so by its status, gives back all it took and
+ * leaves its output untouched; one that does without the memory answers as truly as before; the next call with the same
+ * workspace answers as if nothing had been. */
 #include <math.h>
 #include <string.h>
 
@@ -296,7 +297,8 @@ static void starve_query(attack *a, const scene *s, size_t query, const cprox_op
       attack_check(a, ask(s, query, o, ws, x) == asked, "query %zu, allocation %zu: the next query is not answered",
                    query, k);
     } else if (status < 0 && strstr(cprox_workspace_error(ws), "support")) {
-      /* without its tables the search asks in other directions, and an implicit body may know no support along one of them */
+      /* without its tables the search asks in other directions, and an implicit body may know no support along one of
+       * them */
       attack_count(a, "no support of an implicit body");
       memcpy(x, full, sizeof x);
     } else {

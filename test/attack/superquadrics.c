@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Superquadrics anywhere, turned by quaternions of any norm: lines that pass them, standing points, each other. The reference is an
- * interval in long double that rests on a point of the body and on a tangent plane of it; it holds its own rounding. */
+/* Superquadrics anywhere, turned by quaternions of any norm: lines that pass them, standing points, each other. The
+ * reference is an interval in long double that rests on a point of the body and on a tangent plane of it; it holds its
+ * own rounding. */
 #include <float.h>
 #include <math.h>
 
@@ -118,8 +119,8 @@ static void ask_point(attack *a, rng *r) {
   cprox_body_free(c.body);
 }
 
-/* What bounds the distance of two from both sides: points of the bodies that are found by going to and fro, and the planes across their
- * differences. Coordinates are those of the world about c's position. */
+/* What bounds the distance of two from both sides: points of the bodies that are found by going to and fro, and the
+ * planes across their differences. Coordinates are those of the world about c's position. */
 static ref_interval distance_of_two(const scene *c, const scene *d, vec3l start, double apart) {
   const vec3l shift = ref_sub(ref_vec(d->pose.position), ref_vec(c->pose.position));
   const cprox_pose turn_c = {.orientation = c->pose.orientation}, turn_d = {.orientation = d->pose.orientation};

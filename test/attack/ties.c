@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Gradients where the nearest points, the way out or the place on the curve may be more than one. What is called a gradient must be the
- * derivative to either side, by one-sided differences of distances that are known to 1e-10 or better: steps of 1e-3 to 1e-8, of which one
- * must fit within 2e-3. Ties turn the derivative by more than that; what is smooth has second derivatives below 1e5. */
+/* Gradients where the nearest points, the way out or the place on the curve may be more than one. What is called a
+ * gradient must be the derivative to either side, by one-sided differences of distances that are known to 1e-10 or
+ * better: steps of 1e-3 to 1e-8, of which one must fit within 2e-3. Ties turn the derivative by more than that; what is
+ * smooth has second derivatives below 1e5. */
 #include <math.h>
 
 #include "attack.h"
@@ -19,9 +20,7 @@ typedef struct problem {
   double radius, margin;
 } problem;
 
-/* ---- asking
- * -----------------------------------------------------------------------------------------------------------------
- */
+/* ---- asking ---- */
 
 static cprox_curve *make_curve(attack *a, const problem *p, const vec3 *points) {
   cprox_curve *curve = NULL;
@@ -121,9 +120,7 @@ static void check(attack *a, rng *r, const problem *p) {
   }
 }
 
-/* ---- problems
- * ---------------------------------------------------------------------------------------------------------------
- */
+/* ---- problems ---- */
 
 static cprox_quat turn_about(int axis, double angle) {
   cprox_quat q = {cos(0.5 * angle), 0, 0, 0};

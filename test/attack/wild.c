@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Wild arguments: not a number, infinities, huge and denormal numbers, sizes of 0, wrong kinds of words, n = 0, NULL where it is allowed.
- * Every constructor and every query either answers with an interval of numbers or refuses with a sentence and leaves its output
- * untouched. Meant for the sanitizers; what no sanitizer sees (a hang, a wrong interval of a wild query) shows here
- * too. */
+/* Wild arguments: not a number, infinities, huge and denormal numbers, sizes of 0, wrong kinds of words, n = 0, NULL
+ * where it is allowed. Every constructor and every query either answers with an interval of numbers or refuses with a
+ * sentence and leaves its output untouched. Meant for the sanitizers; what no sanitizer sees (a hang, a wrong interval
+ * of a wild query) shows here too. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* soundness SIZE SEED: random queries in the plane and in space, scales from 1e-6 to 1e6 m, up to 1e6 m from the origin, each interval
- * held against distances in long double: lower is not above the distance at any point of the curve that is looked at (the
- * witness, its neighbourhood, 16 others), upper not below that at the witness. Half of the queries ask for the narrowest interval, so
- * that a lower bound which is too high by a rounding shows.
+/* soundness SIZE SEED: random queries in the plane and in space, scales from 1e-6 to 1e6 m, up to 1e6 m from the
+ * origin, each interval held against distances in long double: lower is not above the distance at any point of the
+ * curve that is looked at (the witness, its neighbourhood, 16 others), upper not below that at the witness. Half of the
+ * queries ask for the narrowest interval, so that a lower bound which is too high by a rounding shows.
  *
- * Points lie on a grid on which their differences to the body's position are exact: the reference works on those, so that its own error
- * is 2^-64 of the sizes and not of the offset; ROOM covers that. Run by CI with 20,000 queries; scripts/soundness runs more. */
+ * Points lie on a grid on which their differences to the body's position are exact: the reference works on those, so
+ * that its own error is 2^-64 of the sizes and not of the offset; ROOM covers that. Run by CI with 20,000 queries;
+ * scripts/soundness runs more. */
 #include <float.h>
 #include <inttypes.h>
 #include <stdio.h>

@@ -93,10 +93,10 @@ CASE(curves_against_curves_leave_certificates_that_hold) {
   examine_many(3, 60, (asked_kinds){.curve_target = true}, "curve, curve");
 }
 
-/* ---- meshes ----------------------------------------------------------------------------------------------------------------- */
+/* ---- meshes ---- */
 
-/* The least distance that is seen from the curve to the triangles of the target, or into the inside of a closed one: no claim may say
- * that it is farther. */
+/* The least distance that is seen from the curve to the triangles of the target, or into the inside of a closed one: no
+ * claim may say that it is farther. */
 static double seen(const asked *q, size_t target, cprox_workspace *ws) {
   const query_mesh *mesh = &q->mesh[target];
   const cprox_obstacle *t = &q->targets[target];
@@ -226,7 +226,7 @@ CASE(that_a_hull_is_near_proves_nothing_of_its_mesh) {
   cprox_workspace_free(ws);
 }
 
-/* ---- work ------------------------------------------------------------------------------------------------------------------- */
+/* ---- work ---- */
 
 /* The numbers of a query: points of both curves, vertices, and what every target takes. */
 static double numbers_of(const asked *q) {

@@ -141,10 +141,10 @@ CASE(random_robots_leave_certificates_that_hold) {
   cprox_certificate_free(c);
 }
 
-/* ---- meshes ----------------------------------------------------------------------------------------------------------------- */
+/* ---- meshes ---- */
 
-/* 60 robots with meshes on links and beside them (seed 5). The answer is that without a certificate; what is proven is accepted and
- * does not contradict the distance to the triangles; of hulls nothing is near. */
+/* 60 robots with meshes on links and beside them (seed 5). The answer is that without a certificate; what is proven is
+ * accepted and does not contradict the distance to the triangles; of hulls nothing is near. */
 CASE(meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are) {
   cprox_certificate *c = cprox_certificate_create();
   rng r = rng_seed(5);
@@ -177,7 +177,7 @@ CASE(meshes_of_robots_leave_proofs_that_hold_and_answers_as_they_are) {
   cprox_certificate_free(c);
 }
 
-/* ---- directions whose squares underflow ------------------------------------------------------------------------------------ */
+/* ---- directions whose squares underflow ---- */
 
 static size_t put(unsigned char *to, uint64_t bits, size_t n) {
   for (size_t i = 0; i < n; i++) to[i] = (unsigned char)(bits >> (8 * i) & 255);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Projections onto cores, and what is found by them of pairs: held against closed forms, differences and known distances. */
+/* Projections onto cores, and what is found by them of pairs: held against closed forms, differences and known
+ * distances. */
 #include "base/rounding.h"
 #include "convex/feature.h"
 #include "convex/pair.h"
@@ -18,8 +19,9 @@ enum { N_PROJECTED = 6, FIRST_SOLID = 2, N_SOLID = 5 };
 
 /* ---- feet ---- */
 
-/* Seed 801, 1e5 points, from inside to 10 sizes away, on both sides of every limit between pieces. The distance of the foot is that of
- * the closed form, margin put back, to 32 roundings of the sizes; the foot is a point of the core and, inside, the point itself. */
+/* Seed 801, 1e5 points, from inside to 10 sizes away, on both sides of every limit between pieces. The distance of the
+ * foot is that of the closed form, margin put back, to 32 roundings of the sizes; the foot is a point of the core and,
+ * inside, the point itself. */
 CASE(a_foot_is_the_nearest_point_of_the_core) {
   rng r = rng_seed(801);
   static test_shape s;
@@ -43,9 +45,9 @@ CASE(a_foot_is_the_nearest_point_of_the_core) {
   }
 }
 
-/* Seed 802, 5e4 points outside: the foot moves along its tangents as `along` says and nowhere else, by central differences of
- * 1e-6; where the two ends fall on pieces of other dimensions nothing is said. Tolerance 1e-6: second derivatives of bodies of
- * size .25 to 1 and rounding over the step. */
+/* Seed 802, 5e4 points outside: the foot moves along its tangents as `along` says and nowhere else, by central
+ * differences of 1e-6; where the two ends fall on pieces of other dimensions nothing is said. Tolerance 1e-6: second
+ * derivatives of bodies of size .25 to 1 and rounding over the step. */
 CASE(a_foot_moves_along_its_tangents) {
   rng r = rng_seed(802);
   const double h = 1e-6;
@@ -96,9 +98,9 @@ static vec3 near_axis(rng *r, const cprox_pose *pose, double tilt) {
   return vec_axpy(vec((double)turned.x, (double)turned.y, (double)turned.z), tilt, rng_unit(r));
 }
 
-/* Seed 803, 2e5 pairs of boxes, capsules, cylinders, cones and ellipsoids: half of them in the attitudes where faces, edges, rims and axes are
- * parallel or nearly so (tilts of 1e-16 to 1e-2), aspects up to 1e6, size ratios up to 1e12, gaps of 1e-15 to 10 sizes. Distances by
- * construction; tolerance: what the rounding of b's position moved. */
+/* Seed 803, 2e5 pairs of boxes, capsules, cylinders, cones and ellipsoids: half of them in the attitudes where faces,
+ * edges, rims and axes are parallel or nearly so (tilts of 1e-16 to 1e-2), aspects up to 1e6, size ratios up to 1e12,
+ * gaps of 1e-15 to 10 sizes. Distances by construction; tolerance: what the rounding of b's position moved. */
 CASE(grazing_rims_and_parallel_edges_lie_in_the_interval) {
   rng r = rng_seed(803);
   static test_shape a, b;
@@ -151,7 +153,8 @@ static double distance_at(const test_shape *a, const test_shape *b, const pair_p
   return answer.upper - answer.rounding;
 }
 
-/* The second derivative along d that the feature says: of a flat one, what is across its directions, over the distance. */
+/* The second derivative along d that the feature says: of a flat one, what is across its directions, over the distance.
+ */
 static double curvature_along(const pair_feature *feature, vec3 d, double distance) {
   if (!feature->flat) return feature_quadratic(feature->hessian, d, d);
   vec3 e, f, rest = d, foot = feature->w[0];
@@ -171,9 +174,9 @@ static double curvature_along(const pair_feature *feature, vec3 d, double distan
   return vec_norm2(rest) / distance;
 }
 
-/* Seed 806, 2e4 pairs, somewhere and apart by their sizes: the feature tells the second derivative of the distance of the cores, by central differences of
- * 1e-4. Tolerance 1e-4: rounding of 1e-15 over 1e-8, and fourth derivatives up to 1e3 times 1e-8; in one pair of five hundred the step may cross to
- * another feature. */
+/* Seed 806, 2e4 pairs, somewhere and apart by their sizes: the feature tells the second derivative of the distance of
+ * the cores, by central differences of 1e-4. Tolerance 1e-4: rounding of 1e-15 over 1e-8, and fourth derivatives up to
+ * 1e3 times 1e-8; in one pair of five hundred the step may cross to another feature. */
 CASE(the_feature_tells_how_the_distance_bends) {
   rng r = rng_seed(806);
   const double h = 1e-4;

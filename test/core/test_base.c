@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Statuses, the workspace and poses. u = 2^-53; exact answers in long double, 2000 times finer than every bound here. */
+/* Statuses, the workspace and poses. u = 2^-53; exact answers in long double, 2000 times finer than every bound here.
+ */
 #include <stdio.h>
 #include <string.h>
 
@@ -186,7 +187,8 @@ CASE(the_error_of_local_coordinates_is_never_understated) {
   assert_true(largest > 0.05);
 }
 
-/* seed 402, 100,000 round trips: the error of the way there, 27 u of the local size and u of the world's for the way back */
+/* seed 402, 100,000 round trips: the error of the way there, 27 u of the local size and u of the world's for the way
+ * back */
 CASE(world_coordinates_come_back) {
   rng r = rng_seed(402);
   for (size_t i = test_cases(100000); i-- > 0;) {
@@ -248,8 +250,8 @@ static void scale_quaternion(cprox_quat *q, double norm) {
   q->w *= norm, q->x *= norm, q->y *= norm, q->z *= norm;
 }
 
-/* seed 405, 100,000 pairs of poses, quaternions of any norm: one after the other is their composition. 64 u of all sizes covers two turns of 26 u
- * and the rounding of the product of the quaternions. */
+/* seed 405, 100,000 pairs of poses, quaternions of any norm: one after the other is their composition. 64 u of all
+ * sizes covers two turns of 26 u and the rounding of the product of the quaternions. */
 CASE(composition_applies_the_inner_pose_first) {
   rng r = rng_seed(405);
   for (size_t i = test_cases(100000); i-- > 0;) {

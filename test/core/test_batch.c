@@ -10,7 +10,8 @@
 #include "support/of_list.h"
 #include "support/reference.h"
 
-/* The least distance over many parameters, by the plain nearest-point function of bodies: an upper bound on the truth. */
+/* The least distance over many parameters, by the plain nearest-point function of bodies: an upper bound on the truth.
+ */
 static double sampled_distance(const batch_scene *s, size_t i) {
   enum { STEPS = 200 };
   double least = INFINITY, t0, t1;
@@ -30,8 +31,8 @@ static double sampled_distance(const batch_scene *s, size_t i) {
   return fmax(least, 0.0);
 }
 
-/* Seed 11, 20 scenes of 64 movers; the two answers are of one truth, so their intervals share a point. A verdict that one gives and
- * the other does not, though both are within their epsilon, is counted: none is met at this seed. */
+/* Seed 11, 20 scenes of 64 movers; the two answers are of one truth, so their intervals share a point. A verdict that
+ * one gives and the other does not, though both are within their epsilon, is counted: none is met at this seed. */
 CASE(answers_agree_with_those_of_one_mover) {
   rng r = rng_seed(11);
   cprox_workspace *workspace = cprox_workspace_create();
@@ -73,8 +74,8 @@ CASE(answers_agree_with_those_of_one_mover) {
   cprox_workspace_free(workspace);
 }
 
-/* A witness is where it says: the mover's surface point is within its radius of the curve's point, and both points are `upper` apart
- * or one. Seed 12; 1e-9 is the plain evaluation's own rounding, amply. */
+/* A witness is where it says: the mover's surface point is within its radius of the curve's point, and both points are
+ * `upper` apart or one. Seed 12; 1e-9 is the plain evaluation's own rounding, amply. */
 CASE(witnesses_lie_where_they_say) {
   rng r = rng_seed(12);
   cprox_workspace *workspace = cprox_workspace_create();
@@ -135,8 +136,9 @@ CASE(a_disc_tells_nothing_of_curves_off_its_plane) {
   cprox_workspace_free(workspace);
 }
 
-/* Seed 18, 4000 balls, each part of a compound, 1e6 m from the compound's origin, which stands as far off the other way: where the ball
- * stands depends on the rounding of both, 1e-10 m. Limits are nearly as near to the truth as that. The reference's own error is 1e-12. */
+/* Seed 18, 4000 balls, each part of a compound, 1e6 m from the compound's origin, which stands as far off the other
+ * way: where the ball stands depends on the rounding of both, 1e-10 m. Limits are nearly as near to the truth as that.
+ * The reference's own error is 1e-12. */
 CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
   rng r = rng_seed(18);
   cprox_workspace *workspace = cprox_workspace_create();
@@ -183,8 +185,9 @@ CASE(parts_far_from_their_compound_stay_where_the_interval_is) {
   cprox_workspace_free(workspace);
 }
 
-/* Seed 22: 300 quintics, some of them tubes, through 80 small boxes: the verdicts of the queries of one mover, in intervals that share a point with
- * theirs; what is called a hit has a point of the tube within a box, or within the limit of it. Bricks leave next to no verdict and next to no contact to search. */
+/* Seed 22: 300 quintics, some of them tubes, through 80 small boxes: the verdicts of the queries of one mover, in
+ * intervals that share a point with theirs; what is called a hit has a point of the tube within a box, or within the
+ * limit of it. Bricks leave next to no verdict and next to no contact to search. */
 CASE(small_boxes_are_met_or_passed_without_a_search) {
   enum { CURVES = 300, BOXES = 80 };
   rng r = rng_seed(22);

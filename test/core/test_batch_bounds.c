@@ -12,8 +12,8 @@
 #include "support/curves.h"
 #include "support/reference.h"
 
-/* Seed 14, 2000 sets of 13 balls, scales 1e-6 … 1e6, offsets to 1e6 of them: never above the distance in long double, and no
- * farther below than twice the rounding that the code states. */
+/* Seed 14, 2000 sets of 13 balls, scales 1e-6 … 1e6, offsets to 1e6 of them: never above the distance in long double,
+ * and no farther below than twice the rounding that the code states. */
 CASE(ball_bounds_are_never_above_the_true_distance) {
   enum { BALLS = 13, PADDED = 16 };
   rng r = rng_seed(14);
@@ -42,8 +42,8 @@ CASE(ball_bounds_are_never_above_the_true_distance) {
   }
 }
 
-/* Seed 15, 3000 pieces of all degrees: chords begin within (10 n + 16) u of de Casteljau's points in long double; the nearest point of
- * the chords is no farther and no nearer than that of each by itself, within 16 u of the sizes. */
+/* Seed 15, 3000 pieces of all degrees: chords begin within (10 n + 16) u of de Casteljau's points in long double; the
+ * nearest point of the chords is no farther and no nearer than that of each by itself, within 16 u of the sizes. */
 CASE(chords_are_those_of_the_piece) {
   rng r = rng_seed(15);
   cprox_workspace *workspace = cprox_workspace_create();
@@ -93,8 +93,8 @@ static long double square_from_box(const lanes_box *box, vec3 p) {
   return beyond[0] * beyond[0] + beyond[1] * beyond[1] + beyond[2] * beyond[2];
 }
 
-/* Seed 19, 3000 pieces of all degrees, 8 balls each, at offsets up to 1e6: the bound by boxes is never above the distance of the chords in them,
- * lies within 160 u of the sizes below that of the boxes, and lowers nothing. */
+/* Seed 19, 3000 pieces of all degrees, 8 balls each, at offsets up to 1e6: the bound by boxes is never above the
+ * distance of the chords in them, lies within 160 u of the sizes below that of the boxes, and lowers nothing. */
 CASE(boxes_bound_the_chords_in_them) {
   enum { BALLS = 8 };
   rng r = rng_seed(19);
@@ -141,7 +141,8 @@ CASE(boxes_bound_the_chords_in_them) {
   cprox_workspace_free(workspace);
 }
 
-/* Seed 20, 2000 pieces of all degrees: points within a chord are those of de Casteljau in long double, within (10 n + 16) u. */
+/* Seed 20, 2000 pieces of all degrees: points within a chord are those of de Casteljau in long double, within (10 n +
+ * 16) u. */
 CASE(chords_are_cut_again_where_the_piece_goes) {
   rng r = rng_seed(20);
   cprox_workspace *workspace = cprox_workspace_create();
@@ -164,7 +165,8 @@ CASE(chords_are_cut_again_where_the_piece_goes) {
   cprox_workspace_free(workspace);
 }
 
-/* The distance of a point of the chord from the OBB, in long double; the frame's matrix is taken as it is, which a rotation is but for 20 u. */
+/* The distance of a point of the chord from the OBB, in long double; the frame's matrix is taken as it is, which a
+ * rotation is but for 20 u. */
 static long double from_obb(const lanes_obb *b, const lanes_chords *c, size_t k, long double s) {
   const long double v[3] = {(long double)c->x[k] + s * (long double)c->dx[k] - (long double)b->position.x,
                             (long double)c->y[k] + s * (long double)c->dy[k] - (long double)b->position.y,
@@ -181,8 +183,9 @@ static long double from_obb(const lanes_obb *b, const lanes_chords *c, size_t k,
   return sqrtl(square);
 }
 
-/* Seed 21, 1000 OBBs anywhere, also flat ones and points, 1 to 1e6 m away: the bound of a chord is not above its distance, which is convex along the
- * chord and found by golden section to 1e-12 of it; it is the distance to 5 % and less for nine chords in ten that are apart; the point is where it says. */
+/* Seed 21, 1000 OBBs anywhere, also flat ones and points, 1 to 1e6 m away: the bound of a chord is not above its
+ * distance, which is convex along the chord and found by golden section to 1e-12 of it; it is the distance to 5 % and
+ * less for nine chords in ten that are apart; the point is where it says. */
 CASE(obbs_bound_chords_from_below) {
   rng r = rng_seed(21);
   cprox_workspace *workspace = cprox_workspace_create();
@@ -230,8 +233,8 @@ CASE(obbs_bound_chords_from_below) {
   cprox_workspace_free(workspace);
 }
 
-/* Seed 23, 20 scenes: an OBB holds the points of its part that lie farthest in 100 directions, and each of its faces has one of them within a
- * third of its width; 1e-12 is the rounding of the poses here, amply. */
+/* Seed 23, 20 scenes: an OBB holds the points of its part that lie farthest in 100 directions, and each of its faces
+ * has one of them within a third of its width; 1e-12 is the rounding of the poses here, amply. */
 CASE(obbs_hold_their_parts) {
   rng r = rng_seed(23);
   cprox_workspace *workspace = cprox_workspace_create();
@@ -276,8 +279,9 @@ CASE(obbs_hold_their_parts) {
   cprox_workspace_free(workspace);
 }
 
-/* Seed 24: 75 boxes, compounds of two, and two halfspaces, which have no balls. Each part is in one block; the bound of a block is above the distance of none
- * of its balls from 4 boxes, in long double, and no more than 160 u of the sizes below that of the box round its balls. */
+/* Seed 24: 75 boxes, compounds of two, and two halfspaces, which have no balls. Each part is in one block; the bound of
+ * a block is above the distance of none of its balls from 4 boxes, in long double, and no more than 160 u of the sizes
+ * below that of the box round its balls. */
 CASE(blocks_hold_each_part_once_and_bound_it) {
   enum { N = 75, BOXES = 4 };
   rng r = rng_seed(24);

@@ -163,7 +163,8 @@ CASE(a_polygon_may_turn_either_way_and_repeat_or_line_up_vertices) {
   }
 }
 
-/* Seed 501, 1e5 points about polygons of 3 to 20 vertices, aspects up to 1e6 and sharp corners: in space and in the plane. */
+/* Seed 501, 1e5 points about polygons of 3 to 20 vertices, aspects up to 1e6 and sharp corners: in space and in the
+ * plane. */
 CASE(the_distance_of_a_polygon_is_within_its_rounding) {
   rng r = rng_seed(501);
   long double worst = 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The bound itself: whatever intervals the oracle makes, and whatever normals it uses, no bound lies above the distance of any
- * point in its interval, and the best upper bound is never below the distance at its own point. The distances are those of the
- * long double references, which know nothing of the search. */
+/* The bound itself: whatever intervals the oracle makes, and whatever normals it uses, no bound lies above the distance
+ * of any point in its interval, and the best upper bound is never below the distance at its own point. The distances
+ * are those of the long double references, which know nothing of the search. */
 #include "curve/curve.h"
 #include "curve_query/curve_convex.h"
 #include "support/cases.h"
@@ -22,8 +22,9 @@ typedef enum shape_kind {
   SHAPES
 } shape_kind;
 
-/* One random problem: a curve of one Bézier piece or of many end to end, a posed body, an offset. Sizes of the order `scale`, everything `away` from the origin, on a grid
- * on which points - position is exact: so the reference starts from `nearby`, where long double has digits to spare. */
+/* One random problem: a curve of one Bézier piece or of many end to end, a posed body, an offset. Sizes of the order
+ * `scale`, everything `away` from the origin, on a grid on which points - position is exact: so the reference starts
+ * from `nearby`, where long double has digits to spare. */
 typedef struct problem {
   size_t degree, pieces;
   vec3 points[MAX_POINTS], nearby[MAX_POINTS];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Bodies carried along curves, against bodies, compounds and curves: intervals, verdicts, witnesses, cost. Polyhedra are held
- * against the hull of all differences of vertices in long double; the other kinds against static pairs at many parameters, which
- * know nothing of curves. */
+/* Bodies carried along curves, against bodies, compounds and curves: intervals, verdicts, witnesses, cost. Polyhedra
+ * are held against the hull of all differences of vertices in long double; the other kinds against static pairs at many
+ * parameters, which know nothing of curves. */
 #include <stdlib.h>
 
 #include "base/rounding.h"
@@ -24,7 +24,7 @@ static cprox_body *polytope(const vec3 *v, size_t n) {
   return body;
 }
 
-/* ---- polyhedra, in long double ---------------------------------------------------------------------------------------------- */
+/* ---- polyhedra, in long double ---- */
 
 enum { MOST_DIFFERENCES = 16 };
 
@@ -59,8 +59,8 @@ static long double distance_of_hull(const vec3l *v, size_t n) {
   return nearest;
 }
 
-/* Every case is a curve in a cube of the scale, carrying at most 4 vertices past a posed hull of at most 4. The world is `away` from
- * the origin, on a grid on which differences are exact. */
+/* Every case is a curve in a cube of the scale, carrying at most 4 vertices past a posed hull of at most 4. The world
+ * is `away` from the origin, on a grid on which differences are exact. */
 typedef struct polyhedra {
   size_t degree, n_carried, n_standing;
   vec3 points[8], carried[4], standing[4];
@@ -137,7 +137,7 @@ CASE(intervals_of_carried_polytopes_contain_the_distance_in_long_double) {
   }
 }
 
-/* ---- every kind, against static pairs ------------------------------------------------------------------------------------------ */
+/* ---- every kind, against static pairs ---- */
 
 /* The pair at parameter t; its lower bound is on minus the depth where they overlap. */
 static cprox_result pair_at(const cprox_mover *mover, const cprox_obstacle *target, double t) {
@@ -169,7 +169,8 @@ static double distance_from(const cprox_body *body, const cprox_pose *pose, vec3
   return cprox_body_nearest(body, vec((double)local.x, (double)local.y, (double)local.z), NULL);
 }
 
-/* Seed 32: all pairs of bounded kinds, the halfspace too as what stands, 6 cases each; unit sizes, so that 1e-13 is a thousand u. */
+/* Seed 32: all pairs of bounded kinds, the halfspace too as what stands, 6 cases each; unit sizes, so that 1e-13 is a
+ * thousand u. */
 CASE(every_kind_is_carried_past_every_kind) {
   rng r = rng_seed(32);
   const size_t cases = test_cases(6);
@@ -253,10 +254,11 @@ CASE(compounds_are_carried_and_stand_as_the_nearest_of_their_parts) {
   }
 }
 
-/* Seed 34, 10 kinds x 12 cases: a curve as the target, at its own parameter, 16 x 16 pairs of parameters and those about the best. */
-/* Seed 34, 20,000 cases: a part far out in a compound that stands as far out the other way, so that the two shifts cancel and
- * their rounding is most of the error. A ball carried past a ball, and a box past a box whose rotation is undone: both have
- * their distance from a segment in closed form. */
+/* Seed 34, 10 kinds x 12 cases: a curve as the target, at its own parameter, 16 x 16 pairs of parameters and those
+ * about the best. */
+/* Seed 34, 20,000 cases: a part far out in a compound that stands as far out the other way, so that the two shifts
+ * cancel and their rounding is most of the error. A ball carried past a ball, and a box past a box whose rotation is
+ * undone: both have their distance from a segment in closed form. */
 CASE(a_part_is_placed_by_two_poses_within_their_rounding) {
   rng r = rng_seed(34);
   double nearest = 0.0;
@@ -353,7 +355,7 @@ CASE(a_carried_body_is_measured_against_a_curve) {
     }
 }
 
-/* ---- arguments, memory, cost ---------------------------------------------------------------------------------------------------- */
+/* ---- arguments, memory, cost ---- */
 
 CASE(an_unbounded_body_is_not_carried) {
   cprox_body *halfspace = NULL;
@@ -372,7 +374,8 @@ static int by_count(const void *a, const void *b) {
   return *(const uint32_t *)a < *(const uint32_t *)b ? -1 : *(const uint32_t *)a > *(const uint32_t *)b;
 }
 
-/* Seed 35, 200 problems a pair of kinds, quintics in the unit cube, epsilon 1e-9. No allocation once the first is answered. */
+/* Seed 35, 200 problems a pair of kinds, quintics in the unit cube, epsilon 1e-9. No allocation once the first is
+ * answered. */
 CASE(medians_stay_within_8_nodes_and_14_distance_queries) {
   enum { PROBLEMS = 200 };
   rng r = rng_seed(35);

@@ -186,8 +186,8 @@ CASE(intervals_may_begin_and_end_inside_pieces) {
   cprox_curve_free(curve);
 }
 
-/* 10^6 parameters of pieces anywhere, as short as a few doubles, seed 8: in 113 bits (or long double's 64) the fractions of a section
- * lie on the far sides of the parameter, and within 16 roundings of it. */
+/* 10^6 parameters of pieces anywhere, as short as a few doubles, seed 8: in 113 bits (or long double's 64) the
+ * fractions of a section lie on the far sides of the parameter, and within 16 roundings of it. */
 CASE(the_fractions_of_a_section_are_rounded_outward) {
   rng r = rng_seed(8);
   for (size_t i = 0, cases = test_cases(1000000); i < cases; i++) {

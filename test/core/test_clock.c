@@ -21,8 +21,9 @@ static cprox_curve *bezier_on(const vec3 *points, size_t n, double t0, double t1
   return curve;
 }
 
-/* Seed 41, 2000 cases, degrees 1 to 12, sizes 1e-3 to 1e3, up to 1e6 sizes from the origin: |psi(t) - phi(t)| in long double at 20
- * parameters and at the reported one. The points stand on a grid on which differences are exact, so the room is long double's own. */
+/* Seed 41, 2000 cases, degrees 1 to 12, sizes 1e-3 to 1e3, up to 1e6 sizes from the origin: |psi(t) - phi(t)| in long
+ * double at 20 parameters and at the reported one. The points stand on a grid on which differences are exact, so the
+ * room is long double's own. */
 CASE(points_on_one_clock_are_as_near_as_long_double_says) {
   rng r = rng_seed(41);
   const size_t cases = test_cases(2000);
@@ -73,8 +74,8 @@ CASE(points_on_one_clock_are_as_near_as_long_double_says) {
   }
 }
 
-/* Seed 45, 3000 cases, 10 parameters each: the converted piece, evaluated in long double, is within its error of R psi - phi; and the
- * error is no more than a hundred times what occurs. */
+/* Seed 45, 3000 cases, 10 parameters each: the converted piece, evaluated in long double, is within its error of R psi
+ * - phi; and the error is no more than a hundred times what occurs. */
 CASE(the_relative_curve_is_within_its_error) {
   rng r = rng_seed(45);
   const size_t cases = test_cases(3000);
@@ -141,8 +142,8 @@ static cprox_curve *spline(rng *r, size_t n, size_t degree, double t1) {
   return curve;
 }
 
-/* Seed 42, 400 cases: splines with joints of their own, turned targets, bodies of every kind or none on either side; static pairs at
- * 40 parameters. 1e-12: thousands of u of a few metres. */
+/* Seed 42, 400 cases: splines with joints of their own, turned targets, bodies of every kind or none on either side;
+ * static pairs at 40 parameters. 1e-12: thousands of u of a few metres. */
 CASE(splines_that_carry_bodies_agree_with_static_pairs) {
   rng r = rng_seed(42);
   const size_t cases = test_cases(400);

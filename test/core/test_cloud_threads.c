@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Points that move: bodies made by updates answer as bodies made anew, and queries run on the body as it was while the next one is made.
- * Also run under ThreadSanitizer. */
+/* Points that move: bodies made by updates answer as bodies made anew, and queries run on the body as it was while the
+ * next one is made. Also run under ThreadSanitizer. */
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,9 +25,10 @@ static cprox_curve *random_curve(rng *r) {
   return curve;
 }
 
-/* ---- the same answers ------------------------------------------------------------------------------------------------- */
+/* ---- the same answers ---- */
 
-/* Moves some points, near their places, so that boxes follow, or some of them far, so that blocks are sorted anew; *n of them, some twice. */
+/* Moves some points, near their places, so that boxes follow, or some of them far, so that blocks are sorted anew; *n
+ * of them, some twice. */
 static void move_some(rng *r, vec3 *points, size_t all, uint32_t *changed, vec3 *places, size_t *n) {
   const vec3 centre = rng_in_cube(r, 1.0);
   const double reach = rng_uniform(r, 0.0, 0.6), rarely = rng_index(r, 2) ? 0.5 : 0.002;
@@ -43,8 +44,8 @@ static void move_some(rng *r, vec3 *points, size_t all, uint32_t *changed, vec3 
   }
 }
 
-/* Clouds of 1 to 30,000 points (seed 131), 8 updates each, with and without memory of retired bodies: distances are those of a cloud
- * made anew, to epsilon; nearest points are equally far; the body before answers as before. */
+/* Clouds of 1 to 30,000 points (seed 131), 8 updates each, with and without memory of retired bodies: distances are
+ * those of a cloud made anew, to epsilon; nearest points are equally far; the body before answers as before. */
 CASE(updated_clouds_answer_as_new_ones_do) {
   enum { MOST = 30000 };
   static vec3 points[MOST], places[2 * MOST];
@@ -117,7 +118,7 @@ CASE(bad_updates_are_refused) {
   cprox_workspace_free(ws);
 }
 
-/* ---- while queries run ------------------------------------------------------------------------------------------------ */
+/* ---- while queries run ---- */
 
 enum { READERS = 2, POINTS = 8192, UPDATES = 20, KEPT = 4 };
 
@@ -168,8 +169,8 @@ static int free_slot(board *b) {
   }
 }
 
-/* Two readers, one writer that raises a plane of 8,192 points step by step, with the memory of retired bodies. Every answer is that of one
- * state, never of a mixture. */
+/* Two readers, one writer that raises a plane of 8,192 points step by step, with the memory of retired bodies. Every
+ * answer is that of one state, never of a mixture. */
 CASE(readers_see_one_state_while_the_next_is_made) {
   static vec3 points[POINTS];
   static uint32_t all[POINTS];

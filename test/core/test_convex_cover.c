@@ -68,8 +68,8 @@ static long double reach(const convex_cover *cover, vec3 p) {
   return ref_norm(w);
 }
 
-/* Seed 401, 1e5 covers of shapes of aspect up to 1e3: every extreme point tried lies inside to the last bit, and the cover
- * passes within 1e-12 (R + size) of the nearest point. Extreme points carry their own rounding, 8 u size. */
+/* Seed 401, 1e5 covers of shapes of aspect up to 1e3: every extreme point tried lies inside to the last bit, and the
+ * cover passes within 1e-12 (R + size) of the nearest point. Extreme points carry their own rounding, 8 u size. */
 CASE(a_cover_holds_the_whole_shape_and_touches_it) {
   rng r = rng_seed(401);
   size_t covers[N_KINDS] = {0}, cylinders[N_KINDS] = {0};
@@ -127,8 +127,8 @@ CASE(a_face_has_no_cover) {
   cprox_body_free(box);
 }
 
-/* Seed 402, 1e5 directions of any length: h(d) is d·x of the point it names, that point is in the shape and within its scale,
- * and no point of the shape lies beyond it. ROUND_SUPPORT u |d| scale as convex.h states it. */
+/* Seed 402, 1e5 directions of any length: h(d) is d·x of the point it names, that point is in the shape and within its
+ * scale, and no point of the shape lies beyond it. ROUND_SUPPORT u |d| scale as convex.h states it. */
 CASE(the_support_is_attained_and_never_passed) {
   rng r = rng_seed(402);
   for (size_t i = 0; i < test_cases(100000); i++) {
@@ -162,8 +162,9 @@ CASE(the_support_is_attained_and_never_passed) {
   }
 }
 
-/* Seed 403, 3e4 directions at least 0.2 off the axis: central differences over a turn of 1e-5 agree with the derivative within
- * 1e-6 sizes (their second order is 1e-10, their rounding 1e-11, times what a ratio of axes of 4 and 1/0.2 raise it by). */
+/* Seed 403, 3e4 directions at least 0.2 off the axis: central differences over a turn of 1e-5 agree with the derivative
+ * within 1e-6 sizes (their second order is 1e-10, their rounding 1e-11, times what a ratio of axes of 4 and 1/0.2 raise
+ * it by). */
 CASE(the_maximiser_moves_as_its_curvature_says) {
   rng r = rng_seed(403);
   const cprox_body_kind curved[] = {CPROX_BODY_CYLINDER, CPROX_BODY_CONE, CPROX_BODY_ELLIPSOID};

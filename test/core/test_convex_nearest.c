@@ -197,8 +197,8 @@ static void check_answer(const kind *k, const convex *shape, vec3 y, const conve
              shape->size[0], shape->size[1], shape->size[2], y.x, y.y, y.z,
              k->distance(shape->size, ref_vec(near->point)));
 
-  /* the normal is a unit vector; with it weak duality bounds the distance from below, outside as tightly as its rounding
-   * near the surface lets it */
+  /* the normal is a unit vector; with it weak duality bounds the distance from below, outside as tightly as its
+   * rounding near the surface lets it */
   assert_true(fabs(vec_norm(near->normal) - 1.0) <= 8.0 * ROUND_U);
   const double h = shape->ops->support(shape, near->normal, NULL, NULL) + shape->margin;
   const double bound = vec_dot(near->normal, y) - h;
@@ -229,8 +229,8 @@ static void check_kind(const kind *k) {
   print_message("%s: worst error %.2Lf u (|y| + scale)\n", k->name, worst);
 }
 
-/* Seeds 101 to 106, 1e5 points each at scales 1e-6 to 1e6, aspects up to 1e6: on and beside faces, edges, rims, axes and
- * surfaces, and far away. Long double (2^-64) is 2048 times finer than what is tested. */
+/* Seeds 101 to 106, 1e5 points each at scales 1e-6 to 1e6, aspects up to 1e6: on and beside faces, edges, rims, axes
+ * and surfaces, and far away. Long double (2^-64) is 2048 times finer than what is tested. */
 CASE(the_distance_of_a_sphere_is_within_its_rounding) {
   check_kind(&SPHERE);
 }
@@ -280,8 +280,8 @@ static bool same_feature(const convex_near *a, const convex_near *b) {
   return vec_equal(a->e[0], b->e[0]) && (a->tangents == 1 || vec_equal(a->e[1], b->e[1]));
 }
 
-/* Seed 108, 2e4 points a kind outside shapes of aspect up to 3, no nearer than 0.1 sizes, not within 1e-2 of a border between
- * features. Second differences with steps of 1e-4 sizes are good to 1e-7 (rounding/step², truncation step²). */
+/* Seed 108, 2e4 points a kind outside shapes of aspect up to 3, no nearer than 0.1 sizes, not within 1e-2 of a border
+ * between features. Second differences with steps of 1e-4 sizes are good to 1e-7 (rounding/step², truncation step²). */
 CASE(the_distance_field_bends_as_its_feature_says) {
   const kind *kinds[] = {&SPHERE, &BOX, &CAPSULE, &CYLINDER, &CONE, &ELLIPSOID};
   rng r = rng_seed(108);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Nearest points of vertex sets: against all faces where there are few, against a proof by duality where there are many. */
+/* Nearest points of vertex sets: against all faces where there are few, against a proof by duality where there are
+ * many. */
 #include "base/rounding.h"
 #include "shape/body.h"
 #include "support/cases.h"
@@ -138,8 +139,9 @@ static double check_certificate(const convex *shape, vec3 y, const convex_near *
   return near->distance - (vec_dot(near->normal, y) - h);
 }
 
-/* Seed 201, 1e5 points against hulls of 1 to 7 vertices in 0 to 3 dimensions, aspects up to 1e6, repeated and collinear vertices
- * among them. near_rounding u (|y| + scale) as convex.h states it; the hull by all segments, triangles and tetrahedra in quadruple precision. */
+/* Seed 201, 1e5 points against hulls of 1 to 7 vertices in 0 to 3 dimensions, aspects up to 1e6, repeated and collinear
+ * vertices among them. near_rounding u (|y| + scale) as convex.h states it; the hull by all segments, triangles and
+ * tetrahedra in quadruple precision. */
 CASE(the_distance_of_a_small_polytope_is_that_of_its_nearest_face) {
   rng r = rng_seed(201);
   long double worst = 0;
@@ -171,8 +173,8 @@ CASE(the_distance_of_a_small_polytope_is_that_of_its_nearest_face) {
   assert_true(inside > 100);
 }
 
-/* Seed 202, 2e5 points against hulls of 4 to 500 vertices, aspects up to 1e3: primal and dual meet within 64 u (|y| + scale),
- * near_rounding and as much again for the bound's own rounding and for normals of thin faces. */
+/* Seed 202, 2e5 points against hulls of 4 to 500 vertices, aspects up to 1e3: primal and dual meet within 64 u (|y| +
+ * scale), near_rounding and as much again for the bound's own rounding and for normals of thin faces. */
 CASE(the_normal_proves_the_distance_of_a_large_polytope) {
   rng r = rng_seed(202);
   double worst = 0.0;
@@ -237,7 +239,8 @@ CASE(the_middle_of_a_box_is_inside_it) {
   cprox_body_free(body);
 }
 
-/* Seed 207, 1e4 points in boxes, every third beside a face by 1e-15 to 1e-3: the least of six heights. The accuracy is that of body.h. */
+/* Seed 207, 1e4 points in boxes, every third beside a face by 1e-15 to 1e-3: the least of six heights. The accuracy is
+ * that of body.h. */
 CASE(a_point_inside_a_box_is_as_deep_as_its_nearest_face) {
   rng r = rng_seed(207);
   for (size_t i = 0; i < test_cases(10000); i++) {
@@ -292,7 +295,8 @@ CASE(repeated_vertices_do_not_end_the_search_early) {
   cprox_body_free(body);
 }
 
-/* The trap "v/|v| at 1e-12 S": a hair over a face the direction of the nearest point is noise, the face's normal is not. */
+/* The trap "v/|v| at 1e-12 S": a hair over a face the direction of the nearest point is noise, the face's normal is
+ * not. */
 CASE(the_normal_is_the_faces_own_a_hair_above_it) {
   rng r = rng_seed(206);
   for (int i = 0; i < 10000; i++) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* B-splines against the Cox-de Boor basis in long double. u = 2^-53, p the degree, M = max|control point of the span|. */
+/* B-splines against the Cox-de Boor basis in long double. u = 2^-53, p the degree, M = max|control point of the span|.
+ */
 #include <stdlib.h>
 
 #include "curve/curve.h"
@@ -84,8 +85,8 @@ CASE(pieces_cover_the_range_exactly) {
   }
 }
 
-/* seed 203, 100,000 parameters, knots and ends among them: (12p + 20) u M, of which 5p are the conversion's. Derivatives:
- * the conversion adds 2p · 5p and 4p(p-1) · 5p to the bounds of the Bézier test. */
+/* seed 203, 100,000 parameters, knots and ends among them: (12p + 20) u M, of which 5p are the conversion's.
+ * Derivatives: the conversion adds 2p · 5p and 4p(p-1) · 5p to the bounds of the Bézier test. */
 CASE(evaluation_by_t_stays_within_its_bound) {
   rng r = rng_seed(203);
   for (size_t i = test_cases(20000); i-- > 0;) {
@@ -158,7 +159,8 @@ CASE(bezier_knots_give_the_bezier_curve) {
   }
 }
 
-/* A double knot of a linear spline: the curve jumps from (1,0,0) to (5,0,0), and the right piece answers at the joint. */
+/* A double knot of a linear spline: the curve jumps from (1,0,0) to (5,0,0), and the right piece answers at the joint.
+ */
 CASE(a_curve_that_jumps_keeps_both_sides) {
   const vec3 p[4] = {{0, 0, 0}, {1, 0, 0}, {5, 0, 0}, {6, 0, 0}};
   const double knots[6] = {0, 0, 1, 1, 2, 2};

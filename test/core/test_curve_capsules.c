@@ -78,8 +78,9 @@ CASE(every_capsule_contains_its_part_of_the_curve) {
   }
 }
 
-/* Eight capsules at once reach no farther back along n than any control point below them (long double), and by no more than their
- * radii give away: a capsule's own ends are attained. 9 u of the sizes: 3 u a product, 2 u the sums, u a difference. */
+/* Eight capsules at once reach no farther back along n than any control point below them (long double), and by no more
+ * than their radii give away: a capsule's own ends are attained. 9 u of the sizes: 3 u a product, 2 u the sums, u a
+ * difference. */
 static void check_packs(const cprox_curve *c, rng *r) {
   const vec3 n = rng_unit(r), from = rng_in_cube(r, 2.0);
   for (size_t pack = 0; pack < curve_packs(c->n_leaves); pack++) {

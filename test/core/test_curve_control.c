@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What control points tell of a piece: halves within the error they state, distances from a centre never above the true ones. */
+/* What control points tell of a piece: halves within the error they state, distances from a centre never above the true
+ * ones. */
 #include "base/rounding.h"
 #include "curve/control.h"
 #include "curve/curve.h"
@@ -34,8 +35,8 @@ static long double section_error(const vec3 *p, size_t degree, double s0, double
   return most;
 }
 
-/* Seed 21, 1e5 cuts of degrees 1 to 60 at 0.5 and elsewhere, coordinates with awkward mantissas. The bound is T1 of doc/rounding.md; long
- * double itself is off by degree 2^-64 |P|, a 2048th of it. */
+/* Seed 21, 1e5 cuts of degrees 1 to 60 at 0.5 and elsewhere, coordinates with awkward mantissas. The bound is T1 of
+ * doc/rounding.md; long double itself is off by degree 2^-64 |P|, a 2048th of it. */
 CASE(halves_are_within_the_error_that_the_cut_states) {
   rng r = rng_seed(21);
   long double worst = 0;
@@ -61,8 +62,8 @@ CASE(halves_are_within_the_error_that_the_cut_states) {
   assert_true(worst > 0.05L); /* the bound is not margin */
 }
 
-/* A short arc at nearly constant distance from the centre: there the Bernstein coefficients lie close to the truth, and a bound
- * that forgot its rounding would show. */
+/* A short arc at nearly constant distance from the centre: there the Bernstein coefficients lie close to the truth, and
+ * a bound that forgot its rounding would show. */
 static void arc_random(rng *r, size_t degree, double scale, vec3 centre, const vec3 *axis, vec3 *p) {
   const vec3 out = rng_unit(r);
   const double reach = scale * rng_uniform(r, 0.5, 2.0), bend = scale * rng_log_uniform(r, 1e-12, 1e-4);
@@ -71,8 +72,8 @@ static void arc_random(rng *r, size_t degree, double scale, vec3 centre, const v
     for (size_t i = 0; i <= degree; i++) p[i] = vec_axpy(p[i], scale * rng_uniform(r, -100.0, 100.0), *axis);
 }
 
-/* Seed 22, 1e5 pieces of degrees 1 to 60, wide ones and arcs, with and without an axis; each at both ends, where the bound may be
- * attained, and at two points between. Tolerance 0: the slack is in the bound. */
+/* Seed 22, 1e5 pieces of degrees 1 to 60, wide ones and arcs, with and without an axis; each at both ends, where the
+ * bound may be attained, and at two points between. Tolerance 0: the slack is in the bound. */
 CASE(distances_from_a_centre_are_never_overstated) {
   rng r = rng_seed(22);
   long double tightest = 1e30L;

@@ -15,7 +15,7 @@
 
 enum { MAX_POINTS = 64, MAX_DEGREE = 12, MAX_OPEN = 64, STEPS = 20, INTERVALS = 120000 };
 
-/* ---- references -------------------------------------------------------------------------------------------------------- */
+/* ---- references ---- */
 
 static void check_case(const char *id, const cprox_curve *a, const cprox_curve *b, double reference) {
   /* epsilon 1e-9: the coordinates are those of the unit cube; the reference is a long double rounded to 17 digits */
@@ -78,7 +78,7 @@ CASE(curve_curve_intervals_contain_their_references) {
   csv_free(&ref);
 }
 
-/* ---- the bound --------------------------------------------------------------------------------------------------------- */
+/* ---- the bound ---- */
 
 typedef struct problem {
   size_t degree[2];
@@ -151,8 +151,8 @@ static size_t attack(const problem *p, rng *r) {
   return checked;
 }
 
-/* Seed 31, 120,000 pairs of intervals, each at two random points. Tolerance 0: the slack is in the bound; long double is off by a
- * 2048th of it. */
+/* Seed 31, 120,000 pairs of intervals, each at two random points. Tolerance 0: the slack is in the bound; long double
+ * is off by a 2048th of it. */
 CASE(no_bound_lies_above_the_distance_of_two_points) {
   rng r = rng_seed(31);
   for (size_t checked = 0; checked < test_cases(INTERVALS);) {
@@ -162,7 +162,7 @@ CASE(no_bound_lies_above_the_distance_of_two_points) {
   }
 }
 
-/* ---- where others do not end ------------------------------------------------------------------------------------------- */
+/* ---- where others do not end ---- */
 
 /* Each within its budget, with a true interval. */
 static cprox_result ask(const vec3 *a, size_t na, const vec3 *b, size_t nb, double epsilon, uint32_t most_nodes) {
@@ -287,8 +287,8 @@ static vec3l point_of(const double *points, size_t degree, double s) {
   return ref_bezier(control, degree, (long double)s, 0);
 }
 
-/* Seed 41, 1000 pairs of pieces of degrees 1 to 12: no two of 17 points of each, in long double, are nearer than those that are found,
- * within (10 n + 16) u of the size 2 for either point. */
+/* Seed 41, 1000 pairs of pieces of degrees 1 to 12: no two of 17 points of each, in long double, are nearer than those
+ * that are found, within (10 n + 16) u of the size 2 for either point. */
 CASE(the_first_pair_is_the_nearest_of_all_points_looked_at) {
   rng r = rng_seed(41);
   for (size_t round = 0; round < test_cases(1000); round++) {
@@ -309,8 +309,9 @@ CASE(the_first_pair_is_the_nearest_of_all_points_looked_at) {
   }
 }
 
-/* Seed 42, 400 pairs of degree 5 in neighbouring cubes, of which those count that are more than 0.02 apart. Nine in ten are seen at the
- * first node to come within 1.1 times their distance, and half are known within four to stay beyond 0.9 of it. */
+/* Seed 42, 400 pairs of degree 5 in neighbouring cubes, of which those count that are more than 0.02 apart. Nine in ten
+ * are seen at the first node to come within 1.1 times their distance, and half are known within four to stay beyond 0.9
+ * of it. */
 CASE(verdicts_about_pieces_take_few_nodes) {
   enum { PAIRS = 400, POINTS = 6 };
   rng r = rng_seed(42);

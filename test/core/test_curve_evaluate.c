@@ -15,8 +15,8 @@ static cprox_curve *bezier(const vec3 *p, size_t degree, double t0, double t1) {
   return c;
 }
 
-/* seed 101, 100,000 cases. Value: (3n + 8) u M, derived beside the function. The derivatives are n(d1 - d0) and so on of
- * points that are off by 3n u M each: n (6n + 8) u M and n(n-1)(12n + 12) u M. */
+/* seed 101, 100,000 cases. Value: (3n + 8) u M, derived beside the function. The derivatives are n(d1 - d0) and so on
+ * of points that are off by 3n u M each: n (6n + 8) u M and n(n-1)(12n + 12) u M. */
 CASE(a_bezier_point_and_its_derivatives_stay_within_their_bounds) {
   rng r = rng_seed(101);
   double largest = 0.0;

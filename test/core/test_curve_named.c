@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Curves with names (heart, ranunculoid, fish and Lissajous as trigonometric series, Euler spiral, involutes): the intervals
- * contain the reference answers of test/data/reference/named_ref.csv. */
+/* Curves with names (heart, ranunculoid, fish and Lissajous as trigonometric series, Euler spiral, involutes): the
+ * intervals contain the reference answers of test/data/reference/named_ref.csv. */
 #include <stdlib.h>
 #include <string.h>
 

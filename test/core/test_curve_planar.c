@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Clothoids, Dubins paths and involutes against their definitions in long double: every point of the compiled pieces is within
- * their error. Clothoids are integrated anew, by Gauss' rule with 16 nodes in steps of half a radian at most. */
+/* Clothoids, Dubins paths and involutes against their definitions in long double: every point of the compiled pieces is
+ * within their error. Clothoids are integrated anew, by Gauss' rule with 16 nodes in steps of half a radian at most. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -119,7 +119,8 @@ static double signed_uniform(rng *r, double low, double high) {
   return (rng_index(r, 2) ? 1.0 : -1.0) * rng_log_uniform(r, low, high);
 }
 
-/* seed 601, 2500 clothoids, 40 points each. What long double loses: 30 roundings of the length and those of the heading. */
+/* seed 601, 2500 clothoids, 40 points each. What long double loses: 30 roundings of the length and those of the
+ * heading. */
 CASE(clothoids_are_within_their_error) {
   rng r = rng_seed(601);
   worst w = {0};
@@ -228,8 +229,8 @@ static void walk_path(dubins_walker *d, const cprox_dubins_path *path, double ra
   }
 }
 
-/* seed 603, 3200 pairs of poses, one word each, 40 points. The end: two turns that may be left out, and 40 roundings of the path
- * and of the coordinates; its heading besides: two roundings of a joint's arc length. */
+/* seed 603, 3200 pairs of poses, one word each, 40 points. The end: two turns that may be left out, and 40 roundings of
+ * the path and of the coordinates; its heading besides: two roundings of a joint's arc length. */
 CASE(dubins_paths_are_within_their_error_and_reach_their_end) {
   rng r = rng_seed(603);
   worst w = {0};

@@ -65,7 +65,8 @@ static quad3 by_powers(const definition *d, double t, double *terms) {
   return sum;
 }
 
-/* The size of the terms decides: coefficients that belong to the range, or (t - m)^n multiplied out, whose terms cancel. */
+/* The size of the terms decides: coefficients that belong to the range, or (t - m)^n multiplied out, whose terms
+ * cancel. */
 static void random_powers(rng *r, definition *d, vec3 *c) {
   const double largest = fmax(fabs(d->t0), fabs(d->t1));
   random_points(r, d->n, c);
@@ -214,8 +215,8 @@ static bool all_differ(const double *x, size_t n) {
   return true;
 }
 
-/* seed 503, 100,000 curves, three parameters each. Even nodes up to degree 20 and Chebyshev's up to 60 lose no more than
- * 5 u times the sum of |y_i l_i| where it is largest. */
+/* seed 503, 100,000 curves, three parameters each. Even nodes up to degree 20 and Chebyshev's up to 60 lose no more
+ * than 5 u times the sum of |y_i l_i| where it is largest. */
 CASE(lagrange_curves_are_within_their_error) {
   rng r = rng_seed(503);
   tally all = {0};

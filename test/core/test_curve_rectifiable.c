@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Curves that are known by their arc length alone. The same Bézier curve is asked both ways: by its control points, and by its
- * points and sqrt((b - a) integral of |psi'|²); both answers are intervals that hold one true distance. */
+/* Curves that are known by their arc length alone. The same Bézier curve is asked both ways: by its control points, and
+ * by its points and sqrt((b - a) integral of |psi'|²); both answers are intervals that hold one true distance. */
 #include <string.h>
 
 #include "base/rounding.h"
@@ -119,8 +119,9 @@ static void exact_line(rng *r, bezier *b, double *from, double *to) {
   *to = *from + ldexp(length, -26);
 }
 
-/* seed 641, 20000 intervals down to 1e-12 long, of which a third on exact lines at even speed: there W² - L² is all rounding, and
- * a normal across the chord shows it. The reach is within 8u of the sizes, as its header says; n's own length is u from 1. */
+/* seed 641, 20000 intervals down to 1e-12 long, of which a third on exact lines at even speed: there W² - L² is all
+ * rounding, and a normal across the chord shows it. The reach is within 8u of the sizes, as its header says; n's own
+ * length is u from 1. */
 CASE(no_ellipsoid_leaves_out_a_point) {
   rng r = rng_seed(641);
   double largest = -INFINITY;
@@ -224,8 +225,9 @@ static void check_body(bezier *b, bool with_velocity, const cprox_obstacle *targ
   cprox_curve_free(arcs);
 }
 
-/* seed 642, 400 curves of 1e-6 … 1e6 m, half of them up to 1e6 m from the origin, every other one by Gauss and Kronrod. Epsilon
- * is 1e-6 of the size; where the points' own error of 2u at 1e6 m is not far below that, the answer may say so. */
+/* seed 642, 400 curves of 1e-6 … 1e6 m, half of them up to 1e6 m from the origin, every other one by Gauss and Kronrod.
+ * Epsilon is 1e-6 of the size; where the points' own error of 2u at 1e6 m is not far below that, the answer may say so.
+ */
 CASE(distances_by_arcs_and_by_points_agree) {
   rng r = rng_seed(642);
   cprox_workspace *ws = cprox_workspace_create();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Curves by a caller's functions: the compiled pieces are within their error of them, and what the functions say falsely is
- * refused where it shows. */
+/* Curves by a caller's functions: the compiled pieces are within their error of them, and what the functions say
+ * falsely is refused where it shows. */
 #include <string.h>
 
 #include "base/rounding.h"
@@ -12,7 +12,8 @@
 /* Long double's unit roundoff. */
 #define UL (0.5L * LDBL_EPSILON)
 
-/* (a sin wt, b exp(kt), c log t), t > 0: bounds that are the same everywhere, larger to the right, larger to the left. */
+/* (a sin wt, b exp(kt), c log t), t > 0: bounds that are the same everywhere, larger to the right, larger to the left.
+ */
 typedef struct blend {
   double a, w, b, k, c;
   double spoilt_from; /* where the functions begin to misbehave */

@@ -69,8 +69,8 @@ CASE(every_piece_is_within_its_error_of_the_series) {
   assert_true(largest > 0.5 && largest_rounding > 0.01);
 }
 
-/* seed 512, 2000 parameters at 1e9 and more. With k <= 7 an angle kt has at most 56 digits: more than a double holds, none
- * too many for a long double, whose cosine is the reference. */
+/* seed 512, 2000 parameters at 1e9 and more. With k <= 7 an angle kt has at most 56 digits: more than a double holds,
+ * none too many for a long double, whose cosine is the reference. */
 CASE(parameters_far_from_zero_cost_nothing) {
   rng r = rng_seed(512);
   for (size_t i = test_cases(2000); i-- > 0;) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Penetration depth of convex pairs. Polyhedra are held against all planes of the difference of their vertices in long double; the
- * other kinds against their support functions in long double: the depth is the least of them over all directions, so that any
- * direction bounds it from above and the best one, climbed to from many, is it. */
+/* Penetration depth of convex pairs. Polyhedra are held against all planes of the difference of their vertices in long
+ * double; the other kinds against their support functions in long double: the depth is the least of them over all
+ * directions, so that any direction bounds it from above and the best one, climbed to from many, is it. */
 #include "base/rounding.h"
 #include "curve_proximity/cprox.h"
 #include "support/cases.h"
@@ -49,7 +49,8 @@ static void overlap(rng *r, const test_shape *a, const cprox_pose *pa, const tes
   pb->position = vec((double)x.x, (double)x.y, (double)x.z);
 }
 
-/* No direction that is found by climbing leads out by less than the interval says, and the normal leads out by as much. */
+/* No direction that is found by climbing leads out by less than the interval says, and the normal leads out by as much.
+ */
 static void compare_with_directions(rng *r, const test_shape *a, const cprox_pose *pa, const test_shape *b,
                                     const cprox_pose *pb, const cprox_result *result, long double hair) {
   const vec3l n = ref_vec(result->normal);
@@ -64,7 +65,8 @@ static void compare_with_directions(rng *r, const test_shape *a, const cprox_pos
     fail_msg("%s in %s: upper %.17g, but %.20Lg leads out", shape_name(a), shape_name(b), result->upper, best);
 }
 
-/* Seed 81, 55 pairs of kinds, 40 cases each, sizes 1e-3 to 1e3, from just touching to concentric. The tolerance is long double's own. */
+/* Seed 81, 55 pairs of kinds, 40 cases each, sizes 1e-3 to 1e3, from just touching to concentric. The tolerance is long
+ * double's own. */
 CASE(no_direction_leads_out_sooner_and_the_normal_leads_out_so_soon) {
   rng r = rng_seed(81);
   static test_shape a, b;
@@ -90,7 +92,8 @@ CASE(no_direction_leads_out_sooner_and_the_normal_leads_out_so_soon) {
   assert_true(open * 200 <= asked);
 }
 
-/* The depth of 0 in the hull of v: the nearest of the planes through three of them that have all the others on one side. */
+/* The depth of 0 in the hull of v: the nearest of the planes through three of them that have all the others on one
+ * side. */
 static long double depth_of_hull(const vec3l *v, size_t n) {
   long double depth = HUGE_VALL;
   for (size_t i = 0; i < n; i++)
@@ -110,8 +113,8 @@ static long double depth_of_hull(const vec3l *v, size_t n) {
   return depth;
 }
 
-/* Seed 82, 150 pairs of hulls of 4 to 6 vertices, unit size: all planes of up to 36 differences. 1e-13 is what the planes called
- * supporting leave open. */
+/* Seed 82, 150 pairs of hulls of 4 to 6 vertices, unit size: all planes of up to 36 differences. 1e-13 is what the
+ * planes called supporting leave open. */
 CASE(hulls_are_as_deep_as_the_nearest_plane_of_their_difference) {
   rng r = rng_seed(82);
   size_t deep = 0;
@@ -141,7 +144,8 @@ CASE(hulls_are_as_deep_as_the_nearest_plane_of_their_difference) {
   assert_true(deep > 50 || test_cases(100) < 100);
 }
 
-/* Boxes with the same axes: the least of three differences; and what is moved out along the normal by the depth touches. */
+/* Boxes with the same axes: the least of three differences; and what is moved out along the normal by the depth
+ * touches. */
 CASE(a_body_moved_out_by_the_depth_touches) {
   rng r = rng_seed(83);
   static test_shape a, b;
@@ -167,8 +171,9 @@ static cprox_quat spun(cprox_quat q, double angle) {
   return (cprox_quat){q.w * c - q.z * s, q.x * c + q.y * s, q.y * c - q.x * s, q.z * c + q.w * s};
 }
 
-/* Seed 84, 600 coaxial pairs in random poses, of cylinders, cones and capsules, at most 1e-12 beside each other's axis: as deep all round
- * a ring, or at an end. A thousand directions of one meridian plane are the reference, and the closed form for two cylinders. */
+/* Seed 84, 600 coaxial pairs in random poses, of cylinders, cones and capsules, at most 1e-12 beside each other's axis:
+ * as deep all round a ring, or at an end. A thousand directions of one meridian plane are the reference, and the closed
+ * form for two cylinders. */
 CASE(coaxial_bodies_are_measured_in_their_profile) {
   rng r = rng_seed(84);
   static test_shape a, b;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The guarantee: a certified "clear" is never wrong, and bodies beyond the over-reach are never called colliding. Truth comes from
- * separating axes of convex pieces and from distances between their edges. Larger campaigns: CPROX_TEST_SCALE. */
+/* The guarantee: a certified "clear" is never wrong, and bodies beyond the over-reach are never called colliding. Truth
+ * comes from separating axes of convex pieces and from distances between their edges. Larger campaigns:
+ * CPROX_TEST_SCALE. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -113,9 +114,9 @@ static long double exact(const shape *a, const cprox_pose *pa, const shape *b, c
   return best;
 }
 
-/* Seed 711: letters, a star and polygons at random poses, a third of them near contact. Certified mode at n = 9, 17, 33: no
- * overlap deeper than 1e-12 is called clear, nothing beyond the proven over-reach is called colliding, and what is called so is within
- * 3.6 L/n. Tuned mode: within 1.7 L/n from n = 17 on (rods at n = 9 reach 2.2). */
+/* Seed 711: letters, a star and polygons at random poses, a third of them near contact. Certified mode at n = 9, 17,
+ * 33: no overlap deeper than 1e-12 is called clear, nothing beyond the proven over-reach is called colliding, and what
+ * is called so is within 3.6 L/n. Tuned mode: within 1.7 L/n from n = 17 on (rods at n = 9 reach 2.2). */
 CASE(certified_is_never_wrong_about_clear) {
   static const char *const names[] = {"L", "T", "E", "star", "square", "triangle", "hex", "rod"};
   enum { N = sizeof names / sizeof *names };
@@ -242,7 +243,8 @@ CASE(certified_is_never_wrong_in_space) {
   assert_true(colliding > test_cases(100) / 4 && clear > test_cases(100) / 4);
 }
 
-/* A dot on a dot among bars where the ball-shaped window's kernel is negative: the bars' negative share outweighs the dots'. */
+/* A dot on a dot among bars where the ball-shaped window's kernel is negative: the bars' negative share outweighs the
+ * dots'. */
 CASE(bars_around_a_dot_break_the_tuned_mode_and_not_the_certified_one) {
   cprox_solid *dot, *bar, *all;
   MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BALL, .dimension = 2, .radius = 1e-3}, ws,
@@ -273,7 +275,8 @@ CASE(bars_around_a_dot_break_the_tuned_mode_and_not_the_certified_one) {
   cprox_solid_free(all);
 }
 
-/* Crossed rods 0.011 L thick: without an offset their overlap is below the t of an offset of L/4n, and would be called clear. */
+/* Crossed rods 0.011 L thick: without an offset their overlap is below the t of an offset of L/4n, and would be called
+ * clear. */
 CASE(thin_bodies_need_the_offset) {
   cprox_solid *rod;
   MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(2, 0.05, 0)},
@@ -299,7 +302,8 @@ CASE(thin_bodies_need_the_offset) {
   cprox_solid_free(rod);
 }
 
-/* Out to 50 periods in every direction images never answer for the body; at the edge of the bounding spheres neither. */
+/* Out to 50 periods in every direction images never answer for the body; at the edge of the bounding spheres neither.
+ */
 CASE(images_of_the_period_never_answer) {
   rng r = rng_seed(713);
   cprox_solid *s;
@@ -348,8 +352,8 @@ CASE(certified_kernels_are_not_negative) {
   }
 }
 
-/* A gap for a delta holds it, with a proof; half the delta costs about twice the samples; a delta that memory does not hold is
- * refused with what it would take. */
+/* A gap for a delta holds it, with a proof; half the delta costs about twice the samples; a delta that memory does not
+ * hold is refused with what it would take. */
 CASE(delta_chooses_no_more_than_is_needed) {
   cprox_solid *a, *b;
   MADE(cprox_solid_create(&(cprox_solid_description){.kind = CPROX_SOLID_BOX, .dimension = 2, .size = vec(1, 0.6, 0)},

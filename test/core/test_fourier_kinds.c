@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Gaps of every pair of kinds of solids: those that can be proven are made for the delta that was asked, and what they say of an overlap and
- * of their over-reach holds against the distance of the same sets as convex bodies. */
+/* Gaps of every pair of kinds of solids: those that can be proven are made for the delta that was asked, and what they
+ * say of an overlap and of their over-reach holds against the distance of the same sets as convex bodies. */
 #include <string.h>
 
 #include "fourier/gap.h"
@@ -32,7 +32,8 @@ static bool is_made(const test_solid s[2]) {
   return s[0].kind != SOLID_SWEEP || s[1].kind != SOLID_SWEEP;
 }
 
-/* Whether an over-reach can be proven: not for two solids of which neither is a sum of indicators. In the plane loops are. */
+/* Whether an over-reach can be proven: not for two solids of which neither is a sum of indicators. In the plane loops
+ * are. */
 static bool is_provable(const test_solid s[2]) {
   int sums = 0;
   for (int k = 0; k < 2; k++) sums += s[k].kind != SOLID_SWEEP && (s[k].kind != SOLID_FOLDED || s[k].dimension == 2);

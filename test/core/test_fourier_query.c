@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What is asked of a gap: gradients, early exit, lanes, memory, symmetry, signals, cascades, regions, sweeps, curves. */
+/* What is asked of a gap: gradients, early exit, lanes, memory, symmetry, signals, cascades, regions, sweeps, curves.
+ */
 #include <string.h>
 
 #include "fourier/gap.h"
@@ -136,8 +137,9 @@ static double component(vec3 position, vec3 rotation, int axis) {
   return v[axis];
 }
 
-/* Seed 721, every pair, certified and signal: central differences of order 4, step 2e-3 of the size over N; tolerance 1e-7 of
- * max(|gradient|, 1e-3/rho) and, in the signal, 1e-7 of max(|gradient|, 1). Value and relative gradients too. */
+/* Seed 721, every pair, certified and signal: central differences of order 4, step 2e-3 of the size over N; tolerance
+ * 1e-7 of max(|gradient|, 1e-3/rho) and, in the signal, 1e-7 of max(|gradient|, 1). Value and relative gradients too.
+ */
 CASE(gradients_agree_with_differences) {
   rng r = rng_seed(721);
   for (int i = 0; i < 2 * PAIRS; i++) {
@@ -185,8 +187,8 @@ CASE(gradients_agree_with_differences) {
   }
 }
 
-/* Seed 722, every pair, both modes with verdicts: the early exit says what the whole sum says, within its own error, and often
- * with fewer terms. All lane widths of this machine agree to the last bit. */
+/* Seed 722, every pair, both modes with verdicts: the early exit says what the whole sum says, within its own error,
+ * and often with fewer terms. All lane widths of this machine agree to the last bit. */
 CASE(early_exit_and_lanes_change_no_verdict) {
   rng r = rng_seed(722);
   size_t fewer = 0, all = 0;
@@ -222,8 +224,8 @@ CASE(early_exit_and_lanes_change_no_verdict) {
   assert_true(fewer > all / 2);
 }
 
-/* The stated rounding covers the difference between the two roles' sums of equal balls, where both lattices see the same, and
- * moving the world: seed 723. */
+/* The stated rounding covers the difference between the two roles' sums of equal balls, where both lattices see the
+ * same, and moving the world: seed 723. */
 CASE(values_do_not_depend_on_where_the_world_is) {
   rng r = rng_seed(723);
   for (int i = 0; i < PAIRS; i++) {
@@ -291,8 +293,9 @@ static double one_sided_slope(const cprox_gap *gap, const cprox_pose *a, const c
   return slope;
 }
 
-/* Where a distance has a kink, a gap has none: it is an integral, a sum of waves in every mode. Boxes face on face, nearly corner on corner,
- * corner on face, at one place, and a ball midway between two: the slopes to both sides are the gradient, within 1e-6 of the largest. */
+/* Where a distance has a kink, a gap has none: it is an integral, a sum of waves in every mode. Boxes face on face,
+ * nearly corner on corner, corner on face, at one place, and a ball midway between two: the slopes to both sides are
+ * the gradient, within 1e-6 of the largest. */
 CASE(ties_of_nearest_points_are_no_kinks) {
   size_t sloping = 0;
   for (int dimension = 2; dimension <= 3; dimension++) {
@@ -408,7 +411,8 @@ CASE(bad_queries_are_refused_in_words) {
   cprox_solid_free(space);
 }
 
-/* Seed 724: a cascade says clear only where a level proves it, says clear wherever its finest does, and mostly stops early. */
+/* Seed 724: a cascade says clear only where a level proves it, says clear wherever its finest does, and mostly stops
+ * early. */
 CASE(a_cascade_stops_at_the_first_proof) {
   rng r = rng_seed(724);
   cprox_solid *s[2];
@@ -472,7 +476,8 @@ static cprox_curve *wave_curve(void) {
   return c;
 }
 
-/* The distance between a box |x| <= h and the curve moved by a pose, by samples: an upper bound that is 1e-4 off at most. */
+/* The distance between a box |x| <= h and the curve moved by a pose, by samples: an upper bound that is 1e-4 off at
+ * most. */
 static double box_to_curve(const cprox_curve *c, const cprox_pose *box, const cprox_pose *curve, double hx, double hy) {
   const frame f = frame_create(box, vec(0, 0, 0)), g = frame_create(curve, vec(0, 0, 0));
   double best = INFINITY, error = 0;
@@ -485,8 +490,9 @@ static double box_to_curve(const cprox_curve *c, const cprox_pose *box, const cp
   return best;
 }
 
-/* Seed 725: a sphere swept along a curve against a box, one sum. Wherever the sphere overlaps the box (by more than the samples'
- * own 1e-3) the verdict is not clear, wherever the distance exceeds the over-reach it is; the threshold of a plain pair would have been too high. */
+/* Seed 725: a sphere swept along a curve against a box, one sum. Wherever the sphere overlaps the box (by more than the
+ * samples' own 1e-3) the verdict is not clear, wherever the distance exceeds the over-reach it is; the threshold of a
+ * plain pair would have been too high. */
 CASE(a_sweep_is_never_called_clear_where_it_hits) {
   rng r = rng_seed(725);
   const double radius = 0.05;
@@ -524,8 +530,8 @@ CASE(a_sweep_is_never_called_clear_where_it_hits) {
   cprox_curve_free(c);
 }
 
-/* Seed 726: the derivative along t by differences of order 4; the verdict over an interval against 2000 tests inside it: clear only if
- * all are, and the value never above 1. */
+/* Seed 726: the derivative along t by differences of order 4; the verdict over an interval against 2000 tests inside
+ * it: clear only if all are, and the value never above 1. */
 CASE(along_a_curve_the_verdict_holds_at_every_parameter) {
   rng r = rng_seed(726);
   cprox_curve *c = wave_curve();

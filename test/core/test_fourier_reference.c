@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Spectra, values and gradients against reference answers computed in numpy from the same corrected formulas by other code. */
+/* Spectra, values and gradients against reference answers computed in numpy from the same corrected formulas by other
+ * code. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -220,8 +221,8 @@ CASE(gaps_in_space_agree_with_the_reference_in_either_role) {
   check_file("fourier/gap_3d.csv", 3, 80);
 }
 
-/* 80 frequencies up to |q| = 500: within 1e-12 of the area, the reference's own error at tiny frequencies (2e-13, where symmetry
- * makes the imaginary part vanish). */
+/* 80 frequencies up to |q| = 500: within 1e-12 of the area, the reference's own error at tiny frequencies (2e-13, where
+ * symmetry makes the imaginary part vanish). */
 CASE(spectra_of_polygons_agree_with_the_reference) {
   csv_table t = csv_read("fourier/spectrum_2d.csv");
   size_t compared = 0;

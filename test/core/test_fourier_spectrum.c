@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Spectra against each other, against differences and against limits; offsets hold what they must; bad solids are refused. */
+/* Spectra against each other, against differences and against limits; offsets hold what they must; bad solids are
+ * refused. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -145,8 +146,9 @@ static vec3 random_frequency(rng *r, int dimension, double radius) {
   return q;
 }
 
-/* Seed 701, 2800 cases: central differences of order 4 with step 0.01/radius err by (0.01)^4/30 of the fifth derivative, radius^5
- * times the measure at most: 3e-10, and by rounding 1e-13/0.01; tolerance 2e-9 of measure times radius. */
+/* Seed 701, 2800 cases: central differences of order 4 with step 0.01/radius err by (0.01)^4/30 of the fifth
+ * derivative, radius^5 times the measure at most: 3e-10, and by rounding 1e-13/0.01; tolerance 2e-9 of measure times
+ * radius. */
 CASE(gradients_of_spectra_agree_with_differences) {
   rng r = rng_seed(701);
   for (size_t i = 0; i < test_cases(2800); i++) {
@@ -180,8 +182,8 @@ static double difference(const cprox_solid *a, const cprox_solid *b, vec3 q) {
   return hypot(f[0] - g[0], f[1] - g[1]);
 }
 
-/* A box clipped by half-spaces that do not touch it becomes a polygon or a mesh of the same body. Seed 702, 2000 frequencies:
- * 1e-14 of the measure, tiny |q| included. */
+/* A box clipped by half-spaces that do not touch it becomes a polygon or a mesh of the same body. Seed 702, 2000
+ * frequencies: 1e-14 of the measure, tiny |q| included. */
 CASE(a_box_as_a_mesh_or_a_polygon_has_the_spectrum_of_a_box) {
   rng r = rng_seed(702);
   const double outside[1][4] = {{1, 0, 0, 9}};
@@ -231,8 +233,8 @@ CASE(parts_on_both_sides_of_a_cut_add_up) {
   }
 }
 
-/* A capsule of no length is a ball (closed form against quadrature); in the plane, its outline with 20000 corners has its
- * spectrum to the outline's own error, area (2 pi/20000)²/6. Seed 704. */
+/* A capsule of no length is a ball (closed form against quadrature); in the plane, its outline with 20000 corners has
+ * its spectrum to the outline's own error, area (2 pi/20000)²/6. Seed 704. */
 CASE(capsules_agree_with_balls_and_outlines) {
   rng r = rng_seed(704);
   cprox_solid *capsule, *ball, *outline;
@@ -299,8 +301,9 @@ static vec3 point_near(const cprox_solid *s, double rho, rng *r) {
   return vec_axpy(x, rho * rng_uniform(r, 0, 0.999999), d);
 }
 
-/* Seed 705, 20000 points within rho of a non-convex polygon or mesh, near its faces, edges and corners alike: the offset's
- * function is at least 1 there (angles add up to 1e-6). It is 0 beyond its reach, and 1 at most where the mesh is convex. */
+/* Seed 705, 20000 points within rho of a non-convex polygon or mesh, near its faces, edges and corners alike: the
+ * offset's function is at least 1 there (angles add up to 1e-6). It is 0 beyond its reach, and 1 at most where the mesh
+ * is convex. */
 CASE(offsets_hold_every_point_within_rho) {
   rng r = rng_seed(705);
   for (int kind = 9; kind <= 10; kind++) {
@@ -324,7 +327,8 @@ CASE(offsets_hold_every_point_within_rho) {
   }
 }
 
-/* Minkowski sums of convex bodies with balls have the volumes of Steiner's formula; circumscribed pieces a little more. */
+/* Minkowski sums of convex bodies with balls have the volumes of Steiner's formula; circumscribed pieces a little more.
+ */
 CASE(the_offset_of_a_convex_mesh_has_the_volume_of_steiners_formula) {
   const double outside[1][4] = {{1, 0, 0, 9}}, rho = 0.2;
   cprox_solid *box, *mesh;
@@ -365,8 +369,8 @@ CASE(energies_of_loops_are_exact) {
   cprox_solid_free(s);
 }
 
-/* Seed 706: random grids in plane and space, rho up to four cells. A cell is taken where it is within rho of an occupied one, by
- * looking at each; cells that border are 0 apart. */
+/* Seed 706: random grids in plane and space, rho up to four cells. A cell is taken where it is within rho of an
+ * occupied one, by looking at each; cells that border are 0 apart. */
 CASE(the_offset_of_a_grid_is_the_cells_within_rho) {
   rng r = rng_seed(706);
   for (size_t trial = 0; trial < test_cases(60); trial++) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Gradients against central differences of distances; the weights against the curves themselves; and where none is to be had. */
+/* Gradients against central differences of distances; the weights against the curves themselves; and where none is to
+ * be had. */
 #include <string.h>
 
 #include "curve_proximity/cprox.h"
@@ -10,7 +11,7 @@
 #include "support/reference.h"
 #include "support/shapes.h"
 
-/* ---- problems with parameters ---------------------------------------------------------------------------------------------- */
+/* ---- problems with parameters ---- */
 
 enum { POINTS = 7, DEGREE = 3 };
 
@@ -119,8 +120,8 @@ static double derivative(const problem *p, const cprox_gradient *g, const step *
   return sum + g->t0 * d->t0 + g->t1 * d->t1;
 }
 
-/* How far the derivative is from the nearest of four central differences with one extrapolation each: the distance is but once
- * differentiable where the nearest feature changes, so that one step size alone may straddle such a place. */
+/* How far the derivative is from the nearest of four central differences with one extrapolation each: the distance is
+ * but once differentiable where the nearest feature changes, so that one step size alone may straddle such a place. */
 static double misfit(const problem *p, const step *d, double expected, double *scale) {
   double best = INFINITY;
   const double widths[] = {1e-3, 1e-4, 1e-5, 1e-6};
@@ -205,8 +206,8 @@ CASE(gradients_are_the_limits_of_differences) {
   assert_true(2 * valid > all);
 }
 
-/* Seed 102, 1000 problems of carried bodies: the normal comes from a search between two bounds that are 1e-13 apart, and is as exact as
- * the root of that: 2e-6. */
+/* Seed 102, 1000 problems of carried bodies: the normal comes from a search between two bounds that are 1e-13 apart,
+ * and is as exact as the root of that: 2e-6. */
 CASE(carried_bodies_have_gradients) {
   rng r = rng_seed(102);
   size_t valid = 0, all = 0;
@@ -224,7 +225,8 @@ CASE(carried_bodies_have_gradients) {
   assert_true(4 * valid > all);
 }
 
-/* Seed 103, 2000 problems through balls, ellipsoids and boxes: depths have gradients where one way out is the shortest. */
+/* Seed 103, 2000 problems through balls, ellipsoids and boxes: depths have gradients where one way out is the shortest.
+ */
 CASE(depths_have_gradients) {
   rng r = rng_seed(103);
   const cprox_body_kind kinds[] = {CPROX_BODY_SPHERE, CPROX_BODY_ELLIPSOID, CPROX_BODY_BOX, CPROX_BODY_CAPSULE};
@@ -242,7 +244,7 @@ CASE(depths_have_gradients) {
   assert_true(5 * valid > all);
 }
 
-/* ---- where there is none -------------------------------------------------------------------------------------------------------- */
+/* ---- where there is none ---- */
 
 static void assert_none(cprox_mover mover, cprox_obstacle target, bool is_signed, const char *why) {
   cprox_options options = CPROX_OPTIONS_DEFAULT;
@@ -301,9 +303,10 @@ CASE(where_the_minimiser_is_not_unique_the_flag_says_so) {
   cprox_body_free(ball);
 }
 
-/* ---- weights ----------------------------------------------------------------------------------------------------------------------- */
+/* ---- weights ---- */
 
-/* Seed 104, 500 curves a basis: the weighted sum of the coefficients is the point. 1e-11: what the lesser bases lose at degree 9. */
+/* Seed 104, 500 curves a basis: the weighted sum of the coefficients is the point. 1e-11: what the lesser bases lose at
+ * degree 9. */
 CASE(weighted_coefficients_make_the_point) {
   rng r = rng_seed(104);
   for (size_t k = 0; k < test_cases(3000); k++) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Curves that break other methods. Every distance is known by construction; every answer ends within its budget with an interval that
- * contains it, at any epsilon, and no verdict contradicts it. DOUBT covers what the doubles of a case are off the numbers meant. */
+/* Curves that break other methods. Every distance is known by construction; every answer ends within its budget with an
+ * interval that contains it, at any epsilon, and no verdict contradicts it. DOUBT covers what the doubles of a case are
+ * off the numbers meant. */
 #include <math.h>
 
 #include "support/builders.h"
@@ -23,7 +24,7 @@ static int teardown(void **state) {
   return workspace_teardown(state);
 }
 
-/* ---- makers ------------------------------------------------------------------------------------------------------------- */
+/* ---- makers ---- */
 
 #define BEZIER(...) bezier((vec3[]){__VA_ARGS__}, sizeof((vec3[]){__VA_ARGS__}) / sizeof(vec3))
 
@@ -45,7 +46,7 @@ static cprox_curve *circle(double radius, double t1) {
   return curve;
 }
 
-/* ---- queries ---------------------------------------------------------------------------------------------------------- */
+/* ---- queries ---- */
 
 static void check_verdict(cprox_mover mover, cprox_obstacle target, double truth, double delta) {
   cprox_options options = CPROX_OPTIONS_DEFAULT;
@@ -95,7 +96,7 @@ static void curves_are_at(double truth, cprox_curve *first, cprox_curve *second)
   is_at(truth, first, (cprox_obstacle){0}, second);
 }
 
-/* ---- curves and bodies ---------------------------------------------------------------------------------------------------- */
+/* ---- curves and bodies ---- */
 
 CASE(a_line_parallel_to_a_face_at_uneven_speed) {
   box_is_at(0.5, BEZIER({-0.9, 0, 1.5}, {-0.9, 0, 1.5}, {-0.85, 0, 1.5}, {0.9, 0, 1.5}));
@@ -189,7 +190,7 @@ CASE(order_45_and_60) {
   }
 }
 
-/* ---- curves and curves ---------------------------------------------------------------------------------------------------- */
+/* ---- curves and curves ---- */
 
 CASE(identical_reversed_and_overlapping_curves) {
   curves_are_at(0.0, BEZIER({0, 0, 0}, {1, 2, 0}, {2, 0, 1}), BEZIER({0, 0, 0}, {1, 2, 0}, {2, 0, 1}));

@@ -144,8 +144,8 @@ CASE(maps_that_are_singular_and_lists_that_are_too_long_are_refused) {
 
 /* ---- centre, radius ---- */
 
-/* Seed 1, 200 points a body: every point of the set is in the bounding ball, and the inner ball is in the set (Object IV's
- * origin is not). */
+/* Seed 1, 200 points a body: every point of the set is in the bounding ball, and the inner ball is in the set (Object
+ * IV's origin is not). */
 CASE(the_bounding_ball_holds_the_body_and_the_inner_ball_is_in_it) {
   rng r = rng_seed(1);
   for (int object = 1; object <= 6; object++) {
@@ -178,8 +178,8 @@ CASE(the_bounding_ball_holds_the_body_and_the_inner_ball_is_in_it) {
 
 /* ---- support ---- */
 
-/* Seed 2, exponents 1 … 1000, aspects to 1e3, cold and from the mu of the last direction: on the surface to 1e-12, and no
- * point of 300 random ones on it reaches farther. */
+/* Seed 2, exponents 1 … 1000, aspects to 1e3, cold and from the mu of the last direction: on the surface to 1e-12, and
+ * no point of 300 random ones on it reaches farther. */
 CASE(support_points_lie_on_the_surface_and_reach_farthest) {
   cprox_workspace *w = *state;
   rng r = rng_seed(2);
@@ -224,8 +224,8 @@ CASE(support_points_lie_on_the_surface_and_reach_farthest) {
   }
 }
 
-/* Seed 3: the derivative of the support point against central differences; where the surface is flat its size is bounded by
- * what the differences see. */
+/* Seed 3: the derivative of the support point against central differences; where the surface is flat its size is
+ * bounded by what the differences see. */
 CASE(the_support_points_derivative_is_that_of_differences) {
   cprox_workspace *w = *state;
   rng r = rng_seed(3);
@@ -257,8 +257,8 @@ CASE(the_support_points_derivative_is_that_of_differences) {
 
 /* ---- points ---- */
 
-/* Seed 4, 300 points a body at 1e-9 … 1e2 from the centre's ball: the point is in the body, the distance is its own, and the
- * plane through it separates. Inside, the depth is one that the body has. */
+/* Seed 4, 300 points a body at 1e-9 … 1e2 from the centre's ball: the point is in the body, the distance is its own,
+ * and the plane through it separates. Inside, the depth is one that the body has. */
 CASE(nearest_points_are_optimal) {
   rng r = rng_seed(4);
   for (int object = 1; object <= 6; object++) {
@@ -316,7 +316,8 @@ CASE(the_distances_second_derivative_is_that_of_differences) {
 
 /* ---- special cases that other kinds answer ---- */
 
-/* Seed 6: a superquadric of exponents 2 is an ellipsoid, six planes are a box, a quadric is a sphere: curves see the same. */
+/* Seed 6: a superquadric of exponents 2 is an ellipsoid, six planes are a box, a quadric is a sphere: curves see the
+ * same. */
 CASE(a_curve_sees_the_same_distance_as_from_the_kind_it_equals) {
   cprox_workspace *w = *state;
   rng r = rng_seed(6);
@@ -362,7 +363,8 @@ CASE(a_curve_sees_the_same_distance_as_from_the_kind_it_equals) {
   }
 }
 
-/* Seed 7: a map moves, scales and shears the set: points are inside when their preimages are, as computed in long double. */
+/* Seed 7: a map moves, scales and shears the set: points are inside when their preimages are, as computed in long
+ * double. */
 CASE(a_mapped_body_holds_the_images_of_the_points) {
   rng r = rng_seed(7);
   for (int test = 0; test < 60; test++) {

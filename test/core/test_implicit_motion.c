@@ -52,8 +52,8 @@ static cprox_result pair_at(const bodies *b, cprox_translating x, cprox_translat
   return r;
 }
 
-/* Seed 21, 40 places a pair: the least distance over the time is below that at 33 times, is attained at its own t, and is not
- * above what the separating plane at that t allows. Tolerance: the widths asked for, 1e-8. */
+/* Seed 21, 40 places a pair: the least distance over the time is below that at 33 times, is attained at its own t, and
+ * is not above what the separating plane at that t allows. Tolerance: the widths asked for, 1e-8. */
 CASE(the_least_distance_over_a_time_is_below_that_at_every_time) {
   bodies *b = *state;
   rng r = rng_seed(21);
@@ -81,8 +81,8 @@ CASE(the_least_distance_over_a_time_is_below_that_at_every_time) {
   }
 }
 
-/* Seed 22, 500 places a pair, contact tolerance 1e-7 of the sizes: nothing undecided, free before as bisection by pairs finds
- * it (within tolerance over the speed), and the least distance agrees with the verdict. */
+/* Seed 22, 500 places a pair, contact tolerance 1e-7 of the sizes: nothing undecided, free before as bisection by pairs
+ * finds it (within tolerance over the speed), and the least distance agrees with the verdict. */
 CASE(time_of_contact_is_never_late_and_never_undecided) {
   bodies *b = *state;
   rng r = rng_seed(22);
@@ -157,7 +157,8 @@ static cprox_body *scaled(const bodies *b, const cprox_body *body, double g) {
   return made;
 }
 
-/* Seed 23, 60 places a pair, near and deep: scaled by a little less the bodies are apart, by a little more they overlap. */
+/* Seed 23, 60 places a pair, near and deep: scaled by a little less the bodies are apart, by a little more they
+ * overlap. */
 CASE(scaled_by_the_growth_distance_bodies_touch) {
   bodies *b = *state;
   rng r = rng_seed(23);
@@ -203,8 +204,8 @@ CASE(concentric_bodies_have_growth_distance_zero) {
   assert_int_equal(cprox_growth_distance(x, cprox_with_margin(x, 0.1), NULL, b->workspace, &growth), CPROX_INVALID);
 }
 
-/* Seed 24, 20 maps a body, the deformation by a map and the body made anew under the same map answer the same; and the paper's
- * Fig. 7: object I with the exponents of III is object III but for its semi-axes. */
+/* Seed 24, 20 maps a body, the deformation by a map and the body made anew under the same map answer the same; and the
+ * paper's Fig. 7: object I with the exponents of III is object III but for its semi-axes. */
 CASE(a_deformed_body_is_the_one_made_anew) {
   bodies *b = *state;
   rng r = rng_seed(24);

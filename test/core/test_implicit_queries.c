@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Implicit bodies in the queries of all bodies: against other kinds, overlapping, carried along curves, in compounds. */
+/* Implicit bodies in the queries of all bodies: against other kinds, overlapping, carried along curves, in compounds.
+ */
 #include <math.h>
 #include <stdlib.h>
 
@@ -77,8 +78,8 @@ CASE(pairs_of_twins_have_one_signed_distance) {
   }
 }
 
-/* Seed 32: the paper's objects against boxes, capsules and polytopes by the search over supports, and against the box as six
- * planes by the interior point method. */
+/* Seed 32: the paper's objects against boxes, capsules and polytopes by the search over supports, and against the box
+ * as six planes by the interior point method. */
 CASE(other_kinds_are_measured_against_implicit_bodies) {
   cprox_workspace *w = *state;
   rng r = rng_seed(32);
@@ -104,8 +105,8 @@ CASE(other_kinds_are_measured_against_implicit_bodies) {
   }
 }
 
-/* Seed 33: a carried twin and its known kind along the same curve, against a twin and a known kind that stand; and the same in a
- * compound: distance, signed distance and time of contact agree. */
+/* Seed 33: a carried twin and its known kind along the same curve, against a twin and a known kind that stand; and the
+ * same in a compound: distance, signed distance and time of contact agree. */
 CASE(a_carried_twin_is_measured_like_the_kind_it_equals) {
   cprox_workspace *w = *state;
   rng r = rng_seed(33);

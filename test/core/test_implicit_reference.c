@@ -19,7 +19,8 @@ static cprox_obstacle read_side(const csv_table *table, const csv_row *row, size
                            (cprox_pose){.position = {p[4], p[5], p[6]}, .orientation = {p[0], p[1], p[2], p[3]}});
 }
 
-/* Every row of a file: the interval contains the reference, and is as narrow as asked, relative to distance and sizes. */
+/* Every row of a file: the interval contains the reference, and is as narrow as asked, relative to distance and sizes.
+ */
 static void check_rows(const char *name, double relative) {
   csv_table table = csv_read(name);
   cprox_workspace *workspace = cprox_workspace_create();

@@ -91,8 +91,8 @@ CASE(every_random_place_is_certified_to_1e_8) {
   cprox_workspace_free(workspace);
 }
 
-/* Seed 12: a body that moves by steps of 1e-6 … 1: the answer from a former one is the answer from scratch, in fewer steps
- * where the move is small. */
+/* Seed 12: a body that moves by steps of 1e-6 … 1: the answer from a former one is the answer from scratch, in fewer
+ * steps where the move is small. */
 CASE(a_warm_start_answers_what_a_cold_one_does) {
   for (int pair = 0; pair < 8; pair++) {
     rng r = rng_seed(12 + (uint64_t)pair);
@@ -126,7 +126,8 @@ CASE(a_warm_start_answers_what_a_cold_one_does) {
   }
 }
 
-/* Spheres cut by n planes that touch them: 12 … 500 constraints, still certified, in a number of steps that hardly grows. */
+/* Spheres cut by n planes that touch them: 12 … 500 constraints, still certified, in a number of steps that hardly
+ * grows. */
 CASE(many_constraints_take_hardly_more_steps) {
   rng r = rng_seed(13);
   uint32_t most = 0;
@@ -158,8 +159,8 @@ CASE(many_constraints_take_hardly_more_steps) {
   assert_true(most < 60);
 }
 
-/* Seed 14: intersections of 2 … 40 superquadrics in general position: certified to 1e-8, their support function to 1e-11 of the
- * size. */
+/* Seed 14: intersections of 2 … 40 superquadrics in general position: certified to 1e-8, their support function to
+ * 1e-11 of the size. */
 CASE(intersections_of_superquadrics_are_certified) {
   cprox_workspace *workspace = cprox_workspace_create();
   rng r = rng_seed(14);

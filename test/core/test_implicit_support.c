@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The support function of implicit bodies along directions that are normal to faces, edges and straight lines of the body,
- * exactly or but for 1e-3 … 1e-17: there the body's extreme points are many, or hardly fewer. */
+/* The support function of implicit bodies along directions that are normal to faces, edges and straight lines of the
+ * body, exactly or but for 1e-3 … 1e-17: there the body's extreme points are many, or hardly fewer. */
 #include <math.h>
 
 #include "curve_proximity/cprox.h"
@@ -102,8 +102,8 @@ static vec3 random_direction(rng *r, const solid *s) {
   return vec_scale(1.0 / vec_norm(d), d);
 }
 
-/* The reach of the planes' body along d about its centre, by its vertices in long double; what rounding may have done to a
- * vertex is 1e-17 of the size over the determinant, and a vertex is taken where it is outside by no more. */
+/* The reach of the planes' body along d about its centre, by its vertices in long double; what rounding may have done
+ * to a vertex is 1e-17 of the size over the determinant, and a vertex is taken where it is outside by no more. */
 static long double reach_of_vertices(const solid *s, vec3 centre, vec3 d) {
   long double most = -INFINITY;
   for (size_t i = 0; i < s->n; i++)
@@ -132,7 +132,8 @@ static long double reach_of_vertices(const solid *s, vec3 centre, vec3 d) {
   return most;
 }
 
-/* Seed 15 and the kind, 20,000 directions a kind. The reference's own error is far below the slack, which is 4e-11 of the size. */
+/* Seed 15 and the kind, 20,000 directions a kind. The reference's own error is far below the slack, which is 4e-11 of
+ * the size. */
 CASE(the_support_is_found_along_normals_of_faces_and_edges) {
   for (int kind = 0; kind < 3; kind++) {
     rng r = rng_seed(15 + (uint64_t)kind);

@@ -9,7 +9,7 @@
 #include "support/meshes.h"
 #include "support/of_list.h"
 
-/* ---- builders --------------------------------------------------------------------------------------------------------- */
+/* ---- builders ---- */
 
 typedef struct test_lod {
   cprox_body *hull, *mesh, *body;
@@ -64,11 +64,11 @@ static test_mesh mesh_bracket(void) {
   return mesh;
 }
 
-/* ---- levels of detail
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- levels of detail ---- */
 
-/* 400 curves (seed 81) past tori and a bracket at any pose, epsilon 1e-7. A coarser model contains the finer one: ball <= hull <= mesh but
- * for epsilon, each by the interval of its own body, and the level-of-detail body's own answer is the mesh's. */
+/* 400 curves (seed 81) past tori and a bracket at any pose, epsilon 1e-7. A coarser model contains the finer one: ball
+ * <= hull <= mesh but for epsilon, each by the interval of its own body, and the level-of-detail body's own answer is
+ * the mesh's. */
 CASE(lods_contain_each_other_and_are_what_they_are_called) {
   rng r = rng_seed(81);
   test_mesh torus = mesh_torus(16, 10, 1.0, 0.3, 0.1), bracket = mesh_bracket();
@@ -186,11 +186,11 @@ CASE(a_curve_through_the_hull_but_clear_of_the_mesh_is_clear) {
   mesh_free(&torus);
 }
 
-/* ---- what the hull spares --------------------------------------------------------------------------------------------- */
+/* ---- what the hull spares ---- */
 
-/* 30 tori (seed 87) in a cube, their bounding balls overlapping; 60 curves. All ways to ask about many answer as the meshes would.
- * Together with a small box the answer is level of detail hull, no mesh looked into, where every hull is farther than
- * the box by the hundredth part that ranking may give away; where one is nearer, level of detail mesh. */
+/* 30 tori (seed 87) in a cube, their bounding balls overlapping; 60 curves. All ways to ask about many answer as the
+ * meshes would. Together with a small box the answer is level of detail hull, no mesh looked into, where every hull is
+ * farther than the box by the hundredth part that ranking may give away; where one is nearer, level of detail mesh. */
 CASE(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best) {
   enum { N = 30 };
   rng r = rng_seed(87);
@@ -253,8 +253,8 @@ CASE(a_distance_climbs_only_where_the_hull_is_nearer_than_the_best) {
   mesh_free(&torus);
 }
 
-/* Within the bracket's bounding ball and 0.495 off its hull, a box 0.25 away: the ball says bracket first, the hull says that it need not be
- * looked into. */
+/* Within the bracket's bounding ball and 0.495 off its hull, a box 0.25 away: the ball says bracket first, the hull
+ * says that it need not be looked into. */
 CASE(a_mesh_waits_until_it_is_the_nearest_by_its_hull) {
   test_mesh bracket = mesh_bracket();
   test_lod l = lod_make(&bracket);
@@ -311,7 +311,7 @@ CASE(pairs_climb_too) {
   mesh_free(&torus);
 }
 
-/* ---- bad input -------------------------------------------------------------------------------------------------------- */
+/* ---- bad input ---- */
 
 static void expect_reason(cprox_status status, const char *words) {
   assert_int_equal(status, CPROX_INVALID);
@@ -360,7 +360,7 @@ CASE(bad_input_is_refused_with_a_sentence) {
   mesh_free(&torus);
 }
 
-/* ---- one answer for all --------------------------------------------------------------------------------------------------- */
+/* ---- one answer for all ---- */
 
 static cprox_status ask_all(int query_type, cprox_mover mover, const cprox_obstacle *targets, size_t n,
                             const cprox_options *options, cprox_result *all, cprox_result *each) {

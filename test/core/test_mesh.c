@@ -11,7 +11,7 @@
 #include "support/make_curve.h"
 #include "support/meshes.h"
 
-/* ---- builders --------------------------------------------------------------------------------------------------------- */
+/* ---- builders ---- */
 
 typedef struct test_bezier {
   size_t degree;
@@ -48,13 +48,13 @@ static long double least_near(const test_bezier *b, const test_mesh *mesh, const
   return least;
 }
 
-/* ---- distance --------------------------------------------------------------------------------------------------------- */
+/* ---- distance ---- */
 
-/* 2,000 random queries (seed 51; CPROX_TEST_SCALE=50 asks 100,000) against soups with needles, points and repeated triangles, and
- * closed tori, at any pose and margin, offsets up to 1e6 m of pose and curve together. epsilon is 1e-12 at unit scale,
- * where double allows it. Wanted: lower <= the true distance anywhere on the curve, the true distance at t <= upper. No
- * tolerance: rounding is the interval's own affair; the reference's, some 40 roundings of 2^-64 of the sizes, is given
- * away. */
+/* 2,000 random queries (seed 51; CPROX_TEST_SCALE=50 asks 100,000) against soups with needles, points and repeated
+ * triangles, and closed tori, at any pose and margin, offsets up to 1e6 m of pose and curve together. epsilon is 1e-12
+ * at unit scale, where double allows it. Wanted: lower <= the true distance anywhere on the curve, the true distance at
+ * t <= upper. No tolerance: rounding is the interval's own affair; the reference's, some 40 roundings of 2^-64 of the
+ * sizes, is given away. */
 CASE(distance_holds_everywhere_and_at_its_witness) {
   rng r = rng_seed(51);
   const cprox_options options = accurate(1e-12);
@@ -99,14 +99,13 @@ CASE(distance_holds_everywhere_and_at_its_witness) {
   if (unconverged > cases / 4) fail_msg("%zu of %zu did not converge", unconverged, cases);
 }
 
-/* ---- time of contact
- * ---------------------------------------------------------------------------------------------------- */
+/* ---- time of contact ---- */
 
-/* 240 runs (seed 53; CPROX_TEST_SCALE=15 makes 3,600) of points and tubes through thin plates and past them so that they graze, over a
- * torus, and through it; epsilon 1e-9. Never late: at 60 parameters before t_contact_lower, the last one 1e-9 before
- * it, the distance in long double is above 0. Not missed: at t_contact_lower it is at most epsilon, unless
- * t_contact_lower is the end. Where contact is said to be proven, the distance at t is at most rounding, 1e-13, or the
- * curve has gone through. */
+/* 240 runs (seed 53; CPROX_TEST_SCALE=15 makes 3,600) of points and tubes through thin plates and past them so that
+ * they graze, over a torus, and through it; epsilon 1e-9. Never late: at 60 parameters before t_contact_lower, the last
+ * one 1e-9 before it, the distance in long double is above 0. Not missed: at t_contact_lower it is at most epsilon,
+ * unless t_contact_lower is the end. Where contact is said to be proven, the distance at t is at most rounding, 1e-13,
+ * or the curve has gone through. */
 CASE(time_of_contact_is_never_late_and_never_missed) {
   rng r = rng_seed(53);
   const cprox_options options = accurate(1e-9);
@@ -181,9 +180,10 @@ CASE(a_point_through_a_surface_is_a_proven_collision) {
   mesh_free(&mesh);
 }
 
-/* ---- solids ----------------------------------------------------------------------------------------------------------- */
+/* ---- solids ---- */
 
-/* 300 points (seed 59) against the winding number of all triangles in long double, where they are 1e-9 off the surface. */
+/* 300 points (seed 59) against the winding number of all triangles in long double, where they are 1e-9 off the surface.
+ */
 CASE(a_closed_mesh_is_solid_inside) {
   rng r = rng_seed(59);
   test_mesh mesh = mesh_torus(30, 20, 1.0, 0.4, 0.2);
@@ -215,8 +215,8 @@ CASE(a_closed_mesh_is_solid_inside) {
   mesh_free(&mesh);
 }
 
-/* 100 bodies (seed 62) of 1 to 3000 triangles, points and boxes, in 100 directions each, against all their corners. Tolerance:
- * 1e-14 of the sizes, about 20 roundings on either side. */
+/* 100 bodies (seed 62) of 1 to 3000 triangles, points and boxes, in 100 directions each, against all their corners.
+ * Tolerance: 1e-14 of the sizes, about 20 roundings on either side. */
 CASE(support_values_are_those_of_all_corners) {
   rng r = rng_seed(62);
   enum { MOST = 3000 };
@@ -320,7 +320,7 @@ CASE(a_solid_shares_its_triangles_with_its_surface) {
   mesh_free(&mesh);
 }
 
-/* ---- points and boxes ------------------------------------------------------------------------------------------------- */
+/* ---- points and boxes ---- */
 
 /* 600 random queries (seed 61) against clouds and boxes, held against every element in long double; epsilon 1e-6. */
 CASE(clouds_and_boxes_hold_too) {
@@ -367,10 +367,10 @@ CASE(clouds_and_boxes_hold_too) {
   }
 }
 
-/* ---- static pairs ----------------------------------------------------------------------------------------------------- */
+/* ---- static pairs ---- */
 
-/* 400 pairs (seed 71) of a soup or torus with a ball, and with a box by every triangle's own pair; epsilon 1e-9, so that two answers
- * differ by twice that where they are apart. */
+/* 400 pairs (seed 71) of a soup or torus with a ball, and with a box by every triangle's own pair; epsilon 1e-9, so
+ * that two answers differ by twice that where they are apart. */
 CASE(pairs_answer_as_their_triangles_do) {
   rng r = rng_seed(71);
   const cprox_options options = accurate(1e-9);
@@ -415,7 +415,7 @@ CASE(pairs_answer_as_their_triangles_do) {
   }
 }
 
-/* ---- bad input -------------------------------------------------------------------------------------------------------- */
+/* ---- bad input ---- */
 
 static void expect_reason(cprox_status status, cprox_status wanted, const char *words) {
   assert_int_equal(status, wanted);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The cases that are hard for curves against meshes, by name: parallel, concentric, touching, far away, too accurate. Whatever they cost, the
- * interval is true and the budget kept; what they may cost is written down, about half as much again as was counted. */
+/* The cases that are hard for curves against meshes, by name: parallel, concentric, touching, far away, too accurate.
+ * Whatever they cost, the interval is true and the budget kept; what they may cost is written down, about half as much
+ * again as was counted. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,8 +12,8 @@
 #include "support/make_curve.h"
 #include "support/meshes.h"
 
-/* The distance at epsilon, which must hold `truth` (itself within `doubt`) and take at most so many intervals; converged, unless the
- * budget is what is asked about. */
+/* The distance at epsilon, which must hold `truth` (itself within `doubt`) and take at most so many intervals;
+ * converged, unless the budget is what is asked about. */
 static cprox_result expect_distance(const char *name, const cprox_curve *curve, const cprox_body *body, cprox_pose pose,
                                     double epsilon, double truth, double doubt, uint32_t most) {
   cprox_options options = CPROX_OPTIONS_DEFAULT;
@@ -27,7 +28,7 @@ static cprox_result expect_distance(const char *name, const cprox_curve *curve, 
   return r;
 }
 
-/* ---- plates ----------------------------------------------------------------------------------------------------------- */
+/* ---- plates ---- */
 
 /* A plate of 2 * 40² triangles in z = 0, one unit wide each way; straight lines along an axis. */
 CASE(lines_along_a_plate_take_one_interval) {
@@ -66,7 +67,7 @@ CASE(a_line_parallel_to_an_oblique_plate_converges) {
   mesh_free(&mesh);
 }
 
-/* ---- what ties -------------------------------------------------------------------------------------------------------- */
+/* ---- what ties ---- */
 
 /* The mantle of a cylinder about z with n vertices a ring: 2 n k triangles. */
 static test_mesh mesh_mantle(size_t n, size_t k, double radius, double half) {
@@ -91,8 +92,9 @@ static test_mesh mesh_mantle(size_t n, size_t k, double radius, double half) {
   return mesh;
 }
 
-/* Along the axis every triangle is as near as any other, up to the chords of the rings: radius * cos(pi/n). An arc outside, concentric,
- * is nearest to every edge: the gap between a vertex and an arc at twice the radius is the radius. */
+/* Along the axis every triangle is as near as any other, up to the chords of the rings: radius * cos(pi/n). An arc
+ * outside, concentric, is nearest to every edge: the gap between a vertex and an arc at twice the radius is the radius.
+ */
 CASE(concentric_curves_end_within_the_budget) {
   enum { N = 64 };
   test_mesh mesh = mesh_mantle(N, 16, 0.5, 1.0);
@@ -136,9 +138,10 @@ CASE(the_bisector_of_a_groove_converges) {
   mesh_free(&mesh);
 }
 
-/* ---- long, far and fine ----------------------------------------------------------------------------------------------- */
+/* ---- long, far and fine ---- */
 
-/* A cubic spline of 1000 pieces that winds ten times round a torus; nowhere nearer than what it is at 20,000 of its points. */
+/* A cubic spline of 1000 pieces that winds ten times round a torus; nowhere nearer than what it is at 20,000 of its
+ * points. */
 CASE(a_spline_of_a_thousand_pieces_is_answered) {
   enum { PIECES = 1000, POINTS = PIECES + 3 };
   test_mesh mesh = mesh_torus(60, 30, 1.0, 0.3, 0.1);
@@ -243,12 +246,11 @@ CASE(a_budget_is_kept) {
   mesh_free(&mesh);
 }
 
-/* ---- time of contact
- * ---------------------------------------------------------------------------------------------------- */
+/* ---- time of contact ---- */
 
-/* 40 quintics of a tube of 0.05 into a torus of 2 * 60 * 30 triangles (seed 47), to 1e-9: halving would need 30 intervals for the last
- * digits alone, cuts aimed at the contact need 12 on average. Never late: at t_contact_lower, nine tenths and half of
- * it the tube is clear of every triangle. */
+/* 40 quintics of a tube of 0.05 into a torus of 2 * 60 * 30 triangles (seed 47), to 1e-9: halving would need 30
+ * intervals for the last digits alone, cuts aimed at the contact need 12 on average. Never late: at t_contact_lower,
+ * nine tenths and half of it the tube is clear of every triangle. */
 CASE(time_of_contact_takes_few_intervals) {
   test_mesh mesh = mesh_torus(60, 30, 1.0, 0.3, 0.02);
   cprox_body *body = mesh_body(&mesh, CPROX_MESH_FILL_SURFACE, ws);

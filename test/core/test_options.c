@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Every option of every query with every kind of mover and target: it has its effect, or the call is refused and says so. */
+/* Every option of every query with every kind of mover and target: it has its effect, or the call is refused and says
+ * so. */
 #include <stdio.h>
 #include <string.h>
 
@@ -10,7 +11,7 @@
 #include "support/meshes.h"
 #include "support/of_list.h"
 
-/* ---- the options -------------------------------------------------------------------------------------------------------- */
+/* ---- the options ---- */
 
 typedef enum option { NOTHING, SIGNED, CERTIFICATE, STOP, RELATIVE, LOD, N_OPTIONS } option;
 
@@ -37,7 +38,7 @@ static cprox_options with(option o) {
   return options;
 }
 
-/* ---- the movers and targets --------------------------------------------------------------------------------------------- */
+/* ---- the movers and targets ---- */
 
 typedef enum mover_kind { POINT, TUBE, BODY, ROBOT, ROBOT_SELF, N_MOVERS } mover_kind;
 typedef enum target_kind { BALL, BOX, PLANE, QUADRIC, MESH, CLOUD, LINE, CLOCK, CLOCK_BODY, N_TARGETS } target_kind;
@@ -138,7 +139,7 @@ static cprox_obstacle target_of(const world *w, target_kind kind, double height)
   return t;
 }
 
-/* ---- the queries -------------------------------------------------------------------------------------------------------- */
+/* ---- the queries ---- */
 
 /* What a query leaves behind: all that it writes, and the interval in it. */
 typedef struct reply {
@@ -372,7 +373,7 @@ static const row QUERIES[] = {
 };
 enum { N_QUERIES = sizeof QUERIES / sizeof *QUERIES };
 
-/* ---- the table ---------------------------------------------------------------------------------------------------------- */
+/* ---- the table ---- */
 
 typedef struct walk {
   world w;
@@ -461,9 +462,10 @@ CASE(options_have_their_effect_or_are_refused) {
   free_world(&all.w);
 }
 
-/* ---- sizes ---------------------------------------------------------------------------------------------------------------- */
+/* ---- sizes ---- */
 
-/* Options of a caller that was compiled with other headers: nothing of them but their size is read, nothing is written. */
+/* Options of a caller that was compiled with other headers: nothing of them but their size is read, nothing is written.
+ */
 CASE(options_of_another_size_are_refused_by_every_query) {
   world w = make_world();
   const size_t right = sizeof(cprox_options), wrong[] = {0, 8, right - 8, right + 8, SIZE_MAX};
@@ -536,7 +538,7 @@ CASE(results_keep_room_for_later_members) {
   free_world(&w);
 }
 
-/* ---- structures besides the options ------------------------------------------------------------------------------------- */
+/* ---- structures besides the options ---- */
 
 /* Pairs and `self` are a robot's: with a curve they are refused by every query. */
 CASE(what_belongs_to_robots_is_refused_with_curves) {

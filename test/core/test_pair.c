@@ -32,7 +32,8 @@ typedef struct sweep {
   double allowed_undecided; /* fraction that may end without the accuracy asked for */
 } sweep;
 
-/* Distances by construction, apart. At relative 1e-9 (or 64 rounding errors, for gaps near them) nearly all are decided. */
+/* Distances by construction, apart. At relative 1e-9 (or 64 rounding errors, for gaps near them) nearly all are
+ * decided. */
 static void check_apart(const sweep *w) {
   rng r = rng_seed(w->seed);
   size_t undecided = 0;
@@ -98,8 +99,8 @@ CASE(sizes_a_million_million_apart_lie_in_the_interval) {
   check_apart(&(sweep){304, 30000, 4.0, 1e12, 1e-9, 1.0, 2e-3});
 }
 
-/* Seed 305, 1e5 pairs that share a point, from a touch to deep inside: the interval starts at or below 0, ends at or above phi
- * of any direction, and where the overlap is proven that is said. */
+/* Seed 305, 1e5 pairs that share a point, from a touch to deep inside: the interval starts at or below 0, ends at or
+ * above phi of any direction, and where the overlap is proven that is said. */
 CASE(overlaps_are_never_called_apart) {
   rng r = rng_seed(305);
   size_t proven = 0, deep = 0;
@@ -151,8 +152,9 @@ CASE(overlaps_are_never_called_apart) {
   assert_true(deep > 1000 || test_cases(100) < 100);
 }
 
-/* Seed 311, 1e5 pairs of boxes, as boxes and as polytopes, aligned with the axes: the gaps are differences of the doubles given,
- * long double is exact to 2^-64, and there is no tolerance: the reference lies in the interval itself. */
+/* Seed 311, 1e5 pairs of boxes, as boxes and as polytopes, aligned with the axes: the gaps are differences of the
+ * doubles given, long double is exact to 2^-64, and there is no tolerance: the reference lies in the interval itself.
+ */
 CASE(aligned_boxes_need_no_tolerance) {
   rng r = rng_seed(311);
   for (size_t i = 0; i < test_cases(100000); i++) {
@@ -188,8 +190,8 @@ CASE(aligned_boxes_need_no_tolerance) {
   }
 }
 
-/* Seed 312, needles of length 100 side by side, not turned and less than 5 apart: the rounding that sizes bring, K u S, has to
- * be in the interval by itself, since positions are short. Tolerance: the rounding of b's position, 5 u. */
+/* Seed 312, needles of length 100 side by side, not turned and less than 5 apart: the rounding that sizes bring, K u S,
+ * has to be in the interval by itself, since positions are short. Tolerance: the rounding of b's position, 5 u. */
 CASE(the_rounding_of_large_bodies_close_together_is_in_the_interval) {
   rng r = rng_seed(312);
   static test_shape s[2];
@@ -243,8 +245,8 @@ CASE(a_common_offset_of_a_million_metres_costs_nothing) {
   }
 }
 
-/* Seed 307, 5e4 pairs with a ball: exact on both sides of the surface, against the ball's centre in long double for a ball and
- * against 2e4 directions for the rest: no direction may do better than lower says. */
+/* Seed 307, 5e4 pairs with a ball: exact on both sides of the surface, against the ball's centre in long double for a
+ * ball and against 2e4 directions for the rest: no direction may do better than lower says. */
 CASE(balls_have_their_exact_signed_distance) {
   rng r = rng_seed(307);
   static test_shape a, b;

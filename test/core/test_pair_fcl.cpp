@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* FCL's distance beside ours. FCL throws on some pairs and is wrong on others, so agreement is counted, not demanded of each. */
+/* FCL's distance beside ours. FCL throws on some pairs and is wrong on others, so agreement is counted, not demanded of
+ * each. */
 #include <memory>
 #include <random>
 
@@ -41,7 +42,8 @@ Shape makeShape(std::mt19937_64 &random) {
   return s;
 }
 
-/* Seed 801, 1e5 random pairs: of those that are more than 1e-6 apart 99 in 100 agree within 1e-4; FCL's own tolerance is 1e-6. */
+/* Seed 801, 1e5 random pairs: of those that are more than 1e-6 apart 99 in 100 agree within 1e-4; FCL's own tolerance
+ * is 1e-6. */
 CASE(fclAgreesOnNearlyAllPairsThatAreApart) {
   std::mt19937_64 random(801);
   std::uniform_real_distribution<double> place(-2.0, 2.0);

@@ -32,8 +32,8 @@ static double by_triangles(const test_mesh *a, const cprox_pose *at, const test_
   return least;
 }
 
-/* 60 pairs (seed 141) of soups and tori of 10 to 60 triangles, apart or not; epsilon 1e-9, so that two answers that are apart differ by
- * twice that. The witnesses are as far apart as is said, and the normal is theirs. */
+/* 60 pairs (seed 141) of soups and tori of 10 to 60 triangles, apart or not; epsilon 1e-9, so that two answers that are
+ * apart differ by twice that. The witnesses are as far apart as is said, and the normal is theirs. */
 CASE(meshes_are_as_far_apart_as_their_nearest_triangles) {
   rng r = rng_seed(141);
   cprox_options options = CPROX_OPTIONS_DEFAULT;
@@ -128,9 +128,10 @@ CASE(one_inside_a_solid_overlaps_it) {
   mesh_free(&small);
 }
 
-/* ---- what it costs ---------------------------------------------------------------------------------------------------- */
+/* ---- what it costs ---- */
 
-/* A tube along z of `around` times `along` pairs of triangles, open at both ends: few along it make them long and thin. */
+/* A tube along z of `around` times `along` pairs of triangles, open at both ends: few along it make them long and thin.
+ */
 static test_mesh open_tube(rng *r, size_t around, size_t along, double radius, double length) {
   test_mesh tube = {.n = around * (along + 1), .m = 0};
   tube.vertices = malloc(tube.n * sizeof *tube.vertices);
@@ -207,8 +208,8 @@ CASE(neither_order_nor_a_looser_epsilon_costs_more) {
   assert_true(worst < 20000);
 }
 
-/* A forearm of 1,000 long triangles and a sensor of 43,000 small ones, open, .12 m apart (seed 149): within the default budget, whichever is
- * named first; with a budget of 40 the distance of surfaces is at least 0. */
+/* A forearm of 1,000 long triangles and a sensor of 43,000 small ones, open, .12 m apart (seed 149): within the default
+ * budget, whichever is named first; with a budget of 40 the distance of surfaces is at least 0. */
 CASE(a_coarse_mesh_and_a_fine_one_take_the_same_either_way) {
   rng r = rng_seed(149);
   for (int shape = 0; shape < 2; shape++) {
@@ -240,7 +241,8 @@ CASE(a_coarse_mesh_and_a_fine_one_take_the_same_either_way) {
   }
 }
 
-/* Crossing, or nested, and ended by the budget before that is known: the bounds hold, and of surfaces lower is not below 0 (seed 151). */
+/* Crossing, or nested, and ended by the budget before that is known: the bounds hold, and of surfaces lower is not
+ * below 0 (seed 151). */
 CASE(what_a_budget_leaves_open_is_bounded_by_what_is_meant) {
   rng r = rng_seed(151);
   size_t ended = 0;

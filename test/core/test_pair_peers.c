@@ -32,9 +32,9 @@ static bool ccd_says_overlap(const test_shape *a, const cprox_pose *pa, const te
   return ccdGJKIntersect(&oa, &ob, &ccd) != 0;
 }
 
-/* Seed 701, 1e5 pairs of solid kinds and polytopes: half apart by construction by 1e-6 to 1 sizes, half sharing a point that is
- * at least a twentieth of the way from the surface to the middle of each. libccd has no tolerance of its own in this verdict but
- * its arithmetic; it must not contradict a distance above 1e-6. */
+/* Seed 701, 1e5 pairs of solid kinds and polytopes: half apart by construction by 1e-6 to 1 sizes, half sharing a point
+ * that is at least a twentieth of the way from the surface to the middle of each. libccd has no tolerance of its own in
+ * this verdict but its arithmetic; it must not contradict a distance above 1e-6. */
 CASE(libccd_gives_the_same_verdict_where_it_is_clear) {
   rng r = rng_seed(701);
   static test_shape a, b;

@@ -94,8 +94,8 @@ static side read_side(const csv_table *table, const csv_row *row, size_t *field,
   return s;
 }
 
-/* Tolerance: what the poses could not say exactly, and the reference's own accuracy, 1e-10 where it comes from a search. The
- * width asked for is 1e-9 max(1, coordinates). */
+/* Tolerance: what the poses could not say exactly, and the reference's own accuracy, 1e-10 where it comes from a
+ * search. The width asked for is 1e-9 max(1, coordinates). */
 static size_t check_rows(bool corners) {
   cprox_workspace *workspace = cprox_workspace_create();
   csv_table table = csv_read("reference/static_pairs.csv");

@@ -77,8 +77,8 @@ CASE(a_hair_over_a_face_the_bounds_still_meet) {
   cprox_body_free(b);
 }
 
-/* The same where an edge is nearest: v is short, and what rounding left of it along the edge is magnified in v/|v|. Seed 608, 2e4
- * pairs of polyhedra brought to 1e-6 of each other along the line between their nearest points. */
+/* The same where an edge is nearest: v is short, and what rounding left of it along the edge is magnified in v/|v|.
+ * Seed 608, 2e4 pairs of polyhedra brought to 1e-6 of each other along the line between their nearest points. */
 CASE(a_hair_beside_an_edge_the_bounds_still_meet) {
   rng r = rng_seed(608);
   static test_shape a, b;
@@ -148,9 +148,9 @@ CASE(concentric_bodies_overlap) {
     }
 }
 
-/* "Newton alternating between features", "restarted on the dual's plateau", "curvature shifted by a negative phi": seed 603,
- * 4e4 pairs of curved shapes close to each other. With any of the three some per cent end with lower exact and upper off, or
- * the other way round; the bound on how many may is that of the design, 5e-4. */
+/* "Newton alternating between features", "restarted on the dual's plateau", "curvature shifted by a negative phi": seed
+ * 603, 4e4 pairs of curved shapes close to each other. With any of the three some per cent end with lower exact and
+ * upper off, or the other way round; the bound on how many may is that of the design, 5e-4. */
 CASE(newton_that_does_not_help_gives_way) {
   rng r = rng_seed(603);
   const cprox_body_kind curved[] = {CPROX_BODY_CYLINDER, CPROX_BODY_CONE, CPROX_BODY_ELLIPSOID, CPROX_BODY_POLYTOPE};
@@ -176,8 +176,8 @@ CASE(newton_that_does_not_help_gives_way) {
   assert_true(steps / (double)cases < 15.0);
 }
 
-/* "A status from the loop's flag instead of the gap": with every budget the interval is true, OK means its width, and what was
- * cut short says so. */
+/* "A status from the loop's flag instead of the gap": with every budget the interval is true, OK means its width, and
+ * what was cut short says so. */
 CASE(the_status_is_that_of_the_interval) {
   rng r = rng_seed(604);
   static test_shape a, b;

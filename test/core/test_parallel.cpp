@@ -65,8 +65,9 @@ Outcome throwInTheTenth(unsigned threads) {
   return outcome;
 }
 
-/* One thread begins nothing after the range that throws. Several cannot know at once: each range after it takes a millisecond, so that all of
- * them would take three threads more than three seconds, and the one that throws has as long to say so, whatever else the machine does. */
+/* One thread begins nothing after the range that throws. Several cannot know at once: each range after it takes a
+ * millisecond, so that all of them would take three threads more than three seconds, and the one that throws has as
+ * long to say so, whatever else the machine does. */
 CASE(the_first_exception_arrives_and_the_pool_goes_on) {
   for (int round = 0; round < 50; ++round) {
     const bool alone = round % 2 == 1;

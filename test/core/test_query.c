@@ -18,7 +18,7 @@
 #include "support/random.h"
 #include "support/reference.h"
 
-/* ---- builders ---------------------------------------------------------------------------------------------------------- */
+/* ---- builders ---- */
 
 static cprox_curve *segment(vec3 a, vec3 b) {
   return bezier((vec3[]){a, b}, 2);
@@ -50,7 +50,7 @@ static void assert_contains(const cprox_result *r, double truth, double doubt) {
     fail_msg("[%.17g, %.17g] does not contain %.17g", r->lower, r->upper, truth);
 }
 
-/* ---- one curve, one body ----------------------------------------------------------------------------------------------- */
+/* ---- one curve, one body ---- */
 
 CASE(a_segment_past_a_box_has_the_distance_of_its_nearest_end) {
   cprox_curve *curve = segment(vec(2, -1, 0), vec(2, 1, 0));
@@ -189,7 +189,7 @@ CASE(a_long_spline_is_searched_by_its_tree) {
   free(knots);
 }
 
-/* ---- accuracy, budget, stop -------------------------------------------------------------------------------------------- */
+/* ---- accuracy, budget, stop ---- */
 
 CASE(epsilon_of_any_size_ends_with_a_true_interval) {
   const vec3 points[] = {{-2, 1, 0.3}, {-1, 3, 0.1}, {1, -1, 0}, {2, 2, 0.7}};
@@ -271,10 +271,10 @@ CASE(a_stop_function_ends_the_search_with_a_true_interval) {
   hard_case_free(&c);
 }
 
-/* ---- many targets ------------------------------------------------------------------------------------------------------ */
+/* ---- many targets ---- */
 
-/* Seed 5, 300 scenes of 30 targets, among them padded ones and compounds: the union's answer is the least of the answers one by
- * one, and verdicts agree with it. */
+/* Seed 5, 300 scenes of 30 targets, among them padded ones and compounds: the union's answer is the least of the
+ * answers one by one, and verdicts agree with it. */
 static bool stop_at_once(void *user) {
   (void)user;
   return true;
@@ -359,7 +359,7 @@ CASE(nothing_to_measure_is_infinitely_far) {
   cprox_curve_free(curve);
 }
 
-/* ---- unusable arguments ------------------------------------------------------------------------------------------------ */
+/* ---- unusable arguments ---- */
 
 static void expect_refusal(cprox_status status, const char *word, const cprox_result *r) {
   assert_int_equal(status, CPROX_INVALID);
@@ -416,7 +416,7 @@ CASE(a_support_callback_that_leaves_its_body_is_refused) {
   cprox_curve_free(curve);
 }
 
-/* ---- memory and cost --------------------------------------------------------------------------------------------------- */
+/* ---- memory and cost ---- */
 
 CASE(a_second_query_of_a_size_allocates_nothing) {
   rng r = rng_seed(9);
@@ -523,8 +523,9 @@ CASE(medians_stay_within_6_nodes_and_10_probes) {
   }
 }
 
-/* However early a search stops, its two points are those that attain upper: as far apart as it says, the one within the radius of the
- * curve's point, the other within the margin of the hull. 2^-44 of the sizes: roundings of points in double. */
+/* However early a search stops, its two points are those that attain upper: as far apart as it says, the one within the
+ * radius of the curve's point, the other within the margin of the hull. 2^-44 of the sizes: roundings of points in
+ * double. */
 CASE(witness_points_attain_upper_however_loose_epsilon_is) {
   rng r = rng_seed(29);
   const size_t cases = test_cases(2000);
@@ -554,7 +555,8 @@ CASE(witness_points_attain_upper_however_loose_epsilon_is) {
   }
 }
 
-/* Bounds that contradict each other end the program where CPROX_CHECKED is on, as in every build of tests; bounds that do not, pass. */
+/* Bounds that contradict each other end the program where CPROX_CHECKED is on, as in every build of tests; bounds that
+ * do not, pass. */
 CASE(bounds_that_contradict_each_other_are_not_hidden) {
   const query q = {.limit = -1.0, .options = CPROX_OPTIONS_DEFAULT, .workspace = ws};
   for (int contradict = 0; contradict < 2; contradict++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Reference answers in test/data/reference, computed by dense sampling and refinement in long double: every interval contains
- * its reference and is as narrow as asked, or says that double arithmetic allows no more. */
+/* Reference answers in test/data/reference, computed by dense sampling and refinement in long double: every interval
+ * contains its reference and is as narrow as asked, or says that double arithmetic allows no more. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,7 +47,8 @@ static void check_distance(const csv_curve_case *c, const cprox_curve *curve, co
   if (status != CPROX_OK && status != CPROX_PRECISION)
     fail_msg("%s: %s (%s), [%.17g, %.17g] after %u nodes", c->id, cprox_status_name(status), cprox_workspace_error(ws),
              r.lower, r.upper, r.nodes);
-  /* the reference is rounded to 17 digits, its coordinates carried 64 bits, and its search stops within 1e-16 of a contact */
+  /* the reference is rounded to 17 digits, its coordinates carried 64 bits, and its search stops within 1e-16 of a
+   * contact */
   const double doubt =
       4.0 * ROUND_U * fabs(reference) + ldexp(4.0 * largest_coordinate(c), -64) + (reference < 1e-15 ? 1e-16 : 0.0);
   if (r.lower > reference + doubt || r.upper < reference - doubt)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A thousand quintic curves round two obstacles (A. Lakshmanan et al. 2019, Fig. 12): each distance is in its interval, and the
- * verdicts sort the curves as the reference does. */
+/* A thousand quintic curves round two obstacles (A. Lakshmanan et al. 2019, Fig. 12): each distance is in its interval,
+ * and the verdicts sort the curves as the reference does. */
 #include <stdlib.h>
 
 #include "curve_proximity/cprox.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Robots among many targets that form a set: whatever the tree of their boxes leaves out, the answers are those of single targets,
- * one query each. Targets are boxes, balls, cylinders, compounds, surfaces, and among some a halfspace. */
+/* Robots among many targets that form a set: whatever the tree of their boxes leaves out, the answers are those of
+ * single targets, one query each. Targets are boxes, balls, cylinders, compounds, surfaces, and among some a halfspace.
+ */
 #include <math.h>
 
 #include "broadphase/obstacle_set.h"
@@ -153,9 +154,10 @@ CASE(time_of_contact_with_a_set_is_the_earliest_of_its_targets) {
   }
 }
 
-/* Beneath a node of the tree nothing is nearer than the node's lane says. A ball that slides straight at balls: its travel is half of the
- * way and not less, boxes touch the balls where it comes from, so that a bound with any of the terms missing is too high. 1e-12 is the
- * rounding of the truth, which is told by hand; boxes are widened by 1e-9 of what they are made of. */
+/* Beneath a node of the tree nothing is nearer than the node's lane says. A ball that slides straight at balls: its
+ * travel is half of the way and not less, boxes touch the balls where it comes from, so that a bound with any of the
+ * terms missing is too high. 1e-12 is the rounding of the truth, which is told by hand; boxes are widened by 1e-9 of
+ * what they are made of. */
 static double lanes_below(robot_scene *scene, uint32_t at, double travel, const double *truth, size_t *seen) {
   cluster_lanes lanes;
   cluster_measure(scene, 0, at, travel, &lanes);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Robots whose links are meshes, with and without hulls, past points, meshes and clouds: against every triangle in long double. */
+/* Robots whose links are meshes, with and without hulls, past points, meshes and clouds: against every triangle in long
+ * double. */
 #include <math.h>
 #include <stdlib.h>
 #include <time.h>
@@ -202,7 +203,7 @@ CASE(the_finest_lod_may_be_the_hull_or_the_ball) {
   }
 }
 
-/* ---- real robots ---------------------------------------------------------------------------------------------------------- */
+/* ---- real robots ---- */
 
 static double milliseconds(void) {
   struct timespec now;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Kinematics and motion bounds of random robots with every type of joint, against long double. Tolerances are the bounds that the
- * core itself states, rounding included; long double adds at most 1e-17. */
+/* Kinematics and motion bounds of random robots with every type of joint, against long double. Tolerances are the
+ * bounds that the core itself states, rounding included; long double adds at most 1e-17. */
 #include <math.h>
 
 #include "kinematics/bound.h"
@@ -9,7 +9,7 @@
 
 enum { MAX_AXES = 4 * TEST_MAX_LINKS, SAMPLES = 8 };
 
-/* ---- kinematics ----------------------------------------------------------------------------------------------------------- */
+/* ---- kinematics ---- */
 
 CASE(parts_are_within_their_error_of_where_they_are) {
   rng r = rng_seed(4401);
@@ -77,7 +77,7 @@ CASE(evaluation_agrees_with_the_splines) {
   }
 }
 
-/* ---- bounds --------------------------------------------------------------------------------------------------------------- */
+/* ---- bounds ---- */
 
 /* An interval of a motion, one geometry seen from another one or from the world. */
 typedef struct bound_case {
@@ -95,7 +95,8 @@ static bound_case random_case(rng *r, const test_robot *t) {
   return c;
 }
 
-/* The vertices of the moving geometry as the standing one sees them, brought to where the standing one is in the middle. */
+/* The vertices of the moving geometry as the standing one sees them, brought to where the standing one is in the
+ * middle. */
 static void seen_vertices(const test_robot *t, const bound_case *c, long double u, const ref_pose *middle,
                           vec3l *seen) {
   const long double t0 = t->motion->times[c->segment], t1 = t->motion->times[c->segment + 1];
@@ -198,9 +199,10 @@ CASE(no_point_is_nearer_than_the_bounds_say) {
                 100.0 * (double)third_wins / (double)checks);
 }
 
-/* ---- balls ---------------------------------------------------------------------------------------------------------------- */
+/* ---- balls ---- */
 
-/* The angular velocity of a floating link at u of a segment, by u, from central differences of its quaternion in long double. */
+/* The angular velocity of a floating link at u of a segment, by u, from central differences of its quaternion in long
+ * double. */
 static vec3l angular_velocity(const test_robot *t, size_t segment, int32_t variable, long double u) {
   static const long double STEP = 1e-5L;
   const long double t0 = t->motion->times[segment], t1 = t->motion->times[segment + 1];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The pairs of a robot that come closest, against a search for each pair alone; the range of variables against samples in long double. */
+/* The pairs of a robot that come closest, against a search for each pair alone; the range of variables against samples
+ * in long double. */
 #include <math.h>
 
 #include "curve_proximity/cprox.h"
@@ -83,7 +84,8 @@ CASE(a_range_holds_all_values_and_is_reached) {
         assert_true(values[v] >= range[v].lowest - 1e-13L && values[v] <= range[v].highest + 1e-13L);
       }
     }
-    /* between samples a polynomial of degree 9 rises by no more than its second derivative allows: 1e-4 is ten times that */
+    /* between samples a polynomial of degree 9 rises by no more than its second derivative allows: 1e-4 is ten times
+     * that */
     for (size_t v = 0; v < t.n_variables; v++)
       assert_true(least[v] - range[v].lowest <= 1e-4L && range[v].highest - most[v] <= 1e-4L);
     robot_free(&t);

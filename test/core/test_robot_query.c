@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What robots in motion are asked: against the saved answers of another program for real robots, against static pairs at many times
- * (which know nothing of motions), and against hulls in long double. */
+/* What robots in motion are asked: against the saved answers of another program for real robots, against static pairs
+ * at many times (which know nothing of motions), and against hulls in long double. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* ---- real robots ---------------------------------------------------------------------------------------------------------- */
+/* ---- real robots ---- */
 
 enum { REFERENCE_CASES = 64 };
 
@@ -207,12 +207,12 @@ CASE(the_whole_robot_is_as_near_as_the_nearer_of_both) {
   assert_true(compared > 10 && whole_nodes < both_nodes);
 }
 
-/* ---- random robots -------------------------------------------------------------------------------------------------------- */
+/* ---- random robots ---- */
 
 enum { SAMPLES = 60, TARGETS = 3 };
 
-/* The distance of a point from everything on the robot that moves, at a time, in long double (hulls of the vertices rounded to
- * double: 1e-15). */
+/* The distance of a point from everything on the robot that moves, at a time, in long double (hulls of the vertices
+ * rounded to double: 1e-15). */
 static long double distance_at(const test_robot *t, long double time, const vec3 *points, size_t n) {
   long double values[TEST_MAX_VARIABLES + 1], least = HUGE_VALL;
   ref_pose links[TEST_MAX_LINKS];
@@ -368,7 +368,7 @@ CASE(a_profile_is_true_on_every_interval) {
   }
 }
 
-/* ---- what is refused ------------------------------------------------------------------------------------------------------ */
+/* ---- what is refused ---- */
 
 #define REFUSED(call, part)                                                                  \
   do {                                                                                       \
@@ -376,7 +376,8 @@ CASE(a_profile_is_true_on_every_interval) {
     if (!strstr(cprox_workspace_error(ws), part)) fail_msg("%s", cprox_workspace_error(ws)); \
   } while (0)
 
-/* A slider of three balls on a rail, through a wall at its end, where it may also touch itself; written with many waypoints. */
+/* A slider of three balls on a rail, through a wall at its end, where it may also touch itself; written with many
+ * waypoints. */
 CASE(proven_contact_ends_a_query_at_once) {
   enum { POINTS = 4000, BALLS = 3 };
   cprox_link links[BALLS];
@@ -441,8 +442,8 @@ CASE(proven_contact_ends_a_query_at_once) {
   cprox_body_free(wall);
 }
 
-/* A box on a rail meets a box of the same section at t = 0.5, face to face: its sides slide along the other's, which proves
- * nothing. From x = 0.65 on they cross at the beginning. */
+/* A box on a rail meets a box of the same section at t = 0.5, face to face: its sides slide along the other's, which
+ * proves nothing. From x = 0.65 on they cross at the beginning. */
 CASE(contact_of_faces_is_proven_near_its_time) {
   cprox_body *bodies[2], *wall;
   assert_int_equal(cprox_body_create_box((cprox_vec3){0.2, 0.2, 0.2}, ws, &bodies[0]), CPROX_OK);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Motions of many segments: what is said of spans of them, against long double. Random robots with every type of joint go along paths
- * that are straight, dithered, kinked, stepped, smooth, back and forth, at even and at wild times. */
+/* Motions of many segments: what is said of spans of them, against long double. Random robots with every type of joint
+ * go along paths that are straight, dithered, kinked, stepped, smooth, back and forth, at even and at wild times. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@
 
 enum { MAX_AXES = 4 * TEST_MAX_LINKS, MOST_DEGREE = 9 };
 
-/* ---- paths ---------------------------------------------------------------------------------------------------------------- */
+/* ---- paths ---- */
 
 typedef enum path_shape { STRAIGHT, DITHERED, KINKED, STEPPED, SMOOTH, BACK_AND_FORTH, PATH_SHAPES } path_shape;
 typedef enum path_times { EVEN, UNEVEN, SINCE_1970, NEARLY_EQUAL, PATH_TIMES } path_times;
@@ -164,7 +164,7 @@ static void path_values(const path *p, size_t segment, long double u, long doubl
   }
 }
 
-/* ---- bounds --------------------------------------------------------------------------------------------------------------- */
+/* ---- bounds ---- */
 
 enum { COMBINATIONS = 12, SPANS = 12, SAMPLES = 7, TURNS = 12 };
 
@@ -229,7 +229,8 @@ static void seen(const path *p, const claim *c, const ref_pose *links, const ref
     out[v] = ref_pose_apply(&middle[c->standing], ref_pose_undo(&links[c->standing], out[v]));
 }
 
-/* The best of planes that turn: which one the bound means is not known. A step of the turn can miss it by its part of the drift. */
+/* The best of planes that turn: which one the bound means is not known. A step of the turn can miss it by its part of
+ * the drift. */
 static long double height(const path *p, const claim *c, const vec3l *x) {
   const int turns = vec_norm2(c->drift) > 0.0 ? TURNS : 0;
   long double best = -HUGE_VALL;
@@ -306,7 +307,7 @@ CASE(no_point_is_nearer_than_spans_say) {
   assert_true(straight > spans / 10 && nearest > 0.99);
 }
 
-/* ---- queries -------------------------------------------------------------------------------------------------------------- */
+/* ---- queries ---- */
 
 /* The distance of a point from what moves, in long double. */
 static long double distance_at(const path *p, size_t segment, long double u, vec3 point) {
@@ -368,7 +369,7 @@ CASE(no_sample_of_a_long_motion_is_nearer_than_lower) {
   }
 }
 
-/* ---- cost ----------------------------------------------------------------------------------------------------------------- */
+/* ---- cost ---- */
 
 /* The same straight motion with more and more waypoints takes as many nodes and distance queries as with two. */
 CASE(waypoints_on_a_line_cost_next_to_nothing) {

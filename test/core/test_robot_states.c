@@ -37,9 +37,9 @@ static void random_state(rng *r, const test_robot *t, double *values, long doubl
   for (size_t i = 0; i < t->n_variables; i++) exact[i] = (long double)values[i];
 }
 
-/* 400 robots (seed 301), each at 8 states, all by one call: the interval holds the distance that the long double kinematics gives, to
- * the obstacle and of all pairs of links with two joints between them. Tolerance: 1e-9 of a robot of a few metres, for the
- * rounding of the reference's vertices and cprox_pair()'s epsilon of 1e-6 on either side. */
+/* 400 robots (seed 301), each at 8 states, all by one call: the interval holds the distance that the long double
+ * kinematics gives, to the obstacle and of all pairs of links with two joints between them. Tolerance: 1e-9 of a robot
+ * of a few metres, for the rounding of the reference's vertices and cprox_pair()'s epsilon of 1e-6 on either side. */
 CASE(a_state_is_where_forward_kinematics_puts_it) {
   rng r = rng_seed(301);
   size_t near = 0;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The theorems of doc/rounding.md against 320 bits: no error is above its bound, and no bound is padded. Each test prints the largest
- * actual error as a fraction of its bound, and asserts that it is at least FULL: a bound that is far above every error that was ever
- * seen costs precision for nothing (asked of ENOUGH cases and more). Built with and without fused multiply-add. Tolerance 0; the reference's own error is 2^-267. */
+/* The theorems of doc/rounding.md against 320 bits: no error is above its bound, and no bound is padded. Each test
+ * prints the largest actual error as a fraction of its bound, and asserts that it is at least FULL: a bound that is far
+ * above every error that was ever seen costs precision for nothing (asked of ENOUGH cases and more). Built with and
+ * without fused multiply-add. Tolerance 0; the reference's own error is 2^-267. */
 #include "base/rounding.h"
 #include "curve/control.h"
 #include "curve/curve.h"
@@ -34,7 +35,7 @@ static void tell(const fraction *f, const char *what) {
   if (f->cases >= ENOUGH) assert_true(f->most >= FULL);
 }
 
-/* ---- the exact counterparts --------------------------------------------------------------------------------------------- */
+/* ---- the exact counterparts ---- */
 
 /* Cuts p at s: `left` and p itself become the two parts. */
 static void cut_exactly(num3 *p, num3 *left, size_t degree, num s) {
@@ -75,7 +76,7 @@ static num3 to_local(const cprox_pose *pose, vec3 centre, vec3 world) {
   return exact3_sub(out, exact3(centre));
 }
 
-/* ---- T1 ------------------------------------------------------------------------------------------------------------------- */
+/* ---- T1 ---- */
 
 /* Seed 1. A quarter at s = 1/2, where a level costs u and not 3u. */
 CASE(a_cut_adds_no_more_than_it_says) {
@@ -106,7 +107,7 @@ CASE(a_cut_adds_no_more_than_it_says) {
   tell(&others, "T1, cut anywhere");
 }
 
-/* ---- T3, T7 --------------------------------------------------------------------------------------------------------------- */
+/* ---- T3, T7 ---- */
 
 /* Seed 2. Points up to 1e6 sizes from the origin; the bound speaks of the difference to the pose's position alone. */
 CASE(a_point_in_a_frame_is_as_near_as_it_says) {
@@ -131,7 +132,7 @@ CASE(a_point_in_a_frame_is_as_near_as_it_says) {
   tell(&f, "T3 and T7, a point in a frame");
 }
 
-/* ---- T2, T4 --------------------------------------------------------------------------------------------------------------- */
+/* ---- T2, T4 ---- */
 
 typedef struct obstacle {
   int kind; /* a sphere, a box, a capsule, a hull */
@@ -286,7 +287,7 @@ CASE(bounds_give_rounding_no_more_than_they_say) {
   tell(&upper, "T4, upper bounds");
 }
 
-/* ---- T6 ------------------------------------------------------------------------------------------------------------------- */
+/* ---- T6 ---- */
 
 static num3 series(const vec3 *c, size_t degree, num t) {
   num3 sum = exact3(c[0]);

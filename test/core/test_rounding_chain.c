@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* T5 of doc/rounding.md against 320 bits: points at the end of a chain of revolute joints are off by no more than the running sum says, and
- * that sum is not padded: the largest error is at least FULL of it. Built with and without fused multiply-add. Tolerance 0; the
- * reference's own error is 2^-267. */
+/* T5 of doc/rounding.md against 320 bits: points at the end of a chain of revolute joints are off by no more than the
+ * running sum says, and that sum is not padded: the largest error is at least FULL of it. Built with and without fused
+ * multiply-add. Tolerance 0; the reference's own error is 2^-267. */
 #include "base/rounding.h"
 #include "kinematics/motion.h"
 #include "support/cases.h"
@@ -22,7 +22,7 @@ typedef struct chain {
   vec3 vertex;
 } chain;
 
-/* ---- random chains -------------------------------------------------------------------------------------------------------- */
+/* ---- random chains ---- */
 
 static chain chain_random(rng *r, bool aligned) {
   static const vec3 ALONG[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -51,7 +51,7 @@ static bool is_aligned(const cprox_link *link) {
   return (z.x == 0.0) + (z.y == 0.0) + (z.z == 0.0) == 2;
 }
 
-/* ---- the exact counterpart ------------------------------------------------------------------------------------------------ */
+/* ---- the exact counterpart ---- */
 
 static num3 add(num3 a, num3 b) {
   num3 out;
@@ -99,9 +99,10 @@ static num3 end_of_chain(const chain *c) {
   return x;
 }
 
-/* ---- T5 ------------------------------------------------------------------------------------------------------------------- */
+/* ---- T5 ---- */
 
-/* u (sum over transforms of (error of the rotation so far + 6) times the length it turns, + 3 times all computed origins) */
+/* u (sum over transforms of (error of the rotation so far + 6) times the length it turns, + 3 times all computed
+ * origins) */
 static double running_sum(const chain *c, const placement *frames) {
   double rotation = 0.0, sum = 0.0;
   for (size_t i = 0; i < c->n; i++) {

@@ -11,7 +11,7 @@
 #include "support/meshes.h"
 #include "support/of_list.h"
 
-/* ---- scenes ----------------------------------------------------------------------------------------------------------- */
+/* ---- scenes ---- */
 
 enum { KINDS = 9 };
 
@@ -85,7 +85,7 @@ static cprox_curve *way(rng *r, size_t n, double half) {
   return curve;
 }
 
-/* ---- the same answers ------------------------------------------------------------------------------------------------- */
+/* ---- the same answers ---- */
 
 static void expect_overlap(const char *what, size_t i, const cprox_result *a, const cprox_result *b) {
   if (a->lower > b->upper || b->lower > a->upper)
@@ -93,8 +93,8 @@ static void expect_overlap(const char *what, size_t i, const cprox_result *a, co
              b->upper);
 }
 
-/* 300 movers (seed 91) through scenes of 1 to 120 targets of every kind: points, tubes, splines; signed and not. Verdicts are equal,
- * distances, k nearest and times of contact the same to epsilon. */
+/* 300 movers (seed 91) through scenes of 1 to 120 targets of every kind: points, tubes, splines; signed and not.
+ * Verdicts are equal, distances, k nearest and times of contact the same to epsilon. */
 CASE(sets_answer_as_all_their_targets_do) {
   rng r = rng_seed(91);
   size_t hits = 0;
@@ -138,7 +138,8 @@ CASE(sets_answer_as_all_their_targets_do) {
   assert_true(hits > cases / 10 && hits < cases);
 }
 
-/* A carried box past 60 boxes, balls and capsules (seed 93); meshes are refused, as without a set. By coarser models, too. */
+/* A carried box past 60 boxes, balls and capsules (seed 93); meshes are refused, as without a set. By coarser models,
+ * too. */
 CASE(carried_bodies_and_coarser_models_are_answered_as_without_a_set) {
   rng r = rng_seed(93);
   scene s = scene_make(&r, 180, 2.0, true);
@@ -166,10 +167,10 @@ CASE(carried_bodies_and_coarser_models_are_answered_as_without_a_set) {
   scene_free(&s);
 }
 
-/* ---- what they cost --------------------------------------------------------------------------------------------------- */
+/* ---- what they cost ---- */
 
-/* The same density of targets, 100 to 6,400 of them, one short curve: what is searched does not grow with them. 64 times the targets may
- * cost twice the intervals. */
+/* The same density of targets, 100 to 6,400 of them, one short curve: what is searched does not grow with them. 64
+ * times the targets may cost twice the intervals. */
 CASE(what_is_searched_does_not_grow_with_the_set) {
   rng r = rng_seed(97);
   uint32_t nodes[2] = {0};
@@ -209,7 +210,7 @@ CASE(queries_do_not_allocate_once_the_workspace_has_grown) {
   scene_free(&s);
 }
 
-/* ---- bad input -------------------------------------------------------------------------------------------------------- */
+/* ---- bad input ---- */
 
 CASE(bad_input_is_refused_and_nothing_is_far) {
   rng r = rng_seed(101);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Signed distance along curves: minus the deepest overlap. Boxes, capsules and hulls are held against closed forms and planes in long
- * double; every kind, carried or not, against static pairs at many parameters, whose depth test_depth holds against long double. */
+/* Signed distance along curves: minus the deepest overlap. Boxes, capsules and hulls are held against closed forms and
+ * planes in long double; every kind, carried or not, against static pairs at many parameters, whose depth test_depth
+ * holds against long double. */
 #include <stdlib.h>
 
 #include "base/rounding.h"
@@ -19,7 +20,7 @@ static cprox_options asked(double epsilon) {
   return options;
 }
 
-/* ---- long double ---------------------------------------------------------------------------------------------------------- */
+/* ---- long double ---- */
 
 static long double signed_box(vec3l p, vec3 half) {
   const long double x = fabsl(p.x) - half.x, y = fabsl(p.y) - half.y, z = fabsl(p.z) - half.z;
@@ -73,8 +74,8 @@ static long double truth(const problem *p, vec3l world) {
   return ref_point_segment(y, (vec3l){0, 0, -p->half.z}, (vec3l){0, 0, p->half.z}) - (long double)p->half.x;
 }
 
-/* Seed 91, 1500 curves of degree 1 to 7 through and about unit bodies; 30 parameters and the reported one. Tolerance: 1e-17, long
- * double's own. */
+/* Seed 91, 1500 curves of degree 1 to 7 through and about unit bodies; 30 parameters and the reported one. Tolerance:
+ * 1e-17, long double's own. */
 CASE(the_interval_contains_minus_the_deepest_overlap) {
   rng r = rng_seed(91);
   size_t deep = 0;
@@ -113,7 +114,7 @@ CASE(the_interval_contains_minus_the_deepest_overlap) {
   assert_true(deep > 300 || test_cases(100) < 100);
 }
 
-/* ---- every kind -------------------------------------------------------------------------------------------------------------- */
+/* ---- every kind ---- */
 
 static cprox_result pair_at(const cprox_mover *mover, const cprox_obstacle *target, double t) {
   cprox_body *point = NULL;
@@ -129,7 +130,8 @@ static cprox_result pair_at(const cprox_mover *mover, const cprox_obstacle *targ
   return result;
 }
 
-/* Seed 92: all pairs of bounded kinds, the first carried; and each kind by itself against points; 4 cases each, through one another. */
+/* Seed 92: all pairs of bounded kinds, the first carried; and each kind by itself against points; 4 cases each, through
+ * one another. */
 CASE(every_kind_knows_how_deep_it_goes) {
   rng r = rng_seed(92);
   size_t asked_for = 0, open = 0, deep = 0;
@@ -232,8 +234,8 @@ static int by_count(const void *a, const void *b) {
   return *(const uint32_t *)a < *(const uint32_t *)b ? -1 : *(const uint32_t *)a > *(const uint32_t *)b;
 }
 
-/* Seed 93, 300 quintics through a hull of 32 vertices and through a box, epsilon 1e-9. The deepest point mostly lies where two faces are
- * equally near, and there only bisection closes the interval: about four nodes a digit. */
+/* Seed 93, 300 quintics through a hull of 32 vertices and through a box, epsilon 1e-9. The deepest point mostly lies
+ * where two faces are equally near, and there only bisection closes the interval: about four nodes a digit. */
 CASE(medians_stay_within_60_nodes) {
   enum { PROBLEMS = 300 };
   rng r = rng_seed(93);
@@ -263,8 +265,8 @@ CASE(medians_stay_within_60_nodes) {
   }
 }
 
-/* A curve in the plane of a face touches the face between two of its edges. The nearest sample lies on one of the edges, and its
- * plane leans over that edge; at the other edge the search must find the plane of the face and end. */
+/* A curve in the plane of a face touches the face between two of its edges. The nearest sample lies on one of the
+ * edges, and its plane leans over that edge; at the other edge the search must find the plane of the face and end. */
 CASE(a_curve_that_slides_on_a_face_beside_an_edge_ends_soon) {
   rng r = rng_seed(94);
   uint32_t most = 0;

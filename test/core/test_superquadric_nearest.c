@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Nearest points and distances of superquadrics against intervals in long double that rest on a point of the body and a tangent plane. */
+/* Nearest points and distances of superquadrics against intervals in long double that rest on a point of the body and a
+ * tangent plane. */
 #include <math.h>
 
 #include "shape/body.h"
@@ -33,8 +34,8 @@ CASE(nearest_points_are_points_of_the_body) {
   assert_int_equal(wrong, 0);
 }
 
-/* Exponents beside 1: the point that a support function finds may stay far behind the value that it proves, and a distance's lower
- * bound must rest on the value. The truth is the reference's, in long double; both orders. */
+/* Exponents beside 1: the point that a support function finds may stay far behind the value that it proves, and a
+ * distance's lower bound must rest on the value. The truth is the reference's, in long double; both orders. */
 CASE(lower_bounds_of_pairs_hold_where_exponents_are_beside_1) {
   const superquadric s = {.a = {0.003677111554885204, 0.0021015665365774622, 0.74948478477294522},
                           .p = {1, 1.019770109814055, 20.260944529370203}};
@@ -59,15 +60,15 @@ CASE(lower_bounds_of_pairs_hold_where_exponents_are_beside_1) {
   cprox_body_free(body);
 }
 
-/* How deep y is in the octahedron of the semi-axes. A body of exponents above 1 contains the octahedron, so y is as deep there
- * at least. */
+/* How deep y is in the octahedron of the semi-axes. A body of exponents above 1 contains the octahedron, so y is as
+ * deep there at least. */
 static long double depth_in_octahedron(const superquadric *s, vec3 y) {
   const vec3l n = {1.0L / s->a.x, 1.0L / s->a.y, 1.0L / s->a.z};
   return (1.0L - fabsl(y.x) * n.x - fabsl(y.y) * n.y - fabsl(y.z) * n.z) / ref_norm(n);
 }
 
-/* Seed 2: no plane may prove a point to be less deep than it is, where exponents are beside 1 and the support point stays behind
- * the support value. */
+/* Seed 2: no plane may prove a point to be less deep than it is, where exponents are beside 1 and the support point
+ * stays behind the support value. */
 CASE(depths_hold_where_exponents_are_beside_1) {
   rng r = rng_seed(2);
   size_t wrong = 0;

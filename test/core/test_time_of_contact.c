@@ -12,7 +12,7 @@
 #include "support/random.h"
 #include "support/reference.h"
 
-/* ---- builders ---------------------------------------------------------------------------------------------------------- */
+/* ---- builders ---- */
 
 static void ask(cprox_mover mover, cprox_obstacle target, double epsilon, cprox_result *r) {
   const cprox_options options = accurate(epsilon);
@@ -54,7 +54,7 @@ static long double obstacle_distance(const obstacle *o, vec3l world) {
   return ref_point_hull(p, o->vertex, 8);
 }
 
-/* ---- random curves and bodies -------------------------------------------------------------------------------------------- */
+/* ---- random curves and bodies ---- */
 
 /* 3000 random pairs, seed 1, degrees 1 to 9, points and tubes. Distances by long double at 60 parameters before
  * t_contact_lower and at t_contact_lower and t themselves; both sides of a comparison are within 1e-14 at this scale.
@@ -108,7 +108,7 @@ CASE(nothing_touches_before_t_contact_lower_and_it_is_within_epsilon_of_contact)
   assert_true(hits * 5 > cases && free_ones * 10 > cases && undecided * 50 < cases);
 }
 
-/* ---- thin plates and grazes: contact known in closed form ---------------------------------------------------------------- */
+/* ---- thin plates and grazes: contact known in closed form ---- */
 
 /* The first s at which the descending ordinate of the curve is at most `height`, by bisection in long double. */
 static long double descends_to(const vec3 *p, size_t degree, long double height) {
@@ -120,8 +120,9 @@ static long double descends_to(const vec3 *p, size_t degree, long double height)
   return high;
 }
 
-/* 1200 curves that go down through a plate of 1e-9 to 1e-3, seed 2, the plate turned anyhow. Where the curve meets the upper
- * side is found by bisection: t_contact_lower is no later, and no earlier than where the curve is still epsilon above.
+/* 1200 curves that go down through a plate of 1e-9 to 1e-3, seed 2, the plate turned anyhow. Where the curve meets the
+ * upper side is found by bisection: t_contact_lower is no later, and no earlier than where the curve is still epsilon
+ * above.
  * */
 CASE(a_plate_is_neither_missed_nor_met_late) {
   const size_t cases = test_cases(1200);
@@ -156,8 +157,8 @@ CASE(a_plate_is_neither_missed_nor_met_late) {
   }
 }
 
-/* 1200 parabolas over a ball whose top they pass at a height of -1e-3 … 1e-3, seed 3. The least height decides, except within
- * epsilon and rounding of 0. */
+/* 1200 parabolas over a ball whose top they pass at a height of -1e-3 … 1e-3, seed 3. The least height decides, except
+ * within epsilon and rounding of 0. */
 CASE(grazes_are_told_from_misses) {
   const size_t cases = test_cases(1200);
   rng r = rng_seed(3);
@@ -180,7 +181,7 @@ CASE(grazes_are_told_from_misses) {
   cprox_body_free(ball);
 }
 
-/* ---- splines, several targets, curves as targets ---------------------------------------------------------------------------- */
+/* ---- splines, several targets, curves as targets ---- */
 
 CASE(the_earliest_of_many_targets_is_met) {
   const vec3 p[2] = {{0, 0, 0}, {10, 0, 0}};

@@ -32,8 +32,8 @@ static double distance_to(const tree *t, tree_place at, vec3 x) {
   return near.distance;
 }
 
-/* 60 trees of 1 to 3,000 elements of each kind (seed 31), both builds, 20 points each. The nearest distance of all elements, one by one,
- * lies in [lower, upper] but for the rounding that tree.h states; kernels agree to the bit. */
+/* 60 trees of 1 to 3,000 elements of each kind (seed 31), both builds, 20 points each. The nearest distance of all
+ * elements, one by one, lies in [lower, upper] but for the rounding that tree.h states; kernels agree to the bit. */
 CASE(nearest_is_that_of_all_elements_for_every_kernel) {
   static vec3 low[MOST], high[MOST];
   rng r = rng_seed(31);

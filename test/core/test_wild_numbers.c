@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Every number of every argument and option, one at a time, is made not finite or longer than squares hold: the call is refused with a
- * reason, and nothing is written. */
+/* Every number of every argument and option, one at a time, is made not finite or longer than squares hold: the call is
+ * refused with a reason, and nothing is written. */
 #include <math.h>
 #include <string.h>
 
@@ -215,7 +215,7 @@ CASE(the_widest_epsilon_is_answered) {
   cprox_body_free(points);
 }
 
-/* ---- robots ----------------------------------------------------------------------------------------------------------------- */
+/* ---- robots ---- */
 
 typedef struct robot_arguments {
   cprox_link link;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Every provider's gradient against finite differences of its own values, over random places; values against the core. */
+/* Every provider's gradient against finite differences of its own values, over random places; values against the core.
+ */
 #include "support.h"
 
 #include <cmath>
@@ -58,7 +59,8 @@ double valueAt(const Constraint &constraint, const Case &c, const Step &step, do
   return value.value;
 }
 
-/* How far the derivative along the step, by the gradient, is from the nearest of a few central differences with one extrapolation. */
+/* How far the derivative along the step, by the gradient, is from the nearest of a few central differences with one
+ * extrapolation. */
 double misfit(const Constraint &constraint, const Case &c, const Step &step, const ConstraintValue &value,
               Workspace &workspace, double *derivative) {
   double expected = value.a.linear.dot(step.linear_a) + value.a.angular.dot(step.angular_a) +
@@ -113,11 +115,13 @@ CurveDescription randomCurve(Random &random, int k) {
   return c;
 }
 
-/* 1e-6: central differences of values that are exact to 1e-12, at the best of several widths, err by some 1e-8; the distance along a
- * curve is but once differentiable where the nearest feature changes, which is why the best width counts. */
+/* 1e-6: central differences of values that are exact to 1e-12, at the best of several widths, err by some 1e-8; the
+ * distance along a curve is but once differentiable where the nearest feature changes, which is why the best width
+ * counts. */
 constexpr double TOLERANCE = 1e-6;
 
-/* A body carried past a superquadric: the core knows their difference by supports alone, its normal to the root of the interval. */
+/* A body carried past a superquadric: the core knows their difference by supports alone, its normal to the root of the
+ * interval. */
 constexpr double TOLERANCE_BY_SUPPORTS = 1e-5;
 
 struct Tally {
@@ -304,8 +308,9 @@ ShapeDescription frustum(double w) {
   return out;
 }
 
-/* Seed 815, 300 places of a frustum under a slab, level or tilted by 1e-12 to 1e-2, apart and overlapping. What is called a gradient is the
- * derivative to either side: one-sided differences at steps of 1e-3 to 1e-7 of values that are exact to 1e-12. */
+/* Seed 815, 300 places of a frustum under a slab, level or tilted by 1e-12 to 1e-2, apart and overlapping. What is
+ * called a gradient is the derivative to either side: one-sided differences at steps of 1e-3 to 1e-7 of values that are
+ * exact to 1e-12. */
 TEST(Gradients, of_SuperquadricDistance_hold_to_either_side_where_faces_are_level) {
   const Loaded provider("curve_proximity/SuperquadricDistance", {{"epsilon", 1e-13}});
   Random random(815);

@@ -53,7 +53,8 @@ TEST(Fits, enclose_the_body_in_every_direction_and_at_every_point_of_it) {
   }
 }
 
-/* No point on the surface, found by rays from the centre, is farther from the body than the excess; and some come near to it. */
+/* No point on the surface, found by rays from the centre, is farther from the body than the excess; and some come near
+ * to it. */
 TEST(Fits, stand_out_by_no_more_than_they_say_and_not_by_much_less) {
   Random random(822);
   double least_share = 1.0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What needs no master: the documented parameters are the ones that are read, and nothing escapes a guarded callback. */
+/** What needs no master: the documented parameters are the ones that are read, and nothing escapes a guarded callback.
+ */
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 

@@ -116,7 +116,8 @@ TEST(FclAdapter, a_mesh_is_its_hull) {
   EXPECT_NEAR(byUs(as_mesh, far).upper, byFcl(as_box, far), TOLERANCE);
 }
 
-/* FCL has no distance to halfspaces: the plane z = 1.5 below a ball of 0.7 at z = 4 is 1.8 away, however it is turned. */
+/* FCL has no distance to halfspaces: the plane z = 1.5 below a ball of 0.7 at z = 4 is 1.8 away, however it is turned.
+ */
 TEST(FclAdapter, halfspaces_are_the_same) {
   Random random(20);
   const auto half = std::make_shared<fcl::Halfspaced>(fcl::Vector3d(0, 0, 1), 1.5);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The allowed collision matrix, through C++ and scene files, against a model of what moveit_msgs says of it. The messages'
- * side is in test/ros/trajectory.py. */
+/* The allowed collision matrix, through C++ and scene files, against a model of what moveit_msgs says of it. The
+ * messages' side is in test/ros/trajectory.py. */
 #include <unistd.h>
 
 #include <algorithm>
@@ -181,7 +181,7 @@ TEST(Allowed, pairs_of_every_kind_are_left_out_by_the_matrix_and_by_nothing_else
   }
 }
 
-/* ---- what an SRDF says ---------------------------------------------------------------------------------------------- */
+/* ---- what an SRDF says ---- */
 
 /* The cart's and the hand's pairs that are asked about, of a scene of a wall and a held object. */
 struct Asked {
@@ -224,7 +224,8 @@ Asked askedOf(const std::string &inside, const std::vector<AllowedPair> &said = 
           asked("held", "hand")};
 }
 
-/* As MoveIt enters them: a default of the link, which meets objects too; an entry beats it; disable_collisions beats all. */
+/* As MoveIt enters them: a default of the link, which meets objects too; an entry beats it; disable_collisions beats
+ * all. */
 TEST(Allowed, links_that_an_srdf_disables_by_default_may_touch_everything_but_what_it_enables) {
   const std::string by_default = "<disable_default_collisions link='hand'/>",
                     enable = "<enable_collisions link1='hand' link2='cart'/>",
@@ -256,7 +257,8 @@ TEST(Allowed, elements_of_an_srdf_without_their_links_are_refused_by_name) {
   }
 }
 
-/* 300 scenes of 5 names, 40 random changes each, against the list of all that was said; the last word on a thing holds. */
+/* 300 scenes of 5 names, 40 random changes each, against the list of all that was said; the last word on a thing holds.
+ */
 TEST(Allowed, many_changes_in_any_order_leave_the_last_word) {
   constexpr std::uint64_t SEED = 20261122;
   const std::array<std::string, 5> names = {"a", "ab", "b", "c", "d"};

@@ -198,7 +198,8 @@ TEST_F(Slider, what_cannot_be_carried_or_scaled_is_told_by_name_and_changes_noth
   EXPECT_TRUE(scene.snapshot()->linkScales().empty());
 }
 
-/* The support function of every type at scale 1.7 is 1.7 times its own, about its origin; 1e-9 for the solver of implicit bodies. */
+/* The support function of every type at scale 1.7 is 1.7 times its own, about its origin; 1e-9 for the solver of
+ * implicit bodies. */
 TEST(Scaling, enlarges_every_type_of_shape_about_its_origin) {
   ShapeDescription polytope = shape(ShapeType::POLYTOPE, {}), mesh = shape(ShapeType::MESH, {2, 1, 1}),
                    implicit = shape(ShapeType::IMPLICIT, {}), point = shape(ShapeType::POINT, {}),

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Point clouds and octrees as shapes: held against their own parts one by one, and what is said of bytes that are none. */
+/* Point clouds and octrees as shapes: held against their own parts one by one, and what is said of bytes that are none.
+ */
 #include <unistd.h>
 #include <cmath>
 #include <filesystem>
@@ -100,7 +101,8 @@ void expectSame(const Answer &a, const Answer &b) {
 
 } // namespace
 
-/* Seed 11; 40 curves against 300 points of each radius: by the tree of the cloud, and by 300 balls or points that are objects. */
+/* Seed 11; 40 curves against 300 points of each radius: by the tree of the cloud, and by 300 balls or points that are
+ * objects. */
 TEST(Clouds, are_as_far_away_as_their_nearest_point) {
   Random random(11);
   for (const double radius : {0.0, 0.03}) {
@@ -139,7 +141,8 @@ TEST(Clouds, beyond_the_memory_limit_name_the_bytes_they_need) {
   expectContains(why, "bytes, above the limit of 1000000");
 }
 
-/* Seed 12; 30 curves against trees of 200 cells, as bytes of both kinds: the cells one by one are what octomap lists. */
+/* Seed 12; 30 curves against trees of 200 cells, as bytes of both kinds: the cells one by one are what octomap lists.
+ */
 TEST(Octrees, are_as_far_away_as_their_nearest_occupied_cell) {
   Random random(12);
   octomap::OcTree tree(0.125);
@@ -235,7 +238,8 @@ TEST(Octrees, cut_short_are_refused_by_name) {
   }
 }
 
-/* Seed 15, 3000 trees with up to four bytes that are others: each is refused or is a body; octomap never sees what it cannot bear. */
+/* Seed 15, 3000 trees with up to four bytes that are others: each is refused or is a body; octomap never sees what it
+ * cannot bear. */
 TEST(Octrees, of_wrong_bytes_are_refused_or_bodies) {
   Random random(15);
   octomap::OcTree tree(0.1);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Where links are, against KDL: the robots of test/data at 200 random postures each, and along a motion through two of them. 1e-12: both
- * round a dozen transforms of lengths below 3 m in double. */
+/* Where links are, against KDL: the robots of test/data at 200 random postures each, and along a motion through two of
+ * them. 1e-12: both round a dozen transforms of lengths below 3 m in double. */
 #include <kdl/tree.hpp>
 #include <kdl/treefksolverpos_recursive.hpp>
 #include <kdl_parser/kdl_parser.hpp>

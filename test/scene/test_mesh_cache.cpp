@@ -258,8 +258,8 @@ TEST(MeshCache, memory_forgets_what_was_not_used_for_longest) {
   EXPECT_FALSE(recallMesh(keyNumber(6)));
 }
 
-/* Seed 34: facets that are right, wrong, repeated or degenerate, of hulls of 100 sets of 200 points: all points are covered.
- * Tolerance: the accuracy of cprox_body_nearest. */
+/* Seed 34: facets that are right, wrong, repeated or degenerate, of hulls of 100 sets of 200 points: all points are
+ * covered. Tolerance: the accuracy of cprox_body_nearest. */
 TEST(Hulls, cover_all_points_whatever_the_facets_are) {
   Random random(34);
   for (int i = 0; i < 100; ++i) {

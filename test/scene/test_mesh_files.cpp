@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Mesh files: read as geometric_shapes reads them, in a process of its own; what is wrong with one is said in one line. */
+/* Mesh files: read as geometric_shapes reads them, in a process of its own; what is wrong with one is said in one line.
+ */
 #include <sys/stat.h>
 #include <sys/wait.h>
 
@@ -142,7 +143,7 @@ TEST(MeshFiles, a_file_that_is_cut_anywhere_never_loses_a_triangle) {
   }
 }
 
-/* ---- the process --------------------------------------------------------------------------------------------------- */
+/* ---- the process ---- */
 
 std::size_t openDescriptors() {
   std::size_t n = 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Mutated mesh files of every format whose files are checked: each is a mesh or an error in one line; none ends this process or
- * stalls it. Each mesh that comes is made a body, here. The reader runs in a fork of this program, which is quicker than
- * starting its own; what it says is heard as ever. What the check alone refuses goes to the reader in one case of 20.
- * CURVE_PROXIMITY_MESH_FILES says how many files of each format, CURVE_PROXIMITY_SEED which. */
+/* Mutated mesh files of every format whose files are checked: each is a mesh or an error in one line; none ends this
+ * process or stalls it. Each mesh that comes is made a body, here. The reader runs in a fork of this program, which is
+ * quicker than starting its own; what it says is heard as ever. What the check alone refuses goes to the reader in one
+ * case of 20. CURVE_PROXIMITY_MESH_FILES says how many files of each format, CURVE_PROXIMITY_SEED which. */
 #include <fcntl.h>
 #include <sys/wait.h>
 

@@ -134,7 +134,8 @@ TEST(Ask, meshes_say_which_model_answered) {
   }
 }
 
-/* A bracket: three plates of a U that opens upwards, 2 wide and 1 high. A line runs between its arms, 1 from the floor less 0.4. */
+/* A bracket: three plates of a U that opens upwards, 2 wide and 1 high. A line runs between its arms, 1 from the floor
+ * less 0.4. */
 TEST(Ask, a_curve_in_the_hull_of_a_mesh_is_clear_of_the_mesh) {
   ShapeDescription bracket = shape(ShapeType::MESH, {});
   bracket.vertices.resize(3, 8);
@@ -342,7 +343,8 @@ TEST(Compile, a_bad_curve_is_an_answer) {
   EXPECT_EQ(answer.message, "basis 'fourier' is not available");
 }
 
-/* One parabola, (t, t², 0) on [-1, 2], as every basis says it, and a circle: the nearest point to (0, -1, 0) is known. */
+/* One parabola, (t, t², 0) on [-1, 2], as every basis says it, and a circle: the nearest point to (0, -1, 0) is known.
+ */
 TEST(Compile, every_basis_describes_the_same_curve) {
   Scene scene;
   ASSERT_TRUE(scene.apply(change({add("point", {shape(ShapeType::POINT, {})}, translation(0, -1, 0))})).empty());
@@ -474,7 +476,7 @@ TEST(Compile, a_spline_of_100000_points_is_compiled_and_answered) {
   EXPECT_EQ(answer.b, "ball");
 }
 
-/* ---- what does not apply --------------------------------------------------------------------------------------------- */
+/* ---- what does not apply ---- */
 
 TEST(Options, what_does_not_apply_to_a_query_is_refused_and_named) {
   Scene scene;

@@ -256,8 +256,8 @@ TEST(Scene, a_snapshot_stays_as_it_was) {
   EXPECT_EQ(old->objects().size(), 1u);
 }
 
-/* 1000 objects: moving one of them makes a new snapshot, and shares all bodies. Measured: 1.5 ms; 50 ms is the limit that
- * a loaded machine keeps. */
+/* 1000 objects: moving one of them makes a new snapshot, and shares all bodies. Measured: 1.5 ms; 50 ms is the limit
+ * that a loaded machine keeps. */
 TEST(Scene, a_change_among_a_thousand_objects_is_quick) {
   Scene scene;
   std::vector<Operation> all;

@@ -11,7 +11,8 @@
 
 enum { REASON = 256 };
 
-/* The proof that was asked for. That there is none changes nothing in the answer; the reason tells why, after that of the answer. */
+/* The proof that was asked for. That there is none changes nothing in the answer; the reason tells why, after that of
+ * the answer. */
 static void leave_certificate(const query *q, const cprox_result *answer) {
   if (!q->options.certificate) return;
   char of_answer[REASON], of_proof[REASON];
@@ -66,7 +67,7 @@ static cprox_status ask(query *q, cprox_result *nearest, cprox_result *each) {
   return status;
 }
 
-/* ---- the queries ---------------------------------------------------------------------------------------------------------- */
+/* ---- the queries ---- */
 
 cprox_status list_distance(cprox_mover mover, const cprox_obstacle *targets, size_t n, const cprox_options *options,
                            cprox_workspace *workspace, cprox_result *nearest, cprox_result *each) {

@@ -10,8 +10,8 @@
 #include "solve/list.h"
 #include "solve/solve.h"
 
-/* Lists the pairs of geometries, or of geometries and targets, that are asked about where none are given; counts them where there is
- * no room. The parts of a geometry stand together. */
+/* Lists the pairs of geometries, or of geometries and targets, that are asked about where none are given; counts them
+ * where there is no room. The parts of a geometry stand together. */
 static size_t list_pairs(const query *q, cprox_robot_pair *pairs) {
   const cprox_motion *motion = q->mover.motion;
   const cprox_robot *robot = motion->robot;

@@ -56,7 +56,7 @@ cprox_obstacles_info cprox_obstacles_get_info(const cprox_obstacles *obstacles) 
   return info;
 }
 
-/* ---- one mover ---------------------------------------------------------------------------------------------------- */
+/* ---- one mover ---- */
 
 static const obstacle_bvh *bvh_of(const cprox_obstacles *obstacles) {
   return obstacles ? obstacles->bvh : NULL;
@@ -124,7 +124,7 @@ cprox_status cprox_obstacles_profile(const cprox_obstacles *obstacles, cprox_mov
                       workspace, intervals);
 }
 
-/* ---- many movers -------------------------------------------------------------------------------------------------- */
+/* ---- many movers ---- */
 
 /* NULL, and the error message set, where there is no such index. */
 static const obstacle_batch *batch_of(const cprox_obstacles *obstacles, cprox_workspace *workspace) {

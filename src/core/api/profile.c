@@ -23,7 +23,8 @@ static cprox_status check_breaks(const query *q, const double *breaks, size_t n,
   return CPROX_OK;
 }
 
-/* The capsule round the control points of [t0, t1] of one piece, and a little more, or of the whole piece where there are none. */
+/* The capsule round the control points of [t0, t1] of one piece, and a little more, or of the whole piece where there
+ * are none. */
 static curve_capsule reach_of(const cprox_curve *curve, size_t piece, double t0, double t1,
                               cprox_workspace *workspace) {
   vec3 p[CPROX_MAX_DEGREE + 1];
@@ -47,7 +48,8 @@ static curve_capsule reach_of(const cprox_curve *curve, size_t piece, double t0,
 /* What the section's ends lie farther out than asked, as a fraction of the piece. */
 static const double SECTION_OUTWARD = 10.0 * ROUND_U;
 
-/* The part of a piece between two of its parameters, rounded outward: so that sections which share an end leave nothing out. */
+/* The part of a piece between two of its parameters, rounded outward: so that sections which share an end leave nothing
+ * out. */
 static curve_interval section_between(const cprox_curve *curve, size_t piece, double t0, double t1) {
   const double from = curve->breaks[piece], to = curve->breaks[piece + 1];
   const double a =
@@ -56,7 +58,8 @@ static curve_interval section_between(const cprox_curve *curve, size_t piece, do
   return curve_side_section(curve, piece, a, b);
 }
 
-/* A point that is farther out than asked may be that much nearer: the curve is no faster than the ends of its hodograph. */
+/* A point that is farther out than asked may be that much nearer: the curve is no faster than the ends of its
+ * hodograph. */
 static double outward_motion(const cprox_curve *curve, size_t piece) {
   const vec3 *p = curve_piece(curve, piece);
   double longest = 0.0;

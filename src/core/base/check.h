@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What must hold whatever is asked: checked in the builds of tests and sanitizers (CPROX_CHECKED), which end there; free elsewhere. */
+/* What must hold whatever is asked: checked in the builds of tests and sanitizers (CPROX_CHECKED), which end there;
+ * free elsewhere. */
 #ifndef CPROX_BASE_CHECK_H
 #define CPROX_BASE_CHECK_H
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Numbers as unevaluated sums of two doubles, for conversions whose terms cancel. The algorithms and their relative error
- * bounds are those of M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous error bounds for basic building blocks of
- * double-word arithmetic", 2017; they hold where nothing overflows or underflows. A product that underflows is off by a
- * few 2^-1074 besides, which is the caller's to count. */
+/* Numbers as unevaluated sums of two doubles, for conversions whose terms cancel. The algorithms and their relative
+ * error bounds are those of M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous error bounds for basic building
+ * blocks of double-word arithmetic", 2017; they hold where nothing overflows or underflows. A product that underflows
+ * is off by a few 2^-1074 besides, which is the caller's to count. */
 #ifndef CPROX_BASE_DOUBLE_DOUBLE_H
 #define CPROX_BASE_DOUBLE_DOUBLE_H
 

@@ -36,8 +36,8 @@ frame frame_create(const cprox_pose *pose, vec3 centre) {
   return f;
 }
 
-/* local = R2^T (R1^T (p - x1) - x2) - c = (R1 R2)^T (p - x1) - (R2^T x2 + c). The product of two quaternions is within 8u of its
- * length, which turns by 16u. */
+/* local = R2^T (R1^T (p - x1) - x2) - c = (R1 R2)^T (p - x1) - (R2^T x2 + c). The product of two quaternions is within
+ * 8u of its length, which turns by 16u. */
 frame frame_create_within(const cprox_pose *outer, const cprox_pose *inner, vec3 centre) {
   const frame second = frame_create(&(cprox_pose){.orientation = inner->orientation}, vec(0, 0, 0));
   const vec3 shift = frame_turn_to_local(&second, inner->position);
@@ -88,8 +88,8 @@ vec3 frame_to_world(const frame *f, vec3 local) {
   return vec_add(frame_turn_to_world(f, vec_add(local, f->centre)), f->position);
 }
 
-/* The same rotation by a quaternion whose products neither overflow nor vanish: scaled by a power of 2, exactly, where its norm is far
- * from 1. (A part that is lost to underflow then is 2^-1000 of the largest.) */
+/* The same rotation by a quaternion whose products neither overflow nor vanish: scaled by a power of 2, exactly, where
+ * its norm is far from 1. (A part that is lost to underflow then is 2^-1000 of the largest.) */
 static cprox_quat mid_sized(cprox_quat q) {
   const double most = fmax(fmax(fabs(q.w), fabs(q.x)), fmax(fabs(q.y), fabs(q.z)));
   if (most > 1e-30 && most < 1e30) return q;

@@ -23,7 +23,8 @@ typedef struct frame {
 /* pose must have been checked by frame_pose_usable(). */
 frame frame_create(const cprox_pose *pose, vec3 centre);
 
-/* The frame of `inner` within `outer`. Their positions are not added, so that sizes and not positions enter the rounding. */
+/* The frame of `inner` within `outer`. Their positions are not added, so that sizes and not positions enter the
+ * rounding. */
 frame frame_create_within(const cprox_pose *outer, const cprox_pose *inner, vec3 centre);
 
 /* Why a pose is not usable, as part of a sentence ("the quaternion's norm is 0"), or NULL if it is. */

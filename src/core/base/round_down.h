@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A parameter between two others, from below: for what is certified of all smaller ones. And how far it lies between them, from both
- * sides: for what is certified of a part of the range. */
+/* A parameter between two others, from below: for what is certified of all smaller ones. And how far it lies between
+ * them, from both sides: for what is certified of a part of the range. */
 #ifndef CPROX_BASE_ROUND_DOWN_H
 #define CPROX_BASE_ROUND_DOWN_H
 
 #include "base/double_double.h"
 
-/* A double that is at most t0 + s (t1 - t0), for t0 <= t1 and 0 <= s <= 1: the value itself where that is a double and is computed
- * without rounding, else within a few roundings below it. */
+/* A double that is at most t0 + s (t1 - t0), for t0 <= t1 and 0 <= s <= 1: the value itself where that is a double and
+ * is computed without rounding, else within a few roundings below it. */
 static inline double round_down_between(double t0, double t1, double s) {
   if (s == 0.0) return t0;
   if (s == 1.0) return t1;

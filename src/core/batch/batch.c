@@ -12,7 +12,7 @@
 #include "solve/list.h"
 #include "solve/solve.h"
 
-/* ---- one mover ---------------------------------------------------------------------------------------------------------- */
+/* ---- one mover ---- */
 
 /* A point of the curve is so near to a part that the limit is violated, whatever else there is. */
 static cprox_status report_hit(const batch_run *run, const batch_prefilter_answer *look, cprox_result *r) {
@@ -78,7 +78,7 @@ static cprox_status answer_fast(batch_run *run, cprox_result *r) {
   return search_near(run, &look, r);
 }
 
-/* ---- the call ----------------------------------------------------------------------------------------------------------- */
+/* ---- the call ---- */
 
 /* The short way is for points and balls along curves with control points. */
 static bool may_be_fast(const batch_run *run, const cprox_mover *mover) {

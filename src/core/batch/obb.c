@@ -15,14 +15,14 @@ typedef struct look {
   double limit;  /* points that are no farther are hits; < 0: none are looked for */
 } look;
 
-/* 28 (|p| + |c|) u to bring a point into the frame, p its place from the frame's, c its centre; 56 |p| u for the chord's direction, and
- * 10 u of all sizes for the bound and the margin. */
+/* 28 (|p| + |c|) u to bring a point into the frame, p its place from the frame's, c its centre; 56 |p| u for the
+ * chord's direction, and 10 u of all sizes for the bound and the margin. */
 static double slack_of(const batch_run *run, const batch_core *core, double margin) {
   const double sizes = run->q.mover.curve->largest + core->obb_sizes + margin;
   return ROUND_UP * (run->slack + (128.0 + core->obb_turned) * ROUND_U * sizes + core->obb_misplaced);
 }
 
-/* ---- points ------------------------------------------------------------------------------------------------------------- */
+/* ---- points ---- */
 
 /* The part is a obb: how far a point is from it, and which point of it is nearest. */
 static double from_obb(const lanes_obb *b, vec3 x, vec3 *surface) {
@@ -52,7 +52,7 @@ static bool hits_at(const look *l, uint32_t piece, double s, batch_hit *hit) {
   return true;
 }
 
-/* ---- chords ------------------------------------------------------------------------------------------------------------- */
+/* ---- chords ---- */
 
 /* Chord k of a piece, cut into CHORDS itself. */
 static bool cut_chord(batch_run *run, uint32_t piece, uint32_t k, lanes_chords *fine) {

@@ -12,7 +12,7 @@
 #include "problem/validate.h"
 #include "shape/body.h"
 
-/* ---- inscribed balls ---------------------------------------------------------------------------------------------------- */
+/* ---- inscribed balls ---- */
 
 /* How deep a point of the shape's frame lies inside, at least; 0 or less: not known to be inside. */
 static double depth_at(const convex *shape, vec3 y) {
@@ -25,7 +25,8 @@ static double depth_at(const convex *shape, vec3 y) {
   return -near.distance - ROUND_UP * (shape->ops->near_rounding * ROUND_U * sizes + shape->slack);
 }
 
-/* Climbs from the origin of the shape's frame, by steps along the axes that shrink. A deep point makes fast answers, none is needed. */
+/* Climbs from the origin of the shape's frame, by steps along the axes that shrink. A deep point makes fast answers,
+ * none is needed. */
 static double deepest(const convex *shape, vec3 *centre) {
   enum { HALVINGS = 8 };
   const int axes = shape->ops->kind == CPROX_BODY_POLYGON ? 2 : 3;
@@ -60,7 +61,8 @@ static bool has_depth(const cprox_body *body) {
   }
 }
 
-/* About a centre of the shape's frame: the ball round the core where its vertices are known, else the one through the other ball. */
+/* About a centre of the shape's frame: the ball round the core where its vertices are known, else the one through the
+ * other ball. */
 static double outer_radius(const cprox_body *body, vec3 centre) {
   const convex *shape = &body->shape;
   const vec3 ball = vec_sub(body->ball_centre, body->centre);
@@ -89,7 +91,7 @@ static batch_core core_of(const placed_pair *p, candidate_ball round) {
   return core;
 }
 
-/* ---- OBBs ------------------------------------------------------------------------------------------------------------- */
+/* ---- OBBs ---- */
 
 /* How far the shape reaches both ways along an axis of its frame, which stands in its middle; rounding included. */
 static double half_along(const convex *shape, vec3 axis) {
@@ -118,7 +120,7 @@ static void lay_obb(const placed_pair *p, batch_core *core) {
   core->obb_misplaced = f.misplaced;
 }
 
-/* ---- the batch ---------------------------------------------------------------------------------------------------------- */
+/* ---- the batch ---- */
 
 static size_t parts_of(const cprox_obstacle *target) {
   return target->body && target->body->kind == CPROX_BODY_COMPOUND ? target->body->n_parts : 1;
@@ -174,7 +176,8 @@ static void describe(obstacle_batch *batch, const query *q, size_t k) {
   lay_obb(&placed, &batch->cores[k]);
 }
 
-/* All parts, those that stand together one after the other; what is everywhere comes last. False where memory is out. */
+/* All parts, those that stand together one after the other; what is everywhere comes last. False where memory is out.
+ */
 static bool list_parts(obstacle_batch *batch, const query *q) {
   batch_place *places = calloc(batch->balls.n + 1, sizeof *places);
   if (!places) return false;

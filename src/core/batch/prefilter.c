@@ -9,12 +9,13 @@ static double margin_of(const batch_run *run, size_t part) {
   return run->batch->cores[part].margin + run->q.mover.radius;
 }
 
-/* Placing the centre of a compound's part costs (26 + 16) u of its lengths, all of which are in the part's sizes, the rest 18 u. */
+/* Placing the centre of a compound's part costs (26 + 16) u of its lengths, all of which are in the part's sizes, the
+ * rest 18 u. */
 static double slack_at(const batch_run *run, size_t part, double distance, double margin) {
   return ROUND_UP * (run->slack + 64.0 * ROUND_U * (distance + margin + run->batch->balls.sizes[part]));
 }
 
-/* ---- points against inner balls ------------------------------------------------------------------------------------------- */
+/* ---- points against inner balls ---- */
 
 /* All points of the inner ball are of the part; of a disc it counts only from its own plane. */
 static bool has_inner_ball(const batch_run *run, size_t part) {
@@ -80,7 +81,7 @@ static bool find_hit(batch_run *run, double limit, batch_hit *hit) {
   return false;
 }
 
-/* ---- chords against all balls --------------------------------------------------------------------------------------------- */
+/* ---- chords against all balls ---- */
 
 /* Bounds on the distance, and where the search should begin. Raises c->lower; returns the upper bound. */
 static double bound_by_balls(const batch_run *run, candidate *c, size_t part) {
@@ -114,8 +115,8 @@ static double measure_pair_at(batch_run *run, candidate *c, size_t part, double 
   return lesser(upper, by_obb);
 }
 
-/* The promising candidate first, the others nearest first. Those that a later one has ruled out leave: farther than the first one is,
- * they do not lower the union's bound. */
+/* The promising candidate first, the others nearest first. Those that a later one has ruled out leave: farther than the
+ * first one is, they do not lower the union's bound. */
 static void put_in_order(batch_run *run, size_t promising, double upper, batch_prefilter_answer *look) {
   if (look->n < 2) return;
   candidate *near = run->near;
@@ -130,7 +131,8 @@ static void put_in_order(batch_run *run, size_t promising, double upper, batch_p
   candidates_sort(near + 1, kept - 1);
 }
 
-/* One part more that may matter: among the candidates where it comes within `most` as far as chords can tell. Lowers *least_upper. */
+/* One part more that may matter: among the candidates where it comes within `most` as far as chords can tell. Lowers
+ * *least_upper. */
 static void consider(batch_run *run, size_t k, double most, double *least_upper, size_t *promising,
                      batch_prefilter_answer *look) {
   candidate *c = &run->near[look->n];
@@ -163,7 +165,8 @@ void batch_prefilter(batch_run *run, batch_prefilter_answer *look) {
   run->cut = 0;
   batch_open_begin(run);
 
-  /* a distance begins with the part that may be nearest: what is farther than that one's upper bound need not be listed */
+  /* a distance begins with the part that may be nearest: what is farther than that one's upper bound need not be listed
+   */
   const size_t first = decides ? SIZE_MAX : batch_open_nearest(run);
   look->beyond = INFINITY;
   look->is_hit = false;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What balls and chords tell of one mover and all parts of a batch, before anything is searched. doc/batches.md says why it is sound. */
+/* What balls and chords tell of one mover and all parts of a batch, before anything is searched. doc/batches.md says
+ * why it is sound. */
 #ifndef CPROX_BATCH_PREFILTER_H
 #define CPROX_BATCH_PREFILTER_H
 
@@ -53,20 +54,22 @@ typedef struct batch_prefilter_answer {
 /* Looks at all parts from the curve of run->q.mover, a point or a ball with control points. Fills *look. */
 void batch_prefilter(batch_run *run, batch_prefilter_answer *look);
 
-/* Which parts may matter: bounds the blocks of them, by boxes round the curve's chords where there are many; the part that may be nearest, or SIZE_MAX
- * where there is none; lists in run->open what is not farther than `most`, and returns the least bound of the others. */
+/* Which parts may matter: bounds the blocks of them, by boxes round the curve's chords where there are many; the part
+ * that may be nearest, or SIZE_MAX where there is none; lists in run->open what is not farther than `most`, and returns
+ * the least bound of the others. */
 void batch_open_begin(batch_run *run);
 size_t batch_open_nearest(batch_run *run);
 double batch_open_list(batch_run *run, double most);
 
-/* The basis and run->slack; false where memory is out. The least square distance of the points of half a piece from a point, and which one of the
- * piece has it. The chords between all points, and run->beside. */
+/* The basis and run->slack; false where memory is out. The least square distance of the points of half a piece from a
+ * point, and which one of the piece has it. The chords between all points, and run->beside. */
 bool batch_points_ready(batch_run *run);
 double batch_points_nearest(batch_run *run, uint32_t half, vec3 from, uint32_t *nearest);
 void batch_points_join(batch_run *run);
 
-/* What the box round a part says of the curve, whose chords are joined. Raises c->lower, to more than `most` where that can be shown, says
- * where a search should begin, and sets *upper to an upper bound or infinity. True where it finds a hit: contact, or what violates the limit. */
+/* What the box round a part says of the curve, whose chords are joined. Raises c->lower, to more than `most` where that
+ * can be shown, says where a search should begin, and sets *upper to an upper bound or infinity. True where it finds a
+ * hit: contact, or what violates the limit. */
 bool batch_bound_by_obb(batch_run *run, size_t part, double most, candidate *c, double *upper, batch_hit *hit);
 
 #endif

@@ -6,7 +6,8 @@
 
 enum { STOP_POLL_INTERVAL = 16 };
 
-/* Open nodes: a binary heap on `lower` (best first) or `start` (left to right), or a stack (depth first), in the workspace. */
+/* Open nodes: a binary heap on `lower` (best first) or `start` (left to right), or a stack (depth first), in the
+ * workspace. */
 typedef struct frontier {
   cprox_workspace *workspace;
   search_node *nodes;
@@ -82,7 +83,8 @@ static bool enter(const search_goal *goal, const search_oracle *oracle, const se
   return true;
 }
 
-/* One node: re-bound, probe, re-bound, split. Sets *state to why it left the search, or NODE_OPEN if its children entered it. */
+/* One node: re-bound, probe, re-bound, split. Sets *state to why it left the search, or NODE_OPEN if its children
+ * entered it. */
 static cprox_status work_on(const search_goal *goal, const search_oracle *oracle, search_node *node, frontier *open,
                             search_outcome *outcome, node_state *state) {
   outcome->nodes++;

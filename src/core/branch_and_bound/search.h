@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The one branch-and-bound engine. It knows intervals and bounds; what they are bounds of is its oracle's affair.
  *
- * Every interval that leaves the search leaves its lower bound in a running minimum, so that the interval returned is true
- * whenever the search ends: converged, decided, out of budget or stopped. */
+ * Every interval that leaves the search leaves its lower bound in a running minimum, so that the interval returned is
+ * true whenever the search ends: converged, decided, out of budget or stopped. */
 #ifndef CPROX_BRANCH_AND_BOUND_SEARCH_H
 #define CPROX_BRANCH_AND_BOUND_SEARCH_H
 
@@ -12,8 +12,8 @@
 #include "base/vec.h"
 #include "curve_proximity/cprox/base.h"
 
-/* What an oracle knows of a node: the parameters that it covers, and what is left to look at. The engine copies it and never looks
- * into it; each oracle has a struct of its own for it, which begins at `bytes`. */
+/* What an oracle knows of a node: the parameters that it covers, and what is left to look at. The engine copies it and
+ * never looks into it; each oracle has a struct of its own for it, which begins at `bytes`. */
 typedef union search_payload {
   unsigned char bytes[72];
   double aligned;
@@ -39,27 +39,29 @@ typedef struct search_best {
 typedef struct search_oracle {
   void *self;
 
-  /* A lower bound over the node from normals already known; never computes a new distance. `goal` is what would settle it. */
+  /* A lower bound over the node from normals already known; never computes a new distance. `goal` is what would settle
+   * it. */
   double (*filter)(void *self, search_node *node, double goal);
 
-  /* Measures the distance somewhere in the node, unless the best point lies inside already; improves *best and node->lower.
-   * CPROX_OK, or a negative status. */
+  /* Measures the distance somewhere in the node, unless the best point lies inside already; improves *best and
+   * node->lower. CPROX_OK, or a negative status. */
   cprox_status (*probe)(void *self, search_node *node, search_best *best);
 
-  /* Cuts a node into 2 to SEARCH_MAX_CHILDREN that inherit its bound; the node's storage passes on to them. Their number, or 0
-   * where the interval is as short as double allows (then the node is still the caller's to release), or a negative status. */
+  /* Cuts a node into 2 to SEARCH_MAX_CHILDREN that inherit its bound; the node's storage passes on to them. Their
+   * number, or 0 where the interval is as short as double allows (then the node is still the caller's to release), or a
+   * negative status. */
   int (*split)(void *self, search_node *node, search_node *child);
 
   /* Gives back a node's storage. */
   void (*release)(void *self, const search_node *node);
 } search_oracle;
 
-/* Left to right finds the first parameter at which the distance comes within epsilon of the limit. Its oracle keeps node->start,
- * and its best point is the leftmost one within epsilon of the limit; while there is none, any. */
+/* Left to right finds the first parameter at which the distance comes within epsilon of the limit. Its oracle keeps
+ * node->start, and its best point is the leftmost one within epsilon of the limit; while there is none, any. */
 typedef enum search_order { SEARCH_BEST_FIRST, SEARCH_DEPTH_FIRST, SEARCH_LEFT_TO_RIGHT } search_order;
 
-/* When a node needs no more work. A distance search works on nodes that could hold less than the best point by more than the
- * width; a verdict search (limit >= 0) on nodes that could come as close as the limit. */
+/* When a node needs no more work. A distance search works on nodes that could hold less than the best point by more
+ * than the width; a verdict search (limit >= 0) on nodes that could come as close as the limit. */
 typedef struct search_goal {
   search_order order;
   double limit;       /* verdicts: delta; distance: -1 */

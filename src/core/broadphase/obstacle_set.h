@@ -43,7 +43,8 @@ typedef struct set_walk {
 /* False where memory is out, here as there. q has been asked about its whole curve. */
 bool set_walk_begin(set_walk *w, const obstacle_bvh *set, const query *q);
 
-/* The next target, if its lower bound is at most `most`; else *target is UINT32_MAX and *lower a bound of all that are left. */
+/* The next target, if its lower bound is at most `most`; else *target is UINT32_MAX and *lower a bound of all that are
+ * left. */
 bool set_walk_next(set_walk *w, double most, uint32_t *target, double *lower);
 
 #endif

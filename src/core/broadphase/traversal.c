@@ -5,7 +5,7 @@
 #include "base/workspace.h"
 #include "shape/body.h"
 
-/* ---- the heap --------------------------------------------------------------------------------------------------------- */
+/* ---- the heap ---- */
 
 static set_entry *heap_of(const set_walk *w, size_t n) {
   return workspace_reserve(w->q->workspace, WORKSPACE_SET, n * sizeof(set_entry));
@@ -35,7 +35,7 @@ static set_entry pop(set_walk *w) {
   return top;
 }
 
-/* ---- bounds ----------------------------------------------------------------------------------------------------------- */
+/* ---- bounds ---- */
 
 static double bound_of(const set_walk *w, double distance) {
   const double lower = distance - w->offset - w->slack;
@@ -94,7 +94,7 @@ bool set_walk_begin(set_walk *w, const obstacle_bvh *set, const query *q) {
   return push(w, (set_entry){.lower = -INFINITY, .at = 0, .is = SET_NODE});
 }
 
-/* ---- walking ---------------------------------------------------------------------------------------------------------- */
+/* ---- walking ---- */
 
 static bool open_node(set_walk *w, const set_entry *entry) {
   const tree *t = w->set->boxes;

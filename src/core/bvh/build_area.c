@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Top down by the surface area heuristic (Wald 2007, binned): a range of elements is cut, the largest part again, until a node
- * has its eight children. */
+/* Top down by the surface area heuristic (Wald 2007, binned): a range of elements is cut, the largest part again, until
+ * a node has its eight children. */
 #include <stdlib.h>
 
 #include "bvh/build.h"
@@ -43,7 +43,7 @@ static double area_of(const box *b) {
   return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-/* ---- where to cut ----------------------------------------------------------------------------------------------------- */
+/* ---- where to cut ---- */
 
 /* A bin boundary across an axis. */
 typedef struct cut {
@@ -149,7 +149,7 @@ static size_t cut_range(builder *b, size_t first, size_t last, int depth) {
   return m;
 }
 
-/* ---- nodes ------------------------------------------------------------------------------------------------------------ */
+/* ---- nodes ---- */
 
 static uint32_t build_range(builder *b, size_t first, size_t last, int depth, box *all) {
   if (last - first <= TREE_LANES) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Bottom up along Morton's curve: elements are sorted by the interleaved bits of their middles, packed eight by eight, and the
- * packs likewise, level by level. */
+/* Bottom up along Morton's curve: elements are sorted by the interleaved bits of their middles, packed eight by eight,
+ * and the packs likewise, level by level. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,7 +44,8 @@ static void make_keys(const tree_source *source, keyed *list) {
   }
 }
 
-/* By the upper 44 bits of the key, in four passes; 22 of them, in two, tell the elements of one block apart. Ends in `list`. */
+/* By the upper 44 bits of the key, in four passes; 22 of them, in two, tell the elements of one block apart. Ends in
+ * `list`. */
 static void sort_keys(keyed *list, keyed *other, size_t n) {
   enum { PASSES = 4 };
   size_t start[PASSES][RADIX + 1] = {{0}};

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Trees of boxes, eight lanes wide, over triangles, points or boxes: which element is nearest to a point, which ones matter to a
- * segment of curve or to a convex shape. What an element means (a face, a ball, an occupied cell, a whole body) is the
- * caller's affair. doc/non-convex.md derives the bounds.
+/* Trees of boxes, eight lanes wide, over triangles, points or boxes: which element is nearest to a point, which ones
+ * matter to a segment of curve or to a convex shape. What an element means (a face, a ball, an occupied cell, a whole
+ * body) is the caller's affair. doc/non-convex.md derives the bounds.
  *
- * The layout is the same on every machine; the loops over lanes are compiled for several instruction sets and chosen when a tree
- * is made. They do the same operations in the same order, so that every machine gives the same answer. */
+ * The layout is the same on every machine; the loops over lanes are compiled for several instruction sets and chosen
+ * when a tree is made. They do the same operations in the same order, so that every machine gives the same answer. */
 #ifndef CPROX_BVH_BVH_H
 #define CPROX_BVH_BVH_H
 
@@ -33,8 +33,8 @@ typedef struct tree_node {
   uint32_t lanes; /* one bit for each lane in use */
 } tree_node;
 
-/* What is in a lane of a node lies between two planes, too: low <= s·x <= high, s of length 1 or so. Boxes of pieces of a slanted
- * surface stick out of it by their own size, these by its square. */
+/* What is in a lane of a node lies between two planes, too: low <= s·x <= high, s of length 1 or so. Boxes of pieces of
+ * a slanted surface stick out of it by their own size, these by its square. */
 typedef struct tree_slabs {
   _Alignas(64) double s[3][TREE_LANES], low[TREE_LANES], high[TREE_LANES];
 } tree_slabs;
@@ -59,7 +59,7 @@ typedef struct tree {
   struct tree_blocks *blocks; /* of a tree whose points may move, else NULL */
 } tree;
 
-/* ---- building --------------------------------------------------------------------------------------------------------- */
+/* ---- building ---- */
 
 /* Elements as they were given; they are stored about the centre. */
 typedef struct tree_source {
@@ -88,9 +88,10 @@ size_t tree_most_nodes(size_t n, tree_build build);
 /* The bytes that this one takes. */
 size_t tree_bytes(const tree *t);
 
-/* ---- points that move --------------------------------------------------------------------------------------------------- */
+/* ---- points that move ---- */
 
-/* Elements stay in their block, which is rebuilt by itself when one of them moves: whole packs, whole nodes of three levels. */
+/* Elements stay in their block, which is rebuilt by itself when one of them moves: whole packs, whole nodes of three
+ * levels. */
 enum { TREE_BLOCK = 4096 };
 
 /* Makes ready for updates a tree of points by Morton's curve; false where memory is out. What that takes besides. */
@@ -99,12 +100,13 @@ size_t tree_blocks_bytes(size_t n);
 bool tree_is_family(const tree *a, const tree *b);
 void tree_blocks_free(struct tree_blocks *blocks);
 
-/* The same points, but that changed[i] stands at points[i], about the centre. NULL where memory is out. `retired`, of the same family
- * and otherwise out of use, or NULL: becomes the new tree; what it has in common with the previous one is not even copied. */
+/* The same points, but that changed[i] stands at points[i], about the centre. NULL where memory is out. `retired`, of
+ * the same family and otherwise out of use, or NULL: becomes the new tree; what it has in common with the previous one
+ * is not even copied. */
 tree *tree_update(const tree *previous, const uint32_t *changed, const vec3 *points, size_t n, vec3 centre,
                   tree *retired);
 
-/* ---- elements --------------------------------------------------------------------------------------------------------- */
+/* ---- elements ---- */
 
 /* Where an element stands. */
 typedef struct tree_place {
@@ -166,12 +168,12 @@ typedef struct tree_lanes {
   double rest;                           /* and the least bound of those that are */
 } tree_lanes;
 
-/* `at` is a node, or a pack with TREE_LEAF; `wanted` has a bit for each lane that matters. Of a pack of which none comes within `beyond`
- * only the bounds are filled in, and distances are infinite. */
+/* `at` is a node, or a pack with TREE_LEAF; `wanted` has a bit for each lane that matters. Of a pack of which none
+ * comes within `beyond` only the bounds are filled in, and distances are infinite. */
 void tree_measure(const tree *t, uint32_t at, uint32_t wanted, const tree_segment *segment, tree_lanes *lanes);
 
-/* Elements that could come nearer than `bound` to a convex shape in a ball, nearest first. The visitor measures one and may lower
- * the bound and tell a normal that the shape lies behind. */
+/* Elements that could come nearer than `bound` to a convex shape in a ball, nearest first. The visitor measures one and
+ * may lower the bound and tell a normal that the shape lies behind. */
 typedef struct tree_seeker {
   vec3 centre; /* of a ball that contains the shape */
   double radius;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The loops over lanes, compiled once for each instruction set: the including page defines TREE_TARGET, the attribute of its
- * functions, and TREE_KERNEL, the name of its table. Loops of eight with no branch inside are what compilers make vectors of. */
+/* The loops over lanes, compiled once for each instruction set: the including page defines TREE_TARGET, the attribute
+ * of its functions, and TREE_KERNEL, the name of its table. Loops of eight with no branch inside are what compilers
+ * make vectors of. */
 #include <math.h>
 
 #include "base/rounding.h"
@@ -20,7 +21,8 @@ typedef struct lane_near {
   double nx, ny, nz, d2;
 } lane_near;
 
-/* An edge from a along e. One Gram-Schmidt step makes n orthogonal to the edge, where the nearest point is within it. */
+/* An edge from a along e. One Gram-Schmidt step makes n orthogonal to the edge, where the nearest point is within it.
+ */
 TREE_INLINE lane_near near_edge(double ax, double ay, double az, double ex, double ey, double ez) {
   const double l2 = ex * ex + ey * ey + ez * ez, inverse = 1.0 / (l2 > LEAST_DIVISOR ? l2 : LEAST_DIVISOR);
   const double wanted = -(ax * ex + ay * ey + az * ez) * inverse;
@@ -35,8 +37,8 @@ TREE_INLINE lane_near nearer(lane_near a, lane_near b) {
   return (lane_near){first ? a.nx : b.nx, first ? a.ny : b.ny, first ? a.nz : b.nz, first ? a.d2 : b.d2};
 }
 
-/* The triangle abc. Its inside counts only where the point that its weights make is nearer than the edges: slivers whose
- * computed normal is noise fall back to their edges. */
+/* The triangle abc. Its inside counts only where the point that its weights make is nearer than the edges: slivers
+ * whose computed normal is noise fall back to their edges. */
 TREE_INLINE lane_near near_triangle(double ax, double ay, double az, double bx, double by, double bz, double cx,
                                     double cy, double cz) {
   const double ux = bx - ax, uy = by - ay, uz = bz - az;
@@ -288,8 +290,8 @@ TREE_TARGET static inline void sort_lanes(uint32_t wanted, const tree_segment *s
   lanes->rest = rest;
 }
 
-/* Whether none of the wanted lanes of a pack of triangles could matter, by their boxes and the normal from elsewhere: most packs of
- * a list are left that way, at a fifth of the cost. */
+/* Whether none of the wanted lanes of a pack of triangles could matter, by their boxes and the normal from elsewhere:
+ * most packs of a list are left that way, at a fifth of the cost. */
 TREE_TARGET static inline bool is_impossible(const double *pack, uint32_t wanted, const tree_segment *segment,
                                              tree_lanes *lanes) {
   lane_boxes boxes;
@@ -339,7 +341,7 @@ TREE_TARGET static void measure(const tree *t, uint32_t at, uint32_t wanted, con
   }
 }
 
-/* ---- the element nearest to a point ----------------------------------------------------------------------------------- */
+/* ---- the element nearest to a point ---- */
 
 typedef struct open_node {
   double d2;

@@ -2,7 +2,7 @@
 /* Boxes, packs of elements and nodes: what building and updating a tree write. */
 #include "bvh/build.h"
 
-/* ---- boxes ------------------------------------------------------------------------------------------------------------ */
+/* ---- boxes ---- */
 
 box box_empty(void) {
   return (box){vec(INFINITY, INFINITY, INFINITY), vec(-INFINITY, -INFINITY, -INFINITY)};
@@ -41,7 +41,7 @@ box element_box(const tree_source *source, uint32_t element) {
   return b;
 }
 
-/* ---- packs and nodes -------------------------------------------------------------------------------------------------- */
+/* ---- packs and nodes ---- */
 
 box tree_append_pack(tree *t, const tree_source *source, const uint32_t *elements, size_t n) {
   double *pack = t->packs + t->n_packs * tree_pack_size(t->kind);

@@ -17,7 +17,7 @@ void tree_measure(const tree *t, uint32_t at, uint32_t wanted, const tree_segmen
   t->kernel->measure(t, at, wanted, segment, lanes);
 }
 
-/* ---- one element ------------------------------------------------------------------------------------------------------ */
+/* ---- one element ---- */
 
 static vec3 unit(vec3 v) {
   const double length = vec_norm(v);
@@ -98,7 +98,7 @@ void tree_element_near(const tree *t, tree_place at, vec3 x, tree_near *near) {
     keep_nearer(near, x, corner[0], vec_sub(x, corner[0]), 0, vec(0, 0, 0));
 }
 
-/* ---- all elements near a convex shape --------------------------------------------------------------------------------- */
+/* ---- all elements near a convex shape ---- */
 
 typedef struct open_lane {
   double bound;

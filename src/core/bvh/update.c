@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Points that move: of a tree along Morton's curve the blocks that they are in are boxed anew, or sorted anew where that is no longer good
- * enough, the others copied, or, where an older tree of the family gives its memory, left as they are. */
+/* Points that move: of a tree along Morton's curve the blocks that they are in are boxed anew, or sorted anew where
+ * that is no longer good enough, the others copied, or, where an older tree of the family gives its memory, left as
+ * they are. */
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +14,7 @@ enum { BLOCK_PACKS = TREE_BLOCK / TREE_LANES, BLOCK_LEVELS = 3, MOST_LEVELS = 12
 /* A block is sorted when the areas of its packs' boxes have grown by so much since it was sorted last. */
 static const double WORN_OUT = 1.5;
 
-/* ---- levels ----------------------------------------------------------------------------------------------------------- */
+/* ---- levels ---- */
 
 /* Where the levels of nodes begin, the lowest first, and how many nodes they have; the last one is the root's. */
 typedef struct levels {
@@ -48,7 +49,7 @@ static void refresh(tree *t, const levels *l, size_t level, size_t first, size_t
   }
 }
 
-/* ---- blocks ----------------------------------------------------------------------------------------------------------- */
+/* ---- blocks ---- */
 
 typedef struct span {
   size_t first, last;
@@ -133,7 +134,7 @@ static void rebuild_block(tree *t, const levels *l, size_t block, gathered *g, s
   t->blocks->area[block] = area_of(t, l, block);
 }
 
-/* ---- updates ---------------------------------------------------------------------------------------------------------- */
+/* ---- updates ---- */
 
 static tree *allocate_like(const tree *previous) {
   tree *t = calloc(1, sizeof *t);

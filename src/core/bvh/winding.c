@@ -21,7 +21,7 @@ static const double HARMLESS = 0.25;
 
 static const double FULL_ANGLE = 12.566370614359172;
 
-/* ---- building --------------------------------------------------------------------------------------------------------- */
+/* ---- building ---- */
 
 static void add_triangle(dipole *d, const vec3 v[3]) {
   const vec3 normal = vec_scale(0.5, vec_cross(vec_sub(v[1], v[0]), vec_sub(v[2], v[0])));
@@ -106,7 +106,7 @@ size_t winding_bytes(const winding *w) {
   return w ? winding_bytes_needed(w->n) : 0;
 }
 
-/* ---- asking ----------------------------------------------------------------------------------------------------------- */
+/* ---- asking ---- */
 
 /* The solid angle of a triangle seen from x (van Oosterom and Strackee 1983). */
 static double solid_angle(vec3 x, const vec3 v[3]) {

@@ -125,7 +125,8 @@ void certificate_restate(cprox_certificate *c, double delta) {
   if (!c->failed) store(c->bytes + PLACE_OF_DELTA, bits, 8);
 }
 
-/* Through memory: where two neighbours are rounded to float and back side by side, GCC 12 at -O3 leaves both as they were. */
+/* Through memory: where two neighbours are rounded to float and back side by side, GCC 12 at -O3 leaves both as they
+ * were. */
 static double round_to_float(double x) {
   const volatile float rounded = (float)x;
   return (double)rounded;

@@ -8,7 +8,7 @@
 #include "problem/validate.h"
 #include "robot_query/pair_state.h"
 
-/* ---- the robot ------------------------------------------------------------------------------------------------------------ */
+/* ---- the robot ---- */
 
 static void say_link(text *t, const cprox_link *link) {
   static const char *const NAMES[] = {"fixed", "revolute", "prismatic", "planar", "floating"};
@@ -42,7 +42,7 @@ size_t certify_unknown_geometry(const cprox_robot *robot) {
   return i;
 }
 
-/* ---- its motion ----------------------------------------------------------------------------------------------------------- */
+/* ---- its motion ---- */
 
 static void say_values(text *t, const double *values, size_t n) {
   for (size_t i = 0; i < n; i++) say(t, " %a", values[i]);
@@ -78,7 +78,7 @@ static void say_motion(text *t, const cprox_motion *motion) {
   }
 }
 
-/* ---- the whole ------------------------------------------------------------------------------------------------------------ */
+/* ---- the whole ---- */
 
 size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obstacles, const char *id,
                             cprox_workspace *workspace, char *out, size_t size) {

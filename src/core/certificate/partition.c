@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A curve against a convex body: leaves from left to right, then neighbours joined as long as one normal serves both. */
+/* A curve against a convex body: leaves from left to right, then neighbours joined as long as one normal serves both.
+ */
 #include "certificate/partition.h"
 
 enum { MAX_OPEN = 128, MAX_PASSES = 8 };
@@ -32,7 +33,7 @@ double cover_cut(const cover *c, reach_part part, double witness) {
   return length > c->shortest && middle > part.from && middle < part.to ? middle : NAN;
 }
 
-/* ---- normals -------------------------------------------------------------------------------------------------------------- */
+/* ---- normals ---- */
 
 static trial try_normal(const cover *c, vec3 n) {
   trial t = {.n = n};
@@ -61,7 +62,7 @@ static vec3 normal_at(const cover *c, const frame *f, double sigma, convex_hint 
   return near.distance > 0.0 ? frame_turn_to_world(f, near.normal) : vec(0, 0, 0);
 }
 
-/* ---- leaves --------------------------------------------------------------------------------------------------------------- */
+/* ---- leaves ---- */
 
 static leaf *leaves_reserve(const cover *c, size_t n) {
   return workspace_reserve(c->workspace, WORKSPACE_COVER, n * sizeof(leaf));

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Covers of a curve by parts, each with a normal that separates it from a set by more than delta: the substance of a certificate. A
- * cover is laid after the answer, at the answer's limit, and not collected from the search: the search settles nodes by tangent
- * balls, bounding balls and other targets' distances, which no checker should have to know, and in an order of its own. */
+/* Covers of a curve by parts, each with a normal that separates it from a set by more than delta: the substance of a
+ * certificate. A cover is laid after the answer, at the answer's limit, and not collected from the search: the search
+ * settles nodes by tangent balls, bounding balls and other targets' distances, which no checker should have to know,
+ * and in an order of its own. */
 #ifndef CPROX_CERTIFICATE_PARTITION_H
 #define CPROX_CERTIFICATE_PARTITION_H
 
@@ -28,7 +29,8 @@ typedef struct cover {
 /* The world point of a curve at its counting parameter. */
 vec3 cover_point(const cprox_curve *curve, double sigma);
 
-/* Where to cut a part: at the witness where it lies inside, at a joint of pieces, or in the middle. NaN where it is too short. */
+/* Where to cut a part: at the witness where it lies inside, at a joint of pieces, or in the middle. NaN where it is too
+ * short. */
 double cover_cut(const cover *c, reach_part part, double witness);
 
 /* Writes the section: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY. */
@@ -38,8 +40,8 @@ cprox_status cover_curves(cover *c);
 /* The radius of a ball about the origin of the shape's frame that lies inside it. */
 double cover_inner_radius(const convex *shape);
 
-/* Writes how a body's point is found that is near y, a point of the frame about its centre that is within error of the exact one;
- * returns how far y is from it: 0 inside, infinity for none. */
+/* Writes how a body's point is found that is near y, a point of the frame about its centre that is within error of the
+ * exact one; returns how far y is from it: 0 inside, infinity for none. */
 double cover_near_point(const cprox_body *body, cprox_certificate *certificate, vec3 y, double error);
 
 /* Writes that at the witness of the answer the distance is at most delta. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Of every pair the last normal that was written stays in force (robot_pair.normal, in the frame of what stands), and beside it the one
- * from the box round what stands to the centre of what moves, which need not be written. Only where neither parts the pair is a
- * distance measured, and its normal written where that settles the pair. */
+/* Of every pair the last normal that was written stays in force (robot_pair.normal, in the frame of what stands), and
+ * beside it the one from the box round what stands to the centre of what moves, which need not be written. Only where
+ * neither parts the pair is a distance measured, and its normal written where that settles the pair. */
 #include "certificate/partition_robot.h"
 
 #include <math.h>
@@ -13,7 +13,8 @@ enum { MOST_WRITTEN = 0x7fff };
 /* The checker's own rounding is up to ten times as large as ours; what it finds must still be beyond delta. */
 static const double SLACKS = 32.0;
 
-/* Parts that move farther than their own size, and than this fraction of their distance, are not measured: halves tell more. */
+/* Parts that move farther than their own size, and than this fraction of their distance, are not measured: halves tell
+ * more. */
 static const double MOST_DISPLACEMENT = 0.25;
 #define SHORT_INTERVAL 0x1p-8
 

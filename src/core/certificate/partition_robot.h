@@ -15,7 +15,8 @@ typedef struct robot_cover {
   cprox_certificate *certificate;
 } robot_cover;
 
-/* Writes the trees of all segments: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY. */
+/* Writes the trees of all segments: CPROX_OK; CPROX_BUDGET or CPROX_PRECISION, where no cover was found; CPROX_MEMORY.
+ */
 cprox_status cover_robot(robot_cover *c);
 
 /* Writes that at the witness of the answer the distance is at most delta. */

@@ -4,7 +4,7 @@
 /* The margin that is asked for, of the sizes that entered. */
 #define MARGIN 0x1p-90
 
-/* ---- arithmetic --------------------------------------------------------------------------------------------------------- */
+/* ---- arithmetic ---- */
 
 static dd negate(dd a) {
   return (dd){-a.high, -a.low};
@@ -62,7 +62,7 @@ static reach_direction turn(cprox_quat q, double w, const reach_direction *n) {
   return turned;
 }
 
-/* ---- bodies --------------------------------------------------------------------------------------------------------------- */
+/* ---- bodies ---- */
 
 bool reach_is_known(const cprox_body *body) {
   switch (body->kind) {
@@ -89,7 +89,8 @@ static dd farthest_vertex(const convex *shape, const reach_direction *n) {
   return most;
 }
 
-/* The support function of the body about its centre, margins apart that are balls. A halfspace is only asked along its normal. */
+/* The support function of the body about its centre, margins apart that are balls. A halfspace is only asked along its
+ * normal. */
 static dd support(const convex *shape, const reach_direction *n) {
   const double *size = shape->size;
   const dd x = n->k[0], y = n->k[1], z = n->k[2];
@@ -149,7 +150,7 @@ reach_value reach_of_body(const reach_set *set, const reach_direction *n) {
   return far;
 }
 
-/* ---- curves ----------------------------------------------------------------------------------------------------------------- */
+/* ---- curves ---- */
 
 /* Row a becomes that of its part right of s (keep = false), or left of it. */
 static void cut(dd *a, size_t degree, dd s, bool left) {

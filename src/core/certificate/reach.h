@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Does a direction separate a part of a curve from a set by more than delta? Decided in double-double arithmetic, far more finely than
- * the search's bounds, so that what holds here holds for the checker: the answer is yes only where the margin is 2^-90 of the sizes
- * that entered, and the rounding of all that follows is below 2^-95 of them (doc/certificates.md). */
+/* Does a direction separate a part of a curve from a set by more than delta? Decided in double-double arithmetic, far
+ * more finely than the search's bounds, so that what holds here holds for the checker: the answer is yes only where the
+ * margin is 2^-90 of the sizes that entered, and the rounding of all that follows is below 2^-95 of them
+ * (doc/certificates.md). */
 #ifndef CPROX_CERTIFICATE_REACH_H
 #define CPROX_CERTIFICATE_REACH_H
 
@@ -29,7 +30,8 @@ typedef struct reach_value {
   double size;
 } reach_value;
 
-/* A part of a curve: from `from` to `to` in its counting parameter sigma, piece + s, 0 <= from < to <= number of pieces. */
+/* A part of a curve: from `from` to `to` in its counting parameter sigma, piece + s, 0 <= from < to <= number of
+ * pieces. */
 typedef struct reach_part {
   double from, to;
 } reach_part;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A certificate for an answer: which sets there are, how precisely normals are written, how tight a claim can be proven. */
+/* A certificate for an answer: which sets there are, how precisely normals are written, how tight a claim can be
+ * proven. */
 #include "certificate/write.h"
 #include "base/rounding.h"
 #include "certificate/describe.h"
@@ -174,7 +175,7 @@ static cprox_status prove(const task *t) {
   return certify_robot(t->mover, t->targets, t->n, t->delta, t->answer, t->options, t->workspace, t->certificate);
 }
 
-/* ---- meshes ----------------------------------------------------------------------------------------------------------------- */
+/* ---- meshes ---- */
 
 static bool has_mesh(const task *t) {
   bool found = false;

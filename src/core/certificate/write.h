@@ -11,8 +11,8 @@ cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targets, si
                      const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                      cprox_certificate *certificate);
 
-/* The same for a robot along a motion; the reason is told of CPROX_INVALID alone, and what failed may have left something in the
- * certificate. */
+/* The same for a robot along a motion; the reason is told of CPROX_INVALID alone, and what failed may have left
+ * something in the certificate. */
 cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double delta,
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The claim that somewhere the distance is at most delta: the parameter, and a point of the target that is near enough. The checker
- * looks at the exact points, so the one named here is drawn in by more than the rounding of both. */
+/* The claim that somewhere the distance is at most delta: the parameter, and a point of the target that is near enough.
+ * The checker looks at the exact points, so the one named here is drawn in by more than the rounding of both. */
 #include "base/rounding.h"
 #include "certificate/partition.h"
 #include "convex/gjk.h"
@@ -64,7 +64,8 @@ double cover_near_point(const cprox_body *body, cprox_certificate *certificate, 
   return vec_norm(v);
 }
 
-/* The point of a curve at its counting parameter; where two pieces meet that do not join, the one that is nearer to `by`. */
+/* The point of a curve at its counting parameter; where two pieces meet that do not join, the one that is nearer to
+ * `by`. */
 static vec3 point_by(const cprox_curve *curve, double sigma, vec3 by) {
   const vec3 right = cover_point(curve, sigma);
   if (sigma != floor(sigma) || sigma < 1.0) return right;

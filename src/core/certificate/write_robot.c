@@ -32,7 +32,8 @@ static cprox_status attempt(robot_scene *scene, uint32_t width, double delta, ui
   return status == CPROX_OK && c->failed ? CPROX_MEMORY : status;
 }
 
-/* What the search's bounds prove with planes that turn, planes that stand may not: the claim about a distance gives away epsilon. */
+/* What the search's bounds prove with planes that turn, planes that stand may not: the claim about a distance gives
+ * away epsilon. */
 static cprox_status certify_clear(robot_scene *scene, double delta, const cprox_result *answer, double epsilon,
                                   uint32_t budget, cprox_certificate *c) {
   cprox_status status = attempt(scene, 4, delta, budget, c);

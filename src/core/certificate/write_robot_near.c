@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The claim that somewhere along a motion two bodies are within delta: the place of the motion, a point of the robot's part, and how the
- * other body's nearest point is found. Both are drawn in by more than the rounding of both programs. */
+/* The claim that somewhere along a motion two bodies are within delta: the place of the motion, a point of the robot's
+ * part, and how the other body's nearest point is found. Both are drawn in by more than the rounding of both programs.
+ */
 #include <math.h>
 
 #include "base/rounding.h"
@@ -16,7 +17,7 @@ static const double ERRORS = 64.0;
 /* By so many errors a claim may be lifted: a point that is drawn into a thin body moves by more than the error. */
 static const double LIFTED = 1024.0;
 
-/* ---- who and when --------------------------------------------------------------------------------------------------------- */
+/* ---- who and when ---- */
 
 /* The convex body that a part of the robot is, NULL of a mesh. */
 static const cprox_body *body_of_part(const cprox_robot *robot, int32_t part) {
@@ -50,9 +51,10 @@ static int32_t nearest_pair(robot_scene *s, const cprox_result *answer, robot_ga
   return found;
 }
 
-/* ---- points --------------------------------------------------------------------------------------------------------------- */
+/* ---- points ---- */
 
-/* Writes the point of a body that is nearest to y, drawn in; both are seen from the body's centre. NaN where there is none. */
+/* Writes the point of a body that is nearest to y, drawn in; both are seen from the body's centre. NaN where there is
+ * none. */
 static vec3 write_point_of(const cprox_body *body, cprox_certificate *c, vec3 y) {
   const convex *shape = &body->shape;
   convex_hint hint = {0};
@@ -81,7 +83,7 @@ static vec3 write_point_of(const cprox_body *body, cprox_certificate *c, vec3 y)
   return drawn < 0.5 * inner ? x : vec(NAN, NAN, NAN);
 }
 
-/* ---- the claim ------------------------------------------------------------------------------------------------------------ */
+/* ---- the claim ---- */
 
 cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) {
   robot_scene *s = c->scene;

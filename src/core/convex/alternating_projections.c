@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Letters as in doc/convex-pairs.md: v = a - b between two points of the cores, the columns m of the pieces' tangents (of b's
- * with the sign turned), x how far to go along each. All in a's frame but where it says otherwise. */
+/* Letters as in doc/convex-pairs.md: v = a - b between two points of the cores, the columns m of the pieces' tangents
+ * (of b's with the sign turned), x how far to go along each. All in a's frame but where it says otherwise. */
 #include "convex/alternating_projections.h"
 
 #include "base/rotation.h"
@@ -48,8 +48,8 @@ static void approach_project(const approach_task *task, vec3 y, approach_pair *p
   approach_add_tangents(&p->b, r, p);
 }
 
-/* Where the two pieces, continued and v apart, are nearest to each other: min over x of |v + sum x_k m_k|²/2 + sum bent_k x_k²/2, by
- * Cholesky's method; of tangents that depend on those before them none is gone along. */
+/* Where the two pieces, continued and v apart, are nearest to each other: min over x of |v + sum x_k m_k|²/2 + sum
+ * bent_k x_k²/2, by Cholesky's method; of tangents that depend on those before them none is gone along. */
 static void approach_newton(const approach_pair *p, vec3 v, double x[APPROACH_MOST]) {
   double l[APPROACH_MOST][APPROACH_MOST], z[APPROACH_MOST];
   for (int i = 0; i < p->n; i++) {
@@ -72,8 +72,8 @@ static void approach_newton(const approach_pair *p, vec3 v, double x[APPROACH_MO
   }
 }
 
-/* The direction from b to a across both pieces. Near contact v itself is all rounding, and along an edge or a face a direction that is
- * off by a little costs its length: so what is along a tangent is taken out of it. */
+/* The direction from b to a across both pieces. Near contact v itself is all rounding, and along an edge or a face a
+ * direction that is off by a little costs its length: so what is along a tangent is taken out of it. */
 static vec3 approach_direction(const approach_pair *p) {
   vec3 along, u;
   feature_unit(p->v, &along);
@@ -112,7 +112,8 @@ static void approach_describe_curved(const approach_pair *p, vec3 u, pair_featur
       feature->hessian[k++] = ee * x[i] * x[j] + ef * (x[i] * y[j] + y[i] * x[j]) + ff * y[i] * y[j];
 }
 
-/* Points of the pieces continued, as far along tangents that are not parallel as the shapes are large, take the place of vertices. */
+/* Points of the pieces continued, as far along tangents that are not parallel as the shapes are large, take the place
+ * of vertices. */
 static void approach_describe_flat(const approach_task *task, const approach_pair *p, pair_feature *feature) {
   feature->n = 1;
   feature->w[0] = p->v, feature->b[0] = p->b.point;
@@ -193,7 +194,8 @@ void approach_search(const approach_task *task, approach_answer *answer) {
 
 /* ---- smooth cores ---- */
 
-/* Newton's step for phi at u, whose point is x: (K + d) delta = x_tangential. False where the surfaces are flatter than doubles tell. */
+/* Newton's step for phi at u, whose point is x: (K + d) delta = x_tangential. False where the surfaces are flatter than
+ * doubles tell. */
 static bool smooth_step(const approach_task *task, const simplex_vertex *x, vec3 u, double d, double delta[2], vec3 *e,
                         vec3 *f) {
   const double *r = task->r;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Two cores that know their projections: alternating projections, sped up by Newton's method on the pieces of the surfaces
- * that they land on (doc/convex-pairs.md). */
+/* Two cores that know their projections: alternating projections, sped up by Newton's method on the pieces of the
+ * surfaces that they land on (doc/convex-pairs.md). */
 #ifndef CPROX_CONVEX_ALTERNATING_PROJECTIONS_H
 #define CPROX_CONVEX_ALTERNATING_PROJECTIONS_H
 

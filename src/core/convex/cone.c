@@ -70,7 +70,8 @@ static void cone_curvature(const convex *shape, vec3 d, vec3 x, double hessian[6
   hessian[3] = k * ty * ty;
 }
 
-/* Onto the slant: as far from the apex as the foot of the perpendicular, which stays on it whatever rounding does to that. */
+/* Onto the slant: as far from the apex as the foot of the perpendicular, which stays on it whatever rounding does to
+ * that. */
 static void cone_project_on_slant(const convex *shape, vec3 y, double rho, convex_foot *foot) {
   const double radius = shape->size[0], half = shape->size[1], height = 2.0 * half;
   const double slant = feature_hypot(radius, height), nr = height / slant, nz = radius / slant;
@@ -108,9 +109,9 @@ static void cone_project(const convex *shape, vec3 y, convex_foot *foot) {
   }
 }
 
-/* near_rounding: rho (2u) times height (u), plus c (u) times radius (u), a sum (u), over slant (2u), a quotient (u): 7u of
- * rho and 6u of |c|, at most 10u of |y| + scale. A region mistaken by rounding changes the distance by as little, since
- * each test compares coordinates that are exact to u about the feature it decides for. */
+/* near_rounding: rho (2u) times height (u), plus c (u) times radius (u), a sum (u), over slant (2u), a quotient (u): 7u
+ * of rho and 6u of |c|, at most 10u of |y| + scale. A region mistaken by rounding changes the distance by as little,
+ * since each test compares coordinates that are exact to u about the feature it decides for. */
 const convex_ops convex_cone = {.kind = CPROX_BODY_CONE,
                                 .near_rounding = 12.0,
                                 .nearest = cone_nearest,

@@ -64,8 +64,8 @@ typedef struct convex_foot {
 typedef struct convex_ops {
   cprox_body_kind kind;
 
-  /* |computed - true distance| <= near_rounding * u * (|y| + scale) + slack: the constant of the kind. Inside a polytope
-   * or a support body the distance is minus a proven depth, which may be less than the true one. */
+  /* |computed - true distance| <= near_rounding * u * (|y| + scale) + slack: the constant of the kind. Inside a
+   * polytope or a support body the distance is minus a proven depth, which may be less than the true one. */
   double near_rounding;
 
   void (*nearest)(const convex *shape, vec3 y, convex_hint *hint, convex_near *near);
@@ -81,12 +81,12 @@ typedef struct convex_ops {
   /* The maximiser is a smooth function of the direction: the core's surface is one piece. */
   bool smooth;
 
-  /* The extreme point in direction d of the smooth piece of the core that x lies on (a rim, the whole ellipsoid), whether
-   * or not another piece reaches farther: always a point of the core. NULL for polyhedra: x itself. */
+  /* The extreme point in direction d of the smooth piece of the core that x lies on (a rim, the whole ellipsoid),
+   * whether or not another piece reaches farther: always a point of the core. NULL for polyhedra: x itself. */
   vec3 (*follow)(const convex *shape, vec3 d, vec3 x);
 
-  /* The point of the core nearest to y: a point of the core but for 5 u of its scale, however far y is. NULL: there is no quick closed
-   * form. */
+  /* The point of the core nearest to y: a point of the core but for 5 u of its scale, however far y is. NULL: there is
+   * no quick closed form. */
   void (*project)(const convex *shape, vec3 y, convex_foot *foot);
 
   /* A tight cover that touches the shape at near->point; false where there is none (a face, a flat side). NULL: never.
@@ -104,9 +104,8 @@ struct convex {
    * one */
   int32_t n, padded;
   double *x, *y, *z;
-  double *
-      edge; /* polygons: of each edge from vertex i on, its unit direction's x and y, its length, its other end's x and y; five
-                arrays, padded likewise */
+  double *edge; /* polygons: of each edge from vertex i on, its unit direction's x and y, its length, its other end's x
+                   and y; five arrays, padded likewise */
   /* support callbacks */
   cprox_support_fn callback;
   const void *user;

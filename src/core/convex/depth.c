@@ -69,8 +69,8 @@ void depth_complete(const convex *shape, vec3 y, convex_near *near) {
   separate_point(shape, y, &goal, &answer);
   if (answer.support_failed) return;
   double distance = fmin(0.5 * (answer.upper + answer.lower), 0.0);
-  if (!answer
-           .measured) { /* beside a sharp vertex: between what near() has proven and the best plane, where the two are close */
+  if (!answer.measured) { /* beside a sharp vertex: between what near() has proven and the best plane, where the two are
+                             close */
     const double most = -(answer.lower + answer.rounding), least = -near->distance;
     if (!(least > 0.0 && most <= 8.0 * least) || vec_norm2(answer.normal) == 0.0) return;
     distance = -0.5 * (least + most);

@@ -5,8 +5,8 @@
 
 #include "base/vec.h"
 
-/* (p - corner) x (q - corner), or its opposite: the normal of a triangle, each component within a few u of itself and u² of
- * the product of the edges. */
+/* (p - corner) x (q - corner), or its opposite: the normal of a triangle, each component within a few u of itself and
+ * u² of the product of the edges. */
 vec3 double_double_cross(vec3 corner, vec3 p, vec3 q);
 
 #endif

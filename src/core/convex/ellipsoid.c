@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The ellipsoid sum (x_i/a_i)² <= 1. size: semi-axes. Its core is what is left when the largest ball that is a summand of
- * it, of radius a_min²/a_max, is split off. */
+/* The ellipsoid sum (x_i/a_i)² <= 1. size: semi-axes. Its core is what is left when the largest ball that is a summand
+ * of it, of radius a_min²/a_max, is split off. */
 #include "base/rounding.h"
 #include "convex/feature.h"
 
 enum { ELLIPSOID_MAX_STEPS = 60 };
 
-/* The point in the first octant, axes in descending order: rz_i = r_i |y_i|/e_i with r_i = (e_i/e_2)², and k_i = r_i - 1
- * without cancellation. */
+/* The point in the first octant, axes in descending order: rz_i = r_i |y_i|/e_i with r_i = (e_i/e_2)², and k_i = r_i -
+ * 1 without cancellation. */
 typedef struct ellipsoid_octant {
   int axis[3];
   double e[3], y[3], r[3], k[3], rz[3];
@@ -97,8 +97,8 @@ static void ellipsoid_nearest(const convex *shape, vec3 y, convex_hint *hint, co
 
   if (o.y[2] == 0.0 && (o.y[1] == 0.0 || o.k[1] > 0.0) && (o.y[0] == 0.0 || o.k[0] > 0.0) &&
       ellipsoid_g(&o, 0.0, &unused) < 1.0) {
-    /* in the plane of the longer axes, within the curve that the centres of curvature make: two points are nearest, one on
-     * each side of the plane */
+    /* in the plane of the longer axes, within the curve that the centres of curvature make: two points are nearest, one
+     * on each side of the plane */
     double rest = 1.0, d2 = 0.0;
     for (int i = 0; i < 2; i++) {
       const double t = o.y[i] > 0.0 ? o.rz[i] / o.k[i] : 0.0;
@@ -165,7 +165,8 @@ static void ellipsoid_curvature(const convex *shape, vec3 d, vec3 x, double hess
   hessian[5] = (a[2] * a[2] - w.z * w.z) / eta - m * (1.0 - d.z * d.z);
 }
 
-/* Blaschke: a ball of the largest radius of curvature, a_max²/a_min, that touches from outside contains the ellipsoid. */
+/* Blaschke: a ball of the largest radius of curvature, a_max²/a_min, that touches from outside contains the ellipsoid.
+ */
 static bool ellipsoid_cover(const convex *shape, const convex_near *near, convex_cover *cover) {
   const double *a = shape->size;
   const double most = fmax(a[0], fmax(a[1], a[2])), least = fmin(a[0], fmin(a[1], a[2]));
@@ -176,8 +177,8 @@ static bool ellipsoid_cover(const convex *shape, const convex_near *near, convex
   return true;
 }
 
-/* near_rounding: each term rz_i/(sigma + k_i) is within 12u, so G within 27u and the sigma found solves the problem of a
- * point within 18u |y| of y; the formula for d adds 30u of d <= |y| + a_max. */
+/* near_rounding: each term rz_i/(sigma + k_i) is within 12u, so G within 27u and the sigma found solves the problem of
+ * a point within 18u |y| of y; the formula for d adds 30u of d <= |y| + a_max. */
 const convex_ops convex_ellipsoid = {.kind = CPROX_BODY_ELLIPSOID,
                                      .near_rounding = 64.0,
                                      .nearest = ellipsoid_nearest,

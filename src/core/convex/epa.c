@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Facets of a closed surface round 0 whose vertices belong to the set. Along any unit n every point p of a facet has
- * n·p >= min n·w over its vertices, so the least of these offsets is a depth that is proven, whatever the normals' accuracy. */
+ * n·p >= min n·w over its vertices, so the least of these offsets is a depth that is proven, whatever the normals'
+ * accuracy. */
 #include "convex/epa.h"
 
 #include <stdlib.h>
@@ -64,7 +65,7 @@ static void surface_place(surface *s, surface_room *room, int32_t wanted) {
   s->free = (int32_t *)(s->offset + m);
 }
 
-/* ---- facets ----------------------------------------------------------------------------------------------------------- */
+/* ---- facets ---- */
 
 static inline double offset_along(const surface *s, const facet *f, vec3 n) {
   return lesser(vec_dot(n, s->vertex[f->vertex[0]].w),
@@ -84,8 +85,8 @@ static bool is_sliver(vec3 cross, vec3 ab, vec3 ac) {
   return !(vec_norm2(cross) > 1e-2 * vec_norm2(ab) * vec_norm2(ac));
 }
 
-/* A sliver's own normal is computed in sums of two doubles; where it has no area at all, the direction in which it lies from 0 is a
- * better one. */
+/* A sliver's own normal is computed in sums of two doubles; where it has no area at all, the direction in which it lies
+ * from 0 is a better one. */
 static void facet_try_sliver(const surface *s, facet *f) {
   const vec3 a = s->vertex[f->vertex[0]].w, b = s->vertex[f->vertex[1]].w, c = s->vertex[f->vertex[2]].w;
   const vec3 ab = vec_sub(b, a), ac = vec_sub(c, a), cross = double_double_cross(a, b, c);
@@ -139,7 +140,7 @@ static inline int32_t surface_nearest(const surface *s) {
   return at;
 }
 
-/* ---- expanding -------------------------------------------------------------------------------------------------------- */
+/* ---- expanding ---- */
 
 /* An edge between what is seen from the new vertex and what is not. */
 typedef struct horizon_edge {
@@ -153,8 +154,8 @@ typedef struct view {
   int32_t n_edges;
 } view;
 
-/* Only facets that lie beyond the rounding may go: then the tetrahedra between them and the new vertex do not contain 0, and what
- * takes their place encloses 0 as they did. */
+/* Only facets that lie beyond the rounding may go: then the tetrahedra between them and the new vertex do not contain
+ * 0, and what takes their place encloses 0 as they did. */
 static bool is_seen(const facet *f, vec3 w, double rounding) {
   return f->offset > rounding && vec_dot(f->normal, w) > f->offset;
 }
@@ -215,7 +216,8 @@ static void view_alone(const surface *s, int32_t first, view *v) {
     v->edge[k] = (horizon_edge){.from = f->vertex[k], .to = f->vertex[(k + 1) % 3], .beyond = f->neighbour[k]};
 }
 
-/* Takes the seen facets away and joins the loop to the new vertex. False where there is no room; nothing has changed then. */
+/* Takes the seen facets away and joins the loop to the new vertex. False where there is no room; nothing has changed
+ * then. */
 static bool surface_grow(surface *s, const simplex_vertex *x, const view *v) {
   if (s->n_vertices == s->most_vertices) return false;
   if (s->n_free + v->n_seen + s->most_facets - s->n_facets < v->n_edges) return false;
@@ -236,7 +238,7 @@ static bool surface_grow(surface *s, const simplex_vertex *x, const view *v) {
   return true;
 }
 
-/* ---- the search ------------------------------------------------------------------------------------------------------- */
+/* ---- the search ---- */
 
 /* The set's point farthest along n, seen from the middle that the surface is round. */
 static simplex_vertex farthest_from(const expand_set *set, vec3 shift, vec3 n) {
@@ -260,8 +262,9 @@ static const shell BIPYRAMID = {5,
                                 {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}},
                                 {{3, 1, 2}, {4, 2, 0}, {5, 0, 1}, {0, 5, 4}, {1, 3, 5}, {2, 4, 3}}};
 
-/* False where one of the facets does not have 0 behind it by more than the rounding, or a vertex in front of it. All of them having it there, 0 is enclosed: the
- * solid angles that they span at 0 are positive, and their sum is a multiple of the whole. */
+/* False where one of the facets does not have 0 behind it by more than the rounding, or a vertex in front of it. All of
+ * them having it there, 0 is enclosed: the solid angles that they span at 0 are positive, and their sum is a multiple
+ * of the whole. */
 static bool surface_begin(surface *s, const simplex_vertex *vertex, const shell *form, double rounding) {
   s->n_vertices = form->n_vertices;
   s->n_facets = s->n_free = 0;
@@ -306,7 +309,8 @@ static bool begin_triangle(surface *s, const expand_set *set, const simplex *sta
   return surface_begin(s, vertex, &BIPYRAMID, rounding);
 }
 
-/* From the farthest points both ways along n, and farther points all round, tried from a few angles: some may fall together. */
+/* From the farthest points both ways along n, and farther points all round, tried from a few angles: some may fall
+ * together. */
 static bool begin_line(surface *s, const expand_set *set, vec3 n, double rounding) {
   enum { ANGLES = 7 };
   simplex_vertex vertex[5];
@@ -427,7 +431,8 @@ bool expand_from(const expand_set *set, const simplex *start, const expand_goal 
   return found;
 }
 
-/* Seen from 0 again, which lies nearer to `shift` than any facet: so every facet has it behind, and the surface encloses it as well. */
+/* Seen from 0 again, which lies nearer to `shift` than any facet: so every facet has it behind, and the surface
+ * encloses it as well. */
 static void surface_return(surface *s) {
   for (int32_t i = 0; i < s->n_vertices; i++) s->vertex[i].w = vec_add(s->vertex[i].w, s->shift);
   s->shift = vec(0, 0, 0);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* How deep 0 lies inside a convex set that is known by its support function: a polytope that expands from within, and the planes
- * that support the set from without (doc/convex-pairs.md). */
+/* How deep 0 lies inside a convex set that is known by its support function: a polytope that expands from within, and
+ * the planes that support the set from without (doc/convex-pairs.md). */
 #ifndef CPROX_CONVEX_EPA_H
 #define CPROX_CONVEX_EPA_H
 
@@ -29,17 +29,17 @@ typedef struct expand_depth {
   uint32_t steps;
 } expand_depth;
 
-/* From a tetrahedron that encloses 0, or a triangle or an edge that 0 lies on. False where rounding hides that 0 is enclosed: then
- * nothing is set. */
+/* From a tetrahedron that encloses 0, or a triangle or an edge that 0 lies on. False where rounding hides that 0 is
+ * enclosed: then nothing is set. */
 bool expand_from(const expand_set *set, const simplex *start, const expand_goal *goal, expand_depth *depth);
 
-/* The same from a simplex that encloses `shift` instead, whose w are relative to it: where 0 lies on faces that any vertices span, a
- * place beside it does not. False where the set does not reach farther than `shift` all round. */
+/* The same from a simplex that encloses `shift` instead, whose w are relative to it: where 0 lies on faces that any
+ * vertices span, a place beside it does not. False where the set does not reach farther than `shift` all round. */
 bool expand_beside(const expand_set *set, const simplex *start, vec3 shift, const expand_goal *goal,
                    expand_depth *depth);
 
-/* For a set of two shapes of revolution about their own z, the second one's points at most `off` from where they would be if its axis
- * were the first one's: from scratch. */
+/* For a set of two shapes of revolution about their own z, the second one's points at most `off` from where they would
+ * be if its axis were the first one's: from scratch. */
 bool expand_ring(const expand_set *set, double off, const expand_goal *goal, expand_depth *depth);
 
 #endif

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The same for a set that is all but one of revolution about z, where the nearest points of the surface may be a whole ring: a polygon
- * that expands in the half plane of (hypot(x, y), z), from the lowest point of the set to the highest. Of a set of revolution a disc of the plane
- * lies in the section if and only if the ball lies in the set. Where no point is farther than `off` from one of such a set and the other way
- * round, the polygon is within `off` of its section, and its ball less `off` within `off` of the set: 2 off in all. From above nothing is
- * taken from the profile: the reach along a direction is that of the set itself. */
+/* The same for a set that is all but one of revolution about z, where the nearest points of the surface may be a whole
+ * ring: a polygon that expands in the half plane of (hypot(x, y), z), from the lowest point of the set to the highest.
+ * Of a set of revolution a disc of the plane lies in the section if and only if the ball lies in the set. Where no
+ * point is farther than `off` from one of such a set and the other way round, the polygon is within `off` of its
+ * section, and its ball less `off` within `off` of the set: 2 off in all. From above nothing is taken from the profile:
+ * the reach along a direction is that of the set itself. */
 #include "convex/epa.h"
 
 #include "base/rounding.h"
@@ -78,7 +79,8 @@ static bool profile_begin(profile *p, const expand_set *set, double rounding) {
          p->edge[1].offset > rounding;
 }
 
-/* The foot of 0: on one of the nearest edges, or in the middle of an end, between a corner and its image across the axis. */
+/* The foot of 0: on one of the nearest edges, or in the middle of an end, between a corner and its image across the
+ * axis. */
 static void find_touch(const profile *p, double room, expand_depth *depth) {
   simplex_nearest found;
   const corner *end = &p->corner[-p->corner[0].z <= p->corner[2].z ? 0 : 2];

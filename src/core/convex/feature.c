@@ -64,8 +64,8 @@ bool feature_cover(const convex_near *near, int32_t n, const double *x, const do
   cover->cylinder = near->tangents == 1;
   cover->axis = near->e[0];
 
-  /* the least R whose ball about b - R n reaches every vertex: |b - w|² <= 2 R n·(b - w). Vertices on the feature itself
-   * fall upon b. */
+  /* the least R whose ball about b - R n reaches every vertex: |b - w|² <= 2 R n·(b - w). Vertices on the feature
+   * itself fall upon b. */
   const double same = 64.0 * ROUND_U * scale;
   double radius = 0.0;
   for (int32_t i = 0; i < n; i++) {

@@ -16,8 +16,8 @@ static inline double feature_hypot(double x, double y) {
   return hypot(x, y);
 }
 
-/* |v|, and v/|v| ((0,0,0) where v is), accurate at every magnitude: a normal that is not a unit vector would break every
- * bound that is computed with it. */
+/* |v|, and v/|v| ((0,0,0) where v is), accurate at every magnitude: a normal that is not a unit vector would break
+ * every bound that is computed with it. */
 static inline double feature_unit(vec3 v, vec3 *unit) {
   const double square = vec_norm2(v);
   if (square > FEATURE_LEAST_SQUARE && square < FEATURE_MOST_SQUARE) {
@@ -51,11 +51,12 @@ void feature_vertex(convex_near *near, vec3 origin, double offset);
 /* distance = |part of y - origin orthogonal to the unit axis| - offset: an edge, the axis of a cylinder. */
 void feature_edge(convex_near *near, vec3 origin, vec3 axis, double offset);
 
-/* distance = signed height over the plane through near->point with the unit normal near->normal, e and f its tangents. */
+/* distance = signed height over the plane through near->point with the unit normal near->normal, e and f its tangents.
+ */
 void feature_face(convex_near *near, vec3 e, vec3 f);
 
-/* A distance that depends on z and rho = hypot(x, y) only: its gradient (radial, axial) at (x, y), its second derivative
- * in the meridian plane; round the axis it is radial/rho. */
+/* A distance that depends on z and rho = hypot(x, y) only: its gradient (radial, axial) at (x, y), its second
+ * derivative in the meridian plane; round the axis it is radial/rho. */
 void feature_axial(convex_near *near, double x, double y, double radial, double axial, double in_meridian);
 
 /* The ball (at a vertex) or cylinder (at an edge) of doc/convex-pairs.md that touches the hull of the vertices at

@@ -55,7 +55,7 @@ void flat_describe(const convex *shape, flat_shape *flat) {
   flat->dimension = farthest > least ? 2 : length > least ? 1 : 0;
 }
 
-/* ---- what it covers ----------------------------------------------------------------------------------------------------- */
+/* ---- what it covers ---- */
 
 /* The point of the core that is farthest along (dx, dy) of the plane, behind corner `after`. */
 static void add_corner(const convex *shape, const flat_shape *flat, flat_region *region, double dx, double dy,

@@ -17,7 +17,8 @@ void flat_describe(const convex *shape, flat_shape *flat);
 
 enum { FLAT_MOST_CORNERS = 64 };
 
-/* Points of the core, each by its place along e and f, in the order in which they surround a region of the plane that the core covers. */
+/* Points of the core, each by its place along e and f, in the order in which they surround a region of the plane that
+ * the core covers. */
 typedef struct flat_region {
   double x[FLAT_MOST_CORNERS], y[FLAT_MOST_CORNERS];
   int n;
@@ -26,7 +27,8 @@ typedef struct flat_region {
 
 void flat_region_begin(const convex *shape, const flat_shape *flat, flat_region *region);
 
-/* Whether the core certainly covers the hull of n points of the plane, each known but for `room`. The region grows where that helps. */
+/* Whether the core certainly covers the hull of n points of the plane, each known but for `room`. The region grows
+ * where that helps. */
 bool flat_region_covers(const convex *shape, const flat_shape *flat, flat_region *region, const double *x,
                         const double *y, size_t n, double room);
 

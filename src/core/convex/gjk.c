@@ -70,8 +70,8 @@ typedef struct gjk {
   double height;
 } gjk;
 
-/* Takes a grown simplex over. One that is nearer by less than the tolerance may still face a better way: some of those are let
- * pass, since at a flat corner every step is that short. */
+/* Takes a grown simplex over. One that is nearer by less than the tolerance may still face a better way: some of those
+ * are let pass, since at a flat corner every step is that short. */
 static bool gjk_accept(gjk *g, simplex *grown) {
   simplex_nearest found;
   simplex_reduce(grown, &found);
@@ -103,8 +103,8 @@ static bool gjk_support_step(gjk *g, vec3 u) {
   return gjk_accept(g, &grown);
 }
 
-/* Two directions are tried at each place: the feature's own, which is exact where v is all rounding, and v's, which is exact
- * where the feature is a sliver. */
+/* Two directions are tried at each place: the feature's own, which is exact where v is all rounding, and v's, which is
+ * exact where the feature is a sliver. */
 static bool gjk_step(gjk *g) {
   const vec3 normal = g->nearest.normal;
   vec3 along;
@@ -145,8 +145,8 @@ static void gjk_search(gjk *g) {
   if (restarted && !g->nearest.inside && g->nearest.distance > before.nearest.distance) *g = before;
 }
 
-/* Whether y may be deep inside although the simplices do not tell: it lies on planes through vertices, or so near to them that what is
- * proven is less than its rounding. */
+/* Whether y may be deep inside although the simplices do not tell: it lies on planes through vertices, or so near to
+ * them that what is proven is less than its rounding. */
 static bool gjk_is_open(const gjk *g) {
   const double shallow = GJK_SHALLOW * g->contact_tolerance;
   if (g->nearest.inside)

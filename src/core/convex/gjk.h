@@ -15,7 +15,8 @@ typedef struct gjk_answer {
   double height; /* the core's support function along it */
 } gjk_answer;
 
-/* The hint's vertices, if the shape has any, are where the search starts; the last ones are left in it. hint may be NULL. */
+/* The hint's vertices, if the shape has any, are where the search starts; the last ones are left in it. hint may be
+ * NULL. */
 void gjk_nearest(const convex *shape, vec3 y, convex_hint *hint, gjk_answer *answer);
 
 #endif

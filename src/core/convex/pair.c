@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Two bounds that meet (doc/convex-pairs.md). Above: the distance from 0 of a simplex in the Minkowski difference
- * M = A - B, which shrinks as in Gilbert, Johnson and Keerthi's search. Below: phi(u) = min of u·m over M, for directions u
- * that the simplex suggests, or, where the shapes are curved, Newton's method on phi. */
+ * M = A - B, which shrinks as in Gilbert, Johnson and Keerthi's search. Below: phi(u) = min of u·m over M, for
+ * directions u that the simplex suggests, or, where the shapes are curved, Newton's method on phi. */
 #include "convex/pair.h"
 
 #include "base/rotation.h"
@@ -59,8 +59,8 @@ static vec3 pair_difference(const pair *p, vec3 a, vec3 b) {
   return vec_sub(a, vec_add(rotate(p->r, b), p->t));
 }
 
-/* What a support point fails to reach of the support value along d. An implicit shape's value is a bound from above; its point is one
- * of the body, and may stay behind where exponents are near 1. */
+/* What a support point fails to reach of the support value along d. An implicit shape's value is a bound from above;
+ * its point is one of the body, and may stay behind where exponents are near 1. */
 static double missed(const convex *shape, double value, vec3 d, vec3 at) {
   return shape->implicit ? fmax(value - vec_dot(d, at), 0.0) : 0.0;
 }
@@ -84,8 +84,8 @@ static void pair_raise_lower(pair *p, vec3 u, double phi) {
   p->u = u;
 }
 
-/* Takes a grown simplex over if it is nearer than the one at hand; as far away within the tolerance will do for a while, since at a
- * flat corner no step is longer. */
+/* Takes a grown simplex over if it is nearer than the one at hand; as far away within the tolerance will do for a
+ * while, since at a flat corner no step is longer. */
 static bool pair_accept(pair *p, simplex *grown) {
   simplex_nearest found;
   simplex_reduce(grown, &found);
@@ -108,8 +108,8 @@ typedef struct pair_pieces {
   double kee, kef, kff; /* weighted curvature in the tangent basis */
 } pair_pieces;
 
-/* The extreme point of the piece that x lies on, or x itself where that would carry it far round a rim: seen along its axis
- * a disc's rim is extreme everywhere, and its points must not run together. */
+/* The extreme point of the piece that x lies on, or x itself where that would carry it far round a rim: seen along its
+ * axis a disc's rim is extreme everywhere, and its points must not run together. */
 static bool piece_follow(const convex *shape, vec3 d, vec3 *x) {
   if (!shape->ops->follow) return false;
   const vec3 moved = shape->ops->follow(shape, d, *x), step = vec_sub(moved, *x);
@@ -125,8 +125,8 @@ static void pieces_add_curvature(pair_pieces *pieces, double weight, const doubl
   pieces->kff += weight * feature_quadratic(h, f, f);
 }
 
-/* The simplex's vertices moved to where u finds them on their pieces; those that fall together are one. e and f NULL: their
- * curvature is not asked for. */
+/* The simplex's vertices moved to where u finds them on their pieces; those that fall together are one. e and f NULL:
+ * their curvature is not asked for. */
 static pair_pieces pair_follow(const pair *p, vec3 u, const vec3 *e, const vec3 *f) {
   const vec3 da = vec_neg(u), db = rotate_back(p->r, u);
   const double same = 1e-12 * (p->a->scale + p->b->scale);
@@ -217,8 +217,8 @@ bool pair_is_reached(const pair_goal *goal, double margins, double rounding, dou
   return upper - lower <= greater(asked - 2.0 * rounding, 0.25 * rounding);
 }
 
-/* Looks along u: a lower bound, and a vertex that may bring the simplex nearer; on curved shapes its other vertices are moved
- * along their pieces as well, since the old ones would hold it back. True where one of the bounds got better. */
+/* Looks along u: a lower bound, and a vertex that may bring the simplex nearer; on curved shapes its other vertices are
+ * moved along their pieces as well, since the old ones would hold it back. True where one of the bounds got better. */
 static bool pair_support_step(pair *p, vec3 u, bool follow) {
   const simplex_vertex x = pair_extreme(p, u);
   const double lower = p->lower;
@@ -239,8 +239,8 @@ static bool pair_support_step(pair *p, vec3 u, bool follow) {
   return nearer || p->lower > lower;
 }
 
-/* One step: Newton's direction if there is one, else the simplex's own normal, else that of its nearest point. Two plain
- * directions, since the normal is exact where v is all rounding, and v where the simplex is a sliver. */
+/* One step: Newton's direction if there is one, else the simplex's own normal, else that of its nearest point. Two
+ * plain directions, since the normal is exact where v is all rounding, and v where the simplex is a sliver. */
 static bool pair_step(pair *p, bool newton) {
   vec3 u;
   if (newton && pair_newton(p, &u)) return pair_support_step(p, u, true);
@@ -310,9 +310,9 @@ static void pair_search(pair *p, vec3 u, double margins, const pair_goal *goal) 
   }
 }
 
-/* Where the shapes touch or overlap the simplex has no direction to offer. So b is drawn back along the best direction until
- * it is free, and the direction of the distance there is tried here; closer and closer, since where they are curved the
- * direction found is only as good as the distance was short. */
+/* Where the shapes touch or overlap the simplex has no direction to offer. So b is drawn back along the best direction
+ * until it is free, and the direction of the distance there is tried here; closer and closer, since where they are
+ * curved the direction found is only as good as the distance was short. */
 static void pair_separate_slightly(pair *p, double size, const pair_goal *goal) {
   double clear = 1e-3 * size;
   for (int round = 0;
@@ -414,9 +414,9 @@ static double pair_misalignment(const pair *p) {
   return 1.5 * tilt * p->b->scale + feature_hypot(p->t.x, p->t.y);
 }
 
-/* Where 0 lies on a plane through vertices of M, no simplex of theirs may have it inside. A place beside 0 lies on none by chance: it is
- * enclosed, and the surface round it grows until it holds 0 as well. The farther the place the clearer it is of all planes; what
- * is less deep is missed. */
+/* Where 0 lies on a plane through vertices of M, no simplex of theirs may have it inside. A place beside 0 lies on none
+ * by chance: it is enclosed, and the surface round it grows until it holds 0 as well. The farther the place the clearer
+ * it is of all planes; what is less deep is missed. */
 static bool pair_expand_beside(pair *p, const expand_goal *goal, expand_depth *depth) {
   static const double beside[] = {1024.0, 64.0, 16.0, 8.0};
   const expand_set set = {.self = p, .farthest = pair_farthest};
@@ -446,8 +446,8 @@ static bool pair_expand_beside(pair *p, const expand_goal *goal, expand_depth *d
   return false;
 }
 
-/* Coaxial bodies may be as deep all round a ring: their profile is a problem of the plane. What are nearly coaxial are so but for
- * `off`. */
+/* Coaxial bodies may be as deep all round a ring: their profile is a problem of the plane. What are nearly coaxial are
+ * so but for `off`. */
 static bool pair_expand(pair *p, const expand_goal *goal, expand_depth *depth) {
   const expand_set set = {.self = p, .farthest = pair_farthest};
   const double off = pair_misalignment(p);
@@ -546,8 +546,8 @@ static void pair_find(pair *p, vec3 u, double margins, const pair_goal *goal, pa
   if (goal->wants_feature && !found.described && !p->nearest.inside && !p->support_failed) pair_describe(p, feature);
 }
 
-/* Neither apart nor overlapping is proven by more than a few roundings, or the depth is wanted; and no direction yet tells that there is
- * nothing to prove. */
+/* Neither apart nor overlapping is proven by more than a few roundings, or the depth is wanted; and no direction yet
+ * tells that there is nothing to prove. */
 static bool pair_is_open(const pair *p, double margins, const pair_goal *goal) {
   const double shallow = PAIR_SHALLOW * p->rounding;
   if (p->support_failed || p->steps >= goal->max_steps || !(p->lower < -2.0 * shallow)) return false;

@@ -12,7 +12,8 @@ typedef struct pair_placement {
   double error; /* every point of b is within this of where it stands exactly */
 } pair_placement;
 
-/* How far to go: the interval, rounding included, may be epsilon wide, or the fraction relative_epsilon of its upper end. */
+/* How far to go: the interval, rounding included, may be epsilon wide, or the fraction relative_epsilon of its upper
+ * end. */
 typedef struct pair_goal {
   double epsilon, relative_epsilon;
   double floor, fraction; /* or this fraction of what its lower end is above the floor; 0: none */

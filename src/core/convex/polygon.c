@@ -45,8 +45,8 @@ bool convex_polygon_measure_edges(convex *shape) {
   return true;
 }
 
-/* The greatest height over an edge's line, and the least square distance from an edge, of each lane, and which edges those are; indices
- * are kept as doubles so that a lane is as wide as its value. */
+/* The greatest height over an edge's line, and the least square distance from an edge, of each lane, and which edges
+ * those are; indices are kept as doubles so that a lane is as wide as its value. */
 typedef struct polygon_lanes {
   double height[LANES], line[LANES], square[LANES], edge[LANES];
 } polygon_lanes;
@@ -127,8 +127,8 @@ static polygon_place polygon_locate(const convex *shape, double px, double py) {
   return place;
 }
 
-/* Inside, the least depth under an edge's line is the distance from the boundary; outside, some line is passed. Comparing
- * the two tells them apart wherever it matters: a sharp corner's lines alone are too faint beyond its tip. */
+/* Inside, the least depth under an edge's line is the distance from the boundary; outside, some line is passed.
+ * Comparing the two tells them apart wherever it matters: a sharp corner's lines alone are too faint beyond its tip. */
 static bool polygon_contains(const polygon_place *place) {
   return place->inside <= -0.5 * place->boundary;
 }
@@ -182,7 +182,8 @@ void convex_polygon_nearest_in_plane(const convex *shape, vec3 y, convex_near *n
   feature_face(near, vec(ex, ey, 0), vec(0, 0, 1));
 }
 
-/* near_rounding: vertices about the centre (u), a difference (u), an edge's direction (3u), a product (3u), a norm (3u). */
+/* near_rounding: vertices about the centre (u), a difference (u), an edge's direction (3u), a product (3u), a norm
+ * (3u). */
 const convex_ops convex_polygon = {.kind = CPROX_BODY_POLYGON,
                                    .near_rounding = 16.0,
                                    .nearest = polygon_nearest,

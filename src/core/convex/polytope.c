@@ -28,9 +28,10 @@ static void polytope_nearest(const convex *shape, vec3 y, convex_hint *hint, con
   }
 }
 
-/* near_rounding: vertices about the centre (u), differences with y (u), their weighted sum (8u), its norm (3u): so much the
- * distance can be below the true one, whatever the search did. Above it by what the search left between its bounds, 8u,
- * and a tolerance, 4u, for each step along a plateau; the rest of 64 is room, the tests find 50 in needles of aspect 1e6. */
+/* near_rounding: vertices about the centre (u), differences with y (u), their weighted sum (8u), its norm (3u): so much
+ * the distance can be below the true one, whatever the search did. Above it by what the search left between its bounds,
+ * 8u, and a tolerance, 4u, for each step along a plateau; the rest of 64 is room, the tests find 50 in needles of
+ * aspect 1e6. */
 const convex_ops convex_polytope = {.kind = CPROX_BODY_POLYTOPE,
                                     .near_rounding = 64.0,
                                     .nearest = polytope_nearest,

@@ -109,8 +109,8 @@ static void try_triangle(candidate *best, const simplex *s, int i, int j, int k,
     return;
   }
 
-  /* areas of the triangles that the foot of 0 makes with the edges, each opposite a vertex; the foot is measured from the
-   * nearest vertex, so that beside a vertex it is exact to what it is away from it */
+  /* areas of the triangles that the foot of 0 makes with the edges, each opposite a vertex; the foot is measured from
+   * the nearest vertex, so that beside a vertex it is exact to what it is away from it */
   const vec3 foot = vec_scale(vec_dot(f->normal, nearest_of(s, index)) / area2, f->normal);
   vec3 to[3];
   for (int m = 0; m < 3; m++) to[m] = vec_sub(s->vertex[index[m]].w, foot);
@@ -124,8 +124,8 @@ static void try_triangle(candidate *best, const simplex *s, int i, int j, int k,
   }
   if (outside) return;
 
-  /* inside: the weight of the corner first, then the place along the longest edge, opposite, measured so that it takes up
-   * the first one's rounding: in a needle the areas alone would put the point far along it */
+  /* inside: the weight of the corner first, then the place along the longest edge, opposite, measured so that it takes
+   * up the first one's rounding: in a needle the areas alone would put the point far along it */
   const int a = f->corner == i ? 0 : f->corner == j ? 1 : 2, b = (a + 1) % 3, c = (a + 2) % 3;
   const vec3 base = vec_sub(to[c], to[b]);
   double weight[3];
@@ -184,7 +184,8 @@ static bool try_tetrahedron(candidate *best, simplex *s, face f[4], double *dept
   return false;
 }
 
-/* v without its part along e, twice: where v is short the first pass leaves rounding along e that its unit would magnify. */
+/* v without its part along e, twice: where v is short the first pass leaves rounding along e that its unit would
+ * magnify. */
 static vec3 across_edge(vec3 v, vec3 e) {
   const double square = vec_norm2(e);
   vec3 unit;

@@ -12,8 +12,8 @@ typedef struct simplex_vertex {
   vec3 w;    /* the vertex */
   vec3 a, b; /* the points of the two shapes whose difference it is */
   int32_t id;
-  double
-      behind; /* what w fails to reach of the support value along the direction it was looked for; 0 but for implicit shapes */
+  double behind; /* what w fails to reach of the support value along the direction it was looked for; 0 but for implicit
+                    shapes */
 } simplex_vertex;
 
 typedef struct simplex {

@@ -4,8 +4,8 @@
 #include "convex/feature.h"
 #include "simd/dispatch.h"
 
-/* Four lanes, selected by masks and never by branches, which a processor would guess wrong: loops over arrays are made into branches by
- * some compilers. */
+/* Four lanes, selected by masks and never by branches, which a processor would guess wrong: loops over arrays are made
+ * into branches by some compilers. */
 typedef double lanes __attribute__((vector_size(32), aligned(8), may_alias));
 typedef int64_t choice __attribute__((vector_size(32)));
 

@@ -11,8 +11,9 @@ typedef struct angle {
   double cosine, sine;
 } angle;
 
-/* Each within 6u of the exact one, given cos() and sin() within 2u: by the sum formulas from those of the high and the low part,
- * whose products and sums add 4u. A low part below 1e-9 is its own sine, and its cosine 1, to less than u/100. */
+/* Each within 6u of the exact one, given cos() and sin() within 2u: by the sum formulas from those of the high and the
+ * low part, whose products and sums add 4u. A low part below 1e-9 is its own sine, and its cosine 1, to less than
+ * u/100. */
 #define ANGLE_ERROR (6.0 * ROUND_U)
 
 static inline angle angle_of(dd radians) {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A B-spline is cut into its polynomial spans. Span r, [knots[r], knots[r+1]], depends on the control points r-p … r and
- * on the knots r-p+1 … r+p; its blossom at the two ends of the span gives the Bézier points.
+/* A B-spline is cut into its polynomial spans. Span r, [knots[r], knots[r+1]], depends on the control points r-p … r
+ * and on the knots r-p+1 … r+p; its blossom at the two ends of the span gives the Bézier points.
  *
- * Error of a span, M = max|control point| and p the degree: 5 p u M by curve_blossom(). Far from the origin most of that
- * is needless: with the points taken about one of them, o, and L = max|point - o|, the differences are off by u L, the
- * blossom by 5 p u L, and adding o again by u times the result. The smaller of the two is taken, so the error never
+ * Error of a span, M = max|control point| and p the degree: 5 p u M by curve_blossom(). Far from the origin most of
+ * that is needless: with the points taken about one of them, o, and L = max|point - o|, the differences are off by u L,
+ * the blossom by 5 p u L, and adding o again by u times the result. The smaller of the two is taken, so the error never
  * exceeds 5 p u M. The control points of a piece being within the error of the exact ones, so is every point of it. */
 #include "base/rounding.h"
 #include "base/workspace.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A clothoid (Euler spiral): a planar curve whose curvature is linear in arc length. heading.c bounds its point, which is a
- * Fresnel integral, and its derivatives. */
+/* A clothoid (Euler spiral): a planar curve whose curvature is linear in arc length. heading.c bounds its point, which
+ * is a Fresnel integral, and its derivatives. */
 #include "base/workspace.h"
 #include "curve/heading.h"
 

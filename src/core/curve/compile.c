@@ -2,11 +2,11 @@
 /* Remainder: the quintic that shares value and two derivatives with psi at both ends of a piece of length h is within
  * max|psi^(6)| (t-a)³(b-t)³/6! <= K6 h^6/46080 of it.
  *
- * Rounding: the inner Bézier points are p + .4h v + .05h² w, p, v, w within e_0, e_1, e_2 of the exact data; h, its factors and
- * products cost at most 5u of the second and 6u of the third term, the two sums 2u of all:
- *   e_0 + .4h e_1 + .05h² e_2 + u(2|p| + 7 (.4h)|v| + 8 (.05h²)|w|).
- * The constant is added at the very end, which costs u of the result. Every point of the piece is a convex sum of these, so
- * their error bounds the curve's. Where lengths underflow CURVE_LEAST covers it. */
+ * Rounding: the inner Bézier points are p + .4h v + .05h² w, p, v, w within e_0, e_1, e_2 of the exact data; h, its
+ * factors and products cost at most 5u of the second and 6u of the third term, the two sums 2u of all: e_0 + .4h e_1 +
+ * .05h² e_2 + u(2|p| + 7 (.4h)|v| + 8 (.05h²)|w|). The constant is added at the very end, which costs u of the result.
+ * Every point of the piece is a convex sum of these, so their error bounds the curve's. Where lengths underflow
+ * CURVE_LEAST covers it. */
 #include "curve/compile.h"
 
 #include <stdlib.h>
@@ -50,8 +50,8 @@ static double reach(const compile_source *source, double from, double h) {
   return compile_step(source->sixth(source->self, from, from + h), source->accuracy);
 }
 
-/* A length that the remainder allows, near the longest one of at most `limit`. As |psi^(6)| is smaller on less, min(h, reach(h))
- * is always allowed. */
+/* A length that the remainder allows, near the longest one of at most `limit`. As |psi^(6)| is smaller on less, min(h,
+ * reach(h)) is always allowed. */
 static double step_within(const compile_source *source, double from, double limit) {
   double h = fmin(limit, reach(source, from, limit));
   for (int tries = 0; h < 1e-9 * limit && tries < 64; tries++) {
@@ -116,7 +116,8 @@ static cprox_status evaluate(const compile *c, const compile_source *source, dou
   return CPROX_OK;
 }
 
-/* The middle of a piece is where the remainder is largest, and where a bound of the sixth derivative that is too small shows. */
+/* The middle of a piece is where the remainder is largest, and where a bound of the sixth derivative that is too small
+ * shows. */
 static cprox_status check_middle(const compile *c, const compile_source *source, double a, double b, const vec3 *bezier,
                                  double error) {
   const double t = 0.5 * a + 0.5 * b;

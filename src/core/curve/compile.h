@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* From any smooth curve to quintic Bézier pieces with a certified remainder. A basis supplies its value and two derivatives with
- * bounds of their errors, and a bound of its sixth derivative over an interval; the pieces are as long as that allows. */
+/* From any smooth curve to quintic Bézier pieces with a certified remainder. A basis supplies its value and two
+ * derivatives with bounds of their errors, and a bound of its sixth derivative over an interval; the pieces are as long
+ * as that allows. */
 #ifndef CPROX_CURVE_COMPILE_H
 #define CPROX_CURVE_COMPILE_H
 
@@ -41,7 +42,8 @@ typedef struct compile {
   double *error;
 } compile;
 
-/* Appends the source on [t0, t1]; t0 is where the last one ended. On failure, with the reason set, all memory is given back. */
+/* Appends the source on [t0, t1]; t0 is where the last one ended. On failure, with the reason set, all memory is given
+ * back. */
 cprox_status compile_append(compile *c, const compile_source *source, double t0, double t1);
 
 /* The curve of all pieces; gives the memory back. */

@@ -88,8 +88,8 @@ double control_split(double *left, double *right, size_t degree, double s, doubl
     case 5: split_few(left, right, 5, s); break;
     default: split_many(left, right, degree, s);
   }
-  /* doc/rounding.md, T1: a level costs u |M| at s = 1/2, where both products are exact, and 3 u |M| elsewhere. The sum over
-   * the three coordinates is at most sqrt(3) times the largest vector. */
+  /* doc/rounding.md, T1: a level costs u |M| at s = 1/2, where both products are exact, and 3 u |M| elsewhere. The sum
+   * over the three coordinates is at most sqrt(3) times the largest vector. */
   const double levels = (s == 0.5 ? 1.0 : 3.0) * (double)degree;
   return ROUND_UP * levels * ROUND_U * 1.7320508075688774 * magnitude;
 }
@@ -101,7 +101,8 @@ double control_distance_from(const double *points, size_t degree, const double *
   const double *restrict once = square, *restrict per_twice = square + degree + 1;
   double *restrict wx = scratch, *restrict wy = wx + degree + 1, *restrict wz = wy + degree + 1;
 
-  /* w_i = C(n, i) (P_i - centre), or its part across the axis, so that products of two of them need no further weight */
+  /* w_i = C(n, i) (P_i - centre), or its part across the axis, so that products of two of them need no further weight
+   */
   const vec3 e = axis ? *axis : vec(0, 0, 0);
   double reach2 = 0.0;
 #pragma omp simd reduction(max : reach2)
@@ -114,7 +115,8 @@ double control_distance_from(const double *points, size_t degree, const double *
     wz[i] = once[i] * (vz - along * e.z);
   }
 
-  /* coefficient k of |w|^2 in the Bernstein basis of degree 2n: sum over i of w_i w_(k-i) / C(2n, k); i and k - i count twice */
+  /* coefficient k of |w|^2 in the Bernstein basis of degree 2n: sum over i of w_i w_(k-i) / C(2n, k); i and k - i count
+   * twice */
   double sum[2 * CPROX_MAX_DEGREE + 1];
   for (size_t k = 0; k <= 2 * degree; k++) sum[k] = 0.0;
   for (size_t i = 0; i <= degree; i++) {

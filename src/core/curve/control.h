@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Control points of one Bézier piece as three arrays (x, y, z; one after the other, degree + 1 numbers each), and what they
- * tell of the piece: its hull, its halves, its distance from a centre. */
+/* Control points of one Bézier piece as three arrays (x, y, z; one after the other, degree + 1 numbers each), and what
+ * they tell of the piece: its hull, its halves, its distance from a centre. */
 #ifndef CPROX_CURVE_CONTROL_H
 #define CPROX_CURVE_CONTROL_H
 
@@ -22,12 +22,13 @@ size_t control_lowest(const double *points, size_t degree, vec3 n);
 /* The largest |P|, an upper bound up to its own rounding. */
 double control_magnitude(const double *points, size_t degree);
 
-/* de Casteljau at s: `right` holds the control points on entry and those of [s, 1] on return, `left` gets those of [0, s].
- * Both share the point at s, so the two cover the piece exactly. Returns the error added: |left or right - exact|. */
+/* de Casteljau at s: `right` holds the control points on entry and those of [s, 1] on return, `left` gets those of [0,
+ * s]. Both share the point at s, so the two cover the piece exactly. Returns the error added: |left or right - exact|.
+ */
 double control_split(double *left, double *right, size_t degree, double s, double magnitude);
 
-/* A lower bound of |w| over the piece, w = psi - centre or its part orthogonal to the unit `axis` (NULL for none), from the
- * Bernstein coefficients of |w|^2, rounding included; 0 where they say nothing. Cost: degree^2. `scratch` holds
+/* A lower bound of |w| over the piece, w = psi - centre or its part orthogonal to the unit `axis` (NULL for none), from
+ * the Bernstein coefficients of |w|^2, rounding included; 0 where they say nothing. Cost: degree^2. `scratch` holds
  * control_size(degree) numbers, `square` is the curve's table. */
 double control_distance_from(const double *points, size_t degree, const double *square, vec3 centre, const vec3 *axis,
                              double *scratch);

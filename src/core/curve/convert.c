@@ -54,8 +54,8 @@ static double middle(const convert_piece *piece) {
   return 0.5 * piece->from + 0.5 * piece->to;
 }
 
-/* Whether half of the piece would be rounded better: its points are large against the curve, what rounding them costs is
- * more than the error they have already, and there is a double to cut it at. */
+/* Whether half of the piece would be rounded better: its points are large against the curve, what rounding them costs
+ * is more than the error they have already, and there is a double to cut it at. */
 static bool is_ill_conditioned(const convert_piece *piece, size_t degree, double size) {
   const double largest = largest_point(piece, degree), cut = middle(piece);
   return largest > CROWDED * size && ROUND_U * largest > piece->error && piece->from < cut && cut < piece->to;
@@ -63,8 +63,8 @@ static bool is_ill_conditioned(const convert_piece *piece, size_t degree, double
 
 /* de Casteljau at the double nearest to the middle.
  *
- * Error: the differences of parameters are exact, so a weight has the error of its division; its product and the sum add
- * theirs. The combinations are convex, so n levels add n (divide + multiply + add) u² max|P|. */
+ * Error: the differences of parameters are exact, so a weight has the error of its division; its product and the sum
+ * add theirs. The combinations are convex, so n levels add n (divide + multiply + add) u² max|P|. */
 static void halve(const convert_piece *piece, size_t degree, convert_piece *left, convert_piece *right) {
   const double cut = middle(piece);
   const dd length = dd_sum(piece->to, -piece->from);
@@ -112,8 +112,8 @@ static bool halve_ill_conditioned(convert_piece **pieces, size_t *n, size_t degr
   return true;
 }
 
-/* Rounds a piece to doubles; returns its error. What is cut off is known exactly; combinations of the points being convex,
- * it moves no point by more than the largest cut. */
+/* Rounds a piece to doubles; returns its error. What is cut off is known exactly; combinations of the points being
+ * convex, it moves no point by more than the largest cut. */
 static double round_piece(const convert_piece *piece, size_t degree, vec3 *points) {
   double cut = 0.0;
   for (size_t j = 0; j <= degree; j++) {

@@ -31,8 +31,8 @@ static inline double convert_coordinate(vec3 p, int k) {
 /* C(n, k), exact for n <= 60. */
 uint64_t convert_binomial(size_t n, size_t k);
 
-/* Halves pieces where that helps, rounds all, makes the curve, and frees the pieces. They must follow each other without a
- * gap; degree >= 1. */
+/* Halves pieces where that helps, rounds all, makes the curve, and frees the pieces. They must follow each other
+ * without a gap; degree >= 1. */
 cprox_status convert_finish(convert_piece *pieces, size_t n, size_t degree, cprox_workspace *workspace,
                             cprox_curve **curve);
 

@@ -116,8 +116,8 @@ static void set_capsule(cprox_curve *c, size_t node, curve_capsule capsule) {
   p->radius[l] = capsule.radius;
 }
 
-/* Round the nodes so many levels below, of which the first has pieces: the distance to a segment is convex, so along a segment it is
- * largest at an end. */
+/* Round the nodes so many levels below, of which the first has pieces: the distance to a segment is convex, so along a
+ * segment it is largest at an end. */
 static curve_capsule join_capsules(const cprox_curve *c, size_t node, size_t levels) {
   const size_t first = node << levels, end = (node + 1) << levels;
   size_t last = first;
@@ -230,7 +230,8 @@ size_t curve_piece_at(const cprox_curve *c, double t) {
 }
 
 /* Counted from the nearer end s is within 2u of the exact one, within 1.5u below 1/2; times |dpsi/ds| <= 2n max|P| that
- * adds 4n (3n) u max|P| to the error of the evaluation, 2n + 4 (3n + 2), the difference 1 - s being exact from 1/2 on. */
+ * adds 4n (3n) u max|P| to the error of the evaluation, 2n + 4 (3n + 2), the difference 1 - s being exact from 1/2 on.
+ */
 static double local_parameter(double left, double t, double right) {
   const weights w = weights_between(left, t, right);
   return w.of_right <= w.of_left ? w.of_right : 1.0 - w.of_left;

@@ -16,7 +16,8 @@ typedef struct curve_capsule {
   double radius;
 } curve_capsule;
 
-/* Eight capsules, one array a number: what lies three levels below a node of the tree is bounded in vector registers. */
+/* Eight capsules, one array a number: what lies three levels below a node of the tree is bounded in vector registers.
+ */
 enum { CURVE_PACK = 8 };
 typedef struct curve_pack {
   double ax[CURVE_PACK], ay[CURVE_PACK], az[CURVE_PACK], bx[CURVE_PACK], by[CURVE_PACK], bz[CURVE_PACK];
@@ -37,15 +38,14 @@ struct cprox_curve {
    * k / CURVE_PACK, of which there are curve_packs(); lanes that are no nodes have radius < 0. */
   curve_pack *packs;
   size_t n_leaves;
-  curve_capsule whole; /* node 1: it is asked for by every query, and often nothing else is */
-  cprox_rectifiable_curve
-      *arcs;              /* NULL, or what a curve is known by that has no control points: then its pieces are chords of
-                                    degree 1, their errors how far the curve is from them, and intervals are those of
-                                    rectifiable.h */
-  double worst;           /* the largest of the pieces' errors */
-  double largest;         /* at least |P| of every control point, */
-  bool flat;              /* all have the z of the first, exactly */
-  double *tables;         /* numbers of the degree, curve_tables_size() of them, which curve_finish() fills: */
+  curve_capsule whole;           /* node 1: it is asked for by every query, and often nothing else is */
+  cprox_rectifiable_curve *arcs; /* NULL, or what a curve is known by that has no control points: then its pieces are
+                                    chords of degree 1, their errors how far the curve is from them, and intervals are
+                                    those of rectifiable.h */
+  double worst;                  /* the largest of the pieces' errors */
+  double largest;                /* at least |P| of every control point, */
+  bool flat;                     /* all have the z of the first, exactly */
+  double *tables;                /* numbers of the degree, curve_tables_size() of them, which curve_finish() fills: */
   const double *binomial; /* C(degree - 2, k), for evaluation by the last three de Casteljau points; none below 2, */
   const double *square;   /* and for control_distance_from(): C(degree, k), then 1 / C(2 degree, k) */
 };
@@ -109,8 +109,9 @@ cprox_status curve_check_sum(const vec3 *coefficients, size_t n, double t0, doub
 /* Lengths below this may lose their squares to underflow; it is added where a length must not come out too small. */
 #define CURVE_LEAST 1e-150
 
-/* The Bézier points b_j = f(lo^(p-j), hi^j) of the polynomial whose blossom f has the p + 1 de Boor points d over the 2p
- * knots u, for u[p-1] <= lo < hi <= u[p]. Convex combinations only: each b_j is within 5 p u max|d| of the exact one. */
+/* The Bézier points b_j = f(lo^(p-j), hi^j) of the polynomial whose blossom f has the p + 1 de Boor points d over the
+ * 2p knots u, for u[p-1] <= lo < hi <= u[p]. Convex combinations only: each b_j is within 5 p u max|d| of the exact
+ * one. */
 void curve_blossom(const vec3 *d, const double *u, size_t p, double lo, double hi, vec3 *b);
 
 /* Value and derivatives (by the local parameter s of [0,1]) of one Bézier piece of degree >= 1, SoA or not is the
@@ -125,7 +126,8 @@ static inline void curve_domain(const cprox_curve *c, double *t0, double *t1) {
   *t1 = c->breaks[c->n_pieces];
 }
 
-/* How far the curve as it was given may be from its computed pieces; of one known by its arc length: from its points. */
+/* How far the curve as it was given may be from its computed pieces; of one known by its arc length: from its points.
+ */
 static inline double curve_error(const cprox_curve *c) {
   return c->arcs ? c->arcs->error : c->worst;
 }

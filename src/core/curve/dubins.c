@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Dubins paths: the shortest curves of bounded curvature between two planar poses, three arcs or lines each. The lengths are those
- * of A. M. Shkel, V. Lumelsky, "Classification of the Dubins set", 2001, in units of the turning radius; the pieces come from
- * heading.c. Where a formula is ill-conditioned (circles that nearly touch) it is so backwards stable: the lengths are those of
- * a path to an end pose that is off by a few roundings. */
+/* Dubins paths: the shortest curves of bounded curvature between two planar poses, three arcs or lines each. The
+ * lengths are those of A. M. Shkel, V. Lumelsky, "Classification of the Dubins set", 2001, in units of the turning
+ * radius; the pieces come from heading.c. Where a formula is ill-conditioned (circles that nearly touch) it is so
+ * backwards stable: the lengths are those of a path to an end pose that is off by a few roundings. */
 #include "base/workspace.h"
 #include "curve/heading.h"
 
@@ -38,10 +38,10 @@ typedef struct dubins_poses {
   double size;                  /* of the angles that entered */
 } dubins_poses;
 
-/* The three lengths of a word; false where it cannot join the poses. With the turns s and t of the first and the last arc, the
- * heading after the first one is h, N(h) the normal to its left, and the centres of the circles are C = x + s N, so that
- *   C3 - C1 = p T(h) - (s - t) N(h)          for a line of length p,
- *   C3 - C1 = 4 sin(p/2) T(h - s p/2)        for an arc of p between two arcs of the other turn; the longer one is shortest. */
+/* The three lengths of a word; false where it cannot join the poses. With the turns s and t of the first and the last
+ * arc, the heading after the first one is h, N(h) the normal to its left, and the centres of the circles are C = x + s
+ * N, so that C3 - C1 = p T(h) - (s - t) N(h)          for a line of length p, C3 - C1 = 4 sin(p/2) T(h - s p/2) for an
+ * arc of p between two arcs of the other turn; the longer one is shortest. */
 static bool lengths_of(cprox_dubins_word word, const dubins_poses *p, double length[3]) {
   const double first = turns_of[word][0], middle = turns_of[word][1], last = turns_of[word][2];
   const double across = p->distance + first * sin(p->alpha) - last * sin(p->beta);

@@ -17,7 +17,8 @@ void curve_fill_tables(size_t degree, double *tables) {
     for (size_t k = row; k-- > 1;) binomial[k] += binomial[k - 1];
   }
 
-  /* C(n, k) and 1 / C(2n, k) from the nearer end: two roundings a step, so at most n u each, and u for the reciprocal */
+  /* C(n, k) and 1 / C(2n, k) from the nearer end: two roundings a step, so at most n u each, and u for the reciprocal
+   */
   double *once = tables + (degree < 2 ? 0 : degree - 1), *twice = once + degree + 1, number = 1.0;
   for (size_t k = 0; 2 * k <= degree; k++) {
     once[k] = once[degree - k] = number;
@@ -30,8 +31,8 @@ void curve_fill_tables(size_t degree, double *tables) {
   }
 }
 
-/* With m = n - 2, the last three de Casteljau points are Q_j = sum_k B_k^m(s) P_(k+j), j = 0, 1, 2: nine sums of m + 1 products, four
- * terms at a time. */
+/* With m = n - 2, the last three de Casteljau points are Q_j = sum_k B_k^m(s) P_(k+j), j = 0, 1, 2: nine sums of m + 1
+ * products, four terms at a time. */
 SIMD_CLONES
 static void last_three(const double *x, const double *y, const double *z, size_t m, const double *binomial, double s,
                        vec3 q[3]) {
@@ -102,13 +103,13 @@ static inline void last_three_of_few(const double *x, const double *y, const dou
 /*   value = (1-s)² Q_0 + 2 s(1-s) Q_1 + s² Q_2,   first = n ((1-s)(Q_1 - Q_0) + s (Q_2 - Q_1)),
  *   second = n(n-1)((Q_2 - Q_1) - (Q_1 - Q_0)).
  *
- * Error: r = 1 - s has one rounding, so r^(m-k) has 2(m-k) - 1 however the factors are grouped, s^k has k - 1, the binomial two
- * (from degree 59 on), their two products two: a weight has at most 2m + 2. A term of Q_j has one more for its product and at most m
- * for its sums, in whatever order: 3m + 3 = 3n - 3. The last step adds 3 for r², 1 for the product and 2 for the sums: 3n + 3; of
- * degree 1 there are 3. All weights are positive and sum to 1, so this times u max|P| bounds the error in every direction at once.
- * Powers that underflow are off by less than 2^-1074, times a binomial below 2^55: far below u; products that underflow (|P| below
- * 1e-290) add up to 200 times 2^-1074.
- * At s = 0 and s = 1 one weight is 1 and the others are 0: the ends are exact. */
+ * Error: r = 1 - s has one rounding, so r^(m-k) has 2(m-k) - 1 however the factors are grouped, s^k has k - 1, the
+ * binomial two (from degree 59 on), their two products two: a weight has at most 2m + 2. A term of Q_j has one more for
+ * its product and at most m for its sums, in whatever order: 3m + 3 = 3n - 3. The last step adds 3 for r², 1 for the
+ * product and 2 for the sums: 3n + 3; of degree 1 there are 3. All weights are positive and sum to 1, so this times u
+ * max|P| bounds the error in every direction at once. Powers that underflow are off by less than 2^-1074, times a
+ * binomial below 2^55: far below u; products that underflow (|P| below 1e-290) add up to 200 times 2^-1074. At s = 0
+ * and s = 1 one weight is 1 and the others are 0: the ends are exact. */
 void curve_bezier_evaluate(const double *x, const double *y, const double *z, size_t stride, size_t degree,
                            const double *binomial, double s, vec3 *value, vec3 *first, vec3 *second) {
   const double r = 1.0 - s;

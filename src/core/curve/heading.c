@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* psi' = T = (cos, sin)(heading). With curvature k and rate r, psi'' = k (-sin, cos), and by Leibniz' rule
- *   T^(j+1) = i (k T^(j) + j r T^(j-1)),   so   |T^(j)| <= q_j,   q_0 = 1,   q_(j+1) = K q_j + j |r| q_(j-1),   K = max|k|,
- * K being attained at an end of the interval. |psi^(6)| <= q_5.
+ *   T^(j+1) = i (k T^(j) + j r T^(j-1)),   so   |T^(j)| <= q_j,   q_0 = 1,   q_(j+1) = K q_j + j |r| q_(j-1),   K =
+ * max|k|, K being attained at an end of the interval. |psi^(6)| <= q_5.
  *
  * The point goes along by Gauss' rule with 8 nodes, in steps h with .6 K h + 1.2 sqrt(r) h <= 1: its remainder is
- *   h^17 (8!)^4 / (17 (16!)^3) q_16 = 1.7e-23 h^17 q_16        (P. J. Davis, P. Rabinowitz, Methods of Numerical Integration).
- * Rounding of a step: a node's distance from the step's beginning is within 3u of itself, the angle turned on it within 8u of
- * (|k| + |r| h/2) h <= 2Kh; cosine and sine within 6u; the weight, its product, the sum of 8 and the factor h cost 11u: together
- * at most h u (20 + 16 K h). The steps' sum is double-double. The heading itself is double-double, within 32u² of the sizes of
- * its terms. */
+ *   h^17 (8!)^4 / (17 (16!)^3) q_16 = 1.7e-23 h^17 q_16        (P. J. Davis, P. Rabinowitz, Methods of Numerical
+ * Integration). Rounding of a step: a node's distance from the step's beginning is within 3u of itself, the angle
+ * turned on it within 8u of
+ * (|k| + |r| h/2) h <= 2Kh; cosine and sine within 6u; the weight, its product, the sum of 8 and the factor h cost 11u:
+ * together at most h u (20 + 16 K h). The steps' sum is double-double. The heading itself is double-double, within 32u²
+ * of the sizes of its terms. */
 #include "curve/heading.h"
 
 #include "base/rounding.h"

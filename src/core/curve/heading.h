@@ -9,8 +9,8 @@
 /* The remainder aimed at, in units of the arc length: a winding curve is several times as long as it is wide. */
 #define HEADING_ACCURACY 2e-14
 
-/* heading(t) = heading + curvature tau + rate tau²/2, tau = t - origin, and a point that goes along the curve: where it is when
- * the parameter is `at`, and how far that may be from the truth. */
+/* heading(t) = heading + curvature tau + rate tau²/2, tau = t - origin, and a point that goes along the curve: where it
+ * is when the parameter is `at`, and how far that may be from the truth. */
 typedef struct heading_curve {
   double origin, rate;
   dd heading, curvature;
@@ -20,7 +20,8 @@ typedef struct heading_curve {
   double error;
 } heading_curve;
 
-/* Takes the point to another parameter, forwards or backwards; false where that would take more than a million steps. */
+/* Takes the point to another parameter, forwards or backwards; false where that would take more than a million steps.
+ */
 bool heading_advance(heading_curve *c, double to);
 
 /* The heading at a parameter, for a curve that goes on from there; *error grows by what that costs. */

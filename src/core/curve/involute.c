@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The involute of a circle, psi(t) = centre + r R(angle) (cos t + t sin t, sin t - t cos t); as a complex number r (1 - it) e^ia,
- * a = angle + t. psi' = r t e^ia, and k derivatives later psi^(k+1) = r (i^k t + k i^(k-1)) e^ia, so |psi^(6)| = r sqrt(t² + 25).
+/* The involute of a circle, psi(t) = centre + r R(angle) (cos t + t sin t, sin t - t cos t); as a complex number r (1 -
+ * it) e^ia, a = angle + t. psi' = r t e^ia, and k derivatives later psi^(k+1) = r (i^k t + k i^(k-1)) e^ia, so
+ * |psi^(6)| = r sqrt(t² + 25).
  *
- * Rounding: cosine and sine of the double-double angle are within 6u; products and sums add u (1 + |t|), the factor r one more:
- * per coordinate at most u r (8 + 8|t|), and u r |t| 8 for the first derivative; the norm of two such is sqrt(2) times that. */
+ * Rounding: cosine and sine of the double-double angle are within 6u; products and sums add u (1 + |t|), the factor r
+ * one more: per coordinate at most u r (8 + 8|t|), and u r |t| 8 for the first derivative; the norm of two such is
+ * sqrt(2) times that. */
 #include "base/workspace.h"
 #include "curve/angle.h"
 #include "curve/compile.h"

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The polynomial through n + 1 points, psi(t) = sum_i y_i l_i(t), l_i(t) = product over m != i of (t - x_m)/(x_i - x_m).
- * Over [a, b] a factor is alpha (1-s) + beta s, alpha = (a - x_m)/(x_i - x_m), beta = (b - x_m)/(x_i - x_m); the factors are
- * multiplied in the scaled Bernstein basis s^j (1-s)^(n-j), in which q_j <- alpha q_j + beta q_(j-1).
+/* The polynomial through n + 1 points, psi(t) = sum_i y_i l_i(t), l_i(t) = product over m != i of (t - x_m)/(x_i -
+ * x_m). Over [a, b] a factor is alpha (1-s) + beta s, alpha = (a - x_m)/(x_i - x_m), beta = (b - x_m)/(x_i - x_m); the
+ * factors are multiplied in the scaled Bernstein basis s^j (1-s)^(n-j), in which q_j <- alpha q_j + beta q_(j-1).
  *
- * Error: differences of nodes are exact, so alpha and beta have the error of a division; a factor adds that, a product and a
- * sum. With Q_j the same recurrence in |alpha|, |beta|, the values' products and sum and the division by C(n, j) included:
- * (n (divide + multiply + add) + scale + (n+1) add + divide) u² max_j sum_i |y_i| Q_j/C(n, j), Q being carried along.
- * Factors whose node lies outside [a, b] lose nothing to signs (Q = |q|), so long curves are cut first: to about 8 nodes a
- * piece. Parameters are scaled by a power of two, to at most 1; nodes are at least CLOSEST apart then. What underflows is
- * off by fewer than 1e6 times 2^-1074 in a quotient's numerator, and so by 1e-310/gap times the growth of the factors. */
+ * Error: differences of nodes are exact, so alpha and beta have the error of a division; a factor adds that, a product
+ * and a sum. With Q_j the same recurrence in |alpha|, |beta|, the values' products and sum and the division by C(n, j)
+ * included: (n (divide + multiply + add) + scale + (n+1) add + divide) u² max_j sum_i |y_i| Q_j/C(n, j), Q being
+ * carried along. Factors whose node lies outside [a, b] lose nothing to signs (Q = |q|), so long curves are cut first:
+ * to about 8 nodes a piece. Parameters are scaled by a power of two, to at most 1; nodes are at least CLOSEST apart
+ * then. What underflows is off by fewer than 1e6 times 2^-1074 in a quotient's numerator, and so by 1e-310/gap times
+ * the growth of the factors. */
 #include <stdlib.h>
 
 #include "base/workspace.h"
@@ -34,8 +35,8 @@ static cprox_status check_nodes(const double *nodes, size_t n, double largest, c
   return CPROX_OK;
 }
 
-/* l_i over [a, b] in the scaled basis, and the same with absolute values; returns the product of all max(1, |alpha|, |beta|),
- * which no part of it exceeds. */
+/* l_i over [a, b] in the scaled basis, and the same with absolute values; returns the product of all max(1, |alpha|,
+ * |beta|), which no part of it exceeds. */
 static double multiply_factors(const double *x, size_t n, size_t i, double a, double b, dd *q, double *size) {
   double growth = 1.0;
   size_t degree = 0;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A series of Legendre polynomials, psi(t) = sum_k c_k P_k(2s - 1), s = (t - t0)/(t1 - t0). On [0,1] the Bézier points of
- * P_k are the integers (-1)^(k-i) C(k, i); the sum so far is raised by one degree and the next term added.
+/* A series of Legendre polynomials, psi(t) = sum_k c_k P_k(2s - 1), s = (t - t0)/(t1 - t0). On [0,1] the Bézier points
+ * of P_k are the integers (-1)^(k-i) C(k, i); the sum so far is raised by one degree and the next term added.
  *
- * Error: raising takes (i b_(i-1) + (k-i) b_i)/k, convex up to a scale, a sum and a division; adding a term takes a scale
- * and a sum. A term goes through no more than n of both, and as Bézier points its size is at most |c_k| C(k, k/2):
- * n (divide + 2 scale + 2 add) u² sum_k |c_k| C(k, k/2). Source: R. T. Farouki, "Legendre-Bernstein basis
+ * Error: raising takes (i b_(i-1) + (k-i) b_i)/k, convex up to a scale, a sum and a division; adding a term takes a
+ * scale and a sum. A term goes through no more than n of both, and as Bézier points its size is at most |c_k| C(k,
+ * k/2): n (divide + 2 scale + 2 add) u² sum_k |c_k| C(k, k/2). Source: R. T. Farouki, "Legendre-Bernstein basis
  * transformations", 2000. */
 #include "base/workspace.h"
 #include "curve/convert.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Loops over many points at once that run in vector registers, for batches and for the first look of a search. All of them give the same results whatever the registers' width. */
+/* Loops over many points at once that run in vector registers, for batches and for the first look of a search. All of
+ * them give the same results whatever the registers' width. */
 #ifndef CPROX_CURVE_PACKETS_H
 #define CPROX_CURVE_PACKETS_H
 
@@ -19,17 +20,19 @@ typedef struct lanes_balls {
   double *sizes; /* the sum of the lengths that entered, for rounding */
 } lanes_balls;
 
-/* lower[k]: the distance of the capsule, grown by `radius`, from ball k, rounding included; negative where they overlap. */
+/* lower[k]: the distance of the capsule, grown by `radius`, from ball k, rounding included; negative where they
+ * overlap. */
 void lanes_ball_bounds(const lanes_balls *balls, const curve_capsule *capsule, double radius, double *lower);
 
-/* basis[j * CHORDS + k]: Bernstein polynomial j of the degree at k/CHORDS. Kept in the workspace until another degree is asked for;
- * NULL where memory is out. */
+/* basis[j * CHORDS + k]: Bernstein polynomial j of the degree at k/CHORDS. Kept in the workspace until another degree
+ * is asked for; NULL where memory is out. */
 const double *lanes_basis(size_t degree, cprox_workspace *workspace);
 
 /* The same within chord `chord`: at (chord + k/CHORDS) / CHORDS. Valid until another degree is asked for. */
 const double *lanes_fine_basis(size_t degree, size_t chord, cprox_workspace *workspace);
 
-/* Where on a piece (control points one array a coordinate) it comes nearest to the origin, as far as CHORDS + 1 points tell: s. */
+/* Where on a piece (control points one array a coordinate) it comes nearest to the origin, as far as CHORDS + 1 points
+ * tell: s. */
 double lanes_nearest_sample(const double *basis, const double *x, const double *y, const double *z, size_t degree);
 
 /* The tables of two degrees at once. False where memory is out. */
@@ -50,8 +53,9 @@ typedef struct lanes_chords {
   double per_length2[CHORDS]; /* 1/|d|², 0 where that would overflow */
 } lanes_chords;
 
-/* The points where LANES of the chords begin, from the first on, and the end of the piece. Where the piece is flat z is that of its
- * control points, exactly. The least square distance of these LANES from a point; first + *nearest is the first that has it. */
+/* The points where LANES of the chords begin, from the first on, and the end of the piece. Where the piece is flat z is
+ * that of its control points, exactly. The least square distance of these LANES from a point; first + *nearest is the
+ * first that has it. */
 double lanes_points(const double *basis, const vec3 *points, size_t degree, bool flat, uint32_t first, vec3 from,
                     lanes_chords *chords, uint32_t *nearest);
 
@@ -61,7 +65,8 @@ double lanes_nearest_point(const lanes_chords *chords, uint32_t first, vec3 from
 /* How each point goes on to the next. */
 void lanes_join(lanes_chords *chords);
 
-/* The square distance of a point from the chords, and where it is attained: the first chord that has it, and s in [0, 1] of it. */
+/* The square distance of a point from the chords, and where it is attained: the first chord that has it, and s in [0,
+ * 1] of it. */
 double lanes_closest(const lanes_chords *chords, vec3 point, size_t *chord, double *s);
 
 /* The boxes round intervals of the chords. */
@@ -71,12 +76,13 @@ typedef struct lanes_box {
 } lanes_box;
 void lanes_boxes(const lanes_chords *chords, lanes_box boxes[PACKET_INTERVALS]);
 
-/* Raises lower[k] to the distance of ball k, grown by `radius`, from the nearest of n boxes, where that is more; the points in the boxes are
- * known to `slack`, the rest of the rounding is included. */
+/* Raises lower[k] to the distance of ball k, grown by `radius`, from the nearest of n boxes, where that is more; the
+ * points in the boxes are known to `slack`, the rest of the rounding is included. */
 void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n, double radius, double slack,
                       double *lower);
 
-/* A box that stands anywhere: the points x with |r^T (x - position) - centre| <= half, each coordinate by itself; r is row-major. */
+/* A box that stands anywhere: the points x with |r^T (x - position) - centre| <= half, each coordinate by itself; r is
+ * row-major. */
 typedef struct lanes_obb {
   double r[9];
   vec3 position, centre, half;

@@ -56,7 +56,8 @@ void lanes_see_obb(const lanes_chords *c, const lanes_obb *obb, lanes_sample *sa
     }
   }
 
-  /* along w, from the box to the chord's point, the chord is no nearer than either of its ends: weak duality, whatever w is */
+  /* along w, from the box to the chord's point, the chord is no nearer than either of its ends: weak duality, whatever
+   * w is */
 #pragma omp simd
   for (int k = 0; k < CHORDS; k++) {
     const double x = px[k] + s[k] * dx[k], y = py[k] + s[k] * dy[k], z = pz[k] + s[k] * dz[k];

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Curves end to end, as one curve of the highest of their degrees.
  *
- * Error: a Bézier curve is raised by convex combinations (i P_(i-1) + (k-i) P_i)/k in double-double arithmetic, which adds
- * (2 scale + add + divide) u² max|P| a degree; rounding the points costs u max|P|. Where a curve gets another range its inner
- * joints move with it: the new ends of a piece, each of them off by delta, move a point of the piece along it by at most
- * 2 delta/(its new length) degree max|P_(i+1) - P_i|. */
+ * Error: a Bézier curve is raised by convex combinations (i P_(i-1) + (k-i) P_i)/k in double-double arithmetic, which
+ * adds (2 scale + add + divide) u² max|P| a degree; rounding the points costs u max|P|. Where a curve gets another
+ * range its inner joints move with it: the new ends of a piece, each of them off by delta, move a point of the piece
+ * along it by at most 2 delta/(its new length) degree max|P_(i+1) - P_i|. */
 #include <string.h>
 
 #include "base/workspace.h"
@@ -24,8 +24,8 @@ static bool stays(const piecewise_range *r) {
   return r->t0 == r->to0 && r->t1 == r->to1;
 }
 
-/* Where an inner joint goes; *error is how far that may be from the exact place: three roundings of a weight, and those of two
- * products and a sum. */
+/* Where an inner joint goes; *error is how far that may be from the exact place: three roundings of a weight, and those
+ * of two products and a sum. */
 static double place(const piecewise_range *r, double t, double *error) {
   *error = 0.0;
   if (stays(r)) return t;

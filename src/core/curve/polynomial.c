@@ -2,11 +2,11 @@
 /* A polynomial by its powers, psi(t) = sum_k c_k t^k. With d_k = c_k / C(n, k) its blossom takes one argument x away by
  * d_k <- d_k + x d_(k+1), so n arguments, each t0 or t1, leave a Bézier point.
  *
- * Error: with T = max(|t0|, |t1|), every number on the way to a Bézier point is a part of sum_k |c_k| T^k =: S. A term has
- * the error of its division and, n times, that of a product and a sum: (divide + n (scale + add)) u² S. This is the
+ * Error: with T = max(|t0|, |t1|), every number on the way to a Bézier point is a part of sum_k |c_k| T^k =: S. A term
+ * has the error of its division and, n times, that of a product and a sum: (divide + n (scale + add)) u² S. This is the
  * problem's own condition: where the terms cancel S is larger than the curve, and the error grows with it.
- * Parameters are scaled by a power of two to T in [1/2, 1), so that no product overflows; what underflows is off by fewer
- * than 1e5 times 2^-1074, far below CURVE_LEAST. */
+ * Parameters are scaled by a power of two to T in [1/2, 1), so that no product overflows; what underflows is off by
+ * fewer than 1e5 times 2^-1074, far below CURVE_LEAST. */
 #include <stdlib.h>
 
 #include "base/workspace.h"

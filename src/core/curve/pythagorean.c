@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Pythagorean-hodograph curves: psi' = A i A* for a polynomial A of quaternions, so that |psi'| = |A|² is a polynomial. With the
- * Bernstein coefficients A_i of degree m and the symmetric form B(P, Q) of P i Q*, those of psi' are
- *   h_k = sum over i + j = k of C(m,i) C(m,j)/C(2m,k) B(A_i, A_j),
- * and those of psi are P_0 = start, P_(k+1) = P_k + h_k/(2m + 1).
+/* Pythagorean-hodograph curves: psi' = A i A* for a polynomial A of quaternions, so that |psi'| = |A|² is a polynomial.
+ * With the Bernstein coefficients A_i of degree m and the symmetric form B(P, Q) of P i Q*, those of psi' are h_k = sum
+ * over i + j = k of C(m,i) C(m,j)/C(2m,k) B(A_i, A_j), and those of psi are P_0 = start, P_(k+1) = P_k + h_k/(2m + 1).
  *
  * Error: a coordinate of B is a sum of 4 products, at most |A_i||A_j|; the weights C(m,i) C(m,j) < 2^53 are exact. With
  * H = sum_k sum_(i+j=k) weight |A_i||A_j|/C(2m,k) a coordinate of every P is within

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Let A, B be the computed end points of an interval, each within e of the exact ones, and U at least its arc length. Every exact
- * point x of it is on a path from one exact end to the other no longer than U, so |x - A| + |x - B| <= W = U + 2e: x lies in the
- * ellipsoid with the foci A, B, whose support along a unit n is, with L = |B - A|,
- *   min n·x = (n·A + n·B - sqrt(W² - L² + (n·(B - A))²))/2.
- * Rounding is therefore that of the arithmetic alone, A and B being what they are. W has two sums, so W² 4u and one u more; L² has
- * 6u of itself (twice a difference, a square, two sums, each coordinate); the difference u: together at most 12u W², for W >= L.
- * r² = W² - L² + 12u W² is thus not too small, and where it comes out below 0 the points contradict the arc length. It costs
- * tightness: an interval never gets thinner than 1.8e-8 of its length, far below what is left of it at that length.
- * The support: n·(B - A) is within 4u L, sqrt of the sum within 5u W, |n|² within 8u adds 2u W, the rest 5u of the foci's size.
+/* Let A, B be the computed end points of an interval, each within e of the exact ones, and U at least its arc length.
+ * Every exact point x of it is on a path from one exact end to the other no longer than U, so |x - A| + |x - B| <= W =
+ * U + 2e: x lies in the ellipsoid with the foci A, B, whose support along a unit n is, with L = |B - A|, min n·x = (n·A
+ * + n·B - sqrt(W² - L² + (n·(B - A))²))/2. Rounding is therefore that of the arithmetic alone, A and B being what they
+ * are. W has two sums, so W² 4u and one u more; L² has 6u of itself (twice a difference, a square, two sums, each
+ * coordinate); the difference u: together at most 12u W², for W >= L. r² = W² - L² + 12u W² is thus not too small, and
+ * where it comes out below 0 the points contradict the arc length. It costs tightness: an interval never gets thinner
+ * than 1.8e-8 of its length, far below what is left of it at that length. The support: n·(B - A) is within 4u L, sqrt
+ * of the sum within 5u W, |n|² within 8u adds 2u W, the rest 5u of the foci's size.
  *
- * The ellipsoid lies in the capsule round AB of its half minor axis b = sqrt(W² - L²)/2: beside the segment |x - A| + |x - B| is
- * least for a given height at the middle, and beyond B, with y = |x - B|, W >= sqrt(L² + y²) + y gives y <= (W² - L²)/(2W) <= b. */
+ * The ellipsoid lies in the capsule round AB of its half minor axis b = sqrt(W² - L²)/2: beside the segment |x - A| +
+ * |x - B| is least for a given height at the middle, and beyond B, with y = |x - B|, W >= sqrt(L² + y²) + y gives y <=
+ * (W² - L²)/(2W) <= b. */
 #include "curve/rectifiable.h"
 
 #include <stdlib.h>
@@ -32,8 +33,8 @@ cprox_status rectifiable_point(const cprox_curve *curve, double t, cprox_workspa
                         point->y, point->z, CURVE_LARGEST);
 }
 
-/* sqrt(h times the integral of |psi'|²), which is no less than the arc length (Lemma 1), by the 15 points of Gauss and Kronrod.
- * Rounding: a square has 7u, the weights, products and sums 17u, the rest 4u; all terms are positive. */
+/* sqrt(h times the integral of |psi'|²), which is no less than the arc length (Lemma 1), by the 15 points of Gauss and
+ * Kronrod. Rounding: a square has 7u, the weights, products and sums 17u, the rest 4u; all terms are positive. */
 static double length_by_velocity(const cprox_rectifiable_curve *c, double a, double b) {
   static const double node[8] = {
       0.99145537112081263921, 0.94910791234275852453, 0.86486442335976907279, 0.74153118559939443986,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Curves that are known by points and arc lengths alone, asked anew by every query: an interval lies in the ellipsoid whose foci
- * are its end points and whose axis is its arc length (A. Lakshmanan et al. 2019, Theorem 1). */
+/* Curves that are known by points and arc lengths alone, asked anew by every query: an interval lies in the ellipsoid
+ * whose foci are its end points and whose axis is its arc length (A. Lakshmanan et al. 2019, Theorem 1). */
 #ifndef CPROX_CURVE_RECTIFIABLE_H
 #define CPROX_CURVE_RECTIFIABLE_H
 
@@ -19,12 +19,13 @@ typedef struct rectifiable_hull {
   double radius; /* half its minor axis: it lies in the capsule of this radius round its foci's segment */
 } rectifiable_hull;
 
-/* The hull of [ta, tb], whose end points are a and b, each within `error` of the exact one. CPROX_INVALID with the reason where
- * the points are farther apart than the arc length. */
+/* The hull of [ta, tb], whose end points are a and b, each within `error` of the exact one. CPROX_INVALID with the
+ * reason where the points are farther apart than the arc length. */
 cprox_status rectifiable_hull_of(const cprox_curve *curve, double ta, double tb, vec3 a, vec3 b, double error,
                                  cprox_workspace *workspace, rectifiable_hull *hull);
 
-/* min n·x over the ellipsoid with the foci a and b, n unit within 4u: within 8u of (its axis + the largest |focus|) of that. */
+/* min n·x over the ellipsoid with the foci a and b, n unit within 4u: within 8u of (its axis + the largest |focus|) of
+ * that. */
 double rectifiable_reach(const rectifiable_hull *hull, vec3 a, vec3 b, vec3 n);
 
 #endif

@@ -7,7 +7,7 @@
 
 enum { MOST_POINTS = CPROX_MAX_DEGREE + 1 };
 
-/* ---- one piece -------------------------------------------------------------------------------------------------------- */
+/* ---- one piece ---- */
 
 /* Control points about a common base, and how far the exact piece may be from them. */
 typedef struct section {
@@ -36,7 +36,8 @@ static void section_cut(section *s, double left, double right, double t0, double
   for (size_t i = 0; i <= s->degree; i++) s->points[i] = cut[i];
 }
 
-/* Raises the degree by one: q_i = i/n p_(i-1) + (1 - i/n) p_i. A weight has at most 2 roundings, product and sum one each. */
+/* Raises the degree by one: q_i = i/n p_(i-1) + (1 - i/n) p_i. A weight has at most 2 roundings, product and sum one
+ * each. */
 static void section_elevate(section *s) {
   s->error += ROUND_UP * 4.0 * ROUND_U * largest(s);
   const size_t n = ++s->degree;
@@ -75,7 +76,7 @@ static void section_of_second(const cprox_curve *c, size_t piece, const frame *f
   section_cut(s, c->breaks[piece], c->breaks[piece + 1], t0, t1);
 }
 
-/* ---- the curve -------------------------------------------------------------------------------------------------------- */
+/* ---- the curve ---- */
 
 /* Lays out the arrays of a curve in the workspace's buffer. */
 static bool lay_out(size_t degree, size_t n_pieces, cprox_workspace *workspace, cprox_curve *c) {

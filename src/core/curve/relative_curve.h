@@ -5,9 +5,9 @@
 
 #include "curve/curve.h"
 
-/* psi(t) - (R phi(t) + x) for t in [t0, t1], the pose being (R, x): pieces between the joints of both, of the higher degree, the
- * rounding of the conversion in their errors. It lives in the workspace until the next one is made there. False where memory is
- * out. Both curves have the same domain. */
+/* psi(t) - (R phi(t) + x) for t in [t0, t1], the pose being (R, x): pieces between the joints of both, of the higher
+ * degree, the rounding of the conversion in their errors. It lives in the workspace until the next one is made there.
+ * False where memory is out. Both curves have the same domain. */
 bool relative_create(const cprox_curve *first, const cprox_curve *second, const cprox_pose *pose, double t0, double t1,
                      cprox_workspace *workspace, cprox_curve *relative);
 

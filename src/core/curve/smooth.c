@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A curve by a caller's functions: value, two derivatives, and a bound of the sixth. What they say is checked where the
- * compilation asks: that numbers are finite, and that the middle of every piece, where the remainder is largest, is as near to
- * its quintic as the bounds allow. */
+ * compilation asks: that numbers are finite, and that the middle of every piece, where the remainder is largest, is as
+ * near to its quintic as the bounds allow. */
 #include "base/workspace.h"
 #include "curve/compile.h"
 

@@ -9,7 +9,7 @@
 #include "curve/pack.h"
 #include "curve/rectifiable.h"
 
-/* ---- memory ----------------------------------------------------------------------------------------------------------- */
+/* ---- memory ---- */
 
 /* A slot holds the control points of a piece, or two end points and a hull. */
 enum { ARC_HULL = 6, ARC_SIZE = 8 };
@@ -54,11 +54,11 @@ cprox_status curve_side_status(const curve_side *side) {
   return side->pool->failure;
 }
 
-/* ---- pieces ----------------------------------------------------------------------------------------------------------- */
+/* ---- pieces ---- */
 
-/* The rounding of local = R^T (world - position) - centre, by the local size m: |world - position| <= m + |centre| loses u of itself
- * in the difference and 26u in the turn, the last difference u of m. What a frame does not do costs nothing. What composing its poses
- * may have moved the frame itself comes on top. */
+/* The rounding of local = R^T (world - position) - centre, by the local size m: |world - position| <= m + |centre|
+ * loses u of itself in the difference and 26u in the turn, the last difference u of m. What a frame does not do costs
+ * nothing. What composing its poses may have moved the frame itself comes on top. */
 static void measure_frame(curve_side *side) {
   const frame *f = &side->frame;
   const double first = (vec_norm2(f->position) > 0.0 ? 1.0 : 0.0) + (f->rotated ? ROUND_ROTATION : 0.0) + f->misturned;
@@ -71,9 +71,9 @@ static vec3 local_of(const frame *f, vec3 world) {
   return vec_sub(frame_turn_to_local(f, vec_sub(world, f->position)), f->centre);
 }
 
-/* How far from the frame's origin the whole curve reaches, and what range_reach() loses to rounding: 26u to turn n where the frame is
- * turned, u to subtract the position, 3u for each product of three, 2u for the sums; of sizes that are at most the curve's reach and
- * the centre's distance from the position. */
+/* How far from the frame's origin the whole curve reaches, and what range_reach() loses to rounding: 26u to turn n
+ * where the frame is turned, u to subtract the position, 3u for each product of three, 2u for the sums; of sizes that
+ * are at most the curve's reach and the centre's distance from the position. */
 static void measure_ranges(curve_side *side) {
   const curve_capsule *all = &side->curve->whole;
   const vec3 a = local_of(&side->frame, all->a), b = local_of(&side->frame, all->b);
@@ -189,7 +189,7 @@ void curve_side_load(curve_side *side, size_t piece) {
   side->root_error = (side->curve->arcs ? side->curve->arcs->error : side->curve->error[piece]) + turned;
 }
 
-/* ---- intervals of curves that are known by their arc length -------------------------------------------------------------- */
+/* ---- intervals of curves that are known by their arc length ---- */
 
 /* Whether all went well; else the trouble is kept, with its reason. */
 static bool went_well(const curve_side *side, cprox_status status) {
@@ -237,8 +237,8 @@ static rectifiable_hull arc_hull(const curve_side *side, const curve_interval *a
   return (rectifiable_hull){.axis = p[ARC_HULL], .radius = p[ARC_HULL + 1]};
 }
 
-/* An interval of its own. Where it is asked to end within a piece its ends are rounded, by 4u of the parameters in all: what lies
- * between is within its length of an end. */
+/* An interval of its own. Where it is asked to end within a piece its ends are rounded, by 4u of the parameters in all:
+ * what lies between is within its length of an end. */
 static bool arc_materialise(const curve_side *side, curve_interval *at) {
   const size_t piece = curve_side_piece(side, at);
   vec3 a, b;
@@ -268,7 +268,7 @@ static bool arc_cut(const curve_side *side, const curve_interval *whole, curve_i
          arc_fill(side, &half[0], a, middle, error) && arc_fill(side, &half[1], middle, b, error);
 }
 
-/* ---- intervals of pieces ------------------------------------------------------------------------------------------------ */
+/* ---- intervals of pieces ---- */
 
 /* Cuts the points of a whole piece down to those of [a, b]. False where memory is out. */
 static bool cut_to_section(curve_side *side, curve_interval *at) {
@@ -311,7 +311,7 @@ bool curve_side_copy(const curve_side *side, curve_interval *at) {
   return true;
 }
 
-/* ---- bounds ----------------------------------------------------------------------------------------------------------- */
+/* ---- bounds ---- */
 
 /* What an ellipsoid reaches: rectifiable.h says within what. */
 static curve_reach arc_reach(const curve_side *side, const curve_interval *at, vec3 n) {
@@ -323,7 +323,8 @@ static curve_reach arc_reach(const curve_side *side, const curve_interval *at, v
                        .magnitude = fmax(vec_norm(a), vec_norm(b)) + hull.axis};
 }
 
-/* The pieces lie in a capsule round the chord from the first to the last point. The normal is turned, not the points. */
+/* The pieces lie in a capsule round the chord from the first to the last point. The normal is turned, not the points.
+ */
 static curve_reach range_reach(const curve_side *side, const curve_interval *at, vec3 n) {
   const curve_capsule capsule = curve_capsule_at(side->curve, at->part);
   const vec3 turned = frame_turn_to_world(&side->frame, n);
@@ -409,7 +410,7 @@ curve_hull curve_side_hull(const curve_side *side, const curve_interval *at, vec
   return (curve_hull){.n = 2, .radius = capsule.radius, .error = turned};
 }
 
-/* ---- points ----------------------------------------------------------------------------------------------------------- */
+/* ---- points ---- */
 
 vec3 curve_side_point(const curve_side *side, double s) {
   if (side->curve->arcs) {
@@ -454,7 +455,7 @@ vec3 curve_side_junction(curve_side *side, const curve_interval *range, size_t *
   return vec(x[at], y[at], z[at]);
 }
 
-/* ---- cuts ------------------------------------------------------------------------------------------------------------- */
+/* ---- cuts ---- */
 
 void curve_side_cut_range(const curve_interval *range, curve_interval half[2]) {
   for (uint32_t k = 0; k < 2; k++) {

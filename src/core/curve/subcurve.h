@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* One curve as a search sees it: its control points brought into a frame, a piece or a range of pieces at a time, and what they
- * say of an interval. Oracles have one side or two. */
+/* One curve as a search sees it: its control points brought into a frame, a piece or a range of pieces at a time, and
+ * what they say of an interval. Oracles have one side or two. */
 #ifndef CPROX_CURVE_SUBCURVE_H
 #define CPROX_CURVE_SUBCURVE_H
 
@@ -46,8 +46,8 @@ typedef struct curve_side {
 void curve_side_begin(curve_side *side, const cprox_curve *curve, const frame *placed, points_pool *pool,
                       size_t root_slot);
 
-/* The status of a call below that returned false: CPROX_MEMORY with its reason, or what a curve's own functions did wrong. And the
- * latter alone, CPROX_OK where they did nothing wrong: to be asked where points were taken. */
+/* The status of a call below that returned false: CPROX_MEMORY with its reason, or what a curve's own functions did
+ * wrong. And the latter alone, CPROX_OK where they did nothing wrong: to be asked where points were taken. */
 cprox_status curve_side_failure(const curve_side *side);
 cprox_status curve_side_status(const curve_side *side);
 
@@ -61,7 +61,8 @@ size_t curve_side_piece(const curve_side *side, const curve_interval *at);
 /* The point of a range's chord that is nearest to the frame's origin, but for rounding. */
 vec3 curve_side_chord_from_origin(const curve_side *side, const curve_interval *range);
 
-/* Which piece of a range may be nearest the frame's origin: the one that the nearer chords lead to; and s of it, by its own chord. */
+/* Which piece of a range may be nearest the frame's origin: the one that the nearer chords lead to; and s of it, by its
+ * own chord. */
 size_t curve_side_nearest_piece(const curve_side *side, const curve_interval *range, double *s);
 
 /* Brings a piece's control points into the frame, in the root slot. */
@@ -70,8 +71,9 @@ void curve_side_load(curve_side *side, size_t piece);
 /* The interval that is [a, b] of a piece, 0 <= a < b <= 1. */
 curve_interval curve_side_section(const cprox_curve *curve, size_t piece, double a, double b);
 
-/* Gives a piece's interval control points of its own: of a curve that is known by its arc length, its ends and their ellipsoid
- * (rectifiable.h), which bounds see and others need not. False where memory is out, or by curve_side_failure(). */
+/* Gives a piece's interval control points of its own: of a curve that is known by its arc length, its ends and their
+ * ellipsoid (rectifiable.h), which bounds see and others need not. False where memory is out, or by
+ * curve_side_failure(). */
 bool curve_side_materialise(curve_side *side, curve_interval *at);
 
 /* Gives an interval that shares its control points with another a copy of its own. False where memory is out. */
@@ -84,8 +86,8 @@ typedef struct curve_reach {
   double magnitude; /* of the points that entered, for the rounding of the products */
 } curve_reach;
 
-/* A range falls into 2, 4 or 8 ranges or pieces that lie in one pack of the tree, fewer where there are no pieces: their number, and
- * where they are. */
+/* A range falls into 2, 4 or 8 ranges or pieces that lie in one pack of the tree, fewer where there are no pieces:
+ * their number, and where they are. */
 size_t curve_side_children(const curve_side *side, const curve_interval *range, curve_interval part[CURVE_PACK]);
 
 /* What each of them reaches, the first being given: least[k] of part k, the rest of the answer being that of all. */
@@ -109,8 +111,8 @@ typedef struct curve_hull {
 curve_hull curve_side_hull(const curve_side *side, const curve_interval *at, vec3 from, double *x, double *y,
                            double *z);
 
-/* A lower bound of the distance from a centre, or an axis through it (NULL for none), over an interval with points of its own, as
- * control_distance_from() gives it. `scratch` holds a slot's numbers. */
+/* A lower bound of the distance from a centre, or an axis through it (NULL for none), over an interval with points of
+ * its own, as control_distance_from() gives it. `scratch` holds a slot's numbers. */
 double curve_side_distance_from(const curve_side *side, const curve_interval *at, vec3 centre, const vec3 *axis,
                                 double *scratch);
 
@@ -121,8 +123,8 @@ double curve_side_point_error(const curve_side *side);
 /* The control point at which a range falls in two: its piece, parameter and error. Loads that piece. */
 vec3 curve_side_junction(curve_side *side, const curve_interval *range, size_t *piece, double *s, double *error);
 
-/* Cuts a range at its junction, or a piece at `cut` of its parameter range (s of the interval itself). False where memory is
- * out. A half without pieces has curve_side_is_empty(). */
+/* Cuts a range at its junction, or a piece at `cut` of its parameter range (s of the interval itself). False where
+ * memory is out. A half without pieces has curve_side_is_empty(). */
 void curve_side_cut_range(const curve_interval *range, curve_interval half[2]);
 bool curve_side_cut_piece(curve_side *side, curve_interval *piece, double cut, double s, curve_interval half[2]);
 bool curve_side_is_empty(const curve_side *side, const curve_interval *at);

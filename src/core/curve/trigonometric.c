@@ -2,12 +2,12 @@
 /* psi(t) = c + sum over k of a_k cos kt + b_k sin kt, compiled (compile.h).
  *
  * The ellipse a cos + b sin has the semi-major axis A = sqrt((|a|² + |b|² + sqrt((|a|² - |b|²)² + 4 (a·b)²))/2), so
- * K6 = sum of k^6 A_k. The remainder aimed at is 1e-13 of the size sum of A_k, or the rounding of the constant c where that is
- * larger.
+ * K6 = sum of k^6 A_k. The remainder aimed at is 1e-13 of the size sum of A_k, or the rounding of the constant c where
+ * that is larger.
  *
- * Rounding: kt is taken exactly, as high + low, and its cosine and sine are within 6u (angle.h). The sums are double-double, so
- * that with M_d = sum of k^d (|a_k| + |b_k|), taken a coordinate at a time, derivative d is within e_d = 9u M_d: 6 of the
- * cosine, 2 of k^d a_k, 1 to round. */
+ * Rounding: kt is taken exactly, as high + low, and its cosine and sine are within 6u (angle.h). The sums are
+ * double-double, so that with M_d = sum of k^d (|a_k| + |b_k|), taken a coordinate at a time, derivative d is within
+ * e_d = 9u M_d: 6 of the cosine, 2 of k^d a_k, 1 to round. */
 #include <math.h>
 
 #include "base/workspace.h"

@@ -9,7 +9,7 @@ static const double BARELY = 1e-300;
 /* Pieces are cut no shorter than this to where contact is expected: where it does not come, little is lost. */
 static const double SHORTEST_AIM = 1.0 / 32.0;
 
-/* ---- measuring -------------------------------------------------------------------------------------------------------- */
+/* ---- measuring ---- */
 
 /* The nearer one; once there is contact, the earlier one. */
 static void consider(contact_tree *c, const tree_sample *sample, const search_best *bound) {
@@ -128,7 +128,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   return CPROX_OK;
 }
 
-/* ---- cutting ---------------------------------------------------------------------------------------------------------- */
+/* ---- cutting ---- */
 
 static int split(void *self, search_node *node, search_node *child) {
   curve_tree_node *payload = curve_tree_own(node);
@@ -161,7 +161,7 @@ static int split(void *self, search_node *node, search_node *child) {
   return children;
 }
 
-/* ---- the oracle ------------------------------------------------------------------------------------------------------- */
+/* ---- the oracle ---- */
 
 bool contact_tree_begin(contact_tree *c, search_node *root) {
   c->base.best_bound.at = INFINITY;

@@ -7,7 +7,7 @@
 #include "curve/control.h"
 #include "curve_query/crossing.h"
 
-/* ---- measuring -------------------------------------------------------------------------------------------------------- */
+/* ---- measuring ---- */
 
 /* The nearer one; once there is contact, the earlier one. */
 static bool is_better(const contact_convex *c, const search_best *bound) {
@@ -56,10 +56,10 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   return CPROX_OK;
 }
 
-/* ---- cutting ---------------------------------------------------------------------------------------------------------- */
+/* ---- cutting ---- */
 
-/* How far along the interval, as a fraction of it, the distance is above 0 by the normal of its left end: the line through the first
- * Bernstein coefficient of n·psi - h that lies below all the others. */
+/* How far along the interval, as a fraction of it, the distance is above 0 by the normal of its left end: the line
+ * through the first Bernstein coefficient of n·psi - h that lies below all the others. */
 static double free_fraction(const contact_convex *c, const search_node *node) {
   const curve_convex *o = &c->base;
   const size_t degree = o->side.curve->degree;
@@ -105,7 +105,7 @@ static int split(void *self, search_node *node, search_node *child) {
   return children;
 }
 
-/* ---- the oracle ------------------------------------------------------------------------------------------------------- */
+/* ---- the oracle ---- */
 
 void contact_convex_begin(contact_convex *c, double epsilon) {
   c->epsilon = epsilon;

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* ---- measuring -------------------------------------------------------------------------------------------------------- */
+/* ---- measuring ---- */
 
 /* The nearer one; once there is contact, the earlier one. */
 static bool is_better(const contact_curve *c, const search_best *bound) {
@@ -34,7 +34,8 @@ static vec3 jet_at(const curve_side *side, double s, vec3 *first, vec3 *second) 
   return value;
 }
 
-/* A parameter of the interval at which the loaded piece is nearest to p, as far as Newton's method finds it from s: a suggestion. */
+/* A parameter of the interval at which the loaded piece is nearest to p, as far as Newton's method finds it from s: a
+ * suggestion. */
 static double nearest_on(const curve_side *side, const curve_interval *at, vec3 p, double s) {
   enum { MOST_STEPS = 10 };
   for (int i = 0; i < MOST_STEPS; i++) {
@@ -81,10 +82,10 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   return CPROX_OK;
 }
 
-/* ---- cutting ---------------------------------------------------------------------------------------------------------- */
+/* ---- cutting ---- */
 
-/* How far along the first interval, as a fraction of it, its height along the last normal stays above that of the second curve's
- * nearest point: by the line through the first Bernstein coefficient that lies below all the others. */
+/* How far along the first interval, as a fraction of it, its height along the last normal stays above that of the
+ * second curve's nearest point: by the line through the first Bernstein coefficient that lies below all the others. */
 static double free_fraction(const contact_curve *c, const search_node *node) {
   const curve_curve *o = &c->base;
   const size_t degree = o->side[0].curve->degree;
@@ -134,7 +135,7 @@ static int split(void *self, search_node *node, search_node *child) {
   return children;
 }
 
-/* ---- the oracle ------------------------------------------------------------------------------------------------------- */
+/* ---- the oracle ---- */
 
 void contact_curve_begin(contact_curve *c, double epsilon) {
   c->epsilon = epsilon;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The left-to-right oracle of two balls on two curves: where along the first do they first touch, wherever the second one is? It is
- * curve_curve with another place to measure, the left end of the first curve's interval and the point of the second that is nearest
- * to it, and another place to cut. doc/time-of-contact.md derives it. */
+/* The left-to-right oracle of two balls on two curves: where along the first do they first touch, wherever the second
+ * one is? It is curve_curve with another place to measure, the left end of the first curve's interval and the point of
+ * the second that is nearest to it, and another place to cut. doc/time-of-contact.md derives it. */
 #ifndef CPROX_CURVE_QUERY_CONTACT_CURVE_H
 #define CPROX_CURVE_QUERY_CONTACT_CURVE_H
 
@@ -22,8 +22,8 @@ void contact_curve_begin(contact_curve *c, double epsilon);
 search_node contact_curve_root(const contact_curve *c);
 search_oracle contact_curve_oracle(contact_curve *c);
 
-/* After the search: a contact that is nearer than epsilon but not proven becomes proven a little farther along, if a few
- * measurements there succeed. */
+/* After the search: a contact that is nearer than epsilon but not proven becomes proven a little farther along, if a
+ * few measurements there succeed. */
 void contact_curve_prove(contact_curve *c);
 
 #endif

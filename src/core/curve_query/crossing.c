@@ -90,7 +90,8 @@ static double meet_plane(const crossing *o, double s) {
   return s;
 }
 
-/* The ends on the two sides of the plane, farther from it than all corners of the region; and all between is over the body. */
+/* The ends on the two sides of the plane, farther from it than all corners of the region; and all between is over the
+ * body. */
 static bool passes_through(const crossing *o, const segment part[2], int n, flat_region *region) {
   double first = 0.0, last = 0.0, room = 0.0;
   for (int i = 0; i < n; i++) {

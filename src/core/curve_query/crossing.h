@@ -14,15 +14,16 @@ typedef struct crossing {
   size_t slot[2];
 } crossing;
 
-/* Near s of a piece; when a crossing is proven, s of a piece by which the two have met, and the point where they do but for rounding. */
+/* Near s of a piece; when a crossing is proven, s of a piece by which the two have met, and the point where they do but
+ * for rounding. */
 typedef struct crossing_place {
   size_t piece;
   double s;
   vec3 meeting;
 } crossing_place;
 
-/* Whether the curve certainly passes through the shape near a place, which then moves; the piece is the loaded one. Where it does not, s
- * is where it meets the plane, as far as Newton's method finds that. */
+/* Whether the curve certainly passes through the shape near a place, which then moves; the piece is the loaded one.
+ * Where it does not, s is where it meets the plane, as far as Newton's method finds that. */
 bool crossing_prove(const crossing *of, crossing_place *place);
 
 /* The same near a sample, which becomes that of the place. False also of shapes that have an inside. */

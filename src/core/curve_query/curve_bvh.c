@@ -23,7 +23,7 @@ static bool is_piece(const curve_tree *o, const search_node *node) {
   return curve_side_is_piece(&o->side, &curve_tree_known(node)->at);
 }
 
-/* ---- measuring -------------------------------------------------------------------------------------------------------- */
+/* ---- measuring ---- */
 
 static double measure_slack(const curve_tree *o, double error, double distance, vec3 y) {
   const double sizes = vec_norm(y) + o->tree->scale + o->offset + distance;
@@ -47,7 +47,7 @@ static bool adopt_better(curve_tree *o, const tree_sample *sample, const search_
   return true;
 }
 
-/* ---- better points ---------------------------------------------------------------------------------------------------- */
+/* ---- better points ---- */
 
 /* One step of Newton's method on the distance to the feature that is nearest at a sample. */
 static double newton_step(const tree_sample *sample, vec3 d1, vec3 d2) {
@@ -99,7 +99,7 @@ static void refine_witness(curve_tree *o) {
   }
 }
 
-/* ---- proof of contact ------------------------------------------------------------------------------------------------- */
+/* ---- proof of contact ---- */
 
 /* Through the triangle of a sample, which moves to where that is, or to where the curve meets its plane. */
 static bool goes_through_triangle(curve_tree *o, tree_sample *sample) {
@@ -198,7 +198,7 @@ static void prove_contact(curve_tree *o) {
   adopt_better(o, &sample, &met);
 }
 
-/* ---- seeds ------------------------------------------------------------------------------------------------------------ */
+/* ---- seeds ---- */
 
 static void seed_at(curve_tree *o, size_t piece, double s) {
   curve_side_load(&o->side, piece);
@@ -243,7 +243,7 @@ static void seed(curve_tree *o) {
   refine_witness(o);
 }
 
-/* ---- lists ------------------------------------------------------------------------------------------------------------ */
+/* ---- lists ---- */
 
 static tree_entry *list_reserve(const curve_tree *o, size_t n) {
   return workspace_reserve(o->workspace, WORKSPACE_LISTS, n * sizeof(tree_entry));
@@ -354,7 +354,7 @@ cprox_status curve_tree_filter(curve_tree *o, search_node *node, tree_segment *s
   return CPROX_OK;
 }
 
-/* ---- the contract ----------------------------------------------------------------------------------------------------- */
+/* ---- the contract ---- */
 
 static double filter(void *self, search_node *node, double goal) {
   (void)self, (void)goal; /* a list is gone through once, in the probe */
@@ -446,7 +446,7 @@ static void release(void *self, const search_node *node) {
   points_pool_release(&o->pool, curve_tree_known(node)->at.slot);
 }
 
-/* ---- the oracle ------------------------------------------------------------------------------------------------------- */
+/* ---- the oracle ---- */
 
 bool curve_tree_begin(curve_tree *o, const cprox_curve *curve, const cprox_body *body, frame placed, double offset,
                       cprox_workspace *workspace) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The oracle of a ball that rides a curve against a mesh, points or boxes: many elements in a tree, of which each interval keeps
- * those that still matter to it. For searches that are depth first or left to right. doc/non-convex.md derives it. */
+/* The oracle of a ball that rides a curve against a mesh, points or boxes: many elements in a tree, of which each
+ * interval keeps those that still matter to it. For searches that are depth first or left to right. doc/non-convex.md
+ * derives it. */
 #ifndef CPROX_CURVE_QUERY_CURVE_BVH_H
 #define CPROX_CURVE_QUERY_CURVE_BVH_H
 
@@ -85,8 +86,8 @@ void curve_tree_segment(const curve_tree *o, const search_node *node, vec3 x, tr
 search_best curve_tree_measure(curve_tree *o, tree_place place, size_t piece, double s, vec3 y, double error,
                                tree_sample *sample);
 
-/* Whether the curve certainly meets the body near a sample: it goes through the triangle before *until, or is inside of a solid there,
- * to where the sample moves. */
+/* Whether the curve certainly meets the body near a sample: it goes through the triangle before *until, or is inside of
+ * a solid there, to where the sample moves. */
 bool curve_tree_meets(curve_tree *o, tree_sample *sample, double *until);
 
 /* Whether it begins inside of a solid, for a search that has not begun; the sample is filled then. */

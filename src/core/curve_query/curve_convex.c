@@ -24,7 +24,7 @@ static bool is_piece(const curve_convex *o, const search_node *node) {
   return curve_side_is_piece(&o->side, &curve_convex_known(node)->at);
 }
 
-/* ---- bounds ----------------------------------------------------------------------------------------------------------- */
+/* ---- bounds ---- */
 
 /* What rounding can take from n·P - h(n): dot products, the support value, |n| not quite 1, the subtractions. */
 static double bound_slack(const curve_convex *o, double error, double magnitude, double bound) {
@@ -107,8 +107,7 @@ static double filter(void *self, search_node *node, double goal) {
   return node->lower;
 }
 
-/* ---- distance queries
- * ----------------------------------------------------------------------------------------------------------- */
+/* ---- distance queries ---- */
 
 /* A distance from the core whose upper bound ends the search: its last digits are of no interest. */
 static double near_enough(const curve_convex *o, double rounding) {
@@ -127,9 +126,10 @@ static double depth_along(curve_convex *o, vec3 y, vec3 n) {
   return o->shape->ops->support(o->shape, n, &o->support_hint, NULL) - vec_dot(n, y);
 }
 
-/* Bounds need a plane between the shape and a point that touches it. There the way from the nearest point is rounding, or
- * none. A flat shape has a plane of its own. Else a plane that separates the shape from a point a little farther out will do,
- * as long as that point lies less far out than the touching point lies from the next edge: so the steps get shorter. */
+/* Bounds need a plane between the shape and a point that touches it. There the way from the nearest point is rounding,
+ * or none. A flat shape has a plane of its own. Else a plane that separates the shape from a point a little farther out
+ * will do, as long as that point lies less far out than the touching point lies from the next edge: so the steps get
+ * shorter. */
 static vec3 touching_normal(curve_convex *o, vec3 y, vec3 seen, double rounding) {
   enum { ROUNDS = 7 };
   vec3 best = seen, outward, n;
@@ -212,8 +212,8 @@ static cprox_status probe_at(curve_convex *o, size_t piece, double s, double ste
   return worthwhile ? newton_refine(o, points, &jet, step) : CPROX_OK;
 }
 
-/* From the frame's origin, about which the body stands, towards the chord of a range: a normal that is had without a measurement.
- * False where the chord meets the origin. */
+/* From the frame's origin, about which the body stands, towards the chord of a range: a normal that is had without a
+ * measurement. False where the chord meets the origin. */
 static bool normal_from_origin(curve_convex *o, const search_node *node) {
   const vec3 y = curve_side_chord_from_origin(&o->side, &curve_convex_known(node)->at);
   const double length2 = vec_norm2(y);
@@ -224,7 +224,8 @@ static bool normal_from_origin(curve_convex *o, const search_node *node) {
   return true;
 }
 
-/* Where the loaded piece comes nearest to the frame's origin, about which the body stands, as far as a few points tell. */
+/* Where the loaded piece comes nearest to the frame's origin, about which the body stands, as far as a few points tell.
+ */
 static double nearest_sample(const curve_convex *o) {
   const size_t degree = o->side.curve->degree;
   const double *basis = lanes_basis(degree, o->workspace), *x = points_pool_at(&o->pool, CURVE_CONVEX_ROOT);
@@ -236,8 +237,8 @@ static bool is_long(const curve_convex *o) {
   return o->side.curve->n_pieces > CHORDS;
 }
 
-/* The first measurement is on the piece that the nearer chords lead to. Of what a range falls into bounds are had without any; a curve
- * that has no chords is measured at the point where two ranges meet, which is a control point. */
+/* The first measurement is on the piece that the nearer chords lead to. Of what a range falls into bounds are had
+ * without any; a curve that has no chords is measured at the point where two ranges meet, which is a control point. */
 static cprox_status probe_range(curve_convex *o, const search_node *node) {
   const curve_convex_node *payload = curve_convex_known(node);
   if (o->incumbent == 0 && !o->side.curve->arcs) {
@@ -259,8 +260,9 @@ static cprox_status probe_range(curve_convex *o, const search_node *node) {
   return status;
 }
 
-/* Where the interval's lowest control point along the best normal pulls most, but well inside. Without a normal, where the piece comes
- * nearest to the frame's origin, about which the body stands, as far as a few points tell, or the middle. */
+/* Where the interval's lowest control point along the best normal pulls most, but well inside. Without a normal, where
+ * the piece comes nearest to the frame's origin, about which the body stands, as far as a few points tell, or the
+ * middle. */
 static double promising(const curve_convex *o, const curve_interval *at, double *step) {
   double fraction = 0.5;
   *step = 0.25 * (at->b - at->a);
@@ -317,7 +319,8 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   const bool decisive = o->goal < o->best_bound.upper - 2.0 * o->epsilon;
   if (piece && !decisive && best_inside(o, node) >= 0.0) return CPROX_OK;
 
-  /* the probe's own normal, and the best one if it is another: one step further is the best of a probe that was not refined */
+  /* the probe's own normal, and the best one if it is another: one step further is the best of a probe that was not
+   * refined */
   curve_convex_bound(o, node, &o->last);
   if (payload->seen != o->incumbent &&
       !(o->incumbent == before + 1 && o->last.s == o->best.s && o->last.piece == o->best.piece))
@@ -326,7 +329,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   return CPROX_OK;
 }
 
-/* ---- splits ----------------------------------------------------------------------------------------------------------- */
+/* ---- splits ---- */
 
 /* Children know the best normal from birth, and the last where that leaves something open. */
 static void bound_child(curve_convex *o, search_node *child) {
@@ -376,8 +379,8 @@ static bool is_open(const curve_convex *o, const search_node *child, size_t n) {
   return false;
 }
 
-/* A range of pieces falls into as many as are bounded at once: a bound costs much less than a measurement. What the ball leaves open the
- * best normal may settle, and what that leaves the one from the body's middle. */
+/* A range of pieces falls into as many as are bounded at once: a bound costs much less than a measurement. What the
+ * ball leaves open the best normal may settle, and what that leaves the one from the body's middle. */
 static int split_range(curve_convex *o, const search_node *node, search_node *child) {
   curve_interval part[CURVE_PACK];
   const size_t n = curve_side_children(&o->side, &curve_convex_known(node)->at, part);
@@ -413,7 +416,7 @@ static void release(void *self, const search_node *node) {
   points_pool_release(&o->pool, curve_convex_known(node)->at.slot);
 }
 
-/* ---- the oracle ------------------------------------------------------------------------------------------------------- */
+/* ---- the oracle ---- */
 
 bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex *shape, frame placed, double offset,
                         cprox_workspace *workspace) {

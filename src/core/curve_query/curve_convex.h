@@ -74,8 +74,8 @@ bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex 
 /* The node that is all that is asked about: side.part. */
 search_node curve_convex_root(const curve_convex *o);
 
-/* Measures at s of a piece before the search begins, as a probe would, and bounds the root by what it learned. CPROX_OK or a negative
- * status. The search then starts with o->best_bound. */
+/* Measures at s of a piece before the search begins, as a probe would, and bounds the root by what it learned. CPROX_OK
+ * or a negative status. The search then starts with o->best_bound. */
 cprox_status curve_convex_seed(curve_convex *o, size_t piece, double s, search_node *root);
 
 /* The functions of the contract in branch_and_bound/search.h, self being the curve_convex. */
@@ -84,7 +84,8 @@ search_oracle curve_convex_oracle(curve_convex *o);
 /* Raises node->lower by the normal of a sample. */
 void curve_convex_bound(const curve_convex *o, search_node *node, const curve_sample *sample);
 
-/* For curve_query/newton_convex.c: measures at a curve point y = psi(s) of the piece, which is within `error` of the exact one; */
+/* For curve_query/newton_convex.c: measures at a curve point y = psi(s) of the piece, which is within `error` of the
+ * exact one; */
 cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 y, double error, curve_sample *sample,
                                   search_best *bound);
 

@@ -10,10 +10,10 @@
 /* Slots of the pool that nodes never get: each side's loaded piece. */
 enum { SLOT_FIRST, SLOT_SECOND, SLOTS_RESERVED };
 
-/* ---- bounds ----------------------------------------------------------------------------------------------------------- */
+/* ---- bounds ---- */
 
-/* Along any unit n: the first curve's least n·P less the second's greatest n·Q is a lower bound. A carried body takes off what it
- * reaches. */
+/* Along any unit n: the first curve's least n·P less the second's greatest n·Q is a lower bound. A carried body takes
+ * off what it reaches. */
 static void bound_by_reaches(const curve_curve *o, search_node *node, vec3 n, const curve_reach *first,
                              const curve_reach *second) {
   double bound = first->least + second->least - o->offset;
@@ -49,7 +49,8 @@ static void bound_children(const curve_curve *o, search_node *child, curve_inter
     for (int j = 0; j < n_parts[1]; j++) bound_by_reaches(o, child++, n, &reach[0][i], &reach[1][j]);
 }
 
-/* Whether something is left that bounds have not settled, or brought as near to the best meeting as the answer needs. */
+/* Whether something is left that bounds have not settled, or brought as near to the best meeting as the answer needs.
+ */
 static bool is_open(const curve_curve *o, const search_node *child, int n) {
   for (int k = 0; k < n; k++)
     if (!(child[k].lower > o->goal || child[k].lower >= o->best_bound.upper - o->epsilon)) return true;
@@ -74,7 +75,7 @@ static double filter(void *self, search_node *node, double goal) {
   return node->lower;
 }
 
-/* ---- where the best meeting is ------------------------------------------------------------------------------------------- */
+/* ---- where the best meeting is ---- */
 
 /* Where the best meeting cuts one side of a node, as a fraction of it: in [0, 1] if it lies there at all, else -1. */
 static double best_within(const curve_curve *o, const search_node *node, int k) {
@@ -95,8 +96,7 @@ static bool holds_best(const curve_curve *o, const search_node *node) {
   return s >= 0.0 && t >= 0.0 && (is_inner(s) || is_inner(t));
 }
 
-/* ---- distance queries
- * ----------------------------------------------------------------------------------------------------------- */
+/* ---- distance queries ---- */
 
 /* The same of a carried body at the first point. */
 static void measure_carried(curve_curve *o, curve_meeting *m, double error, search_best *bound) {
@@ -223,16 +223,16 @@ static bool nearest_sample(const curve_curve *o, const search_node *node, double
   return true;
 }
 
-/* Distances are to be had exactly; verdicts are, where the best meeting is so near the limit that they may hang on the last digits, or
- * where they do not come easily. */
+/* Distances are to be had exactly; verdicts are, where the best meeting is so near the limit that they may hang on the
+ * last digits, or where they do not come easily. */
 static bool is_worth_refining(const curve_curve *o) {
   static const double NEAR = 1.05;
   const double upper = o->best_bound.upper;
   return upper > o->good_enough && (o->nodes > o->newton_after || upper < NEAR * o->good_enough);
 }
 
-/* Measures near those fractions of the node's intervals, and goes on from there. The normal seen there is the one to go by where there
- * are no chords, or where it is worth more than theirs. */
+/* Measures near those fractions of the node's intervals, and goes on from there. The normal seen there is the one to go
+ * by where there are no chords, or where it is worth more than theirs. */
 static cprox_status measure_node(curve_curve *o, search_node *node, const double fraction[2], bool pieces,
                                  bool looked) {
   const curve_curve_node *payload = curve_curve_known(node);
@@ -282,7 +282,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   return CPROX_OK;
 }
 
-/* ---- splits ----------------------------------------------------------------------------------------------------------- */
+/* ---- splits ---- */
 
 /* How long an interval is, roughly: which side to cut. */
 static double length_of(const curve_side *side, const curve_interval *at) {
@@ -329,7 +329,8 @@ static curve_curve_cuts choose_cuts(const curve_curve *o, const search_node *nod
   return cuts;
 }
 
-/* Cuts side k of the node in two, or leaves it whole; the number of parts, 0 where it is too short, -1 without memory. */
+/* Cuts side k of the node in two, or leaves it whole; the number of parts, 0 where it is too short, -1 without memory.
+ */
 static int cut_side(curve_curve *o, search_node *node, int k, const curve_curve_cuts *cuts, curve_interval part[2]) {
   curve_interval *at = &curve_curve_own(node)->side[k];
   curve_side *side = &o->side[k];
@@ -385,7 +386,7 @@ static void release(void *self, const search_node *node) {
   for (int k = 0; k < 2; k++) points_pool_release(&o->pool, curve_curve_known(node)->side[k].slot);
 }
 
-/* ---- the oracle ------------------------------------------------------------------------------------------------------- */
+/* ---- the oracle ---- */
 
 bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_curve *second, const cprox_pose *placed,
                        double offset, cprox_workspace *workspace) {

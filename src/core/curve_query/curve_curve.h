@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The oracle of a ball or a convex body that rides one curve against a ball that rides another, each at its own parameter. A
- * node is a pair of intervals. doc/curve-bound.md derives it. */
+/* The oracle of a ball or a convex body that rides one curve against a ball that rides another, each at its own
+ * parameter. A node is a pair of intervals. doc/curve-bound.md derives it. */
 #ifndef CPROX_CURVE_QUERY_CURVE_CURVE_H
 #define CPROX_CURVE_QUERY_CURVE_CURVE_H
 
@@ -59,12 +59,13 @@ typedef struct curve_curve {
   points_pool pool;
 } curve_curve;
 
-/* Makes the oracle ready; false where memory is out. Both curves are seen from the frame of the second, which `placed` puts into
- * the world of the first, about the second's first control point. */
+/* Makes the oracle ready; false where memory is out. Both curves are seen from the frame of the second, which `placed`
+ * puts into the world of the first, about the second's first control point. */
 bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_curve *second, const cprox_pose *placed,
                        double offset, cprox_workspace *workspace);
 
-/* Lets the first curve carry a body, its pose that at the curve's origin; false where its support callback misbehaved. */
+/* Lets the first curve carry a body, its pose that at the curve's origin; false where its support callback misbehaved.
+ */
 bool curve_curve_carry(curve_curve *o, const cprox_pose *placed, const cprox_body *carried, const cprox_pose *pose);
 
 /* The node that is all that is asked about: side[0].part and side[1].part. */
@@ -73,7 +74,7 @@ search_node curve_curve_root(const curve_curve *o);
 /* The functions of the contract in branch_and_bound/search.h, self being the curve_curve. */
 search_oracle curve_curve_oracle(curve_curve *o);
 
-/* ---- what an oracle with another place to measure and to cut is made of: curve_query/contact_curve.c ------------------------------ */
+/* ---- what an oracle with another place to measure and to cut is made of: curve_query/contact_curve.c ---- */
 
 /* Raises node->lower along n, unit or (0,0,0). The node's pieces must be the loaded ones. */
 void curve_curve_bound(const curve_curve *o, search_node *node, vec3 n);
@@ -92,8 +93,8 @@ curve_meeting curve_curve_meeting_near(curve_curve *o, const search_node *node, 
 void curve_curve_measure(curve_curve *o, curve_meeting *m, double error, search_best *bound);
 void curve_curve_adopt(curve_curve *o, const curve_meeting *m, search_best bound);
 
-/* Which sides of a node to cut, at which fraction s of the interval, and at which parameter of the piece. Ranges of pieces fall
- * in two halves wherever that is. */
+/* Which sides of a node to cut, at which fraction s of the interval, and at which parameter of the piece. Ranges of
+ * pieces fall in two halves wherever that is. */
 typedef struct curve_curve_cuts {
   bool wanted[2];
   double s[2], at[2];

@@ -23,8 +23,8 @@ static vec3 symmetric_times(const double h[6], vec3 v) {
              h[2] * v.x + h[4] * v.y + h[5] * v.z);
 }
 
-/* The distance to that feature: of a plane the signed height over it, so that the deepest point is found where the curve goes through;
- * of a curved one d + n·w + w·H w/2, w = psi - y, its second order about the sample. */
+/* The distance to that feature: of a plane the signed height over it, so that the deepest point is found where the
+ * curve goes through; of a curved one d + n·w + w·H w/2, w = psi - y, its second order about the sample. */
 static double distance_at(const curve_sample *sample, vec3 x) {
   const convex_near *near = &sample->near;
   if (near->flat && near->tangents == 2) return vec_dot(near->normal, vec_sub(x, near->origin)) - near->offset;
@@ -33,8 +33,8 @@ static double distance_at(const curve_sample *sample, vec3 x) {
   return near->distance + vec_dot(near->normal, w) + 0.5 * vec_dot(w, symmetric_times(near->hessian, w));
 }
 
-/* First and second derivative by s of what is least where that is: of a vertex or an edge half the square, |w|²/2, whose derivatives
- * w·psi' and |w'|² + w·psi'' take no root and divide by nothing. */
+/* First and second derivative by s of what is least where that is: of a vertex or an edge half the square, |w|²/2,
+ * whose derivatives w·psi' and |w'|² + w·psi'' take no root and divide by nothing. */
 static void slopes_at(const curve_sample *sample, const curve_jet *j, double *slope, double *bend) {
   const convex_near *near = &sample->near;
   if (near->flat && near->tangents < 2) {

@@ -11,8 +11,8 @@ vec3 meeting_of_chords(const vec3 first[2], const vec3 second[2], double fractio
   const vec3 d = vec_sub(first[1], first[0]), e = vec_sub(second[1], second[0]), r = vec_sub(first[0], second[0]);
   const double dd = vec_norm2(d), ee = vec_norm2(e), de = vec_dot(d, e), dr = vec_dot(d, r), er = vec_dot(e, r);
 
-  /* the nearest points of the lines, then of the segments (C. Ericson, Real-Time Collision Detection, 2005, 5.1.9); parallel
-   * ones meet at their middle */
+  /* the nearest points of the lines, then of the segments (C. Ericson, Real-Time Collision Detection, 2005, 5.1.9);
+   * parallel ones meet at their middle */
   const double determinant = dd * ee - de * de;
   double s = determinant > 1e-14 * dd * ee ? clamp((de * er - dr * ee) / determinant, 0.0, 1.0) : 0.5;
   double t = ee > 0.0 ? (de * s + er) / ee : 0.5;

@@ -21,8 +21,9 @@ static double good_enough(const query *q) {
   return query_wants_verdict(q) ? q->limit : q->options.epsilon;
 }
 
-/* The direction from a surface point to the moving object's centre. The normal is that of the best lower bound: a search that stops
- * early, because its upper bound is good enough, leaves another direction between the two points that attain that upper bound. */
+/* The direction from a surface point to the moving object's centre. The normal is that of the best lower bound: a
+ * search that stops early, because its upper bound is good enough, leaves another direction between the two points that
+ * attain that upper bound. */
 static vec3 witness_direction(vec3 centre, vec3 surface, vec3 normal) {
   const vec3 between = vec_sub(centre, surface);
   const double length = vec_norm(between), sizes = vec_norm(centre) + vec_norm(surface);
@@ -30,8 +31,8 @@ static vec3 witness_direction(vec3 centre, vec3 surface, vec3 normal) {
   return aligned ? normal : vec_scale(1.0 / length, between);
 }
 
-/* The two surface points and their normal: where the ball of the mover and the padded target come closest, or one point of both
- * where they overlap; signed, the two ends of the way out. */
+/* The two surface points and their normal: where the ball of the mover and the padded target come closest, or one point
+ * of both where they overlap; signed, the two ends of the way out. */
 static void report_points(const query *q, const placed_pair *p, vec3 centre, vec3 surface, vec3 normal, double apart,
                           cprox_result *r) {
   const double margin = p->margin;
@@ -47,7 +48,8 @@ static void report_points(const query *q, const placed_pair *p, vec3 centre, vec
   }
 }
 
-/* The same where a body is carried, its curve at `centre`, or what stands is on the clock: asked of the pair that both make there. */
+/* The same where a body is carried, its curve at `centre`, or what stands is on the clock: asked of the pair that both
+ * make there. */
 static cprox_status report_pair(const query *q, const placed_pair *p, vec3 centre, const cprox_obstacle *standing,
                                 int32_t part, vec3 normal, cprox_result *r) {
   const cprox_obstacle moved = {.body = q->mover.body ? q->mover.body : &carried_point,
@@ -301,8 +303,7 @@ static cprox_status search_model(const query *q, const candidate *c, double cuto
   return r.status;
 }
 
-/* ---- level-of-detail bodies
- * ---------------------------------------------------------------------------------------------------------- */
+/* ---- level-of-detail bodies ---- */
 
 bool candidate_may_refine(const query *q, const candidate *c) {
   const cprox_body *body = q->targets[c->target].body;

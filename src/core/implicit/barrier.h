@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The constraints of one body as the interior point method sees them (doc/implicit.md): slacks, multipliers, and for each
- * lifted term |u|^p the variable t >= |u|^p with the pair of constraints +-u <= G(t) = t^(1/p). The lifted variables are
- * eliminated from Newton's system in closed form, so that a body adds a 3 x 3 matrix and a right-hand side to it. */
+/* The constraints of one body as the interior point method sees them (doc/implicit.md): slacks, multipliers, and for
+ * each lifted term |u|^p the variable t >= |u|^p with the pair of constraints +-u <= G(t) = t^(1/p). The lifted
+ * variables are eliminated from Newton's system in closed form, so that a body adds a 3 x 3 matrix and a right-hand
+ * side to it. */
 #ifndef CPROX_IMPLICIT_BARRIER_H
 #define CPROX_IMPLICIT_BARRIER_H
 
@@ -57,8 +58,8 @@ typedef struct barrier_state {
   double lifted;   /* largest residual in a lifted variable, times it */
 } barrier_state;
 
-/* Puts the body's point at z, slacks and multipliers mu/s at their start; terms with p < lift_below are lifted. False where
- * z is not strictly inside. */
+/* Puts the body's point at z, slacks and multipliers mu/s at their start; terms with p < lift_below are lifted. False
+ * where z is not strictly inside. */
 bool barrier_begin(barrier *b, vec3 z, double mu, double lift_below);
 
 barrier_state barrier_evaluate(const barrier *b);
@@ -72,15 +73,16 @@ void barrier_step(barrier *b, double target, double *primal, double *dual);
 /* Tries the primal step of the length: false where a slack would fall below a fraction of what it is. */
 bool barrier_try(barrier *b, double length);
 
-/* Goes there, with the dual step of its own length, and keeps each product of slack and multiplier within [least, most]. */
+/* Goes there, with the dual step of its own length, and keeps each product of slack and multiplier within [least,
+ * most]. */
 void barrier_go(barrier *b, double primal, double dual, double least, double most);
 
-/* Which multipliers the bound on the support function takes: those of the lifted pairs where p < 2 or everywhere, or the
- * tangents of the constraints alone. */
+/* Which multipliers the bound on the support function takes: those of the lifted pairs where p < 2 or everywhere, or
+ * the tangents of the constraints alone. */
 typedef enum barrier_reading { BARRIER_MIXED, BARRIER_LIFTED, BARRIER_TANGENT } barrier_reading;
 
-/* max of n·x over the body, from above whatever the multipliers are, rounding included: the multipliers times `share` say
- * how n splits over the constraints, and what is left of n costs its length times the radius. */
+/* max of n·x over the body, from above whatever the multipliers are, rounding included: the multipliers times `share`
+ * say how n splits over the constraints, and what is left of n costs its length times the radius. */
 double barrier_height(const barrier *b, vec3 n, double share, barrier_reading reading);
 
 #endif

@@ -295,8 +295,8 @@ static bool place_closed(const implicit *mapped, implicit *about, vec3 *centre) 
   return implicit_measure(about);
 }
 
-/* The first reach is that of an ellipsoid that may be far longer than the body, and rounding is as large as it: so it is
- * measured again from a better centre until that gains no more. */
+/* The first reach is that of an ellipsoid that may be far longer than the body, and rounding is as large as it: so it
+ * is measured again from a better centre until that gains no more. */
 static cprox_status place(const implicit *mapped, implicit *about, void *memory, cprox_workspace *workspace,
                           vec3 *centre) {
   enum { PASSES = 8 };

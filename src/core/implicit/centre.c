@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A first interior point by the ellipsoid method with deep cuts: in three dimensions it is cheap, and nothing can make it
- * fail but an interior that is not there. The ellipsoid that is left holds the whole body. Then what queries need to know
- * about a body besides its coefficients. */
+/* A first interior point by the ellipsoid method with deep cuts: in three dimensions it is cheap, and nothing can make
+ * it fail but an interior that is not there. The ellipsoid that is left holds the whole body. Then what queries need to
+ * know about a body besides its coefficients. */
 #include "base/rounding.h"
 #include "implicit/implicit.h"
 
@@ -70,8 +70,8 @@ static cut worst_cut(const implicit *body, const ellipsoid *e, vec3 at) {
   return worst;
 }
 
-/* The least ellipsoid about what the cut leaves (Grötschel, Lovász and Schrijver 1988, ch. 3), grown by what rounding may
- * take. */
+/* The least ellipsoid about what the cut leaves (Grötschel, Lovász and Schrijver 1988, ch. 3), grown by what rounding
+ * may take. */
 static void shrink(ellipsoid *e, const cut *c) {
   const double n = 3.0, alpha = fmin(c->depth, 1.0 - 1e-9);
   const double shift = (1.0 + n * alpha) / (n + 1.0), grow = sqrt(n * n * (1.0 - alpha * alpha) / (n * n - 1.0));
@@ -87,8 +87,8 @@ static void shrink(ellipsoid *e, const cut *c) {
   }
 }
 
-/* The centre is inside: a cut through a point a tenth of the way to the ellipsoid's surface, where one of six is outside. Such
- * a cut leaves less than the whole, so that in the end the ellipsoid is hardly larger than the body. */
+/* The centre is inside: a cut through a point a tenth of the way to the ellipsoid's surface, where one of six is
+ * outside. Such a cut leaves less than the whole, so that in the end the ellipsoid is hardly larger than the body. */
 static cut cut_beside(const implicit *body, const ellipsoid *e) {
   for (int k = 0; k < 6; k++) {
     const double side = k % 2 == 0 ? 0.1 : -0.1;
@@ -146,8 +146,8 @@ static double power_inner(const implicit *body, const implicit_power *power, dou
   return inside;
 }
 
-/* (A'A)^-1 of a power's rows, false where they do not span the space. Rows are scaled by the box, or long thin bodies would
- * seem flat. */
+/* (A'A)^-1 of a power's rows, false where they do not span the space. Rows are scaled by the box, or long thin bodies
+ * would seem flat. */
 static bool power_gram(const implicit *body, implicit_power *power) {
   const double s[3] = {body->box.x, body->box.y, body->box.z};
   double g[6] = {0};

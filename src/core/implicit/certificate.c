@@ -85,7 +85,8 @@ static void height_power(height *h, const barrier *b, const implicit_power *powe
   }
   const double reach = implicit_power_reach(term, power->n, w, &mu, NEWTON, u);
   h->sum += reach - offset;
-  /* each term of the reach is computed within 6 u w_i: a power whose exponent is off by u, of a number that is off by 2 u */
+  /* each term of the reach is computed within 6 u w_i: a power whose exponent is off by u, of a number that is off by 2
+   * u */
   h->sizes += reach + 8.0 * weights;
 }
 
@@ -97,8 +98,8 @@ double barrier_height(const barrier *b, vec3 n, double share, barrier_reading re
   for (int32_t k = 0; k < body->n_quadrics; k++)
     height_quadric(&h, &body->quadric[k], b->row[body->n_planes + k].l * share, b->z);
 
-  /* of those that span the space, the one with the largest multiplier takes what the others leave; any split will do, so
-   * that powers which hardly pull are left out */
+  /* of those that span the space, the one with the largest multiplier takes what the others leave; any split will do,
+   * so that powers which hardly pull are left out */
   int32_t last = -1;
   for (int32_t k = 0; k < body->n_powers; k++)
     if (body->power[k].spans && (last < 0 || b->row[first_power + k].l > b->row[first_power + last].l)) last = k;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Closed bodies: one hyperquadric of three independent terms, which an affine map makes of a superquadric. Support function
- * by one equation; where the rows are orthogonal, nearest points by four. */
+/* Closed bodies: one hyperquadric of three independent terms, which an affine map makes of a superquadric. Support
+ * function by one equation; where the rows are orthogonal, nearest points by four. */
 #include "base/rounding.h"
 #include "implicit/implicit.h"
 
@@ -36,8 +36,8 @@ double implicit_closed_radius(const implicit *body) {
   return up * most * pow(sum, 0.5 / q);
 }
 
-/* The derivative of u by w: diag(c) - v v'/(mu K), v_i = u_i/(p_i - 1), c_i = v_i/w_i, mu K = mu sum p_i u_i^p_i/(p_i - 1) = sum w_i v_i,
- * since w_i = mu p_i u_i^(p_i-1). */
+/* The derivative of u by w: diag(c) - v v'/(mu K), v_i = u_i/(p_i - 1), c_i = v_i/w_i, mu K = mu sum p_i u_i^p_i/(p_i -
+ * 1) = sum w_i v_i, since w_i = mu p_i u_i^(p_i-1). */
 static void reach_derivative(const implicit_term *term, const double w[3], const double u[3], double mu,
                              const double *inv, const double sign[3], double hessian[6]) {
   double v[3], c[3], whole = 0.0;
@@ -98,8 +98,8 @@ double implicit_closed_support(const implicit *body, vec3 n, double *mu, vec3 *a
 
 /* In logarithms: t_i = log u_i of the nearest point's rows, log_lambda of the multiplier, for
  *   u_i + lambda b_i u_i^(p_i-1) = |v_i|,   sum u_i^p_i = 1,   b_i = p_i |a_i|²,
- * v the rows of the point asked about. For a given lambda each row has one u_i, and their sum of powers falls with lambda: so
- * one equation is left, solved by Newton's method between bounds. */
+ * v the rows of the point asked about. For a given lambda each row has one u_i, and their sum of powers falls with
+ * lambda: so one equation is left, solved by Newton's method between bounds. */
 typedef struct closest {
   double p[3], v[3], b[3]; /* logarithms of v and b */
   double t[3], log_lambda;
@@ -132,9 +132,9 @@ static void closest_begin(closest *c) {
   }
 }
 
-/* The row's u for the multiplier at hand. log(u + lambda b u^(p-1)) is convex and growing in t = log u, and where either
- * summand alone is |v| it is above by log 2 at most: from there Newton's method comes down. Returns the slope of t by
- * log_lambda. */
+/* The row's u for the multiplier at hand. log(u + lambda b u^(p-1)) is convex and growing in t = log u, and where
+ * either summand alone is |v| it is above by log 2 at most: from there Newton's method comes down. Returns the slope of
+ * t by log_lambda. */
 static double closest_row(closest *c, int i) {
   enum { STEPS = 12 };
   const double p1 = c->p[i] - 1.0, shift = c->log_lambda + c->b[i];
@@ -273,7 +273,8 @@ bool implicit_closed_nearest(const implicit *body, vec3 y, double width, implici
     if (!closest_outside(&c)) return false;
   }
 
-  /* what rounding left is drawn onto the surface; the search may also have ended elsewhere, and then nothing is known */
+  /* what rounding left is drawn onto the surface; the search may also have ended elsewhere, and then nothing is known
+   */
   double sum = -1.0, slope = 0.0, steepest = 1.0;
   vec3 gradient = vec(0, 0, 0);
   for (int i = 0; i < 3; i++) {

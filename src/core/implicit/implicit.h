@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Intersections of planes b·x + c <= 0, convex quadrics x'Qx + b·x + c <= 0 and hyperquadrics sum |a_i·x + d_i|^p_i <= 1
- * (a superquadric is one of three terms), p_i >= 1: bounded, with an interior. Coordinates are about an interior point, the
- * centre, so that sizes and not positions enter the rounding. Theory: doc/implicit.md. */
+/* Intersections of planes b·x + c <= 0, convex quadrics x'Qx + b·x + c <= 0 and hyperquadrics sum |a_i·x + d_i|^p_i <=
+ * 1 (a superquadric is one of three terms), p_i >= 1: bounded, with an interior. Coordinates are about an interior
+ * point, the centre, so that sizes and not positions enter the rounding. Theory: doc/implicit.md. */
 #ifndef CPROX_IMPLICIT_IMPLICIT_H
 #define CPROX_IMPLICIT_IMPLICIT_H
 
@@ -69,10 +69,12 @@ typedef struct implicit_map {
   vec3 shift;
 } implicit_map;
 
-/* Empty arrays for so many constraints, all in the one block of the handle: free() frees it. NULL where memory is out. */
+/* Empty arrays for so many constraints, all in the one block of the handle: free() frees it. NULL where memory is out.
+ */
 implicit *implicit_allocate(size_t planes, size_t quadrics, size_t powers, size_t terms);
 
-/* The coefficients as the caller gave them: each is finite, of a convex set, in range, and named in the reason if not. */
+/* The coefficients as the caller gave them: each is finite, of a convex set, in range, and named in the reason if not.
+ */
 cprox_status implicit_check(const implicit *given, const implicit_map *map, cprox_workspace *workspace);
 
 /* Applies the map and finds the centre, about which *made is written, for free(). The
@@ -83,7 +85,8 @@ cprox_status implicit_build(const implicit *given, const implicit_map *map, cpro
 /* The image of a built body under linear map, about the image of its centre: *made for free(). */
 cprox_status implicit_deform(const implicit *body, const double linear[9], cprox_workspace *workspace, implicit **made);
 
-/* from about c, or mapped: coefficients in twice the precision, rounded once. Arrays of `to` have the sizes of `from`'s. */
+/* from about c, or mapped: coefficients in twice the precision, rounded once. Arrays of `to` have the sizes of
+ * `from`'s. */
 void implicit_recentre(const implicit *from, vec3 c, implicit *to);
 
 /* A point strictly inside and a bound on the body's reach from it; false where there is none. */
@@ -120,9 +123,9 @@ double implicit_gauge(const implicit *body, vec3 x, double tolerance);
 
 /* ---- support (power.c, certificate.c, solve.c) ---- */
 
-/* A point u >= 0 with sum u^p = 1 + miss and sum p u^p = slope may be drawn to the surface by the one factor 1 - miss/slope: the sum is convex in
- * the logarithm of the factor, with a second derivative of at most the largest p times the slope, so that what is left outside is half of
- * p (miss/slope)², and so at most u/2 of the length. */
+/* A point u >= 0 with sum u^p = 1 + miss and sum p u^p = slope may be drawn to the surface by the one factor 1 -
+ * miss/slope: the sum is convex in the logarithm of the factor, with a second derivative of at most the largest p times
+ * the slope, so that what is left outside is half of p (miss/slope)², and so at most u/2 of the length. */
 static inline bool implicit_is_drawn(double miss, double slope, double steepest) {
   const double by = miss / slope;
   return steepest * by * by <= ROUND_U;
@@ -134,7 +137,8 @@ static inline bool implicit_is_drawn(double miss, double slope, double steepest)
 double implicit_power_reach(const implicit_term *term, int32_t n, const double *w, double *mu, int steps, double *u);
 
 /* The support function of a closed body: h(n) for any n, its maximiser (at NULL if not needed) and, hessian NULL if not
- * needed, the maximiser's derivative by n. mu: where Newton's method may start, <= 0 from scratch; left for the next call.
+ * needed, the maximiser's derivative by n. mu: where Newton's method may start, <= 0 from scratch; left for the next
+ * call.
  */
 double implicit_closed_support(const implicit *body, vec3 n, double *mu, vec3 *at, double hessian[6]);
 
@@ -147,8 +151,9 @@ typedef struct implicit_warm {
   vec3 apart; /* x - y in a's frame */
 } implicit_warm;
 
-/* What is asked: the point x of a nearest to the point y0 (b NULL), or x of a and y of b with x - (M y + t) shortest, or
- * with b moving by `velocity` for a time in [0, duration]; or, `b` NULL and `far`, the x extreme along the unit vector t. */
+/* What is asked: the point x of a nearest to the point y0 (b NULL), or x of a and y of b with x - (M y + t) shortest,
+ * or with b moving by `velocity` for a time in [0, duration]; or, `b` NULL and `far`, the x extreme along the unit
+ * vector t. */
 typedef struct implicit_query {
   const implicit *a, *b;
   bool far, moving;
@@ -178,12 +183,12 @@ typedef struct implicit_answer {
   int attempt;       /* which level of detail of the level-of-detail body of settings answered, 0 the first */
 } implicit_answer;
 
-/* The nearest point of an orthogonal body to a point outside, in a fraction of the time; false where it could not be found
- * to within the width: then implicit_solve() does. The bounds are without give and rounding. */
+/* The nearest point of an orthogonal body to a point outside, in a fraction of the time; false where it could not be
+ * found to within the width: then implicit_solve() does. The bounds are without give and rounding. */
 bool implicit_closed_nearest(const implicit *body, vec3 y, double width, implicit_answer *answer);
 
-/* Two closed bodies that stand apart, by their support functions; false where that stalls or there is no gap to be seen: then
- * implicit_solve() answers, from `warm`. What it found is true all the same, rounding included. */
+/* Two closed bodies that stand apart, by their support functions; false where that stalls or there is no gap to be
+ * seen: then implicit_solve() answers, from `warm`. What it found is true all the same, rounding included. */
 bool implicit_separate(const implicit_query *query, const implicit_goal *goal, implicit_warm *warm,
                        implicit_answer *answer);
 

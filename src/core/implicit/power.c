@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* How far a power body sum |u_i|^p_i <= 1 reaches: for every mu >= 0
  *   max sum w_i u_i <= mu + sum over i of max over 0 <= u <= 1 of (w_i u - mu u^p_i),
- * with equality at one mu, where the maximisers u_i(mu) = (w_i/(mu p_i))^(1/(p_i-1)) make sum u^p = 1. Newton's method in
- * log mu on the logarithm of that sum. */
+ * with equality at one mu, where the maximisers u_i(mu) = (w_i/(mu p_i))^(1/(p_i-1)) make sum u^p = 1. Newton's method
+ * in log mu on the logarithm of that sum. */
 #include "base/rounding.h"
 #include "implicit/implicit.h"
 
@@ -24,9 +24,9 @@ static double reach_at(const implicit_term *term, int32_t n, const double *w, do
 /* Newton's last step, times the largest k: its square is below rounding. */
 static const double LAST_STEP = 1e-9;
 
-/* The multiplier where sum u^p = 1, by Newton's method in z = log mu on log sum exp(k_i (log(w_i/p_i) - z)), k = p/(p-1):
- * convex and falling in z, so that from the left every step stays left of the root. Warm, it may start right of it. After a step d what
- * is left is at most max k d²/2: a last step to see that it is nothing need not be made. */
+/* The multiplier where sum u^p = 1, by Newton's method in z = log mu on log sum exp(k_i (log(w_i/p_i) - z)), k =
+ * p/(p-1): convex and falling in z, so that from the left every step stays left of the root. Warm, it may start right
+ * of it. After a step d what is left is at most max k d²/2: a last step to see that it is nothing need not be made. */
 static double reach_multiplier(const implicit_term *term, int32_t n, const double *w, double start, double least,
                                int steps) {
   enum { MOST = IMPLICIT_MOST_TERMS };
@@ -62,8 +62,8 @@ static double reach_multiplier(const implicit_term *term, int32_t n, const doubl
   return live > 0 ? fmax(exp(z), least) : least;
 }
 
-/* Draws u along its ray to sum u^p = 1, from wherever it is: the logarithm of the sum is convex in that of the length, so that Newton's
- * method comes down from outside. What it cannot draw becomes the point 0, which is inside. */
+/* Draws u along its ray to sum u^p = 1, from wherever it is: the logarithm of the sum is convex in that of the length,
+ * so that Newton's method comes down from outside. What it cannot draw becomes the point 0, which is inside. */
 static void draw(const implicit_term *term, int32_t n, double *u) {
   enum { STEPS = 60 };
   double most = 0.0, steepest = 1.0;

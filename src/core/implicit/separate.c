@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Two closed bodies by their support functions: phi(u) = min of u·(x - y) over both, a lower bound for any unit u, refined by Newton's
- * method on the sphere. Where that overshoots, as it does on flats, the next direction is that of the nearest point of the hull of
- * what was seen (Gilbert, Johnson, Keerthi 1988). A third of the work of the interior point method where it converges; where it stalls
- * it says so soon, and the interior point method goes on from there. */
+/* Two closed bodies by their support functions: phi(u) = min of u·(x - y) over both, a lower bound for any unit u,
+ * refined by Newton's method on the sphere. Where that overshoots, as it does on flats, the next direction is that of
+ * the nearest point of the hull of what was seen (Gilbert, Johnson, Keerthi 1988). A third of the work of the interior
+ * point method where it converges; where it stalls it says so soon, and the interior point method goes on from there.
+ */
 #include "base/rotation.h"
 #include "base/rounding.h"
 #include "convex/simplex.h"

@@ -7,8 +7,8 @@
 
 enum { SOLVE_MOST_VARIABLES = 7, SOLVE_BACKTRACKS = 60, SOLVE_CERTIFICATES = 12 };
 
-/* How to run: centring of the first and of later steps, where to start between centre and surface, the start of the barrier
- * parameter as a fraction, and below which exponent terms are lifted. */
+/* How to run: centring of the first and of later steps, where to start between centre and surface, the start of the
+ * barrier parameter as a fraction, and below which exponent terms are lifted. */
 typedef struct solve_settings {
   double centring, centring_later, start, mu;
   double lift_below;
@@ -179,9 +179,9 @@ static bool is_steep(const double m[6]) {
   return !(second > SOLVE_STEEP * m[3] && third > SOLVE_STEEP * m[5]);
 }
 
-/* Along a normal of a face or an edge, exactly or nearly, the extreme points are many. Towards the end the matrix is 1e20 times as steep
- * across the edge as along it, and in coordinates the latter part is lost in rounding. Along the matrix's own axes it is not: the
- * steep constraints have nothing but rounding there. */
+/* Along a normal of a face or an edge, exactly or nearly, the extreme points are many. Towards the end the matrix is
+ * 1e20 times as steep across the edge as along it, and in coordinates the latter part is lost in rounding. Along the
+ * matrix's own axes it is not: the steep constraints have nothing but rounding there. */
 static void see_along_its_axes(solve *s, double target, barrier_system *system) {
   enum { SWEEPS = 4 };
   const double *m = system->h;
@@ -363,7 +363,8 @@ static bool solve_overlaps(solve *s) {
 
 /* ---- the loop ---- */
 
-/* Bounds how far the objective (half the squared distance, or the height) is from its optimum, if the residuals are true. */
+/* Bounds how far the objective (half the squared distance, or the height) is from its optimum, if the residuals are
+ * true. */
 static double solve_gap(solve *s, double *mu) {
   const implicit_query *q = s->q;
   barrier_state a = barrier_evaluate(&s->side[0]);
@@ -426,8 +427,9 @@ static double solve_step(solve *s, double target) {
   return primal;
 }
 
-/* Where the certificate does not close by itself, the other readings of the multipliers are tried, and then the direction
- * that the multipliers themselves push in: close together with many nearest points, that of x - y is rounding. */
+/* Where the certificate does not close by itself, the other readings of the multipliers are tried, and then the
+ * direction that the multipliers themselves push in: close together with many nearest points, that of x - y is
+ * rounding. */
 static bool solve_certify_all(solve *s) {
   if (solve_certify(s, BARRIER_MIXED) || solve_certify(s, BARRIER_LIFTED) || solve_certify(s, BARRIER_TANGENT))
     return true;

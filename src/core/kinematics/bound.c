@@ -34,8 +34,8 @@ static double lever_arm(const axis_state *axis, vec3 centre) {
   return axis->kind == AXIS_BALL ? vec_norm(from) : vec_norm(vec_cross(axis->z, from));
 }
 
-/* Returns the displacement bound. r_k in the middle, then the greatest over the node (of a span, over its line): what is tipside shifts
- * the part under the axis. */
+/* Returns the displacement bound. r_k in the middle, then the greatest over the node (of a span, over its line): what
+ * is tipside shifts the part under the axis. */
 static double find_lever_arms(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
                               double *lever_arms) {
   double tipside = 0.0, displacement = 0.0;

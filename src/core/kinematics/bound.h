@@ -11,22 +11,24 @@ typedef struct chain_axis {
   double sign;
 } chain_axis;
 
-/* The axes that move on the way from what `from` carries (-1: the world) to what `to` carries, in that order. Room for all axes. */
+/* The axes that move on the way from what `from` carries (-1: the world) to what `to` carries, in that order. Room for
+ * all axes. */
 size_t motion_chain(const cprox_motion *motion, int32_t from, int32_t to, chain_axis *chain);
 
-/* How a part moves over a node, seen from where its chain begins; directions are those of the world in the middle of the node. */
+/* How a part moves over a node, seen from where its chain begins; directions are those of the world in the middle of
+ * the node. */
 typedef struct chain_motion {
   vec3 v, omega, a, alpha; /* velocity of the part's centre, angular velocity, their derivatives, in the middle */
   double displacement;     /* no point of the part comes farther than this from where it is in the middle */
   double rate;             /* bounds on the first, second and third derivative of any point's position */
   double second, third;
-  double
-      stray; /* over spans all but `displacement` is of a straight line of the variables; points are within this of those on it */
+  double stray; /* over spans all but `displacement` is of a straight line of the variables; points are within this of
+                   those on it */
   double error; /* of what is computed with v, omega, a and alpha over the node */
 } chain_motion;
 
-/* centre: of a ball that contains the part, in the middle of the node, world; radius: with the error of the part's place. scratch:
- * a number for each axis of the chain. */
+/* centre: of a ball that contains the part, in the middle of the node, world; radius: with the error of the part's
+ * place. scratch: a number for each axis of the chain. */
 void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, vec3 centre, double radius,
                     double *scratch, chain_motion *m);
 
@@ -34,8 +36,8 @@ void motion_of_part(const axis_state *axes, const chain_axis *chain, size_t n, v
 double motion_displacement(const cprox_motion *motion, const axis_state *axes, int32_t from, int32_t to, vec3 centre,
                            double radius);
 
-/* How far a part on the axis moves as each axis above it sees it, and the world: displacements[k] of the k-th from the world, which is 0, up to
- * `depth`, its own. Returns the first; displacements may be NULL. */
+/* How far a part on the axis moves as each axis above it sees it, and the world: displacements[k] of the k-th from the
+ * world, which is 0, up to `depth`, its own. Returns the first; displacements may be NULL. */
 double motion_displacements(const cprox_motion *motion, const axis_state *axes, int32_t axis, size_t depth, vec3 centre,
                             double radius, double *displacements);
 
@@ -50,10 +52,10 @@ typedef struct bound_side {
 /* The support of a side along n, seen from its own origin, its margin included. */
 double bound_height(const bound_side *side, vec3 n);
 
-/* The best of the bounds of second and third order by a plane that turns: at tau in [-1/2, 1/2] of the node its normal is
- * n + tau normal_rate, from the standing side to the moving one. n is unit within 4 u, normal_rate is orthogonal to it within
- * 8 u |normal_rate|. heights are those of the standing side along n - normal_rate/2 and n + normal_rate/2. `goal`: what would be
- * enough. steps: transforms in the chain. */
+/* The best of the bounds of second and third order by a plane that turns: at tau in [-1/2, 1/2] of the node its normal
+ * is n + tau normal_rate, from the standing side to the moving one. n is unit within 4 u, normal_rate is orthogonal to
+ * it within 8 u |normal_rate|. heights are those of the standing side along n - normal_rate/2 and n + normal_rate/2.
+ * `goal`: what would be enough. steps: transforms in the chain. */
 double motion_plane_bound(const chain_motion *m, const bound_side *moving, const bound_side *standing, vec3 n,
                           vec3 normal_rate, const double heights[2], uint32_t steps, double goal, double *slack);
 

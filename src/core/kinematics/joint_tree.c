@@ -15,7 +15,8 @@ placement placement_compose(const placement *outer, const placement *inner) {
   return both;
 }
 
-/* About one of the frame's own axes only the other two columns change: m' = c m + s n, n' = c n - s m, turned from m to n. */
+/* About one of the frame's own axes only the other two columns change: m' = c m + s n, n' = c n - s m, turned from m to
+ * n. */
 static void turn_columns(const double *from, int m, int n, double s, double c, double *to) {
   for (int i = 0; i < 9; i += 3) {
     to[i + m] = c * from[i + m] + s * from[i + n];
@@ -24,7 +25,8 @@ static void turn_columns(const double *from, int m, int n, double s, double c, d
   }
 }
 
-/* Rodrigues: cos q + sin q [z] + (1 - cos q) z z^T, all by half the angle; 1 - cos q = 2 sin²(q/2) is small where q is. */
+/* Rodrigues: cos q + sin q [z] + (1 - cos q) z z^T, all by half the angle; 1 - cos q = 2 sin²(q/2) is small where q is.
+ */
 static void turn_about(const robot_axis *axis, const double *from, double q, double *to) {
   const vec3 z = axis->z;
   const double sine = sin(0.5 * q), s = 2.0 * sine * cos(0.5 * q), d = 2.0 * sine * sine, c = 1.0 - d;

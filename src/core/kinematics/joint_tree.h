@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A robot as the searches see it: single axes, each a rotation about a line, a shift along a line or a rotation about a point,
- * and convex parts that hang on them. Planar and floating joints are several axes, fixed ones none: their transforms are folded
- * into what follows. doc/robot-bounds.md derives what is computed with them. */
+/* A robot as the searches see it: single axes, each a rotation about a line, a shift along a line or a rotation about a
+ * point, and convex parts that hang on them. Planar and floating joints are several axes, fixed ones none: their
+ * transforms are folded into what follows. doc/robot-bounds.md derives what is computed with them. */
 #ifndef CPROX_KINEMATICS_JOINT_TREE_H
 #define CPROX_KINEMATICS_JOINT_TREE_H
 
@@ -80,7 +80,8 @@ placement placement_compose(const placement *outer, const placement *inner);
 /* The axis moved to the value, from where it stands at 0: in the same frame as `before`. Not of a ball. */
 void axis_advance(const robot_axis *axis, const placement *before, double value, placement *moved);
 
-/* The moved frame of an axis at the value, its parent's being given (NULL: the world). `quaternion` is that of a ball: x, y, z, w. */
+/* The moved frame of an axis at the value, its parent's being given (NULL: the world). `quaternion` is that of a ball:
+ * x, y, z, w. */
 placement axis_move(const robot_axis *axis, const placement *parent, double value, const double *quaternion);
 
 /* The moved frames of all axes, for values of all variables. */

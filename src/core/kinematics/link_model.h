@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A body as the search about robots has it: a convex set that contains it, and under that the elements that it is made of. */
+/* A body as the search about robots has it: a convex set that contains it, and under that the elements that it is made
+ * of. */
 #ifndef CPROX_KINEMATICS_LINK_MODEL_H
 #define CPROX_KINEMATICS_LINK_MODEL_H
 

@@ -10,7 +10,7 @@
 #include "base/rounding.h"
 #include "simd/dispatch.h"
 
-/* ---- variables ------------------------------------------------------------------------------------------------------------ */
+/* ---- variables ---- */
 
 /* The Bernstein coefficients of some variables, one a lane. */
 typedef double lane_row[MOTION_LANES];
@@ -21,8 +21,8 @@ static inline void blend(double r, double s, const double *d, double *c) {
   for (int l = 0; l < MOTION_LANES; l++) c[l] = r * c[l] + s * d[l];
 }
 
-/* The coefficients of [a, b], by two cuts. Both cuts of neighbours need not be the same point to the last bit: the error of a
- * segment covers that (doc/robot-bounds.md). */
+/* The coefficients of [a, b], by two cuts. Both cuts of neighbours need not be the same point to the last bit: the
+ * error of a segment covers that (doc/robot-bounds.md). */
 static inline void section(size_t degree, double a, double b, lane_row *c) {
   if (a > 0.0)
     for (size_t r = 1; r <= degree; r++)
@@ -46,7 +46,8 @@ static inline void lanes_middle(const lane_row *c, size_t degree, double *middle
   for (int l = 0; l < MOTION_LANES; l++) middle[l] = v[0][l];
 }
 
-/* The coefficients of the derivative take the place of those of the polynomial; the largest is at most largest + factor * error. */
+/* The coefficients of the derivative take the place of those of the polynomial; the largest is at most largest + factor
+ * * error. */
 static inline void lanes_differentiate(lane_row *c, size_t degree, double factor, const double *error,
                                        double *largest) {
 #pragma omp simd
@@ -117,7 +118,7 @@ void motion_fill_rows(const cprox_motion *m, size_t segment, double a, double b,
   }
 }
 
-/* ---- one variable --------------------------------------------------------------------------------------------------------- */
+/* ---- one variable ---- */
 
 static double at_middle(const double *c, size_t degree) {
   double v[MOTION_MAX_DEGREE + 1] = {0};
@@ -151,7 +152,7 @@ static double quaternion_over(const cprox_motion *m, size_t segment, int32_t var
   return error;
 }
 
-/* ---- one axis ------------------------------------------------------------------------------------------------------------- */
+/* ---- one axis ---- */
 
 /* Straight lines of quaternions that come nearer to 0 than this part of their middle bound nothing. */
 static const double NEAREST_LINE = 0.25;
@@ -183,8 +184,8 @@ static void place_ball(const robot_axis *axis, double p[3][4], const placement *
   state->frame = parent ? placement_compose(parent, &own) : own;
 }
 
-/* Over a span the quaternion is within `stray` of a straight line. Quaternions that are e apart, one of them of norm m > e,
- * turn vectors to where they are 2 e / m of their length apart at most, and any two turn them 2 apart at most. */
+/* Over a span the quaternion is within `stray` of a straight line. Quaternions that are e apart, one of them of norm m
+ * > e, turn vectors to where they are 2 e / m of their length apart at most, and any two turn them 2 apart at most. */
 static void ball_over_span(const cprox_motion *m, const robot_axis *axis, const double *rows, const placement *parent,
                            const placement *before, axis_state *state) {
   const size_t stride = motion_rows_stride(m);
@@ -214,7 +215,8 @@ static void ball_over_span(const cprox_motion *m, const robot_axis *axis, const 
   place_ball(axis, p, parent, before, state);
 }
 
-/* A quaternion of any norm turns at omega = 2 vec(p' p*) / |p|² and omega' = 2 vec(p'' p*) / |p|² - 2 omega (p·p') / |p|². */
+/* A quaternion of any norm turns at omega = 2 vec(p' p*) / |p|² and omega' = 2 vec(p'' p*) / |p|² - 2 omega (p·p') /
+ * |p|². */
 static void ball_over(const cprox_motion *m, size_t segment, size_t axis_index, double a, double b,
                       const placement *parent, const placement *before, axis_state *state) {
   const robot_axis *axis = &m->robot->axes[axis_index];
@@ -302,7 +304,7 @@ span_centre motion_span_node(const cprox_motion *m, const motion_interval *over,
   return centre;
 }
 
-/* ---- one time ------------------------------------------------------------------------------------------------------------- */
+/* ---- one time ---- */
 
 static double value_at(const double *root, size_t degree, double u) {
   double c[MOTION_MAX_DEGREE + 1];
@@ -358,7 +360,7 @@ void cprox_motion_evaluate(const cprox_motion *motion, double t, double *variabl
   values_at(motion, segment, fmin(fmax((t - t0) / (t1 - t0), 0.0), 1.0), variables);
 }
 
-/* ---- ranges --------------------------------------------------------------------------------------------------------------- */
+/* ---- ranges ---- */
 
 enum { RANGE_HALVINGS = 40 };
 
@@ -417,7 +419,7 @@ cprox_variable_info cprox_motion_get_variable_info(const cprox_motion *motion, s
   return (cprox_variable_info){.lowest = range.low, .highest = range.high};
 }
 
-/* ---- what moves ----------------------------------------------------------------------------------------------------------- */
+/* ---- what moves ---- */
 
 /* Counts the joints from an axis up to, not including, another one, and those of them that the motion moves. */
 static void count_joints(const cprox_motion *m, int32_t from, int32_t to, size_t *joints, size_t *moved) {

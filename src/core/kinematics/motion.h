@@ -88,14 +88,14 @@ static inline bool motion_is_span(const motion_interval *over) {
 void motion_find_axis(const cprox_motion *motion, const motion_interval *over, const double *rows, size_t axis,
                       axis_state *axes);
 
-/* Changes a motion of the kind CPROX_MOTION_STATE, which no query may be using, to these values of all variables. Allocates
- * nothing; untouched on failure. */
+/* Changes a motion of the kind CPROX_MOTION_STATE, which no query may be using, to these values of all variables.
+ * Allocates nothing; untouched on failure. */
 cprox_status motion_set_state(cprox_motion *motion, const double *values, cprox_workspace *workspace);
 
 /* Does the motion move the link? Of a state: could a joint move it? */
 bool motion_moves_link(const cprox_motion *motion, int32_t link);
-/* Can two links come closer in a way that is worth asking for: are there at least two joints that can move between them,
- * and at least one that this motion moves, if it is no state? */
+/* Can two links come closer in a way that is worth asking for: are there at least two joints that can move between
+ * them, and at least one that this motion moves, if it is no state? */
 bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t link_b);
 
 /* The segment that holds a time: the last one that begins at it or before it. */

@@ -22,7 +22,7 @@ typedef struct motion_source {
   cprox_workspace *workspace;
 } motion_source;
 
-/* ---- checks --------------------------------------------------------------------------------------------------------------- */
+/* ---- checks ---- */
 
 static cprox_status check_source(const motion_source *s) {
   if (s->n > 0 && !s->variables) return workspace_fail(s->workspace, CPROX_INVALID, "variables is NULL");
@@ -99,7 +99,7 @@ static cprox_status check_spline(const cprox_motion_description *d, cprox_worksp
                         n_control, knots[degree]);
 }
 
-/* ---- memory --------------------------------------------------------------------------------------------------------------- */
+/* ---- memory ---- */
 
 static cprox_motion *allocate(const motion_source *s, size_t n_segments, size_t degree) {
   cprox_motion *m = calloc(1, sizeof *m);
@@ -145,7 +145,7 @@ void cprox_motion_free(cprox_motion *motion) {
   free(motion);
 }
 
-/* ---- finishing ------------------------------------------------------------------------------------------------------------ */
+/* ---- finishing ---- */
 
 /* The largest coefficient of a variable over the whole motion, and the largest error. */
 static double largest_value(const cprox_motion *m, int32_t variable, double *error) {
@@ -260,8 +260,8 @@ static double value_error(const cprox_motion *m, int32_t i, double *value) {
   return fabs(axis->multiplier) * sum + 2.0 * ROUND_U * (*value + fabs(axis->offset));
 }
 
-/* From the part up: transforms that turn by ROUND_JOINT too much, and values that are off by theirs, about lever arms of at most the
- * lengths that are behind them; then what sums of places round. */
+/* From the part up: transforms that turn by ROUND_JOINT too much, and values that are off by theirs, about lever arms
+ * of at most the lengths that are behind them; then what sums of places round. */
 static cprox_status finish_parts(cprox_motion *m, cprox_workspace *workspace) {
   const robot_axis *axes = m->robot->axes;
   const size_t n_axes = m->robot->n_axes;
@@ -312,7 +312,7 @@ static double cutting_error(size_t degree, double largest) {
   return ROUND_UP * ROUND_U * (16.0 * (double)degree + 8.0) * largest;
 }
 
-/* ---- waypoints ------------------------------------------------------------------------------------------------------------ */
+/* ---- waypoints ---- */
 
 static size_t degree_between(const cprox_waypoint *a, const cprox_waypoint *b, cprox_interpolation interpolation) {
   switch (interpolation) {
@@ -376,7 +376,7 @@ static cprox_status create_waypoints(const motion_source *s, cprox_motion **moti
   return finish(m, s, motion);
 }
 
-/* ---- B-splines ------------------------------------------------------------------------------------------------------------ */
+/* ---- B-splines ---- */
 
 /* One span of one variable; returns the size of its de Boor points. */
 static double convert_span(const double *control, size_t n, const double *knots, size_t degree, size_t r, double *c) {
@@ -422,7 +422,7 @@ static cprox_status create_bspline(const motion_source *s, cprox_motion **motion
   return finish(m, s, motion);
 }
 
-/* ---- states --------------------------------------------------------------------------------------------------------------- */
+/* ---- states ---- */
 
 /* All that depends on the values of the variables, which stand in m->rest. */
 static cprox_status place_state(cprox_motion *m, cprox_workspace *workspace) {
@@ -470,7 +470,7 @@ cprox_status motion_set_state(cprox_motion *motion, const double *values, cprox_
   return status;
 }
 
-/* ---- every kind ----------------------------------------------------------------------------------------------------------- */
+/* ---- every kind ---- */
 
 cprox_status cprox_motion_create(const cprox_robot *robot, const cprox_motion_description *description,
                                  cprox_workspace *workspace, cprox_motion **motion) {

@@ -10,7 +10,7 @@
 
 enum { AXES_OF_FLOATING = 4 };
 
-/* ---- checks --------------------------------------------------------------------------------------------------------------- */
+/* ---- checks ---- */
 
 static size_t variables_of(cprox_joint_type type) {
   switch (type) {
@@ -94,7 +94,7 @@ static cprox_status check_robot(const cprox_link *links, size_t n_links, const c
   return CPROX_OK;
 }
 
-/* ---- axes ----------------------------------------------------------------------------------------------------------------- */
+/* ---- axes ---- */
 
 static const placement HERE = {.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
@@ -182,7 +182,7 @@ static void add_link(cprox_robot *robot, const cprox_link *link) {
       (robot_link){.parent = link->parent, .axis = end.axis, .at = end.at, .steps = end.steps, .reach = end.reach};
 }
 
-/* ---- parts ---------------------------------------------------------------------------------------------------------------- */
+/* ---- parts ---- */
 
 static size_t parts_of(const cprox_body *body) {
   return body->kind == CPROX_BODY_COMPOUND ? body->n_parts : 1;
@@ -216,7 +216,7 @@ static void add_geometry(cprox_robot *robot, const cprox_link_geometry *g, size_
   }
 }
 
-/* ---- robots --------------------------------------------------------------------------------------------------------------- */
+/* ---- robots ---- */
 
 cprox_status cprox_robot_create(const cprox_link *links, size_t n_links, const cprox_link_geometry *geometries,
                                 size_t n_geometries, size_t n_variables, cprox_workspace *workspace,

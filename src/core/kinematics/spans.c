@@ -15,7 +15,7 @@ enum { FINEST = 2, FINEST_SIZE = 1 << FINEST, MOST_PIECES = 2 * (SPAN_MOST_LEVEL
 /* Spans that stray farther than this part of their chord are only bounded by their ranges. */
 static const double BENT = 0.1;
 
-/* ---- blocks --------------------------------------------------------------------------------------------------------------- */
+/* ---- blocks ---- */
 
 typedef enum block_row { BLOCK_LOW, BLOCK_HIGH, BLOCK_BELOW, BLOCK_ABOVE, BLOCK_ROWS } block_row;
 
@@ -38,7 +38,7 @@ static const double *coefficients_of(const cprox_motion *m, size_t segment) {
   return m->coefficients + segment * m->n_moving * m->stride;
 }
 
-/* ---- along a chord -------------------------------------------------------------------------------------------------------- */
+/* ---- along a chord ---- */
 
 /* A chord, and what the pieces so far say of the way beside it. */
 typedef struct walk {
@@ -110,7 +110,7 @@ static void round_outward(const walk *w) {
   }
 }
 
-/* ---- the tree ------------------------------------------------------------------------------------------------------------- */
+/* ---- the tree ---- */
 
 static void make_block(const cprox_motion *m, size_t level, size_t k) {
   const size_t n = m->n_moving, size = (size_t)1 << level, first = k * size;
@@ -165,7 +165,7 @@ void motion_spans_free(motion_spans *s) {
   *s = (motion_spans){0};
 }
 
-/* ---- a span --------------------------------------------------------------------------------------------------------------- */
+/* ---- a span ---- */
 
 /* A block of the tree (level >= 2), or a segment or a part of one. */
 typedef struct piece {

@@ -43,7 +43,7 @@ static void overlap(const search *s, vec3 common, pair_answer *answer) {
   answer->normal = vec(0, 0, 0);
 }
 
-/* ---- one element ------------------------------------------------------------------------------------------------------ */
+/* ---- one element ---- */
 
 vec3 pair_element_shape(const tree *t, tree_place at, double vertices[3][TREE_LANES], convex *shape) {
   vec3 v[3], centre;
@@ -111,7 +111,7 @@ static void visit(tree_seeker *seeker, tree_place at, uint32_t element) {
   seeker->least = vec_dot(n, s->place->t) - reach;
 }
 
-/* ---- the ways to know ------------------------------------------------------------------------------------------------- */
+/* ---- the ways to know ---- */
 
 /* A ball: one point's nearest element. */
 static void ball(search *s, pair_answer *answer) {

@@ -13,8 +13,8 @@ typedef struct dual_side {
   uint32_t at, lane;
 } dual_side;
 
-/* Lanes of a node or a pack of one tree, held against a box or an element of the other one by their own normals. Those that may be nearest
- * are looked at first, of equals the nearest by the middle, of those again the latest. */
+/* Lanes of a node or a pack of one tree, held against a box or an element of the other one by their own normals. Those
+ * that may be nearest are looked at first, of equals the nearest by the middle, of those again the latest. */
 typedef struct dual_entry {
   double lower, far2;
   dual_side other;
@@ -48,7 +48,7 @@ static vec3 across(const dual *d, int from, vec3 p) {
   return rotate_back(d->place->r, vec_sub(p, d->place->t));
 }
 
-/* ---- the heap --------------------------------------------------------------------------------------------------------- */
+/* ---- the heap ---- */
 
 static bool is_before(const dual_entry *a, const dual_entry *b) {
   if (a->lower != b->lower) return a->lower < b->lower;
@@ -85,7 +85,7 @@ static dual_entry pop(dual *d) {
   return top;
 }
 
-/* ---- two elements ----------------------------------------------------------------------------------------------------- */
+/* ---- two elements ---- */
 
 /* As exactly as doubles allow, whatever is asked for: so the order of the search does not depend on that. */
 static void measure(dual *d, tree_place at, tree_place there) {
@@ -117,7 +117,7 @@ static void measure(dual *d, tree_place at, tree_place there) {
   d->best.common = vec_add(answer.common, own);
 }
 
-/* ---- boxes ------------------------------------------------------------------------------------------------------------ */
+/* ---- boxes ---- */
 
 static bool is_element(dual_side s) {
   return (s.at & TREE_LEAF) != 0;
@@ -183,8 +183,9 @@ static tree_segment interval_of(const dual *d, int which, dual_side other) {
   return segment;
 }
 
-/* Lanes of a node or a pack of tree `which` against a box or an element of the other one: what of them may matter enters the heap, two elements
- * each by itself. What is left out does not depend on epsilon, and neither does the order in which all is looked at. */
+/* Lanes of a node or a pack of tree `which` against a box or an element of the other one: what of them may matter
+ * enters the heap, two elements each by itself. What is left out does not depend on epsilon, and neither does the order
+ * in which all is looked at. */
 static void spread(dual *d, int which, uint32_t at, uint32_t wanted, dual_side other, double above) {
   const tree *t = tree_of(d, which);
   const tree_segment segment = interval_of(d, which, other);
@@ -210,7 +211,7 @@ static void spread(dual *d, int which, uint32_t at, uint32_t wanted, dual_side o
   d->entries += TREE_LANES;
 }
 
-/* ---- the descent ------------------------------------------------------------------------------------------------------ */
+/* ---- the descent ---- */
 
 static uint32_t lanes_of(const tree *t, uint32_t at) {
   return at & TREE_LEAF ? TREE_ALL_LANES : t->nodes[at].lanes;
@@ -260,8 +261,8 @@ static bool waits(dual *d, const dual_entry *e, dual_side own) {
   return true;
 }
 
-/* Two elements are measured. Else the wider side is opened: so what is wide ends as lanes, which part what is small from them by normals of
- * their own. */
+/* Two elements are measured. Else the wider side is opened: so what is wide ends as lanes, which part what is small
+ * from them by normals of their own. */
 static void visit(dual *d, const dual_entry *e) {
   const bool leaf = (e->at & TREE_LEAF) != 0;
   if (leaf && is_element(e->other)) {
@@ -327,13 +328,14 @@ static void overlap(const dual *d, vec3 common, pair_answer *answer) {
   answer->normal = vec(0, 0, 0);
 }
 
-/* ---- insides ---------------------------------------------------------------------------------------------------------- */
+/* ---- insides ---- */
 
 static bool is_solid(const pair_side *side) {
   return side->body->winding != NULL;
 }
 
-/* Whether a corner of one's first element is inside of the other, which is solid; where the surfaces do not meet, then all of it is. */
+/* Whether a corner of one's first element is inside of the other, which is solid; where the surfaces do not meet, then
+ * all of it is. */
 static bool holds(const dual *d, int solid, vec3 *point) {
   if (!is_solid(d->side[solid])) return false;
   vec3 corner[3];

@@ -132,8 +132,8 @@ static void pair_take(const implicit_answer *found, const pair_side *a, const pa
   answer->rounding = rounding;
 }
 
-/* Two implicit bodies: their support functions where that does not stall, else the interior point method. How deep they overlap
- * the search by supports says. False where memory is out. */
+/* Two implicit bodies: their support functions where that does not stall, else the interior point method. How deep they
+ * overlap the search by supports says. False where memory is out. */
 static bool pair_implicit(const pair_side *a, const pair_side *b, const pair_placement *place, const pair_goal *goal,
                           cprox_workspace *workspace, pair_answer *answer) {
   const implicit *x = a->shape->implicit, *y = b->shape->implicit;
@@ -305,8 +305,8 @@ static bool pair_is_stopped(const pair_task *task) {
   return task->options->stop && task->options->stop(task->options->stop_user);
 }
 
-/* The nearest of all pairs of parts; its lower is the least of all their lower bounds. Stopped: the nearest of those that were
- * looked at. */
+/* The nearest of all pairs of parts; its lower is the least of all their lower bounds. Stopped: the nearest of those
+ * that were looked at. */
 static cprox_status pair_over_parts(const pair_task *task, pair_reply *best) {
   *best = (pair_reply){.answer = {.lower = INFINITY, .upper = INFINITY}};
   for (size_t i = 0; i < pair_count_parts(task->a->body); i++) {

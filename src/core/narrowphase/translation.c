@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Bodies that translate. Their distance is a convex function of time, so the plane that separates them at one time bounds it
- * at all others: stepping as far as that bound allows never passes contact (doc/implicit.md). */
+/* Bodies that translate. Their distance is a convex function of time, so the plane that separates them at one time
+ * bounds it at all others: stepping as far as that bound allows never passes contact (doc/implicit.md). */
 #include "curve_proximity/cprox/translation.h"
 
 #include <math.h>
@@ -164,8 +164,8 @@ static cprox_status approach_run(approach *p, const cprox_options *options, cpro
   return CPROX_BUDGET;
 }
 
-/* They are within epsilon at free_until. A little later they may certainly touch: by their speed, as deep as rounding could hide it. Then
- * that is where p->last is asked, and *at. */
+/* They are within epsilon at free_until. A little later they may certainly touch: by their speed, as deep as rounding
+ * could hide it. Then that is where p->last is asked, and *at. */
 static cprox_status approach_prove(approach *p, const cprox_options *options, cprox_workspace *workspace, double *at) {
   enum { MOST_STEPS = 12 };
   cprox_options fine = *options;
@@ -226,8 +226,8 @@ cprox_status cprox_translating_contact(cprox_translating a, cprox_translating b,
 
 /* ---- growth ---- */
 
-/* Both scaled by g about their centres touch where, unscaled, they would touch with the centres 1/g times as far apart: b
- * approaches along the line of the centres from where it is free for certain. */
+/* Both scaled by g about their centres touch where, unscaled, they would touch with the centres 1/g times as far apart:
+ * b approaches along the line of the centres from where it is free for certain. */
 cprox_status cprox_growth_distance(cprox_obstacle a, cprox_obstacle b, const cprox_options *options,
                                    cprox_workspace *workspace, cprox_growth *growth) {
   workspace_clear(workspace);

@@ -12,7 +12,8 @@ typedef struct pair_witness {
   vec3 normal; /* from b to a; (0,0,0) where there is none */
 } pair_witness;
 
-/* CPROX_OK, or a negative status with its reason in the workspace. Of these parts of the two (0 where the body is no compound), which are not both halfspaces. */
+/* CPROX_OK, or a negative status with its reason in the workspace. Of these parts of the two (0 where the body is no
+ * compound), which are not both halfspaces. */
 cprox_status pair_witness_of(const cprox_obstacle *a, size_t part_a, const cprox_obstacle *b, size_t part_b,
                              cprox_lod finest, bool depth, cprox_workspace *workspace, pair_witness *witness);
 

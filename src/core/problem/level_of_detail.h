@@ -27,8 +27,8 @@ static inline bool model_is_body(const cprox_body *body, cprox_lod finest) {
   return body->kind != CPROX_BODY_COMPOUND && body->kind != CPROX_BODY_LOD && finest != CPROX_LOD_SPHERE;
 }
 
-/* Of a part of a compound, or of the body where it is none; *inner becomes the pose of the model in the frame of the body. False in
- * *moved: that is the identity. */
+/* Of a part of a compound, or of the body where it is none; *inner becomes the pose of the model in the frame of the
+ * body. False in *moved: that is the identity. */
 model model_of_part(const cprox_body *body, size_t part, cprox_lod finest, cprox_pose *inner, bool *moved);
 
 #endif

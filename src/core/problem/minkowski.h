@@ -12,8 +12,8 @@ typedef struct carried_shape {
   double offset; /* of a ball that is carried: the shape is then the standing one */
 } carried_shape;
 
-/* `standing` is convex and stands at the pose; `carried` is convex and bounded, its pose that at the curve's origin. False where its
- * support callback misbehaved. */
+/* `standing` is convex and stands at the pose; `carried` is convex and bounded, its pose that at the curve's origin.
+ * False where its support callback misbehaved. */
 bool carried_join(const cprox_body *standing, const cprox_pose *pose, const cprox_body *carried,
                   const cprox_pose *carried_pose, carried_shape *joined);
 

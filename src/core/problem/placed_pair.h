@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A candidate resolved once: both shapes at the level of detail that is searched, where they are, and the margins round them. */
+/* A candidate resolved once: both shapes at the level of detail that is searched, where they are, and the margins round
+ * them. */
 #ifndef CPROX_PROBLEM_PLACED_PAIR_H
 #define CPROX_PROBLEM_PLACED_PAIR_H
 
@@ -11,15 +12,16 @@ typedef struct placed_pair {
   const cprox_obstacle *obstacle;
   cprox_lod lod; /* of the models below */
 
-  /* The obstacle's model; NULL for a curve at a parameter of its own. An obstacle on the mover's clock has a shape, if only a point,
-   * which stands where it would if its curve were at the origin. */
+  /* The obstacle's model; NULL for a curve at a parameter of its own. An obstacle on the mover's clock has a shape, if
+   * only a point, which stands where it would if its curve were at the origin. */
   const cprox_body *shape;
   cprox_pose pose;       /* in the world */
   frame frame;           /* the same, about the shape's centre; not set without a shape */
   double position_error; /* the composition of the pose may have moved the shape, and what turns with it, this far */
   double margin;         /* round the shape */
 
-  /* The model of the convex part that the mover carries, NULL for none, and its pose while the curve is at the origin. */
+  /* The model of the convex part that the mover carries, NULL for none, and its pose while the curve is at the origin.
+   */
   const cprox_body *carried;
   cprox_pose carried_pose;
   double offset; /* all margins: the obstacle's, and that of what rides the curve */

@@ -69,8 +69,8 @@ cprox_result query_nothing(void);
 /* Adds the answer against another set to the union's: the least of both ends, with the witness of the upper one. */
 void query_join(cprox_result *all, const cprox_result *one);
 
-/* Room in the workspace for the results of up to n targets, so that the caller's array is written only when the query has succeeded.
- * NULL where memory is out. */
+/* Room in the workspace for the results of up to n targets, so that the caller's array is written only when the query
+ * has succeeded. NULL where memory is out. */
 cprox_result *query_reserve_results(const query *q, size_t n);
 
 /* Puts a result where it belongs among the k nearest so far, ascending by upper. */

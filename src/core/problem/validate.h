@@ -23,8 +23,8 @@ typedef struct arguments_query {
 } arguments_query;
 
 /* CPROX_OK, or CPROX_INVALID with a sentence that names the argument. */
-/* A copy of the caller's options, of NULL the default. Options of another size are not read: the copy is the default with
- * their size, which arguments_check_options() refuses. */
+/* A copy of the caller's options, of NULL the default. Options of another size are not read: the copy is the default
+ * with their size, which arguments_check_options() refuses. */
 cprox_options arguments_options(const cprox_options *options);
 
 cprox_status arguments_check_options(const cprox_options *options, arguments_query asked, cprox_workspace *workspace);

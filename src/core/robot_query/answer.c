@@ -6,9 +6,9 @@
 #include "problem/problem.h"
 #include "robot_query/oracle.h"
 
-/* ---- arguments ------------------------------------------------------------------------------------------------------------ */
+/* ---- arguments ---- */
 
-/* ---- the search ----------------------------------------------------------------------------------------------------------- */
+/* ---- the search ---- */
 
 /* Fractions are rounded outwards by a little more than a division can be off. */
 static bool root_of(const query *q, robot_search *o, search_node *root) {
@@ -34,7 +34,7 @@ static cprox_status run(const query *q, const search_goal *goal, robot_search *o
   return status;
 }
 
-/* ---- what was found ------------------------------------------------------------------------------------------------------- */
+/* ---- what was found ---- */
 
 static void report(const robot_search *o, const robot_sample *sample, cprox_result *r) {
   if (sample->pair < 0) return;
@@ -77,8 +77,7 @@ cprox_status robot_answer(const query *q, size_t first, size_t last, double cuto
   return r.status;
 }
 
-/* ---- time of contact
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- time of contact ---- */
 
 cprox_status robot_time_of_contact(const query *q, cprox_result *result) {
   robot_search o;

@@ -9,9 +9,10 @@
 #include "broadphase/obstacle_set.h"
 #include "simd/dispatch.h"
 
-/* ---- which pairs there are already ------------------------------------------------------------------------------------------ */
+/* ---- which pairs there are already ---- */
 
-/* Of a part and a target their first pair, of the part -1 the target's first obstacle. An open table, at most half full. */
+/* Of a part and a target their first pair, of the part -1 the target's first obstacle. An open table, at most half
+ * full. */
 struct cluster_slot {
   int32_t part, first; /* first < 0: nothing is here */
   uint32_t target;
@@ -77,7 +78,7 @@ int32_t cluster_pairs(robot_scene *s, int32_t part, uint32_t box, size_t *count)
   return first;
 }
 
-/* ---- boxes ------------------------------------------------------------------------------------------------------------------ */
+/* ---- boxes ---- */
 
 /* Of a point from eight boxes: their least coordinates, then their greatest, a row for each axis. */
 SIMD_CLONES

@@ -11,7 +11,8 @@ static vec3 middle_of(const vec3 v[3], int n) {
   return vec_scale(1.0 / 3.0, vec_add(vec_add(v[0], v[1]), v[2]));
 }
 
-/* The smallest box round the corners; of a box itself, whose middle may be off by half a rounding, one that contains both. */
+/* The smallest box round the corners; of a box itself, whose middle may be off by half a rounding, one that contains
+ * both. */
 static void find_box(robot_element *e, int n) {
   double low[3] = {e->x[0], e->y[0], e->z[0]}, high[3] = {e->x[0], e->y[0], e->z[0]};
   for (int i = 1; i < n; i++) {

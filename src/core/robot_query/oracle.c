@@ -22,7 +22,8 @@ static const double SEED_FRACTION = 0.02;
 /* Intervals that are shorter are measured even where a part moves farther than its own size. */
 #define SHORT_INTERVAL 0x1p-8
 
-/* Parts that move farther than their own size, and than this fraction of their distance, are split before they are measured. */
+/* Parts that move farther than their own size, and than this fraction of their distance, are split before they are
+ * measured. */
 static const double MOST_DISPLACEMENT = 0.5;
 
 /* Normals that turn faster than this over a node are taken to stand still. */
@@ -33,7 +34,7 @@ static const double ENOUGH_PIECES = 3.0;
 
 #define SHORTEST_INTERVAL 0x1p-46
 
-/* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
+/* ---- nodes ---- */
 
 static motion_interval interval_of(const search_node *node) {
   const robot_node *payload = robot_known(node);
@@ -73,7 +74,7 @@ bool robot_search_root(robot_search *o, size_t first, double u0, size_t last, do
   return true;
 }
 
-/* ---- measuring ------------------------------------------------------------------------------------------------------------ */
+/* ---- measuring ---- */
 
 /* The lower bound from which on a pair needs no more work, and whether one says that. */
 static double pruning_bound(const robot_search *o) {
@@ -89,7 +90,8 @@ static bool is_answered(const robot_search *o) {
   return search_is_answered(&o->goal, o->best_bound.upper);
 }
 
-/* Distances: the least one. Left to right: the earliest one within epsilon of contact, and until there is one, the least. */
+/* Distances: the least one. Left to right: the earliest one within epsilon of contact, and until there is one, the
+ * least. */
 static bool is_better(const robot_search *o, double upper, double at) {
   if (o->goal.order != SEARCH_LEFT_TO_RIGHT) return upper < o->best_bound.upper;
   const double near = o->goal.limit + o->goal.epsilon;
@@ -144,7 +146,8 @@ static cprox_status measure(robot_search *o, int32_t index, robot_accuracy accur
   return CPROX_OK;
 }
 
-/* Sets out from what is known of the hulls. No element is farther from the other side than the hulls' distance and their sizes. */
+/* Sets out from what is known of the hulls. No element is farther from the other side than the hulls' distance and
+ * their sizes. */
 static robot_refinement refinement_from(robot_search *o, int32_t index, const robot_gap *hulls, double reach,
                                         double room) {
   const robot_pair *pair = &o->scene.pairs[index];
@@ -352,9 +355,10 @@ static cprox_status seed(robot_search *o, const search_node *node) {
   return status;
 }
 
-/* ---- bounds --------------------------------------------------------------------------------------------------------------- */
+/* ---- bounds ---- */
 
-/* The pair's last normal, carried on to where the scene is as it turned; in the standing frame. (0,0,0) where there is none. */
+/* The pair's last normal, carried on to where the scene is as it turned; in the standing frame. (0,0,0) where there is
+ * none. */
 static vec3 known_normal(const robot_search *o, const robot_pair *pair) {
   if (!pair->normal_known) return vec(0, 0, 0);
   const double here = robot_scene_place(&o->scene, o->scene.segment, o->scene.u);
@@ -363,7 +367,8 @@ static vec3 known_normal(const robot_search *o, const robot_pair *pair) {
   return vec_scale(1.0 / vec_norm(n), n);
 }
 
-/* The beginning and the end of the node that the scene is at, along the motion; in that of one segment, of the segment. */
+/* The beginning and the end of the node that the scene is at, along the motion; in that of one segment, of the segment.
+ */
 static void ends_of_node(const robot_search *o, bool whole, double *from, double *to) {
   const motion_interval *over = &o->scene.over;
   const bool segment = whole && !motion_is_span(over);
@@ -418,8 +423,8 @@ static void want_pieces(robot_search *o, double pieces) {
   o->pieces = greater(pieces, o->pieces);
 }
 
-/* A pair that is `middle` apart in the middle, of which the whole node says `bound`: what is lost shrinks as the square of the length
- * on the piece that is nearest; on others it may shrink slower, but there is more to lose. */
+/* A pair that is `middle` apart in the middle, of which the whole node says `bound`: what is lost shrinks as the square
+ * of the length on the piece that is nearest; on others it may shrink slower, but there is more to lose. */
 static double pieces_for(const robot_search *o, double middle, double bound) {
   const double goal = pruning_bound(o);
   return middle > goal ? sqrt(1.05 * (middle - bound) / (middle - goal)) : 2.0;
@@ -485,8 +490,8 @@ static cprox_status refine_pair_elements(robot_search *o, search_node *node, lis
   return CPROX_OK;
 }
 
-/* Raises the bound of one pair over the node that the scene is at by balls and boxes. A part that moves too far to be measured wants
- * the node cut. */
+/* Raises the bound of one pair over the node that the scene is at by balls and boxes. A part that moves too far to be
+ * measured wants the node cut. */
 static void bound_pair_roughly(robot_search *o, const search_node *node, list_entry *entry) {
   const robot_pair *pair = &o->scene.pairs[entry->pair];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
@@ -523,7 +528,8 @@ static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *e
     entry->lower = fmax(entry->lower, bound);
     if (is_pruned(o, entry->lower)) return CPROX_OK;
 
-    /* verdicts: a plane that parts the two in the middle says how short the pieces must be; no distance could say much more */
+    /* verdicts: a plane that parts the two in the middle says how short the pieces must be; no distance could say much
+     * more */
     const double pieces = o->goal.limit >= 0.0 ? pieces_for(o, plane_middle(o, pair, moving, standing), bound) : 2.0;
     if (pieces > ENOUGH_PIECES && !is_short(node)) {
       want_pieces(o, pieces);
@@ -574,8 +580,8 @@ static cprox_status open_box(robot_search *o, const search_node *node, const lis
   return status;
 }
 
-/* What is under a node of the set's tree and within reach of a part: pairs, or, where the part moves too far for these to be measured,
- * nodes that hold them. */
+/* What is under a node of the set's tree and within reach of a part: pairs, or, where the part moves too far for these
+ * to be measured, nodes that hold them. */
 static cprox_status open_cluster(robot_search *o, const search_node *node, const list_entry *entry) {
   const robot_pair any = {.moving = entry->part, .element = {-1, -1}};
   const double radius = robot_scene_moving(&o->scene, &any)->radius,
@@ -674,7 +680,7 @@ static cprox_status bound_node(robot_search *o, search_node *node) {
   return CPROX_OK;
 }
 
-/* ---- the oracle ----------------------------------------------------------------------------------------------------------- */
+/* ---- the oracle ---- */
 
 static double filter(void *self, search_node *node, double goal) {
   (void)self, (void)goal;
@@ -695,7 +701,8 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   return status;
 }
 
-/* At knots, into pieces that take about the same time: as many as are wanted, or where the span is bent as many as can be. */
+/* At knots, into pieces that take about the same time: as many as are wanted, or where the span is bent as many as can
+ * be. */
 static int split_span(const robot_search *o, const search_node *node, search_node *child) {
   const cprox_motion *m = o->scene.motion;
   const motion_interval over = interval_of(node);
@@ -754,10 +761,10 @@ void robot_search_begin(robot_search *o, const search_goal *goal) {
   lists_begin(&o->lists, o->scene.q->workspace);
 }
 
-/* ---- proof of contact ----------------------------------------------------------------------------------------------------- */
+/* ---- proof of contact ---- */
 
-/* The distance of a pair at a time, as exactly as arithmetic has it, or of every pair that may touch (-1); what it proves stands in
- * o->touch. */
+/* The distance of a pair at a time, as exactly as arithmetic has it, or of every pair that may touch (-1); what it
+ * proves stands in o->touch. */
 static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, double *upper) {
   const cprox_motion *m = o->scene.motion;
   const size_t segment = motion_segment_at(m, t);

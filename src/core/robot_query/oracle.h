@@ -56,13 +56,15 @@ typedef struct robot_search {
 /* The scene must have begun. */
 void robot_search_begin(robot_search *o, const search_goal *goal);
 
-/* The node of all that is asked about: from u0 of the first segment to u1 of the last one. False where memory is out. */
+/* The node of all that is asked about: from u0 of the first segment to u1 of the last one. False where memory is out.
+ */
 bool robot_search_root(robot_search *o, size_t first, double u0, size_t last, double u1, search_node *root);
 
 search_oracle robot_search_oracle(robot_search *o);
 
-/* After a search from left to right: contact that is nearer than epsilon, but proven only later if at all, becomes proven a little farther
- * along, up to the time `end`, if a few measurements of its pair succeed. CPROX_OK, or a negative status. */
+/* After a search from left to right: contact that is nearer than epsilon, but proven only later if at all, becomes
+ * proven a little farther along, up to the time `end`, if a few measurements of its pair succeed. CPROX_OK, or a
+ * negative status. */
 cprox_status robot_search_prove(robot_search *o, double end);
 
 #endif

@@ -13,7 +13,7 @@ static bool is_halfspace(const robot_body *body) {
   return body->side.shape->ops->kind == CPROX_BODY_HALFSPACE;
 }
 
-/* ---- bodies --------------------------------------------------------------------------------------------------------------- */
+/* ---- bodies ---- */
 
 /* The finest model that the query allows. Clouds and octrees stay what they are, and so do halfspaces. */
 static part_model model_for(const query *q, part_model model) {
@@ -25,7 +25,7 @@ static part_model model_for(const query *q, part_model model) {
   return q->options.max_lod == CPROX_LOD_SPHERE && !endless ? part_model_ball(&model) : model;
 }
 
-/* ---- obstacles ------------------------------------------------------------------------------------------------------------ */
+/* ---- obstacles ---- */
 
 /* A part of a target; the frames of parts of unions are composed. */
 static robot_body obstacle_of(const query *q, size_t index, size_t part) {
@@ -82,7 +82,7 @@ static robot_body part_body(const query *q, size_t i) {
   return body;
 }
 
-/* ---- pairs ---------------------------------------------------------------------------------------------------------------- */
+/* ---- pairs ---- */
 
 /* The axes from one up to the base. */
 static size_t depth_of(const cprox_robot *robot, int32_t axis) {
@@ -100,8 +100,8 @@ static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing, 
   return pair;
 }
 
-/* The parts of a geometry stand side by side, in the order of the geometries; so do the obstacles of a target. The first one
- * at or after `index`. */
+/* The parts of a geometry stand side by side, in the order of the geometries; so do the obstacles of a target. The
+ * first one at or after `index`. */
 static size_t first_part(const cprox_robot *robot, int32_t geometry) {
   size_t low = 0, high = robot->n_parts;
   while (low < high) {
@@ -126,7 +126,8 @@ static size_t first_obstacle(const robot_scene *s, int32_t index) {
   return low;
 }
 
-/* Adds the pairs of convex parts of a geometry and a target, or of two geometries; only counts them where there is no room. */
+/* Adds the pairs of convex parts of a geometry and a target, or of two geometries; only counts them where there is no
+ * room. */
 static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, bool self, robot_pair *pairs, size_t *n) {
   const cprox_robot *robot = s->motion->robot;
   const size_t others = self ? robot->n_parts : s->n_obstacles;
@@ -176,7 +177,7 @@ static size_t list_pairs(const robot_scene *s, robot_pair *pairs) {
   return n;
 }
 
-/* ---- beginning ------------------------------------------------------------------------------------------------------------ */
+/* ---- beginning ---- */
 
 bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last) {
   const bool self = mover_is_self(&q->mover) || mover_is_whole(&q->mover);
@@ -226,7 +227,7 @@ int32_t robot_scene_add_pair(robot_scene *s, const robot_pair *pair) {
   return (int32_t)s->n_pairs++;
 }
 
-/* ---- over a node ---------------------------------------------------------------------------------------------------------- */
+/* ---- over a node ---- */
 
 void robot_scene_enter(robot_scene *s, size_t segment, double a, double b) {
   s->node++;
@@ -341,7 +342,7 @@ const chain_motion *robot_scene_motion(robot_scene *s, const robot_pair *pair, c
   return &state->motion;
 }
 
-/* ---- cheap distances ------------------------------------------------------------------------------------------------------ */
+/* ---- cheap distances ---- */
 
 /* Of a point from the box round a body, or from its halfspace. */
 static double from_box(const robot_body *body, vec3 point) {
@@ -388,7 +389,7 @@ double robot_scene_height(const robot_body *standing, vec3 normal) {
   return standing->side.margin - standing->side.shape->size[3];
 }
 
-/* ---- the distance --------------------------------------------------------------------------------------------------------- */
+/* ---- the distance ---- */
 
 static void measure_halfspace(const robot_body *moving, const robot_body *standing, robot_gap *gap) {
   const double *h = standing->side.shape->size;

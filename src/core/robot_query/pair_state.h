@@ -13,8 +13,8 @@ typedef struct robot_pair {
   int32_t standing;   /* which obstacle, or of a pair with itself which part */
   uint32_t shared;    /* of the robot itself: so many axes are above both sides */
   int32_t element[2]; /* of what the moving and the standing side are made of: -1: all of it, by its convex shape */
-  /* the last separating direction, from what stands to what moves, in the frame of what stands, where on the motion it was found
-   * (robot_scene_place()), and how fast it turned there; so it may be carried on between `from` and `to` */
+  /* the last separating direction, from what stands to what moves, in the frame of what stands, where on the motion it
+   * was found (robot_scene_place()), and how fast it turned there; so it may be carried on between `from` and `to` */
   vec3 normal, normal_rate;
   double found, from, to;
   bool normal_known;
@@ -38,8 +38,8 @@ typedef struct robot_scene {
   axis_state *axes;      /* those above the parts that were asked for on the present node, */
   uint32_t *axis_placed; /* which have its number here */
   double *rows, *scratch;
-  double *
-      displacements; /* of each part over the node at hand, as motion_displacements() has them, so many a part; NULL where those would be too many */
+  double *displacements; /* of each part over the node at hand, as motion_displacements() has them, so many a part; NULL
+                            where those would be too many */
   size_t n_displacements;
   chain_axis *chain;
   robot_pair *pairs;
@@ -54,15 +54,15 @@ typedef struct robot_scene {
   bool bent; /* a span that is only bounded by how far parts move */
 } robot_scene;
 
-/* Makes the scene of targets first … last - 1 ready; false where memory is out. Of a set, only those without a box; the rest come as
- * they are needed. */
+/* Makes the scene of targets first … last - 1 ready; false where memory is out. Of a set, only those without a box; the
+ * rest come as they are needed. */
 bool robot_scene_begin(robot_scene *scene, const query *q, size_t first, size_t last);
 
 /* Whether the robot's part is asked about, against obstacles. */
 bool robot_scene_asks(const robot_scene *scene, size_t part);
 
-/* The parts of a target are obstacles; adds them: the number of the first one, or -1 where memory is out. It may move all obstacles in
- * memory. */
+/* The parts of a target are obstacles; adds them: the number of the first one, or -1 where memory is out. It may move
+ * all obstacles in memory. */
 size_t robot_scene_parts_of(const cprox_obstacle *target);
 int32_t robot_scene_add_obstacles(robot_scene *scene, size_t target);
 
@@ -76,8 +76,8 @@ double robot_scene_place(const robot_scene *scene, size_t segment, double u);
 /* One more pair; its number, or -1 where memory is out. It may move all pairs in memory. */
 int32_t robot_scene_add_pair(robot_scene *scene, const robot_pair *pair);
 
-/* The two sides of a pair in the middle of the node, how far the one moves as the other sees it, and how it moves. Of pairs of
- * elements, only those of one pair at a time. */
+/* The two sides of a pair in the middle of the node, how far the one moves as the other sees it, and how it moves. Of
+ * pairs of elements, only those of one pair at a time. */
 const robot_body *robot_scene_moving(robot_scene *scene, const robot_pair *pair);
 const robot_body *robot_scene_standing(robot_scene *scene, const robot_pair *pair);
 /* robot_scene_coarse_displacement(): how far both sides move together, as the axis above both sees it: quicker. */
@@ -86,7 +86,8 @@ double robot_scene_displacement(robot_scene *scene, const robot_pair *pair, cons
 const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, const robot_body *moving,
                                        chain_motion *own);
 
-/* A lower bound on the distance of two parts by their balls and boxes, and a quicker one by their balls; halfspaces have none. */
+/* A lower bound on the distance of two parts by their balls and boxes, and a quicker one by their balls; halfspaces
+ * have none. */
 double robot_scene_ball_distance(const robot_body *moving, const robot_body *standing);
 double robot_scene_balls(const robot_body *moving, const robot_body *standing);
 
@@ -95,8 +96,9 @@ typedef struct robot_gap {
   double lower, upper, slack;
   vec3 on_moving, on_standing; /* world */
   vec3 normal;                 /* world, unit, from standing to moving; (0,0,0) where there is none */
-  /* Polyhedra, world: points of the moving side, and the ways to them from points of the standing one, n of them: the feature that
-   * the normal stands on. Curved shapes, n = 0: the derivative of the normal by a shift of the moving side, in the standing frame. */
+  /* Polyhedra, world: points of the moving side, and the ways to them from points of the standing one, n of them: the
+   * feature that the normal stands on. Curved shapes, n = 0: the derivative of the normal by a shift of the moving
+   * side, in the standing frame. */
   vec3 on_edge[3], across[3];
   int n;
   double hessian[6];
@@ -111,8 +113,8 @@ typedef struct robot_accuracy {
 
 void robot_scene_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy, robot_gap *gap);
 
-/* From the box round what stands to the centre of what moves: a direction that parts most pairs, for nothing. Standing frame, unit;
- * (0,0,0) where the centre is in the box. */
+/* From the box round what stands to the centre of what moves: a direction that parts most pairs, for nothing. Standing
+ * frame, unit; (0,0,0) where the centre is in the box. */
 vec3 robot_scene_guess(const robot_body *moving, const robot_body *standing);
 
 /* How fast the normal turns where what moves does so as `motion` says, by u of the node; orthogonal to it. */

@@ -24,8 +24,8 @@ typedef struct descent {
   double allowance; /* what the tree's own bounds may be off by, and the elements' margin */
 } descent;
 
-/* A lower bound of the distance along any n of length 1 within 8 u, rounding included: the sides lie behind two planes across
- * n. Not of a halfspace. */
+/* A lower bound of the distance along any n of length 1 within 8 u, rounding included: the sides lie behind two planes
+ * across n. Not of a halfspace. */
 static double apart_along(const robot_body *const side[2], vec3 n) {
   const bound_side *m = &side[MOVING]->side, *s = &side[STANDING]->side;
   const vec3 apart = vec_sub(m->at.p, s->at.p);
@@ -34,8 +34,8 @@ static double apart_along(const robot_body *const side[2], vec3 n) {
   return along - ROUND_UP * (m->error + s->error + m->shape->slack + s->shape->slack + 128.0 * ROUND_U * sizes);
 }
 
-/* Do the two lie apart by the plane that told others of these sides apart? Neighbouring elements are often behind the same
- * one. */
+/* Do the two lie apart by the plane that told others of these sides apart? Neighbouring elements are often behind the
+ * same one. */
 static bool is_behind(const robot_refinement *c, const robot_body *const side[2], int level) {
   const vec3 n = c->last[level];
   return vec_norm2(n) > 0.0 && side[STANDING]->side.shape->ops->kind != CPROX_BODY_HALFSPACE &&
@@ -87,8 +87,8 @@ static void measure(robot_refinement *c, const robot_body *const side[2], const 
 
 static void descend(robot_refinement *c, const robot_body *const side[2], const int32_t code[2], int through);
 
-/* One element and the convex shape of the other side: where these are within reach, the other side's tree. Their own plane tells most of
- * its elements apart. */
+/* One element and the convex shape of the other side: where these are within reach, the other side's tree. Their own
+ * plane tells most of its elements apart. */
 static void descend_under(robot_refinement *c, const robot_body *const side[2], const int32_t code[2], int through) {
   if (robot_scene_ball_distance(side[MOVING], side[STANDING]) >= c->reach) return;
   if (is_behind(c, side, 0)) return;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* From the hulls of a pair down to the elements that they are made of, in the middle of the node. doc/robot-bounds.md, Meshes */
+/* From the hulls of a pair down to the elements that they are made of, in the middle of the node. doc/robot-bounds.md,
+ * Meshes */
 #ifndef CPROX_ROBOT_QUERY_REFINE_H
 #define CPROX_ROBOT_QUERY_REFINE_H
 
@@ -13,9 +14,9 @@ typedef struct robot_found {
 
 typedef struct robot_refinement {
   robot_scene *scene;
-  int32_t pair; /* of whole sides, of which one at least is made of elements */
-  double
-      reach; /* pairs of elements that are farther are of no interest; finite. It falls to the nearest one's distance, */
+  int32_t pair;    /* of whole sides, of which one at least is made of elements */
+  double reach;    /* pairs of elements that are farther are of no interest; finite. It falls to the nearest one's
+                      distance, */
   double room;     /* and this more */
   double accuracy; /* distances are measured so well */
   vec3 normal;     /* world, from the standing hull to the moving one; (0,0,0) where they are not apart */

@@ -11,7 +11,7 @@
 /* Fourth powers of lengths must not overflow. */
 static const double MOST_LENGTH = 1e60;
 
-/* ---- checks ----------------------------------------------------------------------------------------------------------- */
+/* ---- checks ---- */
 
 cprox_status elements_check_points(const char *name, const vec3 *points, size_t n, cprox_workspace *workspace) {
   for (size_t i = 0; i < n; i++) {
@@ -36,7 +36,7 @@ cprox_status elements_check_count(const char *names, tree_kind kind, size_t n, s
                         memory_limit);
 }
 
-/* ---- making ----------------------------------------------------------------------------------------------------------- */
+/* ---- making ---- */
 
 static void widen(vec3 *low, vec3 *high, vec3 p) {
   low->x = p.x < low->x ? p.x : low->x, high->x = p.x > high->x ? p.x : high->x;

@@ -36,8 +36,8 @@ static void solve_on_stack(const implicit_query *query, const implicit_goal *goa
 
 /* ---- the queries ---- */
 
-/* Inside, a ball is proven: the body holds the centre's ball of radius `inner`, drawn towards any point z of it by 1 - g the
- * ball of radius (1 - g) inner. */
+/* Inside, a ball is proven: the body holds the centre's ball of radius `inner`, drawn towards any point z of it by 1 -
+ * g the ball of radius (1 - g) inner. */
 static void nearest_inside(const convex *shape, vec3 y, convex_near *near) {
   const implicit *body = shape->implicit;
   const double depth = (1.0 - implicit_gauge(body, y, 1e-6)) * body->inner - 2.0 * body->give;
@@ -85,8 +85,9 @@ static vec3 closed_follow(const convex *shape, vec3 d, vec3 x) {
   return x;
 }
 
-/* The bound from above; the point attains it but for the shape's slack, or the answer is not a number. Where the solver stalls just short
- * of that, a direction turned by far less than the slack may do: h(d) <= h(d') + |d - d'| radius, on both sides. */
+/* The bound from above; the point attains it but for the shape's slack, or the answer is not a number. Where the solver
+ * stalls just short of that, a direction turned by far less than the slack may do: h(d) <= h(d') + |d - d'| radius, on
+ * both sides. */
 static double open_support(const convex *shape, vec3 d, convex_hint *hint, vec3 *at) {
   (void)hint;
   enum { MOST_TURNS = 6 };
@@ -108,7 +109,8 @@ static double open_support(const convex *shape, vec3 d, convex_hint *hint, vec3 
   return NAN;
 }
 
-/* near_rounding: the interval of the search is IMPLICIT_EPSILON wide; what is more shows in the certificate of the query. */
+/* near_rounding: the interval of the search is IMPLICIT_EPSILON wide; what is more shows in the certificate of the
+ * query. */
 static const convex_ops superquadric_ops = {.kind = CPROX_BODY_SUPERQUADRIC,
                                             .near_rounding = 64.0,
                                             .nearest = implicit_nearest,

@@ -5,8 +5,8 @@
 #include "base/workspace.h"
 #include "shape/construct.h"
 
-/* A hull that leaves out what the mesh has would call hits clear: along the axes, the diagonals of their planes and of space the
- * mesh must not reach farther. */
+/* A hull that leaves out what the mesh has would call hits clear: along the axes, the diagonals of their planes and of
+ * space the mesh must not reach farther. */
 static cprox_status check_cover(const cprox_body *hull, double excess, const cprox_body *mesh,
                                 cprox_workspace *workspace) {
   const double size = vec_norm(hull->ball_centre) + hull->ball_radius + vec_norm(mesh->ball_centre) + mesh->ball_radius;

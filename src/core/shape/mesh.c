@@ -16,7 +16,7 @@ static cprox_status check_triangles(const uint32_t (*triangles)[3], size_t m, si
   return CPROX_OK;
 }
 
-/* ---- closedness ------------------------------------------------------------------------------------------------------- */
+/* ---- closedness ---- */
 
 typedef struct placed_vertex {
   vec3 at;
@@ -121,7 +121,7 @@ static bool find_closedness(const vec3 *vertices, size_t n, const uint32_t (*tri
   return enough;
 }
 
-/* ---- the constructors -------------------------------------------------------------------------------------------------- */
+/* ---- the constructors ---- */
 
 cprox_status cprox_body_create_mesh(const cprox_vec3 *vertices, size_t n, const uint32_t (*triangles)[3], size_t m,
                                     cprox_mesh_fill fill, size_t memory_limit, cprox_workspace *workspace,

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Which instruction sets the core is compiled for, and which one runs. Two ways to use them:
  *
- * - A loop over arrays is marked SIMD_CLONES. It is compiled for AVX2 and for what every machine has, and chosen when the library is
- *   loaded.
- * - A kernel of many functions is compiled once for each simd_level, with SIMD_TARGET_*, and chosen by simd_of_machine(). A test can run
- *   every level that the machine has.
+ * - A loop over arrays is marked SIMD_CLONES. It is compiled for AVX2 and for what every machine has, and chosen when
+ * the library is loaded.
+ * - A kernel of many functions is compiled once for each simd_level, with SIMD_TARGET_*, and chosen by
+ * simd_of_machine(). A test can run every level that the machine has.
  *
  * The compiler may not fuse or reorder sums (-ffp-contract=off, no -ffast-math), so that all give the same results. */
 #ifndef CPROX_SIMD_DISPATCH_H

@@ -29,7 +29,8 @@ static const double NEARBY[] = {1e-6, 1e-5, 1e-4, 1e-3};
 /* How narrowly those are searched, in lengths of the curve and distances. */
 static const double HARDLY = 1e-14;
 
-/* The most nodes of each of these searches: what it leaves open counts as near. A depth may not be known that narrowly. */
+/* The most nodes of each of these searches: what it leaves open counts as near. A depth may not be known that narrowly.
+ */
 static const uint32_t MOST_NODES = 1000;
 
 static cprox_status invalid(cprox_workspace *workspace, cprox_gradient *g, const char *why) {
@@ -38,9 +39,7 @@ static cprox_status invalid(cprox_workspace *workspace, cprox_gradient *g, const
   return CPROX_OK;
 }
 
-/* ---- the minimiser along the curve
- * -----------------------------------------------------------------------------------------
- */
+/* ---- the minimiser along the curve ---- */
 
 /* The distance at t, and how fast it changes along the curve. */
 typedef struct look {
@@ -122,9 +121,7 @@ static cprox_status refine(curve_convex *o, double t0, double t1, double *t, int
   return CPROX_OK; /* as it was: the checks that follow will find it flat */
 }
 
-/* ---- the minimiser on two curves
- * -------------------------------------------------------------------------------------------
- */
+/* ---- the minimiser on two curves ---- */
 
 typedef struct curve_jet {
   vec3 x, d1, d2;
@@ -174,9 +171,7 @@ static void refine_pair(const cprox_mover *mover, const cprox_obstacle *target, 
   }
 }
 
-/* ---- is it the only one?
- * ------------------------------------------------------------------------------------------------------
- */
+/* ---- is it the only one? ---- */
 
 /* Whether the mover is farther than `distance` by more than epsilon in
  * [breaks[0], breaks[1]] and [breaks[2], breaks[3]]. */
@@ -324,9 +319,7 @@ static cprox_status nearest_is_alone(const query *q, const placed_pair *c, doubl
   return ties_point_is_alone(&p, alone);
 }
 
-/* ---- the gradient
- * -------------------------------------------------------------------------------------------------------------
- */
+/* ---- the gradient ---- */
 
 static void fill(const cprox_obstacle *target, vec3 n, vec3 witness_obstacle, cprox_gradient *g) {
   const frame f = frame_create(&target->pose, vec(0, 0, 0));

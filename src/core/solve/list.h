@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The queries against a list of obstacles, one tested after another: as cprox/obstacles.h has them, the list unchecked. */
+/* The queries against a list of obstacles, one tested after another: as cprox/obstacles.h has them, the list unchecked.
+ */
 #ifndef CPROX_SOLVE_LIST_H
 #define CPROX_SOLVE_LIST_H
 

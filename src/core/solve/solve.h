@@ -5,8 +5,8 @@
 
 #include "problem/candidates.h"
 
-/* The answer against the union of targets first … last - 1. Distances beyond `cutoff` are of no interest: the search ends when
- * lower has come that far, and upper is then infinity or any distance measured on the way. */
+/* The answer against the union of targets first … last - 1. Distances beyond `cutoff` are of no interest: the search
+ * ends when lower has come that far, and upper is then infinity or any distance measured on the way. */
 cprox_status query_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result);
 
 #endif

@@ -15,7 +15,7 @@ static cprox_result nothing(void) {
   return (cprox_result){.lower = INFINITY, .upper = INFINITY, .t = INFINITY, .t_obstacle = NAN, .obstacle_index = -1};
 }
 
-/* ---- one candidate ---------------------------------------------------------------------------------------------------- */
+/* ---- one candidate ---- */
 
 static cprox_status meet_convex(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
                                 time_of_contact *met) {
@@ -153,7 +153,7 @@ static cprox_status meet(const query *q, const candidate *c, double time_cutoff,
   return status;
 }
 
-/* ---- all candidates --------------------------------------------------------------------------------------------------- */
+/* ---- all candidates ---- */
 
 /* The earlier of two places, or the nearer where neither is contact. */
 static void merge_place(cprox_result *all, const cprox_result *one, double epsilon) {

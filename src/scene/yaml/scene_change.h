@@ -12,9 +12,9 @@ namespace curve_proximity::yaml {
 /** The folder that a file lies in. */
 std::string folderOf(const std::string &path);
 
-/** The file at `path` as a change. Frames that the file itself explains are resolved; others stay in object.frame, for tf2 to
- *  resolve. Mesh files get absolute paths. A file that is no diff (is_diff) replaces the scene: the change clears it.
- *  Throws BadUsage naming file and object where the file's frames go in a ring. */
+/** The file at `path` as a change. Frames that the file itself explains are resolved; others stay in object.frame, for
+ * tf2 to resolve. Mesh files get absolute paths. A file that is no diff (is_diff) replaces the scene: the change clears
+ * it. Throws BadUsage naming file and object where the file's frames go in a ring. */
 SceneChange toChange(const SceneFile &file, const std::string &path, Warnings &warnings);
 
 } // namespace curve_proximity::yaml

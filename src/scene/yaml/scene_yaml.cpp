@@ -228,8 +228,8 @@ std::vector<YamlValue> readMatrixRow(const YamlValue &row) {
   return row.isMap() ? row.itemsOf("enabled") : row.items();
 }
 
-/* The entries of the matrix, each once, with both of its values. Two that contradict each other are an error: neither of
- * them can be meant. `second` empty: the default of the first. */
+/* The entries of the matrix, each once, with both of its values. Two that contradict each other are an error: neither
+ * of them can be meant. `second` empty: the default of the first. */
 class AllowedEntries {
  public:
   void add(const YamlValue &first, const std::string &second, const YamlValue &value) {

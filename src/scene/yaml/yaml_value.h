@@ -32,8 +32,8 @@ class Warnings {
   std::vector<std::string> sentences_;
 };
 
-/** A value and its place ("world.collision_objects[2] 'Can1'.primitives[0]"). All functions throw BadInput with the place
- *  where the value is not what they ask for. */
+/** A value and its place ("world.collision_objects[2] 'Can1'.primitives[0]"). All functions throw BadInput with the
+ * place where the value is not what they ask for. */
 class YamlValue {
  public:
   YamlValue(YAML::Node node, std::string where) : node_(std::move(node)), where_(std::move(where)) {}

@@ -14,7 +14,7 @@
 #include "shape/body.h"
 #include "support/meshes.h"
 
-/* ---- curves ------------------------------------------------------------------------------------------------------------- */
+/* ---- curves ---- */
 
 static void points_random(given_curve *g, rng *r, size_t n, double scale, vec3 middle) {
   const bool flat = rng_index(r, 3) == 0;
@@ -111,7 +111,7 @@ static void curve_write(const given_curve *g, FILE *out) {
   for (size_t i = 0; i < g->n_knots; i++) fprintf(out, " %a", g->knots[i]);
 }
 
-/* ---- bodies ------------------------------------------------------------------------------------------------------------- */
+/* ---- bodies ---- */
 
 cprox_body *query_body(rng *r, double scale, bool polytope_only, cprox_workspace *ws) {
   const vec3 size = vec(rng_log_uniform(r, 0.05, 1.0) * scale, rng_log_uniform(r, 0.05, 1.0) * scale,
@@ -219,7 +219,7 @@ void asked_free(asked *q) {
   cprox_curve_free(q->target_curve.curve);
 }
 
-/* ---- text --------------------------------------------------------------------------------------------------------------- */
+/* ---- text ---- */
 
 static void write_target(const asked *q, const cprox_obstacle *t, FILE *out) {
   if (t->curve) {

@@ -22,7 +22,8 @@ typedef struct given_curve {
   cprox_curve *curve;
 } given_curve;
 
-/* A mesh that is not convex, with its hull: the body of both, the mesh, the hull; to be freed in this order. And its triangles. */
+/* A mesh that is not convex, with its hull: the body of both, the mesh, the hull; to be freed in this order. And its
+ * triangles. */
 typedef struct query_mesh {
   cprox_body *body, *mesh, *hull;
   test_mesh surface;

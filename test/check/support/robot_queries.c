@@ -71,7 +71,7 @@ void robot_query_free(robot_query *q) {
   }
 }
 
-/* ---- text ----------------------------------------------------------------------------------------------------------------- */
+/* ---- text ---- */
 
 /* A line a convex part, to be freed. */
 static char *lines_of(const cprox_obstacle *target) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What tests of queries begin with: a workspace of the program's own, and curves that fail the test where they cannot be made. */
+/* What tests of queries begin with: a workspace of the program's own, and curves that fail the test where they cannot
+ * be made. */
 #ifndef CPROX_TEST_BUILDERS_H
 #define CPROX_TEST_BUILDERS_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Test cases that register themselves: CASE(a_fact) { assertions } states a fact, and main() runs every CASE of the program:
- *   int main(void) { return cases_run(NULL, NULL); }
- * Includes cmocka, whose macros (fail, skip) break headers of C++ that come later: in C++ this header is the last one. */
+/* Test cases that register themselves: CASE(a_fact) { assertions } states a fact, and main() runs every CASE of the
+ * program: int main(void) { return cases_run(NULL, NULL); } Includes cmocka, whose macros (fail, skip) break headers of
+ * C++ that come later: in C++ this header is the last one. */
 #ifndef CPROX_TEST_CASES_H
 #define CPROX_TEST_CASES_H
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Counts what the code under test allocates, and makes allocations fail on demand. Works by the linker's --wrap, which
- * cprox_core_test() sets for every test: the calls of the core and of the test itself are seen, those of libc are not. */
+ * cprox_core_test() sets for every test: the calls of the core and of the test itself are seen, those of libc are not.
+ */
 #ifndef CPROX_TEST_COUNTING_H
 #define CPROX_TEST_COUNTING_H
 

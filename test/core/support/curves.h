@@ -20,7 +20,8 @@ void random_points(rng *r, size_t n, vec3 *points);
 /* A parameter of [0,1]: an end, near an end, a power of two, or anything. */
 double random_parameter(rng *r);
 
-/* A spline of the degree, with up to 12 points more than it needs, knots of any multiplicity, a domain of length > 0. */
+/* A spline of the degree, with up to 12 points more than it needs, knots of any multiplicity, a domain of length > 0.
+ */
 test_spline random_spline(rng *r, size_t degree);
 
 /* 1 … 60, the low ones more often. */

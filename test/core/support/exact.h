@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Numbers of 320 bits by MPFR, as expressions: each result is a new number of a row that is used again from its beginning after
- * exact_reset(). What 53 bits leave in error is 2^-267 of it here. */
+/* Numbers of 320 bits by MPFR, as expressions: each result is a new number of a row that is used again from its
+ * beginning after exact_reset(). What 53 bits leave in error is 2^-267 of it here. */
 #ifndef CPROX_TEST_EXACT_H
 #define CPROX_TEST_EXACT_H
 

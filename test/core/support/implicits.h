@@ -16,7 +16,8 @@ typedef struct implicit_case {
   double quadrics[8][10];
 } implicit_case;
 
-/* Reads constraints joined by `|`, fields by `:`: `H:(a1:a2:a3:d:p)*`, `P:b1:b2:b3:c`, `Q:q11:q12:q13:q22:q23:q33:b1:b2:b3:c`. */
+/* Reads constraints joined by `|`, fields by `:`: `H:(a1:a2:a3:d:p)*`, `P:b1:b2:b3:c`,
+ * `Q:q11:q12:q13:q22:q23:q33:b1:b2:b3:c`. */
 void implicit_case_read(const char *text, implicit_case *c);
 
 /* The paper's objects I (1) to VI (6). */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Descriptions of curves in one line each, for tests and benches: curve_from(describe_bezier(points, n, 0, 1), ws, &curve). */
+/* Descriptions of curves in one line each, for tests and benches: curve_from(describe_bezier(points, n, 0, 1), ws,
+ * &curve). */
 #ifndef CPROX_TEST_MAKE_CURVE_H
 #define CPROX_TEST_MAKE_CURVE_H
 

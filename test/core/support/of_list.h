@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Queries against a list of obstacles in one call, for tests: each makes a handle without an index, asks, and frees it. */
+/* Queries against a list of obstacles in one call, for tests: each makes a handle without an index, asks, and frees it.
+ */
 #ifndef CPROX_TEST_OF_LIST_H
 #define CPROX_TEST_OF_LIST_H
 

@@ -86,7 +86,8 @@ void ref_bezier_section(const vec3 *p, size_t degree, long double s0, long doubl
 vec3l ref_bspline(const vec3 *p, size_t degree, const double *knots, size_t r, long double t, size_t order) {
   if (order > degree) return (vec3l){0, 0, 0};
 
-  /* control points r - degree … r of the derivative: d_i = (degree - k)(d_(i+1) - d_i) / (u_(i+degree+1) - u_(i+k+1)) */
+  /* control points r - degree … r of the derivative: d_i = (degree - k)(d_(i+1) - d_i) / (u_(i+degree+1) - u_(i+k+1))
+   */
   vec3l d[MAX_DEGREE + 1];
   for (size_t i = 0; i <= degree; i++) d[i] = ref_vec(p[r - degree + i]);
   for (size_t k = 0; k < order; k++)

@@ -43,8 +43,8 @@ typedef struct robot_case {
   size_t n_answers;
 } robot_case;
 
-/* Reads the next case of FOLDER/cases.txt, opened by the caller, who has read the number of cases in its first line. False, with a
- * sentence on stderr, where the file is not as it should be. */
+/* Reads the next case of FOLDER/cases.txt, opened by the caller, who has read the number of cases in its first line.
+ * False, with a sentence on stderr, where the file is not as it should be. */
 bool robot_case_read(FILE *cases, const char *folder, robot_case *c);
 void robot_case_free(robot_case *c);
 

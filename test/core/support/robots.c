@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-/* ---- random robots -------------------------------------------------------------------------------------------------------- */
+/* ---- random robots ---- */
 
 static size_t width_of(cprox_joint_type type) {
   static const size_t WIDTH[] = {0, 1, 1, 3, 7};
@@ -54,7 +54,7 @@ static void make_geometries(rng *r, test_robot *t) {
   }
 }
 
-/* ---- random motions ------------------------------------------------------------------------------------------------------- */
+/* ---- random motions ---- */
 
 static void make_points(rng *r, double speed, test_robot *t) {
   t->spline = rng_index(r, 4) == 0;
@@ -144,7 +144,7 @@ void robot_free(test_robot *t) {
   for (size_t i = 0; i < t->n_links; i++) cprox_body_free((cprox_body *)t->geometries[i].body);
 }
 
-/* ---- values --------------------------------------------------------------------------------------------------------------- */
+/* ---- values ---- */
 
 static long double hermite(const test_robot *t, size_t i, size_t k, long double time) {
   const long double h = (long double)t->times[i + 1] - t->times[i], u = (time - t->times[i]) / h;
@@ -181,7 +181,7 @@ void robot_ref_values(const test_robot *t, long double time, long double *values
   for (size_t k = 0; k < t->n_variables; k++) values[k] = t->spline ? de_boor(t, k, time) : hermite(t, i, k, time);
 }
 
-/* ---- poses ---------------------------------------------------------------------------------------------------------------- */
+/* ---- poses ---- */
 
 static vec3l turn(const long double *q, vec3l x) {
   const vec3l v = {q[0], q[1], q[2]};

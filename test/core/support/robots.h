@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Random robots on random motions, and where their links are in long double: by quaternions, Hermite's basis functions and
- * de Boor's recursion, none of which the core uses. */
+/* Random robots on random motions, and where their links are in long double: by quaternions, Hermite's basis functions
+ * and de Boor's recursion, none of which the core uses. */
 #ifndef CPROX_TEST_ROBOTS_H
 #define CPROX_TEST_ROBOTS_H
 

@@ -120,8 +120,8 @@ vec3 shape_telling_direction(rng *r, const test_shape *s, const cprox_pose *pose
   return vec((double)n.x, (double)n.y, (double)n.z);
 }
 
-/* Moves b so that a's least and b's greatest point along n are `gap` apart along n: their distance if gap >= 0, a bound below
- * the signed distance if not. Returns by how much the rounding of b's position may have changed it. */
+/* Moves b so that a's least and b's greatest point along n are `gap` apart along n: their distance if gap >= 0, a bound
+ * below the signed distance if not. Returns by how much the rounding of b's position may have changed it. */
 double shape_place(const test_shape *a, const cprox_pose *pa, const test_shape *b, cprox_pose *pb, vec3 n, double gap) {
   const vec3l d = ref_vec(n), away = ref_scale(-1, d);
   pb->position = vec(0, 0, 0);

@@ -21,7 +21,8 @@ typedef struct test_shape {
 extern const cprox_body_kind TEST_BOUNDED[10];
 enum { TEST_N_BOUNDED = 10 };
 
-/* Fills s, which must stay where it is: a callback points into it. Sizes from scale/aspect to scale. The caller frees s->body. */
+/* Fills s, which must stay where it is: a callback points into it. Sizes from scale/aspect to scale. The caller frees
+ * s->body. */
 void shape_make(rng *r, cprox_body_kind kind, double scale, double aspect, test_shape *s);
 
 const char *shape_name(const test_shape *s);
@@ -35,8 +36,8 @@ vec3l shape_point_within(rng *r, const test_shape *s, const cprox_pose *pose, do
 /* A direction that matters to the shape: the normal of its nearest point to somewhere, in the world. */
 vec3 shape_telling_direction(rng *r, const test_shape *s, const cprox_pose *pose);
 
-/* Moves b so that a's least and b's greatest point along n are `gap` apart along n: their distance if gap >= 0, a bound below
- * the signed distance if not. Returns by how much the rounding of b's position may have changed it. */
+/* Moves b so that a's least and b's greatest point along n are `gap` apart along n: their distance if gap >= 0, a bound
+ * below the signed distance if not. Returns by how much the rounding of b's position may have changed it. */
 double shape_place(const test_shape *a, const cprox_pose *pa, const test_shape *b, cprox_pose *pb, vec3 n, double gap);
 
 /* A vector turned by the pose, and back. */

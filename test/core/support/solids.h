@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Random solids of every kind that Fourier gaps take, in the plane and in space, each with the same set as a union of convex bodies:
- * cprox_pair() knows the distance. In the plane the bodies are symmetric about z = 0, so that their distance is the planar one. */
+/* Random solids of every kind that Fourier gaps take, in the plane and in space, each with the same set as a union of
+ * convex bodies: cprox_pair() knows the distance. In the plane the bodies are symmetric about z = 0, so that their
+ * distance is the planar one. */
 #ifndef CPROX_TEST_SOLIDS_H
 #define CPROX_TEST_SOLIDS_H
 
@@ -53,7 +54,8 @@ cprox_pose solid_pose(rng *r, int dimension, double half);
 /* The signed distance. */
 double solid_distance(const test_solid *a, const cprox_pose *pa, const test_solid *b, const cprox_pose *pb);
 
-/* What a gap's over-reach is measured from: the distance, or that to an unclipped solid or to a region, where larger. */
+/* What a gap's over-reach is measured from: the distance, or that to an unclipped solid or to a region, where larger.
+ */
 double solid_reached(const test_solid *a, const cprox_pose *pa, const test_solid *b, const cprox_pose *pb);
 
 #endif

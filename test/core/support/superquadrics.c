@@ -46,8 +46,8 @@ long double superquadric_level(const superquadric *s, vec3l x) {
   return powl(fabsl(x.x) / s->a.x, s->p.x) + powl(fabsl(x.y) / s->a.y, s->p.y) + powl(fabsl(x.z) / s->a.z, s->p.z);
 }
 
-/* The logarithm of u with a u + lambda p u^(p-1)/a = y, by bisection that Newton's step may shorten; -infinity where u is 0. And its
- * derivative by log lambda. */
+/* The logarithm of u with a u + lambda p u^(p-1)/a = y, by bisection that Newton's step may shorten; -infinity where u
+ * is 0. And its derivative by log lambda. */
 static long double row(long double a, long double p, long double y, long double log_lambda, long double *slope) {
   const long double push = log_lambda + logl(p / a), lead = logl(a), aim = logl(y);
   if (p == 1.0L) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Distances to superquadrics in long double, as an interval that needs no trust in how it was found: a point of the body from
- * above, a tangent plane from below. */
+/* Distances to superquadrics in long double, as an interval that needs no trust in how it was found: a point of the
+ * body from above, a tangent plane from below. */
 #ifndef CPROX_TEST_SUPERQUADRICS_H
 #define CPROX_TEST_SUPERQUADRICS_H
 
@@ -28,7 +28,8 @@ typedef struct ref_interval {
 /* sum |x_i/a_i|^p_i */
 long double superquadric_level(const superquadric *s, vec3l x);
 
-/* The distance of a point of the body's frame, 0 inside, and the point of the body that `upper` is measured to (NULL if not needed). */
+/* The distance of a point of the body's frame, 0 inside, and the point of the body that `upper` is measured to (NULL if
+ * not needed). */
 ref_interval superquadric_distance(const superquadric *s, vec3l y, vec3l *nearest);
 
 /* The support function along d, from above. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A whole provider: the distance of two standing bodies' bounding balls, which is never more than that of the bodies. */
+/** A whole provider: the distance of two standing bodies' bounding balls, which is never more than that of the bodies.
+ */
 #include <pluginlib/class_list_macros.hpp>
 
 #include <curve_proximity/constraint_provider.hpp>
