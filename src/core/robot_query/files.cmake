@@ -1,10 +1,13 @@
 # The files of this room. A new file is one line here.
 target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/answer.c
+  ${CMAKE_CURRENT_LIST_DIR}/bound_node.c
   ${CMAKE_CURRENT_LIST_DIR}/cull.c
   ${CMAKE_CURRENT_LIST_DIR}/element.c
+  ${CMAKE_CURRENT_LIST_DIR}/measure.c
   ${CMAKE_CURRENT_LIST_DIR}/oracle.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_lists.c
   ${CMAKE_CURRENT_LIST_DIR}/pair_state.c
+  ${CMAKE_CURRENT_LIST_DIR}/prove_contact.c
   ${CMAKE_CURRENT_LIST_DIR}/refine.c
 )

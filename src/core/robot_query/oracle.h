@@ -25,6 +25,20 @@ static inline robot_node *robot_own(search_node *node) {
   return (robot_node *)node->payload.bytes;
 }
 
+static inline motion_interval robot_interval(const search_node *node) {
+  const robot_node *payload = robot_known(node);
+  return (motion_interval){.a = payload->a, .b = payload->b, .first = payload->first, .last = payload->last};
+}
+
+/* Intervals that are shorter are measured even where a part moves farther than its own size. */
+#define ROBOT_SHORT_INTERVAL 0x1p-8
+
+/* Whether a node is so short that everything is measured. */
+static inline bool robot_is_short(const search_node *node) {
+  const motion_interval over = robot_interval(node);
+  return !motion_is_span(&over) && !(over.b - over.a > ROBOT_SHORT_INTERVAL);
+}
+
 /* Where the least distance was measured. */
 typedef struct robot_sample {
   robot_gap gap;

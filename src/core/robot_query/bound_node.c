@@ -1,0 +1,345 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "robot_query/bound_node.h"
+
+#include <math.h>
+
+#include "base/rounding.h"
+#include "base/workspace.h"
+#include "broadphase/obstacle_set.h"
+#include "robot_query/cull.h"
+#include "robot_query/measure.h"
+
+/* Of a pair that is too far to matter in the middle only so much of the excess need be known. */
+static const double EXCESS_FRACTION = 0.05;
+
+/* Parts that move farther than their own size, and than this fraction of their distance, are split before they are
+ * measured. */
+static const double MOST_DISPLACEMENT = 0.5;
+
+/* Normals that turn faster than this over a node are taken to stand still. */
+static const double FASTEST_NORMAL_RATE = 0.5;
+
+/* Where a plane in the middle asks for more pieces than this, no distance is measured. */
+static const double ENOUGH_PIECES = 3.0;
+
+/* The pair's last normal, carried on to where the scene is as it turned; in the standing frame. (0,0,0) where there is
+ * none. */
+static vec3 known_normal(const robot_search *o, const robot_pair *pair) {
+  if (!pair->normal_known) return vec(0, 0, 0);
+  const double here = robot_scene_place(&o->scene, o->scene.segment, o->scene.u);
+  const double away = here >= pair->from && here <= pair->to ? here - pair->found : 0.0;
+  const vec3 n = vec_axpy(pair->normal, away, pair->normal_rate);
+  return vec_scale(1.0 / vec_norm(n), n);
+}
+
+/* The beginning and the end of the node that the scene is at, along the motion; in that of one segment, of the segment.
+ */
+static void ends_of_node(const robot_search *o, bool whole, double *from, double *to) {
+  const motion_interval *over = &o->scene.over;
+  const bool segment = whole && !motion_is_span(over);
+  *from = robot_scene_place(&o->scene, over->first, segment ? 0.0 : over->a);
+  *to = robot_scene_place(&o->scene, over->last - 1, segment ? 1.0 : over->b);
+}
+
+static double width_of_node(const robot_search *o) {
+  double from, to;
+  ends_of_node(o, false, &from, &to);
+  return to - from;
+}
+
+static vec3 normal_in_middle(const robot_search *o, const robot_pair *pair, const robot_body *standing) {
+  const vec3 n = placement_turn(&standing->side.at, known_normal(o, pair));
+  return vec_scale(1.0 / vec_norm(n), n);
+}
+
+/* In the place of a normal that is not known yet. */
+static void keep_guess(const robot_search *o, robot_pair *pair, const robot_body *moving, const robot_body *standing) {
+  const vec3 guess = robot_scene_guess(moving, standing);
+  if (vec_norm2(guess) > 0.0) robot_place_normal(o, pair, guess);
+}
+
+/* How far the two are apart along it: only to choose by, its rounding is not counted. */
+static double plane_middle(const robot_search *o, const robot_pair *pair, const robot_body *moving,
+                           const robot_body *standing) {
+  const vec3 n = normal_in_middle(o, pair, standing);
+  const double along = vec_dot(n, vec_sub(moving->side.at.p, standing->side.at.p));
+  return along - bound_height(&moving->side, vec_neg(n)) - robot_scene_height(standing, n);
+}
+
+/* What that normal says of the node. */
+static double bound_by_normal(robot_search *o, const robot_pair *pair, const robot_body *moving,
+                              const robot_body *standing, const chain_motion *motion, double goal, double *slack) {
+  const double here = robot_scene_place(&o->scene, o->scene.segment, o->scene.u);
+  const bool turning = here >= pair->from && here <= pair->to;
+  const vec3 n = normal_in_middle(o, pair, standing);
+  vec3 normal_rate = placement_turn(&standing->side.at, vec_scale(turning ? width_of_node(o) : 0.0, pair->normal_rate));
+  normal_rate = vec_axpy(normal_rate, -vec_dot(normal_rate, n), n);
+  if (!(vec_norm2(normal_rate) < FASTEST_NORMAL_RATE * FASTEST_NORMAL_RATE)) normal_rate = vec(0, 0, 0);
+  double heights[2];
+  heights[0] = robot_scene_height(standing, vec_axpy(n, -0.5, normal_rate));
+  heights[1] = vec_norm2(normal_rate) > 0.0 ? robot_scene_height(standing, vec_axpy(n, 0.5, normal_rate)) : heights[0];
+  o->planes++;
+  return motion_plane_bound(motion, &moving->side, &standing->side, n, normal_rate, heights,
+                            moving->steps + standing->steps, goal, slack);
+}
+
+/* What a cut into so many pieces would do for one pair counts for the node. */
+static void want_pieces(robot_search *o, double pieces) {
+  o->pieces = greater(pieces, o->pieces);
+}
+
+/* A pair that is `middle` apart in the middle, of which the whole node says `bound`: what is lost shrinks as the square
+ * of the length on the piece that is nearest; on others it may shrink slower, but there is more to lose. */
+static double pieces_for(const robot_search *o, double middle, double bound) {
+  const double goal = robot_pruning_bound(o);
+  return middle > goal ? sqrt(1.05 * (middle - bound) / (middle - goal)) : 2.0;
+}
+
+/* The plane of the distance just measured, turning as its feature does. */
+static double bound_by_gap(robot_search *o, robot_pair *pair, const robot_body *moving, const robot_body *standing,
+                           const chain_motion *motion, const robot_gap *gap, double *slack) {
+  const vec3 normal_rate = vec_scale(1.0 / width_of_node(o), robot_scene_normal_rate(gap, moving, standing, motion));
+  pair->normal_rate = placement_turn_back(&standing->side.at, normal_rate);
+  ends_of_node(o, true, &pair->from, &pair->to);
+  return bound_by_normal(o, pair, moving, standing, motion, robot_pruning_bound(o), slack);
+}
+
+static bool keep_entry(robot_search *o, const list_entry *entry) {
+  list_entry *next = workspace_reserve(o->scene.q->workspace, WORKSPACE_ROBOT_NEXT, (o->n_next + 1) * sizeof *next);
+  if (!next) return false;
+  o->next = next;
+  next[o->n_next++] = *entry;
+  return true;
+}
+
+/* One of the pairs of elements that take the place of a pair: kept where its own plane does not settle it. */
+static cprox_status enlist(robot_search *o, search_node *node, const robot_pair *whole, const robot_found *found) {
+  robot_pair pair = {.moving = whole->moving,
+                     .standing = whole->standing,
+                     .element = {found->element[0], found->element[1]},
+                     .self = whole->self};
+  const robot_body *moving = robot_scene_moving(&o->scene, &pair), *standing = robot_scene_standing(&o->scene, &pair);
+  chain_motion own;
+  const chain_motion *motion = robot_scene_motion(&o->scene, &pair, moving, &own);
+  robot_keep_normal(o, &pair, standing, &found->gap);
+  list_entry entry = {.lower = found->gap.lower - motion->displacement};
+  double slack = moving->side.error + standing->side.error;
+  if (!robot_is_pruned(o, entry.lower) && pair.normal_known && found->gap.upper > 0.0)
+    entry.lower = fmax(entry.lower, bound_by_gap(o, &pair, moving, standing, motion, &found->gap, &slack));
+  if (robot_is_pruned(o, entry.lower)) {
+    o->dropped = fmin(o->dropped, entry.lower);
+    return CPROX_OK;
+  }
+  entry.pair = robot_scene_add_pair(&o->scene, &pair);
+  if (entry.pair < 0 || !keep_entry(o, &entry))
+    return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
+  if (entry.lower < node->lower) node->lower = entry.lower, node->slack = slack;
+  return CPROX_OK;
+}
+
+/* The hulls do not settle it: what of their elements comes near enough takes the place of the pair. */
+static cprox_status refine_pair_elements(robot_search *o, search_node *node, list_entry *entry, const robot_gap *hulls,
+                                         double displacement) {
+  const double spare = 4.0 * hulls->slack;
+  robot_refinement c =
+      robot_refinement_from(o, entry->pair, hulls, robot_pruning_bound(o) + displacement + spare, displacement + spare);
+  c.listing = true;
+  const cprox_status status = robot_refine_elements(o, &c);
+  if (status < 0 || c.too_many) return status;
+  entry->lower = fmax(entry->lower, c.rest - displacement - hulls->slack);
+  const robot_pair whole = o->scene.pairs[entry->pair];
+  for (size_t i = 0; i < c.n_found; i++) {
+    const cprox_status listed = enlist(o, node, &whole, &c.found[i]);
+    if (listed < 0) return listed;
+  }
+  return CPROX_OK;
+}
+
+/* Raises the bound of one pair over the node that the scene is at by balls and boxes. A part that moves too far to be
+ * measured wants the node cut. */
+static void bound_pair_roughly(robot_search *o, const search_node *node, list_entry *entry) {
+  const robot_pair *pair = &o->scene.pairs[entry->pair];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  entry->needs_split = false;
+  double coarse = INFINITY;
+  if (pair->element[0] < 0 && pair->element[1] < 0) {
+    coarse = robot_scene_coarse_displacement(&o->scene, pair);
+    entry->lower = greater(robot_scene_balls(moving, standing) - coarse, entry->lower);
+    if (robot_is_pruned(o, entry->lower)) return;
+  }
+  const double apart = robot_scene_ball_distance(moving, standing);
+  entry->lower = greater(apart - coarse, entry->lower);
+  if (robot_is_pruned(o, entry->lower)) return;
+  const double displacement = robot_scene_displacement(&o->scene, pair, moving);
+  entry->lower = greater(apart - displacement, entry->lower);
+  const double size = greater(MOST_DISPLACEMENT * apart, moving->radius);
+  if (robot_is_pruned(o, entry->lower) || !(displacement > size) || robot_is_short(node)) return;
+  entry->needs_split = true;
+  want_pieces(o, displacement / size);
+}
+
+/* The same by planes and distances, the cheapest way that settles it. */
+static cprox_status bound_pair(robot_search *o, search_node *node, list_entry *entry, double *slack) {
+  robot_pair *pair = &o->scene.pairs[entry->pair];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  *slack = moving->side.error + standing->side.error;
+  chain_motion own;
+  const chain_motion *motion = robot_scene_motion(&o->scene, pair, moving, &own);
+  const double displacement = motion->displacement;
+
+  if (!pair->normal_known) keep_guess(o, pair, moving, standing);
+  if (pair->normal_known) {
+    const double bound = bound_by_normal(o, pair, moving, standing, motion, robot_pruning_bound(o), slack);
+    entry->lower = fmax(entry->lower, bound);
+    if (robot_is_pruned(o, entry->lower)) return CPROX_OK;
+
+    /* verdicts: a plane that parts the two in the middle says how short the pieces must be; no distance could say much
+     * more */
+    const double pieces = o->goal.limit >= 0.0 ? pieces_for(o, plane_middle(o, pair, moving, standing), bound) : 2.0;
+    if (pieces > ENOUGH_PIECES && !robot_is_short(node)) {
+      want_pieces(o, pieces);
+      return CPROX_OK;
+    }
+  }
+
+  /* another pair wants the node cut: pieces will tell more */
+  if (o->cut) return CPROX_OK;
+  robot_gap gap;
+  const robot_accuracy accuracy = {ROBOT_GAP_FRACTION * o->goal.epsilon, robot_pruning_bound(o), EXCESS_FRACTION,
+                                   known_normal(o, pair)};
+  const cprox_status status = robot_measure(o, entry->pair, accuracy, &gap);
+  if (status < 0) return status;
+  entry->lower = fmax(entry->lower, gap.lower - displacement);
+  if (pair->normal_known && gap.upper > 0.0)
+    entry->lower = fmax(entry->lower, bound_by_gap(o, pair, moving, standing, motion, &gap, slack));
+  if (!robot_is_pruned(o, entry->lower)) want_pieces(o, pieces_for(o, gap.lower, entry->lower));
+  if (robot_is_convex(moving, standing) || robot_is_pruned(o, entry->lower)) return CPROX_OK;
+
+  /* where the hulls are far enough apart in the middle, halves will settle them: their elements cannot do better */
+  if (o->goal.limit < 0.0 && gap.lower < o->best_bound.upper) {
+    robot_refinement nearest = robot_refinement_from(o, entry->pair, &gap, o->best_bound.upper, 0.0);
+    const cprox_status refined = robot_refine_elements(o, &nearest);
+    if (refined < 0) return refined;
+  }
+  if (robot_is_pruned(o, gap.lower) && !robot_is_short(node)) return CPROX_OK;
+  return refine_pair_elements(o, node, entry, &gap, displacement);
+}
+
+static cprox_status keep_open(robot_search *o, const list_entry *entry) {
+  if (!robot_is_pruned(o, entry->lower)) return keep_entry(o, entry) ? CPROX_OK : robot_no_memory(o);
+  o->dropped = lesser(entry->lower, o->dropped);
+  return CPROX_OK;
+}
+
+/* The pairs of a part and the target in a box of the set's tree. */
+static cprox_status open_box(robot_search *o, const search_node *node, const list_entry *entry) {
+  size_t count;
+  const int32_t pairs = cluster_pairs(&o->scene, entry->part, entry->under, &count);
+  if (pairs < 0) return robot_no_memory(o);
+  cprox_status status = CPROX_OK;
+  for (size_t k = 0; k < count && status == CPROX_OK; k++) {
+    list_entry one = {.lower = entry->lower, .pair = pairs + (int32_t)k};
+    bound_pair_roughly(o, node, &one);
+    status = keep_open(o, &one);
+  }
+  return status;
+}
+
+/* What is under a node of the set's tree and within reach of a part: pairs, or, where the part moves too far for these
+ * to be measured, nodes that hold them. */
+static cprox_status open_cluster(robot_search *o, const search_node *node, const list_entry *entry) {
+  const robot_pair any = {.moving = entry->part, .element = {-1, -1}};
+  const double radius = robot_scene_moving(&o->scene, &any)->radius,
+               displacement = robot_scene_coarse_displacement(&o->scene, &any);
+  uint32_t stack[TREE_LANES * TREE_DEEPEST] = {entry->under};
+  size_t n = 1;
+  cprox_status status = CPROX_OK;
+  while (n > 0 && status == CPROX_OK) {
+    const uint32_t at = stack[--n];
+    cluster_lanes lanes;
+    cluster_measure(&o->scene, entry->part, at, displacement, &lanes);
+    for (uint32_t l = 0; l < TREE_LANES && status == CPROX_OK; l++) {
+      if (!(lanes.live >> l & 1u)) continue;
+      list_entry lane = *entry;
+      lane.lower = greater(lanes.lower[l], entry->lower), lane.under = lanes.under[l];
+      const double size = greater(MOST_DISPLACEMENT * lanes.apart[l], radius);
+      lane.needs_split = displacement > size && !robot_is_short(node);
+      if (robot_is_pruned(o, lane.lower)) {
+        o->dropped = lesser(lane.lower, o->dropped);
+      } else if (at & TREE_LEAF) {
+        status = open_box(o, node, &lane);
+      } else if (lane.needs_split) {
+        want_pieces(o, displacement / size);
+        status = keep_open(o, &lane);
+      } else {
+        stack[n++] = lane.under;
+      }
+    }
+  }
+  return status;
+}
+
+/* Balls and boxes of all pairs of a node; those that still matter are kept. */
+static cprox_status bound_roughly(robot_search *o, const search_node *node) {
+  const int32_t list = robot_known(node)->list;
+  const size_t n = lists_count(&o->lists, list);
+  cprox_status status = CPROX_OK;
+  for (size_t i = 0; i < n && status == CPROX_OK; i++) {
+    list_entry entry = lists_at(&o->lists, list)[i];
+    if (!robot_is_pruned(o, entry.lower) && entry.pair < 0) {
+      status = open_cluster(o, node, &entry);
+    } else {
+      if (!robot_is_pruned(o, entry.lower)) bound_pair_roughly(o, node, &entry);
+      status = keep_open(o, &entry);
+    }
+  }
+  return status;
+}
+
+cprox_status robot_bound_node(robot_search *o, search_node *node) {
+  robot_node *payload = robot_own(node);
+  const int32_t old = payload->list;
+  const double inherited = node->lower;
+  const motion_interval over = robot_interval(node);
+  robot_scene_enter_span(&o->scene, &over);
+  o->n_next = 0;
+  o->pieces = 2.0;
+  const cprox_status rough = bound_roughly(o, node);
+  if (rough < 0) return rough;
+
+  /* those that stay move to the front, elements that take the place of a pair come behind the last one */
+  const size_t n = o->n_next;
+  o->cut = o->pieces > 2.0;
+  size_t kept = 0;
+  node->lower = INFINITY;
+  for (size_t i = 0; i < n; i++) {
+    list_entry entry = o->next[i];
+    double slack = 0.0;
+    if (!robot_is_pruned(o, entry.lower) && !entry.needs_split && !o->scene.bent) {
+      const cprox_status status = bound_pair(o, node, &entry, &slack);
+      if (status < 0) return status;
+      if (robot_is_answered(o)) {
+        node->lower = inherited;
+        return CPROX_OK;
+      }
+    }
+    if (robot_is_pruned(o, entry.lower)) {
+      o->dropped = lesser(entry.lower, o->dropped);
+      continue;
+    }
+    o->next[kept++] = entry;
+    if (entry.lower < node->lower) node->lower = entry.lower, node->slack = slack;
+  }
+  for (size_t i = n; i < o->n_next; i++) o->next[kept++] = o->next[i];
+  o->n_next = kept;
+
+  const int32_t list = lists_take(&o->lists, o->n_next);
+  if (list < 0) return CPROX_MEMORY;
+  list_entry *to = lists_at(&o->lists, list);
+  for (size_t i = 0; i < o->n_next; i++) to[i] = o->next[i];
+  lists_set_count(&o->lists, list, o->n_next);
+  lists_release(&o->lists, old);
+  payload->list = list;
+  node->lower = fmax(node->lower, inherited);
+  return CPROX_OK;
+}

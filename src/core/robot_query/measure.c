@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "robot_query/measure.h"
+
+#include <math.h>
+
+#include "base/workspace.h"
+#include "broadphase/obstacle_set.h"
+#include "robot_query/cull.h"
+
+enum { MOST_SEEDS = 16, MOST_SEED_TESTS = 40000 };
+
+/* The first distances of a search need be no more exact than this. */
+static const double SEED_FRACTION = 0.02;
+
+/* Distances: the least one. Left to right: the earliest one within epsilon of contact, and until there is one, the
+ * least. */
+static bool is_better(const robot_search *o, double upper, double at) {
+  if (o->goal.order != SEARCH_LEFT_TO_RIGHT) return upper < o->best_bound.upper;
+  const double near = o->goal.limit + o->goal.epsilon;
+  if (o->best_bound.upper <= near) return upper <= near && at < o->best_bound.at;
+  return upper < o->best_bound.upper;
+}
+
+static cprox_status refuse_callback(const robot_search *o) {
+  return workspace_fail(o->scene.q->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
+}
+
+/* What was measured may be the least so far, or a contact. */
+static void keep_sample(robot_search *o, int32_t index, const robot_gap *gap) {
+  const size_t segment = o->scene.segment;
+  const double u = o->scene.u, upper = fmax(gap->upper, 0.0), at = motion_time_below(o->scene.motion, segment, u);
+  const robot_sample sample = {.gap = *gap, .pair = index, .segment = segment, .u = u};
+  if (is_better(o, upper, at)) {
+    o->best = sample;
+    o->best_bound = (search_best){.upper = upper, .slack = gap->slack, .at = at};
+  }
+  if (upper <= o->goal.limit && at < o->touch_at) {
+    o->touch = sample;
+    o->touch_at = at;
+  }
+}
+
+void robot_place_normal(const robot_search *o, robot_pair *pair, vec3 normal) {
+  pair->normal = normal;
+  pair->normal_rate = vec(0, 0, 0);
+  pair->found = pair->from = pair->to = robot_scene_place(&o->scene, o->scene.segment, o->scene.u);
+  pair->normal_known = true;
+}
+
+void robot_keep_normal(const robot_search *o, robot_pair *pair, const robot_body *standing, const robot_gap *gap) {
+  if (vec_norm2(gap->normal) > 0.0) robot_place_normal(o, pair, placement_turn_back(&standing->side.at, gap->normal));
+}
+
+cprox_status robot_measure(robot_search *o, int32_t index, robot_accuracy accuracy, robot_gap *gap) {
+  robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  robot_scene_measure(moving, standing, accuracy, gap);
+  o->gaps++;
+  if (gap->support_failed) return refuse_callback(o);
+  robot_keep_normal(o, pair, standing, gap);
+  if (robot_is_convex(moving, standing)) keep_sample(o, index, gap);
+  return CPROX_OK;
+}
+
+robot_refinement robot_refinement_from(robot_search *o, int32_t index, const robot_gap *hulls, double reach,
+                                       double room) {
+  const robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  const double most = fmax(hulls->upper, 0.0) + (moving->tree ? 4.0 * moving->radius : 0.0) +
+                      (standing->tree ? 4.0 * standing->radius : 0.0);
+  return (robot_refinement){.scene = &o->scene,
+                            .pair = index,
+                            .reach = fmin(reach, most + room),
+                            .room = room,
+                            .accuracy = ROBOT_GAP_FRACTION * o->goal.epsilon,
+                            .normal = hulls->upper > 0.0 ? hulls->normal : vec(0, 0, 0)};
+}
+
+cprox_status robot_refine_elements(robot_search *o, robot_refinement *c) {
+  robot_refinement_run(c);
+  o->gaps += c->gaps;
+  o->refined = true;
+  if (c->support_failed) return refuse_callback(o);
+  if (c->no_memory) return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
+  if (c->nearest.gap.upper < INFINITY) keep_sample(o, c->pair, &c->nearest.gap);
+  return CPROX_OK;
+}
+
+cprox_status robot_measure_whole(robot_search *o, int32_t index) {
+  robot_gap gap;
+  const double floor = fmax(o->goal.limit, 0.0);
+  const cprox_status status = robot_measure(
+      o, index,
+      (robot_accuracy){.epsilon = ROBOT_GAP_FRACTION * o->goal.epsilon, .floor = floor, .fraction = SEED_FRACTION},
+      &gap);
+  const robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  if (status < 0 || robot_is_convex(moving, standing) || gap.lower >= o->best_bound.upper) return status;
+  robot_refinement c = robot_refinement_from(o, index, &gap, o->best_bound.upper, 0.0);
+  return robot_refine_elements(o, &c);
+}
+
+/* The pair that comes closest by balls and boxes. */
+typedef struct nearest_pair {
+  double apart;
+  int32_t pair; /* -1: none is nearer */
+} nearest_pair;
+
+static void try_pair(robot_search *o, int32_t index, nearest_pair *nearest) {
+  const robot_pair *pair = &o->scene.pairs[index];
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  if (robot_scene_balls(moving, standing) >= nearest->apart) return;
+  const double apart = robot_scene_ball_distance(moving, standing);
+  if (apart < nearest->apart) *nearest = (nearest_pair){.apart = apart, .pair = index};
+}
+
+/* What is to be opened, the nearest on top. */
+typedef struct cluster_stack {
+  uint32_t at[TREE_LANES * TREE_DEEPEST];
+  double apart[TREE_LANES * TREE_DEEPEST];
+  size_t count;
+} cluster_stack;
+
+static void push_nearest_last(cluster_stack *stack, const cluster_lanes *lanes, double most) {
+  const size_t first = stack->count;
+  for (uint32_t l = 0; l < TREE_LANES; l++) {
+    if (!(lanes->live >> l & 1u) || !(lanes->apart[l] < most)) continue;
+    size_t i = stack->count++;
+    for (; i > first && stack->apart[i - 1] < lanes->apart[l]; i--)
+      stack->apart[i] = stack->apart[i - 1], stack->at[i] = stack->at[i - 1];
+    stack->apart[i] = lanes->apart[l], stack->at[i] = lanes->under[l];
+  }
+}
+
+cprox_status robot_no_memory(const robot_search *o) {
+  return workspace_fail(o->scene.q->workspace, CPROX_MEMORY, "no memory for the pairs of a robot");
+}
+
+/* The same of all that is under a node of the set's tree. */
+static cprox_status try_cluster(robot_search *o, const list_entry *entry, nearest_pair *nearest) {
+  cluster_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
+  while (stack.count > 0) {
+    const uint32_t at = stack.at[--stack.count];
+    if (stack.apart[stack.count] >= nearest->apart) continue;
+    cluster_lanes lanes;
+    cluster_measure(&o->scene, entry->part, at, 0.0, &lanes);
+    if (!(at & TREE_LEAF)) push_nearest_last(&stack, &lanes, nearest->apart);
+    for (uint32_t l = 0; (at & TREE_LEAF) && l < TREE_LANES; l++) {
+      if (!(lanes.live >> l & 1u) || !(lanes.apart[l] < nearest->apart)) continue;
+      size_t count;
+      const int32_t pairs = cluster_pairs(&o->scene, entry->part, lanes.under[l], &count);
+      if (pairs < 0) return robot_no_memory(o);
+      for (size_t k = 0; k < count; k++) try_pair(o, pairs + (int32_t)k, nearest);
+    }
+  }
+  return CPROX_OK;
+}
+
+/* Measures the pair whose balls and boxes come closest where the scene is. */
+static cprox_status seed_here(robot_search *o, int32_t list) {
+  const double most = o->goal.limit >= 0.0 ? lesser(o->best_bound.upper, o->goal.limit) : o->best_bound.upper;
+  const size_t n = lists_count(&o->lists, list);
+  nearest_pair nearest = {.apart = most, .pair = -1};
+  for (size_t k = 0; k < n; k++) {
+    const list_entry entry = lists_at(&o->lists, list)[k];
+    const cprox_status status = entry.pair < 0 ? try_cluster(o, &entry, &nearest) : CPROX_OK;
+    if (status < 0) return status;
+    if (entry.pair >= 0) try_pair(o, entry.pair, &nearest);
+  }
+  return nearest.pair < 0 ? CPROX_OK : robot_measure_whole(o, nearest.pair);
+}
+
+size_t robot_knot_near(const cprox_motion *m, size_t first, size_t last, size_t step, double t) {
+  size_t low = (first + step) / step, high = (last - 1) / step;
+  if (low > high) step = 1, low = first + 1, high = last - 1;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if (m->times[middle * step] < t)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  const size_t knot = low * step;
+  return knot > first + step && t - m->times[knot - step] < m->times[knot] - t ? knot - step : knot;
+}
+
+size_t robot_knot_step(size_t segments) {
+  size_t step = 1;
+  while (32 * step <= segments) step *= 2;
+  return step;
+}
+
+/* In the middle of a span, or where it is bent of its halves, `places` at most. */
+static cprox_status seed_span(robot_search *o, int32_t list, const motion_interval *over, size_t places) {
+  robot_scene_enter_span(&o->scene, over);
+  if (!o->scene.bent || places < 2) return seed_here(o, list);
+  const cprox_motion *m = o->scene.motion;
+  const double t0 = motion_time(m, over->first, over->a), t1 = motion_time(m, over->last - 1, over->b);
+  const size_t knot =
+      robot_knot_near(m, over->first, over->last, robot_knot_step(over->last - over->first), 0.5 * (t0 + t1));
+  motion_interval half = *over;
+  half.last = knot, half.b = 1.0;
+  const cprox_status status = seed_span(o, list, &half, places / 2);
+  if (status < 0 || robot_is_answered(o)) return status;
+  half = *over;
+  half.first = knot, half.a = 0.0;
+  return seed_span(o, list, &half, places - places / 2);
+}
+
+cprox_status robot_measure_if_near(robot_search *o, int32_t index) {
+  const robot_pair *pair = &o->scene.pairs[index];
+  if (pair->element[0] >= 0 || pair->element[1] >= 0) return CPROX_OK;
+  const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
+  if (robot_scene_balls(moving, standing) > o->goal.epsilon) return CPROX_OK;
+  return robot_scene_ball_distance(moving, standing) > o->goal.epsilon ? CPROX_OK : robot_measure_whole(o, index);
+}
+
+/* The same of all that is under a node of the set's tree, until contact is proven. */
+static cprox_status measure_near_cluster(robot_search *o, const list_entry *entry) {
+  const double known = o->touch_at;
+  cluster_stack stack = {.at = {entry->under}, .apart = {-INFINITY}, .count = 1};
+  cprox_status status = CPROX_OK;
+  while (stack.count > 0 && status >= 0 && o->touch_at == known) {
+    const uint32_t at = stack.at[--stack.count];
+    const double near = nextafter(o->goal.epsilon, INFINITY);
+    cluster_lanes lanes;
+    cluster_measure(&o->scene, entry->part, at, 0.0, &lanes);
+    if (!(at & TREE_LEAF)) push_nearest_last(&stack, &lanes, near);
+    for (uint32_t l = 0; (at & TREE_LEAF) && l < TREE_LANES; l++) {
+      if (!(lanes.live >> l & 1u) || !(lanes.apart[l] < near)) continue;
+      size_t count;
+      const int32_t pairs = cluster_pairs(&o->scene, entry->part, lanes.under[l], &count);
+      if (pairs < 0) return robot_no_memory(o);
+      for (size_t k = 0; k < count && status >= 0; k++) status = robot_measure_if_near(o, pairs + (int32_t)k);
+    }
+  }
+  return status;
+}
+
+cprox_status robot_measure_start(robot_search *o, const search_node *node) {
+  const robot_node *payload = robot_known(node);
+  const double known = o->touch_at;
+  const size_t n = lists_count(&o->lists, payload->list);
+  robot_scene_enter(&o->scene, payload->first, payload->a, payload->a);
+  cprox_status status = CPROX_OK;
+  for (size_t k = 0; k < n && status >= 0 && o->touch_at == known; k++) {
+    const list_entry entry = lists_at(&o->lists, payload->list)[k];
+    status = entry.pair < 0 ? measure_near_cluster(o, &entry) : robot_measure_if_near(o, entry.pair);
+  }
+  return status;
+}
+
+cprox_status robot_seed(robot_search *o, const search_node *node) {
+  const motion_interval over = robot_interval(node);
+  const int32_t list = robot_known(node)->list;
+  const size_t n = lists_count(&o->lists, list);
+  size_t places = MOST_SEEDS;
+  while (places > 1 && places * n > MOST_SEED_TESTS) places /= 2;
+  cprox_status status = seed_span(o, list, &over, places);
+  for (int end = 0; end < 2 && status >= 0 && !robot_is_answered(o); end++) {
+    const double u = end == 0 ? over.a : over.b;
+    robot_scene_enter(&o->scene, end == 0 ? over.first : over.last - 1, u, u);
+    status = seed_here(o, list);
+  }
+  return status;
+}

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Proof of contact, after a search from left to right. */
+#include <math.h>
+
+#include "robot_query/measure.h"
+
+/* The distance of a pair at a time, as exactly as arithmetic has it, or of every pair that may touch (-1); what it
+ * proves stands in o->touch. */
+static cprox_status measure_pair_at(robot_search *o, int32_t pair, double t, double *upper) {
+  const cprox_motion *m = o->scene.motion;
+  const size_t segment = motion_segment_at(m, t);
+  const double from = m->times[segment], to = m->times[segment + 1];
+  const double u = fmin(fmax((t - from) / (to - from), 0.0), 1.0), known = o->touch_at;
+  robot_scene_enter(&o->scene, segment, u, u);
+
+  /* what was found stays the best, whatever is seen here */
+  const robot_sample best = o->best;
+  const search_best bound = o->best_bound;
+  const double epsilon = o->goal.epsilon;
+  o->best_bound = (search_best){.upper = INFINITY, .at = INFINITY};
+  o->goal.epsilon = 0.0;
+  cprox_status status = CPROX_OK;
+  if (pair >= 0) status = robot_measure_whole(o, pair);
+  const size_t n = pair < 0 ? o->scene.n_pairs : 0;
+  for (size_t i = 0; i < n && status >= 0 && o->touch_at == known; i++) status = robot_measure_if_near(o, (int32_t)i);
+  *upper = o->best_bound.upper;
+  o->best = best, o->best_bound = bound, o->goal.epsilon = epsilon;
+  return status;
+}
+
+/* By the speed at which the two approach each other. */
+static cprox_status prove_by_speed(robot_search *o, int32_t pair, double t, double first, double end) {
+  enum { MOST_STEPS = 8 };
+  double before, now, step = first;
+  cprox_status status = measure_pair_at(o, pair, t, &before);
+  for (int i = 0; i < MOST_STEPS && status >= 0 && t + step < o->touch_at; i++) {
+    const double next = fmin(t + step, end);
+    if (!(next > t)) break;
+    status = measure_pair_at(o, pair, next, &now);
+    if (status < 0 || !(now > 0.0)) break;
+    const double speed = (before - now) / (next - t);
+    if (!(speed > 0.0)) break;
+    /* a little deeper than the surface, or rounding hides it */
+    step = now / speed * (1.0 + 1e-6) + 1e-9 * first;
+    t = next, before = now;
+  }
+  return status;
+}
+
+/* Elements that only slide along each other prove nothing, where others of the same two parts do. */
+static int32_t whole_pair(const robot_search *o, int32_t index) {
+  const robot_pair *of = &o->scene.pairs[index];
+  for (size_t i = 0; i < o->scene.n_pairs; i++) {
+    const robot_pair *pair = &o->scene.pairs[i];
+    if (pair->moving == of->moving && pair->standing == of->standing && pair->self == of->self &&
+        pair->element[0] < 0 && pair->element[1] < 0)
+      return (int32_t)i;
+  }
+  return index;
+}
+
+cprox_status robot_search_prove(robot_search *o, double end) {
+  enum { MOST_STEPS = 24, MOST_CUTS = 40, EVERY_PAIR = -1 };
+  const double begin = o->best_bound.at, range = end - begin;
+  if (o->best.pair < 0 || !(o->best_bound.upper <= o->goal.epsilon) || !(o->best_bound.upper > 0.0) || !(range > 0.0))
+    return CPROX_OK;
+  const double known = o->touch_at;
+  double unused;
+  cprox_status status = prove_by_speed(o, whole_pair(o, o->best.pair), begin, 1e-6 * range, end);
+  if (status < 0 || o->touch_at < known) return status;
+
+  /* farther along in growing steps, and then back to where it is not proven */
+  double step = 1e-7 * range, before = begin;
+  for (int i = 0; i < MOST_STEPS && step < range && begin + step < known; i++, step *= 2.0) {
+    status = measure_pair_at(o, EVERY_PAIR, begin + step, &unused);
+    if (status < 0 || o->touch_at < known) break;
+    before = begin + step;
+  }
+  if (status < 0 || !(o->touch_at < known)) return status;
+  const int32_t pair = o->touch.pair;
+  for (int i = 0; i < MOST_CUTS && o->touch_at - before > 1e-9 * range; i++) {
+    const double middle = 0.5 * (before + o->touch_at);
+    status = measure_pair_at(o, pair, middle, &unused);
+    if (status < 0) return status;
+    if (o->touch_at > middle) before = middle;
+  }
+  return CPROX_OK;
+}
