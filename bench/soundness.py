@@ -10,7 +10,8 @@ ASKED = [(f'{build}: {theorem}', 100000, least) for build in ('rounding', 'round
          for theorem, least in (('T1', .15), ('T2', .15), ('T3', .15), ('T4', .15), ('T6', .15))]
 ASKED += [(f'{build}: T5', 100000, .1) for build in ('rounding_chain', 'rounding_chain_fused')]
 ASKED += [('certificates of robots and mutants', 10000, None)]
-ASKED += [(f'attack: {family}', 1000000, None) for family in ('coaxial', 'coincident')]
+ASKED += [(f'attack: {family}', 1000000, None) for family in
+          ('coaxial', 'coincident', 'contact', 'flat', 'inside', 'lengths', 'ties', 'time_of_contact')]
 ASKED += [('intervals of queries', 1000000, None), ('certificates and mutants', 10000, None)]
 
 
