@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "finish.h"
 
+#include <cmath>
+
 #include "failure.h"
 
 namespace curve_proximity::cli {
@@ -15,6 +17,7 @@ void tellTimings(const std::vector<std::string> &sentences, Console &console) {
 }
 
 void noteVerdict(const ResultRow &row, Outcome &outcome) {
+  outcome.against_nothing = outcome.against_nothing || (row.result.status >= 0 && std::isinf(row.result.lower));
   if (!row.has_verdict || row.result.status < 0) return;
   outcome.violated = outcome.violated || row.result.verdict == CPROX_VERDICT_VIOLATED;
   outcome.undecided = outcome.undecided || row.result.verdict == CPROX_VERDICT_UNDECIDED;
@@ -27,8 +30,12 @@ int finish(const Tally &tally, QueryType query_type, Console &console) {
     console.say("interrupted: the output holds the first " + std::to_string(tally.rows) + " rows of the input");
     return kInterrupted;
   }
+  if (tally.against_nothing)
+    console.say("warning: " + std::to_string(tally.against_nothing) + " of " + std::to_string(tally.rows) +
+                " rows were measured against nothing");
+  if (!tally.rows) console.say("warning: the input has no rows");
   if (query_type == QueryType::DISTANCE) return tally.failed ? kSomeRowsFailed : kAllAnswered;
-  if (tally.failed) return kBadUsage;
+  if (tally.failed || !tally.rows) return kBadUsage;
   if (tally.violated) return kSomeViolated;
   return tally.undecided ? kSomeUndecided : kAllAnswered;
 }

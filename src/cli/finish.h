@@ -23,7 +23,8 @@ void noteVerdict(const ResultRow &row, Outcome &outcome);
 
 /** The exit code that a run deserves; says how many rows failed, and that it was interrupted. A shell may gate on the
  *  code of tolerance and collision: only 0 means that all is proven clear. A row without an answer (2) outweighs a
- *  violated verdict (1), and that an undecided one (3). */
+ *  violated verdict (1), and that an undecided one (3). Without any row nothing is proven (2). Warns of rows that were
+ *  measured against nothing. */
 int finish(const Tally &tally, QueryType query_type, Console &console);
 
 } // namespace curve_proximity::cli

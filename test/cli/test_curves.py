@@ -112,7 +112,16 @@ class Answers(Case):
             self.assertEqual([row[name] for name in ('t', 'a_x', 'b_z')], ['', '', ''])
             self.assertEqual(answer.code, 0)
         self.assertEqual(self.ask('tolerance', [PASSING], '{}', '--delta', '5').row('passing')['verdict'], 'clear')
-        self.assertEqual(self.ask('collision', [PASSING], '{}').row('passing')['verdict'], 'clear')
+        answer = self.ask('collision', [PASSING], '{}')
+        self.assertEqual(answer.row('passing')['verdict'], 'clear')
+        self.assertIn('warning: 1 of 1 rows were measured against nothing', answer.err)
+        self.assertNotIn('nothing', self.ask('collision', [PASSING], BOX_SCENE).err)
+
+    def without_any_curve_nothing_is_proven_clear(self):
+        for query, code in (('distance', 0), ('collision', 2)):
+            answer = self.ask(query, [], BOX_SCENE)
+            self.assertEqual((answer.code, answer.out), (code, HEADER + '\n'))
+            self.assertIn('warning: the input has no rows', answer.err)
 
     def a_budget_that_is_too_small_leaves_a_true_interval(self):
         # a wiggle about a sphere's equal-distance circle: one node cannot be enough for 1e-12
