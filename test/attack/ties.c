@@ -45,7 +45,8 @@ static double ask(attack *a, const problem *p, cprox_gradient *gradient) {
   cprox_options options = CPROX_OPTIONS_DEFAULT;
   options.epsilon = gradient ? 1e-9 : 1e-12;
   options.signed_distance = p->is_signed;
-  options.max_nodes = 2000; /* a depth may not be known as narrowly as that, and every node of it is slow */
+  if (!gradient)
+    options.max_nodes = 2000; /* a depth may not be known as narrowly as that, and every node of it is slow */
   cprox_result result = {.upper = NAN};
   cprox_status status = cprox_distance(mover, target, &options, a->ws, &result);
   attack_check(a, status >= 0, "%s", cprox_workspace_error(a->ws));

@@ -88,7 +88,8 @@ static void shrink(ellipsoid *e, const cut *c) {
 }
 
 /* The centre is inside: a cut through a point a tenth of the way to the ellipsoid's surface, where one of six is
- * outside. Such a cut leaves less than the whole, so that in the end the ellipsoid is hardly larger than the body. */
+ * outside. Such a cut leaves less than the whole, and in the end
+ * six points a tenth of the way out are in the body. */
 static cut cut_beside(const implicit *body, const ellipsoid *e) {
   for (int k = 0; k < 6; k++) {
     const double side = k % 2 == 0 ? 0.1 : -0.1;
