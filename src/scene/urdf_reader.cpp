@@ -374,11 +374,11 @@ class RobotReader {
       if (!link) continue;
       for (const urdf::CollisionSharedPtr &collision : link->collision_array) requestMesh(*collision);
     }
-    std::vector<std::pair<const MeshRequest, LoadedMesh> *> todo;
-    for (auto &entry : meshes_) todo.push_back(&entry);
-    forEachInParallel(todo.size(), options_.threads, [&](std::size_t i) {
-      const auto &[request, loaded] = *todo[i];
-      LoadedMesh &out = todo[i]->second;
+    std::vector<std::pair<const MeshRequest, LoadedMesh> *> files;
+    for (auto &entry : meshes_) files.push_back(&entry);
+    forEachInParallel(files.size(), options_.threads, [&](std::size_t i) {
+      const auto &[request, loaded] = *files[i];
+      LoadedMesh &out = files[i]->second;
       try {
         out.geometry = loadMeshGeometry(request, options_.resources, &out.timing);
       } catch (...) {
