@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """cprox from Python, a few lines each: a tube, many curves at once, a gradient, a Panda's clearance over time.
 
-Needs the sourced workspace (doc/python.md). Writes clearance.png into the working directory."""
+    python.py [PICTURE.png]
+
+Needs the sourced workspace (doc/python.md). Writes the chart where it is told, else clearance.png in the working folder."""
 import os
+import sys
 
 import matplotlib
 import numpy
@@ -49,5 +52,6 @@ profile = motion.profile(breaks, epsilon=1e-4)
 pyplot.fill_between(breaks, numpy.append(profile['lower'], profile['lower'][-1]) * 1e3, step='post', alpha=0.6)
 pyplot.xlabel('time [s]')
 pyplot.ylabel('certified clearance [mm]')
-pyplot.savefig('clearance.png')
-print('clearance.png: the clearance is nowhere below the filled area')
+picture = sys.argv[1] if len(sys.argv) > 1 else 'clearance.png'
+pyplot.savefig(picture)
+print(f'{picture}: the clearance is nowhere below the filled area')
