@@ -137,10 +137,17 @@ bool relative_create(const cprox_curve *first, const cprox_curve *second, const 
   return true;
 }
 
-vec3 relative_point(const cprox_curve *curve, double t, bool from_left, cprox_workspace *workspace) {
+static vec3 point_at(const cprox_curve *curve, double t, bool from_left, cprox_workspace *workspace) {
   const size_t i = curve_piece_at(curve, t);
   if (from_left && i > 0 && curve->breaks[i] == t) return curve_piece(curve, i - 1)[curve->degree];
   vec3 point = vec(0, 0, 0);
   cprox_curve_evaluate(curve, t, workspace, &point, NULL, NULL);
   return point;
+}
+
+vec3 relative_position(const cprox_curve *curve, const cprox_pose *pose, double t, bool from_left,
+                       cprox_workspace *workspace) {
+  const vec3 point = point_at(curve, t, from_left, workspace);
+  const frame f = frame_create(pose, vec(0, 0, 0));
+  return frame_to_world(&f, point);
 }

@@ -11,7 +11,9 @@
 bool relative_create(const cprox_curve *first, const cprox_curve *second, const cprox_pose *pose, double t0, double t1,
                      cprox_workspace *workspace, cprox_curve *relative);
 
-/* The point of a curve at t; at a joint, where it may jump, the end of the piece before if from_left is set. */
-vec3 relative_point(const cprox_curve *curve, double t, bool from_left, cprox_workspace *workspace);
+/* Where what rides a curve is at t, the curve being placed by the pose; at a joint, where it may jump, the end of the
+ * piece before if from_left is set. */
+vec3 relative_position(const cprox_curve *curve, const cprox_pose *pose, double t, bool from_left,
+                       cprox_workspace *workspace);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "base/workspace.h"
 #include "curve/relative_curve.h"
-#include "curve_query/search_pair.h"
+#include "curve_query/report.h"
 #include "problem/level_of_detail.h"
 #include "problem/minkowski.h"
 #include "problem/validate.h"
@@ -240,7 +240,7 @@ static cprox_status part_is_alone(const query *q, const placed_pair *best, doubl
     if (c.part == best->which.part && c.mover_part == best->which.mover_part) continue;
     curve_convex o;
     const placed_pair other = placed_pair_resolve(q, &c);
-    if (!placed_begin_convex(q, &other, &o)) return CPROX_MEMORY;
+    if (!curve_convex_begin_pair(&o, q, &other)) return CPROX_MEMORY;
     o.is_signed = q->is_signed;
     o.epsilon = q->options.epsilon;
     look seen;
@@ -297,8 +297,7 @@ static placed_bodies bodies_at(const query *q, const placed_pair *c, double t) {
                          .margin = q->mover.radius};
   cprox_curve_evaluate(q->mover.curve, t, q->workspace, &p.a.pose.position, NULL, NULL);
   if (!p.b.synchronized) return p;
-  const frame f = frame_create(&p.b.pose, vec(0, 0, 0));
-  p.b.pose.position = frame_to_world(&f, relative_point(p.b.curve, t, false, q->workspace));
+  p.b.pose.position = relative_position(p.b.curve, &p.b.pose, t, false, q->workspace);
   if (!p.b.body) p.b.body = &carried_point;
   return p;
 }
@@ -332,7 +331,7 @@ static void fill(const cprox_obstacle *target, vec3 n, vec3 witness_obstacle, cp
 
 static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox_gradient *g) {
   curve_convex o;
-  if (!placed_begin_convex(q, c, &o)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a gradient");
+  if (!curve_convex_begin_pair(&o, q, c)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a gradient");
   o.is_signed = q->is_signed;
   o.epsilon = 1e-3 * q->options.epsilon;
   int end;
@@ -347,7 +346,9 @@ static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox
   /* the points, as the search would report them */
   curve_convex_adopt(&o, &here.sample, (search_best){.upper = distance});
   cprox_result r = {.t_obstacle = NAN};
-  status = placed_report_convex(q, c, &o, &r);
+  curve_finding seen;
+  curve_convex_finding(&o, &seen);
+  status = report_finding(q, c, &seen, &r);
   if (status < 0) return status;
   fill(&q->targets[0], r.normal, r.witness_obstacle, g);
   if (q->targets[0].synchronized) g->t_obstacle = g->t;

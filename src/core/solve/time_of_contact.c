@@ -3,11 +3,8 @@
 #include <math.h>
 
 #include "base/check.h"
-#include "curve_query/contact_bvh.h"
-#include "curve_query/contact_convex.h"
-#include "curve_query/contact_curve.h"
+#include "curve_query/report.h"
 #include "curve_query/search_pair.h"
-#include "shape/body.h"
 #include "solve/solve.h"
 #include "solve/time_of_contact.h"
 
@@ -17,85 +14,31 @@ static cprox_result nothing(void) {
 
 /* ---- one candidate ---- */
 
-static cprox_status meet_convex(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
+/* Searches a pair from left to right: where the two come within epsilon first, and where contact is proven. */
+static cprox_status meet_placed(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
                                 time_of_contact *met) {
-  contact_convex state;
-  curve_convex *o = &state.base;
-  if (!placed_begin_convex(q, p, o)) return CPROX_MEMORY;
-  contact_convex_begin(&state, q->options.epsilon);
-  const search_oracle oracle = contact_convex_oracle(&state);
-  cprox_status status = search_run(goal, &oracle, contact_convex_root(&state), q->workspace, found);
+  curve_search s;
+  curve_start start = {.goal = *goal};
+  cprox_status status = curve_search_begin(&s, q, p);
+  if (status == CPROX_OK) status = s.kernel->start_contact(&s, &start);
   if (status < 0) return status;
-  cprox_status reported = placed_report_convex(q, p, o, &met->near);
+  status = search_run(goal, &start.oracle, start.root, q->workspace, found);
+  if (status < 0) return status;
+  curve_finding near, touch;
+  s.kernel->best_found(&s, &near);
+  cprox_status reported = report_finding(q, p, &near, &met->near);
   if (reported < 0) return reported;
-  met->near.upper = o->best_bound.upper;
-  met->near_at = o->best_bound.at;
-  const cprox_status proved = contact_convex_prove(&state);
+  met->near.upper = near.bound.upper;
+  met->near_at = near.bound.at;
+  const cprox_status proved = s.kernel->prove_contact(&s, &touch);
   if (proved < 0) return proved;
-  if (state.proven_bound.at < goal->time_cutoff) {
-    o->best = state.proven;
-    reported = placed_report_convex(q, p, o, &met->touch);
-    if (reported < 0) return reported;
-    met->touch.witness_obstacle = met->touch.witness_mover;
-    met->touch.upper = state.proven_bound.upper;
-  }
-  met->distance_queries = o->distance_queries;
-  return status;
-}
-
-static cprox_status meet_curve(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
-                               time_of_contact *met) {
-  contact_curve state;
-  curve_curve *o = &state.base;
-  if (!placed_begin_curve(q, p, o)) return CPROX_MEMORY;
-  contact_curve_begin(&state, q->options.epsilon);
-  const search_oracle oracle = contact_curve_oracle(&state);
-  const cprox_status status = search_run(goal, &oracle, contact_curve_root(&state), q->workspace, found);
-  if (status < 0) return status;
-  cprox_status reported = placed_report_curve(q, p, o, &met->near);
+  met->distance_queries = touch.distance_queries;
+  if (!(touch.bound.at < goal->time_cutoff)) return status;
+  reported = report_finding(q, p, &touch, &met->touch);
   if (reported < 0) return reported;
-  met->near.upper = o->best_bound.upper;
-  met->near_at = o->best_bound.at;
-  contact_curve_prove(&state);
-  if (state.proven_bound.at < goal->time_cutoff) {
-    o->best = state.proven;
-    reported = placed_report_curve(q, p, o, &met->touch);
-    if (reported < 0) return reported;
-    met->touch.upper = state.proven_bound.upper;
-  }
-  met->distance_queries = o->distance_queries;
+  met->touch.upper = touch.bound.upper;
+  met->touch.t = touch.t_contact;
   return status;
-}
-
-static cprox_status meet_tree(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
-                              time_of_contact *met) {
-  contact_tree state;
-  curve_tree *o = &state.base;
-  search_node root;
-  if (!placed_begin_tree(q, p, o)) return CPROX_MEMORY;
-  o->asked = *goal;
-  if (!contact_tree_begin(&state, &root)) return CPROX_MEMORY;
-  const search_oracle oracle = contact_tree_oracle(&state);
-  const cprox_status status = search_run(goal, &oracle, root, q->workspace, found);
-  if (status < 0) return status;
-  placed_report_tree(q, p, o, &met->near);
-  met->near.upper = o->best_bound.upper;
-  met->near_at = o->best_bound.at;
-  contact_tree_prove(&state);
-  if (state.proven_bound.at < goal->time_cutoff) {
-    o->best = state.proven;
-    placed_report_tree(q, p, o, &met->touch);
-    met->touch.upper = state.proven_bound.upper;
-    if (state.proven_within) met->touch.t = state.proven_t;
-  }
-  met->distance_queries = o->distance_queries;
-  return status;
-}
-
-static cprox_status meet_any(const query *q, const placed_pair *p, const search_goal *goal, search_outcome *found,
-                             time_of_contact *met) {
-  if (placed_is_tree(p)) return meet_tree(q, p, goal, found, met);
-  return p->shape ? meet_convex(q, p, goal, found, met) : meet_curve(q, p, goal, found, met);
 }
 
 /* Contact is proven nowhere near the first place within epsilon; perhaps farther along. */
@@ -114,7 +57,7 @@ static cprox_status meet_model(const query *q, const candidate *c, double time_c
   search_goal goal = query_goal(q, SEARCH_LEFT_TO_RIGHT, INFINITY);
   goal.time_cutoff = time_cutoff;
   search_outcome found = {0};
-  met->status = meet_any(q, &p, &goal, &found, met);
+  met->status = meet_placed(q, &p, &goal, &found, met);
   if (met->status == CPROX_MEMORY)
     return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the open intervals");
   if (met->status < 0) return met->status;

@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "curve_query/kernel.h"
+
+#include "base/rounding.h"
+#include "curve/relative_curve.h"
+#include "curve_query/crossing.h"
+#include "problem/minkowski.h"
+#include "shape/body.h"
+
+/* ---- what the kernels share ---- */
+
+/* Easy verdicts are answered before Newton has paid for itself. */
+static uint32_t nodes_before_newton(const query *q) {
+  enum { VERDICT_NODES_BEFORE_NEWTON = 4 };
+  return query_wants_verdict(q) ? VERDICT_NODES_BEFORE_NEWTON : 0;
+}
+
+/* An upper bound that needs no improvement. */
+static double good_enough(const query *q) {
+  if (q->is_signed) return -INFINITY;
+  return query_wants_verdict(q) ? q->limit : q->options.epsilon;
+}
+
+/* The curve that the search runs along, about the obstacle: synchronized it is where the mover is, seen from the other.
+ * NULL where memory is out. */
+static const cprox_curve *curve_about(const query *q, const placed_pair *p, cprox_curve *relative) {
+  const cprox_obstacle *obstacle = p->obstacle;
+  if (!obstacle->synchronized) return q->mover.curve;
+  const bool made =
+      relative_create(q->mover.curve, obstacle->curve, &obstacle->pose, q->t0, q->t1, q->workspace, relative);
+  return made ? relative : NULL;
+}
+
+/* The search owns the relative curve, which is all of it; of another curve it sees the part in query. */
+static void keep_curve(const query *q, const placed_pair *p, const cprox_curve *relative, cprox_curve *kept,
+                       curve_side *side) {
+  side->part = q->part;
+  if (!p->obstacle->synchronized) return;
+  *kept = *relative;
+  side->curve = kept;
+  side->part = curve_side_whole();
+}
+
+static void begin_finding(curve_finding *seen, bool found, const search_best *bound, uint32_t distance_queries) {
+  seen->found = found;
+  seen->is_contact = seen->at_end = false;
+  seen->t_obstacle = NAN;
+  seen->bound = *bound;
+  seen->distance_queries = distance_queries;
+}
+
+/* ---- a convex shape ---- */
+
+/* A carried body and what stands make one shape. */
+static bool begin_carried(const query *q, const placed_pair *p, const cprox_curve *curve, curve_convex *o) {
+  carried_shape joined = {.placed = p->frame};
+  if (!carried_join(p->shape, &p->pose, p->carried, &p->carried_pose, &joined)) return false;
+  joined.shape.slack += p->position_error;
+  const double offset = p->offset + joined.offset;
+  if (!curve_convex_begin(o, curve, &p->shape->shape, joined.placed, offset, q->workspace)) return false;
+  o->joined = joined.shape;
+  o->shape = &o->joined;
+  return true;
+}
+
+bool curve_convex_begin_pair(curve_convex *o, const query *q, const placed_pair *p) {
+  cprox_curve relative;
+  const cprox_curve *curve = curve_about(q, p, &relative);
+  if (!curve) return false;
+  if (q->mover.body) {
+    if (!begin_carried(q, p, curve, o)) return false;
+  } else if (!curve_convex_begin(o, curve, &p->shape->shape, p->frame, p->offset, q->workspace)) {
+    return false;
+  }
+  keep_curve(q, p, &relative, &o->relative, &o->side);
+  return true;
+}
+
+static cprox_status begin_convex(curve_search *s) {
+  return curve_convex_begin_pair(&s->state.convex.base, s->q, s->pair) ? CPROX_OK : CPROX_MEMORY;
+}
+
+static cprox_status start_convex(curve_search *s, curve_start *start) {
+  curve_convex *o = &s->state.convex.base;
+  const query *q = s->q;
+  const candidate *which = &s->pair->which;
+  o->newton_after = nodes_before_newton(q);
+  o->good_enough = good_enough(q);
+  o->epsilon = q->options.epsilon;
+  o->is_signed = q->is_signed;
+  start->oracle = curve_convex_oracle(o);
+  start->root = curve_convex_root(o);
+  if (!(which->seed_s > 0.0)) return CPROX_OK;
+  const cprox_status seeded = curve_convex_seed(o, which->seed_piece, which->seed_s, &start->root);
+  start->upper = o->best_bound.upper;
+  return seeded;
+}
+
+/* The sides of a flat body may prove it. */
+static bool prove_crossing_convex(curve_search *s) {
+  curve_convex *o = &s->state.convex.base;
+  const double upper = o->best_bound.upper;
+  if (s->q->limit != 0.0 || !(upper > 0.0 && upper <= s->q->options.epsilon)) return false;
+  curve_sample sample = o->best;
+  if (!crossing_prove_convex(o, &sample)) return false;
+  curve_convex_adopt(o, &sample, (search_best){.upper = 0.0, .slack = o->best_bound.slack});
+  return true;
+}
+
+static cprox_status start_contact_convex(curve_search *s, curve_start *start) {
+  contact_convex *c = &s->state.convex;
+  contact_convex_begin(c, s->q->options.epsilon);
+  start->oracle = contact_convex_oracle(c);
+  start->root = contact_convex_root(c);
+  return CPROX_OK;
+}
+
+static cprox_status prove_contact_convex(curve_search *s, curve_finding *proven) {
+  contact_convex *c = &s->state.convex;
+  const cprox_status status = contact_convex_prove(c);
+  if (status < 0) return status;
+  begin_finding(proven, false, &c->proven_bound, c->base.distance_queries);
+  if (isinf(c->proven_bound.at)) return CPROX_OK;
+  c->base.best = c->proven;
+  curve_convex_finding(&c->base, proven);
+  proven->bound = c->proven_bound;
+  proven->is_contact = true;
+  return CPROX_OK;
+}
+
+void curve_convex_finding(const curve_convex *o, curve_finding *seen) {
+  const curve_sample *best = &o->best;
+  const frame *f = &o->side.frame;
+  begin_finding(seen, o->incumbent > 0, &o->best_bound, o->distance_queries);
+  if (!seen->found) return;
+  const bool is_normal = vec_norm2(best->near.normal) != 0.0; /* else it is only one to bound by */
+  seen->at_end = best->s == 1.0;
+  seen->t = seen->t_contact = curve_side_parameter(&o->side, best->piece, best->s);
+  seen->centre = frame_to_world(f, best->y);
+  seen->surface = frame_to_world(f, best->near.point);
+  seen->normal = is_normal ? frame_turn_to_world(f, best->normal) : vec(0, 0, 0);
+  seen->distance = best->near.distance;
+}
+
+static void found_convex(const curve_search *s, curve_finding *seen) {
+  curve_convex_finding(&s->state.convex.base, seen);
+}
+
+/* ---- the elements of a BVH ---- */
+
+bool curve_tree_begin_pair(curve_tree *o, const query *q, const placed_pair *p) {
+  cprox_curve relative;
+  const cprox_curve *curve = curve_about(q, p, &relative);
+  if (!curve || !curve_tree_begin(o, curve, p->shape, p->frame, p->offset, q->workspace)) return false;
+  keep_curve(q, p, &relative, &o->relative, &o->side);
+  return true;
+}
+
+static cprox_status begin_tree(curve_search *s) {
+  return curve_tree_begin_pair(&s->state.tree.base, s->q, s->pair) ? CPROX_OK : CPROX_MEMORY;
+}
+
+static cprox_status start_tree(curve_search *s, curve_start *start) {
+  curve_tree *o = &s->state.tree.base;
+  if (!curve_tree_root(o, &start->root)) return CPROX_MEMORY;
+  start->goal.order = SEARCH_DEPTH_FIRST; /* lists of elements are kept on a stack */
+  o->asked = start->goal;
+  o->newton_after = nodes_before_newton(s->q);
+  o->good_enough = good_enough(s->q);
+  start->oracle = curve_tree_oracle(o);
+  return CPROX_OK;
+}
+
+static cprox_status start_contact_tree(curve_search *s, curve_start *start) {
+  contact_tree *c = &s->state.tree;
+  c->base.asked = start->goal;
+  if (!contact_tree_begin(c, &start->root)) return CPROX_MEMORY;
+  start->oracle = contact_tree_oracle(c);
+  return CPROX_OK;
+}
+
+static cprox_status prove_contact_tree(curve_search *s, curve_finding *proven) {
+  contact_tree *c = &s->state.tree;
+  contact_tree_prove(c);
+  begin_finding(proven, false, &c->proven_bound, c->base.distance_queries);
+  if (isinf(c->proven_bound.at)) return CPROX_OK;
+  c->base.best = c->proven;
+  curve_tree_finding(&c->base, proven);
+  proven->bound = c->proven_bound;
+  if (c->proven_within) proven->t_contact = c->proven_t;
+  return CPROX_OK;
+}
+
+void curve_tree_finding(const curve_tree *o, curve_finding *seen) {
+  const tree_sample *best = &o->best;
+  const frame *f = &o->side.frame;
+  const double margin = o->body->shape.margin;
+  begin_finding(seen, o->found, &o->best_bound, o->distance_queries);
+  if (!seen->found) return;
+  seen->at_end = best->s == 1.0;
+  seen->t = seen->t_contact = curve_side_parameter(&o->side, best->piece, best->s);
+  seen->centre = frame_to_world(f, best->y);
+  seen->surface = frame_to_world(f, vec_axpy(best->near.point, margin, best->near.normal));
+  seen->normal = frame_turn_to_world(f, best->near.normal);
+  seen->distance = best->near.distance - margin;
+}
+
+static void found_tree(const curve_search *s, curve_finding *seen) {
+  curve_tree_finding(&s->state.tree.base, seen);
+}
+
+/* ---- another curve ---- */
+
+static cprox_status begin_curve(curve_search *s) {
+  curve_curve *o = &s->state.curve.base;
+  const query *q = s->q;
+  const placed_pair *p = s->pair;
+  const cprox_pose *pose = &p->obstacle->pose;
+  if (!curve_curve_begin(o, q->mover.curve, p->obstacle->curve, pose, p->offset, q->workspace)) return CPROX_MEMORY;
+  o->side[0].part = q->part;
+  return !p->carried || curve_curve_carry(o, pose, p->carried, &p->carried_pose) ? CPROX_OK : CPROX_MEMORY;
+}
+
+static cprox_status start_curve(curve_search *s, curve_start *start) {
+  curve_curve *o = &s->state.curve.base;
+  o->newton_after = nodes_before_newton(s->q);
+  o->good_enough = good_enough(s->q);
+  o->epsilon = s->q->options.epsilon;
+  o->is_signed = s->q->is_signed;
+  start->oracle = curve_curve_oracle(o);
+  start->root = curve_curve_root(o);
+  return CPROX_OK;
+}
+
+static cprox_status start_contact_curve(curve_search *s, curve_start *start) {
+  contact_curve *c = &s->state.curve;
+  contact_curve_begin(c, s->q->options.epsilon);
+  start->oracle = contact_curve_oracle(c);
+  start->root = contact_curve_root(c);
+  return CPROX_OK;
+}
+
+static void found_curve(const curve_search *s, curve_finding *seen) {
+  const curve_curve *o = &s->state.curve.base;
+  const curve_meeting *best = &o->best;
+  const frame *f = &o->side[0].frame;
+  begin_finding(seen, o->incumbent > 0, &o->best_bound, o->distance_queries);
+  if (!seen->found) return;
+  seen->t = seen->t_contact = curve_side_parameter(&o->side[0], best->piece[0], best->s[0]);
+  seen->t_obstacle = curve_side_parameter(&o->side[1], best->piece[1], best->s[1]);
+  seen->centre = frame_to_world(f, best->point[0]);
+  seen->surface = frame_to_world(f, best->point[1]);
+  seen->normal = frame_turn_to_world(f, best->normal);
+  seen->distance = best->distance;
+}
+
+static cprox_status prove_contact_curve(curve_search *s, curve_finding *proven) {
+  contact_curve *c = &s->state.curve;
+  contact_curve_prove(c);
+  begin_finding(proven, false, &c->proven_bound, c->base.distance_queries);
+  if (isinf(c->proven_bound.at)) return CPROX_OK;
+  c->base.best = c->proven;
+  found_curve(s, proven);
+  proven->bound = c->proven_bound;
+  return CPROX_OK;
+}
+
+/* ---- the rows ---- */
+
+static const curve_kernel convex_kernel = {.knows_depth = true,
+                                           .begin_state = begin_convex,
+                                           .start_distance = start_convex,
+                                           .start_contact = start_contact_convex,
+                                           .prove_crossing = prove_crossing_convex,
+                                           .prove_contact = prove_contact_convex,
+                                           .best_found = found_convex};
+
+static const curve_kernel tree_kernel = {.begin_state = begin_tree,
+                                         .start_distance = start_tree,
+                                         .start_contact = start_contact_tree,
+                                         .prove_contact = prove_contact_tree,
+                                         .best_found = found_tree};
+
+static const curve_kernel two_curves_kernel = {.knows_depth = true,
+                                               .begin_state = begin_curve,
+                                               .start_distance = start_curve,
+                                               .start_contact = start_contact_curve,
+                                               .prove_contact = prove_contact_curve,
+                                               .best_found = found_curve};
+
+const curve_kernel *curve_kernel_of(const placed_pair *p) {
+  if (!p->shape) return &two_curves_kernel;
+  return p->shape->tree ? &tree_kernel : &convex_kernel;
+}
+
+cprox_status curve_search_begin(curve_search *s, const query *q, const placed_pair *p) {
+  s->q = q;
+  s->pair = p;
+  s->kernel = curve_kernel_of(p);
+  return s->kernel->begin_state(s);
+}
