@@ -10,7 +10,7 @@
 #include "base/workspace.h"
 #include "problem/placed_pair.h"
 #include "problem/validate.h"
-#include "shape/body.h"
+#include "shape/kinds.h"
 
 /* ---- inscribed balls ---- */
 
@@ -46,21 +46,6 @@ static double deepest(const convex *shape, vec3 *centre) {
   return best;
 }
 
-/* Shapes whose nearest point is cheap, certain and tells a depth. */
-static bool has_depth(const cprox_body *body) {
-  switch (body->kind) {
-    case CPROX_BODY_SPHERE:
-    case CPROX_BODY_BOX:
-    case CPROX_BODY_CAPSULE:
-    case CPROX_BODY_CYLINDER:
-    case CPROX_BODY_CONE:
-    case CPROX_BODY_ELLIPSOID:
-    case CPROX_BODY_POLYTOPE:
-    case CPROX_BODY_POLYGON: return true;
-    default: return false;
-  }
-}
-
 /* About a centre of the shape's frame: the ball round the core where its vertices are known, else the one through the
  * other ball. */
 static double outer_radius(const cprox_body *body, vec3 centre) {
@@ -78,7 +63,7 @@ static double outer_radius(const cprox_body *body, vec3 centre) {
 static batch_core core_of(const placed_pair *p, candidate_ball round) {
   const cprox_body *body = p->shape;
   batch_core core = {.centre = round.centre, .inner = -1.0, .outer = round.radius};
-  if (!body || !has_depth(body)) return core;
+  if (!body || !body_kind_of(body->kind)->has_cheap_depth) return core;
   const frame f = frame_create(&p->pose, body->centre);
   core.flat = body->kind == CPROX_BODY_POLYGON;
   if (core.flat && !f.about_z) return core;
@@ -103,7 +88,7 @@ static double half_along(const convex *shape, vec3 axis) {
 /* A ball says more of a sphere than any box. */
 static void lay_obb(const placed_pair *p, batch_core *core) {
   const cprox_body *body = p->shape;
-  if (!body || !has_depth(body) || body->kind == CPROX_BODY_SPHERE) return;
+  if (!body || !body_kind_of(body->kind)->has_cheap_depth || body->kind == CPROX_BODY_SPHERE) return;
   const convex *shape = &body->shape;
   const frame f = p->frame;
   lanes_obb *obb = &core->obb;
@@ -121,10 +106,6 @@ static void lay_obb(const placed_pair *p, batch_core *core) {
 }
 
 /* ---- the batch ---- */
-
-static size_t parts_of(const cprox_obstacle *target) {
-  return target->body && target->body->kind == CPROX_BODY_COMPOUND ? target->body->n_parts : 1;
-}
 
 static obstacle_batch *allocate(size_t n_targets, size_t n_parts) {
   obstacle_batch *batch = calloc(1, sizeof *batch);
@@ -183,7 +164,7 @@ static bool list_parts(obstacle_batch *batch, const query *q) {
   if (!places) return false;
   size_t bounded = 0, n = 0;
   for (size_t i = 0; i < batch->n; i++) {
-    for (size_t part = 0; part < parts_of(&batch->targets[i]); part++) {
+    for (size_t part = 0; part < body_n_parts(batch->targets[i].body); part++) {
       batch_place place = {.part = {.target = (int32_t)i, .part = (int32_t)part}};
       double unused;
       const candidate_ball round = candidate_bounding_ball(q, &place.part, &unused);
@@ -203,7 +184,7 @@ static bool list_parts(obstacle_batch *batch, const query *q) {
 cprox_status obstacle_batch_create(const cprox_obstacle *targets, size_t n, cprox_workspace *workspace,
                                    obstacle_batch **batch) {
   size_t n_parts = 0;
-  for (size_t i = 0; i < n; i++) n_parts += parts_of(&targets[i]);
+  for (size_t i = 0; i < n; i++) n_parts += body_n_parts(targets[i].body);
   obstacle_batch *made = allocate(n, n_parts);
   if (!made) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a batch of %zu targets", n);
   made->targets = targets;

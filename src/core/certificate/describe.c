@@ -5,8 +5,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#include "certificate/reach.h"
 #include "curve_proximity/cprox/certificate.h"
+#include "shape/kinds.h"
 
 void say(text *t, const char *format, ...) {
   va_list arguments;
@@ -34,7 +34,7 @@ static void say_vertices(text *t, const cprox_body *body) {
 }
 
 static bool is_known(const cprox_body *body) {
-  if (!body->mesh) return reach_is_known(body);
+  if (!body->mesh) return body_kind_of(body->kind)->has_certificate;
   return body->hull->kind == CPROX_BODY_POLYTOPE || body->hull->kind == CPROX_BODY_POLYGON;
 }
 
@@ -58,20 +58,15 @@ void say_body(text *t, const cprox_body *body) {
     say_vertices(t, body->hull);
     return;
   }
-  switch (body->kind) {
-    case CPROX_BODY_POINT:
-      say(t, " point");
-      say_vector(t, body->centre);
-      break;
-    case CPROX_BODY_SPHERE: say(t, " sphere %a", size[0]); break;
-    case CPROX_BODY_BOX: say(t, " box %a %a %a", size[0], size[1], size[2]); break;
-    case CPROX_BODY_CAPSULE: say(t, " capsule %a %a", size[1], size[0]); break;
-    case CPROX_BODY_CYLINDER: say(t, " cylinder %a %a", size[1], size[0]); break;
-    case CPROX_BODY_CONE: say(t, " cone %a %a", size[1], size[0]); break;
-    case CPROX_BODY_ELLIPSOID: say(t, " ellipsoid %a %a %a", size[0], size[1], size[2]); break;
-    case CPROX_BODY_HALFSPACE: say(t, " halfspace %a %a %a %a", size[0], size[1], size[2], size[3]); break;
-    default: say(t, " polytope"); say_vertices(t, body);
+  if (body->shape.n > 0) { /* a polygon, too, is the hull of its vertices */
+    say(t, " polytope");
+    say_vertices(t, body);
+    return;
   }
+  const body_kind *kind = body_kind_of(body->kind);
+  say(t, " %s", kind->name);
+  if (body->kind == CPROX_BODY_POINT) say_vector(t, body->centre);
+  for (int i = 0; i < kind->n_sizes; i++) say(t, " %a", size[kind->sizes[i]]);
 }
 
 static void say_part(text *t, const cprox_obstacle *target, const cprox_body *body, const cprox_pose *inner) {

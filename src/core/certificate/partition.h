@@ -37,8 +37,9 @@ double cover_cut(const cover *c, reach_part part, double witness);
 cprox_status cover_convex(cover *c);
 cprox_status cover_curves(cover *c);
 
-/* The radius of a ball about the origin of the shape's frame that lies inside it. */
-double cover_inner_radius(const convex *shape);
+/* The surface point of the convex body next to a point, drawn in so that rounding does not leave it outside; false
+ * where it cannot be. */
+bool cover_draw_in(const cprox_body *body, const convex_near *near, double by, vec3 *drawn);
 
 /* Writes how a body's point is found that is near y, a point of the frame about its centre that is within error of the
  * exact one; returns how far y is from it: 0 inside, infinity for none. */

@@ -64,22 +64,6 @@ static reach_direction turn(cprox_quat q, double w, const reach_direction *n) {
 
 /* ---- bodies ---- */
 
-bool reach_is_known(const cprox_body *body) {
-  switch (body->kind) {
-    case CPROX_BODY_POINT:
-    case CPROX_BODY_SPHERE:
-    case CPROX_BODY_BOX:
-    case CPROX_BODY_CAPSULE:
-    case CPROX_BODY_CYLINDER:
-    case CPROX_BODY_CONE:
-    case CPROX_BODY_ELLIPSOID:
-    case CPROX_BODY_HALFSPACE:
-    case CPROX_BODY_POLYTOPE:
-    case CPROX_BODY_POLYGON: return true;
-    default: return false;
-  }
-}
-
 static dd farthest_vertex(const convex *shape, const reach_direction *n) {
   dd most = dd_from(-INFINITY);
   for (int32_t i = 0; i < shape->n; i++) {
@@ -91,7 +75,7 @@ static dd farthest_vertex(const convex *shape, const reach_direction *n) {
 
 /* The support function of the body about its centre, margins apart that are balls. A halfspace is only asked along its
  * normal. */
-static dd support(const convex *shape, const reach_direction *n) {
+static dd height_of_core(const convex *shape, const reach_direction *n) {
   const double *size = shape->size;
   const dd x = n->k[0], y = n->k[1], z = n->k[2];
   switch (shape->ops->kind) {
@@ -144,7 +128,7 @@ reach_value reach_of_body(const reach_set *set, const reach_direction *n) {
   const reach_direction own = to_own_frame(set, n, &far);
   const bool rounded = body->kind == CPROX_BODY_SPHERE || body->kind == CPROX_BODY_CAPSULE;
   const double ball = set->offset, margin = rounded ? body->shape.margin : 0.0;
-  far.value = dd_add(far.value, dd_add(dot(&own, body->centre), support(&body->shape, &own)));
+  far.value = dd_add(far.value, dd_add(dot(&own, body->centre), height_of_core(&body->shape, &own)));
   far.value = dd_add(far.value, dd_multiply(length(n), dd_sum(ball, margin)));
   far.size += vec_norm(body->centre) + body->shape.scale;
   return far;

@@ -36,9 +36,6 @@ typedef struct reach_part {
   double from, to;
 } reach_part;
 
-/* Whether the kind has a support function that a checker can evaluate. */
-bool reach_is_known(const cprox_body *body);
-
 /* The direction of a world vector. */
 reach_direction reach_along(vec3 n);
 

@@ -30,10 +30,6 @@ typedef struct task {
   cprox_certificate *certificate;
 } task;
 
-static size_t parts_of(const cprox_obstacle *target) {
-  return target->body && target->body->kind == CPROX_BODY_COMPOUND ? target->body->n_parts : 1;
-}
-
 /* The counting parameter at t. */
 static double count_at(const cprox_curve *curve, double t) {
   size_t piece = 0;
@@ -98,11 +94,11 @@ static double size_of_problem(const task *t, const cover *c) {
 /* One attempt: the whole certificate, with normals of the width. */
 static cprox_status attempt(const task *t, uint32_t width, double delta) {
   size_t sections = 0;
-  for (size_t i = 0; i < t->n; i++) sections += parts_of(&t->targets[i]);
+  for (size_t i = 0; i < t->n; i++) sections += body_n_parts(t->targets[i].body);
   certificate_begin(t->certificate, width, CPROX_CLAIM_APART, delta, (uint32_t)sections);
   certificate_breaks(t->certificate, t->mover->curve->breaks, t->mover->curve->n_pieces);
   for (size_t i = 0; i < t->n; i++) {
-    for (size_t part = 0; part < parts_of(&t->targets[i]); part++) {
+    for (size_t part = 0; part < body_n_parts(t->targets[i].body); part++) {
       cover c = cover_of(t, i, part, width);
       c.delta = delta;
       const cprox_status status = c.set.curve ? cover_curves(&c) : cover_convex(&c);
@@ -136,7 +132,7 @@ static cprox_status certify_near(const task *t) {
   const cprox_result *r = t->answer;
   if (r->obstacle_index < 0 || (size_t)r->obstacle_index >= t->n || !isfinite(r->t)) return CPROX_PRECISION;
   size_t section = (size_t)r->obstacle_part;
-  for (size_t i = 0; i < (size_t)r->obstacle_index; i++) section += parts_of(&t->targets[i]);
+  for (size_t i = 0; i < (size_t)r->obstacle_index; i++) section += body_n_parts(t->targets[i].body);
   cover c = cover_of(t, (size_t)r->obstacle_index, (size_t)r->obstacle_part, 8);
   if (c.is_mesh)
     return workspace_fail(t->workspace, CPROX_INVALID,

@@ -4,6 +4,7 @@
 #include "base/rounding.h"
 #include "certificate/partition.h"
 #include "convex/gjk.h"
+#include "shape/kinds.h"
 
 /* Room for the rounding of points, of their turns, and of nearest points: near_rounding is at most 64. */
 #define ROOM 160.0
@@ -17,15 +18,12 @@ static vec3 local_point(const cover *c, const frame *f, vec3 world, double *erro
   return y;
 }
 
-double cover_inner_radius(const convex *shape) {
-  const double *s = shape->size;
-  switch (shape->ops->kind) {
-    case CPROX_BODY_BOX:
-    case CPROX_BODY_ELLIPSOID: return fmin(s[0], fmin(s[1], s[2]));
-    case CPROX_BODY_CYLINDER: return fmin(s[0], s[1]);
-    case CPROX_BODY_CONE: return fmin(s[1], 0.999 * s[0] * s[1] / sqrt(s[0] * s[0] + 4.0 * s[1] * s[1]));
-    default: return s[0]; /* a sphere, a capsule */
-  }
+bool cover_draw_in(const cprox_body *body, const convex_near *near, double by, vec3 *drawn) {
+  const body_kind *kind = body_kind_of(body->kind);
+  const double inner = kind->inner_radius ? kind->inner_radius(&body->shape) : 0.0;
+  if (!(by < 0.5 * inner)) return false;
+  *drawn = vec_scale(1.0 - by / inner, near->point);
+  return true;
 }
 
 static void write_vertex(cprox_certificate *c, const simplex *s, int i, bool inside) {
@@ -52,11 +50,11 @@ double cover_near_point(const cprox_body *body, cprox_certificate *certificate, 
   vec3 v = vec(0, 0, 0);
   if (near.distance > -error) {
     const double drawn = error + ROOM * ROUND_U * (vec_norm(y) + shape->scale);
-    const double inner = cover_inner_radius(shape);
+    vec3 x;
     if (kind == CPROX_BODY_HALFSPACE)
       v = vec_scale(near.distance + drawn, near.normal);
-    else if (drawn < 0.5 * inner)
-      v = vec_sub(y, vec_scale(1.0 - drawn / inner, near.point));
+    else if (cover_draw_in(body, &near, drawn, &x))
+      v = vec_sub(y, x);
     else
       return INFINITY;
   }

@@ -23,15 +23,14 @@ static const double LIFTED = 1024.0;
 static const cprox_body *body_of_part(const cprox_robot *robot, int32_t part) {
   size_t first = (size_t)part;
   while (first > 0 && robot->parts[first - 1].geometry == robot->parts[part].geometry) first--;
-  const cprox_body *body = robot->given_geometries[robot->parts[part].geometry].body;
-  if (body->kind == CPROX_BODY_COMPOUND) body = body->parts[(size_t)part - first].body;
+  const cprox_body *all = robot->given_geometries[robot->parts[part].geometry].body;
+  const cprox_body *body = body_part_at(all, (size_t)part - first);
   return body->mesh ? NULL : body;
 }
 
 static const cprox_body *body_of_obstacle(const robot_scene *s, int32_t obstacle) {
   const robot_body *o = &s->obstacles[obstacle];
-  const cprox_body *body = s->q->targets[o->index].body;
-  if (body->kind == CPROX_BODY_COMPOUND) body = body->parts[o->part].body;
+  const cprox_body *body = body_part_at(s->q->targets[o->index].body, (size_t)o->part);
   return body->mesh ? NULL : body;
 }
 
@@ -77,10 +76,16 @@ static vec3 write_point_of(const cprox_body *body, cprox_certificate *c, vec3 y)
   }
   convex_near near;
   shape->ops->nearest(shape, y, &hint, &near);
-  const double drawn = ROOM * ROUND_U * (vec_norm(y) + shape->scale), inner = cover_inner_radius(shape);
-  const vec3 x = near.distance < -drawn ? y : vec_scale(1.0 - drawn / inner, near.point);
+  const double drawn = ROOM * ROUND_U * (vec_norm(y) + shape->scale);
+  vec3 x = y;
+  if (near.distance >= -drawn) {
+    if (body->kind == CPROX_BODY_HALFSPACE)
+      x = vec_axpy(near.point, -drawn, near.normal);
+    else if (!cover_draw_in(body, &near, drawn, &x))
+      return vec(NAN, NAN, NAN);
+  }
   certificate_vector(c, x);
-  return drawn < 0.5 * inner ? x : vec(NAN, NAN, NAN);
+  return x;
 }
 
 /* ---- the claim ---- */
@@ -94,7 +99,7 @@ cprox_status cover_robot_near(const robot_cover *c, const cprox_result *answer) 
   const double u = (answer->t - m->times[segment]) / (m->times[segment + 1] - m->times[segment]);
   const double at = fmin(fmax(u, 0.0), 1.0);
   robot_scene_enter(s, segment, at, at);
-  robot_gap gap;
+  robot_gap gap = {.support_failed = false};
   const int32_t index = nearest_pair(s, answer, &gap);
   if (index < 0) return CPROX_PRECISION;
   const robot_pair *pair = &s->pairs[index];

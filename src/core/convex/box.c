@@ -79,6 +79,7 @@ static void box_project(const convex *shape, vec3 y, convex_foot *foot) {
 /* near_rounding: three differences (u of each) under a norm (3u). */
 const convex_ops convex_box = {.kind = CPROX_BODY_BOX,
                                .near_rounding = 4.0,
+                               .closed_form = true,
                                .nearest = box_nearest,
                                .support = box_support,
                                .project = box_project,

@@ -50,6 +50,8 @@ static void capsule_project(const convex *shape, vec3 y, convex_foot *foot) {
 /* near_rounding: a difference (u), a norm (3u), a difference (u). */
 const convex_ops convex_capsule = {.kind = CPROX_BODY_CAPSULE,
                                    .near_rounding = 6.0,
+                                   .closed_form = true,
+                                   .round_core = CONVEX_ALWAYS_ROUND,
                                    .nearest = capsule_nearest,
                                    .support = capsule_support,
                                    .project = capsule_project,

@@ -114,6 +114,8 @@ static void cone_project(const convex *shape, vec3 y, convex_foot *foot) {
  * since each test compares coordinates that are exact to u about the feature it decides for. */
 const convex_ops convex_cone = {.kind = CPROX_BODY_CONE,
                                 .near_rounding = 12.0,
+                                .closed_form = true,
+                                .round_core = CONVEX_ALWAYS_ROUND,
                                 .nearest = cone_nearest,
                                 .support = cone_support,
                                 .project = cone_project,

@@ -60,6 +60,12 @@ typedef struct convex_foot {
   double along[2]; /* in (0, 1]: how far the point moves along e for each unit that y does; 1: the piece is straight */
 } convex_foot;
 
+typedef enum convex_round_core {
+  CONVEX_NEVER_ROUND,
+  CONVEX_ALWAYS_ROUND,
+  CONVEX_ROUND_IF_EQUAL /* where size[0] == size[1] */
+} convex_round_core;
+
 /* What a kind can do. Queries get shapes that their constructor has checked. */
 typedef struct convex_ops {
   cprox_body_kind kind;
@@ -77,6 +83,15 @@ typedef struct convex_ops {
   /* The derivative of the maximiser by d, at unit d with maximiser x of the core (xx, xy, xz, yy, yz, zz); NULL for
    * polyhedra. */
   void (*curvature)(const convex *shape, vec3 d, vec3 x, double hessian[6]);
+
+  /* nearest() tells the distance and the depth of any point by a formula. */
+  bool closed_form;
+
+  /* Inside, nearest() proves a depth that may be less than the true one: convex/depth.h completes it. */
+  bool proves_depth;
+
+  /* Whether turning the core about the z axis leaves it as it is. */
+  convex_round_core round_core;
 
   /* The maximiser is a smooth function of the direction: the core's surface is one piece. */
   bool smooth;

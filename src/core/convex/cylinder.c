@@ -84,6 +84,8 @@ static void cylinder_project(const convex *shape, vec3 y, convex_foot *foot) {
 /* near_rounding: rho (2u), two differences (u), a norm (2u), each of at most |y| + scale. */
 const convex_ops convex_cylinder = {.kind = CPROX_BODY_CYLINDER,
                                     .near_rounding = 8.0,
+                                    .closed_form = true,
+                                    .round_core = CONVEX_ALWAYS_ROUND,
                                     .nearest = cylinder_nearest,
                                     .support = cylinder_support,
                                     .project = cylinder_project,

@@ -49,20 +49,9 @@ double depth_proven(const convex *shape, vec3 y) {
   return answer.overlap && !answer.support_failed ? greater(answer.depth - answer.rounding, 0.0) : 0.0;
 }
 
-/* Whether the kind's nearest() does not know depths. */
-static bool only_proves(const convex *shape) {
-  switch (shape->ops->kind) {
-    case CPROX_BODY_POLYTOPE:
-    case CPROX_BODY_SUPPORT: return true;
-    case CPROX_BODY_SUPERQUADRIC:
-    case CPROX_BODY_IMPLICIT: return shape->ops->curvature != NULL; /* its support function has a closed form */
-    default: return false;
-  }
-}
-
 void depth_complete(const convex *shape, vec3 y, convex_near *near) {
   const double rounding = shape->ops->near_rounding * ROUND_U * (vec_norm(y) + shape->scale);
-  if (!only_proves(shape) || !(near->distance <= rounding)) return;
+  if (!shape->ops->proves_depth || !(near->distance <= rounding)) return;
   const int32_t vertices = shape->n + MOST_STEPS;
   const pair_goal goal = {.max_steps = (uint32_t)vertices, .wants_depth = true, .plain = true, .room = vertices};
   pair_answer answer;

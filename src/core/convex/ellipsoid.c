@@ -181,6 +181,8 @@ static bool ellipsoid_cover(const convex *shape, const convex_near *near, convex
  * a point within 18u |y| of y; the formula for d adds 30u of d <= |y| + a_max. */
 const convex_ops convex_ellipsoid = {.kind = CPROX_BODY_ELLIPSOID,
                                      .near_rounding = 64.0,
+                                     .closed_form = true,
+                                     .round_core = CONVEX_ROUND_IF_EQUAL,
                                      .nearest = ellipsoid_nearest,
                                      .support = ellipsoid_support,
                                      .curvature = ellipsoid_curvature,

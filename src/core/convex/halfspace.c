@@ -26,5 +26,8 @@ static double halfspace_support(const convex *shape, vec3 d, convex_hint *hint, 
 }
 
 /* near_rounding: the stored normal (3u of it), a dot product (3u), the offset (3u), a sum (u). */
-const convex_ops convex_halfspace = {
-    .kind = CPROX_BODY_HALFSPACE, .near_rounding = 8.0, .nearest = halfspace_nearest, .support = halfspace_support};
+const convex_ops convex_halfspace = {.kind = CPROX_BODY_HALFSPACE,
+                                     .near_rounding = 8.0,
+                                     .closed_form = true,
+                                     .nearest = halfspace_nearest,
+                                     .support = halfspace_support};

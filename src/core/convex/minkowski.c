@@ -83,8 +83,11 @@ static void difference_nearest(const convex *shape, vec3 y, convex_hint *hint, c
 
 /* near_rounding: that of pair_separate, 32, and the steps to and from it; no closed form of a carried shape needs more.
  */
-const convex_ops convex_difference = {
-    .kind = CPROX_BODY_SUPPORT, .near_rounding = 72.0, .nearest = difference_nearest, .support = difference_support};
+const convex_ops convex_difference = {.kind = CPROX_BODY_SUPPORT,
+                                      .near_rounding = 72.0,
+                                      .proves_depth = true,
+                                      .nearest = difference_nearest,
+                                      .support = difference_support};
 
 /* ---- making ---- */
 

@@ -396,15 +396,8 @@ static simplex_vertex pair_farthest(void *self, vec3 n) {
 }
 
 static bool is_of_revolution(const convex *shape) {
-  switch (shape->ops->kind) {
-    case CPROX_BODY_POINT:
-    case CPROX_BODY_SPHERE:
-    case CPROX_BODY_CAPSULE:
-    case CPROX_BODY_CYLINDER:
-    case CPROX_BODY_CONE: return true;
-    case CPROX_BODY_ELLIPSOID: return shape->size[0] == shape->size[1];
-    default: return false;
-  }
+  if (shape->ops->round_core == CONVEX_ROUND_IF_EQUAL) return shape->size[0] == shape->size[1];
+  return shape->ops->round_core == CONVEX_ALWAYS_ROUND;
 }
 
 /* How far a point of b is moved at most if b's axis is laid on a's; infinity where one of them has none. */

@@ -30,6 +30,8 @@ static void point_project(const convex *shape, vec3 y, convex_foot *foot) {
 /* near_rounding: a norm, 3u of |y|. */
 const convex_ops convex_point = {.kind = CPROX_BODY_POINT,
                                  .near_rounding = 4.0,
+                                 .closed_form = true,
+                                 .round_core = CONVEX_ALWAYS_ROUND,
                                  .nearest = point_nearest,
                                  .support = point_support,
                                  .project = point_project,

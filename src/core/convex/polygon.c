@@ -186,6 +186,7 @@ void convex_polygon_nearest_in_plane(const convex *shape, vec3 y, convex_near *n
  * (3u). */
 const convex_ops convex_polygon = {.kind = CPROX_BODY_POLYGON,
                                    .near_rounding = 16.0,
+                                   .closed_form = true,
                                    .nearest = polygon_nearest,
                                    .support = vertices_support,
                                    .cover = vertices_cover};

@@ -34,6 +34,7 @@ static void polytope_nearest(const convex *shape, vec3 y, convex_hint *hint, con
  * aspect 1e6. */
 const convex_ops convex_polytope = {.kind = CPROX_BODY_POLYTOPE,
                                     .near_rounding = 64.0,
+                                    .proves_depth = true,
                                     .nearest = polytope_nearest,
                                     .support = vertices_support,
                                     .cover = vertices_cover};

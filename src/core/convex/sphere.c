@@ -35,6 +35,8 @@ static void sphere_project(const convex *shape, vec3 y, convex_foot *foot) {
 /* near_rounding: a norm, 3u of |y|, and a difference, u of at most |y| + radius. */
 const convex_ops convex_sphere = {.kind = CPROX_BODY_SPHERE,
                                   .near_rounding = 4.0,
+                                  .closed_form = true,
+                                  .round_core = CONVEX_ALWAYS_ROUND,
                                   .nearest = sphere_nearest,
                                   .support = sphere_support,
                                   .project = sphere_project,

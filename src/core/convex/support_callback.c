@@ -28,5 +28,8 @@ static void callback_nearest(const convex *shape, vec3 y, convex_hint *hint, con
 
 /* near_rounding: as a polytope's; what the search could not close between its bounds shows in the certificate of the
  * query. */
-const convex_ops convex_support_callback = {
-    .kind = CPROX_BODY_SUPPORT, .near_rounding = 64.0, .nearest = callback_nearest, .support = callback_support};
+const convex_ops convex_support_callback = {.kind = CPROX_BODY_SUPPORT,
+                                            .near_rounding = 64.0,
+                                            .proves_depth = true,
+                                            .nearest = callback_nearest,
+                                            .support = callback_support};

@@ -63,8 +63,7 @@ static cprox_status search_model(const query *q, const candidate *c, double cuto
 bool candidate_may_refine(const query *q, const candidate *c) {
   const cprox_body *body = q->targets[c->target].body;
   if (!body || c->lod != CPROX_LOD_NONE || q->options.max_lod != CPROX_LOD_MESH) return false;
-  if (body->kind == CPROX_BODY_COMPOUND) body = body->parts[c->part].body;
-  return body->kind == CPROX_BODY_LOD;
+  return body_part_at(body, (size_t)c->part)->kind == CPROX_BODY_LOD;
 }
 
 cprox_status candidate_measure_mesh(const query *q, const candidate *c, cprox_result *result) {

@@ -184,10 +184,6 @@ static void add_link(cprox_robot *robot, const cprox_link *link) {
 
 /* ---- parts ---- */
 
-static size_t parts_of(const cprox_body *body) {
-  return body->kind == CPROX_BODY_COMPOUND ? body->n_parts : 1;
-}
-
 static void add_part(cprox_robot *robot, const chain_end *at, const cprox_body *body, double margin, size_t geometry,
                      int32_t link) {
   part_model model = part_model_of(body);
@@ -225,7 +221,7 @@ cprox_status cprox_robot_create(const cprox_link *links, size_t n_links, const c
   const cprox_status checked = check_robot(links, n_links, geometries, n_geometries, robot, n_variables, workspace);
   if (checked != CPROX_OK) return checked;
   size_t n_parts = 0;
-  for (size_t i = 0; i < n_geometries; i++) n_parts += parts_of(geometries[i].body);
+  for (size_t i = 0; i < n_geometries; i++) n_parts += body_n_parts(geometries[i].body);
 
   cprox_robot *made = calloc(1, sizeof *made);
   if (made) {

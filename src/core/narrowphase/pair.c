@@ -41,10 +41,6 @@ static cprox_status pair_check_target(const char *name, const cprox_obstacle *ta
 
 /* ---- placing ---- */
 
-static size_t pair_count_parts(const cprox_body *body) {
-  return body->kind == CPROX_BODY_COMPOUND ? body->n_parts : 1;
-}
-
 static vec3 pair_to_world(const pair_side *a, vec3 p) {
   return frame_to_world(&a->f, p);
 }
@@ -72,17 +68,6 @@ static void pair_halfspace(const pair_side *a, const pair_side *b, const pair_pl
   answer->on_b = answer->common = vec_axpy(vec_add(rotate(place->r, at), place->t), -b->margin, n);
   answer->on_a = vec_axpy(answer->on_b, -distance, n);
   answer->normal = vec_neg(n);
-}
-
-static bool has_closed_form(const convex *shape) {
-  switch (shape->ops->kind) {
-    case CPROX_BODY_POLYTOPE:
-    case CPROX_BODY_SUPPORT:
-    case CPROX_BODY_SUPERQUADRIC:
-    case CPROX_BODY_IMPLICIT:
-    case CPROX_BODY_COMPOUND: return false;
-    default: return true;
-  }
 }
 
 static bool is_ball(const convex *shape) {
@@ -206,14 +191,14 @@ static cprox_status pair_solve(const pair_side *a, const pair_side *b, const pai
                                cprox_workspace *workspace, pair_answer *answer) {
   if (a->body->tree || b->body->tree) return pair_with_elements(a, b, goal, workspace, answer);
   const bool halfspace = b->shape->ops->kind == CPROX_BODY_HALFSPACE;
-  const bool ball = is_ball(a->shape) && has_closed_form(b->shape) && !is_ball(b->shape);
+  const bool ball = is_ball(a->shape) && b->shape->ops->closed_form && !is_ball(b->shape);
   const bool swapped = halfspace || (ball && a->shape->ops->kind != CPROX_BODY_HALFSPACE);
   const pair_side *first = swapped ? b : a, *second = swapped ? a : b;
   const pair_placement place = pair_place(first, second);
 
   if (first->shape->ops->kind == CPROX_BODY_HALFSPACE)
     pair_halfspace(first, second, &place, answer);
-  else if (is_ball(second->shape) && has_closed_form(first->shape))
+  else if (is_ball(second->shape) && first->shape->ops->closed_form)
     pair_ball(first, second, &place, answer);
   else if (!workspace || !is_implicit(first->shape) || !is_implicit(second->shape))
     pair_separate(first->shape, first->margin, second->shape, second->margin, &place, goal, answer);
@@ -265,9 +250,7 @@ static cprox_status pair_of_models(const pair_task *task, size_t i, size_t j, cp
 
 static bool pair_has_lod(const pair_task *task, size_t i, size_t j) {
   const cprox_body *a = task->a->body, *b = task->b->body;
-  if (a->kind == CPROX_BODY_COMPOUND) a = a->parts[i].body;
-  if (b->kind == CPROX_BODY_COMPOUND) b = b->parts[j].body;
-  return a->kind == CPROX_BODY_LOD || b->kind == CPROX_BODY_LOD;
+  return body_part_at(a, i)->kind == CPROX_BODY_LOD || body_part_at(b, j)->kind == CPROX_BODY_LOD;
 }
 
 static void pair_join(pair_reply *all, const pair_reply *one) {
@@ -309,8 +292,8 @@ static bool pair_is_stopped(const pair_task *task) {
  * that were looked at. */
 static cprox_status pair_over_parts(const pair_task *task, pair_reply *best) {
   *best = (pair_reply){.answer = {.lower = INFINITY, .upper = INFINITY}};
-  for (size_t i = 0; i < pair_count_parts(task->a->body); i++) {
-    for (size_t j = 0; j < pair_count_parts(task->b->body); j++) {
+  for (size_t i = 0; i < body_n_parts(task->a->body); i++) {
+    for (size_t j = 0; j < body_n_parts(task->b->body); j++) {
       bool ends;
       if (i + j > 0 && (best->answer.stopped || pair_is_stopped(task))) {
         best->answer.stopped = true;

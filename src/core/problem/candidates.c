@@ -92,19 +92,15 @@ void candidates_sort(candidate *list, size_t n) {
   }
 }
 
-static size_t parts_of(const cprox_body *body) {
-  return body && body->kind == CPROX_BODY_COMPOUND ? body->n_parts : 1;
-}
-
 candidate *candidates_list(const query *q, size_t first, size_t last, bool ranked, size_t *count) {
-  const size_t carried = parts_of(q->mover.body);
+  const size_t carried = body_n_parts(q->mover.body);
   size_t n = 0;
-  for (size_t i = first; i < last; i++) n += parts_of(q->targets[i].body) * carried;
+  for (size_t i = first; i < last; i++) n += body_n_parts(q->targets[i].body) * carried;
   candidate *list = workspace_reserve(q->workspace, WORKSPACE_ORDER, n * sizeof *list);
   if (!list) return NULL;
   size_t k = 0;
   for (size_t i = first; i < last; i++) {
-    for (size_t pair = 0; pair < parts_of(q->targets[i].body) * carried; pair++) {
+    for (size_t pair = 0; pair < body_n_parts(q->targets[i].body) * carried; pair++) {
       list[k] =
           (candidate){.target = (int32_t)i, .part = (int32_t)(pair / carried), .mover_part = (int32_t)(pair % carried)};
       list[k].lower = ranked || n > 1 ? candidate_ball_bound(q, &list[k]) : -INFINITY;

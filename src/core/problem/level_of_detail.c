@@ -3,15 +3,10 @@
 
 #include "base/rounding.h"
 #include "problem/minkowski.h"
+#include "shape/kinds.h"
 
 static bool has_ball(const cprox_body *body) {
-  switch (body->kind) {
-    case CPROX_BODY_POINT:
-    case CPROX_BODY_SPHERE: /* are their own */
-    case CPROX_BODY_POINTS:
-    case CPROX_BODY_OCTREE: return false;
-    default: return isfinite(body->ball_radius);
-  }
+  return !body_kind_of(body->kind)->is_own_sphere && isfinite(body->ball_radius);
 }
 
 model model_of(const cprox_body *body, cprox_lod finest) {
@@ -35,15 +30,14 @@ model model_of(const cprox_body *body, cprox_lod finest) {
 
 bool model_has_tree(const cprox_body *body, cprox_lod finest) {
   if (!body) return false;
-  if (body->kind != CPROX_BODY_COMPOUND) return model_of(body, finest).body->tree != NULL;
-  for (size_t i = 0; i < body->n_parts; i++)
-    if (model_of(body->parts[i].body, finest).body->tree) return true;
+  for (size_t i = 0; i < body_n_parts(body); i++)
+    if (model_of(body_part_at(body, i), finest).body->tree) return true;
   return false;
 }
 
 model model_of_part(const cprox_body *body, size_t part, cprox_lod finest, cprox_pose *inner, bool *moved) {
   const bool compound = body->kind == CPROX_BODY_COMPOUND;
-  const model m = model_of(compound ? body->parts[part].body : body, finest);
+  const model m = model_of(body_part_at(body, part), finest);
   const bool shifted = vec_norm2(m.shift) > 0.0;
   *inner = compound ? body->parts[part].pose : CPROX_POSE_IDENTITY;
   *moved = compound || shifted;

@@ -55,7 +55,7 @@ static void note(robot_scene *s, int32_t part, uint32_t target, int32_t first) {
 
 int32_t cluster_pairs(robot_scene *s, int32_t part, uint32_t box, size_t *count) {
   const uint32_t target = s->q->set->of_box[box];
-  *count = robot_scene_parts_of(&s->q->targets[target]);
+  *count = body_n_parts(s->q->targets[target].body);
   if (!make_room(s)) return -1;
   const int32_t known = slot_of(s->cluster_table, s->cluster_room, part, target)->first;
   if (known >= 0) return known;

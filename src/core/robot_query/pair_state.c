@@ -56,12 +56,8 @@ static robot_body obstacle_of(const query *q, size_t index, size_t part) {
   return placed;
 }
 
-size_t robot_scene_parts_of(const cprox_obstacle *target) {
-  return target->body->kind == CPROX_BODY_COMPOUND ? target->body->n_parts : 1;
-}
-
 int32_t robot_scene_add_obstacles(robot_scene *s, size_t target) {
-  const size_t parts = robot_scene_parts_of(&s->q->targets[target]), n = s->n_obstacles + parts;
+  const size_t parts = body_n_parts(s->q->targets[target].body), n = s->n_obstacles + parts;
   if (n > INT32_MAX) return -1;
   robot_body *all = workspace_reserve(s->q->workspace, WORKSPACE_ROBOT_OBSTACLES, (n + 1) * sizeof *all);
   if (!all) return -1;

@@ -63,7 +63,6 @@ bool robot_scene_asks(const robot_scene *scene, size_t part);
 
 /* The parts of a target are obstacles; adds them: the number of the first one, or -1 where memory is out. It may move
  * all obstacles in memory. */
-size_t robot_scene_parts_of(const cprox_obstacle *target);
 int32_t robot_scene_add_obstacles(robot_scene *scene, size_t target);
 
 /* A new node: of one segment, or of any number. */

@@ -9,7 +9,6 @@
 #include "base/workspace.h"
 #include "bvh/bvh.h"
 #include "bvh/winding.h"
-#include "convex/depth.h"
 #include "convex/feature.h"
 #include "shape/construct.h"
 #include "shape/elements.h"
@@ -349,61 +348,4 @@ cprox_body_info cprox_body_get_info(const cprox_body *body) {
                            .bytes = elements_bytes(body),
                            .centre = body->ball_centre,
                            .radius = body->ball_radius};
-}
-
-const char *cprox_body_kind_name(cprox_body_kind kind) {
-  switch (kind) {
-    case CPROX_BODY_POINT: return "point";
-    case CPROX_BODY_SPHERE: return "sphere";
-    case CPROX_BODY_BOX: return "box";
-    case CPROX_BODY_CAPSULE: return "capsule";
-    case CPROX_BODY_CYLINDER: return "cylinder";
-    case CPROX_BODY_CONE: return "cone";
-    case CPROX_BODY_ELLIPSOID: return "ellipsoid";
-    case CPROX_BODY_HALFSPACE: return "halfspace";
-    case CPROX_BODY_POLYTOPE: return "polytope";
-    case CPROX_BODY_POLYGON: return "polygon";
-    case CPROX_BODY_COMPOUND: return "compound";
-    case CPROX_BODY_SUPPORT: return "support";
-    case CPROX_BODY_SUPERQUADRIC: return "superquadric";
-    case CPROX_BODY_IMPLICIT: return "implicit";
-    case CPROX_BODY_MESH: return "mesh";
-    case CPROX_BODY_POINTS: return "points";
-    case CPROX_BODY_OCTREE: return "octree";
-    case CPROX_BODY_LOD: return "lod";
-  }
-  return "unknown";
-}
-
-double cprox_body_support(const cprox_body *body, cprox_vec3 direction, cprox_vec3 *point) {
-  if (body->kind == CPROX_BODY_COMPOUND) return compound_support(body, direction, point);
-  if (body->mesh) return cprox_body_support(body->mesh, direction, point);
-  if (body->tree) return elements_support(body, direction, point);
-  const convex *shape = &body->shape;
-  vec3 at, unit;
-  double h = shape->ops->support(shape, direction, NULL, &at);
-  if (body->kind == CPROX_BODY_HALFSPACE) { /* any multiple of its normal will do here */
-    feature_unit(direction, &unit);
-    const vec3 n = vec(shape->size[0], shape->size[1], shape->size[2]);
-    const double off = vec_norm(vec_sub(unit, n));
-    h = off <= 8.0 * ROUND_U ? vec_dot(direction, at) : INFINITY;
-  } else {
-    const double norm = feature_unit(direction, &unit);
-    h += norm * shape->margin;
-    at = vec_axpy(at, shape->margin, unit);
-  }
-  if (point) *point = vec_add(at, body->centre);
-  return h + vec_dot(direction, body->centre);
-}
-
-double cprox_body_nearest(const cprox_body *body, cprox_vec3 point, cprox_vec3 *nearest) {
-  if (body->kind == CPROX_BODY_COMPOUND) return compound_nearest(body, point, nearest);
-  if (body->mesh) return cprox_body_nearest(body->mesh, point, nearest);
-  if (body->tree) return elements_nearest(body, point, nearest);
-  const vec3 y = vec_sub(point, body->centre);
-  convex_near near;
-  body->shape.ops->nearest(&body->shape, y, NULL, &near);
-  depth_complete(&body->shape, y, &near);
-  if (nearest) *nearest = vec_add(near.point, body->centre);
-  return near.distance;
 }

@@ -29,6 +29,15 @@ struct cprox_body {
   double excess;                 /* and how far the mesh may stick out of the hull */
 };
 
+/* A compound's convex parts; any other body is the one part of its own, and so is no body at all. */
+static inline size_t body_n_parts(const cprox_body *body) {
+  return body && body->kind == CPROX_BODY_COMPOUND ? body->n_parts : 1;
+}
+
+static inline const cprox_body *body_part_at(const cprox_body *body, size_t part) {
+  return body && body->kind == CPROX_BODY_COMPOUND ? body->parts[part].body : body;
+}
+
 /* Whether it keeps within what queries can hold; of a halfspace the distance of its plane counts. */
 static inline bool body_is_in_reach(const cprox_body *body) {
   const vec3 c = body->ball_centre;

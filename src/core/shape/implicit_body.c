@@ -113,12 +113,14 @@ static double open_support(const convex *shape, vec3 d, convex_hint *hint, vec3 
  * query. */
 static const convex_ops superquadric_ops = {.kind = CPROX_BODY_SUPERQUADRIC,
                                             .near_rounding = 64.0,
+                                            .proves_depth = true,
                                             .nearest = implicit_nearest,
                                             .support = closed_support,
                                             .curvature = closed_curvature,
                                             .follow = closed_follow};
 static const convex_ops closed_ops = {.kind = CPROX_BODY_IMPLICIT,
                                       .near_rounding = 64.0,
+                                      .proves_depth = true,
                                       .nearest = implicit_nearest,
                                       .support = closed_support,
                                       .curvature = closed_curvature,

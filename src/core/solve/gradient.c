@@ -231,9 +231,7 @@ static cprox_obstacle stopped(const cprox_mover *mover, const cprox_obstacle *ta
 
 /* Whether no other pair of parts is as near at the minimiser. */
 static cprox_status part_is_alone(const query *q, const placed_pair *best, double t, double distance, bool *alone) {
-  const cprox_body *standing = q->targets[0].body, *carried = q->mover.body;
-  const size_t parts = standing && standing->kind == CPROX_BODY_COMPOUND ? standing->n_parts : 1;
-  const size_t own = carried && carried->kind == CPROX_BODY_COMPOUND ? carried->n_parts : 1;
+  const size_t parts = body_n_parts(q->targets[0].body), own = body_n_parts(q->mover.body);
   *alone = true;
   for (size_t i = 0; i < parts * own && *alone; i++) {
     const candidate c = {.part = (int32_t)(i / own), .mover_part = (int32_t)(i % own)};
