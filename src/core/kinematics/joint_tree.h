@@ -22,6 +22,7 @@ typedef struct robot_axis {
   axis_kind kind;
   int32_t parent;            /* axis, or -1 */
   int32_t variable;          /* ball: the first of four, the quaternion's x, y, z, w */
+  uint32_t depth;            /* so many axes from this one up to the base, both ends counted */
   double multiplier, offset; /* the angle or shift is multiplier * variable + offset */
   placement at;              /* in the parent axis's moved frame */
   vec3 z;                    /* unit, in the axis's own frame */
@@ -93,5 +94,10 @@ static inline placement placement_under(const placement *frames, int32_t axis, c
 
 /* The nearest axis that is above both, or -1. */
 int32_t robot_common_axis(const cprox_robot *robot, int32_t a, int32_t b);
+
+/* The axes from one up to the base; none for -1. */
+static inline uint32_t robot_axis_depth(const cprox_robot *robot, int32_t axis) {
+  return axis < 0 ? 0 : robot->axes[axis].depth;
+}
 
 #endif

@@ -354,6 +354,19 @@ size_t motion_segment_at(const cprox_motion *m, double t) {
   return first;
 }
 
+/* Fractions are rounded outwards by a little more than a division can be off. */
+motion_interval motion_interval_of(const cprox_motion *m, double t0, double t1) {
+  const size_t first = motion_segment_at(m, t0);
+  size_t last = motion_segment_at(m, t1) + 1;
+  if (last > first + 1 && m->times[last - 1] >= t1) last--;
+  const double a = (t0 - m->times[first]) / (m->times[first + 1] - m->times[first]);
+  const double b = (t1 - m->times[last - 1]) / (m->times[last] - m->times[last - 1]);
+  return (motion_interval){.a = t0 <= m->times[first] ? 0.0 : fmax(a - 0x1p-50, 0.0),
+                           .b = t1 >= m->times[last] ? 1.0 : fmin(b + 0x1p-50, 1.0),
+                           .first = first,
+                           .last = last};
+}
+
 void cprox_motion_evaluate(const cprox_motion *motion, double t, double *variables) {
   const size_t segment = motion_segment_at(motion, t);
   const double t0 = motion->times[segment], t1 = motion->times[segment + 1];

@@ -101,6 +101,9 @@ bool motion_relates_links(const cprox_motion *motion, int32_t link_a, int32_t li
 /* The segment that holds a time: the last one that begins at it or before it. */
 size_t motion_segment_at(const cprox_motion *motion, double t);
 
+/* Contains [t0, t1]. */
+motion_interval motion_interval_of(const cprox_motion *motion, double t0, double t1);
+
 /* The states of all axes over the interval. */
 span_centre motion_span_node(const cprox_motion *motion, const motion_interval *over, double *rows, axis_state *axes);
 void motion_node(const cprox_motion *motion, size_t segment, double a, double b, double *rows, axis_state *axes);

@@ -6,28 +6,16 @@
 #include "problem/problem.h"
 #include "robot_query/oracle.h"
 
-/* ---- arguments ---- */
-
 /* ---- the search ---- */
 
-/* Fractions are rounded outwards by a little more than a division can be off. */
-static bool root_of(const query *q, robot_search *o, search_node *root) {
-  const cprox_motion *m = q->mover.motion;
-  const size_t first = motion_segment_at(m, q->t0);
-  size_t last = motion_segment_at(m, q->t1) + 1;
-  if (last > first + 1 && m->times[last - 1] >= q->t1) last--;
-  const double u0 = (q->t0 - m->times[first]) / (m->times[first + 1] - m->times[first]);
-  const double u1 = (q->t1 - m->times[last - 1]) / (m->times[last] - m->times[last - 1]);
-  return robot_search_root(o, first, q->t0 <= m->times[first] ? 0.0 : fmax(u0 - 0x1p-50, 0.0), last,
-                           q->t1 >= m->times[last] ? 1.0 : fmin(u1 + 0x1p-50, 1.0), root);
-}
-
 static cprox_status run(const query *q, const search_goal *goal, robot_search *o, search_outcome *found) {
+  const motion_interval over = motion_interval_of(q->mover.motion, q->t0, q->t1);
   robot_search_begin(o, goal);
   *found = (search_outcome){.lower = INFINITY, .free_until = INFINITY, .best = {.upper = INFINITY, .at = INFINITY}};
   if (o->scene.n_pairs == 0 && !q->set) return CPROX_OK;
   search_node root;
-  if (!root_of(q, o, &root)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the lists of pairs");
+  if (!robot_search_root(o, &over, &root))
+    return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for the lists of pairs");
   const search_oracle oracle = robot_search_oracle(o);
   const cprox_status status = search_run(goal, &oracle, root, q->workspace, found);
   if (status == CPROX_MEMORY) return workspace_fail(q->workspace, status, "no memory for the open intervals");
@@ -70,9 +58,7 @@ cprox_status robot_answer(const query *q, size_t first, size_t last, double cuto
   r.lower = fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
   r.nodes = found.nodes, r.distance_queries = o.gaps;
   r.lod = lod_of(&o);
-  r.status = query_is_satisfied(q, cutoff, &r) ? CPROX_OK : status != CPROX_OK ? status : CPROX_PRECISION;
-  r.verdict = query_verdict(q, &r);
-  if (r.status != CPROX_OK) workspace_fail(q->workspace, r.status, "%s", query_shortfall(r.status));
+  query_conclude(q, cutoff, status, &r);
   *result = r;
   return r.status;
 }

@@ -21,7 +21,7 @@ static search_node node_of(const robot_search *o, const search_node *parent, siz
   return node;
 }
 
-bool robot_search_root(robot_search *o, size_t first, double u0, size_t last, double u1, search_node *root) {
+bool robot_search_root(robot_search *o, const motion_interval *over, search_node *root) {
   *root = (search_node){.lower = -INFINITY};
   const obstacle_bvh *set = o->scene.q->set;
   const size_t n_pairs = o->scene.n_pairs, n_parts = set && set->boxes ? o->scene.motion->robot->n_parts : 0;
@@ -34,7 +34,7 @@ bool robot_search_root(robot_search *o, size_t first, double u0, size_t last, do
   for (size_t i = 0; i < n_parts; i++)
     if (robot_scene_asks(&o->scene, i)) entry[n++] = (list_entry){.lower = -INFINITY, .pair = -1, .part = (int32_t)i};
   lists_set_count(&o->lists, slot, n);
-  *root = node_of(o, root, first, u0, last, u1);
+  *root = node_of(o, root, over->first, over->a, over->last, over->b);
   return true;
 }
 /* ---- the oracle ---- */

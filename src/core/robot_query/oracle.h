@@ -70,9 +70,8 @@ typedef struct robot_search {
 /* The scene must have begun. */
 void robot_search_begin(robot_search *o, const search_goal *goal);
 
-/* The node of all that is asked about: from u0 of the first segment to u1 of the last one. False where memory is out.
- */
-bool robot_search_root(robot_search *o, size_t first, double u0, size_t last, double u1, search_node *root);
+/* The node of all that is asked about. False where memory is out. */
+bool robot_search_root(robot_search *o, const motion_interval *over, search_node *root);
 
 search_oracle robot_search_oracle(robot_search *o);
 

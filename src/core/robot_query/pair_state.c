@@ -30,19 +30,18 @@ static part_model model_for(const query *q, part_model model) {
 /* A part of a target; the frames of parts of unions are composed. */
 static robot_body obstacle_of(const query *q, size_t index, size_t part) {
   const cprox_obstacle *target = &q->targets[index];
-  const cprox_body *body = target->body;
+  const cprox_body *body = body_part_at(target->body, part);
+  part_model m = model_for(q, part_model_of(body));
+  if (m.shape->ops->kind != CPROX_BODY_HALFSPACE) part_model_find_box(&m);
   cprox_pose pose = target->pose;
   double error = 0.0;
-  if (body->kind == CPROX_BODY_COMPOUND) {
-    const body_part *p = &body->parts[part];
-    body = p->body;
+  if (target->body->kind == CPROX_BODY_COMPOUND) {
+    const body_part *p = &target->body->parts[part];
     pose = frame_compose(&target->pose, &p->pose);
     const double turned = vec_norm(p->pose.position) + vec_norm(body->ball_centre) + 2.0 * body->ball_radius;
     error = isfinite(turned) ? turned : vec_norm(p->pose.position) + vec_norm(body->centre) + body->shape.scale;
     error = ROUND_U * (ROUND_ROTATION * error + 3.0 * vec_norm(pose.position));
   }
-  part_model m = model_for(q, part_model_of(body));
-  if (m.shape->ops->kind != CPROX_BODY_HALFSPACE) part_model_find_box(&m);
   const frame f = frame_create(&pose, m.centre);
   robot_body placed = {.radius = m.radius + target->margin, .index = (int32_t)index, .part = (int32_t)part};
   placed.side = (bound_side){.shape = m.shape, .margin = m.margin + target->margin};
@@ -80,41 +79,31 @@ static robot_body part_body(const query *q, size_t i) {
 
 /* ---- pairs ---- */
 
-/* The axes from one up to the base. */
-static size_t depth_of(const cprox_robot *robot, int32_t axis) {
-  size_t depth = 0;
-  for (; axis >= 0; axis = robot->axes[axis].parent) depth++;
-  return depth;
-}
-
 static robot_pair pair_of(const robot_scene *s, size_t moving, size_t standing, bool self) {
   robot_pair pair = {.moving = (int32_t)moving, .standing = (int32_t)standing, .element = {-1, -1}, .self = self};
   if (!self || !s->displacements) return pair;
   const cprox_robot *robot = s->motion->robot;
   const int32_t common = robot_common_axis(robot, robot->parts[moving].axis, robot->parts[standing].axis);
-  pair.shared = (uint32_t)depth_of(robot, common);
+  pair.shared = robot_axis_depth(robot, common);
   return pair;
 }
 
-/* The parts of a geometry stand side by side, in the order of the geometries; so do the obstacles of a target. The
- * first one at or after `index`. */
-static size_t first_part(const cprox_robot *robot, int32_t geometry) {
-  size_t low = 0, high = robot->n_parts;
-  while (low < high) {
-    const size_t middle = low + (high - low) / 2;
-    if (robot->parts[middle].geometry < geometry)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
+static int32_t geometry_of_part(const robot_scene *s, size_t part) {
+  return s->motion->robot->parts[part].geometry;
 }
 
-static size_t first_obstacle(const robot_scene *s, int32_t index) {
-  size_t low = 0, high = s->n_obstacles;
+static int32_t target_of_obstacle(const robot_scene *s, size_t obstacle) {
+  return s->obstacles[obstacle].index;
+}
+
+/* The parts of a geometry stand side by side, in the order of the geometries; so do the obstacles of a target. The
+ * first of n of them whose number is `number` or more. */
+static size_t first_from(const robot_scene *s, int32_t (*number_of)(const robot_scene *, size_t), size_t n,
+                         int32_t number) {
+  size_t low = 0, high = n;
   while (low < high) {
     const size_t middle = low + (high - low) / 2;
-    if (s->obstacles[middle].index < index)
+    if (number_of(s, middle) < number)
       low = middle + 1;
     else
       high = middle;
@@ -127,8 +116,9 @@ static size_t first_obstacle(const robot_scene *s, int32_t index) {
 static void add_pairs(const robot_scene *s, int32_t geometry, int32_t other, bool self, robot_pair *pairs, size_t *n) {
   const cprox_robot *robot = s->motion->robot;
   const size_t others = self ? robot->n_parts : s->n_obstacles;
-  const size_t first = self ? first_part(robot, other) : first_obstacle(s, other);
-  for (size_t i = first_part(robot, geometry); i < robot->n_parts && robot->parts[i].geometry == geometry; i++) {
+  const size_t first = first_from(s, self ? geometry_of_part : target_of_obstacle, others, other);
+  for (size_t i = first_from(s, geometry_of_part, robot->n_parts, geometry);
+       i < robot->n_parts && robot->parts[i].geometry == geometry; i++) {
     for (size_t k = first; k < others; k++) {
       if ((self ? robot->parts[k].geometry : s->obstacles[k].index) != other) break;
       if (pairs) pairs[*n] = pair_of(s, i, k, self);
@@ -182,7 +172,7 @@ bool robot_scene_begin(robot_scene *s, const query *q, size_t first, size_t last
   const size_t n_axes = robot->n_axes + 1;
   size_t deepest = 0;
   for (size_t i = 0; s->self && i < robot->n_parts; i++) {
-    const size_t depth = depth_of(robot, robot->parts[i].axis);
+    const size_t depth = robot_axis_depth(robot, robot->parts[i].axis);
     deepest = depth > deepest ? depth : deepest;
   }
   s->n_displacements = deepest + 1;
@@ -306,7 +296,7 @@ static double displacement_of_part(robot_scene *s, int32_t index) {
   double *displacements = s->displacements ? s->displacements + (size_t)index * s->n_displacements : NULL;
   state->displaced = s->node;
   state->displacement =
-      motion_displacements(s->motion, s->axes, axis, displacements ? depth_of(s->motion->robot, axis) : 0,
+      motion_displacements(s->motion, s->axes, axis, displacements ? robot_axis_depth(s->motion->robot, axis) : 0,
                            body->side.at.p, body->radius + body->side.error, displacements);
   return state->displacement;
 }
