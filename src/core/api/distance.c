@@ -35,34 +35,14 @@ static arguments_query query_of(const query *q, bool each) {
   return (arguments_query){q->is_tolerance ? "tolerance" : "collision", has};
 }
 
-static cprox_status ask_all(query *q, cprox_result *nearest, cprox_result *each) {
-  workspace_clear(q->workspace);
-  const cprox_status checked =
-      arguments_check_query(&q->mover, q->targets, q->n, &q->options, query_of(q, each != NULL), q->workspace);
-  if (checked != CPROX_OK) return checked;
-  query_ask_whole(q);
-  if (!each) return query_answer(q, 0, q->n, INFINITY, nearest);
-
-  /* each target by itself; where the union falls short, it is for the one that is not known to be farther */
-  cprox_result all = query_nothing();
-  cprox_status failure = CPROX_OK;
-  for (size_t i = 0; i < q->n; i++) {
-    cprox_result one;
-    const cprox_status status = query_answer(q, i, i + 1, INFINITY, &one);
-    if (status < 0) return status;
-    if (!(one.lower >= all.lower)) failure = status;
-    query_join(&all, &one);
-    if (one.obstacle_index < 0) one.obstacle_index = (int32_t)i;
-    each[i] = one;
-  }
-  workspace_clear(q->workspace);
-  *nearest = all;
-  return query_conclude(q, INFINITY, failure, nearest);
-}
-
 static cprox_status ask(query *q, cprox_result *nearest, cprox_result *each) {
+  const arguments_query asked = query_of(q, each != NULL);
   cprox_certificate_clear(q->options.certificate);
-  const cprox_status status = ask_all(q, nearest, each);
+  workspace_clear(q->workspace);
+  cprox_status status = arguments_check_query(&q->mover, q->targets, q->n, &q->options, asked, q->workspace);
+  if (status != CPROX_OK) return status;
+  query_ask_whole(q);
+  status = each ? query_answer_each(q, nearest, each) : query_answer(q, 0, q->n, INFINITY, nearest);
   if (status >= 0) leave_certificate(q, nearest);
   return status;
 }

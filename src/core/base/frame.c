@@ -39,11 +39,12 @@ frame frame_create(const cprox_pose *pose, vec3 centre) {
 /* local = R2^T (R1^T (p - x1) - x2) - c = (R1 R2)^T (p - x1) - (R2^T x2 + c). The product of two quaternions is within
  * 8u of its length, which turns by 16u. */
 frame frame_create_within(const cprox_pose *outer, const cprox_pose *inner, vec3 centre) {
-  const frame second = frame_create(&(cprox_pose){.orientation = inner->orientation}, vec(0, 0, 0));
-  const vec3 shift = frame_turn_to_local(&second, inner->position);
   cprox_pose both = frame_compose(outer, inner);
   both.position = outer->position;
-  frame f = frame_create(&both, vec_add(centre, shift));
+  frame f = frame_create(&both, centre);
+  const frame second = frame_create(&(cprox_pose){.orientation = inner->orientation}, vec(0, 0, 0));
+  const vec3 shift = frame_turn_to_local(&second, inner->position);
+  f.centre = vec_add(centre, shift);
   const cprox_quat q = outer->orientation;
   const bool first_turns = q.x != 0.0 || q.y != 0.0 || q.z != 0.0;
   f.misturned = first_turns && second.rotated ? 16.0 : 0.0;

@@ -28,6 +28,7 @@ static candidate_ball ball_of_curve(const cprox_curve *curve) {
 /* Round one model of an obstacle, or where its curve carries that. */
 static candidate_ball bounding_ball_of(const cprox_obstacle *obstacle, int32_t part, const placed_model *m,
                                        double *sizes) {
+  const candidate_ball run = obstacle->curve ? ball_of_curve(obstacle->curve) : (candidate_ball){0};
   candidate_ball round = {0};
   *sizes = 0.0;
   if (m->body) {
@@ -40,7 +41,6 @@ static candidate_ball bounding_ball_of(const cprox_obstacle *obstacle, int32_t p
       *sizes += size_of(obstacle->body->parts[part].pose.position);
   }
   if (obstacle->curve) {
-    const candidate_ball run = ball_of_curve(obstacle->curve);
     const frame f = frame_create(&obstacle->pose, vec(0, 0, 0));
     round.centre = vec_add(round.centre, frame_to_world(&f, run.centre));
     round.radius += run.radius;
@@ -90,6 +90,12 @@ void candidates_sort(candidate *list, size_t n) {
       list[k] = moved;
     }
   }
+}
+
+void candidates_sort_again(candidate *list, size_t i, size_t n) {
+  const candidate moved = list[i];
+  for (; i + 1 < n && list[i + 1].lower < moved.lower; i++) list[i] = list[i + 1];
+  list[i] = moved;
 }
 
 candidate *candidates_list(const query *q, size_t first, size_t last, bool ranked, size_t *count) {

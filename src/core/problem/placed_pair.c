@@ -25,9 +25,9 @@ static cprox_pose obstacle_pose(const cprox_obstacle *obstacle) {
 placed_model placed_model_of_obstacle(const query *q, const candidate *c) {
   const cprox_obstacle *obstacle = &q->targets[c->target];
   const cprox_body *body = obstacle->synchronized && !obstacle->body ? &carried_point : obstacle->body;
+  const cprox_pose pose = obstacle_pose(obstacle);
   placed_model m = model_at(body, c->part, c->lod != CPROX_LOD_NONE ? c->lod : q->options.max_lod);
-  m.pose = obstacle_pose(obstacle);
-  if (m.moved) m.pose = frame_compose(&m.pose, &m.inner);
+  m.pose = m.moved ? frame_compose(&pose, &m.inner) : pose;
   return m;
 }
 

@@ -126,8 +126,11 @@ static cprox_status check_clock(const cprox_curve *curve, const cprox_obstacle *
       index, u0, u1, t0, t1);
 }
 
-/* Convex parts without end have no Minkowski difference that a search could use. */
-static cprox_status check_carried(const cprox_body *body, cprox_lod finest, cprox_workspace *workspace) {
+/* The curve, and what rides it: convex parts without end have no Minkowski difference that a search could use. */
+static cprox_status check_ride(const cprox_mover *mover, cprox_lod finest, cprox_workspace *workspace) {
+  const cprox_body *body = mover->body;
+  if (mover->curve && !curve_is_in_reach(mover->curve))
+    return workspace_fail(workspace, CPROX_INVALID, "the mover's curve reaches farther than %g m", LENGTH_MOST);
   if (!body) return CPROX_OK;
   if (!isfinite(body->ball_radius))
     return workspace_fail(workspace, CPROX_INVALID, "the mover's body is a halfspace or has one: it must be bounded");
@@ -158,26 +161,38 @@ static cprox_status check_pairs(const cprox_mover *mover, const cprox_robot_pair
   return CPROX_OK;
 }
 
-static cprox_status check_robot(const cprox_mover *mover, const cprox_obstacle *targets, size_t n,
-                                cprox_workspace *workspace) {
+static cprox_status check_robot(const cprox_mover *mover, size_t n, cprox_workspace *workspace) {
+  if (!mover->motion) return CPROX_OK;
   if (mover->curve || mover->body || mover->radius != 0.0)
     return workspace_fail(workspace, CPROX_INVALID,
                           "a mover is a robot's motion, or a curve and what rides it: not both; pad the robot's links");
   if (mover->kind == CPROX_MOVER_ROBOT_SELF && n > 0)
     return workspace_fail(workspace, CPROX_INVALID, "a robot against itself has no targets, got %zu", n);
-  for (size_t i = 0; i < n; i++) {
-    const cprox_body *body = targets[i].body;
-    if (!body || targets[i].curve)
-      return workspace_fail(workspace, CPROX_INVALID, "target %zu is a curve: a robot is asked about bodies", i);
-    if (part_model_is_solid(body))
-      return workspace_fail(workspace, CPROX_INVALID,
-                            "target %zu is a solid mesh: a robot is asked about surfaces; fill it with convex parts",
-                            i);
-  }
   const bool self = mover->kind == CPROX_MOVER_ROBOT_SELF, whole = mover->kind == CPROX_MOVER_ROBOT_WHOLE;
   const cprox_status status = check_pairs(mover, mover->pairs, mover->n_pairs, self, n, workspace);
   if (status != CPROX_OK) return status;
   return check_pairs(mover, mover->self_pairs, whole ? mover->n_self_pairs : 0, true, n, workspace);
+}
+
+/* Is the target one that the mover can be held against? */
+static cprox_status check_against(const cprox_mover *mover, const cprox_obstacle *target, size_t index,
+                                  cprox_lod finest, cprox_workspace *workspace) {
+  if (!mover->motion) {
+    const cprox_status clock = check_clock(mover->curve, target, index, workspace);
+    if (clock == CPROX_OK && mover->body && model_has_tree(target->body, finest))
+      return workspace_fail(workspace, CPROX_INVALID,
+                            "target %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
+                            "it, balls are (radius)",
+                            index);
+    return clock;
+  }
+  if (!target->body || target->curve)
+    return workspace_fail(workspace, CPROX_INVALID, "target %zu is a curve: a robot is asked about bodies", index);
+  if (part_model_is_solid(target->body))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "target %zu is a solid mesh: a robot is asked about surfaces; fill it with convex parts",
+                          index);
+  return CPROX_OK;
 }
 
 /* Do the members that are set belong to the kind? */
@@ -217,21 +232,10 @@ cprox_status arguments_check_query(const cprox_mover *mover, const cprox_obstacl
   if (mover->motion && options->signed_distance)
     return workspace_fail(workspace, CPROX_INVALID,
                           "signed_distance does not apply to robots: how deep they overlap is not measured");
-  if (mover->curve && !curve_is_in_reach(mover->curve))
-    return workspace_fail(workspace, CPROX_INVALID, "the mover's curve reaches farther than %g m", LENGTH_MOST);
-  const cprox_status carried = check_carried(mover->body, options->max_lod, workspace);
-  if (carried != CPROX_OK) return carried;
-  const cprox_status standing = arguments_check_targets(targets, n, workspace);
-  if (standing != CPROX_OK) return standing;
-  if (mover->motion) return check_robot(mover, targets, n, workspace);
-  for (size_t i = 0; i < n; i++) {
-    const cprox_status clock = check_clock(mover->curve, &targets[i], i, workspace);
-    if (clock != CPROX_OK) return clock;
-    if (mover->body && model_has_tree(targets[i].body, options->max_lod))
-      return workspace_fail(workspace, CPROX_INVALID,
-                            "target %zu is a mesh, points or boxes, or has such a part: bodies are not carried past "
-                            "it, balls are (radius)",
-                            i);
-  }
-  return CPROX_OK;
+  checked = check_robot(mover, n, workspace);
+  if (checked == CPROX_OK) checked = check_ride(mover, options->max_lod, workspace);
+  if (checked == CPROX_OK) checked = arguments_check_targets(targets, n, workspace);
+  for (size_t i = 0; i < n && checked == CPROX_OK; i++)
+    checked = check_against(mover, &targets[i], i, options->max_lod, workspace);
+  return checked;
 }

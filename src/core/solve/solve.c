@@ -6,13 +6,6 @@
 #include "curve_query/search_pair.h"
 #include "robot_query/answer.h"
 
-/* The bound of list[i] has grown: moves it back to where it belongs. */
-static void sort_again(candidate *list, size_t i, size_t n) {
-  const candidate moved = list[i];
-  for (; i + 1 < n && list[i + 1].lower < moved.lower; i++) list[i] = list[i + 1];
-  list[i] = moved;
-}
-
 cprox_status query_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
   if (q->mover.motion) return robot_answer(q, first, last, cutoff, result);
   size_t n = 0;
@@ -37,7 +30,7 @@ cprox_status query_answer(const query *q, size_t first, size_t last, double cuto
     if (unknown && i + 1 < n && candidate_may_refine(q, &list[i])) {
       const cprox_status ranked = candidate_rank(q, &list[i], &all.nodes, &all.distance_queries);
       if (ranked < 0) return ranked;
-      sort_again(list, i, n);
+      candidates_sort_again(list, i, n);
       continue;
     }
     cprox_result one;
@@ -53,4 +46,22 @@ cprox_status query_answer(const query *q, size_t first, size_t last, double cuto
   query_conclude(q, cutoff, failure, &all);
   *result = all;
   return all.status;
+}
+
+cprox_status query_answer_each(const query *q, cprox_result *nearest, cprox_result *each) {
+  cprox_result all = query_nothing();
+  cprox_status failure = CPROX_OK;
+  for (size_t i = 0; i < q->n; i++) {
+    cprox_result one;
+    const cprox_status status = query_answer(q, i, i + 1, INFINITY, &one);
+    if (status < 0) return status;
+    /* where the union falls short, it is for the one that is not known to be farther */
+    if (!(one.lower >= all.lower)) failure = status;
+    query_join(&all, &one);
+    if (one.obstacle_index < 0) one.obstacle_index = (int32_t)i;
+    each[i] = one;
+  }
+  workspace_clear(q->workspace);
+  *nearest = all;
+  return query_conclude(q, INFINITY, failure, nearest);
 }
