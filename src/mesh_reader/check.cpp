@@ -21,7 +21,7 @@ std::string noteOnArrays(const XMLElement &element) {
     while (!words.next().empty()) ++there;
     const std::optional<std::int64_t> promised = parseInteger(e->Attribute("count"));
     if (promised && *promised == static_cast<std::int64_t>(there)) continue;
-    return "line " + std::to_string(e->GetLineNum()) + ": a float_array promises " + quoted(e->Attribute("count")) +
+    return "line " + std::to_string(e->GetLineNum()) + ": a float_array promises " + in_quotes(e->Attribute("count")) +
            " numbers and has " + std::to_string(there);
   }
   return "";

@@ -43,7 +43,7 @@ class Obj {
     for (int i = 0; i < 3; ++i) {
       const std::string_view word = nextInStatement();
       const std::optional<double> x = parseNumber(word);
-      if (!x) words_.fail("a vertex needs three numbers" + (word.empty() ? "" : ": " + quoted(word) + " is none"));
+      if (!x) words_.fail("a vertex needs three numbers" + (word.empty() ? "" : ": " + in_quotes(word) + " is none"));
       if (!std::isfinite(*x)) words_.fail("a vertex is not finite");
     }
     ++vertices_;
@@ -54,7 +54,7 @@ class Obj {
     for (std::string_view word = nextInStatement(); !word.empty(); word = nextInStatement(), ++corners) {
       if (word[0] == '#') break;
       const std::optional<std::int64_t> index = parseInteger(word.substr(0, word.find('/')));
-      if (!index || *index == 0) words_.fail(quoted(word) + " is no vertex of a face");
+      if (!index || *index == 0) words_.fail(in_quotes(word) + " is no vertex of a face");
       if (*index < -vertices_) words_.fail(outOfRange(*index));
       if (*index > largest_) largest_ = *index, largest_line_ = words_.line();
     }

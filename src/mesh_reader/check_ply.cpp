@@ -52,7 +52,7 @@ struct Header {
 const Type &typeNamed(const Words &words, std::string_view name) {
   for (const Type &type : TYPES)
     if (name == type.name || name == type.other_name) return type;
-  words.fail(quoted(name) + " is no type of a property");
+  words.fail(in_quotes(name) + " is no type of a property");
 }
 
 /* ---- the header ---- */
@@ -66,7 +66,7 @@ void readFormat(Words &words, Header &header) {
   } else if (format == "binary_big_endian") {
     header.format = Format::BIG;
   } else {
-    words.fail("the format " + quoted(format) + " is none of ascii, binary_little_endian, binary_big_endian");
+    words.fail("the format " + in_quotes(format) + " is none of ascii, binary_little_endian, binary_big_endian");
   }
 }
 
@@ -75,7 +75,7 @@ void readElement(Words &words, Header &header) {
   const std::optional<std::int64_t> number = parseInteger(n);
   if (name.empty()) words.fail("an element without a name");
   if (!number || *number < 0 || *number > std::numeric_limits<std::uint32_t>::max())
-    words.fail("element " + quoted(name) + ": " + quoted(n) + " is no number of elements");
+    words.fail("element " + in_quotes(name) + ": " + in_quotes(n) + " is no number of elements");
   header.elements.push_back({std::string(name), static_cast<std::uint64_t>(*number), {}});
 }
 
@@ -131,7 +131,7 @@ Header readHeader(std::string_view bytes) {
     } else if (word == "property") {
       readProperty(words, header);
     } else if (!word.empty() && word != "comment" && word != "obj_info") {
-      words.fail(quoted(word) + " is no word of a PLY header");
+      words.fail(in_quotes(word) + " is no word of a PLY header");
     }
   }
   if (!format) throw Fault("the header has no format");
@@ -162,11 +162,11 @@ struct Faces {
 };
 
 std::string placeOf(const Element &element, std::uint64_t i) {
-  return "element " + quoted(element.name) + " " + std::to_string(i + 1) + " of " + std::to_string(element.n);
+  return "element " + in_quotes(element.name) + " " + std::to_string(i + 1) + " of " + std::to_string(element.n);
 }
 
 std::string cutAfter(const Element &element, std::uint64_t i) {
-  return "the header promises " + std::to_string(element.n) + " of the element " + quoted(element.name) +
+  return "the header promises " + std::to_string(element.n) + " of the element " + in_quotes(element.name) +
          ", the file ends after " + std::to_string(i);
 }
 
@@ -300,7 +300,7 @@ class TextPly {
     const std::string_view word = words_.nextInLine();
     if (word.empty()) words_.fail(placeOf(element, i) + ": the line ends too early");
     const std::optional<double> value = parseNumber(word);
-    if (!value) words_.fail(placeOf(element, i) + ": " + quoted(word) + " is no number");
+    if (!value) words_.fail(placeOf(element, i) + ": " + in_quotes(word) + " is no number");
     return *value;
   }
 

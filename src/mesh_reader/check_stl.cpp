@@ -52,7 +52,7 @@ class TextStl {
   std::uint64_t check() {
     std::string_view word = words_.next();
     do {
-      if (word.substr(0, 5) != "solid") words_.fail(quoted(word) + " stands after the end of the solid");
+      if (word.substr(0, 5) != "solid") words_.fail(in_quotes(word) + " stands after the end of the solid");
       words_.skipLine();
       checkSolid();
       word = words_.next();
@@ -84,7 +84,7 @@ class TextStl {
     for (int i = 0; i < 3; ++i) {
       const std::string_view word = words_.nextInLine();
       const std::optional<double> x = parseNumber(word);
-      if (!x) words_.fail("a vertex needs three numbers" + (word.empty() ? "" : ": " + quoted(word) + " is none"));
+      if (!x) words_.fail("a vertex needs three numbers" + (word.empty() ? "" : ": " + in_quotes(word) + " is none"));
       if (!std::isfinite(*x)) words_.fail("a vertex is not finite");
     }
     if (++corners_ == 3) ++triangles_;

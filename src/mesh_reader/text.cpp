@@ -67,7 +67,7 @@ std::optional<std::int64_t> parseInteger(std::string_view word) {
   return negative ? -out : out;
 }
 
-std::string quoted(std::string_view word) {
+std::string in_quotes(std::string_view word) {
   constexpr std::size_t LONGEST = 40;
   std::string out = "'";
   for (const char c : word.substr(0, LONGEST)) out += c >= ' ' && c <= '~' ? c : '?';

@@ -64,7 +64,7 @@ std::optional<double> parseNumber(std::string_view word);
 std::optional<std::int64_t> parseInteger(std::string_view word);
 
 /* A word for a sentence: short, printable. */
-std::string quoted(std::string_view word);
+std::string in_quotes(std::string_view word);
 
 /* "1 triangle", "2 triangles". */
 std::string count(std::uint64_t n, const std::string &what);
