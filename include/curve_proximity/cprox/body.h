@@ -2,7 +2,7 @@
 /** Bodies: compact sets (and halfspaces) in their own frame; immutable once made, shared by any number of threads.
  *
  *  Bodies are closed sets: touching counts as collision. Constructors copy what they are given and check it once; they
- *  return CPROX_INVALID with a sentence in the workspace (which may be NULL: then without the sentence), or
+ *  return CPROX_INVALID with a message in the workspace (which may be NULL: then without a message), or
  *  CPROX_MEMORY, and leave *body untouched on failure. The handle is the caller's: cprox_body_free(). */
 #ifndef CURVE_PROXIMITY_CPROX_BODY_H
 #define CURVE_PROXIMITY_CPROX_BODY_H
@@ -167,7 +167,7 @@ CPROX_API cprox_status cprox_body_create_boxes(const cprox_vec3 *low, const cpro
  *
  *  Both are kept by reference, stand in the frame of the level-of-detail body, and must outlive it. A level-of-detail
  *  body may be part of a compound. Queries climb from the hull to the mesh where the hull cannot decide;
- *  cprox_options.max_lod ends the climb before, and cprox_result.level of detail says how far it went. Its support,
+ *  cprox_options.max_lod ends the refinement before, and cprox_result.lod says how far it went. Its support,
  *  nearest point and bounding sphere are the mesh's. */
 CPROX_API cprox_status cprox_body_create_lod(const cprox_body *hull, double excess, const cprox_body *mesh,
                                              cprox_workspace *workspace, cprox_body **body);

@@ -162,8 +162,8 @@ typedef struct cprox_options {
   bool signed_distance;
   /** the finest model of targets that may answer, CPROX_LOD_MESH (or NONE): any. HULL: level-of-detail bodies by their
    *  hulls. SPHERE: all bodies by their bounding balls, but for points, octrees and halfspaces, which stay what they
-   *  are. A coarser model contains the body: lower and "clear" hold for the body itself as well, but upper, the witness
-   *  and "hit" are the model's */
+   *  are. A coarser model contains the body: lower and clear hold for the body itself as well, but upper, the witness
+   *  points and violated are the model's */
   cprox_lod max_lod;
 } cprox_options;
 
@@ -175,15 +175,16 @@ typedef struct cprox_options {
 typedef struct cprox_result {
   /** the same that the call returned */
   cprox_status status;
-  /** tolerance: yes = farther than delta everywhere; collision: yes = they touch or overlap; undecided counts as
-   *  unsafe. distance: undecided, always */
+  /** clear: farther than delta everywhere, of a collision farther than 0; violated: a point at most delta away, of a
+   *  collision a common point, is proven; undecided: neither, which counts as unsafe. Of a distance: undecided */
   cprox_verdict verdict;
   /** [m] certified: lower <= true value <= upper. upper = infinity where bounding balls (in batches also boxes) alone
    *  decided a verdict: then there is no witness, and obstacle_index is -1 */
   double lower;
   /** [m] certified: not below the true value. */
   double upper;
-  /** where on the mover's curve upper was attained */
+  /** where on the mover's curve, or when [s] in a robot's motion, upper was attained; no meaning where upper is
+   *  infinite */
   double t;
   /** where on a target that is a curve; NaN for bodies */
   double t_obstacle;

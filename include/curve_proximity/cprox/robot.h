@@ -4,7 +4,7 @@
  *  A motion becomes a mover (cprox_robot_along, cprox_robot_self), and every query of query.h answers for it: t is the
  *  time of the motion [s], mover_part a geometry of the robot, obstacle_index a target, or in a query about the robot
  *  itself the other geometry. Robots and motions are immutable once made, shared by any number of threads. Constructors
- *  copy what they are given, but keep bodies by reference; they return CPROX_INVALID with a sentence in the workspace,
+ *  copy what they are given, but keep bodies by reference; they return CPROX_INVALID with a message in the workspace,
  *  or CPROX_MEMORY, and leave the handle untouched on failure. */
 #ifndef CURVE_PROXIMITY_CPROX_ROBOT_H
 #define CURVE_PROXIMITY_CPROX_ROBOT_H
@@ -221,7 +221,7 @@ typedef struct cprox_robot_pair {
 
 /** The robot along a motion. Targets are bodies; of meshes the surface counts, and solid
  *  ones are refused. Of level-of-detail bodies, on links and as targets, the mesh is asked where the hull cannot
- *  decide; result.level of detail says whether. pairs: those that are asked about, kept by reference, `other` being
+ *  decide; result.lod says whether. pairs: those that are asked about, kept by reference, `other` being
  *  targets; NULL: all geometries of links that the motion moves (of a state: that a joint can move), against all
  *  targets.
  *
