@@ -160,6 +160,50 @@ CASE(the_support_is_found_along_normals_of_faces_and_edges) {
   }
 }
 
+/* An ellipsoid of any proportions up to 1 : 3000, turned, as one quadric about its own centre. Seed 19. The reference
+ * is sqrt(sum (a_i e_i·d)^2) of the semi-axes a_i e_i. A quadric of coefficients in double is that ellipsoid only
+ * within what the slack says. */
+CASE(the_support_of_thin_ellipsoids_is_found) {
+  rng r = rng_seed(19);
+  size_t missing = 0, wide = 0, wrong = 0;
+  const size_t n = test_cases(2000);
+  for (size_t i = 0; i < n; i++) {
+    const vec3 x = rng_unit(&r), any = rng_unit(&r);
+    const vec3 y = vec_scale(1.0 / vec_norm(vec_cross(x, any)), vec_cross(x, any)), z = vec_cross(x, y);
+    const vec3 axis[3] = {x, y, z};
+    const double scale = rng_log_uniform(&r, 1e-3, 1e3);
+    double half[3], q[1][10] = {{0}};
+    for (int k = 0; k < 3; k++) {
+      half[k] = scale * rng_log_uniform(&r, 1.0 / 3000.0, 1.0);
+      const vec3 e = vec_scale(1.0 / half[k], axis[k]);
+      const double square[6] = {e.x * e.x, e.x * e.y, e.x * e.z, e.y * e.y, e.y * e.z, e.z * e.z};
+      for (int c = 0; c < 6; c++) q[0][c] += square[c];
+    }
+    q[0][9] = -1.0;
+    const cprox_implicit_description d = {.quadrics = (const double(*)[10])q, .n_quadrics = 1};
+    cprox_body *body;
+    assert_int_equal(cprox_body_create_implicit(&d, NULL, NULL, &body), CPROX_OK);
+    const convex *shape = &body->shape;
+    for (size_t k = 0; k < 20; k++) {
+      const vec3 to = k < 6 ? vec_scale(k % 2 ? -1.0 : 1.0, vec(k / 2 == 0, k / 2 == 1, k / 2 == 2)) : rng_unit(&r);
+      vec3 at = vec(0, 0, 0);
+      const double h = shape->ops->support(shape, to, NULL, &at);
+      long double square = 0.0L;
+      for (int c = 0; c < 3; c++) {
+        const long double along = (long double)half[c] * vec_dot(axis[c], to);
+        square += along * along;
+      }
+      const double centre = vec_dot(body->centre, to);
+      missing += isnan(h) != 0;
+      wide += !isnan(h) && !(h - vec_dot(to, at) <= shape->slack);
+      wrong += !isnan(h) && !(fabsl(h + centre - sqrtl(square)) <= shape->slack);
+    }
+    cprox_body_free(body);
+  }
+  print_message("%zu directions, %zu without an answer, %zu too wide, %zu wrong\n", 20 * n, missing, wide, wrong);
+  assert_int_equal(missing + wide + wrong, 0);
+}
+
 int main(void) {
   return cases_run(NULL, NULL);
 }

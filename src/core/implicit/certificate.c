@@ -90,6 +90,18 @@ static void height_power(height *h, const barrier *b, const implicit_power *powe
   h->sizes += reach + 8.0 * weights;
 }
 
+/* The sum, what is left of the direction, and rounding. */
+static double height_end(const height *h, const implicit *body, vec3 n) {
+  const double rounding = ROUND_U * (h->n + 8) * (h->sizes + body->radius * (vec_norm(n) + h->pulls));
+  return h->sum + (1.0 + 4.0 * ROUND_U) * vec_norm(h->left) * body->radius + ROUND_UP * rounding + body->give;
+}
+
+double implicit_quadric_height(const implicit *body, vec3 n, vec3 x, double multiplier) {
+  height h = {.left = n};
+  height_quadric(&h, &body->quadric[0], multiplier, x);
+  return height_end(&h, body, n);
+}
+
 double barrier_height(const barrier *b, vec3 n, double share, barrier_reading reading) {
   const implicit *body = b->body;
   const int32_t first_power = body->n_planes + body->n_quadrics;
@@ -108,6 +120,5 @@ double barrier_height(const barrier *b, vec3 n, double share, barrier_reading re
     if (k != last && b->row[first_power + k].l >= least)
       height_power(&h, b, &body->power[k], b->row[first_power + k].l, share, reading, false);
   if (last >= 0) height_power(&h, b, &body->power[last], b->row[first_power + last].l, share, reading, true);
-  const double rounding = ROUND_U * (h.n + 8) * (h.sizes + body->radius * (vec_norm(n) + h.pulls));
-  return h.sum + (1.0 + 4.0 * ROUND_U) * vec_norm(h.left) * body->radius + ROUND_UP * rounding + body->give;
+  return height_end(&h, body, n);
 }

@@ -142,6 +142,14 @@ double implicit_power_reach(const implicit_term *term, int32_t n, const double *
  */
 double implicit_closed_support(const implicit *body, vec3 n, double *mu, vec3 *at, double hessian[6]);
 
+/* An upper bound of the support function along n from one tangent of the only quadric, whatever x and the multiplier
+ * are. */
+double implicit_quadric_height(const implicit *body, vec3 n, vec3 x, double multiplier);
+
+/* The support function of a body of one quadric along the unit vector n (ellipsoid.c): from above, and an extreme point
+ * that is inside as computed. False where the body is none or rounding forbids it. */
+bool implicit_ellipsoid_support(const implicit *body, vec3 n, vec3 *at, double *upper);
+
 /* ---- the interior point method (solve.c) ---- */
 
 /* Where a search ended, for the next one that is much like it. Zero-initialised: from scratch. */

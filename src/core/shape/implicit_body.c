@@ -94,6 +94,12 @@ static double open_support(const convex *shape, vec3 d, convex_hint *hint, vec3 
   const implicit *body = shape->implicit;
   vec3 unit;
   const double norm = feature_unit(d, &unit), step = 0.125 * shape->slack / body->radius;
+  vec3 extreme;
+  double upper;
+  if (implicit_ellipsoid_support(body, unit, &extreme, &upper) && upper - vec_dot(unit, extreme) <= shape->slack) {
+    if (at) *at = extreme;
+    return norm * upper;
+  }
   for (int turn = 0; turn <= MOST_TURNS; turn++) {
     const double aside = turn == 0 ? 0.0 : turn % 2 ? step : -step;
     const vec3 off = vec(turn <= 2 ? aside : 0.0, turn == 3 || turn == 4 ? aside : 0.0, turn > 4 ? aside : 0.0);
@@ -141,7 +147,9 @@ static cprox_status wrap(implicit *made, bool superquadric, vec3 centre, cprox_w
   }
   handle->shape.implicit = made;
   handle->shape.scale = handle->ball_radius = made->radius + made->give;
-  handle->shape.slack = made->give + (made->closed ? 32.0 * ROUND_U : 4.0 * IMPLICIT_SUPPORT) * made->radius;
+  /* the solver has the rounding of the constraints at both ends of its interval */
+  handle->shape.slack = made->closed ? made->give + 32.0 * ROUND_U * made->radius
+                                     : 2.0 * made->give + 4.0 * IMPLICIT_SUPPORT * made->radius;
   handle->centre = handle->ball_centre = centre;
   *body = handle;
   return CPROX_OK;
