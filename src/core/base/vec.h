@@ -19,6 +19,13 @@ static inline double greater(double a, double b) {
   return a > b ? a : b;
 }
 
+/* How wide the interval of an answer may be: epsilon, or the fraction `relative` of its upper end where that is more. A
+ * fraction of an unknown end, infinity, is nothing. */
+static inline double width_allowed(double epsilon, double relative, double upper) {
+  const double part = relative * (upper < 0.0 ? -upper : upper);
+  return part > epsilon && part < (double)INFINITY ? part : epsilon;
+}
+
 static inline vec3 vec(double x, double y, double z) {
   return (vec3){x, y, z};
 }

@@ -83,7 +83,7 @@ typedef struct search_outcome {
 
 /* The width that the goal allows at this upper bound. */
 static inline double search_width(const search_goal *goal, double upper) {
-  return greater(goal->epsilon, goal->relative_epsilon * fabs(upper));
+  return width_allowed(goal->epsilon, goal->relative_epsilon, upper);
 }
 
 /* The lower bound from which on a node needs no more work, the best point being `upper` away. */

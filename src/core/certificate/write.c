@@ -209,7 +209,7 @@ cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targets, si
                   .answer = answer,
                   .options = options,
                   .budget = options->max_nodes,
-                  .epsilon = answer ? fmax(options->epsilon, options->relative_epsilon * answer->upper) : 0.0,
+                  .epsilon = answer ? width_allowed(options->epsilon, options->relative_epsilon, answer->upper) : 0.0,
                   .workspace = workspace,
                   .certificate = certificate};
   if (!isfinite(delta)) return workspace_fail(workspace, CPROX_INVALID, "there is nothing to measure");

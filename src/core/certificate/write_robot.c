@@ -54,7 +54,7 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
   if (!robot_scene_begin(&scene, &q, 0, n)) return CPROX_MEMORY;
   if (scene.n_pairs > MOST_PAIRS)
     return workspace_fail(workspace, CPROX_INVALID, "%zu pairs are too many for a certificate", scene.n_pairs);
-  const double epsilon = answer ? fmax(options->epsilon, options->relative_epsilon * answer->upper) : 0.0;
+  const double epsilon = answer ? width_allowed(options->epsilon, options->relative_epsilon, answer->upper) : 0.0;
   const robot_cover near = {.scene = &scene, .delta = delta, .certificate = certificate};
   const bool distance = answer && answer->verdict == CPROX_VERDICT_UNDECIDED && delta == answer->lower && delta > 0.0;
   if (answer && answer->upper <= delta) {

@@ -161,7 +161,7 @@ static bool is_repeated(const tree *t, uint32_t pack, uint32_t lane) {
 
 /* How much lower than the best a bound must be to matter. */
 static double worth(const dual *d) {
-  return d->best.upper - fmax(d->goal.epsilon, d->goal.relative_epsilon * fabs(d->best.upper));
+  return d->best.upper - width_allowed(d->goal.epsilon, d->goal.relative_epsilon, d->best.upper);
 }
 
 /* What is in a lane of tree 1 - which, as a segment in the frame of tree `which`. */

@@ -314,7 +314,7 @@ static cprox_status pair_over_parts(const pair_task *task, pair_reply *best) {
 static cprox_status pair_status(const pair_answer *answer, const cprox_options *options) {
   const double width = answer->upper - answer->lower;
   if (answer->overlap && !answer->measured) return CPROX_OVERLAP;
-  if (width <= fmax(options->epsilon, options->relative_epsilon * fabs(answer->upper))) return CPROX_OK;
+  if (width <= width_allowed(options->epsilon, options->relative_epsilon, answer->upper)) return CPROX_OK;
   if (answer->stopped) return CPROX_STOPPED;
   return answer->exhausted ? CPROX_BUDGET : CPROX_PRECISION;
 }

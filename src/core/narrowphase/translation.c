@@ -104,9 +104,9 @@ cprox_status cprox_translating_distance(cprox_translating a, cprox_translating b
   if (result->lower > 0.0) result->verdict = CPROX_VERDICT_CLEAR;
   if (found.overlap || found.upper - margins + rounding <= 0.0) result->verdict = CPROX_VERDICT_VIOLATED;
   const double width = result->upper - result->lower;
-  status = width <= fmax(asked.epsilon, asked.relative_epsilon * result->upper) ? CPROX_OK
-           : found.steps >= asked.max_nodes                                     ? CPROX_BUDGET
-                                                                                : CPROX_PRECISION;
+  status = width <= width_allowed(asked.epsilon, asked.relative_epsilon, result->upper) ? CPROX_OK
+           : found.steps >= asked.max_nodes                                             ? CPROX_BUDGET
+                                                                                        : CPROX_PRECISION;
   result->status = status;
   return finish(status, workspace);
 }

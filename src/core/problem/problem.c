@@ -55,7 +55,7 @@ cprox_verdict query_verdict(const query *q, const cprox_result *r) {
 bool query_is_satisfied(const query *q, double cutoff, const cprox_result *r) {
   if (query_wants_verdict(q) && query_verdict(q, r) != CPROX_VERDICT_UNDECIDED) return true;
   const double upper = lesser(r->upper, cutoff);
-  return !(upper - r->lower > greater(q->options.relative_epsilon * fabs(upper), q->options.epsilon));
+  return !(upper - r->lower > width_allowed(q->options.epsilon, q->options.relative_epsilon, upper));
 }
 
 const char *query_shortfall(cprox_status status) {
