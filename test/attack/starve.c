@@ -244,7 +244,7 @@ static void free_material(material *m) {
 
 /* ---- queries ---- */
 
-enum { N_QUERIES = 9 };
+enum { N_QUERIES = 9, NEAREST = 4 };
 
 static cprox_status ask(const scene *s, size_t query, const cprox_options *o, cprox_workspace *ws,
                         cprox_result x[SCENE_OBSTACLES]) {
@@ -255,7 +255,7 @@ static cprox_status ask(const scene *s, size_t query, const cprox_options *o, cp
     case 1: return tolerance_of_list(s->mover, s->targets, s->n, s->scale, o, ws, x, NULL);
     case 2: return collision_of_list(s->mover, s->targets, s->n, o, ws, x, NULL);
     case 3: return time_of_contact_of_list(s->mover, s->targets, s->n, o, ws, x);
-    case 4: return nearest_of_list(s->mover, s->targets, s->n, 1, o, ws, x, &count);
+    case NEAREST: return nearest_of_list(s->mover, s->targets, s->n, 1, o, ws, x, &count);
     case 5: return distance_of_list(s->mover, s->targets, s->n, o, ws, x, NULL);
     case 6: with.signed_distance = true; return cprox_distance(s->mover, s->targets[0], &with, ws, x);
     case 7: {
@@ -305,7 +305,9 @@ static void starve_query(attack *a, const scene *s, size_t query, const cprox_op
       attack_check(a, status >= 0, "query %zu, allocation %zu: %s (%s)", query, k, cprox_status_name(status),
                    cprox_workspace_error(ws));
     }
-    attack_check(a, x->lower <= full->upper && full->lower <= x->upper,
+    /* which obstacle is the nearest is told up to epsilon */
+    const double either = query == NEAREST ? o->epsilon : 0.0;
+    attack_check(a, x->lower <= full->upper + either && full->lower <= x->upper + either,
                  "query %zu, allocation %zu: [%.17g, %.17g], and with memory [%.17g, %.17g]", query, k, x->lower,
                  x->upper, full->lower, full->upper);
     cprox_workspace_free(ws);

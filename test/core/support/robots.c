@@ -56,10 +56,7 @@ static void make_geometries(rng *r, test_robot *t) {
 
 /* ---- random motions ---- */
 
-static void make_points(rng *r, double speed, test_robot *t) {
-  t->spline = rng_index(r, 4) == 0;
-  t->interpolation = (cprox_interpolation)(CPROX_INTERPOLATION_LINEAR + rng_index(r, 3));
-  t->n_points = t->spline ? TEST_MAX_WAYPOINTS : 2 + rng_index(r, TEST_MAX_WAYPOINTS - 1);
+static void draw_points(rng *r, double speed, test_robot *t) {
   for (size_t k = 0; k < t->n_variables; k++) {
     t->variables[k] = (int32_t)k;
     t->rest[k] = t->positions[0][k] = rng_uniform(r, -2, 2);
@@ -73,6 +70,13 @@ static void make_points(rng *r, double speed, test_robot *t) {
   t->times[0] = rng_uniform(r, -1, 1);
   for (size_t i = 1; i < t->n_points + TEST_SPLINE_DEGREE + 1; i++)
     t->times[i] = t->times[i - 1] + rng_uniform(r, 0.5, 1.5);
+}
+
+static void make_points(rng *r, double speed, test_robot *t) {
+  t->spline = rng_index(r, 4) == 0;
+  t->interpolation = (cprox_interpolation)(CPROX_INTERPOLATION_LINEAR + rng_index(r, 3));
+  t->n_points = t->spline ? TEST_WAYPOINTS : 2 + rng_index(r, TEST_WAYPOINTS - 1);
+  draw_points(r, speed, t);
 }
 
 /* Quaternions stay away from 0: their real part is large. */
@@ -130,6 +134,12 @@ void robot_make(rng *r, double speed, test_robot *t) {
   make_points(r, speed, t);
   tame_quaternions(t);
   build(t);
+}
+
+void robot_draw_motion(rng *r, double speed, size_t n_points, test_robot *t) {
+  t->n_points = n_points;
+  draw_points(r, speed, t);
+  tame_quaternions(t);
 }
 
 void robot_rebuild(test_robot *t) {

@@ -8,7 +8,14 @@
 #include "support/random.h"
 #include "support/reference.h"
 
-enum { TEST_MAX_LINKS = 8, TEST_MAX_VARIABLES = 24, TEST_MAX_WAYPOINTS = 5, TEST_VERTICES = 5, TEST_SPLINE_DEGREE = 4 };
+enum {
+  TEST_MAX_LINKS = 8,
+  TEST_MAX_VARIABLES = 24,
+  TEST_WAYPOINTS = 5,
+  TEST_MAX_WAYPOINTS = 48,
+  TEST_VERTICES = 5,
+  TEST_SPLINE_DEGREE = 4
+};
 
 typedef struct test_robot {
   cprox_link links[TEST_MAX_LINKS];
@@ -30,12 +37,16 @@ typedef struct test_robot {
   cprox_motion *motion;
 } test_robot;
 
-/* `speed`: how far variables go from point to point [rad, m]. Fails the running test where the core refuses it. */
+/* `speed`: how far variables go from point to point [rad, m]; at most TEST_WAYPOINTS points. Fails the running test
+ * where the core refuses it. */
 void robot_make(rng *r, double speed, test_robot *t);
 void robot_free(test_robot *t);
 
 /* The same robot on the same motion, with the geometries as they are now. */
 void robot_rebuild(test_robot *t);
+
+/* Another motion of n_points <= TEST_MAX_WAYPOINTS of the same kind; robot_rebuild() makes it. */
+void robot_draw_motion(rng *r, double speed, size_t n_points, test_robot *t);
 
 /* All variables at a time. */
 void robot_ref_values(const test_robot *t, long double time, long double *values);
