@@ -508,62 +508,25 @@ CASE(bad_input_gets_a_sentence) {
   const int32_t variables[] = {0, 0}, wrong[] = {3};
   cprox_waypoint points[] = {{.time = 0.0, .positions = still}, {.time = 0.0, .positions = still}};
   cprox_motion *motion = NULL;
-  REFUSED(cprox_motion_create(robot,
-                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
-                                                          .variables = variables,
-                                                          .n_variables = 1,
-                                                          .waypoints = points,
-                                                          .n_waypoints = 1,
-                                                          .interpolation = CPROX_INTERPOLATION_LINEAR},
-                              ws, &motion),
-          "at least 2");
-  REFUSED(cprox_motion_create(robot,
-                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
-                                                          .variables = variables,
-                                                          .n_variables = 1,
-                                                          .waypoints = points,
-                                                          .n_waypoints = 2,
-                                                          .interpolation = CPROX_INTERPOLATION_LINEAR},
-                              ws, &motion),
-          "must ascend");
+  cprox_motion_description d = {.kind = CPROX_MOTION_WAYPOINTS,
+                                .variables = variables,
+                                .n_variables = 1,
+                                .waypoints = points,
+                                .n_waypoints = 1,
+                                .interpolation = CPROX_INTERPOLATION_LINEAR};
+  REFUSED(cprox_motion_create(robot, &d, ws, &motion), "at least 2");
+  d.n_waypoints = 2;
+  REFUSED(cprox_motion_create(robot, &d, ws, &motion), "must ascend");
   points[1].time = 1.0;
-  REFUSED(cprox_motion_create(robot,
-                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
-                                                          .variables = variables,
-                                                          .n_variables = 2,
-                                                          .waypoints = points,
-                                                          .n_waypoints = 2,
-                                                          .interpolation = CPROX_INTERPOLATION_LINEAR},
-                              ws, &motion),
-          "named twice");
-  REFUSED(cprox_motion_create(robot,
-                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
-                                                          .variables = wrong,
-                                                          .n_variables = 1,
-                                                          .waypoints = points,
-                                                          .n_waypoints = 2,
-                                                          .interpolation = CPROX_INTERPOLATION_LINEAR},
-                              ws, &motion),
-          "no variable 3");
-  REFUSED(cprox_motion_create(robot,
-                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
-                                                          .variables = variables,
-                                                          .n_variables = 1,
-                                                          .waypoints = points,
-                                                          .n_waypoints = 2,
-                                                          .interpolation = CPROX_INTERPOLATION_CUBIC},
-                              ws, &motion),
-          "no velocities");
+  d.n_variables = 2;
+  REFUSED(cprox_motion_create(robot, &d, ws, &motion), "named twice");
+  d.variables = wrong, d.n_variables = 1;
+  REFUSED(cprox_motion_create(robot, &d, ws, &motion), "no variable 3");
+  d.variables = variables, d.interpolation = CPROX_INTERPOLATION_CUBIC;
+  REFUSED(cprox_motion_create(robot, &d, ws, &motion), "no velocities");
   points[1].positions = bad;
-  REFUSED(cprox_motion_create(robot,
-                              &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
-                                                          .variables = variables,
-                                                          .n_variables = 1,
-                                                          .waypoints = points,
-                                                          .n_waypoints = 2,
-                                                          .interpolation = CPROX_INTERPOLATION_LINEAR},
-                              ws, &motion),
-          "position 0 is");
+  d.interpolation = CPROX_INTERPOLATION_LINEAR;
+  REFUSED(cprox_motion_create(robot, &d, ws, &motion), "position 0 is");
   assert_null(motion);
   const double knots[] = {0, 0, 1, 1};
   cprox_motion_description spline = {.kind = CPROX_MOTION_BSPLINE,

@@ -38,10 +38,8 @@ static arguments_query query_of(const query *q, bool each) {
 static cprox_status ask(query *q, cprox_result *nearest, cprox_result *each) {
   const arguments_query asked = query_of(q, each != NULL);
   cprox_certificate_clear(q->options.certificate);
-  workspace_clear(q->workspace);
-  cprox_status status = arguments_check_query(&q->mover, q->targets, q->n, &q->options, asked, q->workspace);
+  cprox_status status = query_begin(q, asked);
   if (status != CPROX_OK) return status;
-  query_ask_whole(q);
   status = each ? query_answer_each(q, nearest, each) : query_answer(q, 0, q->n, INFINITY, nearest);
   if (status >= 0) leave_certificate(q, nearest);
   return status;

@@ -35,12 +35,10 @@ cprox_status list_nearest(cprox_mover mover, const cprox_obstacle *targets, size
                           size_t *count) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
-  workspace_clear(workspace);
-  const arguments_query asked = {"the nearest targets", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
-  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
-  if (checked != CPROX_OK) return checked;
+  const cprox_status begun =
+      query_begin(&q, (arguments_query){"the nearest targets", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});
+  if (begun != CPROX_OK) return begun;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
-  query_ask_whole(&q);
   const candidate *rank = rank_targets(&q);
   if (!rank) return workspace_fail(workspace, CPROX_MEMORY, "no memory for a list of targets");
   cprox_result *kept = query_reserve_results(&q, n);
@@ -70,11 +68,9 @@ cprox_status list_within(cprox_mover mover, const cprox_obstacle *targets, size_
   if (usable != CPROX_OK) return usable;
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
-  workspace_clear(workspace);
-  const arguments_query asked = {"the targets within a distance", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
-  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
-  if (checked != CPROX_OK) return checked;
-  query_ask_whole(&q);
+  const cprox_status begun =
+      query_begin(&q, (arguments_query){"the targets within a distance", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});
+  if (begun != CPROX_OK) return begun;
   cprox_result *kept = query_reserve_results(&q, n);
   if (!kept) return CPROX_MEMORY;
 

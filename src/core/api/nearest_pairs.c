@@ -66,16 +66,13 @@ cprox_status list_nearest_pairs(cprox_mover mover, const cprox_obstacle *targets
                                 const cprox_options *options, cprox_workspace *workspace, cprox_result *nearest,
                                 size_t *count) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
-  workspace_clear(workspace);
-  const arguments_query asked = {"the nearest pairs", ARGUMENTS_SEARCH};
-  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
-  if (checked != CPROX_OK) return checked;
+  const cprox_status begun = query_begin(&q, (arguments_query){"the nearest pairs", ARGUMENTS_SEARCH});
+  if (begun != CPROX_OK) return begun;
   if (!mover.motion)
     return workspace_fail(workspace, CPROX_INVALID, "pairs are those of a robot's motion, and the mover is none");
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one pair");
   if (!(delta >= 0.0))
     return workspace_fail(workspace, CPROX_INVALID, "delta is %g, must be 0 or more, or infinity", delta);
-  query_ask_whole(&q);
 
   const cprox_robot_pair *pairs = mover.pairs;
   size_t n_pairs = mover.n_pairs;

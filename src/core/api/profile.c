@@ -118,11 +118,8 @@ cprox_status list_profile(cprox_mover mover, const cprox_obstacle *targets, size
                           cprox_profile_interval *intervals) {
   query q = query_create(mover, targets, n, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
-  workspace_clear(workspace);
-  const arguments_query asked = {"a clearance profile", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
-  cprox_status status = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
+  cprox_status status = query_begin(&q, (arguments_query){"a clearance profile", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED});
   if (status != CPROX_OK) return status;
-  query_ask_whole(&q);
   status = check_breaks(&q, breaks, n_intervals, workspace);
   if (status != CPROX_OK) return status;
 

@@ -9,11 +9,9 @@
 cprox_status list_time_of_contact(cprox_mover mover, const cprox_obstacle *targets, size_t n,
                                   const cprox_options *options, cprox_workspace *workspace, cprox_result *result) {
   query q = query_create(mover, targets, n, 0.0, false, options, workspace);
-  workspace_clear(workspace);
   const arguments_query asked = {"time of contact", ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE};
-  const cprox_status checked = arguments_check_query(&mover, targets, n, &q.options, asked, workspace);
-  if (checked != CPROX_OK) return checked;
-  query_ask_whole(&q);
+  const cprox_status begun = query_begin(&q, asked);
+  if (begun != CPROX_OK) return begun;
   if (mover.motion) return robot_time_of_contact(&q, result);
   time_of_contact all = time_of_contact_begin();
   const cprox_status met = time_of_contact_with(&all, &q, 0, n);

@@ -16,6 +16,31 @@ void lanes_boxes(const lanes_chords *c, lanes_box boxes[PACKET_INTERVALS]) {
   }
 }
 
+/* The ends of BLOCK boxes, one array a coordinate; of points both ends are one. */
+typedef struct spans {
+  const double *low_x, *low_y, *low_z, *high_x, *high_y, *high_z;
+} spans;
+
+/* The squared distance of each from the nearest of the n boxes. Inlined into each clone, it is compiled for it. */
+static inline __attribute__((always_inline)) void nearest_squares(const lanes_box *boxes, size_t n, spans s,
+                                                                  double least[BLOCK]) {
+  for (size_t l = 0; l < BLOCK; l++) least[l] = INFINITY;
+  for (size_t b = 0; b < n; b++) {
+    const vec3 low = boxes[b].low, high = boxes[b].high;
+#pragma omp simd
+    for (size_t l = 0; l < BLOCK; l++) {
+      double dx = low.x - s.high_x[l] > s.low_x[l] - high.x ? low.x - s.high_x[l] : s.low_x[l] - high.x;
+      double dy = low.y - s.high_y[l] > s.low_y[l] - high.y ? low.y - s.high_y[l] : s.low_y[l] - high.y;
+      double dz = low.z - s.high_z[l] > s.low_z[l] - high.z ? low.z - s.high_z[l] : s.low_z[l] - high.z;
+      dx = dx > 0.0 ? dx : 0.0;
+      dy = dy > 0.0 ? dy : 0.0;
+      dz = dz > 0.0 ? dz : 0.0;
+      const double square = dx * dx + dy * dy + dz * dz;
+      least[l] = square < least[l] ? square : least[l];
+    }
+  }
+}
+
 SIMD_CLONES
 void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n, double radius, double slack,
                       double *lower) {
@@ -23,22 +48,8 @@ void lanes_box_bounds(const lanes_balls *balls, const lanes_box *boxes, size_t n
   const double *restrict reach = balls->reach, *restrict sizes = balls->sizes;
   double *restrict out = lower;
   for (size_t i = 0; i < balls->padded; i += BLOCK) {
-    double least[BLOCK] = {INFINITY, INFINITY, INFINITY, INFINITY};
-    for (size_t b = 0; b < n; b++) {
-      const vec3 low = boxes[b].low, high = boxes[b].high;
-#pragma omp simd
-      for (size_t l = 0; l < BLOCK; l++) {
-        const size_t k = i + l;
-        double dx = low.x - x[k] > x[k] - high.x ? low.x - x[k] : x[k] - high.x;
-        double dy = low.y - y[k] > y[k] - high.y ? low.y - y[k] : y[k] - high.y;
-        double dz = low.z - z[k] > z[k] - high.z ? low.z - z[k] : z[k] - high.z;
-        dx = dx > 0.0 ? dx : 0.0;
-        dy = dy > 0.0 ? dy : 0.0;
-        dz = dz > 0.0 ? dz : 0.0;
-        const double square = dx * dx + dy * dy + dz * dz;
-        least[l] = square < least[l] ? square : least[l];
-      }
-    }
+    double least[BLOCK];
+    nearest_squares(boxes, n, (spans){x + i, y + i, z + i, x + i, y + i, z + i}, least);
 #pragma omp simd
     for (size_t l = 0; l < BLOCK; l++) {
       const size_t k = i + l;
@@ -57,22 +68,8 @@ void lanes_block_bounds(const lanes_blocks *blocks, const lanes_box *boxes, size
   const double *restrict high_z = blocks->high[2], *restrict sizes = blocks->sizes;
   double *restrict out = lower;
   for (size_t i = 0; i < blocks->padded; i += BLOCK) {
-    double least[BLOCK] = {INFINITY, INFINITY, INFINITY, INFINITY};
-    for (size_t b = 0; b < n; b++) {
-      const vec3 low = boxes[b].low, high = boxes[b].high;
-#pragma omp simd
-      for (size_t l = 0; l < BLOCK; l++) {
-        const size_t k = i + l;
-        double dx = low.x - high_x[k] > low_x[k] - high.x ? low.x - high_x[k] : low_x[k] - high.x;
-        double dy = low.y - high_y[k] > low_y[k] - high.y ? low.y - high_y[k] : low_y[k] - high.y;
-        double dz = low.z - high_z[k] > low_z[k] - high.z ? low.z - high_z[k] : low_z[k] - high.z;
-        dx = dx > 0.0 ? dx : 0.0;
-        dy = dy > 0.0 ? dy : 0.0;
-        dz = dz > 0.0 ? dz : 0.0;
-        const double square = dx * dx + dy * dy + dz * dz;
-        least[l] = square < least[l] ? square : least[l];
-      }
-    }
+    double least[BLOCK];
+    nearest_squares(boxes, n, (spans){low_x + i, low_y + i, low_z + i, high_x + i, high_y + i, high_z + i}, least);
 #pragma omp simd
     for (size_t l = 0; l < BLOCK; l++) {
       const size_t k = i + l;

@@ -6,7 +6,6 @@
 #include "base/check.h"
 #include "curve/subcurve.h"
 #include "curve_proximity/cprox/robot.h"
-#include "problem/validate.h"
 
 query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool is_tolerance,
                    const cprox_options *options, cprox_workspace *workspace) {
@@ -30,6 +29,13 @@ void query_ask_whole(query *q) {
   q->part = curve_side_whole();
   q->reach = q->mover.curve->whole;
   curve_domain(q->mover.curve, &q->t0, &q->t1);
+}
+
+cprox_status query_begin(query *q, arguments_query asked) {
+  workspace_clear(q->workspace);
+  const cprox_status checked = arguments_check_query(&q->mover, q->targets, q->n, &q->options, asked, q->workspace);
+  if (checked == CPROX_OK) query_ask_whole(q);
+  return checked;
 }
 
 search_goal query_goal(const query *q, search_order order, double cutoff) {

@@ -7,6 +7,7 @@
 #include "branch_and_bound/search.h"
 #include "curve/subcurve.h"
 #include "curve_proximity/cprox/query.h"
+#include "problem/validate.h"
 
 /* What every query asks. */
 typedef struct query {
@@ -53,6 +54,11 @@ static inline bool mover_is_whole(const cprox_mover *mover) {
 /* options NULL: the default. Nothing is checked. */
 query query_create(cprox_mover mover, const cprox_obstacle *targets, size_t n, double limit, bool is_tolerance,
                    const cprox_options *options, cprox_workspace *workspace);
+
+/* Forgets the last error, checks all arguments, and asks about the whole curve or motion. CPROX_OK, or a negative
+ * status.
+ */
+cprox_status query_begin(query *q, arguments_query asked);
 
 /* What a status above CPROX_OK means to the caller. */
 const char *query_shortfall(cprox_status status);

@@ -112,24 +112,15 @@ static bool read_motion(FILE *f, robot_case *c, size_t n_variables) {
     points[i] = (cprox_waypoint){.positions = positions[i], .velocities = velocities[i]};
     if (!numbers(f, &points[i].time, 1) || !numbers(f, positions[i], n) || !numbers(f, velocities[i], n)) return false;
   }
-  return cprox_motion_create(c->robot,
-                             &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
-                                                         .variables = variables,
-                                                         .n_variables = n,
-                                                         .waypoints = points,
-                                                         .n_waypoints = n_points,
-                                                         .interpolation = CPROX_INTERPOLATION_CUBIC,
-                                                         .rest = rest},
-                             NULL, &c->motion) == CPROX_OK &&
-         cprox_motion_create(c->mesh_robot,
-                             &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
-                                                         .variables = variables,
-                                                         .n_variables = n,
-                                                         .waypoints = points,
-                                                         .n_waypoints = n_points,
-                                                         .interpolation = CPROX_INTERPOLATION_CUBIC,
-                                                         .rest = rest},
-                             NULL, &c->mesh_motion) == CPROX_OK;
+  const cprox_motion_description d = {.kind = CPROX_MOTION_WAYPOINTS,
+                                      .variables = variables,
+                                      .n_variables = n,
+                                      .waypoints = points,
+                                      .n_waypoints = n_points,
+                                      .interpolation = CPROX_INTERPOLATION_CUBIC,
+                                      .rest = rest};
+  return cprox_motion_create(c->robot, &d, NULL, &c->motion) == CPROX_OK &&
+         cprox_motion_create(c->mesh_robot, &d, NULL, &c->mesh_motion) == CPROX_OK;
 }
 
 static bool read_scene(FILE *f, robot_case *c) {
