@@ -178,7 +178,7 @@ static size_t attack(const problem *p, rng *r, cprox_workspace *ws) {
   curve_convex o;
   assert_true(
       curve_convex_begin(&o, p->curve, &p->body->shape, frame_create(&p->pose, p->body->centre), p->offset, ws));
-  o.good_enough = rng_index(r, 2) ? -INFINITY : INFINITY;
+  o.effort.good_enough = rng_index(r, 2) ? -INFINITY : INFINITY;
   const search_oracle oracle = curve_convex_oracle(&o);
   const bool chase = rng_index(r, 2);
   search_node open[MAX_OPEN + SEARCH_MAX_CHILDREN];

@@ -124,7 +124,7 @@ static size_t check_node(const problem *p, rng *r, const search_node *node, cons
 static size_t attack(const problem *p, rng *r) {
   curve_curve o;
   assert_true(curve_curve_begin(&o, p->curve[0], p->curve[1], &p->pose, 0.0, ws));
-  o.good_enough = rng_index(r, 2) ? -INFINITY : INFINITY;
+  o.effort.good_enough = rng_index(r, 2) ? -INFINITY : INFINITY;
   const search_oracle oracle = curve_curve_oracle(&o);
   const bool chase = rng_index(r, 2);
   search_node open[MAX_OPEN + SEARCH_MAX_CHILDREN];

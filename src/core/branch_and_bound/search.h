@@ -81,6 +81,14 @@ typedef struct search_outcome {
   uint32_t nodes;
 } search_outcome;
 
+/* How hard an oracle tries to better what it measures. */
+typedef struct search_effort {
+  uint32_t newton_after; /* nodes before Newton is allowed to look for better points */
+  bool is_signed;        /* depths are measured, to a tenth of epsilon */
+  double good_enough;    /* an upper bound at or below this needs no refinement */
+  double epsilon;
+} search_effort;
+
 /* The width that the goal allows at this upper bound. */
 static inline double search_width(const search_goal *goal, double upper) {
   return width_allowed(goal->epsilon, goal->relative_epsilon, upper);

@@ -233,7 +233,7 @@ static void seed(curve_tree *o) {
   const size_t first = piece ? curve_side_piece(&o->side, part) : 0, pieces = piece ? 1 : o->side.curve->n_pieces;
   const size_t wanted = verdict ? 2 : LEAST_SEEDS + pieces / PIECES_A_SEED;
   const size_t seeds = wanted < MOST_SEEDS ? wanted : MOST_SEEDS;
-  for (size_t i = 0; i < seeds && !(o->best_bound.upper <= o->good_enough); i++) {
+  for (size_t i = 0; i < seeds && !(o->best_bound.upper <= o->effort.good_enough); i++) {
     const double at = part->a + (part->b - part->a) * (double)i / (double)(seeds - 1) * (double)pieces;
     const size_t k = (size_t)fmin(at, (double)(pieces - 1));
     seed_at(o, first + k, fmin(at - (double)k, part->b));
@@ -370,7 +370,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     seed(o);
     if (curve_side_status(&o->side) < 0) return curve_side_status(&o->side);
     *best = o->best_bound;
-    if (o->best_bound.upper <= o->good_enough) return CPROX_OK;
+    if (o->best_bound.upper <= o->effort.good_enough) return CPROX_OK;
   }
 
   /* from the middle */
@@ -399,7 +399,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
     tree_sample sample;
     const search_best bound =
         curve_tree_measure(o, nearest, curve_side_piece(&o->side, at), s, x, curve_side_point_error(&o->side), &sample);
-    if (adopt_better(o, &sample, &bound) && bound.upper > o->good_enough && o->nodes > o->newton_after)
+    if (adopt_better(o, &sample, &bound) && bound.upper > o->effort.good_enough && o->nodes > o->effort.newton_after)
       refine_witness(o);
     if (o->best_bound.upper <= o->asked.epsilon) prove_contact(o);
   }
@@ -454,7 +454,7 @@ bool curve_tree_begin(curve_tree *o, const cprox_curve *curve, const cprox_body 
                     .tree = body->tree,
                     .offset = offset + body->shape.margin,
                     .asked = {.limit = -1.0, .cutoff = INFINITY},
-                    .good_enough = -INFINITY,
+                    .effort = {.good_enough = -INFINITY},
                     .workspace = workspace};
   o->best_bound.upper = INFINITY;
   curve_side_begin(&o->side, curve, &placed, &o->pool, SLOT_ROOT);

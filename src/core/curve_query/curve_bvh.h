@@ -44,8 +44,7 @@ typedef struct curve_tree {
   cprox_curve relative; /* where the other is on the mover's clock: the mover's curve, seen from there */
   double offset;        /* margin, the ball's radius, and that of points */
   search_goal asked;
-  uint32_t newton_after; /* nodes before Newton is allowed to look for better points */
-  double good_enough;    /* an upper bound at or below this needs no better one */
+  search_effort effort; /* depths are not measured: epsilon is that of `asked` */
 
   /* what is known */
   tree_sample best;
@@ -58,7 +57,7 @@ typedef struct curve_tree {
   points_pool pool;
 } curve_tree;
 
-/* Makes the oracle ready; false where memory is out. `asked`, newton_after and good_enough are the caller's to set. */
+/* Makes the oracle ready; false where memory is out. `asked` and `effort` are the caller's to set. */
 bool curve_tree_begin(curve_tree *o, const cprox_curve *curve, const cprox_body *body, frame placed, double offset,
                       cprox_workspace *workspace);
 

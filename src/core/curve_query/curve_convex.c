@@ -45,7 +45,7 @@ void curve_convex_bound(const curve_convex *o, search_node *node, const curve_sa
 
 /* Whether bounds need not rise any more: the query is settled, or the best point is as near as the answer needs. */
 static bool is_enough(const curve_convex *o, double lower) {
-  return lower > o->goal || lower >= o->best_bound.upper - o->epsilon;
+  return lower > o->goal || lower >= o->best_bound.upper - o->effort.epsilon;
 }
 
 /* The ball or cylinder that touches the body at the best sample; found when it is first wanted. */
@@ -100,7 +100,7 @@ static double filter(void *self, search_node *node, double goal) {
     payload->seen = o->incumbent;
   }
   if (payload->at.slot >= 0 && node->lower < goal && payload->seen_ball != o->incumbent &&
-      o->nodes >= o->newton_after && know_cover(o) && (cover_is_the_body(o) || holds_best(o, node))) {
+      o->nodes >= o->effort.newton_after && know_cover(o) && (cover_is_the_body(o) || holds_best(o, node))) {
     bound_by_cover(o, node);
     payload->seen_ball = o->incumbent;
   }
@@ -111,7 +111,7 @@ static double filter(void *self, search_node *node, double goal) {
 
 /* A distance from the core whose upper bound ends the search: its last digits are of no interest. */
 static double near_enough(const curve_convex *o, double rounding) {
-  const double d = o->good_enough + o->offset;
+  const double d = o->effort.good_enough + o->offset;
   return d > 0.0 ? d + o->shape->margin - 2.0 * (rounding + 4.0 * ROUND_U * (d + o->shape->margin)) : 0.0;
 }
 
@@ -162,8 +162,8 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
     convex_polygon_nearest_in_plane(o->shape, y, &sample->near);
   else
     o->shape->ops->nearest(o->shape, y, &o->hint, &sample->near);
-  if (o->is_signed && sample->near.distance <= 0.0 && vec_norm2(sample->near.normal) == 0.0)
-    depth_of_point(o->shape, y, 0.1 * o->epsilon, &sample->near);
+  if (o->effort.is_signed && sample->near.distance <= 0.0 && vec_norm2(sample->near.normal) == 0.0)
+    depth_of_point(o->shape, y, 0.1 * o->effort.epsilon, &sample->near);
   const double d = sample->near.distance;
   if (isnan(d)) return workspace_fail(o->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
 
@@ -173,7 +173,8 @@ cprox_status curve_convex_measure(curve_convex *o, size_t piece, double s, vec3 
 
   /* any direction near the normal will do for the lower bounds, as long as its length is 1 */
   sample->normal = sample->near.normal;
-  const bool touching = fabs(d) <= rounding && bound->upper > greater(o->good_enough, 0.0) && !piece_is_planar(o);
+  const bool touching =
+      fabs(d) <= rounding && bound->upper > greater(o->effort.good_enough, 0.0) && !piece_is_planar(o);
   if (touching) sample->normal = touching_normal(o, y, sample->normal, rounding);
   const double length2 = vec_norm2(sample->normal);
   if (fabs(length2 - 1.0) > 4.0 * ROUND_U && length2 > 0.0)
@@ -208,7 +209,7 @@ static cprox_status probe_at(curve_convex *o, size_t piece, double s, double ste
       curve_convex_measure(o, piece, s, jet.x, curve_side_point_error(&o->side), &o->last, &bound);
   if (status < 0 || bound.upper >= o->best_bound.upper) return status;
   curve_convex_adopt(o, &o->last, bound);
-  const bool worthwhile = bound.upper > o->good_enough && o->nodes > o->newton_after;
+  const bool worthwhile = bound.upper > o->effort.good_enough && o->nodes > o->effort.newton_after;
   return worthwhile ? newton_refine(o, points, &jet, step) : CPROX_OK;
 }
 
@@ -290,7 +291,7 @@ cprox_status curve_convex_seed(curve_convex *o, size_t piece, double s, search_n
   o->nodes++;
   curve_side_load(&o->side, piece);
   const cprox_status status = probe_at(o, piece, s, 1.0 / 16);
-  if (status < 0 || o->incumbent == 0 || o->best_bound.upper <= o->good_enough) return status;
+  if (status < 0 || o->incumbent == 0 || o->best_bound.upper <= o->effort.good_enough) return status;
   if (is_piece(o, root) && !curve_side_materialise(&o->side, &payload->at)) return curve_side_failure(&o->side);
   curve_convex_bound(o, root, &o->best);
   payload->seen = o->incumbent;
@@ -316,7 +317,7 @@ static cprox_status probe(void *self, search_node *node, search_best *best) {
   if (status < 0) return status;
   *best = o->best_bound;
   /* a plane never rises above the best point's distance: the halves will need no less */
-  const bool decisive = o->goal < o->best_bound.upper - 2.0 * o->epsilon;
+  const bool decisive = o->goal < o->best_bound.upper - 2.0 * o->effort.epsilon;
   if (piece && !decisive && best_inside(o, node) >= 0.0) return CPROX_OK;
 
   /* the probe's own normal, and the best one if it is another: one step further is the best of a probe that was not
@@ -422,7 +423,7 @@ bool curve_convex_begin(curve_convex *o, const cprox_curve *curve, const convex 
                         cprox_workspace *workspace) {
   *o = (curve_convex){.shape = shape, .offset = offset, .workspace = workspace, .planar_piece = SIZE_MAX};
   o->best_bound.upper = INFINITY;
-  o->good_enough = -INFINITY;
+  o->effort.good_enough = -INFINITY;
   curve_side_begin(&o->side, curve, &placed, &o->pool, CURVE_CONVEX_ROOT);
   return points_pool_begin(&o->pool, curve->degree, CURVE_CONVEX_RESERVED, workspace);
 }

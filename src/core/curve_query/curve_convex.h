@@ -37,13 +37,10 @@ typedef struct curve_convex {
   /* the problem */
   curve_side side; /* seen from the body's frame */
   const convex *shape;
-  convex joined;         /* where a body is carried: the shape that stands for both */
-  cprox_curve relative;  /* where the other is on the mover's clock: the mover's curve, seen from there */
-  double offset;         /* margin of the body + radius of the ball */
-  uint32_t newton_after; /* nodes before Newton is allowed to look for better points */
-  double good_enough;    /* an upper bound at or below this needs no refinement */
-  double epsilon;
-  bool is_signed; /* depths are measured */
+  convex joined;        /* where a body is carried: the shape that stands for both */
+  cprox_curve relative; /* where the other is on the mover's clock: the mover's curve, seen from there */
+  double offset;        /* margin of the body + radius of the ball */
+  search_effort effort;
 
   /* what is known */
   curve_sample best, last; /* of the least upper bound; of the last probe */

@@ -53,7 +53,7 @@ static void bound_children(const curve_curve *o, search_node *child, curve_inter
  */
 static bool is_open(const curve_curve *o, const search_node *child, int n) {
   for (int k = 0; k < n; k++)
-    if (!(child[k].lower > o->goal || child[k].lower >= o->best_bound.upper - o->epsilon)) return true;
+    if (!(child[k].lower > o->goal || child[k].lower >= o->best_bound.upper - o->effort.epsilon)) return true;
   return false;
 }
 
@@ -103,8 +103,8 @@ static void measure_carried(curve_curve *o, curve_meeting *m, double error, sear
   const convex *shape = &o->joined;
   const vec3 apart = vec_add(vec_sub(m->point[0], m->point[1]), o->shift);
   shape->ops->nearest(shape, apart, NULL, &m->near);
-  if (o->is_signed && m->near.distance <= 0.0 && vec_norm2(m->near.normal) == 0.0)
-    depth_of_point(shape, apart, 0.1 * o->epsilon, &m->near);
+  if (o->effort.is_signed && m->near.distance <= 0.0 && vec_norm2(m->near.normal) == 0.0)
+    depth_of_point(shape, apart, 0.1 * o->effort.epsilon, &m->near);
   o->support_failed |= isnan(m->near.distance);
   m->distance = m->near.distance;
   m->normal = m->near.normal;
@@ -228,7 +228,7 @@ static bool nearest_sample(const curve_curve *o, const search_node *node, double
 static bool is_worth_refining(const curve_curve *o) {
   static const double NEAR = 1.05;
   const double upper = o->best_bound.upper;
-  return upper > o->good_enough && (o->nodes > o->newton_after || upper < NEAR * o->good_enough);
+  return upper > o->effort.good_enough && (o->nodes > o->effort.newton_after || upper < NEAR * o->effort.good_enough);
 }
 
 /* Measures near those fractions of the node's intervals, and goes on from there. The normal seen there is the one to go
@@ -390,7 +390,7 @@ static void release(void *self, const search_node *node) {
 
 bool curve_curve_begin(curve_curve *o, const cprox_curve *first, const cprox_curve *second, const cprox_pose *placed,
                        double offset, cprox_workspace *workspace) {
-  *o = (curve_curve){.offset = offset, .workspace = workspace, .good_enough = -INFINITY};
+  *o = (curve_curve){.offset = offset, .workspace = workspace, .effort = {.good_enough = -INFINITY}};
   o->best_bound.upper = INFINITY;
 
   /* about the second curve's first point, sizes and not positions enter the rounding */

@@ -40,10 +40,7 @@ typedef struct curve_curve {
   bool carries;  /* a body rides the first curve: the points' difference, moved by `shift`, against `joined` */
   convex joined;
   vec3 shift;
-  uint32_t newton_after; /* nodes before Newton is allowed to look for better points */
-  bool is_signed;        /* depths of a carried body are measured, to a tenth of epsilon */
-  double epsilon;
-  double good_enough; /* an upper bound at or below this needs no refinement */
+  search_effort effort;
 
   /* what is known */
   curve_meeting best;

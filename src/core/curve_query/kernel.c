@@ -10,15 +10,15 @@
 /* ---- what the kernels share ---- */
 
 /* Easy verdicts are answered before Newton has paid for itself. */
-static uint32_t nodes_before_newton(const query *q) {
+static search_effort effort_of(const query *q) {
   enum { VERDICT_NODES_BEFORE_NEWTON = 4 };
-  return query_wants_verdict(q) ? VERDICT_NODES_BEFORE_NEWTON : 0;
-}
-
-/* An upper bound that needs no improvement. */
-static double good_enough(const query *q) {
-  if (q->is_signed) return -INFINITY;
-  return query_wants_verdict(q) ? q->limit : q->options.epsilon;
+  const bool verdict = query_wants_verdict(q);
+  return (search_effort){.newton_after = verdict ? VERDICT_NODES_BEFORE_NEWTON : 0,
+                         .is_signed = q->is_signed,
+                         .good_enough = q->is_signed ? -INFINITY
+                                        : verdict    ? q->limit
+                                                     : q->options.epsilon,
+                         .epsilon = q->options.epsilon};
 }
 
 /* The curve that the search runs along, about the obstacle: synchronized it is where the mover is, seen from the other.
@@ -84,10 +84,7 @@ static cprox_status start_convex(curve_search *s, curve_start *start) {
   curve_convex *o = &s->state.convex.base;
   const query *q = s->q;
   const candidate *which = &s->pair->which;
-  o->newton_after = nodes_before_newton(q);
-  o->good_enough = good_enough(q);
-  o->epsilon = q->options.epsilon;
-  o->is_signed = q->is_signed;
+  o->effort = effort_of(q);
   start->oracle = curve_convex_oracle(o);
   start->root = curve_convex_root(o);
   if (!(which->seed_s > 0.0)) return CPROX_OK;
@@ -165,8 +162,7 @@ static cprox_status start_tree(curve_search *s, curve_start *start) {
   if (!curve_tree_root(o, &start->root)) return CPROX_MEMORY;
   start->goal.order = SEARCH_DEPTH_FIRST; /* lists of elements are kept on a stack */
   o->asked = start->goal;
-  o->newton_after = nodes_before_newton(s->q);
-  o->good_enough = good_enough(s->q);
+  o->effort = effort_of(s->q);
   start->oracle = curve_tree_oracle(o);
   return CPROX_OK;
 }
@@ -223,10 +219,7 @@ static cprox_status begin_curve(curve_search *s) {
 
 static cprox_status start_curve(curve_search *s, curve_start *start) {
   curve_curve *o = &s->state.curve.base;
-  o->newton_after = nodes_before_newton(s->q);
-  o->good_enough = good_enough(s->q);
-  o->epsilon = s->q->options.epsilon;
-  o->is_signed = s->q->is_signed;
+  o->effort = effort_of(s->q);
   start->oracle = curve_curve_oracle(o);
   start->root = curve_curve_root(o);
   return CPROX_OK;

@@ -99,10 +99,10 @@ cprox_status newton_refine(curve_convex *o, const double *points, curve_jet *j, 
     if (status < 0) return status;
     const bool better = bound.upper < o->best_bound.upper;
     if (better) curve_convex_adopt(o, sample, bound);
-    if (o->best_bound.upper <= o->good_enough) return CPROX_OK;
+    if (o->best_bound.upper <= o->effort.good_enough) return CPROX_OK;
 
     /* the feature held on to is the nearest one here too: nothing more to find */
-    const bool same_feature = fabs(sample->near.distance - predicted) <= bound.slack + 1e-3 * o->epsilon;
+    const bool same_feature = fabs(sample->near.distance - predicted) <= bound.slack + 1e-3 * o->effort.epsilon;
     if (same_feature || (!better && round > 0)) return CPROX_OK;
     step *= 0.5;
     from = sample;

@@ -239,8 +239,8 @@ static cprox_status part_is_alone(const query *q, const placed_pair *best, doubl
     curve_convex o;
     const placed_pair other = placed_pair_resolve(q, &c);
     if (!curve_convex_begin_pair(&o, q, &other)) return CPROX_MEMORY;
-    o.is_signed = q->is_signed;
-    o.epsilon = q->options.epsilon;
+    o.effort.is_signed = q->is_signed;
+    o.effort.epsilon = q->options.epsilon;
     look seen;
     const cprox_status status = measure_pair_at(&o, t, false, &seen);
     if (status < 0) return status;
@@ -330,8 +330,8 @@ static void fill(const cprox_obstacle *target, vec3 n, vec3 witness_obstacle, cp
 static cprox_status gradient_of_body(const query *q, const placed_pair *c, cprox_gradient *g) {
   curve_convex o;
   if (!curve_convex_begin_pair(&o, q, c)) return workspace_fail(q->workspace, CPROX_MEMORY, "no memory for a gradient");
-  o.is_signed = q->is_signed;
-  o.epsilon = 1e-3 * q->options.epsilon;
+  o.effort.is_signed = q->is_signed;
+  o.effort.epsilon = 1e-3 * q->options.epsilon;
   int end;
   cprox_status status = refine(&o, q->t0, q->t1, &g->t, &end);
   look here = {.slope = 0.0};
