@@ -73,13 +73,13 @@ static double way_of(search *s, const robot_pair *pair, const axis_state *axes, 
 }
 
 static double ball_gap(search *s, const robot_pair *pair) {
-  return robot_scene_ball_distance(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair));
+  return robot_pair_ball_distance(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair));
 }
 
 static double measured_gap(search *s, const robot_pair *pair) {
   robot_gap gap;
-  robot_scene_measure(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair),
-                      (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);
+  robot_pair_measure(robot_scene_moving(&s->scene, pair), robot_scene_standing(&s->scene, pair),
+                     (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);
   s->distance_queries++;
   s->upper = fmin(s->upper, fmax(gap.upper, 0.0));
   return fmax(gap.lower, 0.0);
@@ -141,15 +141,15 @@ static void bound_centrally(search *s, interval *node, int order) {
     const robot_body *moving = robot_scene_moving(&s->scene, pair), *standing = robot_scene_standing(&s->scene, pair);
     chain_motion own;
     const chain_motion *motion = robot_scene_motion(&s->scene, pair, moving, &own);
-    e.lower = fmax(e.lower, robot_scene_ball_distance(moving, standing) - motion->displacement);
+    e.lower = fmax(e.lower, robot_pair_ball_distance(moving, standing) - motion->displacement);
     if (!(e.lower > s->upper - s->epsilon)) {
       robot_gap gap;
-      robot_scene_measure(moving, standing, (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);
+      robot_pair_measure(moving, standing, (robot_accuracy){.epsilon = 0.02 * s->epsilon}, &gap);
       s->distance_queries++;
       s->upper = fmin(s->upper, fmax(gap.upper, 0.0));
       e.lower = fmax(e.lower, gap.lower - motion->displacement);
       if (order > 2 && gap.lower > 0.0) {
-        const double height = robot_scene_height(standing, gap.normal), heights[2] = {height, height};
+        const double height = robot_pair_height(standing, gap.normal), heights[2] = {height, height};
         double slack;
         e.lower = fmax(e.lower,
                        motion_plane_bound(motion, &moving->side, &standing->side, gap.normal, vec(0, 0, 0), heights,

@@ -32,7 +32,7 @@ typedef struct view {
 } view;
 
 static bool is_halfspace(const view *v) {
-  return v->standing->side.shape->ops->kind == CPROX_BODY_HALFSPACE;
+  return robot_body_is_halfspace(v->standing);
 }
 
 /* Does a normal in the frame of what stands settle the pair? unsure: by how much it may be off. */
@@ -42,7 +42,7 @@ static bool settles(const robot_cover *c, const view *v, vec3 own, double unsure
   if (!(length > 0.0) || !isfinite(length)) return false;
   n = vec_scale(1.0 / length, n);
   n = vec_scale(1.0 / vec_norm(n), n);
-  const double height = robot_scene_height(v->standing, n), heights[2] = {height, height};
+  const double height = robot_pair_height(v->standing, n), heights[2] = {height, height};
   const vec3 apart = vec_sub(v->moving->side.at.p, v->standing->side.at.p);
   const double middle = vec_dot(n, apart) - bound_height(&v->moving->side, vec_neg(n)) - height;
   if (!(middle > c->delta)) return false;
@@ -74,7 +74,7 @@ static outcome settle(const robot_cover *c, const view *v, double width, vec3 *w
   if (is_halfspace(v) || (v->motion->displacement > size && width > SHORT_INTERVAL)) return OPEN;
   robot_gap gap;
   const robot_accuracy accuracy = {.floor = c->delta, .fraction = 0.01};
-  robot_scene_measure(v->moving, v->standing, accuracy, &gap);
+  robot_pair_measure(v->moving, v->standing, accuracy, &gap);
   if (gap.support_failed || !(gap.upper > c->delta) || !(vec_norm2(gap.normal) > 0.0)) return TOO_NEAR;
   *written = certificate_round(c->certificate, placement_turn_back(&v->standing->side.at, gap.normal));
   return settles(c, v, *written, 0.0) ? WRITTEN : OPEN;

@@ -42,7 +42,7 @@ static int32_t nearest_pair(robot_scene *s, const cprox_result *answer, robot_ga
     const int32_t other = s->self ? s->parts[pair->standing].body.index : s->obstacles[pair->standing].index;
     if (s->parts[pair->moving].body.index != answer->mover_part || other != answer->obstacle_index) continue;
     robot_gap gap;
-    robot_scene_measure(robot_scene_moving(s, pair), robot_scene_standing(s, pair), (robot_accuracy){0}, &gap);
+    robot_pair_measure(robot_scene_moving(s, pair), robot_scene_standing(s, pair), (robot_accuracy){0}, &gap);
     if (gap.support_failed || (found >= 0 && gap.upper >= nearest->upper)) continue;
     *nearest = gap;
     found = (int32_t)i;

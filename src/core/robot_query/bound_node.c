@@ -54,7 +54,7 @@ static vec3 normal_in_middle(const robot_search *o, const robot_pair *pair, cons
 
 /* In the place of a normal that is not known yet. */
 static void keep_guess(const robot_search *o, robot_pair *pair, const robot_body *moving, const robot_body *standing) {
-  const vec3 guess = robot_scene_guess(moving, standing);
+  const vec3 guess = robot_pair_guess(moving, standing);
   if (vec_norm2(guess) > 0.0) robot_place_normal(o, pair, guess);
 }
 
@@ -63,7 +63,7 @@ static double plane_middle(const robot_search *o, const robot_pair *pair, const 
                            const robot_body *standing) {
   const vec3 n = normal_in_middle(o, pair, standing);
   const double along = vec_dot(n, vec_sub(moving->side.at.p, standing->side.at.p));
-  return along - bound_height(&moving->side, vec_neg(n)) - robot_scene_height(standing, n);
+  return along - bound_height(&moving->side, vec_neg(n)) - robot_pair_height(standing, n);
 }
 
 /* What that normal says of the node. */
@@ -76,8 +76,8 @@ static double bound_by_normal(robot_search *o, const robot_pair *pair, const rob
   normal_rate = vec_axpy(normal_rate, -vec_dot(normal_rate, n), n);
   if (!(vec_norm2(normal_rate) < FASTEST_NORMAL_RATE * FASTEST_NORMAL_RATE)) normal_rate = vec(0, 0, 0);
   double heights[2];
-  heights[0] = robot_scene_height(standing, vec_axpy(n, -0.5, normal_rate));
-  heights[1] = vec_norm2(normal_rate) > 0.0 ? robot_scene_height(standing, vec_axpy(n, 0.5, normal_rate)) : heights[0];
+  heights[0] = robot_pair_height(standing, vec_axpy(n, -0.5, normal_rate));
+  heights[1] = vec_norm2(normal_rate) > 0.0 ? robot_pair_height(standing, vec_axpy(n, 0.5, normal_rate)) : heights[0];
   o->planes++;
   return motion_plane_bound(motion, &moving->side, &standing->side, n, normal_rate, heights,
                             moving->steps + standing->steps, goal, slack);
@@ -98,7 +98,7 @@ static double pieces_for(const robot_search *o, double middle, double bound) {
 /* The plane of the distance just measured, turning as its feature does. */
 static double bound_by_gap(robot_search *o, robot_pair *pair, const robot_body *moving, const robot_body *standing,
                            const chain_motion *motion, const robot_gap *gap, double *slack) {
-  const vec3 normal_rate = vec_scale(1.0 / width_of_node(o), robot_scene_normal_rate(gap, moving, standing, motion));
+  const vec3 normal_rate = vec_scale(1.0 / width_of_node(o), robot_pair_normal_rate(gap, moving, standing, motion));
   pair->normal_rate = placement_turn_back(&standing->side.at, normal_rate);
   ends_of_node(o, true, &pair->from, &pair->to);
   return bound_by_normal(o, pair, moving, standing, motion, robot_pruning_bound(o), slack);
@@ -164,10 +164,10 @@ static void bound_pair_roughly(robot_search *o, const search_node *node, list_en
   double coarse = INFINITY;
   if (pair->element[0] < 0 && pair->element[1] < 0) {
     coarse = robot_scene_coarse_displacement(&o->scene, pair);
-    entry->lower = greater(robot_scene_balls(moving, standing) - coarse, entry->lower);
+    entry->lower = greater(robot_pair_balls(moving, standing) - coarse, entry->lower);
     if (robot_is_pruned(o, entry->lower)) return;
   }
-  const double apart = robot_scene_ball_distance(moving, standing);
+  const double apart = robot_pair_ball_distance(moving, standing);
   entry->lower = greater(apart - coarse, entry->lower);
   if (robot_is_pruned(o, entry->lower)) return;
   const double displacement = robot_scene_displacement(&o->scene, pair, moving);

@@ -12,7 +12,7 @@
 typedef struct cluster_lanes {
   uint32_t live;              /* a bit for each lane in use */
   double lower[TREE_LANES];   /* anywhere in the node at hand, rounding included */
-  double apart[TREE_LANES];   /* in its middle, as robot_scene_ball_distance() has it */
+  double apart[TREE_LANES];   /* in its middle, as robot_pair_ball_distance() has it */
   uint32_t under[TREE_LANES]; /* of a node: what the lane leads to; of a pack: the number of a box */
 } cluster_lanes;
 

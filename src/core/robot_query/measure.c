@@ -54,7 +54,7 @@ void robot_keep_normal(const robot_search *o, robot_pair *pair, const robot_body
 cprox_status robot_measure(robot_search *o, int32_t index, robot_accuracy accuracy, robot_gap *gap) {
   robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  robot_scene_measure(moving, standing, accuracy, gap);
+  robot_pair_measure(moving, standing, accuracy, gap);
   o->gaps++;
   if (gap->support_failed) return refuse_callback(o);
   robot_keep_normal(o, pair, standing, gap);
@@ -109,8 +109,8 @@ typedef struct nearest_pair {
 static void try_pair(robot_search *o, int32_t index, nearest_pair *nearest) {
   const robot_pair *pair = &o->scene.pairs[index];
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  if (robot_scene_balls(moving, standing) >= nearest->apart) return;
-  const double apart = robot_scene_ball_distance(moving, standing);
+  if (robot_pair_balls(moving, standing) >= nearest->apart) return;
+  const double apart = robot_pair_ball_distance(moving, standing);
   if (apart < nearest->apart) *nearest = (nearest_pair){.apart = apart, .pair = index};
 }
 
@@ -211,8 +211,8 @@ cprox_status robot_measure_if_near(robot_search *o, int32_t index) {
   const robot_pair *pair = &o->scene.pairs[index];
   if (pair->element[0] >= 0 || pair->element[1] >= 0) return CPROX_OK;
   const robot_body *moving = robot_scene_moving(&o->scene, pair), *standing = robot_scene_standing(&o->scene, pair);
-  if (robot_scene_balls(moving, standing) > o->goal.epsilon) return CPROX_OK;
-  return robot_scene_ball_distance(moving, standing) > o->goal.epsilon ? CPROX_OK : robot_measure_whole(o, index);
+  if (robot_pair_balls(moving, standing) > o->goal.epsilon) return CPROX_OK;
+  return robot_pair_ball_distance(moving, standing) > o->goal.epsilon ? CPROX_OK : robot_measure_whole(o, index);
 }
 
 /* The same of all that is under a node of the set's tree, until contact is proven. */

@@ -6,6 +6,7 @@
 #include "kinematics/bound.h"
 #include "problem/candidates.h"
 #include "robot_query/element.h"
+#include "robot_query/pair_distance.h"
 
 /* A pair of a part of the robot that moves and what it is held against. */
 typedef struct robot_pair {
@@ -84,43 +85,5 @@ double robot_scene_coarse_displacement(robot_scene *scene, const robot_pair *pai
 double robot_scene_displacement(robot_scene *scene, const robot_pair *pair, const robot_body *moving);
 const chain_motion *robot_scene_motion(robot_scene *scene, const robot_pair *pair, const robot_body *moving,
                                        chain_motion *own);
-
-/* A lower bound on the distance of two parts by their balls and boxes, and a quicker one by their balls; halfspaces
- * have none. */
-double robot_scene_ball_distance(const robot_body *moving, const robot_body *standing);
-double robot_scene_balls(const robot_body *moving, const robot_body *standing);
-
-/* The distance in the middle of the node. */
-typedef struct robot_gap {
-  double lower, upper, slack;
-  vec3 on_moving, on_standing; /* world */
-  vec3 normal;                 /* world, unit, from standing to moving; (0,0,0) where there is none */
-  /* Polyhedra, world: points of the moving side, and the ways to them from points of the standing one, n of them: the
-   * feature that the normal stands on. Curved shapes, n = 0: the derivative of the normal by a shift of the moving
-   * side, in the standing frame. */
-  vec3 on_edge[3], across[3];
-  int n;
-  double hessian[6];
-  bool support_failed;
-} robot_gap;
-
-/* How exactly: within epsilon, or within `fraction` of what the lower end is above `floor`. And where to begin. */
-typedef struct robot_accuracy {
-  double epsilon, floor, fraction;
-  vec3 start; /* standing frame, unit: near the normal; (0,0,0): nothing is known */
-} robot_accuracy;
-
-void robot_scene_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy, robot_gap *gap);
-
-/* From the box round what stands to the centre of what moves: a direction that parts most pairs, for nothing. Standing
- * frame, unit; (0,0,0) where the centre is in the box. */
-vec3 robot_scene_guess(const robot_body *moving, const robot_body *standing);
-
-/* How fast the normal turns where what moves does so as `motion` says, by u of the node; orthogonal to it. */
-vec3 robot_scene_normal_rate(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
-                             const chain_motion *motion);
-
-/* Along a normal of the world: the height of what stands, as bound_height(), exact for halfspaces. */
-double robot_scene_height(const robot_body *standing, vec3 normal);
 
 #endif

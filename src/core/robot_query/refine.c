@@ -38,15 +38,14 @@ static double apart_along(const robot_body *const side[2], vec3 n) {
  * same one. */
 static bool is_behind(const robot_refinement *c, const robot_body *const side[2], int level) {
   const vec3 n = c->last[level];
-  return vec_norm2(n) > 0.0 && side[STANDING]->side.shape->ops->kind != CPROX_BODY_HALFSPACE &&
-         apart_along(side, n) >= c->reach;
+  return vec_norm2(n) > 0.0 && !robot_body_is_halfspace(side[STANDING]) && apart_along(side, n) >= c->reach;
 }
 
 /* The distance of the two, and its normal for those that come next. What is out of reach need not be known well. */
 static void ask(robot_refinement *c, const robot_body *const side[2], int level, robot_gap *gap) {
   robot_accuracy accuracy = {.epsilon = c->accuracy, .floor = c->reach, .fraction = BEYOND};
   if (vec_norm2(c->last[level]) > 0.0) accuracy.start = placement_turn_back(&side[STANDING]->side.at, c->last[level]);
-  robot_scene_measure(side[MOVING], side[STANDING], accuracy, gap);
+  robot_pair_measure(side[MOVING], side[STANDING], accuracy, gap);
   c->gaps++;
   if (!gap->support_failed && gap->upper > 0.0) c->last[level] = gap->normal;
 }
@@ -75,7 +74,7 @@ static void keep(robot_refinement *c, const int32_t code[2], const robot_gap *ga
 
 /* Two convex sides: elements, or what has none. */
 static void measure(robot_refinement *c, const robot_body *const side[2], const int32_t code[2]) {
-  if (robot_scene_ball_distance(side[MOVING], side[STANDING]) >= c->reach) return;
+  if (robot_pair_ball_distance(side[MOVING], side[STANDING]) >= c->reach) return;
   if (is_behind(c, side, 1)) return;
   robot_gap gap;
   ask(c, side, 1, &gap);
@@ -90,7 +89,7 @@ static void descend(robot_refinement *c, const robot_body *const side[2], const 
 /* One element and the convex shape of the other side: where these are within reach, the other side's tree. Their own
  * plane tells most of its elements apart. */
 static void descend_under(robot_refinement *c, const robot_body *const side[2], const int32_t code[2], int through) {
-  if (robot_scene_ball_distance(side[MOVING], side[STANDING]) >= c->reach) return;
+  if (robot_pair_ball_distance(side[MOVING], side[STANDING]) >= c->reach) return;
   if (is_behind(c, side, 0)) return;
   robot_gap gap;
   ask(c, side, 0, &gap);
@@ -132,11 +131,11 @@ static void descend(robot_refinement *c, const robot_body *const side[2], const 
   d.seeker.radius = shape->radius;
 
   /* of a halfspace, what is within reach of the part; its plane says the rest */
-  const bool endless = shape->side.shape->ops->kind == CPROX_BODY_HALFSPACE;
+  const bool endless = robot_body_is_halfspace(shape);
   if (endless) d.seeker.centre = vec_neg(own->tree_at), d.seeker.radius = own->radius + c->reach;
   if (vec_norm2(c->normal) > 0.0) {
     const vec3 n = through == MOVING ? c->normal : vec_neg(c->normal); /* from the other side to the tree */
-    const double high = vec_dot(n, apart) + (endless ? robot_scene_height(shape, n) : bound_height(&shape->side, n));
+    const double high = vec_dot(n, apart) + (endless ? robot_pair_height(shape, n) : bound_height(&shape->side, n));
     d.seeker.known = true;
     d.seeker.normal = vec_neg(placement_turn_back(&own->side.at, n));
     d.seeker.least = -high - vec_dot(d.seeker.normal, own->tree_at);

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "robot_query/pair_distance.h"
+
+#include <math.h>
+
+#include "base/rounding.h"
+#include "convex/pair.h"
+
+enum { GAP_STEPS = 128 };
+
+/* ---- cheap distances ---- */
+
+/* Of a point from the box round a body, or from its halfspace. */
+static double from_box(const robot_body *body, vec3 point) {
+  const vec3 y = placement_turn_back(&body->side.at, vec_sub(point, body->side.at.p));
+  if (robot_body_is_halfspace(body)) {
+    const double *h = body->side.shape->size;
+    return h[0] * y.x + h[1] * y.y + h[2] * y.z + h[3];
+  }
+  const vec3 z = vec_sub(y, body->middle);
+  const vec3 out = vec(greater(fabs(z.x) - body->half.x, 0.0), greater(fabs(z.y) - body->half.y, 0.0),
+                       greater(fabs(z.z) - body->half.z, 0.0));
+  return vec_norm(out);
+}
+
+double robot_pair_balls(const robot_body *moving, const robot_body *standing) {
+  if (robot_body_is_halfspace(standing)) return -INFINITY;
+  const double between = vec_norm(vec_sub(moving->side.at.p, standing->side.at.p));
+  const double radii = moving->radius + standing->radius;
+  return between - radii - ROUND_UP * (moving->side.error + standing->side.error + 8.0 * ROUND_U * (between + radii));
+}
+
+double robot_pair_ball_distance(const robot_body *moving, const robot_body *standing) {
+  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p);
+  double most = from_box(standing, moving->side.at.p) - standing->side.margin - moving->radius;
+  if (!robot_body_is_halfspace(standing))
+    most = greater(most, from_box(moving, standing->side.at.p) - moving->side.margin - standing->radius);
+  const double sizes = vec_norm(apart) + moving->radius +
+                       (robot_body_is_halfspace(standing) ? fabs(standing->side.shape->size[3]) : standing->radius);
+  return most - ROUND_UP * (moving->side.error + standing->side.error + 40.0 * ROUND_U * sizes);
+}
+
+vec3 robot_pair_guess(const robot_body *moving, const robot_body *standing) {
+  if (robot_body_is_halfspace(standing)) return vec(0, 0, 0);
+  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p), half = standing->half;
+  const vec3 y = vec_sub(placement_turn_back(&standing->side.at, apart), standing->middle);
+  const vec3 out = vec(copysign(greater(fabs(y.x) - half.x, 0.0), y.x), copysign(greater(fabs(y.y) - half.y, 0.0), y.y),
+                       copysign(greater(fabs(y.z) - half.z, 0.0), y.z));
+  const double length = vec_norm(out);
+  return length > 0.0 ? vec_scale(1.0 / length, out) : vec(0, 0, 0);
+}
+
+double robot_pair_height(const robot_body *standing, vec3 normal) {
+  if (!robot_body_is_halfspace(standing)) return bound_height(&standing->side, normal);
+  return standing->side.margin - standing->side.shape->size[3];
+}
+
+/* ---- the distance ---- */
+
+static void measure_halfspace(const robot_body *moving, const robot_body *standing, robot_gap *gap) {
+  const double *h = standing->side.shape->size;
+  const vec3 n = placement_turn(&standing->side.at, vec(h[0], h[1], h[2]));
+  vec3 at;
+  const convex *shape = moving->side.shape;
+  const double low = -shape->ops->support(shape, placement_turn_back(&moving->side.at, vec_neg(n)), NULL, &at);
+  const double along = vec_dot(n, vec_sub(moving->side.at.p, standing->side.at.p));
+  const double distance = along + h[3] + low - moving->side.margin - standing->side.margin;
+  const double sizes =
+      vec_norm(vec_sub(moving->side.at.p, standing->side.at.p)) + fabs(h[3]) + moving->radius + standing->side.margin;
+  const double rounding =
+      ROUND_UP * (moving->side.error + standing->side.error + 40.0 * ROUND_U * sizes + 2.0 * shape->slack);
+  const vec3 lowest = vec_axpy(placement_apply(&moving->side.at, at), -moving->side.margin, n);
+  *gap = (robot_gap){.lower = distance - rounding,
+                     .upper = distance + rounding,
+                     .slack = rounding,
+                     .on_moving = lowest,
+                     .on_standing = distance > 0.0 ? vec_axpy(lowest, -distance, n) : lowest,
+                     .normal = n,
+                     .support_failed = isnan(distance)};
+}
+
+/* What moves, in the frame of what stands. */
+static pair_placement seen_from(const robot_body *standing, const robot_body *moving) {
+  pair_placement seen = {.error = moving->side.error + standing->side.error};
+  for (int i = 0; i < 3; i++) {
+    const double *r = moving->side.at.r;
+    const vec3 column = placement_turn_back(&standing->side.at, vec(r[i], r[3 + i], r[6 + i]));
+    seen.r[i] = column.x, seen.r[3 + i] = column.y, seen.r[6 + i] = column.z;
+  }
+  const vec3 apart = vec_sub(moving->side.at.p, standing->side.at.p);
+  seen.t = placement_turn_back(&standing->side.at, apart);
+  seen.error += ROUND_UP * ROUND_U * ROUND_ROTATION * (vec_norm(apart) + moving->radius);
+  return seen;
+}
+
+void robot_pair_measure(const robot_body *moving, const robot_body *standing, robot_accuracy accuracy, robot_gap *gap) {
+  if (robot_body_is_halfspace(standing)) {
+    measure_halfspace(moving, standing, gap);
+    return;
+  }
+  const pair_placement seen = seen_from(standing, moving);
+  const pair_goal goal = {.epsilon = accuracy.epsilon,
+                          .floor = accuracy.floor,
+                          .fraction = accuracy.fraction,
+                          .start = vec_neg(accuracy.start),
+                          .max_steps = GAP_STEPS,
+                          .wants_feature = true};
+  pair_answer answer;
+  pair_separate(standing->side.shape, standing->side.margin, moving->side.shape, moving->side.margin, &seen, &goal,
+                &answer);
+  *gap = (robot_gap){
+      .support_failed = answer.support_failed, .lower = answer.lower, .upper = answer.upper, .slack = answer.rounding};
+  if (answer.support_failed) return;
+  const bool apart = answer.upper > 0.0;
+  gap->on_standing = placement_apply(&standing->side.at, apart ? answer.on_a : answer.common);
+  gap->on_moving = placement_apply(&standing->side.at, apart ? answer.on_b : answer.common);
+  gap->normal = vec_neg(placement_turn(&standing->side.at, answer.normal));
+  if (!apart) return;
+  if (!answer.feature.flat) {
+    for (int i = 0; i < 6; i++) gap->hessian[i] = answer.feature.hessian[i];
+    return;
+  }
+  gap->n = answer.feature.n;
+  for (int i = 0; i < gap->n && i < 3; i++) {
+    gap->on_edge[i] = placement_apply(&moving->side.at, answer.feature.b[i]);
+    gap->across[i] = vec_neg(placement_turn(&standing->side.at, answer.feature.w[i]));
+  }
+}
+
+/* The direction from 0 to the flat through the points, towards `like`; (0,0,0) where there is none. */
+static vec3 direction_of(const vec3 *w, int n, vec3 like) {
+  vec3 v = w[0];
+  if (n == 2) {
+    const vec3 e = vec_sub(w[1], w[0]);
+    v = vec_axpy(v, -vec_dot(v, e) / vec_norm2(e), e);
+  } else if (n == 3) {
+    v = vec_cross(vec_sub(w[1], w[0]), vec_sub(w[2], w[0]));
+  }
+  const double length = vec_norm(v);
+  if (!(length > 0.0)) return vec(0, 0, 0);
+  return vec_scale((vec_dot(v, like) < 0.0 ? -1.0 : 1.0) / length, v);
+}
+
+static vec3 orthogonal_part(vec3 normal_rate, vec3 normal) {
+  return vec_finite(normal_rate) ? vec_axpy(normal_rate, -vec_dot(normal_rate, normal), normal) : vec(0, 0, 0);
+}
+
+/* As if what moves were only shifted, as fast as its nearest point moves. */
+static vec3 normal_rate_of_curved(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
+                                  const chain_motion *motion) {
+  const vec3 from = vec_sub(gap->on_moving, moving->side.at.p);
+  const vec3 v = placement_turn_back(&standing->side.at, vec_add(motion->v, vec_cross(motion->omega, from)));
+  const double *h = gap->hessian;
+  const vec3 turned = vec(h[0] * v.x + h[1] * v.y + h[2] * v.z, h[1] * v.x + h[3] * v.y + h[4] * v.z,
+                          h[2] * v.x + h[4] * v.y + h[5] * v.z);
+  return orthogonal_part(placement_turn(&standing->side.at, turned), gap->normal);
+}
+
+/* By a difference quotient: any rate of the normal is allowed, this one is near the best. */
+vec3 robot_pair_normal_rate(const robot_gap *gap, const robot_body *moving, const robot_body *standing,
+                            const chain_motion *motion) {
+  static const double STEP = 1e-5;
+  vec3 n[2];
+  if (gap->n < 1) return normal_rate_of_curved(gap, moving, standing, motion);
+  for (int k = 0; k < 2; k++) {
+    vec3 w[3];
+    for (int i = 0; i < gap->n; i++) {
+      const vec3 from = vec_sub(gap->on_edge[i], moving->side.at.p);
+      const vec3 velocity = vec_add(motion->v, vec_cross(motion->omega, from));
+      w[i] = vec_axpy(gap->across[i], k == 0 ? -STEP : STEP, velocity);
+    }
+    n[k] = direction_of(w, gap->n, gap->normal);
+  }
+  return orthogonal_part(vec_scale(0.5 / STEP, vec_sub(n[1], n[0])), gap->normal);
+}
