@@ -190,33 +190,46 @@ static size_t put_number(unsigned char *to, double x) {
   return put(to, bits, 8);
 }
 
-/* A ball slides towards another one; they come within .5 of each other. One interval, the one direction that parts
- * them, of any length. */
-static finding check_slide(double delta, double length) {
+/* A ball slides along x from 0 to 1. */
+typedef struct slide {
   cprox_body *ball;
-  assert_int_equal(cprox_body_create_sphere(0.25, ws, &ball), CPROX_OK);
+  cprox_robot *robot;
+  cprox_motion *motion;
+  cprox_mover along;
+} slide;
+
+static void slide_make(slide *s) {
+  assert_int_equal(cprox_body_create_sphere(0.25, ws, &s->ball), CPROX_OK);
   const cprox_link link = {
       .parent = -1, .type = CPROX_JOINT_PRISMATIC, .origin = CPROX_POSE_IDENTITY, .axis = {1, 0, 0}, .multiplier = 1.0};
-  const cprox_link_geometry geometry = {.body = ball, .pose = CPROX_POSE_IDENTITY};
+  const cprox_link_geometry geometry = {.body = s->ball, .pose = CPROX_POSE_IDENTITY};
   const double at[2] = {0.0, 1.0};
   const cprox_waypoint points[2] = {{.time = 0.0, .positions = &at[0]}, {.time = 1.0, .positions = &at[1]}};
   const int32_t variable = 0;
-  cprox_robot *robot;
-  cprox_motion *motion;
-  assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &robot), CPROX_OK);
-  assert_int_equal(cprox_motion_create(robot,
-                                       &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
-                                                                   .variables = &variable,
-                                                                   .n_variables = 1,
-                                                                   .waypoints = points,
-                                                                   .n_waypoints = 2,
-                                                                   .interpolation = CPROX_INTERPOLATION_LINEAR},
-                                       ws, &motion),
-                   CPROX_OK);
+  const cprox_motion_description d = {.kind = CPROX_MOTION_WAYPOINTS,
+                                      .variables = &variable,
+                                      .n_variables = 1,
+                                      .waypoints = points,
+                                      .n_waypoints = 2,
+                                      .interpolation = CPROX_INTERPOLATION_LINEAR};
+  assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 1, ws, &s->robot), CPROX_OK);
+  assert_int_equal(cprox_motion_create(s->robot, &d, ws, &s->motion), CPROX_OK);
+  s->along = cprox_robot_along(s->motion, NULL, 0);
+}
+
+static void slide_free(slide *s) {
+  cprox_motion_free(s->motion);
+  cprox_robot_free(s->robot);
+  cprox_body_free(s->ball);
+}
+
+/* Towards another ball, which it comes within .5 of. One interval, the one direction that parts them, of any length. */
+static finding check_slide(double delta, double length) {
+  slide s;
+  slide_make(&s);
   cprox_pose there = CPROX_POSE_IDENTITY;
   there.position.x = 2.0;
-  const cprox_obstacle target = cprox_obstacle_at(ball, there);
-  const cprox_mover along = cprox_robot_along(motion, NULL, 0);
+  const cprox_obstacle target = cprox_obstacle_at(s.ball, there);
 
   unsigned char bytes[64];
   size_t n = put(bytes, 0x31435043, 4); /* "CPC1" */
@@ -227,12 +240,10 @@ static finding check_slide(double delta, double length) {
   n += put(bytes + n, 2, 2);
   n += put(bytes + n, 0, 2);
   for (int k = 0; k < 3; k++) n += put_number(bytes + n, k == 0 ? -length : 0.0);
-  robot_text text = robot_text_of(&along, &target, 1, ws);
+  robot_text text = robot_text_of(&s.along, &target, 1, ws);
   const finding found = robot_text_check(&text, bytes, n);
   robot_text_free(&text);
-  cprox_motion_free(motion);
-  cprox_robot_free(robot);
-  cprox_body_free(ball);
+  slide_free(&s);
   return found;
 }
 
@@ -243,6 +254,46 @@ CASE(a_direction_of_any_length_proves_what_is_so_and_nothing_else) {
     assert_int_equal(check_slide(100.0, LENGTH[i]).claim, CLAIM_NONE);
     if (i < 4) assert_int_equal(check_slide(0.49, LENGTH[i]).claim, CLAIM_APART);
   }
+}
+
+/* Halfspaces whose plane the ball comes within .1 of, or goes .1 into, whatever way the normal points: that both are
+ * within .2 of each other is proven. Seed 6. */
+CASE(a_halfspace_is_near_whatever_way_it_faces) {
+  slide s;
+  slide_make(&s);
+  cprox_certificate *c = cprox_certificate_create();
+  rng r = rng_seed(6);
+  for (size_t i = 0; i < 200; i++) {
+    const vec3 n = i < 6 ? vec(i == 0   ? 1
+                               : i == 1 ? -1
+                                        : 0,
+                               i == 2   ? 1
+                               : i == 3 ? -1
+                                        : 0,
+                               i == 4   ? 1
+                               : i == 5 ? -1
+                                        : 0)
+                         : rng_unit(&r);
+    /* the least of n·x over the motion is min(0, n.x), less the radius */
+    const double least = fmin(0.0, n.x) - 0.25, gap = i % 2 ? 0.1 : -0.1;
+    cprox_body *half;
+    assert_int_equal(cprox_body_create_halfspace(n, gap - least, ws, &half), CPROX_OK);
+    const cprox_obstacle target = cprox_obstacle_at(half, CPROX_POSE_IDENTITY);
+    cprox_options options = accurate(1e-6);
+    options.certificate = c;
+    cprox_result result;
+    assert_int_equal(cprox_tolerance(s.along, target, 0.2, &options, ws, &result), CPROX_OK);
+    assert_int_equal(result.verdict, CPROX_VERDICT_VIOLATED);
+    const cprox_certificate_info info = cprox_certificate_get_info(c);
+    if (info.size == 0) fail_msg("halfspace %zu: no certificate: %s", i, cprox_workspace_error(ws));
+    robot_text text = robot_text_of(&s.along, &target, 1, ws);
+    const finding found = robot_text_check(&text, info.bytes, info.size);
+    robot_text_free(&text);
+    if (found.fault || found.claim != CLAIM_NEAR) fail_msg("halfspace %zu: refused: %s", i, found.fault);
+    cprox_body_free(half);
+  }
+  cprox_certificate_free(c);
+  slide_free(&s);
 }
 
 int main(void) {

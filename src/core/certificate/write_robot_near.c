@@ -52,8 +52,8 @@ static int32_t nearest_pair(robot_scene *s, const cprox_result *answer, robot_ga
 
 /* ---- points ---- */
 
-/* Writes the point of a body that is nearest to y, drawn in; both are seen from the body's centre. NaN where there is
- * none. */
+/* Writes the point of a part of a robot that is nearest to y, drawn in; both are seen from the body's centre. NaN where
+ * there is none. */
 static vec3 write_point_of(const cprox_body *body, cprox_certificate *c, vec3 y) {
   const convex *shape = &body->shape;
   convex_hint hint = {0};
@@ -78,12 +78,7 @@ static vec3 write_point_of(const cprox_body *body, cprox_certificate *c, vec3 y)
   shape->ops->nearest(shape, y, &hint, &near);
   const double drawn = ROOM * ROUND_U * (vec_norm(y) + shape->scale);
   vec3 x = y;
-  if (near.distance >= -drawn) {
-    if (body->kind == CPROX_BODY_HALFSPACE)
-      x = vec_axpy(near.point, -drawn, near.normal);
-    else if (!cover_draw_in(body, &near, drawn, &x))
-      return vec(NAN, NAN, NAN);
-  }
+  if (near.distance >= -drawn && !cover_draw_in(body, &near, drawn, &x)) return vec(NAN, NAN, NAN);
   certificate_vector(c, x);
   return x;
 }
