@@ -72,9 +72,15 @@ struct CompiledCurve {
   std::vector<Eigen::AlignedBox3d> boxes;
 };
 
+/** How closely CompiledCurve::boxes follow a curve. The answers are the same. */
+enum class CurveBoxes {
+  ONE, /**< one box: costs less to make */
+  MANY /**< several boxes: find what is near among many obstacles */
+};
+
 /** Checks and compiles a curve. Throws Error: a basis that is not available, points that are too few or not finite,
  *  a degree that does not fit, knots that descend or are too few, t0 >= t1, a radius that is negative or not finite. */
-CompiledCurve compile(const CurveDescription &curve);
+CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes = CurveBoxes::MANY);
 
 /** The objects and links of a query, resolved once for all its curves. Immutable; shared by any number of threads. */
 class Targets {
@@ -91,6 +97,9 @@ class Targets {
   Targets(Targets &&) noexcept;
   /** Moves. */
   Targets &operator=(Targets &&) noexcept;
+
+  /** What curves that are tested against these need. */
+  CurveBoxes boxes() const;
 
   struct Data;
   /** Internal. */

@@ -66,15 +66,19 @@ cprox_status askCore(const Query &query, const cprox_options &options, const cpr
                      const std::vector<cprox_obstacle> &targets, Workspace &workspace, cprox_result &result) {
   ObstaclesHandle obstacles;
   const cprox_status made = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
-  if (made < 0) return made;
+  return made < 0 ? made : askCore(query, options, mover, obstacles.get(), workspace, result);
+}
+
+cprox_status askCore(const Query &query, const cprox_options &options, const cprox_mover &mover,
+                     const cprox_obstacles *obstacles, Workspace &workspace, cprox_result &result) {
   cprox_workspace *w = workspace.get();
   switch (query.query_type) {
-    case QueryType::DISTANCE: return cprox_obstacles_distance(obstacles.get(), mover, &options, w, &result, nullptr);
+    case QueryType::DISTANCE: return cprox_obstacles_distance(obstacles, mover, &options, w, &result, nullptr);
     case QueryType::TOLERANCE:
-      return cprox_obstacles_tolerance(obstacles.get(), mover, query.delta, &options, w, &result, nullptr);
+      return cprox_obstacles_tolerance(obstacles, mover, query.delta, &options, w, &result, nullptr);
     case QueryType::COLLISION: break;
   }
-  return cprox_obstacles_collision(obstacles.get(), mover, &options, w, &result, nullptr);
+  return cprox_obstacles_collision(obstacles, mover, &options, w, &result, nullptr);
 }
 
 void widen(const Query &query, double rounding, double left_out, cprox_result &result) {

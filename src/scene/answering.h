@@ -24,6 +24,8 @@ cprox_options withoutRounding(cprox_options options, double rounding);
 /* The query that the query asks. */
 cprox_status askCore(const Query &query, const cprox_options &options, const cprox_mover &mover,
                      const std::vector<cprox_obstacle> &targets, Workspace &workspace, cprox_result &result);
+cprox_status askCore(const Query &query, const cprox_options &options, const cprox_mover &mover,
+                     const cprox_obstacles *obstacles, Workspace &workspace, cprox_result &result);
 
 /* Widens the core's interval by what it does not know: rounding before it; what it was not shown is farther than
  * left_out. The verdict is reviewed by the interval as it then is. */

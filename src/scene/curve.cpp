@@ -148,7 +148,7 @@ CurveHandle makeSeries(const CurveDescription &curve) {
 
 } // namespace
 
-CompiledCurve compile(const CurveDescription &curve) {
+CompiledCurve compile(const CurveDescription &curve, CurveBoxes boxes) {
   if (!std::isfinite(curve.radius) || curve.radius < 0.0) throw Error("the radius must be finite and not below 0");
   CompiledCurve out;
   out.id = curve.id;
@@ -162,13 +162,13 @@ CompiledCurve compile(const CurveDescription &curve) {
     }
     if (!curve.knots.empty()) throw Error("a bezier curve takes no knots, got " + std::to_string(curve.knots.size()));
     out.curve = makeBezier(curve.points, curve.t0, curve.t1);
-    out.boxes = cutBoxes(out.curve.get(), {curve.t0, curve.t1}, BOXES);
+    if (boxes == CurveBoxes::MANY) out.boxes = cutBoxes(out.curve.get(), {curve.t0, curve.t1}, BOXES);
   } else if (curve.basis == "bspline") {
     out.curve = makeBspline(curve.points, curve.degree, curve.knots, curve.t0, curve.t1);
-    out.boxes = splineBoxes(curve, out.curve.get());
+    if (boxes == CurveBoxes::MANY) out.boxes = splineBoxes(curve, out.curve.get());
   } else {
     out.curve = makeSeries(curve);
-    out.boxes = pieceBoxes(curve, out.curve.get());
+    if (boxes == CurveBoxes::MANY) out.boxes = pieceBoxes(curve, out.curve.get());
   }
   if (out.boxes.empty()) out.boxes.push_back(bounds(out.curve.get()));
   return out;

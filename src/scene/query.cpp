@@ -16,9 +16,6 @@ namespace {
 
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
-/* Up to so many shapes the core alone is faster than asking the tree first. */
-constexpr std::size_t FEW_SHAPES = 8;
-
 /* Room for the rounding of a sum of a few lengths. */
 constexpr double SUMS = 1e-14;
 
@@ -29,6 +26,7 @@ struct Search {
   const CompiledCurve &curve;
   const Query &query;
   const std::vector<Item> &items;
+  const cprox_obstacles *all; /* all items, ready made; may be null */
   Workspace &workspace;
 
   std::vector<std::uint32_t> chosen; /* indices of items that the core is to look at */
@@ -158,11 +156,13 @@ void choose(const Targets::Data &data, Search &search) {
 /* ---- the search ---- */
 
 cprox_status runCore(const Search &search, const cprox_options &options, cprox_result &result) {
+  const cprox_mover mover = along(search.curve.curve, search.curve.radius);
+  if (search.all && search.chosen.size() == search.items.size())
+    return askCore(search.query, options, mover, search.all, search.workspace, result);
   std::vector<cprox_obstacle> targets;
   targets.reserve(search.chosen.size());
   for (const std::uint32_t index : search.chosen) targets.push_back(search.shape(index).target);
-  return askCore(search.query, options, along(search.curve.curve, search.curve.radius), targets, search.workspace,
-                 result);
+  return askCore(search.query, options, mover, targets, search.workspace, result);
 }
 
 /* What of a mesh has answered. */
@@ -249,7 +249,7 @@ std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, cons
   // One in all.
   if (!query.per_object || items.empty()) {
     const Clock::time_point start = Clock::now();
-    Search search{curve, query, items, workspace, {}, INFINITE};
+    Search search{curve, query, items, data.few.get(), workspace, {}, INFINITE};
     choose(data, search);
     answers.push_back(answerOf(search));
     answers.back().microseconds = microsecondsSince(start);
@@ -261,7 +261,7 @@ std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, cons
     const Clock::time_point start = Clock::now();
     std::size_t last = first + 1;
     while (last < items.size() && items[last].owner == items[first].owner) ++last;
-    Search search{curve, query, items, workspace, {}, INFINITE};
+    Search search{curve, query, items, nullptr, workspace, {}, INFINITE};
     chooseAll(search, first, last);
     answers.push_back(answerOf(search));
     if (answers.back().b.empty()) { // refused: say of which

@@ -94,7 +94,17 @@ Targets::Targets(SnapshotPtr snapshot, const LinkPoses &links, const Query &quer
   addObjects(everything, objects, *data);
   if (!links.empty() || !named_links.empty()) addLinks(everything, named_links, links, *data);
   if (!links.empty() || !everything) addAttached(everything, objects, links, *data);
+  if (data->items.size() <= FEW_SHAPES) {
+    std::vector<cprox_obstacle> all;
+    for (const Item &item : data->items) all.push_back(item.shape->target);
+    Workspace workspace;
+    if (makeObstacles(all, CPROX_INDEX_NONE, workspace, data->few) < 0) data->few.reset(); // ask() finds out why
+  }
   data_ = std::move(data);
+}
+
+CurveBoxes Targets::boxes() const {
+  return data_->items.size() <= FEW_SHAPES ? CurveBoxes::ONE : CurveBoxes::MANY;
 }
 
 Targets::~Targets() = default;

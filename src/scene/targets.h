@@ -12,6 +12,9 @@
 
 namespace curve_proximity {
 
+/* Up to so many shapes the core alone is faster than asking the tree first. */
+constexpr std::size_t FEW_SHAPES = 8;
+
 struct Targets::Data {
   SnapshotPtr snapshot;
 
@@ -22,6 +25,8 @@ struct Targets::Data {
   std::size_t in_tree = 0;
 
   std::deque<PlacedShape> links; /* where the items of links and of what they carry point to */
+
+  ObstaclesHandle few; /* all items, where they are so few that each curve is held against all of them; else null */
 };
 
 } // namespace curve_proximity
