@@ -35,7 +35,7 @@ set(CURVE_PROXIMITY_ACTIONS
 add_message_files(DIRECTORY msg FILES ${CURVE_PROXIMITY_MESSAGES})
 add_service_files(DIRECTORY srv FILES ${CURVE_PROXIMITY_SERVICES})
 add_action_files(DIRECTORY action FILES ${CURVE_PROXIMITY_ACTIONS})
-generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs sensor_msgs shape_msgs std_msgs trajectory_msgs)
+generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs nav_msgs sensor_msgs shape_msgs std_msgs trajectory_msgs)
 
 # What may change while the server runs.
 generate_dynamic_reconfigure_options(cfg/ProximityServer.cfg)

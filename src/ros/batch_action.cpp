@@ -119,10 +119,10 @@ void BatchAction::answer(Batch &batch) {
   const auto goal = batch.handle.getGoal();
   QueryResult result;
   result.frame_id = fixed_frame_;
-  Feedback feedback(goal->query.curves.size() + goal->query.trajectories.size());
   guarded(
       [&] {
         QueryRequest request(queryTypeFromName(goal->query_type), goal->delta, goal->query);
+        Feedback feedback(request.size());
         const double budget_ms = goal->query.budget_ms;
         request.budget_ms = budget_ms != 0.0 ? budget_ms : std::numeric_limits<double>::infinity();
         Turn turn(turns_, "~query", Turns::Clock::time_point::max());

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "conversions.h"
+#include "doubts.h"
 #include "name_limits.h"
 #include "robot_description.h"
 #include "turns.h"
@@ -163,13 +164,16 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
                                              std::chrono::duration<double, std::milli>(parameters_.budget_ms));
   const SnapshotPtr snapshot = live_.scene.snapshot();
   response.scene = live_.state(*snapshot);
+  live_.demand(*snapshot, request.scene_epoch, request.scene_version);
   const ResourceOptions resources = resourceOptions("", parameters_.max_shape_mb);
   const WorkspacePool::Lease workspace(workspaces_);
   FrameLookup lookup(frames_, turn);
+  Doubts doubts(parameters_.max_age, response.scene.sensors);
   std::size_t failed = 0;
   for (std::size_t i = 0; i < request.cases.size(); ++i) {
     const ConstraintQuery &asked = request.cases[i];
     if (turn) turn->yield();
+    lookup.begin();
     std::vector<ConstraintRow> rows;
     ConstraintCase described;
     cprox_status fault = CPROX_OK;
@@ -183,6 +187,8 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
         &fault);
     if (fault < 0) rows = {failedRow(asked.id, why, fault)};
 
+    doubts.ages(lookup.age(), NONE);
+
     // The first row that failed is told.
     std::shared_ptr<const Constraint> gap;
     for (const ConstraintRow &row : rows) {
@@ -190,10 +196,14 @@ void Constraints::answer(const EvaluateConstraints::Request &request, EvaluateCo
         response.message = "case " + std::to_string(i) + " ('" + row.id + "')" +
                            (row.provider.empty() ? "" : ", provider '" + row.provider + "'") + ": " + row.message;
       response.results.push_back(toMessage(row));
+      doubts.apply(response.results.back());
       if (row.status >= 0 && providers_->find(row.provider)->spec.type == GAP) gap = row.constraint;
     }
     if (gap) drawing = std::make_shared<const LevelDrawing>(LevelDrawing{std::move(gap), std::move(described)});
   }
+  response.scene.transform_age = lookup.oldest();
+  doubts.tell(response.warnings);
+  if (live_.lost) response.warnings.push_back(SCENE_LOST);
   response.success = failed == 0;
   if (failed)
     response.message =

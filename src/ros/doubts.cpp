@@ -2,6 +2,7 @@
 #include "doubts.h"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 namespace curve_proximity {
@@ -42,19 +43,32 @@ void Doubts::ages(double transforms, double joints) {
   if (joints > max_age_) add(stale_ages_, tooOld("a joint value", joints, max_age_));
 }
 
+Doubts::Reason Doubts::reason() {
+  Reason out{"", !stale_ages_.empty() || !stale_objects_.empty()};
+  for (const std::string *part : {&stale_ages_, &stale_objects_, &unknown_objects_})
+    if (!part->empty()) add(out.text, *part);
+  if (!out.text.empty()) told_.insert(out.text);
+  return out;
+}
+
 void Doubts::apply(Proximity &row) {
   if (row.lower != row.lower) return;
-  std::string why;
-  for (const std::string *part : {&stale_ages_, &stale_objects_, &unknown_objects_})
-    if (!part->empty()) add(why, *part);
-  if (why.empty()) return;
-  const bool stale = !stale_ages_.empty() || !stale_objects_.empty();
-  row.status = stale ? Proximity::STATUS_STALE : Proximity::STATUS_UNKNOWN;
+  const Reason why = reason();
+  if (why.text.empty()) return;
+  row.status = why.stale ? Proximity::STATUS_STALE : Proximity::STATUS_UNKNOWN;
   row.lower = 0.0;
-  if (row.verdict == Proximity::VERDICT_CLEAR || (stale && !row.verdict.empty()))
+  if (row.verdict == Proximity::VERDICT_CLEAR || (why.stale && !row.verdict.empty()))
     row.verdict = Proximity::VERDICT_UNDECIDED;
-  add(row.message, why);
-  told_.insert(why);
+  add(row.message, why.text);
+}
+
+void Doubts::apply(ConstraintResult &row) {
+  if (row.value != row.value) return;
+  const Reason why = reason();
+  if (why.text.empty()) return;
+  row.status = ConstraintResult::STATUS_STALE; // providers measure no object that a sensor keeps
+  row.lower = row.upper = std::numeric_limits<double>::quiet_NaN();
+  add(row.message, why.text);
 }
 
 void Doubts::tell(std::vector<std::string> &warnings) const {

@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_ROS_DOUBTS_H
 #define CURVE_PROXIMITY_ROS_DOUBTS_H
 
+#include <curve_proximity/ConstraintResult.h>
 #include <curve_proximity/Proximity.h>
 #include <curve_proximity/SensorState.h>
 
@@ -29,10 +30,19 @@ class Doubts {
    *  nothing. Rows without an answer are left as they are. */
   void apply(Proximity &row);
 
+  /** Nothing is proven, with the reason. */
+  void apply(ConstraintResult &row);
+
   /** A sentence for each doubt that a row had. */
   void tell(std::vector<std::string> &warnings) const;
 
  private:
+  struct Reason {
+    std::string text; /* empty: there is none */
+    bool stale;       /* else: unknown */
+  };
+  Reason reason();
+
   const double max_age_;
   const std::vector<SensorState> sensors_;
   std::string stale_objects_, unknown_objects_, stale_ages_;

@@ -7,8 +7,6 @@
 #include <actionlib_msgs/GoalID.h>
 #include <actionlib_msgs/GoalStatus.h>
 #include <ros/duration.h>
-#include <ros/message_traits.h>
-#include <ros/serialization.h>
 #include <std_msgs/Header.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
@@ -17,6 +15,8 @@
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "foreign_message.h"
 
 namespace curve_proximity::control {
 
@@ -75,74 +75,42 @@ struct FollowJointTrajectoryAction {
 
 } // namespace curve_proximity::control
 
-/* A message of control_msgs: its name, its MD5, its members in their order. Its definition is left out: tools look it
- * up by the name. */
-#define CURVE_PROXIMITY_CONTROL_TRAITS(Name, Md5)                       \
-  namespace ros::message_traits {                                       \
-  template <>                                                           \
-  struct IsMessage<curve_proximity::control::Name> : TrueType {};       \
-  template <>                                                           \
-  struct IsMessage<const curve_proximity::control::Name> : TrueType {}; \
-  template <>                                                           \
-  struct MD5Sum<curve_proximity::control::Name> {                       \
-    static const char *value() {                                        \
-      return Md5;                                                       \
-    }                                                                   \
-    static const char *value(const curve_proximity::control::Name &) {  \
-      return value();                                                   \
-    }                                                                   \
-  };                                                                    \
-  template <>                                                           \
-  struct DataType<curve_proximity::control::Name> {                     \
-    static const char *value() {                                        \
-      return "control_msgs/" #Name;                                     \
-    }                                                                   \
-    static const char *value(const curve_proximity::control::Name &) {  \
-      return value();                                                   \
-    }                                                                   \
-  };                                                                    \
-  template <>                                                           \
-  struct Definition<curve_proximity::control::Name> {                   \
-    static const char *value() {                                        \
-      return "";                                                        \
-    }                                                                   \
-    static const char *value(const curve_proximity::control::Name &) {  \
-      return value();                                                   \
-    }                                                                   \
-  };                                                                    \
-  }
-
-#define CURVE_PROXIMITY_CONTROL_SERIALIZER(Name, ...)                                                  \
-  namespace ros::serialization {                                                                       \
-  template <>                                                                                          \
-  struct Serializer<curve_proximity::control::Name> {                                                  \
-    template <typename Stream, typename Message>                                                       \
-    static void allInOne(Stream &stream, Message message){__VA_ARGS__} ROS_DECLARE_ALLINONE_SERIALIZER \
-  };                                                                                                   \
-  }
-
-CURVE_PROXIMITY_CONTROL_SERIALIZER(JointTolerance, stream.next(message.name); stream.next(message.position);
-                                   stream.next(message.velocity); stream.next(message.acceleration);)
-CURVE_PROXIMITY_CONTROL_SERIALIZER(FollowJointTrajectoryGoal, stream.next(message.trajectory);
+/* Definitions are left out: tools look them up by name. */
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::JointTolerance, stream.next(message.name);
+                                   stream.next(message.position); stream.next(message.velocity);
+                                   stream.next(message.acceleration);)
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryGoal, stream.next(message.trajectory);
                                    stream.next(message.path_tolerance); stream.next(message.goal_tolerance);
                                    stream.next(message.goal_time_tolerance);)
-CURVE_PROXIMITY_CONTROL_SERIALIZER(FollowJointTrajectoryResult, stream.next(message.error_code);
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryResult,
+                                   stream.next(message.error_code);
                                    stream.next(message.error_string);)
-CURVE_PROXIMITY_CONTROL_SERIALIZER(FollowJointTrajectoryFeedback, stream.next(message.header);
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryFeedback, stream.next(message.header);
                                    stream.next(message.joint_names); stream.next(message.desired);
                                    stream.next(message.actual); stream.next(message.error);)
-CURVE_PROXIMITY_CONTROL_SERIALIZER(FollowJointTrajectoryActionGoal, stream.next(message.header);
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryActionGoal,
+                                   stream.next(message.header);
                                    stream.next(message.goal_id); stream.next(message.goal);)
-CURVE_PROXIMITY_CONTROL_SERIALIZER(FollowJointTrajectoryActionResult, stream.next(message.header);
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryActionResult,
+                                   stream.next(message.header);
                                    stream.next(message.status); stream.next(message.result);)
-CURVE_PROXIMITY_CONTROL_SERIALIZER(FollowJointTrajectoryActionFeedback, stream.next(message.header);
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::control::FollowJointTrajectoryActionFeedback,
+                                   stream.next(message.header);
                                    stream.next(message.status); stream.next(message.feedback);)
 
-CURVE_PROXIMITY_CONTROL_TRAITS(FollowJointTrajectoryGoal, "69636787b6ecbde4d61d711979bc7ecb")
-CURVE_PROXIMITY_CONTROL_TRAITS(FollowJointTrajectoryResult, "493383b18409bfb604b4e26c676401d2")
-CURVE_PROXIMITY_CONTROL_TRAITS(FollowJointTrajectoryFeedback, "10817c60c2486ef6b33e97dcd87f4474")
-CURVE_PROXIMITY_CONTROL_TRAITS(FollowJointTrajectoryActionGoal, "cff5c1d533bf2f82dd0138d57f4304bb")
-CURVE_PROXIMITY_CONTROL_TRAITS(FollowJointTrajectoryActionResult, "c4fb3b000dc9da4fd99699380efcc5d9")
-CURVE_PROXIMITY_CONTROL_TRAITS(FollowJointTrajectoryActionFeedback, "d8920dc4eae9fc107e00999cce4be641")
-CURVE_PROXIMITY_CONTROL_TRAITS(FollowJointTrajectoryAction, "bc4f9b743838566551c0390c65f1a248")
+CURVE_PROXIMITY_FOREIGN_TRAITS(curve_proximity::control::FollowJointTrajectoryGoal,
+                               "control_msgs/FollowJointTrajectoryGoal", "69636787b6ecbde4d61d711979bc7ecb", "")
+CURVE_PROXIMITY_FOREIGN_TRAITS(curve_proximity::control::FollowJointTrajectoryResult,
+                               "control_msgs/FollowJointTrajectoryResult", "493383b18409bfb604b4e26c676401d2", "")
+CURVE_PROXIMITY_FOREIGN_TRAITS(curve_proximity::control::FollowJointTrajectoryFeedback,
+                               "control_msgs/FollowJointTrajectoryFeedback", "10817c60c2486ef6b33e97dcd87f4474", "")
+CURVE_PROXIMITY_FOREIGN_TRAITS(curve_proximity::control::FollowJointTrajectoryActionGoal,
+                               "control_msgs/FollowJointTrajectoryActionGoal", "cff5c1d533bf2f82dd0138d57f4304bb", "")
+CURVE_PROXIMITY_FOREIGN_TRAITS(curve_proximity::control::FollowJointTrajectoryActionResult,
+                               "control_msgs/FollowJointTrajectoryActionResult", "c4fb3b000dc9da4fd99699380efcc5d9", "")
+CURVE_PROXIMITY_FOREIGN_TRAITS(curve_proximity::control::FollowJointTrajectoryActionFeedback,
+                               "control_msgs/FollowJointTrajectoryActionFeedback", "d8920dc4eae9fc107e00999cce4be641",
+                               "")
+CURVE_PROXIMITY_FOREIGN_TRAITS(curve_proximity::control::FollowJointTrajectoryAction,
+                               "control_msgs/FollowJointTrajectoryAction", "bc4f9b743838566551c0390c65f1a248", "")
 #endif

@@ -124,9 +124,10 @@ std::optional<double> Frames::age(const std::string &given) const {
 }
 
 const Eigen::Isometry3d &FrameLookup::toFixed(const std::string &frame, const ros::Time &stamp) {
-  const auto inserted = found_.emplace(std::make_pair(frame, stamp), Found());
-  Found &found = inserted.first->second;
-  if (inserted.second) {
+  const std::pair<std::string, ros::Time> key(frame, stamp);
+  const auto known = found_.find(key);
+  Found &found = known != found_.end() ? known->second : found_[key];
+  if (known == found_.end()) {
     try {
       found.place = frames_.place(frame, stamp, deadline_, turn_);
     } catch (const std::exception &error) {
@@ -135,6 +136,7 @@ const Eigen::Isometry3d &FrameLookup::toFixed(const std::string &frame, const ro
   }
   if (!found.error.empty()) throw Error(found.error);
   oldest_ = std::fmax(oldest_, found.place.age);
+  age_ = std::fmax(age_, found.place.age);
   return found.place.pose;
 }
 

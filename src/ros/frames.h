@@ -97,6 +97,14 @@ class FrameLookup {
     return oldest_;
   }
 
+  /** The same since begin(). */
+  double age() const {
+    return age_;
+  }
+  void begin() {
+    age_ = std::numeric_limits<double>::quiet_NaN();
+  }
+
  private:
   struct Found {
     Frames::Place place;
@@ -108,6 +116,7 @@ class FrameLookup {
   const Frames::Clock::time_point deadline_;
   std::map<std::pair<std::string, ros::Time>, Found> found_;
   double oldest_ = std::numeric_limits<double>::quiet_NaN();
+  double age_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 } // namespace curve_proximity

@@ -40,6 +40,10 @@ struct LiveScene {
   void demand(const Snapshot &snapshot, const ros::Time &epoch_wanted, std::uint64_t version_wanted) const;
 };
 
+/** What answers say while LiveScene::lost is set. */
+constexpr const char *SCENE_LOST =
+    "the scene of the server before this one is lost, and none has been sent since: send it again";
+
 /** Where the root link stands in the fixed frame: by tf2, or where tf2 knows nothing by a fixed virtual joint. Throws
  *  Error where neither does. */
 Eigen::Isometry3d rootPose(const Robot &robot, const Srdf &srdf, const ros::Time &stamp, FrameLookup &lookup);

@@ -98,8 +98,14 @@ void MarkerPublisher::show(std::shared_ptr<const LevelDrawing> levels) {
   changed_ = true;
 }
 
+void MarkerPublisher::showState(std::shared_ptr<const Drawing> drawing) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  state_ = std::move(drawing);
+  changed_ = changed_ || !motion_;
+}
+
 void MarkerPublisher::publishIfNew() {
-  if (publisher_.getNumSubscribers() == 0) return;
+  if (!isWatched()) return;
   const SnapshotPtr scene = scene_.snapshot();
   std::shared_ptr<const Drawing> curves, motion;
   std::shared_ptr<const LevelDrawing> levels;
@@ -109,7 +115,7 @@ void MarkerPublisher::publishIfNew() {
     changed_ = false;
     shown_scene_ = scene->version();
     curves = curves_;
-    motion = motion_;
+    motion = motion_ ? motion_ : state_;
     levels = levels_;
   }
   publisher_.publish(toMarkers(*scene, curves.get(), motion.get(), levels.get(), frame_, resources_));

@@ -52,6 +52,14 @@ class MarkerPublisher {
   void show(std::shared_ptr<const Drawing> drawing);
   void show(std::shared_ptr<const LevelDrawing> levels);
 
+  /** The robot as it stands: shown as long as there is no motion. */
+  void showState(std::shared_ptr<const Drawing> drawing);
+
+  /** Does anybody listen? */
+  bool isWatched() const {
+    return publisher_.getNumSubscribers() > 0;
+  }
+
  private:
   void publishIfNew();
 
@@ -59,7 +67,7 @@ class MarkerPublisher {
   const std::string frame_;
   const MarkerResources resources_;
   std::mutex mutex_;
-  std::shared_ptr<const Drawing> curves_, motion_;
+  std::shared_ptr<const Drawing> curves_, motion_, state_;
   std::shared_ptr<const LevelDrawing> levels_;
   bool changed_ = true;
   std::uint64_t shown_scene_ = 0;

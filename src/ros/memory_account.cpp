@@ -25,9 +25,6 @@ constexpr std::size_t SMALL = MEGABYTE;
 /** After a share of this size memory is given back to the system. */
 constexpr std::size_t LARGE = 8 * MEGABYTE;
 
-/** An empty vector of strings takes 8 times the bytes that it has on the wire; other messages take less. */
-constexpr std::size_t MOST_TIMES_WIRE = 16;
-
 std::atomic<std::size_t> most{0};
 std::mutex mutex;
 std::size_t reserved = 0;
@@ -39,7 +36,6 @@ std::string megabytes(std::size_t bytes) {
 
 } // namespace
 
-thread_local Allowance allowance;
 thread_local bool at_request = false;
 
 void setLimit(std::size_t bytes) {
@@ -91,14 +87,6 @@ Share::~Share() {
 
 void tidy() {
   if (untidy.exchange(false)) malloc_trim(0);
-}
-
-Reading::Reading(std::size_t wire_bytes) {
-  allowance = {true, MOST_TIMES_WIRE * wire_bytes + MEGABYTE};
-}
-
-Reading::~Reading() {
-  allowance = {};
 }
 
 } // namespace curve_proximity::memory

@@ -32,26 +32,8 @@ class Share {
 /** Gives memory back to the system, if a large share has ended since the last call. */
 void tidy();
 
-/** What this thread may still allocate while a request is read; see Reading. */
-struct Allowance {
-  bool limited = false;
-  std::size_t left = 0; /**< [bytes] */
-};
-extern thread_local Allowance allowance;
-
 /** This thread is at a request: an allocation that the limit forbids may throw std::bad_alloc. */
 extern thread_local bool at_request;
-
-/** While a request of so many bytes is read, this thread allocates a few times as much at most: a count on the wire
- * that its bytes do not hold costs nothing. Heeded by curve_proximity_node, whose allocations are counted. */
-class Reading {
- public:
-  explicit Reading(std::size_t wire_bytes);
-  ~Reading();
-
-  Reading(const Reading &) = delete;
-  Reading &operator=(const Reading &) = delete;
-};
 
 } // namespace curve_proximity::memory
 #endif

@@ -15,8 +15,7 @@
 
 namespace {
 
-/** Smaller allocations are not counted: what a request takes of them is bounded by its estimate, and while it is read
- * by its allowance. */
+/** Smaller allocations are not counted: what a request takes of them is bounded by its estimate. */
 constexpr std::size_t COUNTED = 1024;
 
 /** An allocation of this size may throw wherever it happens. */
@@ -79,8 +78,7 @@ namespace curve_proximity {
 void limitMemory(int megabytes) {
   mallopt(M_MMAP_THRESHOLD, static_cast<int>(LARGE)); // what is large goes back to the system as soon as it is freed
   if (megabytes <= 0) return;
-  memory::setLimit(static_cast<std::size_t>(megabytes) << 20);
-  limit = memory::limit();
+  limit = static_cast<std::size_t>(megabytes) << 20;
   void *unusable = mmap(nullptr, NOWHERE_SIZE, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (unusable == MAP_FAILED) return;
   nowhere = static_cast<char *>(unusable);
@@ -94,11 +92,6 @@ unsigned long connectionsClosed() {
 } // namespace curve_proximity
 
 void *operator new(std::size_t size) {
-  curve_proximity::memory::Allowance &allowance = curve_proximity::memory::allowance;
-  if (allowance.limited) {
-    if (size > allowance.left) throw std::bad_alloc();
-    allowance.left -= size;
-  }
   return counted(allocate(size), held, size >= LARGE || curve_proximity::memory::at_request);
 }
 

@@ -5,14 +5,13 @@
 
 namespace curve_proximity {
 
-/** From now on allocations are counted, and the account of memory_account.h has this limit; 0: none. After
- * ros::start().
+/** From now on allocations are counted and limited; 0: not. After ros::start(). Beside the account of memory_account.h.
  *
- *  roscpp resizes vectors to whatever count a request claims, before it looks at the bytes: such an allocation throws
- *  std::bad_alloc in the callback, where it fails one call. roscpp takes its receive buffers by `new[]` in the thread
- *  that polls all connections, which would end the process if it threw. A buffer that is more than is left becomes
- *  memory that cannot be written: then recv() fails, and roscpp closes that connection alone. RLIMIT_AS draws no such
- *  line: under it a few connections that merely announce a gigabyte each, and send nothing, end the process. */
+ *  An allocation that is too much throws std::bad_alloc in the callback, where it fails one call. roscpp takes its
+ * receive buffers by `new[]` in the thread that polls all connections, which would end the process if it threw. A
+ * buffer that is more than is left becomes memory that cannot be written: then recv() fails, and roscpp closes that
+ * connection alone. RLIMIT_AS draws no such line: under it a few connections that merely announce a gigabyte each, and
+ * send nothing, end the process. */
 void limitMemory(int megabytes);
 
 /** How many connections were closed because they announced too much. */

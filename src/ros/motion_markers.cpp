@@ -105,9 +105,18 @@ void addMotion(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
   const double closest = nearest ? nearest->result.t : domain[0];
 
   // On its way, faintly.
+  std::vector<LinkPoses> ghosts;
   for (int i = 0; i < GHOSTS; ++i) {
     const double t = i + 1 == GHOSTS ? domain[1] : domain[0] + (domain[1] - domain[0]) * i / (GHOSTS - 1);
-    for (const auto &link : motion.linkPoses(t))
+    ghosts.push_back(motion.linkPoses(t));
+  }
+  const bool moves = std::any_of(ghosts.begin(), ghosts.end(), [&](const LinkPoses &poses) {
+    return std::any_of(poses.begin(), poses.end(),
+                       [&](const auto &link) { return !link.second.isApprox(ghosts.front().at(link.first), 0.0); });
+  });
+  if (!moves) ghosts.clear();
+  for (const LinkPoses &ghost : ghosts) {
+    for (const auto &link : ghost)
       addLink(canvas, "swept", partsOf(*drawing.snapshot, link.first), link.second, resources,
               colour(0.6, 0.68, 0.78, 0.07));
   }
@@ -125,7 +134,7 @@ void addMotion(Canvas &canvas, const Snapshot &scene, const Drawing &drawing, co
   if (!nearest) return;
   if (drawing.snapshot->version() == scene.version()) addPair(canvas, *nearest);
   const auto link = poses.find(nearest->a);
-  if (link == poses.end()) return; // something that is carried
+  if (!moves || link == poses.end()) return; // it stands, or something that is carried comes closest
   const Eigen::Vector3d point = link->second.inverse() * toEigen(nearest->result.witness_mover);
   addSweep(canvas, *drawing.snapshot, motion, link->first, point, objects, workspace);
 }

@@ -35,6 +35,16 @@ class NameLimits {
     check("a curve's basis", curve.basis);
   }
 
+  void check(const nav_msgs::Path &path) const {
+    check("a path's frame", path.header.frame_id);
+    for (const auto &pose : path.poses) check("a pose's frame", pose.header.frame_id);
+  }
+
+  void check(const trajectory_msgs::MultiDOFJointTrajectory &trajectory) const {
+    check("a trajectory's frame", trajectory.header.frame_id);
+    check("the name of a joint", trajectory.joint_names);
+  }
+
   void check(const ProximityQuery &query) const {
     check("the name of an object", query.objects);
     check("the name of a link", query.links);

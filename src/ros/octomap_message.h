@@ -4,14 +4,14 @@
 #ifndef CURVE_PROXIMITY_ROS_OCTOMAP_MESSAGE_H
 #define CURVE_PROXIMITY_ROS_OCTOMAP_MESSAGE_H
 
-#include <ros/message_traits.h>
-#include <ros/serialization.h>
 #include <std_msgs/Header.h>
 
 #include <boost/shared_ptr.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "foreign_message.h"
 
 namespace curve_proximity {
 
@@ -28,63 +28,14 @@ struct OctomapMessage {
 
 } // namespace curve_proximity
 
-namespace ros {
-namespace message_traits {
-
-template <>
-struct IsMessage<curve_proximity::OctomapMessage> : TrueType {};
-template <>
-struct IsMessage<const curve_proximity::OctomapMessage> : TrueType {};
+CURVE_PROXIMITY_FOREIGN_SERIALIZER(curve_proximity::OctomapMessage, stream.next(message.header);
+                                   stream.next(message.binary); stream.next(message.id);
+                                   stream.next(message.resolution); stream.next(message.data);)
+CURVE_PROXIMITY_FOREIGN_TRAITS(curve_proximity::OctomapMessage, "octomap_msgs/Octomap",
+                               "9a45536b45c5e409cd49f04bb2d9999f",
+                               "Header header\nbool binary\nstring id\nfloat64 resolution\nint8[] data\n")
+namespace ros::message_traits {
 template <>
 struct HasHeader<curve_proximity::OctomapMessage> : TrueType {};
-
-template <>
-struct MD5Sum<curve_proximity::OctomapMessage> {
-  static const char *value() {
-    return "9a45536b45c5e409cd49f04bb2d9999f";
-  }
-  static const char *value(const curve_proximity::OctomapMessage &) {
-    return value();
-  }
-};
-
-template <>
-struct DataType<curve_proximity::OctomapMessage> {
-  static const char *value() {
-    return "octomap_msgs/Octomap";
-  }
-  static const char *value(const curve_proximity::OctomapMessage &) {
-    return value();
-  }
-};
-
-template <>
-struct Definition<curve_proximity::OctomapMessage> {
-  static const char *value() {
-    return "Header header\nbool binary\nstring id\nfloat64 resolution\nint8[] data\n";
-  }
-  static const char *value(const curve_proximity::OctomapMessage &) {
-    return value();
-  }
-};
-
-} // namespace message_traits
-
-namespace serialization {
-
-template <>
-struct Serializer<curve_proximity::OctomapMessage> {
-  template <typename Stream, typename Message>
-  static void allInOne(Stream &stream, Message message) {
-    stream.next(message.header);
-    stream.next(message.binary);
-    stream.next(message.id);
-    stream.next(message.resolution);
-    stream.next(message.data);
-  }
-  ROS_DECLARE_ALLINONE_SERIALIZER
-};
-
-} // namespace serialization
-} // namespace ros
+} // namespace ros::message_traits
 #endif

@@ -2,12 +2,12 @@
 #include "pipeline.h"
 
 #include <ros/console.h>
-#include <ros/subscribe_options.h>
 
 #include <curve_proximity/fingerprint.hpp>
 #include <memory>
 #include <utility>
 
+#include "checked_stream.h"
 #include "guard.h"
 #include "topics.h"
 
@@ -30,6 +30,19 @@ const char *topicOf(const trajectory_msgs::MultiDOFJointTrajectoryConstPtr &) {
 }
 const char *topicOf(const nav_msgs::PathConstPtr &) {
   return "path";
+}
+
+void ask(const Curve &message, QueryRequest &request) {
+  request.curves = List<Curve>(&message, 1);
+}
+void ask(const nav_msgs::Path &message, QueryRequest &request) {
+  request.paths = List<nav_msgs::Path>(&message, 1);
+}
+void ask(const trajectory_msgs::JointTrajectory &message, QueryRequest &request) {
+  request.trajectories = List<trajectory_msgs::JointTrajectory>(&message, 1);
+}
+void ask(const trajectory_msgs::MultiDOFJointTrajectory &message, QueryRequest &request) {
+  request.multi_dof_trajectories = List<trajectory_msgs::MultiDOFJointTrajectory>(&message, 1);
 }
 
 std::string idOf(const Curve &curve) {
@@ -62,11 +75,12 @@ Pipeline::Pipeline(const ros::NodeHandle &handle, const Parameters &parameters, 
   listen<trajectory_msgs::JointTrajectory>("trajectory");
   listen<trajectory_msgs::MultiDOFJointTrajectory>("multi_dof_trajectory");
   listen<nav_msgs::Path>("path");
-  subscribers_.push_back(handle_.subscribe<sensor_msgs::JointState>(
+  ros::SubscribeOptions joints = checkedSubscription<sensor_msgs::JointState>(
       "joint_states", RESULTS_KEPT, [this](const sensor_msgs::JointStateConstPtr &state) {
         guarded([&] { live_.joints.take(*state, live_.scene.snapshot()->robot().get()); },
                 [](const std::string &why) { ROS_ERROR("~joint_states: %s", why.c_str()); });
-      }));
+      });
+  subscribers_.push_back(handle_.subscribe(joints));
   for (int i = 0; i < THREADS; i++) threads_.emplace_back([this] { takeIn(); });
   if (parameters_.state_rate == 0.0) return;
   states_ = state_handle_.advertise<ProximityResults>("state_proximity", 1);
@@ -92,9 +106,8 @@ Pipeline::~Pipeline() {
 template <class Message>
 void Pipeline::listen(const char *topic) {
   using Pointer = boost::shared_ptr<const Message>;
-  ros::SubscribeOptions options;
-  options.init<Message>(topic, 0, [this](const Pointer &message) { works_ = message && jobs_.push(Job(message)); });
-  options.callback_queue = &queue_;
+  ros::SubscribeOptions options = checkedSubscription<Message>(
+      topic, 0, [this](const Pointer &message) { works_ = message && jobs_.push(Job(message)); });
   options.transport_hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(handle_.subscribe(options));
 }
@@ -138,16 +151,13 @@ void Pipeline::handle(const Job &job) {
   const auto drawing = std::make_shared<Drawing>();
   guarded(
       [&] {
-        Asked asked;
-        std::visit([&](const auto &message) { toAsked(*message, asked); }, job);
-
         // Curves meet the robot where tf2 has it; joints that a trajectory leaves alone stand as they were last told.
         ProximityQuery more;
-        more.self_collision = parameters_.self_collision && asked.trajectories.size() > 0;
-        more.current_joints = asked.trajectories.size() > 0 && !live_.joints.joints().empty();
+        const bool moves = movesRobot(job);
+        more.self_collision = parameters_.self_collision && moves;
+        more.current_joints = moves && !live_.joints.joints().empty();
         QueryRequest request(query_type_, results->delta, more);
-        request.curves = asked.curves;
-        request.trajectories = asked.trajectories;
+        std::visit([&](const auto &message) { ask(*message, request); }, job);
         answer(request, *results, *drawing);
       },
       [&](const std::string &why) {
@@ -178,7 +188,7 @@ void Pipeline::answer(const QueryRequest &request, ProximityResults &results, Dr
 }
 
 void Pipeline::tellState() {
-  if (stop_ || states_.getNumSubscribers() == 0) return;
+  if (stop_ || (states_.getNumSubscribers() == 0 && !markers_.isWatched())) return;
   const auto results = boost::make_shared<ProximityResults>();
   results->header.seq = state_seq_++;
   results->header.stamp = ros::Time::now();
@@ -197,29 +207,14 @@ void Pipeline::tellState() {
         results->message = why;
       });
   states_.publish(ProximityResultsPtr(results));
+  if (drawing->motion) markers_.showState(drawing);
 }
 
-void Pipeline::toAsked(const Curve &message, Asked &asked) const {
-  asked.curves = List<Curve>(&message, 1);
-}
-
-void Pipeline::toAsked(const trajectory_msgs::JointTrajectory &message, Asked &asked) const {
-  asked.trajectories = List<trajectory_msgs::JointTrajectory>(&message, 1);
-}
-
-void Pipeline::toAsked(const trajectory_msgs::MultiDOFJointTrajectory &message, Asked &asked) const {
-  asked.own_trajectory = toJointTrajectory(message, live_.scene.snapshot()->robot().get(), live_.srdf);
-  if (!asked.own_trajectory.joint_names.empty()) {
-    asked.trajectories = List<trajectory_msgs::JointTrajectory>(&asked.own_trajectory, 1);
-    return;
-  }
-  asked.own_curves = toCurves(message, parameters_.path_radius);
-  asked.curves = List<Curve>(asked.own_curves);
-}
-
-void Pipeline::toAsked(const nav_msgs::Path &message, Asked &asked) const {
-  asked.own_curves = {toCurve(message, parameters_.path_radius)};
-  asked.curves = List<Curve>(asked.own_curves);
+/** Is the message about the robot? */
+bool Pipeline::movesRobot(const Job &job) const {
+  if (std::holds_alternative<trajectory_msgs::JointTrajectoryConstPtr>(job)) return true;
+  const auto *several = std::get_if<trajectory_msgs::MultiDOFJointTrajectoryConstPtr>(&job);
+  return several && curve_proximity::movesRobot(**several, live_.scene.snapshot()->robot().get(), live_.srdf);
 }
 
 } // namespace curve_proximity

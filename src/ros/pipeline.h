@@ -59,17 +59,7 @@ class Pipeline {
   void answer(const QueryRequest &request, ProximityResults &results, Drawing &drawing);
   void tellState();
 
-  /* The curves or the joint trajectory that a message speaks of. */
-  struct Asked {
-    List<Curve> curves;
-    List<trajectory_msgs::JointTrajectory> trajectories;
-    std::vector<Curve> own_curves;
-    trajectory_msgs::JointTrajectory own_trajectory;
-  };
-  void toAsked(const Curve &message, Asked &asked) const;
-  void toAsked(const trajectory_msgs::JointTrajectory &message, Asked &asked) const;
-  void toAsked(const trajectory_msgs::MultiDOFJointTrajectory &message, Asked &asked) const;
-  void toAsked(const nav_msgs::Path &message, Asked &asked) const;
+  bool movesRobot(const Job &job) const;
 
   const Parameters &parameters_;
   const Tuning &tuning_;

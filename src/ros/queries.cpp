@@ -4,12 +4,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <mutex>
 #include <sstream>
+#include <thread>
 
 #include "conversions.h"
+#include "guard.h"
 #include "memory_account.h"
 #include "name_limits.h"
+#include "topics.h"
 
 namespace curve_proximity {
 namespace {
@@ -17,15 +22,19 @@ namespace {
 /** Markers show no more curves than a person can tell apart. */
 constexpr std::size_t MAX_DRAWN_CURVES = 100;
 
+/** From here on further threads are worth their while: each takes some microseconds to begin. */
+constexpr std::size_t MANY_CURVES = 64;
+
 /** Ends a query when its time is over or the server goes, and makes way for others meanwhile. */
 class TimeBudget {
  public:
-  explicit TimeBudget(double milliseconds, const QueryRequest &request, const std::atomic<bool> &stop)
+  /** turn: of the thread that asks; may be null. */
+  TimeBudget(double milliseconds, const QueryRequest &request, const std::atomic<bool> &stop, Turn *turn)
       : milliseconds_(milliseconds),
         deadline_(deadlineOf(request.arrival, milliseconds)),
         stop_(stop),
         cancelled_(request.cancelled),
-        turn_(request.turn) {}
+        turn_(turn) {}
 
   /** In the shape of cprox_options.stop. */
   static bool isOver(void *user) {
@@ -92,6 +101,7 @@ class StampedTargets {
   struct Stamped {
     LinkPoses links;
     Targets targets;
+    double age; /* [s] of the transforms */
   };
 
   const Stamped &at(const ros::Time &stamp) {
@@ -99,9 +109,10 @@ class StampedTargets {
     const ros::Time key = with_robot_ ? stamp : ros::Time();
     auto found = stamped_.find(key);
     if (found == stamped_.end()) {
+      lookup_.begin();
       LinkPoses links = with_robot_ ? linkPoses(stamp) : LinkPoses();
       Targets targets(snapshot_, links, query_);
-      found = stamped_.emplace(key, Stamped{std::move(links), std::move(targets)}).first;
+      found = stamped_.emplace(key, Stamped{std::move(links), std::move(targets), lookup_.age()}).first;
     }
     return found->second;
   }
@@ -138,8 +149,9 @@ class StampedTargets {
 /** Counts the rows that have no answer and keeps the first one's reason. */
 class Failures {
  public:
-  void count(const Proximity &row, std::size_t curve) {
-    if (failed_++ == 0) first_ = "curve " + std::to_string(curve) + " ('" + row.id + "'): " + row.message;
+  /** number: of the curve, in the order of the request. */
+  void count(const Proximity &row, std::size_t number) {
+    if (failed_++ == 0) first_ = "curve " + std::to_string(number) + " ('" + row.id + "'): " + row.message;
   }
 
   void tell(QueryResponse &response) const {
@@ -154,7 +166,36 @@ class Failures {
   std::string first_;
 };
 
+/** The name of one of several. */
+std::string numbered(const std::string &name, std::size_t i, std::size_t all) {
+  return all == 1 ? name : name + "/" + std::to_string(i);
+}
+
 } // namespace
+
+/* What all curves of a request share. */
+struct Queries::CurveSearch {
+  StampedTargets targets;
+  WorkspacePool::Lease workspace;
+  std::size_t curves; /* so far */
+  Failures failures;
+  const LinkPoses *drawn; /* the robot of the last curve that is drawn; null: none is */
+};
+
+/* Where a curve and all that it is measured against stand. */
+struct Queries::CurvePlace {
+  const Eigen::Isometry3d *frame = nullptr;
+  const StampedTargets::Stamped *stamped = nullptr;
+  double age = NAN;    /* [s] of the transforms */
+  std::string why_not; /* empty where all is known */
+};
+
+/* The rows of some curves. */
+struct Queries::CurveRows {
+  std::vector<Proximity> rows;
+  std::vector<std::size_t> counts;  /* of rows, for each curve */
+  std::vector<Drawing::Line> lines; /* of those that are drawn */
+};
 
 QueryType queryTypeFromName(const std::string &name) {
   if (name == "distance") return QueryType::DISTANCE;
@@ -175,7 +216,8 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
   // What no row would heed is an error, too.
   if (request.delta != 0.0 && request.query_type != QueryType::TOLERANCE)
     throw Error("delta is " + std::to_string(request.delta) + ": it is the clearance that tolerance asks for");
-  if (more.self_collision && request.trajectories.size() == 0 && !more.robot_state)
+  const std::size_t motions = request.trajectories.size() + request.multi_dof_trajectories.size();
+  if (more.self_collision && motions == 0 && !more.robot_state)
     throw Error("self_collision is about the robot along a trajectory or as it stands (robot_state): there is neither");
   Query query;
   query.query_type = request.query_type;
@@ -198,15 +240,23 @@ Query Queries::toQuery(const QueryRequest &request, const Snapshot &snapshot) co
 
 /** Throws Error for what is beyond a limit; how many rows there will be at most. */
 std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &snapshot) const {
-  limit("max_curves", static_cast<std::size_t>(parameters_.max_curves),
-        request.curves.size() + request.trajectories.size(), "curves");
   const NameLimits names(parameters_.max_name_length);
   names.check(request.more);
-  std::size_t points = 0, values = 0;
+  std::size_t curves = request.curves.size() + request.paths.size(), points = 0, values = 0;
   for (const Curve &curve : request.curves) {
     names.check(curve);
     points += curve.points.size();
   }
+  for (const nav_msgs::Path &path : request.paths) {
+    names.check(path);
+    points += path.poses.size();
+  }
+  for (const auto &trajectory : request.multi_dof_trajectories) {
+    names.check(trajectory);
+    curves += trajectory.joint_names.size();
+    for (const auto &point : trajectory.points) points += point.transforms.size();
+  }
+  limit("max_curves", static_cast<std::size_t>(parameters_.max_curves), curves + request.trajectories.size(), "curves");
   limit("max_control_points", static_cast<std::size_t>(parameters_.max_control_points), points, "control points");
   for (const auto &trajectory : request.trajectories) {
     names.check("the name of a joint", trajectory.joint_names);
@@ -222,8 +272,9 @@ std::size_t Queries::checkLimits(const QueryRequest &request, const Snapshot &sn
     if (everything || !request.more.group.empty())
       targets += snapshot.objects().size() + (snapshot.robot() ? snapshot.robot()->links().size() : 0);
   }
-  const std::size_t motions = request.trajectories.size() + (request.more.robot_state ? 1 : 0);
-  const std::size_t rows = (request.curves.size() + motions) * targets + motions;
+  const std::size_t motions =
+      request.trajectories.size() + request.multi_dof_trajectories.size() + (request.more.robot_state ? 1 : 0);
+  const std::size_t rows = (curves + motions) * targets + motions;
   limit("max_results", static_cast<std::size_t>(parameters_.max_results), rows, "results");
   return rows;
 }
@@ -245,7 +296,8 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
   response.scene = live_.state(*snapshot);
   live_.demand(*snapshot, request.more.scene_epoch, request.more.scene_version);
   Query query = toQuery(request, *snapshot);
-  TimeBudget budget(request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load(), request, stop_);
+  const double budget_ms = request.budget_ms != 0.0 ? request.budget_ms : tuning_.budget_ms.load();
+  TimeBudget budget(budget_ms, request, stop_, request.turn);
   query.options.stop = TimeBudget::isOver;
   query.options.stop_user = &budget;
   const std::size_t rows = checkLimits(request, *snapshot);
@@ -261,10 +313,19 @@ void Queries::answerAll(const QueryRequest &request, QueryResponse &response, Dr
             currentJoints(request.more.joint_state, current && snapshot->robot(), live_.joints),
             Doubts(parameters_.max_age, response.scene.sensors),
             response,
-            drawing};
+            drawing,
+            budget_ms,
+            0,
+            0,
+            nullptr};
   answerCurves(work);
   answerTrajectories(work);
+  answerMultiDofTrajectories(work);
   answerState(work);
+  if (work.search) {
+    work.search->failures.tell(response);
+    if (work.search->drawn) drawing.links = *work.search->drawn;
+  }
   for (Proximity &row : response.results)
     if (row.status == cprox_status_name(CPROX_STOPPED)) row.message = budget.reason();
   describe(work);
@@ -278,10 +339,11 @@ void Queries::describe(Work &work) const {
   response.scene.transform_age = work.lookup.oldest();
   response.scene.joint_state_age = work.joints.age;
   const Query &query = work.query;
+  const bool with_curves = work.search != nullptr;
   if (!query.objects.empty()) response.scene.objects = static_cast<std::uint32_t>(query.objects.size());
   if (!query.links.empty()) response.scene.links = static_cast<std::uint32_t>(query.links.size());
-  if (query.objects.empty() && !query.links.empty() && work.request.curves.size() > 0) response.scene.objects = 0;
-  if (!query.objects.empty() && query.links.empty() && work.request.curves.size() > 0) response.scene.links = 0;
+  if (query.objects.empty() && !query.links.empty() && with_curves) response.scene.objects = 0;
+  if (!query.objects.empty() && query.links.empty() && with_curves) response.scene.links = 0;
 
   const auto nothing = [](const Proximity &row) { return std::isinf(row.lower) && row.b.empty(); };
   const auto first = std::find_if(response.results.begin(), response.results.end(), nothing);
@@ -289,50 +351,178 @@ void Queries::describe(Work &work) const {
     response.warnings.push_back("row '" + first->id + "' (" + first->kind + ") was measured against nothing" +
                                 (response.scene.objects == 0 ? ": there is no object" : ""));
   work.doubts.tell(response.warnings);
-  if (live_.lost)
-    response.warnings.push_back(
-        "the scene of the server before this one is lost, and none has been sent since: send it again");
+  if (live_.lost) response.warnings.push_back(SCENE_LOST);
+}
+
+/** Ready for the next curve. */
+Queries::CurveSearch &Queries::curveSearch(Work &work) {
+  if (!work.search) {
+    const bool by_joints = !work.joints.positions.empty();
+    work.search.reset(new CurveSearch{StampedTargets(work.snapshot, work.query, live_.srdf,
+                                                     by_joints ? &work.joints.positions : nullptr, work.lookup),
+                                      WorkspacePool::Lease(workspaces_),
+                                      0,
+                                      {},
+                                      nullptr});
+  }
+  work.doubts.objects(work.query);
+  return *work.search;
+}
+
+void Queries::tellProgress(Work &work) {
+  ++work.done;
+  if (work.request.progress) (*work.request.progress)(work.response, work.done);
 }
 
 void Queries::answerCurves(Work &work) {
-  // Each curve is answered on its own: what is wrong with it fails its row only.
   const QueryRequest &request = work.request;
-  if (request.curves.size() == 0) return;
-  QueryResponse &response = work.response;
-  const bool by_joints = !work.joints.positions.empty();
-  StampedTargets targets(work.snapshot, work.query, live_.srdf, by_joints ? &work.joints.positions : nullptr,
-                         work.lookup);
-  work.doubts.objects(work.query);
-  const WorkspacePool::Lease workspace(workspaces_);
-  response.results.reserve(request.curves.size());
-  Failures failures;
-  for (const Curve &message : request.curves) {
-    const auto i = static_cast<std::size_t>(&message - request.curves.begin());
-    if (request.turn) request.turn->yield();
-    try {
-      // The curve's frame, the robot and the curve itself: each may be what is wrong with this row.
-      const CurveDescription description =
-          toDescription(message, work.lookup.toFixed(message.header.frame_id, message.header.stamp));
-      CompiledCurve curve = compile(description);
-      const StampedTargets::Stamped &stamped = targets.at(message.header.stamp);
-      std::vector<Answer> answers = ask(stamped.targets, curve, work.query, *workspace);
-      work.doubts.ages(work.lookup.oldest(), targets.withRobot() ? work.joints.age : NAN);
-      for (const Answer &answer : answers) {
-        response.results.push_back(toMessage(answer, request.query_type));
-        work.doubts.apply(response.results.back());
-        if (answer.result.status < 0) failures.count(response.results.back(), i);
-      }
-      if (work.drawing.lines.size() < MAX_DRAWN_CURVES) {
-        work.drawing.links = stamped.links;
-        work.drawing.lines.push_back({std::move(curve), std::move(answers)});
-      }
-    } catch (const Error &error) {
-      response.results.push_back(toFailedRow(message.id, Proximity::KIND_CURVE, error.what()));
-      failures.count(response.results.back(), i);
+  if (request.curves.size() + request.paths.size() == 0) return;
+  CurveSearch &search = curveSearch(work);
+  work.response.results.reserve(request.curves.size() + request.paths.size());
+  if (request.progress || request.curves.size() < MANY_CURVES) {
+    for (const Curve &curve : request.curves) {
+      answerCurve(curve, search, work);
+      tellProgress(work);
     }
-    if (request.progress) (*request.progress)(response, i + 1);
+  } else {
+    answerManyCurves(search, work);
   }
-  failures.tell(response);
+  for (const nav_msgs::Path &path : request.paths) {
+    const auto i = static_cast<std::size_t>(&path - request.paths.begin());
+    const std::string id = numbered("path", i, request.paths.size());
+    try {
+      Curve curve = toCurve(path, parameters_.path_radius);
+      curve.id = id;
+      answerCurve(curve, search, work);
+    } catch (const Error &error) {
+      refuseCurve(id, error.what(), search, work);
+    }
+    tellProgress(work);
+  }
+}
+
+Queries::CurvePlace Queries::place(const Curve &curve, CurveSearch &search, Work &work) {
+  CurvePlace place;
+  try {
+    work.lookup.begin();
+    place.frame = &work.lookup.toFixed(curve.header.frame_id, curve.header.stamp);
+    const double age = work.lookup.age();
+    place.stamped = &search.targets.at(curve.header.stamp);
+    place.age = std::fmax(age, place.stamped->age);
+  } catch (const Error &error) {
+    place.why_not = error.what();
+  }
+  return place;
+}
+
+/** What is wrong with a curve fails its row only. Any number of threads, each with its own query and workspace. */
+void Queries::search(const Curve &message, const CurvePlace &place, const Query &query, bool drawn,
+                     Workspace &workspace, CurveRows &out) {
+  const std::size_t before = out.rows.size();
+  try {
+    if (!place.why_not.empty()) throw Error(place.why_not);
+    const Targets &targets = place.stamped->targets;
+    CompiledCurve curve = compile(toDescription(message, *place.frame), targets.boxes());
+    std::vector<Answer> answers = ask(targets, curve, query, workspace);
+    for (const Answer &answer : answers) out.rows.push_back(toMessage(answer, query.query_type));
+    if (drawn) out.lines.push_back({std::move(curve), std::move(answers)});
+  } catch (const Error &error) {
+    out.rows.push_back(toFailedRow(message.id, Proximity::KIND_CURVE, error.what()));
+  }
+  out.counts.push_back(out.rows.size() - before);
+}
+
+/** Hands the rows of some curves over, in their order. */
+void Queries::gather(const CurvePlace *places, CurveRows &&found, CurveSearch &search, Work &work) {
+  auto row = found.rows.begin();
+  for (const std::size_t count : found.counts) {
+    const CurvePlace &place = *places++;
+    work.doubts.ages(place.age, search.targets.withRobot() ? work.joints.age : NAN);
+    for (std::size_t i = 0; i < count; ++i, ++row) {
+      work.doubts.apply(*row);
+      if (std::isnan(row->lower)) search.failures.count(*row, search.curves);
+      work.response.results.push_back(std::move(*row));
+    }
+    ++search.curves;
+    if (place.stamped && work.drawing.lines.size() < MAX_DRAWN_CURVES) search.drawn = &place.stamped->links;
+  }
+  std::move(found.lines.begin(), found.lines.end(), std::back_inserter(work.drawing.lines));
+}
+
+void Queries::answerCurve(const Curve &message, CurveSearch &search, Work &work) {
+  if (work.request.turn) work.request.turn->yield();
+  const CurvePlace where = place(message, search, work);
+  CurveRows found;
+  Queries::search(message, where, work.query, work.drawing.lines.size() < MAX_DRAWN_CURVES, *search.workspace, found);
+  gather(&where, std::move(found), search, work);
+}
+
+/** The row of what could not be made a curve. */
+void Queries::refuseCurve(const std::string &id, const std::string &why, CurveSearch &search, Work &work) {
+  CurveRows found;
+  found.rows.push_back(toFailedRow(id, Proximity::KIND_CURVE, why));
+  found.counts.push_back(1);
+  const CurvePlace nowhere;
+  gather(&nowhere, std::move(found), search, work);
+}
+
+/** By several threads, as long as turns are free: each takes the next few curves. */
+void Queries::answerManyCurves(CurveSearch &search, Work &work) {
+  const List<Curve> &curves = work.request.curves;
+  std::vector<CurvePlace> places;
+  places.reserve(curves.size());
+  for (const Curve &curve : curves) places.push_back(place(curve, search, work));
+
+  constexpr std::size_t A_PART = 16; /* curves */
+  std::vector<CurveRows> parts((curves.size() + A_PART - 1) / A_PART);
+  std::atomic<std::size_t> next{0};
+  const auto answerParts = [&](const Query &query, Turn *turn, Workspace &workspace) {
+    for (std::size_t part = next++; part < parts.size(); part = next++) {
+      const std::size_t first = part * A_PART, last = std::min(first + A_PART, curves.size());
+      parts[part].rows.reserve(last - first);
+      for (std::size_t i = first; i < last; ++i) {
+        if (turn) turn->yield();
+        Queries::search(curves.begin()[i], places[i], query, i < MAX_DRAWN_CURVES, workspace, parts[part]);
+      }
+    }
+  };
+
+  Turn *const own = work.request.turn;
+  std::mutex mutex;
+  std::string failure;
+  std::vector<std::thread> helpers;
+  const auto most = std::min<std::size_t>(std::thread::hardware_concurrency(), curves.size() * 2 / MANY_CURVES);
+  while (own && helpers.size() + 1 < most) {
+    std::shared_ptr<Turn> turn = own->another();
+    if (!turn) break;
+    helpers.emplace_back([&, turn] {
+      guarded(
+          [&] {
+            TimeBudget budget(work.budget_ms, work.request, stop_, turn.get());
+            Query query = work.query;
+            query.options.stop_user = &budget;
+            const WorkspacePool::Lease workspace(workspaces_);
+            answerParts(query, turn.get(), *workspace);
+          },
+          [&](const std::string &why) {
+            const std::lock_guard<std::mutex> lock(mutex);
+            failure = why;
+          });
+    });
+  }
+  guarded([&] { answerParts(work.query, own, *search.workspace); },
+          [&](const std::string &why) {
+            next = parts.size();
+            const std::lock_guard<std::mutex> lock(mutex);
+            failure = why;
+          });
+  {
+    const Turn::Pause pause(own); // a helper may wait for its turn
+    for (std::thread &helper : helpers) helper.join();
+  }
+  if (!failure.empty()) throw Error(failure);
+  for (std::size_t part = 0; part < parts.size(); ++part)
+    gather(&places[part * A_PART], std::move(parts[part]), search, work);
 }
 
 void Queries::answerTrajectories(Work &work) {
@@ -340,22 +530,56 @@ void Queries::answerTrajectories(Work &work) {
   if (trajectories.size() == 0) return;
   if (!work.snapshot->robot()) throw Error("a trajectory needs a robot, and this server has none");
   for (const auto &trajectory : trajectories) {
-    const auto i = static_cast<std::size_t>(&trajectory - trajectories.begin());
-    const std::string id = trajectories.size() == 1 ? "trajectory" : "trajectory/" + std::to_string(i);
-    answerTrajectory(trajectory, id, work);
-    if (work.request.progress) (*work.request.progress)(work.response, work.request.curves.size() + i + 1);
+    answerTrajectory(trajectory, work);
+    tellProgress(work);
   }
 }
 
-void Queries::answerTrajectory(const trajectory_msgs::JointTrajectory &message, const std::string &id, Work &work) {
-  TrajectoryDescription trajectory;
-  std::string remark, why_not;
+/** Of the robot, or of what flies by itself. */
+void Queries::answerMultiDofTrajectories(Work &work) {
+  for (const auto &trajectory : work.request.multi_dof_trajectories) {
+    const Robot *robot = work.snapshot->robot().get();
+    if (movesRobot(trajectory, robot, live_.srdf)) {
+      trajectory_msgs::JointTrajectory joints;
+      std::string why_not;
+      try {
+        joints = toJointTrajectory(trajectory, *robot, live_.srdf);
+      } catch (const Error &error) {
+        why_not = error.what();
+      }
+      answerTrajectory(joints, work, why_not);
+    } else {
+      answerFlight(trajectory, work);
+    }
+    tellProgress(work);
+  }
+}
+
+void Queries::answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work) {
+  CurveSearch &search = curveSearch(work);
   try {
-    trajectory = toDescription(message, work.joints.positions, remark);
+    for (const Curve &curve : toCurves(trajectory, parameters_.path_radius)) answerCurve(curve, search, work);
+  } catch (const Error &error) {
+    refuseCurve(trajectory.joint_names.empty() ? "" : trajectory.joint_names.front(), error.what(), search, work);
+  }
+}
+
+/** why_not: what is wrong with it already. */
+void Queries::answerTrajectory(const trajectory_msgs::JointTrajectory &message, Work &work, std::string why_not) {
+  const QueryRequest &request = work.request;
+  TrajectoryDescription trajectory;
+  std::string remark;
+  try {
+    if (why_not.empty()) trajectory = toDescription(message, work.joints.positions, remark);
   } catch (const Error &error) {
     why_not = error.what();
   }
-  trajectory.id = id;
+  const auto &others = request.multi_dof_trajectories;
+  const auto moving = std::count_if(others.begin(), others.end(), [&](const auto &other) {
+    return movesRobot(other, work.snapshot->robot().get(), live_.srdf);
+  });
+  trajectory.id =
+      numbered("trajectory", work.trajectories++, request.trajectories.size() + static_cast<std::size_t>(moving));
   answerMotion(std::move(trajectory), message.header.stamp, remark, why_not, work);
 }
 
@@ -382,6 +606,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
   if (request.turn) request.turn->yield();
 
   // The trajectory, the joints that it leaves alone, and where the robot stands.
+  work.lookup.begin();
   try {
     if (!why_not.empty()) throw Error(why_not);
     const Robot &robot = *work.snapshot->robot();
@@ -408,7 +633,7 @@ void Queries::answerMotion(TrajectoryDescription trajectory, const ros::Time &st
       Proximity &row = response.results.back();
       if (!remark.empty() && answer.result.status >= 0) row.message += (row.message.empty() ? "" : "; ") + remark;
       work.doubts.objects(environment, answer.kind == Proximity::KIND_ENVIRONMENT);
-      work.doubts.ages(work.lookup.oldest(), work.joints.age);
+      work.doubts.ages(work.lookup.age(), work.joints.age);
       work.doubts.apply(row);
     }
     work.drawing.motion = std::move(motion);

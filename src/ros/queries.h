@@ -7,8 +7,10 @@
 #include <curve_proximity/Proximity.h>
 #include <curve_proximity/ProximityQuery.h>
 #include <curve_proximity/SceneState.h>
+#include <nav_msgs/Path.h>
 #include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
+#include <trajectory_msgs/MultiDOFJointTrajectory.h>
 
 #include <atomic>
 #include <curve_proximity/motion.hpp>
@@ -56,7 +58,7 @@ class List {
 
 struct QueryResponse;
 
-/** Told of the rows so far, and how many curves and trajectories are done. */
+/** Told of the rows so far, and how many curves, paths and trajectories are done. */
 using Progress = std::function<void(const QueryResponse &response, std::size_t done)>;
 
 /** What services, topics and the action ask, by reference. */
@@ -64,8 +66,10 @@ struct QueryRequest {
   QueryType query_type;
   double delta; /**< [m] of TOLERANCE */
   List<Curve> curves;
+  List<nav_msgs::Path> paths;
   List<trajectory_msgs::JointTrajectory> trajectories;
-  const ProximityQuery &more; /**< all else; its curves and trajectories are not looked at */
+  List<trajectory_msgs::MultiDOFJointTrajectory> multi_dof_trajectories;
+  const ProximityQuery &more; /**< all else; what stands in the four lists above is not looked at */
   double budget_ms = 0.0;     /**< 0: the server's */
   std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now(); /**< when the budget begins */
   const std::atomic<bool> *cancelled = nullptr; /**< set, it ends this query; null: nobody can */
@@ -73,7 +77,18 @@ struct QueryRequest {
   Turn *turn = nullptr;                         /**< given back to others now and then; may be null */
 
   QueryRequest(QueryType type, double limit, const ProximityQuery &query)
-      : query_type(type), delta(limit), curves(query.curves), trajectories(query.trajectories), more(query) {}
+      : query_type(type),
+        delta(limit),
+        curves(query.curves),
+        paths(query.paths),
+        trajectories(query.trajectories),
+        multi_dof_trajectories(query.multi_dof_trajectories),
+        more(query) {}
+
+  /** Curves, paths and trajectories. */
+  std::size_t size() const {
+    return curves.size() + paths.size() + trajectories.size() + multi_dof_trajectories.size();
+  }
 };
 
 /** "distance", "tolerance", "collision". Throws Error for any other word. */
@@ -117,6 +132,10 @@ class Queries {
   void answer(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
 
  private:
+  struct CurveSearch;
+  struct CurvePlace;
+  struct CurveRows;
+
   /* A request on its way: what was asked, of which scene, and what the answer rests on. */
   struct Work {
     const QueryRequest &request;
@@ -127,15 +146,30 @@ class Queries {
     Doubts doubts;
     QueryResponse &response;
     Drawing &drawing;
+    double budget_ms;
+    std::size_t done;                    /* of the request's curves, paths and trajectories */
+    std::size_t trajectories;            /* of the robot, so far */
+    std::unique_ptr<CurveSearch> search; /* null as long as there is no curve */
   };
 
   Query toQuery(const QueryRequest &request, const Snapshot &snapshot) const;
   std::size_t checkLimits(const QueryRequest &request, const Snapshot &snapshot) const;
   void answerAll(const QueryRequest &request, QueryResponse &response, Drawing &drawing);
   void answerCurves(Work &work);
+  CurveSearch &curveSearch(Work &work);
+  static CurvePlace place(const Curve &curve, CurveSearch &search, Work &work);
+  static void search(const Curve &message, const CurvePlace &place, const Query &query, bool drawn,
+                     Workspace &workspace, CurveRows &out);
+  static void gather(const CurvePlace *places, CurveRows &&found, CurveSearch &search, Work &work);
+  static void answerCurve(const Curve &message, CurveSearch &search, Work &work);
+  static void refuseCurve(const std::string &id, const std::string &why, CurveSearch &search, Work &work);
+  void answerManyCurves(CurveSearch &search, Work &work);
   void answerTrajectories(Work &work);
+  void answerMultiDofTrajectories(Work &work);
+  void answerFlight(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, Work &work);
+  void answerTrajectory(const trajectory_msgs::JointTrajectory &message, Work &work, std::string why_not = "");
   void answerState(Work &work);
-  void answerTrajectory(const trajectory_msgs::JointTrajectory &message, const std::string &id, Work &work);
+  static void tellProgress(Work &work);
   void answerMotion(TrajectoryDescription trajectory, const ros::Time &stamp, const std::string &remark,
                     const std::string &why_not, Work &work);
   void describe(Work &work) const;

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "checked_stream.h"
 #include "cloud.h"
 #include "guard.h"
 
@@ -25,8 +26,12 @@ ros::NodeHandle onQueue(const ros::NodeHandle &handle, ros::CallbackQueue &queue
 
 Sensors::Sensors(const ros::NodeHandle &handle, const Parameters &parameters, LiveScene &live, const Frames &frames)
     : parameters_(parameters), live_(live), frames_(frames), handle_(onQueue(handle, queue_)), spinner_(1, &queue_) {
-  subscribers_ = {handle_.subscribe("cloud", 1, &Sensors::takeCloud, this),
-                  handle_.subscribe("octomap", 1, &Sensors::takeOctomap, this)};
+  ros::SubscribeOptions topics[] = {
+      checkedSubscription<sensor_msgs::PointCloud2>(
+          "cloud", 1, [this](const sensor_msgs::PointCloud2ConstPtr &message) { takeCloud(message); }),
+      checkedSubscription<OctomapMessage>("octomap", 1,
+                                          [this](const OctomapMessage::ConstPtr &message) { takeOctomap(message); })};
+  for (ros::SubscribeOptions &topic : topics) subscribers_.push_back(handle_.subscribe(topic));
   spinner_.start();
 }
 

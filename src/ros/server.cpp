@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "../scene/yaml/scene_change.h"
+#include "checked_stream.h"
 #include "conversions.h"
 #include "guard.h"
 #include "memory_account.h"
@@ -97,6 +98,7 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
       state_file_(handle, parameters_, live_),
       queries_(parameters_, tuning_, live_, frames_, statistics_, stop_),
       constraints_(parameters_, live_, frames_, stop_) {
+  memory::setLimit(static_cast<std::size_t>(parameters_.memory_limit_mb) << 20);
   warnOfOtherLinks(live_);
   loadScene();
   restoreScene();
@@ -133,8 +135,12 @@ ProximityServer::ProximityServer(const ros::NodeHandle &handle, const Parameters
                 constraints_.answer(request, response, drawing, &turn);
                 if (drawing) markers_->show(std::move(drawing));
               }))};
-  objects_ = {handle_.subscribe("collision_object", OBJECTS_KEPT, &ProximityServer::takeObject, this),
-              handle_.subscribe("attached_collision_object", OBJECTS_KEPT, &ProximityServer::takeAttached, this)};
+  const auto take_object = [this](const CollisionObjectConstPtr &object) { takeObject(object); };
+  const auto take_attached = [this](const AttachedCollisionObjectConstPtr &object) { takeAttached(object); };
+  ros::SubscribeOptions topics[] = {
+      checkedSubscription<CollisionObject>("collision_object", OBJECTS_KEPT, take_object),
+      checkedSubscription<AttachedCollisionObject>("attached_collision_object", OBJECTS_KEPT, take_attached)};
+  for (ros::SubscribeOptions &topic : topics) objects_.push_back(handle_.subscribe(topic));
   pipeline_ = std::make_unique<Pipeline>(handle, parameters_, tuning_, live_, queries_, *markers_, stop_);
   batches_ = std::make_unique<BatchAction>(control_handle_, parameters_.fixed_frame, queries_, turns_, stop_);
   diagnostics_ =
@@ -190,10 +196,7 @@ typename ServiceHelper<Service>::Handler ProximityServer::handler(std::size_t ti
     });
     if (!admitted) return;
     typename Helper::Request request;
-    {
-      const memory::Reading reading(call.bytes);
-      read(request);
-    }
+    read(request);
     answered(response, [&] { work(call, at_work, request, response); });
   };
 }
@@ -252,10 +255,17 @@ std::vector<std::string> ProximityServer::apply(const ApplyScene::Request &reque
   change.stop = [&] { return stop_ || std::chrono::steady_clock::now() >= deadline; };
   for (std::string &fault : live_.scene.apply(change)) faults.push_back(std::move(fault));
 
-  // What somebody sets or removes by name is no sensor's until its next message.
-  for (const Operation &operation : change.operations)
-    if (!operation.object.id.empty()) live_.sensors.forget(operation.object.id);
-  live_.lost = false;
+  // What somebody has set or removed by name is no sensor's until its next message.
+  const SnapshotPtr after = live_.scene.snapshot();
+  const auto object = [](const Snapshot &snapshot, const std::string &id) {
+    const auto found = snapshot.objects().find(id);
+    return found == snapshot.objects().end() ? nullptr : found->second;
+  };
+  for (const Operation &operation : change.operations) {
+    const std::string &id = operation.object.id;
+    if (faults.empty() || object(*before, id) != object(*after, id)) live_.sensors.forget(id);
+  }
+  if (faults.empty()) live_.lost = false;
   state_file_.changed();
   return faults;
 }

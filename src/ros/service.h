@@ -14,6 +14,8 @@
 #include <functional>
 #include <string>
 
+#include "checked_stream.h"
+
 namespace curve_proximity {
 
 /** What is known of a call beside its request. */
@@ -41,7 +43,12 @@ class ServiceHelper : public ros::ServiceCallbackHelper {
     call.client = clientOf(params.connection_header.get());
     Response response;
     handler_(
-        call, [&](Request &request) { ros::serialization::deserializeMessage(params.request, request); }, response);
+        call,
+        [&](Request &request) {
+          CheckedStream stream(params.request.buf.get(), params.request.num_bytes);
+          stream.next(request);
+        },
+        response);
     params.response = ros::serialization::serializeServiceResponse(true, response);
     return true;
   }

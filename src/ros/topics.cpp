@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "topics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -199,29 +200,26 @@ void addColumns(const MultiDOFJointTrajectory &trajectory, std::size_t j, const 
 
 } // namespace
 
-trajectory_msgs::JointTrajectory toJointTrajectory(const MultiDOFJointTrajectory &trajectory, const Robot *robot,
+bool movesRobot(const MultiDOFJointTrajectory &trajectory, const Robot *robot, const Srdf &srdf) {
+  return robot && std::any_of(trajectory.joint_names.begin(), trajectory.joint_names.end(),
+                              [&](const std::string &name) { return findJoint(name, *robot, srdf).has_value(); });
+}
+
+trajectory_msgs::JointTrajectory toJointTrajectory(const MultiDOFJointTrajectory &trajectory, const Robot &robot,
                                                    const Srdf &srdf) {
   trajectory_msgs::JointTrajectory out;
   out.header = trajectory.header;
-  std::vector<std::optional<FreeJoint>> joints;
-  std::size_t found = 0;
-  for (const std::string &name : trajectory.joint_names) {
-    joints.push_back(robot ? findJoint(name, *robot, srdf) : std::nullopt);
-    found += joints.back().has_value();
-  }
-  if (found == 0) return out;
-
   out.points.resize(trajectory.points.size());
   for (std::size_t i = 0; i < trajectory.points.size(); ++i)
     out.points[i].time_from_start = trajectory.points[i].time_from_start;
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    if (!joints[j])
-      throw Error("joint '" + trajectory.joint_names[j] + "' is no planar or floating joint of the robot");
+  for (std::size_t j = 0; j < trajectory.joint_names.size(); ++j) {
+    const std::optional<FreeJoint> joint = findJoint(trajectory.joint_names[j], robot, srdf);
+    if (!joint) throw Error("joint '" + trajectory.joint_names[j] + "' is no planar or floating joint of the robot");
     const std::string &frame = trajectory.header.frame_id;
-    if (!frame.empty() && frame != joints[j]->parent)
-      throw Error("the trajectory is in frame '" + frame + "', joint '" + joints[j]->name + "' moves in '" +
-                  joints[j]->parent + "'");
-    addColumns(trajectory, j, *joints[j], out);
+    if (!frame.empty() && frame != joint->parent)
+      throw Error("the trajectory is in frame '" + frame + "', joint '" + joint->name + "' moves in '" + joint->parent +
+                  "'");
+    addColumns(trajectory, j, *joint, out);
   }
   return out;
 }

@@ -24,14 +24,17 @@ void fitNaturalSpline(const std::vector<geometry_msgs::Point> &points, const std
  * "path". Throws Error: no poses, a position that is not finite, a pose in another frame than the path's. */
 Curve toCurve(const nav_msgs::Path &path, double radius);
 
+/** Is it about planar or floating joints of the robot? robot: may be null. */
+bool movesRobot(const trajectory_msgs::MultiDOFJointTrajectory &trajectory, const Robot *robot, const Srdf &srdf);
+
 /** A trajectory of planar and floating joints, as the joint trajectory of their parts (NAME/x …, NAME/trans_x …):
  * linear between the points; velocities and accelerations are not looked at. Angles and quaternions take the shorter
- * way from point to point. Empty where the robot has none of the joints. Throws Error, naming joint and point: some of
- * the joints are the robot's and others are not, a transform that leaves the plane of a planar joint, a count of
- * transforms that differs from that of the joints, numbers that are not finite, a frame that is not the joint's parent.
+ * way from point to point. Throws Error, naming joint and point: a joint that is not the robot's, a transform that
+ * leaves the plane of a planar joint, a count of transforms that differs from that of the joints, numbers that are not
+ * finite, a frame that is not the joint's parent.
  */
 trajectory_msgs::JointTrajectory toJointTrajectory(const trajectory_msgs::MultiDOFJointTrajectory &trajectory,
-                                                   const Robot *robot, const Srdf &srdf);
+                                                   const Robot &robot, const Srdf &srdf);
 
 /** Of what is no robot's: each joint's translation as the natural cubic spline through its points over time [s], id the
  * joint's name. Throws Error: no joints, fewer than two points, times that do not ascend, counts that differ. */

@@ -25,17 +25,17 @@ void complain(const std::string &why) {
   ROS_ERROR("gate: %s", why.c_str());
 }
 
-bool addTo(ProximityQuery &query, const Curve &curve) {
+void addTo(ProximityQuery &query, const Curve &curve) {
   query.curves.push_back(curve);
-  return true;
 }
-bool addTo(ProximityQuery &query, const trajectory_msgs::JointTrajectory &trajectory) {
+void addTo(ProximityQuery &query, const nav_msgs::Path &path) {
+  query.paths.push_back(path);
+}
+void addTo(ProximityQuery &query, const trajectory_msgs::JointTrajectory &trajectory) {
   query.trajectories.push_back(trajectory);
-  return true;
 }
-template <class Message>
-bool addTo(ProximityQuery &, const Message &) {
-  return false;
+void addTo(ProximityQuery &query, const trajectory_msgs::MultiDOFJointTrajectory &trajectory) {
+  query.multi_dof_trajectories.push_back(trajectory);
 }
 
 template <class Entry>
@@ -97,7 +97,7 @@ void TrajectoryGate::connect(const std::string &topic) {
     guarded(
         [&] {
           receive({fingerprint(*message), [out, message] { out.publish(message); },
-                   [message](ProximityQuery &query) { return addTo(query, *message); }});
+                   [message](ProximityQuery &query) { addTo(query, *message); }});
         },
         complain);
   }));
@@ -136,7 +136,7 @@ bool TrajectoryGate::isStillClear(const Waiting &message, const ProximityResults
         clear = now.epoch == results.scene.epoch && now.version == results.scene.version;
         if (clear) return;
         ProximityQuery query;
-        if (!message.ask(query)) throw Error("the scene has changed since the answer");
+        message.ask(query);
         query.current_joints = !std::isnan(results.scene.joint_state_age);
         query.self_collision = std::any_of(results.results.begin(), results.results.end(),
                                            [](const Proximity &row) { return row.kind == Proximity::KIND_SELF; });

@@ -43,7 +43,7 @@ class TrajectoryGate {
   struct Waiting {
     std::uint64_t fingerprint;
     std::function<void()> pass;
-    std::function<bool(ProximityQuery &)> ask; /* makes a query of the message; false: it cannot be asked about again */
+    std::function<void(ProximityQuery &)> ask; /* makes a query of the message */
   };
   struct Answered {
     std::uint64_t fingerprint;

@@ -106,6 +106,20 @@ Turn::Turn(Turns &turns, const std::string &client, Turns::Clock::time_point dea
              std::to_string(static_cast<int>(1000.0 * waited)) + " ms");
 }
 
+/** Granted already. */
+Turn::Turn(Turns &turns, Turns::Client &client) : turns_(turns) {
+  ticket_.client = &client;
+  ticket_.since = ticket_.began = Turns::Clock::now();
+  ++client.active;
+  ++turns_.running_;
+}
+
+std::unique_ptr<Turn> Turn::another() {
+  const Turns::Lock lock(turns_.mutex_);
+  if (!turns_.waiting_.empty() || turns_.running_ >= turns_.slots_) return nullptr;
+  return std::unique_ptr<Turn>(new Turn(turns_, *ticket_.client));
+}
+
 Turn::~Turn() {
   const Turns::Lock lock(turns_.mutex_);
   turns_.release(ticket_);

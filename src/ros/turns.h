@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <list>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -87,6 +88,9 @@ class Turn {
   Turn(const Turn &) = delete;
   Turn &operator=(const Turn &) = delete;
 
+  /** Another turn for the same client, if one is free now and nobody waits; else null. */
+  std::unique_ptr<Turn> another();
+
   /** Lets others compute if it is their turn; returns when it is ours again. Costs a load where nobody waits. */
   void yield();
 
@@ -107,6 +111,7 @@ class Turn {
   };
 
  private:
+  Turn(Turns &turns, Turns::Client &client);
   void giveBack();
   void takeAgain();
 

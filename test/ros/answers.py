@@ -349,6 +349,18 @@ class Large(TestCase):
         for i in (0, 17, 9999):
             self.assertContains(response.results[i], 1 + i * 1e-3 - 0.25)
 
+    def test_many_curves_in_one_request_are_answered_as_one_by_one(self):
+        """Several threads share them; rows keep their order, and a curve that fails keeps its row."""
+        curves = [bezier((0, 0.1 * (i % 7), 1 + i * 1e-2), (2, 0, 1 + i * 1e-3), id='c%d' % i) for i in range(300)]
+        curves[77] = bezier(id='c77')
+        curves[200] = bezier((0, 0, 1), (1, 0, 1), id='c200', frame='nowhere')
+        together = self.server.distance(curves, per_object=True)
+        self.assertFalse(together.success)
+        self.assertIn("curve 77 ('c77')", together.message)
+        rows = [row for curve in curves for row in self.server.distance(curve, per_object=True).results]
+        self.assertEqual([(r.id, r.b, r.status, repr(r.lower), repr(r.upper), repr(r.t)) for r in together.results],
+                         [(r.id, r.b, r.status, repr(r.lower), repr(r.upper), repr(r.t)) for r in rows])
+
     def test_a_budget_of_one_node_leaves_a_true_interval(self):
         wave = bezier((0, 0, 1), (0.5, 2, 0.4), (1, -3, 1.5), (1.5, 2, 0.4), (2, 0, 1))
         exact = self.distance(wave)

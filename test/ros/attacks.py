@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What one client can make the node hold: requests of honest form and hostile size, under a memory limit. The resident memory
 never goes above the limit and 64 MB, and goes back afterwards. scripts/soak has these at full size."""
-import io
-import os
 import socket
 import struct
 import threading
@@ -14,8 +12,7 @@ import numpy
 import rosgraph
 from curve_proximity.msg import Body, CollisionObject, Curve, ProximityQuery
 from curve_proximity.srv import ApplyScene, ApplySceneRequest, DistanceRequest, Distance
-from helpers import Call, Node, Server, bezier, run, sphere, until
-from hostile import framed, handshake
+from helpers import Call, Node, Server, bezier, handshake, raw_call, run, serialized, sphere, until
 
 LIMIT_MB = 300
 ROOM_MB = 64
@@ -59,25 +56,10 @@ class Attacks(unittest.TestCase):
 
     def send(self, service, kind, message, copies=1):
         """The same bytes over as many connections at once; the answers, None where a connection was closed."""
-        buffer = io.BytesIO()
-        message.serialize(buffer)
-        return self.send_bytes(service, kind, buffer.getvalue(), copies)
+        return self.send_bytes(service, kind, serialized(message), copies)
 
     def send_bytes(self, service, kind, data, copies=1):
-        address = rosgraph.Master('/test').lookupService('/attacked/' + service).split('//')[1].split(':')
-
-        def call():
-            with socket.create_connection((address[0], int(address[1])), 20) as connection:
-                connection.sendall(handshake(service='/attacked/' + service, md5sum=kind._md5sum))
-                size, = struct.unpack('<I', connection.recv(4, socket.MSG_WAITALL))
-                connection.recv(size, socket.MSG_WAITALL)
-                connection.sendall(framed(data))
-                if connection.recv(1, socket.MSG_WAITALL) != b'\1':
-                    return None
-                size, = struct.unpack('<I', connection.recv(4, socket.MSG_WAITALL))
-                return kind._response_class().deserialize(connection.recv(size, socket.MSG_WAITALL))
-
-        calls = [Call(call) for _ in range(copies)]
+        calls = [Call(lambda: raw_call('/attacked/' + service, kind, data)) for _ in range(copies)]
         for one in calls:
             one.join(60)
             self.assertIsNotNone(one.ended, 'a client still waits')
@@ -97,9 +79,7 @@ class Attacks(unittest.TestCase):
     def test_millions_of_points_in_one_body(self):
         for copies, points in ((1, 5000000), (4, 1500000)):
             request = ApplySceneRequest(objects=[CollisionObject(id='big', bodies=[Body(type='points')])])
-            buffer = io.BytesIO()
-            request.serialize(buffer)
-            data = buffer.getvalue()
+            data = serialized(request)
             at = self.vertices_at()
             data = data[:at] + struct.pack('<I', points) + numpy.random.default_rng(1).random((points, 3)).tobytes() + data[at + 4:]
             answers = self.send_bytes('apply_scene', ApplyScene, data, copies)
@@ -117,18 +97,24 @@ class Attacks(unittest.TestCase):
         for n in (0, 1):
             body = Body(type='points')
             body.vertices = [bezier((0, 0, 0)).points[0]] * n
-            buffer = io.BytesIO()
-            ApplySceneRequest(objects=[CollisionObject(id='big', bodies=[body])]).serialize(buffer)
-            texts.append(buffer.getvalue())
+            texts.append(serialized(ApplySceneRequest(objects=[CollisionObject(id='big', bodies=[body])])))
         return next(i for i, (a, b) in enumerate(zip(*texts)) if a != b)
 
     def test_a_flood_of_small_strings_and_claimed_counts(self):
         # two million empty names take 8 MB on the wire and 64 MB as strings
-        data = io.BytesIO()
-        DistanceRequest(ProximityQuery(curves=[LINE], objects=[''] * 2000000)).serialize(data)
-        self.send_bytes('distance', Distance, data.getvalue(), 6)
+        data = serialized(DistanceRequest(ProximityQuery(curves=[LINE], objects=[''] * 2000000)))
+        self.send_bytes('distance', Distance, data, 6)
         for count in (1 << 20, 1 << 26, (1 << 32) - 1):
             self.assertEqual(self.send_bytes('distance', Distance, struct.pack('<I', count) + b'\0' * 60, 3), [None] * 3)
+        self.assertHeld()
+
+    def test_a_small_request_with_a_large_answer(self):
+        # 300 curves against each of 400 objects: 30 kB for more than half of the limit
+        self.server.apply(*[sphere('ball%d' % i, 0.1, (i, 0, -5)) for i in range(400)])
+        answer = self.server.distance([LINE] * 300, per_object=True)
+        self.assertFalse(answer.success)
+        self.assertRegex(answer.message, r'too large: .* \d+ MB, more than the \d+ MB')
+        self.assertTrue(self.server.distance([LINE] * 3, per_object=True).success)
         self.assertHeld()
 
     def test_connections_that_announce_gigabytes_and_send_little(self):

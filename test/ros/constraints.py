@@ -32,7 +32,7 @@ class Constraints(unittest.TestCase):
         cls.service = rospy.ServiceProxy('/curve_proximity/evaluate_constraints', EvaluateConstraints, persistent=True)
 
     def rows(self, *cases):
-        response = self.service(list(cases))
+        response = self.service(cases=list(cases))
         self.assertTrue(response.success, response.message)
         self.assertEqual(response.frame_id, 'world')
         return response.results
@@ -43,7 +43,7 @@ class Constraints(unittest.TestCase):
         return rows[0]
 
     def refused(self, *arguments, **fields):
-        response = self.service([query(*arguments, **fields)])
+        response = self.service(cases=[query(*arguments, **fields)])
         self.assertFalse(response.success)
         self.assertEqual(response.results[0].status, 'invalid')
         self.assertTrue(math.isnan(response.results[0].value))
@@ -117,7 +117,7 @@ class Constraints(unittest.TestCase):
         self.assertAlmostEqual(row.gradient_b.linear.y, 1.0)
 
     def test_without_names_all_are_asked_and_those_that_fail_do_not_spoil_the_others(self):
-        response = self.service([query(sphere('', 0.5), sphere('', 0.5, (0.6, 2, 0)))])
+        response = self.service(cases=[query(sphere('', 0.5), sphere('', 0.5, (0.6, 2, 0)))])
         self.assertFalse(response.success)
         rows = {row.provider: row for row in response.results}
         self.assertEqual(len(rows), 8)
@@ -137,7 +137,7 @@ class Constraints(unittest.TestCase):
     def test_wrong_cases_are_told_by_name_and_the_others_are_answered(self):
         good = query(sphere('', 0.5), sphere('', 0.5, (0, 3, 0)), providers=['pairs'], name='good')
         bad = query(sphere('', -0.5), sphere('', 0.5), providers=['pairs'], name='bad')
-        response = self.service([good, bad, good])
+        response = self.service(cases=[good, bad, good])
         self.assertFalse(response.success)
         self.assertEqual([row.status for row in response.results], ['ok', 'invalid', 'ok'])
         self.assertIn("case 1 ('bad')", response.message)
@@ -160,10 +160,10 @@ class Constraints(unittest.TestCase):
 
     def test_more_than_the_limits_is_refused(self):
         ball = sphere('', 0.5)
-        response = self.service([query(ball, ball, providers=['pairs'])] * 1001)
+        response = self.service(cases=[query(ball, ball, providers=['pairs'])] * 1001)
         self.assertFalse(response.success)
         self.assertIn('~max_curves', response.message)
-        self.assertEqual(self.service([]).results, [])
+        self.assertEqual(self.service(cases=[]).results, [])
 
     def test_many_cases_of_one_pair_are_answered_in_one_call(self):
         cases = [query(box('', (0.4, 0.5, 0.6)), box('', (0.3, 0.3, 0.3), (0.3 + 0.001 * i, 0, 0)), providers=['gap'])
@@ -209,7 +209,7 @@ class WrongProviders(unittest.TestCase):
         node = Node('bare')
         try:
             rospy.wait_for_service('/bare/evaluate_constraints', 20)
-            response = rospy.ServiceProxy('/bare/evaluate_constraints', EvaluateConstraints)([query()])
+            response = rospy.ServiceProxy('/bare/evaluate_constraints', EvaluateConstraints)(cases=[query()])
             self.assertFalse(response.success)
             self.assertIn('~constraint_providers', response.message)
         finally:

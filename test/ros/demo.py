@@ -3,12 +3,16 @@
 """demo.launch as it is: the Panda by robot_state_publisher, parameters from config/defaults.yaml, markers."""
 import math
 import os
+import sys
 import unittest
 
 import rospy
 from helpers import Server, bezier, box, bspline, joints, run, sphere, until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'scripts'))
+from draw_legend import clearance_colour  # noqa: E402
 
 READY = dict(panda_joint1=0.0, panda_joint2=-0.785, panda_joint3=0.0, panda_joint4=-2.356, panda_joint5=0.0,
              panda_joint6=1.571, panda_joint7=0.785, panda_finger_joint1=0.035)  # what demo.launch publishes
@@ -85,6 +89,9 @@ class Demo(unittest.TestCase):
         links = [m for m in shown if m.ns == 'robot']
         self.assertEqual(len(links), 11)
         self.assertGreater(len({(m.color.r, m.color.g, m.color.b) for m in links}), 2)  # each in the colour of its clearance
+        legend = [clearance_colour(0.0005 * i) for i in range(601)]
+        for link in links:
+            self.assertLess(min(math.dist(c, (link.color.r, link.color.g, link.color.b)) for c in legend), 0.01)
         self.assertEqual(len([m for m in shown if m.ns == 'swept']) % 11, 0)
 
 

@@ -68,8 +68,14 @@ class Diagnostics(unittest.TestCase):
         ring, balls, _ = ring_and_shells(shells=100)
         publisher = rospy.Publisher('/curve_proximity/curve', Curve, queue_size=200)
         self.assertTrue(until(publisher.get_num_connections, 10))
+        lost = TransformStamped(child_frame_id='island')
+        lost.header.frame_id, lost.header.stamp, lost.transform.rotation.w = 'sea', rospy.Time.now(), 1.0
+        transforms = rospy.Publisher('/tf', TFMessage, queue_size=10)
+        self.assertTrue(until(transforms.get_num_connections, 10))
+        transforms.publish(TFMessage([lost]))
+        time.sleep(0.3)
         for i in range(100):
-            publisher.publish(LINE)  # each waits ~tf_timeout for the arm, which nobody publishes
+            publisher.publish(bezier((0, 0, 1), (1, 0, 1), frame='island'))  # each waits ~tf_timeout for that frame
         status, values = self.status('topics', lambda s, v: int(v['dropped']) > 50)
         self.assertEqual(status.level, DiagnosticStatus.WARN)
 

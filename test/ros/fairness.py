@@ -8,7 +8,7 @@ import time
 import unittest
 
 from helpers import Call, Node, Server, bezier, ring_and_shells, run, sphere
-from curve_proximity.msg import CollisionObject
+from curve_proximity.msg import Body, CollisionObject
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 
@@ -101,7 +101,6 @@ class Fairness(unittest.TestCase):
         server.replace(sphere('ball', 0.25))
         vertices = [bezier((i % 100, i // 100, 50.0)).points[0] for i in range(150000)]
         large = CollisionObject(id='large')
-        from curve_proximity.msg import Body
         large.bodies = [Body(type=Body.POINTS, vertices=vertices)]
         other = Server('/building')
         call = Call(lambda: other.apply(large))
@@ -111,6 +110,14 @@ class Fairness(unittest.TestCase):
             self.assertTrue(server.apply(sphere('small', 0.1, (5, 5, 5))).success)
         self.assertTrue(call.response.success, call.response.message)
         self.assertLess(max(times), 1.0)
+
+    def test_changes_of_the_scene_have_a_budget_too(self):
+        server = self.begin('frugal', scene_budget_ms=5.0)
+        response = server.apply(*[sphere('ball%d' % i, 0.25) for i in range(20000)])
+        self.assertFalse(response.success)
+        self.assertIn('no time left', response.message)
+        made = len(server.scene().objects)
+        self.assertTrue(0 < made < 20000, made)
 
 
 if __name__ == '__main__':

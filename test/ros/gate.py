@@ -9,8 +9,8 @@ import actionlib
 import genpy.dynamic
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus
-from curve_proximity.msg import CollisionObject, Refusal
-from helpers import Server, joints, run, sphere, thing, until
+from curve_proximity.msg import CollisionObject, Proximity, ProximityResults, Refusal, SceneState
+from helpers import Server, bezier, fingerprint, free_flight, joints, path, run, sphere, thing, until
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -133,6 +133,32 @@ class Gate(unittest.TestCase):
         self.client.cancel_goal()
         self.assertTrue(self.client.wait_for_result(rospy.Duration(5)))
         self.assertEqual((self.client.get_state(), self.controller.cancelled), (GoalStatus.PREEMPTED, before + 1))
+
+    def test_what_was_clear_of_an_older_scene_is_asked_about_again(self):
+        """Whatever the type of the message. The answer comes from the test: as of the scene before this one."""
+        answers = rospy.Publisher('/curve_proximity/proximity', ProximityResults, queue_size=5)
+        messages = dict(curve=bezier((-1, 0.5, 0.5), (1, 0.5, 0.5), id='c'), path=path((-1, 0.5, 0.5), (1, 0.5, 0.5)),
+                        multi_dof_trajectory=free_flight('drone', (-1, 0.5, 0.5), (1, 0.5, 0.5)))
+        topics = {name: rospy.Publisher('/gate/' + name, type(message), queue_size=5) for name, message in messages.items()}
+        passed = []
+        out = [rospy.Subscriber('/gate/clear_' + name, type(message), passed.append) for name, message in messages.items()]
+        everything = [answers, *topics.values(), *out]
+        self.assertTrue(until(lambda: all(one.get_num_connections() for one in everything), 10))
+        old = self.server.scene().scene
+        for blocked in (False, True):
+            self.server.apply(sphere('post' if blocked else 'elsewhere', 0.1, (0, 0.5, 0.5 if blocked else 3)))
+            for name, message in messages.items():
+                del self.refused[:], passed[:]
+                row = Proximity(id='c', kind='curve', status='ok', verdict='clear', lower=1.0, upper=1.0)
+                answer = ProximityResults(source=name, fingerprint=fingerprint(message), query_type='tolerance', delta=0.05,
+                                          success=True, scene=SceneState(epoch=old.epoch, version=old.version), results=[row])
+                answer.scene.joint_state_age = 0.1  # of the robot by ~joint_states: here is no tf2
+                topics[name].publish(message)
+                answers.publish(answer)
+                self.assertTrue(until(lambda: passed or self.refused, 5), name)
+                self.assertEqual((len(passed), [r.row.b for r in self.refused]), (0, ['post']) if blocked else (1, []))
+        for subscriber in out:
+            subscriber.unregister()
 
     def test_refused_messages_of_topics_are_told_too(self):
         self.server.apply(sphere('post', 0.1, (0, 0.5, 0.5)))

@@ -1,21 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of the node share: messages by one call each, and the services of the node under test."""
+import io
 import itertools
 import math
 import os
+import socket
+import struct
 import subprocess
 import sys
 import threading
 import time
 
+import rosgraph
 import rospy
 import rostest
 from curve_proximity.msg import Body, CollisionObject, Curve, Hyperquadric, ProximityQuery
 from curve_proximity.srv import (ApplyScene, ApplySceneRequest, Collision, CollisionRequest, Distance,
                                  DistanceRequest, GetScene, Tolerance, ToleranceRequest)
-from geometry_msgs.msg import Point, Pose, Quaternion
+from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Transform
+from nav_msgs.msg import Path
 from sensor_msgs.msg import JointState
 from shape_msgs.msg import Mesh, MeshTriangle, Plane, SolidPrimitive
+from trajectory_msgs.msg import (JointTrajectory, JointTrajectoryPoint, MultiDOFJointTrajectory,
+                                 MultiDOFJointTrajectoryPoint)
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'scripts'))
 from free_port import free_port  # noqa: E402,F401 (for the tests that start masters)
@@ -113,6 +120,48 @@ def joints(**positions):
     return JointState(name=list(positions), position=list(positions.values()))
 
 
+MASK = 2**64 - 1
+
+
+def fingerprint(message):
+    """As include/curve_proximity/fingerprint.hpp documents it."""
+    buffer = io.BytesIO()
+    message.serialize(buffer)
+    data = b'\0\0\0\0' + buffer.getvalue()[4:]
+    value = 0xcbf29ce484222325 ^ len(data)
+    data += b'\0' * (-len(data) % 8)
+    for word, in struct.iter_unpack('<Q', data):
+        value = ((value ^ word) * 0x9e3779b97f4a7c15) & MASK
+        value ^= value >> 29
+    return value
+
+
+def path(*points, frame='', **fields):
+    message = Path(**fields)
+    message.header.frame_id = frame
+    for x, y, z in points:
+        pose = PoseStamped()
+        pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = x, y, z
+        message.poses.append(pose)
+    return message
+
+
+def joint_trajectory(names, *rows):
+    return JointTrajectory(joint_names=names, points=[
+        JointTrajectoryPoint(positions=row, time_from_start=rospy.Duration(i)) for i, row in enumerate(rows)])
+
+
+def free_flight(name, *points, times=None):
+    message = MultiDOFJointTrajectory(joint_names=[name])
+    for i, (x, y, z) in enumerate(points):
+        transform = Transform()
+        transform.translation.x, transform.translation.y, transform.translation.z = x, y, z
+        transform.rotation.w = 1.0
+        when = rospy.Duration(i if times is None else times[i])
+        message.points.append(MultiDOFJointTrajectoryPoint(transforms=[transform], time_from_start=when))
+    return message
+
+
 class Server:
     """The services of one node, by persistent connections unless told otherwise."""
 
@@ -147,6 +196,84 @@ class Server:
 
     def scene(self, *ids):
         return self._get(list(ids))
+
+
+def header(**fields):
+    """A TCPROS connection header."""
+    entries = b''
+    for name, value in fields.items():
+        entry = ('%s=%s' % (name, value)).encode()
+        entries += struct.pack('<I', len(entry)) + entry
+    return struct.pack('<I', len(entries)) + entries
+
+
+def handshake(**fields):
+    return header(**dict(dict(callerid='/hostile', persistent='1'), **fields))
+
+
+def framed(data, claimed=None):
+    return struct.pack('<I', len(data) if claimed is None else claimed) + data
+
+
+def serialized(message):
+    buffer = io.BytesIO()
+    message.serialize(buffer)
+    return buffer.getvalue()
+
+
+class RawClient:
+    """A connection to a service that sends bytes."""
+
+    def __init__(self, service, kind, seconds=60):
+        address = rosgraph.Master('/test').lookupService(service).split('//')[1].split(':')
+        self.kind = kind
+        self.connection = socket.create_connection((address[0], int(address[1])), 20)
+        self.connection.settimeout(seconds)
+        self.connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.connection.sendall(handshake(service=service, md5sum=kind._md5sum))
+        self._sized()
+
+    def _received(self, size):
+        data = bytearray()
+        while len(data) < size:
+            part = self.connection.recv(size - len(data))
+            if not part:
+                raise OSError('the connection was closed')
+            data += part
+        return bytes(data)
+
+    def _sized(self):
+        size, = struct.unpack('<I', self._received(4))
+        return self._received(size) if size else b''
+
+    def call(self, data):
+        """The answer; None where roscpp says that the call failed. Raises OSError where the connection is closed."""
+        self.connection.sendall(framed(data))
+        good = self._received(1) == b'\1'
+        answer = self._sized()
+        return self.kind._response_class().deserialize(answer) if good else None
+
+    def close(self):
+        self.connection.close()
+
+
+def raw_call(service, kind, data, seconds=60):
+    """One call over a connection of its own; None where it failed, whatever the way."""
+    client = RawClient(service, kind, seconds)
+    try:
+        return client.call(data)
+    except OSError:
+        return None
+    finally:
+        client.close()
+
+
+def resident_mb(pid):
+    with open('/proc/%d/status' % pid) as status:
+        for line in status:
+            if line.startswith('VmRSS:'):
+                return int(line.split()[1]) / 1024.0
+    return 0.0
 
 
 def executable(package, name):
@@ -193,11 +320,7 @@ class Node:
             return None
 
     def resident_mb(self):
-        with open('/proc/%d/status' % self.process.pid) as status:
-            for line in status:
-                if line.startswith('VmRSS:'):
-                    return int(line.split()[1]) / 1024.0
-        return 0.0
+        return resident_mb(self.process.pid)
 
     def end(self):
         if self.alive():

@@ -13,7 +13,7 @@ import unittest
 import rosgraph
 from curve_proximity.msg import ProximityQuery
 from curve_proximity.srv import Distance, DistanceRequest
-from helpers import Node, Server, bezier, run, sphere
+from helpers import Node, Server, bezier, framed, handshake, header, run, sphere
 
 CONNECTIONS = int(os.environ.get('CURVE_PROXIMITY_HOSTILE', 300))
 MEMORY_MB = 2048
@@ -21,28 +21,14 @@ SEED = 20240607
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 
 
-def header(**fields):
-    """A TCPROS connection header."""
-    entries = b''
-    for name, value in fields.items():
-        entry = ('%s=%s' % (name, value)).encode()
-        entries += struct.pack('<I', len(entry)) + entry
-    return struct.pack('<I', len(entries)) + entries
-
-
-def handshake(**fields):
-    return header(**dict(dict(callerid='/hostile', service='/hostile_target/distance', md5sum=Distance._md5sum,
-                              persistent='1'), **fields))
+def target_handshake(**fields):
+    return handshake(**dict(dict(service='/hostile_target/distance', md5sum=Distance._md5sum), **fields))
 
 
 def request():
     buffer = io.BytesIO()
     DistanceRequest(ProximityQuery(curves=[LINE])).serialize(buffer)
     return buffer.getvalue()
-
-
-def framed(data, claimed=None):
-    return struct.pack('<I', len(data) if claimed is None else claimed) + data
 
 
 def post(body, length=None, path='/RPC2'):
@@ -65,20 +51,20 @@ class Attacker:
         parameter = '<param><value>%s</value></param>'
         return [
             (self.service, lambda: self.bytes(400)),
-            (self.service, lambda: handshake()[:r.randrange(1, 60)]),
+            (self.service, lambda: target_handshake()[:r.randrange(1, 60)]),
             (self.service, lambda: header(**{'': '', 'md5sum': '*'})),
-            (self.service, lambda: handshake(md5sum='0' * 32) + framed(good)),
-            (self.service, lambda: handshake(service='/hostile_target/none')),
+            (self.service, lambda: target_handshake(md5sum='0' * 32) + framed(good)),
+            (self.service, lambda: target_handshake(service='/hostile_target/none')),
             (self.service, lambda: struct.pack('<I', r.choice([0, 5, 0x7fffffff, 0xffffffff, 900000000])) + b'abc'),
             # a count of curves, points or names that the bytes do not hold
-            (self.service, lambda: handshake() + framed(struct.pack('<I', r.choice([0xffffffff, 0x10000000])) + good[4:])),
-            (self.service, lambda: handshake() + framed(good[:4] + struct.pack('<IIII', 1, 2, 3, 0xfffffff0) + good[20:])),
-            (self.service, lambda: handshake() + framed(self.bytes(300))),
+            (self.service, lambda: target_handshake() + framed(struct.pack('<I', r.choice([0xffffffff, 0x10000000])) + good[4:])),
+            (self.service, lambda: target_handshake() + framed(good[:4] + struct.pack('<IIII', 1, 2, 3, 0xfffffff0) + good[20:])),
+            (self.service, lambda: target_handshake() + framed(self.bytes(300))),
             # half a request; one that claims far more than it sends
-            (self.service, lambda: handshake() + framed(good)[:r.randrange(1, len(good))]),
-            (self.service, lambda: handshake() + framed(good, r.choice([999999999, 0xffffffff, 50000000]))),
+            (self.service, lambda: target_handshake() + framed(good)[:r.randrange(1, len(good))]),
+            (self.service, lambda: target_handshake() + framed(good, r.choice([999999999, 0xffffffff, 50000000]))),
             # clients that never read
-            (self.service, lambda: handshake() + framed(good) * 50),
+            (self.service, lambda: target_handshake() + framed(good) * 50),
             (self.api, lambda: self.bytes(400)),
             (self.api, lambda: post(self.bytes(200))),
             (self.api, lambda: post(b'<methodCall>' * 200)),
@@ -135,7 +121,7 @@ class Hostile(unittest.TestCase):
 
     def test_a_request_of_100_megabytes_is_survived(self):
         junk = os.urandom(1 << 20) * 100
-        self.attacker.connect((self.attacker.service, lambda: handshake() + framed(junk)))
+        self.attacker.connect((self.attacker.service, lambda: target_handshake() + framed(junk)))
         self.assertAnswers('100 MB of junk')
         # an honest message of that size: refused by the limit on control points
         n = 4000000
@@ -143,7 +129,7 @@ class Hostile(unittest.TestCase):
         points = b'\0' * 24 * n
         at = curve.rindex(struct.pack('<I', 2))  # the count of points
         self.assertGreater(at, 0)
-        self.attacker.connect((self.attacker.service, lambda: handshake() + framed(
+        self.attacker.connect((self.attacker.service, lambda: target_handshake() + framed(
             curve[:at] + struct.pack('<I', n) + points + curve[at + 4 + 48:])))
         self.assertAnswers('a curve of %d points' % n)
 

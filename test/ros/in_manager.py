@@ -1,11 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The server as a nodelet: it answers, and its manager outlives whatever becomes of it."""
+import struct
 import time
 import unittest
+from xmlrpc.client import ServerProxy
 
+import rosgraph
 import rospy
-from helpers import Call, Server, bezier, ring_and_shells, run, sphere
+from curve_proximity.msg import Body, CollisionObject
+from curve_proximity.srv import ApplyScene, ApplySceneRequest, Distance
+from helpers import Call, Server, bezier, raw_call, resident_mb, ring_and_shells, run, serialized, sphere
 from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
@@ -55,6 +60,30 @@ class Nodelet(unittest.TestCase):
         server.replace(sphere('ball', 0.25))
         self.assertTrue(server.distance(LINE).success)
         self.assertTrue(self.unload_nodelet('/afterwards').success)
+
+    def test_what_a_request_takes_is_bounded_in_a_manager_too(self):
+        """Without an account of all allocations: by what requests are going to take, and by the bytes that a count needs."""
+        pid = ServerProxy(rosgraph.Master('/test').lookupNode('/manager')).getPid('/test')[2]
+        rospy.set_param('/bounded/memory_limit_mb', 300)
+        self.addCleanup(rospy.delete_param, '/bounded')
+        server = self.load('/bounded')
+        server.replace(sphere('ball', 0.25), *[sphere('ball%d' % i, 0.1, (i, 0, -5)) for i in range(400)])
+        before = resident_mb(pid)
+        answer = server.distance([LINE] * 300, per_object=True)
+        self.assertRegex(answer.message, 'too large: .* MB')
+        for count in (1 << 20, 1 << 26, (1 << 32) - 1):  # a count of curves that no bytes follow
+            self.assertIsNone(raw_call('/bounded/distance', Distance, struct.pack('<I', count) + b'\0' * 60))
+        for points, word in ((2000000, 'too large'), (1000, None)):
+            body = Body(type=Body.POINTS, vertices=[bezier((0, 0, 0)).points[0]] * 2)
+            data = serialized(ApplySceneRequest(objects=[CollisionObject(id='points', bodies=[body])]))
+            at = data.index(struct.pack('<I', 2) + b'\0' * 48)
+            data = data[:at] + struct.pack('<I', points) + b'\0' * (24 * points) + data[at + 4 + 48:]
+            answer = raw_call('/bounded/apply_scene', ApplyScene, data)
+            self.assertEqual(answer.success, word is None, answer.message)
+            self.assertIn(word or '', answer.message)
+        self.assertLess(resident_mb(pid), before + 120)
+        self.assertTrue(server.distance(LINE).success)
+        self.assertTrue(self.unload_nodelet('/bounded').success)
 
     def test_a_wrong_parameter_fails_the_load_and_nothing_else(self):
         rospy.set_param('/wrong/epsilon', 'small')

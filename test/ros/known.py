@@ -4,15 +4,20 @@
 import math
 import os
 import signal
+import statistics
 import struct
 import tempfile
+import time
 import unittest
 
 import rospy
-from curve_proximity.msg import AttachedCollisionObject, CollisionObject
+from curve_proximity.msg import CollisionObject, ConstraintQuery
+from curve_proximity.srv import EvaluateConstraints
 from dynamic_reconfigure.client import Client as Reconfigure
+from geometry_msgs.msg import TransformStamped
 from helpers import Node, Server, bezier, joints, run, sphere, thing, until
 from sensor_msgs.msg import JointState, PointCloud2, PointField
+from tf2_msgs.msg import TFMessage
 
 LINE = bezier((-1, 0, 1), (1, 0, 1))
 ARM = os.path.dirname(os.path.abspath(__file__)) + '/data/arm.urdf'
@@ -77,6 +82,8 @@ class Known(unittest.TestCase):
         self.assertIn("'cloud'", response.warnings[0])
         self.assertEqual({o.id for o in server.scene().objects}, {'ball', 'cloud'})  # it keeps its last shape
         self.assertEqual(row(objects=['ball'])[0].verdict, 'clear')  # it is not about the cloud
+        self.assertFalse(server.apply(sphere('cloud', -1.0)).success)  # what fails takes nothing from the sensor
+        self.assertEqual(row()[0].status, 'unknown')
         distance = server.distance(LINE).results[0]
         self.assertEqual((distance.lower, distance.status), (0.0, 'unknown'))
         clouds.publish(cloud((0, 0, -3)))
@@ -115,6 +122,49 @@ class Known(unittest.TestCase):
         stale = until(lambda: (lambda r: r.results[0].status == 'stale' and r)(server.tolerance([], 0.01, robot_state=True)), 5)
         self.assertEqual(stale.results[0].verdict, 'undecided')
         self.assertGreater(stale.scene.joint_state_age, 0.5)
+
+    @staticmethod
+    def moving(frame, age):
+        moving = TransformStamped(child_frame_id=frame)
+        moving.header.frame_id, moving.header.stamp = 'world', rospy.Time.now() - rospy.Duration(age)
+        moving.transform.rotation.w = 1.0
+        return moving
+
+    def test_transforms_and_their_age(self):
+        _, server = self.begin('placed', max_age=0.5)
+        server.replace(sphere('ball', 0.25))
+        transforms = self.publisher('/tf', TFMessage)
+        line = bezier((-1, 0, 1), (1, 0, 1), frame='moving')
+
+        transforms.publish(TFMessage([self.moving('moving', 0.0)]))
+        fresh = until(lambda: (lambda r: r.success and r)(server.tolerance(line, 0.1)), 5)
+        self.assertEqual((fresh.results[0].verdict, fresh.results[0].status), ('clear', 'ok'))
+        self.assertLess(fresh.scene.transform_age, 0.5)
+        stale = until(lambda: (lambda r: r.results[0].status == 'stale' and r)(server.tolerance(line, 0.1)), 5)
+        self.assertEqual((stale.results[0].verdict, stale.results[0].lower), ('undecided', 0.0))
+        self.assertIn('transform', stale.results[0].message)
+        self.assertGreater(stale.scene.transform_age, 0.5)
+        self.assertEqual(server.tolerance(LINE, 0.1).results[0].verdict, 'clear')  # it needs no transform
+
+    def test_constraints_say_what_they_rest_on(self):
+        _, server = self.begin('constrained', constraint_providers=['curve_proximity/CurveDistance'], max_age=0.5)
+        rospy.wait_for_service('/constrained/evaluate_constraints', 10)
+        evaluate = rospy.ServiceProxy('/constrained/evaluate_constraints', EvaluateConstraints)
+        transforms = self.publisher('/tf', TFMessage)
+        scene = server.replace(sphere('ball', 0.25)).scene
+        cases = [ConstraintQuery(id='fixed', b=CollisionObject(id='ball'), curve=LINE),
+                 ConstraintQuery(id='moving', b=CollisionObject(id='ball'), curve=bezier((-1, 0, 1), (1, 0, 1), frame='carried'))]
+        transforms.publish(TFMessage([self.moving('carried', 0.0)]))
+        demand = dict(scene_epoch=scene.epoch, scene_version=scene.version)
+        fresh = until(lambda: (lambda r: r.success and r)(evaluate(cases=cases, **demand)), 5)
+        self.assertEqual([(r.id, r.status) for r in fresh.results], [('fixed', 'ok'), ('moving', 'ok')])
+        self.assertLess(fresh.scene.transform_age, 0.5)
+        stale = until(lambda: (lambda r: r.results[1].status == 'stale' and r)(evaluate(cases=cases)), 5)
+        self.assertEqual([(r.id, r.status) for r in stale.results], [('fixed', 'ok'), ('moving', 'stale')])
+        self.assertAlmostEqual(stale.results[1].value, 0.75, delta=1e-6)
+        self.assertTrue(math.isnan(stale.results[1].lower) and math.isnan(stale.results[1].upper))
+        self.assertIn('max_age', stale.warnings[0])
+        self.assertFalse(evaluate(cases=cases, scene_version=scene.version + 100).success)
 
     def test_the_scene_survives_a_crash_and_a_lost_one_is_said(self):
         folder = tempfile.mkdtemp()
@@ -169,10 +219,12 @@ class Known(unittest.TestCase):
                             ('budget_ms', -5.0), ('delta', -1.0), ('threads', 0), ('threads', 1000), ('max_nodes', -3)):
             kept = client.get_configuration()[name]
             self.assertEqual(client.update_configuration({name: value})[name], kept, (name, value))
-        begin = rospy.get_rostime().to_sec()
-        for threads in (256, 1, 64):
+        times = []
+        for threads in (256, 1, 64, 1, 256, 4):
+            begin = time.monotonic()
             self.assertEqual(client.update_configuration({'threads': threads})['threads'], threads)
-        self.assertLess(rospy.get_rostime().to_sec() - begin, 1.0)
+            times.append(time.monotonic() - begin)
+        self.assertLess(statistics.median(times), 0.2)
         row, = server.distance(LINE).results
         self.assertEqual(row.status, 'ok')
         self.assertEqual(client.update_configuration({'epsilon': 1e-3})['epsilon'], 1e-3)

@@ -112,7 +112,7 @@ class Markers(unittest.TestCase):
         evaluate = rospy.ServiceProxy('/curve_proximity/evaluate_constraints', EvaluateConstraints)
         at, height = (0.5, -0.25, 1.0), 0.2
         case = ConstraintQuery(a=sphere('', 0.3, (2, 0, at[2] + height)), b=sphere('', 0.4, at))
-        response = evaluate([case])
+        response = evaluate(cases=[case])
         self.assertTrue(response.success, response.message)
         shown = self.shown(lambda s: len(s['levels']) == 3, 'levels', 'sides')
         self.assertEqual([m.type for m in shown['sides']], [Marker.SPHERE] * 2)

@@ -3,10 +3,9 @@
 """scripts/soak: hours of everything at once. Half of the node's clients are honest, the others are not; every honest answer is
 compared with that of a twin that nobody else asks. Seeded."""
 import argparse
-import io
+import json
 import os
 import random
-import socket
 import statistics
 import struct
 import subprocess
@@ -18,24 +17,100 @@ import rosgraph
 import rospy
 from curve_proximity.msg import Body, CollisionObject, ProximityQuery
 from curve_proximity.srv import ApplyScene, ApplySceneRequest, Distance, DistanceRequest
-from helpers import Node, Server, bezier, bspline, box, free_port, ring_and_shells, sphere
-from hostile import Attacker, framed, handshake
+from helpers import Node, RawClient, Server, bezier, bspline, box, free_port, raw_call, ring_and_shells, serialized, sphere
+from hostile import Attacker
 
 LIMIT_MB, ROOM_MB, GROWTH_MB = 512, 64, 32  # growth: from the first quarter of the time to the last one, medians
 NODE, TWIN = 'hostile_target', 'twin'  # the attacker knows the first name
+PROCESSES, CLIENTS, CURVES = 2, 4, 2000  # honest processes, clients in each, curves that each knows the answers of
+
+
+def scene():
+    balls = [sphere('ball%03d' % i, 0.05 + 0.001 * i, (i % 7 - 3, i // 7 - 3, 0.3 * (i % 5))) for i in range(50)]
+    return balls + [box('box%d' % i, (0.2, 0.3, 0.4), (i - 3, 0.5, 2)) for i in range(7)]
+
+
+def honest(seed, seconds, report):
+    """A process of clients that ask a few thousand curves again and again, and compare each answer with that of the twin, to
+    the last bit. Calls report(counts, waits, the first wrong answer) at the end and each few seconds."""
+    r = random.Random(seed)
+    names = [o.id for o in scene()]
+    requests = []
+    for _ in range(CURVES):
+        points = [[r.uniform(-3, 3) for _ in range(3)] for _ in range(r.randrange(4, 12))]
+        curve = bspline(points, 3, id='c', radius=r.choice([0, 0.05]))
+        requests.append(serialized(DistanceRequest(ProximityQuery(curves=[curve], objects=names))))
+    twin = RawClient('/' + TWIN + '/distance', Distance)
+    expected = [twin.call(request).results[0] for request in requests]
+    end = time.monotonic() + seconds
+    lock = threading.Lock()
+    counts, waits, wrong = dict(calls=0, wrong=0, busy=0, failures=0, stopped=0), [], []
+
+    def ask(seed):
+        r, client, mine = random.Random(seed), None, []
+        while time.monotonic() < end:
+            i = r.randrange(CURVES)
+            begin = time.monotonic()
+            try:
+                client = client or RawClient('/' + NODE + '/distance', Distance)
+                answer = client.call(requests[i])
+            except OSError:
+                client, answer = None, None
+            waited = time.monotonic() - begin
+            mine.append(waited)
+            kind = 'failures'
+            if answer and answer.status == 'busy':
+                kind = 'busy'
+            elif answer and answer.success:
+                a, b = answer.results[0], expected[i]
+                same = (a.lower, a.upper, a.t, a.b, a.witness_a, a.witness_b) == (b.lower, b.upper, b.t, b.b, b.witness_a, b.witness_b)
+                kind = 'stopped' if a.status == 'stopped' else 'calls' if same else 'wrong'
+                if kind == 'wrong':
+                    wrong.append('%s\n%s\n%s' % (i, a, b))
+            with lock:
+                counts[kind] += 1
+                if len(mine) > 200:
+                    waits.extend(mine)
+                    mine.clear()
+
+    clients = [threading.Thread(target=ask, args=(1000 * seed + i,), daemon=True) for i in range(CLIENTS)]
+    for client in clients:
+        client.start()
+    while any(client.is_alive() for client in clients):
+        time.sleep(2)
+        with lock:
+            report(dict(counts), waits[:], wrong[:1])
+            waits.clear()
+
+
+def malformed(seed, seconds, report):
+    """A process that makes connections of all kinds that hostile.py knows."""
+    end = time.monotonic() + seconds
+    master = rosgraph.Master('/soak')
+    service = master.lookupService('/%s/distance' % NODE).split('//')[1].split(':')
+    api = master.lookupNode('/' + NODE).split('//')[1].strip('/').split(':')
+    attacker = Attacker((service[0], int(service[1])), (api[0], int(api[1])))
+    attacker.random = random.Random(seed)
+    kinds = attacker.kinds()
+    made, next_report = 0, 0.0
+    while time.monotonic() < end:
+        attacker.connect(attacker.random.choice(kinds))
+        made += 1
+        if time.monotonic() > next_report:
+            next_report = time.monotonic() + 2
+            report(dict(malformed=made), [], [])
+    report(dict(malformed=made), [], [])
 
 
 class Soak:
     def __init__(self, seconds):
         self.end = time.monotonic() + seconds
         self.lock = threading.Lock()
-        self.counts = dict(calls=0, wrong=0, malformed=0, large=0, lost_frames=0, heavy=0, failures=0, busy=0)
-        self.waits, self.first_wrong = [], None
+        self.counts = dict(large=0, lost_frames=0, heavy=0, changes=0, ended_badly=0)
+        self.waits, self.first_wrong, self.others = [], None, {}
         self.nodes = [Node(name, memory_limit_mb=LIMIT_MB, budget_ms=300, tf_timeout=0.3) for name in (NODE, TWIN)]
-        self.scene = [sphere('ball%03d' % i, 0.05 + 0.001 * i, (i % 7 - 3, i // 7 - 3, 0.3 * (i % 5))) for i in range(50)]
-        self.scene += [box('box%d' % i, (0.2, 0.3, 0.4), (i - 3, 0.5, 2)) for i in range(7)]
         for name in (NODE, TWIN):
-            Server('/' + name).replace(*self.scene)
+            Server('/' + name).replace(*scene())
 
     def going(self):
         return time.monotonic() < self.end and self.nodes[0].alive()
@@ -45,44 +120,44 @@ class Soak:
             for name, n in counts.items():
                 self.counts[name] += n
 
-    # ---- honest clients
+    # ---- in processes of their own
     def asks(self, seed):
-        """Curves that both servers answer; they must agree to the last bit."""
-        r = random.Random(seed)
-        objects = [o.id for o in self.scene]
-        while self.going():
-            server, twin = Server('/' + NODE), Server('/' + TWIN)
-            for _ in range(200):
-                points = [[r.uniform(-3, 3) for _ in range(3)] for _ in range(r.randrange(4, 12))]
-                curve = bspline(points, 3, id='c', radius=r.choice([0, 0.05]))
-                begin = time.monotonic()
-                answer = server.distance(curve, objects=objects)
-                waited = time.monotonic() - begin
-                expected = twin.distance(curve, objects=objects)
-                self.add(calls=1)
-                with self.lock:
-                    self.waits.append(waited)
-                if not answer.success:
-                    self.add(**({'busy': 1} if answer.status == 'busy' else {'failures': 1}))
-                    continue
-                a, b = answer.results[0], expected.results[0]
-                if 'stopped' in (a.status, b.status):
-                    continue
-                if (a.lower, a.upper, a.b) != (b.lower, b.upper, b.b):
-                    self.add(wrong=1)
-                    self.first_wrong = self.first_wrong or (curve, a, b)
-                if not self.going():
-                    return
+        self.follow('honest', seed)
 
+    def is_malformed(self, seed):
+        self.follow('malformed', seed)
+
+    def follow(self, part, seed):
+        """Reads what a process reports."""
+        process = subprocess.Popen([sys.executable, os.path.abspath(__file__), '--part', part, str(seed), str(self.end - time.monotonic())],
+                                   stdout=subprocess.PIPE, text=True)
+        for line in process.stdout:
+            counts, waits, wrong = json.loads(line)
+            with self.lock:
+                self.others[part, seed] = counts
+                self.waits += waits
+                self.first_wrong = self.first_wrong or (wrong[0] if wrong else None)
+        if process.wait() != 0:
+            self.add(ended_badly=1)
+
+    def counted(self):
+        with self.lock:
+            total = dict(self.counts)
+            for counts in self.others.values():
+                for name, n in counts.items():
+                    total[name] = total.get(name, 0) + n
+            return total
+
+    # ---- in this process
     def changes(self, seed):
         """Objects that no honest query names come and go."""
         r = random.Random(seed)
         server = Server('/' + NODE)
         while self.going():
             server.apply(sphere('other%d' % r.randrange(20), r.uniform(0.1, 1), (0, 0, r.uniform(5, 9))))
+            self.add(changes=1)
             time.sleep(0.01)
 
-    # ---- others
     def is_heavy(self, _):
         ring, balls, fields = ring_and_shells(shells=20)
         server = Server('/' + NODE)
@@ -97,17 +172,6 @@ class Soak:
             self.add(lost_frames=1)
             time.sleep(0.005)
 
-    def is_malformed(self, seed):
-        master = rosgraph.Master('/soak')
-        service = master.lookupService('/%s/distance' % NODE).split('//')[1].split(':')
-        api = master.lookupNode('/' + NODE).split('//')[1].strip('/').split(':')
-        attacker = Attacker((service[0], int(service[1])), (api[0], int(api[1])))
-        attacker.random = random.Random(seed)
-        kinds = attacker.kinds()
-        while self.going():
-            attacker.connect(attacker.random.choice(kinds))
-            self.add(malformed=1)
-
     def is_large(self, seed):
         """Long names, millions of points, many empty strings, in turn."""
         r = random.Random(seed)
@@ -115,9 +179,7 @@ class Soak:
         texts = []
         for n in (0, 1):
             body.bodies[0].vertices = [bezier((0, 0, 0)).points[0]] * n
-            buffer = io.BytesIO()
-            ApplySceneRequest(objects=[body]).serialize(buffer)
-            texts.append(buffer.getvalue())
+            texts.append(serialized(ApplySceneRequest(objects=[body])))
         at = next(i for i, (a, b) in enumerate(zip(*texts)) if a != b)
 
         def request():
@@ -127,28 +189,19 @@ class Soak:
                 data = texts[0][:at] + struct.pack('<I', points) + os.urandom(24 << 10) * (points // 1024) + b'\0' * (
                     24 * (points % 1024)) + texts[0][at + 4:]
                 return 'apply_scene', ApplyScene, data
-            buffer = io.BytesIO()
             query = ProximityQuery(curves=[bezier((-1, 0, 1), (1, 0, 1), id='x' * 900000)], per_object=True) if kind == 1 else \
                 ProximityQuery(objects=[''] * 3000000)
-            DistanceRequest(query).serialize(buffer)
-            return 'distance', Distance, buffer.getvalue()
+            return 'distance', Distance, serialized(DistanceRequest(query))
 
         while self.going():
             service, kind, data = request()
-            address = rosgraph.Master('/soak').lookupService('/%s/%s' % (NODE, service)).split('//')[1].split(':')
-            try:
-                with socket.create_connection((address[0], int(address[1])), 20) as connection:
-                    connection.settimeout(60)
-                    connection.sendall(handshake(service='/%s/%s' % (NODE, service), md5sum=kind._md5sum) + framed(data))
-                    connection.recv(4096)
-            except OSError:
-                pass
+            raw_call('/%s/%s' % (NODE, service), kind, data)
             self.add(large=1)
 
     def run(self):
         memory = [self.nodes[0].resident_mb()]
         cheap = self.idle()
-        works = [(self.asks, 3), (self.changes, 1), (self.is_heavy, 3), (self.loses_frames, 4), (self.is_malformed, 2), (self.is_large, 2)]
+        works = [(self.asks, PROCESSES), (self.changes, 1), (self.is_heavy, 3), (self.loses_frames, 4), (self.is_malformed, 4), (self.is_large, 2)]
         threads = [threading.Thread(target=work, args=(i,), daemon=True) for work, n in works for i in range(n)]
         begin = time.monotonic()
         for thread in threads:
@@ -160,7 +213,7 @@ class Soak:
             memory.append(now)
             if time.monotonic() > next_report:
                 next_report = time.monotonic() + max(5.0, (self.end - begin) / 20)
-                print('%6.0f s  %5.0f MB  %s' % (time.monotonic() - begin, now, self.counts), flush=True)
+                print('%6.0f s  %5.0f MB  %s' % (time.monotonic() - begin, now, self.counted()), flush=True)
             time.sleep(0.01)
         for thread in threads:
             thread.join(90)
@@ -182,9 +235,10 @@ class Soak:
         before, after = statistics.median(memory[:quarter]), statistics.median(memory[-quarter:])
         rest = self.nodes[0].resident_mb() if alive else 0.0
         waits = sorted(self.waits)
-        good = (alive and self.counts['wrong'] == 0 and self.counts['failures'] == 0 and peak < LIMIT_MB + ROOM_MB and
-                after < before + GROWTH_MB)
-        text = ['seconds %.0f' % (time.monotonic() - begin), str(self.counts),
+        counts = self.counted()
+        bad = sum(counts.get(name, 0) for name in ('wrong', 'failures', 'ended_badly'))
+        good = (alive and counts.get('calls', 0) > 0 and bad == 0 and peak < LIMIT_MB + ROOM_MB and after < before + GROWTH_MB)
+        text = ['seconds %.0f' % (time.monotonic() - begin), str(counts),
                 'memory [MB]: at rest before %.0f and after %.0f, first quarter %.0f, last quarter %.0f, peak %.0f (limit %d and %d)' % (
                     memory[0], rest, before, after, peak, LIMIT_MB, ROOM_MB),
                 'idle client [ms]: p50 %.2f, p99 %.2f' % tuple(1e3 * cheap[int(q * len(cheap))] for q in (0.5, 0.99))]
@@ -192,7 +246,7 @@ class Soak:
             text.append('honest clients under load [ms]: p50 %.2f, p99 %.2f, worst %.0f' % (
                 *(1e3 * waits[int(q * len(waits))] for q in (0.5, 0.99)), 1e3 * waits[-1]))
         if self.first_wrong:
-            text.append('the first wrong answer:\n%s\n%s\n%s' % self.first_wrong)
+            text.append('the first wrong answer:\n' + self.first_wrong)
         if not alive:
             text.append('the node died: ' + self.nodes[0].output()[-2000:])
         text.append('passed' if good else 'FAILED')
@@ -205,7 +259,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--minutes', type=float, default=30.0)
     parser.add_argument('--out')
+    parser.add_argument('--part', nargs=3, metavar=('PART', 'SEED', 'SECONDS'), help=argparse.SUPPRESS)
     options = parser.parse_args()
+    if options.part:
+        part = dict(honest=honest, malformed=malformed)[options.part[0]]
+        return part(int(options.part[1]), float(options.part[2]), lambda *report: print(json.dumps(report), flush=True))
     port = free_port()
     os.environ.update(ROS_MASTER_URI='http://localhost:%d' % port, ROS_HOSTNAME='localhost')
     master = subprocess.Popen(['rosmaster', '--core', '-p', str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

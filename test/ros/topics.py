@@ -3,60 +3,18 @@
 """Trajectories in by topic, results out, and the gate behind them, all in one nodelet manager."""
 import io
 import math
-import struct
 import time
 import unittest
 
 import rospy
 from curve_proximity.msg import AttachedCollisionObject, CollisionObject, Curve, ProximityResults
-from geometry_msgs.msg import PoseStamped, Transform, TransformStamped
-from helpers import Server, bezier, box, mesh, run, sphere, until
+from geometry_msgs.msg import TransformStamped
+from helpers import Server, bezier, box, fingerprint, free_flight, joint_trajectory, mesh, path, run, sphere, until
 from nav_msgs.msg import Path
 from tf2_msgs.msg import TFMessage
-from trajectory_msgs.msg import (JointTrajectory, JointTrajectoryPoint, MultiDOFJointTrajectory,
-                                 MultiDOFJointTrajectoryPoint)
+from trajectory_msgs.msg import JointTrajectory, MultiDOFJointTrajectory
 
 LINE = ((-1, 0, 1), (1, 0, 1))
-MASK = 2**64 - 1
-
-
-def fingerprint(message):
-    """As include/curve_proximity/fingerprint.hpp documents it."""
-    buffer = io.BytesIO()
-    message.serialize(buffer)
-    data = b'\0\0\0\0' + buffer.getvalue()[4:]
-    value = 0xcbf29ce484222325 ^ len(data)
-    data += b'\0' * (-len(data) % 8)
-    for word, in struct.iter_unpack('<Q', data):
-        value = ((value ^ word) * 0x9e3779b97f4a7c15) & MASK
-        value ^= value >> 29
-    return value
-
-
-def path(*points, frame='', **fields):
-    message = Path(**fields)
-    message.header.frame_id = frame
-    for x, y, z in points:
-        pose = PoseStamped()
-        pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = x, y, z
-        message.poses.append(pose)
-    return message
-
-
-def joint_trajectory(names, *rows):
-    return JointTrajectory(joint_names=names, points=[
-        JointTrajectoryPoint(positions=row, time_from_start=rospy.Duration(i)) for i, row in enumerate(rows)])
-
-
-def free_flight(name, *points, times=None):
-    message = MultiDOFJointTrajectory(joint_names=[name])
-    for i, (x, y, z) in enumerate(points):
-        transform = Transform()
-        transform.translation.x, transform.translation.y, transform.translation.z = x, y, z
-        transform.rotation.w = 1.0
-        when = rospy.Duration(i if times is None else times[i])
-        message.points.append(MultiDOFJointTrajectoryPoint(transforms=[transform], time_from_start=when))
-    return message
 
 
 class Topics(unittest.TestCase):
@@ -88,6 +46,10 @@ class Topics(unittest.TestCase):
         self.publishers[topic].publish(message)
         self.assertTrue(until(lambda: len(self.results) > before, seconds), 'no answer')
         return self.results[before]
+
+    @classmethod
+    def ask_service(cls, curves=(), **fields):
+        return cls.server.tolerance(list(curves), 0.05, **fields)
 
     def move(self):
         """The frame moving, not a fixed one, is where the world is, now."""
@@ -180,6 +142,25 @@ class Topics(unittest.TestCase):
         answer = self.ask('multi_dof_trajectory', free_flight('drone', (0, 0, 0), (1, 0, 0), times=[1, 1]))
         self.assertIn('time', answer.message)
         self.assertEqual(self.settled(), 1)
+
+    def test_services_answer_what_topics_do(self):
+        self.server.replace(sphere('ball', 0.25))
+        asked = dict(curves=bezier(*LINE, id='one'), paths=path((-1, 0, 1), (0, 0, 0.7), (1, 0, 1)),
+                     trajectories=joint_trajectory(['turn'], [0.0], [1.0]),
+                     multi_dof_trajectories=free_flight('drone', (-1, 0, 1), (0, 0, 0.6), (1, 0, 1)))
+        rows = []
+        for topic, (name, message) in zip(('curve', 'path', 'trajectory', 'multi_dof_trajectory'), asked.items()):
+            by_topic = self.ask(topic, message)
+            by_service = self.ask_service(self_collision=topic == 'trajectory', **{name: [message]})
+            self.assertTrue(by_topic.success and by_service.success, by_topic.message + by_service.message)
+            same = [[(r.id, r.kind, r.verdict, r.lower, r.upper, r.b) for r in answer.results] for answer in (by_topic, by_service)]
+            self.assertEqual(same[0], same[1])
+            rows += same[1]
+        whole = self.ask_service(self_collision=True, **{name: [message] for name, message in asked.items()})
+        self.assertEqual([(r.id, r.kind, r.verdict, r.lower, r.upper, r.b) for r in whole.results], rows)
+        several = self.ask_service(paths=[asked['paths'], path()])
+        self.assertEqual([(r.id, r.status) for r in several.results], [('path/0', 'ok'), ('path/1', 'invalid')])
+        self.assertIn('no poses', several.message)
 
     def test_what_comes_too_fast_is_dropped_oldest_first_and_counted(self):
         late = rospy.Time.now() + rospy.Duration(1000)  # a transform of then is waited for, for ~tf_timeout
