@@ -55,7 +55,7 @@ if(CPROX_ROS)
   #catkin_lint: ignore_once undefined_target
   install(TARGETS cprox_python LIBRARY DESTINATION ${CATKIN_GLOBAL_PYTHON_DESTINATION}/cprox)
   catkin_install_python(PROGRAMS nodes/play_trajectory.py nodes/stand_still.py nodes/urdf_for_rviz.py
-    nodes/keep_running.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+    nodes/keep_running.py nodes/show_in_rviz.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   install(DIRECTORY launch config rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
   install(FILES constraint_provider_plugins.xml nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
   # The demo's robot and scenes, so that demo.launch works from the install space too.
