@@ -2,7 +2,8 @@
 /** What ROS adds to the core's time: one curve of 6 points against 30 boxes, by a persistent service connection to a
  * node, and by topic through the nodelet in this process, as inside a manager. Beside both a server and a relay that do
  * nothing but take the same message, keep a processor busy for as long as the core does, and answer: what they cost is
- * roscpp's. Starts a master and the nodes.
+ * roscpp's. Then many curves a call and many clients, beside an empty service: see crowds.h. Starts a master and the
+ * nodes.
  *
  *  usage: curve_proximity_bench_ros [--quick] [--calls N]
  *  Prints rows of results.csv. The memory row's error is what the node's resident set grew by over that many calls
@@ -10,14 +11,9 @@
 #include <curve_proximity/ApplyScene.h>
 #include <curve_proximity/Distance.h>
 #include <curve_proximity/ProximityResults.h>
-#include <netinet/in.h>
 #include <nodelet/loader.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
-#include <signal.h>
-#include <sys/socket.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -34,74 +30,16 @@
 #include <thread>
 #include <vector>
 
+#include "crowds.h"
+#include "graph.h"
+
 namespace {
 
 using namespace curve_proximity;
-using Clock = std::chrono::steady_clock;
+using namespace bench;
 
 constexpr int OBJECTS = 30;
-constexpr const char *PROGRAM = "/proc/self/exe";
 constexpr const char *WORKLOAD = "one curve of 6 points, 30 boxes";
-
-double microseconds(Clock::duration time) {
-  return std::chrono::duration<double, std::micro>(time).count();
-}
-
-/* ---- processes ---- */
-
-/** A program that ends with this object. */
-class Program {
- public:
-  explicit Program(std::vector<std::string> arguments) {
-    std::vector<char *> argv;
-    for (std::string &argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    pid_ = fork();
-    if (pid_ != 0) return;
-    if (!std::freopen("/dev/null", "w", stdout)) _exit(126);
-    execvp(argv[0], argv.data());
-    _exit(127);
-  }
-  ~Program() {
-    if (pid_ <= 0) return;
-    kill(pid_, SIGINT);
-    waitpid(pid_, nullptr, 0);
-  }
-  Program(const Program &) = delete;
-  Program &operator=(const Program &) = delete;
-
-  double residentMb() const {
-    std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
-    for (std::string line; std::getline(status, line);)
-      if (line.rfind("VmRSS:", 0) == 0) return std::atof(line.c_str() + 6) / 1024.0;
-    return 0.0;
-  }
-
- private:
-  pid_t pid_;
-};
-
-int freePort() {
-  const int probe = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  const bool found = bind(probe, reinterpret_cast<sockaddr *>(&address), size) == 0 &&
-                     getsockname(probe, reinterpret_cast<sockaddr *>(&address), &size) == 0;
-  close(probe);
-  if (!found) throw std::runtime_error("no free port");
-  return ntohs(address.sin_port);
-}
-
-template <class Condition>
-void waitFor(const char *what, Condition condition) {
-  const auto deadline = Clock::now() + std::chrono::seconds(30);
-  while (!condition()) {
-    if (Clock::now() > deadline) throw std::runtime_error(std::string(what) + " is not there after 30 s");
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-}
 
 /* ---- the query ---- */
 
@@ -210,16 +148,8 @@ class PlainRelay {
 
 /* ---- rows ---- */
 
-double percentile(std::vector<double> values, double fraction) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-/** One row; `method` ours, or the whole of what ours is a part of. */
 void print(const char *method, const std::string &parameter, double median, double p95, double error = 0.0) {
-  std::printf("ros,\"%s\",%s,%s,%.3f,%.3f,0,0,%.3g,0,0\n", WORKLOAD, method, parameter.c_str(), median, p95, error);
-  std::fflush(stdout);
+  printRow(WORKLOAD, method, parameter, median, p95, error);
 }
 
 /** The times of one way to ask. */
@@ -357,6 +287,7 @@ void measure(bool quick, int calls) {
       measureService(handle, node, "/bench_plain", quick ? 5000 : 20000);
     }
     measureMemory(handle, node, server, calls);
+    measureCrowds(handle, node, quick);
   }
   handle.setParam(nodelet + "/query_type", "distance");
   nodelet::Loader loader;
@@ -372,6 +303,8 @@ void measure(bool quick, int calls) {
 
 int main(int argc, char **argv) {
   if (argc > 1 && std::strcmp(argv[1], "--plain") == 0) return servePlainly(argc, argv);
+  if (argc > 1 && std::strcmp(argv[1], "--empty") == 0) return serveEmpty(argc, argv);
+  if (argc > 3 && std::strcmp(argv[1], "--crowd") == 0) return runCrowd(argc, argv);
   bool quick = false;
   int calls = 0;
   for (int i = 1; i < argc; ++i) {
