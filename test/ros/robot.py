@@ -9,7 +9,7 @@ import rospy
 import tf2_ros
 from curve_proximity.msg import AttachedCollisionObject, CollisionObject, LinkPadding, LinkScale
 from geometry_msgs.msg import TransformStamped
-from helpers import Server, bezier, box, joints, run, sphere
+from helpers import Server, bezier, box, joints, run, sphere, until
 from sensor_msgs.msg import JointState
 
 EPSILON = 1e-9  # [m]
@@ -39,6 +39,15 @@ class Robot(unittest.TestCase):
     def setUp(self):
         self.server.replace()
 
+    def place(self, broadcaster, transforms):
+        """Once the server has heard of them: what nobody has published is refused without a wait."""
+        broadcaster.sendTransform(transforms)
+        for placed in transforms if isinstance(transforms, list) else [transforms]:
+            def unheard():
+                message = self.server.distance(bezier((0, 0, 50), (0, 0, 51), frame=placed.child_frame_id)).message
+                return "frame '%s'" % placed.child_frame_id in message and 'nobody has published' in message
+            self.assertTrue(until(lambda: not unheard(), 10), placed.child_frame_id)
+
     def assertDistance(self, response, expected, link=None):
         self.assertTrue(response.success, response.message)
         row = response.results[0]
@@ -65,7 +74,7 @@ class Robot(unittest.TestCase):
         self.assertDistance(self.server.distance(vertical(2, 0), objects=['ball']), 0.75, 'ball')
 
     def test_03_joint_states_place_the_links_and_tf2_the_root(self):
-        self.fixed.sendTransform([transform('world', 'base', (10, 0, 0))])
+        self.place(self.fixed, [transform('world', 'base', (10, 0, 0))])
         self.assertDistance(self.server.distance(vertical(12, 0), joint_state=joints(turn=0.0)), 1.4, 'arm')
         # a quarter turn: the ball stands at (10, 0.5); the mimic joint takes the slider along to x = 10 + pi/2
         quarter = joints(turn=math.pi / 2)
@@ -102,7 +111,7 @@ class Robot(unittest.TestCase):
         self.assertEqual(sorted(r.b for r in response.results), ['arm', 'base', 'crate', 'slider'])
 
     def test_08_tf2_and_joint_states_agree(self):
-        self.fixed.sendTransform([transform('world', 'base', (10, 0, 0)),
+        self.place(self.fixed, [transform('world', 'base', (10, 0, 0)),
                                   transform('base', 'arm', (0, 0, 0.5), turn=0.7),
                                   transform('base', 'slider', (0.7, 0, -0.5))])
         lines = [vertical(10 + 2 * math.cos(a), 2 * math.sin(a)) for a in (0.0, 0.7, 2.0, 4.0)]
@@ -127,7 +136,7 @@ class Robot(unittest.TestCase):
         earlier = now - rospy.Duration(2)
         self.server.replace(sphere('ball', 0.25))
         for stamp, x in ((earlier - rospy.Duration(1), 3.0), (earlier, 3.0), (now, 5.0)):
-            self.moving.sendTransform(transform('world', 'cart', (x, 0, 0), stamp))
+            self.place(self.moving, transform('world', 'cart', (x, 0, 0), stamp))
             rospy.sleep(0.05)
         for stamp, x in ((earlier, 3.0), (now, 5.0), (earlier + rospy.Duration(1), 4.0), (rospy.Time(), 5.0)):
             line = bezier((0, -1, 0), (0, 1, 0), frame='cart', stamp=stamp)
