@@ -22,8 +22,8 @@ namespace {
 /** Markers show no more curves than a person can tell apart. */
 constexpr std::size_t MAX_DRAWN_CURVES = 100;
 
-/** From here on further threads are worth their while: each takes some microseconds to begin. */
-constexpr std::size_t MANY_CURVES = 64;
+/** From here on further threads are worth their while, on a busy machine too: below, they cost more than they do. */
+constexpr std::size_t MANY_CURVES = 512;
 
 /** Ends a query when its time is over or the server goes, and makes way for others meanwhile. */
 class TimeBudget {

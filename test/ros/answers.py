@@ -351,7 +351,7 @@ class Large(TestCase):
 
     def test_many_curves_in_one_request_are_answered_as_one_by_one(self):
         """Several threads share them; rows keep their order, and a curve that fails keeps its row."""
-        curves = [bezier((0, 0.1 * (i % 7), 1 + i * 1e-2), (2, 0, 1 + i * 1e-3), id='c%d' % i) for i in range(300)]
+        curves = [bezier((0, 0.1 * (i % 7), 1 + i * 1e-2), (2, 0, 1 + i * 1e-3), id='c%d' % i) for i in range(600)]
         curves[77] = bezier(id='c77')
         curves[200] = bezier((0, 0, 1), (1, 0, 1), id='c200', frame='nowhere')
         together = self.server.distance(curves, per_object=True)
