@@ -1,33 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Distance, tolerance, collision: of one mover against one target or against many. All six are one search. */
-#include <math.h>
-#include <stdio.h>
-
 #include "base/workspace.h"
-#include "certificate/write.h"
+#include "certificate/certificate.h"
 #include "problem/validate.h"
 #include "solve/list.h"
 #include "solve/solve.h"
-
-enum { REASON = 256 };
-
-/* The proof that was asked for. That there is none changes nothing in the answer; the reason tells why, after that of
- * the answer. */
-static void leave_certificate(const query *q, const cprox_result *answer) {
-  if (!q->options.certificate) return;
-  char of_answer[REASON], of_proof[REASON];
-  snprintf(of_answer, sizeof of_answer, "%s", cprox_workspace_error(q->workspace));
-  const double delta = query_wants_verdict(q) ? q->limit
-                       : answer->lower > 0.0  ? answer->lower
-                                              : fmax(answer->upper, 0.0);
-  const cprox_status status =
-      certify(&q->mover, q->targets, q->n, delta, answer, &q->options, q->workspace, q->options.certificate);
-  snprintf(of_proof, sizeof of_proof, "%s", cprox_workspace_error(q->workspace));
-  if (status == CPROX_OK)
-    workspace_fail(q->workspace, answer->status, "%s", of_answer);
-  else
-    workspace_fail(q->workspace, answer->status, "%s%sno certificate: %s", of_answer, *of_answer ? "; " : "", of_proof);
-}
 
 static arguments_query query_of(const query *q, bool each) {
   const unsigned has = ARGUMENTS_SEARCH | ARGUMENTS_CERTIFICATE | (each ? 0 : ARGUMENTS_WHOLE);
@@ -41,7 +18,7 @@ static cprox_status ask(query *q, cprox_result *nearest, cprox_result *each) {
   cprox_status status = query_begin(q, asked);
   if (status != CPROX_OK) return status;
   status = each ? query_answer_each(q, nearest, each) : query_answer(q, 0, q->n, INFINITY, nearest);
-  if (status >= 0) leave_certificate(q, nearest);
+  if (status >= 0 && q->options.certificate) q->options.certificate->prove(q, nearest);
   return status;
 }
 

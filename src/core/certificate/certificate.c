@@ -7,10 +7,6 @@
 /* After the magic and the width. */
 enum { PLACE_OF_DELTA = 8 };
 
-cprox_certificate *cprox_certificate_create(void) {
-  return calloc(1, sizeof(cprox_certificate));
-}
-
 void cprox_certificate_free(cprox_certificate *certificate) {
   if (!certificate) return;
   free(certificate->bytes);

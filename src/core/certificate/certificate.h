@@ -8,7 +8,12 @@
 #include "base/vec.h"
 #include "curve_proximity/cprox/certificate.h"
 
+struct query;
+
 struct cprox_certificate {
+  /* Proves the answer of a query, or tells why there is no proof, after what the answer says. Queries call it through
+   * the handle: who makes no certificate links no proofs. */
+  void (*prove)(const struct query *q, const cprox_result *answer);
   unsigned char *bytes;
   size_t size, capacity;
   bool failed; /* memory was out */

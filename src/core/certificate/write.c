@@ -2,6 +2,11 @@
 /* A certificate for an answer: which sets there are, how precisely normals are written, how tight a claim can be
  * proven. */
 #include "certificate/write.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
 #include "base/rounding.h"
 #include "certificate/describe.h"
 #include "certificate/partition.h"
@@ -199,9 +204,9 @@ static cprox_status prove_of_hulls(const task *t) {
   return prove(&coarse);
 }
 
-cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double delta,
-                     const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
-                     cprox_certificate *certificate) {
+static cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double delta,
+                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
+                            cprox_certificate *certificate) {
   const task t = {.mover = mover,
                   .targets = targets,
                   .n = n,
@@ -228,6 +233,29 @@ cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targets, si
   return workspace_fail(workspace, status,
                         has_mesh(&t) ? "too close to delta for a certificate, which takes meshes by their convex hulls"
                                      : "too close to delta for a certificate");
+}
+
+/* Of a query. That there is no proof changes nothing in the answer. */
+static void prove_answer(const query *q, const cprox_result *answer) {
+  enum { MESSAGE = 256 };
+  char of_answer[MESSAGE], of_proof[MESSAGE];
+  snprintf(of_answer, sizeof of_answer, "%s", cprox_workspace_error(q->workspace));
+  const double delta = query_wants_verdict(q) ? q->limit
+                       : answer->lower > 0.0  ? answer->lower
+                                              : fmax(answer->upper, 0.0);
+  const cprox_status status =
+      certify(&q->mover, q->targets, q->n, delta, answer, &q->options, q->workspace, q->options.certificate);
+  snprintf(of_proof, sizeof of_proof, "%s", cprox_workspace_error(q->workspace));
+  if (status == CPROX_OK)
+    workspace_fail(q->workspace, answer->status, "%s", of_answer);
+  else
+    workspace_fail(q->workspace, answer->status, "%s%sno certificate: %s", of_answer, *of_answer ? "; " : "", of_proof);
+}
+
+cprox_certificate *cprox_certificate_create(void) {
+  cprox_certificate *certificate = calloc(1, sizeof *certificate);
+  if (certificate) certificate->prove = prove_answer;
+  return certificate;
 }
 
 cprox_status cprox_certify(cprox_mover mover, const cprox_obstacles *obstacles, double delta,

@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The end of a query that was asked for a certificate. */
+/* Proofs of robots' answers, for write.c, which proves all others. */
 #ifndef CPROX_CERTIFICATE_WRITE_H
 #define CPROX_CERTIFICATE_WRITE_H
 
 #include "certificate/certificate.h"
 #include "curve_proximity/cprox/robot.h"
 
-/* Proves an answer whose arguments were checked, as cprox_certify() does. */
-cprox_status certify(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double delta,
-                     const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
-                     cprox_certificate *certificate);
-
-/* The same for a robot along a motion; the reason is told of CPROX_INVALID alone, and what failed may have left
- * something in the certificate. */
+/* Proves an answer of a robot along a motion whose arguments were checked; the reason is told of CPROX_INVALID alone,
+ * and what failed may have left something in the certificate. */
 cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targets, size_t n, double delta,
                            const cprox_result *answer, const cprox_options *options, cprox_workspace *workspace,
                            cprox_certificate *certificate);
