@@ -337,6 +337,9 @@ CASE(bad_clothoids_and_involutes_are_refused) {
           "the clothoid turns by up to 1e+13 rad, more than 1e+12");
   refused(curve_from(describe_clothoid(o, 0, 1, 0, 1e9, 1e9 + 1), ws, &c), ws,
           "the clothoid turns too often between t = 0 and 1000000000");
+  /* so far away that one piece may hold a million turns, and many pieces are needed */
+  refused(curve_from(describe_clothoid(vec(1e30, 0, 0), 0, 1e11, 0, 0, 1), ws, &c), ws,
+          "the clothoid turns too often between t = 0 and 1");
   refused(curve_from(describe_clothoid(o, 0, 0, 0, 0, 1), ws, NULL), ws, "the pointer for the new curve is NULL");
   assert_int_equal(curve_from(describe_clothoid(o, 0, 1, 0, 0, 1e8), ws, &c), CPROX_INVALID);
   assert_non_null(strstr(cprox_workspace_error(ws), "would need more than 65536 pieces"));

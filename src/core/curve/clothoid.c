@@ -37,5 +37,8 @@ cprox_status curve_create_clothoid(const cprox_curve_description *d, cprox_works
   compile_source source = heading_source(&c);
   source.constant = start;
   source.accuracy = HEADING_ACCURACY * (t1 - t0) + ROUND_U * vec_norm(start);
-  return compile_curve(&source, t0, t1, workspace, curve);
+  status = compile_curve(&source, t0, t1, workspace, curve);
+  if (status == CPROX_INVALID && !(c.steps <= HEADING_MOST_STEPS))
+    return workspace_fail(workspace, status, "the clothoid turns too often between t = %.15g and %.15g", t0, t1);
+  return status;
 }

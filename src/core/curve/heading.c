@@ -14,7 +14,6 @@
 
 #include "base/rounding.h"
 
-#define MOST_STEPS 1e6
 #define GAUSS_REMAINDER 1.7e-23
 
 enum { NODES = 8, GAUSS_ORDER = 16 };
@@ -78,7 +77,8 @@ static void step(heading_curve *c, double to) {
 bool heading_advance(heading_curve *c, double to) {
   const double length = fabs(to - c->at);
   const double steps = fmax(1.0, ceil((0.6 * largest_curvature(c, c->at, to) + 1.2 * sqrt(fabs(c->rate))) * length));
-  if (!(steps <= MOST_STEPS)) return false;
+  c->steps += steps;
+  if (!(c->steps <= HEADING_MOST_STEPS)) return false;
   const double from = c->at;
   const int n = (int)steps;
   for (int i = 1; i < n; i++) step(c, from + (to - from) * (i / steps));

@@ -18,10 +18,13 @@ typedef struct heading_curve {
   double at;
   dd x, y;
   double error;
+  double steps; /* that the point has gone in all, and those that were one too many */
 } heading_curve;
 
-/* Takes the point to another parameter, forwards or backwards; false where that would take more than a million steps.
- */
+/* A point that has gone so many steps goes no farther: about a second. */
+#define HEADING_MOST_STEPS 1e6
+
+/* Takes the point to another parameter, forwards or backwards; false where it would go too far. */
 bool heading_advance(heading_curve *c, double to);
 
 /* The heading at a parameter, for a curve that goes on from there; *error grows by what that costs. */
