@@ -11,7 +11,8 @@ ASKED = [(f'{build}: {theorem}', 100000, least) for build in ('rounding', 'round
 ASKED += [(f'{build}: T5', 100000, .1) for build in ('rounding_chain', 'rounding_chain_fused')]
 ASKED += [('certificates of robots and mutants', 10000, None)]
 ASKED += [(f'attack: {family}', 1000000, None) for family in
-          ('coaxial', 'coincident', 'contact', 'flat', 'inside', 'lengths', 'ties', 'time_of_contact')]
+          ('coaxial', 'coincident', 'contact', 'flat', 'inside', 'lengths', 'starve', 'superquadrics', 'ties',
+           'time_of_contact')]
 ASKED += [('intervals of queries', 1000000, None), ('certificates and mutants', 10000, None)]
 
 
