@@ -33,7 +33,7 @@ cprox_status query_answer(const query *q, size_t first, size_t last, double cuto
       candidates_sort_again(list, i, n);
       continue;
     }
-    cprox_result one;
+    cprox_result one = query_nothing();
     const cprox_status status = candidate_search(q, &list[i++], lesser(all.upper, cutoff), &one);
     if (status < 0) return status;
     if (status != CPROX_OK) failure = status;
@@ -52,7 +52,7 @@ cprox_status query_answer_each(const query *q, cprox_result *nearest, cprox_resu
   cprox_result all = query_nothing();
   cprox_status failure = CPROX_OK;
   for (size_t i = 0; i < q->n; i++) {
-    cprox_result one;
+    cprox_result one = query_nothing();
     const cprox_status status = query_answer(q, i, i + 1, INFINITY, &one);
     if (status < 0) return status;
     /* where the union falls short, it is for the one that is not known to be farther */
