@@ -70,6 +70,16 @@ CPROX_API cprox_status cprox_robot_create(const cprox_link *links, size_t n_link
                                           const cprox_link_geometry *geometries, size_t n_geometries,
                                           size_t n_variables, cprox_workspace *workspace, cprox_robot **robot);
 
+/** Joins n >= 1 robots into one, so that one motion (CPROX_MOTION_JOINED) moves them all on one clock.
+ *
+ *  bases      where the world of each robot is in that of the joined one; NULL: at the origin, all of them.
+ *  robot      receives the handle. The given robots may be freed; their bodies are kept by reference.
+ *
+ *  Variables and geometries are those of the first robot, then those of the second one, and so on. Each robot's links
+ *  follow one fixed link, which is its base. Returns CPROX_OK, CPROX_INVALID or CPROX_MEMORY. */
+CPROX_API cprox_status cprox_robot_join(const cprox_robot *const *robots, const cprox_pose *bases, size_t n,
+                                        cprox_workspace *workspace, cprox_robot **robot);
+
 /** Frees a robot; NULL is allowed. No motion may be using it. */
 CPROX_API void cprox_robot_free(cprox_robot *robot);
 
@@ -122,8 +132,24 @@ typedef enum cprox_motion_kind {
    *  asked by cprox_robot_ask_states().
    *
    *  rest                     the values of all variables; NULL: all 0. */
-  CPROX_MOTION_STATE
+  CPROX_MOTION_STATE,
+
+  /** The motions of several robots on one clock, for their joined robot (cprox_robot_join()). It lasts from the first
+   *  start to the last end. A motion that has not begun stands at its first values, one that has ended at its last
+   * ones. A state stands all the time. Refused are motions that leave a pause in which none of them lasts: their clocks
+   * do not overlap. variables, n_variables and rest are not read. There is no certificate.
+   *
+   *  joined, n_joined         one motion for each of the joined robots, in their order. */
+  CPROX_MOTION_JOINED
 } cprox_motion_kind;
+
+/** One of several motions on one clock. */
+typedef struct cprox_joined_motion {
+  /** of a robot like the one that was joined; it is copied */
+  const cprox_motion *motion;
+  /** [s] is added to all times of the motion, and each sum is rounded: that is when things happen */
+  double start;
+} cprox_joined_motion;
 
 /** What a motion is made of. Set all members to 0, then those that the kind reads: cprox_motion_kind lists them. All
  *  numbers are finite. Arrays are copied. */
@@ -152,6 +178,10 @@ typedef struct cprox_motion_description {
   const double *knots;
   /** the number of knots */
   size_t n_knots;
+  /** the motions of several robots */
+  const cprox_joined_motion *joined;
+  /** the number of these */
+  size_t n_joined;
 } cprox_motion_description;
 
 /** Makes a motion.

@@ -85,7 +85,8 @@ size_t cprox_mover_describe(const cprox_mover *mover, const cprox_obstacles *obs
   const cprox_obstacle *targets = obstacles_list(obstacles);
   const size_t n = obstacles_count(obstacles);
   query q = query_create(*mover, targets, n, -1.0, false, NULL, workspace);
-  if (!mover->motion || certify_unknown_geometry(mover->motion->robot) < mover->motion->robot->n_geometries ||
+  if (!mover->motion || !motion_is_described(mover->motion) ||
+      certify_unknown_geometry(mover->motion->robot) < mover->motion->robot->n_geometries ||
       arguments_check_query(mover, targets, n, &q.options, (arguments_query){"a description", 0}, workspace) !=
           CPROX_OK)
     return 0;

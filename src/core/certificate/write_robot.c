@@ -11,8 +11,11 @@
 enum { MOST_PAIRS = 0xffff };
 
 /* CPROX_OK, or what it is that certificates do not know. */
-static cprox_status check_kinds(const cprox_robot *robot, const cprox_obstacle *targets, size_t n,
+static cprox_status check_kinds(const cprox_motion *motion, const cprox_obstacle *targets, size_t n,
                                 cprox_workspace *workspace) {
+  if (!motion_is_described(motion))
+    return workspace_fail(workspace, CPROX_INVALID, "joined motions have no certificates: ask about each robot alone");
+  const cprox_robot *robot = motion->robot;
   const size_t geometry = certify_unknown_geometry(robot);
   if (geometry < robot->n_geometries)
     return workspace_fail(workspace, CPROX_INVALID, "geometry %zu is of a kind that has no certificates: %s", geometry,
@@ -48,7 +51,7 @@ cprox_status certify_robot(const cprox_mover *mover, const cprox_obstacle *targe
                            cprox_certificate *certificate) {
   query q = query_create(*mover, targets, n, delta, false, options, workspace);
   q.options.max_lod = CPROX_LOD_HULL;
-  const cprox_status known = check_kinds(mover->motion->robot, targets, n, workspace);
+  const cprox_status known = check_kinds(mover->motion, targets, n, workspace);
   if (known != CPROX_OK) return known;
   robot_scene scene;
   if (!robot_scene_begin(&scene, &q, 0, n)) return CPROX_MEMORY;

@@ -6,6 +6,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/link_model.c
   ${CMAKE_CURRENT_LIST_DIR}/motion.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_create.c
+  ${CMAKE_CURRENT_LIST_DIR}/motion_join.c
   ${CMAKE_CURRENT_LIST_DIR}/robot.c
   ${CMAKE_CURRENT_LIST_DIR}/spans.c
 )

@@ -334,8 +334,7 @@ double motion_time_below(const cprox_motion *m, size_t segment, double u) {
 }
 
 cprox_motion_info cprox_motion_get_info(const cprox_motion *motion) {
-  const cprox_motion_kind moving = motion->given.degree > 0 ? CPROX_MOTION_BSPLINE : CPROX_MOTION_WAYPOINTS;
-  return (cprox_motion_info){.kind = motion->is_state ? CPROX_MOTION_STATE : moving,
+  return (cprox_motion_info){.kind = motion->kind,
                              .t0 = motion->times[0],
                              .t1 = motion->times[motion->n_segments],
                              .n_variables = motion->robot->n_variables,

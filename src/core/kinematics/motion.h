@@ -13,6 +13,7 @@ enum { MOTION_MAX_DEGREE = 9, MOTION_LANES = 8 };
 
 struct cprox_motion {
   const cprox_robot *robot;
+  cprox_motion_kind kind;
   size_t n_segments, n_moving;
   size_t stride;        /* room for the coefficients of one polynomial */
   double *times;        /* n_segments + 1, ascending */
@@ -27,7 +28,7 @@ struct cprox_motion {
   placement *still; /* of an axis that does not: as it stands in its parent's frame */
   double *norm;     /* of a ball's quaternion: at least this everywhere */
   motion_spans spans;
-  motion_given given;
+  motion_given given; /* of a joined one nothing */
   double *part_error; /* every point of a part is computed within this of where it is */
 };
 
@@ -68,6 +69,11 @@ typedef enum motion_row {
   MOTION_CUT,
   MOTION_ROWS = MOTION_CUT + MOTION_MAX_DEGREE + 1
 } motion_row;
+
+/* Whether certificates can be about it. */
+static inline bool motion_is_described(const cprox_motion *motion) {
+  return motion->given.times != NULL;
+}
 
 /* The numbers in one row, and in all. */
 size_t motion_rows_stride(const cprox_motion *motion);

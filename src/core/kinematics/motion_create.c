@@ -7,20 +7,10 @@
 #include "base/rounding.h"
 #include "base/workspace.h"
 #include "curve/curve.h"
-#include "kinematics/motion.h"
+#include "kinematics/motion_build.h"
 
 /* The largest value, velocity times duration, and so on. */
 #define MOTION_LARGEST 1e100
-
-/* What a motion is made of. */
-typedef struct motion_source {
-  const cprox_robot *robot;
-  const int32_t *variables;
-  size_t n;
-  const double *rest;
-  const cprox_motion_description *description;
-  cprox_workspace *workspace;
-} motion_source;
 
 /* ---- checks ---- */
 
@@ -101,11 +91,12 @@ static cprox_status check_spline(const cprox_motion_description *d, cprox_worksp
 
 /* ---- memory ---- */
 
-static cprox_motion *allocate(const motion_source *s, size_t n_segments, size_t degree) {
+cprox_motion *motion_allocate(const motion_source *s, size_t n_segments, size_t degree) {
   cprox_motion *m = calloc(1, sizeof *m);
   if (!m) return NULL;
   const size_t n = s->n + 1, n_variables = s->robot->n_variables + 1, room = n_segments + 1;
   m->robot = s->robot;
+  m->kind = s->description->kind;
   m->n_segments = n_segments;
   m->n_moving = s->n;
   m->stride = degree + 1;
@@ -293,7 +284,7 @@ static cprox_status finish_parts(cprox_motion *m, cprox_workspace *workspace) {
   return status;
 }
 
-static cprox_status finish(cprox_motion *m, const motion_source *s, cprox_motion **motion) {
+cprox_status motion_finish(cprox_motion *m, const motion_source *s, cprox_motion **motion) {
   find_moving(m, s);
   cprox_status status = finish_axes(m, s);
   if (status == CPROX_OK) status = finish_parts(m, s->workspace);
@@ -307,8 +298,7 @@ static cprox_status finish(cprox_motion *m, const motion_source *s, cprox_motion
   return CPROX_OK;
 }
 
-/* What cutting and evaluating adds to the error of coefficients of this size; doc/robot-bounds.md. */
-static double cutting_error(size_t degree, double largest) {
+double motion_cutting_error(size_t degree, double largest) {
   return ROUND_UP * ROUND_U * (16.0 * (double)degree + 8.0) * largest;
 }
 
@@ -355,7 +345,7 @@ static cprox_status create_waypoints(const motion_source *s, cprox_motion **moti
     status = check_waypoint(&points[i], i, n, interpolation, workspace);
   if (status != CPROX_OK) return status;
 
-  cprox_motion *m = allocate(s, n_points - 1, 5);
+  cprox_motion *m = motion_allocate(s, n_points - 1, 5);
   if (m && !motion_keep_waypoints(&m->given, s->description)) {
     cprox_motion_free(m);
     m = NULL;
@@ -370,10 +360,11 @@ static cprox_status create_waypoints(const motion_source *s, cprox_motion **moti
       const size_t at = i * n + k;
       const double size =
           hermite(&p[0], &p[1], k, m->degree[i], p[1].time - p[0].time, m->coefficients + at * m->stride);
-      m->error[at] = cutting_error(m->degree[i], size); /* the sums of hermite() are off by 8 u of their size at most */
+      m->error[at] =
+          motion_cutting_error(m->degree[i], size); /* the sums of hermite() are off by 8 u of their size at most */
     }
   }
-  return finish(m, s, motion);
+  return motion_finish(m, s, motion);
 }
 
 /* ---- B-splines ---- */
@@ -400,7 +391,7 @@ static cprox_status create_bspline(const motion_source *s, cprox_motion **motion
 
   size_t n_segments = 0;
   for (size_t r = degree; r < n_control; r++) n_segments += knots[r] < knots[r + 1];
-  cprox_motion *m = allocate(s, n_segments, degree);
+  cprox_motion *m = motion_allocate(s, n_segments, degree);
   if (m && !motion_keep_spline(&m->given, s->description)) {
     cprox_motion_free(m);
     m = NULL;
@@ -415,11 +406,11 @@ static cprox_status create_bspline(const motion_source *s, cprox_motion **motion
     for (size_t k = 0; k < n; k++) {
       const size_t at = i * n + k;
       const double size = convert_span(control + k, n, knots, degree, r, m->coefficients + at * m->stride);
-      m->error[at] = cutting_error(degree, size) + ROUND_UP * ROUND_U * 5.0 * (double)degree * size;
+      m->error[at] = motion_cutting_error(degree, size) + ROUND_UP * ROUND_U * 5.0 * (double)degree * size;
     }
     i++;
   }
-  return finish(m, s, motion);
+  return motion_finish(m, s, motion);
 }
 
 /* ---- states ---- */
@@ -439,7 +430,7 @@ static cprox_status create_state(const motion_source *s, cprox_motion **motion) 
   const cprox_waypoint ends[2] = {{.time = 0.0, .positions = &NOTHING}, {.time = 1.0, .positions = &NOTHING}};
   const cprox_motion_description given = {
       .waypoints = ends, .n_waypoints = 2, .interpolation = CPROX_INTERPOLATION_LINEAR};
-  cprox_motion *m = allocate(s, 1, 1);
+  cprox_motion *m = motion_allocate(s, 1, 1);
   if (m && !motion_keep_waypoints(&m->given, &given)) {
     cprox_motion_free(m);
     m = NULL;
@@ -449,7 +440,7 @@ static cprox_status create_state(const motion_source *s, cprox_motion **motion) 
   m->is_state = true;
   m->times[1] = 1.0;
   m->degree[0] = 1;
-  return finish(m, s, motion);
+  return motion_finish(m, s, motion);
 }
 
 cprox_status motion_set_state(cprox_motion *motion, const double *values, cprox_workspace *workspace) {
@@ -478,10 +469,11 @@ cprox_status cprox_motion_create(const cprox_robot *robot, const cprox_motion_de
   if (!motion) return workspace_fail(workspace, CPROX_INVALID, "motion is NULL: nowhere to put the handle");
   if (!robot) return workspace_fail(workspace, CPROX_INVALID, "robot is NULL");
   if (!description) return workspace_fail(workspace, CPROX_INVALID, "the description of the motion is NULL");
+  const bool joined = description->kind == CPROX_MOTION_JOINED;
   const motion_source s = {.robot = robot,
-                           .variables = description->variables,
-                           .n = description->n_variables,
-                           .rest = description->rest,
+                           .variables = joined ? NULL : description->variables,
+                           .n = joined ? 0 : description->n_variables,
+                           .rest = joined ? NULL : description->rest,
                            .description = description,
                            .workspace = workspace};
   const cprox_status status = check_source(&s);
@@ -490,6 +482,7 @@ cprox_status cprox_motion_create(const cprox_robot *robot, const cprox_motion_de
     case CPROX_MOTION_WAYPOINTS: return create_waypoints(&s, motion);
     case CPROX_MOTION_BSPLINE: return create_bspline(&s, motion);
     case CPROX_MOTION_STATE: return create_state(&s, motion);
+    case CPROX_MOTION_JOINED: return motion_create_joined(&s, motion);
   }
   return workspace_fail(workspace, CPROX_INVALID, "%d is no kind of motion", (int)description->kind);
 }

@@ -247,6 +247,61 @@ cprox_status cprox_robot_create(const cprox_link *links, size_t n_links, const c
   return CPROX_OK;
 }
 
+/* ---- several robots ---- */
+
+/* The numbers of links, geometries and variables before a robot's own. */
+typedef struct robot_counts {
+  size_t links, geometries, variables;
+} robot_counts;
+
+/* The base of a robot, its links, and its geometries, in the numbers of the joined robot. */
+static void append_robot(const cprox_robot *robot, const cprox_pose *base, robot_counts *at, cprox_link *links,
+                         cprox_link_geometry *geometries) {
+  links[at->links++] = (cprox_link){.parent = -1, .type = CPROX_JOINT_FIXED, .origin = *base, .multiplier = 1.0};
+  for (size_t i = 0; i < robot->n_links; i++) {
+    cprox_link *link = &links[at->links + i];
+    *link = robot->given_links[i];
+    link->parent += (int32_t)at->links; /* -1 becomes the base */
+    link->variable += (int32_t)at->variables;
+  }
+  for (size_t i = 0; i < robot->n_geometries; i++) {
+    cprox_link_geometry *geometry = &geometries[at->geometries + i];
+    *geometry = robot->given_geometries[i];
+    geometry->link += (int32_t)at->links;
+  }
+  at->links += robot->n_links, at->geometries += robot->n_geometries, at->variables += robot->n_variables;
+}
+
+cprox_status cprox_robot_join(const cprox_robot *const *robots, const cprox_pose *bases, size_t n,
+                              cprox_workspace *workspace, cprox_robot **robot) {
+  static const cprox_pose ORIGIN = {.orientation = {.w = 1.0}};
+  workspace_clear(workspace);
+  if (!robot) return workspace_fail(workspace, CPROX_INVALID, "robot is NULL: nowhere to put the handle");
+  if (!robots || n == 0) return workspace_fail(workspace, CPROX_INVALID, "there is no robot to join");
+  robot_counts all = {0};
+  for (size_t i = 0; i < n; i++) {
+    if (!robots[i]) return workspace_fail(workspace, CPROX_INVALID, "robot %zu is NULL", i);
+    const char *wrong = bases ? frame_pose_error(&bases[i]) : NULL;
+    if (wrong) return workspace_fail(workspace, CPROX_INVALID, "the base of robot %zu: %s", i, wrong);
+    all.links += robots[i]->n_links + 1, all.geometries += robots[i]->n_geometries;
+    all.variables += robots[i]->n_variables;
+    if (all.links > INT32_MAX / 8 || all.geometries > INT32_MAX || all.variables > INT32_MAX)
+      return workspace_fail(workspace, CPROX_INVALID, "the robots up to number %zu have too many links", i);
+  }
+  cprox_link *links = calloc(all.links, sizeof *links);
+  cprox_link_geometry *geometries = calloc(all.geometries + 1, sizeof *geometries);
+  robot_counts at = {0};
+  for (size_t i = 0; links && geometries && i < n; i++)
+    append_robot(robots[i], bases ? &bases[i] : &ORIGIN, &at, links, geometries);
+  const cprox_status status =
+      links && geometries
+          ? cprox_robot_create(links, at.links, geometries, at.geometries, at.variables, workspace, robot)
+          : workspace_fail(workspace, CPROX_MEMORY, "no memory for a robot of %zu links", all.links);
+  free(links);
+  free(geometries);
+  return status;
+}
+
 void cprox_robot_free(cprox_robot *robot) {
   if (!robot) return;
   free(robot->links);

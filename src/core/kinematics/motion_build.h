@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What the makers of motions share: memory, and what follows from the coefficients. */
+#ifndef CPROX_KINEMATICS_MOTION_BUILD_H
+#define CPROX_KINEMATICS_MOTION_BUILD_H
+
+#include "kinematics/motion.h"
+
+/* What a motion is made of. */
+typedef struct motion_source {
+  const cprox_robot *robot;
+  const int32_t *variables;
+  size_t n;
+  const double *rest;
+  const cprox_motion_description *description;
+  cprox_workspace *workspace;
+} motion_source;
+
+/* A motion of so many segments, all 0, for the variables of the source; NULL where memory is out. */
+cprox_motion *motion_allocate(const motion_source *source, size_t n_segments, size_t degree);
+
+/* All that follows from times, degrees, coefficients and their errors. Frees the motion on failure. */
+cprox_status motion_finish(cprox_motion *m, const motion_source *source, cprox_motion **motion);
+
+/* What cutting and evaluating adds to the error of coefficients of this size; doc/robot-bounds.md. */
+double motion_cutting_error(size_t degree, double largest);
+
+/* The kind CPROX_MOTION_JOINED. */
+cprox_status motion_create_joined(const motion_source *source, cprox_motion **motion);
+
+#endif

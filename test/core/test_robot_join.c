@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Several robots on one clock: poses against each robot's own in long double; distances, verdicts and times of contact
+ * of balls that move against each other, in closed form. */
+#include <math.h>
+#include <string.h>
+
+#include "kinematics/motion.h"
+#include "support/builders.h"
+#include "support/cases.h"
+#include "support/of_list.h"
+#include "support/robots.h"
+
+enum { MEMBERS = 3, MAX_AXES = MEMBERS * 4 * TEST_MAX_LINKS, MAX_VARIABLES = MEMBERS * TEST_MAX_VARIABLES };
+
+static const cprox_pose HERE = {.orientation = {.w = 1.0}};
+
+static cprox_status join(const cprox_robot *robot, const cprox_joined_motion *joined, size_t n, cprox_motion **motion) {
+  const cprox_motion_description d = {.kind = CPROX_MOTION_JOINED, .joined = joined, .n_joined = n};
+  return cprox_motion_create(robot, &d, ws, motion);
+}
+
+/* ---- poses ---- */
+
+typedef struct assembly {
+  test_robot members[MEMBERS];
+  double starts[MEMBERS];
+  cprox_pose bases[MEMBERS];
+  cprox_robot *robot;
+  cprox_motion *motion;
+} assembly;
+
+/* Times that are multiples of 2^-20 have exact sums: what is joined is then what was given. */
+static void assembly_make(rng *r, assembly *a) {
+  const cprox_robot *robots[MEMBERS];
+  cprox_joined_motion joined[MEMBERS];
+  for (size_t i = 0; i < MEMBERS; i++) {
+    test_robot *t = &a->members[i];
+    robot_make(r, rng_log_uniform(r, 0.01, 3), t);
+    for (size_t k = 0; k < t->n_points + TEST_SPLINE_DEGREE + 1; k++)
+      t->times[k] = ldexp(rint(ldexp(t->times[k], 20)), -20);
+    robot_rebuild(t);
+    /* begins before the first one has ended */
+    const cprox_motion_info info = cprox_motion_get_info(t->motion),
+                            first = cprox_motion_get_info(a->members[0].motion);
+    const double from = first.t0 - info.t1, to = first.t1 - info.t0;
+    a->starts[i] = i == 0 ? 0.0 : ldexp(rint(ldexp(rng_uniform(r, from, to), 20)), -20);
+    a->bases[i] = rng_pose(r, 1.0);
+    robots[i] = t->robot, joined[i] = (cprox_joined_motion){t->motion, a->starts[i]};
+  }
+  assert_int_equal(cprox_robot_join(robots, a->bases, MEMBERS, ws, &a->robot), CPROX_OK);
+  if (join(a->robot, joined, MEMBERS, &a->motion) != CPROX_OK) fail_msg("%s", cprox_workspace_error(ws));
+}
+
+static void assembly_free(assembly *a) {
+  cprox_motion_free(a->motion);
+  cprox_robot_free(a->robot);
+  for (size_t i = 0; i < MEMBERS; i++) robot_free(&a->members[i]);
+}
+
+/* The tolerance is what the core says of itself. */
+CASE(every_part_is_where_its_own_robot_has_it_at_that_time) {
+  rng r = rng_seed(7001);
+  static assembly a;
+  double worst = 0.0;
+  for (size_t i = 0; i < test_cases(300); i++) {
+    assembly_make(&r, &a);
+    for (int k = 0; k < 12; k++) {
+      const size_t segment = rng_index(&r, a.motion->n_segments);
+      const double u = k == 0 ? 0.0 : k == 1 ? 1.0 : rng_uniform(&r, 0, 1);
+      double values[MAX_VARIABLES + 1];
+      placement frames[MAX_AXES + 1];
+      motion_place(a.motion, segment, u, values, frames);
+      const long double t0 = a.motion->times[segment], t1 = a.motion->times[segment + 1];
+      const long double time = (1 - (long double)u) * t0 + u * t1;
+      size_t part = 0;
+      for (size_t m = 0; m < MEMBERS; m++) {
+        const test_robot *t = &a.members[m];
+        const cprox_motion_info info = cprox_motion_get_info(t->motion);
+        const long double own = fminl(fmaxl(time - a.starts[m], info.t0), info.t1);
+        long double exact[TEST_MAX_VARIABLES + 1];
+        ref_pose links[TEST_MAX_LINKS];
+        robot_ref_values(t, own, exact);
+        robot_ref_links(t, exact, links);
+        for (size_t p = 0; p < t->robot->n_parts; p++, part++) {
+          const robot_part *of = &a.robot->parts[part];
+          const placement at = placement_under(frames, of->axis, &of->at);
+          vec3l vertices[TEST_VERTICES];
+          robot_ref_vertices(t, links, p, vertices);
+          for (size_t v = 0; v < TEST_VERTICES; v++) {
+            const vec3 local = vec_sub(t->vertices[p][v], t->geometries[p].body->centre);
+            const long double off = ref_error(ref_to_world(&a.bases[m], vertices[v]), placement_apply(&at, local));
+            worst = fmax(worst, (double)off / a.motion->part_error[part]);
+            if (off > a.motion->part_error[part])
+              fail_msg("assembly %zu part %zu is off by %.3Lg, said to be at most %.3g", i, part, off,
+                       a.motion->part_error[part]);
+          }
+        }
+      }
+      assert_int_equal(part, a.robot->n_parts);
+    }
+    assembly_free(&a);
+  }
+  print_message("largest error / bound: %.3f\n", worst);
+  assert_true(worst > 1e-3);
+}
+
+CASE(a_joined_motion_lasts_from_the_first_start_to_the_last_end) {
+  rng r = rng_seed(7002);
+  static assembly a;
+  for (size_t i = 0; i < test_cases(100); i++) {
+    assembly_make(&r, &a);
+    double first = INFINITY, last = -INFINITY;
+    size_t variables = 0;
+    for (size_t m = 0; m < MEMBERS; m++) {
+      const cprox_motion_info info = cprox_motion_get_info(a.members[m].motion);
+      first = fmin(first, info.t0 + a.starts[m]), last = fmax(last, info.t1 + a.starts[m]);
+      variables += info.n_variables;
+    }
+    const cprox_motion_info info = cprox_motion_get_info(a.motion);
+    assert_true(info.t0 == first && info.t1 == last);
+    assert_int_equal(info.kind, CPROX_MOTION_JOINED);
+    assert_int_equal(info.n_variables, variables);
+    assembly_free(&a);
+  }
+}
+
+/* ---- balls ---- */
+
+enum { BALL_POINTS = 4 };
+
+/* A ball on a floating joint along straight lines. */
+typedef struct ball {
+  double radius, start;
+  double times[BALL_POINTS];
+  double values[BALL_POINTS][7];
+  cprox_body *body;
+  cprox_robot *robot;
+  cprox_motion *motion;
+} ball;
+
+static void ball_make(rng *r, ball *b) {
+  const cprox_link link = {.parent = -1, .type = CPROX_JOINT_FLOATING, .origin = HERE};
+  b->radius = rng_log_uniform(r, 0.01, 0.3);
+  assert_int_equal(cprox_body_create_sphere(b->radius, NULL, &b->body), CPROX_OK);
+  const cprox_link_geometry geometry = {.body = b->body, .pose = HERE};
+  assert_int_equal(cprox_robot_create(&link, 1, &geometry, 1, 7, ws, &b->robot), CPROX_OK);
+  static const int32_t ALL[7] = {0, 1, 2, 3, 4, 5, 6};
+  cprox_waypoint points[BALL_POINTS];
+  double t = 0.0;
+  for (size_t i = 0; i < BALL_POINTS; i++) {
+    t += 0.5 + ldexp((double)rng_index(r, 1 << 12), -12);
+    for (size_t k = 0; k < 3; k++) b->values[i][k] = rng_uniform(r, -1.5, 1.5);
+    const vec3 v = rng_unit(r);
+    const double q[4] = {v.x, v.y, v.z, 2.0};
+    memcpy(b->values[i] + 3, q, sizeof q);
+    b->times[i] = t;
+    points[i] = (cprox_waypoint){.time = t, .positions = b->values[i]};
+  }
+  b->start = ldexp((double)rng_index(r, 1 << 12), -12) - b->times[0]; /* begins in [0, 1], ends after 1.5 */
+  const cprox_motion_description d = {
+      .variables = ALL, .n_variables = 7, .waypoints = points, .n_waypoints = BALL_POINTS};
+  assert_int_equal(cprox_motion_create(b->robot, &d, ws, &b->motion), CPROX_OK);
+}
+
+static void ball_free(ball *b) {
+  cprox_motion_free(b->motion);
+  cprox_robot_free(b->robot);
+  cprox_body_free(b->body);
+}
+
+static vec3l ball_at(const ball *b, long double time) {
+  const long double t = fminl(fmaxl(time - b->start, b->times[0]), b->times[BALL_POINTS - 1]);
+  size_t i = 0;
+  while (i + 2 < BALL_POINTS && t >= b->times[i + 1]) i++;
+  const long double s = (t - b->times[i]) / ((long double)b->times[i + 1] - b->times[i]);
+  const double *p = b->values[i], *q = b->values[i + 1];
+  return (vec3l){p[0] + s * (q[0] - (long double)p[0]), p[1] + s * (q[1] - (long double)p[1]),
+                 p[2] + s * (q[2] - (long double)p[2])};
+}
+
+/* The least distance of two points on straight lines over [t0, t1], and where they first come within `near`. */
+typedef struct approach {
+  long double distance, first; /* first: infinity where they do not */
+} approach;
+
+static void take_line(const ball *a, const ball *b, long double t0, long double t1, long double near, approach *out) {
+  const vec3l d = ref_sub(ball_at(a, t0), ball_at(b, t0)), e = ref_sub(ball_at(a, t1), ball_at(b, t1)),
+              v = ref_sub(e, d);
+  const long double vv = ref_dot(v, v), dv = ref_dot(d, v);
+  const long double s = vv > 0 ? fminl(fmaxl(-dv / vv, 0), 1) : 0;
+  out->distance = fminl(out->distance, ref_norm(ref_add(d, ref_scale(s, v))));
+  if (out->first < HUGE_VALL) return;
+  if (ref_norm(d) <= near) out->first = t0;
+  const long double inside = dv * dv - vv * (ref_dot(d, d) - near * near);
+  if (ref_norm(d) <= near || vv == 0 || inside < 0) return;
+  const long double root = (-dv - sqrtl(inside)) / vv;
+  if (root >= 0 && root <= 1) out->first = t0 + root * (t1 - t0);
+}
+
+static approach approach_of(const ball *a, const ball *b) {
+  long double knots[2 * BALL_POINTS];
+  size_t n = 0;
+  for (size_t i = 0; i < BALL_POINTS; i++) {
+    knots[n++] = (long double)a->times[i] + a->start;
+    knots[n++] = (long double)b->times[i] + b->start;
+  }
+  for (size_t i = 1; i < n; i++)
+    for (size_t k = i; k > 0 && knots[k] < knots[k - 1]; k--) {
+      const long double swapped = knots[k];
+      knots[k] = knots[k - 1], knots[k - 1] = swapped;
+    }
+  approach out = {HUGE_VALL, HUGE_VALL};
+  for (size_t i = 0; i + 1 < n; i++)
+    if (knots[i] < knots[i + 1]) take_line(a, b, knots[i], knots[i + 1], (long double)a->radius + b->radius, &out);
+  return out;
+}
+
+/* Long double and rounding of poses: 1e-12 is a hundred times either. */
+CASE(balls_on_one_clock_are_as_near_and_meet_when_they_do) {
+  rng r = rng_seed(7003);
+  size_t touching = 0;
+  for (size_t i = 0; i < test_cases(1500); i++) {
+    ball a, b;
+    ball_make(&r, &a);
+    ball_make(&r, &b);
+    const cprox_robot *robots[2] = {a.robot, b.robot};
+    const cprox_joined_motion joined[2] = {{a.motion, a.start}, {b.motion, b.start}};
+    cprox_robot *robot = NULL;
+    cprox_motion *motion = NULL;
+    assert_int_equal(cprox_robot_join(robots, NULL, 2, ws, &robot), CPROX_OK);
+    assert_int_equal(join(robot, joined, 2, &motion), CPROX_OK);
+    const cprox_mover mover = cprox_robot_self(motion, &(cprox_robot_pair){0, 1}, 1);
+    const approach exact = approach_of(&a, &b);
+    const long double clearance = fmaxl(exact.distance - a.radius - b.radius, 0);
+    touching += exact.first < HUGE_VALL;
+
+    cprox_result d = {0}, v = {0}, c = {0};
+    assert_int_equal(distance_of_list(mover, NULL, 0, NULL, ws, &d, NULL), CPROX_OK);
+    if (!(d.lower <= clearance + 1e-12L && d.upper >= clearance - 1e-12L && d.upper - d.lower <= 1.01e-6))
+      fail_msg("case %zu: the distance is %.17Lg, said to be in [%.17g, %.17g]", i, clearance, d.lower, d.upper);
+    assert_true(tolerance_of_list(mover, NULL, 0, (double)(0.9L * clearance), NULL, ws, &v, NULL) >= 0);
+    if (clearance > 1e-9L) assert_int_equal(v.verdict, CPROX_VERDICT_CLEAR);
+    assert_true(time_of_contact_of_list(mover, NULL, 0, NULL, ws, &c) >= 0);
+    if (exact.first < HUGE_VALL) {
+      assert_int_not_equal(c.verdict, CPROX_VERDICT_CLEAR);
+      if (!(c.t_contact_lower <= exact.first + 1e-12L))
+        fail_msg("case %zu: contact at %.17Lg, no later than %.17g was said", i, exact.first, c.t_contact_lower);
+    } else if (clearance > 1e-6L) {
+      assert_int_equal(c.verdict, CPROX_VERDICT_CLEAR);
+    }
+    cprox_motion_free(motion);
+    cprox_robot_free(robot);
+    ball_free(&a);
+    ball_free(&b);
+  }
+  assert_true(touching > 50);
+}
+
+/* What stands, what moves against it, and both at once. */
+CASE(obstacles_and_the_other_robot_are_asked_about_at_once) {
+  rng r = rng_seed(7004);
+  for (size_t i = 0; i < test_cases(200); i++) {
+    ball a, b;
+    ball_make(&r, &a);
+    ball_make(&r, &b);
+    const cprox_robot *robots[2] = {a.robot, b.robot};
+    const cprox_joined_motion joined[2] = {{a.motion, a.start}, {b.motion, b.start}};
+    cprox_robot *robot = NULL;
+    cprox_motion *motion = NULL;
+    assert_int_equal(cprox_robot_join(robots, NULL, 2, ws, &robot), CPROX_OK);
+    assert_int_equal(join(robot, joined, 2, &motion), CPROX_OK);
+    cprox_body *box = NULL;
+    assert_int_equal(cprox_body_create_box(vec(0.2, 0.3, 0.4), NULL, &box), CPROX_OK);
+    const cprox_obstacle target = cprox_obstacle_at(box, rng_pose(&r, 1.0));
+    const cprox_robot_pair pair = {0, 1};
+    cprox_mover whole = cprox_robot_along(motion, NULL, 0);
+    whole.kind = CPROX_MOVER_ROBOT_WHOLE, whole.self_pairs = &pair, whole.n_self_pairs = 1;
+    cprox_result all = {0}, standing = {0}, between = {0};
+    assert_int_equal(distance_of_list(whole, &target, 1, NULL, ws, &all, NULL), CPROX_OK);
+    assert_int_equal(distance_of_list(cprox_robot_along(motion, NULL, 0), &target, 1, NULL, ws, &standing, NULL),
+                     CPROX_OK);
+    assert_int_equal(distance_of_list(cprox_robot_self(motion, &pair, 1), NULL, 0, NULL, ws, &between, NULL), CPROX_OK);
+    const double lower = fmin(standing.lower, between.lower), upper = fmin(standing.upper, between.upper);
+    assert_true(all.lower <= upper && lower <= all.upper);
+
+    /* on one half of the clock and on the other */
+    const cprox_motion_info info = cprox_motion_get_info(motion);
+    const double breaks[3] = {info.t0, 0.5 * (info.t0 + info.t1), info.t1};
+    cprox_profile_interval halves[2] = {0};
+    assert_true(profile_of_list(cprox_robot_self(motion, &pair, 1), NULL, 0, breaks, 2, NULL, ws, halves) >= 0);
+    assert_true(fmin(halves[0].lower, halves[1].lower) <= between.upper);
+    assert_true(between.lower <= fmin(halves[0].upper, halves[1].upper));
+    cprox_motion_free(motion);
+    cprox_robot_free(robot);
+    cprox_body_free(box);
+    ball_free(&a);
+    ball_free(&b);
+  }
+}
+
+/* ---- what is refused ---- */
+
+static void refused(cprox_status status, const char *because) {
+  assert_int_equal(status, CPROX_INVALID);
+  if (!strstr(cprox_workspace_error(ws), because))
+    fail_msg("'%s' does not say '%s'", cprox_workspace_error(ws), because);
+}
+
+CASE(what_cannot_be_joined_gets_a_sentence) {
+  rng r = rng_seed(7005);
+  ball a, b;
+  ball_make(&r, &a);
+  ball_make(&r, &b);
+  const cprox_robot *robots[2] = {a.robot, b.robot};
+  cprox_robot *robot = NULL;
+  cprox_motion *motion = NULL, *stand = NULL;
+  refused(cprox_robot_join(NULL, NULL, 2, ws, &robot), "no robot to join");
+  refused(cprox_robot_join(robots, NULL, 0, ws, &robot), "no robot to join");
+  const cprox_pose bases[2] = {HERE, {.orientation = {0, 0, 0, 0}}};
+  refused(cprox_robot_join(robots, bases, 2, ws, &robot), "the base of robot 1");
+  const cprox_robot *missing[2] = {a.robot, NULL};
+  refused(cprox_robot_join(missing, NULL, 2, ws, &robot), "robot 1 is NULL");
+  assert_null(robot);
+  assert_int_equal(cprox_robot_join(robots, NULL, 2, ws, &robot), CPROX_OK);
+
+  cprox_joined_motion joined[2] = {{a.motion, 0.0}, {b.motion, 100.0}};
+  refused(join(robot, NULL, 2, &motion), "no motion to join");
+  refused(join(robot, joined, 1, &motion), "one motion for each joined robot");
+  refused(join(robot, joined, 2, &motion), "the clocks do not overlap: motion 1 begins at");
+  joined[1].start = NAN;
+  refused(join(robot, joined, 2, &motion), "its start is nan");
+  joined[1].start = 1e18;
+  refused(join(robot, joined, 2, &motion), "become one");
+  joined[1].motion = NULL;
+  refused(join(robot, joined, 2, &motion), "motion 1 is NULL");
+  const double pose[7] = {1, 2, 3, 0, 0, 0, 1};
+  const cprox_motion_description stands = {.kind = CPROX_MOTION_STATE, .rest = pose};
+  assert_int_equal(cprox_motion_create(b.robot, &stands, ws, &stand), CPROX_OK);
+  joined[0] = joined[1] = (cprox_joined_motion){stand, 0.0};
+  refused(join(robot, joined, 2, &motion), "all motions are states");
+  assert_null(motion);
+
+  /* a stand stands on the clock of the others */
+  joined[0] = (cprox_joined_motion){a.motion, 0.0};
+  assert_int_equal(join(robot, joined, 2, &motion), CPROX_OK);
+  double values[14];
+  cprox_motion_evaluate(motion, a.times[1], values);
+  assert_memory_equal(values + 7, pose, sizeof pose);
+
+  /* certificates are about one robot */
+  cprox_certificate *certificate = cprox_certificate_create();
+  assert_non_null(certificate);
+  refused(certify_of_list(cprox_robot_self(motion, &(cprox_robot_pair){0, 1}, 1), NULL, 0, 0.0, NULL, NULL, ws,
+                          certificate),
+          "joined motions have no certificates");
+  cprox_certificate_free(certificate);
+  cprox_motion_free(motion);
+  cprox_motion_free(stand);
+  cprox_robot_free(robot);
+  ball_free(&a);
+  ball_free(&b);
+}
+
+int main(void) {
+  return cases_run(workspace_setup, workspace_teardown);
+}
