@@ -15,4 +15,7 @@ void bench_robot_waypoints(const robot_case *cases, size_t n, const bench_size *
 /* The share of the pairs looked at whose distance is measured. */
 void bench_robot_pairs(const robot_case *cases, size_t n, cprox_workspace *workspace);
 
+/* Arms against themselves by their own meshes, beside FCL at .05 rad. */
+void bench_robot_links(const bench_size *size, cprox_workspace *workspace);
+
 #endif

@@ -71,7 +71,8 @@ static bool watch(const robot_case *c, bool self, double delta, double epsilon, 
   const search_oracle outer = {.self = &w, .filter = filter, .probe = probe, .split = split, .release = release};
   search_outcome found;
   search_node root;
-  if (!robot_search_root(&w.search, 0, 0.0, c->motion->n_segments, 1.0, &root)) return false;
+  const motion_interval over = {.b = 1.0, .last = c->motion->n_segments};
+  if (!robot_search_root(&w.search, &over, &root)) return false;
   if (search_run(&goal, &outer, root, ws, &found) != CPROX_OK) return false;
   *looks += w.looks, *measured += w.search.gaps;
   return found.nodes == r.nodes && w.search.gaps == r.distance_queries;

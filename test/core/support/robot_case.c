@@ -143,21 +143,16 @@ static bool read_scene(FILE *f, robot_case *c) {
   return true;
 }
 
-bool robot_case_read(FILE *cases, const char *folder, robot_case *c) {
-  bool disabled[CASE_MAX_LINKS][CASE_MAX_LINKS] = {{false}};
+static bool read_robot_file(const char *folder, robot_case *c, bool disabled[CASE_MAX_LINKS][CASE_MAX_LINKS]) {
   char path[400];
-  size_t n_variables;
-  memset(c, 0, sizeof *c);
-  if (fscanf(cases, "%79s %39s", c->name, c->robot_name) != 2) return false;
   snprintf(path, sizeof path, "%s/%s.robot", folder, c->robot_name);
   FILE *f = fopen(path, "r");
-  const bool robot = f && read_robot(f, c, &n_variables, disabled);
+  const bool good = f && read_robot(f, c, &c->n_variables, disabled);
   if (f) fclose(f);
-  c->n_variables = robot ? n_variables : 0;
-  if (!robot || !read_motion(cases, c, n_variables) || !read_scene(cases, c)) {
-    fprintf(stderr, "%s: not a robot case\n", c->name);
-    return false;
-  }
+  return good;
+}
+
+static void list_self_pairs(robot_case *c, bool disabled[CASE_MAX_LINKS][CASE_MAX_LINKS]) {
   for (size_t i = 0; i < c->n_geometries; i++)
     for (size_t k = 0; k < i; k++) {
       const size_t a = (size_t)c->links[i], b = (size_t)c->links[k];
@@ -165,7 +160,37 @@ bool robot_case_read(FILE *cases, const char *folder, robot_case *c) {
       if (disabled[a][b] || between.n_joints < 2 || between.n_moved == 0) continue;
       c->self_pairs[c->n_self_pairs++] = (cprox_robot_pair){(int32_t)i, (int32_t)k};
     }
+}
+
+bool robot_case_read(FILE *cases, const char *folder, robot_case *c) {
+  bool disabled[CASE_MAX_LINKS][CASE_MAX_LINKS] = {{false}};
+  memset(c, 0, sizeof *c);
+  if (fscanf(cases, "%79s %39s", c->name, c->robot_name) != 2) return false;
+  if (!read_robot_file(folder, c, disabled) || !read_motion(cases, c, c->n_variables) || !read_scene(cases, c)) {
+    fprintf(stderr, "%s: not a robot case\n", c->name);
+    return false;
+  }
+  list_self_pairs(c, disabled);
   return true;
+}
+
+bool robot_case_read_robot(const char *folder, const char *robot, robot_case *c) {
+  bool disabled[CASE_MAX_LINKS][CASE_MAX_LINKS] = {{false}};
+  memset(c, 0, sizeof *c);
+  snprintf(c->robot_name, sizeof c->robot_name, "%s", robot);
+  double positions[2][CASE_MAX_VARIABLES] = {{0.0}};
+  int32_t variables[CASE_MAX_VARIABLES];
+  for (int i = 0; i < CASE_MAX_VARIABLES; i++) variables[i] = i, positions[1][i] = 1.0;
+  const cprox_waypoint points[2] = {{.positions = positions[0]}, {.time = 1.0, .positions = positions[1]}};
+  cprox_motion_description d = {
+      .variables = variables, .waypoints = points, .n_waypoints = 2, .interpolation = CPROX_INTERPOLATION_LINEAR};
+  bool good = read_robot_file(folder, c, disabled);
+  d.n_variables = c->n_variables;
+  good = good && cprox_motion_create(c->robot, &d, NULL, &c->motion) == CPROX_OK &&
+         cprox_motion_create(c->mesh_robot, &d, NULL, &c->mesh_motion) == CPROX_OK;
+  if (good) list_self_pairs(c, disabled);
+  if (!good) fprintf(stderr, "%s: not a robot\n", robot);
+  return good;
 }
 
 void robot_case_free(robot_case *c) {
