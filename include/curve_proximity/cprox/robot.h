@@ -30,7 +30,10 @@ typedef enum cprox_joint_type {
   CPROX_JOINT_PLANAR,
   /** 7: x, y, z [m] and the quaternion's x, y, z, w: of any norm, so that its components may be polynomials; a
    *  motion on which it comes near 0 is refused */
-  CPROX_JOINT_FLOATING
+  CPROX_JOINT_FLOATING,
+  /** 6: x, y, z [m] and a rotation vector [rad]: it points along the axis, its length is the angle. All six may be
+   *  splines of any kind that motions have */
+  CPROX_JOINT_ROTATION_VECTOR
 } cprox_joint_type;
 
 /** One link and the joint that it hangs on. Its frame is the joint's, moved. */
@@ -112,6 +115,18 @@ typedef enum cprox_interpolation {
   CPROX_INTERPOLATION_QUINTIC
 } cprox_interpolation;
 
+/** How floating joints turn from one waypoint to the next. */
+typedef enum cprox_turning {
+  /** The four numbers of the quaternion are polynomials, like all other variables. */
+  CPROX_TURNING_POLYNOMIAL,
+  /** At a constant rate about one axis, the shorter way (slerp). x, y and z are polynomials. Velocities and
+   *  accelerations of the quaternion's numbers are not read. */
+  CPROX_TURNING_SLERP,
+  /** With a constant twist: at a constant rate about one line and along it. Velocities and accelerations of the joint's
+   *  variables are not read. */
+  CPROX_TURNING_SCREW
+} cprox_turning;
+
 /** The kinds of motions. Each comment names the members of cprox_motion_description that the kind reads, besides
  *  variables, n_variables and rest. */
 typedef enum cprox_motion_kind {
@@ -119,7 +134,10 @@ typedef enum cprox_motion_kind {
    *  the robot is in, that state is the first waypoint.
    *
    *  waypoints, n_waypoints   2 or more, at ascending times.
-   *  interpolation            how the variables go from one waypoint to the next. */
+   *  interpolation            how the variables go from one waypoint to the next.
+   *  turning                  how floating joints do. But for CPROX_TURNING_POLYNOMIAL: quaternions have any norm but
+   * 0; a joint whose quaternion (for screws: whose pose) is given in part is refused, and so are orientations that are
+   * half a turn apart: which way they turn is not said. */
   CPROX_MOTION_WAYPOINTS,
   /** The motion along a B-spline in the space of the variables, from knots[degree] to knots[n_control].
    *
@@ -168,6 +186,8 @@ typedef struct cprox_motion_description {
   size_t n_waypoints;
   /** between waypoints */
   cprox_interpolation interpolation;
+  /** of floating joints, between waypoints */
+  cprox_turning turning;
   /** control points of a B-spline, one row of n_variables values each */
   const double *control;
   /** the number of control points */

@@ -14,7 +14,8 @@ enum { MOST_PAIRS = 0xffff };
 static cprox_status check_kinds(const cprox_motion *motion, const cprox_obstacle *targets, size_t n,
                                 cprox_workspace *workspace) {
   if (!motion_is_described(motion))
-    return workspace_fail(workspace, CPROX_INVALID, "joined motions have no certificates: ask about each robot alone");
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "no certificates: joined motions, and joints that turn by slerp, screws or rotation vectors");
   const cprox_robot *robot = motion->robot;
   const size_t geometry = certify_unknown_geometry(robot);
   if (geometry < robot->n_geometries)

@@ -31,7 +31,7 @@ static bool turns(const axis_state *axis) {
 
 static double lever_arm(const axis_state *axis, vec3 centre) {
   const vec3 from = vec_sub(centre, axis->frame.p);
-  return axis->kind == AXIS_BALL ? vec_norm(from) : vec_norm(vec_cross(axis->z, from));
+  return axis->kind >= AXIS_BALL ? vec_norm(from) : vec_norm(vec_cross(axis->z, from));
 }
 
 /* Returns the displacement bound. r_k in the middle, then the greatest over the node (of a span, over its line): what

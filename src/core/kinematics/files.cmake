@@ -1,5 +1,6 @@
 # The files of this room. A new file is one line here.
 target_sources(cprox_objects PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/arcs.c
   ${CMAKE_CURRENT_LIST_DIR}/bound.c
   ${CMAKE_CURRENT_LIST_DIR}/given.c
   ${CMAKE_CURRENT_LIST_DIR}/joint_tree.c
@@ -7,6 +8,7 @@ target_sources(cprox_objects PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/motion.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_create.c
   ${CMAKE_CURRENT_LIST_DIR}/motion_join.c
+  ${CMAKE_CURRENT_LIST_DIR}/motion_turning.c
   ${CMAKE_CURRENT_LIST_DIR}/robot.c
   ${CMAKE_CURRENT_LIST_DIR}/spans.c
 )

@@ -50,9 +50,20 @@ void axis_advance(const robot_axis *axis, const placement *before, double value,
     turn_about(axis, before->r, value, moved->r);
 }
 
-placement axis_move(const robot_axis *axis, const placement *parent, double value, const double *quaternion) {
+void rotation_vector_quaternion(const double vector[3], double quaternion[4]) {
+  const double angle = sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
+  /* sin(x/2)/x by its series is 1/2 within x²/48: less than 1e-17 */
+  const double part = angle > 1e-8 ? sin(0.5 * angle) / angle : 0.5;
+  for (int k = 0; k < 3; k++) quaternion[k] = part * vector[k];
+  quaternion[3] = cos(0.5 * angle);
+}
+
+placement axis_move(const robot_axis *axis, const placement *parent, double value, const double *ball) {
   placement moved = axis->at;
-  if (axis->kind == AXIS_BALL) {
+  if (axis->kind == AXIS_BALL || axis->kind == AXIS_VECTOR) {
+    double of_vector[4];
+    if (axis->kind == AXIS_VECTOR) rotation_vector_quaternion(ball, of_vector);
+    const double *quaternion = axis->kind == AXIS_VECTOR ? of_vector : ball;
     const cprox_pose pose = {.orientation = {quaternion[3], quaternion[0], quaternion[1], quaternion[2]}};
     const frame f = frame_create(&pose, vec(0, 0, 0));
     multiply(axis->at.r, f.r, moved.r);

@@ -10,7 +10,16 @@
 #include "kinematics/link_model.h"
 #include "shape/body.h"
 
-typedef enum axis_kind { AXIS_REVOLUTE, AXIS_PRISMATIC, AXIS_BALL } axis_kind;
+typedef enum axis_kind {
+  AXIS_REVOLUTE,
+  AXIS_PRISMATIC,
+  AXIS_BALL,  /* by a quaternion */
+  AXIS_VECTOR /* a ball by a rotation vector */
+} axis_kind;
+
+static inline int32_t axis_variables(axis_kind kind) {
+  return kind == AXIS_BALL ? 4 : kind == AXIS_VECTOR ? 3 : 1;
+}
 
 /* Where something is: x_world = r x + p. */
 typedef struct placement {
@@ -21,7 +30,7 @@ typedef struct placement {
 typedef struct robot_axis {
   axis_kind kind;
   int32_t parent;            /* axis, or -1 */
-  int32_t variable;          /* ball: the first of four, the quaternion's x, y, z, w */
+  int32_t variable;          /* balls: the first of the quaternion's four or of the vector's three */
   uint32_t depth;            /* so many axes from this one up to the base, both ends counted */
   double multiplier, offset; /* the angle or shift is multiplier * variable + offset */
   placement at;              /* in the parent axis's moved frame */
@@ -78,12 +87,15 @@ static inline vec3 placement_apply(const placement *at, vec3 v) {
 /* outer then inner: x -> outer.r (inner.r x + inner.p) + outer.p. */
 placement placement_compose(const placement *outer, const placement *inner);
 
+/* The quaternion x, y, z, w of a rotation vector. */
+void rotation_vector_quaternion(const double vector[3], double quaternion[4]);
+
 /* The axis moved to the value, from where it stands at 0: in the same frame as `before`. Not of a ball. */
 void axis_advance(const robot_axis *axis, const placement *before, double value, placement *moved);
 
-/* The moved frame of an axis at the value, its parent's being given (NULL: the world). `quaternion` is that of a ball:
- * x, y, z, w. */
-placement axis_move(const robot_axis *axis, const placement *parent, double value, const double *quaternion);
+/* The moved frame of an axis at the value, its parent's being given (NULL: the world). `ball` are the
+ * values of a ball. */
+placement axis_move(const robot_axis *axis, const placement *parent, double value, const double *ball);
 
 /* The moved frames of all axes, for values of all variables. */
 void robot_place_axes(const cprox_robot *robot, const double *variables, placement *frames);

@@ -133,13 +133,14 @@ static void differentiate(double *c, size_t degree) {
   for (size_t i = 0; i < degree; i++) c[i] = (double)degree * (c[i + 1] - c[i]);
 }
 
-/* The four coordinates of a ball's quaternion over the interval, one a lane; returns the sum of their errors. */
-static double quaternion_over(const cprox_motion *m, size_t segment, int32_t variable, double a, double b,
-                              double c[4][MOTION_MAX_DEGREE + 1]) {
+/* The coordinates of a ball over the interval, one a lane; returns the sum of their errors. */
+static double coordinates_over(const cprox_motion *m, size_t segment, const robot_axis *axis, double a, double b,
+                               double c[4][MOTION_MAX_DEGREE + 1]) {
+  const int32_t variable = axis->variable, count = axis_variables(axis->kind);
   const size_t degree = m->degree[segment];
   lane_row lanes[MOTION_MAX_DEGREE + 1] = {{0}};
   double error = 0.0;
-  for (int k = 0; k < 4; k++) {
+  for (int32_t k = 0; k < count; k++) {
     const int32_t slot = m->slot[variable + k];
     const size_t at = segment * m->n_moving + (size_t)(slot < 0 ? 0 : slot);
     for (size_t i = 0; i <= degree; i++)
@@ -186,8 +187,9 @@ static void place_ball(const robot_axis *axis, double p[3][4], const placement *
 
 /* Over a span the quaternion is within `stray` of a straight line. Quaternions that are e apart, one of them of norm m
  * > e, turn vectors to where they are 2 e / m of their length apart at most, and any two turn them 2 apart at most. */
-static void ball_over_span(const cprox_motion *m, const robot_axis *axis, const double *rows, const placement *parent,
+static void ball_over_span(const cprox_motion *m, size_t axis_index, const double *rows, const placement *parent,
                            const placement *before, axis_state *state) {
+  const robot_axis *axis = &m->robot->axes[axis_index];
   const size_t stride = motion_rows_stride(m);
   double p[3][4] = {{0}}, line = 0.0, stray = 0.0, shift = 0.0, norm = 0.0;
   for (int k = 0; k < 4; k++) {
@@ -202,7 +204,8 @@ static void ball_over_span(const cprox_motion *m, const robot_axis *axis, const 
     shift += of[MOTION_SHIFT * stride] * of[MOTION_SHIFT * stride];
   }
   norm = (1.0 - 16.0 * ROUND_U) * sqrt(norm);
-  line = ROUND_UP * sqrt(line), stray = ROUND_UP * sqrt(stray), shift = ROUND_UP * sqrt(shift);
+  const double sagitta = m->arcs ? m->sagitta[axis_index] : 0.0;
+  line = ROUND_UP * sqrt(line), stray = ROUND_UP * sqrt(stray) + sagitta, shift = ROUND_UP * sqrt(shift) + sagitta;
   const double least = norm - line, rate = 2.0 * line / greater(least, NEAREST_LINE * norm);
   state->w = 2.0 * rate;
   state->a = 4.0 * rate * rate;
@@ -223,7 +226,7 @@ static void ball_over(const cprox_motion *m, size_t segment, size_t axis_index, 
   const size_t degree = m->degree[segment];
   const double n = (double)degree;
   double c[4][MOTION_MAX_DEGREE + 1], p[3][4] = {{0}}, bound[4] = {0}, factor = 2.0 * n;
-  const double error = quaternion_over(m, segment, axis->variable, a, b, c);
+  const double error = coordinates_over(m, segment, axis, a, b, c);
   for (int k = 0; k < 4; k++) p[0][k] = at_middle(c[k], degree);
   for (size_t order = 1; order <= 3 && order <= degree; order++) {
     for (int k = 0; k < 4; k++) {
@@ -247,11 +250,152 @@ static void ball_over(const cprox_motion *m, size_t segment, size_t axis_index, 
   place_ball(axis, p, parent, before, state);
 }
 
+/* ---- balls by rotation vectors ---- */
+
+/* A = (1 - cos x)/x^2, B = (x - sin x)/x^3 and the derivatives of both by x, over x; square = x^2. Below 1 by their
+ * series, whose remainders are below the first term that is left out: 1e-20. */
+typedef struct turn_series {
+  double a, b, da, db;
+} turn_series;
+
+static turn_series turn_series_of(double square) {
+  turn_series t = {0};
+  if (square > 1.0) {
+    const double x = sqrt(square), sine = sin(x), half = sin(0.5 * x), versine = 2.0 * half * half;
+    t.a = versine / square, t.b = (x - sine) / (square * x);
+    t.da = (x * sine - 2.0 * versine) / (square * square);
+    t.db = (3.0 * sine - 2.0 * x - x * (1.0 - versine)) / (square * square * x);
+    return t;
+  }
+  enum { TERMS = 10 };
+  double term = 1.0; /* of sin x / x: (-square)^k / (2k + 1)! */
+  for (int k = 0; k < TERMS; k++) {
+    const double n = 2.0 * k, next = 1.0 / ((n + 2.0) * (n + 3.0)), rate = 2.0 * (k + 1);
+    t.a += term / (n + 2.0), t.b += term * next;
+    /* the next terms of both, differentiated */
+    t.da -= rate * term * next / (n + 4.0), t.db -= rate * term * next / ((n + 4.0) * (n + 5.0));
+    term *= -square * next;
+  }
+  return t;
+}
+
+/* The frame of a rotation vector p, its two derivatives given, and its velocities: omega = J p', J = 1 + A [p] + B
+ * [p]^2. */
+static void place_vector(const robot_axis *axis, double values[3][4], const placement *parent, const placement *before,
+                         axis_state *state) {
+  const vec3 p = vec(values[0][0], values[0][1], values[0][2]), v = vec(values[1][0], values[1][1], values[1][2]),
+             a = vec(values[2][0], values[2][1], values[2][2]);
+  const turn_series t = turn_series_of(vec_norm2(p));
+  const vec3 pv = vec_cross(p, v), ppv = vec_cross(p, pv), pa = vec_cross(p, a), ppa = vec_cross(p, pa);
+  const vec3 omega = vec_axpy(vec_axpy(v, t.a, pv), t.b, ppv);
+  const double pace = vec_dot(p, v);
+  vec3 alpha = vec_axpy(vec_axpy(a, t.a, pa), t.b, ppa);
+  alpha = vec_axpy(vec_axpy(alpha, t.da * pace, pv), t.db * pace, ppv);
+  alpha = vec_axpy(alpha, t.b, vec_cross(v, pv)); /* of [p]^2 v; what has v cross v is 0 */
+  state->velocity = placement_turn(before, omega);
+  state->acceleration = placement_turn(before, alpha);
+  const placement own = axis_move(axis, NULL, 0.0, values[0]);
+  state->frame = parent ? placement_compose(parent, &own) : own;
+}
+
+/* With bounds r1, r2, r3 on the derivatives of p: |omega| <= r1, |omega'| <= r2 + r1^2/2, |omega''| <= r3 + 3/2 r1 r2 +
+ * r1^3/2. */
+static void vector_over(const cprox_motion *m, size_t segment, const robot_axis *axis, double a, double b,
+                        const placement *parent, const placement *before, axis_state *state) {
+  const size_t degree = m->degree[segment];
+  const double n = (double)degree;
+  double c[4][MOTION_MAX_DEGREE + 1], p[3][4] = {{0}}, bound[4] = {0}, factor = 2.0 * n, shift = 0.0;
+  const double error = coordinates_over(m, segment, axis, a, b, c);
+  for (int k = 0; k < 3; k++) p[0][k] = at_middle(c[k], degree);
+  for (size_t i = 0; i <= degree; i++)
+    shift = greater(vec_norm(vec(c[0][i] - p[0][0], c[1][i] - p[0][1], c[2][i] - p[0][2])), shift);
+  for (size_t order = 1; order <= 3 && order <= degree; order++) {
+    for (int k = 0; k < 3; k++) {
+      differentiate(c[k], degree - order + 1);
+      if (order < 3) p[order][k] = at_middle(c[k], degree - order);
+    }
+    bound[order] = ROUND_UP * largest_norm(c, degree - order + 1) + factor * error;
+    factor *= 2.0 * (n - (double)order);
+  }
+  const double r1 = bound[1], r2 = bound[2], r3 = bound[3];
+  state->w = r1;
+  state->a = ROUND_UP * (r2 + 0.5 * r1 * r1);
+  state->g = ROUND_UP * (r3 + 1.5 * r1 * r2 + 0.5 * r1 * r1 * r1);
+  state->shift = state->line = lesser(ROUND_UP * shift + 2.0 * error, 2.0);
+  state->variation = r1;
+  state->stray = 0.0;
+  state->error = 4.0 * (2.0 * n + 1.0) * (2.0 * n + 1.0) * (1.0 + r1) * (1.0 + r1) * error +
+                 256.0 * ROUND_U * ((1.0 + r1) * (1.0 + r1) + r2);
+  place_vector(axis, p, parent, before, state);
+}
+
+/* Over a span the vector is within `stray` of a straight line; rotations are no farther apart than their vectors. */
+static void vector_over_span(const cprox_motion *m, const robot_axis *axis, const double *rows, const placement *parent,
+                             const placement *before, axis_state *state) {
+  const size_t stride = motion_rows_stride(m);
+  double p[3][4] = {{0}}, line = 0.0, stray = 0.0, shift = 0.0;
+  for (int k = 0; k < 3; k++) {
+    const int32_t slot = m->slot[axis->variable + k];
+    const double *of = rows + (slot < 0 ? 0 : slot);
+    p[0][k] = slot < 0 ? m->rest[axis->variable + k] : of[MOTION_VALUE * stride];
+    if (slot < 0) continue;
+    p[1][k] = of[MOTION_FIRST * stride];
+    line += of[MOTION_LINE * stride] * of[MOTION_LINE * stride];
+    stray += of[MOTION_STRAY * stride] * of[MOTION_STRAY * stride];
+    shift += of[MOTION_SHIFT * stride] * of[MOTION_SHIFT * stride];
+  }
+  line = ROUND_UP * sqrt(line), stray = ROUND_UP * sqrt(stray), shift = ROUND_UP * sqrt(shift);
+  const double rate = 2.0 * line;
+  state->w = rate;
+  state->a = ROUND_UP * 0.5 * rate * rate;
+  state->g = ROUND_UP * 0.5 * rate * rate * rate;
+  state->shift = lesser(shift, 2.0), state->line = lesser(line, 2.0), state->stray = lesser(stray, 2.0);
+  state->variation = INFINITY;
+  state->error = 256.0 * ROUND_U * (1.0 + rate) * (1.0 + rate);
+  place_vector(axis, p, parent, before, state);
+}
+
+/* ---- balls and shifts by arcs ---- */
+
 static vec3 world_axis(const robot_axis *axis, const placement *before) {
   if (axis->along < 0) return placement_turn(before, axis->z);
   const double *column = before->r + axis->along;
   const double sign = axis->along == 0 ? axis->z.x : axis->along == 1 ? axis->z.y : axis->z.z;
   return vec(sign * column[0], sign * column[3], sign * column[6]);
+}
+
+/* A screw's shift is all in the first of its three shifts; the ball's frame has the whole pose. */
+static void arc_over(const cprox_motion *m, const motion_interval *over, size_t i, const placement *before,
+                     axis_state *state) {
+  const robot_axis *axis = &m->robot->axes[i];
+  const motion_arc *arc = &m->arcs[(size_t)m->arc_of[i] * m->n_segments + over->first];
+  const double part = arc->to - arc->from, s = arc->from + part * (0.5 * (over->a + over->b)),
+               ds = part * (over->b - over->a);
+  vec3 p[3] = {vec(0, 0, 0), vec(0, 0, 0), vec(0, 0, 0)};
+  if (arc->screw) arc_position(arc, s, p);
+  *state = (axis_state){.kind = axis->kind, .frame = *before};
+  if (axis->kind == AXIS_PRISMATIC) {
+    state->z = world_axis(axis, before);
+    if (!axis->first_of_joint) return;
+    double across;
+    const double speed = arc_speed(arc, &across);
+    state->velocity = vec_scale(ds, placement_turn(before, p[1]));
+    state->acceleration = vec_scale(ds * ds, placement_turn(before, p[2]));
+    state->w = ROUND_UP * ds * speed;
+    state->a = ROUND_UP * ds * ds * across * arc->angle;
+    state->g = ROUND_UP * ds * ds * ds * across * arc->angle * arc->angle;
+  } else {
+    double q[4];
+    arc_orientation(arc, s, q);
+    placement own = axis_move(axis, NULL, 0.0, q);
+    placement here = {.p = p[0]};
+    for (int k = 0; k < 9; k++) here.r[k] = own.r[k];
+    state->frame = placement_compose(before, &here);
+    state->velocity = vec_scale(ds * arc->angle, placement_turn(before, arc->z));
+    state->w = ROUND_UP * ds * arc->angle;
+  }
+  state->shift = state->line = 0.5 * state->w, state->variation = state->w;
+  state->error = 256.0 * ROUND_U * (state->w + state->a);
 }
 
 static void line_over(const cprox_motion *m, const motion_interval *over, const robot_axis *axis, const double *rows,
@@ -284,10 +428,17 @@ void motion_find_axis(const cprox_motion *m, const motion_interval *over, const 
   }
   state->kind = axis->kind;
   const placement before = parent ? placement_compose(parent, &axis->at) : axis->at;
-  if (axis->kind != AXIS_BALL)
+  if (m->arcs && m->arc_of[i] >= 0 && !motion_is_span(over)) {
+    arc_over(m, over, i, &before, state);
+  } else if (axis->kind < AXIS_BALL) {
     line_over(m, over, axis, rows, &before, state);
+    if (m->arcs) state->shift += m->sagitta[i], state->stray += m->sagitta[i];
+  } else if (axis->kind == AXIS_VECTOR && motion_is_span(over))
+    vector_over_span(m, axis, rows, parent, &before, state);
+  else if (axis->kind == AXIS_VECTOR)
+    vector_over(m, over->first, axis, over->a, over->b, parent, &before, state);
   else if (motion_is_span(over))
-    ball_over_span(m, axis, rows, parent, &before, state);
+    ball_over_span(m, i, rows, parent, &before, state);
   else
     ball_over(m, over->first, i, over->a, over->b, parent, &before, state);
 }
@@ -318,6 +469,7 @@ static void values_at(const cprox_motion *m, size_t segment, double u, double *v
   memcpy(values, m->rest, m->robot->n_variables * sizeof *values);
   for (size_t k = 0; k < m->n_moving; k++)
     values[m->moving[k]] = value_at(m->coefficients + (segment * m->n_moving + k) * m->stride, m->degree[segment], u);
+  motion_place_arcs(m, segment, u, values);
 }
 
 void motion_place(const cprox_motion *m, size_t segment, double u, double *values, placement *frames) {
@@ -331,6 +483,12 @@ double motion_time(const cprox_motion *m, size_t segment, double u) {
 
 double motion_time_below(const cprox_motion *m, size_t segment, double u) {
   return round_down_between(m->times[segment], m->times[segment + 1], u);
+}
+
+bool motion_is_described(const cprox_motion *motion) {
+  bool vectors = false;
+  for (size_t i = 0; i < motion->robot->n_axes; i++) vectors = vectors || motion->robot->axes[i].kind == AXIS_VECTOR;
+  return motion->given.times && !motion->arcs && !vectors;
 }
 
 cprox_motion_info cprox_motion_get_info(const cprox_motion *motion) {
@@ -415,6 +573,16 @@ static void take_in(const double *root, size_t degree, value_range *range) {
   }
 }
 
+/* How far a variable is from its polynomial. */
+static double sagitta_of_variable(const cprox_motion *m, size_t variable) {
+  double most = 0.0;
+  for (size_t i = 0; i < m->robot->n_axes && m->arcs; i++) {
+    const size_t first = (size_t)m->robot->axes[i].variable, n = (size_t)axis_variables(m->robot->axes[i].kind);
+    if (m->arc_of[i] >= 0 && variable >= first && variable < first + n) most = greater(m->sagitta[i], most);
+  }
+  return most;
+}
+
 cprox_variable_info cprox_motion_get_variable_info(const cprox_motion *motion, size_t variable) {
   const int32_t slot = motion->slot[variable];
   const double rest = motion->rest[variable];
@@ -428,7 +596,8 @@ cprox_variable_info cprox_motion_get_variable_info(const cprox_motion *motion, s
       if (pass == 1) take_in(c, motion->degree[segment], &range);
     }
   }
-  return (cprox_variable_info){.lowest = range.low, .highest = range.high};
+  const double arcs = sagitta_of_variable(motion, variable);
+  return (cprox_variable_info){.lowest = range.low - arcs, .highest = range.high + arcs};
 }
 
 /* ---- what moves ---- */

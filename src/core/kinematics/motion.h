@@ -4,6 +4,7 @@
 #ifndef CPROX_KINEMATICS_MOTION_H
 #define CPROX_KINEMATICS_MOTION_H
 
+#include "kinematics/arcs.h"
 #include "kinematics/given.h"
 #include "kinematics/joint_tree.h"
 #include "kinematics/spans.h"
@@ -26,7 +27,11 @@ struct cprox_motion {
   bool is_state;   /* nothing moves, and everything is asked about that could */
   bool *axis_moves;
   placement *still; /* of an axis that does not: as it stands in its parent's frame */
-  double *norm;     /* of a ball's quaternion: at least this everywhere */
+  double *norm;     /* of a quaternion: at least this everywhere */
+  size_t n_arcs;    /* floating joints that turn by slerp or by screws */
+  motion_arc *arcs; /* [joint][segment] */
+  int32_t *arc_of;  /* of an axis, which of these joints; -1: none */
+  double *sagitta;  /* of an axis: how far the joint is from the polynomials, which are straight lines for it */
   motion_spans spans;
   motion_given given; /* of a joined one nothing */
   double *part_error; /* every point of a part is computed within this of where it is */
@@ -71,9 +76,12 @@ typedef enum motion_row {
 } motion_row;
 
 /* Whether certificates can be about it. */
-static inline bool motion_is_described(const cprox_motion *motion) {
-  return motion->given.times != NULL;
-}
+bool motion_is_described(const cprox_motion *motion);
+
+/* The values at u of a segment that are no polynomials take the place of those that are. */
+void motion_place_arcs(const cprox_motion *motion, size_t segment, double u, double *values);
+/* The same of one joint, by its ball: its own seven; x, y and z only of a screw. */
+void motion_arc_values(const cprox_motion *motion, size_t axis, size_t segment, double u, double values[7]);
 
 /* The numbers in one row, and in all. */
 size_t motion_rows_stride(const cprox_motion *motion);

@@ -24,6 +24,16 @@ cprox_status motion_finish(cprox_motion *m, const motion_source *source, cprox_m
 /* What cutting and evaluating adds to the error of coefficients of this size; doc/robot-bounds.md. */
 double motion_cutting_error(size_t degree, double largest);
 
+/* Room for so many joints that turn by arcs; false where memory is out. */
+bool motion_allocate_arcs(cprox_motion *m, size_t n);
+
+/* Floating joints between waypoints that turn by slerp or by screws: arcs, straight lines in the place of their
+ * polynomials, and the errors of both. */
+cprox_status motion_turn_by_arcs(const motion_source *source, cprox_motion *m);
+
+/* Whether a variable belongs to a joint that turns by arcs and moves. */
+bool motion_moves_by_arc(const cprox_motion *m, int32_t variable);
+
 /* The kind CPROX_MOTION_JOINED. */
 cprox_status motion_create_joined(const motion_source *source, cprox_motion **motion);
 

@@ -131,6 +131,9 @@ void cprox_motion_free(cprox_motion *motion) {
   free(motion->still);
   free(motion->norm);
   free(motion->part_error);
+  free(motion->arcs);
+  free(motion->arc_of);
+  free(motion->sagitta);
   motion_spans_free(&motion->spans);
   motion_given_free(&motion->given);
   free(motion);
@@ -162,7 +165,7 @@ static void find_moving(cprox_motion *m, const motion_source *s) {
   }
   for (size_t k = 0; k < n; k++) {
     const double first = m->coefficients[k * m->stride];
-    bool moves = false;
+    bool moves = motion_moves_by_arc(m, s->variables[k]);
     for (size_t segment = 0; segment < m->n_segments; segment++)
       for (size_t i = 0; i <= m->degree[segment]; i++)
         moves = moves || m->coefficients[(segment * n + k) * m->stride + i] != first;
@@ -222,11 +225,28 @@ static double least_norm_of(const cprox_motion *m, int32_t variable) {
   return least;
 }
 
+/* Of joints that turn by arcs: the axes that shift with a screw, and how far all are from straight lines. */
+static void finish_arcs(cprox_motion *m) {
+  for (size_t i = 0; i < m->robot->n_axes && m->arcs; i++) {
+    if (m->arc_of[i] < 0 || m->robot->axes[i].kind != AXIS_BALL) continue;
+    const motion_arc *arcs = m->arcs + (size_t)m->arc_of[i] * m->n_segments;
+    for (size_t k = 0; k < m->n_segments; k++) {
+      double position;
+      const double turned = arc_sagitta(&arcs[k], &position);
+      m->sagitta[i] = fmax(m->sagitta[i], turned);
+      for (size_t j = 1; j <= 3 && arcs[k].screw; j++) {
+        m->sagitta[i - j] = fmax(m->sagitta[i - j], position);
+        m->arc_of[i - j] = m->arc_of[i];
+      }
+    }
+  }
+}
+
 /* What is known of each axis and part once the coefficients are there. */
 static cprox_status finish_axes(cprox_motion *m, const motion_source *s) {
   for (size_t i = 0; i < s->robot->n_axes; i++) {
     const robot_axis *axis = &s->robot->axes[i];
-    for (int32_t k = 0; k < (axis->kind == AXIS_BALL ? 4 : 1); k++)
+    for (int32_t k = 0; k < axis_variables(axis->kind); k++)
       m->axis_moves[i] = m->axis_moves[i] || (m->slot[axis->variable + k] >= 0 && axis->multiplier != 0.0);
     const double *rest = m->rest + axis->variable;
     if (!m->axis_moves[i]) m->still[i] = axis_move(axis, NULL, axis->multiplier * rest[0] + axis->offset, rest);
@@ -243,10 +263,11 @@ static cprox_status finish_axes(cprox_motion *m, const motion_source *s) {
 /* How far the computed value of an axis may be from the exact one, and how large it gets. */
 static double value_error(const cprox_motion *m, int32_t i, double *value) {
   const robot_axis *axis = &m->robot->axes[i];
-  const int32_t count = axis->kind == AXIS_BALL ? 4 : 1;
+  const int32_t count = axis_variables(axis->kind);
   double largest = 0.0, error, sum = 0.0;
   for (int32_t k = 0; k < count; k++) largest = largest_value(m, axis->variable + k, &error), sum += error;
   *value = fabs(axis->multiplier) * largest + fabs(axis->offset);
+  if (m->arcs) *value += m->sagitta[i];
   if (axis->kind == AXIS_BALL) return 2.0 * sum / m->norm[i];
   return fabs(axis->multiplier) * sum + 2.0 * ROUND_U * (*value + fabs(axis->offset));
 }
@@ -286,6 +307,7 @@ static cprox_status finish_parts(cprox_motion *m, cprox_workspace *workspace) {
 
 cprox_status motion_finish(cprox_motion *m, const motion_source *s, cprox_motion **motion) {
   find_moving(m, s);
+  finish_arcs(m);
   cprox_status status = finish_axes(m, s);
   if (status == CPROX_OK) status = finish_parts(m, s->workspace);
   if (status == CPROX_OK && !motion_spans_make(m))
@@ -340,6 +362,8 @@ static cprox_status create_waypoints(const motion_source *s, cprox_motion **moti
                           points ? n_points : (size_t)0);
   if ((unsigned)interpolation > CPROX_INTERPOLATION_QUINTIC)
     return workspace_fail(workspace, CPROX_INVALID, "%d is no interpolation", (int)interpolation);
+  if ((unsigned)s->description->turning > CPROX_TURNING_SCREW)
+    return workspace_fail(workspace, CPROX_INVALID, "%d is no way to turn", (int)s->description->turning);
   cprox_status status = CPROX_OK;
   for (size_t i = 0; i < n_points && status == CPROX_OK; i++)
     status = check_waypoint(&points[i], i, n, interpolation, workspace);
@@ -362,6 +386,13 @@ static cprox_status create_waypoints(const motion_source *s, cprox_motion **moti
           hermite(&p[0], &p[1], k, m->degree[i], p[1].time - p[0].time, m->coefficients + at * m->stride);
       m->error[at] =
           motion_cutting_error(m->degree[i], size); /* the sums of hermite() are off by 8 u of their size at most */
+    }
+  }
+  if (s->description->turning != CPROX_TURNING_POLYNOMIAL) {
+    status = motion_turn_by_arcs(s, m);
+    if (status != CPROX_OK) {
+      cprox_motion_free(m);
+      return status;
     }
   }
   return motion_finish(m, s, motion);

@@ -186,6 +186,27 @@ static void fill(cprox_motion *m, const cprox_joined_motion *joined, size_t n, s
   }
 }
 
+/* Joints that turn by arcs: over each segment of all, a part of one of their own. */
+static void fill_arcs(cprox_motion *m, const cprox_joined_motion *joined, size_t n, size_t *segments) {
+  size_t axes = 0, arcs = 0;
+  for (size_t k = 0; k < n; k++) {
+    const cprox_motion *from = joined[k].motion;
+    for (size_t i = 0; i < from->robot->n_axes && from->arcs; i++)
+      if (from->arc_of[i] >= 0) m->arc_of[axes + i] = (int32_t)arcs + from->arc_of[i];
+    segments[k] = 0;
+    for (size_t i = 0; i < m->n_segments && from->n_arcs > 0; i++) {
+      const joined_piece piece = piece_over(&joined[k], m->times[i], m->times[i + 1], &segments[k]);
+      for (size_t j = 0; j < from->n_arcs; j++) {
+        motion_arc *arc = &m->arcs[(arcs + j) * m->n_segments + i];
+        *arc = from->arcs[j * from->n_segments + piece.segment];
+        const double begin = arc->from, part = arc->to - begin;
+        arc->from = begin + part * piece.a, arc->to = begin + part * piece.b;
+      }
+    }
+    axes += from->robot->n_axes, arcs += from->n_arcs;
+  }
+}
+
 /* The variables that move, in the joined robot's numbers, and the rest values of all. */
 static void number_variables(const cprox_joined_motion *joined, size_t n, int32_t *variables, double *rest) {
   size_t first = 0, count = 0;
@@ -202,10 +223,10 @@ cprox_status motion_create_joined(const motion_source *s, cprox_motion **motion)
   if (status != CPROX_OK) return status;
   const cprox_joined_motion *joined = s->description->joined;
   const size_t n = s->description->n_joined;
-  size_t moving = 0, degree = 1, count = 0;
+  size_t moving = 0, degree = 1, count = 0, arcs = 0;
   for (size_t i = 0; i < n; i++) {
     const cprox_motion *from = joined[i].motion;
-    moving += from->n_moving;
+    moving += from->n_moving, arcs += from->n_arcs;
     for (size_t k = 0; k < from->n_segments; k++) degree = from->degree[k] > degree ? from->degree[k] : degree;
   }
   int32_t *variables = calloc(moving + 1, sizeof *variables);
@@ -215,10 +236,15 @@ cprox_status motion_create_joined(const motion_source *s, cprox_motion **motion)
   all.variables = variables, all.n = moving, all.rest = rest;
   cprox_motion *m = variables && rest && times && segments ? motion_allocate(&all, count - 1, degree) : NULL;
   cprox_status made;
+  if (m && arcs > 0 && !motion_allocate_arcs(m, arcs)) {
+    cprox_motion_free(m);
+    m = NULL;
+  }
   if (m) {
     number_variables(joined, n, variables, rest);
     memcpy(m->times, times, count * sizeof *times);
     fill(m, joined, n, segments);
+    if (arcs > 0) fill_arcs(m, joined, n, segments);
     made = motion_finish(m, &all, motion);
   } else {
     made = workspace_fail(s->workspace, CPROX_MEMORY, "no memory to join %zu motions", n);

@@ -19,6 +19,7 @@ static size_t variables_of(cprox_joint_type type) {
     case CPROX_JOINT_PRISMATIC: return 1;
     case CPROX_JOINT_PLANAR: return 3;
     case CPROX_JOINT_FLOATING: return 7;
+    case CPROX_JOINT_ROTATION_VECTOR: return 6;
   }
   return 0;
 }
@@ -30,7 +31,7 @@ static cprox_status check_link(const cprox_link *link, size_t i, size_t n_variab
   const char *support_failed = frame_pose_error(&link->origin);
   if (support_failed)
     return workspace_fail(workspace, CPROX_INVALID, "link %zu: the joint's origin: %s", i, support_failed);
-  if ((unsigned)link->type > CPROX_JOINT_FLOATING)
+  if ((unsigned)link->type > CPROX_JOINT_ROTATION_VECTOR)
     return workspace_fail(workspace, CPROX_INVALID, "link %zu: %d is no type of joint", i, (int)link->type);
   const size_t needed = variables_of(link->type);
   if (needed == 0) return CPROX_OK;
@@ -162,10 +163,12 @@ static void add_joint(cprox_robot *robot, chain_end *end, const cprox_link *link
       add_axis(robot, end, AXIS_REVOLUTE, vec(0, 0, 1), v + 2, 1.0, 0.0, false);
       break;
     case CPROX_JOINT_FLOATING:
+    case CPROX_JOINT_ROTATION_VECTOR:
       add_axis(robot, end, AXIS_PRISMATIC, vec(1, 0, 0), v, 1.0, 0.0, true);
       add_axis(robot, end, AXIS_PRISMATIC, vec(0, 1, 0), v + 1, 1.0, 0.0, false);
       add_axis(robot, end, AXIS_PRISMATIC, vec(0, 0, 1), v + 2, 1.0, 0.0, false);
-      add_axis(robot, end, AXIS_BALL, vec(0, 0, 1), v + 3, 1.0, 0.0, false);
+      add_axis(robot, end, link->type == CPROX_JOINT_FLOATING ? AXIS_BALL : AXIS_VECTOR, vec(0, 0, 1), v + 3, 1.0, 0.0,
+               false);
       break;
   }
 }

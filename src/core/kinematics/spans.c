@@ -279,6 +279,18 @@ static bool is_bent(const walk *w) {
   return most > BENT * chord;
 }
 
+/* Where joints are that turn by arcs, in the rows of the variables that move. */
+static void place_arcs(const cprox_motion *m, size_t segment, double u, double *value) {
+  for (size_t i = 0; i < m->robot->n_axes && m->arcs; i++) {
+    if (m->arc_of[i] < 0 || m->robot->axes[i].kind != AXIS_BALL || !m->axis_moves[i]) continue;
+    const int32_t *slot = m->slot + m->robot->axes[i].variable;
+    double values[7];
+    motion_arc_values(m, i, segment, u, values);
+    const bool screw = m->arcs[(size_t)m->arc_of[i] * m->n_segments].screw;
+    for (int k = screw ? 0 : 3; k < 7; k++) value[slot[k - 3]] = values[k];
+  }
+}
+
 span_centre motion_fill_span(const cprox_motion *m, size_t first, double a, size_t last, double b, double *rows) {
   const size_t n = m->n_moving, stride = motion_rows_stride(m);
   double *from = rows + MOTION_FROM * stride, *to = rows + MOTION_TO * stride;
@@ -302,6 +314,7 @@ span_centre motion_fill_span(const cprox_motion *m, size_t first, double a, size
   double *value = rows + MOTION_VALUE * stride;
   for (size_t j = 0; j < n; j++)
     value[j] = value_at(coefficients_of(m, centre.segment) + j * m->stride, m->degree[centre.segment], centre.u);
+  place_arcs(m, centre.segment, centre.u, value);
   const double along = clamped(along_of(&w, value, 1)), reach = ROUND_UP * greater(along, 1.0 - along);
   for (size_t j = 0; j < n; j++) {
     const double slope = 2.0 * reach * (to[j] - from[j]), off = beside(&w, along, value[j], j);

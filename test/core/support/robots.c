@@ -13,7 +13,7 @@
 /* ---- random robots ---- */
 
 static size_t width_of(cprox_joint_type type) {
-  static const size_t WIDTH[] = {0, 1, 1, 3, 7};
+  static const size_t WIDTH[] = {0, 1, 1, 3, 7, 6};
   return WIDTH[type];
 }
 
@@ -118,6 +118,7 @@ static void build(test_robot *t) {
                                  &(cprox_motion_description){.kind = CPROX_MOTION_WAYPOINTS,
                                                              .variables = t->variables,
                                                              .n_variables = t->n_variables,
+                                                             .turning = t->turning,
                                                              .waypoints = points,
                                                              .n_waypoints = t->n_points,
                                                              .interpolation = t->interpolation,
@@ -128,7 +129,28 @@ static void build(test_robot *t) {
   cprox_workspace_free(ws);
 }
 
+void robot_make_turning(rng *r, double speed, cprox_turning turning, size_t n_points, test_robot *t) {
+  t->n_links = 1 + rng_index(r, 3);
+  t->n_variables = 0;
+  for (size_t i = 0; i < t->n_links; i++) {
+    t->links[i] = (cprox_link){.parent = rng_index(r, 2) ? -1 : (int32_t)i - 1,
+                               .type = rng_index(r, 3) ? CPROX_JOINT_FLOATING : CPROX_JOINT_ROTATION_VECTOR,
+                               .origin = rng_pose(r, 0.4),
+                               .variable = (int32_t)t->n_variables};
+    t->n_variables += width_of(t->links[i].type);
+  }
+  make_geometries(r, t);
+  t->turning = turning;
+  t->spline = turning == CPROX_TURNING_POLYNOMIAL && rng_index(r, 2);
+  t->interpolation = (cprox_interpolation)(CPROX_INTERPOLATION_LINEAR + rng_index(r, 3));
+  t->n_points = t->spline && n_points < TEST_WAYPOINTS ? TEST_WAYPOINTS : n_points;
+  draw_points(r, speed, t);
+  if (turning == CPROX_TURNING_POLYNOMIAL) tame_quaternions(t);
+  build(t);
+}
+
 void robot_make(rng *r, double speed, test_robot *t) {
+  t->turning = CPROX_TURNING_POLYNOMIAL;
   make_links(r, t);
   make_geometries(r, t);
   make_points(r, speed, t);
@@ -185,10 +207,59 @@ static long double de_boor(const test_robot *t, size_t k, long double time) {
   return d[p];
 }
 
+static void unit_quaternion(const double *given, long double *q) {
+  long double square = 0;
+  for (int k = 0; k < 4; k++) square += (long double)given[k] * given[k];
+  for (int k = 0; k < 4; k++) q[k] = given[k] / sqrtl(square);
+}
+
+/* On the great circle through two unit quaternions, the shorter way. Returns half the angle of the whole turn; the
+ * other one is part of the circle's plane: q(s) = p cos(half s) + side sin(half s). */
+static long double great_circle(const double *from, const double *to, long double *p, long double *side) {
+  long double q[4], along = 0, across = 0;
+  unit_quaternion(from, p);
+  unit_quaternion(to, q);
+  for (int k = 0; k < 4; k++) along += p[k] * q[k];
+  for (int k = 0; k < 4; k++) side[k] = (along < 0 ? -q[k] : q[k]) - fabsl(along) * p[k];
+  for (int k = 0; k < 4; k++) across += side[k] * side[k];
+  across = sqrtl(across);
+  for (int k = 0; k < 4 && across > 0; k++) side[k] /= across;
+  return atan2l(across, fabsl(along));
+}
+
+/* x -> (e^(i s angle) - 1) / (e^(i angle) - 1) x in the plane across the axis, s along it. */
+static vec3l screw_way(vec3l way, vec3l axis, long double angle, long double s) {
+  const vec3l along = ref_scale(ref_dot(way, axis), axis), across = ref_sub(way, along), up = ref_cross(axis, across);
+  if (angle == 0) return ref_scale(s, way);
+  const long double h = sinl(s * angle / 2), g = sinl(angle / 2);
+  const long double a = -2 * h * h, b = sinl(s * angle), c = -2 * g * g, d = sinl(angle), n = c * c + d * d;
+  const vec3l turned = ref_add(ref_scale((a * c + b * d) / n, across), ref_scale((b * c - a * d) / n, up));
+  return ref_add(ref_scale(s, along), turned);
+}
+
+/* The pose of a floating joint between two waypoints. */
+static void turn_values(const test_robot *t, size_t i, size_t v, long double time, long double *values) {
+  const double *a = t->positions[i] + v, *b = t->positions[i + 1] + v;
+  const long double s = (time - t->times[i]) / ((long double)t->times[i + 1] - t->times[i]);
+  long double p[4], side[4];
+  const long double half = great_circle(a + 3, b + 3, p, side);
+  for (int k = 0; k < 4; k++) values[v + 3 + (size_t)k] = cosl(half * s) * p[k] + sinl(half * s) * side[k];
+  if (t->turning != CPROX_TURNING_SCREW) return;
+  /* the axis: the vector part of side p* */
+  const vec3l u = {side[0], side[1], side[2]}, w = {p[0], p[1], p[2]};
+  vec3l axis = ref_sub(ref_sub(ref_scale(p[3], u), ref_scale(side[3], w)), ref_cross(u, w));
+  if (half > 0) axis = ref_scale(1 / ref_norm(axis), axis);
+  const vec3l from = {a[0], a[1], a[2]}, to = {b[0], b[1], b[2]};
+  const vec3l at = ref_add(from, screw_way(ref_sub(to, from), axis, 2 * half, s));
+  values[v] = at.x, values[v + 1] = at.y, values[v + 2] = at.z;
+}
+
 void robot_ref_values(const test_robot *t, long double time, long double *values) {
   size_t i = 0;
   while (i + 2 < t->n_points && time >= t->times[i + 1]) i++;
   for (size_t k = 0; k < t->n_variables; k++) values[k] = t->spline ? de_boor(t, k, time) : hermite(t, i, k, time);
+  for (size_t l = 0; l < t->n_links && t->turning != CPROX_TURNING_POLYNOMIAL; l++)
+    if (t->links[l].type == CPROX_JOINT_FLOATING) turn_values(t, i, (size_t)t->links[l].variable, time, values);
 }
 
 /* ---- poses ---- */
@@ -243,6 +314,14 @@ static ref_pose joint(const cprox_link *l, const long double *q) {
       return pose;
     }
     case CPROX_JOINT_FLOATING: return unit_pose((vec3l){q[0], q[1], q[2]}, q[3], q[4], q[5], q[6]);
+    case CPROX_JOINT_ROTATION_VECTOR: {
+      const vec3l vector = {q[3], q[4], q[5]};
+      const long double angle = ref_norm(vector);
+      ref_pose pose = unit_pose(nowhere, 0, 0, 0, 1);
+      if (angle > 0) pose = about(vector, angle);
+      pose.p = (vec3l){q[0], q[1], q[2]};
+      return pose;
+    }
     case CPROX_JOINT_FIXED: break;
   }
   return unit_pose(nowhere, 0, 0, 0, 1);

@@ -29,6 +29,7 @@ typedef struct test_robot {
   /* the motion */
   bool spline;
   cprox_interpolation interpolation;
+  cprox_turning turning;
   size_t n_points;
   double times[TEST_MAX_WAYPOINTS + TEST_SPLINE_DEGREE + 1]; /* or knots */
   double positions[TEST_MAX_WAYPOINTS][TEST_MAX_VARIABLES], velocities[TEST_MAX_WAYPOINTS][TEST_MAX_VARIABLES],
@@ -41,6 +42,10 @@ typedef struct test_robot {
  * where the core refuses it. */
 void robot_make(rng *r, double speed, test_robot *t);
 void robot_free(test_robot *t);
+
+/* The same of robots with floating joints and rotation vectors alone, whose floating joints turn by `turning` (where
+ * the motion is no spline). n_points <= TEST_MAX_WAYPOINTS. */
+void robot_make_turning(rng *r, double speed, cprox_turning turning, size_t n_points, test_robot *t);
 
 /* The same robot on the same motion, with the geometries as they are now. */
 void robot_rebuild(test_robot *t);
