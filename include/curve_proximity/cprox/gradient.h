@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_CPROX_GRADIENT_H
 #define CURVE_PROXIMITY_CPROX_GRADIENT_H
 
+#include <curve_proximity/cprox/obstacles.h>
 #include <curve_proximity/cprox/query.h>
 
 #ifdef __cplusplus
@@ -61,6 +62,69 @@ typedef struct cprox_gradient {
 CPROX_API cprox_status cprox_distance_gradient(cprox_mover mover, cprox_obstacle target, const cprox_options *options,
                                                const cprox_result *result, cprox_workspace *workspace,
                                                cprox_gradient *gradient);
+
+/** The derivatives of the least distance of a robot's motion, at its minimiser. Set all members to 0, then those
+ *  arrays that are wanted. A motion that was made of n_points waypoints or control points and gives n variables
+ *  (cprox_motion_description) has n_points rows of n numbers. A state and a joined motion have none,
+ *  and where floating joints turn by slerp or by screws they are not known: `variables` alone is for these. */
+typedef struct cprox_motion_gradient {
+  /** NULL, or receives one number a variable of the robot: by its value at t, or at rest [m/rad], [m/m] */
+  double *variables;
+  /** NULL, or receives n_points rows: by the positions of the waypoints, or by the control points [m/rad], [m/m] */
+  double *positions;
+  /** NULL, or receives n_points rows: by the velocities of the waypoints [m s/rad], [m s/m]; 0 where the interpolation
+   *  does not use them, and for B-splines */
+  double *velocities;
+  /** NULL, or receives n_points rows: by the accelerations of the waypoints, likewise */
+  double *accelerations;
+  /** false: the distance is not differentiable here, or cannot be told to be; the reason is in the workspace, the
+   *  numbers are those of one of the minimisers, or 0 where none was found */
+  bool valid;
+  /** [s] the minimiser, as exactly as double arithmetic finds it; NaN where none was found */
+  double t;
+  /** [m/s] by the duration, all times being stretched alike: positions, velocities and accelerations stay what they
+   *  are. 0 without velocities, for B-splines and for joined motions */
+  double duration;
+  /** by a shift of the whole robot, world axes; 0 for a pair of the robot with itself */
+  cprox_vec3 base_position;
+  /** [m/rad] by a small rotation vector w that turns the whole robot about the world's origin: x becomes exp([w]) x */
+  cprox_vec3 base_rotation;
+  /** by the position of the nearest obstacle, world axes; 0 for a pair of the robot with itself */
+  cprox_vec3 position;
+  /** [m/rad] by a small rotation vector w that turns that obstacle about its position: R becomes exp([w]) R */
+  cprox_vec3 rotation;
+  /** by the margin of that obstacle, or of one geometry of the pair: -1 */
+  double margin;
+  /** 0: room for later members, so that the size of the struct stays */
+  uint64_t reserved[4];
+} cprox_motion_gradient;
+
+/** The least distance of a robot along a motion, and its gradient, by one search.
+ *
+ *  obstacles  NULL: none, for a robot against itself.
+ *  mover      cprox_robot_along(), cprox_robot_self(), or the kind CPROX_MOVER_ROBOT_WHOLE.
+ *  options    NULL: the default. A certificate is refused.
+ *  result     receives what cprox_obstacles_distance() answers: the same guarantees, not the same digits.
+ *  gradient   see cprox_motion_gradient. Its arrays are the caller's.
+ *
+ *  By Danskin's theorem the derivatives are those of the distance at the minimiser, if there is only one: the search
+ *  goes on until all other times and all other pairs are proven farther than the least distance by 1e-9 of the robot's
+ *  size. valid is false
+ *    where the distance is as small, within that, elsewhere along the motion or of another pair,
+ *    where the distance does not fall towards the minimiser from within 3e-2 of the motion,
+ *    where the nearest points are not the only ones (face on face, edge along a face): a turn of 1e-6 rad to either
+ *    side moves them by as much as one of 1e-4 rad; of meshes, where another triangle is as near elsewhere,
+ *    and where the distance is 0.
+ *  A minimiser at a waypoint, at an end of the motion, or with a vertex as nearest point has a gradient. Nearer to the
+ *  minimiser than the proof goes (1e-4 of the motion where that is enough, at most 3e-2) the slope of the distance is
+ *  looked at to either side.
+ *
+ *  Returns as cprox_obstacles_distance(), also where valid is false. CPROX_INVALID also where the mover is no robot,
+ * and where rows are wanted that are not known. Cost: 1.5 distances (instructions, the sum over 46 queries about real
+ * robots). Source: J. M. Danskin, The theory of max-min, 1967; doc/robot-bounds.md. */
+CPROX_API cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cprox_mover mover,
+                                                     const cprox_options *options, cprox_workspace *workspace,
+                                                     cprox_result *result, cprox_motion_gradient *gradient);
 
 #ifdef __cplusplus
 }

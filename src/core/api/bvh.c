@@ -17,7 +17,7 @@ static bool boxes_hold(const query *q) {
   return q->options.max_lod == CPROX_LOD_MESH;
 }
 
-static cprox_status begin(const obstacle_bvh *set, query *q, arguments_query asked) {
+cprox_status bvh_begin(const obstacle_bvh *set, query *q, arguments_query asked) {
   cprox_workspace *workspace = q->workspace;
   if (!workspace) return CPROX_INVALID;
   workspace_clear(workspace);
@@ -41,7 +41,7 @@ static cprox_status out_of_memory(const query *q) {
 
 static cprox_status answer(const obstacle_bvh *set, query *q, const char *name, cprox_result *result) {
   const unsigned depths = query_wants_verdict(q) ? 0 : ARGUMENTS_SIGNED;
-  const cprox_status begun = begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | depths});
+  const cprox_status begun = bvh_begin(set, q, (arguments_query){name, ARGUMENTS_SEARCH | ARGUMENTS_WHOLE | depths});
   if (begun != CPROX_OK) return begun;
   if (q->mover.motion || !boxes_hold(q)) return query_answer(q, 0, q->n, INFINITY, result);
   set_walk walk;
@@ -92,8 +92,8 @@ cprox_status bvh_collision(const obstacle_bvh *set, cprox_mover mover, const cpr
 cprox_status bvh_time_of_contact(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
                                  cprox_workspace *workspace, cprox_result *result) {
   query q = query_create(mover, NULL, 0, 0.0, false, options, workspace);
-  const cprox_status begun =
-      begin(set, &q, (arguments_query){"time of contact with a set", ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE});
+  const cprox_status begun = bvh_begin(
+      set, &q, (arguments_query){"time of contact with a set", ARGUMENTS_STOP | ARGUMENTS_LOD | ARGUMENTS_WHOLE});
   if (begun != CPROX_OK) return begun;
   if (q.set) return robot_time_of_contact(&q, result);
   if (q.mover.motion || !boxes_hold(&q))
@@ -118,7 +118,7 @@ cprox_status bvh_nearest(const obstacle_bvh *set, cprox_mover mover, size_t k, c
   query q = query_create(mover, NULL, 0, -1.0, false, options, workspace);
   q.is_signed = q.options.signed_distance;
   const arguments_query asked = {"the nearest targets of a set", ARGUMENTS_SEARCH | ARGUMENTS_SIGNED};
-  const cprox_status begun = begin(set, &q, asked);
+  const cprox_status begun = bvh_begin(set, &q, asked);
   if (begun != CPROX_OK) return begun;
   if (k == 0) return workspace_fail(workspace, CPROX_INVALID, "k is 0: ask for at least one target");
   if (q.mover.motion || !boxes_hold(&q))

@@ -4,6 +4,10 @@
 #define CPROX_API_BVH_H
 
 #include "broadphase/obstacle_set.h"
+#include "problem/problem.h"
+
+/* query_begin() for the obstacles of a set. */
+cprox_status bvh_begin(const obstacle_bvh *set, query *q, arguments_query asked);
 
 cprox_status bvh_distance(const obstacle_bvh *set, cprox_mover mover, const cprox_options *options,
                           cprox_workspace *workspace, cprox_result *result);

@@ -31,6 +31,7 @@ typedef enum workspace_buffer {
   WORKSPACE_ROBOT_FOUND,
   WORKSPACE_ROBOT_OBSTACLES,
   WORKSPACE_ROBOT_CLUSTER,
+  WORKSPACE_ROBOT_SPOT,
   WORKSPACE_CALLER, /* cprox_workspace_reserve() */
   WORKSPACE_BUFFERS
 } workspace_buffer;

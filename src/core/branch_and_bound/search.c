@@ -56,7 +56,7 @@ static double known_upper(const search_goal *goal, const search_best *best) {
 
 /* Neither above the limit nor able to say more: closer to the best point than epsilon (verdicts) or than rounding. */
 static bool is_unresolved(const search_goal *goal, const search_best *best, const search_node *node) {
-  const double gap = known_upper(goal, best) - node->lower;
+  const double gap = known_upper(goal, best) + goal->beyond - node->lower;
   const double floor = 2.0 * (node->slack + best->slack);
   return gap <= floor || (goal->limit >= 0.0 && gap <= goal->epsilon);
 }

@@ -67,6 +67,7 @@ typedef struct search_goal {
   double limit;       /* verdicts: delta; distance: -1 */
   bool is_signed;     /* distance: bounds below 0 are not as good as 0 */
   double cutoff;      /* distance: an upper bound known from elsewhere, or infinity */
+  double beyond;      /* distance: nodes that come within this of the best point are worked on, too; 0: they are not */
   double time_cutoff; /* left to right: parameters from here on are of no interest; infinity: all are */
   double epsilon, relative_epsilon;
   uint32_t max_nodes;
@@ -98,7 +99,7 @@ static inline double search_width(const search_goal *goal, double upper) {
 static inline double search_pruning_bound(const search_goal *goal, double upper) {
   if (goal->limit >= 0.0) return goal->limit;
   const double known = lesser(upper, goal->cutoff);
-  return known - search_width(goal, known);
+  return goal->beyond > 0.0 ? known + goal->beyond : known - search_width(goal, known);
 }
 
 /* Whether a lower bound says that. */
@@ -109,7 +110,8 @@ static inline bool search_is_pruned(const search_goal *goal, double upper, doubl
 /* The best point alone ends the search: it violates the limit, or it is as close to 0 as was asked. */
 static inline bool search_is_answered(const search_goal *goal, double upper) {
   if (goal->order == SEARCH_LEFT_TO_RIGHT || goal->is_signed) return false;
-  return goal->limit >= 0.0 ? upper <= goal->limit : upper <= search_width(goal, upper);
+  if (goal->limit >= 0.0) return upper <= goal->limit;
+  return upper <= (goal->beyond > 0.0 ? 0.0 : search_width(goal, upper));
 }
 
 /* Searches from the root on; *outcome is always filled, and true, when the status is not negative. */

@@ -44,6 +44,12 @@ static cprox_lod lod_of(const robot_search *o) {
   return by_balls ? CPROX_LOD_SPHERE : CPROX_LOD_HULL;
 }
 
+void robot_search_report(const robot_search *o, cprox_result *result) {
+  report(o, &o->best, result);
+  result->distance_queries = o->gaps;
+  result->lod = lod_of(o);
+}
+
 cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result) {
   robot_search o;
   if (!robot_scene_begin(&o.scene, q, first, last))
@@ -54,10 +60,9 @@ cprox_status robot_answer(const query *q, size_t first, size_t last, double cuto
   if (status < 0) return status;
 
   cprox_result r = {.t_obstacle = NAN, .obstacle_index = -1, .mover_part = -1, .upper = o.best_bound.upper};
-  report(&o, &o.best, &r);
+  robot_search_report(&o, &r);
   r.lower = fmin(fmax(fmin(found.lower, o.dropped), 0.0), r.upper);
-  r.nodes = found.nodes, r.distance_queries = o.gaps;
-  r.lod = lod_of(&o);
+  r.nodes = found.nodes;
   query_conclude(q, cutoff, status, &r);
   *result = r;
   return r.status;

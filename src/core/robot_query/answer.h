@@ -4,10 +4,14 @@
 #define CPROX_ROBOT_QUERY_ANSWER_H
 
 #include "problem/candidates.h"
+#include "robot_query/oracle.h"
 
 /* Distance and verdicts over [q->t0, q->t1], as query_answer() has them. In a query about the robot itself there are no
  * targets. */
 cprox_status robot_answer(const query *q, size_t first, size_t last, double cutoff, cprox_result *result);
+
+/* Where the best distance of a search was measured, what that cost, and by which models. */
+void robot_search_report(const robot_search *o, cprox_result *result);
 
 /* Time of contact over the whole motion. */
 cprox_status robot_time_of_contact(const query *q, cprox_result *result);

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The gradient of a robot's clearance. */
+#include "solve/motion_gradient.h"
+
+#include "api/bvh.h"
+#include "kinematics/motion.h"
+#include "problem/obstacles.h"
+
+cprox_status cprox_robot_distance_gradient(const cprox_obstacles *obstacles, cprox_mover mover,
+                                           const cprox_options *options, cprox_workspace *workspace,
+                                           cprox_result *result, cprox_motion_gradient *gradient) {
+  static const arguments_query ASKED = {"the gradient of a robot's distance", ARGUMENTS_SEARCH | ARGUMENTS_WHOLE};
+  const obstacle_bvh *set = obstacles ? obstacles->bvh : NULL;
+  query q = query_create(mover, obstacles_list(obstacles), obstacles_count(obstacles), -1.0, false, options, workspace);
+  const cprox_status begun = set ? bvh_begin(set, &q, ASKED) : query_begin(&q, ASKED);
+  if (begun != CPROX_OK) return begun;
+  if (!mover.motion)
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "the mover is no robot: ask cprox_distance_gradient() for the gradient along a curve");
+  if (!result || !gradient)
+    return workspace_fail(workspace, CPROX_INVALID, "%s is NULL", result ? "gradient" : "result");
+  const bool rows = gradient->positions || gradient->velocities || gradient->accelerations;
+  if (rows && (mover.motion->kind == CPROX_MOTION_JOINED || mover.motion->arcs))
+    return workspace_fail(workspace, CPROX_INVALID,
+                          "joined motions, slerp and screws have a gradient by their variables, not by their points");
+  return motion_gradient_answer(&q, result, gradient);
+}

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "kinematics/jacobian.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- points by variables ---- */
+
+/* A quaternion p of any norm turns by 2 vec(dp p*) / |p|² in the frame that its axis stands in; doc/robot-bounds.md. */
+static void add_quaternion(const double *p, vec3 moment, double *by) {
+  const vec3 v = vec(p[0], p[1], p[2]);
+  const vec3 across = vec_sub(vec_scale(p[3], moment), vec_cross(v, moment));
+  const double scale = 2.0 / (vec_norm2(v) + p[3] * p[3]);
+  by[0] += scale * across.x, by[1] += scale * across.y, by[2] += scale * across.z;
+  by[3] -= scale * vec_dot(v, moment);
+}
+
+/* A rotation vector p turns by J dp, J the left Jacobian of the exponential; by J^T what is before it. */
+static void add_vector(const double *p, vec3 moment, double *by) {
+  const vec3 v = vec(p[0], p[1], p[2]);
+  const double angle2 = vec_norm2(v), angle = sqrt(angle2), sine = sin(0.5 * angle);
+  const bool is_small = angle < 1e-4;
+  const double s = is_small ? 1.0 - angle2 / 6.0 : sin(angle) / angle;
+  const double c = is_small ? 0.5 - angle2 / 24.0 : 2.0 * sine * sine / angle2;
+  const double a = is_small ? 1.0 / 6.0 - angle2 / 120.0 : (1.0 - s) / angle2;
+  const vec3 turned = vec_axpy(vec_axpy(vec_scale(s, moment), a * vec_dot(v, moment), v), -c, vec_cross(v, moment));
+  by[0] += turned.x, by[1] += turned.y, by[2] += turned.z;
+}
+
+void motion_add_gradient(const cprox_robot *robot, const double *values, const placement *frames, int32_t axis,
+                         int32_t above, vec3 n, vec3 x, double *by_variable) {
+  for (int32_t i = axis; i != above; i = robot->axes[i].parent) {
+    const robot_axis *a = &robot->axes[i];
+    const placement *moved = &frames[i];
+    const vec3 torque = vec_cross(vec_sub(x, moved->p), n);
+    double *by = by_variable + a->variable;
+    if (a->kind == AXIS_BALL || a->kind == AXIS_VECTOR) {
+      const vec3 seen = a->parent < 0 ? torque : placement_turn_back(&frames[a->parent], torque);
+      const vec3 moment = placement_turn_back(&a->at, seen); /* in the frame that the ball stands in */
+      if (a->kind == AXIS_BALL)
+        add_quaternion(values + a->variable, moment, by);
+      else
+        add_vector(values + a->variable, moment, by);
+      continue;
+    }
+    const vec3 z = placement_turn(moved, a->z);
+    *by += a->multiplier * vec_dot(a->kind == AXIS_PRISMATIC ? n : torque, z);
+  }
+}
+
+/* ---- variables by time ---- */
+
+/* Of slerp and screws, which turn at a constant rate: q' = omega q / 2. */
+static void add_arc_rates(const cprox_motion *m, size_t axis, size_t segment, double u, double *rates) {
+  const motion_arc *arc = &m->arcs[(size_t)m->arc_of[axis] * m->n_segments + segment];
+  const double s = arc->from + (arc->to - arc->from) * u,
+               speed = (arc->to - arc->from) / (m->times[segment + 1] - m->times[segment]);
+  double q[4];
+  arc_orientation(arc, s, q);
+  const vec3 half = vec_scale(0.5 * speed * arc->angle, arc->z), v = vec(q[0], q[1], q[2]);
+  const vec3 part = vec_add(vec_scale(q[3], half), vec_cross(half, v));
+  rates[0] = part.x, rates[1] = part.y, rates[2] = part.z, rates[3] = -vec_dot(half, v);
+  if (!arc->screw) return;
+  vec3 p[3];
+  arc_position(arc, s, p);
+  rates[-3] = speed * p[1].x, rates[-2] = speed * p[1].y, rates[-1] = speed * p[1].z;
+}
+
+void motion_rates(const cprox_motion *m, size_t segment, double u, double *rates) {
+  const size_t degree = m->degree[segment];
+  const double scale = (double)degree / (m->times[segment + 1] - m->times[segment]);
+  memset(rates, 0, m->robot->n_variables * sizeof *rates);
+  for (size_t k = 0; k < m->n_moving; k++) {
+    const double *root = m->coefficients + (segment * m->n_moving + k) * m->stride;
+    double c[MOTION_MAX_DEGREE + 1] = {0};
+    for (size_t i = 0; i < degree; i++) c[i] = root[i + 1] - root[i];
+    for (size_t r = 1; r < degree; r++)
+      for (size_t i = 0; i + r < degree; i++) c[i] = (1.0 - u) * c[i] + u * c[i + 1];
+    rates[m->moving[k]] = scale * c[0];
+  }
+  for (size_t i = 0; i < m->robot->n_axes && m->arcs; i++)
+    if (m->robot->axes[i].kind == AXIS_BALL && m->arc_of[i] >= 0 && m->axis_moves[i])
+      add_arc_rates(m, i, segment, u, rates + m->robot->axes[i].variable);
+}
+
+bool motion_is_on_arc(const cprox_motion *m, int32_t variable) {
+  for (size_t i = 0; i < m->robot->n_axes && m->arcs; i++) {
+    const int32_t first = m->robot->axes[i].variable;
+    if (m->robot->axes[i].kind != AXIS_BALL || m->arc_of[i] < 0) continue;
+    const bool screw = m->arcs[(size_t)m->arc_of[i] * m->n_segments].screw;
+    if (variable >= first - (screw ? 3 : 0) && variable < first + 4) return true;
+  }
+  return false;
+}
+
+/* ---- variables by what was given ---- */
+
+static void bernstein(size_t degree, double u, double *b) {
+  b[0] = 1.0;
+  for (size_t r = 1; r <= degree; r++) {
+    b[r] = u * b[r - 1];
+    for (size_t i = r - 1; i > 0; i--) b[i] = (1.0 - u) * b[i] + u * b[i - 1];
+    b[0] *= 1.0 - u;
+  }
+}
+
+/* The Bernstein coefficients of a Hermite polynomial of degree 1, 3 or 5 over h seconds, taken apart. */
+static motion_weights weights_of_waypoints(const cprox_motion *m, size_t segment, double u) {
+  const size_t degree = m->degree[segment];
+  const double h = m->times[segment + 1] - m->times[segment], n = (double)degree;
+  motion_weights w = {.first = segment, .n = 2};
+  double b[MOTION_MAX_DEGREE + 1] = {0};
+  bernstein(degree, u, b);
+  w.position[0] = b[0], w.position[1] = b[degree];
+  if (degree == 1) return w;
+  w.position[0] += b[1], w.position[1] += b[degree - 1];
+  w.velocity[0] = h / n * b[1], w.velocity[1] = -h / n * b[degree - 1];
+  if (degree == 3) return w;
+  w.position[0] += b[2], w.position[1] += b[3];
+  w.velocity[0] += 2.0 * h / n * b[2], w.velocity[1] -= 2.0 * h / n * b[3];
+  w.acceleration[0] = h * h / 20.0 * b[2], w.acceleration[1] = h * h / 20.0 * b[3];
+  return w;
+}
+
+/* Cox's and de Boor's recursion over the knots of the span. */
+static motion_weights weights_of_spline(const cprox_motion *m, size_t segment, double u) {
+  const motion_given *g = &m->given;
+  const double t = motion_time(m, segment, u), *knots = g->times;
+  size_t r = g->degree;
+  for (size_t left = segment;; r++)
+    if (knots[r] < knots[r + 1] && left-- == 0) break;
+  motion_weights w = {.first = r - g->degree, .n = g->degree + 1};
+  w.position[0] = 1.0;
+  for (size_t k = 1; k <= g->degree; k++) {
+    double carried = 0.0;
+    for (size_t i = 0; i < k; i++) {
+      const double from = knots[r + 1 + i - k], to = knots[r + 1 + i], part = w.position[i] / (to - from);
+      w.position[i] = carried + (to - t) * part;
+      carried = (t - from) * part;
+    }
+    w.position[k] = carried;
+  }
+  return w;
+}
+
+motion_weights motion_weights_at(const cprox_motion *m, size_t segment, double u) {
+  if (m->is_state || !m->given.times) return (motion_weights){0};
+  return m->given.degree > 0 ? weights_of_spline(m, segment, u) : weights_of_waypoints(m, segment, u);
+}

@@ -1,0 +1,341 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "solve/motion_spot.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/workspace.h"
+#include "convex/feature.h"
+#include "robot_query/refine.h"
+#include "solve/gradient_ties.h"
+
+/* Distances are measured as exactly as arithmetic allows. */
+static const robot_accuracy EXACT = {.epsilon = 0.0, .floor = 0.0, .fraction = 0.0};
+
+/* A step along a segment after which the minimum along it is found: the next one would be as much smaller again. */
+static const double STILL = 1e-10;
+
+/* In sizes: how far apart two nearest points are that count as two. */
+static const double TWO_POINTS = 1e-6;
+
+bool spot_begin(robot_scene *scene, int32_t index, spot_pair *p) {
+  const cprox_robot *robot = scene->motion->robot;
+  *p = (spot_pair){.scene = scene, .pair = scene->pairs[index], .index = index};
+  p->element[0] = p->pair.element[0], p->element[1] = p->pair.element[1];
+  p->pair.element[0] = p->pair.element[1] = -1;
+  if (p->element[0] >= 0 || p->element[1] >= 0) p->index = robot_scene_add_pair(scene, &p->pair);
+  const size_t frames = (robot->n_axes + 1) * sizeof(placement), rows = (robot->n_variables + 1) * sizeof(double);
+  char *memory = workspace_reserve(scene->q->workspace, WORKSPACE_ROBOT_SPOT, frames + 3 * rows);
+  if (p->index < 0 || !memory) return false;
+  p->frames = (placement *)(void *)memory;
+  p->values = (double *)(void *)(memory + frames);
+  p->rates = p->values + robot->n_variables + 1;
+  p->by_variable = p->rates + robot->n_variables + 1;
+  return true;
+}
+
+double spot_time(const spot_pair *p, const motion_spot *spot) {
+  return motion_time(p->scene->motion, spot->segment, spot->u);
+}
+
+/* ---- measuring ---- */
+
+static cprox_status refuse(const spot_pair *p) {
+  return workspace_fail(p->scene->q->workspace, CPROX_INVALID, CONVEX_NO_SUPPORT);
+}
+
+static void measure_elements(spot_pair *p, const int32_t element[2], robot_gap *gap) {
+  robot_pair pair = p->pair;
+  pair.element[0] = element[0], pair.element[1] = element[1];
+  const robot_body *moving = robot_scene_moving(p->scene, &pair), *standing = robot_scene_standing(p->scene, &pair);
+  robot_pair_measure(moving, standing, EXACT, gap);
+  p->gaps++;
+}
+
+/* ---- curved sides ---- */
+
+static bool knows_nearest(const robot_body *body) {
+  const convex_ops *ops = body->side.shape->ops;
+  return (ops->closed_form || ops->kind == CPROX_BODY_POLYTOPE) && ops->kind != CPROX_BODY_HALFSPACE;
+}
+
+/* The point of the side's core that is nearest to a point of the world. */
+static vec3 nearest_on_core(const robot_body *body, vec3 y) {
+  const convex *shape = body->side.shape;
+  convex_near near;
+  shape->ops->nearest(shape, placement_turn_back(&body->side.at, vec_sub(y, body->side.at.p)), NULL, &near);
+  return placement_apply(&body->side.at, vec_axpy(near.point, -shape->margin, near.normal));
+}
+
+/* A distance known within e tells the nearest points of curved sides within the root of e. Projecting one onto the
+ * other in turns knows them better, where it converges fast. */
+static void sharpen(const robot_body *moving, const robot_body *standing, robot_gap *gap) {
+  enum { MOST_TURNS = 12 };
+  if (gap->n > 0 || !(gap->lower > 0.0) || !knows_nearest(moving) || !knows_nearest(standing)) return;
+  vec3 x = vec_axpy(gap->on_moving, moving->side.margin, gap->normal), y = x;
+  const double size = moving->radius + standing->radius,
+               before = gap->upper + moving->side.margin + standing->side.margin;
+  for (int i = 0; i < MOST_TURNS; i++) {
+    y = nearest_on_core(standing, x);
+    const vec3 next = nearest_on_core(moving, y);
+    const double moved = vec_norm(vec_sub(next, x));
+    x = next;
+    if (!(moved > 1e-15 * size)) break;
+  }
+  const vec3 v = vec_sub(x, y);
+  const double distance = vec_norm(v);
+  if (!(distance <= before + 4.0 * gap->slack) || !(distance > 0.0)) return;
+  gap->normal = vec_scale(1.0 / distance, v);
+  gap->on_moving = vec_axpy(x, -moving->side.margin, gap->normal);
+  gap->on_standing = vec_axpy(y, standing->side.margin, gap->normal);
+}
+
+/* ---- elements ---- */
+
+/* What is nearest of all elements: those that were nearest last say how far it is worth looking. */
+static cprox_status measure_trees(spot_pair *p, robot_gap *gap) {
+  const robot_body *moving = robot_scene_moving(p->scene, &p->pair),
+                   *standing = robot_scene_standing(p->scene, &p->pair);
+  const double radii = moving->radius + (robot_body_is_halfspace(standing) ? 0.0 : standing->radius);
+  robot_gap hulls;
+  robot_pair_measure(moving, standing, (robot_accuracy){.epsilon = 1e-3 * moving->radius}, &hulls);
+  p->gaps++;
+  if (hulls.support_failed) return refuse(p);
+  robot_refinement c = {.scene = p->scene,
+                        .pair = p->index,
+                        .reach = fmax(hulls.upper, 0.0) + 4.0 * radii,
+                        .accuracy = 1e-9 * radii,
+                        .normal = hulls.upper > 0.0 ? hulls.normal : vec(0, 0, 0)};
+  if (p->element[0] >= 0 || p->element[1] >= 0) {
+    measure_elements(p, p->element, gap);
+    if (gap->support_failed) return refuse(p);
+    c.reach = fmin(c.reach, fmax(gap->upper, 0.0) + 1e-8 * radii);
+  }
+  robot_refinement_run(&c);
+  p->gaps += c.gaps;
+  if (c.support_failed) return refuse(p);
+  if (c.nearest.gap.upper < INFINITY) p->element[0] = c.nearest.element[0], p->element[1] = c.nearest.element[1];
+  measure_elements(p, p->element, gap);
+  return gap->support_failed ? refuse(p) : CPROX_OK;
+}
+
+/* By every variable, at the place that the frames stand for. */
+static void differentiate(spot_pair *p, const robot_gap *gap) {
+  const cprox_robot *robot = p->scene->motion->robot;
+  const int32_t moving = robot->parts[p->pair.moving].axis;
+  memset(p->by_variable, 0, robot->n_variables * sizeof *p->by_variable);
+  if (!p->pair.self) {
+    motion_add_gradient(robot, p->values, p->frames, moving, -1, gap->normal, gap->on_moving, p->by_variable);
+    return;
+  }
+  const int32_t standing = robot->parts[p->pair.standing].axis, common = robot_common_axis(robot, moving, standing);
+  motion_add_gradient(robot, p->values, p->frames, moving, common, gap->normal, gap->on_moving, p->by_variable);
+  motion_add_gradient(robot, p->values, p->frames, standing, common, vec_neg(gap->normal), gap->on_standing,
+                      p->by_variable);
+}
+
+cprox_status spot_measure(spot_pair *p, size_t segment, double u, motion_spot *spot) {
+  const cprox_motion *motion = p->scene->motion;
+  robot_scene_enter(p->scene, segment, u, u);
+  const robot_body *moving = robot_scene_moving(p->scene, &p->pair),
+                   *standing = robot_scene_standing(p->scene, &p->pair);
+  *spot = (motion_spot){.segment = segment, .u = u};
+  if (moving->tree || standing->tree) {
+    const cprox_status status = measure_trees(p, &spot->gap);
+    if (status < 0) return status;
+  } else {
+    robot_pair_measure(moving, standing, EXACT, &spot->gap);
+    p->gaps++;
+    if (spot->gap.support_failed) return refuse(p);
+    sharpen(moving, standing, &spot->gap);
+  }
+  motion_place(motion, segment, u, p->values, p->frames);
+  motion_rates(motion, segment, u, p->rates);
+  differentiate(p, &spot->gap);
+  for (size_t v = 0; v < motion->robot->n_variables; v++) spot->slope += p->by_variable[v] * p->rates[v];
+  return CPROX_OK;
+}
+
+/* ---- the minimum along the motion ---- */
+
+/* Between left, where the distance falls, and right, where it grows (Illinois): until a step is so small that one of
+ * the bracket's ends would be known as well, and is. */
+static cprox_status find_root(spot_pair *p, motion_spot left, motion_spot right, motion_spot *at) {
+  enum { MOST_STEPS = 100 };
+  double fa = left.slope, fb = right.slope;
+  int side = 0;
+  bool over = false; /* the step before was too small to tell */
+  for (int i = 0; i < MOST_STEPS && right.u - left.u > STILL; i++) {
+    double next = over || i % 8 == 7 ? 0.5 * (left.u + right.u) : (left.u * fb - right.u * fa) / (fb - fa);
+    const bool is_small = !over && i > 0 && fabs(next - at->u) < STILL;
+    if (is_small) next = side < 0 ? left.u + 4.0 * STILL : right.u - 4.0 * STILL;
+    if (!(next > left.u && next < right.u)) next = 0.5 * (left.u + right.u);
+    const cprox_status status = spot_measure(p, left.segment, next, at);
+    if (status < 0 || at->slope == 0.0) return status;
+    const int now = at->slope < 0.0 ? -1 : 1;
+    if (now < 0)
+      left = *at, fa = at->slope, fb *= side < 0 ? 0.5 : 1.0;
+    else
+      right = *at, fb = at->slope, fa *= side > 0 ? 0.5 : 1.0;
+    over = is_small && now == side;
+    side = now;
+    if (is_small && !over) break;
+  }
+  *at = -left.slope < right.slope ? left : right;
+  return CPROX_OK;
+}
+
+/* The ends of what is asked about, on one segment. */
+static double first_u(const motion_interval *within, size_t segment) {
+  return segment == within->first ? within->a : 0.0;
+}
+
+static double last_u(const motion_interval *within, size_t segment) {
+  return segment + 1 == within->last ? within->b : 1.0;
+}
+
+/* On the segment of the spot: *beyond is -1 or 1 where the distance falls out of its beginning or its end. */
+static cprox_status refine_on_segment(spot_pair *p, double low, double high, motion_spot *spot, int *beyond,
+                                      bool *found) {
+  *beyond = 0;
+  *found = false;
+  enum { MOST_STEPS = 5 };
+  motion_spot near = *spot;
+  double step = 1e-3;
+  for (int i = 0; i < MOST_STEPS; i++, step *= 8.0) {
+    /* downhill; where it is flat, to both sides in turns */
+    const double next = near.slope > 0.0 ? fmax(near.u - step, low) : fmin(near.u + step, high);
+    motion_spot far;
+    const cprox_status status = spot_measure(p, near.segment, next, &far);
+    if (status < 0) return status;
+    if (near.slope * far.slope < 0.0) {
+      *found = true;
+      *spot = far;
+      return near.slope < 0.0 ? find_root(p, near, far, spot) : find_root(p, far, near, spot);
+    }
+    if (far.slope == 0.0 && near.slope == 0.0) return CPROX_OK;
+    *spot = near = far;
+    if (far.slope >= 0.0 && far.u <= low) *beyond = -1;
+    if (far.slope <= 0.0 && far.u >= high) *beyond = 1;
+    if (*beyond != 0) return CPROX_OK;
+  }
+  return CPROX_OK;
+}
+
+cprox_status spot_refine(spot_pair *p, const motion_interval *within, motion_spot *spot, bool *found) {
+  enum { MOST_SEGMENTS = 4 };
+  *found = false;
+  for (int i = 0; i < MOST_SEGMENTS; i++) {
+    const size_t segment = spot->segment;
+    int beyond;
+    cprox_status status = refine_on_segment(p, first_u(within, segment), last_u(within, segment), spot, &beyond, found);
+    if (status < 0 || *found || beyond == 0) return status;
+    /* an end, or a knot with the next segment behind it */
+    *found = beyond < 0 ? segment == within->first : segment + 1 == within->last;
+    if (*found) return CPROX_OK;
+    motion_spot next;
+    status = spot_measure(p, beyond < 0 ? segment - 1 : segment + 1, beyond < 0 ? 1.0 : 0.0, &next);
+    if (status < 0) return status;
+    *found = beyond < 0 ? next.slope <= 0.0 : next.slope >= 0.0;
+    *spot = next;
+    if (*found) return CPROX_OK;
+  }
+  return CPROX_OK;
+}
+
+/* ---- nearest points ---- */
+
+static bool is_round(const robot_body *body) {
+  const cprox_body_kind kind = body->side.shape->ops->kind;
+  return kind == CPROX_BODY_POINT || kind == CPROX_BODY_SPHERE;
+}
+
+/* The side turned about a point of the world by the small vector w. */
+static robot_body turned_about(const robot_body *side, vec3 centre, vec3 w) {
+  robot_body turned = *side;
+  const double angle2 = vec_norm2(w);
+  const vec3 from = vec_sub(side->side.at.p, centre);
+  /* Rodrigues to the fourth power of the angle */
+  const double s = 1.0 - angle2 / 6.0, c = 0.5 - angle2 / 24.0;
+  vec3 v[4] = {from};
+  const double *r = side->side.at.r;
+  for (int k = 0; k < 3; k++) v[k + 1] = vec(r[k], r[3 + k], r[6 + k]);
+  for (int k = 0; k < 4; k++) {
+    const vec3 once = vec_cross(w, v[k]), twice = vec_cross(w, once);
+    v[k] = vec_axpy(vec_axpy(v[k], s, once), c, twice);
+  }
+  turned.side.at.p = vec_add(centre, v[0]);
+  for (int k = 0; k < 3; k++)
+    turned.side.at.r[k] = v[k + 1].x, turned.side.at.r[3 + k] = v[k + 1].y, turned.side.at.r[6 + k] = v[k + 1].z;
+  return turned;
+}
+
+/* How far apart the nearest points are when the standing side has turned to one side and to the other. */
+static cprox_status spread_of(spot_pair *p, const robot_body *moving, const robot_body *standing, const robot_gap *here,
+                              double turn, double *spread) {
+  vec3 axis[2];
+  feature_tangents(here->normal, &axis[0], &axis[1]);
+  *spread = 0.0;
+  for (int i = 0; i < 2; i++) {
+    robot_gap seen[2];
+    for (int k = 0; k < 2; k++) {
+      const robot_body turned = turned_about(standing, here->on_standing, vec_scale(k ? turn : -turn, axis[i]));
+      robot_pair_measure(moving, &turned, EXACT, &seen[k]);
+      p->gaps++;
+      if (seen[k].support_failed) return refuse(p);
+    }
+    *spread = fmax(vec_norm(vec_sub(seen[1].on_moving, seen[0].on_moving)), *spread);
+  }
+  return CPROX_OK;
+}
+
+/* Two convex sides may be nearest along an edge or a face. */
+static cprox_status convex_is_alone(spot_pair *p, const robot_body *moving, const robot_body *standing,
+                                    const robot_gap *gap, bool *alone) {
+  *alone = true;
+  const bool halfspace = robot_body_is_halfspace(standing);
+  if (is_round(moving) || (!halfspace && is_round(standing)) || vec_norm2(gap->normal) == 0.0) return CPROX_OK;
+  const double size = halfspace ? moving->radius : fmin(moving->radius, standing->radius);
+  double near, far = 0.0;
+  cprox_status status = spread_of(p, moving, standing, gap, TIES_NEAR, &near);
+  if (status >= 0 && near > TWO_POINTS * size) status = spread_of(p, moving, standing, gap, TIES_FAR, &far);
+  *alone = !ties_is_jump(near, far, TWO_POINTS * size);
+  return status;
+}
+
+/* Other elements may be as near, elsewhere. */
+static cprox_status elements_are_alone(spot_pair *p, const motion_spot *spot, double size, double apart, bool *alone) {
+  robot_refinement c = {.scene = p->scene,
+                        .pair = p->index,
+                        .reach = spot->gap.upper + 2.0 * apart,
+                        .room = 2.0 * apart,
+                        .accuracy = 0.1 * apart,
+                        .listing = true};
+  robot_refinement_run(&c);
+  p->gaps += c.gaps;
+  if (c.support_failed) return refuse(p);
+  if (c.no_memory) return workspace_fail(p->scene->q->workspace, CPROX_MEMORY, "no memory for the elements of a mesh");
+  *alone = !c.too_many;
+  for (size_t i = 0; i < c.n_found && *alone; i++) {
+    robot_gap gap;
+    measure_elements(p, c.found[i].element, &gap);
+    if (gap.support_failed) return refuse(p);
+    *alone = gap.lower > spot->gap.upper + apart ||
+             vec_norm(vec_sub(gap.on_moving, spot->gap.on_moving)) <= TWO_POINTS * size;
+  }
+  return CPROX_OK;
+}
+
+cprox_status spot_is_alone(spot_pair *p, const motion_spot *spot, double apart, bool *alone) {
+  robot_scene_enter(p->scene, spot->segment, spot->u, spot->u);
+  robot_pair pair = p->pair;
+  const robot_body *moving = robot_scene_moving(p->scene, &pair), *standing = robot_scene_standing(p->scene, &pair);
+  if (moving->tree || standing->tree) {
+    const double size = robot_body_is_halfspace(standing) ? moving->radius : fmin(moving->radius, standing->radius);
+    const cprox_status status = elements_are_alone(p, spot, size, apart, alone);
+    if (status < 0 || !*alone) return status;
+    pair.element[0] = p->element[0], pair.element[1] = p->element[1];
+    moving = robot_scene_moving(p->scene, &pair), standing = robot_scene_standing(p->scene, &pair);
+  }
+  return convex_is_alone(p, moving, standing, &spot->gap, alone);
+}
