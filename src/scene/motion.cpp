@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include <curve_proximity/motion.hpp>
-#include <curve_proximity/nearest_name.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <optional>
-#include <set>
 
 #include "motion_data.h"
 
@@ -78,27 +76,45 @@ cprox_interpolation toCore(Interpolation interpolation) {
   return CPROX_INTERPOLATION_BY_WAYPOINTS;
 }
 
+/* A workspace is made for the error message only: it costs more than the motion. */
+void createCore(const cprox_motion_description &description, RobotMotion::Data &data) {
+  cprox_motion *made = nullptr;
+  if (cprox_motion_create(data.kinematics->core.get(), &description, nullptr, &made) != CPROX_OK) {
+    Workspace workspace;
+    const cprox_status status = cprox_motion_create(data.kinematics->core.get(), &description, workspace.get(), &made);
+    if (status != CPROX_OK) throw Error(workspace.reason(), status);
+  }
+  data.core.reset(made);
+}
+
+void makeState(const std::vector<double> &values, RobotMotion::Data &data) {
+  cprox_motion_description description{};
+  description.kind = CPROX_MOTION_STATE;
+  description.rest = values.data();
+  data.stands = true;
+  createCore(description, data);
+}
+
 void makeMotion(const TrajectoryDescription &trajectory, const JointPositions &rest, RobotMotion::Data &data) {
   const Kinematics &kinematics = *data.kinematics;
   const Columns columns = columnsOf(kinematics, trajectory);
-  const std::vector<double> still = restOf(kinematics, rest);
+  std::vector<double> still = restOf(kinematics, rest);
+  if (trajectory.points.size() == 1) {
+    const TrajectoryPoint &point = trajectory.points.front();
+    if (point.time > 0.0)
+      throw Error(
+          "the trajectory has one point: from where it is reached is not said (at time 0 the robot stands there)");
+    for (std::size_t i = 0; i < columns.column.size(); ++i)
+      still[static_cast<std::size_t>(columns.variable[i])] = point.positions[columns.column[i]];
+    makeState(still, data);
+    return;
+  }
   std::deque<std::vector<double>> memory;
   std::vector<cprox_waypoint> points;
   for (const TrajectoryPoint &point : trajectory.points) {
     points.push_back({point.time, chosen(point.positions, columns, memory), chosen(point.velocities, columns, memory),
                       chosen(point.accelerations, columns, memory)});
   }
-  data.stands = points.size() == 1;
-  if (data.stands) {
-    if (points.front().time > 0.0)
-      throw Error(
-          "the trajectory has one point: from where it is reached is not said (at time 0 the robot stands there)");
-    points.push_back(points.front());
-    points.back().time = 1.0;
-  }
-
-  Workspace workspace;
-  cprox_motion *made = nullptr;
   cprox_motion_description description{};
   description.kind = CPROX_MOTION_WAYPOINTS;
   description.variables = columns.variable.data();
@@ -107,34 +123,61 @@ void makeMotion(const TrajectoryDescription &trajectory, const JointPositions &r
   description.waypoints = points.data();
   description.n_waypoints = points.size();
   description.interpolation = toCore(trajectory.interpolation);
-  const cprox_status status = cprox_motion_create(kinematics.core.get(), &description, workspace.get(), &made);
-  if (status != CPROX_OK) throw Error(workspace.reason(), status);
-  data.core.reset(made);
+  createCore(description, data);
+}
+
+std::unique_ptr<RobotMotion::Data> startOf(const PreparedRobot &robot, const std::string &id) {
+  auto data = std::make_unique<RobotMotion::Data>();
+  data->prepared = robot.data();
+  data->snapshot = data->prepared->snapshot;
+  data->kinematics = data->prepared->kinematics;
+  data->id = id;
+  return data;
+}
+
+void finish(const std::vector<std::string> &links, RobotMotion::Data &data) {
+  choosePairs(links, data);
+  data.warnings = beyondLimits(*data.kinematics, *data.core);
 }
 
 } // namespace
 
-RobotMotion::RobotMotion(SnapshotPtr snapshot, const TrajectoryDescription &trajectory, const JointPositions &rest,
-                         const std::vector<std::array<std::string, 2>> &disabled, const Eigen::Isometry3d &base,
-                         const std::vector<std::string> &links) {
-  checkTrajectory(trajectory);
-  auto data = std::make_unique<Data>();
+PreparedRobot::PreparedRobot(SnapshotPtr snapshot, const std::vector<std::array<std::string, 2>> &disabled,
+                             const std::vector<VirtualJoint> &virtual_joints,
+                             const std::vector<std::string> &base_joints, const Eigen::Isometry3d &base) {
+  auto data = std::make_shared<Data>();
   data->snapshot = std::move(snapshot);
-  data->id = trajectory.id;
-  data->kinematics = makeKinematics(*data->snapshot, trajectory.base, trajectory.base_joints, base);
+  data->kinematics = makeKinematics(*data->snapshot, virtual_joints, base_joints, base);
   if (data->kinematics->geometries.empty())
     throw Error("robot '" + data->kinematics->robot->name() +
                 "' has no collision geometry: nothing of it can come close to anything");
-  makeMotion(trajectory, rest, *data);
-  for (const std::string &link : links) {
-    if (data->kinematics->links.count(link) == 0)
-      throw Error("link '" + link + "' is no link of robot '" + data->kinematics->robot->name() + "'" +
-                  didYouMean(link, namesOf(data->kinematics->links)));
-  }
-  choosePairs(disabled, links, *data);
-  data->warnings = beyondLimits(*data->kinematics, *data->core);
+  preparePairs(disabled, *data);
   data_ = std::move(data);
 }
+
+RobotMotion::RobotMotion(const PreparedRobot &robot, const TrajectoryDescription &trajectory,
+                         const JointPositions &rest, const std::vector<std::string> &links) {
+  checkTrajectory(trajectory);
+  auto data = startOf(robot, trajectory.id);
+  makeMotion(trajectory, rest, *data);
+  finish(links, *data);
+  data_ = std::move(data);
+}
+
+RobotMotion::RobotMotion(const PreparedRobot &robot, const JointPositions &state, const std::string &id,
+                         const std::vector<std::string> &links) {
+  auto data = startOf(robot, id);
+  makeState(restOf(*data->kinematics, state), *data);
+  finish(links, *data);
+  data_ = std::move(data);
+}
+
+RobotMotion::RobotMotion(SnapshotPtr snapshot, const TrajectoryDescription &trajectory, const JointPositions &rest,
+                         const std::vector<std::array<std::string, 2>> &disabled, const Eigen::Isometry3d &base,
+                         const std::vector<std::string> &links)
+    : RobotMotion((checkTrajectory(trajectory),
+                   PreparedRobot(std::move(snapshot), disabled, trajectory.base, trajectory.base_joints, base)),
+                  trajectory, rest, links) {}
 
 RobotMotion::~RobotMotion() = default;
 RobotMotion::RobotMotion(RobotMotion &&) noexcept = default;
@@ -163,6 +206,7 @@ LinkPoses RobotMotion::linkPoses(double t) const {
 }
 
 const std::vector<std::string> &RobotMotion::skipped() const {
+  std::call_once(data_->skipped_once, [this] { data_->skipped = skippedPairs(*data_); });
   return data_->skipped;
 }
 

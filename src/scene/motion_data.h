@@ -5,7 +5,9 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <curve_proximity/motion.hpp>
@@ -15,21 +17,47 @@
 
 namespace curve_proximity {
 
-/* Which geometries are asked about against which items or geometries. */
-struct RobotMotion::Data {
-  SnapshotPtr snapshot;
-  std::string id;
-  std::shared_ptr<const Kinematics> kinematics;
-  std::unique_ptr<cprox_motion, void (*)(cprox_motion *)> core{nullptr, cprox_motion_free};
-  bool stands = false;                       /* one waypoint: the robot does not move */
-  std::vector<cprox_robot_pair> self;        /* geometry against geometry */
-  std::vector<cprox_robot_pair> environment; /* geometry against item of the snapshot's world */
-  std::vector<std::string> skipped, warnings;
+/* Two geometries of the robot, and what does not depend on the motion. */
+struct SelfPair {
+  cprox_robot_pair pair;
+  bool carried;          /* one of them is an object that a link carries */
+  std::string exemption; /* why they are not measured, whatever moves; "": they are */
 };
 
-/* Fills self, environment and skipped; `disabled` are pairs of links, `only` the links wanted (empty: all). */
-void choosePairs(const std::vector<std::array<std::string, 2>> &disabled, const std::vector<std::string> &only,
-                 RobotMotion::Data &data);
+/* What all motions of a robot in a snapshot share. */
+struct PreparedRobot::Data {
+  SnapshotPtr snapshot;
+  std::shared_ptr<const Kinematics> kinematics;
+  std::vector<std::int32_t> link;                         /* of each geometry, its number in the core */
+  std::vector<std::vector<cprox_robot_pair>> environment; /* of each geometry, against items of the snapshot's world */
+  std::vector<std::vector<std::string>> allowed;          /* of each geometry, the objects that it may touch */
+  std::vector<SelfPair> self;                             /* in the order of their first geometries */
+};
+
+/* Fills all but snapshot and kinematics; `disabled` are pairs of links. */
+void preparePairs(const std::vector<std::array<std::string, 2>> &disabled, PreparedRobot::Data &data);
+
+/* A motion, and which geometries are measured against which items or geometries. */
+struct RobotMotion::Data {
+  std::shared_ptr<const PreparedRobot::Data> prepared;
+  SnapshotPtr snapshot;                         /* the prepared robot's */
+  std::shared_ptr<const Kinematics> kinematics; /* likewise */
+  std::string id;
+  std::unique_ptr<cprox_motion, void (*)(cprox_motion *)> core{nullptr, cprox_motion_free};
+  bool stands = false;                       /* a state: the robot does not move */
+  std::vector<bool> wanted;                  /* of each geometry: does the query name its link */
+  std::vector<cprox_robot_pair> self;        /* geometry against geometry */
+  std::vector<cprox_robot_pair> environment; /* geometry against item of the snapshot's world */
+  std::vector<std::string> warnings;
+  mutable std::once_flag skipped_once; /* the messages are made when somebody asks for them */
+  mutable std::vector<std::string> skipped;
+};
+
+/* Fills wanted, self and environment; `links` are the links wanted (empty: all). */
+void choosePairs(const std::vector<std::string> &links, RobotMotion::Data &data);
+
+/* What choosePairs() left out, with the cause, one message each. */
+std::vector<std::string> skippedPairs(const RobotMotion::Data &data);
 
 } // namespace curve_proximity
 #endif

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Which pairs a query about a robot in motion is about, and why others are not. */
+#include <curve_proximity/nearest_name.hpp>
+
 #include <algorithm>
 #include <set>
 
@@ -14,11 +16,6 @@ using Links = std::array<std::string, 2>;
 
 Links ordered(const std::string &a, const std::string &b) {
   return a < b ? Links{a, b} : Links{b, a};
-}
-
-bool moves(const RobotMotion::Data &data, const MovingGeometry &geometry) {
-  const auto link = static_cast<std::int32_t>(data.kinematics->links.at(*geometry.link));
-  return data.stands || cprox_motion_get_link_info(data.core.get(), link, -1).n_moved > 0;
 }
 
 std::string nameOf(const MovingGeometry &geometry) {
@@ -37,66 +34,118 @@ bool mayTouch(const MovingGeometry &a, const MovingGeometry &b) {
   return std::find(touch.begin(), touch.end(), *b.link) != touch.end();
 }
 
-/* Why two geometries of the robot are not asked about; "" where they are. Neighbours in the chain overlap by their
- * making; what is carried does not, and is asked about as soon as a joint moves it against the other. */
-std::string exemptionOf(const MovingGeometry &a, const MovingGeometry &b, const RobotMotion::Data &data,
+/* Why two geometries of the robot are never measured; "" where the motion decides. */
+std::string exemptionOf(const MovingGeometry &a, const MovingGeometry &b, const Snapshot &snapshot,
                         const std::set<Links> &off) {
-  const auto link_a = static_cast<std::int32_t>(data.kinematics->links.at(*a.link));
-  const auto link_b = static_cast<std::int32_t>(data.kinematics->links.at(*b.link));
-  const cprox_link_info between = cprox_motion_get_link_info(data.core.get(), link_a, link_b);
   const bool carried = a.attached || b.attached;
-  const std::size_t moved = data.stands ? between.n_joints : between.n_moved; // of a robot that stands all joints count
-  if (carried && moved == 0) return "this trajectory does not move them against each other";
-  if (!carried && (between.n_joints < 2 || moved == 0))
-    return "this trajectory does not move them against each other, or a single joint does";
   if (mayTouch(a, b) || mayTouch(b, a)) return "it is one of its touch_links";
   if (!carried && off.count(ordered(*a.link, *b.link)) > 0) return "the SRDF disables them";
-  return data.snapshot->mayTouch(a.owner(), b.owner()) ? "they are allowed to touch" : "";
+  return snapshot.mayTouch(a.owner(), b.owner()) ? "they are allowed to touch" : "";
+}
+
+/* Does the motion move the geometry against the world? Of a robot that stands all of them count. */
+bool moves(const RobotMotion::Data &data, std::size_t geometry) {
+  return data.stands || cprox_motion_get_link_info(data.core.get(), data.prepared->link[geometry], -1).n_moved > 0;
+}
+
+/* Why the motion leaves a pair out; "" where it does not. Neighbours in the chain overlap by their making; what is
+ * carried does not, and is measured as soon as a joint moves it against the other. */
+const char *leftOut(const RobotMotion::Data &data, const SelfPair &pair) {
+  const std::vector<std::int32_t> &link = data.prepared->link;
+  const cprox_link_info between =
+      cprox_motion_get_link_info(data.core.get(), link[static_cast<std::size_t>(pair.pair.geometry)],
+                                 link[static_cast<std::size_t>(pair.pair.other)]);
+  const std::size_t moved = data.stands ? between.n_joints : between.n_moved; // of a robot that stands all joints count
+  if (pair.carried) return moved == 0 ? "this trajectory does not move them against each other" : "";
+  return between.n_joints < 2 || moved == 0
+             ? "this trajectory does not move them against each other, or a single joint does"
+             : "";
+}
+
+bool isWanted(const RobotMotion::Data &data, const SelfPair &pair) {
+  return data.wanted[static_cast<std::size_t>(pair.pair.geometry)] ||
+         data.wanted[static_cast<std::size_t>(pair.pair.other)];
 }
 
 } // namespace
 
-void choosePairs(const std::vector<Links> &disabled, const std::vector<std::string> &only, RobotMotion::Data &data) {
+void preparePairs(const std::vector<Links> &disabled, PreparedRobot::Data &data) {
   const std::vector<MovingGeometry> &geometries = data.kinematics->geometries;
+  const std::vector<Item> &items = data.snapshot->world().items();
   std::set<Links> off;
   for (const Links &pair : disabled) off.insert(ordered(pair[0], pair[1]));
-  std::set<std::string> told;
-  const auto tell = [&](const std::string &sentence) {
-    if (told.insert(sentence).second) data.skipped.push_back(sentence);
-  };
 
-  const auto wanted = [&](const MovingGeometry &geometry) {
-    return only.empty() || std::find(only.begin(), only.end(), *geometry.link) != only.end();
-  };
-
-  const std::vector<Item> &items = data.snapshot->world().items();
+  data.environment.resize(geometries.size());
+  data.allowed.resize(geometries.size());
+  for (const MovingGeometry &geometry : geometries)
+    data.link.push_back(static_cast<std::int32_t>(data.kinematics->links.at(*geometry.link)));
   for (std::size_t i = 0; i < geometries.size(); ++i) {
-    const std::string name = nameOf(geometries[i]);
-
-    /* what it may touch in the scene */
-    if (!wanted(geometries[i])) tell(name + ": the query does not name it");
-    if (!moves(data, geometries[i])) tell(name + ": the trajectory does not move it");
-    for (std::size_t k = 0; k < items.size() && wanted(geometries[i]) && moves(data, geometries[i]); ++k) {
-      const std::string &object = *items[k].owner;
-      if (data.snapshot->mayTouch(geometries[i].owner(), object)) {
-        tell(name + " and object '" + object + "': they are allowed to touch");
-      } else {
-        data.environment.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
+    const std::string *object = nullptr; /* the items of an object are neighbours */
+    bool may_touch = false;
+    for (std::size_t k = 0; k < items.size(); ++k) {
+      if (items[k].owner != object) {
+        object = items[k].owner;
+        may_touch = data.snapshot->mayTouch(geometries[i].owner(), *object);
+        if (may_touch) data.allowed[i].push_back(*object);
       }
+      if (!may_touch) data.environment[i].push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
     }
-
-    /* and of itself */
     for (std::size_t k = i + 1; k < geometries.size(); ++k) {
       if (geometries[i].link == geometries[k].link) continue;
-      if (!wanted(geometries[i]) && !wanted(geometries[k])) continue;
-      const std::string why = exemptionOf(geometries[i], geometries[k], data, off);
-      if (why.empty()) {
-        data.self.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)});
-      } else {
-        tell(nameOf(geometries[i], geometries[k]) + ": " + why);
-      }
+      data.self.push_back({{static_cast<std::int32_t>(i), static_cast<std::int32_t>(k)},
+                           geometries[i].attached || geometries[k].attached,
+                           exemptionOf(geometries[i], geometries[k], *data.snapshot, off)});
     }
   }
+}
+
+void choosePairs(const std::vector<std::string> &links, RobotMotion::Data &data) {
+  const PreparedRobot::Data &prepared = *data.prepared;
+  const Kinematics &kinematics = *prepared.kinematics;
+  for (const std::string &link : links) {
+    if (kinematics.links.count(link) == 0)
+      throw Error("link '" + link + "' is no link of robot '" + kinematics.robot->name() + "'" +
+                  didYouMean(link, namesOf(kinematics.links)));
+  }
+  for (const MovingGeometry &geometry : kinematics.geometries)
+    data.wanted.push_back(links.empty() || std::find(links.begin(), links.end(), *geometry.link) != links.end());
+
+  for (std::size_t i = 0; i < prepared.environment.size(); ++i) {
+    if (!data.wanted[i] || prepared.environment[i].empty() || !moves(data, i)) continue;
+    const std::vector<cprox_robot_pair> &pairs = prepared.environment[i];
+    data.environment.insert(data.environment.end(), pairs.begin(), pairs.end());
+  }
+  for (const SelfPair &pair : prepared.self) {
+    if (pair.exemption.empty() && isWanted(data, pair) && *leftOut(data, pair) == '\0') data.self.push_back(pair.pair);
+  }
+}
+
+std::vector<std::string> skippedPairs(const RobotMotion::Data &data) {
+  const PreparedRobot::Data &prepared = *data.prepared;
+  const std::vector<MovingGeometry> &geometries = prepared.kinematics->geometries;
+  std::vector<std::string> out;
+  std::set<std::string> told;
+  const auto tell = [&](const std::string &message) {
+    if (told.insert(message).second) out.push_back(message);
+  };
+  for (std::size_t i = 0, next = 0; i < geometries.size(); ++i) {
+    const std::string name = nameOf(geometries[i]);
+    const bool moved = moves(data, i);
+    if (!data.wanted[i]) tell(name + ": the query does not name it");
+    if (!moved) tell(name + ": the trajectory does not move it");
+    for (const std::string &object : prepared.allowed[i]) {
+      if (data.wanted[i] && moved) tell(name + " and object '" + object + "': they are allowed to touch");
+    }
+    for (; next < prepared.self.size(); ++next) {
+      const SelfPair &pair = prepared.self[next];
+      if (static_cast<std::size_t>(pair.pair.geometry) != i) break;
+      const char *left_out = leftOut(data, pair);
+      const std::string why = *left_out != '\0' ? left_out : pair.exemption;
+      if (isWanted(data, pair) && !why.empty())
+        tell(nameOf(geometries[i], geometries[static_cast<std::size_t>(pair.pair.other)]) + ": " + why);
+    }
+  }
+  return out;
 }
 
 } // namespace curve_proximity

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Motions and states of a prepared robot: the same answers as those of a robot that is not prepared. */
+#include <curve_proximity/motion.hpp>
+
+#include "support.h"
+
+using namespace curve_proximity;
+using namespace curve_proximity::test;
+
+namespace {
+
+const std::vector<std::string> JOINTS = {"panda_joint1", "panda_joint2", "panda_joint3", "panda_joint4",
+                                         "panda_joint5", "panda_joint6", "panda_joint7"};
+
+std::shared_ptr<const Robot> panda() {
+  static const std::shared_ptr<const Robot> robot = dataRobot("panda");
+  return robot;
+}
+
+Srdf pandaSrdf() {
+  return parseSrdf(readText(TEST_DATA_DIR "/robots/panda/panda.srdf"));
+}
+
+/* A Panda among eight boxes, one of which a link may touch. */
+SnapshotPtr scene(Random &random) {
+  const Srdf srdf = pandaSrdf();
+  Scene out(panda(), {}, allowedPairs(srdf));
+  SceneChange change;
+  for (int i = 0; i < 8; ++i) {
+    const std::string id = "box" + std::to_string(i);
+    change.operations.push_back(add(id, {shape(ShapeType::BOX, {0.1, 0.2, 0.3})}, random.pose(1.0)));
+  }
+  change.allowed.push_back({"box3", "panda_link2", true});
+  EXPECT_TRUE(out.apply(change).empty());
+  return out.snapshot();
+}
+
+std::vector<double> randomState(Random &random) {
+  std::vector<double> out;
+  for (const double middle : {0.0, 0.0, 0.0, -1.5, 0.0, 1.8, 0.8}) out.push_back(middle + random.uniform(-1.0, 1.0));
+  return out;
+}
+
+TrajectoryDescription edge(const std::vector<double> &from, const std::vector<double> &to) {
+  TrajectoryDescription out;
+  out.id = "edge";
+  out.joints = JOINTS;
+  out.points.resize(2);
+  out.points[0].positions = from;
+  out.points[1].positions = to;
+  out.points[1].time = 1.0;
+  return out;
+}
+
+JointPositions byName(const std::vector<double> &values) {
+  JointPositions out;
+  for (std::size_t i = 0; i < values.size(); ++i) out[JOINTS[i]] = values[i];
+  return out;
+}
+
+void expectSame(const Answer &a, const Answer &b) {
+  EXPECT_EQ(a.result.lower, b.result.lower);
+  EXPECT_EQ(a.result.upper, b.result.upper);
+  EXPECT_EQ(a.a, b.a);
+  EXPECT_EQ(a.b, b.b);
+  EXPECT_EQ(a.id, b.id);
+}
+
+} // namespace
+
+/* 30 edges (seed 71), of all joints, of one, and of none but the hand's. */
+TEST(PreparedRobots, motions_answer_as_those_of_the_snapshot) {
+  Random random(71);
+  const Srdf srdf = pandaSrdf();
+  const SnapshotPtr snapshot = scene(random);
+  const PreparedRobot robot(snapshot, srdf.disabled);
+  Workspace workspace;
+  for (int i = 0; i < 30; ++i) {
+    const std::vector<double> from = randomState(random);
+    std::vector<double> to = randomState(random);
+    for (std::size_t k = 0; k < to.size() && i % 3 > 0; ++k)
+      if (i % 3 == 2 || k != static_cast<std::size_t>(i) % to.size()) to[k] = from[k];
+    const JointPositions rest = {{"panda_finger_joint1", 0.02}};
+    const RobotMotion plain(snapshot, edge(from, to), rest, srdf.disabled), prepared(robot, edge(from, to), rest);
+    EXPECT_EQ(plain.skipped(), prepared.skipped());
+    EXPECT_EQ(plain.warnings(), prepared.warnings());
+    expectSame(askSelf(plain, Query(), workspace), askSelf(prepared, Query(), workspace));
+    expectSame(askEnvironment(plain, Query(), workspace).front(), askEnvironment(prepared, Query(), workspace).front());
+  }
+}
+
+/* 60 states (seed 72): the interval of a state meets that of an edge through the state at its middle, which is never
+ * farther: epsilon 1e-6 of both. */
+TEST(PreparedRobots, a_state_is_a_motion_that_stands_still) {
+  Random random(72);
+  const Srdf srdf = pandaSrdf();
+  const SnapshotPtr snapshot = scene(random);
+  const PreparedRobot robot(snapshot, srdf.disabled);
+  Workspace workspace;
+  int hits = 0;
+  for (int i = 0; i < 60; ++i) {
+    const std::vector<double> at = randomState(random);
+    std::vector<double> from = at, to = at;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      from[k] -= 1e-7;
+      to[k] += 1e-7;
+    }
+    const RobotMotion state(robot, byName(at), "here"), motion(robot, edge(from, to));
+    const Answer of_state = askEnvironment(state, Query(), workspace).front(),
+                 of_motion = askEnvironment(motion, Query(), workspace).front();
+    const Answer self = askSelf(state, Query(), workspace), self_motion = askSelf(motion, Query(), workspace);
+    EXPECT_EQ(of_state.id, "here");
+    EXPECT_LE(of_motion.result.lower, of_state.result.upper);
+    EXPECT_NEAR(of_motion.result.upper, of_state.result.upper, 4e-6);
+    EXPECT_LE(self_motion.result.lower, self.result.upper);
+    EXPECT_NEAR(self_motion.result.upper, self.result.upper, 4e-6);
+    EXPECT_EQ(state.linkPoses(0.5).at("panda_link7").matrix(), state.linkPoses(0.0).at("panda_link7").matrix());
+    hits += of_state.result.upper == 0.0;
+  }
+  EXPECT_GT(hits, 3);
+  EXPECT_LT(hits, 57);
+}
+
+TEST(PreparedRobots, what_cannot_be_meant_is_refused) {
+  Random random(73);
+  const PreparedRobot robot(scene(random));
+  expectContains(errorOf([&] { RobotMotion(robot, JointPositions{{"elbow", 0.0}}); }), "'elbow'");
+  expectContains(errorOf([&] { RobotMotion(robot, JointPositions{{"panda_joint1", NAN}}); }), "not finite");
+  expectContains(errorOf([&] { RobotMotion(robot, TrajectoryDescription()); }), "joint");
+  expectContains(errorOf([&] { PreparedRobot(Scene().snapshot()); }), "the scene has none");
+}
