@@ -4,7 +4,6 @@
 #define CURVE_PROXIMITY_MOTION_HPP
 
 #include <array>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -100,9 +99,14 @@ class RobotMotion {
   std::unique_ptr<const Data> data_;
 };
 
-/** Queries about a robot in motion take no query.links and no signed_distance: such a query is refused.
- *  askSelf(), nearestPairs() and clearanceProfile() take no per_object, none about the robot itself takes
- *  query.objects, and the last two take no other query than DISTANCE and no certificate.
+/** Queries about a robot in motion take no signed_distance: such a query is refused. askSelf(), nearestPairs(),
+ *  clearanceProfile() and timeOfContact() take no per_object, none about the robot itself takes query.objects.
+ *  nearestPairs() and clearanceProfile() take no other query than DISTANCE, timeOfContact() none but COLLISION, and
+ * these three no certificate.
+ *
+ *  query.links restricts all of these queries to pairs of the links or attached objects that it names (of the robot
+ *  itself: either of the pair). Here a link does not stand for what it carries: an attached object has a name of its
+ *  own. A name that is none of movingNames() is an error.
  *
  *  How close the moving links and what they carry come to the objects (query.objects: only these; per_object: an
  *  answer for each object, in the order of their names). kind "environment", a the link or the carried object, b the
@@ -116,6 +120,16 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Query &query
  *  carried objects; result.obstacle_index is the number of the collision element of b. */
 Answer askSelf(const RobotMotion &motion, const Query &query, Workspace &workspace);
 
+/** The time of contact, as timeOfContact() of query.hpp: with the objects, or with `self` of the robot with itself.
+ *  result.t and result.t_contact_lower in seconds. */
+Answer timeOfContact(const RobotMotion &motion, bool self, const Query &query, Workspace &workspace);
+
+/** The names of the links with geometry, and of the attached objects: what query.links may name. Sorted. */
+std::vector<std::string> movingNames(const RobotMotion &motion);
+
+/** Those of them that are asked about: against the objects, or with `self` against the robot. Sorted. */
+std::vector<std::string> askedNames(const RobotMotion &motion, bool self);
+
 /** The query as the program cprox_check reads it (doc/certificates.md): where things stand, the robot along its
  *  motion, the pairs that askEnvironment() or with `self` askSelf() asks about; meshes by their convex hulls. A
  *  certificate of these (options.certificate) is about this text. Empty where there is no pair, or a body of a kind
@@ -125,28 +139,11 @@ std::string describeQuery(const RobotMotion &motion, bool self, const Query &que
 /** What has no certificates, with its kind: a sentence each. Where there is any, no answer can be proven. */
 std::vector<std::string> unprovable(const RobotMotion &motion, bool self, const Query &query);
 
-/** Limits of nearestPairs(). */
-struct PairLimits {
-  std::size_t count = 10;                                  /**< at most so many pairs */
-  double within = std::numeric_limits<double>::infinity(); /**< [m] >= 0, only pairs that come this near */
-};
-
 /** The pairs that come closest, nearest first: of a link or carried object and an object (query.objects: only
  *  these), or, `self`, of two that belong to the robot. Each answer is that to DISTANCE for its pair alone; pairs are
  *  of single collision elements. */
 std::vector<Answer> nearestPairs(const RobotMotion &motion, bool self, const PairLimits &limits, const Query &query,
                                  Workspace &workspace);
-
-/** The clearance of a robot on one parameter interval of its trajectory. */
-struct ClearanceInterval {
-  double t0 = 0.0;    /**< [s] begin */
-  double t1 = 0.0;    /**< [s] end */
-  double lower = 0.0; /**< [m] the least distance is at least this; infinity: nothing to measure */
-  double upper = 0.0; /**< [m] and at most this */
-  double t = 0.0;     /**< [s] where upper was attained */
-  std::string a;      /**< link or attached object; empty if nothing was measured */
-  std::string b;      /**< object or second link */
-};
 
 /** The swept clearance: the least distance of the robot to the objects (query.objects: only these), or with `self`
  *  to itself, on each interval between two breaks [s], ascending and within domain(). Throws Error for breaks that are

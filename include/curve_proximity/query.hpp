@@ -3,6 +3,7 @@
 #ifndef CURVE_PROXIMITY_QUERY_HPP
 #define CURVE_PROXIMITY_QUERY_HPP
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,7 +33,7 @@ struct Query {
   /** The objects to test. If `objects` and `links` are both empty, everything is tested; otherwise only what they
    *  name. An unknown name, or a link without geometry, is an error that names it. */
   std::vector<std::string> objects;
-  std::vector<std::string> links; /**< the links to test */
+  std::vector<std::string> links; /**< the links to test; of a robot in motion: see motion.hpp */
 };
 
 /** "sphere", "hull" or "mesh" for options.max_lod; nothing for any other word. */
@@ -132,7 +133,46 @@ std::vector<std::string> unprovable(const Targets &targets);
  *  and message say why. Any number of threads, each with its own workspace. */
 std::vector<Answer> ask(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace);
 
-/** The same in one step. An error of compile() or Targets becomes the only answer, with status "invalid". */
+/** Limits of nearestPairs(). */
+struct PairLimits {
+  std::size_t count = 10;                                  /**< at most so many pairs */
+  double within = std::numeric_limits<double>::infinity(); /**< [m] >= 0, only pairs that come this near */
+};
+
+/** The shapes of objects and links that come closest to a curve, nearest first. Each answer is that to DISTANCE for its
+ *  shape alone. Takes no other query than DISTANCE, no per_object and no certificate; throws Error for those, and where
+ *  the core refuses. */
+std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &curve, const PairLimits &limits,
+                                 const Query &query, Workspace &workspace);
+
+/** The clearance of what moves on one interval of its parameter. */
+struct ClearanceInterval {
+  double t0 = 0.0;    /**< the start of the interval: parameter of a curve, time of a motion [s] */
+  double t1 = 0.0;    /**< its end */
+  double lower = 0.0; /**< [m] the least distance is at least this; infinity: nothing to measure */
+  double upper = 0.0; /**< [m] and at most this */
+  double t = 0.0;     /**< where upper was attained */
+  std::string a;      /**< the curve's id; of a robot the link or attached object, empty if nothing was measured */
+  std::string b;      /**< object or link */
+
+  /** CPROX_OK: as narrow as options ask for; else why not, as the core says of the whole profile. */
+  cprox_status status = CPROX_OK;
+};
+
+/** The clearance profile: the least distance on each interval between two breaks, which ascend within the domain of the
+ *  curve. Takes no other query than DISTANCE, no signed_distance, no per_object and no certificate; throws Error for
+ *  those, and where the core refuses. */
+std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const CompiledCurve &curve,
+                                                const std::vector<double> &breaks, const Query &query,
+                                                Workspace &workspace);
+
+/** The time of contact: where the curve first touches what it is tested against. The query is COLLISION.
+ *  result.t_contact_lower: no contact at any smaller parameter, the rounding outside the core included. Verdict
+ *  violated: contact at result.t, within that rounding. clear: no contact at all. undecided: closer than epsilon at
+ *  result.t. Refuses per_object, signed_distance and certificates as ask() refuses. */
+Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace);
+
+/** The same as ask() in one step. An error of compile() or Targets becomes the only answer, with status "invalid". */
 std::vector<Answer> ask(const SnapshotPtr &snapshot, const LinkPoses &links, const CurveDescription &curve,
                         const Query &query, Workspace &workspace);
 

@@ -2,6 +2,7 @@
 #include "answering.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace curve_proximity {
@@ -14,6 +15,32 @@ void reviewVerdict(const Query &query, cprox_result &result) {
   if (result.verdict == CPROX_VERDICT_CLEAR && !(result.lower > limit)) result.verdict = CPROX_VERDICT_UNDECIDED;
   if (tolerance && result.verdict == CPROX_VERDICT_VIOLATED && !(result.upper <= limit))
     result.verdict = CPROX_VERDICT_UNDECIDED;
+}
+
+/* How far the curve's points can be from a position. */
+double farthest(const CompiledCurve &curve, const cprox_vec3 &from) {
+  double far = 0.0;
+  for (const Eigen::AlignedBox3d &box : curve.boxes) {
+    const Eigen::Vector3d p = toEigen(from);
+    far = std::max(far, (box.min() - p).cwiseAbs().cwiseMax((box.max() - p).cwiseAbs()).norm());
+  }
+  return far + curve.radius;
+}
+
+/* What of a mesh has answered. */
+void sayModel(cprox_lod max_lod, const PlacedShape &shape, Answer &answer) {
+  const bool coarse = max_lod == CPROX_LOD_SPHERE || max_lod == CPROX_LOD_HULL;
+  answer.by_hull = coarse;
+  if (coarse) {
+    const std::string model = max_lod == CPROX_LOD_HULL ? "convex hull" : "bounding ball";
+    answer.message = "the nearest shape is a mesh: its " + model + " answers for it";
+  } else if (shape.is_open) {
+    answer.message = "the nearest shape is a mesh that is not closed: its surface alone counts";
+  } else {
+    answer.message = cprox_body_get_info(shape.target.body).is_solid
+                         ? "the nearest shape is a closed mesh: its inside counts"
+                         : "the nearest shape is a mesh: its surface alone counts";
+  }
 }
 
 } // namespace
@@ -38,9 +65,6 @@ std::string faultOf(const Query &query) {
 std::string faultOfMotion(const Query &query, bool in_all) {
   if (query.options.signed_distance)
     return "signed_distance does not apply to robots: how deep they overlap is not measured";
-  if (!query.links.empty())
-    return "links do not apply to a robot in motion, '" + query.links.front() +
-           "' among them: all that it moves are asked about";
   if (in_all && query.per_object) return "per_object does not apply: there is no answer for each object here";
   return faultOf(query);
 }
@@ -94,6 +118,52 @@ void widen(const Query &query, double rounding, double left_out, cprox_result &r
   const double asked = std::max(options.epsilon, options.relative_epsilon * result.upper);
   const bool narrow = result.upper - result.lower <= asked;
   if (result.status == CPROX_OK && !narrow) result.status = CPROX_PRECISION;
+}
+
+ClearanceInterval toInterval(const cprox_profile_interval &found, double rounding, const cprox_options &options,
+                             cprox_status status) {
+  ClearanceInterval out;
+  out.t0 = found.t0;
+  out.t1 = found.t1;
+  out.t = found.t;
+  out.lower = std::max(0.0, found.lower - rounding);
+  out.upper = found.upper > 0.0 ? found.upper + rounding : found.upper;
+  const bool wide = out.upper - out.lower > std::max(options.epsilon, options.relative_epsilon * out.upper);
+  if (wide) out.status = status == CPROX_OK ? CPROX_PRECISION : status;
+  return out;
+}
+
+std::string faultOfDistances(const Query &query) {
+  if (query.query_type != QueryType::DISTANCE)
+    return "query_type does not apply: pairs and clearance profiles are answered by their distances";
+  if (query.options.certificate) return "a certificate does not apply: pairs and clearance profiles have none";
+  return "";
+}
+
+std::string faultOfContact(const Query &query) {
+  if (query.query_type != QueryType::COLLISION)
+    return "query_type does not apply: the time of contact is a query of type collision";
+  if (query.options.certificate) return "a certificate does not apply: the time of contact has none";
+  return "";
+}
+
+double roundingOf(const CompiledCurve &curve, const PlacedShape &shape) {
+  if (!(shape.turning > 0.0)) return shape.rounding;
+  return shape.rounding + shape.turning * farthest(curve, shape.target.pose.position);
+}
+
+void nameItem(const Item &item, cprox_lod max_lod, Answer &answer) {
+  answer.result.obstacle_index = item.part;
+  answer.b = *item.owner;
+  answer.b_is_link = item.is_link;
+  if (item.shape->is_mesh) sayModel(max_lod, *item.shape, answer);
+}
+
+void finishAnswer(const Workspace &workspace, Answer &answer) {
+  const cprox_result &result = answer.result;
+  if (result.status < 0) answer.message = workspace.reason();
+  if (result.status != CPROX_OK && answer.message.empty()) answer.message = cprox_status_text(result.status);
+  answer.status = cprox_status_name(result.status);
 }
 
 void answerNothing(const Query &query, cprox_result &result) {

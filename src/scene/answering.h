@@ -8,6 +8,8 @@
 
 #include <curve_proximity/query.hpp>
 
+#include "world.h"
+
 namespace curve_proximity {
 
 /* What the query asks for and its answer would not heed, as a sentence; "" where there is nothing. Of a robot in
@@ -30,6 +32,25 @@ cprox_status askCore(const Query &query, const cprox_options &options, const cpr
 /* Widens the core's interval by what it does not know: rounding before it; what it was not shown is farther than
  * left_out. The verdict is reviewed by the interval as it then is. */
 void widen(const Query &query, double rounding, double left_out, cprox_result &result);
+
+/* An interval of a profile, widened by rounding; `status` is that of the whole profile. The names of a and b are left
+ * to be filled in. */
+ClearanceInterval toInterval(const cprox_profile_interval &found, double rounding, const cprox_options &options,
+                             cprox_status status);
+
+/* Why a query of distances alone (nearest pairs, profiles), or of the time of contact, cannot be answered; "" where it
+ * can. What cannot be asked of any query is not looked at here. */
+std::string faultOfDistances(const Query &query);
+std::string faultOfContact(const Query &query);
+
+/* How far rounding can have moved any point of a shape that a curve can be near to. */
+double roundingOf(const CompiledCurve &curve, const PlacedShape &shape);
+
+/* Names the shape that a curve's answer is about, and what of it has answered. */
+void nameItem(const Item &item, cprox_lod max_lod, Answer &answer);
+
+/* The status by name; why there is no answer, where there is none. */
+void finishAnswer(const Workspace &workspace, Answer &answer);
 
 /* There is nothing to measure against. */
 void answerNothing(const Query &query, cprox_result &result);

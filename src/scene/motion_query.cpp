@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <set>
+
+#include <curve_proximity/nearest_name.hpp>
 
 #include "answering.h"
 #include "motion_data.h"
@@ -37,8 +40,34 @@ struct Asked {
   }
 };
 
+/* Whether a query names the owner of a geometry; without names it means all. */
+class Named {
+ public:
+  /* Throws Error for a name that is none. */
+  Named(const RobotMotion::Data &data, const std::vector<std::string> &names)
+      : geometries_(data.kinematics->geometries), names_(names.begin(), names.end()) {
+    std::set<std::string> known;
+    for (const MovingGeometry &geometry : geometries_) known.insert(geometry.owner());
+    for (const std::string &name : names_) {
+      if (known.count(name) == 0)
+        throw Error("the robot has no link with geometry and carries no object '" + name + "'" +
+                    didYouMean(name, std::vector<std::string>(known.begin(), known.end())));
+    }
+  }
+
+  bool operator()(std::int32_t geometry) const {
+    return names_.empty() || names_.count(geometries_[static_cast<std::size_t>(geometry)].owner()) > 0;
+  }
+
+ private:
+  const std::vector<MovingGeometry> &geometries_;
+  const std::set<std::string> names_;
+};
+
 /* Robots are asked about surfaces: solid meshes are answered by their hulls, which contain their inside. */
-Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted) {
+Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted,
+                 const std::vector<std::string> &links) {
+  const Named named(data, links);
   Asked asked{data, false, std::move(wanted), {}, {}, mostExcess(data.kinematics->geometries), {}};
   const std::vector<Item> &items = data.snapshot->world().items();
   std::vector<std::int32_t> number(items.size(), -1);
@@ -53,14 +82,19 @@ Asked askedItems(const RobotMotion::Data &data, std::vector<std::size_t> wanted)
   }
   for (const cprox_robot_pair &pair : data.environment) {
     const std::int32_t k = number[static_cast<std::size_t>(pair.other)];
-    if (k >= 0) asked.pairs.push_back({pair.geometry, k});
+    if (k >= 0 && named(pair.geometry)) asked.pairs.push_back({pair.geometry, k});
   }
   asked.rounding += rounding;
   return asked;
 }
 
-Asked askedSelf(const RobotMotion::Data &data) {
-  return {data, true, {}, {}, data.self, 2.0 * mostExcess(data.kinematics->geometries), {}};
+Asked askedSelf(const RobotMotion::Data &data, const std::vector<std::string> &links) {
+  Asked asked{data, true, {}, {}, {}, 2.0 * mostExcess(data.kinematics->geometries), {}};
+  const Named named(data, links);
+  for (const cprox_robot_pair &pair : data.self) {
+    if (named(pair.geometry) || named(pair.other)) asked.pairs.push_back(pair);
+  }
+  return asked;
 }
 
 /* The items of all objects, or of those that are named. Throws Error for a name that is none. */
@@ -153,19 +187,56 @@ Answer answerOf(const Asked &asked, const Query &query, Workspace &workspace) {
   return answer;
 }
 
-/* What is asked about is a distance, and of all objects. */
-void checkDistances(bool self, const Query &query) {
-  if (query.query_type != QueryType::DISTANCE)
-    throw Error("query_type does not apply: pairs and clearance profiles are answered by their distances");
-  const std::string fault = faultOfMotion(query, true);
-  if (!fault.empty()) throw Error(fault);
+/* What is asked for and not heeded, of a query with one answer in all. */
+std::string faultInAll(bool self, const Query &query) {
   if (self && !query.objects.empty())
-    throw Error("objects do not apply to a robot against itself, '" + query.objects.front() + "' among them");
-  if (query.options.certificate) throw Error("a certificate does not apply: ask askEnvironment() or askSelf() for it");
+    return "objects do not apply to a robot against itself, '" + query.objects.front() + "' among them";
+  return faultOfMotion(query, true);
+}
+
+/* What is asked about is a distance. */
+void checkDistances(bool self, const Query &query) {
+  std::string fault = faultOfDistances(query);
+  if (fault.empty()) fault = faultInAll(self, query);
+  if (!fault.empty()) throw Error(fault);
 }
 
 Asked askedOf(const RobotMotion &motion, bool self, const Query &query) {
-  return self ? askedSelf(motion.data()) : askedItems(motion.data(), namedItems(motion.data(), query.objects));
+  const RobotMotion::Data &data = motion.data();
+  return self ? askedSelf(data, query.links) : askedItems(data, namedItems(data, query.objects), query.links);
+}
+
+/* A time no later than `t` before which the geometries, moved by their rounding, do not touch either. Steps back from
+ * t, each time farther, until the clearance before is proven to be more than the rounding. */
+double beforeRounding(const Asked &asked, double t, const cprox_options &options, Workspace &workspace) {
+  const double start = cprox_motion_get_info(asked.data.core.get()).t0;
+  constexpr double GROWTH = 16.0;
+  for (double step = 1e-15 * std::max(1.0, t - start); t - step > start; step *= GROWTH) {
+    cprox_options fine = options;
+    fine.epsilon = asked.rounding;
+    fine.relative_epsilon = 0.5;
+    const std::array<double, 2> breaks{start, t - step};
+    cprox_profile_interval interval{};
+    const cprox_status status =
+        cprox_obstacles_profile(nullptr, asked.mover(), breaks.data(), 1, &fine, workspace.get(), &interval);
+    if (status < 0) return start;
+    if (interval.lower > asked.rounding) return t - step;
+  }
+  return start;
+}
+
+/* The core's answer to the time of contact, true of geometries as rounding may have moved them. */
+void searchContact(const Asked &asked, const Query &query, Workspace &workspace, cprox_result &result) {
+  std::vector<cprox_obstacle> targets = asked.targets;
+  for (cprox_obstacle &target : targets) target.margin += asked.rounding;
+  ObstaclesHandle obstacles;
+  result.status = makeObstacles(targets, CPROX_INDEX_NONE, workspace, obstacles);
+  if (result.status >= 0)
+    result.status =
+        cprox_obstacles_time_of_contact(obstacles.get(), asked.mover(), &query.options, workspace.get(), &result);
+  const bool touches = result.status >= 0 && !(result.lower > asked.rounding);
+  if (asked.self && touches && asked.rounding > 0.0)
+    result.t_contact_lower = beforeRounding(asked, result.t_contact_lower, query.options, workspace);
 }
 
 } // namespace
@@ -176,7 +247,7 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Query &query
   const std::string fault = faultOfMotion(query, false);
   if (!fault.empty()) return {refusal(data.id, "environment", fault)};
   const std::vector<std::size_t> named = namedItems(data, query.objects);
-  if (!query.per_object || named.empty()) return {answerOf(askedItems(data, named), query, workspace)};
+  if (!query.per_object || named.empty()) return {answerOf(askedItems(data, named, query.links), query, workspace)};
 
   /* one for each run of items of the same object */
   const std::vector<Item> &items = data.snapshot->world().items();
@@ -185,7 +256,7 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Query &query
   for (std::size_t i = 0; i < named.size(); ++i) {
     wanted.push_back(named[i]);
     if (i + 1 < named.size() && items[named[i + 1]].owner == items[named[i]].owner) continue;
-    answers.push_back(answerOf(askedItems(data, wanted), query, workspace));
+    answers.push_back(answerOf(askedItems(data, wanted, query.links), query, workspace));
     answers.back().b = *items[named[i]].owner;
     wanted.clear();
   }
@@ -194,11 +265,43 @@ std::vector<Answer> askEnvironment(const RobotMotion &motion, const Query &query
 
 Answer askSelf(const RobotMotion &motion, const Query &query, Workspace &workspace) {
   cprox_certificate_clear(query.options.certificate);
-  std::string fault = faultOfMotion(query, true);
-  if (fault.empty() && !query.objects.empty())
-    fault = "objects do not apply to a robot against itself, '" + query.objects.front() + "' among them";
+  const std::string fault = faultInAll(true, query);
   if (!fault.empty()) return refusal(motion.data().id, "self", fault);
-  return answerOf(askedSelf(motion.data()), query, workspace);
+  return answerOf(askedSelf(motion.data(), query.links), query, workspace);
+}
+
+Answer timeOfContact(const RobotMotion &motion, bool self, const Query &query, Workspace &workspace) {
+  const Clock::time_point start = Clock::now();
+  std::string fault = faultOfContact(query);
+  if (fault.empty()) fault = faultInAll(self, query);
+  if (!fault.empty()) return refusal(motion.data().id, self ? "self" : "environment", fault);
+  const Asked asked = askedOf(motion, self, query);
+  cprox_result result{};
+  result.obstacle_index = -1;
+  if (asked.pairs.empty()) {
+    answerNothing(query, result);
+    result.t_contact_lower = motion.domain()[1];
+  } else {
+    searchContact(asked, query, workspace, result);
+  }
+  return toAnswer(asked, result, query, workspace, start);
+}
+
+std::vector<std::string> movingNames(const RobotMotion &motion) {
+  std::set<std::string> names;
+  for (const MovingGeometry &geometry : motion.data().kinematics->geometries) names.insert(geometry.owner());
+  return {names.begin(), names.end()};
+}
+
+std::vector<std::string> askedNames(const RobotMotion &motion, bool self) {
+  const RobotMotion::Data &data = motion.data();
+  const std::vector<MovingGeometry> &geometries = data.kinematics->geometries;
+  std::set<std::string> names;
+  for (const cprox_robot_pair &pair : self ? data.self : data.environment) {
+    names.insert(geometries[static_cast<std::size_t>(pair.geometry)].owner());
+    if (self) names.insert(geometries[static_cast<std::size_t>(pair.other)].owner());
+  }
+  return {names.begin(), names.end()};
 }
 
 std::string describeQuery(const RobotMotion &motion, bool self, const Query &query) {
@@ -261,11 +364,12 @@ std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool 
   std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
   for (std::size_t i = 0; i < intervals.size(); ++i)
     intervals[i] = {breaks[i], breaks[i + 1], INFINITE, INFINITE, breaks[i], -1, -1, {}};
+  cprox_status status = CPROX_OK;
   if (!asked.pairs.empty()) {
     const cprox_options options = withoutRounding(query.options, asked.rounding);
     const Obstacles obstacles(asked.targets, CPROX_INDEX_NONE);
-    const cprox_status status = cprox_obstacles_profile(obstacles.get(), asked.mover(), breaks.data(), intervals.size(),
-                                                        &options, workspace.get(), intervals.data());
+    status = cprox_obstacles_profile(obstacles.get(), asked.mover(), breaks.data(), intervals.size(), &options,
+                                     workspace.get(), intervals.data());
     if (status < 0) throw Error(workspace.reason(), status);
   }
   std::vector<ClearanceInterval> out;
@@ -274,9 +378,9 @@ std::vector<ClearanceInterval> clearanceProfile(const RobotMotion &motion, bool 
     names.result.obstacle_index = interval.obstacle_index;
     names.result.mover_part = interval.mover_part;
     nameSides(asked, query, names);
-    const double upper = interval.upper > 0.0 ? interval.upper + asked.rounding : interval.upper;
-    out.push_back({interval.t0, interval.t1, std::max(0.0, interval.lower - asked.rounding), upper, interval.t, names.a,
-                   names.b});
+    out.push_back(toInterval(interval, asked.rounding, query.options, status));
+    out.back().a = names.a;
+    out.back().b = names.b;
   }
   return out;
 }

@@ -39,25 +39,10 @@ struct Search {
 
 /* ---- rounding ---- */
 
-/* How far the curve's points can be from a position. */
-double farthest(const CompiledCurve &curve, const cprox_vec3 &from) {
-  double far = 0.0;
-  for (const Eigen::AlignedBox3d &box : curve.boxes) {
-    const Eigen::Vector3d p = toEigen(from);
-    far = std::max(far, (box.min() - p).cwiseAbs().cwiseMax((box.max() - p).cwiseAbs()).norm());
-  }
-  return far + curve.radius;
-}
-
 /* The most that rounding can have moved any of the chosen shapes. */
 double roundingOf(const Search &search) {
   double most = 0.0;
-  for (const std::uint32_t index : search.chosen) {
-    const PlacedShape &shape = search.shape(index);
-    double moved = shape.rounding;
-    if (shape.turning > 0.0) moved += shape.turning * farthest(search.curve, shape.target.pose.position);
-    most = std::max(most, moved);
-  }
+  for (const std::uint32_t index : search.chosen) most = std::max(most, roundingOf(search.curve, search.shape(index)));
   return most;
 }
 
@@ -165,30 +150,10 @@ cprox_status runCore(const Search &search, const cprox_options &options, cprox_r
   return askCore(search.query, options, mover, targets, search.workspace, result);
 }
 
-/* What of a mesh has answered. */
-void sayModel(cprox_lod max_lod, const PlacedShape &shape, Answer &answer) {
-  const bool coarse = max_lod == CPROX_LOD_SPHERE || max_lod == CPROX_LOD_HULL;
-  answer.by_hull = coarse;
-  if (coarse) {
-    const std::string model = max_lod == CPROX_LOD_HULL ? "convex hull" : "bounding ball";
-    answer.message = "the nearest shape is a mesh: its " + model + " answers for it";
-  } else if (shape.is_open) {
-    answer.message = "the nearest shape is a mesh that is not closed: its surface alone counts";
-  } else {
-    answer.message = cprox_body_get_info(shape.target.body).is_solid
-                         ? "the nearest shape is a closed mesh: its inside counts"
-                         : "the nearest shape is a mesh: its surface alone counts";
-  }
-}
-
 void nameTarget(const Search &search, Answer &answer) {
   const std::int32_t found = answer.result.obstacle_index;
   if (found < 0) return;
-  const Item &item = search.items[search.chosen[static_cast<std::size_t>(found)]];
-  answer.result.obstacle_index = item.part;
-  answer.b = *item.owner;
-  answer.b_is_link = item.is_link;
-  if (item.shape->is_mesh) sayModel(search.query.options.max_lod, *item.shape, answer);
+  nameItem(search.items[search.chosen[static_cast<std::size_t>(found)]], search.query.options.max_lod, answer);
 }
 
 Answer answerOf(const Search &search) {
@@ -201,16 +166,13 @@ Answer answerOf(const Search &search) {
   cprox_result &result = answer.result;
   result.obstacle_index = -1;
   result.status = runCore(search, options, result);
-  if (result.status < 0) {
-    answer.message = search.workspace.reason();
-  } else if (search.chosen.empty()) {
+  if (result.status >= 0 && search.chosen.empty()) {
     answerNothing(search.query, result);
-  } else {
+  } else if (result.status >= 0) {
     widen(search.query, rounding, search.left_out, result);
     nameTarget(search, answer);
   }
-  if (result.status != CPROX_OK && answer.message.empty()) answer.message = cprox_status_text(result.status);
-  answer.status = cprox_status_name(result.status);
+  finishAnswer(search.workspace, answer);
   return answer;
 }
 

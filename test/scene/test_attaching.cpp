@@ -95,11 +95,84 @@ TEST_F(Slider, options_that_do_not_apply_to_a_robot_are_refused_and_named) {
   };
   expect("nothing", true, true, true, [](Query &) {});
   expect("signed_distance", false, false, false, [](Query &q) { q.options.signed_distance = true; });
-  expect("links", false, false, false, [](Query &q) { q.links = {"cart"}; });
+  expect("links", true, true, true, [](Query &q) { q.links = {"cart"}; });
   expect("delta", false, false, false, [](Query &q) { q.delta = 0.1; });
   expect("per_object", true, false, false, [](Query &q) { q.per_object = true; });
   expect("objects", true, false, true, [](Query &q) { q.objects = {"wall"}; });
   expect("query_type", true, true, false, [](Query &q) { q.query_type = QueryType::COLLISION; });
+}
+
+TEST_F(Slider, links_and_what_they_carry_are_asked_about_by_name) {
+  ASSERT_TRUE(attach(attachment("held", "cart", {shape(ShapeType::SPHERE, {0.1})}, translation(0.4, 0, 0))).empty());
+  const RobotMotion motion = slide(0, 2);
+  EXPECT_EQ(movingNames(motion), (std::vector<std::string>{"cart", "held"}));
+  EXPECT_EQ(askedNames(motion, false), movingNames(motion));
+  EXPECT_TRUE(askedNames(motion, true).empty());
+  const auto nearest = [&](const std::vector<std::string> &links) {
+    Query query;
+    query.links = links;
+    return askEnvironment(motion, query, workspace).front();
+  };
+  EXPECT_NEAR(nearest({"cart"}).result.upper, 0.9, 1e-6);
+  EXPECT_EQ(nearest({"cart"}).a, "cart");
+  EXPECT_NEAR(nearest({"held"}).result.upper, 0.5, 1e-6);
+  EXPECT_EQ(nearest({"cart", "held"}).a, "held");
+  expectContains(test::errorOf([&] { nearest({"card"}); }), "'card' (did you mean 'cart'?)");
+  expectContains(test::errorOf([&] { nearest({"arm"}); }), "'arm'");
+
+  Query cart;
+  cart.links = {"cart"};
+  EXPECT_EQ(nearestPairs(motion, false, {}, cart, workspace).size(), 1u);
+  for (const ClearanceInterval &interval : clearanceProfile(motion, false, {0, 0.5, 1}, cart, workspace)) {
+    EXPECT_EQ(interval.a, "cart");
+    EXPECT_NEAR(interval.upper, 2.9 - 2 * interval.t1, 1e-6);
+  }
+}
+
+TEST_F(Slider, the_time_of_contact_is_never_late) {
+  Query query;
+  query.query_type = QueryType::COLLISION;
+  Answer answer = timeOfContact(slide(0, 4), false, query, workspace); // the cart's face is at 0.1 + 4 t, the wall at 3
+  EXPECT_EQ(answer.result.verdict, CPROX_VERDICT_VIOLATED);
+  EXPECT_LE(answer.result.t_contact_lower, 2.9 / 4 + 1e-15);
+  EXPECT_GE(answer.result.t_contact_lower, 2.9 / 4 - 1e-6);
+  EXPECT_NEAR(answer.result.t, 2.9 / 4, 1e-6);
+  EXPECT_EQ(answer.a + answer.b, "cartwall");
+
+  answer = timeOfContact(slide(0, 2), false, query, workspace);
+  EXPECT_EQ(answer.result.verdict, CPROX_VERDICT_CLEAR);
+  EXPECT_EQ(answer.result.t_contact_lower, 1.0);
+  answer = timeOfContact(slide(0, 2), true, query, workspace); // there is no pair
+  EXPECT_EQ(answer.result.verdict, CPROX_VERDICT_CLEAR);
+  EXPECT_EQ(answer.result.t_contact_lower, 1.0);
+  query.query_type = QueryType::DISTANCE;
+  expectContains(timeOfContact(slide(0, 2), false, query, workspace).message, "query_type");
+}
+
+TEST(Folding, an_arm_meets_itself_no_earlier_than_told) {
+  /* two rods; at the angle 2 asin(0.1 / 0.8) from folded the balls at the ends of the second touch the base's ball */
+  const char *folding = R"(<robot name="folding">
+    <link name="base"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+    <link name="upper"/>
+    <link name="lower"><collision><origin xyz="0 0 0.8"/><geometry><sphere radius="0.1"/></geometry></collision></link>
+    <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/></joint>
+    <joint name="elbow" type="continuous"><parent link="upper"/><child link="lower"/><origin xyz="0 0 0.8"/><axis xyz="0 1 0"/></joint>
+  </robot>)";
+  Scene scene{Robot::fromUrdf(folding)};
+  TrajectoryDescription t;
+  t.id = "fold";
+  t.joints = {"shoulder", "elbow"};
+  t.points = {{{0, 0}, {}, {}, 0.0}, {{1, M_PI}, {}, {}, 1.0}};
+  const RobotMotion motion(scene.snapshot(), t, {});
+  Query query;
+  query.query_type = QueryType::COLLISION;
+  Workspace workspace;
+  const Answer answer = timeOfContact(motion, true, query, workspace);
+  const double contact = (M_PI - 2 * std::asin(0.1 / 0.8)) / M_PI; // centres 0.2 apart on a circle of radius 0.8
+  EXPECT_EQ(answer.kind, "self");
+  EXPECT_EQ(answer.result.verdict, CPROX_VERDICT_VIOLATED) << answer.message;
+  EXPECT_LE(answer.result.t_contact_lower, contact + 1e-14);
+  EXPECT_GE(answer.result.t_contact_lower, contact - 1e-5);
 }
 
 TEST_F(Slider, a_curve_meets_what_a_link_carries_where_the_link_is) {

@@ -298,6 +298,105 @@ TEST(Ask, the_stop_function_ends_a_query) {
   EXPECT_LE(answer.result.lower, answer.result.upper);
 }
 
+TEST(Nearest, shapes_come_in_order_and_within_the_limit) {
+  Scene scene;
+  fill(scene);
+  const Targets targets(scene.snapshot(), {}, Query());
+  const CompiledCurve curve = compile(UPRIGHT);
+  Workspace workspace;
+  std::vector<Answer> answers = nearestPairs(targets, curve, {}, Query(), workspace);
+  ASSERT_EQ(answers.size(), 2u);
+  EXPECT_EQ(answers[0].b + " " + answers[1].b, "ball crate");
+  EXPECT_EQ(answers[0].a, "line");
+  EXPECT_NEAR(answers[0].result.upper, 2.5, 1e-6);
+  EXPECT_NEAR(answers[1].result.upper, 3.5, 1e-6);
+  EXPECT_LE(answers[1].result.lower, 3.5);
+  EXPECT_EQ(nearestPairs(targets, curve, {10, 3.0}, Query(), workspace).size(), 1u);
+  EXPECT_EQ(nearestPairs(targets, curve, {1, 100.0}, Query(), workspace).size(), 1u);
+  EXPECT_TRUE(nearestPairs(targets, curve, {10, 1.0}, Query(), workspace).empty());
+  expectContains(errorOf([&] { nearestPairs(targets, curve, {}, queryOf(QueryType::COLLISION), workspace); }),
+                 "query_type");
+  Query each;
+  each.per_object = true;
+  expectContains(errorOf([&] { nearestPairs(targets, curve, {}, each, workspace); }), "per_object");
+  const Scene empty;
+  EXPECT_TRUE(nearestPairs(Targets(empty.snapshot(), {}, Query()), curve, {}, Query(), workspace).empty());
+}
+
+TEST(Profile, each_interval_contains_the_least_distance) {
+  constexpr int CASES = 40, INTERVALS = 7, SAMPLES = 60;
+  Random random(20);
+  Workspace workspace;
+  for (int i = 0; i < CASES; ++i) {
+    Scene scene;
+    std::vector<Operation> objects;
+    for (int k = 0; k < 4; ++k)
+      objects.push_back(add("o" + std::to_string(k), {shape(ShapeType::SPHERE, {0.2})}, random.pose(2)));
+    ASSERT_TRUE(scene.apply(change(objects)).empty());
+    const Targets targets(scene.snapshot(), {}, Query());
+    const CompiledCurve curve = compile(randomBezier(random, 4, 2.0));
+    std::vector<double> breaks;
+    for (int k = 0; k <= INTERVALS; ++k) breaks.push_back(k / static_cast<double>(INTERVALS));
+    const auto profile = clearanceProfile(targets, curve, breaks, Query(), workspace);
+    ASSERT_EQ(profile.size(), static_cast<std::size_t>(INTERVALS));
+    double least = std::numeric_limits<double>::infinity();
+    for (const ClearanceInterval &interval : profile) {
+      EXPECT_LE(interval.upper - interval.lower, 1e-6);
+      EXPECT_GE(interval.t, interval.t0);
+      EXPECT_LE(interval.t, interval.t1);
+      double sampled = std::numeric_limits<double>::infinity();
+      for (int k = 0; k <= SAMPLES; ++k) {
+        cprox_vec3 point;
+        cprox_curve_evaluate(curve.curve.get(), interval.t0 + (interval.t1 - interval.t0) * k / SAMPLES,
+                             workspace.get(), &point, nullptr, nullptr);
+        for (const Operation &object : objects)
+          sampled = std::min(sampled, std::max(0.0, (toEigen(point) - object.object.pose.translation()).norm() - 0.2));
+      }
+      EXPECT_LE(interval.lower, sampled + 1e-12) << i;
+      least = std::min(least, interval.upper);
+    }
+    const double all = ask(targets, curve, Query(), workspace).front().result.upper;
+    EXPECT_NEAR(least, all, 2e-6) << i;
+  }
+}
+
+TEST(Contact, no_sampled_contact_comes_before_the_time) {
+  constexpr int CASES = 200, SAMPLES = 400;
+  Random random(21);
+  Workspace workspace;
+  Query query = queryOf(QueryType::COLLISION);
+  int contacts = 0;
+  for (int i = 0; i < CASES; ++i) {
+    Scene scene;
+    const Operation ball = add("ball", {shape(ShapeType::SPHERE, {0.5})}, random.pose(2));
+    ASSERT_TRUE(scene.apply(change({ball})).empty());
+    const Targets targets(scene.snapshot(), {}, Query());
+    const CompiledCurve curve = compile(randomBezier(random, 5, 2.0));
+    const Answer answer = timeOfContact(targets, curve, query, workspace);
+    ASSERT_GE(answer.result.status, 0) << answer.message;
+    const Answer collides = ask(targets, curve, query, workspace).front();
+    EXPECT_EQ(answer.result.verdict, collides.result.verdict) << i;
+    contacts += answer.result.verdict == CPROX_VERDICT_VIOLATED;
+    for (int k = 0; k <= SAMPLES; ++k) {
+      const double t = answer.result.t_contact_lower * k / SAMPLES * (1 - 1e-15);
+      cprox_vec3 point;
+      cprox_curve_evaluate(curve.curve.get(), t, workspace.get(), &point, nullptr, nullptr);
+      EXPECT_GT((toEigen(point) - ball.object.pose.translation()).norm(), 0.5 - 1e-14) << i;
+    }
+    if (answer.result.verdict == CPROX_VERDICT_VIOLATED) {
+      cprox_vec3 point;
+      cprox_curve_evaluate(curve.curve.get(), answer.result.t, workspace.get(), &point, nullptr, nullptr);
+      EXPECT_LE((toEigen(point) - ball.object.pose.translation()).norm(), 0.5 + 1e-12) << i;
+    }
+  }
+  EXPECT_GT(contacts, 20);
+  query.query_type = QueryType::DISTANCE;
+  Scene scene;
+  fill(scene);
+  expectContains(timeOfContact(Targets(scene.snapshot(), {}, Query()), compile(UPRIGHT), query, workspace).message,
+                 "query_type");
+}
+
 TEST(Compile, curves_that_are_none_are_told_in_a_sentence) {
   CurveDescription curve = UPRIGHT;
   curve.basis = "fourier";

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Queries of a curve that have several answers, or a time: nearest pairs, clearance profile, time of contact. */
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include <curve_proximity/query.hpp>
+
+#include "answering.h"
+#include "targets.h"
+
+namespace curve_proximity {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
+
+double roundingOf(const CompiledCurve &curve, const std::vector<Item> &items) {
+  double most = 0.0;
+  for (const Item &item : items) most = std::max(most, curve_proximity::roundingOf(curve, *item.shape));
+  return most;
+}
+
+Answer answerOf(const CompiledCurve &curve, const cprox_result &result, Clock::time_point start) {
+  Answer answer;
+  answer.id = answer.a = curve.id;
+  answer.result = result;
+  answer.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  return answer;
+}
+
+void requireDistances(const Query &query) {
+  const std::string fault = faultOfDistances(query);
+  if (!fault.empty()) throw Error(fault);
+  if (query.per_object) throw Error("per_object does not apply: there is no answer for each object here");
+  if (query.delta != 0.0) throw Error(faultOf(query));
+}
+
+} // namespace
+
+std::vector<Answer> nearestPairs(const Targets &targets, const CompiledCurve &curve, const PairLimits &limits,
+                                 const Query &query, Workspace &workspace) {
+  const Clock::time_point start = Clock::now();
+  requireDistances(query);
+  const std::vector<Item> &items = targets.data().items;
+  if (items.empty()) return {};
+  const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
+  const double rounding = roundingOf(curve, items);
+  const cprox_options options = withoutRounding(query.options, rounding);
+  std::vector<cprox_result> results(std::min(limits.count, items.size()));
+  std::size_t count = 0;
+  const cprox_status status = cprox_obstacles_nearest(obstacles.get(), along(curve.curve, curve.radius), limits.count,
+                                                      &options, workspace.get(), results.data(), &count);
+  if (status < 0) throw Error(workspace.reason(), status);
+
+  /* nearest first; what is proven to be beyond the limit is left out */
+  std::vector<Answer> answers;
+  for (std::size_t i = 0; i < count; ++i) {
+    Answer answer = answerOf(curve, results[i], start);
+    widen(query, rounding, INFINITE, answer.result);
+    if (answer.result.lower > limits.within) continue;
+    nameItem(items[static_cast<std::size_t>(answer.result.obstacle_index)], query.options.max_lod, answer);
+    finishAnswer(workspace, answer);
+    answers.push_back(std::move(answer));
+  }
+  return answers;
+}
+
+std::vector<ClearanceInterval> clearanceProfile(const Targets &targets, const CompiledCurve &curve,
+                                                const std::vector<double> &breaks, const Query &query,
+                                                Workspace &workspace) {
+  if (breaks.size() < 2) throw Error("a clearance profile needs at least two breaks");
+  requireDistances(query);
+  if (query.options.signed_distance)
+    throw Error("signed_distance does not apply: a clearance profile does not measure depths");
+  const std::vector<Item> &items = targets.data().items;
+  const Obstacles obstacles(coreTargets(targets), CPROX_INDEX_NONE);
+  const double rounding = roundingOf(curve, items);
+  const cprox_options options = withoutRounding(query.options, rounding);
+  std::vector<cprox_profile_interval> intervals(breaks.size() - 1);
+  const cprox_status status = cprox_obstacles_profile(obstacles.get(), along(curve.curve, curve.radius), breaks.data(),
+                                                      intervals.size(), &options, workspace.get(), intervals.data());
+  if (status < 0) throw Error(workspace.reason(), status);
+  std::vector<ClearanceInterval> out;
+  for (const cprox_profile_interval &interval : intervals) {
+    const std::int32_t found = interval.obstacle_index;
+    out.push_back(toInterval(interval, rounding, query.options, status));
+    out.back().a = curve.id;
+    if (found >= 0) out.back().b = *items[static_cast<std::size_t>(found)].owner;
+  }
+  return out;
+}
+
+Answer timeOfContact(const Targets &targets, const CompiledCurve &curve, const Query &query, Workspace &workspace) {
+  const Clock::time_point start = Clock::now();
+  std::string fault = faultOfContact(query);
+  if (fault.empty() && query.per_object) fault = "per_object does not apply: there is no answer for each object here";
+  if (fault.empty()) fault = faultOf(query);
+  if (!fault.empty()) {
+    Answer answer = refusal(curve.id, "curve", fault);
+    answer.a = curve.id;
+    return answer;
+  }
+
+  /* each obstacle enlarged by what rounding can have moved it, so that no contact comes before the time */
+  const std::vector<Item> &items = targets.data().items;
+  std::vector<cprox_obstacle> obstacles = coreTargets(targets);
+  for (std::size_t i = 0; i < items.size(); ++i)
+    obstacles[i].margin += curve_proximity::roundingOf(curve, *items[i].shape);
+  cprox_result result{};
+  result.obstacle_index = -1;
+  ObstaclesHandle handle;
+  result.status = makeObstacles(obstacles, CPROX_INDEX_NONE, workspace, handle);
+  if (result.status >= 0)
+    result.status = cprox_obstacles_time_of_contact(handle.get(), along(curve.curve, curve.radius), &query.options,
+                                                    workspace.get(), &result);
+  Answer answer = answerOf(curve, result, start);
+  if (result.status >= 0) {
+    widen(query, 2.0 * roundingOf(curve, items), INFINITE, answer.result);
+    if (result.obstacle_index >= 0)
+      nameItem(items[static_cast<std::size_t>(result.obstacle_index)], query.options.max_lod, answer);
+  }
+  finishAnswer(workspace, answer);
+  return answer;
+}
+
+} // namespace curve_proximity
