@@ -13,12 +13,13 @@
 #include "bytes.h"
 #include "near.h"
 #include "pieces.h"
+#include "quick.h"
 #include "robot_check.h"
 #include "support.h"
 
 enum { MAX_DEPTH = 256 };
 
-/* Bits of the arithmetic: few at first, many for what the few leave open. */
+/* Bits of the arithmetic: few at first, many for what the few leave open. Doubles with radii come before (quick.h). */
 static const int BITS[PIECES_LEVELS] = {640, 4096};
 
 /* What a section is checked against. */
@@ -78,7 +79,14 @@ static sign separation(const section *c, int level, const double normal[3], part
 /* One leaf. More bits are for what fewer leave open, and for nothing else: to refuse it needs no more than to accept.
  */
 static bool separates(const section *c, const double normal[3], part mine, const part *theirs) {
-  sign found = OPEN;
+  quick_query quick = {.set = c->set, .mover = c->mover, .target = c->target, .from = mine.from, .to = mine.to};
+  if (theirs) {
+    quick.theirs[0] = theirs->from;
+    quick.theirs[1] = theirs->to;
+  }
+  memcpy(quick.normal, normal, sizeof quick.normal);
+  memcpy(quick.balls, c->balls, sizeof quick.balls);
+  sign found = quick_separates(&quick) ? POSITIVE : OPEN;
   for (int level = 0; level < PIECES_LEVELS && found == OPEN; level++) {
     iv_precision(BITS[level]);
     found = separation(c, level, normal, mine, theirs);

@@ -404,7 +404,8 @@ const char *pieces_make(pieces *p, const curve *c, const double *breaks, size_t 
     p->at[level].source = calloc(p->n_sources, sizeof(iv *));
     if (!p->at[level].piece || !p->at[level].jet || !p->at[level].source) return "memory is out";
   }
-  if (!p->span) return "memory is out";
+  p->quick = calloc(n, sizeof *p->quick);
+  if (!p->span || !p->quick) return "memory is out";
   if (breaks[0] != c->t0 || breaks[n] != c->t1) return "the pieces do not cover the curve";
   for (size_t i = 0; i < n; i++) {
     if (!(breaks[i] < breaks[i + 1])) return "the pieces do not follow each other";
@@ -442,6 +443,8 @@ void pieces_free(pieces *p) {
     free_rows(l->source, p->n_sources, numbers_of(p));
     if (l->sixth) iv_free(l->sixth, 1);
   }
+  for (size_t i = 0; p->quick && i < p->n; i++) free(p->quick[i].points);
+  free(p->quick);
   free(p->span);
   *p = (pieces){0};
 }
@@ -477,6 +480,35 @@ static const iv *piece_at(const pieces *p, pieces_level *l, size_t i) {
   }
   l->piece[i] = made;
   return made;
+}
+
+/* The middle of an interval, and at least how far its ends are from it. */
+static double middle_of(const iv *a, double *off) {
+  const double lo = mpfr_get_d(a->lo, MPFR_RNDD), hi = mpfr_get_d(a->hi, MPFR_RNDU), m = 0.5 * lo + 0.5 * hi;
+  *off = fmax(hi - m, m - lo) * (1.0 + 0x1p-50) + 0x1p-1000;
+  return m;
+}
+
+const pieces_quick *pieces_quick_at(pieces *p, size_t i) {
+  pieces_quick *q = &p->quick[i];
+  if (q->points) return q;
+  q->points = calloc(p->degree + 1, sizeof *q->points);
+  if (!q->points) return NULL;
+  if (p->curve->basis == BEZIER && p->n == 1) { /* as it is given */
+    memcpy(q->points, p->curve->points, (p->degree + 1) * sizeof *q->points);
+    return q;
+  }
+  const iv *piece = piece_at(p, &p->at[0], i);
+  double most = 0.0;
+  for (size_t j = 0; j <= p->degree; j++) {
+    double off[3];
+    for (size_t k = 0; k < 3; k++) q->points[j][k] = middle_of(&piece[3 * j + k], &off[k]);
+    const double sum = off[0] + off[1] + off[2];
+    if (!(sum <= most)) most = isfinite(sum) ? sum : INFINITY;
+  }
+  q->radius = most * (1.0 + 0x1p-50);
+  q->remainder = mpfr_get_d(piece[numbers_of(p)].hi, MPFR_RNDU);
+  return q;
 }
 
 void pieces_least(iv *out, pieces *p, int level, const iv n[3], double from, double to) {

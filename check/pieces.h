@@ -19,12 +19,19 @@ typedef struct pieces_level {
   iv *sixth;   /* bounds its sixth derivative */
 } pieces_level;
 
+/* A piece in doubles: each of its points is within radius of the one here, the curve's within remainder more. */
+typedef struct pieces_quick {
+  double (*points)[3];
+  double radius, remainder;
+} pieces_quick;
+
 typedef struct pieces {
   const curve *curve;
   size_t degree, n, n_sources;
   const double *breaks;
   size_t *span; /* of a spline: which one each piece is cut from */
   pieces_level at[PIECES_LEVELS];
+  pieces_quick *quick; /* points NULL: not yet made */
 } pieces;
 
 /* Piece i runs from breaks[i] to breaks[i+1], which are kept by reference. NULL, or why these cannot be the breaks:
@@ -35,6 +42,9 @@ void pieces_free(pieces *p);
 /* min n·x over the part [from, to] of the pieces, counted from 0 to their number. The level's bits are those of the
  * arithmetic. */
 void pieces_least(iv *out, pieces *p, int level, const iv n[3], double from, double to);
+
+/* Piece i in doubles, by few bits; NULL where memory is out. The bits of the arithmetic are those of level 0. */
+const pieces_quick *pieces_quick_at(pieces *p, size_t i);
 
 /* The point of the curve at the parameter t of [t0, t1]: a piece of no length. At a knot where a spline jumps, its
  * limit from the left or from the right. */

@@ -377,8 +377,8 @@ TEST(Contact, no_sampled_contact_comes_before_the_time) {
     const Answer collides = ask(targets, curve, query, workspace).front();
     EXPECT_EQ(answer.result.verdict, collides.result.verdict) << i;
     contacts += answer.result.verdict == CPROX_VERDICT_VIOLATED;
-    for (int k = 0; k <= SAMPLES; ++k) {
-      const double t = answer.result.t_contact_lower * k / SAMPLES * (1 - 1e-15);
+    for (int k = 0; k < SAMPLES && answer.result.t_contact_lower > 0; ++k) { // at 0: it begins in contact
+      const double t = answer.result.t_contact_lower * k / SAMPLES;
       cprox_vec3 point;
       cprox_curve_evaluate(curve.curve.get(), t, workspace.get(), &point, nullptr, nullptr);
       EXPECT_GT((toEigen(point) - ball.object.pose.translation()).norm(), 0.5 - 1e-14) << i;

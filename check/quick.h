@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Directions in doubles with radii: most of them need no more. */
+#ifndef CHECK_QUICK_H
+#define CHECK_QUICK_H
+
+#include "pieces.h"
+
+/* A part of the mover's pieces; a set, or the part [theirs] of the pieces of a set that is a curve. */
+typedef struct quick_query {
+  const set *set;
+  pieces *mover, *target; /* target: NULL for a set that is no curve */
+  double from, to, theirs[2];
+  double normal[3];
+  double balls[3]; /* delta, radius, margin */
+} quick_query;
+
+/* True: the direction separates, as separates() of check.c means it. False: nothing is known. */
+bool quick_separates(const quick_query *q);
+
+#endif
