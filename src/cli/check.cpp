@@ -1,14 +1,22 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* check: hands the query, read from the same inputs again, to the program cprox_check. What is trusted is the reading
  * of the inputs and that program; not the search, nor what wrote the certificates. */
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <csignal>
+#include <cstdio>
 #include <cstring>
+#include <deque>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string_view>
+#include <utility>
 
 #include "certificates.h"
 #include "commands.h"
@@ -28,64 +36,151 @@ std::string checkerPath() {
   return !error && std::filesystem::exists(beside, error) ? beside.string() : "cprox_check";
 }
 
-/* cprox_check at work, its standard input being the problem. */
+/* A file without a name, that a child inherits. */
+class Scratch {
+ public:
+  Scratch() : file_(memfd_create("cprox", 0)) {
+    if (file_ < 0) throw BadUsage(std::string("no memory for cprox_check: ") + std::strerror(errno));
+  }
+  explicit Scratch(std::string_view bytes) : Scratch() {
+    while (!bytes.empty()) {
+      const ssize_t n = write(file_, bytes.data(), bytes.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) throw BadUsage(std::string("no memory for cprox_check: ") + std::strerror(errno));
+      bytes.remove_prefix(static_cast<std::size_t>(n));
+    }
+    lseek(file_, 0, SEEK_SET);
+  }
+  ~Scratch() {
+    if (file_ >= 0) close(file_);
+  }
+  Scratch(Scratch &&other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  Scratch &operator=(Scratch &&) = delete;
+
+  int get() const {
+    return file_;
+  }
+
+  /* All that was written, to standard output. */
+  void print() const {
+    std::array<char, 1 << 16> block{};
+    lseek(file_, 0, SEEK_SET);
+    for (ssize_t n = 0; (n = read(file_, block.data(), block.size())) != 0;) {
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0 || std::fwrite(block.data(), 1, static_cast<std::size_t>(n), stdout) != static_cast<std::size_t>(n))
+        throw std::runtime_error(std::string("standard output: writing failed: ") + std::strerror(errno));
+    }
+    std::fflush(stdout);
+  }
+
+ private:
+  int file_;
+};
+
+/* cprox_check at work on one block of rows. */
 class Checker {
  public:
-  explicit Checker(std::string certificates) : certificates_(std::move(certificates)) {}
-
-  ~Checker() {
-    if (input_ >= 0) finish();
+  Checker(const std::string &problem, std::string_view certificates) : problem_(problem), certificates_(certificates) {
+    const std::string path = checkerPath(), file = "/proc/self/fd/" + std::to_string(certificates_.get());
+    process_ = fork();
+    if (process_ < 0) throw BadUsage(std::string("cprox_check cannot be started: ") + std::strerror(errno));
+    if (process_ > 0) return;
+    dup2(problem_.get(), STDIN_FILENO);
+    dup2(report_.get(), STDOUT_FILENO);
+    execlp(path.c_str(), "cprox_check", "-", file.c_str(), static_cast<char *>(nullptr));
+    constexpr int kNotThere = 127;
+    _exit(kNotThere);
   }
 
-  Checker(const Checker &) = delete;
-  Checker &operator=(const Checker &) = delete;
-
-  /* False where it no longer listens. It is started by the first text: an input that cannot be read is no problem of
-   * its own. */
-  bool tell(const std::string &text) {
-    if (process_ < 0) start();
-    for (std::size_t sent = 0; sent < text.size();) {
-      const ssize_t n = write(input_, text.data() + sent, text.size() - sent);
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) return false;
-      sent += static_cast<std::size_t>(n);
-    }
-    return true;
-  }
-
-  /* Its exit code. */
+  /* Waits for its end, prints its report; its exit code. */
   int finish() {
-    close(input_);
-    input_ = -1;
     int status = 0;
     while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
     }
+    report_.print();
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
  private:
-  void start() {
-    std::array<int, 2> ends{};
-    if (pipe(ends.data()) != 0) throw BadUsage(std::string("no pipe to cprox_check: ") + std::strerror(errno));
-    const std::string path = checkerPath();
-    process_ = fork();
-    if (process_ < 0) throw BadUsage(std::string("cprox_check cannot be started: ") + std::strerror(errno));
-    if (process_ == 0) {
-      dup2(ends[0], STDIN_FILENO);
-      close(ends[0]);
-      close(ends[1]);
-      execlp(path.c_str(), "cprox_check", "-", certificates_.c_str(), static_cast<char *>(nullptr));
-      constexpr int kNotThere = 127;
-      _exit(kNotThere);
-    }
-    close(ends[0]);
-    input_ = ends[1];
-    std::signal(SIGPIPE, SIG_IGN); // it may give up before it has read all
+  Scratch problem_, certificates_, report_;
+  pid_t process_ = -1;
+};
+
+/* Several of them: rows are handed out in blocks, reports are printed in the order of the rows. */
+class Checkers {
+ public:
+  Checkers(const std::string &certificates, std::size_t threads) : threads_(threads) {
+    std::ifstream stream(certificates, std::ios::binary);
+    bytes_.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+    if (!stream) throw BadUsage(certificates + ": cannot be read");
+    rest_ = bytes_;
   }
 
-  std::string certificates_;
-  pid_t process_ = -1;
-  int input_ = -1;
+  /* What stands before the movers of every block. */
+  void begin(const std::string &head) {
+    head_ = head;
+  }
+
+  void add(const std::string &mover) {
+    if (in_block_ == kRowsPerBlock) start(take(in_block_));
+    movers_ += mover;
+    ++in_block_;
+    ++rows_;
+  }
+
+  std::size_t rows() const {
+    return rows_;
+  }
+
+  /* 0: all are proven; 1: not all. The last block has all certificates that are left: there should be none too many. */
+  int finish() {
+    if (rows_ > 0) start(rest_);
+    while (!working_.empty()) collect();
+    return code_;
+  }
+
+ private:
+  static constexpr std::size_t kRowsPerBlock = 2000;
+
+  /* The certificates of so many rows, each behind its length (u32, little endian); fewer where the file ends. */
+  std::string_view take(std::size_t rows) {
+    std::size_t size = 0;
+    for (; rows > 0 && rest_.size() - size >= 4; --rows) {
+      std::size_t length = 0;
+      for (std::size_t i = 4; i-- > 0;) length = length << 8 | static_cast<unsigned char>(rest_[size + i]);
+      size += 4;
+      if (length > rest_.size() - size) {
+        size = rest_.size();
+        break;
+      }
+      size += length;
+    }
+    const std::string_view taken = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return taken;
+  }
+
+  void start(std::string_view certificates) {
+    if (working_.size() == threads_) collect();
+    working_.push_back(std::make_unique<Checker>(head_ + movers_, certificates));
+    movers_.clear();
+    in_block_ = 0;
+  }
+
+  void collect() {
+    const int code = working_.front()->finish();
+    working_.pop_front();
+    if (code != 0 && code != 1)
+      throw BadUsage("cprox_check did not come to an end of its own (exit code " + std::to_string(code) + ")");
+    code_ = std::max(code_, code);
+  }
+
+  const std::size_t threads_;
+  std::string bytes_, head_, movers_;
+  std::string_view rest_;
+  std::size_t in_block_ = 0, rows_ = 0;
+  std::deque<std::unique_ptr<Checker>> working_;
+  int code_ = 0;
 };
 
 /* The mover of a row; of one that cannot be a curve, that there is none. */
@@ -115,7 +210,7 @@ std::string pairOf(const std::optional<CsvRow> &first, const std::optional<CsvRo
   }
 }
 
-void tellCurves(const Arguments &arguments, Console &console, Checker &checker) {
+void tellCurves(const Arguments &arguments, Console &console, Checkers &checkers) {
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
   const Targets targets(world.snapshot, world.links, arguments.query);
@@ -123,34 +218,33 @@ void tellCurves(const Arguments &arguments, Console &console, Checker &checker) 
   warnOfUnprovable(none, warnings);
   console.warn(warnings);
   CsvFile file(arguments.curves);
-  bool listening = checker.tell(problemHead() + (none.empty() ? describeTargets(targets) : ""));
-  for (std::optional<CsvRow> row = file.next(); row && listening; row = file.next()) {
-    listening = checker.tell(none.empty() ? moverOf(*row) : noMoverLine(rowId(row->text)));
-  }
+  checkers.begin(problemHead() + (none.empty() ? describeTargets(targets) : ""));
+  while (const std::optional<CsvRow> row = file.next())
+    checkers.add(none.empty() ? moverOf(*row) : noMoverLine(rowId(row->text)));
 }
 
-void tellTrajectory(const Arguments &arguments, Console &console, Checker &checker) {
+void tellTrajectory(const Arguments &arguments, Console &console, Checkers &checkers) {
   Warnings warnings;
   const World world = readWorld(arguments, warnings);
   const RobotMotion motion = readMotion(arguments, world, warnings);
   warnOfUnprovable(unprovable(motion, false, arguments.query), warnings);
   if (arguments.self) warnOfUnprovable(unprovable(motion, true, arguments.query), warnings);
   console.warn(warnings);
-  bool listening = checker.tell(problemHead());
+  checkers.begin(problemHead());
   for (const bool self : {false, true}) {
-    if (!listening || (self && !arguments.self)) return;
+    if (self && !arguments.self) break;
     const std::string query = describeQuery(motion, self, arguments.query);
-    listening = checker.tell(query.empty() ? noMoverLine(self ? "self" : "environment") : query);
+    checkers.add(query.empty() ? noMoverLine(self ? "self" : "environment") : query);
   }
 }
 
-void tellPairs(const Arguments &arguments, Checker &checker) {
+void tellPairs(const Arguments &arguments, Checkers &checkers) {
   CsvFile first(arguments.curves), second(arguments.against);
-  bool listening = checker.tell(problemHead() + "targets 0\n");
-  while (listening) {
+  checkers.begin(problemHead() + "targets 0\n");
+  while (true) {
     const std::optional<CsvRow> a = first.next(), b = second.next();
     if (!a && !b) return;
-    listening = checker.tell(pairOf(a, b));
+    checkers.add(pairOf(a, b));
   }
 }
 
@@ -159,17 +253,19 @@ void tellPairs(const Arguments &arguments, Checker &checker) {
 int checkCertificates(const Arguments &arguments, Console &console) {
   if (!std::filesystem::exists(arguments.certificate))
     throw BadUsage(arguments.certificate + ": there is no such file");
-  Checker checker(arguments.certificate);
+  Checkers checkers(arguments.certificate, arguments.threads);
   if (!arguments.trajectory.empty())
-    tellTrajectory(arguments, console, checker);
+    tellTrajectory(arguments, console, checkers);
   else if (arguments.against.empty())
-    tellCurves(arguments, console, checker);
+    tellCurves(arguments, console, checkers);
   else
-    tellPairs(arguments, checker);
-  const int code = checker.finish();
-  if (code == 0) return kAllAnswered;
-  if (code == 1) return kSomeRowsFailed;
-  throw BadUsage("cprox_check did not come to an end of its own (exit code " + std::to_string(code) + ")");
+    tellPairs(arguments, checkers);
+  const int code = checkers.finish();
+  if (checkers.rows() == 0) {
+    console.say("warning: the input has no rows");
+    return kUnanswered;
+  }
+  return code == 0 ? kAllAnswered : kSomeViolated;
 }
 
 } // namespace curve_proximity::cli
